@@ -379,7 +379,7 @@ b[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
 scene.add_instance(group, [a, b], [0, 1])
 world = scene.world()
 origins, directions = rng.uniform(-2, 2, (5000, 3)), rng.normal(size=(5000, 3))
-directions[1000:3000] = (0, 0, 1)
+origins[1000:3000], directions[1000:3000] = (0, 0, 3), (0, 0, -1) + 0.03 * rng.normal(size=(2000, 3))  # traced in packets
 hits = world.trace(origins, directions, times=rng.uniform(0, 1, 5000), hits=3)
 digest = hashlib.sha256()
 for field in hits[:12]:

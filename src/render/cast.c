@@ -37,18 +37,39 @@ vlCastDef vl_default_cast_def(void) {
 
 /* ---- reading ----------------------------------------------------------------------------- */
 
-/* Number k of the rays [first, first + n); `other` where the array is not given. */
-static void read_column(const vlRayArray *a, uint64_t first, uint32_t n, int k, double other,
-                        double *to) {
+/* The numbers of the rays [first, first + n), one each; `other` where the array is not
+ * given. */
+static void read_numbers(const vlRayArray *a, uint64_t first, uint32_t n, double other,
+                         double *to) {
   const char *from = (const char *)a->data + (int64_t)first * a->step;
   for (uint32_t i = 0; i < n && !a->data; i++)
     to[i] = other;
   for (uint32_t i = 0; i < n && a->data && a->doubles; i++)
-    memcpy(&to[i], from + (int64_t)i * a->step + k * (int)sizeof(double), sizeof(double));
+    memcpy(&to[i], from + (int64_t)i * a->step, sizeof(double));
   for (uint32_t i = 0; i < n && a->data && !a->doubles; i++) {
     float x;
-    memcpy(&x, from + (int64_t)i * a->step + k * (int)sizeof x, sizeof x);
+    memcpy(&x, from + (int64_t)i * a->step, sizeof x);
     to[i] = (double)x;
+  }
+}
+
+/* The same for three numbers each. */
+static void read_vectors(const vlRayArray *a, uint64_t first, uint32_t n,
+                         double to[3][VL_ROW_SIZE]) {
+  const char *from = (const char *)a->data + (int64_t)first * a->step;
+  for (uint32_t i = 0; i < n && a->doubles; i++, from += a->step) {
+    double x[3];
+    memcpy(x, from, sizeof x);
+    to[0][i] = x[0];
+    to[1][i] = x[1];
+    to[2][i] = x[2];
+  }
+  for (uint32_t i = 0; i < n && !a->doubles; i++, from += a->step) {
+    float x[3];
+    memcpy(x, from, sizeof x);
+    to[0][i] = (double)x[0];
+    to[1][i] = (double)x[1];
+    to[2][i] = (double)x[2];
   }
 }
 
@@ -97,13 +118,11 @@ static void read_rays(Cast *c, uint64_t first, uint32_t count, vlCastBatch *b,
   double time[VL_BATCH];
   uint64_t fates[TOO_FAR + 1] = {0};
   uint32_t n = 0;
-  for (int j = 0; j < 3; j++) {
-    read_column(&r->origins, first, count, j, 0, b->o[j]);
-    read_column(&r->directions, first, count, j, 0, b->d[j]);
-  }
-  read_column(&r->t_min, first, count, 0, 0, b->start);
-  read_column(&r->t_max, first, count, 0, (double)INFINITY, b->end);
-  read_column(&r->times, first, count, 0, 0, time);
+  read_vectors(&r->origins, first, count, b->o);
+  read_vectors(&r->directions, first, count, b->d);
+  read_numbers(&r->t_min, first, count, 0, b->start);
+  read_numbers(&r->t_max, first, count, (double)INFINITY, b->end);
+  read_numbers(&r->times, first, count, 0, time);
   b->n = count;
   bool plain = c->kernels->check(b) && !r->times.data;
   for (uint32_t i = 0; plain && i < count; i++)

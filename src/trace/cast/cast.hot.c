@@ -215,7 +215,7 @@ enum { AHEAD = 8, LARGE_MESH = 4096 };
 static inline __attribute__((always_inline)) const vlWorldShape *large_mesh(
     const vlWorld *world, const vlHits *h, uint32_t i) {
   const vlWorldShape *s = h->shape[i] == VL_NONE ? NULL : &world->shapes.items[h->shape[i]];
-  return s && s->kind == VL_SHAPE_TRIANGLES && s->faces >= LARGE_MESH ? s : NULL;
+  return s && s->triangles && s->faces >= LARGE_MESH ? s : NULL;
 }
 static inline __attribute__((always_inline)) void prefetch(const vlWorld *world,
                                                            const vlHits *h, uint32_t n,
@@ -225,15 +225,28 @@ static inline __attribute__((always_inline)) void prefetch(const vlWorld *world,
     __builtin_prefetch(later->indices + 3 * (size_t)h->prim[i + 2 * AHEAD]);
   const vlWorldShape *soon = i + AHEAD < n ? large_mesh(world, h, i + AHEAD) : NULL;
   const uint32_t *f = soon ? soon->indices + 3 * (size_t)h->prim[i + AHEAD] : NULL;
-  for (int k = 0; k < 3 && f; k++)
-    __builtin_prefetch(soon->positions + 3 * (size_t)f[k]);
+  if (!f)
+    return;
+  __builtin_prefetch(soon->positions + 3 * (size_t)f[0]);
+  __builtin_prefetch(soon->positions + 3 * (size_t)f[1]);
+  __builtin_prefetch(soon->positions + 3 * (size_t)f[2]);
 }
 
 /* Whether a hit is on a triangle at rest outside of instances, as most are. */
 static inline __attribute__((always_inline)) bool is_plain(const vlWorld *world,
                                                            const vlHits *h, uint32_t i) {
   const vlWorldShape *s = &world->shapes.items[h->shape[i]];
-  return h->instance[i] == VL_NONE && s->kind == VL_SHAPE_TRIANGLES && s->steps <= 1;
+  return h->instance[i] == VL_NONE && s->triangles && s->steps <= 1;
+}
+
+static inline __attribute__((always_inline)) void put_corner(const vlWorldShape *s,
+                                                             uint32_t vertex,
+                                                             float (*rows)[VL_ROW_SIZE],
+                                                             uint32_t i) {
+  const float *x = s->positions + 3 * (size_t)vertex;
+  rows[0][i] = x[0];
+  rows[1][i] = x[1];
+  rows[2][i] = x[2];
 }
 
 /* Gathers the corners of plain hits. False: there are others, too. */
@@ -249,9 +262,9 @@ static bool gather_corners(const vlWorld *world, const vlHits *h, uint32_t n, vl
     }
     const vlWorldShape *s = &world->shapes.items[h->shape[i]];
     const uint32_t *f = s->indices + 3 * (size_t)h->prim[i];
-    for (int k = 0; k < 3; k++)
-      for (int j = 0; j < 3; j++)
-        c->p[3 * k + j][i] = s->positions[3 * (size_t)f[k] + (size_t)j];
+    put_corner(s, f[0], c->p, i);
+    put_corner(s, f[1], c->p + 3, i);
+    put_corner(s, f[2], c->p + 6, i);
   }
   return all;
 }

@@ -585,7 +585,7 @@ void vl_embree_destroy(vlAccel *a) {
 /* Macros that hide the difference between the queries of Embree 3 and 4. */
 /* Camera rays in a packet: as many as fit into the vectors of the widest set without fused
  * multiply-add. */
-enum { PACKET = 16 };
+enum { PACKET = 8 };
 
 #if VELO_EMBREE_MAJOR >= 4
 #define BEGIN_QUERY(query, r, coherent)                                         \
@@ -604,9 +604,8 @@ enum { PACKET = 16 };
   (void)closest_arguments, (void)any_arguments
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), &closest_arguments)
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
-#define INTERSECT16(valid, scene, ray) \
-  rtcIntersect16((valid), (scene), (ray), &closest_arguments)
-#define OCCLUDED16(valid, scene, ray) rtcOccluded16((valid), (scene), (ray), &any_arguments)
+#define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), (ray), &closest_arguments)
+#define OCCLUDED8(valid, scene, ray) rtcOccluded8((valid), (scene), (ray), &any_arguments)
 #else
 #define BEGIN_QUERY(query, r, coherent)                   \
   Query query;                                            \
@@ -616,8 +615,8 @@ enum { PACKET = 16 };
       (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
-#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), &query.context, (ray))
-#define OCCLUDED16(valid, scene, ray) rtcOccluded16((valid), (scene), &query.context, (ray))
+#define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), &query.context, (ray))
+#define OCCLUDED8(valid, scene, ray) rtcOccluded8((valid), (scene), &query.context, (ray))
 #endif
 
 static inline void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst,
@@ -647,7 +646,7 @@ static inline bool is_sound(const vlRays *r, uint32_t i) {
 
 /* Rays first to first + PACKET - 1 as a packet. Lanes past the last ray, and rays that Embree
  * does not accept, are not valid. */
-static void fill_packet(struct RTCRay16 *q, int valid[PACKET], const vlRays *r, uint32_t first,
+static void fill_packet(struct RTCRay8 *q, int valid[PACKET], const vlRays *r, uint32_t first,
                         uint32_t n) {
   const float *const from[6] = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz};
   float *const to[6] = {q->org_x, q->org_y, q->org_z, q->dir_x, q->dir_y, q->dir_z};
@@ -686,12 +685,12 @@ static void closest_packets(const vlWorld *world, uint32_t n, const vlRays *r, u
     query.q.first = first;
     for (uint32_t k = 0; k < PACKET; k++)
       nearest[k].t = INFINITY;
-    struct RTCRayHit16 q;
-    int valid[PACKET] __attribute__((aligned(64)));
+    struct RTCRayHit8 q;
+    int valid[PACKET] __attribute__((aligned(32)));
     fill_packet(&q.ray, valid, r, first, n);
     for (uint32_t k = 0; k < PACKET; k++)
       q.hit.geomID[k] = q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-    INTERSECT16(valid, world->accel.scene, &q);
+    INTERSECT8(valid, world->accel.scene, &q);
     for (uint32_t k = 0; k < PACKET && first + k < n; k++)
       t[first + k] = query.q.nearest ? nearest[k].t : q.ray.tfar[k];
     for (uint32_t k = 0; k < PACKET && first + k < n; k++)
@@ -746,10 +745,10 @@ void vl_embree_occluded_packets(const vlWorld *world, uint32_t n, const vlRays *
                                 uint8_t *occluded) {
   BEGIN_QUERY(query, r, true);
   for (uint32_t first = 0; first < n; first += PACKET) {
-    struct RTCRay16 q;
-    int valid[PACKET] __attribute__((aligned(64)));
+    struct RTCRay8 q;
+    int valid[PACKET] __attribute__((aligned(32)));
     fill_packet(&q, valid, r, first, n);
-    OCCLUDED16(valid, world->accel.scene, &q);
+    OCCLUDED8(valid, world->accel.scene, &q);
     for (uint32_t k = 0; k < PACKET && first + k < n; k++)
       occluded[first + k] = q.tfar[k] < 0;
   }

@@ -31,7 +31,7 @@ static const Command *const commands[] = {&render_command,         &view_command
                                           &film_info_command,      &film_merge_command,
                                           &film_develop_command,   &raw_develop_command,
                                           &raw_info_command,       &sensor_expose_command,
-                                          &sensor_verify_command};
+                                          &sensor_verify_command,  &light_info_command};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {
@@ -95,7 +95,8 @@ static const char *command_for_file(const char *word) {
       {".exr", "image info"},   {".png", "image info"},   {".jpg", "image info"},
       {".hdr", "image info"},   {".pfm", "image info"},   {".obj.gz", "render"},
       {".ply.gz", "render"},    {".stl.gz", "render"},    {".off.gz", "render"},
-      {".yaml", "camera info"}, {".json", "camera info"}, {".dng", "raw info"}};
+      {".yaml", "camera info"}, {".json", "camera info"}, {".dng", "raw info"},
+      {".ies", "light info"},   {".ldt", "light info"}};
   const size_t length = strlen(word);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     const size_t n = strlen(kinds[i][0]);

@@ -26,6 +26,7 @@
 #include "velo/header.h"
 #include "velo/image.h"
 #include "velo/jacobian.h"
+#include "velo/lamp.h"
 #include "velo/light.h"
 #include "velo/load.h"
 #include "velo/lookup.h"

@@ -185,6 +185,14 @@ bool vl_ends_with(const char *text, const char *suffix) {
   return n >= m && strcasecmp(text + n - m, suffix) == 0;
 }
 
+bool vl_names_lamp(const char *path) {
+  static const char *const ends[] = {".ies", ".ldt"};
+  for (size_t i = 0; path && i < VL_LENGTH(ends); i++)
+    if (vl_ends_with(path, ends[i]))
+      return true;
+  return false;
+}
+
 bool vl_path_join(const char *base_file, const char *name, char *result, size_t size) {
   const char *slash = base_file ? strrchr(base_file, '/') : NULL;
   int n = name[0] == '/' || !slash

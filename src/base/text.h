@@ -58,6 +58,8 @@ static inline bool vl_text_is(const char *text, const char *word) {
   return text && strcmp(text, word) == 0;
 }
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */
+/* Whether a path names a lamp file, by its end: .ies or .ldt. Null: it does not. */
+bool vl_names_lamp(const char *path);
 /* result = folder of the file base_file + name; name alone if it is absolute. False: it does
  * not fit. */
 bool vl_path_join(const char *base_file, const char *name, char *result, size_t size);

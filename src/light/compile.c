@@ -101,7 +101,7 @@ static vlResult add_light(vlWorld *world, const vlLightDef *def, vlError *error)
     return vl_fail_memory(error);
   e->image = -1;
   light->emitted = (uint32_t)world->emitted.count - 1;
-  light->shape = light->environment = VL_NONE;
+  light->shape = light->environment = light->lamp = VL_NONE;
   vlMat4 m = vl_mat4_load(def->world_from_light);
   double from[3] = {def->from[0], def->from[1], def->from[2]},
          to[3] = {def->to[0], def->to[1], def->to[2]}, a[3], b[3];

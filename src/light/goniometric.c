@@ -1,12 +1,14 @@
-/* light/goniometric.c: point lights whose intensity is given by an image: goniometric (by
- * direction, in an equal-area octahedral square) and projection. Conventions are pbrt-v4's
- * (book 12.2): the axis of a goniometric diagram is the light's y; a projection light's image
- * is projected along its z with y up. The power parameter is the power of all emitted light, as
- * in pbrt. */
+/* light/goniometric.c: point lights whose intensity is given by a file: goniometric (by
+ * direction: an image in an equal-area octahedral square, or a lamp file) and projection.
+ * Conventions are pbrt-v4's (book 12.2): the axis of a goniometric diagram is the light's y; a
+ * projection light's image is projected along its z with y up. The power parameter is the power
+ * of all emitted light, as in pbrt. */
 #include <math.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "light/compile.h"
+#include "light/lamp.h"
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
@@ -116,8 +118,71 @@ static const vlMipmap *add_image(vlWorld *world, const vlLightDef *def, vlWorldL
   return image < 0 ? NULL : world->images.items[image].mipmap;
 }
 
+static void free_lamp(vlContext *context, void *lamp) {
+  (void)context;
+  vl_lamp_destroy(lamp);
+}
+
+/* Reads the lamp file. Null on error. */
+static const vlLamp *add_lamp(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
+                              vlError *error) {
+  vlLamp *lamp = NULL;
+  if (vl_lamp_open(world->context, def->path, false, &lamp, error) != VL_OK)
+    return NULL;
+  vlPart *part = vl_part_add(world);
+  if (part) {
+    part->destroy = free_lamp;
+    part->object = lamp;
+  }
+  const vlLamp **slot = part ? VL_PUSH(world->context, &world->lamps) : NULL;
+  if (!part)
+    vl_lamp_destroy(lamp);
+  if (!slot) {
+    vl_fail_memory(error);
+    return NULL;
+  }
+  *slot = lamp;
+  light->lamp = (uint32_t)world->lamps.count - 1;
+  return lamp;
+}
+
+/* The rotation from world to the directions of the lamp's table. */
+static bool set_lamp_frame(const vlLightDef *def, const vlLamp *lamp, vlWorldLight *light) {
+  vlMat4 inverse;
+  if (!vl_mat4_inverse(vl_mat4_load(def->world_from_light), &inverse))
+    return false;
+  const float *frame = lamp->table.frame;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      double sum = 0;
+      for (int k = 0; k < 3; k++)
+        sum += (double)frame[3 * i + k] * inverse.m[4 * k + j];
+      light->corners[3 * i + j] = (float)sum;
+    }
+  return true;
+}
+
+/* The intensity is that of the lamp file in candela, times the colour's, whose luminance is
+ * 1. */
+static vlResult compile_lamp(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
+                             vlEmitted *e, vlError *error) {
+  const vlLamp *lamp = add_lamp(world, def, light, error);
+  if (!lamp)
+    return error && error->code ? error->code : VL_ERROR_SCENE;
+  if (!set_lamp_frame(def, lamp, light))
+    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
+  double flux = lamp->info.flux, factor = def->scale;
+  if (def->power == def->power)
+    factor *= flux > 0 ? def->power / flux : 0;
+  vlResult r = vl_light_color(world, &def->color, (float)factor, e, error);
+  light->power = (float)flux * vl_light_luminance(&e->spectrum);
+  return r;
+}
+
 vlResult vl_compile_light_goniometric(vlWorld *world, const vlLightDef *def,
                                       vlWorldLight *light, vlEmitted *e, vlError *error) {
+  if (!def->image && vl_names_lamp(def->path))
+    return compile_lamp(world, def, light, e, error);
   const vlMipmap *mip = add_image(world, def, light, error);
   if (!mip)
     return error && error->code ? error->code : VL_ERROR_SCENE;

@@ -3,7 +3,7 @@
 
 /* The image has .2, .4, .6, .8 in its quarters: left top, right top, left bottom, right bottom.
  * Its map has y upwards: below the light, u goes with x and v with z. The distance is the root
- * of 1.5. */
+ * of 1.5. The lamp file's intensity is linear in C, from 2 at C 0 to 1 at C 180. */
 const LightCase goniometric_light = {
     .before = "Translate 0 1 0",
     .variants =
@@ -13,6 +13,12 @@ const LightCase goniometric_light = {
                        {-.5, .5, {.6 / 1.5, .6 / 1.5, .6 / 1.5}},
                        {.5, -.5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}},
                        {-.5, -.5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}}},
+             .known_count = 4},
+            {.parameters = "\"string filename\" \"lamp.ies\" \"rgb I\" [1 1 1]",
+             .known = {{.5, 0, {2 / 1.25, 2 / 1.25, 2 / 1.25}},
+                       {-.5, 0, {1 / 1.25, 1 / 1.25, 1 / 1.25}},
+                       {0, -.5, {1.5 / 1.25, 1.5 / 1.25, 1.5 / 1.25}},
+                       {.5, -.5, {1.75 / 1.5, 1.75 / 1.5, 1.75 / 1.5}}},
              .known_count = 4},
         },
     .parameters = {{.base = "\"string filename\" \"sky.pfm\""}},

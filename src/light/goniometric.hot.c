@@ -1,6 +1,8 @@
 /* light/goniometric.hot.c: goniometric lights: point lights whose intensity is multiplied
- * by an image over directions (pbrt book 12.2.3), in the equal-area octahedral map (3.8.3). */
+ * by an image over directions (pbrt book 12.2.3), in the equal-area octahedral map (3.8.3), or
+ * by the table of a lamp file. */
 #include "light/kinds.hot.h"
+#include "light/lamp_lookup.h"
 #include "math/octahedral.h"
 #include "texture/lookup.h"
 
@@ -8,9 +10,17 @@ vlSampleLight vl_light_sample_goniometric;
 vlEmitLight vl_light_emit_goniometric;
 vlLightDensity vl_light_emit_pdf_goniometric;
 
-/* The image's factor for light that leaves along d (world space). */
-static float image_factor(const vlWorld *world, const vlWorldLight *light, vlVec3 d) {
+/* The table of the light's lamp file; null: it has none. */
+static const vlLampTable *lamp_table(const vlWorld *world, const vlWorldLight *light) {
+  return light->lamp == VL_NONE ? NULL : &world->lamps.items[light->lamp]->table;
+}
+
+/* The image's factor, or the lamp's candela, for light that leaves along d (world space). */
+static float intensity_factor(const vlWorld *world, const vlWorldLight *light, vlVec3 d) {
   vlVec3 local = vl_normalize(vl_light_local(light, d));
+  const vlLampTable *lamp = lamp_table(world, light);
+  if (lamp)
+    return vl_lamp_candela(lamp, local);
   const vlMipmap *mip = world->images.items[light->image].mipmap;
   vlVec2 at = vl_octahedral_encode(local);
   vlTexel x = vl_nearest(mip, 0, at.x, at.y, VL_WRAP_OCTAHEDRAL);
@@ -19,16 +29,60 @@ static float image_factor(const vlWorld *world, const vlWorldLight *light, vlVec
 
 void vl_light_sample_goniometric(const vlLightQuery *q, vlLightSample *out) {
   float factor = vl_light_towards_point(q, out);
-  factor *= image_factor(q->world, q->light, vl_neg(out->w));
+  factor *= intensity_factor(q->world, q->light, vl_neg(out->w));
   vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->radiance);
   for (int c = 0; c < 4; c++)
     out->radiance[c] *= factor;
 }
 
-void vl_light_emit_goniometric(const vlEmissionQuery *q, vlEmission *out) {
+/* The world's direction of one in the table's frame: the transpose of a rotation times a scale,
+ * or for skewed frames its inverse. */
+static vlVec3 from_lamp(const float m[9], vlVec3 d) {
+  vlVec3 x = vl_vec3(m[0], m[1], m[2]), y = vl_vec3(m[3], m[4], m[5]),
+         z = vl_vec3(m[6], m[7], m[8]);
+  vlVec3 a = vl_cross(y, z), b = vl_cross(z, x), c = vl_cross(x, y);
+  float sign = vl_dot(x, a) < 0.0f ? -1.0f : 1.0f;
+  vlVec3 sum = vl_add(vl_mul(a, d.x), vl_add(vl_mul(b, d.y), vl_mul(c, d.z)));
+  return vl_normalize(vl_mul(sum, sign));
+}
+
+/* Solid angle in the table's frame per solid angle of the world, for a unit direction d of the
+ * world that is `local` there, before it is normalised: |det m| / |m d|^3. 1 without skew. */
+static float lamp_stretch(const float m[9], vlVec3 local) {
+  vlVec3 x = vl_vec3(m[0], m[1], m[2]), y = vl_vec3(m[3], m[4], m[5]),
+         z = vl_vec3(m[6], m[7], m[8]);
+  float length2 = vl_length2(local);
+  return vl_abs(vl_dot(x, vl_cross(y, z))) / (length2 * __builtin_sqrtf(length2));
+}
+
+/* A ray of the lamp: its direction has the density of the flux of the table's cells. */
+static void emit_lamp(const vlEmissionQuery *q, const vlLampTable *table, vlEmission *out) {
   const float span = 2.0f;
   vl_light_emit_from_point(q, span, out);
-  float factor = 2.0f * VL_PI * span * image_factor(q->world, q->light, out->d);
+  out->valid = table->flux > 0.0f;
+  if (!out->valid)
+    return;
+  float density;
+  vlVec3 local = vl_lamp_sample(table, q->s, q->t, &density);
+  out->d = from_lamp(q->light->corners, local);
+  density *= lamp_stretch(q->light->corners, vl_light_local(q->light, out->d));
+  out->density = density;
+  out->valid = density > 0.0f;
+  float factor = out->valid ? vl_lamp_candela(table, local) / density : 0.0f;
+  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
+  for (int c = 0; c < 4; c++)
+    out->flux[c] *= factor;
+}
+
+void vl_light_emit_goniometric(const vlEmissionQuery *q, vlEmission *out) {
+  const vlLampTable *lamp = lamp_table(q->world, q->light);
+  if (lamp) {
+    emit_lamp(q, lamp, out);
+    return;
+  }
+  const float span = 2.0f;
+  vl_light_emit_from_point(q, span, out);
+  float factor = 2.0f * VL_PI * span * intensity_factor(q->world, q->light, out->d);
   vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
   for (int c = 0; c < 4; c++)
     out->flux[c] *= factor;
@@ -36,7 +90,11 @@ void vl_light_emit_goniometric(const vlEmissionQuery *q, vlEmission *out) {
 
 float vl_light_emit_pdf_goniometric(const vlWorld *world, const vlWorldLight *light, float p,
                                     vlVec3 w, float distance, const vlPoint *at) {
-  (void)world;
   (void)at;
-  return vl_light_emit_pdf_from_point(light, 2.0f, p, w, distance);
+  const vlLampTable *lamp = lamp_table(world, light);
+  if (!lamp)
+    return vl_light_emit_pdf_from_point(light, 2.0f, p, w, distance);
+  vlVec3 local = vl_light_local(light, vl_neg(w));
+  float density = vl_lamp_density(lamp, vl_normalize(local));
+  return p * density * lamp_stretch(light->corners, local) / (distance * distance);
 }

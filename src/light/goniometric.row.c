@@ -4,11 +4,12 @@
 static const vlParameter parameters[] = {
     INTENSITY, SCALE, POWER, POSITION,
     IMAGE(
-        "required: a square image, an equal-area octahedral map of factors on the intensity")};
+        "required: a lamp file (.ies, .ldt) of the intensity in candela, or a square image, an "
+        "equal-area octahedral map of factors on the intensity")};
 
 const vlKindRow vl_light_row_goniometric = {
     .name = "goniometric",
-    .description = "a point whose intensity over directions comes from an image",
+    .description = "a point whose intensity over directions comes from a lamp file or an image",
     .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_IMAGE,
     VL_ROW_PARAMETERS(parameters),
 };

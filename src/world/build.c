@@ -199,6 +199,7 @@ void vl_world_destroy(vlWorld *world) {
   VL_ARRAY_FREE(c, &world->infinite_lights);
   VL_ARRAY_FREE(c, &world->environments);
   VL_ARRAY_FREE(c, &world->environment_parts);
+  VL_ARRAY_FREE(c, &world->lamps);
   VL_ARRAY_FREE(c, &world->measured);
   VL_ARRAY_FREE(c, &world->measured_parts);
   VL_ARRAY_FREE(c, &world->medium_parts);

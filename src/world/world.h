@@ -12,6 +12,7 @@
 #include "base/cancel.h"
 #include "color/color.h"
 #include "light/environment_lookup.h"
+#include "light/lamp.h"
 #include "material/coat.h"
 #include "material/measured_tables.h"
 #include "medium/medium.h"
@@ -234,6 +235,8 @@ typedef struct vlWorldLight {
   bool delta;     /* no ray can hit it */
   uint32_t image; /* of goniometric and projection lights: image index; their `corners` hold the
                      rotation from world to light directions */
+  uint32_t lamp;  /* of a goniometric light with a lamp file: index into lamps, and `corners`
+                     holds  the rotation to the table's frame; else VL_NONE */
   float own[4];   /* numbers that only this kind has; of a projection light: half the width and
                      height of the image at distance 1 */
   /* Of an area light that is a triangle: its corners. Of a whole sphere: its centre, its
@@ -297,6 +300,7 @@ struct vlWorld {
   VL_ARRAY(uint32_t)
   infinite_lights; /* indices of the lights that a ray hits if it misses all surfaces */
   VL_ARRAY(vlEnvironment) environments;
+  VL_ARRAY(const vlLamp *) lamps; /* luminaires of goniometric lights, owned by parts */
   VL_ARRAY(vlWorldEnvironmentPart) environment_parts; /* one per environment */
   VL_ARRAY(vlMeasured *) measured;
   VL_ARRAY(vlWorldFilePart) measured_parts; /* one per measured material */

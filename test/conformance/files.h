@@ -55,6 +55,14 @@ static bool write_quarters(const char *name) {
   return done;
 }
 
+/* A lamp of 2 cd towards the half plane C 0, falling to 1 cd towards C 180, and none upwards.
+ */
+static bool write_lamp(const char *name) {
+  static const char file[] =
+      "IESNA:LM-63-2002\nTILT=NONE\n1 -1 .5 2 2 1 2 0 0 0\n1 1 0\n0 90\n0 180\n4 4\n2 2\n";
+  return write_bytes(name, file, sizeof file - 1);
+}
+
 static bool write_measured(const char *name, double alpha) {
   char path[100];
   mfSurface metal = mf_surface(alpha, alpha);
@@ -95,7 +103,8 @@ static const char ply[] =
 static bool write_files(void) {
   bool done = write_image("a.pfm", 0) && write_image("b.pfm", 1) && write_image("sky.pfm", 2) &&
               write_image("other.pfm", 3) && write_image("normals.pfm", 4) &&
-              write_image("a.tga", 5) && write_quarters("quarters.pfm");
+              write_image("a.tga", 5) && write_quarters("quarters.pfm") &&
+              write_lamp("lamp.ies");
   done = done && write_bytes("a.ply", ply, sizeof ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&
          write_nanovdb("a.nvdb", 0) && write_nanovdb("b.nvdb", 1);

@@ -1,7 +1,8 @@
 /* Files that scenes name besides meshes and images, chosen by their first bytes: measured
- * materials and NanoVDB grids; any other input is read as a spectrum, a lens and a list of
- * poses. */
+ * materials and NanoVDB grids; any other input is read as a spectrum, a lens, a list of poses
+ * and a lamp file. */
 #include "fuzz.h"
+#include "velo/lamp.h"
 #include "velo/trajectory.h"
 
 static bool begins(const uint8_t *data, size_t size, const char *word) {
@@ -23,6 +24,22 @@ static void build(const char *text) {
   fuzz_end(context);
 }
 
+static void read_lamp(const uint8_t *data, size_t size) {
+  vlContext *context = fuzz_context();
+  vlLamp *lamp = NULL;
+  vlError error;
+  const double down[3] = {0.1, -1, 0.2};
+  if (vl_lamp_read(context, "input", data, size, &lamp, &error) == VL_OK) {
+    vlLampInfo info;
+    vl_lamp_info(lamp, &info);
+    double intensity = vl_lamp_intensity(lamp, down);
+    if (!(info.flux >= 0) || !(intensity >= 0) || !(info.max_intensity >= intensity * 0.9999))
+      abort();
+  }
+  vl_lamp_destroy(lamp);
+  fuzz_end(context);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   const char *path = fuzz_file("input", data, size);
   if (begins(data, size, "tensor")) {
@@ -37,6 +54,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         "MediumInterface \"m\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
     return 0;
   }
+  read_lamp(data, size);
   build(
       "WorldBegin\nMaterial \"diffuse\" \"spectrum reflectance\" \"input\"\nShape "
       "\"sphere\"\n");

@@ -21,12 +21,17 @@ typedef enum Lamp {
   MEASURED,
   SLIDE,
   SKEWED,
+  WASHER,
+  SKEWED_WASHER,
   LAMPS
 } Lamp;
-static const char *const lamp_name[LAMPS] = {
-    "panel",      "two-sided panel",   "patch",       "ball",      "point",
-    "spot",       "distant",           "uniform sky", "image sky", "goniometric",
-    "projection", "projection, skewed"};
+static const char *const lamp_name[LAMPS] = {"panel",      "two-sided panel",
+                                             "patch",      "ball",
+                                             "point",      "spot",
+                                             "distant",    "uniform sky",
+                                             "image sky",  "goniometric",
+                                             "projection", "projection, skewed",
+                                             "lamp file",  "lamp file, skewed"};
 
 static void add_round(Stage *s, float x, float y, float z, float radius, vlMaterialId material,
                       vlEmissionId emission) {
@@ -51,7 +56,22 @@ static vlLightDef lamp_def(vlLightKind kind, float color) {
   return def;
 }
 
+static void add_washer(Stage *s, bool skewed) {
+  vlLightDef def = lamp_def(VL_LIGHT_GONIOMETRIC, 1);
+  def.path = VELO_SOURCE_DIR "/scenes/lamps/wall_washer.ies";
+  def.scale = 0.005f;
+  if (skewed) {
+    def.world_from_light[0] = 2;
+    def.world_from_light[4] = 0.5;
+  }
+  assert_int_not_equal(vl_scene_add_light(s->scene, &def).index, 0);
+}
+
 static void add_lamp(Stage *s, Lamp lamp) {
+  if (lamp >= WASHER) {
+    add_washer(s, lamp == SKEWED_WASHER);
+    return;
+  }
   vlMaterialId dark = add_diffuse(s, 0.2f, 0.2f, 0.2f);
   if (lamp <= PATCH) {
     Quad q = quad_at(0.4f, 1.3f, -3, 0.3f, 0.05f, 0, 0, 0.1f, 0.3f);

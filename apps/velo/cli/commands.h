@@ -13,6 +13,7 @@ extern const Command image_denoise_command, scene_info_command, scene_check_comm
 extern const Command camera_verify_command, camera_vanishing_command, camera_paths_command,
     camera_draw_command;
 extern const Command view_command, trace_command;
+extern const Command light_info_command;
 extern const Command film_info_command, film_merge_command, film_develop_command;
 extern const Command sensor_expose_command, sensor_verify_command;
 extern const Command raw_develop_command, raw_info_command;

@@ -202,13 +202,14 @@ static void put_transform(vlExport *x, const vlKindRow *row, const vlLightDef *d
 static bool put_light(vlExport *x, const vlLightDef *d) {
   const vlKindRow *row = vl_kind_row(&vl_light_family, (int)d->kind);
   char name[300] = "";
+  bool lamp = !d->image && vl_names_lamp(d->path);
   if (d->path || d->image) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = d->path;
     t.image = d->image;
-    if (!vl_pbrt_image(x, &t, VL_PBRT_COLORS, name))
+    if (!vl_pbrt_image(x, &t, lamp ? VL_PBRT_ANY : VL_PBRT_COLORS, name))
       return false;
-    if (d->space != x->scene->defs.film.space)
+    if (!lamp && d->space != x->scene->defs.film.space)
       vl_export_lose(x, "colour spaces of images: the scene's");
   }
   if (d->kind == VL_LIGHT_SPOT && d->cone_squared)

@@ -1,0 +1,161 @@
+/* light/info.c: `velo light info`: the flux, the angles and the intensities of a lamp file. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/context.h"
+#include "cli/json.h"
+#include "light/polar.h"
+#include "velo/lamp.h"
+
+#define PI 3.14159265358979323846
+
+enum { INFO_OUT, INFO_JSON };
+enum { TABLE_PLANES = 4, TABLE_STEP = 10 };
+
+static double in_degrees(double radians) {
+  return radians * (180 / PI);
+}
+
+static bool is_given(double number) {
+  return number == number;
+}
+
+/* Intensities at every tenth degree, in the half planes C 0, 90, 180 and 270. Numbers that only
+ * rounding makes at the edge of a table are 0. */
+static void print_table(const vlLamp *lamp, double least) {
+  printf("  intensity, cd\n  %9s %9s %9s %9s %9s\n", "gamma", "C 0", "C 90", "C 180", "C 270");
+  for (int gamma = 0; gamma <= 180; gamma += TABLE_STEP) {
+    printf("  %9d", gamma);
+    for (int k = 0; k < TABLE_PLANES; k++) {
+      double intensity = polar_intensity(lamp, k * PI / 2, gamma * PI / 180);
+      printf(" %9.4g", intensity < least ? 0 : intensity);
+    }
+    putchar('\n');
+  }
+}
+
+static void print_text(const char *path, const vlLamp *lamp, const vlLampInfo *info) {
+  const double *d = info->max_direction;
+  printf("%s\n  format          %s, photometry of type %c, %u x %u angles\n", path,
+         info->format, info->type, info->planes, info->angles);
+  if (info->name[0])
+    printf("  luminaire       %s\n", info->name);
+  printf("  flux            %.6g lm\n", info->flux);
+  if (is_given(info->lamps_flux)) {
+    printf("  flux of lamps   %.6g lm\n", info->lamps_flux);
+    if (info->lamps_flux > 0)
+      printf("  ratio           %.2f %%\n", 100 * info->flux / info->lamps_flux);
+  } else {
+    printf("  flux of lamps   not given (absolute photometry)\n");
+  }
+  if (is_given(info->watts))
+    printf("  power           %.6g W (%.4g lm/W)\n", info->watts, info->flux / info->watts);
+  printf("  beam angle      %.2f and %.2f degrees (50 %%; C 0 - C 180 and C 90 - C 270)\n",
+         in_degrees(info->beam[0]), in_degrees(info->beam[1]));
+  printf("  field angle     %.2f and %.2f degrees (10 %%)\n", in_degrees(info->field[0]),
+         in_degrees(info->field[1]));
+  printf("  maximum         %.6g cd at C %.4g, gamma %.4g degrees\n", info->max_intensity,
+         fmod(in_degrees(atan2(-d[2], d[0])) + 360, 360),
+         in_degrees(atan2(hypot(d[0], d[2]), -d[1])));
+  print_table(lamp, 1e-6 * info->max_intensity);
+}
+
+static void put_degrees(Json *json, const char *key, const double radians[2]) {
+  const double degrees[2] = {in_degrees(radians[0]), in_degrees(radians[1])};
+  json_numbers(json, key, degrees, 2);
+}
+
+static void print_json(const char *path, const vlLampInfo *info) {
+  Json json = {.out = stdout};
+  const char type[2] = {info->type, 0};
+  json_begin(&json, NULL, '{');
+  json_text(&json, "file", path);
+  json_text(&json, "format", info->format);
+  json_text(&json, "luminaire", info->name);
+  json_text(&json, "photometry", type);
+  json_integer(&json, "planes", info->planes);
+  json_integer(&json, "angles", info->angles);
+  json_number(&json, "flux_lm", info->flux);
+  json_number(&json, "lamps_flux_lm", info->lamps_flux);
+  json_number(&json, "ratio", info->lamps_flux > 0 ? info->flux / info->lamps_flux : NAN);
+  json_number(&json, "watts", info->watts);
+  put_degrees(&json, "beam_angle_degrees", info->beam);
+  put_degrees(&json, "field_angle_degrees", info->field);
+  json_number(&json, "max_candela", info->max_intensity);
+  json_numbers(&json, "max_direction", info->max_direction, 3);
+  json_end(&json, '}');
+  putchar('\n');
+}
+
+/* -1: the diagram can be written. */
+static int check_output(vlContext *context, const OptionValue *output) {
+  vlError error = {0};
+  vlResult r =
+      output->given ? vl_check_output(context, output->text, VL_OUTPUT_PLAIN, &error) : VL_OK;
+  if (r == VL_ERROR_ARGUMENT)
+    return report_usage("light info: %s", error.message);
+  return r == VL_OK ? -1 : report_error(&error, r, output->text);
+}
+
+/* Prints the lamp and writes its diagram. */
+static int show(vlContext *context, const char *path, const vlLamp *lamp,
+                const OptionValue *v) {
+  int status = check_output(context, &v[INFO_OUT]);
+  if (status >= 0)
+    return status;
+  vlLampInfo info;
+  vl_lamp_info(lamp, &info);
+  if (v[INFO_JSON].given)
+    print_json(path, &info);
+  else
+    print_text(path, lamp, &info);
+  status = report_stdout(STATUS_OK);
+  if (status != STATUS_OK || !v[INFO_OUT].given)
+    return status;
+  return polar_write(context, v[INFO_OUT].text, lamp, &info, info.name[0] ? info.name : path);
+}
+
+static int run_info(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const char *path = arguments->operands[0];
+  vlContextDef def = vl_default_context_def();
+  def.log = report_log;
+  def.threads = 1;
+  vlContext *context = NULL;
+  int status = context_open(&def, &context);
+  if (status >= 0)
+    return status;
+  vlLamp *lamp = NULL;
+  vlError error = {0};
+  vlResult r = vl_lamp_load(context, path, &lamp, &error);
+  status =
+      r == VL_OK ? show(context, path, lamp, arguments->values) : report_error(&error, r, path);
+  vl_lamp_destroy(lamp);
+  context_close(context);
+  return status;
+}
+
+static const Option info_options[] = {
+    {INFO_OUT, 'o', "output", OPTION_TEXT, "FILE.svg", "write the polar diagram to this file"},
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+    {0}};
+
+const Command light_info_command = {
+    .name = "light info",
+    .usage = "FILE [options]",
+    .summary = "print flux, angles and intensities of a lamp file",
+    .text =
+        "Prints what a lamp file (IES LM-63 or EULUMDAT) says, and what follows from it: the "
+        "flux of the luminaire, of its lamps, their ratio, the angles within which the "
+        "intensity is at least 50 % (beam) and 10 % (field) of the greatest of the plane, and "
+        "the greatest intensity.",
+    .examples =
+        "velo light info lamp.ies\n"
+        "velo light info lamp.ldt -o lamp.svg",
+    .options = info_options,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_info,
+};

@@ -1,0 +1,52 @@
+#!/bin/bash
+# velo light info: what it prints, its diagram, and its messages about wrong files.
+. "$(dirname "$0")/../harness.sh"
+. "$(dirname "$0")/common.sh"
+cd "$work" || exit 1
+export VELO
+
+# refused NAME CODE TEXT COMMAND...: that exit code, and one line with the text.
+refused() {
+  local name=$1 wanted=$2 text=$3
+  shift 3
+  expect_code "$wanted" "$name" "$@"
+  expect_line "$name: message" "$text"
+}
+
+# An even lamp of 100 cd: 400 pi lumens.
+printf 'IESNA:LM-63-2002\n[LUMINAIRE] Ball & <globe>\nTILT=NONE\n2 1000 100 2 1 1 2 0 0 0\n1 1 25\n0 180\n0\n1 1\n' >ball.ies
+
+check "text" bash -c '"$VELO" light info ball.ies >text.txt'
+for line in 'format          IES LM-63-2002, photometry of type C, 1 x 2 angles' 'luminaire       Ball & <globe>' \
+  'flux            1256.64 lm' 'flux of lamps   2000 lm' 'ratio           62.83 %' 'power           25 W (50.27 lm/W)' \
+  'beam angle      360.00 and 360.00 degrees' 'maximum         100 cd' '        90       100       100       100       100'; do
+  check "text: $line" grep -qF "$line" text.txt
+done
+check "json" bash -c '"$VELO" light info --json ball.ies -o ball.svg >info.json'
+check "json: numbers" python3 -c '
+import json, math
+info = json.load(open("info.json"))
+assert abs(info["flux_lm"] - 400 * math.pi) < 1e-3 and info["lamps_flux_lm"] == 2000 and info["photometry"] == "C", info
+assert abs(info["beam_angle_degrees"][0] - 360) < 1e-6 and abs(info["ratio"] - .2 * math.pi) < 1e-6, info'
+check "svg: a whole document with a title" python3 -c '
+import xml.dom.minidom
+svg = xml.dom.minidom.parse("ball.svg")
+assert svg.getElementsByTagName("title")[0].firstChild.data == "Ball & <globe>"
+assert len(svg.getElementsByTagName("path")) == 2'
+check "eulumdat" bash -c '"$VELO" light info "$0" | grep -q "format          EULUMDAT, photometry of type C, 3 x 3"' \
+  "$VELO_SOURCE_DIR/test/fuzz/corpus/table/bracket.ldt"
+
+refused "an angle that falls" 3 "bad.ies:6: lamp file: the vertical angle 0 follows 180" \
+  bash -c 'sed "s/^0 180/180 0/" ball.ies >bad.ies; "$VELO" light info bad.ies'
+refused "no lamp file" 3 "scene.txt:" bash -c 'printf "WorldBegin\n" >scene.txt; "$VELO" light info scene.txt'
+refused "missing" 4 "none.ies" "$VELO" light info none.ies
+refused "its own file" 2 "ball.ies" "$VELO" light info ball.ies -o ball.ies
+refused "a file without a command" 2 'did you mean "velo light info ball.ies"?' "$VELO" ball.ies
+
+printf 'WorldBegin\nLightSource "goniometric" "string filename" "bad.ies"\nShape "sphere"\n' >scene.pbrt
+refused "in a scene" 3 "bad.ies:6: lamp file: the vertical angle 0 follows 180" "$VELO" render scene.pbrt -o a.pfm
+sed 's/bad/ball/' scene.pbrt >good.pbrt
+check "a scene converts to itself" bash -c '"$VELO" scene convert good.pbrt again.pbrt && grep -q "\.ies\"" again.pbrt && "$VELO" render again.pbrt --dry-run'
+check "it is an input: not overwritten" bash -c '! "$VELO" render good.pbrt -o ball.ies.exr --film ball.ies 2>/dev/null'
+
+finish

@@ -64,11 +64,15 @@ typedef enum vlChannel {
    * disparity is 1 / distance, 0 for nothing. They need vlChannelsDef.film and .render, as
    * Cryptomatte does. With VL_CHANNEL_ERROR there are also feature.error.R .G .B:
    * vl_film_errors with vlDevelopDef.independent. */
-  VL_CHANNEL_FEATURES = 1 << 20
+  VL_CHANNEL_FEATURES = 1 << 20,
+  /** luminance.Y: luminance of the image's pixel, cd/m^2 (docs/conventions.md, Light), by the
+   * standard observer, before exposure. It needs vlChannelsDef.film of the same crop, with the
+   * sensor cie1931 and no white balance. */
+  VL_CHANNEL_LUMINANCE = 1 << 21
 } vlChannel;
 /** The number of channels; the default set, which has all cheap channels; the largest number of
  * samples per pixel that features use. */
-enum { VL_CHANNEL_COUNT = 21, VL_CHANNEL_ALL = (1 << 14) - 1, VL_FEATURE_SAMPLES = 16 };
+enum { VL_CHANNEL_COUNT = 22, VL_CHANNEL_ALL = (1 << 14) - 1, VL_FEATURE_SAMPLES = 16 };
 
 /** The film point at which a pixel's channels are computed. CENTRE: the pixel's exact centre.
  * The other modes select one of the points of the image's samples (traced through the centre of
@@ -106,8 +110,8 @@ typedef struct vlChannelsDef {
                        own number */
   vlChannelMode mode; /**< film point; default CENTRE */
   uint32_t ranks;     /**< number of Cryptomatte's ids per pixel: even, 2 to 32; default 6 */
-  /** The image's film and the def with which it was rendered. Required for ERROR, FEATURES,
-   * Cryptomatte and the modes NEAREST and COVERAGE; otherwise they may be null. */
+  /** The image's film and the def with which it was rendered. Required for ERROR, LUMINANCE,
+   * FEATURES, Cryptomatte and the modes NEAREST and COVERAGE; otherwise they may be null. */
   const vlFilm *film;
   const vlRenderDef *render; /**< see film */
   float exposure; /**< for ERROR: exposure of the developed image (vlDevelopDef.exposure);

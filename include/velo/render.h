@@ -101,6 +101,11 @@ VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlIm
  * and luminance 1 has the value 1 at all wavelengths. White balance, exposure and max_component
  * do not apply. ARGUMENT for a film without buckets. */
 VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
+/** Makes a float image luminance.Y of the crop window, owned by the caller: the luminance of
+ * each pixel in cd/m^2, by the standard observer (docs/conventions.md, Light). Exposure does
+ * not apply. ARGUMENT for a film with a white balance, or with another sensor than cie1931;
+ * MEMORY. */
+VL_API vlResult vl_film_luminance(const vlFilm *film, vlImage **image);
 
 /* ---- render ------------------------------------------------------------------------------ */
 

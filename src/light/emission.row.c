@@ -12,7 +12,7 @@ static const vlParameter diffuse_parameters[] = {
     PARAMETER(BOOL, "twosided", two_sided, "both sides of the surface emit", VL_DEFAULT(0)),
     PARAMETER(DOUBLE, "power", power,
               "power of each face: its emission is scaled to it, and then multiplied by scale",
-              .unit = "W", .flags = VL_PARAMETER_UNSET),
+              .unit = "lm", .flags = VL_PARAMETER_UNSET),
     PARAMETER(FILE, "filename", image, "image file of the radiance over uv; replaces L",
               .text = NULL),
     PARAMETER(TEXTURE, NULL, texture, "image texture of the radiance over uv; replaces L",

@@ -27,7 +27,7 @@ vlLightPower vl_light_power_unknown;
 #define POWER                                                                            \
   PARAMETER(DOUBLE, "power", power,                                                      \
             "total power: the light is scaled to emit it, and then multiplied by scale", \
-            .unit = "W", .flags = VL_PARAMETER_UNSET)
+            .unit = "lm", .flags = VL_PARAMETER_UNSET)
 #define ILLUMINANCE                                                                         \
   PARAMETER(                                                                                \
       DOUBLE, "illuminance", illuminance,                                                   \

@@ -29,7 +29,8 @@ enum {
   VL_INDEX_FORWARD,
   VL_INDEX_BACKWARD,
   VL_INDEX_CRYPTO,
-  VL_INDEX_FEATURES = VL_INDEX_CRYPTO + 3
+  VL_INDEX_FEATURES = VL_INDEX_CRYPTO + 3,
+  VL_INDEX_LUMINANCE
 };
 
 /* A small hash table: the weight of each id (object, material, instance) in one pixel. A pixel

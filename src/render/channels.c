@@ -44,6 +44,7 @@ static const struct Channel {
      0,
      {"feature.albedo.R", "feature.albedo.G", "feature.albedo.B", "feature.N.X", "feature.N.Y",
       "feature.N.Z", "feature.disparity.Y"}},
+    {"luminance", 1, 0, {"luminance.Y"}},
 };
 static const uint32_t CRYPTO =
     VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
@@ -74,13 +75,14 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
   bool counts =
       (def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) || def->mode != VL_CHANNEL_MODE_CENTRE;
   bool errors = (def->channels & VL_CHANNEL_ERROR) != 0;
-  if (!counts && !errors)
+  bool luminance = (def->channels & VL_CHANNEL_LUMINANCE) != 0;
+  if (!counts && !errors && !luminance)
     return VL_OK;
   if (!def->film || (counts && !def->render))
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
-        "ground truth: Cryptomatte, features, standard errors and modes other than the "
-        "centre need the image's film and how it was rendered");
+        "ground truth: Cryptomatte, features, standard errors, luminance and modes other than "
+        "the centre need the image's film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
     return vl_fail(
@@ -96,6 +98,9 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "ground truth: standard errors need a film of the same crop that was made for them");
+  if (luminance && memcmp(film->crop, def->crop, sizeof film->crop) != 0)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "ground truth: luminance needs a film of the same crop");
   return VL_OK;
 }
 
@@ -144,7 +149,7 @@ static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOAT
     if (!vl_channel_wanted(p, 1u << i))
       continue;
     p->first[id][i] = count;
-    if (i < VL_INDEX_CRYPTO || i == VL_INDEX_FEATURES) {
+    if (i < VL_INDEX_CRYPTO || i >= VL_INDEX_FEATURES) {
       uint32_t first = id ? c->floats : 0, parts = id ? c->ids : c->floats;
       for (uint32_t k = 0; k < parts; k++)
         names[count++] = c->names[first + k];
@@ -213,6 +218,25 @@ static vlResult copy_errors(const vlChannelPass *p, vlError *error) {
   if (r != VL_OK || !vl_channel_wanted(p, VL_CHANNEL_FEATURES))
     return r;
   return copy_errors_to(p, true, VL_INDEX_FEATURES, FEATURES, error);
+}
+
+static vlResult copy_luminance(const vlChannelPass *p, vlError *error) {
+  if (!vl_channel_wanted(p, VL_CHANNEL_LUMINANCE))
+    return VL_OK;
+  vlImage *image;
+  vlResult r = vl_film_luminance(p->def->film, &image);
+  if (r == VL_ERROR_MEMORY)
+    return vl_fail_memory(error);
+  if (r != VL_OK)
+    return vl_fail(error, r,
+                   "ground truth: luminance needs a film of the sensor cie1931 without white "
+                   "balance");
+  size_t pixels = (size_t)vl_image_width(image) * vl_image_height(image);
+  const float *from = vl_image_const_pixels(image);
+  for (size_t i = 0; i < pixels; i++)
+    *vl_channel_floats(p, i, VL_INDEX_LUMINANCE) = from[i];
+  vl_image_destroy(image);
+  return VL_OK;
 }
 
 /* ---- the pass ---------------------------------------------------------------------------- */
@@ -381,6 +405,8 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
   result = make_images(p, error);
   if (result == VL_OK)
     result = copy_errors(p, error);
+  if (result == VL_OK)
+    result = copy_luminance(p, error);
   if (result == VL_OK)
     result = make_workers(p, error);
   if (result == VL_OK)

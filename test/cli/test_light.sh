@@ -49,4 +49,16 @@ sed 's/bad/ball/' scene.pbrt >good.pbrt
 check "a scene converts to itself" bash -c '"$VELO" scene convert good.pbrt again.pbrt && grep -q "\.ies\"" again.pbrt && "$VELO" render again.pbrt --dry-run'
 check "it is an input: not overwritten" bash -c '! "$VELO" render good.pbrt -o ball.ies.exr --film ball.ies 2>/dev/null'
 
+# The luminance of a sky of 3 cd/m2.
+printf 'Film "rgb" "integer xresolution" 8 "integer yresolution" 8 "float iso" 400\nWorldBegin\nLightSource "infinite" "float scale" 3\n' >sky.pbrt
+check "luminance" "$VELO" render sky.pbrt --quiet --spp 64 --channels luminance -o sky.exr
+check "luminance: a channel" bash -c '"$VELO" image info sky.exr | grep -q "R G B A luminance.Y"'
+check "luminance: before exposure" bash -c '"$VELO" image convert sky.exr sky.pfm --channel luminance.Y && python3 -c "
+import struct
+data = open(\"sky.pfm\", \"rb\").read()
+values = struct.unpack(\"<64f\", data[-256:])
+assert abs(sum(values) / 64 - 3) < .03, values[:4]"'
+refused "luminance: no standard observer" 3 "--channels luminance needs the sensor cie1931" \
+  "$VELO" render sky.pbrt --sensor canon_eos_5d --channels luminance -o none.exr
+
 finish

@@ -344,6 +344,12 @@ static void test_wrong_arguments(void **state) {
                    VL_ERROR_ARGUMENT);
   vlImage *image;
   assert_int_equal(vl_film_errors(t.film, NULL, &image), VL_ERROR_ARGUMENT);
+  def.channels = VL_CHANNEL_LUMINANCE; /* of another crop */
+  def.crop[0] = 1;
+  assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "luminance"));
+  def.crop[0] = 0;
   def.channels = VL_CHANNEL_FORWARD;
   assert_int_equal(vl_render_channels(t.world, &t.camera, &def, &floats, &ids, &error),
                    VL_ERROR_ARGUMENT);

@@ -104,6 +104,13 @@ int channels_choose(Channels *c, const Arguments *arguments) {
 /* A camera of another image size is resized with the same framing, as the image's own camera
  * is. */
 int channels_load(Channels *c, vlContext *context, const Job *job) {
+  const vlFilmDef *film = &job->defs->film;
+  bool own_sensor = film->sensor && strcmp(film->sensor, "cie1931") != 0;
+  if ((c->bits & VL_CHANNEL_LUMINANCE) && (own_sensor || film->white_balance > 0))
+    return report_failure(STATUS_SCENE,
+                          "%s: --channels luminance needs the sensor cie1931 and no white "
+                          "balance; the film has %s",
+                          job->path, own_sensor ? film->sensor : "a white balance");
   for (int i = 0; i < 2; i++) {
     if (!c->other_paths[i])
       continue;
@@ -196,8 +203,8 @@ void channels_take(Channels *c, Job *job) {
 }
 
 uint64_t channels_values(const Channels *c, uint32_t buckets) {
-  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3, 1,
-                                                   1, 1, 1, 1, 2, 3, 3, 3, [20] = 7};
+  static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3,        1, 1,
+                                                   1, 1, 1, 2, 3, 3, 3, [20] = 7, 1};
   enum {
     GBUFFER = 48
   }; /* the gbuffer's channels and the ground truth that they are computed from */

@@ -19,9 +19,9 @@ struct vlEmissionDef {
   vlSource source;     /**< where the file describes it */
   vlSpectrum radiance; /**< L */
   float scale;         /**< factor on radiance */
-  double power; /**< total power, watts (pbrt's "power"); it determines the scale; VL_UNSET: not
-                   used */
-  bool two_sided;      /**< true: both sides emit light; false: only the side of the normal */
+  double power;   /**< total power, lumens (pbrt's "power"); it determines the scale; VL_UNSET:
+                     not used */
+  bool two_sided; /**< true: both sides emit light; false: only the side of the normal */
   const char *image;   /**< path of an emission image over uv; null: none; or */
   vlTextureId texture; /**< a colour texture of kind VL_TEXTURE_IMAGE: emits its value times
                           scale; radiance is ignored */
@@ -51,12 +51,12 @@ typedef enum vlLightKind {
 /** A light that is not a surface. */
 struct vlLightDef {
   uint32_t cookie;
-  vlSource source;  /**< where the file describes it */
-  vlLightKind kind; /**< which fields below are read */
-  vlSpectrum color; /**< intensity (point, spot, ...) or radiance (distant, infinite) */
-  float scale;      /**< factor on color or image */
-  double power; /**< lights that emit from a point: total power, watts; it determines the scale;
-                   VL_UNSET: not used */
+  vlSource source;    /**< where the file describes it */
+  vlLightKind kind;   /**< which fields below are read */
+  vlSpectrum color;   /**< intensity (point, spot, ...) or radiance (distant, infinite) */
+  float scale;        /**< factor on color or image */
+  double power;       /**< lights that emit from a point: total power, lumens; it determines the
+                         scale; VL_UNSET: not used */
   double illuminance; /**< distant, infinite: illuminance, lux; it determines the scale;
                          VL_UNSET: not used */
   double world_from_light[16]; /**< light space to world space */
@@ -66,12 +66,15 @@ struct vlLightDef {
                                    of the falloff inside it; radians */
   bool cone_squared; /**< true: the falloff is t^2, t linear in the cosine, as in glTF; false:
                         pbrt's smooth step 3t^2 -    2t^3 */
-  const char *path;  /**< path of the image; infinite: a square equal-area octahedral map (pbrt
-                        book 3.8.3); null:     uniform light */
-  const vlImage *image; /**< the image in memory, in place of path; copied */
-  vlColorSpace space;   /**< colour space of an image that names none; an image replaces color,
-                           and   its values are   multiplied by scale */
-  vlMediumId medium;    /**< the medium around the light */
+  const char *path;  /**< path of the image, or of a lamp file (goniometric); infinite: a square
+                        equal-area octahedral map (pbrt  book 3.8.3); null:     uniform light */
+  const vlImage *image;  /**< the image in memory, in place of path; copied */
+  const void *lamp_data; /**< goniometric: the contents of a lamp file in memory, in place of
+                            path and image; copied */
+  size_t lamp_size;      /**< length of lamp_data, bytes */
+  vlColorSpace space;    /**< colour space of an image that names none; an image replaces color,
+                            and   its values are   multiplied by scale */
+  vlMediumId medium;     /**< the medium around the light */
   float fov; /**< projection: radians across the image's smaller side; default pi/2 */
   /** Infinite with an image: the light enters only through the rectangle `portal` in the world,
    * in directions to the side that (last - first) x (second - first) points to. A point from

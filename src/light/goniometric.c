@@ -127,7 +127,10 @@ static void free_lamp(vlContext *context, void *lamp) {
 static const vlLamp *add_lamp(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
                               vlError *error) {
   vlLamp *lamp = NULL;
-  if (vl_lamp_open(world->context, def->path, false, &lamp, error) != VL_OK)
+  vlResult r = def->lamp_data ? vl_lamp_read(world->context, "lamp file in memory",
+                                             def->lamp_data, def->lamp_size, &lamp, error)
+                              : vl_lamp_open(world->context, def->path, false, &lamp, error);
+  if (r != VL_OK)
     return NULL;
   vlPart *part = vl_part_add(world);
   if (part) {
@@ -181,7 +184,7 @@ static vlResult compile_lamp(vlWorld *world, const vlLightDef *def, vlWorldLight
 
 vlResult vl_compile_light_goniometric(vlWorld *world, const vlLightDef *def,
                                       vlWorldLight *light, vlEmitted *e, vlError *error) {
-  if (!def->image && vl_names_lamp(def->path))
+  if (def->lamp_data || (!def->image && vl_names_lamp(def->path)))
     return compile_lamp(world, def, light, e, error);
   const vlMipmap *mip = add_image(world, def, light, error);
   if (!mip)

@@ -2,10 +2,15 @@
 #include "light/light.row.h"
 
 static const vlParameter parameters[] = {
-    INTENSITY, SCALE, POWER, POSITION,
+    INTENSITY,
+    SCALE,
+    POWER,
+    POSITION,
     IMAGE(
         "required: a lamp file (.ies, .ldt) of the intensity in candela, or a square image, an "
-        "equal-area octahedral map of factors on the intensity")};
+        "equal-area octahedral map of factors on the intensity"),
+    PARAMETER(BLOCK, NULL, lamp_data, "the contents of a lamp file in memory", .unit = NULL),
+    PARAMETER(BLOCK, NULL, lamp_size, "length of lamp_data, bytes", .unit = NULL)};
 
 const vlKindRow vl_light_row_goniometric = {
     .name = "goniometric",

@@ -261,9 +261,9 @@ static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *ro
   if ((row->traits & VL_LIGHT_TRAIT_AIMS) && same)
     return bad(scene, d->source, "light",
                "from and to are the same point: it has no direction");
-  if (d->path && d->image)
+  if (!!d->path + !!d->image + !!d->lamp_data > 1)
     return bad(scene, d->source, "light", "has both a file name and an image");
-  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !d->path && !d->image)
+  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !d->path && !d->image && !d->lamp_data)
     return bad(scene, d->source, "light", "needs an image");
   return !d->has_portal || check_portal(scene, d);
 }
@@ -292,7 +292,8 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   if (vl_row_find(row, "filename"))
     d.image = def->image;
   if (!vl_row_take(scene, row, &d, true, d.source, what) || !check_light(scene, &d, row) ||
-      !vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_image(scene, &d.image))
+      !vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_image(scene, &d.image) ||
+      !vl_scene_copy_block(scene, d.lamp_data, d.lamp_size, 1, &d.lamp_data))
     return none;
   vlLightDef *slot = VL_PUSH(scene->context, &scene->lights);
   if (!slot) {

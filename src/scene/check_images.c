@@ -289,7 +289,7 @@ static void check_lights(vlCheck *c) {
     const vlLightDef *l = &s->lights.items[i];
     if (vl_scene_light_is_removed(s, i))
       continue;
-    if (is_dark(&l->color, l->scale, l->path || l->image) || l->power == 0.0 ||
+    if (is_dark(&l->color, l->scale, l->path || l->image || l->lamp_data) || l->power == 0.0 ||
         l->illuminance == 0.0)
       vl_check_add(c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, l->source,
                    "this light gives no light: its power is 0");

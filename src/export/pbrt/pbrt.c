@@ -199,10 +199,18 @@ static void put_transform(vlExport *x, const vlKindRow *row, const vlLightDef *d
   vl_pbrt_matrix(x, m);
 }
 
+/* Writes the file of a lamp in memory beside the scene. */
+static bool put_lamp(vlExport *x, const vlLightDef *d, char name[300]) {
+  snprintf(name, 300, "%.200s-lamp%zu.ies", x->stem, (size_t)(d - x->scene->lights.items) + 1);
+  return vl_export_data(x, name, d->lamp_data, d->lamp_size);
+}
+
 static bool put_light(vlExport *x, const vlLightDef *d) {
   const vlKindRow *row = vl_kind_row(&vl_light_family, (int)d->kind);
   char name[300] = "";
   bool lamp = !d->image && vl_names_lamp(d->path);
+  if (d->lamp_data && !put_lamp(x, d, name))
+    return false;
   if (d->path || d->image) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = d->path;

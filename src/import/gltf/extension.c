@@ -16,8 +16,8 @@ static const char *const known[] = {
     "KHR_texture_transform",      "KHR_mesh_quantization",
     "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
     "EXT_texture_webp",           "EXT_meshopt_compression",
-    "EXT_lights_image_based",     "KHR_animation_pointer",
-    "KHR_node_visibility",
+    "EXT_lights_image_based",     "EXT_lights_ies",
+    "KHR_animation_pointer",      "KHR_node_visibility",
 #ifdef VELO_DRACO
     "KHR_draco_mesh_compression",
 #endif
@@ -30,7 +30,6 @@ static const char *const registered[] = {
     "AGI_stk_metadata",
     "CESIUM_primitive_outline",
     "CESIUM_RTC",
-    "EXT_lights_ies",
     "EXT_mesh_features",
     "EXT_mesh_manifold",
     "EXT_structural_metadata",

@@ -111,7 +111,10 @@ static bool count_all(vlGltf *g) {
             count_items(g, "animations", &g->animation_count) &&
             count_items(g, "scenes", &g->scene_count) &&
             vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"), punctual,
-                          "lights", &g->lights, &g->light_count);
+                          "lights", &g->lights, &g->light_count) &&
+            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.EXT_lights_ies"),
+                          vl_gltf_extension(g->root, "EXT_lights_ies"), "lights", &g->lamps,
+                          &g->lamp_count);
   if (!ok)
     return false;
   vlContext *c = g->context;

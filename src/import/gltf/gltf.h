@@ -121,9 +121,10 @@ typedef struct vlGltf {
   vlGltfImage *images;
   vlGltfMesh *meshes;
   size_t buffer_count, view_count, accessor_count, node_count, material_count, image_count,
-      texture_count, mesh_count, skin_count, camera_count, light_count, sampler_count,
-      animation_count, scene_count;
+      texture_count, mesh_count, skin_count, camera_count, light_count, lamp_count,
+      sampler_count, animation_count, scene_count;
   const json_t *lights;         /* array of KHR_lights_punctual */
+  const json_t *lamps;          /* array of EXT_lights_ies */
   uint64_t total;               /* size of all buffers in bytes */
   double point_radius;          /* of points and lines, in the world; 0: not known */
   double scale;                 /* of the node that is drawn */
@@ -374,6 +375,8 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
 /* ---- lights, cameras --------------------------------------------------------------------- */
 
 bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t light);
+/* Adds the node's lamp of EXT_lights_ies, if it has one. */
+bool vl_gltf_add_lamp(vlGltf *g, size_t node);
 bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *at);
 bool vl_gltf_choose_camera(vlGltf *g);
 /* Reads a camera that no node has. The scene's own camera is replaced. */

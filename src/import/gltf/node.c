@@ -280,7 +280,7 @@ static bool draw_node(vlGltf *g, size_t i) {
   if (!vl_gltf_index(g, at, node->json, "mesh", g->mesh_count, &mesh) ||
       !vl_gltf_index(g, at_light, punctual, "light", g->light_count, &light))
     return false;
-  if (light >= 0 && !vl_gltf_add_light(g, i, light))
+  if ((light >= 0 && !vl_gltf_add_light(g, i, light)) || !vl_gltf_add_lamp(g, i))
     return false;
   if (mesh < 0)
     return true;

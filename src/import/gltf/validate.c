@@ -97,7 +97,7 @@ static bool read_node(vlGltf *g, size_t index) {
   return vl_gltf_index(g, at, node->json, "mesh", g->mesh_count, &mesh) &&
          vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.KHR_lights_punctual"), punctual, "light",
                        g->light_count, &light) &&
-         (light < 0 || vl_gltf_add_light(g, index, light)) &&
+         (light < 0 || vl_gltf_add_light(g, index, light)) && vl_gltf_add_lamp(g, index) &&
          (mesh < 0 ||
           vl_gltf_add_mesh(g, (size_t)mesh, node, index, (vlGroupId){0}, vl_mat4_identity()));
 }

@@ -220,7 +220,7 @@ class Scene(_velo.Scene):
 
     def add_light(self, kind: str, **keywords: Unpack[_keywords.Lights]) -> Handle:
         """Adds a light: point, spot, distant, infinite, goniometric, projection. Keywords: members of vlLightDef: color,
-        scale, power (W), illuminance (lx), position, to, image; pose: 4 x 4, world from light. The member from, a word that
+        scale, power (lm), illuminance (lx), position, to, image; pose: 4 x 4, world from light. The member from, a word that
         Python reserves, is position or from_."""
         words: dict[str, Any] = {**keywords}
         if "image" in words:

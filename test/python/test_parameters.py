@@ -43,7 +43,7 @@ GIVEN = {("hair", "color"): ["reflectance"], ("image", "encoding"): ["sRGB"], ("
 OTHERWISE = (("cloud", "scale"), ("coated_conductor", "conserve_energy"))
 
 # Of files and arrays of numbers, which the tests of scenes from arrays have.
-ARRAYS = "path image data data_size measured grid temperature_grid density emission_scales temperature rgb_a rgb_s rgb_emission nx ny nz " \
+ARRAYS = "path image data data_size lamp_data lamp_size measured grid temperature_grid density emission_scales temperature rgb_a rgb_s rgb_emission nx ny nz " \
          "positions indices normals tangents uvs tangent_signs more_uvs colors positions_close normals_close times widths centers radii " \
          "displacement edge_length normal_map normal normal_scale clearcoat_normal clearcoat_normal_scale texture alpha portal texture_from_world st_from_uv materials".split()
 

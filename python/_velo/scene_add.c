@@ -89,6 +89,22 @@ static int set_name(Adding *a, PyObject *value, const char **name) {
   return *name || value == Py_None ? 1 : -1;
 }
 
+/* A copy of the value's bytes. An int would be a number of zeros, a list is one by one: both
+ * are refused. */
+static bool bytes_of(const Adding *a, PyObject *value, const char *name, const void **data,
+                     size_t *size) {
+  PyObject *bytes = PyObject_CheckBuffer(value) ? PyBytes_FromObject(value) : NULL;
+  if (!bytes)
+    return raise_value(name, value, "bytes") != NULL;
+  bool fine = keep_object(a->keep, bytes);
+  if (fine) {
+    *data = PyBytes_AsString(bytes);
+    *size = (size_t)PyBytes_Size(bytes);
+  }
+  Py_DECREF(bytes);
+  return fine;
+}
+
 static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *value) {
   int code;
   bool fine;
@@ -97,18 +113,7 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
   } else if (IS("image")) {
     fine = image_of(value, name, &d->image);
   } else if (IS("data")) {
-    /* an int would be a number of zeros, a list is one by one */
-    PyObject *bytes = PyObject_CheckBuffer(value) ? PyBytes_FromObject(value) : NULL;
-    if (!bytes) {
-      raise_value(name, value, "bytes");
-      return -1;
-    }
-    fine = keep_object(a->keep, bytes);
-    if (fine) {
-      d->data = PyBytes_AsString(bytes);
-      d->data_size = (size_t)PyBytes_Size(bytes);
-    }
-    Py_DECREF(bytes);
+    fine = bytes_of(a, value, name, &d->data, &d->data_size);
   } else if (IS("tint")) {
     fine = floats_copy(value, name, 4, d->tint);
   } else if (IS("channel")) {
@@ -225,6 +230,8 @@ static int set_light(Adding *a, vlLightDef *d, const char *name, PyObject *value
   int code;
   if (IS("image"))
     return image_of(value, name, &d->image) ? 1 : -1;
+  if (IS("lamp_data"))
+    return bytes_of(a, value, name, &d->lamp_data, &d->lamp_size) ? 1 : -1;
   if (IS("transform") || IS("pose") || IS("world_from_light"))
     return numbers_copy(value, name, 16, d->world_from_light) ? 1 : -1;
   if (IS("medium"))
@@ -462,7 +469,8 @@ static bool append_extra(PyObject *names, Family family, const vlKindRow *row) {
                                         "space", "spectrum", "st_from_uv", NULL};
   static const char *const material[] = {"name", "materials", NULL};
   static const char *const medium[] = {"name", "pose", "transform", "density", NULL};
-  static const char *const light[] = {"pose", "transform", "medium", "image", "portal", NULL};
+  static const char *const light[] = {"pose",      "transform", "medium", "image",
+                                      "lamp_data", "portal",    NULL};
   static const char *const position[] = {"position", "from_", NULL};
   static const char *const shape[] = {
       "name",      "pose",    "transform", "material", "emission",

@@ -258,6 +258,9 @@ static bool get_light(const Getting *g, const vlLightDef *d) {
   return put(g, "transform", matrix_of(d->world_from_light)) &&
          put(g, "medium", handle_or_none(g, MEDIA, d->medium.index)) &&
          (!d->image || put(g, "image", image_copy(g, d->image))) &&
+         (!d->lamp_data ||
+          put(g, "lamp_data",
+              PyBytes_FromStringAndSize(d->lamp_data, (Py_ssize_t)d->lamp_size))) &&
          (!d->has_portal || put(g, "portal", array_of(d->portal, 'f', corners)));
 }
 

@@ -324,6 +324,7 @@ class Lights(TypedDict, total=False):
     from_: Any
     illuminance: Any
     image: Any
+    lamp_data: Any
     medium: Any
     path: Any
     portal: Any

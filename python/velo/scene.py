@@ -220,8 +220,8 @@ class Scene(_velo.Scene):
 
     def add_light(self, kind: str, **keywords: Unpack[_keywords.Lights]) -> Handle:
         """Adds a light: point, spot, distant, infinite, goniometric, projection. Keywords: members of vlLightDef: color,
-        scale, power (lm), illuminance (lx), position, to, image; pose: 4 x 4, world from light. The member from, a word that
-        Python reserves, is position or from_."""
+        scale, power (lm), illuminance (lx), position, to, image; path or lamp_data: a lamp file or its bytes; pose: 4 x 4, world
+        from light. The member from, a word that Python reserves, is position or from_."""
         words: dict[str, Any] = {**keywords}
         if "image" in words:
             words["image"] = _as_image(words["image"], "linear")

@@ -111,6 +111,16 @@ def values_are_those_that_were_given():
 
 
 @case
+def a_lamp_file_in_memory_comes_back():
+    lamp = b"TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 180\n0\n5 5\n"
+    scene = velo.Scene()
+    words = scene.get(scene.add_light("goniometric", lamp_data=lamp, scale=2))
+    assert words["lamp_data"] == lamp and words["scale"] == 2, words
+    raises(TypeError, "lamp_data", lambda: scene.add_light("goniometric", lamp_data=7))
+    raises(ValueError, "both", lambda: scene.add_light("goniometric", lamp_data=lamp, path="a.ies"))
+
+
+@case
 def a_scene_of_a_file_comes_back():
     """All objects of a file made again in a new scene: the same image."""
     scene = velo.load(cases.PINHOLE)

@@ -48,7 +48,7 @@ def keywords_are_those_of_the_rows():
     def names(group):
         return {name for base in group.__mro__ for name in getattr(base, "__annotations__", {})}
 
-    apart = {"data_size", "wrap_t_given", "encoding_given", "st_from_uv_given", "use_reflectance", "nx", "ny", "nz", "from", "more_uvs"}
+    apart = {"data_size", "lamp_size", "wrap_t_given", "encoding_given", "st_from_uv_given", "use_reflectance", "nx", "ny", "nz", "from", "more_uvs"}
     for family, group in (("textures", _keywords.Textures), ("materials", _keywords.Materials), ("media", _keywords.Media),
                           ("emission", _keywords.Emission), ("lights", _keywords.Lights), ("shapes", _keywords.Shapes)):
         rows = {word for row in velo.kinds(family).values() for word in row} - apart

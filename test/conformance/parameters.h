@@ -295,7 +295,10 @@ enum { GLTF_SPP = 192 };
 static double number_in(const vlScene *scene, const char *family, const char *kind,
                         const char *name) {
   const vlKindFamily *all = vl_kind_family_find(family);
-  const int k = vl_kind_find(all, kind);
+  int k = -1;
+  for (uint32_t i = 0; i < all->kind_count; i++)
+    if (same_name(all->rows[i]->name, kind))
+      k = (int)i;
   const vlParameter *p = NULL;
   for (size_t i = 0; k >= 0 && i < all->rows[k]->parameter_count; i++)
     if (same_name(all->rows[k]->parameters[i].name, name))

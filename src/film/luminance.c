@@ -1,5 +1,5 @@
 /* film/luminance.c: the luminance of a film's pixels: Y of its linear colours, which is in
- * cd/m^2 (docs/decisions/0032-units.md). */
+ * cd/m^2 (docs/decisions/0031-units.md). */
 #include "base/text.h"
 #include "color/color.h"
 #include "film/sums.h"

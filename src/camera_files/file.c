@@ -87,13 +87,24 @@ typedef struct {
   size_t size;
 } Source;
 
+/* A file of one camera has no other: refuses the name of one. */
+static vlResult check_frame(const vlCameraFile *file, bool looked,
+                            const vlCameraRecord *record) {
+  if (looked || !file->def->frame || record->frames > 1 ||
+      vl_camera_is_frame(file, 0, record->name))
+    return VL_OK;
+  return vl_camera_no_frame(file, "camera", 1);
+}
+
 /* Reads one camera, or all cameras if there is a sink. */
 static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const Source *source,
                             const vlCameraSink *sink, vlCameraRecord *record) {
   const vlCameraFormat *format = vl_camera_formats[dialect];
   vlResult result = VL_OK;
   uint32_t frames = 1, i = 0;
+  bool looked = false;
   file->dialect = format->name;
+  file->looked = &looked;
   if (sink)
     file->ordinal = &i;
   for (; i < frames && result == VL_OK; i++) {
@@ -108,6 +119,8 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
                           : format->read_text(file, source->text, source->size, record);
     if (sink)
       frames = record->frames;
+    else if (result == VL_OK)
+      result = check_frame(file, looked, record);
     if (source->tree && i == 0 && result == VL_OK)
       result = vl_camera_check_unread(file, format, source->tree, record);
     if (source->text && format->separator && i == 0 && result == VL_OK)
@@ -116,6 +129,7 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
       result = sink->add(sink->data, file, record, i);
   }
   file->ordinal = NULL;
+  file->looked = NULL;
   return result;
 }
 

@@ -29,6 +29,7 @@ typedef struct vlCameraFile {
   vlCameraLocations *locations; /* may be null; then errors have no line */
   const uint32_t
       *ordinal; /* number of the camera to read, which overrides the def; may be null */
+  bool *looked; /* becomes true when the def's frame is looked for; may be null */
 } vlCameraFile;
 
 /* ---- reading ----------------------------------------------------------------------------- */

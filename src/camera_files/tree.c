@@ -292,6 +292,8 @@ const char *vl_camera_text(const json_t *object, const char *key) {
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name) {
   const char *wish = file->def->frame;
   char number[16];
+  if (file->looked)
+    *file->looked = true;
   if (file->ordinal)
     return index == *file->ordinal;
   if (!wish)

@@ -321,17 +321,15 @@ static void each_sample(void (*use)(const char *name)) {
   closedir(files);
 }
 
-/* A file with several cameras has none of this name, and the message says so. Formats of one
- * camera ignore names. */
+/* No file has a camera of this name, and the message says so; each has a first one. */
 static void refuse_frame(const char *name) {
   vlCameraRecord record;
   vlError error;
   if (read_changed(name, NULL, NULL, NULL, &record, &error) != VL_OK)
     return;
-  bool several = record.frames > 1;
+  if (read_changed(name, NULL, NULL, "0", &record, &error) != VL_OK)
+    fail_msg("%s: %s", name, error.message);
   vlResult result = read_changed(name, NULL, NULL, "no such camera", &record, &error);
-  if (result == VL_OK && !several)
-    return;
   if (result != VL_ERROR_SCENE || !strstr(error.message, "\"no such camera\""))
     fail_msg("%s: %d: %s", name, (int)result, error.message);
 }

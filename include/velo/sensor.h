@@ -116,9 +116,10 @@ typedef struct vlExposureDef {
   double temperature;  /**< of the sensor, deg C */
   double focal_length; /**< of the lens, mm: the light falls with cos^4 of the angle that it
                           gives; 0: it does not, or the camera has darkened the image */
-  double radiance;     /**< radiance of an image's value 1, W/(m^2 sr nm) */
-  uint32_t seed;       /**< of the noise */
-  uint32_t frame;      /**< number of the frame: other noise with the same seed */
+  double radiance; /**< radiance of an image's value 1, W/(m^2 sr nm); default 1 / 72983: that
+                      of velo's images, whose luminance is in cd/m^2 (docs/conventions.md) */
+  uint32_t seed;   /**< of the noise */
+  uint32_t frame;  /**< number of the frame: other noise with the same seed */
 } vlExposureDef;
 /** The default def: 1/100 s, f/4, base ISO, 20 deg C. */
 VL_API vlExposureDef vl_default_exposure_def(void);

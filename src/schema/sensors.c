@@ -65,6 +65,8 @@ const vlKindRow vl_sensor_settings_row = {.name = "sensor",
                                           .description = "a sensor, in sensor files",
                                           VL_ROW_PARAMETERS(sensor_parameters)};
 
+/* The default radiance makes an image's values those of its scene, whose luminance is in cd/m^2
+ * (docs/decisions/0031-units.md). */
 #define EXPOSURE(TYPE, path, line, ...) \
   VL_PARAMETER(TYPE, vlExposureDef, NULL, path, line, __VA_ARGS__)
 static const vlParameter exposure_parameters[] = {
@@ -82,7 +84,7 @@ static const vlParameter exposure_parameters[] = {
     EXPOSURE(DOUBLE, focal_length, "of the lens, for cos^4 vignetting; 0: none",
              VL_RANGE(0, 1e6), .unit = "mm"),
     EXPOSURE(DOUBLE, radiance, "radiance of an image's value 1", VL_RANGE(1e-30, 1e30),
-             VL_DEFAULT(1), .unit = "W/(m^2 sr nm)"),
+             VL_DEFAULT(1 / 72983.0), .unit = "W/(m^2 sr nm)"),
     EXPOSURE(COUNT, seed, "seed of the noise", .unit = NULL),
     EXPOSURE(COUNT, frame, "number of the frame: other noise with the same seed", .unit = NULL),
 };

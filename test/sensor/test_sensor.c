@@ -390,7 +390,8 @@ static void film_noise(void **state) {
   vlSensorOutput out = {0};
   vlExposureDef exposure = vl_default_exposure_def();
   assert_int_equal(vl_sensor_collect(sensor, image, &exposure, means_, &out, NULL), VL_OK);
-  exposure.radiance = 10000.0 / means_[0]; /* photon noise is 1 % of the mean */
+  near(683.0 * 106.857 * exposure.radiance, 1.0, 1e-5); /* cd/m^2 */
+  exposure.radiance *= 10000.0 / means_[0];             /* photon noise is 1 % of the mean */
   for (int i = 0; i < 100; i++)
     for (int c = 5; c < 8; c++)
       pixels[8 * i + c] = i < 30 ? 0.0011f : 0.0009f;

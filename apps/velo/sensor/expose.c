@@ -319,7 +319,7 @@ static const Option options[] = {
      "darken the image with cos^4 of the angle from the axis, as a lens of this focal length; "
      "not for cameras that have done so"},
     {EXPOSE_RADIANCE, 0, "radiance", OPTION_TEXT, "L",
-     "radiance of the image's value 1, W/(m^2 sr nm)"},
+     "radiance of the image's value 1, W/(m^2 sr nm); default 1/72983: 1 is 1 cd/m^2"},
     {EXPOSE_SEED, 0, "seed", OPTION_TEXT, "N", "seed of the noise"},
     {EXPOSE_FRAME, 0, "frame", OPTION_TEXT, "N",
      "number of the first frame: other noise with the same seed"},

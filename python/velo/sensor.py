@@ -15,7 +15,10 @@ from velo.raw import Raw, raw_of
 class Exposure:
     """The result of an exposure. numbers: rows x columns x 1, uint16; electrons: the same as float32, before the amplifier."""
 
-    def __init__(self, numbers: Image, electrons: Image, counts: Mapping[str, Any]) -> None:
+    def __init__(self, numbers: Image, electrons: Image, counts: Mapping[str, Any], sensor: Optional[Sensor] = None,
+                 given: Optional[dict[str, Any]] = None) -> None:
+        self._sensor = sensor
+        self._given = given or {}
         self.numbers = numbers
         self.electrons = electrons
         #: Pixels with a full well; below and above the converter's range.
@@ -28,6 +31,14 @@ class Exposure:
         noise: float = counts["film_noise"]
         #: Share of pixels in which the image's own noise is above a tenth of photon noise; None: it has no standard errors.
         self.film_noise: Optional[float] = None if math.isnan(noise) else noise
+
+    def raw(self, light: Any = None) -> Raw:
+        """The raw image of the numbers, with the sensor's levels, noise and colour.
+
+        light: the white of the scene's light, 471 values, for each nm from 360 to 830; default D65."""
+        if self._sensor is None:
+            raise UsageError("the exposure is of no sensor")
+        return self._sensor._raw_of(self.numbers, self._given, light)
 
     def __repr__(self) -> str:
         return f"<velo.Exposure {self.numbers.width} x {self.numbers.height}: {self.full} pixels full>"
@@ -59,14 +70,17 @@ class Sensor:
         _check.instance(image, Image, "image")
         for part in image.parts:
             if any(name.startswith("S0.") for name in part._names):
-                return Exposure(*_velo.sensor_expose(self._context, self._name, self._file, self._given, part, exposure))
+                return Exposure(*_velo.sensor_expose(self._context, self._name, self._file, self._given, part, exposure), self,
+                                dict(exposure))
         raise UsageError("the image has no spectrum: render it with buckets=N")
 
     def raw(self, image: Image, *, light: Any = None, **exposure: Any) -> Raw:
         """Exposes the sensor as expose() does, and makes a raw image with the sensor's levels, noise and colour.
 
         light: the white of the scene's light, 471 values, for each nm from 360 to 830; default D65."""
-        numbers = self.expose(image, **exposure).numbers
+        return self.expose(image, **exposure).raw(light)
+
+    def _raw_of(self, numbers: Image, exposure: dict[str, Any], light: Any) -> Raw:
         return raw_of(numbers, _velo.sensor_raw(self._context, self._name, self._file, self._given, exposure, numbers, light))
 
     def __repr__(self) -> str:

@@ -478,6 +478,20 @@ def a_sensor_is_exposed_to_each_frame():
     assert about["numbers"]["pattern"] == "GR/BG" and about["numbers"]["bits"] == 12 and about["exposure"]["f_number"] == 4
     other = read_png(os.path.join(folders[0], "raw", "000000_camera.png"))
     assert (other != numbers).any()
+    developed = velo.read_image(names[0][:-4] + "_developed.png")
+    assert developed.resolution == (32, 24) and developed.channels == ("R", "G", "B") and numpy.asarray(developed).std() > 0
+    assert not os.path.exists(names[0][:-4] + ".dng")
+    try:
+        velo.Raw(numbers.astype("uint16"), pattern="GR/BG").write(os.path.join(work("tiff"), "a.dng"))
+    except velo.Error:
+        return  # built without libtiff
+    simple.sensor.dng = True
+    dataset.generate(simple, work("dng"), writers=["raw"], frames=[1])
+    raw = velo.read_raw(os.path.join(work("dng"), "raw", "000001_camera.dng"))
+    assert (raw.numbers == numbers).all() and raw.pattern == "GR/BG"
+    again = os.path.join(work("again"), "again.png")
+    raw.develop().write(again)
+    assert abs(read_png(again).astype(int) - read_png(names[0][:-4] + "_developed.png").astype(int)).max() <= 1
     with raises(velo.UsageError, "the writer raw needs recipe.sensor"):
         dataset.generate(recipe(), work("none"), writers=["raw"])
     for settings, text in (({"name": "generic_rgb"}, "generic_rggb"), ({"numbers": {"full_well": 0}}, "full_well"), ({"exposure": {"iso": -1}}, "iso"),

@@ -312,7 +312,7 @@ _RULES: dict[type, dict[str, Check]] = {
     kinds.Materials: {"color": bounds(vector(3, 0, 1)), "roughness": range_(0, 1), "metallic": range_(0, 1), "textures": items(text, 0, 100000)},
     kinds.Ground: {"size": number(1e-12, 1e12), "height": number(), "up": direction, "materials": lambda v, w: member(kinds.Materials)(v, w)},
     kinds.Distractors: {"count": count(10000), "size": range_(1e-12, 1e12), "materials": lambda v, w: member(kinds.Materials)(v, w)},
-    kinds.Sensor: {"name": text, "numbers": _KEYWORDS, "exposure": _KEYWORDS, "buckets": whole(2, 1000)},
+    kinds.Sensor: {"name": text, "numbers": _KEYWORDS, "exposure": _KEYWORDS, "buckets": whole(2, 1000), "dng": flag},
     kinds.Recipe: {
         "seed": whole(0, 2**53), "frames": whole(1, MAX_FRAMES), "spp": setting("render", "spp"), "scene": text,
         "resolution": lambda v, w: tuple(_check.setting(side, f"{w}[{i}]", "program", ("width", "height")[i]) for i, side in

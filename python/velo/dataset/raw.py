@@ -1,4 +1,4 @@
-"""Writes the numbers of a sensor: a 16-bit PNG and a JSON file for each image."""
+"""Writes what a camera with a sensor gives: numbers, a developed image and a description of each."""
 from __future__ import annotations
 
 import os
@@ -13,8 +13,8 @@ from velo.dataset.writer import Writer
 
 
 class RawWriter(Writer):
-    """OUT/raw: 000000_camera.png (the sensor's numbers, 16 bits) and 000000_camera.json (the sensor, the exposure, counts of
-    pixels). The recipe must have a sensor."""
+    """OUT/raw: 000000_camera.png (the sensor's numbers, 16 bits), 000000_camera_developed.png (8 bits), 000000_camera.json (the
+    sensor, the exposure, counts of pixels) and, where the recipe asks for it, 000000_camera.dng. The recipe must have a sensor."""
 
     def __init__(self, stage: Stage, folder: str) -> None:
         super().__init__(stage, os.path.join(folder, "raw"))
@@ -23,6 +23,9 @@ class RawWriter(Writer):
 
     def names(self, frame: int, view: str, scene: int) -> Iterator[str]:
         yield f"{frame:06d}_{view}.png"
+        yield f"{frame:06d}_{view}_developed.png"
+        if self.stage.recipe.sensor and self.stage.recipe.sensor.dng:
+            yield f"{frame:06d}_{view}.dng"
         yield f"{frame:06d}_{view}.json"
 
     def tables(self, scenes: int) -> Iterator[str]:
@@ -34,6 +37,12 @@ class RawWriter(Writer):
         os.makedirs(self.folder, exist_ok=True)
         name = os.path.join(self.folder, f"{frame.frame:06d}_{frame.view}")
         self.write_bytes(name + ".png", png(numpy.asarray(exposure.numbers)[..., 0]))
+        raw = exposure.raw()
+        self.stage.context.check_output(name + "_developed.png")
+        raw.develop().write(name + "_developed.png")
+        if rule.dng:
+            self.stage.context.check_output(name + ".dng")
+            raw.write(name + ".dng")
         self.write_json(name + ".json", {
             "frame": frame.frame, "view": frame.view, "sensor": rule.name, "numbers": sensor.numbers, "exposure": rule.exposure,
             "full": exposure.full, "black": exposure.black, "white": exposure.white})

@@ -162,6 +162,7 @@ class Sensor:
     numbers: dict[str, Any] = field(default_factory=dict)  #: in place of its own: further keywords of velo.Sensor
     exposure: dict[str, Any] = field(default_factory=dict)  #: keywords of velo.Sensor.expose: exposure_time, f_number, iso, ...
     buckets: int = 32  #: of the images' spectrum
+    dng: bool = False  #: a DNG file of each image, too
 
 
 @dataclass

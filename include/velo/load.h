@@ -30,6 +30,8 @@ typedef struct vlLoadDef {
       *animation; /**< glTF: name of the animation, or its number from 0; null: the first */
   const char *variant; /**< glTF: name of a material variant; null: the file's default */
   const char *camera;  /**< glTF: name of the camera, or its number from 0; null: the first */
+  double unit; /**< length of the file's unit, metres, 1e-9 to 1e9: candela and lumens of its
+                  lights give the light that they give in metres; unset: 1 */
   const vlCancel *cancel; /**< stops the load; the scene must then be destroyed or rolled
                               back (velo/edit.h); default null */
   vlStepFn *progress;     /**< default null */

@@ -68,6 +68,7 @@ class Load(TypedDict, total=False):
     camera: Any
     permissive: Any
     scene: Any
+    scene_unit: Any
     search_path: Any
     strict: Any
     time: Any

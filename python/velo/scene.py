@@ -22,7 +22,7 @@ StepCallback = Callable[[Step], Optional[bool]]
 AnyCamera = Union[Camera, OwnCamera, None]
 
 # Keywords of vlLoadDef; the other keywords of load() are those of vlCompleteDef.
-_LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "animation", "variant", "camera")
+_LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "animation", "variant", "camera", "scene_unit")
 _ENVIRONMENTS = ("auto", "none", "studio", "sky", "white", "file", "lamps", "window", "evening")
 # Settings that the world depends on; the others belong to the film and the render.
 _BUILD = ("color", "light_sampler", "imitate_pbrt", "regularize", "bits", "accelerator")
@@ -615,7 +615,7 @@ def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = 
     frames it and a studio. progress: called about ten times a second with a velo.Step; False ends the load with a
     CancelledError.
 
-    Keywords: the members of vlLoadDef (permissive, strict, search_path, time, scene, animation, variant, camera) and of
+    Keywords: the members of vlLoadDef (permissive, strict, search_path, time, scene, animation, variant, camera, scene_unit) and of
     vlCompleteDef (environment: auto, none, studio, window, evening, sky, white, lamps or the path of an image; rotation in radians, strength, up,
     front, ground, reframe, framing, azimuth, elevation, backdrop, ground_middle, ground_radius, open_walls, walls_from)."""
     scene = Scene(context=context)

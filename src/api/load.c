@@ -12,6 +12,7 @@
 #include "base/unset.h"
 #include "import/import.h"
 #include "scene/scene.h"
+#include "scene/unit.h"
 #include "velo/camera_file.h"
 #include "velo/check.h"
 
@@ -62,7 +63,24 @@ static vlResult check_load(const vlScene *scene, const char *path, const vlLoadD
     if (!vl_is_unset(times[i]) && !isfinite(times[i]))
       return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: time is %g; it must be finite",
                      times[i]);
+  if (def && !vl_is_unset(def->unit) && !(def->unit >= 1e-9 && def->unit <= 1e9))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "scene load: unit is %g m; it must be from 1e-9 to 1e9", def->unit);
   return vl_scene_result(scene, error);
+}
+
+/* The lights that the scene had before the file. */
+typedef struct Before {
+  size_t lights, emissions;
+} Before;
+
+static Before before_load(const vlScene *scene) {
+  return (Before){scene->lights.count, scene->emissions.count};
+}
+
+static void state_unit(vlScene *scene, const Before *before, const vlLoadDef *def) {
+  if (def && !vl_is_unset(def->unit))
+    vl_scene_state_unit(scene, before->lights, before->emissions, def->unit);
 }
 
 static void start_task(vlScene *scene, vlTask *task, const vlLoadDef *def) {
@@ -80,9 +98,11 @@ vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: data is null");
   vlTask task;
   start_task(scene, &task, def);
+  const Before before = before_load(scene);
   unsigned floats = vl_machine_set_floats();
   result = vl_import_pbrt_memory(scene, data ? data : "", size, name, def, error);
   vl_machine_restore_floats(floats);
+  state_unit(scene, &before, def);
   scene->task = NULL;
   return result;
 }
@@ -105,10 +125,12 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
   if (import) {
     vlTask task;
     start_task(scene, &task, def);
+    const Before before = before_load(scene);
     unsigned floats = vl_machine_set_floats();
     vlResult result = vl_scene_stopped(scene, 0) ? vl_scene_result(scene, error)
                                                  : import(scene, path, def, error);
     vl_machine_restore_floats(floats);
+    state_unit(scene, &before, def);
     scene->task = NULL;
     return result == VL_OK && scene->camera_in_full ? load_whole_camera(scene, path, def, error)
                                                     : result;

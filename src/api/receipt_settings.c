@@ -50,12 +50,17 @@ static const char *const environments[] = {"auto", "none",  "studio", "sky",    
                                            "file", "lamps", "window", "evening", NULL};
 static const char *const framings[] = {"auto", "corner", "front", NULL};
 
-static const Field load_fields[] = {
-    FIELD_BOOL(vlLoadDef, permissive),    FIELD_DOUBLE(vlLoadDef, time),
-    FIELD_DOUBLE(vlLoadDef, time_close),  FIELD_STRING(vlLoadDef, scene),
-    FIELD_STRING(vlLoadDef, animation),   FIELD_STRING(vlLoadDef, variant),
-    FIELD_STRING(vlLoadDef, camera),      FIELD_BOOL(vlLoadDef, strict),
-    FIELD_STRING(vlLoadDef, search_path), FIELD_END};
+static const Field load_fields[] = {FIELD_BOOL(vlLoadDef, permissive),
+                                    FIELD_DOUBLE(vlLoadDef, time),
+                                    FIELD_DOUBLE(vlLoadDef, time_close),
+                                    FIELD_STRING(vlLoadDef, scene),
+                                    FIELD_STRING(vlLoadDef, animation),
+                                    FIELD_STRING(vlLoadDef, variant),
+                                    FIELD_STRING(vlLoadDef, camera),
+                                    FIELD_BOOL(vlLoadDef, strict),
+                                    FIELD_STRING(vlLoadDef, search_path),
+                                    FIELD_DOUBLE(vlLoadDef, unit),
+                                    FIELD_END};
 static const Field complete_fields[] = {FIELD_CHOICE(vlCompleteDef, environment, environments),
                                         FIELD_DOUBLE(vlCompleteDef, rotation),
                                         FIELD_FLOAT(vlCompleteDef, strength),

@@ -63,7 +63,8 @@ vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
 }
 
 vlLoadDef vl_default_load_def(void) {
-  return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET};
+  return (vlLoadDef){
+      .cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET, .unit = VL_UNSET};
 }
 
 /* ---- the settings of an image ------------------------------------------------------------ */

@@ -144,6 +144,8 @@ static const vlParameter load_parameters[] = {
     LOAD(STRING, animation, "glTF: the animation, by name or number", .text = NULL),
     LOAD(STRING, variant, "glTF: the material variant", .text = NULL),
     LOAD(STRING, camera, "glTF: the camera, by name or number", .text = NULL),
+    LOAD(DOUBLE, unit, "length of the file's unit, for candela and lumens", WITHIN(1e-9, 1e9),
+         UNSET, .unit = "m", .keyword = "scene_unit"),
 };
 VL_KIND_ROW(load, .name = "load", .description = "how a file of a scene is read")
 

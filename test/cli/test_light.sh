@@ -58,6 +58,21 @@ import struct
 data = open(\"sky.pfm\", \"rb\").read()
 values = struct.unpack(\"<64f\", data[-256:])
 assert abs(sum(values) / 64 - 3) < .03, values[:4]"'
+# The light of a lamp in a room of centimetres: 40,000 times that of 1 unit = 2 m.
+printf 'Camera "perspective"\nFilm "rgb" "integer xresolution" 8 "integer yresolution" 8\nSampler "independent" "integer pixelsamples" 4\nWorldBegin\nLightSource "point"\nTranslate 0 0 3\nShape "disk" "float radius" 9\n' >lamp.pbrt
+mean() { "$VELO" image convert "$1" mean.pfm && python3 -c '
+import struct
+data = open("mean.pfm", "rb").read()
+print(sum(struct.unpack("<192f", data[-768:])))'; }
+for unit in cm 0.01 2; do "$VELO" render lamp.pbrt --quiet --scene-unit $unit -o lamp_$unit.exr; done
+check "scene unit by name" "$VELO" image diff lamp_cm.exr lamp_0.01.exr
+check "scene unit" python3 -c "assert abs($(mean lamp_cm.exr) / $(mean lamp_2.exr) / 40000 - 1) < 1e-4"
+refused "no unit" 2 "--scene-unit (or m, cm, mm, km, in, ft)" "$VELO" render lamp.pbrt --scene-unit yard -o none.exr
+refused "a unit of 0" 2 "--scene-unit" "$VELO" render lamp.pbrt --scene-unit 0 -o none.exr
+"$VELO" render lamp.pbrt --quiet --scene-unit cm --film lamp.film
+check "a film remembers its unit" "$VELO" render lamp.pbrt --quiet --scene-unit cm --film lamp.film
+refused "a film of another unit" 2 "unit" "$VELO" render lamp.pbrt --quiet --spp 8 --film lamp.film
+
 refused "luminance: no standard observer" 3 "--channels luminance needs the sensor cie1931" \
   "$VELO" render sky.pbrt --sensor canon_eos_5d --channels luminance -o none.exr
 

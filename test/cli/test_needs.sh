@@ -62,6 +62,12 @@ with scene $G --scene 0
 without variant $P --variant red
 without variant $O --variant red
 with variant $G --variant red
+sed 's/^WorldBegin/WorldBegin LightSource "infinite"/' $P >sky.pbrt
+sed 's/^WorldBegin/WorldBegin LightSource "point"/' $P >point.pbrt
+sed 's/^WorldBegin/WorldBegin AttributeBegin AreaLightSource "diffuse" "float power" 9 Shape "sphere" AttributeEnd/' $P >power.pbrt
+without scene-unit sky.pbrt --scene-unit cm
+with scene-unit point.pbrt --scene-unit cm
+with scene-unit power.pbrt --scene-unit cm
 without at $P --at 0.5
 without at $S --at 0.5
 with at $G --at 0.5

@@ -50,7 +50,7 @@ typedef struct Option {
   OptionList list; /* of OPTION_CHOICE: what may stand in place of a name */
 } Option;
 
-enum { MAX_OPTIONS = 112, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
+enum { MAX_OPTIONS = 113, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
 
 typedef struct OptionValue {
   bool given;

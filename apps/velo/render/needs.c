@@ -3,6 +3,8 @@
  * for --continue and velo film develop. */
 #include "render/needs.h"
 
+#include <math.h>
+
 #include "camera/camera.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
@@ -10,11 +12,14 @@
 #include "render/lens_options.h"
 #include "render/shard.h"
 #include "velo/check.h"
+#include "velo/edit.h"
+#include "velo/light.h"
 #include "velo/tracer.h"
 
 typedef enum Need {
   NEED_NOTHING,
   NEED_GLTF,
+  NEED_LAMPS,
   NEED_ANIMATIONS,
   NEED_PLAYED_TIME,
   NEED_ANIMATE,
@@ -50,6 +55,7 @@ static const Need needs_of[MAX_OPTIONS] = {
     [RENDER_SHUTTER] = NEED_ANIMATIONS,
     [RENDER_ANIMATE] = NEED_ANIMATIONS,
     [RENDER_VARIANT] = NEED_GLTF,
+    [RENDER_SCENE_UNIT] = NEED_LAMPS,
     [RENDER_ANIMATION] = NEED_PLAYED_TIME,
     [RENDER_FPS] = NEED_ANIMATE,
     [RENDER_UP] = NEED_ADDED,
@@ -138,6 +144,19 @@ static bool has_camera_file(const Facts *f) {
          !scene_camera_is_own(f->needs->job->path, f->needs->arguments);
 }
 
+/* Whether light depends on the length of the scene's unit. */
+static bool has_lamps(const Facts *f) {
+  const vlLightDef *light;
+  const vlEmissionDef *emission;
+  for (uint32_t i = 1; (light = vl_scene_light(f->needs->scene, (vlLightId){i})); i++)
+    if (light->kind != VL_LIGHT_DISTANT && light->kind != VL_LIGHT_INFINITE)
+      return true;
+  for (uint32_t i = 1; (emission = vl_scene_emission(f->needs->scene, (vlEmissionId){i})); i++)
+    if (!isnan(emission->power))
+      return true;
+  return false;
+}
+
 static bool has_camera_or_poses(const Facts *f) {
   return has_camera_file(f) || f->v[RENDER_TRAJECTORY].given;
 }
@@ -220,6 +239,7 @@ static const struct {
   Need before;       /* is needed for it, too, and looked at first */
 } rows[NEED_COUNT] = {
     [NEED_GLTF] = {has_gltf, " is not a glTF file", .names_scene = true},
+    [NEED_LAMPS] = {has_lamps, " has no light given in candela or lumens", .names_scene = true},
     [NEED_ANIMATIONS] = {has_animations, " has no animations", .names_scene = true,
                          .before = NEED_GLTF},
     [NEED_PLAYED_TIME] = {has_played_time, "no animation is played (--at, --animate)",

@@ -96,6 +96,9 @@ const Option render_options[] = {
      "rotate the scene's camera about the vertical axis through the middle of the scene"},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME",
      "glTF: material variant to use, by name"},
+    {RENDER_SCENE_UNIT, 0, "scene-unit", OPTION_TEXT, "UNIT",
+     "length of the scene's unit: m (default), cm, mm, km, in, ft, or a number of metres. Light "
+     "given in candela and lumens is then that of a scene in metres (docs/conventions.md)"},
     {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "NAME",
      "environment that lights the scene: a studio (studio: soft boxes, window, evening), sky, "
      "white, none, lamps (inside of a room), or an image file (2:1: "

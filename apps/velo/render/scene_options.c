@@ -163,6 +163,22 @@ static void leave_camera(const OptionValue *v, vlCompleteDef *complete) {
   complete->backdrop &= v[RENDER_GROUND_MIDDLE].given || v[RENDER_GROUND_RADIUS].given;
 }
 
+/* The length of a unit in metres: by its name, or as a number. */
+static int choose_unit(const OptionValue *value, double *metres) {
+  static const struct {
+    const char *name;
+    double metres;
+  } units[] = {{"m", 1},     {"cm", 0.01},   {"mm", 0.001},
+               {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}};
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    if (strcmp(value->text, units[i].name) == 0) {
+      *metres = units[i].metres;
+      return -1;
+    }
+  return option_number("--scene-unit (or m, cm, mm, km, in, ft)", value->text,
+                       vl_setting(VL_SETTING_LOAD, "unit"), metres);
+}
+
 static int choose_load(const char *path, const Arguments *arguments,
                        const SceneOpening *opening, vlLoadDef *load) {
   const OptionValue *v = arguments->values;
@@ -174,6 +190,8 @@ static int choose_load(const char *path, const Arguments *arguments,
   int status = choose_times(v, load);
   if (status < 0)
     status = check_completion(v);
+  if (status < 0 && v[RENDER_SCENE_UNIT].given)
+    status = choose_unit(&v[RENDER_SCENE_UNIT], &load->unit);
   if (status >= 0)
     return status;
   if (v[RENDER_SCENE].given)

@@ -118,6 +118,8 @@ const Option view_options[] = {
     {RENDER_TURN, 0, "turn", OPTION_NUMBER, "DEGREES",
      "rotate the scene's camera about the vertical axis"},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant"},
+    {RENDER_SCENE_UNIT, 0, "scene-unit", OPTION_TEXT, "UNIT",
+     "length of the scene's unit, for candela and lumens: m, cm, mm, km, in, ft, or metres"},
     {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "NAME",
      "environment that lights the scene: studio, window, evening, sky, white, none, lamps, or an "
      "image file"},

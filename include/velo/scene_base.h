@@ -106,6 +106,8 @@ typedef struct vlSceneInfo {
    * emissive_shapes also count as shapes. */
   uint64_t shapes, triangles, vertices, textures, materials, lights, emissive_shapes, groups,
       instances, media;
+  /** Number of lights and emissions given in candela or lumens (vlLoadDef.unit). */
+  uint64_t lamps;
 } vlSceneInfo;
 /** Counts the contents of a scene. */
 VL_API void vl_scene_info(const vlScene *scene, vlSceneInfo *info);

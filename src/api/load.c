@@ -12,7 +12,6 @@
 #include "base/unset.h"
 #include "import/import.h"
 #include "scene/scene.h"
-#include "scene/unit.h"
 #include "velo/camera_file.h"
 #include "velo/check.h"
 

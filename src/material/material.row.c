@@ -1,6 +1,8 @@
 /* material/material.row.c: the family of materials: the list of its rows, each from the file of
  * its kind. */
 #include "material/material.row.h"
+
+#include "base/cookie.h"
 #include "material/kinds.row.h"
 
 #define DECLARE(kind, row, compile) extern const vlKindRow row;
@@ -10,3 +12,11 @@ VL_MATERIAL_FUNCTIONS(DECLARE)
 static const vlKindRow *const rows[] = {VL_MATERIAL_FUNCTIONS(ROW)};
 VL_KIND_FAMILY_OF(vl_material_family, rows, VL_MATERIAL_KINDS, "materials", "material",
                   "Material")
+
+vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
+  vlMaterialDef def = {.cookie = VL_COOKIE_MATERIAL, .kind = kind};
+  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)kind);
+  if (row)
+    vl_row_set_defaults(row, &def);
+  return def;
+}

@@ -2,6 +2,7 @@
  * the numbers of its objects. */
 #include "scene/scene.h"
 #include "base/text.h"
+#include "base/unset.h"
 
 #include <string.h>
 
@@ -143,4 +144,9 @@ void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
     if (shape->emission.index)
       info->emissive_shapes++;
   }
+  for (size_t i = 0; i < scene->lights.count; i++)
+    info->lamps += vl_light_is_near(&scene->lights.items[i]);
+  for (size_t i = 0; i < scene->emissions.count; i++)
+    info->lamps += !vl_is_unset(scene->emissions.items[i].power);
+  info->lamps -= vl_scene_removed_count(&scene->light_marks); /* they are point lights now */
 }

@@ -197,4 +197,12 @@ bool vl_scene_copy_spectrum(vlScene *scene, vlSpectrum *spectrum, vlSource sourc
                             const char *what);
 bool vl_scene_copy_image(vlScene *scene, const vlImage **image);
 
+/* Whether the light comes from a point of the scene: its unit is the candela. */
+bool vl_light_is_near(const vlLightDef *light);
+/* A unit of the scene is `metres` long: candela and lumens of the lights and emissions from
+ * first_light and first_emission on give the light that they give in metres. What is far away,
+ * and what is given as luminance or illuminance, does not change. */
+void vl_scene_state_unit(vlScene *scene, size_t first_light, size_t first_emission,
+                         double metres);
+
 #endif

@@ -79,11 +79,14 @@ static bool transform_material(vlScene *scene, size_t index, const Similarity *s
   return scale_height(scene, &m->displacement, s->scale);
 }
 
+bool vl_light_is_near(const vlLightDef *light) {
+  return light->kind != VL_LIGHT_DISTANT && light->kind != VL_LIGHT_INFINITE;
+}
+
 /* The direction and the position of a light change, its own space is scaled: so images of
  * lights keep their size. */
 static void transform_light(vlLightDef *light, const Similarity *s) {
   double *m = light->world_from_light;
-  const bool far = light->kind == VL_LIGHT_DISTANT || light->kind == VL_LIGHT_INFINITE;
   double position[3] = {m[3], m[7], m[11]}, moved[3];
   vl_mat4_point(&s->matrix, position, moved);
   apply(&s->turn, m);
@@ -95,7 +98,7 @@ static void transform_light(vlLightDef *light, const Similarity *s) {
     light->to[i] = (float)(light->to[i] * s->scale);
   }
   /* the same irradiance at `scale` times the distance */
-  if (!far)
+  if (vl_light_is_near(light))
     light->scale = (float)(light->scale * s->scale * s->scale);
   for (int corner = 0; light->has_portal && corner < 4; corner++) {
     const double from[3] = {light->portal[corner][0], light->portal[corner][1],
@@ -174,4 +177,18 @@ vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16], v
   scene->number = vl_context_number(
       scene->context); /* for later worlds these are the shapes of another scene */
   return transform_all(scene, &s) ? VL_OK : vl_scene_result(scene, error);
+}
+
+/* The illuminance of a point light of I candela at d units is I / (d metres)^2, and the
+ * luminance of a surface of A units^2 that sends P lumens is P / (pi A metres^2). */
+void vl_scene_state_unit(vlScene *scene, size_t first_light, size_t first_emission,
+                         double metres) {
+  const double factor = 1 / (metres * metres);
+  for (size_t i = first_light; i < scene->lights.count; i++) {
+    vlLightDef *light = &scene->lights.items[i];
+    if (vl_light_is_near(light))
+      light->scale = (float)(light->scale * factor);
+  }
+  for (size_t i = first_emission; i < scene->emissions.count; i++)
+    scene->emissions.items[i].power *= factor;
 }

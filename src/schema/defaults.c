@@ -9,7 +9,6 @@
 #include "schema/schema.h"
 #include "velo/filter_kinds.h"
 #include "velo/load.h"
-#include "velo/material.h"
 #include "velo/render.h"
 #include "velo/sampler.h"
 #include "velo/texture.h"
@@ -51,14 +50,6 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
   if (row)
     vl_row_set_defaults(row, &def);
   memcpy(def.texture_from_world, identity, sizeof identity);
-  return def;
-}
-
-vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
-  vlMaterialDef def = {.cookie = VL_COOKIE_MATERIAL, .kind = kind};
-  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)kind);
-  if (row)
-    vl_row_set_defaults(row, &def);
   return def;
 }
 

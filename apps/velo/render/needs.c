@@ -3,8 +3,6 @@
  * for --continue and velo film develop. */
 #include "render/needs.h"
 
-#include <math.h>
-
 #include "camera/camera.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
@@ -12,8 +10,6 @@
 #include "render/lens_options.h"
 #include "render/shard.h"
 #include "velo/check.h"
-#include "velo/edit.h"
-#include "velo/light.h"
 #include "velo/tracer.h"
 
 typedef enum Need {
@@ -146,15 +142,9 @@ static bool has_camera_file(const Facts *f) {
 
 /* Whether light depends on the length of the scene's unit. */
 static bool has_lamps(const Facts *f) {
-  const vlLightDef *light;
-  const vlEmissionDef *emission;
-  for (uint32_t i = 1; (light = vl_scene_light(f->needs->scene, (vlLightId){i})); i++)
-    if (light->kind != VL_LIGHT_DISTANT && light->kind != VL_LIGHT_INFINITE)
-      return true;
-  for (uint32_t i = 1; (emission = vl_scene_emission(f->needs->scene, (vlEmissionId){i})); i++)
-    if (!isnan(emission->power))
-      return true;
-  return false;
+  vlSceneInfo info;
+  vl_scene_info(f->needs->scene, &info);
+  return info.lamps > 0;
 }
 
 static bool has_camera_or_poses(const Facts *f) {

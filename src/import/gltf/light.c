@@ -1,7 +1,10 @@
-/* import/gltf/light.c: KHR_lights_punctual. The extension's units, candela and lux, match
- * velo's if radiance is in nits. */
+/* import/gltf/light.c: KHR_lights_punctual and EXT_lights_ies. The units, candela and lux,
+ * match velo's if radiance is in nits. */
 #include <math.h>
+#include <string.h>
 
+#include "base/file.h"
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "velo/light.h"
 
@@ -53,6 +56,88 @@ bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
   def.cone_delta = (float)(outer - inner);
   def.cone_squared = true;
   if (intensity > 0 && vl_scene_add_light(g->scene, &def).index == 0)
+    return false;
+  g->lights_made++;
+  return true;
+}
+
+/* ---- lamp files -------------------------------------------------------------------------- */
+
+/* Lamp files are external or embedded. A node's lamp aims along the node's -z; C 0 is its x, C
+ * 90 its y. */
+
+#define EXTENSION "extensions.EXT_lights_ies"
+
+/* The contents of the light profile: from a file, a data: uri or a buffer view. */
+static bool read_profile(vlGltf *g, const vlGltfLocation *at, const json_t *json,
+                         vlLightDef *def) {
+  const char *uri = NULL, *path = NULL;
+  const uint8_t *data = NULL;
+  int64_t view = -1;
+  if (!vl_gltf_text(g, at, json, "uri", &uri) ||
+      !vl_gltf_index(g, at, json, "bufferView", g->view_count, &view))
+    return false;
+  if (!uri && view < 0)
+    return vl_gltf_fail(g, at, "has neither \"uri\" nor \"bufferView\"");
+  if (!uri && !g->views[view].data)
+    return vl_gltf_fail(g, at, "bufferViews[%d] holds nothing that velo can read", (int)view);
+  if (!uri) {
+    def->lamp_data = g->views[view].data;
+    def->lamp_size = g->views[view].size;
+    return true;
+  }
+  if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &data, &def->lamp_size, &path))
+    return false;
+  def->lamp_data = data;
+  def->path = vl_names_lamp(path) ? path : NULL;
+  if (def->lamp_data || def->path)
+    return true;
+  return vl_gltf_fail(g, VL_GLTF_KEY(at, "uri"), "\"%s\" does not end with .ies",
+                      vl_short_text(uri).text);
+}
+
+/* world_from_light: light space has -y where the node has -z, x where it has x, and -z where it
+ * has y. */
+static void place(const vlMat4 *world, vlLightDef *def) {
+  for (int i = 0; i < 3; i++) {
+    const double *row = world->m + 4 * i;
+    def->world_from_light[4 * i] = row[0];
+    def->world_from_light[4 * i + 1] = row[2];
+    def->world_from_light[4 * i + 2] = -row[1];
+    def->world_from_light[4 * i + 3] = row[3];
+  }
+}
+
+bool vl_gltf_add_lamp(vlGltf *g, size_t node) {
+  const json_t *own = vl_gltf_extension(g->nodes[node].json, "EXT_lights_ies");
+  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(NULL, "nodes", node), EXTENSION);
+  int64_t index = -1;
+  double color[3] = {1, 1, 1}, multiplier = 1;
+  if (!vl_gltf_index(g, at, own, "light", g->lamp_count, &index) ||
+      !vl_gltf_numbers(g, at, own, "color", 3, color) ||
+      !vl_gltf_number(g, at, own, "multiplier", &multiplier))
+    return false;
+  if (index < 0)
+    return true;
+  if (!(multiplier >= 0))
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "multiplier"), "must not be negative");
+  for (int i = 0; i < 3; i++)
+    if (!(color[i] >= 0))
+      return vl_gltf_fail(g, VL_GLTF_KEY(at, "color"), "must not be negative");
+  const vlGltfLocation *profile =
+      VL_GLTF_ITEM(VL_GLTF_KEY(NULL, EXTENSION), "lights", (size_t)index);
+  const json_t *json = json_array_get(g->lamps, (size_t)index);
+  if (!json_is_object(json))
+    return vl_gltf_fail(g, profile, "must be an object");
+  vlLightDef def = vl_default_light_def(VL_LIGHT_GONIOMETRIC);
+  def.source.file = g->path;
+  def.color = vl_spectrum_rgb((float)fmin(color[0], 1), (float)fmin(color[1], 1),
+                              (float)fmin(color[2], 1));
+  def.scale = (float)multiplier;
+  if (!read_profile(g, profile, json, &def))
+    return false;
+  place(&g->nodes[node].world, &def);
+  if (multiplier > 0 && vl_scene_add_light(g->scene, &def).index == 0)
     return false;
   g->lights_made++;
   return true;

@@ -41,7 +41,7 @@ FULL = {"seed": 1, "frames": 2, "resolution": [8, 6], "spp": 1, "scene": "", "re
         "ground": {"size": 5, "height": 0, "up": [0, 1, 0], "materials": {"color": [[0, 0, 0], [1, 1, 1]], "roughness": [0, 1], "metallic": 0,
                                                                           "textures": []}},
         "distractors": {"count": [0, 1], "size": [0.1, 0.2], "materials": {"roughness": 0.3}},
-        "sensor": {"name": "generic_mono", "numbers": {"read_noise": 3.0}, "exposure": {"f_number": 2.8}, "buckets": 3}}
+        "sensor": {"name": "generic_mono", "numbers": {"read_noise": 3.0}, "exposure": {"f_number": 2.8}, "buckets": 3, "dng": False}}
 OTHER = [{"kind": "on_scene", "low": [-1, -1, -1], "high": [1, 1, 1], "up": [0, 1, 0], "slope": 10, "gap": 0.1, "tumble": False, "tries": 3},
          {"kind": "in_volume", "low": [0, 0, 0], "high": [1, 1, 1], "gap": 0.1, "tries": 3}, {"kind": "poses", "frames": [[["a", EYE]]]}]
 

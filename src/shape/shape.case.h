@@ -34,6 +34,12 @@ typedef struct ShapeCase {
   ParameterCase parameters[PARAMETER_CASES];
 } ShapeCase;
 
+/* Values that meshes use: their corners, other corners, normals, texture coordinates. */
+#define SQUARE "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .2]"
+#define LIFTED "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 .7 .6 .3]"
+#define TURNED "\"normal N\" [.6 0 1 0 .6 1 -.6 0 1 0 0 1]"
+#define UVS "\"point2 uv\" [0 0 .3 0 0 .7 .4 .9]"
+
 /* Declares the case of each kind, which is in the file of the kind: shape/NAME.case.c. */
 #define SHAPE_CASE(NAME, name) extern const ShapeCase name##_shape;
 VL_SHAPE_KINDS(SHAPE_CASE)

@@ -1,11 +1,6 @@
 /* shape/triangles.case.c: what tests know of meshes of triangles. */
 #include "shape/shape.case.h"
 
-#define SQUARE "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .2]"
-#define LIFTED "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 .7 .6 .3]"
-#define TURNED "\"normal N\" [.6 0 1 0 .6 1 -.6 0 1 0 0 1]"
-#define UVS "\"point2 uv\" [0 0 .3 0 0 .7 .4 .9]"
-
 const ShapeCase triangles_shape = {
     .variants =
         {

@@ -8,97 +8,84 @@
 #include "math/elementary.h"
 #include "sensor/sensor.h"
 
-typedef struct Preset {
-  const char *name, *pattern;
-  double pixel, fill_factor, transmittance, base_iso, full_well, gain, black_level;
-  uint32_t bits;
-  double read_noise, adc_noise, row_noise, column_noise;
-  double dark_current, doubling, dsnu, prnu, dark_nonuniformity;
-  double peak; /* largest efficiency; 0: 1 at all wavelengths */
-} Preset;
+/* The numbers of a preset that differ from the defaults, which are those of a sensor without
+ * noise. */
+typedef void SetNumbers(vlSensorDef *def);
 
-static const Preset presets[] = {
-    {.name = "ideal",
-     .pattern = "mono",
-     .pixel = 5,
-     .fill_factor = 1,
-     .transmittance = 1,
-     .base_iso = 100,
-     .full_well = 65535,
-     .gain = 1,
-     .bits = 16,
-     .doubling = 8},
-    {.name = "ideal_rggb",
-     .pattern = "rggb",
-     .pixel = 5,
-     .fill_factor = 1,
-     .transmittance = 1,
-     .base_iso = 100,
-     .full_well = 65535,
-     .gain = 1,
-     .bits = 16,
-     .doubling = 8,
-     .peak = 1},
-    {.name = "generic_mono", /* a global shutter of machine vision */
-     .pattern = "mono",
-     .pixel = 3.45,
-     .fill_factor = 0.95,
-     .transmittance = 0.9,
-     .base_iso = 100,
-     .full_well = 10500,
-     .gain = 2.6,
-     .black_level = 60,
-     .bits = 12,
-     .read_noise = 2.2,
-     .adc_noise = 0.3,
-     .row_noise = 0.2,
-     .column_noise = 0.2,
-     .dark_current = 3,
-     .doubling = 7,
-     .dsnu = 0.8,
-     .prnu = 0.006,
-     .dark_nonuniformity = 0.1,
-     .peak = 0.65},
-    {.name = "generic_rggb", /* a large sensor of a camera */
-     .pattern = "rggb",
-     .pixel = 6,
-     .fill_factor = 0.95,
-     .transmittance = 0.9,
-     .base_iso = 100,
-     .full_well = 60000,
-     .gain = 3.8,
-     .black_level = 512,
-     .bits = 14,
-     .read_noise = 2.5,
-     .adc_noise = 0.8,
-     .row_noise = 0.2,
-     .column_noise = 0.2,
-     .dark_current = 0.5,
-     .doubling = 7,
-     .dsnu = 0.5,
-     .prnu = 0.005,
-     .dark_nonuniformity = 0.1,
-     .peak = 0.55},
-    {.name = "generic_quad", /* small pixels of a telephone */
-     .pattern = "quad",
-     .pixel = 0.8,
-     .fill_factor = 0.9,
-     .transmittance = 0.9,
-     .base_iso = 50,
-     .full_well = 6000,
-     .gain = 6,
-     .black_level = 64,
-     .bits = 10,
-     .read_noise = 1.5,
-     .adc_noise = 0.2,
-     .row_noise = 0.1,
-     .column_noise = 0.1,
-     .dark_current = 2,
-     .doubling = 8,
-     .dsnu = 0.5,
-     .prnu = 0.01,
-     .dark_nonuniformity = 0.1,
-     .peak = 0.75},
+static void set_ideal(vlSensorDef *def) {
+  def->full_well = 65535;
+}
+
+/* A global shutter of machine vision. */
+static void set_generic_mono(vlSensorDef *def) {
+  def->pixel = 3.45;
+  def->fill_factor = 0.95;
+  def->transmittance = 0.9;
+  def->full_well = 10500;
+  def->gain = 2.6;
+  def->black_level = 60;
+  def->bits = 12;
+  def->read_noise = 2.2;
+  def->adc_noise = 0.3;
+  def->row_noise = 0.2;
+  def->column_noise = 0.2;
+  def->dark_current = 3;
+  def->doubling = 7;
+  def->dsnu = 0.8;
+  def->prnu = 0.006;
+  def->dark_nonuniformity = 0.1;
+}
+
+/* A large sensor of a camera. */
+static void set_generic_rggb(vlSensorDef *def) {
+  def->pixel = 6;
+  def->fill_factor = 0.95;
+  def->transmittance = 0.9;
+  def->full_well = 60000;
+  def->gain = 3.8;
+  def->black_level = 512;
+  def->bits = 14;
+  def->read_noise = 2.5;
+  def->adc_noise = 0.8;
+  def->row_noise = 0.2;
+  def->column_noise = 0.2;
+  def->dark_current = 0.5;
+  def->doubling = 7;
+  def->dsnu = 0.5;
+  def->prnu = 0.005;
+  def->dark_nonuniformity = 0.1;
+}
+
+/* Small pixels of a telephone. */
+static void set_generic_quad(vlSensorDef *def) {
+  def->pixel = 0.8;
+  def->fill_factor = 0.9;
+  def->transmittance = 0.9;
+  def->base_iso = 50;
+  def->full_well = 6000;
+  def->gain = 6;
+  def->black_level = 64;
+  def->bits = 10;
+  def->read_noise = 1.5;
+  def->adc_noise = 0.2;
+  def->row_noise = 0.1;
+  def->column_noise = 0.1;
+  def->dark_current = 2;
+  def->dsnu = 0.5;
+  def->prnu = 0.01;
+  def->dark_nonuniformity = 0.1;
+}
+
+static const struct {
+  const char *name, *pattern;
+  double peak; /* largest efficiency; 0: 1 at all wavelengths */
+  SetNumbers *set;
+} presets[] = {
+    {"ideal", "mono", 0, set_ideal},
+    {"ideal_rggb", "rggb", 1, set_ideal},
+    {"generic_mono", "mono", 0.65, set_generic_mono},
+    {"generic_rggb", "rggb", 0.55, set_generic_rggb},
+    {"generic_quad", "quad", 0.75, set_generic_quad},
 };
 
 const char *vl_sensor_preset_name(uint32_t index) {
@@ -123,32 +110,17 @@ static void set_bell(vlSensorDef *def, char name, double peak, double middle,
   vl_sensor_set_efficiency(def, name, COUNT, wavelengths, efficiency, NULL);
 }
 
-static void use(const Preset *p, vlSensorDef *def) {
+static void use(size_t index, vlSensorDef *def) {
+  const double peak = presets[index].peak;
   *def = vl_default_sensor_def();
-  def->pixel = p->pixel;
-  def->fill_factor = p->fill_factor;
-  def->transmittance = p->transmittance;
-  def->base_iso = p->base_iso;
-  def->full_well = p->full_well;
-  def->gain = p->gain;
-  def->black_level = p->black_level;
-  def->bits = p->bits;
-  def->read_noise = p->read_noise;
-  def->adc_noise = p->adc_noise;
-  def->row_noise = p->row_noise;
-  def->column_noise = p->column_noise;
-  def->dark_current = p->dark_current;
-  def->doubling = p->doubling;
-  def->dsnu = p->dsnu;
-  def->prnu = p->prnu;
-  def->dark_nonuniformity = p->dark_nonuniformity;
-  vl_sensor_set_pattern(def, p->pattern, NULL);
-  if (p->peak == 0.0)
+  presets[index].set(def);
+  vl_sensor_set_pattern(def, presets[index].pattern, NULL);
+  if (peak == 0.0)
     return;
-  set_bell(def, 'W', p->peak, 540.0, 110.0);
-  set_bell(def, 'R', p->peak, 610.0, 38.0);
-  set_bell(def, 'G', p->peak, 535.0, 38.0);
-  set_bell(def, 'B', p->peak, 460.0, 32.0);
+  set_bell(def, 'W', peak, 540.0, 110.0);
+  set_bell(def, 'R', peak, 610.0, 38.0);
+  set_bell(def, 'G', peak, 535.0, 38.0);
+  set_bell(def, 'B', peak, 460.0, 32.0);
 }
 
 vlResult vl_sensor_preset(const char *name, vlSensorDef *def, vlError *error) {
@@ -156,7 +128,7 @@ vlResult vl_sensor_preset(const char *name, vlSensorDef *def, vlError *error) {
     return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
   for (size_t i = 0; i < VL_LENGTH(presets); i++)
     if (vl_text_is(name, presets[i].name)) {
-      use(&presets[i], def);
+      use(i, def);
       return VL_OK;
     }
   if (vl_sensor_find(name)) {

@@ -43,28 +43,33 @@ static vlSceneMark mark_at(const vlScene *scene, vlSceneFamily family, uint32_t 
   return vl_scene_mark(marks_of(unchanged, family), index - 1);
 }
 
-uint32_t vl_scene_highest(const vlScene *scene, vlSceneFamily family) {
-  if (!scene)
-    return 0;
+/* The number of objects in the array of a family, removed ones included. Null: no family. */
+static size_t *count_of(vlScene *scene, vlSceneFamily family) {
   switch (family) {
     case VL_SCENE_TEXTURES:
-      return (uint32_t)scene->textures.count;
+      return &scene->textures.count;
     case VL_SCENE_MATERIALS:
-      return (uint32_t)scene->materials.count;
+      return &scene->materials.count;
     case VL_SCENE_MEDIA:
-      return (uint32_t)scene->media.count;
+      return &scene->media.count;
     case VL_SCENE_EMISSIONS:
-      return (uint32_t)scene->emissions.count;
+      return &scene->emissions.count;
     case VL_SCENE_LIGHTS:
-      return (uint32_t)scene->lights.count;
+      return &scene->lights.count;
     case VL_SCENE_SHAPES:
-      return (uint32_t)scene->shapes.count;
+      return &scene->shapes.count;
     case VL_SCENE_GROUPS:
-      return (uint32_t)scene->groups.count;
+      return &scene->groups.count;
     case VL_SCENE_INSTANCES:
-      return (uint32_t)scene->instances.count;
+      return &scene->instances.count;
   }
-  return 0;
+  return NULL;
+}
+
+uint32_t vl_scene_highest(const vlScene *scene, vlSceneFamily family) {
+  vlScene *const unchanged = (vlScene *)(uintptr_t)scene;
+  const size_t *count = scene ? count_of(unchanged, family) : NULL;
+  return count ? (uint32_t)*count : 0;
 }
 
 bool vl_scene_has(const vlScene *scene, vlSceneFamily family, uint32_t index) {
@@ -345,34 +350,15 @@ static vlResult check_removal(const vlScene *scene, vlSceneFamily family, uint32
                  things[family], users.first, others, users.count > 1 ? "" : "s");
 }
 
-/* The number of objects in the array of a family whose end may be cut off. */
-static size_t *count_of(vlScene *scene, vlSceneFamily family) {
-  switch (family) {
-    case VL_SCENE_TEXTURES:
-      return &scene->textures.count;
-    case VL_SCENE_MATERIALS:
-      return &scene->materials.count;
-    case VL_SCENE_MEDIA:
-      return &scene->media.count;
-    case VL_SCENE_EMISSIONS:
-      return &scene->emissions.count;
-    case VL_SCENE_LIGHTS:
-      return &scene->lights.count;
-    case VL_SCENE_SHAPES:
-      return &scene->shapes.count;
-    case VL_SCENE_GROUPS: /* removed instances still name their groups */
-    case VL_SCENE_INSTANCES:
-      break;
-  }
-  return NULL;
-}
-
 /* Cuts removed objects off the end of their array, so that loads, which add at the end, do not
- * make it grow. The mark stays, with a serial for the next object of this id. */
+ * make it grow. The mark stays, with a serial for the next object of this id. Groups stay:
+ * removed instances still name them. */
 static void trim(vlScene *scene, vlSceneFamily family) {
+  if (family == VL_SCENE_GROUPS)
+    return;
   const vlSceneMarks *marks = marks_of(scene, family);
   size_t *count = count_of(scene, family);
-  while (count && *count > 0 && *count <= marks->count && marks->items[*count - 1].removed) {
+  while (*count > 0 && *count <= marks->count && marks->items[*count - 1].removed) {
     const uint64_t number = vl_context_number(scene->context);
     if (family == VL_SCENE_SHAPES)
       vl_scene_forget_removed_shape(scene, (uint32_t)*count);

@@ -6,6 +6,7 @@
 
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "schema/schema.h"
 #include "velo/edit.h"
 #include "velo/light.h"
 #include "velo/material.h"
@@ -80,7 +81,8 @@ static bool transform_material(vlScene *scene, size_t index, const Similarity *s
 }
 
 bool vl_light_is_near(const vlLightDef *light) {
-  return light->kind != VL_LIGHT_DISTANT && light->kind != VL_LIGHT_INFINITE;
+  const vlKindRow *row = vl_kind_row(&vl_light_family, (int)light->kind);
+  return (row->traits & VL_LIGHT_TRAIT_AT_POINT) != 0;
 }
 
 /* The direction and the position of a light change, its own space is scaled: so images of

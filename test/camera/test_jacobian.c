@@ -3,6 +3,7 @@
  * and distortion. */
 #include "camera/context.h"
 #include "camera/random_cameras.h"
+#include "camera/small_motion.h"
 
 #include "distortion/compile.h"
 #include "velo/jacobian.h"
@@ -21,22 +22,11 @@ static void set_tilt(vlCamera *camera, double tau_x, double tau_y) {
   memcpy(camera->distortion.untilt, tilted.untilt, sizeof tilted.untilt);
 }
 
-/* Moves the pose: camera_from_world' = exp((t, r)^) camera_from_world for one number of (t, r):
- * a translation, or a rotation about an axis. */
+/* Moves the pose: camera_from_world' = exp((t, r)^) camera_from_world for one number of (t, r).
+ */
 static void move_pose(vlCamera *camera, int which, double h) {
-  double e[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, back[16];
-  int a = (which + 1) % 3, b = (which + 2) % 3;
-  if (which < 3) {
-    e[4 * which + 3] = h;
-  } else {
-    e[5 * a] = e[5 * b] = cos(h);
-    e[4 * a + b] = -sin(h);
-    e[4 * b + a] = sin(h);
-  }
-  memcpy(back, e, sizeof e);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 4; j++)
-      back[4 * i + j] = j < 3 ? e[4 * j + i] : -e[4 * i + 3];
+  double e[16], back[16];
+  small_motion(which, h, e, back);
   double from[16], to[16];
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) {

@@ -3,12 +3,25 @@ import { byId, make, row, short } from "./dom.js";
 import { fromHalf } from "./half.js";
 import { flowColour, viridis } from "./plain.js";
 
-const kinds = { Z: 1, distance: 1, P: 3, N: 2, Ng: 2, uv: 4, albedo: 5, ray: 2, "id.object": 6, "id.material": 6,
-  "id.instance": 6, "id.primitive": 6, samples: 1, film: 4, error: 8, forward: 7 };
-const names = { image: "image", Z: "depth", distance: "distance", P: "position", N: "normals", Ng: "geometric normals",
-  uv: "uv", albedo: "albedo", ray: "ray directions", "id.object": "objects", "id.material": "materials",
-  "id.instance": "instances", "id.primitive": "faces", error: "standard error", forward: "flow" };
-const left = ["samples", "film"];
+// What can be shown: its words, its kind (shaders.js), and its unit if it has one. velo says which of them it has.
+const shown = {
+  image: { label: "image", kind: 0 },
+  Z: { label: "depth", kind: 1 },
+  distance: { label: "distance", kind: 1 },
+  P: { label: "position", kind: 3 },
+  N: { label: "normals", kind: 2 },
+  Ng: { label: "geometric normals", kind: 2 },
+  uv: { label: "uv", kind: 4 },
+  albedo: { label: "albedo", kind: 5 },
+  ray: { label: "ray directions", kind: 2 },
+  "id.object": { label: "objects", kind: 6 },
+  "id.material": { label: "materials", kind: 6 },
+  "id.instance": { label: "instances", kind: 6 },
+  "id.primitive": { label: "faces", kind: 6 },
+  error: { label: "standard error", kind: 8 },
+  forward: { label: "flow", kind: 7 },
+  luminance: { label: "luminance", kind: 9, unit: "cd/m²" },
+};
 
 // The number with the fewest digits that is the same single-precision float: 0.33 for 0.33000001311302185.
 function plain(value) {
@@ -41,7 +54,7 @@ export class Display {
 
   lists(message) {
     this.channels = ["image", ...message.channels];
-    this.channel.replaceChildren(...this.channels.filter(c => !left.includes(c)).map(c => make("option", { value: c, textContent: names[c] || c })));
+    this.channel.replaceChildren(...this.channels.filter(c => shown[c]).map(c => make("option", { value: c, textContent: shown[c].label })));
   }
 
   show(state, first) {
@@ -78,7 +91,8 @@ export class Display {
   // Before a frame is drawn: the kind of its values and their range.
   frame(frame) {
     const name = this.channels[frame.channel] || "image", d = this.app.screen.display;
-    d.kind = kinds[name] || 0;
+    d.kind = shown[name]?.kind || 0;
+    this.unit = shown[name]?.unit || "";
     if (frame.tileCount === 1 && frame.tiles[0].w === frame.columns && frame.tiles[0].h === frame.rows) this.range(frame, name);
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.count(), 150);
@@ -92,6 +106,8 @@ export class Display {
       const b = this.app.state.bounds;
       d.low = b.slice(0, 3);
       d.high = b.slice(3);
+    } else if (d.kind === 9) {
+      [d.low, d.high] = logRange(data, n);
     } else if ([1, 7, 8].includes(d.kind)) {
       const values = [];
       for (let i = 0; i < data.length; i += n * Math.max(1, Math.floor(data.length / n / 20000))) {
@@ -112,7 +128,8 @@ export class Display {
       4: "the fractions of u and v are red and green", 6: "a colour for each number" }[d.kind];
     box.hidden = d.kind === 0 || d.kind === 5;
     if (box.hidden) return;
-    box.replaceChildren(make("strong", { textContent: names[name] || name }));
+    const { label, unit } = shown[name] || { label: name };
+    box.replaceChildren(make("strong", { textContent: unit ? `${label}, ${unit}` : label }));
     if (text) { box.append(make("div", { class: "hint", textContent: text })); return; }
     if (d.kind === 7) {
       box.append(wheel(), make("div", { class: "hint", textContent: `rim: ${short(d.high[0], 3)} pixels; dark: hidden or outside in the other view` }));
@@ -120,7 +137,8 @@ export class Display {
     }
     const bar = make("canvas", { width: 128, height: 1 }), context = bar.getContext("2d");
     for (let x = 0; x < 128; x++) { context.fillStyle = `rgb(${viridis(x / 127).map(v => Math.round(255 * v))})`; context.fillRect(x, 0, 1, 1); }
-    box.append(bar, make("div", { class: "ends" }, make("span", { textContent: short(d.low[0], 4) }), make("span", { textContent: short(d.high[0], 4) })));
+    if (d.kind === 9) box.append(bar, scale(d.low[0], d.high[0]));
+    else box.append(bar, make("div", { class: "ends" }, make("span", { textContent: short(d.low[0], 4) }), make("span", { textContent: short(d.high[0], 4) })));
   }
 
   // Histogram of the display values (standard view) of the image, on a scale of stops.
@@ -142,6 +160,32 @@ export class Display {
       for (let x = 0; x < 256; x++) { const h = 62 * Math.min(1, Math.sqrt(bin[x] / most)); g.fillRect(x, 64 - h, 1, h); }
     });
   }
+}
+
+// The range of a logarithmic scale, as powers of two: without the least and the greatest of the values that are above 0, and at least a factor of 4.
+function logRange(data, channels) {
+  const values = [];
+  for (let i = 0; i < data.length; i += channels * Math.max(1, Math.floor(data.length / channels / 20000)))
+    if (data[i] > 0 && Number.isFinite(data[i])) values.push(Math.log2(data[i]));
+  values.sort((a, b) => a - b);
+  const at = share => values[Math.min(values.length - 1, Math.floor(share * values.length))] ?? 0;
+  const low = at(0.005), high = at(0.995), room = Math.max(0, 2 - (high - low)) / 2;
+  return [[low - room, 0, 0], [high + room, 1, 1]];
+}
+
+// The values below the bar of a logarithmic scale: 1, 2 or 5 times a power of ten where there is room, else powers of ten.
+function scale(low, high) {
+  const box = make("div", { class: "scale" }), tens = Math.floor(low * Math.log10(2)), last = Math.ceil(high * Math.log10(2));
+  const decades = (high - low) * Math.log10(2), step = Math.ceil(decades / 5), parts = decades < 2 ? [1, 2, 5] : [1];
+  for (let e = tens; e <= last; e += step)
+    for (const part of parts) {
+      const value = Number(`${part}e${e}`), t = (Math.log2(value) - low) / (high - low);
+      if (t < 0 || t > 1) continue;
+      const mark = make("span", { textContent: e < -3 || e > 4 ? `${part}e${e}` : String(value) });
+      mark.style.left = `${100 * t}%`;
+      box.append(mark);
+    }
+  return box;
 }
 
 // The colours of flow.

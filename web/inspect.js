@@ -23,7 +23,7 @@ export class Inspector {
   // The numbers under the pointer, again when a frame came.
   frame() {
     const box = byId("hover"), x = Math.floor(this.x), y = Math.floor(this.y), values = this.app.screen.pixels.at(x, y);
-    box.textContent = values ? `${x}, ${y}   ${values.map(v => short(v, 4)).join("  ")}${["", "  denoised", "  moved"][this.app.screen.frame.denoised]}` : "";
+    box.textContent = values ? `${x}, ${y}   ${values.map(v => short(v, 4)).join("  ")}${this.app.display.unit ? ` ${this.app.display.unit}` : ""}${["", "  denoised", "  moved"][this.app.screen.frame.denoised]}` : "";
     if (values && this.root.open) this.magnify(x, y);
   }
 

@@ -63,6 +63,8 @@ const kinds = {
   6: v => idColour(v[0]),
   7: (v, low, high) => v[2] === 3 ? nothing
     : flowColour(v[0], v[1], Math.min(Math.hypot(v[0], v[1]) / high[0], 1)).map(x => v[2] === 0 ? x : 0.45 * x),
+  9: (v, low, high) => !Number.isFinite(v[0]) ? nothing : v[0] <= 0 ? [0, 0, 0]
+    : viridis(clamp((Math.log2(Math.max(v[0], 1e-30)) - low[0]) / (high[0] - low[0]))),
   8: (v, low, high) => kinds[1]([Math.max(...v)], low, high),
 };
 

@@ -63,6 +63,8 @@ vec3 falseColour(vec3 v) {
 #if KIND == 1 || KIND == 8
   float s = KIND == 1 ? v.x : max(v.x, max(v.y, v.z));
   return any(isinf(v)) || any(isnan(v)) ? vec3(0.13) : viridis(clamp((s - low.x) / (high.x - low.x), 0.0, 1.0));
+#elif KIND == 9
+  return any(isinf(v)) || any(isnan(v)) ? vec3(0.13) : v.x <= 0.0 ? vec3(0) : viridis(clamp((log2(max(v.x, 1e-30)) - low.x) / (high.x - low.x), 0.0, 1.0));
 #elif KIND == 2
   return v == vec3(0) ? vec3(0.13) : 0.5 + 0.5 * v;
 #elif KIND == 3
@@ -80,7 +82,8 @@ vec3 falseColour(vec3 v) {
 #endif
 }`;
 
-// Develops a frame. kind: 0 colours, 1 scalar, 2 direction, 3 position, 4 uv, 5 albedo, 6 ids, 7 flow, 8 standard error. Each combination is a
+// Develops a frame. kind: 0 colours, 1 scalar, 2 direction, 3 position, 4 uv, 5 albedo, 6 ids, 7 flow, 8 standard error, 9 scalar
+// on a logarithmic scale (low and high are powers of two; black: 0). Each combination is a
 // program of its own, so that none computes what it does not show.
 export const develop = (view, kind) => `#version 300 es
 precision highp float;

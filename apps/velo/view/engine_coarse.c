@@ -172,15 +172,15 @@ bool engine_render_error(Engine *e) {
 /* ---- which one is next ------------------------------------------------------------------- */
 
 void engine_coarse_begin(Engine *e) {
-  bool colours = e->now.channel == 0 || e->now.channel == CHANNEL_ERROR;
+  bool colours = engine_is_of_film(e->now.channel);
   e->coarse = first_scale(e, colours ? e->coarse_seconds : e->channel_seconds);
-  if (colours && (e->coarse == 1 || e->now.channel))
+  if (colours && (e->coarse == 1 || e->now.channel == CHANNEL_ERROR))
     e->coarse = 0; /* the film is next */
 }
 
 bool engine_coarse_next(Engine *e) {
   const uint32_t scale = e->coarse;
-  if (e->now.channel) {
+  if (!engine_is_of_film(e->now.channel)) {
     e->coarse = scale / 2;
     if (render_channel(e, scale))
       return true;

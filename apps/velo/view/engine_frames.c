@@ -2,8 +2,9 @@
  * kind. While the film of a slow scene gets its first samples row by row, the rows without are
  * those of the coarser image before it. */
 #include <math.h>
+#include <stdio.h>
 
-#include "view/engine_parts.h"
+#include "view/engine_status.h"
 
 /* Seconds of a part of an image that is shown while it grows. */
 #define PART_SECONDS 0.4
@@ -90,8 +91,30 @@ void engine_keep_coarser(Engine *e, vlImage **image, uint32_t scale, bool denois
 
 /* ---- the film ---------------------------------------------------------------------------- */
 
-void engine_publish_film(Engine *e, const vlFilm *film, uint32_t scale, uint32_t rows) {
-  double start = engine_clock(), used = engine_thread_seconds();
+bool engine_is_of_film(uint32_t channel) {
+  return channel == 0 || channel == CHANNEL_ERROR || channel == CHANNEL_LUMINANCE;
+}
+
+/* Sends the luminance of a film. Rows without samples are not filled. */
+static void publish_luminance(Engine *e, const vlFilm *film, uint32_t scale) {
+  vlImage *image = NULL;
+  const vlResult result = vl_film_luminance(film, &image);
+  const FrameKind kind = {.format = FRAME_FLOAT,
+                          .channels = 1,
+                          .scale = scale,
+                          .spp = scale > 1 ? 0 : vl_film_spp(film)};
+  if (result == VL_OK) {
+    engine_publish(e, image, &kind);
+  } else {
+    vlError error = {0};
+    snprintf(error.message, sizeof error.message, "the luminance cannot be shown: %s",
+             result == VL_ERROR_MEMORY ? "out of memory" : LUMINANCE_NEEDS);
+    status_error(e, &error, result);
+  }
+  vl_image_destroy(image);
+}
+
+static void publish_colours(Engine *e, const vlFilm *film, uint32_t scale, uint32_t rows) {
   vlImage *image = NULL;
   if (vl_film_develop(film, &e->model.job.defs->develop, &image) == VL_OK) {
     bool part = rows < vl_image_height(image) && e->coarser;
@@ -102,11 +125,19 @@ void engine_publish_film(Engine *e, const vlFilm *film, uint32_t scale, uint32_t
                             .scale = scale,
                             .spp = part || scale > 1 ? 0 : vl_film_spp(film)};
     engine_publish(e, image, &kind);
-    e->publish_seconds = engine_clock() - start;
     if (!part && scale > 1)
       engine_keep_coarser(e, &image, scale, false);
   }
   vl_image_destroy(image);
+}
+
+void engine_publish_film(Engine *e, const vlFilm *film, uint32_t scale, uint32_t rows) {
+  double start = engine_clock(), used = engine_thread_seconds();
+  if (e->now.channel == CHANNEL_LUMINANCE)
+    publish_luminance(e, film, scale);
+  else
+    publish_colours(e, film, scale, rows);
+  e->publish_seconds = engine_clock() - start;
   e->frame_seconds += engine_thread_seconds() - used;
 }
 

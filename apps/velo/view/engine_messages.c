@@ -144,12 +144,21 @@ static bool set_channel(Engine *e, const char *name) {
     e->wanted.channel = 0;
     return true;
   }
-  for (uint32_t i = 0; i < CHANNEL_FLOW; i++)
-    if (strcmp(name, vl_channel_name(i)) == 0) {
+  for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
+    if (state_shows_channel(i) && strcmp(name, vl_channel_name(i)) == 0) {
       e->wanted.channel = i + 1;
       return true;
     }
   return false;
+}
+
+/* Why a channel is refused. */
+static const char *channel_refusal(const Engine *e, const char *name) {
+  const vlFilmDef *film = &e->model.job.defs->film;
+  const bool own_sensor = film->sensor && strcmp(film->sensor, "cie1931") != 0;
+  if (strcmp(name, "luminance") == 0 && (own_sensor || film->white_balance != 0))
+    return "the luminance cannot be shown: " LUMINANCE_NEEDS;
+  return NULL;
 }
 
 static bool set_crop(Engine *e, const uint32_t crop[4]) {
@@ -166,7 +175,10 @@ static bool set_crop(Engine *e, const uint32_t crop[4]) {
 }
 
 static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
-  if (m->has_channel && !set_channel(e, m->channel))
+  const char *refusal = m->has_channel ? channel_refusal(e, m->channel) : NULL;
+  if (refusal)
+    post_refusal(e, client, m, refusal);
+  else if (m->has_channel && !set_channel(e, m->channel))
     post_refusal(e, client, m, "there is no such channel");
   if (m->has_crop) {
     if (set_crop(e, m->crop))

@@ -8,10 +8,12 @@
 #include "view/engine.h"
 #include "view/state.h"
 
+/* Why there may be no luminance. */
+#define LUMINANCE_NEEDS "it needs the sensor cie1931 and no white balance"
 enum { MAX_TASKS = 32, HISTORY = 256 };
-/* Values of Wanted.channel that are not plain ground truth: the standard error needs the film,
- * flow needs a camera. */
-enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16 };
+/* Values of Wanted.channel that are not plain ground truth: the standard error and the
+ * luminance need the film, flow needs a camera. */
+enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16, CHANNEL_LUMINANCE = 22 };
 
 /* What makes the samples of a film, as in vlRenderDef. */
 typedef struct ViewTracer {
@@ -189,6 +191,9 @@ typedef struct FrameKind {
   bool moved; /* an earlier image that was moved with the camera */
 } FrameKind;
 void engine_publish(Engine *engine, const vlImage *image, const FrameKind *kind);
+/* Whether what is shown is made of the film's samples: the image, luminance, standard errors.
+ */
+bool engine_is_of_film(uint32_t channel);
 /* Sends the film, or a coarse one, whose rows from the top have samples. The others are those
  * of the last coarser one of this image. A coarse one that is whole is kept for this. */
 void engine_publish_film(Engine *engine, const vlFilm *film, uint32_t scale, uint32_t rows);

@@ -257,7 +257,7 @@ static bool take_wanted(Engine *e) {
 /* Whether there is something to do; the caller holds the lock. */
 static bool has_work(const Engine *e) {
   const Wanted *w = &e->wanted;
-  bool samples = w->channel == 0 || w->channel == CHANNEL_ERROR,
+  bool samples = engine_is_of_film(w->channel),
        other_channel = w->channel != e->now.channel || w->denoise != e->now.denoise;
   bool unfinished = samples && (is_unfinished(e, w->spp) || denoise_due(e)),
        changed = other_channel || w->spp != e->now.spp;
@@ -311,21 +311,23 @@ static void begin_work(Engine *e) {
   if (!take_wanted(e))
     return;
   e->coarse = 0;
-  if (e->now.channel == CHANNEL_ERROR)
+  const bool error = e->now.channel == CHANNEL_ERROR,
+             of_film = engine_is_of_film(e->now.channel);
+  if (error)
     engine_render_error(e);
-  else if (e->now.channel || !e->film)
+  else if (!of_film || !e->film)
     engine_coarse_begin(e);
   else if (vl_film_spp(e->film)) {
     e->published = 0;
     show_film(e);
   }
-  if (!e->coarse && (e->film || e->now.channel))
+  if (!e->coarse && (e->film || error || !of_film))
     end_first(e);
 }
 
 /* The next coarse image, or the next samples. False: interrupted, or nothing is left to do. */
 static bool work(Engine *e) {
-  bool samples = e->now.channel == 0 || e->now.channel == CHANNEL_ERROR,
+  bool samples = engine_is_of_film(e->now.channel),
        done = e->coarse ? engine_coarse_next(e) : samples && !e->failed && render_film(e);
   bool changed = e->first_runs && end_first(e);
   if (done && !changed && !e->coarse)

@@ -7,6 +7,13 @@
 #include "velo/channels.h"
 #include "velo/projection.h"
 
+/* A further channel is a bit here and a row of web/display.js. */
+static const uint32_t shown_channels = 2u * VL_CHANNEL_FORWARD - 1u + VL_CHANNEL_LUMINANCE;
+
+bool state_shows_channel(uint32_t index) {
+  return index < VL_CHANNEL_COUNT && (shown_channels >> index & 1);
+}
+
 bool json_text_begin(JsonText *json, const char *type) {
   *json = (JsonText){.text = NULL};
   json->json.out = open_memstream(&json->text, &json->size);
@@ -71,8 +78,8 @@ char *state_lists(void) {
     json_text(json, NULL, vl_projection_name((vlProjection)i));
   json_end(json, ']');
   json_begin(json, "channels", '[');
-  for (uint32_t i = 0; i <= 15; i++)
-    json_text(json, NULL, vl_channel_name(i));
+  for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
+    json_text(json, NULL, state_shows_channel(i) ? vl_channel_name(i) : "");
   json_end(json, ']');
   return json_text_end(&text);
 }

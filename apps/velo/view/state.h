@@ -36,9 +36,11 @@ typedef struct JsonText {
 bool json_text_begin(JsonText *json, const char *type);
 char *json_text_end(JsonText *json);
 
+/* Whether pages show this channel of ground truth; index: its bit in vlChannel. */
+bool state_shows_channel(uint32_t index);
 /* Both texts are for the caller to free; null: no memory. */
 char *state_text(const ViewState *state);
-/* Dialects, projections, channels. */
+/* Dialects, projections, channels by their bits: "" for those that pages do not show. */
 char *state_lists(void);
 
 #endif

@@ -11,6 +11,7 @@
 #include "math/transform.h"
 #include "scene/closed.h"
 #include "scene/environment.h"
+#include "scene/facing.h"
 #include "scene/inside.h"
 #include "scene/lamps.h"
 #include "scene/studio.h"
@@ -61,6 +62,7 @@ static void widen(void *user, const double p[3]) {
 typedef struct View {
   double right[3], up[3], front[3];
   double azimuth, elevation; /* radians: from the front to the right, above the horizon */
+  bool front_unknown;        /* the file does not say which side is its front */
 } View;
 
 static double extent_along(const vlExtent *box, const double axis[3]) {
@@ -68,38 +70,6 @@ static double extent_along(const vlExtent *box, const double axis[3]) {
   for (int i = 0; i < 3; i++)
     sum += fabs(axis[i]) * (box->high[i] - box->low[i]);
   return sum;
-}
-
-/* Sum of the faces' normals, weighted by area, divided by the sum of the areas. Of a closed
- * surface it is zero but for rounding: then neither side is its front. hidden: only faces count
- * that are not seen from behind. */
-static void mean_normal(const vlScene *scene, bool hidden, double n[3]) {
-  double area = 0;
-  n[0] = n[1] = n[2] = 0;
-  for (size_t k = 0; k < scene->shapes.count; k++) {
-    const vlShapeDef *d = &scene->shapes.items[k];
-    vlMat4 m = vl_mat4_load(d->group_from_shape);
-    for (size_t face = 0; d->kind == VL_SHAPE_TRIANGLES && !d->group.index && face < d->faces;
-         face++) {
-      double p[3][3];
-      for (int c = 0; c < 3; c++) {
-        const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)c];
-        const double q[3] = {v[0], v[1], v[2]};
-        vl_mat4_point(&m, q, p[c]);
-      }
-      double own[3];
-      const double sign = hidden && !d->one_sided ? 0 : d->reverse_orientation ? -1 : 1;
-      for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, l = (i + 2) % 3;
-        own[i] = (p[1][j] - p[0][j]) * (p[2][l] - p[0][l]) -
-                 (p[1][l] - p[0][l]) * (p[2][j] - p[0][j]);
-        n[i] += sign * own[i];
-      }
-      area += vl_norm3(own);
-    }
-  }
-  for (int i = 0; i < 3; i++)
-    n[i] = area > 0 ? n[i] / area : 0;
 }
 
 /* Flat models are seen nearly along their normal, from the side of their faces' fronts (flat
@@ -118,7 +88,7 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
   if (def->framing == VL_FRAMING_CORNER || !(x + y + z > 0))
     return "from the front, a little from the right and above";
   const double flat = 0.2, chart = 0.4, against = -0.05, half_turn = 3.14159265358979323846;
-  mean_normal(scene, y <= flat * fmin(x, z), n);
+  vl_facing_mean_normal(scene, y <= flat * fmin(x, z), n);
   if (y <= flat * fmin(x, z)) {
     bool below = vl_dot3(n, v->up) < against;
     v->elevation = below ? -0.9 : 0.9;
@@ -136,6 +106,10 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
     v->azimuth = left ? -0.5 * half_turn - 0.25 : 0.5 * half_turn - 0.25;
     v->elevation = 0.15;
     return left ? "flat: from the left" : "flat: from the right";
+  }
+  if (v->front_unknown && vl_facing_is_behind(scene, box, v->front)) {
+    v->azimuth += half_turn;
+    return "from behind, where the model has more detail";
   }
   return "from the front, a little from the right and above";
 }
@@ -534,7 +508,7 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
     done->environment = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   bool fits =
       done->environment != def.environment && done->environment == VL_ENVIRONMENT_STUDIO;
-  View axes = {.azimuth = 0};
+  View axes = {.front_unknown = def.find_up};
   if (!choose_up(scene, done))
     return vl_scene_result(scene, error);
   if (!vl_scene_axes(done, axes.right, axes.up, axes.front)) {

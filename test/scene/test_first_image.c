@@ -112,6 +112,73 @@ static void flat_models(void **state) {
     }
 }
 
+/* A ball at x = `x` whose triangles are smaller on the side of -z than on that of +z, finer
+ * times as many. */
+enum { COLUMNS_OF_BALL = 24, COARSE = 16, RINGS_MOST = 80 };
+
+static void add_ball(Model *m, float x, int finer, bool inward) {
+  static float p[3 * (RINGS_MOST + 1) * COLUMNS_OF_BALL];
+  static uint32_t indices[6 * RINGS_MOST * COLUMNS_OF_BALL];
+  const int rings = COARSE * (1 + finer);
+  const double pi = 3.14159265358979323846;
+  size_t faces = 0;
+  for (int r = 0; r <= rings; r++) {
+    const double t = r < COARSE ? 0.5 * pi * r / COARSE
+                                : 0.5 * pi * (1 + (double)(r - COARSE) / (COARSE * finer));
+    for (int c = 0; c < COLUMNS_OF_BALL; c++) {
+      float *v = p + 3 * (r * COLUMNS_OF_BALL + c);
+      v[0] = x + (float)(sin(t) * cos(2 * pi * c / COLUMNS_OF_BALL));
+      v[1] = (float)(sin(t) * sin(2 * pi * c / COLUMNS_OF_BALL));
+      v[2] = (float)cos(t);
+    }
+  }
+  for (int r = 0; r < rings; r++)
+    for (int c = 0; c < COLUMNS_OF_BALL; c++) {
+      const uint32_t a = (uint32_t)(r * COLUMNS_OF_BALL + c),
+                     b = (uint32_t)(r * COLUMNS_OF_BALL + (c + 1) % COLUMNS_OF_BALL),
+                     n = COLUMNS_OF_BALL;
+      const uint32_t quad[6] = {a, a + n, b, b, a + n, b + n};
+      for (int k = 0; k < 6; k++)
+        indices[3 * faces + (size_t)k] = quad[inward ? 5 - k : k];
+      faces += 2;
+    }
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = (size_t)((rings + 1) * COLUMNS_OF_BALL);
+  def.faces = faces;
+  def.positions = p;
+  def.indices = indices;
+  assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
+}
+
+/* A model with more detail behind is seen from there, whichever way its triangles are wound and
+ * wherever it is, unless its file or an option says which side is the front. */
+static void detail_is_in_front(void **state) {
+  (void)state;
+  for (int given = 0; given < 3; given++)
+    for (int finer = 1; finer <= 4; finer += 3)
+      for (int inward = 0; inward < 2; inward++)
+        for (int far = 0; far < 2; far++) {
+          Model m = begin();
+          add_ball(&m, far ? 1000 : 0, finer, inward);
+          vlCompleteDef def = first_image();
+          def.open_walls = false;
+          def.find_up = given != 1;
+          if (given == 2)
+            def.azimuth = 0.25;
+          complete(&m, &def);
+          double d[3];
+          toward_eye(&m, d);
+          if (given == 0 && finer > 1)
+            assert_true(d[2] < -0.8 && d[0] < -0.3);
+          else
+            assert_true(d[2] > 0.8 && d[0] > 0.2);
+          assert_true(d[1] > 0.2);
+          const double azimuth = vl_scene_completed(m.scene).azimuth;
+          assert_true((fabs(azimuth) > 3) == (given == 0 && finer > 1));
+          end(&m);
+        }
+}
+
 /* A sheet that looks backwards is seen from behind. */
 static void sheet_from_behind(void **state) {
   (void)state;
@@ -480,6 +547,7 @@ static void studios_have_floors(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(flat_models),
+      cmocka_unit_test(detail_is_in_front),
       cmocka_unit_test(sheet_from_behind),
       cmocka_unit_test(ground_from_above),
       cmocka_unit_test(charts),

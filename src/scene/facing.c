@@ -1,0 +1,108 @@
+/* scene/facing.c: see facing.h. */
+#include "scene/facing.h"
+
+#include <math.h>
+
+#include "math/double3.h"
+#include "math/transform.h"
+#include "velo/shape_kinds.h"
+
+/* Half of the cross product of the edges, and the corners' mean. */
+typedef struct Face {
+  double area[3]; /* the normal's direction, length: the area */
+  double middle[3];
+} Face;
+
+typedef void Visit(void *user, const vlShapeDef *shape, const Face *face);
+
+static Face face_of(const vlShapeDef *shape, const vlMat4 *m, size_t index) {
+  double p[3][3];
+  Face face;
+  for (int c = 0; c < 3; c++) {
+    const float *v = shape->positions + 3 * (size_t)shape->indices[3 * index + (size_t)c];
+    const double q[3] = {v[0], v[1], v[2]};
+    vl_mat4_point(m, q, p[c]);
+  }
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    face.area[i] = 0.5 * ((p[1][j] - p[0][j]) * (p[2][k] - p[0][k]) -
+                          (p[1][k] - p[0][k]) * (p[2][j] - p[0][j]));
+    face.middle[i] = (p[0][i] + p[1][i] + p[2][i]) / 3;
+  }
+  return face;
+}
+
+static void visit_faces(const vlScene *scene, Visit *visit, void *user) {
+  for (size_t k = 0; k < scene->shapes.count; k++) {
+    const vlShapeDef *shape = &scene->shapes.items[k];
+    if (shape->kind != VL_SHAPE_TRIANGLES || shape->group.index)
+      continue;
+    const vlMat4 m = vl_mat4_load(shape->group_from_shape);
+    for (size_t i = 0; i < shape->faces; i++) {
+      const Face face = face_of(shape, &m, i);
+      visit(user, shape, &face);
+    }
+  }
+}
+
+/* ---- the mean normal --------------------------------------------------------------------- */
+
+typedef struct Mean {
+  bool one_sided;
+  double sum[3];
+  double area;
+} Mean;
+
+static void add_normal(void *user, const vlShapeDef *shape, const Face *face) {
+  Mean *mean = user;
+  double sign = shape->reverse_orientation ? -1 : 1;
+  if (mean->one_sided && !shape->one_sided)
+    sign = 0;
+  for (int i = 0; i < 3; i++)
+    mean->sum[i] += sign * face->area[i];
+  mean->area += vl_norm3(face->area);
+}
+
+void vl_facing_mean_normal(const vlScene *scene, bool one_sided, double n[3]) {
+  Mean mean = {.one_sided = one_sided};
+  visit_faces(scene, add_normal, &mean);
+  for (int i = 0; i < 3; i++)
+    n[i] = mean.area > 0 ? mean.sum[i] / mean.area : 0;
+}
+
+/* ---- the side with more detail ----------------------------------------------------------- */
+
+typedef struct Detail {
+  double front[3], center[3];
+  double ahead, behind; /* triangles, weighted by the cosine */
+  double volume; /* three times it, signed: negative if the triangles' fronts are inside */
+  size_t faces;
+} Detail;
+
+static void add_detail(void *user, const vlShapeDef *shape, const Face *face) {
+  Detail *d = user;
+  const double sign = shape->reverse_orientation ? -1 : 1, area = vl_norm3(face->area);
+  if (!(area > 0) || !isfinite(area))
+    return;
+  const double cosine = sign * vl_dot3(face->area, d->front) / area;
+  d->ahead += fmax(cosine, 0);
+  d->behind += fmax(-cosine, 0);
+  for (int i = 0; i < 3; i++)
+    d->volume += sign * face->area[i] * (face->middle[i] - d->center[i]);
+  d->faces++;
+}
+
+bool vl_facing_is_behind(const vlScene *scene, const vlExtent *box, const double front[3]) {
+  /* Models whose front is known (31 of glTF) have .82 and more. */
+  const double clearly = 0.75;
+  const size_t few = 500;
+  Detail d = {.faces = 0};
+  for (int i = 0; i < 3; i++) {
+    d.front[i] = front[i];
+    d.center[i] = 0.5 * (box->low[i] + box->high[i]);
+  }
+  visit_faces(scene, add_detail, &d);
+  if (d.faces < few || d.volume == 0 || !isfinite(d.volume))
+    return false;
+  return d.volume > 0 ? d.ahead < clearly * d.behind : d.behind < clearly * d.ahead;
+}

@@ -1,0 +1,23 @@
+/* scene/facing.h: which side of a model is its front, as far as its triangles tell. Shapes in
+ * groups are left out. */
+#ifndef SCENE_FACING_H
+#define SCENE_FACING_H
+
+#include <stdbool.h>
+
+#include "scene/extent.h"
+#include "scene/scene.h"
+
+/* Sum of the faces' normals, weighted by area, divided by the sum of the areas. Of a closed
+ * surface it is zero but for rounding: then neither side is its front. one_sided: only faces
+ * count that are not seen from behind. */
+void vl_facing_mean_normal(const vlScene *scene, bool one_sided, double n[3]);
+
+/* Whether the model has clearly more detail on the side away from `front` (a unit vector). Of a
+ * closed surface both sides have the same projected area, however it is made: so of triangles
+ * of one size they have the same number, weighted by the cosine between normal and direction.
+ * People spend triangles on faces, hands and dials. box: of the whole scene. False also of
+ * models of few triangles. */
+bool vl_facing_is_behind(const vlScene *scene, const vlExtent *box, const double front[3]);
+
+#endif

@@ -68,11 +68,21 @@ typedef enum vlChannel {
   /** luminance.Y: luminance of the image's pixel, cd/m^2 (docs/conventions.md, Light), by the
    * standard observer, before exposure. It needs vlChannelsDef.film of the same crop, with the
    * sensor cie1931 and no white balance. */
-  VL_CHANNEL_LUMINANCE = 1 << 21
+  VL_CHANNEL_LUMINANCE = 1 << 21,
+  /** illuminance.Y: illuminance of the visible surface, lx, in scenes in metres: 683 lm/W times
+   * the integral over wavelengths of CIE V(lambda) of 1924 times the irradiance of the first
+   * surface, on the side of its shading normal that is seen. It is pi times the luminance that
+   * a white diffuse surface would have in its place, without what is between it and the camera
+   * (docs/ground-truth.md, Illuminance): mean over the pixel's area that shows a surface; 0
+   * where none is seen. It is a render of its own with as many samples per pixel as the image,
+   * by VL_TRACER_VOLPATH whatever tracer made the image. It needs vlChannelsDef.film and
+   * .render, as Cryptomatte does; sensor, white balance, exposure and vignetting do not apply.
+   */
+  VL_CHANNEL_ILLUMINANCE = 1 << 22
 } vlChannel;
 /** The number of channels; the default set, which has all cheap channels; the largest number of
  * samples per pixel that features use. */
-enum { VL_CHANNEL_COUNT = 22, VL_CHANNEL_ALL = (1 << 14) - 1, VL_FEATURE_SAMPLES = 16 };
+enum { VL_CHANNEL_COUNT = 23, VL_CHANNEL_ALL = (1 << 14) - 1, VL_FEATURE_SAMPLES = 16 };
 
 /** The film point at which a pixel's channels are computed. CENTRE: the pixel's exact centre.
  * The other modes select one of the points of the image's samples (traced through the centre of
@@ -111,7 +121,8 @@ typedef struct vlChannelsDef {
   vlChannelMode mode; /**< film point; default CENTRE */
   uint32_t ranks;     /**< number of Cryptomatte's ids per pixel: even, 2 to 32; default 6 */
   /** The image's film and the def with which it was rendered. Required for ERROR, LUMINANCE,
-   * FEATURES, Cryptomatte and the modes NEAREST and COVERAGE; otherwise they may be null. */
+   * ILLUMINANCE, FEATURES, Cryptomatte and the modes NEAREST and COVERAGE; otherwise they may
+   * be null. */
   const vlFilm *film;
   const vlRenderDef *render; /**< see film */
   float exposure; /**< for ERROR: exposure of the developed image (vlDevelopDef.exposure);

@@ -125,7 +125,8 @@ static void trace_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
                         .time = r->film_rays.moves ? rays.time : NULL,
                         .alpha = row(w, ALPHA),
                         .recorder = w->recorder};
-  vlExposure expose = {.n = n, .exposure = r->exposure_time};
+  bool irradiance = r->trace.irradiance;
+  vlExposure expose = {.n = n, .exposure = irradiance ? 1.0f : r->exposure_time};
   for (int c = 0; c < 4; c++) {
     expose.radiance[c] = batch.radiance[c] = row(w, RADIANCE + c);
     expose.lambda[c] = batch.lambda[c] = r->rgb_mode ? NULL : row(w, LAMBDA + c);
@@ -138,7 +139,7 @@ static void trace_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
   if (r->def->transparent)
     clear_background(n, batch.alpha, batch.radiance);
-  if (vl_camera_weighted(camera))
+  if (vl_camera_weighted(camera) && !irradiance)
     weigh(n, rays.weight, rays.valid, batch.alpha, batch.radiance);
   if (!camera->plain)
     clear_invalid(n, rays.valid, batch.alpha, batch.radiance);

@@ -78,12 +78,13 @@ typedef struct vlRenderRun {
  * batches are full, but not so many that a worker is idle. */
 void vl_render_choose_blocks(vlRenderRun *r);
 uint32_t vl_render_block_count(const vlRenderRun *r);
-/* A render that only measures (choose.c). */
+/* A render that only measures (choose.c, illuminance.c). */
 typedef struct vlPilot {
   float spread;       /* vlFilmRays.spread; texture footprints are smaller by the same factor */
   uint32_t pass_seed; /* of the wavelengths and times that all paths of a pass share */
   const vlTails *
       tails; /* not null: VL_TRACER_LIGHT_PATH, and the film gets what vl_tails_measure finds */
+  bool irradiance; /* vlTraceDef.irradiance; the camera's factors on radiance do not count */
   uint64_t merge_work; /* result: as vlTraceBatch.merge_work */
 } vlPilot;
 /* As vl_render. pilot may be null. In render.c. */

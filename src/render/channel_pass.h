@@ -30,7 +30,8 @@ enum {
   VL_INDEX_BACKWARD,
   VL_INDEX_CRYPTO,
   VL_INDEX_FEATURES = VL_INDEX_CRYPTO + 3,
-  VL_INDEX_LUMINANCE
+  VL_INDEX_LUMINANCE,
+  VL_INDEX_ILLUMINANCE
 };
 
 /* A small hash table: the weight of each id (object, material, instance) in one pixel. A pixel
@@ -177,6 +178,9 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera);
 /* In channel_samples.c: traces the image's samples of one tile; fills film_x and film_y of the
  * tile and writes Cryptomatte. */
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
+/* In illuminance.c: renders the illuminance of the visible surfaces and writes its channel, if
+ * it is wanted. MEMORY, CANCELLED. */
+vlResult vl_channel_illuminance(const vlChannelPass *p, const vlCamera *camera, vlError *error);
 /* In channel_features.c: means over the image's samples of one tile. */
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
 /* In flow.c: optical flow of the n lanes of the batch towards camera `which`. */

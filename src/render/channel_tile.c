@@ -220,7 +220,7 @@ static void put_film(const vlChannelPass *p, const vlChannelWorker *w, uint32_t 
 /* Whether a channel needs the ray through the film point of each pixel. */
 static bool wants_points(const vlChannelPass *p) {
   const uint32_t others = VL_CHANNEL_SAMPLES | VL_CHANNEL_FILM | VL_CHANNEL_ERROR |
-                          VL_CHANNEL_FEATURES | VL_CHANNEL_LUMINANCE |
+                          VL_CHANNEL_FEATURES | VL_CHANNEL_LUMINANCE | VL_CHANNEL_ILLUMINANCE |
                           VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL |
                           VL_CHANNEL_CRYPTO_INSTANCE;
   return vl_channel_wanted(p, ~others);

@@ -45,6 +45,7 @@ static const struct Channel {
      {"feature.albedo.R", "feature.albedo.G", "feature.albedo.B", "feature.N.X", "feature.N.Y",
       "feature.N.Z", "feature.disparity.Y"}},
     {"luminance", 1, 0, {"luminance.Y"}},
+    {"illuminance", 1, 0, {"illuminance.Y"}},
 };
 static const uint32_t CRYPTO =
     VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
@@ -72,8 +73,8 @@ vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height) {
 /* ---- validation -------------------------------------------------------------------------- */
 
 static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlError *error) {
-  bool counts =
-      (def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) || def->mode != VL_CHANNEL_MODE_CENTRE;
+  bool counts = (def->channels & (CRYPTO | VL_CHANNEL_FEATURES | VL_CHANNEL_ILLUMINANCE)) ||
+                def->mode != VL_CHANNEL_MODE_CENTRE;
   bool errors = (def->channels & VL_CHANNEL_ERROR) != 0;
   bool luminance = (def->channels & VL_CHANNEL_LUMINANCE) != 0;
   if (!counts && !errors && !luminance)
@@ -81,8 +82,8 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
   if (!def->film || (counts && !def->render))
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
-        "ground truth: Cryptomatte, features, standard errors, luminance and modes other than "
-        "the centre need the image's film and how it was rendered");
+        "ground truth: Cryptomatte, features, standard errors, luminance, illuminance and "
+        "modes other than the centre need the image's film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
   if (counts && def->render->cookie != VL_COOKIE_RENDER)
     return vl_fail(
@@ -407,6 +408,8 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
     result = copy_errors(p, error);
   if (result == VL_OK)
     result = copy_luminance(p, error);
+  if (result == VL_OK)
+    result = vl_channel_illuminance(p, camera, error);
   if (result == VL_OK)
     result = make_workers(p, error);
   if (result == VL_OK)

@@ -368,6 +368,7 @@ static void prepare_pilot(vlRenderRun *r, const vlPilot *pilot) {
   r->film_rays.spread = pilot->spread;
   r->trace.pixel_spread *= pilot->spread;
   r->trace.pixel_width *= pilot->spread;
+  r->trace.irradiance = pilot->irradiance;
 }
 
 static void end_pilot(const vlRenderRun *r, vlPilot *pilot) {

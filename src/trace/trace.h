@@ -82,6 +82,10 @@ typedef struct vlTraceDef {
                              be used; may be null */
   vlMediaFit *fit;        /* null: nothing is asked */
   const struct vlTwoWay *two_way; /* only for the two-way tracers (two_way.h); else null */
+  /* Only for the tracers path and volpath. The radiance is that of a white diffuse surface in
+   * the place of the first surface that the ray meets, as if nothing absorbed or shone before
+   * it: its irradiance / pi. The shading normal stays that of the surface. */
+  bool irradiance;
 } vlTraceDef;
 
 /* Camera rays and their results. Rays are in world space, and d has unit length. Each array has

@@ -140,11 +140,33 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
 
 /* ---- bounces ----------------------------------------------------------------------------- */
 
+/* For irradiance: drops the light that the camera rays met, and counts every surface. */
+static void forget_light(const vlTracing *t, uint32_t n, const vlHits *hits) {
+  vlTraceBatch *b = t->batch;
+  for (uint32_t i = 0; i < n; i++) {
+    for (int c = 0; c < 4; c++)
+      b->radiance[c][i] = 0.0f;
+    b->alpha[i] = hits->shape[i] == VL_NONE ? 0.0f : 1.0f;
+  }
+}
+
+/* For irradiance: makes n shaded vertices white and diffuse on both sides. Material 0 of each
+ * world is diffuse (material/compile.c). Normals and frames stay. */
+static void whiten(uint32_t n, vlVertices *at) {
+  for (uint32_t i = 0; i < n; i++) {
+    at->hits.material[i] = 0;
+    at->surface.no_cosine[i] = 0.0f;
+    at->surface.side[i] = at->shade.wo[2][i] < 0.0f ? -1.0f : 1.0f;
+    for (int c = 0; c < 4; c++)
+      at->shade.reflectance[c][i] = 1.0f;
+  }
+}
+
 void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *media = steps->in_media ? s->volume : NULL;
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
-    bool camera = depth == 0 && !t->light;
+    bool camera = depth == 0 && !t->light, irradiance = camera && t->def->irradiance;
     if (media) {
       vl_volume_travel(t, n, depth, depth < most && !t->light, &s->rays, &media->rays, &s->hits,
                        &media->ends);
@@ -155,6 +177,8 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
     }
     if (steps->arrive && !steps->arrive(t, n, depth))
       break;
+    if (irradiance)
+      forget_light(t, n, &s->hits);
     if (depth >= most)
       break;
     uint32_t inside = media ? steps->in_media(t, n, depth) : 0;
@@ -163,6 +187,8 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
       if (media)
         vl_volume_permute(&media->rays, &media->at, s->order, n);
       vl_stage_shade(t, n, &s->at);
+      if (irradiance)
+        whiten(n, &s->at);
       n = steps->on_surfaces(t, n, depth);
     }
     if (media)

@@ -30,6 +30,14 @@ for file in "$VELO_SOURCE_DIR"/scenes/cameras/*.pbrt; do
   check "${name}_agrees" "$VELO" image check lens.exr
 done
 
+
+# Illuminance: the same bytes for any threads,.
+for threads in 1 3; do
+  check "illuminance_$threads" "$VELO" render scene.pbrt -o "lux$threads.exr" --channels illuminance --quiet --spp 2 -t "$threads"
+done
+check illuminance_threads cmp lux1.exr lux3.exr
+check illuminance_there bash -c '"$VELO" image info lux1.exr | grep -q illuminance.Y'
+
 expect_code 2 unknown_name "$VELO" render scene.pbrt -o no.exr --channels Z,albdo
 expect_text nearest_name 'unknown name "albdo"; did you mean "albedo"?'
 check nothing_written test ! -e no.exr

@@ -204,7 +204,7 @@ void channels_take(Channels *c, Job *job) {
 
 uint64_t channels_values(const Channels *c, uint32_t buckets) {
   static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3,        1, 1,
-                                                   1, 1, 1, 2, 3, 3, 3, [20] = 7, 1};
+                                                   1, 1, 1, 2, 3, 3, 3, [20] = 7, 1, 1};
   enum {
     GBUFFER = 48
   }; /* the gbuffer's channels and the ground truth that they are computed from */
@@ -230,7 +230,9 @@ double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, doubl
     rays += spp;
   if (c->bits & VL_CHANNEL_FEATURES)
     rays += spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
-  return ray * sample * rays + compressed * writing * (double)channels_values(c, buckets) / 3;
+  double again = c->bits & VL_CHANNEL_ILLUMINANCE ? sample * spp : 0;
+  return again + ray * sample * rays +
+         compressed * writing * (double)channels_values(c, buckets) / 3;
 }
 
 int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job,

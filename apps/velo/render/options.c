@@ -228,7 +228,7 @@ const Option render_options[] = {
      "ground truth channels to write into the .exr, 32-bit, separated by commas: Z, "
      "distance, P, N, Ng, uv, albedo, ray, id.object, id.material, id.instance, "
      "id.primitive, samples, film, or all of these. Channels that cost more and are not part "
-     "of all: error (standard error), features (for denoisers), luminance (cd/m2), forward, backward (flow), "
+     "of all: error (standard error), features (for denoisers), luminance (cd/m2), illuminance (lx), forward, backward (flow), "
      "crypto.object, crypto.material, crypto.instance (Cryptomatte; crypto: all three). "
      "FILE.ids.json lists the names of the ids"},
     {RENDER_CHANNELS_MODE, 0, "channels-mode", OPTION_CHOICE, "NAME",

@@ -157,7 +157,7 @@ static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium)
     if (k->x.shape[i] != VL_NONE &&
         (medium[i] != VL_NONE || vl_is_interface(t->world, k->x.shape[i])))
       lanes[count++] = i;
-    f->medium[i] = medium[i];
+    f->medium[i] = k->clear ? VL_NONE : medium[i];
     f->to[i] = f->rays.t_max ? f->rays.t_max[i] : VL_INFINITY;
   }
   if (count)
@@ -227,6 +227,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission, v
   k.f.depth = depth;
   k.f.purpose = VL_KEY_FLIGHT;
   k.f.odds = odds;
+  k.clear = camera && t->def->irradiance;
   for (uint32_t first = 0; first < n; first += VL_FLIGHTS) {
     begin_block(&r, &k, first, n - first < VL_FLIGHTS ? n - first : VL_FLIGHTS, t_max, time);
     open_lanes(t, &r, &k, first, t_min);

@@ -155,7 +155,8 @@ class Camera(_velo.Camera):
               context: Any = None) -> None:
         """Writes a camera file of velo or of another tool (docs/camera-files.md).
 
-        dialect: "velo", "opencv", "colmap", "nerf", ...; default: by the suffix. drop: fields that may be lost."""
+        dialect: "velo", "opencv", "colmap", "nerf", ...; default: by the suffix. drop: fields that may be lost, by
+        the names that the errors give ("skew", "distortion", ...; docs/camera-files.md)."""
         self._write(context_or_default(context), path, dialect, name, _check.names(drop, "drop"))
 
     def __copy__(self) -> "Camera":

@@ -54,7 +54,7 @@ const char *vl_nearest_name(const char *name, const char *const *names, size_t c
 void vl_tell_names(char *text, size_t size, const char *name, const char *const *names,
                    size_t count) {
   const char *near = vl_nearest_name(name, names, count);
-  char list[256] = "";
+  char list[512] = "";
   for (size_t i = 0; i < count && !near; i++)
     vl_list_name(list, sizeof list, names[i]);
   if (near)

@@ -286,6 +286,9 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
     return vl_fail(error, VL_ERROR_UNSUPPORTED,
                    "camera file: none can hold a camera of one's own, \"%s\"",
                    vl_short_text(record->camera.own->name).text);
+  result = vl_camera_check_drop(def, error);
+  if (result != VL_OK)
+    return result;
   vlCameraDialect dialect = def->dialect ? def->dialect : dialect_of_name(path);
   if (!dialect)
     return vl_fail(error, VL_ERROR_ARGUMENT,

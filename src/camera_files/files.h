@@ -167,6 +167,9 @@ void vl_camera_put_string(vlCameraText *text, const char *string);
 /* Returns VL_OK if the camera does not use the field or if it may be dropped. Otherwise returns
  * an error that names the field. */
 vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool present);
+/* Returns VL_ERROR_ARGUMENT if def->drop has a name that no field has; the message has the
+ * nearest one. */
+vlResult vl_camera_check_drop(const vlCameraFileDef *def, vlError *error);
 /* Returns whether the field is in the list of fields that may be dropped. */
 bool vl_camera_drops(const vlCameraFile *file, const char *field);
 /* Makes *camera from the record. Returns an error for any property that the flags `holds` do

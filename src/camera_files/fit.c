@@ -1,4 +1,5 @@
 /* camera_files/fit.c: refuses by name what a dialect cannot express. */
+#include <assert.h>
 #include <math.h>
 
 #include "base/text.h"
@@ -7,7 +8,39 @@
 #include "math/transform.h"
 #include "velo/distortion.h"
 
+/* What a dialect may be unable to hold, by the names of the messages. */
+static const char *const refusable[] = {
+    "aperture",      "aperture_ratio", "blades",         "cx",           "cy",   "distortion",
+    "exposure_time", "far_plane",      "focus_distance", "focus_pixel",  "fy",   "lens_radius",
+    "max_angle",     "mirror",         "motion",         "near_plane",   "pose", "projection",
+    "readout",       "shutter_close",  "shutter_curve",  "shutter_open", "skew", "stereo",
+    "tilt",          "vignetting"};
+
+static bool is_refusable(const char *field) {
+  for (size_t i = 0; i < VL_LENGTH(refusable); i++)
+    if (vl_text_is(field, refusable[i]))
+      return true;
+  return false;
+}
+
+vlResult vl_camera_check_drop(const vlCameraFileDef *def, vlError *error) {
+  for (uint32_t i = 0; i < def->drop_count; i++) {
+    const char *name = def->drop ? def->drop[i] : NULL;
+    if (!name)
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: drop[%u] is null", i);
+    if (is_refusable(name))
+      continue;
+    char known[600];
+    vl_tell_names(known, sizeof known, name, refusable, VL_LENGTH(refusable));
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera file: drop: no camera has a field \"%s\"%s",
+                   vl_argument_text(name).text, known);
+  }
+  return VL_OK;
+}
+
 bool vl_camera_drops(const vlCameraFile *file, const char *field) {
+  assert(is_refusable(field));
   for (uint32_t i = 0; i < file->def->drop_count; i++)
     if (vl_text_is(file->def->drop[i], field))
       return true;
@@ -15,6 +48,7 @@ bool vl_camera_drops(const vlCameraFile *file, const char *field) {
 }
 
 vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool present) {
+  assert(is_refusable(field));
   if (!present || vl_camera_drops(file, field))
     return VL_OK;
   return vl_fail_at(

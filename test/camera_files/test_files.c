@@ -354,6 +354,32 @@ static void test_refusals(void **state) {
   }
 }
 
+/* Names of fields that no camera has are errors, before a file is written. */
+static void test_drop_names(void **state) {
+  (void)state;
+  static const struct {
+    const char *name, *words;
+  } wrong[] = {{"skw", "\"skw\"; the nearest is \"skew\""},
+               {"", "\"\"; known are aperture, "},
+               {"everything", "tilt, vignetting"}, /* the last of the list */
+               {"Skew", "the nearest is \"skew\""},
+               {NULL, "drop[1] is null"}};
+  const vlCameraRecord record = some_camera();
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    const char *drop[] = {"pose", wrong[i].name};
+    vlCameraFileDef def = vl_default_camera_file_def();
+    vlError error;
+    def.dialect = VL_CAMERA_DIALECT_ROS;
+    def.drop = drop;
+    def.drop_count = 2;
+    const char *path = path_of("dropped.yaml");
+    assert_int_equal(vl_camera_write(context, path, &def, &record, &error), VL_ERROR_ARGUMENT);
+    if (!strstr(error.message, wrong[i].words))
+      fail_msg("%s", error.message);
+    assert_int_equal(access(path, F_OK), -1);
+  }
+}
+
 static void test_memory(void **state) {
   (void)state;
   vlCameraRecord record = some_camera();
@@ -367,7 +393,7 @@ int main(void) {
       cmocka_unit_test(test_blender_shift), cmocka_unit_test(test_colmap_images),
       cmocka_unit_test(test_kalibr_chain),  cmocka_unit_test(test_pbrt),
       cmocka_unit_test(test_wrong_files),   cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_drop_names),    cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, files_setup, files_teardown);
 }

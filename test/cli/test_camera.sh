@@ -71,6 +71,9 @@ tvec: [1, 2, 3]'
 expect_code 3 refuse_pose "$VELO" camera convert posed.yaml ros.yaml --to ros
 expect_line refuse_pose_words '"pose"'
 check drop_pose "$VELO" camera convert posed.yaml ros.yaml --to ros --drop pose
+expect_code 2 drop_unknown "$VELO" camera convert posed.yaml ros2.yaml --to ros --drop pose --drop distorsion
+expect_line drop_unknown_words 'no camera has a field "distorsion"; the nearest is "distortion"'
+check drop_unknown_writes_nothing test ! -e ros2.yaml
 expect_code 2 no_dialect "$VELO" camera convert cam.yaml cam.txt
 expect_line no_dialect_words "--to"
 

@@ -87,7 +87,8 @@ def words_of_other_programs_are_answered():
                        (lambda: scene.add_material("principled", base_color=1), "it is called reflectance"),
                        (lambda: scene.set(scene.handles("materials")[0], base_color=1), "it is called reflectance"),
                        (lambda: velo.Camera(8, 6, focal_length=50), "it is called focal_mm"),
-                       (lambda: image.write(work("a.exr"), compresion=1), 'did you mean "compression"?')):
+                       (lambda: image.write(work("a.exr"), compresion=1), 'did you mean "compression"?'),
+                       (lambda: scene.camera.write(work("c.yaml"), drop=["pose", "skw"]), '"skw"; the nearest is "skew"')):
         with raises(velo.UsageError, text):
             call()
     assert image[..., 0].shape == (6, 8) and numpy.array_equal(image[..., 0], image["R"])
@@ -101,7 +102,7 @@ def names_are_whole_in_messages():
                  lambda: scene.find("materials", LONG), lambda: scene.handles(LONG), lambda: scene.render(channels=[LONG]),
                  lambda: scene.render(filter=LONG), lambda: scene.render(sensor=LONG), lambda: image.view(LONG), lambda: image[LONG],
                  lambda: scene.add_material("diffuse", reflectance=LONG), lambda: velo.read_camera(LONG), lambda: image.write(work("a.") + LONG),
-                 lambda: velo.Camera(8, 8).write(work("a.json"), dialect=LONG)):
+                 lambda: velo.Camera(8, 8).write(work("a.json"), dialect=LONG), lambda: velo.Camera(8, 8).write(work("a.json"), drop=[LONG])):
         with raises(velo.Error, LONG):
             call()
     with raises(velo.UsageError, ", sony_ilce_6400, ...; it is 'kodak'"):

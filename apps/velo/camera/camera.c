@@ -207,8 +207,11 @@ static int run_convert(const Command *command, const Arguments *arguments) {
       status = STATUS_OK;
     else if (result == VL_ERROR_ARGUMENT && strncmp(error.message, "camera: ", 8) == 0)
       status = report_failure(STATUS_SCENE, "%s: %s", in, error.message);
-    else if (result == VL_ERROR_ARGUMENT)
+    else if (result == VL_ERROR_ARGUMENT && def.dialect == VL_CAMERA_DIALECT_AUTO &&
+             !strstr(error.message, ": drop: "))
       status = report_usage("%s; give --to DIALECT", error.message);
+    else if (result == VL_ERROR_ARGUMENT)
+      status = report_usage("%s", error.message);
     else
       status = report_error(&error, result, out);
   }

@@ -9,7 +9,7 @@ import numpy
 
 import velo
 from velo import _check
-from velo._errors import UsageError, wrong_value
+from velo._errors import UsageError, unknown, wrong_value
 from velo.dataset import recipe as kinds
 
 MAX_FRAMES = 1000000  # numbers of six digits
@@ -253,7 +253,7 @@ def _recipe(value: Any, where: str) -> None:
     known = velo.channel_names()
     for i, name in enumerate(value.channels):
         if name not in known:
-            raise wrong_value(f"{where}.channels[{i}]", f"one of {', '.join(known)}", name)
+            raise unknown(f"channel in {where}.channels[{i}]:", name, known)
 
 
 def _sensor(value: Any, where: str) -> None:
@@ -269,7 +269,7 @@ def _part(value: Any, where: str) -> dict[str, Any]:
     found = names(anything)(value, where)
     for name in found:
         if name not in ("name", "pose"):
-            raise UsageError(f"{where}: unknown name {velo._errors.shown(name)} (known: name, pose)")
+            raise unknown(f"name in {where}:", name, ("name", "pose"))
     if "pose" not in found:
         raise UsageError(f"{where}: needs a pose, 4 x 4")
     made: dict[str, Any] = {"pose": pose(found["pose"], f"{where}.pose")}

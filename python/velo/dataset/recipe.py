@@ -211,8 +211,10 @@ def _make(kind: type, data: Any, where: str) -> Any:
 
 def _kind(data: Any, kinds: dict[str, type], where: str) -> Any:
     word = data.get("kind") if isinstance(data, dict) else None
-    if not isinstance(word, str) or word not in kinds:
+    if not isinstance(word, str):
         raise wrong_value(where, f"names and values with a kind, one of {', '.join(sorted(kinds))}", data if word is None else word)
+    if word not in kinds:
+        raise unknown(f"kind of {where}:", word, list(kinds))
     return _make(kinds[word], {name: value for name, value in data.items() if name != "kind"}, where)
 
 

@@ -73,6 +73,10 @@ bool vl_gltf_reads_extension(const char *name) {
   return is_in(name, known, VL_LENGTH(known));
 }
 
+bool vl_gltf_passes_extension(const char *name) {
+  return is_in(name, silent, VL_LENGTH(silent));
+}
+
 vlShortText vl_gltf_extension_text(const char *name) {
   vlShortText text = vl_short_text(name);
   if (is_in(name, registered, VL_LENGTH(registered)))
@@ -81,7 +85,7 @@ vlShortText vl_gltf_extension_text(const char *name) {
 }
 
 bool vl_gltf_check_extensions(vlGltf *g) {
-  const size_t known_count = VL_LENGTH(known), silent_count = VL_LENGTH(silent);
+  const size_t known_count = VL_LENGTH(known);
   const json_t *used, *required;
   size_t used_count, required_count;
   if (!vl_gltf_array(g, NULL, g->root, "extensionsUsed", &used, &used_count) ||
@@ -114,7 +118,7 @@ bool vl_gltf_check_extensions(vlGltf *g) {
     const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
     if (!name)
       return vl_gltf_fail(g, at, "must be a string");
-    if (!is_in(name, known, known_count) && !is_in(name, silent, silent_count))
+    if (!is_in(name, known, known_count) && !vl_gltf_passes_extension(name))
       vl_gltf_warn(g, VL_LOG_WARNING, at, "%s is ignored: velo does not read it",
                    vl_gltf_extension_text(name).text);
   }

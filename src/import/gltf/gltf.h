@@ -167,6 +167,9 @@ static inline bool vl_gltf_fail_memory(vlGltf *g) {
   vl_scene_fail(g->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
   return false;
 }
+/* Writes the location from its outermost part inwards, cut to the size; nothing if it is null.
+ * Returns the length. */
+size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t size);
 void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfLocation *location,
                   const char *format, ...) __attribute__((format(printf, 4, 5)));
 /* Returns true on the first call for this bit. */
@@ -222,9 +225,11 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uin
 
 bool vl_gltf_check_extensions(vlGltf *g);
 bool vl_gltf_reads_extension(const char *name);
+/* Whether the extension changes no image, so that it is ignored without a warning. */
+bool vl_gltf_passes_extension(const char *name);
 /* The name for messages: in full if it is registered, else shortened. */
 vlShortText vl_gltf_extension_text(const char *name);
-/* names.c: warns of members whose name is nearly a name of the format. */
+/* names.c: warns of members that the format does not have, one line for each name. */
 void vl_gltf_check_names(vlGltf *g);
 
 /* ---- arrays (accessor.c) ----------------------------------------------------------------- */

@@ -5,9 +5,10 @@
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
-/* Writes the location from its outermost part inwards. */
-static size_t write_location(const vlGltfLocation *location, char *text, size_t size) {
-  size_t n = location->up ? write_location(location->up, text, size) : 0;
+size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t size) {
+  if (!location)
+    return 0;
+  size_t n = vl_gltf_write_location(location->up, text, size);
   if (n + 1 >= size)
     return n;
   int wrote = location->index == SIZE_MAX
@@ -19,7 +20,7 @@ static size_t write_location(const vlGltfLocation *location, char *text, size_t 
 
 static void format_message(const vlGltfLocation *location, const char *format, va_list args,
                            char *text, size_t size) {
-  size_t n = location ? write_location(location, text, size) : 0;
+  size_t n = vl_gltf_write_location(location, text, size);
   if (n && n + 3 < size)
     n += (size_t)snprintf(text + n, size - n, ": ");
   vsnprintf(text + n, size - n, format, args);

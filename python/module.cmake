@@ -30,6 +30,9 @@ add_dependencies(velo_python velo_python_files)
 set(VELO_PYTHON_INSTALL_DIR "" CACHE PATH "folder for the Python package; empty: it is not installed")
 if(VELO_PYTHON_INSTALL_DIR)
   install(TARGETS velo_python LIBRARY DESTINATION ${VELO_PYTHON_INSTALL_DIR}/velo)
+  # velo's add-on for Blender, which uses the module (docs/blender.md).
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/blender/velo_blender DESTINATION ${CMAKE_INSTALL_DATADIR}/blender/scripts/addons
+          FILES_MATCHING PATTERN "*.py")
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/python/velo DESTINATION ${VELO_PYTHON_INSTALL_DIR}
           FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed")
 endif()

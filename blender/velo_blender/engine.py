@@ -29,7 +29,7 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         except export.Cancelled:
             pass
         except (report.Refused, velo.Error, MemoryError) as error:
-            self._refuse(str(error) or "there is not enough memory")
+            self._refuse(str(error) or "there is not enough memory", getattr(error, "code", 1))
         except Exception as error:  # pylint: disable=broad-except; Blender shows one line, the terminal the rest
             traceback.print_exc()
             self._refuse("a fault of the add-on: %s: %s" % (type(error).__name__, error))
@@ -62,7 +62,8 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         if viewed is not None:
             viewed.stop()
 
-    def _refuse(self, text):
+    def _refuse(self, text, status=1):
+        report.status = status
         line = " ".join(("velo: " + text).split())
         print(line)
         self.report({"ERROR"}, line)
@@ -94,6 +95,8 @@ class VeloRenderEngine(bpy.types.RenderEngine):
 
         def progress(state):
             self.update_progress(min(max(state.fraction, 0.0), 1.0))
+            if report.listener is not None:
+                report.listener(state.fraction)
             self.update_stats("", "velo: sample %d of %d" % (state.spp, state.spp_total))
             if state.pass_done and time.monotonic() - shown[0] > REFRESH and not bpy.app.background:
                 passes.fill(layer, made.scene.film.image(), scene.render.film_transparent)

@@ -11,6 +11,11 @@ CHANNELS = {"Depth": ["Z"], "Normal": ["N"], "Position": ["P"], "UV": ["uv"], "I
 NOTHING = 1e10  # Blender's depth where there is no surface
 
 
+def switches():
+    """The names of the switches of a view layer."""
+    return list(SWITCHES)
+
+
 def register(engine, scene, view_layer):
     """Tells Blender which passes a view layer has."""
     engine.register_pass(scene, view_layer, "Combined", 4, "RGBA", "COLOR")

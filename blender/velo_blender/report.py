@@ -22,9 +22,14 @@ class Notes:
 
 
 class Refused(Exception):
-    """A scene or a setting that cannot be rendered; its text is one line."""
+    """A scene or a setting that cannot be rendered; its text is one line. code: the exit code of velo's program."""
+    code = 3
 
 
+#: Called with the finished part of a render, 0 to 1; None: nobody asks. headless.py sets it.
+listener = None
+#: Exit code that velo's program has for the error that ended the last render; 0: there was none.
+status = 0
 #: The notes of the last export, by the name of its scene; the panel reads them.
 last = {}
 

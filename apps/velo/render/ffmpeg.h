@@ -20,8 +20,6 @@ typedef struct VideoSource {
   const char *name; /* of the video, for the status line */
 } VideoSource;
 
-/* Looks for ffmpeg in the folders of a list like PATH. False: it is not there. */
-bool ffmpeg_find(const char *folders, char *program, size_t size);
 /* Writes the video to the file `to`, which exists. Returns true, or false and what is wrong,
  * one line; that line is empty after a signal (signals.h). *width, *height: of the frames. */
 bool ffmpeg_make(const VideoSource *source, VideoKind kind, const char *to, uint32_t *width,

@@ -8,8 +8,7 @@
 
 enum { MAX_SAMPLES = 65536 };
 
-/* Parses 1%, 0.5% or 0.01. The result is a fraction of white; 0: the text is wrong. */
-static double threshold_of(const char *text) {
+double noise_threshold(const char *text) {
   char *end;
   double value = strtod(text, &end);
   if (end == text)
@@ -25,7 +24,7 @@ int noise_check(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (!v[RENDER_NOISE].given)
     return -1;
-  if (!(threshold_of(v[RENDER_NOISE].text) > 0))
+  if (!(noise_threshold(v[RENDER_NOISE].text) > 0))
     return report_usage(
         "--noise \"%s\": must be a part of white from 0.001%% to 50%%, such as 1%%",
         v[RENDER_NOISE].text);
@@ -43,7 +42,7 @@ void noise_apply(const Arguments *arguments, const Outputs *outputs, vlSceneDefs
   if (!v[RENDER_NOISE].given)
     return;
   defs->film.errors = true;
-  defs->render.noise = threshold_of(v[RENDER_NOISE].text);
+  defs->render.noise = noise_threshold(v[RENDER_NOISE].text);
   defs->render.noise_view = outputs->view;
   defs->render.noise_exposure = outputs->exposure;
   defs->render.noise_scale = defs->develop.exposure;

@@ -5,6 +5,8 @@
 #include "render/job.h"
 #include "render/outputs.h"
 
+/* Parses 1%, 0.5% or 0.01. The result is a fraction of white; 0: the text is wrong. */
+double noise_threshold(const char *text);
 /* Checks --noise and what it cannot be combined with. Returns -1, or the exit code after
  * reporting the error. */
 int noise_check(const Arguments *arguments);

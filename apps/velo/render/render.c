@@ -12,6 +12,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/animate.h"
+#include "render/blend.h"
 #include "render/exposure.h"
 #include "render/first_image.h"
 #include "render/lens_options.h"
@@ -652,6 +653,10 @@ static int render_all(const Command *command, const Arguments *arguments, Videos
 }
 
 static int run_render(const Command *command, const Arguments *arguments) {
+  if (blend_wanted(arguments)) {
+    set_up_reports(arguments);
+    return blend_run(arguments);
+  }
   if (!videos_wanted(arguments))
     return render_all(command, arguments, NULL);
   Videos videos;
@@ -672,6 +677,7 @@ const Command render_command = {
         "then about every\n"
         "ten seconds, the unfinished image is written to NAME.part.EXT; at the end it "
         "becomes NAME.EXT.\n"
+        "A .blend file is rendered by Blender, where it is installed (docs/blender.md).\n"
         "Ctrl-C ends the render; the samples so far are in NAME.part.EXT, and in the film "
         "file of --film,\n"
         "which the same command again continues, or --continue.",

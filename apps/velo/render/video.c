@@ -10,6 +10,7 @@
 #include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "render/child.h"
 #include "render/ffmpeg.h"
 #include "render/job.h"
 #include "render/pattern.h"
@@ -130,7 +131,7 @@ int videos_plan(Videos *videos, const Arguments *arguments, Arguments *frames) {
     return status;
   if (!fits)
     return report_failure(STATUS_IO, "%s: the file's name is too long", videos->paths[0]);
-  if (!ffmpeg_find(videos->programs, program, sizeof program))
+  if (!child_find(videos->programs, "ffmpeg", program, sizeof program))
     return report_failure(STATUS_MISSING,
                           "output \"%s\": ffmpeg is not installed, and it makes the video; "
                           "render the frames: -o %s",
@@ -239,7 +240,7 @@ int videos_finish(Videos *videos, const Arguments *arguments, int status) {
   if (status == STATUS_OK && signals_pending())
     status = 128 + signals_pending();
   const bool rendered = status == STATUS_OK;
-  if (rendered && (!ffmpeg_find(videos->programs, program, sizeof program) ||
+  if (rendered && (!child_find(videos->programs, "ffmpeg", program, sizeof program) ||
                    context_open(&def, &context) >= 0))
     status = report_failure(STATUS_IO,
                             "%s is not written: ffmpeg cannot be started; the "

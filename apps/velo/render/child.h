@@ -1,0 +1,38 @@
+/* render/child.h: another program as a child process, started without a shell, in a process
+ * group of its own, so that a Ctrl-C at the terminal reaches velo alone. What it writes to its
+ * standard error is kept, for the line that says why it failed. */
+#ifndef APP_RENDER_CHILD_H
+#define APP_RENDER_CHILD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <sys/types.h>
+
+/* Milliseconds between two looks for a signal to velo. */
+enum { CHILD_WAIT = 50 };
+
+typedef struct Child {
+  pid_t id;
+  int input;      /* the pipe to its standard input, not blocking; -1: closed */
+  FILE *messages; /* its standard error; null: not kept */
+} Child;
+
+/* Looks for a program in the folders of a list like PATH; those that are no absolute paths are
+ * left out. False: it is not there. */
+bool child_find(const char *folders, const char *name, char *program, size_t size);
+/* Starts a program; words: its arguments, the first its name, a null last. output, further: its
+ * descriptors 1 and 3; -1: none. Returns 0, or the number of the system's error. */
+int child_start(Child *child, const char *program, const char *const *words, int output,
+                int further);
+/* Writes to its standard input. False: it does not read any more, or a signal to velo came. */
+bool child_write(const Child *child, const char *data, size_t size);
+/* Closes its input and waits for its end. abandon: it is ended at once; so it is when a signal
+ * to velo comes. line: the first or the last line that it has written, empty if there is none.
+ * Returns the status of waitpid; -1: the child is not known. */
+typedef enum ChildLine { CHILD_FIRST_LINE, CHILD_LAST_LINE } ChildLine;
+int child_finish(Child *child, bool abandon, ChildLine which, char *line, size_t size);
+/* How it ended: "it ended with exit code 3". */
+void child_end_text(int status, char *text, size_t size);
+
+#endif

@@ -120,9 +120,19 @@ typedef struct vlExposureDef {
                       of velo's images, whose luminance is in cd/m^2 (docs/conventions.md) */
   uint32_t seed;   /**< of the noise */
   uint32_t frame;  /**< number of the frame: other noise with the same seed */
+  uint32_t window[4]; /**< which part of the sensor the image is: its left column and upper row,
+                         width and height of the whole, pixels. All 0: the image is the whole.
+                         Mosaic, noise and falloff of a part are those of the whole; crosstalk
+                         at its border is not */
 } vlExposureDef;
 /** The default def: 1/100 s, f/4, base ISO, 20 deg C. */
 VL_API vlExposureDef vl_default_exposure_def(void);
+/** Sets `window` to what the image says: the attributes "dataWindow" and "originalDataWindow"
+ * (or "displayWindow"), as crops have. Without them, or where they do not fit, all 0. */
+VL_API void vl_exposure_set_window(vlExposureDef *exposure, const vlImage *image);
+/** Sets the attributes "dataWindow" and "displayWindow" of an image of the exposure's size, if
+ * `window` is not all 0. MEMORY. */
+VL_API vlResult vl_exposure_write_window(const vlExposureDef *exposure, vlImage *image);
 
 /** The result of an exposure: arrays of the caller's and counts. Arrays of width * height, rows
  * from the top. */

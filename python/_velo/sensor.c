@@ -150,7 +150,10 @@ static PyObject *sensor_expose(PyObject *module, PyObject *arguments) {
     vlError error = {0};
     vlSensorOutput out = {.film_noise = 0};
     ((Image *)image)->exports++; /* it is not closed meanwhile */
+    vl_exposure_set_window(&exposure, source);
     vlResult done = make_images(context, source, images);
+    for (int i = 0; i < 2 && done == VL_OK; i++)
+      done = vl_exposure_write_window(&exposure, images[i]);
     if (done == VL_OK) {
       out.numbers = vl_image_pixels(images[0]);
       out.electrons = vl_image_pixels(images[1]);
@@ -195,6 +198,7 @@ static PyObject *sensor_raw(PyObject *module, PyObject *arguments) {
   vlRaw *raw = NULL;
   vlError error = {0};
   if (sensor) {
+    vl_exposure_set_window(&exposure, numbers);
     vlResult done =
         vl_sensor_raw(sensor, &exposure, light == Py_None ? NULL : white,
                       vl_image_width(numbers), vl_image_height(numbers), &raw, &error);

@@ -56,6 +56,19 @@ static void set_color(const vlSensorDef *sensor, const float *light, vlRawDef *d
   vl_raw_match_color(def, sensitivities, light, NULL); /* else it has no colour */
 }
 
+/* The def with the mosaic as it is from the window's corner on. */
+static vlSensorDef in_window(const vlSensorDef *sensor, const uint32_t window[4]) {
+  vlSensorDef def = *sensor;
+  for (uint32_t y = 0; y < def.pattern_height; y++)
+    for (uint32_t x = 0; x < def.pattern_width; x++) {
+      uint32_t row = (window[1] + y) % def.pattern_height;
+      uint32_t column = (window[0] + x) % def.pattern_width;
+      def.pattern[y * def.pattern_width + x] =
+          sensor->pattern[row * def.pattern_width + column];
+    }
+  return def;
+}
+
 vlResult vl_sensor_raw(const vlSensor *sensor, const vlExposureDef *exposure,
                        const float *light, uint32_t width, uint32_t height, vlRaw **raw,
                        vlError *error) {
@@ -67,9 +80,14 @@ vlResult vl_sensor_raw(const vlSensor *sensor, const vlExposureDef *exposure,
   *raw = NULL;
   exposure = exposure ? exposure : &usual;
   vlResult result = vl_exposure_check(exposure, error);
-  vlRawDef def = vl_default_raw_def(width, height);
+  uint32_t window[4];
   if (result == VL_OK)
-    result = vl_raw_set_pattern(&def, vl_sensor_pattern(&sensor->def, pattern), error);
+    result = vl_exposure_window(exposure, width, height, window, error);
+  if (result != VL_OK)
+    return result;
+  const vlSensorDef part = in_window(&sensor->def, window);
+  vlRawDef def = vl_default_raw_def(width, height);
+  result = vl_raw_set_pattern(&def, vl_sensor_pattern(&part, pattern), error);
   if (result != VL_OK)
     return result;
   set_levels(&sensor->def, exposure, &def);

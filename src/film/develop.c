@@ -12,8 +12,19 @@ static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType ty
   return vl_image_set_attribute(image, &a);
 }
 
-/* Writes OpenEXR's attributes: the colour space's primaries, and a crop's window in the whole
- * image (inclusive). */
+vlResult vl_film_set_window(const vlFilm *film, vlImage *image) {
+  if (film->width == film->def.width && film->height == film->def.height)
+    return VL_OK;
+  const uint32_t *c = film->def.crop;
+  double data[4] = {c[0], c[1], c[2] - 1.0, c[3] - 1.0},
+         display[4] = {0, 0, film->def.width - 1.0, film->def.height - 1.0};
+  vlResult result = set_numbers(image, "dataWindow", VL_ATTRIBUTE_BOX2I, data, 4);
+  if (result == VL_OK)
+    result = set_numbers(image, "displayWindow", VL_ATTRIBUTE_BOX2I, display, 4);
+  return result;
+}
+
+/* Writes OpenEXR's attributes: the colour space's primaries, and a crop's window. */
 static vlResult set_attributes(const vlFilm *film, vlImage *image) {
   float xy[8];
   double numbers[8];
@@ -22,16 +33,7 @@ static vlResult set_attributes(const vlFilm *film, vlImage *image) {
     numbers[i] = xy[i];
   vlResult result =
       set_numbers(image, "chromaticities", VL_ATTRIBUTE_CHROMATICITIES, numbers, 8);
-  if (film->width == film->def.width && film->height == film->def.height)
-    return result;
-  const uint32_t *c = film->def.crop;
-  double data[4] = {c[0], c[1], c[2] - 1.0, c[3] - 1.0},
-         display[4] = {0, 0, film->def.width - 1.0, film->def.height - 1.0};
-  if (result == VL_OK)
-    result = set_numbers(image, "dataWindow", VL_ATTRIBUTE_BOX2I, data, 4);
-  if (result == VL_OK)
-    result = set_numbers(image, "displayWindow", VL_ATTRIBUTE_BOX2I, display, 4);
-  return result;
+  return result == VL_OK ? vl_film_set_window(film, image) : result;
 }
 
 vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image) {

@@ -151,7 +151,7 @@ static vlResult make_image(const vlFilm *film, vlImage **image) {
       {.name = "emissiveUnits", .type = VL_ATTRIBUTE_STRING, .string = "W.m^-2.sr^-1"}};
   for (int i = 0; i < 2 && result == VL_OK; i++)
     result = vl_image_set_attribute(*image, &attributes[i]);
-  return result;
+  return result == VL_OK ? vl_film_set_window(film, *image) : result;
 }
 
 /* The integral of the standard observer's Y, by which lights are normalised. */

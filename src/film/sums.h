@@ -109,6 +109,10 @@ void vl_film_spectrum_clear(vlFilm *film);
 void vl_film_spectrum_free(vlFilm *film);
 bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other);
 
+/* In develop.c. Sets OpenEXR's dataWindow and displayWindow (inclusive) of a crop's image,
+ * which say where it lies in the whole. MEMORY. */
+vlResult vl_film_set_window(const vlFilm *film, vlImage *image);
+
 /* value * weight, rounded to the nearest unit of the sum. |value| < 2^40, |weight| <= 2^28
  * (units of 2^-24). */
 static inline vlInt128 vl_film_product(float value, int64_t weight) {

@@ -17,9 +17,10 @@ typedef struct Collect {
   vlSensorSpectrum spectrum;
   const double *weights; /* of each filter: spectrum.count electrons per radiance */
   uint32_t width, height;
-  double scale; /* energy per radiance, J / (W/(m^2 sr nm)) / nm */
-  double chief; /* tangent of the chief ray's angle / distance from the middle, pixels */
-  double focal; /* focal length in pixels; 0: no cos^4 */
+  uint32_t window[4]; /* left, top, width and height of the whole */
+  double scale;       /* energy per radiance, J / (W/(m^2 sr nm)) / nm */
+  double chief;       /* tangent of the chief ray's angle / distance from the middle, pixels */
+  double focal;       /* focal length in pixels; 0: no cos^4 */
   int value[3], error[3]; /* channels R G B and their standard errors; -1: there are none */
   double *means;
   atomic_uint_fast64_t not_finite, negative, noisy;
@@ -41,8 +42,8 @@ static double microlens(const vlSensorDef *def, double angle) {
 
 /* The share of light that is left at a pixel by angles: microlenses and cos^4. */
 static double falloff(const Collect *c, uint32_t x, uint32_t y) {
-  double dx = x + 0.5 - 0.5 * c->width;
-  double dy = y + 0.5 - 0.5 * c->height;
+  double dx = c->window[0] + x + 0.5 - 0.5 * c->window[2];
+  double dy = c->window[1] + y + 0.5 - 0.5 * c->window[3];
   double square = dx * dx + dy * dy;
   double left = 1.0;
   if (c->chief > 0.0) {
@@ -75,11 +76,12 @@ static void collect_row(void *user, uint32_t y, uint32_t worker) {
   Collect *c = user;
   const vlSensorDef *def = &c->sensor->def;
   uint32_t buckets = c->spectrum.count;
+  uint32_t row = (c->window[1] + y) % def->pattern_height;
   uint64_t not_finite = 0;
   uint64_t negative = 0;
   uint64_t noisy = 0;
   for (uint32_t x = 0; x < c->width; x++) {
-    uint32_t cell = y % def->pattern_height * def->pattern_width + x % def->pattern_width;
+    uint32_t cell = row * def->pattern_width + (c->window[0] + x) % def->pattern_width;
     const double *weights = c->weights + (size_t)c->sensor->cell[cell] * buckets;
     double sum = 0.0;
     for (uint32_t i = 0; i < buckets; i++)
@@ -166,8 +168,9 @@ static void set_scales(Collect *c, const vlExposureDef *exposure) {
   double irradiance = PI * def->transmittance / (4.0 * n * n);
   double area = metres * metres * def->fill_factor;
   c->scale = irradiance * area * vl_exposure_seconds(exposure) * exposure->radiance;
-  double half =
-      0.5 * __builtin_sqrt((double)c->width * c->width + (double)c->height * c->height);
+  double width = c->window[2];
+  double height = c->window[3];
+  double half = 0.5 * __builtin_sqrt(width * width + height * height);
   vlSinCosDouble chief = vl_sincos_double(def->chief_ray * RADIANS);
   c->chief = chief.sin / chief.cos / half;
   c->focal = exposure->focal_length * 1e-3 / metres;
@@ -187,6 +190,8 @@ vlResult vl_sensor_collect(const vlSensor *sensor, const vlImage *image,
                .width = vl_image_width(image),
                .height = vl_image_height(image),
                .means = means};
+  if (result == VL_OK)
+    result = vl_exposure_window(exposure, c.width, c.height, c.window, error);
   if (result == VL_OK)
     result = vl_sensor_find_spectrum(sensor->context, image, &c.spectrum, error);
   if (result != VL_OK)

@@ -2,6 +2,7 @@
  * of each step. The order of the steps is that of docs/sensor.md. */
 #include <math.h>
 #include <stdatomic.h>
+#include <string.h>
 
 #include "math/elementary.h"
 #include "sensor/random.h"
@@ -9,7 +10,8 @@
 
 typedef struct ReadOut {
   const vlSensor *sensor;
-  uint32_t width, height;
+  uint32_t width;
+  uint32_t window[4]; /* left, top, width and height of the whole */
   const double *means;
   vlSensorOutput *out;
   const double *columns; /* offset of each column, e- */
@@ -28,10 +30,10 @@ static double normal(const ReadOut *r, vlSensorStage stage, uint64_t index, doub
   return deviation * vl_random_normal(&random);
 }
 
-/* The electrons in a pixel's well at the end of the exposure. */
-static double well(const ReadOut *r, uint64_t pixel) {
+/* The electrons in a pixel's well at the end of the exposure. pixel: its number in the whole
+ * frame. */
+static double well(const ReadOut *r, double mean, uint64_t pixel) {
   const vlSensorDef *def = &r->sensor->def;
-  double mean = r->means[pixel];
   mean = mean > 0.0 ? mean : 0.0; /* NaN, too */
   mean *= 1.0 + normal(r, VL_STAGE_PRNU, pixel, def->prnu);
   double dark =
@@ -45,13 +47,15 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   ReadOut *r = user;
   const vlSensorDef *def = &r->sensor->def;
-  double row = normal(r, VL_STAGE_ROW, y, def->row_noise);
+  uint64_t whole_row = (uint64_t)r->window[1] + y;
+  double row = normal(r, VL_STAGE_ROW, whole_row, def->row_noise);
   uint64_t full = 0;
   uint64_t black = 0;
   uint64_t white = 0;
   for (uint32_t x = 0; x < r->width; x++) {
-    uint64_t pixel = (uint64_t)y * r->width + x;
-    double electrons = well(r, pixel);
+    uint64_t at = (uint64_t)y * r->width + x;
+    uint64_t pixel = whole_row * r->window[2] + r->window[0] + x;
+    double electrons = well(r, r->means[at], pixel);
     full += electrons >= def->full_well;
     electrons = electrons < def->full_well ? electrons : def->full_well;
     electrons += normal(r, VL_STAGE_DSNU, pixel, def->dsnu);
@@ -63,9 +67,9 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
     white += number > r->largest;
     number = number < 0.0 ? 0.0 : number > r->largest ? r->largest : number;
     if (r->out->numbers)
-      r->out->numbers[pixel] = (uint16_t)number;
+      r->out->numbers[at] = (uint16_t)number;
     if (r->out->electrons)
-      r->out->electrons[pixel] = (float)electrons;
+      r->out->electrons[at] = (float)electrons;
   }
   atomic_fetch_add(&r->full, full);
   atomic_fetch_add(&r->black, black);
@@ -92,21 +96,21 @@ vlResult vl_sensor_read_out(const vlSensor *sensor, uint32_t width, uint32_t hei
   if (!sensor || !means || !out || !width || !height)
     return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
   exposure = exposure ? exposure : &usual;
+  uint32_t window[4];
   vlResult result = vl_exposure_check(exposure, error);
+  if (result == VL_OK)
+    result = vl_exposure_window(exposure, width, height, window, error);
   if (result != VL_OK)
     return result;
   double *columns = vl_alloc_array(sensor->context, width, sizeof *columns);
   if (!columns)
     return vl_fail_memory(error);
-  ReadOut r = {.sensor = sensor,
-               .width = width,
-               .height = height,
-               .means = means,
-               .out = out,
-               .columns = columns};
+  ReadOut r = {
+      .sensor = sensor, .width = width, .means = means, .out = out, .columns = columns};
+  memcpy(r.window, window, sizeof window);
   set_up(&r, exposure);
   for (uint32_t x = 0; x < width; x++)
-    columns[x] = normal(&r, VL_STAGE_COLUMN, x, sensor->def.column_noise);
+    columns[x] = normal(&r, VL_STAGE_COLUMN, (uint64_t)window[0] + x, sensor->def.column_noise);
   vl_parallel_for(sensor->context, height, read_row, &r);
   vl_free(sensor->context, columns);
   out->full = atomic_load(&r.full);
@@ -119,14 +123,16 @@ vlResult vl_sensor_expose(const vlSensor *sensor, const vlImage *image,
                           const vlExposureDef *exposure, vlSensorOutput *out, vlError *error) {
   if (!sensor || !image || !out)
     return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+  vlExposureDef own = exposure ? *exposure : vl_default_exposure_def();
   uint32_t width = vl_image_width(image);
   uint32_t height = vl_image_height(image);
+  vl_exposure_set_window(&own, image);
   double *means = vl_alloc_array(sensor->context, (size_t)width * height, sizeof *means);
   if (!means)
     return vl_fail_memory(error);
-  vlResult result = vl_sensor_collect(sensor, image, exposure, means, out, error);
+  vlResult result = vl_sensor_collect(sensor, image, &own, means, out, error);
   if (result == VL_OK)
-    result = vl_sensor_read_out(sensor, width, height, means, exposure, out, error);
+    result = vl_sensor_read_out(sensor, width, height, means, &own, out, error);
   vl_free(sensor->context, means);
   return result;
 }

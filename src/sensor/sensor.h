@@ -24,6 +24,10 @@ double vl_exposure_seconds(const vlExposureDef *exposure);
 /* The amplifier's factor: of the ISO speed and the further gain. */
 double vl_exposure_gain(const vlSensorDef *def, const vlExposureDef *exposure);
 
+/* The window of an image of this size; ARGUMENT: it lies partly outside of the whole. */
+vlResult vl_exposure_window(const vlExposureDef *exposure, uint32_t width, uint32_t height,
+                            uint32_t window[4], vlError *error);
+
 /* The mean of the dark electrons of a pixel. */
 double vl_exposure_dark(const vlSensorDef *def, const vlExposureDef *exposure);
 

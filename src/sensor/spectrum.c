@@ -1,5 +1,5 @@
-/* sensor/spectrum.c: the spectrum of an image (film/spectrum.c writes it), and what each of its
- * buckets gives a filter. */
+/* sensor/spectrum.c: what an image says of itself: its spectrum (film/spectrum.c writes it),
+ * what each bucket gives a filter, and which part of the whole it is. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -111,4 +111,70 @@ void vl_sensor_weights(const vlSensorFilter *filter, const vlSensorSpectrum *s,
     }
     weights[i] = sum * step / (PLANCK * LIGHT_SPEED);
   }
+}
+
+/* ---- windows ----------------------------------------------------------------------------- */
+
+/* A window of OpenEXR: left, top, right, bottom, inclusive. */
+static bool read_window(const vlImage *image, const char *name, double window[4]) {
+  vlAttribute attribute;
+  if (vl_image_find_attribute(image, name, &attribute) != VL_OK ||
+      attribute.type != VL_ATTRIBUTE_BOX2I)
+    return false;
+  memcpy(window, attribute.numbers, 4 * sizeof *window);
+  return true;
+}
+
+void vl_exposure_set_window(vlExposureDef *exposure, const vlImage *image) {
+  double part[4];
+  double whole[4];
+  if (!exposure)
+    return;
+  memset(exposure->window, 0, sizeof exposure->window);
+  if (!image || !read_window(image, "dataWindow", part) ||
+      (!read_window(image, "originalDataWindow", whole) &&
+       !read_window(image, "displayWindow", whole)))
+    return;
+  bool fits = part[2] - part[0] + 1.0 == vl_image_width(image) &&
+              part[3] - part[1] + 1.0 == vl_image_height(image) && part[0] >= whole[0] &&
+              part[1] >= whole[1] && part[2] <= whole[2] && part[3] <= whole[3];
+  if (!fits)
+    return;
+  exposure->window[0] = (uint32_t)(part[0] - whole[0]);
+  exposure->window[1] = (uint32_t)(part[1] - whole[1]);
+  exposure->window[2] = (uint32_t)(whole[2] - whole[0] + 1.0);
+  exposure->window[3] = (uint32_t)(whole[3] - whole[1] + 1.0);
+}
+
+static vlResult write_box(vlImage *image, const char *name, double left, double top,
+                          uint32_t width, uint32_t height) {
+  vlAttribute attribute = {.name = name,
+                           .type = VL_ATTRIBUTE_BOX2I,
+                           .numbers = {left, top, left + width - 1.0, top + height - 1.0}};
+  return vl_image_set_attribute(image, &attribute);
+}
+
+vlResult vl_exposure_write_window(const vlExposureDef *exposure, vlImage *image) {
+  if (!exposure || !image)
+    return VL_ERROR_ARGUMENT;
+  const uint32_t *window = exposure->window;
+  if (!window[2])
+    return VL_OK;
+  vlResult result = write_box(image, "dataWindow", window[0], window[1], vl_image_width(image),
+                              vl_image_height(image));
+  return result == VL_OK ? write_box(image, "displayWindow", 0, 0, window[2], window[3])
+                         : result;
+}
+
+vlResult vl_exposure_window(const vlExposureDef *exposure, uint32_t width, uint32_t height,
+                            uint32_t window[4], vlError *error) {
+  const uint32_t *given = exposure->window;
+  const uint32_t all[4] = {0, 0, width, height};
+  bool none = !given[0] && !given[1] && !given[2] && !given[3];
+  memcpy(window, none ? all : given, sizeof all);
+  if ((uint64_t)window[0] + width > window[2] || (uint64_t)window[1] + height > window[3])
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "window: an image of %u x %u pixels at (%u, %u) is not inside of %u x %u",
+                   width, height, window[0], window[1], window[2], window[3]);
+  return VL_OK;
 }

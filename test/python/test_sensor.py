@@ -45,6 +45,22 @@ def frames_repeat_and_differ():
 
 
 @case
+def crops_are_parts_of_the_whole():
+    """Mosaic, noise and falloff: those of the pixels in the whole image."""
+    scene = velo.Scene()
+    scene.camera = velo.Camera(40, 30, fov=0.8)
+    scene.add_light("infinite", color=(50, 50, 50))
+    sensor = velo.Sensor("generic_rggb", row_noise=2, column_noise=2, dsnu=3)
+    frames = []
+    for crop in (None, (7, 5, 30, 22)):
+        scene.render(crop=crop, spp=4, buckets=8, filter="box")
+        frames.append(sensor.expose(scene.film.spectrum(), focal_length=0.1))
+    whole, part = frames
+    assert (numpy.asarray(part.numbers) == numpy.asarray(whole.numbers)[5:22, 7:30]).all()
+    assert part.raw().pattern == "BG/GR" and whole.raw().pattern == "RG/GB"
+
+
+@case
 def numbers_and_presets():
     assert velo.Sensor("ideal", pixel=3).numbers["pixel"] == 3
     assert velo.Sensor().numbers["pattern"] == "W"

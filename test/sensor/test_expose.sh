@@ -49,6 +49,12 @@ check one_thread "$VELO" sensor expose flat.exr --radiance 1e-4 --exposure-time 
 same any_threads raw.png one.png
 check other_seed "$VELO" sensor expose flat.exr --radiance 1e-4 --exposure-time 0.02 --f-number 2 --seed 4 -o four.png
 if cmp -s raw.png four.png; then fail seeds_differ; else pass seeds_differ; fi
+check whole "$VELO" sensor expose flat.exr --sensor ideal_rggb --radiance 1e-4 --focal-length 4 -o whole.exr
+check crop "$VELO" render flat.pbrt --spectrum 47 --filter box --channels error --crop 21,11,50,40 -o part.exr --quiet
+check expose_crop "$VELO" sensor expose part.exr --sensor ideal_rggb --radiance 1e-4 --focal-length 4 -o part_e.exr
+check crop_of_whole "$VELO" image convert whole.exr whole_part.exr --crop 21,11,50,40
+check compare "$VELO" image diff part_e.exr whole_part.exr
+expect_text crop_is_the_whole_s_part 'differing  0'
 check bracket "$VELO" sensor expose flat.exr --sensor generic_rggb --radiance 1e-3 --bracket=-4,0,9 -o b_%d.png
 expect_text saturated 'frame 2: 100.00 % of the pixels have a full well'
 check three_frames test -s b_0.png -a -s b_1.png -a -s b_2.png

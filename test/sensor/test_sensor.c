@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "velo/sensor.h"
+#include "velo/sensor_raw.h"
 
 enum { SIDE = 256, PIXELS = SIDE * SIDE };
 
@@ -340,6 +341,57 @@ static void angles(void **state) {
   vl_sensor_destroy(sensor);
 }
 
+/* A part of an image has the numbers of the whole there: mosaic, falloff and noise. */
+static void windows(void **state) {
+  (void)state;
+  enum { WIDE = 37, TALL = 29, LEFT = 11, TOP = 6, WIDTH = 14, HEIGHT = 17 };
+  vlSensorDef def;
+  assert_int_equal(vl_sensor_preset("generic_quad", &def, NULL), VL_OK);
+  def.crosstalk[4] = 1.0;
+  for (int i = 0; i < 9; i++)
+    def.crosstalk[i] = i == 4;
+  def.row_noise = def.column_noise = def.dsnu = 3;
+  def.prnu = 0.02;
+  def.chief_ray = 20;
+  vlSensor *sensor = sensor_of(&def);
+  vlExposureDef exposure = vl_default_exposure_def();
+  exposure.focal_length = 0.2;
+  vlImage *whole = flat_image(WIDE, TALL, 500.0f), *part = flat_image(WIDTH, HEIGHT, 500.0f);
+  vlSensorOutput out = {.numbers = numbers_};
+  assert_int_equal(vl_sensor_expose(sensor, whole, &exposure, &out, NULL), VL_OK);
+  vlExposureDef own = exposure;
+  const uint32_t window[4] = {LEFT, TOP, WIDE, TALL};
+  memcpy(own.window, window, sizeof window);
+  assert_int_equal(vl_exposure_write_window(&own, part), VL_OK);
+  out.numbers = others_;
+  assert_int_equal(vl_sensor_expose(sensor, part, &exposure, &out, NULL), VL_OK);
+  for (int y = 0; y < HEIGHT; y++)
+    assert_memory_equal(others_ + y * WIDTH, numbers_ + (TOP + y) * WIDE + LEFT,
+                        WIDTH * sizeof *others_);
+  vlExposureDef read = exposure;
+  vl_exposure_set_window(&read, part);
+  assert_memory_equal(read.window, window, sizeof window);
+  vl_exposure_set_window(&read, whole);
+  const uint32_t none[4] = {0};
+  assert_memory_equal(read.window, none, sizeof none);
+  vlRaw *raw = NULL;
+  assert_int_equal(vl_sensor_raw(sensor, &own, NULL, WIDTH, HEIGHT, &raw, NULL), VL_OK);
+  const vlRawDef *r = vl_raw_def(raw);
+  static const char letters[] = "RGBCMYW";
+  for (uint32_t i = 0; i < 16; i++)
+    assert_int_equal(letters[r->pattern[i]],
+                     def.pattern[(TOP + i / 4) % 4 * 4 + (LEFT + i % 4) % 4]);
+  vl_raw_destroy(raw);
+  own.window[0] = WIDE - WIDTH + 1;
+  vlError error = {0};
+  assert_int_equal(vl_sensor_collect(sensor, part, &own, means_, &out, &error),
+                   VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "is not inside of 37 x 29"));
+  vl_image_destroy(part);
+  vl_image_destroy(whole);
+  vl_sensor_destroy(sensor);
+}
+
 static void images(void **state) {
   (void)state;
   vlSensorDef def = vl_default_sensor_def();
@@ -474,7 +526,7 @@ int main(void) {
       cmocka_unit_test(limits),           cmocka_unit_test(threads),
       cmocka_unit_test(mosaics),          cmocka_unit_test(crosstalk),
       cmocka_unit_test(angles),           cmocka_unit_test(images),
-      cmocka_unit_test(film_noise),       cmocka_unit_test(bad_values),
-      cmocka_unit_test(presets)};
+      cmocka_unit_test(windows),          cmocka_unit_test(film_noise),
+      cmocka_unit_test(bad_values),       cmocka_unit_test(presets)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

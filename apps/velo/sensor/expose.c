@@ -139,6 +139,8 @@ static vlResult describe(const Expose *e, const vlExposureDef *exposure) {
                          .string = vl_sensor_pattern(def, text)};
   vlResult result = vl_image_set_attribute(e->electrons, &pattern);
   if (result == VL_OK)
+    result = vl_exposure_write_window(exposure, e->electrons);
+  if (result == VL_OK)
     result = add_number(e->electrons, "exposureTime", exposure->time);
   if (result == VL_OK)
     result = add_number(e->electrons, "exposureStops", exposure->stops);
@@ -223,6 +225,7 @@ static int expose(Expose *e) {
     vlExposureDef exposure = e->exposure;
     exposure.stops = e->bracket[f];
     exposure.frame += f;
+    vl_exposure_set_window(&exposure, e->image);
     vlSensorOutput out = {.numbers = vl_image_pixels(e->numbers),
                           .electrons = vl_image_pixels(e->electrons)};
     vlResult result = vl_sensor_collect(e->sensor, e->image, &exposure, e->means, &out, &error);

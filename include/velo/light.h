@@ -19,9 +19,13 @@ struct vlEmissionDef {
   vlSource source;     /**< where the file describes it */
   vlSpectrum radiance; /**< L */
   float scale;         /**< factor on radiance */
-  double power;   /**< total power, lumens (pbrt's "power"); it determines the scale; VL_UNSET:
-                     not used */
-  bool two_sided; /**< true: both sides emit light; false: only the side of the normal */
+  double power; /**< total power, lumens (pbrt's "power"); it determines the scale; VL_UNSET:
+                   not used */
+  /** Radiant power of each face from 360 to 830 nm, W; above 0, in place of power.
+   * vl_scene_add_emission turns it into power, and the scene's def has VL_UNSET. Default
+   * VL_UNSET. */
+  double radiant_power;
+  bool two_sided;      /**< true: both sides emit light; false: only the side of the normal */
   const char *image;   /**< path of an emission image over uv; null: none; or */
   vlTextureId texture; /**< a colour texture of kind VL_TEXTURE_IMAGE: emits its value times
                           scale; radiance is ignored */
@@ -59,6 +63,13 @@ struct vlLightDef {
                          scale; VL_UNSET: not used */
   double illuminance; /**< distant, infinite: illuminance, lux; it determines the scale;
                          VL_UNSET: not used */
+  /** Radiometric forms, all from 360 to 830 nm and above 0; at most one of them, and none
+   * beside the photometric form. vl_scene_add_light turns them into power, illuminance and
+   * scale by the colour's spectrum and 683 lm/W (docs/lights.md), and the scene's def has
+   * VL_UNSET. SCENE for lights whose colour is that of an image. Default VL_UNSET.
+   * radiant_power: W, of all directions, as power. radiant_intensity: point and spot, W/sr, of
+   * a spot along its axis. irradiance: distant and infinite, W/m^2, as illuminance. */
+  double radiant_power, radiant_intensity, irradiance;
   double world_from_light[16]; /**< light space to world space */
   float from[3], to[3]; /**< light space. Point: its position is `from`; spot, distant: emits in
                            the direction from `from` to `to` */

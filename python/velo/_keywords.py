@@ -310,6 +310,7 @@ class Emission(TypedDict, total=False):
     image: Any
     power: Any
     radiance: Any
+    radiant_power: Any
     scale: Any
     texture: Any
     two_sided: Any
@@ -325,6 +326,7 @@ class Lights(TypedDict, total=False):
     from_: Any
     illuminance: Any
     image: Any
+    irradiance: Any
     lamp_data: Any
     medium: Any
     path: Any
@@ -332,6 +334,8 @@ class Lights(TypedDict, total=False):
     pose: Any
     position: Any
     power: Any
+    radiant_intensity: Any
+    radiant_power: Any
     scale: Any
     space: Any
     to: Any

@@ -214,14 +214,14 @@ class Scene(_velo.Scene):
         return self._new("media", kind, words)
 
     def add_emission(self, **keywords: Unpack[_keywords.Emission]) -> Handle:
-        """Adds an emission of surfaces (keyword emission of add_shape). Keywords: radiance, scale, power, two_sided, image."""
+        """Adds an emission of surfaces (keyword emission of add_shape). Keywords: radiance, scale, power (lm), radiant_power (W), two_sided, image."""
         words: dict[str, Any] = {**keywords}
         return self._new("emission", "diffuse", words)
 
     def add_light(self, kind: str, **keywords: Unpack[_keywords.Lights]) -> Handle:
         """Adds a light: point, spot, distant, infinite, goniometric, projection. Keywords: members of vlLightDef: color,
-        scale, power (lm), illuminance (lx), position, to, image; path or lamp_data: a lamp file or its bytes; pose: 4 x 4, world
-        from light. The member from, a word that Python reserves, is position or from_."""
+        scale, power (lm), illuminance (lx), radiant_power (W), radiant_intensity (W/sr), irradiance (W/m2), position, to, image;
+        path or lamp_data: a lamp file or its bytes; pose: 4 x 4, world from light. The member from, a word that Python reserves, is position or from_."""
         words: dict[str, Any] = {**keywords}
         if "image" in words:
             words["image"] = _as_image(words["image"], "linear")

@@ -52,6 +52,12 @@ bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value);
  * the integral of Y times the colour space's illuminant alone. Lights are divided by it, so
  * that an RGB light of (1,1,1) has luminance 1. */
 double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error);
+/* The factor from a light's radiometric number to its photometric one, as that is before the
+ * light's spectrum is divided by vl_spectrum_photometric: from W to lm, from W/m^2 to lx, from
+ * W/sr to cd. It is 683 lm/W times vl_spectrum_photometric over the integral of the spectrum
+ * from 360 to 830 nm (BIPM 2019, The International System of Units, appendix 3). 0: the
+ * spectrum has no light, or an error, which is that of vl_spectrum_dense. */
+double vl_spectrum_per_watt(const vlSpectrum *spectrum, vlError *error);
 /* Converts a spectrum to linear RGB of a colour space, for VL_COLOR_RGB mode. For the roles
  * albedo and unbounded, the result is the colour under the space's illuminant; RGB spectra are
  * converted between spaces exactly. For the role illuminant, the result is the light's own

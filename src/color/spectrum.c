@@ -197,6 +197,17 @@ double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error) {
   return xyz[1];
 }
 
+double vl_spectrum_per_watt(const vlSpectrum *spectrum, vlError *error) {
+  const double lumens_per_watt = 683.0;
+  float dense[VL_LAMBDA_COUNT];
+  if (vl_spectrum_dense(spectrum, VL_ROLE_ILLUMINANT, dense, error) != VL_OK)
+    return 0;
+  double sum = 0;
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+    sum += (double)dense[i];
+  return sum > 0 ? lumens_per_watt * vl_spectrum_photometric(spectrum, error) / sum : 0;
+}
+
 /* Converts RGB between colour spaces. Reflectances are adapted to the white of the new space
  * (Bradford cone responses, von Kries scaling). Lights are not adapted. If the whites are
  * equal, there is no difference. */

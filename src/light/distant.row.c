@@ -2,7 +2,10 @@
 #include "light/light.row.h"
 
 static const vlParameter parameters[] = {
-    RADIANCE, SCALE, ILLUMINANCE,
+    RADIANCE,
+    SCALE,
+    ILLUMINANCE,
+    IRRADIANCE,
     FROM("start point of the vector along which the light travels"),
     TO("end point of the vector along which the light travels")};
 

@@ -13,6 +13,10 @@ static const vlParameter diffuse_parameters[] = {
     PARAMETER(DOUBLE, "power", power,
               "power of each face: its emission is scaled to it, and then multiplied by scale",
               .unit = "lm", .flags = VL_PARAMETER_UNSET),
+    PARAMETER(DOUBLE, "radiantpower", radiant_power,
+              "radiant power of each face, in place of power: that of all directions and "
+              "wavelengths, from 360 to 830 nm",
+              VL_FROM(0), .unit = "W", .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW),
     PARAMETER(FILE, "filename", image, "image file of the radiance over uv; replaces L",
               .text = NULL),
     PARAMETER(TEXTURE, NULL, texture, "image texture of the radiance over uv; replaces L",

@@ -5,6 +5,7 @@ static const vlParameter parameters[] = {
     INTENSITY,
     SCALE,
     POWER,
+    RADIANT_POWER,
     POSITION,
     IMAGE(
         "required: a lamp file (.ies, .ldt) of the intensity in candela, or a square image, an "

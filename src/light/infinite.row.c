@@ -7,6 +7,7 @@ static const vlParameter parameters[] = {
     RADIANCE,
     SCALE,
     ILLUMINANCE,
+    IRRADIANCE,
     IMAGE("a square image, an equal-area octahedral map of the radiance; replaces L"),
     PARAMETER(BLOCK, "portal", portal,
               "portal: 4 world-space corners of the rectangle through which the light enters "

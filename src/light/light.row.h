@@ -34,6 +34,20 @@ vlLightPower vl_light_power_unknown;
       "illuminance of a surface that faces the light: the light is scaled to it, and then " \
       "multiplied by scale",                                                                \
       .unit = "lx", .flags = VL_PARAMETER_UNSET)
+/* Radiometric forms: vl_scene_add_light turns them into the photometric ones. */
+#define RADIOMETRIC(name, member, unit_text, text)                                            \
+  PARAMETER(DOUBLE, name, member, text ", from 360 to 830 nm", VL_FROM(0), .unit = unit_text, \
+            .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW)
+#define RADIANT_POWER                             \
+  RADIOMETRIC("radiantpower", radiant_power, "W", \
+              "radiant power, in place of power: that of all directions and wavelengths")
+#define RADIANT_INTENSITY                            \
+  RADIOMETRIC(                                       \
+      "radiantintensity", radiant_intensity, "W/sr", \
+      "radiant intensity (of a spot: along its axis), in place of the intensity's size")
+#define IRRADIANCE                               \
+  RADIOMETRIC("irradiance", irradiance, "W/m^2", \
+              "irradiance of a surface that faces the light, in place of illuminance")
 #define FROM(text) PARAMETER(FLOAT3, "from", from, text, .unit = NULL)
 /* The position of kinds that files place by their transform alone. */
 #define POSITION PARAMETER(FLOAT3, NULL, from, "position of the light", .unit = NULL)

@@ -1,8 +1,8 @@
 /* light/point.row.c: the name, the parameters and the power of point lights. */
 #include "light/light.row.h"
 
-static const vlParameter parameters[] = {INTENSITY, SCALE, POWER,
-                                         FROM("position of the light")};
+static const vlParameter parameters[] = {
+    INTENSITY, SCALE, POWER, RADIANT_POWER, RADIANT_INTENSITY, FROM("position of the light")};
 
 const vlKindRow vl_light_row_point = {
     .name = "point",

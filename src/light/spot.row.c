@@ -6,6 +6,8 @@ static const vlParameter parameters[] = {
     INTENSITY,
     SCALE,
     POWER,
+    RADIANT_POWER,
+    RADIANT_INTENSITY,
     FROM("position of the light"),
     TO("a point on the cone's axis, towards which the light points"),
     PARAMETER(FLOAT, "coneangle", cone_angle, "angle between the axis and the edge of the cone",

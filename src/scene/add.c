@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/unset.h"
 #include "color/color.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
@@ -191,6 +192,58 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
 
 /* ---- light ------------------------------------------------------------------------------- */
 
+/* A radiometric number of a light, and the photometric number that takes its place. */
+typedef struct Radiometric {
+  double *given; /* VL_UNSET afterwards */
+  double *result;
+  double rival; /* what must not be given, too; VL_UNSET: it is not */
+  const char *name, *rival_name;
+} Radiometric;
+
+/* color: the light's only colour; null: it has those of an image. */
+static bool to_photometric(vlScene *scene, const Radiometric *r, const vlSpectrum *color,
+                           vlSource source, const char *what) {
+  if (vl_is_unset(*r->given))
+    return true;
+  vlError error = {0};
+  double result = color ? *r->given * vl_spectrum_per_watt(color, &error) : 0;
+  if (!vl_is_unset(r->rival))
+    vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s: give either \"%s\" or \"%s\", not both",
+                  what, r->name, r->rival_name);
+  else if (!color)
+    vl_scene_fail(scene, VL_ERROR_SCENE, source,
+                  "%s: \"%s\" needs one spectrum; the pixels of an image have many", what,
+                  r->name);
+  else if (error.code != VL_OK)
+    vl_scene_fail(scene, error.code, source, "%s: %s", what, error.message);
+  else if (!(result > 0) || !isfinite(result))
+    vl_scene_fail(scene, VL_ERROR_SCENE, source,
+                  "%s: \"%s\" %g: its spectrum makes %g of it in lumens", what, r->name,
+                  *r->given, result);
+  *r->given = VL_UNSET;
+  *r->result = result;
+  return scene->error.code == VL_OK;
+}
+
+static bool light_to_photometric(vlScene *scene, vlLightDef *d, const char *what) {
+  bool own_color = d->kind != VL_LIGHT_PROJECTION &&
+                   (d->kind != VL_LIGHT_INFINITE || (!d->path && !d->image));
+  const vlSpectrum *color = own_color ? &d->color : NULL;
+  const Radiometric power = {&d->radiant_power, &d->power, d->power, "radiantpower", "power"};
+  const Radiometric lux = {&d->irradiance, &d->illuminance, d->illuminance, "irradiance",
+                           "illuminance"};
+  if (!to_photometric(scene, &power, color, d->source, what) ||
+      !to_photometric(scene, &lux, color, d->source, what))
+    return false;
+  double candela = 1;
+  const Radiometric intensity = {&d->radiant_intensity, &candela, d->power, "radiantintensity",
+                                 vl_is_unset(power.rival) ? "radiantpower" : "power"};
+  if (!to_photometric(scene, &intensity, color, d->source, what))
+    return false;
+  d->scale = (float)((double)d->scale * candela);
+  return true;
+}
+
 vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   const vlEmissionId none = {0};
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_EMISSION, scene->emissions.count,
@@ -203,6 +256,10 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
     bad(scene, d.source, "emission", "power must not be negative");
     return none;
   }
+  const Radiometric power = {&d.radiant_power, &d.power, d.power, "radiantpower", "power"};
+  bool images = d.image || d.texture.index;
+  if (!to_photometric(scene, &power, images ? NULL : &d.radiance, d.source, "emission"))
+    return none;
   if (d.texture.index && scene->textures.items[d.texture.index - 1].kind != VL_TEXTURE_IMAGE) {
     bad(scene, d.source, "emission", "its texture must be an image");
     return none;
@@ -292,7 +349,8 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   if (vl_row_find(row, "filename"))
     d.image = def->image;
   if (!vl_row_take(scene, row, &d, true, d.source, what) || !check_light(scene, &d, row) ||
-      !vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_image(scene, &d.image) ||
+      !light_to_photometric(scene, &d, what) || !vl_scene_copy_source(scene, &d.source) ||
+      !vl_scene_copy_image(scene, &d.image) ||
       !vl_scene_copy_block(scene, d.lamp_data, d.lamp_size, 1, &d.lamp_data))
     return none;
   vlLightDef *slot = VL_PUSH(scene->context, &scene->lights);

@@ -186,22 +186,32 @@ static vlResult refuse_shift(const vlCameraFile *file, const json_t *element, in
   return VL_OK;
 }
 
-static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
-                             vlCameraRecord *record) {
+/* Finds the node of the camera that is to be read, and counts the cameras. */
+static vlResult search_scenes(const vlCameraFile *file, const json_t *tree, Search *s) {
   const json_t *scenes = vl_camera_child(tree, "library_visual_scenes"), *scene, *node,
                *stops[MAX_DEPTH] = {NULL};
-  vlCameraDef *d = &record->camera;
-  Search s = {.camera = NULL};
-  vlMat4 world = vl_mat4_identity();
-  double half[2];
   size_t i, k;
   vlResult result = VL_OK;
   json_array_foreach(json_object_get(scenes, "/"), i, scene) {
     json_array_foreach(json_object_get(scene, "/"), k, node) {
       if (result == VL_OK && has_tag(node, "node"))
-        result = search(file, node, stops, 0, &s);
+        result = search(file, node, stops, 0, s);
     }
   }
+  return result;
+}
+
+static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
+                             vlCameraRecord *record) {
+  static const char known[] =
+      "camera id name sid optics technique_common perspective "
+      "orthographic xfov yfov xmag ymag aspect_ratio znear zfar "
+      "asset! extra! technique! imager!";
+  vlCameraDef *d = &record->camera;
+  Search s = {.camera = NULL};
+  vlMat4 world = vl_mat4_identity();
+  double half[2];
+  vlResult result = search_scenes(file, tree, &s);
   if (result != VL_OK)
     return result;
   record->frames = s.count;
@@ -238,7 +248,7 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
   d->has_matrix = true;
   vl_camera_flip_axes(world.m, d->world_from_camera);
   vl_camera_name(record, s.name);
-  return VL_OK;
+  return vl_camera_check_part(file, known, camera, record);
 }
 
 static bool is_collada(const json_t *tree) {

@@ -305,6 +305,18 @@ typedef struct vlCameraFormat {
   bool centred, square; /* the principal point must be the image's centre; fx must be fy */
 } vlCameraFormat;
 
+/* For files of which the camera is a part: counts what is not in the list of names (as
+ * vlCameraFormat.known) of this object, or is an error (unread.c). */
+vlResult vl_camera_check_part(const vlCameraFile *file, const char *known, const json_t *object,
+                              vlCameraRecord *record);
+/* The same for one name, such as that of a table's column. */
+typedef struct {
+  const char *name, *value;
+  uint32_t line;
+} vlCameraName;
+vlResult vl_camera_check_name(const vlCameraFile *file, const char *known,
+                              const vlCameraName *name, vlCameraRecord *record);
+
 extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_format_colmap,
     vl_format_nerf, vl_format_kalibr, vl_format_blender, vl_format_pbrt, vl_format_gltf,
     vl_format_opengl, vl_format_vulkan, vl_format_d3d, vl_format_mitsuba, vl_format_exr,

@@ -191,6 +191,19 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   return result;
 }
 
+/* Members that the format does not have, of the camera and of its node. */
+static vlResult check_members(const vlCameraFile *file, const json_t *node,
+                              const json_t *camera, vlCameraRecord *record) {
+  static const char of_node[] =
+      "camera children extensions! extras! matrix mesh name rotation "
+      "scale skin translation weights",
+                    of_camera[] =
+                        "aspectRatio extensions extras! name orthographic "
+                        "perspective type xmag yfov ymag zfar znear";
+  vlResult result = vl_camera_check_part(file, of_camera, camera, record);
+  return result == VL_OK ? vl_camera_check_part(file, of_node, node, record) : result;
+}
+
 static vlResult camera_of(const vlCameraFile *file, const json_t *cameras, const json_t *index,
                           const json_t **camera) {
   double at = json_number_value(index);
@@ -205,7 +218,7 @@ static vlResult camera_of(const vlCameraFile *file, const json_t *cameras, const
 static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
                           vlCameraRecord *record) {
   const json_t *cameras, *nodes = json_object_get(tree, "nodes"), *camera = NULL,
-                         *chosen = NULL;
+                         *chosen = NULL, *holder = NULL;
   vlResult result = vl_camera_field(file, tree, "cameras", &cameras);
   if (result != VL_OK)
     return result;
@@ -225,6 +238,7 @@ static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
       if (!parents)
         return vl_fail_memory(file->error);
       chosen = camera;
+      holder = node;
       result = find_parents(file, nodes, parents);
       if (result == VL_OK)
         result = world_matrix(file, nodes, parents, (int64_t)i, &pose);
@@ -245,7 +259,7 @@ static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
   result = read_camera(file, chosen, &pose, record);
   if (!record->name[0])
     memcpy(record->name, name, sizeof name);
-  return result;
+  return result == VL_OK ? check_members(file, holder, chosen, record) : result;
 }
 
 static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *record,

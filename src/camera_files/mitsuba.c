@@ -5,6 +5,7 @@
  * film at 0.5 minus the offset. Names are accepted in both spellings, to_world and toWorld. */
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"
@@ -319,9 +320,60 @@ static void set_orthographic(double width, vlMat4 *m, vlCameraDef *d) {
   d->fy = 0.5 * width / length[1];
 }
 
-static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDef *d) {
+/* Counts the parameters of an element whose names are not in the list. */
+static vlResult check_parameters(const Scene *scene, const json_t *element, const char *known,
+                                 vlCameraRecord *record) {
+  const json_t *item;
+  size_t i;
+  vlResult result = VL_OK;
+  json_array_foreach(json_object_get(element, "/"), i, item) {
+    const char *name = vl_camera_text(item, "name"), *value = NULL;
+    if (!name || result != VL_OK)
+      continue;
+    result = attribute(scene, item, "value", &value);
+    const vlCameraName given = {name, value ? value : "set", line_of(item)};
+    if (result == VL_OK)
+      result = vl_camera_check_name(scene->file, known, &given, record);
+  }
+  return result;
+}
+
+/* The parameters of the sensor and of its film that velo does not know: those that Mitsuba
+ * has for this type, in both spellings, are read or have no effect on the camera. */
+static vlResult check_sensor(const Scene *scene, const json_t *sensor, int kind,
+                             vlCameraRecord *record) {
+  static const char common[] =
+      "to_world toWorld near_clip nearClip far_clip farClip focus_distance focusDistance "
+      "shutter_open shutterOpen shutter_close shutterClose medium film sampler srf";
+  static const char fov[] = "fov fov_axis fovAxis focal_length focalLength";
+  static const char *const more[] = {
+      "principal_point_offset_x principalPointOffsetX principal_point_offset_y "
+      "principalPointOffsetY",
+      "aperture_radius apertureRadius", ""};
+  static const char film[] =
+      "width height crop_offset_x cropOffsetX crop_offset_y cropOffsetY crop_width cropWidth "
+      "crop_height cropHeight file_format fileFormat pixel_format pixelFormat "
+      "component_format componentFormat sample_border sampleBorder high_quality_edges "
+      "highQualityEdges rfilter filter banner gamma attach_log attachLog";
+  const json_t *item;
+  size_t i;
+  char known[512];
+  snprintf(known, sizeof known, "%s %s %s", common, kind < 2 ? fov : "", more[kind]);
+  vlResult result = check_parameters(scene, sensor, known, record);
+  json_array_foreach(json_object_get(sensor, "/"), i, item) {
+    if (result == VL_OK && vl_text_is(tag_of(item), "film"))
+      result = check_parameters(scene, item, film, record);
+    if (vl_text_is(tag_of(item), "ref") && vl_text_is(vl_camera_text(item, "name"), "film"))
+      result = vl_camera_wrong_at(scene->file, line_of(item), 0,
+                                  "mitsuba: the film is a reference; write it into the sensor");
+  }
+  return result;
+}
+
+static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRecord *record) {
   static const char *const types[] = {"perspective", "thinlens", "orthographic"};
   const vlCameraFile *file = scene->file;
+  vlCameraDef *d = &record->camera;
   const char *type = NULL;
   vlResult result = attribute(scene, sensor, "type", &type);
   if (result != VL_OK)
@@ -372,7 +424,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   d->height = (uint32_t)crop[3];
   d->has_matrix = true;
   vl_camera_flip_columns(m.m, -1.0, -1.0, 1.0, d->world_from_camera);
-  return VL_OK;
+  return check_sensor(scene, sensor, kind, record);
 }
 
 static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t size,
@@ -399,7 +451,7 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
   }
   if (chosen) {
     vl_camera_name(record, vl_camera_text(chosen, "id"));
-    result = read_sensor(&scene, chosen, &record->camera);
+    result = read_sensor(&scene, chosen, record);
   } else if (record->frames) {
     result = vl_camera_no_frame(file, "sensor", record->frames);
   } else {

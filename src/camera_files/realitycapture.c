@@ -186,6 +186,9 @@ enum {
   COLUMNS,
   MAX_FIELDS = 64
 };
+/* columns, in a list as vlCameraFormat.known has it */
+static const char known_columns[] =
+    "#name x y alt heading pitch roll f px py k1 k2 k3 k4 t1 t2";
 static const char *const columns[COLUMNS] = {"#name", "x",  "y",  "alt", "heading", "pitch",
                                              "roll",  "f",  "px", "py",  "k1",      "k2",
                                              "k3",    "k4", "t1", "t2"};
@@ -273,12 +276,32 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
   return result;
 }
 
+/* The fields of a row point into its own text. */
+static void copy_row(Row *to, const Row *row) {
+  *to = *row;
+  for (int i = 0; i < row->count; i++)
+    to->fields[i] = to->text + (row->fields[i] - row->text);
+}
+
+/* Counts the columns of the header that velo does not know, with the values of a row. */
+static vlResult check_columns(const vlCameraFile *file, const Row *header, const Row *row,
+                              vlCameraRecord *record) {
+  vlResult result = VL_OK;
+  for (int i = 0; i < header->count && result == VL_OK; i++) {
+    const vlCameraName name = {header->fields[i], i < row->count ? row->fields[i] : "",
+                               header->number};
+    result = vl_camera_check_name(file, known_columns, &name, record);
+  }
+  return result;
+}
+
 static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size,
                          vlCameraRecord *record) {
-  Row row = {.at = text, .end = text + size};
+  Row row = {.at = text, .end = text + size}, header, chosen = {.count = 0};
   int of[COLUMNS];
   if (!next_row(&row))
     return vl_camera_wrong(file, "realitycapture: the file has no header");
+  copy_row(&header, &row);
   for (int k = 0; k < COLUMNS; k++) {
     of[k] = -1;
     for (int i = 0; i < row.count; i++)
@@ -288,18 +311,17 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
       return vl_camera_wrong_at(file, row.number, 1,
                                 "realitycapture: the column \"%s\" is missing", columns[k]);
   }
-  Row chosen = {.count = 0};
   for (record->frames = 0; next_row(&row); record->frames++) {
     const char *name = of[NAME] < row.count ? row.fields[of[NAME]] : "";
     if (chosen.count || !vl_camera_is_frame(file, record->frames, name))
       continue;
     vl_camera_name(record, name);
-    chosen = row;
-    for (int i = 0; i < row.count; i++)
-      chosen.fields[i] = chosen.text + (row.fields[i] - row.text);
+    copy_row(&chosen, &row);
   }
-  return chosen.count ? read_row(file, &chosen, of, record)
-                      : vl_camera_no_frame(file, "camera", record->frames);
+  if (!chosen.count)
+    return vl_camera_no_frame(file, "camera", record->frames);
+  vlResult result = check_columns(file, &header, &chosen, record);
+  return result == VL_OK ? read_row(file, &chosen, of, record) : result;
 }
 
 static bool is_csv(const char *text, size_t size) {

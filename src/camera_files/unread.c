@@ -204,7 +204,30 @@ vlResult vl_camera_check_unread(const vlCameraFile *file, const vlCameraFormat *
   return format->known || format->knows ? check(file, format, tree, top, record) : VL_OK;
 }
 
-/* A line is looked at like an element of XML. */
+vlResult vl_camera_check_part(const vlCameraFile *file, const char *known, const json_t *object,
+                              vlCameraRecord *record) {
+  const vlCameraFormat part = {.name = file->dialect, .known = known};
+  return check(file, &part, object, (Place){0, false}, record);
+}
+
+/* The name is looked at like that of an element of XML. length: of the name. */
+static vlResult check_name(const vlCameraFile *file, const vlCameraFormat *format,
+                           const vlCameraName *name, size_t length, vlCameraRecord *record) {
+  json_t *element = json_pack("{s:s%,s:i,s:i,s:s}", "<", name->name, length, "#",
+                              (int)name->line, "|", 1, "$", name->value);
+  if (!element) /* no text in UTF-8 */
+    return VL_OK;
+  vlResult result = check(file, format, element, (Place){0, false}, record);
+  json_decref(element);
+  return result;
+}
+
+vlResult vl_camera_check_name(const vlCameraFile *file, const char *known,
+                              const vlCameraName *name, vlCameraRecord *record) {
+  const vlCameraFormat part = {.name = file->dialect, .known = known};
+  return check_name(file, &part, name, strlen(name->name), record);
+}
+
 static vlResult check_line(const vlCameraFile *file, const vlCameraFormat *format,
                            const vlCameraLines *line, vlCameraRecord *record) {
   const char *sign = strchr(line->text, format->separator);
@@ -214,13 +237,8 @@ static vlResult check_line(const vlCameraFile *file, const vlCameraFormat *forma
   while (length > 0 && strchr(" \t", line->text[length - 1]))
     length--;
   sign += 1 + strspn(sign + 1, " \t");
-  json_t *element = json_pack("{s:s%,s:i,s:i,s:s}", "<", line->text, length, "#",
-                              (int)line->number, "|", 1, "$", sign);
-  if (!element) /* no text in UTF-8 */
-    return VL_OK;
-  vlResult result = check(file, format, element, (Place){0, false}, record);
-  json_decref(element);
-  return result;
+  const vlCameraName name = {line->text, sign, line->number};
+  return check_name(file, format, &name, length, record);
 }
 
 vlResult vl_camera_check_lines(const vlCameraFile *file, const vlCameraFormat *format,

@@ -168,6 +168,54 @@ static vlResult walk(Search *s, const json_t *prim) {
   return result;
 }
 
+/* Fits the aperture to an image of another aspect ratio (UsdRenderSettingsBase,
+ * aspectRatioConformPolicy). image: width by height of the image, times the ratio of a pixel's
+ * sides. */
+static vlResult conform(const Search *s, double image, double *across, double *down) {
+  static const char *const policies[] = {"expandAperture", "cropAperture",
+                                         "adjustApertureWidth", "adjustApertureHeight",
+                                         "adjustPixelAspectRatio"};
+  enum { EXPAND, CROP, WIDTH, HEIGHT, PIXELS, POLICIES };
+  const char *word = vl_camera_text(s->resolution, "aspectRatioConformPolicy");
+  int policy = EXPAND;
+  while (word && policy < POLICIES && !vl_text_is(word, policies[policy]))
+    policy++;
+  if (policy == POLICIES) {
+    char known[300];
+    vl_tell_names(known, sizeof known, word, policies, POLICIES);
+    return vl_camera_wrong(s->file, "usd: unknown aspectRatioConformPolicy \"%s\"%s",
+                           vl_short_text(word).text, known);
+  }
+  const double aperture = *across / *down;
+  const bool wider = image > aperture;
+  if (fabs(image - aperture) <= 1e-5 * aperture || policy == PIXELS)
+    return VL_OK;
+  if (policy == WIDTH || (policy == EXPAND && wider) || (policy == CROP && !wider))
+    *across = *down * image;
+  else
+    *down = *across / image;
+  return VL_OK;
+}
+
+/* What render settings say of the image besides its size. */
+static vlResult read_settings(const Search *s, double *pixel) {
+  double window[4] = {0.0, 0.0, 1.0, 1.0};
+  *pixel = 1.0;
+  if (!s->resolution)
+    return VL_OK;
+  vlResult result = vl_camera_optional(s->file, s->resolution, "pixelAspectRatio", pixel);
+  if (result == VL_OK && json_object_get(s->resolution, "dataWindowNDC"))
+    result = vl_camera_numbers(s->file, s->resolution, "dataWindowNDC", window, 4, 4, NULL);
+  if (result != VL_OK)
+    return result;
+  if (window[0] != 0.0 || window[1] != 0.0 || window[2] != 1.0 || window[3] != 1.0)
+    return vl_camera_wrong(s->file, "usd: a crop, \"dataWindowNDC\", is not taken");
+  if (!(*pixel > 0.0))
+    return vl_camera_wrong(s->file, "usd: \"pixelAspectRatio\" is %g; it must be above zero",
+                           *pixel);
+  return VL_OK;
+}
+
 /* The image's size; aspect: of the aperture, for a file without a resolution. */
 static vlResult read_resolution(const Search *s, double aspect, vlCameraRecord *record) {
   double size[2];
@@ -183,6 +231,33 @@ static vlResult read_resolution(const Search *s, double aspect, vlCameraRecord *
           size[i]);
   record->camera.width = (uint32_t)size[0];
   record->camera.height = (uint32_t)size[1];
+  return VL_OK;
+}
+
+/* Attributes of the camera that velo does not know. Those of Omniverse's fisheyes have no
+ * effect on a pinhole. */
+static vlResult check_attributes(const vlCameraFile *file, const json_t *prim,
+                                 vlCameraRecord *record) {
+  static const char known[] =
+      "@ /! Camera focalLength focusDistance fStop horizontalAperture horizontalApertureOffset "
+      "verticalAperture verticalApertureOffset clippingRange projection exposure "
+      "shutter:open shutter:close stereoRole cameraProjectionType ftheta* fisheye* xformOp* "
+      "visibility purpose kind userProperties:* primvars:* omni:kit:*";
+  return vl_camera_check_part(file, known, prim, record);
+}
+
+/* flat: the projection is orthographic. */
+static vlResult read_projection(const vlCameraFile *file, const json_t *prim, bool *flat) {
+  const char *projection = vl_camera_text(prim, "projection");
+  const char *lens = vl_camera_text(prim, "cameraProjectionType"); /* of Omniverse */
+  if (lens && !vl_text_is(lens, "pinhole"))
+    return vl_camera_wrong(file, "usd: \"cameraProjectionType\" \"%s\" is not taken",
+                           vl_short_text(lens).text);
+  *flat = vl_text_is(projection, "orthographic");
+  if (projection && !*flat && !vl_text_is(projection, "perspective"))
+    return vl_camera_wrong(
+        file, "usd: unknown projection \"%s\"; there are perspective, orthographic",
+        vl_short_text(projection).text);
   return VL_OK;
 }
 
@@ -213,20 +288,19 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   }
   if (result != VL_OK)
     return result;
-  const char *projection = vl_camera_text(prim, "projection");
-  const char *lens = vl_camera_text(prim, "cameraProjectionType"); /* of Omniverse */
-  if (lens && !vl_text_is(lens, "pinhole"))
-    return vl_camera_wrong(file, "usd: \"cameraProjectionType\" \"%s\" is not taken",
-                           vl_short_text(lens).text);
-  bool flat = vl_text_is(projection, "orthographic");
-  if (projection && !flat && !vl_text_is(projection, "perspective"))
-    return vl_camera_wrong(
-        file, "usd: unknown projection \"%s\"; there are perspective, orthographic",
-        vl_short_text(projection).text);
+  bool flat = false;
+  result = read_projection(file, prim, &flat);
+  if (result != VL_OK)
+    return result;
   if (!(focal > 0.0 && across > 0.0 && down > 0.0 && rate > 0.0))
     return vl_camera_wrong(
         file, "usd: focalLength, horizontalAperture and verticalAperture must be above zero");
-  result = read_resolution(s, across / down, record);
+  double pixel = 1.0;
+  result = read_settings(s, &pixel);
+  if (result == VL_OK)
+    result = read_resolution(s, across / down / pixel, record);
+  if (result == VL_OK)
+    result = conform(s, (double)d->width / d->height * pixel, &across, &down);
   if (result != VL_OK)
     return result;
   double w = d->width, h = d->height;
@@ -249,7 +323,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   d->has_matrix = true;
   vl_camera_flip_axes(s->pose.m, d->world_from_camera);
   vl_camera_name(record, vl_camera_text(prim, "@"));
-  return VL_OK;
+  return check_attributes(file, prim, record);
 }
 
 static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size,

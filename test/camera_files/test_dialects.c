@@ -578,6 +578,41 @@ static void test_matrices_of_others(void **state) {
   assert_float_equal(c.far_plane, 5, 1e-12);
 }
 
+/* UsdRender's rules for images whose aspect ratio is not that of the aperture. */
+static void test_usd_conforms(void **state) {
+  (void)state;
+  static const char usd[] =
+      "#usda 1.0\ndef Camera \"c\" {\n float focalLength = 20\n float horizontalAperture = 20\n"
+      " float verticalAperture = 20\n}\ndef RenderSettings \"s\" {\n int2 resolution = (%s)\n%s}\n";
+  static const struct {
+    const char *size, *more;
+    double fx, fy;
+  } rows[] = {
+      {"400, 200", "", 200, 200}, /* the aperture is made wider */
+      {"200, 400", "", 200, 200}, /* or higher */
+      {"400, 200", " token aspectRatioConformPolicy = \"cropAperture\"\n", 400, 400},
+      {"200, 400", " token aspectRatioConformPolicy = \"cropAperture\"\n", 400, 400},
+      {"400, 200", " token aspectRatioConformPolicy = \"adjustApertureWidth\"\n", 200, 200},
+      {"400, 200", " token aspectRatioConformPolicy = \"adjustApertureHeight\"\n", 400, 400},
+      {"400, 200", " token aspectRatioConformPolicy = \"adjustPixelAspectRatio\"\n", 400, 200},
+      {"400, 200", " float pixelAspectRatio = 0.5\n", 400, 200},
+      {"400, 400", " float pixelAspectRatio = 2\n", 200, 400}};
+  char text[512];
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    snprintf(text, sizeof text, usd, rows[i].size, rows[i].more);
+    const vlCameraRecord r = read_with(put("fit.usda", text), NULL);
+    assert_float_equal(r.camera.fx, rows[i].fx, 1e-9);
+    assert_float_equal(r.camera.fy, rows[i].fy, 1e-9);
+  }
+  snprintf(text, sizeof text, usd, "4, 4", " float4 dataWindowNDC = (0, 0, 0.5, 1)\n");
+  assert_non_null(strstr(refused("fit.usda", text).message, "dataWindowNDC"));
+  snprintf(text, sizeof text, usd, "4, 4", " float pixelAspectRatio = -1\n");
+  assert_non_null(strstr(refused("fit.usda", text).message, "pixelAspectRatio"));
+  snprintf(text, sizeof text, usd, "4, 4",
+           " token aspectRatioConformPolicy = \"cropApertur\"\n");
+  assert_non_null(strstr(refused("fit.usda", text).message, "the nearest is \"cropAperture\""));
+}
+
 /* Written fields that a dialect lacks are refused by name; dropped, the rest is written. */
 static void test_refusals(void **state) {
   (void)state;
@@ -634,6 +669,7 @@ int main(void) {
       cmocka_unit_test(test_usd_example),
       cmocka_unit_test(test_matrices_land_on_the_pixel),
       cmocka_unit_test(test_matrices_of_others),
+      cmocka_unit_test(test_usd_conforms),
       cmocka_unit_test(test_refusals),
   };
   return cmocka_run_group_tests(tests, files_setup, files_teardown);

@@ -227,6 +227,92 @@ static void trajectories_have_the_note(void **state) {
   assert_non_null(strstr(error.message, "\"crop_left\""));
 }
 
+/* Files that hold whole scenes: of the camera alone. */
+static void cameras_of_scenes(void **state) {
+  (void)state;
+  static const struct {
+    const char *name, *text, *more; /* more: a format of a name and a number */
+  } files[] = {
+      {"s.gltf",
+       "{\"asset\":{\"version\":\"2.0\"},\"made_up_too\":1,\"nodes\":[{\"camera\":0,"
+       "\"extensions\":{\"X\":{}}}],\"cameras\":[{\"type\":\"perspective\",\"extras\":{\"x\":1},"
+       "\"perspective\":{\"yfov\":1,\"znear\":1%s}}]}",
+       ",\"%s\":%d"},
+      {"node.gltf",
+       "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"camera\":0%s}],\"cameras\":[{\"type\":"
+       "\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}]}",
+       ",\"%s\":%d"},
+      {"s.dae",
+       "<COLLADA version=\"1.4.1\"><library_cameras><camera id=\"c\"><optics><technique_common>"
+       "<perspective><yfov>50</yfov><aspect_ratio>1</aspect_ratio>%s</perspective>"
+       "</technique_common></optics><extra><x>1</x></extra></camera></library_cameras>"
+       "<library_visual_scenes><visual_scene id=\"s\"><node id=\"n\"><matrix>1 0 0 0 0 1 0 0 0 0 1 "
+       "0 0 0 0 1</matrix><instance_camera url=\"#c\"/></node></visual_scene>"
+       "</library_visual_scenes></COLLADA>",
+       "<%1$s>%2$d</%1$s>"},
+      {"s.usda",
+       "#usda 1.0\ndef Xform \"x\" {\n int other = 1\n def Camera \"c\" {\n float focalLength = 50\n"
+       " string userProperties:a = \"b\"\n%s def Mesh \"m\" { int x = 3 }\n}\n}\n",
+       " int %s = %d\n"},
+      {"s.xml",
+       "<scene version=\"3.0.0\"><shape type=\"x\"><float name=\"y\" value=\"1\"/></shape>"
+       "<sensor type=\"perspective\"><float name=\"fov\" value=\"40\"/>%s</sensor></scene>",
+       "<float name=\"%s\" value=\"%d\"/>"},
+      {"film.xml",
+       "<scene version=\"3.0.0\"><sensor type=\"thinlens\"><float name=\"fovAxis\" value=\"x\"/>"
+       "<float name=\"apertureRadius\" value=\"1\"/><film type=\"hdrfilm\"><string "
+       "name=\"pixel_format\" value=\"rgb\"/>%s</film></sensor></scene>",
+       "<float name=\"%s\" value=\"%d\"/>"}};
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    const vlCameraFileDef def = vl_default_camera_file_def();
+    char text[1024], more[100];
+    snprintf(text, sizeof text, files[i].text, "");
+    assert_string_equal(read_with(put(files[i].name, text), &def).unread_names, "");
+    snprintf(more, sizeof more, files[i].more, "made_up", 3);
+    snprintf(text, sizeof text, files[i].text, more);
+    assert_string_equal(read_with(put(files[i].name, text), &def).unread_names, "\"made_up\"");
+    snprintf(more, sizeof more, files[i].more, "crop_left", 0);
+    snprintf(text, sizeof text, files[i].text, more);
+    assert_string_equal(read_with(put(files[i].name, text), &def).unread_names,
+                        "\"crop_left\"");
+    snprintf(more, sizeof more, files[i].more, "crop_left", 5);
+    snprintf(text, sizeof text, files[i].text, more);
+    assert_non_null(strstr(refused(files[i].name, text).message, "\"crop_left\" is not"));
+  }
+  const char *reference =
+      "<scene><sensor type=\"perspective\"><ref name=\"film\" id=\"f\"/></sensor></scene>";
+  assert_non_null(strstr(refused("ref.xml", reference).message, "the film is a reference"));
+}
+
+/* Columns of RealityCapture's CSV; the size is given. */
+static void columns_of_tables(void **state) {
+  (void)state;
+  static const struct {
+    const char *column, *value, *names, *message;
+  } rows[] = {{"t2", "0", "", NULL},
+              {"color", "red", "\"color\"", NULL},
+              {"k5", "0", "\"k5\"", NULL},
+              {"k5", "0.1", NULL, "\"k5\" is not understood"},
+              {"skew", "3", NULL, "\"skew\" is not understood"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const vlCameraFileDef def = sized();
+    char text[300];
+    vlCameraRecord record;
+    vlError error;
+    snprintf(text, sizeof text,
+             "#name,x,y,alt,heading,pitch,roll,f,%s\na.jpg,1,2,3,4,5,6,35,%s\n", rows[i].column,
+             rows[i].value);
+    vlResult result = vl_camera_read(context, put("reality.csv", text), &def, &record, &error);
+    if (rows[i].names) {
+      assert_int_equal(result, VL_OK);
+      assert_string_equal(record.unread_names, rows[i].names);
+    } else {
+      assert_int_equal(result, VL_ERROR_SCENE);
+      assert_non_null(strstr(error.message, rows[i].message));
+    }
+  }
+}
+
 /* The first three names are kept; all fields are counted. */
 static void names_are_counted(void **state) {
   (void)state;
@@ -268,6 +354,8 @@ int main(void) {
       cmocka_unit_test(names_of_one_dialect),
       cmocka_unit_test(what_changes_the_image_is_refused),
       cmocka_unit_test(trajectories_have_the_note),
+      cmocka_unit_test(cameras_of_scenes),
+      cmocka_unit_test(columns_of_tables),
       cmocka_unit_test(names_are_counted),
       cmocka_unit_test(rows_at_different_times_are_refused),
   };

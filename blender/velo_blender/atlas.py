@@ -11,10 +11,10 @@ MAX_BLOCK = 512
 class Corners:
     """What is known at the corners of the triangles of one slot of a mesh, made when it is asked for.
 
-    arrays: geometry.MeshArrays. item: the object. names: the uv maps, the rendered one first."""
+    arrays: geometry.MeshArrays. matrix: world from object, 4 x 4. names: the uv maps, the rendered one first."""
 
-    def __init__(self, arrays, slot, item, names, texture_space):
-        self._arrays, self._item, self._names, self._space = arrays, item, names, texture_space
+    def __init__(self, arrays, slot, matrix, names, texture_space):
+        self._arrays, self._matrix, self._names, self._space = arrays, matrix, names, texture_space
         self.triangles = arrays.triangles[arrays.slots == slot]
 
     def fields(self):
@@ -23,7 +23,7 @@ class Corners:
         points = arrays.positions[self.triangles].astype(float)
         normals = self._normals(points)
         low, size = self._space
-        matrix = numpy.array(self._item.matrix_world, dtype=float)
+        matrix = self._matrix
         found = {"object": points, "generated": (points - low) / numpy.where(size == 0, 1, size), "normal": normals,
                  "world position": points @ matrix[:3, :3].T + matrix[:3, 3]}
         turned = normals @ numpy.linalg.pinv(matrix[:3, :3])
@@ -42,13 +42,6 @@ class Corners:
         flat = numpy.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
         flat = flat / numpy.maximum(numpy.linalg.norm(flat, axis=1, keepdims=True), 1e-30)
         return numpy.repeat(flat[:, None, :], 3, axis=1)
-
-    def constants(self):
-        """What the object itself says: {name: 1 or 1 x 3}."""
-        item = self._item
-        return {"object info location": numpy.array([list(item.matrix_world.translation)]),
-                "object info color": numpy.array([list(item.color)[:3]]), "object info alpha": numpy.array([item.color[3]]),
-                "object info object index": numpy.array([float(item.pass_index)])}
 
 
 def block_side(triangles, side):

@@ -3,7 +3,18 @@ from . import links
 
 
 def words(inputs, node, groups):
-    """Keywords of velo's material for a shader node's socket Normal: normal, normal_scale, displacement; none where it has none."""
+    """Keywords of velo's material for a shader node's socket Normal and the material's relief: normal, normal_scale, displacement; none
+    where it has none."""
+    result = _of_socket(inputs, node, groups)
+    if inputs.relief is not None:
+        if "displacement" in result:
+            inputs.notes.add(inputs.owner, node.name, "of a bump and a displacement the bump is rendered")
+        else:
+            result["displacement"] = inputs.relief
+    return result
+
+
+def _of_socket(inputs, node, groups):
     result = {}
     socket = node.inputs.get("Normal")
     for _ in range(8):

@@ -4,16 +4,26 @@ groups) -> Closure.
 Cycles' glossy shaders without multiple scattering are velo's principled dielectric of infinite index (docs/principled.md): F0 is the
 specular colour, F90 the specular factor, and light between microfacets is lost in both."""
 import math
+from typing import Any, NamedTuple
 
 from . import bumps, principled
 
 
 class Closure:
     """material: a handle or None (reflects nothing). emission: list of (colour or texture, strength). coverage: share of the surface
-    that is there, a number or a texture; None: 1. is_clear: nothing is there."""
+    that is there, a number or a texture; None: 1. is_clear: nothing is there. lobe: what a single lobe is made of, for facing.coated."""
 
-    def __init__(self, material=None, emission=(), coverage=None, is_clear=False):
+    def __init__(self, material=None, emission=(), coverage=None, is_clear=False, lobe=None):
+        self.lobe = lobe
         self.material, self.emission, self.coverage, self.is_clear = material, list(emission), coverage, is_clear
+
+
+class Lobe(NamedTuple):
+    """What a closure of one lobe is made of. kind: diffuse, glossy, refraction or clear; words: of its normal map and bump."""
+    kind: str
+    color: Any
+    roughness: Any
+    words: dict
 
 
 def is_color(value):
@@ -74,7 +84,8 @@ def _diffuse(inputs, node, groups):
     color = inputs.color(node.inputs["Color"], groups)
     if inputs.constant(node.inputs["Roughness"], groups) != 0.0:
         inputs.notes.add(inputs.owner, node.name, "a rough diffuse reflection (Oren and Nayar) is a smooth one (Lambert)")
-    return Closure(diffuse(inputs, color, bumps.words(inputs, node, groups)))
+    words = bumps.words(inputs, node, groups)
+    return Closure(diffuse(inputs, color, words), lobe=Lobe("diffuse", color, 1.0, words))
 
 
 def glossy(inputs, color, roughness, multiple, words):
@@ -93,13 +104,13 @@ def _glossy(inputs, node, groups):
     color = inputs.color(node.inputs["Color"], groups)
     distribution = node.distribution
     roughness = 0.0 if distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
-    if distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
+    if distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY") and roughness != 0.0:
         inputs.notes.add(inputs.owner, node.name, "the distribution %s is GGX" % distribution)
     words = bumps.words(inputs, node, groups)
     if node.inputs.get("Anisotropy") is not None:
         words.update(principled.anisotropy(inputs, node.inputs["Anisotropy"], node.inputs["Rotation"], roughness, groups, node))
         roughness = words.pop("roughness", roughness)
-    return Closure(glossy(inputs, color, roughness, distribution == "MULTI_GGX", words))
+    return Closure(glossy(inputs, color, roughness, distribution == "MULTI_GGX", words), lobe=Lobe("glossy", color, roughness, words))
 
 
 def glass(inputs, color, roughness, eta, words):
@@ -123,7 +134,7 @@ def index_of(inputs, node, groups):
 def _glass(inputs, node, groups):
     color = inputs.color(node.inputs["Color"], groups)
     roughness = 0.0 if node.distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
-    if node.distribution == "BECKMANN":
+    if node.distribution == "BECKMANN" and roughness != 0.0:
         inputs.notes.add(inputs.owner, node.name, "the distribution BECKMANN is GGX")
     return Closure(glass(inputs, color, roughness, index_of(inputs, node, groups), bumps.words(inputs, node, groups)))
 
@@ -131,10 +142,11 @@ def _glass(inputs, node, groups):
 def _refraction(inputs, node, groups):
     color = inputs.color(node.inputs["Color"], groups)
     roughness = 0.0 if node.distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
+    words = bumps.words(inputs, node, groups)
     handle = inputs.scene.add_material("principled", reflectance=color, specular=0.0, metallic=0.0, roughness=roughness,
                                        eta=index_of(inputs, node, groups), transmission=1.0, thin_walled=False, name=inputs.owner,
-                                       **bumps.words(inputs, node, groups))
-    return Closure(handle)
+                                       **words)
+    return Closure(handle, lobe=Lobe("refraction", color, roughness, words))
 
 
 def _translucent(inputs, node, groups):
@@ -147,7 +159,7 @@ def _translucent(inputs, node, groups):
 def _transparent(inputs, node, groups):
     color = inputs.color(node.inputs["Color"], groups)
     if is_color(color) and min(color) > 0.999:
-        return Closure(is_clear=True, coverage=0.0)
+        return Closure(is_clear=True, coverage=0.0, lobe=Lobe("clear", (1.0, 1.0, 1.0), 0.0, {}))
     if color == (0.0, 0.0, 0.0):
         return Closure()
     handle = inputs.scene.add_material("principled", reflectance=color, specular=0.0, metallic=0.0, roughness=0.0, eta=1.5,

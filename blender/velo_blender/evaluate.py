@@ -49,11 +49,12 @@ def default_of(socket):
 class Evaluator:
     """Values at points. fields: what is known of the points, by name: "uv:NAME" (NAME empty: the active map) n x 2, "generated",
     "object", "position", "normal", "direction" n x 3. What is missing makes nodes Unsupported. textures: a function that gives an
-    images.Texels for an image node."""
+    images.Texels for an image node. note: a function (node, text) that hears what a value leaves out."""
 
-    def __init__(self, fields, textures):
+    def __init__(self, fields, textures, note=None):
         self.fields = fields
         self.textures = textures
+        self.note = note or (lambda node, text: None)
         self._depth = 0
 
     def input(self, socket, groups=()):
@@ -94,10 +95,11 @@ class Evaluator:
         return self.fields[name]
 
 
-def constant(socket, groups=()):
-    """The value of a socket as a float or three floats where it is the same everywhere; None: it is not."""
+def constant(socket, groups=(), fields=None, note=None):
+    """The value of a socket as a float or three floats where it is the same everywhere; None: it is not. fields, note: as for
+    Evaluator."""
     try:
-        array = Evaluator({}, _no_textures).input(socket, groups)
+        array = Evaluator(fields or {}, _no_textures, note).input(socket, groups)
     except Unsupported:
         return None
     if len(array) != 1:

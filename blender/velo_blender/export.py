@@ -5,7 +5,7 @@ import bpy
 import numpy
 import velo
 
-from . import atlas, camera, camera_files, geometry, hair, lights, materials, motion, textures, world
+from . import atlas, camera, camera_files, displace, geometry, hair, lights, materials, motion, object_info, points, textures, world
 from .report import Notes, Refused
 
 MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -16,6 +16,14 @@ class Part(NamedTuple):
     words: dict
     surface: Any
     material: Any
+
+
+class Place(NamedTuple):
+    """Where a mesh is and what its materials may ask of the object. matrix: world from object; known: object_info.fields; owner: what
+    tells it from other objects that share the mesh, () where all are alike."""
+    matrix: Any
+    known: dict
+    owner: tuple
 
 
 class Prepared(NamedTuple):
@@ -39,6 +47,7 @@ class Export:
         self._moves = moves
         self._handles = {}  # {motion.key_of(instance): handle}
         self._meshes, self._surfaces, self._cache = {}, {}, {}
+        self._copies, self._varying = {}, {}  # objects of a mesh whose materials ask for the object; {material: whether it does}
         self._cancelled = cancelled or (lambda: False)
         self._settings = depsgraph.scene.velo
         self.camera = view if view is not None else _camera_of(depsgraph, size)
@@ -65,12 +74,14 @@ class Export:
                 lights.add(self.scene, item, instance.matrix_world, self._camera_sees, self.notes)
                 self.shapes += [0] * (len(self.scene.handles("shapes")) - len(self.shapes))
             elif item.type in MESHES:
-                handle = self._place(item, matrix, self._moves.of(instance) if self._moves is not None else None)
+                handle = self._place(instance, matrix, self._moves.of(instance) if self._moves is not None else None)
                 if handle is not None:
                     self._handles[motion.key_of(instance)] = handle
                 for system in item.particle_systems:
                     if system.settings.type == "HAIR" and system.settings.render_type == "PATH" and not instance.is_instance:
                         self._add_hair(item, hair.of_particles(item, system), system.settings.material - 1, numpy.eye(4))
+            elif item.type == "POINTCLOUD":
+                self._add_points(item, matrix)
             elif item.type == "CURVES":
                 self._add_hair(item, hair.of_curves(item.data), 0, matrix)
             elif item.type != "GPENCIL":
@@ -119,12 +130,13 @@ class Export:
         margin = 0.1 * numpy.array(self.size)
         return bool((high > -margin).all() and (low < numpy.array(self.size) + margin).all())
 
-    def _place(self, item, matrix, poses):
+    def _place(self, instance, matrix, poses):
         """Adds an object; returns the handle of its instance if that is all that it is and it is at rest."""
+        item = instance.object
         if abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
             self.notes.add(item.name, "", "it is scaled to nothing and left out")
             return None
-        prepared = self._prepared(item)
+        prepared = self._prepared(item, matrix, object_info.random_id(instance))
         if prepared is None:
             return None
         handle = None
@@ -148,12 +160,26 @@ class Export:
         if len(widths) == 0:
             return
         slots = [known.material for known in item.material_slots] or [None]
-        surface = self._surface(slots[min(max(slot, 0), len(slots) - 1)], textures.Maps(None), None)
-        if surface.emission is not None:
-            self.notes.add(item.name, "", "hair does not emit")
-        words = {} if surface.alpha is None else {"alpha": surface.alpha}
+        surface, words = self._bare_surface(item, slots[min(max(slot, 0), len(slots) - 1)], matrix, "hair")
         self.scene.add_shape("curves", positions=positions, widths=widths, curve="cylinder", material=surface.material, pose=matrix,
                              name=item.name, **words)
+        self.shapes.append(item.pass_index)
+
+    def _bare_surface(self, item, material, matrix, what):
+        """(surface, keywords of the shape) of what has no uv maps and does not emit."""
+        place = Place(matrix, object_info.fields(item, matrix, 0), (item.name_full,))
+        surface = self._surface(material, textures.Maps(None), None, place)
+        if surface.emission is not None:
+            self.notes.add(item.name, "", "%s does not emit" % what)
+        return surface, {} if surface.alpha is None else {"alpha": surface.alpha}
+
+    def _add_points(self, item, matrix):
+        centers, radii = points.read(item.data, self.notes, item.name)
+        if len(radii) == 0:
+            return
+        slots = [known.material for known in item.material_slots] or [None]
+        surface, words = self._bare_surface(item, slots[0], matrix, "a point cloud")
+        self.scene.add_shape("sphere", centers=centers, radii=radii, material=surface.material, pose=matrix, name=item.name, **words)
         self.shapes.append(item.pass_index)
 
     def indices(self, name, image):
@@ -176,16 +202,29 @@ class Export:
 
     # ---- meshes
 
-    def _prepared(self, item):
+    def _prepared(self, item, matrix, number):
         """The mesh of an object in velo, made once for all objects that share it and its materials; None: it has no faces."""
         slots = [slot.material for slot in item.material_slots] or [None]
         data = item.data if item.type == "MESH" else item
         key = (data.as_pointer(), tuple(None if material is None else material.name_full for material in slots))
-        if key not in self._meshes:
-            self._meshes[key] = self._make(item, slots)
-        return self._meshes[key]
+        owner = ()
+        if any(self._varies(material) for material in slots):
+            self._copies[key] = self._copies.get(key, 0) + 1
+            if self._copies[key] <= object_info.MAX_COPIES:
+                owner = (item.name_full, number, matrix.tobytes())
+            else:
+                self.notes.add(item.name, "", "of its copies the first %d have colours of their own" % object_info.MAX_COPIES)
+        if key + owner not in self._meshes:
+            self._meshes[key + owner] = self._make(item, slots, Place(matrix, object_info.fields(item, matrix, number), owner))
+        return self._meshes[key + owner]
 
-    def _make(self, item, slots):
+    def _varies(self, material):
+        name = None if material is None else material.name_full
+        if name not in self._varying:
+            self._varying[name] = object_info.varies(material)
+        return self._varying[name]
+
+    def _make(self, item, slots, place):
         mesh = item.to_mesh()
         try:
             arrays = geometry.read(mesh)
@@ -194,7 +233,8 @@ class Export:
             if not arrays.is_finite():
                 self.notes.add(item.name, "", "its vertices are no numbers (NaN or infinite); it is left out")
                 return None
-            parts = self._parts(item, arrays, slots)
+            self._displace(arrays, slots, place)
+            parts = self._parts(item, arrays, slots, place)
         finally:
             item.to_mesh_clear()
         plain = [part for part in parts if part.surface.emission is None]
@@ -203,25 +243,35 @@ class Export:
             self._add_shape(part, item, group=group, name=item.name)
         return Prepared(group, parts, [part for part in parts if part.surface.emission is not None])
 
-    def _parts(self, item, arrays, slots):
+    def _displace(self, arrays, slots, place):
+        for slot in numpy.unique(arrays.slots):
+            material = slots[slot] if 0 <= slot < len(slots) else slots[-1]
+            if displace.is_displaced(material):
+                inputs = self._inputs(material, textures.Maps(arrays), None, place)
+                displace.apply(arrays, slot, material, inputs, place.matrix)
+
+    def _parts(self, item, arrays, slots, place):
         maps = textures.Maps(arrays)
         if len(maps.names) > 4:
             self.notes.add(item.name, "", "of its %d uv maps the first 4 are rendered" % len(maps.names))
         parts = []
         for slot in numpy.unique(arrays.slots):
             material = slots[slot] if 0 <= slot < len(slots) else slots[-1]
-            corners = atlas.Corners(arrays, slot, item, maps.names[:4], arrays.texture_space)
-            surface = self._surface(material, maps, corners)
+            corners = atlas.Corners(arrays, slot, place.matrix, maps.names[:4], arrays.texture_space)
+            surface = self._surface(material, maps, corners, place)
             parts.append(Part(self._arrays_of(arrays, slot, maps, surface), surface, material))
         return parts
 
-    def _surface(self, material, maps, corners):
-        key = (None if material is None else material.name_full, maps.key())
+    def _inputs(self, material, maps, corners, place):
+        owner = "default" if material is None else material.name
+        return textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size, corners, place.known)
+
+    def _surface(self, material, maps, corners, place):
+        key = (None if material is None else material.name_full, maps.key(), place.owner if self._varies(material) else ())
         if key not in self._surfaces:
-            owner = "default" if material is None else material.name
-            inputs = textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size, corners)
+            inputs = self._inputs(material, maps, corners, place)
             surface = materials.convert(material, inputs)
-            self.material_indices[owner] = 0 if material is None else material.pass_index
+            self.material_indices[inputs.owner] = 0 if material is None else material.pass_index
             if surface.atlas is not None:
                 return surface  # of this mesh alone
             self._surfaces[key] = surface

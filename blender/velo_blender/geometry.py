@@ -58,6 +58,36 @@ class MeshArrays:
         colors = _read(attribute.data, "color", 4, numpy.float32)
         return colors[self.corners] if attribute.domain == "POINT" else colors
 
+    def vertex_of(self, rows):
+        """The mesh's vertices of rows of positions."""
+        return self.corners[rows] if self.by_corner else rows
+
+    def vertex_normals(self):
+        """The normals of the mesh's vertices."""
+        return _read(self._mesh.vertices, "normal", 3, numpy.float32).astype(float)
+
+    def move(self, vertices, offsets):
+        """Moves vertices of the mesh, n, by offsets, n x 3. Smooth normals become those of the moved surface."""
+        change = numpy.zeros((len(self._mesh.vertices), 3), dtype=numpy.float32)
+        change[vertices] = offsets
+        every = self.corners if self.by_corner else slice(None)
+        self.positions = self.positions + change[every]
+        if self.normals is not None:
+            self._smooth_again(len(change))
+
+    def _smooth_again(self, count):
+        corners = self.positions[self.triangles].astype(float)
+        flat = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        total = numpy.zeros((count, 3))
+        for k in range(3):
+            numpy.add.at(total, self.vertex_of(self.triangles[:, k]), flat)
+        normals = total[self.corners] if self.by_corner else total
+        if self.by_corner:
+            sharp = ~_read(self._mesh.loop_triangles, "use_smooth", 1, bool)
+            normals[self.triangles[sharp].ravel()] = numpy.repeat(flat[sharp], 3, axis=0)
+        lengths = numpy.linalg.norm(normals, axis=1, keepdims=True)
+        self.normals = (normals / numpy.maximum(lengths, 1e-30)).astype(numpy.float32)
+
     def part(self, slot):
         """The triangles of a slot and the vertices that they use: (triangles, used); used: None for all vertices."""
         mine = self.slots == slot

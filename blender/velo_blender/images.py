@@ -18,10 +18,12 @@ def problem(image):
     """Why an image has no pixels, one line; None: it has."""
     if image is None:
         return "no image is chosen"
-    if image.source in ("FILE", "SEQUENCE", "MOVIE", "TILED") and not image.packed_file and image.source != "TILED":
+    if image.source in ("FILE", "SEQUENCE", "MOVIE") and not image.packed_file:
         path = bpy.path.abspath(image.filepath, library=image.library)
         if not image.has_data and not os.path.exists(path):
             return "the file %s is missing" % path
+    if image.source == "TILED":
+        return None if len(image.tiles) > 0 else "it has no tiles"
     if len(image.pixels) == 0 or image.size[0] == 0 or image.size[1] == 0:
         return "it has no pixels (%s)" % (image.filepath or image.source)
     return None
@@ -64,10 +66,11 @@ def is_encoded(image):
 
 
 class Texels:
-    """Bilinear or nearest look-ups in an array of height x width x channels, rows from the top, u to the right, v up."""
+    """Bilinear or nearest look-ups in an array of height x width x channels, rows from the top, u to the right, v up. matrix: the
+    place in the array, (s, t), from (u, v), 2 x 3."""
 
-    def __init__(self, values, extension="REPEAT", closest=False):
-        self.values, self.extension, self.closest = values, extension, closest
+    def __init__(self, values, extension="REPEAT", closest=False, matrix=None):
+        self.values, self.extension, self.closest, self.matrix = values, extension, closest, matrix
 
     def _index(self, i, count):
         """(indices in range, whether they are inside)."""
@@ -88,6 +91,8 @@ class Texels:
 
     def at(self, u, v):
         """n x channels at points, n."""
+        if self.matrix is not None:
+            u, v = self.matrix[:, :2] @ numpy.stack((u, v)) + self.matrix[:, 2:]
         height, width = self.values.shape[:2]
         limit = 1e9  # of what becomes a whole number
         x = numpy.clip(numpy.nan_to_num(u) * width, -limit, limit)

@@ -11,8 +11,10 @@ import velo
 
 from . import evaluate, links, versions, world
 
-SHARP_SUN = 0.8  # degrees; suns of a wider disk are SUN_POINTS lights
-SUN_POINTS = 64
+SHARP_SUN = 1e-3  # radians from the middle to the rim; suns of a smaller disk are points
+SUN_PIXELS = 12  # of a sun's image from the middle to the rim, where MAX_SUN_SIDE allows it
+MAX_SUN_SIDE = 2048
+FAR = 1e6  # where the camera would see a sun
 SPOT_SIDE = 512  # of the image of a spot's intensity, pixels
 
 
@@ -42,6 +44,8 @@ def _finite_pose(matrix):
 def add(scene, item, matrix, camera_sees, notes):
     """Adds a light object. camera_sees(points n x 3): whether the camera might see one of these points or what lies between."""
     light = item.data
+    if getattr(getattr(light, "cycles", None), "is_portal", False):
+        return  # it lights nothing; Cycles only aims by it
     pose = _finite_pose(matrix)
     if pose is None:
         notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
@@ -88,21 +92,35 @@ def _sun(scene, item, light, pose, words, power, camera_sees, notes):
         notes.add(item.name, "", "its direction is not defined; it is left out")
         return
     axis = axis / length
-    if light.angle <= math.radians(SHARP_SUN):
-        scene.add_light("distant", position=tuple(axis), to=(0.0, 0.0, 0.0), scale=power, **words)
-        return
-    for direction in disk_directions(axis, math.sin(0.5 * min(light.angle, math.pi))):
-        scene.add_light("distant", position=tuple(direction), to=(0.0, 0.0, 0.0), scale=power / SUN_POINTS, **words)
-    notes.add(item.name, "Angle", "the sun's disk is %d points" % SUN_POINTS)
-
-
-def disk_directions(axis, radius):
-    """Unit directions, SUN_POINTS x 3, spread evenly over a disk about an axis: Vogel's spiral."""
-    number = numpy.arange(SUN_POINTS) + 0.5
-    distance, turn = radius * numpy.sqrt(number / SUN_POINTS), number * math.pi * (3 - math.sqrt(5))
     frame = _frame_along(axis, numpy.zeros(3))
-    local = numpy.stack((distance * numpy.cos(turn), distance * numpy.sin(turn), numpy.sqrt(1 - distance**2)), axis=1)
-    return local @ frame[:3, :3].T
+    half = 0.5 * min(light.angle, math.pi)
+    rim = frame[:3, :2] @ (math.tan(min(half, 1.5)) * numpy.array([[1, -1, 0, 0], [0, 0, 1, -1.0]]))
+    if half < SHARP_SUN or _hidden(item, FAR * (axis + rim.T), camera_sees):
+        scene.add_light("distant", position=tuple(axis), to=(0.0, 0.0, 0.0), scale=power, **words)
+        if half >= SHARP_SUN:
+            notes.add(item.name, "Angle", "its disk, which the camera would see, is a point")
+        return
+    values = sun_disk(half)
+    image = velo.Image(numpy.ascontiguousarray((values * power)[..., None] * numpy.array(words["color"]), dtype=numpy.float32),
+                       encoding="linear")
+    scene.add_light("infinite", image=image, scale=1.0, pose=frame)
+
+
+def sun_disk(half):
+    """The radiance of a sun about +z in an octahedral square, side x side: the same within an angle of half, with the shares of the
+    pixels at its rim. Its sum over directions is 1, as in Cycles."""
+    side = int(min(MAX_SUN_SIDE, max(64, 2 * round(SUN_PIXELS * math.sqrt(math.pi) / half / 2))))
+    values = numpy.zeros((side, side))
+    # The square's middle is +z; an angle of half reaches this far from it.
+    reach = min(side // 2, int(math.ceil(side * math.sin(0.5 * half) / math.sqrt(2))) * 2 + 2)
+    fine = 4
+    local = (numpy.arange(2 * reach * fine) + 0.5) / fine - reach
+    v, u = numpy.meshgrid(2 * local / side, 2 * local / side, indexing="ij")
+    cosines = world.square_cosines(u, v)
+    share = (cosines >= math.cos(half)).reshape(2 * reach, fine, 2 * reach, fine).mean(axis=(1, 3))
+    middle = slice(side // 2 - reach, side // 2 + reach)
+    values[middle, middle] = share
+    return values / (share.sum() * 4 * math.pi / side**2)
 
 
 def _spot(scene, item, light, pose, words, power, camera_sees, notes):

@@ -1,7 +1,7 @@
 """materials.py: Blender's materials as velo's: the tree of closures becomes a material, a coverage and an emission."""
 import math
 
-from . import closures, links
+from . import closures, displace, facing, links
 from .closures import Closure
 from .evaluate import Unsupported
 
@@ -26,14 +26,13 @@ def convert(material, inputs):
         inputs.notes.add(inputs.owner, "", "it has no output node and is black")
         return _finish(Closure(), inputs)
     try:
+        inputs.relief = displace.relief(material, inputs) if displace.is_bumped(material) else None
         closure = _closure(output.inputs["Surface"], (), inputs, 0)
     except links.Cyclic as error:
         inputs.notes.add(inputs.owner, "", "%s; it is black" % error)
         closure = Closure()
     if output.inputs["Volume"].is_linked:
         inputs.notes.add(inputs.owner, "Volume", "volumes of surfaces are not rendered")
-    if output.inputs["Displacement"].is_linked and material.cycles.displacement_method != "BUMP":
-        inputs.notes.add(inputs.owner, "Displacement", "displacement is not rendered")
     return _finish(closure, inputs)
 
 
@@ -59,6 +58,12 @@ def _closure(socket, groups, inputs, depth):
         return Closure()
     node = source.node
     if node.type == "MIX_SHADER":
+        eta = facing.index_of_factor(node.inputs[0], source.groups, inputs)
+        if eta is not None:
+            lobes = [_closure(node.inputs[i], source.groups, inputs, depth + 1) for i in (1, 2)]
+            made = facing.coated(lobes[0].lobe, lobes[1].lobe, eta, inputs)
+            if made is not None:
+                return Closure(material=made)
         factor = inputs.number(node.inputs[0], source.groups)
         if factor == 0.0 or factor == 1.0:
             return _closure(node.inputs[1 + int(factor)], source.groups, inputs, depth + 1)

@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from . import color_nodes, images, math_nodes, noise
+from . import color_nodes, facing, images, math_nodes, noise
 
 
 def _unsupported(node, text):
@@ -54,6 +54,11 @@ def vertex_color(e, node, output, groups):
 
 
 def attribute(e, node, output, groups):
+    if node.attribute_type != "GEOMETRY":
+        value = e.fields.get("property:" + node.attribute_name)
+        if value is None:
+            raise _unsupported(node, "the object has no property %s of numbers" % node.attribute_name)
+        return value
     if "color:" + node.attribute_name in e.fields:
         values = e.field("color:" + node.attribute_name, node)
         return values[:, 3] if output.name == "Alpha" else values[:, :3]
@@ -152,4 +157,4 @@ def gradient(e, node, output, groups):
 NODES = {"TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
          "OBJECT_INFO": object_info, "VERTEX_COLOR": vertex_color,
          "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment, "TEX_CHECKER": checker, "TEX_NOISE": noise_texture,
-         "TEX_GRADIENT": gradient, **math_nodes.NODES, **color_nodes.NODES}
+         "TEX_GRADIENT": gradient, **math_nodes.NODES, **color_nodes.NODES, **facing.NODES}

@@ -3,7 +3,7 @@ texture for is baked to an image over the uv map that it depends on."""
 import numpy
 import velo
 
-from . import atlas, evaluate, images, links, node_values
+from . import atlas, evaluate, images, links, node_values, tiles
 
 WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
 
@@ -29,9 +29,12 @@ class Inputs:
     """velo's inputs for one material on meshes with the same uv maps.
 
     scene: velo.Scene. owner: the material's name. uv_names: the mesh's maps, set 0 is render_uv. bounds: {name: (low, high)} of the
-    mesh's uvs. cache: {key: handle}, shared by all materials. bake_size: pixels of baked images."""
+    mesh's uvs. cache: {key: handle}, shared by all materials. bake_size: pixels of baked images. known: fields for evaluate.Evaluator
+    that are the same on the whole object (object_info.fields)."""
 
-    def __init__(self, scene, notes, owner, maps, cache, bake_size, corners=None):
+    def __init__(self, scene, notes, owner, maps, cache, bake_size, corners=None, known=None):
+        self.known = known or {}
+        self.relief = None  # a float texture, the height of the material's displacement where it is rendered as a bump
         self.corners = corners  # atlas.Corners of the mesh; None: nothing can be baked by its triangles
         self.atlas = None  # the layout of what is baked by triangles; None: nothing is
         self.scene, self.notes, self.owner, self.maps, self.cache, self.bake_size = scene, notes, owner, maps, cache, bake_size
@@ -40,11 +43,14 @@ class Inputs:
     # ---- numbers and colours
 
     def constant(self, socket, groups=()):
-        return evaluate.constant(socket, groups)
+        return evaluate.constant(socket, groups, self.known, self._note)
+
+    def _note(self, node, text):
+        self.notes.add(self.owner, node.name, text)
 
     def color(self, socket, groups=()):
         """A colour: three numbers or a colour texture."""
-        value = evaluate.constant(socket, groups)
+        value = self.constant(socket, groups)
         if value is None:
             return self._texture(socket, groups, True)
         value = (value,) * 3 if isinstance(value, float) else value
@@ -52,7 +58,7 @@ class Inputs:
 
     def number(self, socket, groups=()):
         """A number or a float texture."""
-        value = evaluate.constant(socket, groups)
+        value = self.constant(socket, groups)
         if value is None:
             return self._texture(socket, groups, False)
         return value if isinstance(value, float) else float(sum(value) / 3)
@@ -128,11 +134,13 @@ class Inputs:
             self.notes.add(self.owner, node.name, "cubic interpolation is linear")
         array = self.texels(node)
         number, matrix = place
+        matrix = self._tiled(node, matrix)
         key = ("image", node.image.name_full, spectrum, channel, number, tuple(matrix.ravel()), node.extension, node.interpolation,
                is_multiplied(node))
         if key not in self.cache:
             words = {} if spectrum else {"channel": channel}
-            self.cache[key] = self._add(array, spectrum, number, matrix, wrap=WRAPS[node.extension],
+            wrap = "black" if node.image.source == "TILED" else WRAPS[node.extension]
+            self.cache[key] = self._add(array, spectrum, number, matrix, wrap=wrap,
                                         filter="point" if node.interpolation == "Closest" else "bilinear", **words)
         return self.cache[key]
 
@@ -140,11 +148,27 @@ class Inputs:
         """The pixels of an image node as Cycles sees them, height x width x 4, linear; kept."""
         key = ("pixels", node.image.name_full, is_multiplied(node))
         if key not in self.cache:
-            array = images.pixels(node.image, self.notes)
+            array = images.pixels(node.image, self.notes) if node.image.source != "TILED" else self._joined(node).texels
             if is_multiplied(node):
                 array[..., :3] *= array[..., 3:]
             self.cache[key] = array
         return self.cache[key]
+
+    def _joined(self, node):
+        """The tiles.Joined of an image node; kept."""
+        key = ("tiles", node.image.name_full)
+        if key not in self.cache:
+            self.cache[key] = tiles.join(node.image, self.notes)
+        if self.cache[key] is None:
+            raise evaluate.Unsupported(node, "none of the image's tiles can be read")
+        return self.cache[key]
+
+    def _tiled(self, node, matrix):
+        """(s, t) in the joined tiles from what is (s, t) in a plain image, 2 x 3."""
+        if node.image.source != "TILED":
+            return matrix
+        outer = self._joined(node).matrix()
+        return outer[:, :2] @ matrix + numpy.concatenate([numpy.zeros((2, 2)), outer[:, 2:]], axis=1)
 
     def _add(self, array, spectrum, number, matrix, **words):
         image = velo.Image(numpy.ascontiguousarray(array[..., :3] if spectrum else array), encoding="linear")
@@ -178,8 +202,8 @@ class Inputs:
             source, _ = links.follow(socket, groups)
             raise evaluate.Unsupported(source.node, "the mesh has too many triangles to bake it")
         fields = {name: layout.points(values) for name, values in self.corners.fields().items()}
-        fields.update(self.corners.constants())
-        values = evaluate.Evaluator(fields, self._look_up).input(socket, groups)
+        fields.update(self.known)
+        values = evaluate.Evaluator(fields, self.look_up, self._note).input(socket, groups)
         array = evaluate.as_vector(values) if spectrum else evaluate.as_value(values)[:, None]
         count = len(layout.corner) * layout.block**2
         image = layout.image(numpy.broadcast_to(array, (count, array.shape[1])).astype(numpy.float32))
@@ -204,18 +228,22 @@ class Inputs:
         raise last
 
     def _values(self, socket, groups, uv, only=None):
-        fields = {}
+        fields = dict(self.known)
         for name in [only] if only is not None else self.maps.names[:4]:
             fields["uv:" + name] = uv
             if name == self.maps.names[0]:
                 fields["uv:"] = uv
-        return evaluate.Evaluator(fields, self._look_up).input(socket, groups)
+        return evaluate.Evaluator(fields, self.look_up, self._note).input(socket, groups)
 
-    def _look_up(self, node):
+    def look_up(self, node):
+        """The texels of an image node, for evaluate.Evaluator."""
         why = images.problem(node.image)
         if why is not None:
             raise evaluate.Unsupported(node, why)
-        return images.Texels(self.texels(node), getattr(node, "extension", "REPEAT"), node.interpolation == "Closest")
+        closest = node.interpolation == "Closest"
+        if node.image.source == "TILED":
+            return images.Texels(self.texels(node), "CLIP", closest, self._joined(node).matrix())
+        return images.Texels(self.texels(node), getattr(node, "extension", "REPEAT"), closest)
 
 
 def is_multiplied(node):

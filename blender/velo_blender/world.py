@@ -26,6 +26,13 @@ def square_directions(side):
     return numpy.stack((x.ravel(), y.ravel(), z.ravel()), axis=1)
 
 
+def square_cosines(u, v):
+    """z of the directions at places of an octahedral square, -1 to 1 along each side."""
+    distance = 1 - (numpy.abs(u) + numpy.abs(v))
+    r = 1 - numpy.abs(distance)
+    return numpy.copysign(1 - r * r, distance)
+
+
 def _image_size(tree, seen=()):
     """The height of the largest image in a tree of nodes; 0: there is none."""
     best = 0
@@ -49,6 +56,8 @@ class _Look:
         if why is not None:
             raise evaluate.Unsupported(node, why)
         name = node.image.name_full
+        if node.image.source == "TILED":
+            raise evaluate.Unsupported(node, "a tiled image in a world")
         if name not in self.known:
             self.known[name] = images.pixels(node.image, self.notes)
         return images.Texels(self.known[name], getattr(node, "extension", "REPEAT"), node.interpolation == "Closest")

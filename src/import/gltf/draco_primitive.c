@@ -30,7 +30,7 @@ static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_
   uint8_t *data = vl_alloc_array(g->context, a->count + 1, a->components * size);
   if (!data)
     return vl_gltf_fail_memory(g);
-  if (!vl_scene_own(g->scene, data))
+  if (!vl_gltf_own(g, data))
     return false;
   if (id < 0)
     vl_draco_indices(mesh, (uint32_t *)(void *)data);

@@ -131,6 +131,16 @@ static bool count_all(vlGltf *g) {
   return true;
 }
 
+bool vl_gltf_own(vlGltf *g, void *block) {
+  void **slot = VL_PUSH(g->context, &g->blocks);
+  if (!slot) {
+    vl_free(g->context, block);
+    return vl_gltf_fail_memory(g);
+  }
+  *slot = block;
+  return true;
+}
+
 bool vl_gltf_open(vlGltf *g) {
   char *data;
   vlError error;
@@ -141,7 +151,7 @@ bool vl_gltf_open(vlGltf *g) {
     return false;
   }
   g->file = (uint8_t *)data;
-  if (!vl_scene_own(g->scene, data))
+  if (!vl_gltf_own(g, data))
     return false;
   const char *json = data;
   size_t size = g->file_size;
@@ -162,6 +172,9 @@ void vl_gltf_close(vlGltf *g) {
     vl_free(g->context, g->nodes[i].weights_close);
   }
   vl_gltf_free_labels(g);
+  for (size_t i = 0; i < g->blocks.count; i++)
+    vl_free(g->context, g->blocks.items[i]);
+  VL_ARRAY_FREE(g->context, &g->blocks);
   VL_FREE(g->context, g->buffers, g->views, g->accessors, g->keys, g->nodes, g->materials,
           g->images, g->meshes);
 }
@@ -211,7 +224,7 @@ static bool unpack(vlGltf *g, const vlGltfLocation *at, const char *uri, const u
   uint8_t *block = vl_alloc_array(g->context, strlen(text) + 1, 1);
   if (!block)
     return vl_gltf_fail_memory(g);
-  if (!vl_scene_own(g->scene, block))
+  if (!vl_gltf_own(g, block))
     return false;
   *data = block;
   if (!base64) {
@@ -289,7 +302,7 @@ static bool read_buffer(vlGltf *g, size_t i) {
       vlResult r = vl_file_read(g->context, path, false, &data, &size, &error);
       if (r != VL_OK)
         return vl_gltf_fail_code(g, r, VL_GLTF_KEY(at, "uri"), "%s", error.message);
-      if (!vl_scene_own(g->scene, data))
+      if (!vl_gltf_own(g, data))
         return false;
       b->data = (const uint8_t *)data;
     }

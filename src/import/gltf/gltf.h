@@ -83,9 +83,10 @@ typedef struct vlGltfMaterial {
   uint32_t tangent_set; /* uv set from which the tangents are computed */
 } vlGltfMaterial;
 
-/* An encoded image: bytes in memory (owned by the scene) or the path of a file. */
+/* An encoded image: bytes in memory (of the file, or if kept of the scene) or the path of a
+ * file. */
 typedef struct vlGltfImage {
-  bool read, missing;
+  bool read, missing, kept;
   const uint8_t *data;
   size_t size;
   const char *path;
@@ -110,7 +111,8 @@ typedef struct vlGltf {
   json_t *root;
   uint8_t *file;
   size_t file_size;
-  const uint8_t *chunk; /* the binary chunk of a .glb */
+  VL_ARRAY(void *) blocks; /* the bytes of the file and of its buffers; freed when it is read */
+  const uint8_t *chunk;    /* the binary chunk of a .glb */
   size_t chunk_size;
   vlGltfBuffer *buffers;
   vlGltfView *views;
@@ -208,6 +210,9 @@ const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 /* ---- files (file.c) ---------------------------------------------------------------------- */
 
 bool vl_gltf_open(vlGltf *g);
+/* Keeps a block until vl_gltf_close, which frees it. False: out of memory; the block is
+ * freed. */
+bool vl_gltf_own(vlGltf *g, void *block);
 bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */

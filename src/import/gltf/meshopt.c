@@ -67,7 +67,7 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, const json_t *json
   uint8_t *out = vl_alloc_zero(g->context, count + 1, stride);
   if (!out)
     return vl_gltf_fail_memory(g);
-  if (!vl_scene_own(g->scene, out))
+  if (!vl_gltf_own(g, out))
     return false;
   if (count && decode((Mode)mode, out, count, stride, b->data + offset, length) != 0)
     return vl_gltf_fail(g, at, "its bytes are no meshopt %s", modes[mode]);

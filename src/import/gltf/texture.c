@@ -41,6 +41,20 @@ static bool report_missing(vlGltf *g, const vlGltfLocation *at, vlGltfImage *ima
   return image->read = image->missing = true;
 }
 
+/* Copies an image's encoded bytes for the scene, once for all of its textures: the bytes of the
+ * file are freed when it is read. */
+static bool keep_image(vlGltf *g, vlGltfImage *image) {
+  static const uint8_t none[1] = {0};
+  if (image->kept || image->path)
+    return true;
+  image->kept = true;
+  if (!image->size) {
+    image->data = none; /* the reader of images refuses it */
+    return true;
+  }
+  return vl_scene_copy_block(g->scene, image->data, image->size, 1, &image->data);
+}
+
 bool vl_gltf_read_image(vlGltf *g, size_t index) {
   vlGltfImage *image = &g->images[index];
   if (image->read)
@@ -183,6 +197,8 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const json_t *object, 
     return false;
   if (g->images[image].missing)
     return true;
+  if (!keep_image(g, &g->images[image]))
+    return false;
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, use->spectrum);
   char name[64];
   snprintf(name, sizeof name, "images[%d]", (int)image);

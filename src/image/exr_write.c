@@ -233,7 +233,9 @@ static vlResult write_chunks(Writer *w, vlError *error) {
     for (uint32_t i = 0; i < count; i++) {
       const exr_encode_pipeline_t *p = &w->slots[i].pipeline;
       exr_result_t code = w->slots[i].code;
-      bool packed = p->compressed_buffer && p->compressed_bytes;
+      /* of as many bytes as before, readers take them for uncompressed ones */
+      bool packed =
+          p->compressed_buffer && p->compressed_bytes && p->compressed_bytes < p->packed_bytes;
       int y = w->first_y + (int)((w->first_chunk + i) * lines);
       if (code == EXR_ERR_SUCCESS)
         code = exr_write_scanline_chunk(w->exr, 0, y,

@@ -7,6 +7,7 @@ import { Crosshair } from "./crosshair.js";
 import { pivot } from "./steer.js";
 import { Panel } from "./panel.js";
 import { Display } from "./display.js";
+import { Sensor } from "./sensor.js";
 import { Inspector } from "./inspect.js";
 import { Overlay } from "./overlay.js";
 import { Compare } from "./compare.js";
@@ -103,6 +104,7 @@ screen.onlost = () => app.notice(`The browser took the graphics processor away. 
 screen.onrestored = () => app.notice("");
 const panel = new Panel(byId("camera"), app);
 const display = app.display = new Display(byId("display"), app);
+const sensor = app.sensor = new Sensor(byId("sensor"), app);
 const overlay = new Overlay(byId("overlays"), app);
 const compare = new Compare(byId("compare"), app);
 app.save = new Save(byId("save"), app);
@@ -133,6 +135,7 @@ function showState(state) {
   panel.accepted();
   panel.show(app.local, size);
   display.show(state, first);
+  sensor.show(state);
   timeline.state(state);
   byId("scene").textContent = state.scene.split("/").pop();
   document.title = `${state.scene.split("/").pop()} – velo`;
@@ -154,6 +157,7 @@ function enable() {
   const on = Boolean(app.steers && app.connected && app.state);
   panel.enable(on);
   display.enable(on);
+  sensor.enable(on);
   timeline.enable(on);
   byId("undo").disabled = !on || !app.state.can_undo;
   byId("redo").disabled = !on || !app.state.can_redo;
@@ -203,14 +207,14 @@ function showStatus(s) {
 function showSeen(frame) {
   clearTimeout(app.seenTimer);
   const many = frame.spp > 0 ? `, ${frame.spp} spp` : "";
-  const text = frame.channel ? "" : `seen: ${["samples", "denoised preview", "earlier image, moved"][frame.denoised]}${many}`;
+  const text = display.isCamera(frame) ? `seen: the sensor's image${many}` : frame.channel ? "" : `seen: ${["samples", "denoised preview", "earlier image, moved"][frame.denoised]}${many}`;
   app.seenTimer = setTimeout(() => { byId("seen").textContent = text; }, 200);
 }
 
 const handlers = {
   state: showState,
   status: showStatus,
-  lists: message => { panel.lists(message); display.lists(message); app.lists = message; app.onlists?.(message); },
+  lists: message => { panel.lists(message); display.lists(message); sensor.lists(message); app.lists = message; app.onlists?.(message); },
   role(message) {
     if (app.steers && !message.steers) app.notice("Another page has taken over; this one looks on.", true);
     if (!app.steers && message.steers) app.notice("");
@@ -222,8 +226,9 @@ const handlers = {
     if (message.change) app.sent = app.sent.filter(edit => edit.change > message.change);
     timeline.refused();
     if (app.state) expect();
-    if (!panel.refused(message.field, message.message)) app.notice(message.message);
+    if (!panel.refused(message.field, message.message) && !sensor.refused(message.field, message.message)) app.notice(message.message);
   },
+  exposed: message => sensor.exposed(message),
   loading: () => { byId("status").textContent = "a file changed: loading"; },
   loaded() { app.notice("The scene was loaded again.", true); outside.loaded(); timeline.loaded(); paths.stale(); },
   warning: message => app.notice(message.message, true),

@@ -21,7 +21,9 @@ const shown = {
   error: { label: "standard error", kind: 8 },
   forward: { label: "flow", kind: 7 },
   luminance: { label: "luminance", kind: 9, unit: "cd/m²" },
+  camera: { label: "as the camera sees it", kind: 5 }, // no ground truth: sensor.js
 };
+const camera = 64; // its number in states and frames
 
 // The number with the fewest digits that is the same single-precision float: 0.33 for 0.33000001311302185.
 function plain(value) {
@@ -54,6 +56,7 @@ export class Display {
 
   lists(message) {
     this.channels = ["image", ...message.channels];
+    if (message.sensors) this.channels[camera] = "camera";
     this.channel.replaceChildren(...this.channels.filter(c => shown[c]).map(c => make("option", { value: c, textContent: shown[c].label })));
   }
 
@@ -63,6 +66,7 @@ export class Display {
       this.set(plain(state.exposure));
     }
     this.channel.value = this.channels[state.channel] || "image";
+    for (const input of [this.exposure, this.number, this.view]) input.disabled = state.channel === camera; // the sensor has its own
     if (document.activeElement !== this.spp) this.spp.value = state.spp;
   }
 
@@ -71,6 +75,8 @@ export class Display {
   }
 
   expose(step) { this.set(this.ev + step); }
+
+  isCamera(frame) { return frame.channel === camera; }
 
   type() {
     const value = Number(this.number.value.trim().replace("−", "-").replace(",", "."));
@@ -146,7 +152,7 @@ export class Display {
     const { frame, data } = this.app.screen.pixels, canvas = this.histogram, g = canvas.getContext("2d");
     g.clearRect(0, 0, 256, 64);
     if (!frame || frame.format !== 0) return;
-    const bins = [new Float32Array(256), new Float32Array(256), new Float32Array(256)], gain = 2 ** this.ev;
+    const bins = [new Float32Array(256), new Float32Array(256), new Float32Array(256)], gain = this.isCamera(frame) ? 1 : 2 ** this.ev;
     const step = 3 * Math.max(1, Math.floor(data.length / 3 / 40000));
     for (let i = 0; i < data.length; i += step)
       for (let c = 0; c < 3; c++) {

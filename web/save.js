@@ -4,7 +4,7 @@ import { make, row } from "./dom.js";
 const suffixes = { opencv: "yaml", ros: "yaml", kalibr: "yaml", colmap: "txt", gltf: "gltf", mitsuba: "xml", usd: "usda",
   pbrt: "pbrt", euroc: "yaml", camodocal: "yaml", orbslam: "yaml", okvis: "yaml", svo: "yaml", kitti: "txt",
   metashape: "xml", meshroom: "sfm", visp: "xml" };
-const formats = ["png", "exr", "jpg", "hdr", "pfm", "tga"];
+const formats = ["png", "exr", "jpg", "hdr", "pfm", "tga", "dng"];
 
 export class Save {
   constructor(root, app) {

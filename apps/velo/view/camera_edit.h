@@ -25,6 +25,8 @@ vlResult camera_set_shutter(const ViewCamera *now, double open, double close,
 vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat,
                      ViewCamera *camera, vlError *error);
 
+/* The f-number of the lens; NaN: it has no opening. */
+double camera_f_number(const ViewCamera *camera);
 /* Writes all spellings as members of the open JSON object. */
 void camera_spellings(Json *json, const ViewCamera *camera);
 #endif

@@ -88,17 +88,22 @@ static void put_projection(Json *json, const ViewCamera *camera) {
   json_number(json, "outside", camera->made.outside);
 }
 
+double camera_f_number(const ViewCamera *camera) {
+  const vlCamera *c = &camera->made;
+  const vlLensDef *lens = &camera->def.lens;
+  const double unit = isnan(lens->unit_mm) ? 1000 : lens->unit_mm;
+  const double focal = c->fx * camera->units.sensor_mm / c->width;
+  if (!isnan(lens->f_number))
+    return lens->f_number;
+  return c->lens_radius > 0 ? focal / (2 * unit * c->lens_radius) : NAN;
+}
+
 static void put_lens(Json *json, const ViewCamera *camera) {
   const vlCameraDef *def = &camera->def;
   const vlCamera *c = &camera->made;
   const vlLensDef *lens = &def->lens;
-  double unit = isnan(lens->unit_mm) ? 1000 : lens->unit_mm, sensor = camera->units.sensor_mm;
-  double focal = c->fx * sensor / c->width;
   json_number(json, "lens_radius", c->lens_radius);
-  json_number(json, "f_number",
-              !isnan(lens->f_number) ? lens->f_number
-              : c->lens_radius > 0   ? focal / (2 * unit * c->lens_radius)
-                                     : NAN);
+  json_number(json, "f_number", camera_f_number(camera));
   json_number(json, "focus_distance", c->focus_distance);
   json_integer(json, "blades", lens->blades);
   json_number(json, "rotation", lens->rotation * degrees);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "velo/channels.h"
-#include "view/engine_status.h"
+#include "view/engine_sensor.h"
 
 /* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before
  * speed is known; as many as it should have (160 x 90); fewer would hardly be quicker. */
@@ -64,7 +64,9 @@ static bool render_colours(Engine *e, uint32_t scale) {
   vlError error = {0};
   vlRenderStats stats = {0};
   memcpy(whole.crop, e->now.crop, sizeof whole.crop);
-  const vlFilmDef def = vl_coarse_film_def(&whole, scale);
+  vlFilmDef def = vl_coarse_film_def(&whole, scale);
+  if (e->now.channel == CHANNEL_CAMERA)
+    engine_sensor_film(&def);
   render.spp = 1;
   render.first_sample = 0;
   render.time_limit = 0;

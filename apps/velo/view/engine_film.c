@@ -115,6 +115,11 @@ int engine_write_film(Engine *e) {
   vlReceipt *receipt = NULL;
   vlImage *attributes = NULL;
   vlError error = {0};
+  if (e->now.channel == CHANNEL_CAMERA)
+    return report_failure(STATUS_OTHER,
+                          "%s is not written: the last image was a sensor's; --film has images "
+                          "that are shown without one",
+                          path);
   if (!e->film || !vl_film_spp(e->film))
     return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet",
                           path);

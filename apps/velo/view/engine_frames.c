@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "view/engine_status.h"
+#include "view/engine_sensor.h"
 
 /* Seconds of a part of an image that is shown while it grows. */
 #define PART_SECONDS 0.4
@@ -12,8 +12,9 @@
 void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
   double start = engine_clock();
   const uint32_t scale = kind->scale;
-  const float *matrix =
-      kind->format == FRAME_HALF ? frame_to_rec709(e->model.job.defs->film.space) : NULL;
+  const float *matrix = kind->format == FRAME_HALF && !kind->developed
+                            ? frame_to_rec709(e->model.job.defs->film.space)
+                            : NULL;
   ViewFrame *frame = frame_make(image, kind->format, kind->channels, matrix);
   if (!frame)
     return;
@@ -92,7 +93,8 @@ void engine_keep_coarser(Engine *e, vlImage **image, uint32_t scale, bool denois
 /* ---- the film ---------------------------------------------------------------------------- */
 
 bool engine_is_of_film(uint32_t channel) {
-  return channel == 0 || channel == CHANNEL_ERROR || channel == CHANNEL_LUMINANCE;
+  return channel == 0 || channel == CHANNEL_ERROR || channel == CHANNEL_LUMINANCE ||
+         channel == CHANNEL_CAMERA;
 }
 
 /* Sends the luminance of a film. Rows without samples are not filled. */
@@ -135,6 +137,8 @@ void engine_publish_film(Engine *e, const vlFilm *film, uint32_t scale, uint32_t
   double start = engine_clock(), used = engine_thread_seconds();
   if (e->now.channel == CHANNEL_LUMINANCE)
     publish_luminance(e, film, scale);
+  else if (e->now.channel == CHANNEL_CAMERA)
+    engine_publish_camera(e, film, scale);
   else
     publish_colours(e, film, scale, rows);
   e->publish_seconds = engine_clock() - start;

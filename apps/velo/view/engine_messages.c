@@ -7,6 +7,11 @@
 #include "view/engine_status.h"
 #include "view/lecture.h"
 
+/* The lecture has no room for the mode "camera", and velo in the page no memory. */
+static bool has_camera_mode(const Engine *e) {
+  return !e->def.lecture && !e->def.stepwise;
+}
+
 static char *engine_state(const Engine *e) {
   const Wanted *w = &e->wanted;
   const ViewState state = {.scene = e->def.path,
@@ -23,7 +28,8 @@ static char *engine_state(const Engine *e) {
                            .info = &e->model.info,
                            .time = engine_time(e),
                            .poses = e->model.camera_count,
-                           .camera = &w->camera};
+                           .camera = &w->camera,
+                           .sensor = has_camera_mode(e) ? &w->sensor : NULL};
   return state_text(&state);
 }
 
@@ -36,7 +42,7 @@ void engine_post_state(Engine *e, uint32_t client) {
 
 void engine_greet(void *user, uint32_t client) {
   Engine *e = user;
-  char *lists = state_lists();
+  char *lists = state_lists(has_camera_mode(e));
   if (lists)
     server_post(e->server, client, lists);
   free(lists);
@@ -44,6 +50,8 @@ void engine_greet(void *user, uint32_t client) {
   engine_post_state(e, client);
   if (e->last_status)
     server_post(e->server, client, e->last_status);
+  if (e->last_exposure)
+    server_post(e->server, client, e->last_exposure);
   pthread_mutex_unlock(&e->lock);
 }
 
@@ -139,14 +147,20 @@ static void step_history(Engine *e, const ViewMessage *m) {
 
 /* ---- settings ---------------------------------------------------------------------------- */
 
+/* The film of the mode "camera" is of another kind: it begins anew. */
+static void take_channel(Engine *e, uint32_t channel) {
+  e->wanted.generation += (e->wanted.channel == CHANNEL_CAMERA) != (channel == CHANNEL_CAMERA);
+  e->wanted.channel = channel;
+}
+
 static bool set_channel(Engine *e, const char *name) {
-  if (strcmp(name, "image") == 0) {
-    e->wanted.channel = 0;
+  if (strcmp(name, "image") == 0 || strcmp(name, "camera") == 0) {
+    take_channel(e, name[0] == 'c' ? CHANNEL_CAMERA : 0);
     return true;
   }
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     if (state_shows_channel(i) && strcmp(name, vl_channel_name(i)) == 0) {
-      e->wanted.channel = i + 1;
+      take_channel(e, i + 1);
       return true;
     }
   return false;
@@ -158,6 +172,12 @@ static const char *channel_refusal(const Engine *e, const char *name) {
   const bool own_sensor = film->sensor && strcmp(film->sensor, "cie1931") != 0;
   if (strcmp(name, "luminance") == 0 && (own_sensor || film->white_balance != 0))
     return "the luminance cannot be shown: " LUMINANCE_NEEDS;
+  const bool camera = strcmp(name, "camera") == 0;
+  if (camera && !has_camera_mode(e))
+    return "this page has no sensor";
+  if (camera && e->model.job.defs->build.color == VL_COLOR_RGB)
+    return "a sensor counts photons of each wavelength, but the scene is rendered in RGB, which "
+           "has no spectrum: start velo view with --color spectral";
   return NULL;
 }
 
@@ -202,6 +222,23 @@ static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
     engine_interrupt(e);
   e->wanted.change = m->change ? m->change : e->wanted.change;
   engine_post_state(e, 0);
+}
+
+/* The camera's back: light that is there already is exposed anew. */
+static void edit_sensor(Engine *e, uint32_t client, const ViewMessage *m) {
+  vlError error = {0};
+  if (!has_camera_mode(e)) {
+    post_refusal(e, client, m, "this page has no sensor");
+  } else if (sensor_edit(&e->wanted.sensor, m, &e->wanted.sensor, &error) != VL_OK) {
+    engine_post_state(e, client); /* its inputs show the sensor as it is */
+    post_refusal(e, client, m, error.message);
+  } else {
+    e->wanted.sensor_edits++;
+    e->wanted.change = m->change ? m->change : e->wanted.change;
+    if (e->wanted.channel == CHANNEL_CAMERA)
+      engine_interrupt(e);
+    engine_post_state(e, 0);
+  }
 }
 
 static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
@@ -287,6 +324,9 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
         break;
       case MESSAGE_SETTINGS:
         change_settings(e, client, m);
+        break;
+      case MESSAGE_SENSOR:
+        edit_sensor(e, client, m);
         break;
       case MESSAGE_SAVE:
       case MESSAGE_COMMAND:

@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 
+#include "velo/sensor_raw.h"
 #include "view/camera_edit.h"
 #include "view/engine.h"
 #include "view/state.h"
@@ -12,8 +13,9 @@
 #define LUMINANCE_NEEDS "it needs the sensor cie1931 and no white balance"
 enum { MAX_TASKS = 32, HISTORY = 256 };
 /* Values of Wanted.channel that are not plain ground truth: the standard error and the
- * luminance need the film, flow needs a camera. */
-enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16, CHANNEL_LUMINANCE = 22 };
+ * luminance need the film, flow needs a camera. CAMERA is no ground truth: what a sensor makes
+ * of the film (engine_sensor.c). */
+enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16, CHANNEL_LUMINANCE = 22, CHANNEL_CAMERA = 64 };
 
 /* What makes the samples of a film, as in vlRenderDef. */
 typedef struct ViewTracer {
@@ -32,6 +34,8 @@ typedef struct Wanted {
   uint32_t crop[4]; /* pixels */
   uint32_t channel; /* 1 + index of a ground truth channel; 0: the image */
   vlCamera mark;    /* to which flow leads */
+  ViewSensor sensor;
+  uint32_t sensor_edits; /* counts changes of the sensor */
 } Wanted;
 
 /* Cameras before the present one, for undo and redo. */
@@ -62,6 +66,23 @@ typedef struct WarpSource {
   uint32_t shown;      /* and of the image that it was moved to last */
 } WarpSource;
 
+/* The last exposure of the mode "camera" (engine_sensor.c). */
+typedef struct Shot {
+  char preset[48];  /* of the sensor */
+  vlSensor *sensor; /* null: none */
+  vlImage *light;   /* spectrum of the film, perhaps with its colours and their errors; null */
+  const vlFilm *film;              /* it is that of this film, */
+  uint32_t generation, scale, spp; /* at this time */
+  uint32_t buckets;                /* channels of the spectrum */
+  double luminance;                /* mean of the film, cd/m^2; NaN: it has none */
+  double *means;                   /* photoelectrons of its pixels, if is_collected */
+  bool is_collected;
+  double electrons;       /* mean of the means */
+  vlExposureDef exposure; /* of the means and of the numbers */
+  vlSensorOutput out;     /* counts; no arrays */
+  vlRaw *raw;             /* the numbers; null: none */
+} Shot;
+
 /* A message that needs the world. */
 typedef struct Task {
   uint32_t client;
@@ -91,9 +112,10 @@ struct Engine {
                       render thread alone sets it */
   ViewCamera scene_camera; /* as the scene and the command line give it */
   History history;
-  char *last_status; /* the last state of the render, for pages that come; null: none */
-  uint32_t loads;    /* how often the scene was loaded again, or failed to */
-  Model *next;       /* the scene after a change of its files; null: none */
+  char *last_status;   /* the last state of the render, for pages that come; null: none */
+  char *last_exposure; /* what is told of the last exposure of the mode "camera"; null: none */
+  uint32_t loads;      /* how often the scene was loaded again, or failed to */
+  Model *next;         /* the scene after a change of its files; null: none */
   /* of the lecture: the scene that a page has chosen and that is not loaded yet, null: none;
    * the scene of `next` */
   const char *chosen, *next_path;
@@ -127,6 +149,7 @@ struct Engine {
   bool coarser_denoised;
   DenoisedPreview preview;
   WarpSource warp;
+  Shot shot;
   uint32_t coarse;    /* scale of the next image that is not the film's; 0: none is next */
   uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the
                          choice is made */
@@ -145,9 +168,10 @@ struct Engine {
   double frame_seconds;   /* processor time of this thread for all frames */
   double begun, published, reported,
       looked; /* times of this image: begin, last frame, last status, last error estimate */
-  double rendered; /* seconds that this image has rendered */
-  uint64_t paths;  /* of this image */
-  double noise;    /* estimated standard error of the display values; NaN: not known */
+  double rendered;    /* seconds that this image has rendered */
+  uint64_t paths;     /* of this image */
+  double noise;       /* estimated standard error of the display values; NaN: not known */
+  uint32_t noise_spp; /* samples of the film when it was estimated */
   double pass_start;
 };
 
@@ -188,7 +212,8 @@ typedef struct FrameKind {
   uint32_t scale; /* pixels of the image per pixel of the frame */
   uint32_t spp;
   bool denoised;
-  bool moved; /* an earlier image that was moved with the camera */
+  bool moved;     /* an earlier image that was moved with the camera */
+  bool developed; /* by the mode "camera": linear sRGB, whatever the film's space is */
 } FrameKind;
 void engine_publish(Engine *engine, const vlImage *image, const FrameKind *kind);
 /* Whether what is shown is made of the film's samples: the image, luminance, standard errors.

@@ -11,7 +11,7 @@
 #include "render/needs.h"
 #include "view/engine_copied.h"
 #include "view/engine_parts.h"
-#include "view/engine_status.h"
+#include "view/engine_sensor.h"
 #include "view/view.h"
 
 static const double pass_seconds = 0.2; /* of a pass at the beginning; */
@@ -65,6 +65,8 @@ vlFilm *engine_make_film(Engine *e) {
   vlFilm *film = NULL;
   def.errors = true;
   memcpy(def.crop, e->now.crop, sizeof def.crop);
+  if (e->now.channel == CHANNEL_CAMERA)
+    engine_sensor_film(&def);
   vlResult result = vl_film_create(e->def.context, &def, &film);
   if (result != VL_OK)
     report_reason(result, e->def.path, "no film for the image");
@@ -229,7 +231,8 @@ static bool take_wanted(Engine *e) {
   pthread_mutex_lock(&e->lock);
   bool anew = e->wanted.generation != e->now.generation;
   bool channel = e->wanted.channel != e->now.channel,
-       denoise = e->wanted.denoise != e->now.denoise;
+       denoise = e->wanted.denoise != e->now.denoise,
+       sensor = e->wanted.sensor_edits != e->now.sensor_edits;
   e->now = e->wanted;
   if (!e->quit && !e->next)
     vl_cancel_clear(e->stop);
@@ -239,7 +242,7 @@ static bool take_wanted(Engine *e) {
   if (denoise)
     e->preview.spp = 0;
   if (!anew)
-    return channel || denoise;
+    return channel || denoise || (sensor && e->now.channel == CHANNEL_CAMERA);
   e->failed = false;
   vl_film_destroy(e->film);
   e->film = NULL;
@@ -258,7 +261,8 @@ static bool take_wanted(Engine *e) {
 static bool has_work(const Engine *e) {
   const Wanted *w = &e->wanted;
   bool samples = engine_is_of_film(w->channel),
-       other_channel = w->channel != e->now.channel || w->denoise != e->now.denoise;
+       sensor = w->channel == CHANNEL_CAMERA && w->sensor_edits != e->now.sensor_edits,
+       other_channel = w->channel != e->now.channel || w->denoise != e->now.denoise || sensor;
   bool unfinished = samples && (is_unfinished(e, w->spp) || denoise_due(e)),
        changed = other_channel || w->spp != e->now.spp;
   return must_stop(e) ||
@@ -415,6 +419,7 @@ int engine_create(const EngineDef *def, Engine **result) {
     status = engine_take_model(engine);
   engine->wanted.paused = def->lecture; /* until a page chooses a scene */
   engine->wanted.denoise = !def->lecture && !def->stepwise;
+  engine->wanted.sensor = sensor_default();
   *result = engine;
   return status;
 }
@@ -437,6 +442,7 @@ void engine_destroy(Engine *engine) {
   vl_film_destroy(engine->successor);
   vl_image_destroy(engine->coarser);
   engine_warp_forget(engine);
+  engine_sensor_forget(engine);
   vl_image_destroy(engine->preview.features);
   model_free(&engine->model);
   if (engine->next)
@@ -444,6 +450,7 @@ void engine_destroy(Engine *engine) {
   free(engine->next);
   file_list_free(&engine->files);
   free(engine->last_status);
+  free(engine->last_exposure);
   copied_free(engine->copied);
   vl_cancel_destroy(engine->stop);
   vl_cancel_destroy(engine->end);

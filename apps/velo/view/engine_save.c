@@ -107,12 +107,40 @@ static vlResult present_image(Engine *e, vlImage **image) {
   return result == VL_OK ? attributes_set(*image, &job, defs.render.spp) : result;
 }
 
+/* The raw image of the mode "camera", or what is developed of it. */
+static void save_exposure(Engine *e, const Task *task, const char *wanted) {
+  char name[NAME_SIZE];
+  vlError error = {0};
+  vlImage *image = NULL;
+  const bool raw = text_ends_with(wanted, ".dng");
+  if (e->now.channel != CHANNEL_CAMERA || !e->shot.raw || e->shot.scale != 1)
+    return engine_refuse(e, task,
+                         "a raw file (.dng) needs an exposure: show the image as the "
+                         "camera sees it");
+  if (!raw && !text_ends_with(wanted, ".png") && !text_ends_with(wanted, ".jpg") &&
+      !text_ends_with(wanted, ".exr"))
+    return engine_refuse(e, task, "formats of an exposure are .dng .png .jpg .exr");
+  if (!free_name(wanted, name))
+    return engine_refuse(e, task, "there are too many files of this name");
+  vlResult result = raw ? vl_raw_write(e->shot.raw, name, &error)
+                        : vl_raw_develop(e->shot.raw, NULL, &image, &error);
+  if (result == VL_OK && !raw)
+    result = vl_image_write(image, name, NULL, &error);
+  vl_image_destroy(image);
+  if (result == VL_OK)
+    post_saved(e, task, name);
+  else
+    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
+}
+
 static void save_image(Engine *e, const Task *task, const char *wanted) {
   char name[NAME_SIZE];
   bool eight_bit;
   const ViewMessage *m = &task->message;
   if (!e->film || !vl_film_spp(e->film))
     return engine_refuse(e, task, "the image has no samples yet");
+  if (e->now.channel == CHANNEL_CAMERA || text_ends_with(wanted, ".dng"))
+    return save_exposure(e, task, wanted);
   if (!output_suffix(wanted, &eight_bit))
     return engine_refuse(e, task, "formats are .exr .png .jpg .hdr .pfm .tga");
   if (!free_name(wanted, name))
@@ -344,6 +372,10 @@ void engine_command(Engine *e, const Task *task) {
   char camera[NAME_SIZE];
   if (!e->film || !vl_film_spp(e->film))
     return engine_refuse(e, task, "the image has no samples yet");
+  if (e->now.channel == CHANNEL_CAMERA)
+    return engine_refuse(e, task,
+                         "no one command makes an exposure: save it as .dng, or see "
+                         "velo help sensor expose");
   Copied *copied = make_command(e, task, camera);
   char *command = copied ? command_text(copied) : NULL;
   JsonText text;

@@ -55,8 +55,10 @@ static void estimate_noise(Engine *e) {
 void status_tell(Engine *e, bool estimate) {
   double now = engine_clock(), cost = now - e->looked;
   uint32_t spp = e->film ? vl_film_spp(e->film) : 0;
-  if (estimate || cost > 2 + 0.25 * e->rendered) {
+  const bool stale = isnan(e->noise) || e->noise_spp != spp;
+  if (stale && (estimate || cost > 2 + 0.25 * e->rendered)) {
     estimate_noise(e);
+    e->noise_spp = spp;
     e->looked = engine_clock();
   }
   JsonText json;

@@ -161,6 +161,7 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_REDO:
     case MESSAGE_RESET:
     case MESSAGE_SETTINGS:
+    case MESSAGE_SENSOR:
     case MESSAGE_STEER:
     case MESSAGE_SCENE:
     case MESSAGE_TIME: /* engine_watch loads for it */

@@ -9,7 +9,7 @@
 static const char *const kinds[] = {"seen",     "camera",  "undo",    "redo",    "reset",
                                     "settings", "pick",    "focus",   "save",    "command",
                                     "verify",   "overlay", "outline", "outside", "paths",
-                                    "cameras",  "steer",   "scene",   "time"};
+                                    "cameras",  "steer",   "scene",   "sensor",  "time"};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* The following functions return false for a value of a wrong type or out of range, and say

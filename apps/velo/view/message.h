@@ -35,6 +35,7 @@ typedef enum MessageKind {
   MESSAGE_CAMERAS,  /* the cameras of --trajectory as lines: id */
   MESSAGE_STEER,    /* the sender steers from now on, and no other page */
   MESSAGE_SCENE,    /* another scene of the lecture: name, change */
+  MESSAGE_SENSOR,   /* edit the sensor of the mode "camera": change, fields */
   MESSAGE_TIME      /* the shutter opens at another time: at, shutter, change, gesture */
 } MessageKind;
 

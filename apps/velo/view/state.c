@@ -60,10 +60,15 @@ char *state_text(const ViewState *s) {
   json_begin(json, "camera", '{');
   camera_spellings(json, s->camera);
   json_end(json, '}');
+  if (s->sensor) {
+    json_begin(json, "sensor", '{');
+    sensor_put(json, s->sensor);
+    json_end(json, '}');
+  }
   return json_text_end(&text);
 }
 
-char *state_lists(void) {
+char *state_lists(bool camera) {
   JsonText text;
   if (!json_text_begin(&text, "lists"))
     return NULL;
@@ -81,5 +86,7 @@ char *state_lists(void) {
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     json_text(json, NULL, state_shows_channel(i) ? vl_channel_name(i) : "");
   json_end(json, ']');
+  if (camera)
+    sensor_put_lists(json);
   return json_text_end(&text);
 }

@@ -5,6 +5,7 @@
 
 #include "velo/world.h"
 #include "view/camera_edit.h"
+#include "view/sensor_edit.h"
 
 /* The timeline, in seconds. */
 typedef struct ViewTime {
@@ -22,6 +23,7 @@ typedef struct ViewState {
   int view;             /* vlView of the first view */
   const vlWorldInfo *info;
   const ViewCamera *camera;
+  const ViewSensor *sensor; /* of the mode "camera"; null: the page has no such mode */
   ViewTime time;
   uint32_t poses; /* cameras of --trajectory */
 } ViewState;
@@ -40,7 +42,8 @@ char *json_text_end(JsonText *json);
 bool state_shows_channel(uint32_t index);
 /* Both texts are for the caller to free; null: no memory. */
 char *state_text(const ViewState *state);
-/* Dialects, projections, channels by their bits: "" for those that pages do not show. */
-char *state_lists(void);
+/* Dialects, projections, sensors, channels by their bits: "" for those that pages do not show.
+ * camera: pages have the mode "camera". */
+char *state_lists(bool camera);
 
 #endif

@@ -1,0 +1,325 @@
+/* view/engine_sensor.c: the mode "camera": what a sensor makes of the film. The film has a
+ * spectrum and a box filter then; its light becomes photoelectrons, these the numbers of a raw
+ * image, and that is developed. Shutter, ISO speed and the other settings of the sensor need no
+ * new samples: of a film that has no new ones the light is kept, and of settings that do not
+ * change the light the photoelectrons. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "velo/filter_kinds.h"
+#include "view/engine_sensor.h"
+
+/* Buckets of the film: 48 bytes per pixel each. Samples have 4 wavelengths: with two samples
+ * per bucket hardly one is without. */
+enum { BUCKETS = 24, MAX_BUCKETS = 1000, MAX_CHANNELS = MAX_BUCKETS + 10, SPP_PER_BUCKET = 2 };
+
+/* Of the meter, seconds. */
+static const double shortest_time = 1e-6, longest_time = 1e5;
+
+void engine_sensor_film(vlFilmDef *def) {
+  if (def->buckets < 2)
+    def->buckets = BUCKETS;
+  def->filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+}
+
+void engine_sensor_forget(Engine *e) {
+  Shot *s = &e->shot;
+  vl_sensor_destroy(s->sensor);
+  vl_image_destroy(s->light);
+  vl_raw_destroy(s->raw);
+  free(s->means);
+  *s = (Shot){.spp = 0};
+}
+
+/* ---- what the sensor sees ---------------------------------------------------------------- */
+
+/* The sensor of the preset that is chosen. */
+static vlResult take_sensor(Engine *e, vlError *error) {
+  Shot *s = &e->shot;
+  const char *preset = e->now.sensor.preset;
+  vlSensorDef def;
+  if (s->sensor && strcmp(preset, s->preset) == 0)
+    return VL_OK;
+  vl_sensor_destroy(s->sensor);
+  s->sensor = NULL;
+  s->is_collected = false;
+  snprintf(s->preset, sizeof s->preset, "%s", preset);
+  vlResult result = vl_sensor_preset(preset, &def, error);
+  return result == VL_OK ? vl_sensor_create(e->def.context, &def, &s->sensor, error) : result;
+}
+
+/* The channels of some images of the same size in one image, which replaces the first. */
+static vlResult join(vlContext *context, vlImage *const *parts, uint32_t count,
+                     vlImage **joined) {
+  const char *names[MAX_CHANNELS];
+  uint32_t channels = 0;
+  for (uint32_t i = 0; i < count; i++)
+    for (uint32_t c = 0; c < vl_image_channels(parts[i]) && channels < MAX_CHANNELS; c++)
+      names[channels++] = vl_image_channel_name(parts[i], c);
+  const uint32_t width = vl_image_width(parts[0]), height = vl_image_height(parts[0]);
+  vlImageDef def = vl_default_image_def(width, height, channels);
+  def.names = names;
+  def.type = VL_PIXEL_F32;
+  vlResult result = vl_image_create(context, &def, joined);
+  if (result != VL_OK)
+    return result;
+  float *to = vl_image_pixels(*joined);
+  for (size_t pixel = 0; pixel < (size_t)width * height; pixel++)
+    for (uint32_t i = 0; i < count; i++) {
+      const uint32_t n = vl_image_channels(parts[i]);
+      const float *from = vl_image_const_pixels(parts[i]);
+      memcpy(to, from + pixel * n, n * sizeof *to);
+      to += n;
+    }
+  return VL_OK;
+}
+
+/* The film's spectrum, the first channels; with errors also its colours and their standard
+ * errors: by them the render's own noise is compared with that of photons. */
+static vlResult read_light(Engine *e, const vlFilm *film, bool errors, vlImage **light) {
+  const vlDevelopDef *develop = &e->model.job.defs->develop;
+  vlImage *parts[3] = {NULL};
+  vlResult result = vl_film_spectrum(film, &parts[0]);
+  if (result == VL_OK && !errors) {
+    *light = parts[0];
+    return VL_OK;
+  }
+  if (result == VL_OK)
+    result = vl_film_develop(film, develop, &parts[1]);
+  if (result == VL_OK)
+    result = vl_film_errors(film, develop, &parts[2]);
+  if (result == VL_OK)
+    result = join(e->def.context, parts, 3, light);
+  for (int i = 0; i < 3; i++)
+    vl_image_destroy(parts[i]);
+  return result;
+}
+
+/* The number of channels of the spectrum. */
+static uint32_t count_buckets(const vlImage *light) {
+  uint32_t count = 0;
+  while (count < vl_image_channels(light) &&
+         strncmp(vl_image_channel_name(light, count), "S0.", 3) == 0)
+    count++;
+  return count;
+}
+
+/* With few samples some buckets of a pixel have none, and are 0: such a gap gets the values
+ * between those beside it. Else the image of few samples were too dark. */
+static void fill_gaps(float *values, uint32_t count) {
+  uint32_t end = 0; /* of what is filled */
+  for (uint32_t i = 0; i < count; i++) {
+    if (values[i] == 0)
+      continue;
+    const float before = values[end ? end - 1 : i];
+    const float steps = (float)(i - end + 1);
+    for (uint32_t k = end; k < i; k++)
+      values[k] = before + (values[i] - before) * (float)(k - end + 1) / steps;
+    end = i + 1;
+  }
+  for (uint32_t k = end; end && k < count; k++)
+    values[k] = values[end - 1];
+}
+
+static void fill_spectra(vlImage *light, uint32_t buckets) {
+  const uint32_t channels = vl_image_channels(light);
+  const size_t pixels = (size_t)vl_image_width(light) * vl_image_height(light);
+  float *values = vl_image_pixels(light);
+  for (size_t i = 0; i < pixels; i++)
+    fill_gaps(values + i * channels, buckets);
+}
+
+/* The mean luminance of the film in cd/m^2; NaN: it has none. */
+static double mean_luminance(const vlFilm *film) {
+  vlImage *image = NULL;
+  double sum = 0;
+  if (vl_film_luminance(film, &image) != VL_OK)
+    return NAN;
+  const size_t pixels = (size_t)vl_image_width(image) * vl_image_height(image);
+  const float *values = vl_image_const_pixels(image);
+  for (size_t i = 0; i < pixels; i++)
+    sum += isfinite(values[i]) ? (double)values[i] : 0;
+  vl_image_destroy(image);
+  return sum / (double)pixels;
+}
+
+/* The light of the film, unless it is there already. */
+static vlResult take_light(Engine *e, const vlFilm *film, uint32_t scale) {
+  Shot *s = &e->shot;
+  const uint32_t spp = vl_film_spp(film);
+  if (s->light && s->film == film && s->generation == e->now.generation && s->scale == scale &&
+      s->spp == spp)
+    return VL_OK;
+  vl_image_destroy(s->light);
+  free(s->means);
+  s->light = NULL;
+  s->means = NULL;
+  s->is_collected = false;
+  /* coarse films have none, and one sample per pixel */
+  vlResult result = read_light(e, film, scale == 1 && spp > 1, &s->light);
+  if (result != VL_OK)
+    return result;
+  const size_t pixels = (size_t)vl_image_width(s->light) * vl_image_height(s->light);
+  s->film = film;
+  s->generation = e->now.generation;
+  s->scale = scale;
+  s->spp = spp;
+  s->buckets = count_buckets(s->light);
+  if (spp < SPP_PER_BUCKET * s->buckets)
+    fill_spectra(s->light, s->buckets);
+  s->luminance = mean_luminance(film);
+  s->means = malloc(pixels * sizeof *s->means);
+  return s->means ? VL_OK : VL_ERROR_MEMORY;
+}
+
+/* ---- the exposure ------------------------------------------------------------------------ */
+
+/* The f-number is the lens's, if that has an opening. */
+static vlExposureDef present_exposure(const Engine *e) {
+  vlExposureDef exposure = e->now.sensor.exposure;
+  const double lens = camera_f_number(&e->now.camera);
+  if (lens >= 0.5 && lens <= 1000)
+    exposure.f_number = lens;
+  return exposure;
+}
+
+/* The mean of the photoelectrons. */
+static double mean_electrons(const Shot *s) {
+  const size_t pixels = (size_t)vl_image_width(s->light) * vl_image_height(s->light);
+  double sum = 0;
+  for (size_t i = 0; i < pixels; i++)
+    sum += s->means[i];
+  return sum / (double)pixels;
+}
+
+static vlResult collect(Shot *s, const vlExposureDef *exposure, vlError *error) {
+  const bool same =
+      s->exposure.time == exposure->time && s->exposure.f_number == exposure->f_number;
+  if (s->is_collected && same)
+    return VL_OK;
+  vlResult result = vl_sensor_collect(s->sensor, s->light, exposure, s->means, &s->out, error);
+  s->is_collected = result == VL_OK;
+  s->exposure = *exposure;
+  s->electrons = result == VL_OK ? mean_electrons(s) : 0;
+  return result;
+}
+
+/* The time at which the mean number is middle grey. It is found from the photoelectrons of any
+ * other time. */
+static vlResult meter(Shot *s, vlExposureDef *exposure, vlError *error) {
+  vlExposureDef trial = *exposure;
+  trial.time = 0.01;
+  if (s->is_collected && s->exposure.f_number == exposure->f_number && s->exposure.time > 0)
+    trial.time = s->exposure.time;
+  vlResult result = collect(s, &trial, error);
+  const double time = engine_metered_time(s, exposure);
+  exposure->time = time > 0 ? fmin(fmax(time, shortest_time), longest_time) : 0.01;
+  return result;
+}
+
+/* The mean spectrum of the image as a light, for each nm. */
+static void mean_light(const Shot *s, float values[VL_SPECTRUM_VALUES]) {
+  const uint32_t channels = vl_image_channels(s->light);
+  const size_t pixels = (size_t)vl_image_width(s->light) * vl_image_height(s->light);
+  const float *from = vl_image_const_pixels(s->light);
+  double sums[MAX_BUCKETS] = {0};
+  for (size_t i = 0; i < pixels; i++)
+    for (uint32_t c = 0; c < s->buckets; c++)
+      sums[c] += isfinite(from[i * channels + c]) ? (double)from[i * channels + c] : 0;
+  for (uint32_t i = 0; i < VL_SPECTRUM_VALUES; i++) {
+    const double sum = sums[i * s->buckets / VL_SPECTRUM_VALUES];
+    values[i] = sum > 0 ? (float)(sum / (double)pixels) : 0;
+  }
+}
+
+/* The white of the development. False: there is no light at all, and it is that of D65. */
+static bool find_white(const Engine *e, float values[VL_SPECTRUM_VALUES]) {
+  if (e->now.sensor.white == VIEW_WHITE_AUTO) {
+    double sum = 0;
+    mean_light(&e->shot, values);
+    for (int i = 0; i < VL_SPECTRUM_VALUES; i++)
+      sum += (double)values[i];
+    return sum > 0;
+  }
+  const vlSpectrum named =
+      vl_spectrum_named(e->now.sensor.white == VIEW_WHITE_A ? "stdillum-A" : "stdillum-D65");
+  return vl_spectrum_tabulate(&named, VL_PARAMETER_ILLUMINANT, values, NULL) == VL_OK;
+}
+
+static vlResult expose(Engine *e, vlError *error) {
+  Shot *s = &e->shot;
+  vlExposureDef exposure = present_exposure(e);
+  const uint32_t width = vl_image_width(s->light), height = vl_image_height(s->light);
+  float white[VL_SPECTRUM_VALUES];
+  vlResult result = e->now.sensor.metered ? meter(s, &exposure, error) : VL_OK;
+  if (result == VL_OK)
+    result = collect(s, &exposure, error);
+  s->exposure = exposure;
+  vl_raw_destroy(s->raw);
+  s->raw = NULL;
+  if (result == VL_OK)
+    result = vl_sensor_raw(s->sensor, &exposure, find_white(e, white) ? white : NULL, width,
+                           height, &s->raw, error);
+  if (result != VL_OK)
+    return result;
+  s->out.numbers = vl_raw_numbers(s->raw);
+  result = vl_sensor_read_out(s->sensor, width, height, s->means, &exposure, &s->out, error);
+  s->out.numbers = NULL;
+  return result;
+}
+
+/* ---- the image --------------------------------------------------------------------------- */
+
+/* R G B of a grey image. */
+static vlResult make_grey(vlContext *context, vlImage **image) {
+  const uint32_t width = vl_image_width(*image), height = vl_image_height(*image);
+  const vlImageDef def = vl_default_image_def(width, height, 3);
+  vlImage *colours = NULL;
+  vlResult result = vl_image_create(context, &def, &colours);
+  if (result != VL_OK)
+    return result;
+  const float *from = vl_image_const_pixels(*image);
+  float *to = vl_image_pixels(colours);
+  for (size_t i = 0; i < (size_t)width * height; i++)
+    to[3 * i] = to[3 * i + 1] = to[3 * i + 2] = from[i];
+  vl_image_destroy(*image);
+  *image = colours;
+  return VL_OK;
+}
+
+/* Linear sRGB: the page has the curve of the last step. */
+static vlResult develop(Engine *e, vlImage **image, vlError *error) {
+  vlRawDevelopDef def = vl_default_raw_develop_def();
+  def.stop_at = VL_RAW_STEP_COLOR;
+  vlResult result = vl_raw_develop(e->shot.raw, &def, image, error);
+  if (result == VL_OK && vl_image_channels(*image) == 1)
+    result = make_grey(e->def.context, image);
+  return result;
+}
+
+void engine_publish_camera(Engine *e, const vlFilm *film, uint32_t scale) {
+  const double start = engine_clock();
+  vlError error = {0};
+  vlImage *image = NULL;
+  vlResult result = take_sensor(e, &error);
+  if (result == VL_OK)
+    result = take_light(e, film, scale);
+  if (result == VL_OK)
+    result = expose(e, &error);
+  if (result == VL_OK)
+    result = develop(e, &image, &error);
+  const FrameKind kind = {.format = FRAME_HALF,
+                          .channels = 3,
+                          .scale = scale,
+                          .spp = scale > 1 ? 0 : vl_film_spp(film),
+                          .developed = true};
+  if (result == VL_OK) {
+    engine_publish(e, image, &kind);
+    engine_tell_exposure(e, engine_clock() - start);
+  } else {
+    status_error(e, &error, result);
+  }
+  vl_image_destroy(image);
+}

@@ -1,0 +1,125 @@
+/* view/sensor_edit.c: see sensor_edit.h. */
+#include "view/sensor_edit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "velo/setting.h"
+
+static const char *const whites[] = {"D65", "A", "auto"};
+enum { WHITES = sizeof whites / sizeof *whites };
+/* Those of an exposure that pages may set. */
+static const char *const rows[] = {"exposure_time", "f_number", "iso",  "gain",
+                                   "temperature",   "seed",     "frame"};
+enum { ROWS = sizeof rows / sizeof *rows };
+
+ViewSensor sensor_default(void) {
+  ViewSensor sensor = {.metered = true, .exposure = vl_default_exposure_def()};
+  strcpy(sensor.preset, "generic_rggb");
+  return sensor;
+}
+
+static vlResult refuse(vlError *error, const char *text) {
+  snprintf(error->message, sizeof error->message, "%s", text);
+  return VL_ERROR_ARGUMENT;
+}
+
+static vlResult set_preset(const MessageField *field, ViewSensor *sensor, vlError *error) {
+  vlSensorDef def;
+  if (field->null || field->count)
+    return refuse(error, "preset must be the name of a sensor");
+  const vlResult result = vl_sensor_preset(field->text, &def, error);
+  if (result == VL_OK)
+    snprintf(sensor->preset, sizeof sensor->preset, "%s", field->text);
+  return result;
+}
+
+static vlResult set_white(const MessageField *field, ViewSensor *sensor, vlError *error) {
+  char why[VL_GIVEN_MESSAGE];
+  if (field->null || field->count)
+    return refuse(error, "white must be D65, A or auto");
+  for (int i = 0; i < WHITES; i++)
+    if (strcmp(field->text, whites[i]) == 0) {
+      sensor->white = (ViewWhite)i;
+      return VL_OK;
+    }
+  vl_unknown_name("white", "", field->text, whites, WHITES, why);
+  return refuse(error, why);
+}
+
+/* A number of the exposure, by its row. */
+static vlResult set_number(const MessageField *field, ViewSensor *sensor, vlError *error) {
+  char why[VL_GIVEN_MESSAGE];
+  const vlParameter *row = vl_setting(VL_SETTING_EXPOSURE, field->name);
+  vlGiven given = {.kind = VL_GIVEN_OTHER};
+  const bool is_time = strcmp(field->name, rows[0]) == 0;
+  double number;
+  if (is_time && field->null) {
+    sensor->metered = true;
+    return VL_OK;
+  }
+  if (field->null)
+    given.kind = VL_GIVEN_NOTHING;
+  else if (field->count == 1)
+    given = (vlGiven){.kind = VL_GIVEN_NUMBER, .number = field->numbers[0]};
+  else if (!field->count)
+    given = (vlGiven){.kind = VL_GIVEN_TEXT, .text = field->text};
+  if (!vl_given_check(row, field->name, &given, &number, why))
+    return refuse(error, why);
+  vl_given_put(row, number, &sensor->exposure);
+  sensor->metered = sensor->metered && !is_time;
+  return VL_OK;
+}
+
+static vlResult set_field(const MessageField *field, ViewSensor *sensor, vlError *error) {
+  char why[VL_GIVEN_MESSAGE];
+  const char *names[ROWS + 2] = {"preset", "white"};
+  if (strcmp(field->name, "preset") == 0)
+    return set_preset(field, sensor, error);
+  if (strcmp(field->name, "white") == 0)
+    return set_white(field, sensor, error);
+  for (int i = 0; i < ROWS; i++)
+    if (strcmp(field->name, rows[i]) == 0)
+      return set_number(field, sensor, error);
+  memcpy(names + 2, rows, sizeof rows);
+  vl_unknown_name("field of the sensor", "", field->name, names, ROWS + 2, why);
+  return refuse(error, why);
+}
+
+vlResult sensor_edit(const ViewSensor *now, const ViewMessage *message, ViewSensor *result,
+                     vlError *error) {
+  ViewSensor next = *now;
+  for (uint32_t i = 0; i < message->field_count; i++) {
+    const vlResult set = set_field(&message->fields[i], &next, error);
+    if (set != VL_OK)
+      return set;
+  }
+  *result = next;
+  return VL_OK;
+}
+
+void sensor_put(Json *json, const ViewSensor *sensor) {
+  const vlExposureDef *exposure = &sensor->exposure;
+  json_text(json, "preset", sensor->preset);
+  json_text(json, "white", whites[sensor->white]);
+  json_number(json, "exposure_time", sensor->metered ? NAN : exposure->time);
+  json_number(json, "f_number", exposure->f_number);
+  json_number(json, "iso", exposure->iso);
+  json_number(json, "gain", exposure->gain);
+  json_number(json, "temperature", exposure->temperature);
+  json_integer(json, "seed", exposure->seed);
+  json_integer(json, "frame", exposure->frame);
+}
+
+void sensor_put_lists(Json *json) {
+  const char *name;
+  json_begin(json, "sensors", '[');
+  for (uint32_t i = 0; (name = vl_sensor_preset_name(i)); i++)
+    json_text(json, NULL, name);
+  json_end(json, ']');
+  json_begin(json, "whites", '[');
+  for (int i = 0; i < WHITES; i++)
+    json_text(json, NULL, whites[i]);
+  json_end(json, ']');
+}

@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from . import color_nodes, facing, images, math_nodes, noise
+from . import color_nodes, facing, images, math_nodes, procedural
 
 
 def _unsupported(node, text):
@@ -131,17 +131,6 @@ def checker(e, node, output, groups):
     return numpy.where(first[:, None], e.named(node, "Color1", groups), e.named(node, "Color2", groups))
 
 
-def noise_texture(e, node, output, groups):
-    if node.noise_dimensions != "3D" or getattr(node, "noise_type", "FBM") != "FBM":
-        raise _unsupported(node, "noise of %s dimensions" % node.noise_dimensions)
-    p = vector_of(e, node, groups, "generated") * math_nodes.column(e.named(node, "Scale", groups))
-    numbers = [e.named(node, name, groups) for name in ("Detail", "Roughness", "Distortion")]
-    if any(len(part) != 1 for part in numbers):
-        raise _unsupported(node, "detail, roughness or distortion that varies")
-    factor, color = noise.noise(p, *(float(part[0]) for part in numbers))
-    return factor if output.name == "Fac" else color
-
-
 def gradient(e, node, output, groups):
     p = vector_of(e, node, groups, "generated")
     x, y = p[:, 0], p[:, 1]
@@ -155,6 +144,5 @@ def gradient(e, node, output, groups):
 
 
 NODES = {"TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
-         "OBJECT_INFO": object_info, "VERTEX_COLOR": vertex_color,
-         "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment, "TEX_CHECKER": checker, "TEX_NOISE": noise_texture,
-         "TEX_GRADIENT": gradient, **math_nodes.NODES, **color_nodes.NODES, **facing.NODES}
+         "OBJECT_INFO": object_info, "VERTEX_COLOR": vertex_color, "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment,
+         "TEX_CHECKER": checker, "TEX_GRADIENT": gradient, **math_nodes.NODES, **color_nodes.NODES, **facing.NODES, **procedural.NODES}

@@ -1,0 +1,76 @@
+"""Cases of test_procedural.py: a plane that emits a texture is the same image in Cycles and in velo."""
+from inside import case, colors, material, new_scene, notes, plane, render
+
+
+def shown(kind, output="Color", inputs=None, coordinate="Object", **properties):
+    """A plane across the view that emits an output of a node: mean difference of the images as a part of the mean, and the scene."""
+    scene = new_scene(samples=32, size=(32, 32))
+    scene.velo.bake_size = 256
+    made, node = material("ShaderNodeEmission")
+    tree = made.node_tree
+    texture = tree.nodes.new(kind)
+    for name, value in properties.items():
+        setattr(texture, name, value)
+    for name, value in (inputs or {}).items():
+        texture.inputs[name].default_value = value
+    if texture.inputs.get("Vector") is not None and coordinate is not None:
+        mapping = tree.nodes.new("ShaderNodeMapping")
+        mapping.inputs["Location"].default_value = (0.31, 0.17, 0.43)
+        tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs[coordinate], mapping.inputs["Vector"])
+        tree.links.new(mapping.outputs[0], texture.inputs["Vector"])
+    raised = tree.nodes.new("ShaderNodeMixRGB")  # emission has no negative colours
+    raised.blend_type, raised.inputs[0].default_value, raised.inputs[2].default_value = "ADD", 1.0, (2, 2, 2, 1)
+    tree.links.new(texture.outputs[output], raised.inputs[1])
+    tree.links.new(raised.outputs[0], node.inputs["Color"])
+    plane(made, 8.0, (0, 0, 0.5)).rotation_euler = scene.camera.rotation_euler
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    return abs(other - mine).mean() / max(other.mean(), 1e-3), scene
+
+
+def same(kind, share=0.01, **words):
+    difference, scene = shown(kind, **words)
+    assert not notes(scene), notes(scene)
+    assert difference < share, "%s %s: %.4f" % (kind, words, difference)
+
+
+@case
+def voronoi_of_each_feature_and_metric():
+    for feature in ("F1", "F2", "SMOOTH_F1"):
+        for output in ("Distance", "Color"):
+            same("ShaderNodeTexVoronoi", 0.01, output=output, feature=feature, inputs={"Scale": 0.8, "Randomness": 0.9})
+    same("ShaderNodeTexVoronoi", output="Distance", feature="DISTANCE_TO_EDGE", inputs={"Scale": 0.8})
+    same("ShaderNodeTexVoronoi", 0.01, output="Radius", feature="N_SPHERE_RADIUS", inputs={"Scale": 0.8})
+    for metric in ("MANHATTAN", "CHEBYCHEV", "MINKOWSKI"):
+        same("ShaderNodeTexVoronoi", output="Distance", distance=metric, inputs={"Scale": 0.8, "Exponent": 0.7})
+
+
+@case
+def voronoi_and_noise_of_each_dimension():
+    for count in ("1D", "2D", "4D"):
+        words = {"W": 0.7, "Scale": 0.8} if count != "2D" else {"Scale": 0.8}
+        same("ShaderNodeTexVoronoi", 0.01, output="Color", voronoi_dimensions=count, inputs=words)
+        same("ShaderNodeTexNoise", noise_dimensions=count, inputs={**words, "Distortion": 0.5})
+        same("ShaderNodeTexMusgrave", 0.01, output="Fac", musgrave_dimensions=count, inputs=words)
+
+
+@case
+def musgrave_of_each_kind():
+    for kind in ("MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "FBM", "HETERO_TERRAIN"):
+        same("ShaderNodeTexMusgrave", 0.01, output="Fac", musgrave_type=kind, inputs={"Scale": 0.6, "Detail": 2.5, "Offset": 0.4})
+
+
+@case
+def waves_bricks_and_magic():
+    same("ShaderNodeTexWave", 0.02, inputs={"Scale": 0.2, "Distortion": 2.0})
+    same("ShaderNodeTexWave", wave_type="RINGS", rings_direction="Z", wave_profile="TRI", inputs={"Scale": 0.2})
+    same("ShaderNodeTexWave", bands_direction="DIAGONAL", wave_profile="SAW", output="Fac", inputs={"Scale": 0.1})
+    same("ShaderNodeTexBrick", 0.02, inputs={"Scale": 0.5, "Mortar Smooth": 0.4, "Color2": (0.1, 0.3, 0.8, 1)}, squash=0.7)
+    same("ShaderNodeTexMagic", inputs={"Scale": 0.3})
+    same("ShaderNodeTexMagic", turbulence_depth=10, inputs={"Scale": 0.3, "Distortion": 1.4})
+
+
+@case
+def white_noise_of_each_dimension():
+    for count in ("2D", "3D", "4D"):
+        difference, scene = shown("ShaderNodeTexWhiteNoise", noise_dimensions=count)
+        assert difference < 0.1 and not notes(scene), (difference, notes(scene))

@@ -11,23 +11,26 @@
 extern "C" {
 #endif
 
-/** The parts of a drawing. X(NAME, name). */
-#define VL_DRAWING_PARTS(X)                                                                 \
-  X(EYE, eye)             /* the centre of projection; of a lens its opening */             \
-  X(WINDOW, window)       /* the image on the view surface: its border */                   \
-  X(GRID, grid)           /* lines of pixels on the view surface */                         \
-  X(VOLUME, volume)       /* edges of the view volume, from the eye to its end */           \
-  X(NEAR, near)           /* near clipping plane */                                         \
-  X(FAR, far)             /* far clipping plane, or the end of the drawing */               \
-  X(AXES, axes)           /* u to the right, v up, w against the view direction */          \
-  X(DISTANCE, distance)   /* from the eye to the view surface, along the view direction */  \
-  X(FOCUS, focus)         /* plane in focus */                                              \
-  X(PROJECTOR, projector) /* from a point to the centre of projection, through its image */ \
-  X(FILM, film) /* film behind the centre of projection, with the image upside down */      \
-  X(PATH, path) /* between the cameras of a rig or trajectory */
+/** The parts of a drawing. X(part, name). */
+#define VL_DRAWING_PARTS(X)                                                                   \
+  X(VL_DRAWING_EYE, eye)       /* the centre of projection; of a lens its opening */          \
+  X(VL_DRAWING_WINDOW, window) /* the image on the view surface: its border */                \
+  X(VL_DRAWING_GRID, grid)     /* lines of pixels on the view surface */                      \
+  X(VL_DRAWING_VOLUME, volume) /* edges of the view volume, from the eye to its end */        \
+  X(VL_DRAWING_NEAR, near)     /* near clipping plane */                                      \
+  X(VL_DRAWING_FAR, far)       /* far clipping plane, or the end of the drawing */            \
+  X(VL_DRAWING_AXES, axes)     /* u to the right, v up, w against the view direction */       \
+  X(VL_DRAWING_DISTANCE,                                                                      \
+    distance)                /* from the eye to the view surface, along the view direction */ \
+  X(VL_DRAWING_FOCUS, focus) /* plane in focus */                                             \
+  X(VL_DRAWING_PROJECTOR,                                                                     \
+    projector) /* from a point to the centre of projection, through its image */              \
+  X(VL_DRAWING_FILM,                                                                          \
+    film) /* film behind the centre of projection, with the image upside down */              \
+  X(VL_DRAWING_PATH, path) /* between the cameras of a rig or trajectory */
 /** The parts: VL_DRAWING_EYE and so on. */
 typedef enum vlDrawingPart {
-#define VL_KIND(NAME, name) VL_DRAWING_##NAME,
+#define VL_KIND(part, name) part,
   VL_DRAWING_PARTS(VL_KIND)
 #undef VL_KIND
 } vlDrawingPart;

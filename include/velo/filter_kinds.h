@@ -9,18 +9,18 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each kind of pixel filter. velo/schema.h describes the kinds and their
+/** X(kind, name) for each kind of pixel filter. velo/schema.h describes the kinds and their
  * parameters. */
-#define VL_PIXEL_FILTER_KINDS(X) \
-  X(BOX, box)                    \
-  X(TRIANGLE, triangle)          \
-  X(GAUSSIAN, gaussian)          \
-  X(MITCHELL, mitchell)          \
-  X(LANCZOS, lanczos)            \
-  X(BLACKMAN_HARRIS, blackman_harris)
+#define VL_PIXEL_FILTER_KINDS(X)        \
+  X(VL_PIXEL_FILTER_BOX, box)           \
+  X(VL_PIXEL_FILTER_TRIANGLE, triangle) \
+  X(VL_PIXEL_FILTER_GAUSSIAN, gaussian) \
+  X(VL_PIXEL_FILTER_MITCHELL, mitchell) \
+  X(VL_PIXEL_FILTER_LANCZOS, lanczos)   \
+  X(VL_PIXEL_FILTER_BLACKMAN_HARRIS, blackman_harris)
 /** The kinds of pixel filters: VL_PIXEL_FILTER_BOX and so on, from VL_PIXEL_FILTER_KINDS. */
 typedef enum vlPixelFilterKind {
-#define VL_KIND(NAME, name) VL_PIXEL_FILTER_##NAME,
+#define VL_KIND(kind, name) kind,
   VL_PIXEL_FILTER_KINDS(VL_KIND)
 #undef VL_KIND
 } vlPixelFilterKind;

@@ -35,20 +35,20 @@ VL_API vlEmissionDef vl_default_emission_def(void);
 /** Adds an emission, which any number of shapes may use. Returns index 0 on error. */
 VL_API vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def);
 
-/** X(NAME, name) for each kind of light. velo/schema.h describes the kinds and their
+/** X(kind, name) for each kind of light. velo/schema.h describes the kinds and their
  * parameters. A goniometric light's image is an equal-area octahedral square (pbrt book 3.8.3)
  * with the light's y axis as its axis. A projection light's image is its intensity, projected
  * along the light's z axis with y up. */
-#define VL_LIGHT_KINDS(X)     \
-  X(POINT, point)             \
-  X(SPOT, spot)               \
-  X(DISTANT, distant)         \
-  X(INFINITE, infinite)       \
-  X(GONIOMETRIC, goniometric) \
-  X(PROJECTION, projection)
+#define VL_LIGHT_KINDS(X)              \
+  X(VL_LIGHT_POINT, point)             \
+  X(VL_LIGHT_SPOT, spot)               \
+  X(VL_LIGHT_DISTANT, distant)         \
+  X(VL_LIGHT_INFINITE, infinite)       \
+  X(VL_LIGHT_GONIOMETRIC, goniometric) \
+  X(VL_LIGHT_PROJECTION, projection)
 /** The kinds of lights: VL_LIGHT_POINT and so on, from VL_LIGHT_KINDS. */
 typedef enum vlLightKind {
-#define VL_KIND(NAME, name) VL_LIGHT_##NAME,
+#define VL_KIND(kind, name) kind,
   VL_LIGHT_KINDS(VL_KIND)
 #undef VL_KIND
 } vlLightKind;

@@ -9,26 +9,27 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each kind of material. velo/schema.h describes the kinds and their
+/** X(kind, name) for each kind of material. velo/schema.h describes the kinds and their
  * parameters. */
 #define VL_MATERIAL_KINDS(X)                                                                 \
-  X(DIFFUSE, diffuse)                                                                        \
-  X(COATED_DIFFUSE, coated_diffuse)                                                          \
-  X(CONDUCTOR, conductor)                                                                    \
-  X(DIELECTRIC, dielectric)                                                                  \
-  X(THIN_DIELECTRIC, thin_dielectric)                                                        \
-  X(MIX, mix)                                                                                \
-  X(PRINCIPLED, principled) /* layered: glTF's metallic-roughness with its extensions */     \
-  X(DIFFUSE_TRANSMISSION, diffuse_transmission)                                              \
-  X(COATED_CONDUCTOR, coated_conductor)                                                      \
-  X(HAIR, hair)                                                                              \
-  X(MEASURED, measured) /* a BRDF from a file */                                             \
-  X(SUBSURFACE,                                                                              \
+  X(VL_MATERIAL_DIFFUSE, diffuse)                                                            \
+  X(VL_MATERIAL_COATED_DIFFUSE, coated_diffuse)                                              \
+  X(VL_MATERIAL_CONDUCTOR, conductor)                                                        \
+  X(VL_MATERIAL_DIELECTRIC, dielectric)                                                      \
+  X(VL_MATERIAL_THIN_DIELECTRIC, thin_dielectric)                                            \
+  X(VL_MATERIAL_MIX, mix)                                                                    \
+  X(VL_MATERIAL_PRINCIPLED,                                                                  \
+    principled) /* layered: glTF's metallic-roughness with its extensions */                 \
+  X(VL_MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission)                                  \
+  X(VL_MATERIAL_COATED_CONDUCTOR, coated_conductor)                                          \
+  X(VL_MATERIAL_HAIR, hair)                                                                  \
+  X(VL_MATERIAL_MEASURED, measured) /* a BRDF from a file */                                 \
+  X(VL_MATERIAL_SUBSURFACE,                                                                  \
     subsurface) /* a solid that scatters light inside: VL_TRACER_VOLPATH only; else glass */ \
-  X(INTERFACE, interface)
+  X(VL_MATERIAL_INTERFACE, interface)
 /** The kinds of materials: VL_MATERIAL_DIFFUSE and so on, from VL_MATERIAL_KINDS. */
 typedef enum vlMaterialKind {
-#define VL_KIND(NAME, name) VL_MATERIAL_##NAME,
+#define VL_KIND(kind, name) kind,
   VL_MATERIAL_KINDS(VL_KIND)
 #undef VL_KIND
 } vlMaterialKind;

@@ -9,20 +9,20 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each kind of medium. velo/schema.h describes the parameters. Homogeneous:
+/** X(kind, name) for each kind of medium. velo/schema.h describes the parameters. Homogeneous:
  * constant coefficients. Grid: sigma_a and sigma_s times a density on a grid over a box. RGB
  * grid: sigma_a and sigma_s themselves on a grid. Cloud: sigma_a and sigma_s times a procedural
  * density (pbrt-v4's cloud). NanoVDB: sigma_a and sigma_s times a density from a NanoVDB
  * file. */
-#define VL_MEDIUM_KINDS(X)    \
-  X(HOMOGENEOUS, homogeneous) \
-  X(GRID, grid)               \
-  X(RGB_GRID, rgb_grid)       \
-  X(CLOUD, cloud)             \
-  X(NANOVDB, nanovdb)
+#define VL_MEDIUM_KINDS(X)              \
+  X(VL_MEDIUM_HOMOGENEOUS, homogeneous) \
+  X(VL_MEDIUM_GRID, grid)               \
+  X(VL_MEDIUM_RGB_GRID, rgb_grid)       \
+  X(VL_MEDIUM_CLOUD, cloud)             \
+  X(VL_MEDIUM_NANOVDB, nanovdb)
 /** The kinds of media: VL_MEDIUM_HOMOGENEOUS and so on, from VL_MEDIUM_KINDS. */
 typedef enum vlMediumKind {
-#define VL_KIND(NAME, name) VL_MEDIUM_##NAME,
+#define VL_KIND(kind, name) kind,
   VL_MEDIUM_KINDS(VL_KIND)
 #undef VL_KIND
 } vlMediumKind;

@@ -14,8 +14,9 @@
 extern "C" {
 #endif
 
-/* The lists of kinds are VL_MATERIAL_KINDS and the like (velo/scene.h): LIST(X) expands X(NAME,
- * name) once per kind, in the order of the enum. */
+/* The lists of kinds are VL_MATERIAL_KINDS and the like (velo/scene.h): LIST(X) expands X(kind,
+ * name) once per kind, in the order of the enum: its constant and the end of it in lower
+ * letters. Where there is a third, it is the kind's row inside the library. */
 
 /** How a parameter is stored in its def. */
 typedef enum vlParameterType {
@@ -106,12 +107,11 @@ typedef struct vlKindRow {
 
 /** A family of kinds: textures, materials, media, lights, shapes and so on. */
 typedef struct vlKindFamily {
-  const char *name;      /**< "materials" */
-  const char *thing;     /**< "material", for messages */
-  const char *directive; /**< in pbrt files: "Material" */
-  uint32_t kind_count;   /**< values of the enum: 0 to kind_count - 1 */
-  const char *const
-      *constants; /**< "COATED_DIFFUSE": how the names of the enum's constants end */
+  const char *name;         /**< "materials" */
+  const char *thing;        /**< "material", for messages */
+  const char *directive;    /**< in pbrt files: "Material" */
+  uint32_t kind_count;      /**< values of the enum: 0 to kind_count - 1 */
+  const char *const *words; /**< "coated_diffuse": how the names of the enum's constants end */
   const vlKindRow *const *rows; /**< one per kind, never null */
 } vlKindFamily;
 
@@ -131,14 +131,14 @@ enum {
       4 /**< can go on without end; the others lay out a fixed number of samples */
 };
 
-/** X(NAME, name) for each film of pbrt files. */
-#define VL_FILM_KINDS(X) \
-  X(RGB, rgb)            \
-  X(GBUFFER, gbuffer)    \
-  X(SPECTRAL, spectral)
+/** X(kind, name) for each film of pbrt files. */
+#define VL_FILM_KINDS(X)      \
+  X(VL_FILM_RGB, rgb)         \
+  X(VL_FILM_GBUFFER, gbuffer) \
+  X(VL_FILM_SPECTRAL, spectral)
 /** The films of pbrt files. */
 typedef enum vlFilmKind {
-#define VL_KIND(NAME, name) VL_FILM_##NAME,
+#define VL_KIND(kind, name) kind,
   VL_FILM_KINDS(VL_KIND)
 #undef VL_KIND
 } vlFilmKind;

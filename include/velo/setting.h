@@ -12,23 +12,23 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each group of settings. A group has one def, which its rows describe. */
-#define VL_SETTING_GROUPS(X) \
-  X(RENDER, render)          \
-  X(CAMERA, camera)          \
-  X(LOAD, load)              \
-  X(COMPLETE, complete)      \
-  X(CHANNELS, channels)      \
-  X(WRITE, write)            \
-  X(CONTEXT, context)        \
-  X(PROGRAM, program)        \
-  X(SENSOR, sensor)          \
-  X(EXPOSURE, exposure)
+/** X(group, name) for each group of settings. A group has one def, which its rows describe. */
+#define VL_SETTING_GROUPS(X)       \
+  X(VL_SETTING_RENDER, render)     \
+  X(VL_SETTING_CAMERA, camera)     \
+  X(VL_SETTING_LOAD, load)         \
+  X(VL_SETTING_COMPLETE, complete) \
+  X(VL_SETTING_CHANNELS, channels) \
+  X(VL_SETTING_WRITE, write)       \
+  X(VL_SETTING_CONTEXT, context)   \
+  X(VL_SETTING_PROGRAM, program)   \
+  X(VL_SETTING_SENSOR, sensor)     \
+  X(VL_SETTING_EXPOSURE, exposure)
 /** Groups of settings. RENDER: vlSceneDefs; CAMERA: vlCameraDef; LOAD: vlLoadDef; COMPLETE:
  * vlCompleteDef; CHANNELS: vlChannelsDef; WRITE: vlWriteDef; CONTEXT: vlContextDef; PROGRAM: no
  * def, settings that are turned into others; SENSOR: vlSensorDef; EXPOSURE: vlExposureDef. */
 typedef enum vlSettingGroup {
-#define VL_KIND(NAME, name) VL_SETTING_##NAME,
+#define VL_KIND(group, name) group,
   VL_SETTING_GROUPS(VL_KIND)
 #undef VL_KIND
 } vlSettingGroup;

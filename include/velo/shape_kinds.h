@@ -9,18 +9,18 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each kind of shape. velo/schema.h describes the kinds and their
+/** X(kind, name) for each kind of shape. velo/schema.h describes the kinds and their
  * parameters. Curves are cubic Bezier segments with a width, for hair, fur and grass. */
-#define VL_SHAPE_KINDS(X) \
-  X(TRIANGLES, triangles) \
-  X(BILINEAR, bilinear)   \
-  X(SPHERE, sphere)       \
-  X(DISK, disk)           \
-  X(CYLINDER, cylinder)   \
-  X(CURVES, curves)
+#define VL_SHAPE_KINDS(X)          \
+  X(VL_SHAPE_TRIANGLES, triangles) \
+  X(VL_SHAPE_BILINEAR, bilinear)   \
+  X(VL_SHAPE_SPHERE, sphere)       \
+  X(VL_SHAPE_DISK, disk)           \
+  X(VL_SHAPE_CYLINDER, cylinder)   \
+  X(VL_SHAPE_CURVES, curves)
 /** The kinds of shapes: VL_SHAPE_TRIANGLES and so on, from VL_SHAPE_KINDS. */
 typedef enum vlShapeKind {
-#define VL_KIND(NAME, name) VL_SHAPE_##NAME,
+#define VL_KIND(kind, name) kind,
   VL_SHAPE_KINDS(VL_KIND)
 #undef VL_KIND
 } vlShapeKind;

@@ -11,26 +11,31 @@
 extern "C" {
 #endif
 
-/** X(NAME, name) for each kind of texture. velo/schema.h describes the kinds and their
+/** X(kind, name, row) for each kind of texture. velo/schema.h describes the kinds and their
  * parameters. */
-#define VL_TEXTURE_KINDS(X)                                                                 \
-  X(CONSTANT, constant)                                                                     \
-  X(SCALE, scale)                                                                           \
-  X(MIX, mix)                                                                               \
-  X(CHECKERBOARD, checkerboard)                                                             \
-  X(IMAGE, image)                                                                           \
-  X(DIRECTION_MIX, direction_mix)                                                           \
-  X(BILERP, bilerp)                                                                         \
-  X(FBM, fbm)           /* float: octaves of noise in texture space (texture_from_world) */ \
-  X(WRINKLED, wrinkled) /* float: octaves of the noise's absolute value */                  \
-  X(WINDY, windy)       /* float: wind waves; octaves and roughness are fixed */            \
-  X(MARBLE, marble)     /* colour: veins with a scale and a variation */                    \
-  X(DOTS, dots)         /* b in the dots, a between them */                                 \
-  X(VERTEX_COLOR,                                                                           \
-    vertex_color) /* the shape's vertex colours; has an image's tint, channel, bias, cutoff */
+#define VL_TEXTURE_KINDS(X)                                                                   \
+  X(VL_TEXTURE_CONSTANT, constant, vl_texture_row_constant)                                   \
+  X(VL_TEXTURE_SCALE, scale, vl_texture_row_scale)                                            \
+  X(VL_TEXTURE_MIX, mix, vl_texture_row_mix)                                                  \
+  X(VL_TEXTURE_CHECKERBOARD, checkerboard, vl_texture_row_checkerboard)                       \
+  X(VL_TEXTURE_IMAGE, image, vl_texture_row_image)                                            \
+  X(VL_TEXTURE_DIRECTION_MIX, direction_mix, vl_texture_row_direction_mix)                    \
+  X(VL_TEXTURE_BILERP, bilerp, vl_texture_row_bilerp)                                         \
+  X(VL_TEXTURE_FBM, fbm,                                                                      \
+    vl_texture_row_fbm) /* float: octaves of noise in texture space (texture_from_world) */   \
+  X(VL_TEXTURE_WRINKLED, wrinkled,                                                            \
+    vl_texture_row_wrinkled) /* float: octaves of the noise's absolute value */               \
+  X(VL_TEXTURE_WINDY, windy,                                                                  \
+    vl_texture_row_windy) /* float: wind waves; octaves and roughness are fixed */            \
+  X(VL_TEXTURE_MARBLE, marble,                                                                \
+    vl_texture_row_marble) /* colour: veins with a scale and a variation */                   \
+  X(VL_TEXTURE_DOTS, dots, vl_texture_row_dots) /* b in the dots, a between them */           \
+  X(VL_TEXTURE_VERTEX_COLOR, vertex_color,                                                    \
+    vl_texture_row_vertex_color) /* the shape's vertex colours; has an image's tint, channel, \
+                                    bias, cutoff */
 /** The kinds of textures: VL_TEXTURE_CONSTANT and so on, from VL_TEXTURE_KINDS. */
 typedef enum vlTextureKind {
-#define VL_KIND(NAME, name) VL_TEXTURE_##NAME,
+#define VL_KIND(kind, name, row) kind,
   VL_TEXTURE_KINDS(VL_KIND)
 #undef VL_KIND
 } vlTextureKind;

@@ -219,7 +219,7 @@ static const vlParameter *camera_row(const vlCameraDef *def, const char *name, b
   const char *projection = projections->choices[def->projection];
   for (int own = 1; own >= (any ? 0 : 1); own--)
     for (uint32_t k = 0; k < family->kind_count; k++) {
-      if (own && !same_word(family->constants[k], projection))
+      if (own && !same_word(family->words[k], projection))
         continue;
       const vlKindRow *kind = family->rows[k];
       row = find_parameter(kind->parameters, kind->parameter_count, name);

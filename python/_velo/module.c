@@ -115,12 +115,7 @@ static PyObject *kinds(PyObject *module, PyObject *arguments) {
         Py_CLEAR(words);
       Py_XDECREF(text);
     }
-    char kind[64] = "";
-    for (size_t i = 0; family->constants[k][i] && i + 1 < sizeof kind; i++) {
-      char c = family->constants[k][i];
-      kind[i] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-    }
-    if (!words || PyDict_SetItemString(result, kind, words) < 0)
+    if (!words || PyDict_SetItemString(result, family->words[k], words) < 0)
       Py_CLEAR(result);
     Py_XDECREF(words);
   }

@@ -307,12 +307,7 @@ static PyObject *handle_kind(Handle *self, void *unused) {
   if (!get_def(self->scene->scene, (Family)family, index, &def, &kind))
     Py_RETURN_NONE;
   const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);
-  char lower[64] = "";
-  for (size_t i = 0; kinds->constants[kind][i] && i + 1 < sizeof lower; i++) {
-    char c = kinds->constants[kind][i];
-    lower[i] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-  }
-  return PyUnicode_FromString(lower);
+  return PyUnicode_FromString(kinds->words[kind]);
 }
 
 static PyObject *handle_name(Handle *self, void *unused) {

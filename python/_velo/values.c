@@ -37,12 +37,7 @@ bool raise_unknown(const char *thing, const char *name, PyObject *names) {
 }
 
 bool append_text(PyObject *list, const char *text) {
-  char lower[64] = "";
-  bool constant = strlen(text) < sizeof lower &&
-                  strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == strlen(text);
-  for (size_t i = 0; constant && text[i]; i++)
-    lower[i] = text[i] >= 'A' && text[i] <= 'Z' ? (char)(text[i] + 32) : text[i];
-  PyObject *object = PyUnicode_FromString(constant && text[1] ? lower : text);
+  PyObject *object = PyUnicode_FromString(text);
   bool fine = object && PyList_Append(list, object) == 0;
   Py_XDECREF(object);
   return fine;
@@ -55,13 +50,6 @@ bool append_names(PyObject *list, const vlParameter *rows, size_t count) {
         !append_text(list, vl_setting_keyword(&rows[i])))
       return false;
   return true;
-}
-
-static void put_lower(const char *text, char *lower, size_t size) {
-  size_t i = 0;
-  for (; text[i] && i + 1 < size; i++)
-    lower[i] = text[i] >= 'A' && text[i] <= 'Z' ? (char)(text[i] + 32) : text[i];
-  lower[i] = 0;
 }
 
 bool append_settings(PyObject *list, vlSettingGroup group) {
@@ -83,8 +71,7 @@ int find_choice(const char *const *choices, const char *what, PyObject *value) {
 }
 
 int find_kind(const vlKindFamily *family, const char *thing, PyObject *name) {
-  enum { MAX_KINDS = 64, MAX_LETTERS = 32 };
-  char lower[MAX_KINDS][MAX_LETTERS];
+  enum { MAX_KINDS = 64 };
   const char *choices[MAX_KINDS + 1] = {NULL};
   PyObject *bytes = NULL;
   const char *text = name_text(name, &bytes);
@@ -98,10 +85,8 @@ int find_kind(const vlKindFamily *family, const char *thing, PyObject *name) {
   Py_XDECREF(bytes);
   if (found >= 0)
     return found;
-  for (uint32_t k = 0; k < family->kind_count && k < MAX_KINDS; k++) {
-    put_lower(family->constants[k], lower[k], MAX_LETTERS);
-    choices[k] = lower[k];
-  }
+  for (uint32_t k = 0; k < family->kind_count && k < MAX_KINDS; k++)
+    choices[k] = family->words[k];
   return find_choice(choices, thing, name);
 }
 

@@ -140,7 +140,7 @@ static const char *kind_name(const char *family, uint32_t kind) {
   const vlKindFamily *f = vl_kind_family_find(family);
   if (!f || kind >= f->kind_count)
     return "unknown";
-  return f->rows[kind]->name ? f->rows[kind]->name : f->constants[kind];
+  return f->rows[kind]->name ? f->rows[kind]->name : f->words[kind];
 }
 
 static const char *choice(const char *const *names, uint32_t value) {

@@ -109,9 +109,9 @@ void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirection
   if (c->distortion.steps > 0)
     undistort(&c->distortion, count, d->x, d->y, d->valid);
   switch (c->projection) {
-#define PLANE_LOOP(NAME, name)                     \
-  case VL_PROJECTION_##NAME:                       \
-    plane_loop(VL_PROJECTION_##NAME, c, count, d); \
+#define PLANE_LOOP(kind, name, row) \
+  case kind:                        \
+    plane_loop(kind, c, count, d);  \
     break;
     VL_PROJECTION_KINDS(PLANE_LOOP)
 #undef PLANE_LOOP
@@ -247,13 +247,13 @@ void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n,
     vl_optics_project_chunk(c, count, in, out);
     return;
   }
-#define PROJECT_LOOP(NAME, name)                              \
-  case VL_PROJECTION_##NAME:                                  \
-    project_loop(VL_PROJECTION_##NAME, 0, c, count, in, out); \
+#define PROJECT_LOOP(kind, name, row)         \
+  case kind:                                  \
+    project_loop(kind, 0, c, count, in, out); \
     break;
-#define EYES_LOOP(NAME, name)                \
-  if (c->projection == VL_PROJECTION_##NAME) \
-    project_loop(VL_PROJECTION_##NAME, 1, c, count, in, out);
+#define EYES_LOOP(kind)      \
+  if (c->projection == kind) \
+    project_loop(kind, 1, c, count, in, out);
   if (c->eye_circle != 0.0) {
     VL_ROUND_PROJECTIONS(EYES_LOOP)
   } else {

@@ -28,7 +28,7 @@ static inline void distort_plainly(double radial, double p1, double p2, const do
 }
 
 /* Declares the case of each kind, which is in the file of the kind: distortion/NAME.case.c. */
-#define DISTORTION_CASE(NAME, name) extern const DistortionCase name##_distortion;
+#define DISTORTION_CASE(kind, name) extern const DistortionCase name##_distortion;
 VL_DISTORTION_KINDS(DISTORTION_CASE)
 #undef DISTORTION_CASE
 

@@ -16,5 +16,5 @@ const vlDistortionRow *vl_distortion_row(vlDistortion kind) {
   return kind < KINDS ? rows[kind] : NULL;
 }
 
-#define NAME(NAME, name) #name,
+#define NAME(kind, name) #name,
 const char *const vl_distortion_names[] = {VL_DISTORTION_KINDS(NAME) NULL};

@@ -237,7 +237,7 @@ static bool in_range(float x, float low, float high) {
 /* ---- the whole table --------------------------------------------------------------------- */
 
 static bool is_valid(const vlPixelFilter *filter) {
-#define COUNT(K, k) +1
+#define COUNT(kind, name) +1
   if ((unsigned)filter->kind >= 0 VL_PIXEL_FILTER_KINDS(COUNT))
     return false;
 #undef COUNT

@@ -11,7 +11,7 @@
 typedef double FilterShape(double x, double radius);
 
 /* Declares the formula of each kind, which is in the file of the kind: filter/NAME.case.c. */
-#define FILTER_CASE(NAME, name) extern FilterShape name##_filter;
+#define FILTER_CASE(kind, name) extern FilterShape name##_filter;
 VL_PIXEL_FILTER_KINDS(FILTER_CASE)
 #undef FILTER_CASE
 

@@ -10,8 +10,8 @@ VL_PIXEL_FILTER_FUNCTIONS(DECLARE)
 
 #define ROW(kind, row, value) [kind] = &row,
 static const vlKindRow *const rows[] = {VL_PIXEL_FILTER_FUNCTIONS(ROW)};
-VL_KIND_FAMILY_OF(vl_pixel_filter_family, rows, VL_PIXEL_FILTER_KINDS, "filters",
-                  "pixel filter", "PixelFilter")
+const vlKindFamily vl_pixel_filter_family =
+    VL_KIND_FAMILY(rows, VL_PIXEL_FILTER_KINDS, "filters", "pixel filter", "PixelFilter");
 
 vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind) {
   vlPixelFilter filter = {.kind = kind};

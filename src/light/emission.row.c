@@ -22,14 +22,14 @@ static const vlParameter diffuse_parameters[] = {
     PARAMETER(TEXTURE, NULL, texture, "image texture of the radiance over uv; replaces L",
               .unit = NULL),
 };
-VL_KIND_ROW(diffuse, .name = "diffuse",
-            .description = "a surface that emits the same radiance in all directions",
-            .traits = 0)
+static const vlKindRow diffuse_row = {
+    VL_ROW_PARAMETERS(diffuse_parameters), .name = "diffuse",
+    .description = "a surface that emits the same radiance in all directions", .traits = 0};
 
-#define EMISSION_KINDS(X) X(DIFFUSE, diffuse)
-#define EMISSION_ROW(NAME, name) &name##_row,
-VL_KIND_FAMILY(vl_emission_family, EMISSION_KINDS, EMISSION_ROW, "emission", "area light",
-               "AreaLightSource")
+static const vlKindRow *const rows[] = {&diffuse_row};
+#define EMISSION_KINDS(X) X(, diffuse)
+const vlKindFamily vl_emission_family =
+    VL_KIND_FAMILY(rows, EMISSION_KINDS, "emission", "area light", "AreaLightSource");
 
 vlEmissionDef vl_default_emission_def(void) {
   vlEmissionDef def = {.cookie = VL_COOKIE_EMISSION};

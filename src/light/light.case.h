@@ -36,7 +36,7 @@ typedef struct LightCase {
 } LightCase;
 
 /* Declares the case of each kind, which is in the file of the kind: light/NAME.case.c. */
-#define LIGHT_CASE(NAME, name) extern const LightCase name##_light;
+#define LIGHT_CASE(kind, name) extern const LightCase name##_light;
 VL_LIGHT_KINDS(LIGHT_CASE)
 #undef LIGHT_CASE
 

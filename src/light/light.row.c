@@ -14,7 +14,8 @@ VL_LIGHT_FUNCTIONS(DECLARE)
 
 #define ROW(kind, row, power, compile, sample, emit, density) [kind] = &row,
 static const vlKindRow *const rows[] = {VL_LIGHT_FUNCTIONS(ROW)};
-VL_KIND_FAMILY_OF(vl_light_family, rows, VL_LIGHT_KINDS, "lights", "light", "LightSource")
+const vlKindFamily vl_light_family =
+    VL_KIND_FAMILY(rows, VL_LIGHT_KINDS, "lights", "light", "LightSource");
 
 vlLightDef vl_default_light_def(vlLightKind kind) {
   vlLightDef def = {.cookie = VL_COOKIE_LIGHT, .kind = kind};

@@ -6,7 +6,7 @@
 #include "velo/light.h"
 
 enum {
-#define VL_COUNT(NAME, name) +1
+#define VL_COUNT(kind, name) +1
   VL_LIGHT_AREA = 0 VL_LIGHT_KINDS(VL_COUNT)
 #undef VL_COUNT
 };

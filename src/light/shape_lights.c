@@ -10,9 +10,9 @@
 #include "scene/scene.h"
 #include "shape/surface_point.h"
 #include "texture/lookup.h"
-#include "texture/node_kind.h"
 #include "velo/light.h"
 #include "velo/shape_kinds.h"
+#include "velo/texture.h"
 
 static float mean_image_luminance(const vlMipmap *mip) {
   uint32_t last = mip->level_count - 1;
@@ -219,7 +219,7 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
     light->prim = i;
     light->area = area;
     light->invisible = shape->alpha >= 0 &&
-                       world->nodes.items[shape->alpha].kind == VL_NODE_FLOAT &&
+                       world->nodes.items[shape->alpha].kind == VL_TEXTURE_CONSTANT &&
                        world->nodes.items[shape->alpha].value == 0;
     vlVec3 center;
     float radius;

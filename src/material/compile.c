@@ -8,8 +8,8 @@
 #include "material/compile.h"
 #include "math/ggx.h"
 #include "schema/schema.h"
-#include "texture/node_kind.h"
 #include "velo/schema.h"
+#include "velo/texture.h"
 
 vlResult vl_material_fail(const vlMaterialBuild *b, const char *what) {
   const vlMaterialDef *def = b->def;
@@ -106,7 +106,7 @@ static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMateria
                         vlError *error) {
   const vlTextureNode *u = &world->nodes.items[m->u_roughness],
                       *v = &world->nodes.items[m->v_roughness];
-  if (u->kind != VL_NODE_FLOAT || v->kind != VL_NODE_FLOAT)
+  if (u->kind != VL_TEXTURE_CONSTANT || v->kind != VL_TEXTURE_CONSTANT)
     return coat_table(world, def, m, true, 0, 0, &m->coat, error);
   float a = alpha_of(u->value, m->remap), b = alpha_of(v->value, m->remap);
   vlResult r = coat_table(world, def, m, false, a, b, &m->coat, error);

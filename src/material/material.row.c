@@ -10,8 +10,8 @@ VL_MATERIAL_FUNCTIONS(DECLARE)
 
 #define ROW(kind, row, compile) [kind] = &row,
 static const vlKindRow *const rows[] = {VL_MATERIAL_FUNCTIONS(ROW)};
-VL_KIND_FAMILY_OF(vl_material_family, rows, VL_MATERIAL_KINDS, "materials", "material",
-                  "Material")
+const vlKindFamily vl_material_family =
+    VL_KIND_FAMILY(rows, VL_MATERIAL_KINDS, "materials", "material", "Material");
 
 vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
   vlMaterialDef def = {.cookie = VL_COOKIE_MATERIAL, .kind = kind};

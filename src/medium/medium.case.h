@@ -38,7 +38,7 @@ typedef struct MediumCase {
 #define OTHER_COLORS "[.2 .5 1 .1 .7 1 .4 .3 .6 .9 .8 .3 .1 .5 .6 1 .2 .1 .4 .9 .1 .1 .8 .3]"
 
 /* Declares the case of each kind, which is in the file of the kind: medium/NAME.case.c. */
-#define MEDIUM_CASE(NAME, name) extern const MediumCase name##_medium;
+#define MEDIUM_CASE(kind, name) extern const MediumCase name##_medium;
 VL_MEDIUM_KINDS(MEDIUM_CASE)
 #undef MEDIUM_CASE
 

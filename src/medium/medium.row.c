@@ -10,8 +10,8 @@ VL_MEDIUM_FUNCTIONS(DECLARE)
 
 #define ROW(kind, row, compile, density) [kind] = &row,
 static const vlKindRow *const rows[] = {VL_MEDIUM_FUNCTIONS(ROW)};
-VL_KIND_FAMILY_OF(vl_medium_family, rows, VL_MEDIUM_KINDS, "media", "medium type",
-                  "MakeNamedMedium")
+const vlKindFamily vl_medium_family =
+    VL_KIND_FAMILY(rows, VL_MEDIUM_KINDS, "media", "medium type", "MakeNamedMedium");
 
 vlMediumDef vl_default_medium_def(vlMediumKind kind) {
   vlMediumDef def = {.cookie = VL_COOKIE_MEDIUM, .kind = kind};

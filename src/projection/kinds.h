@@ -53,11 +53,11 @@
     vl_derive_double_sphere)                                                                 \
   X(VL_PROJECTION_OPTICS, vl_unproject_optics, vl_project_optics, vl_derive_optics)
 
-/* A kind that is not in this list is a compile error. */
-#define VL_HAS_FUNCTIONS(kind, unproject, project, derive) vl_functions_of_##kind = 1,
+/* A kind that is not in this list is a compile error: a number that the enum has not. */
+#define VL_HAS_FUNCTIONS(kind, unproject, project, derive) functions_of_##kind = 1,
 enum { VL_PROJECTION_FUNCTIONS(VL_HAS_FUNCTIONS) };
-#define VL_NEEDS_FUNCTIONS(NAME, name) \
-  _Static_assert(vl_functions_of_VL_PROJECTION_##NAME, "a kind has functions");
+#define VL_NEEDS_FUNCTIONS(kind, name, row) \
+  _Static_assert(functions_of_##kind, "a kind has functions");
 VL_PROJECTION_KINDS(VL_NEEDS_FUNCTIONS)
 #undef VL_NEEDS_FUNCTIONS
 #undef VL_HAS_FUNCTIONS
@@ -117,10 +117,10 @@ VL_CAMERA_INLINE vlPlaneDerivatives vl_plane_derive(vlProjection kind,
 }
 
 /* The projections that cover all longitudes. They support omnidirectional stereo (eyes.h). */
-#define VL_ROUND_PROJECTIONS(X)       \
-  X(EQUIRECTANGULAR, equirectangular) \
-  X(EQUAL_AREA, equal_area)           \
-  X(CYLINDRICAL, cylindrical)         \
-  X(CUBE, cube)
+#define VL_ROUND_PROJECTIONS(X)    \
+  X(VL_PROJECTION_EQUIRECTANGULAR) \
+  X(VL_PROJECTION_EQUAL_AREA)      \
+  X(VL_PROJECTION_CYLINDRICAL)     \
+  X(VL_PROJECTION_CUBE)
 
 #endif

@@ -28,7 +28,7 @@ typedef struct ProjectionCase {
 #define CASE_PI 3.14159265358979323846
 
 /* Declares the case of each kind, which is in the file of the kind: projection/NAME.case.c. */
-#define PROJECTION_CASE(NAME, name) extern const ProjectionCase name##_projection;
+#define PROJECTION_CASE(kind, name, row) extern const ProjectionCase name##_projection;
 VL_PROJECTION_KINDS(PROJECTION_CASE)
 #undef PROJECTION_CASE
 

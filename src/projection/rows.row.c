@@ -17,14 +17,15 @@ static void one_pixel(const vlCameraDef *d, const vlCamera *camera, double focal
   focal[0] = focal[1] = 1.0;
 }
 
-static const vlProjectionRow vl_projection_row_own = {
+static const vlProjectionRow own_row = {
     .name = "own",
     .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_FOV | VL_PROJECTION_NO_DISTORTION,
     .standard_focal = one_pixel,
 };
 
-#define ROW(NAME, name) [VL_PROJECTION_##NAME] = &vl_projection_row_##name,
-static const vlProjectionRow *const rows[] = {VL_PROJECTION_KINDS(ROW) ROW(OWN, own)};
+#define ROW(kind, name, row) [kind] = &row,
+static const vlProjectionRow *const rows[] = {[VL_PROJECTION_OWN] = &own_row,
+                                              VL_PROJECTION_KINDS(ROW)};
 
 const vlProjectionRow *vl_projection_row(vlProjection kind) {
   return (uint32_t)kind < VL_LENGTH(rows) ? rows[kind] : NULL;

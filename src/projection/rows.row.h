@@ -6,7 +6,7 @@
 #include "projection/projection.row.h"
 #include "velo/projection.h"
 
-#define VL_PROJECTION_ROW(NAME, name) extern const vlProjectionRow vl_projection_row_##name;
+#define VL_PROJECTION_ROW(kind, name, row) extern const vlProjectionRow row;
 VL_PROJECTION_KINDS(VL_PROJECTION_ROW)
 #undef VL_PROJECTION_ROW
 

@@ -15,7 +15,7 @@ typedef struct SamplerCase {
 } SamplerCase;
 
 /* Declares the case of each kind, which is in the file of the kind: sampler/NAME.case.c. */
-#define SAMPLER_CASE(NAME, name) extern const SamplerCase name##_sampler;
+#define SAMPLER_CASE(kind, name) extern const SamplerCase name##_sampler;
 VL_SAMPLER_KINDS(SAMPLER_CASE)
 #undef SAMPLER_CASE
 

@@ -13,4 +13,5 @@ VL_SAMPLER_FUNCTIONS(DECLARE)
 
 #define ROW(kind, row, one, two) [kind] = &row,
 static const vlKindRow *const rows[] = {VL_SAMPLER_FUNCTIONS(ROW)};
-VL_KIND_FAMILY_OF(vl_sampler_family, rows, VL_SAMPLER_KINDS, "samplers", "sampler", "Sampler")
+const vlKindFamily vl_sampler_family =
+    VL_KIND_FAMILY(rows, VL_SAMPLER_KINDS, "samplers", "sampler", "Sampler");

@@ -32,11 +32,14 @@ static const vlParameter pbrt_perspective_parameters[] = {
     NUMBER("fov", fov, "field of view across the smaller side of the image",
            VL_DEFAULT(90 * DEGREES), ANGLE),
     PBRT};
-VL_KIND_ROW(pbrt_perspective, .name = "perspective",
-            .description = "pbrt's perspective camera: a pinhole or a thin lens")
+static const vlKindRow pbrt_perspective_row = {
+    VL_ROW_PARAMETERS(pbrt_perspective_parameters), .name = "perspective",
+    .description = "pbrt's perspective camera: a pinhole or a thin lens"};
 
 static const vlParameter pbrt_orthographic_parameters[] = {PBRT};
-VL_KIND_ROW(pbrt_orthographic, .name = "orthographic", .description = "orthographic projection")
+static const vlKindRow pbrt_orthographic_row = {VL_ROW_PARAMETERS(pbrt_orthographic_parameters),
+                                                .name = "orthographic",
+                                                .description = "orthographic projection"};
 
 #define IGNORED(name) WORD(name, DOUBLE, fov, "ignored, as in pbrt", .unit = NULL)
 static const vlParameter spherical_parameters[] = {
@@ -48,8 +51,9 @@ static const vlParameter spherical_parameters[] = {
     IGNORED("frameaspectratio"),
     BLOCK("screenwindow", screen_min_x, "float", "ignored, as in pbrt"),
 };
-VL_KIND_ROW(spherical, .name = "spherical",
-            .description = "pbrt's camera that sees in all directions")
+static const vlKindRow spherical_row = {
+    VL_ROW_PARAMETERS(spherical_parameters), .name = "spherical",
+    .description = "pbrt's camera that sees in all directions"};
 
 static const vlParameter realistic_parameters[] = {
     WORD("lensfile", STRING, lens.optics,
@@ -63,40 +67,47 @@ static const vlParameter realistic_parameters[] = {
          .text = NULL),
     SHUTTER,
 };
-VL_KIND_ROW(realistic, .name = "realistic",
-            .description = "a lens of many elements, simulated surface by surface")
+static const vlKindRow realistic_row = {
+    VL_ROW_PARAMETERS(realistic_parameters), .name = "realistic",
+    .description = "a lens of many elements, simulated surface by surface"};
 
 /* ---- velo's words ------------------------------------------------------------------------ */
 
 static const vlParameter pinhole_parameters[] = {PINHOLE};
-VL_KIND_ROW(pinhole, .name = "pinhole",
-            .description = "a pinhole camera, posed by eye, lookat and up")
+static const vlKindRow pinhole_row = {
+    VL_ROW_PARAMETERS(pinhole_parameters), .name = "pinhole",
+    .description = "a pinhole camera, posed by eye, lookat and up"};
 static const vlParameter thin_lens_parameters[] = {PINHOLE, LENS};
-VL_KIND_ROW(thin_lens, .name = "thinlens",
-            .description = "a perspective camera with a thin lens")
+static const vlKindRow thin_lens_row = {VL_ROW_PARAMETERS(thin_lens_parameters),
+                                        .name = "thinlens",
+                                        .description = "a perspective camera with a thin lens"};
 static const vlParameter fisheye_parameters[] = {
     MODEL,
     WORD("mapping", CHOICE, projection,
          "map from the angle to the axis to the radius in the image", .choices = mappings)};
-VL_KIND_ROW(fisheye, .name = "fisheye",
-            .description = "a fisheye lens with one of four mappings")
+static const vlKindRow fisheye_row = {
+    VL_ROW_PARAMETERS(fisheye_parameters), .name = "fisheye",
+    .description = "a fisheye lens with one of four mappings"};
 static const vlParameter opencv_parameters[] = {MODEL, COEFFICIENTS};
-VL_KIND_ROW(opencv, .name = "opencv",
-            .description = "OpenCV's pinhole camera with lens distortion")
+static const vlKindRow opencv_row = {
+    VL_ROW_PARAMETERS(opencv_parameters), .name = "opencv",
+    .description = "OpenCV's pinhole camera with lens distortion"};
 static const vlParameter opencv_fisheye_parameters[] = {MODEL, COEFFICIENTS};
-VL_KIND_ROW(opencv_fisheye, .name = "opencvfisheye",
-            .description = "OpenCV's fisheye camera (Kannala and Brandt)")
+static const vlKindRow opencv_fisheye_row = {
+    VL_ROW_PARAMETERS(opencv_fisheye_parameters), .name = "opencvfisheye",
+    .description = "OpenCV's fisheye camera (Kannala and Brandt)"};
 static const vlParameter colmap_parameters[] = {
     MODEL,
     WORD("model", STRING, projection, "name of the camera model in COLMAP", .text = "PINHOLE"),
     BLOCK("parameters", distortion_coefficients, "float",
           "parameters of the camera model, in COLMAP's order")};
-VL_KIND_ROW(colmap, .name = "colmap", .description = "one of COLMAP's camera models")
+static const vlKindRow colmap_row = {VL_ROW_PARAMETERS(colmap_parameters), .name = "colmap",
+                                     .description = "one of COLMAP's camera models"};
 
 /* ---- the settings of cameras, in calls and messages -------------------------------------- */
 
 static const char *const projections[] = {
-#define NAME(NAME, name) #name,
+#define NAME(kind, name, row) #name,
     VL_PROJECTION_KINDS(NAME)
 #undef NAME
         NULL};
@@ -129,17 +140,23 @@ const vlKindRow vl_camera_settings_row = {
     .parameters = camera_settings_parameters,
     .parameter_count = sizeof camera_settings_parameters / sizeof *camera_settings_parameters};
 
-#define ROW(NAME, name) &name##_row,
-#define ROW_OF_PROJECTION(NAME, name) &vl_projection_row_##name.in_files,
-static const vlKindRow *const rows[] = {VL_CAMERA_KINDS(ROW)
+#define ROW_OF_PROJECTION(kind, name, row) [VL_CAMERA_OF_PROJECTION + kind] = &row.in_files,
+#define CAMERA_ROWS(X)                                  \
+  X(VL_CAMERA_PBRT_PERSPECTIVE, pbrt_perspective_row)   \
+  X(VL_CAMERA_PBRT_ORTHOGRAPHIC, pbrt_orthographic_row) \
+  X(VL_CAMERA_SPHERICAL, spherical_row)                 \
+  X(VL_CAMERA_REALISTIC, realistic_row)                 \
+  X(VL_CAMERA_PINHOLE, pinhole_row)                     \
+  X(VL_CAMERA_THIN_LENS, thin_lens_row)                 \
+  X(VL_CAMERA_FISHEYE, fisheye_row)                     \
+  X(VL_CAMERA_OPENCV, opencv_row)                       \
+  X(VL_CAMERA_OPENCV_FISHEYE, opencv_fisheye_row)       \
+  X(VL_CAMERA_COLMAP, colmap_row)
+_Static_assert(0 CAMERA_ROWS(VL_COUNT_KIND) == 0 VL_CAMERA_KINDS(VL_COUNT_KIND),
+               "each camera has a row");
+#define ROW(kind, row) [kind] = &row,
+static const vlKindRow *const rows[] = {CAMERA_ROWS(ROW)
                                             VL_PROJECTION_KINDS(ROW_OF_PROJECTION)};
-static const char *const constants[] = {VL_CAMERA_KINDS(VL_KIND_CONSTANT)
-                                            VL_PROJECTION_KINDS(VL_KIND_CONSTANT)};
-const vlKindFamily vl_camera_family = {
-    .name = "cameras",
-    .thing = "camera",
-    .directive = "Camera",
-    .kind_count = sizeof rows / sizeof *rows,
-    .constants = constants,
-    .rows = rows,
-};
+#define CAMERA_KINDS(X) VL_CAMERA_KINDS(X) VL_PROJECTION_KINDS(X)
+const vlKindFamily vl_camera_family =
+    VL_KIND_FAMILY(rows, CAMERA_KINDS, "cameras", "camera", "Camera");

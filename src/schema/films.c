@@ -56,7 +56,8 @@
   }
 
 static const vlParameter rgb_parameters[] = {COMMON};
-VL_KIND_ROW(rgb, .name = "rgb", .description = "an RGB image")
+static const vlKindRow rgb_row = {VL_ROW_PARAMETERS(rgb_parameters), .name = "rgb",
+                                  .description = "an RGB image"};
 
 static const char *const systems[] = {"camera", "world", NULL};
 static const vlParameter gbuffer_parameters[] = {
@@ -65,8 +66,8 @@ static const vlParameter gbuffer_parameters[] = {
               "coordinate system of the channels' points and normals", .choices = systems,
               .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND),
 };
-VL_KIND_ROW(gbuffer, .name = "gbuffer",
-            .description = "an RGB image with ground truth channels")
+static const vlKindRow gbuffer_row = {VL_ROW_PARAMETERS(gbuffer_parameters), .name = "gbuffer",
+                                      .description = "an RGB image with ground truth channels"};
 
 #define WAVELENGTH(name, member, usual, text) \
   PARAMETER(DOUBLE, name, member, text, VL_DEFAULT(usual), VL_RANGE(360, 830), .unit = "nm")
@@ -77,8 +78,17 @@ static const vlParameter spectral_parameters[] = {
     WAVELENGTH("lambdamin", film.lambda_min, 360, "start of the first bucket"),
     WAVELENGTH("lambdamax", film.lambda_max, 830, "end of the last bucket"),
 };
-VL_KIND_ROW(spectral, .name = "spectral",
-            .description = "an RGB image with a spectrum, in intervals of wavelength")
+static const vlKindRow spectral_row = {
+    VL_ROW_PARAMETERS(spectral_parameters), .name = "spectral",
+    .description = "an RGB image with a spectrum, in intervals of wavelength"};
 
-#define ROW(NAME, name) [VL_FILM_##NAME] = &name##_row,
-VL_KIND_FAMILY(vl_film_family, VL_FILM_KINDS, ROW, "films", "film", "Film")
+#define FILM_ROWS(X)              \
+  X(VL_FILM_RGB, rgb_row)         \
+  X(VL_FILM_GBUFFER, gbuffer_row) \
+  X(VL_FILM_SPECTRAL, spectral_row)
+_Static_assert(0 FILM_ROWS(VL_COUNT_KIND) == 0 VL_FILM_KINDS(VL_COUNT_KIND),
+               "each film has a row");
+#define ROW(kind, row) [kind] = &row,
+static const vlKindRow *const rows[] = {FILM_ROWS(ROW)};
+const vlKindFamily vl_film_family =
+    VL_KIND_FAMILY(rows, VL_FILM_KINDS, "films", "film", "Film");

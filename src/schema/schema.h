@@ -9,9 +9,8 @@
 #include "velo/setting.h"
 #include "velo/spectrum.h"
 
-/* For the files that hold rows. Each writes, per kind, an array `NAME_parameters` and
- * VL_KIND_ROW(NAME, ...); the list of kinds then makes the table, so that a kind without a row
- * does not compile. */
+/* For the files that hold rows: each kind has an array of parameters and a vlKindRow; the list
+ * of kinds then makes the table, so that a kind without a row does not compile. */
 
 /* Initialises a parameter of type VL_PARAMETER_##TYPE, stored in the member `path` of Def.
  * file_name may be NULL. VL_DEFAULT, VL_RANGE or VL_FROM and further initialisers may follow.
@@ -46,37 +45,21 @@
 #define VL_POINTER_TEXTURE const vlTextureId *
 #define VL_POINTER_BLOCK const void *
 
-/* Defines the row of `kind`, whose parameters are in the array `kind`_parameters. Further
- * initialisers (.name, .traits) may follow. */
-#define VL_KIND_ROW(kind, ...)                                                 \
-  static const vlKindRow kind##_row = {                                        \
-      .parameters = kind##_parameters,                                         \
-      .parameter_count = sizeof kind##_parameters / sizeof *kind##_parameters, \
-      __VA_ARGS__};
 /* Initialises the parameters of a row with an array. */
 #define VL_ROW_PARAMETERS(array) \
   .parameters = (array), .parameter_count = sizeof(array) / sizeof *(array)
-/* Defines the row of a kind without parameters. */
-#define VL_KIND_ROW_EMPTY(kind, ...) static const vlKindRow kind##_row = {__VA_ARGS__};
 
-/* Defines a family from its list of kinds. ROW(NAME, name) expands to `[VL_..._##NAME] =
- * &name##_row,`. */
-#define VL_KIND_FAMILY(variable, KINDS, ROW, family_name, thing_name, directive_name) \
-  static const vlKindRow *const variable##_rows[] = {KINDS(ROW)};                     \
-  VL_KIND_FAMILY_OF(variable, variable##_rows, KINDS, family_name, thing_name, directive_name)
-/* The same of an array of rows. */
-#define VL_KIND_FAMILY_OF(variable, array, KINDS, family_name, thing_name, directive_name) \
-  static const char *const variable##_constants[] = {KINDS(VL_KIND_CONSTANT)};             \
-  const vlKindFamily variable = {.name = family_name,                                      \
-                                 .thing = thing_name,                                      \
-                                 .directive = directive_name,                              \
-                                 .kind_count = sizeof(array) / sizeof *(array),            \
-                                 .constants = variable##_constants,                        \
-                                 .rows = (array)};
-#define VL_KIND_CONSTANT(NAME, name) #NAME,
+/* Initialises a family with the array of its rows and the list of its kinds. */
+#define VL_KIND_FAMILY(array, KINDS, family_name, thing_name, directive_name) \
+  {                                                                           \
+    .name = family_name, .thing = thing_name, .directive = directive_name,    \
+    .kind_count = sizeof(array) / sizeof *(array),                            \
+    .words = (const char *const[]){KINDS(VL_KIND_WORD)}, .rows = (array)      \
+  }
+#define VL_KIND_WORD(kind, name, ...) #name,
 
 /* For the size of a table with one entry per kind: `0 VL_MATERIAL_KINDS(VL_COUNT_KIND)`. */
-#define VL_COUNT_KIND(NAME, name) +1
+#define VL_COUNT_KIND(...) +1
 
 /* ---- families ---------------------------------------------------------------------------- */
 
@@ -89,19 +72,19 @@ extern const vlKindFamily vl_medium_family;   /* vlMediumDef */
 extern const vlKindFamily vl_sampler_family, vl_tracer_family, vl_film_family;
 
 /* The kinds of camera in files (vlCameraDef): those of this list, then one per projection. */
-#define VL_CAMERA_KINDS(X)                \
-  X(PBRT_PERSPECTIVE, pbrt_perspective)   \
-  X(PBRT_ORTHOGRAPHIC, pbrt_orthographic) \
-  X(SPHERICAL, spherical)                 \
-  X(REALISTIC, realistic)                 \
-  X(PINHOLE, pinhole)                     \
-  X(THIN_LENS, thin_lens)                 \
-  X(FISHEYE, fisheye)                     \
-  X(OPENCV, opencv)                       \
-  X(OPENCV_FISHEYE, opencv_fisheye)       \
-  X(COLMAP, colmap)
+#define VL_CAMERA_KINDS(X)                          \
+  X(VL_CAMERA_PBRT_PERSPECTIVE, pbrt_perspective)   \
+  X(VL_CAMERA_PBRT_ORTHOGRAPHIC, pbrt_orthographic) \
+  X(VL_CAMERA_SPHERICAL, spherical)                 \
+  X(VL_CAMERA_REALISTIC, realistic)                 \
+  X(VL_CAMERA_PINHOLE, pinhole)                     \
+  X(VL_CAMERA_THIN_LENS, thin_lens)                 \
+  X(VL_CAMERA_FISHEYE, fisheye)                     \
+  X(VL_CAMERA_OPENCV, opencv)                       \
+  X(VL_CAMERA_OPENCV_FISHEYE, opencv_fisheye)       \
+  X(VL_CAMERA_COLMAP, colmap)
 typedef enum vlCameraKind {
-#define VL_KIND(NAME, name) VL_CAMERA_##NAME,
+#define VL_KIND(kind, name) kind,
   VL_CAMERA_KINDS(VL_KIND)
 #undef VL_KIND
       VL_CAMERA_OF_PROJECTION /* + vlProjection */

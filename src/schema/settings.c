@@ -18,7 +18,7 @@
 #define WITHIN(least, most) .low = (least), .high = (most)
 #define ABOVE(least) VL_FROM(least), .flags = VL_PARAMETER_ABOVE_LOW
 #define UNSET .flags = VL_PARAMETER_UNSET
-#define NAME(NAME, name) #name,
+#define NAME(kind, name) #name,
 /* A member that no type of parameters has: an int that is never negative. */
 #define WHOLE(Def, path, line, ...)                                             \
   {                                                                             \
@@ -127,7 +127,8 @@ static const vlParameter render_parameters[] = {
            .choices = accelerators),
     RENDER(FLOAT, develop.exposure, "factor on the image", VL_DEFAULT(1)),
 };
-VL_KIND_ROW(render, .name = "render", .description = "how an image is rendered")
+static const vlKindRow render_row = {VL_ROW_PARAMETERS(render_parameters), .name = "render",
+                                     .description = "how an image is rendered"};
 
 /* ---- scenes ------------------------------------------------------------------------------ */
 
@@ -147,7 +148,8 @@ static const vlParameter load_parameters[] = {
     LOAD(DOUBLE, unit, "length of the file's unit, for candela and lumens", WITHIN(1e-9, 1e9),
          UNSET, .unit = "m", .keyword = "scene_unit"),
 };
-VL_KIND_ROW(load, .name = "load", .description = "how a file of a scene is read")
+static const vlKindRow load_row = {VL_ROW_PARAMETERS(load_parameters), .name = "load",
+                                   .description = "how a file of a scene is read"};
 
 static const char *const environments[] = {"auto", "none",  "studio", "sky",     "white",
                                            "file", "lamps", "window", "evening", NULL};
@@ -195,8 +197,9 @@ static const vlParameter complete_parameters[] = {
              "added camera stands",
              .flags = VL_PARAMETER_VECTOR | VL_PARAMETER_UNSET),
 };
-VL_KIND_ROW(complete, .name = "complete",
-            .description = "what a scene gets that lacks camera, light or ground")
+static const vlKindRow complete_row = {
+    VL_ROW_PARAMETERS(complete_parameters), .name = "complete",
+    .description = "what a scene gets that lacks camera, light or ground"};
 
 /* ---- images ------------------------------------------------------------------------------ */
 
@@ -211,14 +214,17 @@ static const vlParameter channels_parameters[] = {
                  "time for which ground truth is; unset: the exposure's middle", UNSET,
                  .unit = "s"),
 };
-VL_KIND_ROW(channels, .name = "channels", .description = "ground truth beside an image")
+static const vlKindRow channels_row = {VL_ROW_PARAMETERS(channels_parameters),
+                                       .name = "channels",
+                                       .description = "ground truth beside an image"};
 
 static const vlParameter write_parameters[] = {
     VL_PARAMETER(BOOL, vlWriteDef, NULL, half, "EXR: 16-bit floats", .unit = NULL),
     WHOLE(vlWriteDef, compression, "EXR: 0 none, 1 ZIP", WITHIN(0, 1), VL_DEFAULT(1)),
     WHOLE(vlWriteDef, quality, "JPEG: quality", WITHIN(1, 100), VL_DEFAULT(95)),
 };
-VL_KIND_ROW(write, .name = "write", .description = "how an image is written")
+static const vlKindRow write_row = {VL_ROW_PARAMETERS(write_parameters), .name = "write",
+                                    .description = "how an image is written"};
 
 /* ---- contexts, and the program ----------------------------------------------------------- */
 
@@ -226,7 +232,8 @@ static const vlParameter context_parameters[] = {
     VL_PARAMETER(COUNT, vlContextDef, NULL, threads, "number of worker threads",
                  WITHIN(1, 1024), VL_DEFAULT(1)),
 };
-VL_KIND_ROW(context, .name = "context", .description = "threads")
+static const vlKindRow context_row = {VL_ROW_PARAMETERS(context_parameters), .name = "context",
+                                      .description = "threads"};
 
 /* A setting that no def has. */
 #define OWN(TYPE, word, line, ...)                                                \
@@ -252,16 +259,29 @@ static const vlParameter program_parameters[] = {
         WITHIN(0, SIDE_MOST)),
     OWN(COUNT, "show", "number of paths that are shown one by one", WITHIN(0, 64)),
 };
-VL_KIND_ROW(program, .name = "program", .description = "what is turned into other settings")
+static const vlKindRow program_row = {VL_ROW_PARAMETERS(program_parameters), .name = "program",
+                                      .description = "what is turned into other settings"};
 
 /* ---- finding them ------------------------------------------------------------------------ */
 
 /* The parameters of cameras are in cameras.c, those of sensors in sensors.c. */
-#define camera_row vl_camera_settings_row
-#define sensor_row vl_sensor_settings_row
-#define exposure_row vl_exposure_settings_row
-#define ROW(NAME, name) [VL_SETTING_##NAME] = &name##_row,
-VL_KIND_FAMILY(vl_setting_family, VL_SETTING_GROUPS, ROW, "settings", "setting", NULL)
+#define GROUP_ROWS(X)                          \
+  X(VL_SETTING_RENDER, render_row)             \
+  X(VL_SETTING_CAMERA, vl_camera_settings_row) \
+  X(VL_SETTING_LOAD, load_row)                 \
+  X(VL_SETTING_COMPLETE, complete_row)         \
+  X(VL_SETTING_CHANNELS, channels_row)         \
+  X(VL_SETTING_WRITE, write_row)               \
+  X(VL_SETTING_CONTEXT, context_row)           \
+  X(VL_SETTING_PROGRAM, program_row)           \
+  X(VL_SETTING_SENSOR, vl_sensor_settings_row) \
+  X(VL_SETTING_EXPOSURE, vl_exposure_settings_row)
+_Static_assert(0 GROUP_ROWS(VL_COUNT_KIND) == 0 VL_SETTING_GROUPS(VL_COUNT_KIND),
+               "each group has a row");
+#define ROW(kind, row) [kind] = &row,
+static const vlKindRow *const rows_of_group[] = {GROUP_ROWS(ROW)};
+const vlKindFamily vl_setting_family =
+    VL_KIND_FAMILY(rows_of_group, VL_SETTING_GROUPS, "settings", "setting", NULL);
 
 const vlKindRow *vl_settings(vlSettingGroup group) {
   return vl_kind_row(&vl_setting_family, (int)group);

@@ -41,7 +41,7 @@ typedef struct ShapeCase {
 #define UVS "\"point2 uv\" [0 0 .3 0 0 .7 .4 .9]"
 
 /* Declares the case of each kind, which is in the file of the kind: shape/NAME.case.c. */
-#define SHAPE_CASE(NAME, name) extern const ShapeCase name##_shape;
+#define SHAPE_CASE(kind, name) extern const ShapeCase name##_shape;
 VL_SHAPE_KINDS(SHAPE_CASE)
 #undef SHAPE_CASE
 

@@ -16,13 +16,13 @@ VL_SHAPE_FUNCTIONS(DECLARE)
 /* Each kind has a line in kinds.row.h: the compiler names the one that is not listed. */
 #define LISTED(kind, row, box, functions) LISTED_##kind = kind,
 enum { VL_SHAPE_FUNCTIONS(LISTED) };
-#define IS_LISTED(NAME, name) \
-  _Static_assert((int)LISTED_VL_SHAPE_##NAME == (int)VL_SHAPE_##NAME, #name);
+#define IS_LISTED(kind, name) _Static_assert((int)LISTED_##kind == (int)kind, #name);
 VL_SHAPE_KINDS(IS_LISTED)
 
 #define ROW(kind, row, box, functions) [kind] = &row,
 static const vlKindRow *const rows[] = {VL_SHAPE_FUNCTIONS(ROW)};
-VL_KIND_FAMILY_OF(vl_shape_family, rows, VL_SHAPE_KINDS, "shapes", "shape", "Shape")
+const vlKindFamily vl_shape_family =
+    VL_KIND_FAMILY(rows, VL_SHAPE_KINDS, "shapes", "shape", "Shape");
 
 #define BOX(kind, row, box, functions) [kind] = box,
 static vlShapeBox *const box_of[] = {VL_SHAPE_FUNCTIONS(BOX)};

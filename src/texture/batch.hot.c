@@ -3,7 +3,6 @@
  * a stack, then combined by the functions of texture/kinds.h. Undefined values are NaN: the
  * film drops and counts such samples (vlRenderStats.not_finite). */
 #include "texture/kinds.h"
-#include "texture/node_kind.h"
 #include "texture/run.hot.h"
 
 /* ---- point functions over a run ---------------------------------------------------------- */
@@ -177,29 +176,28 @@ static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float
 void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
-  switch ((vlNodeKind)node->kind) {
-    case VL_NODE_FLOAT:
-      fill(r, node->value, out);
+  switch ((vlTextureKind)node->kind) {
+    case VL_TEXTURE_CONSTANT:
+      fill(r, node->is_spectrum ? __builtin_nanf("") : node->value, out);
       break;
-    case VL_NODE_IMAGE:
+    case VL_TEXTURE_IMAGE:
       image_floats(r, node, out);
       break;
-    case VL_NODE_VERTEX_COLOR:
+    case VL_TEXTURE_VERTEX_COLOR:
       each_lane(r, node, vl_node_vertex_color_float, out);
       break;
       VL_FLOAT_NODES(FLOAT_CASE)
-    case VL_NODE_SCALE:
+    case VL_TEXTURE_SCALE:
       scale_floats(r, node, out);
       break;
-    case VL_NODE_BILERP:
+    case VL_TEXTURE_BILERP:
       bilerp_floats(r, node, out);
       break;
-    case VL_NODE_MIX:
+    case VL_TEXTURE_MIX:
       mix_floats(r, node, amount_share(r, node), out);
       break;
       VL_SHARE_NODES(MIX_FLOATS_CASE)
       VL_COLOR_NODES(NODE_CASE)
-    case VL_NODE_SPECTRUM:
       fill(r, __builtin_nanf(""), out);
       break; /* colours; vl_scene_add_texture refuses them here */
   }
@@ -381,34 +379,41 @@ static void bilerp_spectra(vlTextureRun *r, const vlTextureNode *node, float *co
   }
 }
 
+/* Of float textures, which vl_scene_add_texture refuses as colours. */
+static void no_color(const vlTextureRun *r, float *const out[4]) {
+  for (int c = 0; c < 4; c++)
+    fill(r, __builtin_nanf(""), out[c]);
+}
+
 void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
-  switch ((vlNodeKind)node->kind) {
-    case VL_NODE_SPECTRUM:
-      constant_spectrum(r, &node->spectrum, out);
+  switch ((vlTextureKind)node->kind) {
+    case VL_TEXTURE_CONSTANT:
+      if (node->is_spectrum)
+        constant_spectrum(r, &node->spectrum, out);
+      else
+        no_color(r, out);
       break;
-    case VL_NODE_IMAGE:
+    case VL_TEXTURE_IMAGE:
       image_spectrum(r, node, out);
       break;
-    case VL_NODE_VERTEX_COLOR:
+    case VL_TEXTURE_VERTEX_COLOR:
       vertex_color_spectrum(r, node, out);
       break;
       VL_COLOR_NODES(COLOR_CASE)
-    case VL_NODE_SCALE:
+    case VL_TEXTURE_SCALE:
       scale_spectra(r, node, out);
       break;
-    case VL_NODE_BILERP:
+    case VL_TEXTURE_BILERP:
       bilerp_spectra(r, node, out);
       break;
-    case VL_NODE_MIX:
+    case VL_TEXTURE_MIX:
       mix_spectra(r, node, amount_share(r, node), out);
       break;
       VL_SHARE_NODES(MIX_SPECTRA_CASE)
       VL_FLOAT_NODES(NODE_CASE)
-    case VL_NODE_FLOAT: /* floats; vl_scene_add_texture refuses them here */
-      for (int c = 0; c < 4; c++)
-        fill(r, __builtin_nanf(""), out[c]);
+      no_color(r, out);
       break;
   }
   r->top = top;

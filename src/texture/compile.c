@@ -7,7 +7,6 @@
 #include "schema/schema.h"
 #include "texture/images.h"
 #include "texture/kinds.h"
-#include "texture/node_kind.h"
 #include "world/world.h"
 
 /* MAX_NESTING bounds the recursion in this file. VL_NODE_ROWS bounds the nesting of textures by
@@ -66,7 +65,7 @@ static int32_t push_node(vlWorld *world, const vlTextureNode *node) {
   return (int32_t)world->nodes.count - 1;
 }
 
-static vlTextureNode empty_node(vlNodeKind kind) {
+static vlTextureNode empty_node(vlTextureKind kind) {
   vlTextureNode node;
   memset(&node, 0, sizeof node);
   node.kind = kind;
@@ -83,7 +82,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
 static int32_t compile_float(Compile *c, vlFloatInput input, int nesting) {
   if (input.texture.index)
     return compile_texture(c, input.texture.index, ROLE_FLOAT, nesting + 1);
-  vlTextureNode node = empty_node(VL_NODE_FLOAT);
+  vlTextureNode node = empty_node(VL_TEXTURE_CONSTANT);
   node.value = input.value;
   int32_t n = push_node(c->world, &node);
   if (n == VL_TEXTURE_NO_MEMORY)
@@ -94,7 +93,7 @@ static int32_t compile_float(Compile *c, vlFloatInput input, int nesting) {
 static int32_t compile_spectrum(Compile *c, vlSpectrumInput input, int role, int nesting) {
   if (input.texture.index)
     return compile_texture(c, input.texture.index, role, nesting + 1);
-  vlTextureNode node = empty_node(VL_NODE_SPECTRUM);
+  vlTextureNode node = empty_node(VL_TEXTURE_CONSTANT);
   node.is_spectrum = true;
   node.role = (vlSpectrumRole)role;
   if (vl_spectral_compile(c->world, &input.value, (vlSpectrumRole)role, &node.spectrum,
@@ -111,27 +110,26 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
   return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
 }
 
-#define NODE_CASE(node, value, set) case node:
+#define NODE_CASE(kind, value, set) case kind:
 
 /* Computes the scratch rows of a node, its own (as in texture/batch.hot.c) and those of the
  * input that needs most, and the number of nodes visited for it. False: too many. */
 static bool weigh(const vlWorld *world, vlTextureNode *node) {
   uint32_t own = 0, most = 0, visits = 1;
-  switch ((vlNodeKind)node->kind) {
-    case VL_NODE_SCALE:
+  switch ((vlTextureKind)node->kind) {
+    case VL_TEXTURE_SCALE:
       own = 1;
       break;
       VL_SHARE_NODES(NODE_CASE)
-    case VL_NODE_MIX:
+    case VL_TEXTURE_MIX:
       own = node->is_spectrum ? 5 : 2;
       break;
-    case VL_NODE_BILERP:
+    case VL_TEXTURE_BILERP:
       own = node->is_spectrum ? 8 : 5;
       break;
-    case VL_NODE_FLOAT:
-    case VL_NODE_SPECTRUM:
-    case VL_NODE_IMAGE:
-    case VL_NODE_VERTEX_COLOR:
+    case VL_TEXTURE_CONSTANT:
+    case VL_TEXTURE_IMAGE:
+    case VL_TEXTURE_VERTEX_COLOR:
       VL_FLOAT_NODES(NODE_CASE)
       VL_COLOR_NODES(NODE_CASE)
       break; /* no inputs */
@@ -151,11 +149,11 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
   return true;
 }
 
-/* The node kinds that give an RGB colour, which is converted to wavelengths where it is
+/* The kinds that give an RGB colour, which is converted to wavelengths where it is
  * used. */
-#define GIVES_RGB(node, value, set) [node] = true,
-static const bool gives_rgb[VL_NODE_SPECTRUM + 1] = {
-    [VL_NODE_IMAGE] = true, [VL_NODE_VERTEX_COLOR] = true, VL_COLOR_NODES(GIVES_RGB)};
+#define GIVES_RGB(kind, value, set) [kind] = true,
+static const bool gives_rgb[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
+    [VL_TEXTURE_IMAGE] = true, [VL_TEXTURE_VERTEX_COLOR] = true, VL_COLOR_NODES(GIVES_RGB)};
 
 static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
   node->spectrum.scale = 1;
@@ -175,10 +173,10 @@ static Colors colors_of(const vlWorld *world, int32_t index) {
   if (gives_rgb[node->kind])
     return node->space == VL_SPACE_SRGB && node->role == VL_ROLE_ALBEDO ? COLORS_RGB
                                                                         : COLORS_OTHER;
-  if (node->kind == VL_NODE_SPECTRUM && s->kind != VL_SPECTRAL_CONSTANT &&
-      s->kind != VL_SPECTRAL_SIGMOID)
+  bool constant = node->kind == VL_TEXTURE_CONSTANT && node->is_spectrum;
+  if (constant && s->kind != VL_SPECTRAL_CONSTANT && s->kind != VL_SPECTRAL_SIGMOID)
     return COLORS_OTHER;
-  if (node->kind == VL_NODE_SPECTRUM)
+  if (constant)
     return s->rgb[0] == s->rgb[1] && s->rgb[0] == s->rgb[2] ? COLORS_GREY : COLORS_RGB;
   const int32_t input[4] = {node->a, node->b, node->c, node->d};
   Colors all = COLORS_GREY;
@@ -220,8 +218,8 @@ static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
 
 /* The numbers that only some kinds have. Null: none. */
 typedef void SetNumbers(vlTextureNode *node, const vlTextureDef *def);
-#define SET_NUMBERS(node, value, set) [node] = set,
-static SetNumbers *const set_numbers[VL_NODE_SPECTRUM + 1] = {
+#define SET_NUMBERS(kind, value, set) [kind] = set,
+static SetNumbers *const set_numbers[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
     VL_FLOAT_NODES(SET_NUMBERS) VL_COLOR_NODES(SET_NUMBERS) VL_SHARE_NODES(SET_NUMBERS)};
 
 /* Compiles the inputs that the kind's row describes, in the order of the row, into a, b, c, d
@@ -255,7 +253,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
                "textures are nested more than %d deep", MAX_NESTING);
     return -1;
   }
-  vlTextureNode node = empty_node(VL_NODE_FLOAT);
+  vlTextureNode node = empty_node(VL_TEXTURE_CONSTANT);
   node.is_spectrum = def->spectrum;
   node.role = def->spectrum ? (vlSpectrumRole)role : VL_ROLE_UNBOUNDED;
   node.space = def->space;
@@ -275,13 +273,13 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
       *memo = n + 1;
     return n;
   }
-  node.kind = (vlNodeKind)def->kind;
+  node.kind = def->kind;
   if (set_numbers[node.kind])
     set_numbers[node.kind](&node, def);
   int32_t failed = compile_inputs(c, def, role, nesting, &node);
   if (failed < 0)
     return failed;
-  if (node.kind == VL_NODE_IMAGE) {
+  if (node.kind == VL_TEXTURE_IMAGE) {
     if ((node.image = vl_texture_image_index(c->world, c->scene, def, c->error)) < 0)
       return -1;
     const vlMipmap *mip = c->world->images.items[node.image].mipmap;
@@ -345,7 +343,7 @@ vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrum
 
 vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node,
                            vlError *error) {
-  vlTextureNode mix = empty_node(VL_NODE_MIX);
+  vlTextureNode mix = empty_node(VL_TEXTURE_MIX);
   mix.a = a;
   mix.b = b;
   mix.amount = amount;

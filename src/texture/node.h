@@ -46,14 +46,14 @@ static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambd
 enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
 typedef struct vlTextureNode {
-  uint32_t kind; /* vlNodeKind (texture/node_kind.h) */
+  uint32_t kind; /* vlTextureKind. VL_TEXTURE_CONSTANT: a number or, of colours, a spectrum */
   bool is_spectrum;
   uint8_t rows; /* number of scratch rows for evaluation of the node and its inputs */
   uint16_t visits;
   vlSpectrumRole role;
-  float value;         /* of VL_NODE_FLOAT */
-  vlSpectral spectrum; /* of VL_NODE_SPECTRUM; of VL_NODE_IMAGE for the role of an illuminant:
-                          dense is the colour space's illuminant */
+  float value;                /* of a constant number */
+  vlSpectral spectrum;        /* of a constant spectrum; of VL_TEXTURE_IMAGE for the role of an
+                                 illuminant:        dense is the colour space's illuminant */
   int32_t a, b, c, d, amount; /* node indices of the inputs; -1: none */
   float direction[3];
   uint32_t dimension, octaves;

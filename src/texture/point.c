@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "texture/kinds.h"
-#include "texture/node_kind.h"
 #include "world/world.h"
 
 #define NODE_CASE(kind, value, set) case kind:
@@ -14,7 +13,7 @@ static vlTexturePoint point_of(const vlTextureNode *node, const vlTextureQuery *
   vlTexturePoint at = {q->u, q->v, q->p, vl_vec3(0, 0, 0), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
   if (vl_texture_needs_corner(node))
     vl_texture_at_corner(node, q->corner, &at);
-  if (node->kind == VL_NODE_DIRECTION_MIX)
+  if (node->kind == VL_TEXTURE_DIRECTION_MIX)
     at.n = vl_normalize(q->n);
   return at;
 }
@@ -23,21 +22,21 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
   const vlTextureNode *node = &world->nodes.items[index];
   vlTexturePoint at = point_of(node, q);
   float share = 0;
-  switch ((vlNodeKind)node->kind) {
-    case VL_NODE_FLOAT:
-      return node->value;
-    case VL_NODE_IMAGE:
+  switch ((vlTextureKind)node->kind) {
+    case VL_TEXTURE_CONSTANT:
+      return node->is_spectrum ? NAN : node->value;
+    case VL_TEXTURE_IMAGE:
       return vl_node_image_float(node, world->images.items[node->image].mipmap, at);
-    case VL_NODE_VERTEX_COLOR:
+    case VL_TEXTURE_VERTEX_COLOR:
       return vl_node_vertex_color_float(node, at);
 #define FLOAT_CASE(kind, value, set) \
   case kind:                         \
     return value(node, at);
       VL_FLOAT_NODES(FLOAT_CASE)
-    case VL_NODE_SCALE:
+    case VL_TEXTURE_SCALE:
       return vl_node_scale(vl_texture_float_at(world, node->a, q),
                            vl_texture_float_at(world, node->amount, q));
-    case VL_NODE_BILERP: {
+    case VL_TEXTURE_BILERP: {
       vlBilerpWeights k = vl_node_bilerp(node, at);
       const int32_t input[4] = {node->a, node->b, node->c, node->d};
       float sum = 0;
@@ -45,7 +44,7 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
         sum = vl_node_bilerp_add(sum, k.w[i], vl_texture_float_at(world, input[i], q));
       return sum;
     }
-    case VL_NODE_MIX:
+    case VL_TEXTURE_MIX:
       share = vl_texture_float_at(world, node->amount, q);
       break;
 #define SHARE_CASE(kind, value, set) \
@@ -54,7 +53,6 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
     break;
       VL_SHARE_NODES(SHARE_CASE)
       VL_COLOR_NODES(NODE_CASE)
-    case VL_NODE_SPECTRUM:
       return NAN; /* colours: vl_scene_add_texture refuses them where a float is wanted */
   }
   return vl_node_mix(vl_texture_float_at(world, node->a, q),

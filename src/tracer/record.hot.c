@@ -2,7 +2,6 @@
 #include "tracer/record.h"
 #include "material/bsdf_names.h"
 #include "schema/schema.h"
-#include "texture/node_kind.h"
 #include "velo/texture.h"
 
 static vlPathRecorder *recorder(const vlTracing *t) {
@@ -161,7 +160,7 @@ void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVe
 static const char *image_of(const vlWorld *world, int32_t node) {
   for (int32_t k = node; k >= 0;) {
     const vlTextureNode *n = &world->nodes.items[k];
-    if (n->kind == VL_NODE_IMAGE)
+    if (n->kind == VL_TEXTURE_IMAGE)
       return world->images.items[n->image].path;
     const char *first = image_of(world, n->a);
     if (first)
@@ -172,13 +171,13 @@ static const char *image_of(const vlWorld *world, int32_t node) {
 }
 
 static void put_texture(const vlWorld *world, int32_t node, vlPathVertex *v) {
-#define NAME(K, k) [VL_NODE_##K] = #k,
+#define NAME(kind, name, row) [kind] = #name,
   static const char *const names[] = {VL_TEXTURE_KINDS(NAME)};
 #undef NAME
   if (node < 0)
     return;
-  vlNodeKind kind = world->nodes.items[node].kind;
-  if (kind == VL_NODE_SPECTRUM || kind == VL_NODE_FLOAT)
+  uint32_t kind = world->nodes.items[node].kind;
+  if (kind == VL_TEXTURE_CONSTANT)
     return;
   v->texture = names[kind];
   v->image = image_of(world, node);

@@ -28,7 +28,7 @@ typedef struct TracerCase {
 #define TRANSPORT .sky = {.even = 0.5}, .lamp = {.ball = 2}
 
 /* Declares the case of each kind, which is in the file of the kind: tracer/NAME.case.c. */
-#define TRACER_CASE(NAME, name) extern const TracerCase name##_tracer;
+#define TRACER_CASE(kind, name) extern const TracerCase name##_tracer;
 VL_TRACER_KINDS(TRACER_CASE)
 #undef TRACER_CASE
 

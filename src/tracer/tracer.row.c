@@ -12,5 +12,5 @@ VL_TRACER_FUNCTIONS(DECLARE)
 
 #define ROW(kind, row, trace) [kind] = &row,
 static const vlKindRow *const rows[] = {VL_TRACER_FUNCTIONS(ROW)};
-VL_KIND_FAMILY_OF(vl_tracer_family, rows, VL_TRACER_KINDS, "tracers", "integrator",
-                  "Integrator")
+const vlKindFamily vl_tracer_family =
+    VL_KIND_FAMILY(rows, VL_TRACER_KINDS, "tracers", "integrator", "Integrator");

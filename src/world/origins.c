@@ -11,7 +11,7 @@
 #include "world/world.h"
 
 static const char *shape_type(vlShapeKind kind) {
-#define NAME(K, k) [VL_SHAPE_##K] = #k,
+#define NAME(kind, name) [kind] = #name,
   static const char *const names[] = {VL_SHAPE_KINDS(NAME)};
 #undef NAME
   return names[kind];

@@ -7,9 +7,9 @@
 #include "distortion/distortion.case.h"
 #include "projection/projection.case.h"
 
-#define PROJECTION(NAME, name) &name##_projection,
+#define PROJECTION(kind, name, row) &name##_projection,
 static const ProjectionCase *const projections[] = {VL_PROJECTION_KINDS(PROJECTION)};
-#define DISTORTION(NAME, name) &name##_distortion,
+#define DISTORTION(kind, name) &name##_distortion,
 static const DistortionCase *const distortions[] = {VL_DISTORTION_KINDS(DISTORTION)};
 
 static inline bool has_distortion(vlProjection kind) {

@@ -70,7 +70,7 @@ static void test_all_parameters(void **state) {
       const vlParameter *p = &cameras->rows[i]->parameters[k];
       if (is_held_in_another_form(p))
         continue;
-      check_parameter(cameras->constants[i], p);
+      check_parameter(cameras->words[i], p);
       checked++;
     }
   assert_true(checked > 300);

@@ -14,14 +14,14 @@
 #include "velo/setting.h"
 #include "velo/shape_kinds.h"
 
-#define CASE(NAME, name) &name##_projection,
+#define CASE(kind, name, row) &name##_projection,
 static const ProjectionCase *const projection_cases[] = {VL_PROJECTION_KINDS(CASE)};
 #undef CASE
 enum { PROJECTIONS = VL_PROJECTION_OWN };
 _Static_assert(sizeof projection_cases / sizeof *projection_cases == PROJECTIONS,
                "a case for each projection");
 
-#define CASE(NAME, name) &name##_distortion,
+#define CASE(kind, name) &name##_distortion,
 static const DistortionCase *const distortion_cases[] = {VL_DISTORTION_KINDS(CASE)};
 #undef CASE
 
@@ -403,7 +403,7 @@ static void check_distortion(const char *name, const DistortionCase *c, vlDistor
 
 static void laws_of_distortions(void **state) {
   (void)state;
-#define NAME(NAME, name) #name,
+#define NAME(kind, name) #name,
   static const char *const names[] = {VL_DISTORTION_KINDS(NAME)};
 #undef NAME
   for (uint32_t k = 0; k < VL_DISTORTION_KIND_COUNT; k++)

@@ -37,10 +37,6 @@ static vlContext *context;
 static vlContext *contexts[2];
 static char folder[40] = "/tmp/velo_conformance_XXXXXX";
 
-/* An array with one entry per kind: CASES(VL_MATERIAL, VL_MATERIAL_KINDS) with `static const
- * Case diffuse_case`. */
-#define CASE_OF(NAME, name) &name##_case,
-
 /* ---- failures ---------------------------------------------------------------------------- */
 
 /* Counts and prints the laws that a kind breaks, so that one run names them all. */

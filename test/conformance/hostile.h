@@ -150,10 +150,9 @@ static void check_def(const vlKindFamily *family, int kind, const vlParameter *p
       continue;
     vlResult result = offer(family->name, &def, &error);
     if (result == VL_OK && must_fail(p, hostile[i]))
-      broken(family->name, family->constants[kind], "%s = %g is accepted", p->member,
-             hostile[i]);
+      broken(family->name, family->words[kind], "%s = %g is accepted", p->member, hostile[i]);
     if (result != VL_OK && result != VL_ERROR_SCENE && result != VL_ERROR_ARGUMENT)
-      broken(family->name, family->constants[kind], "%s = %g: result %d", p->member, hostile[i],
+      broken(family->name, family->words[kind], "%s = %g: result %d", p->member, hostile[i],
              (int)result);
   }
 }

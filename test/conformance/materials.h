@@ -9,7 +9,7 @@
 #include "material/material.case.h"
 #include "velo/schema.h"
 
-#define MATERIAL_CASE(NAME, name) &name##_material,
+#define MATERIAL_CASE(kind, name) &name##_material,
 static const MaterialCase *const material_cases[] = {VL_MATERIAL_KINDS(MATERIAL_CASE)};
 
 /* ---- asking ------------------------------------------------------------------------------ */

@@ -13,13 +13,13 @@
 #include "texture/texture.case.h"
 #include "velo/shape_kinds.h"
 
-#define TEXTURE_CASE(NAME, name) &name##_texture,
+#define TEXTURE_CASE(kind, name, row) &name##_texture,
 static const TextureCase *const texture_cases[] = {VL_TEXTURE_KINDS(TEXTURE_CASE)};
-#define LIGHT_CASE(NAME, name) &name##_light,
+#define LIGHT_CASE(kind, name) &name##_light,
 static const LightCase *const light_cases[] = {VL_LIGHT_KINDS(LIGHT_CASE)};
-#define MEDIUM_CASE(NAME, name) &name##_medium,
+#define MEDIUM_CASE(kind, name) &name##_medium,
 static const MediumCase *const medium_cases[] = {VL_MEDIUM_KINDS(MEDIUM_CASE)};
-#define SHAPE_CASE(NAME, name) &name##_shape,
+#define SHAPE_CASE(kind, name) &name##_shape,
 static const ShapeCase *const shape_cases[] = {VL_SHAPE_KINDS(SHAPE_CASE)};
 
 static const ParameterCase parameter_cases[] = {

@@ -14,7 +14,7 @@
 
 enum { SETS = 64, SET = 64, SIDE = 8 }; /* pixels; samples of each; cells along a side */
 
-#define SAMPLER_CASE(NAME, name) &name##_sampler,
+#define SAMPLER_CASE(kind, name) &name##_sampler,
 static const SamplerCase *const sampler_cases[] = {VL_SAMPLER_KINDS(SAMPLER_CASE)};
 
 typedef struct Numbers2 {
@@ -164,7 +164,7 @@ static void laws_of_samplers(void **state) {
 
 /* ---- filters ----------------------------------------------------------------------------- */
 
-#define FILTER_CASE(NAME, name) name##_filter,
+#define FILTER_CASE(kind, name) name##_filter,
 static FilterShape *const filter_shapes[] = {VL_PIXEL_FILTER_KINDS(FILTER_CASE)};
 
 enum { FILTERED = 16 };

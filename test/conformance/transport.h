@@ -175,7 +175,7 @@ static double ball_share_of_pixel(uint32_t column, uint32_t row) {
 }
 
 /* The kinds of tracers with what the plate looks like by them. */
-#define TRACER_CASE(NAME, name) &name##_tracer,
+#define TRACER_CASE(kind, name) &name##_tracer,
 static const TracerCase *const tracer_cases[] = {VL_TRACER_KINDS(TRACER_CASE)};
 
 /* A closed room whose lamp shines at the ceiling: nearly all light comes by two bounces and

@@ -5,7 +5,7 @@
 #include "velo/render.h"
 #include "velo/tracer.h"
 
-#define ONE(NAME, name) +1
+#define ONE(kind, name) +1
 enum { WIDTH = 72, HEIGHT = 40, TRACERS = VL_TRACER_KINDS(ONE) };
 static Loaded loaded;
 

@@ -6,7 +6,7 @@
 #include "velo/sampler.h"
 #include "velo/tracer.h"
 
-#define ONE(NAME, name) +1
+#define ONE(kind, name) +1
 enum { SIDE = 24, TRACERS = VL_TRACER_KINDS(ONE), SAMPLERS = VL_SAMPLER_KINDS(ONE) };
 static Loaded loaded;
 

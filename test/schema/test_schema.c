@@ -27,7 +27,7 @@ static void well_formed(void **state) {
     for (uint32_t i = 0; i < family->kind_count; i++) {
       const vlKindRow *row = family->rows[i];
       assert_non_null(row);
-      assert_true(row->description && row->description[0] && family->constants[i]);
+      assert_true(row->description && row->description[0] && family->words[i]);
       assert_true(row->parameter_count <= 64 ||
                   !family->directive); /* readers have room for so many */
       if (row->name)

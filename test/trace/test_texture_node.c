@@ -13,7 +13,6 @@
 
 #include "statistics.h"
 
-#include "texture/node_kind.h"
 #include "texture/run.hot.h"
 #include "velo/light.h"
 #include "velo/material.h"
@@ -175,7 +174,7 @@ static void same_bits(void **state) {
       least = fminf(least, one);
       most = fmaxf(most, one);
     }
-    bool constant = f.world->nodes.items[node].kind == VL_NODE_FLOAT;
+    bool constant = f.world->nodes.items[node].kind == VL_TEXTURE_CONSTANT;
     assert_true(constant ? most == least : most > least);
   }
   end(&f);

@@ -10,7 +10,6 @@
 #include <cmocka.h>
 
 #include "texture/kinds.h"
-#include "texture/node_kind.h"
 
 static uint32_t seed = 3;
 static double random_unit(void) {
@@ -100,7 +99,7 @@ static void sums(void **state) {
   }
 }
 
-static vlTextureNode node_of(vlNodeKind kind) {
+static vlTextureNode node_of(vlTextureKind kind) {
   vlTextureNode node;
   memset(&node, 0, sizeof node);
   node.kind = kind;
@@ -114,7 +113,7 @@ static vlTextureNode node_of(vlNodeKind kind) {
 
 static void dots(void **state) {
   (void)state;
-  vlTextureNode node = node_of(VL_NODE_DOTS);
+  vlTextureNode node = node_of(VL_TEXTURE_DOTS);
   int with = 0;
   enum { N = 50 };
   for (int cell = 0; cell < 400; cell++) {
@@ -150,7 +149,7 @@ static void dots(void **state) {
 
 static void marble(void **state) {
   (void)state;
-  vlTextureNode node = node_of(VL_NODE_MARBLE);
+  vlTextureNode node = node_of(VL_TEXTURE_MARBLE);
   for (int k = 0; k < 2; k++) { /* a vein's both ends, where the sine is -1 and 1 */
     vlTexturePoint at = {.p = vl_vec3(7, (float)(3.14159265 * (k - 0.5)), 5),
                          .n = vl_vec3(0, 0, 1),

@@ -51,7 +51,7 @@ typedef struct State {
 } State;
 
 static int parse_parts(const char *text, uint32_t *parts) {
-#define NAME(K, k) #k,
+#define NAME(part, name) #name,
   static const char *const names[] = {VL_DRAWING_PARTS(NAME)};
 #undef NAME
   enum { PARTS = sizeof names / sizeof *names };

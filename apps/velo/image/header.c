@@ -35,7 +35,7 @@ static bool text(const vlImage *image, const char *name, const char **value) {
   return true;
 }
 
-#define COUNT_ONE(NAME, name) +1
+#define COUNT_ONE(kind, name, row) +1
 enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(COUNT_ONE) };
 
 /* Reads projection and lens. Returns false for an unknown name or coefficient. */

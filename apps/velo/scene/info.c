@@ -78,7 +78,7 @@ static void print_lights(const Facts *f) {
 
 /* Returns the name in scene files, or the constant's name if files have none. */
 static const char *name_of(const vlKindFamily *family, uint32_t kind) {
-  return family->rows[kind]->name ? family->rows[kind]->name : family->constants[kind];
+  return family->rows[kind]->name ? family->rows[kind]->name : family->words[kind];
 }
 
 /* "12: 5 diffuse, 7 conductor", by the family's rows. */

@@ -73,7 +73,7 @@ static void put_projection(Json *json, const ViewCamera *camera) {
   static const char *const distortions[] = {"none", "opencv", "radial", "thin prism"};
   static const char *const kinds[] = {
   /* as settings have them; `projection` is for people to read */
-#define NAME(NAME, name) #name,
+#define NAME(kind, name, row) #name,
       VL_PROJECTION_KINDS(NAME)
 #undef NAME
   };

@@ -27,7 +27,7 @@ static void put_numbers(Json *json, const double *values, int count) {
 }
 
 static void put_drawing(Json *json, const vlDrawing *d) {
-#define NAME(KIND, name) #name,
+#define NAME(part, name) #name,
   static const char *const parts[] = {VL_DRAWING_PARTS(NAME)};
 #undef NAME
   json_begin(json, "lines", '[');

@@ -135,14 +135,4 @@ static inline float vl_visible_lambda(float u, float *inv_pdf) {
   return lambda < 830.0f ? lambda : 830.0f; /* rounding may leave the range slightly */
 }
 
-/* The density at a wavelength, 1 / nm; 0 outside of 360 to 830 nm. */
-static inline float vl_visible_pdf(float lambda) {
-  const float *k = vl_visible_knots;
-  int i = 0;
-  while (i < VL_VISIBLE_KNOTS - 2 && lambda >= k[4 * i + 5])
-    i++;
-  float pdf = k[4 * i + 2] + 0.5f * k[4 * i + 3] * (lambda - k[4 * i + 1]);
-  return lambda < 360.0f || lambda > 830.0f ? 0.0f : pdf;
-}
-
 #endif

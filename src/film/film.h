@@ -143,12 +143,6 @@ void vl_film_abandon_pass(vlFilm *film);
  * call; else unchanged since that call. Null: out of memory. Valid until the next call. */
 void *vl_film_scratch(vlFilm *film, size_t size);
 
-/* Adds the sums and the sample count of another film of the same size and crop. The sums are
- * the same bits as if all samples had been added to one film. Not during a pass. Errors:
- * ARGUMENT if the films differ in shape or have blocks with numbers of samples of their own,
- * MEMORY. */
-vlResult vl_film_add_film(vlFilm *film, const vlFilm *other);
-
 /* Pixel filter sampling: u, v in [0,1)^2 to an offset (dx, dy) from the pixel centre, monotone
  * in u and v, and the weight f/pdf: 1 for filters without negative lobes, else plus or minus a
  * constant; its mean is 1. Batch, hot. */

@@ -104,18 +104,6 @@ void vl_film_spectrum_free(vlFilm *film) {
   vl_free(film->context, s->stamp);
 }
 
-bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other) {
-  if (!film->def.buckets || !other->spectrum.sums[0] || !other->spectrum.weights[0])
-    return true;
-  if (!make(film, 0))
-    return false;
-  for (size_t i = 0; i < cells(film); i++) {
-    film->spectrum.sums[0][i] += other->spectrum.sums[0][i];
-    film->spectrum.weights[0][i] += other->spectrum.weights[0][i];
-  }
-  return true;
-}
-
 /* ---- develop ----------------------------------------------------------------------------- */
 
 /* "S0.374,688nm": the middle of the bucket. The decimal sign is a comma, since a point

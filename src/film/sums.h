@@ -107,7 +107,6 @@ bool vl_film_spectrum_begin(vlFilm *film);
 void vl_film_spectrum_commit(vlFilm *film);
 void vl_film_spectrum_clear(vlFilm *film);
 void vl_film_spectrum_free(vlFilm *film);
-bool vl_film_spectrum_merge(vlFilm *film, const vlFilm *other);
 
 /* In develop.c. Sets OpenEXR's dataWindow and displayWindow (inclusive) of a crop's image,
  * which say where it lies in the whole. MEMORY. */

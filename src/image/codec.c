@@ -7,7 +7,7 @@
 #include "image/pixel.h"
 
 /* In probing order. TGA has no signature and comes last. */
-const vlCodec vl_codecs[] = {
+static const vlCodec codecs[] = {
     {"OpenEXR", {".exr"}, vl_exr_probe, vl_exr_read, vl_exr_write},
     {"PNG", {".png"}, vl_png_probe, vl_png_read, vl_png_write},
     {"JPEG", {".jpg", ".jpeg"}, vl_jpeg_probe, vl_jpeg_read, vl_jpeg_write},
@@ -20,7 +20,6 @@ const vlCodec vl_codecs[] = {
     {"WebP", {NULL}, vl_webp_probe, vl_webp_read, NULL},
     {"TGA", {".tga"}, vl_tga_probe, vl_tga_read, vl_tga_write},
 };
-const uint32_t vl_codec_count = VL_LENGTH(vl_codecs);
 
 vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what) {
   return vl_fail(file->error, VL_ERROR_SCENE, "%s: broken %s file: %s", file->name, format,
@@ -128,10 +127,10 @@ static vlResult read_memory(const vlImageFile *f, vlImage **image) {
   const char *name = file.name;
   size_t size = file.size;
   vlError *error = file.error;
-  for (uint32_t i = 0; i < vl_codec_count; i++) {
-    if (!vl_codecs[i].probe(file.data, size))
+  for (uint32_t i = 0; i < VL_LENGTH(codecs); i++) {
+    if (!codecs[i].probe(file.data, size))
       continue;
-    vlResult result = vl_codecs[i].read(&file, image);
+    vlResult result = codecs[i].read(&file, image);
     if (file.header && *file.header) {
       *image = *file.header;
       return VL_OK;
@@ -267,10 +266,10 @@ vlWriteDef vl_default_write_def(void) {
 }
 
 static const vlCodec *codec_of_suffix(const char *path) {
-  for (uint32_t i = 0; i < vl_codec_count; i++)
-    for (uint32_t s = 0; s < 4 && vl_codecs[i].suffixes[s] && vl_codecs[i].write; s++)
-      if (vl_ends_with(path, vl_codecs[i].suffixes[s]))
-        return &vl_codecs[i];
+  for (uint32_t i = 0; i < VL_LENGTH(codecs); i++)
+    for (uint32_t s = 0; s < 4 && codecs[i].suffixes[s] && codecs[i].write; s++)
+      if (vl_ends_with(path, codecs[i].suffixes[s]))
+        return &codecs[i];
   return NULL;
 }
 

@@ -40,9 +40,6 @@ typedef struct vlCodec {
   vlCodecWrite *write; /* null: the format is read only */
 } vlCodec;
 
-extern const vlCodec vl_codecs[];
-extern const uint32_t vl_codec_count;
-
 /* Reports a SCENE error: "name: broken PNG file: <what>". */
 vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what);
 /* Reports an UNSUPPORTED error: "name: PNG file with <what> is not supported". */

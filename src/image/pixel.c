@@ -70,14 +70,6 @@ double vl_decode(vlEncoding encoding, float gamma, double v) {
   return v;
 }
 
-double vl_encode(vlEncoding encoding, float gamma, double v) {
-  if (encoding == VL_ENCODING_SRGB)
-    return vl_linear_to_srgb(v);
-  if (encoding == VL_ENCODING_GAMMA)
-    return vl_pow_exact(v, 1.0 / gamma);
-  return v;
-}
-
 void vl_decode_table(vlEncoding encoding, float gamma, float table[256]) {
   for (int i = 0; i < 256; i++) {
     if (encoding == VL_ENCODING_SRGB)

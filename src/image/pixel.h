@@ -70,7 +70,6 @@ double vl_srgb_to_linear(double encoded);
 double vl_linear_to_srgb(double linear);
 /* Decodes a value in [0, 1] to linear light. */
 double vl_decode(vlEncoding encoding, float gamma, double encoded);
-double vl_encode(vlEncoding encoding, float gamma, double linear);
 
 /* The 256 linear values of an 8-bit encoding. */
 void vl_decode_table(vlEncoding encoding, float gamma, float table[256]);

@@ -3,7 +3,8 @@
  * environment maps, the code is scalar, because each lane hits its own light. */
 #include "light/kinds.hot.h"
 
-vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
+/* Infinite light k of the world as seen by ray i. */
+static vlHitLight hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   vlHitLight met = {.light = world->infinite_lights.items[k]};
   const vlWorldLight *light = &world->lights.items[met.light];
@@ -31,7 +32,7 @@ void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, u
     return;
   }
   for (uint32_t j = 0; j < count; j++) {
-    vlHitLight met = vl_hit_infinite(world, p, lanes[j], k);
+    vlHitLight met = hit_infinite(world, p, lanes[j], k);
     for (int c = 0; c < 4; c++)
       out->radiance[c][j] = met.radiance[c];
     out->pdf[j] = met.pdf;

@@ -65,9 +65,8 @@ void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, u
 void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded,
                       float (*rgb)[VL_SKY_BLOCK], float (*lambda)[VL_SKY_BLOCK],
                       float (*value)[VL_SKY_BLOCK]);
-/* vl_hit_infinite: infinite light k of the world as seen by ray i. vl_hit_emission: the
- * emissive surface at hit i; returns false if the surface does not emit on this side. */
-vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
+/* vl_hit_emission: the emissive surface at hit i; returns false if the surface does not emit on
+ * this side. */
 bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i,
                      vlHitLight *met);
 /* Calls `add` for each light that the n rays hit: for the infinite lights of rays that hit

@@ -11,7 +11,7 @@
 #include "velo/schema.h"
 #include "velo/texture.h"
 
-vlResult vl_material_fail(const vlMaterialBuild *b, const char *what) {
+static vlResult material_fail(const vlMaterialBuild *b, const char *what) {
   const vlMaterialDef *def = b->def;
   return vl_fail_at(b->error, VL_ERROR_SCENE, def->source.file, def->source.line,
                     def->source.column, "material \"%s\": %s", vl_short_text(def->name).text,
@@ -205,7 +205,7 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
   float value;
   if (vl_spectrum_is_constant(&eta->value, &value)) {
     if (!(value > 0) || !isfinite(value))
-      return vl_material_fail(b, "the index of refraction must be a positive number");
+      return material_fail(b, "the index of refraction must be a positive number");
     m->eta_s = value;
     return VL_OK;
   }
@@ -222,7 +222,7 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
     return r;
   m->eta_s = vl_dense_at(dense, 589.3f);
   if (!(m->eta_s > 0))
-    return vl_material_fail(b, "the index of refraction must be positive");
+    return material_fail(b, "the index of refraction must be positive");
   if (spectral)
     vl_log(b->world->context, VL_LOG_WARNING, NULL,
            "material \"%s\": dispersion of this kind is not supported, the index at 589.3 nm "

@@ -48,6 +48,5 @@ vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
                            bool disperses);
 /* Compiles the inputs of a coat that random walks evaluate. metal: the base is a conductor. */
 vlResult vl_material_layers(const vlMaterialBuild *b, bool metal);
-vlResult vl_material_fail(const vlMaterialBuild *b, const char *what);
 
 #endif

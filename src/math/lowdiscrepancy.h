@@ -36,11 +36,6 @@ static inline uint32_t vl_owen_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x53a22864u;
   return x;
 }
-/* Nested uniform scrambling of a fraction (most significant bit first). Applied to an index, it
- * shuffles indices so that each aligned block of 2^k indices remains an aligned block. */
-static inline uint32_t vl_owen(uint32_t x, uint32_t seed) {
-  return vl_reverse_bits(vl_owen_reversed(vl_reverse_bits(x), seed));
-}
 
 /* Sobol's second dimension, bit-reversed: its generator matrix is Pascal's triangle modulo 2,
  * the Kronecker power of (1 1; 0 1), so that five steps replace a loop over 32 columns (cf.
@@ -97,13 +92,6 @@ static inline vlPermutation vl_permutation(uint32_t count) {
   uint32_t bits = count > 1 ? 32u - (uint32_t)__builtin_clz(count - 1) : 0;
   return (vlPermutation){count, bits == 0 ? 0 : 0xffffffffu >> (32 - bits),
                          bits < 2 ? 1 : (bits + 1) / 2};
-}
-/* The permutation of one element; i < count. */
-static inline uint32_t vl_permute(vlPermutation p, uint32_t i, uint32_t key) {
-  do
-    i = vl_permute_step(i, p.mask, p.shift, key);
-  while (i >= p.count);
-  return i;
 }
 
 /* Computes a / b and a % b where a whole batch has the same b, for a < 2^31 and a / b < 2^22.

@@ -1,5 +1,5 @@
 /* math/warp.h: maps from the unit square to disks, hemispheres, cones, triangles and spherical
- * triangles, and inverses. Uniform (u, v) in [0,1)^2 give the stated density. All maps have low
+ * triangles. Uniform (u, v) in [0,1)^2 give the stated density. All maps have low
  * distortion, so that well-distributed points stay well distributed. The functions have no
  * branches and do not call libm, so hot loops can use them. The map of the whole sphere for
  * environment images is math/octahedral.h.
@@ -34,15 +34,6 @@ static inline vlDiskPoint vl_warp_disk(float u, float v) {
   float along = r * k.cos, across = r * k.sin;
   return (vlDiskPoint){flat ? along : across, flat ? across : along, r};
 }
-static inline vlVec2 vl_unwarp_disk(float x, float y) {
-  int flat = vl_abs(x) > vl_abs(y);
-  float along = flat ? x : y, across = flat ? y : x;
-  float r = __builtin_copysignf(__builtin_sqrtf(x * x + y * y), along);
-  float other = r * 1.27323954473516268615f * vl_atan(across / (along == 0.0f ? 1.0f : along));
-  float a = flat ? r : other, b = flat ? other : r;
-  return (vlVec2){vl_clamp(0.5f * (a + 1.0f), 0.0f, 1.0f),
-                  vl_clamp(0.5f * (b + 1.0f), 0.0f, 1.0f)};
-}
 
 /* ---- hemisphere and sphere --------------------------------------------------------------- */
 
@@ -52,12 +43,6 @@ static inline vlVec3 vl_warp_cosine_hemisphere(float u, float v) {
   vlDiskPoint d = vl_warp_disk(u, v);
   float z = __builtin_sqrtf(vl_max(0.0f, (1.0f - d.r) * (1.0f + d.r)));
   return vl_vec3(d.x, d.y, z);
-}
-static inline float vl_cosine_hemisphere_pdf(float cos_theta) {
-  return vl_max(0.0f, cos_theta) * VL_INV_PI;
-}
-static inline vlVec2 vl_unwarp_cosine_hemisphere(vlVec3 w) {
-  return vl_unwarp_disk(w.x, w.y);
 }
 
 /* Density 1 / (2 pi (1 - cos_max)) in the cone around z. The argument is 1 - cos_max, which
@@ -69,14 +54,6 @@ static inline vlVec3 vl_warp_cone(float u, float v, float one_minus_cos_max) {
   float s = __builtin_sqrtf(one_minus_cos_max * vl_max(0.0f, 2.0f - h));
   return vl_vec3(d.x * s, d.y * s, 1.0f - h);
 }
-static inline float vl_cone_pdf(float one_minus_cos_max) {
-  return VL_INV_2PI / one_minus_cos_max;
-}
-static inline vlVec2 vl_unwarp_cone(vlVec3 w, float one_minus_cos_max) {
-  float s2 = one_minus_cos_max * vl_max(0.0f, 1.0f + w.z);
-  float s = s2 > 0.0f ? 1.0f / __builtin_sqrtf(s2) : 0.0f;
-  return vl_unwarp_disk(w.x * s, w.y * s);
-}
 static inline vlVec3 vl_warp_hemisphere(float u, float v) { /* density 1 / (2 pi) */
   return vl_warp_cone(u, v, 1.0f);
 }
@@ -85,10 +62,6 @@ static inline vlVec3 vl_warp_sphere(float u, float v) {
   float r = 2.0f * __builtin_sqrtf(vl_max(0.0f, u * (1.0f - u)));
   vlSinCos a = vl_sincos_turn(v);
   return vl_vec3(r * a.cos, r * a.sin, 1.0f - 2.0f * u);
-}
-static inline vlVec2 vl_unwarp_sphere(vlVec3 w) {
-  float a = vl_atan2(w.y, w.x) * VL_INV_2PI;
-  return (vlVec2){vl_clamp(0.5f * (1.0f - w.z), 0.0f, 1.0f), a < 0.0f ? a + 1.0f : a};
 }
 
 /* ---- triangle: density 1 / area ---------------------------------------------------------- */
@@ -99,11 +72,6 @@ static inline vlVec2 vl_warp_triangle(float u, float v) {
   float less = 0.5f * vl_min(u, v), rest = vl_max(u, v) - less;
   int upper = u < v;
   return (vlVec2){upper ? less : rest, upper ? rest : less};
-}
-static inline vlVec2 vl_unwarp_triangle(float b0, float b1) {
-  float less = vl_min(b0, b1), sum = b0 + b1;
-  int upper = b0 < b1;
-  return (vlVec2){upper ? 2.0f * less : sum, upper ? sum : 2.0f * less};
 }
 
 /* ---- spherical triangle: density 1 / solid angle ----------------------------------------- */

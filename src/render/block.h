@@ -101,8 +101,4 @@ void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n);
 /* A task of vl_parallel_for; user is the run. */
 void vl_render_block(void *user, uint32_t block, uint32_t worker);
 
-/* Reports the progress to the caller's callback. False: the callback asks to stop. Only on the
- * thread that called vl_render. work: as in vlRenderRun. In render.c. */
-bool vl_render_report(vlRenderRun *r, bool pass_done, double work);
-
 #endif

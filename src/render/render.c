@@ -27,7 +27,9 @@ static void count_rays(const vlRenderRun *r, uint64_t *paths, uint64_t *rays) {
   }
 }
 
-bool vl_render_report(vlRenderRun *r, bool pass_done, double work) {
+/* Reports the progress to the caller's callback. False: the callback asks to stop. Only on the
+ * thread that called vl_render. work: as in vlRenderRun. In render.c. */
+static bool report(vlRenderRun *r, bool pass_done, double work) {
   if (!r->def->progress)
     return true;
   vlProgress p;
@@ -52,7 +54,7 @@ bool vl_render_report(vlRenderRun *r, bool pass_done, double work) {
 static bool ask_to_stop(void *user) {
   vlRenderRun *r = user;
   double share = (double)atomic_load(&r->blocks_done) / vl_render_block_count(r);
-  return !vl_render_report(r, false, r->work_done + share * r->work_pass);
+  return !report(r, false, r->work_done + share * r->work_pass);
 }
 
 /* The names of the caller's own code; all are checked. */
@@ -354,7 +356,7 @@ static vlResult render_passes(vlRenderRun *r, vlError *error) {
     r->work_done = vl_adaptive_mean_spp(&r->adaptive);
     bool more =
         vl_adaptive_expected_spp(&r->adaptive, def->spp - r->sequence.first) > r->work_done;
-    if (!vl_render_report(r, true, r->work_done) && more)
+    if (!report(r, true, r->work_done) && more)
       return vl_fail(error, VL_CANCELLED, "stopped");
     if (def->time_limit > 0 && vl_seconds() - r->start >= NEARLY * def->time_limit)
       return VL_OK;

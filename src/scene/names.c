@@ -6,7 +6,9 @@
 #include "velo/material.h"
 #include "velo/shape.h"
 
-bool vl_scene_is_placed(const vlScene *scene, const vlSceneInstance *instance) {
+/* Whether an instance is in the worlds of the scene: those without shapes are not, nor those
+ * that are hidden. */
+static bool is_placed(const vlScene *scene, const vlSceneInstance *instance) {
   return !instance->hidden && scene->groups.items[instance->group.index - 1].shape_count > 0;
 }
 
@@ -21,7 +23,7 @@ uint32_t vl_scene_id_count(const vlScene *scene, vlIdKind kind) {
       return (uint32_t)scene->materials.count + 1;
     case VL_ID_INSTANCE:
       for (size_t i = 0; i < scene->instances.count; i++)
-        placed += vl_scene_is_placed(scene, &scene->instances.items[i]);
+        placed += is_placed(scene, &scene->instances.items[i]);
       return placed;
   }
   return 0;
@@ -29,7 +31,7 @@ uint32_t vl_scene_id_count(const vlScene *scene, vlIdKind kind) {
 
 static const vlSceneInstance *find_instance(const vlScene *scene, uint32_t id) {
   for (size_t i = 0; i < scene->instances.count; i++)
-    if (vl_scene_is_placed(scene, &scene->instances.items[i]) && --id == 0)
+    if (is_placed(scene, &scene->instances.items[i]) && --id == 0)
       return &scene->instances.items[i];
   return NULL;
 }

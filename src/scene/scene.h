@@ -158,9 +158,6 @@ bool vl_scene_image_is_used(const vlScene *scene, const vlImage *image);
 
 /* Whether a shape can be an area light. */
 bool vl_shape_may_emit(const vlShapeDef *def);
-/* Whether an instance is in the worlds of the scene: those without shapes are not, nor those
- * that are hidden. */
-bool vl_scene_is_placed(const vlScene *scene, const vlSceneInstance *instance);
 
 /* Adds a choice of the file; the name is copied and may be null. False if memory is exhausted
  * (reported). */

@@ -213,7 +213,8 @@ vlResult vl_sensor_set_curves(vlSensorDef *def, const char *name, double peak, v
 
 /* ---- checks ------------------------------------------------------------------------------ */
 
-vlResult vl_sensor_check_rows(const vlKindRow *rows, const void *def, vlError *error) {
+/* Checks the numbers of a def by their rows. ARGUMENT: `field must be ...; it is ... unit`. */
+static vlResult check_rows(const vlKindRow *rows, const void *def, vlError *error) {
   char message[VL_GIVEN_MESSAGE];
   for (uint32_t i = 0; i < rows->parameter_count; i++) {
     const vlParameter *row = &rows->parameters[i];
@@ -229,7 +230,7 @@ vlResult vl_sensor_check_rows(const vlKindRow *rows, const void *def, vlError *e
 vlResult vl_exposure_check(const vlExposureDef *exposure, vlError *error) {
   if (exposure->cookie != VL_COOKIE_EXPOSURE)
     return vl_fail(error, VL_ERROR_ARGUMENT, VL_BAD_COOKIE);
-  return vl_sensor_check_rows(&vl_exposure_settings_row, exposure, error);
+  return check_rows(&vl_exposure_settings_row, exposure, error);
 }
 
 static vlResult check_mosaic(const vlSensorDef *def, vlError *error) {
@@ -294,7 +295,7 @@ vlResult vl_sensor_create(vlContext *context, const vlSensorDef *def, vlSensor *
     return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
   if (def->cookie != VL_COOKIE_SENSOR)
     return vl_fail(error, VL_ERROR_ARGUMENT, VL_BAD_COOKIE);
-  vlResult result = vl_sensor_check_rows(&vl_sensor_settings_row, def, error);
+  vlResult result = check_rows(&vl_sensor_settings_row, def, error);
   if (result == VL_OK)
     result = check_mosaic(def, error);
   if (result == VL_OK)

@@ -13,8 +13,6 @@ struct vlSensor {
   uint8_t cell[VL_SENSOR_CELLS]; /* filter of each cell of the pattern */
 };
 
-/* Checks the numbers of a def by their rows. ARGUMENT: `field must be ...; it is ... unit`. */
-vlResult vl_sensor_check_rows(const vlKindRow *rows, const void *def, vlError *error);
 /* Checks a default exposure's cookie and an exposure's numbers. */
 vlResult vl_exposure_check(const vlExposureDef *exposure, vlError *error);
 /* The index of the filter with that letter; filter_count: there is none. */

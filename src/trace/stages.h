@@ -112,10 +112,6 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *rays, v
  * t_min and t_max. */
 void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *rays,
                      vlHits *hits);
-/* Traces lane i's ray again from t_min on, and writes the hit to h. t_max: the batch's row, or
- * null for no limit. The ray is counted. */
-void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min,
-                       const float *t_max);
 /* Returns the material of a hit. For a mixed material, chooses one of its materials. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 /* Adds the radiance of the lights that the n rays hit: infinite lights and emissive

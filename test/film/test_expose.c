@@ -99,54 +99,6 @@ static void bright_colours_are_scaled(void **state) {
   assert_true(scaled > 0 && scaled < N);
 }
 
-/* ---- error sums -------------------------------------------------------------------------- */
-
-static vlFilm *film_of(int first, int last, vlContext *own) {
-  vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
-  vlFilm *film;
-  def.errors = true;
-  if (vl_film_create(own, &def, &film) != VL_OK)
-    return NULL;
-  assert_int_equal(vl_film_begin_pass(film), VL_OK);
-  for (int s = first; s < last; s++) {
-    statRng rng = stat_rng((uint64_t)s);
-    for (int32_t y = 0; y < HEIGHT; y++)
-      for (int32_t x = 0; x < WIDTH; x++) {
-        float v[3], a = 1.0f, w = 1.0f;
-        for (int c = 0; c < 3; c++)
-          v[c] = ldexpf(stat_float(&rng), (int)(stat_bits(&rng) % 50) - 20);
-        vlFilmSamples samples = {1, &x, &y, &v[0], &v[1], &v[2], &a, &w, NULL};
-        vl_film_add(film, &samples, NULL, NULL);
-      }
-  }
-  vl_film_commit_pass(film);
-  vl_film_set_spp(film, (uint32_t)(last - first));
-  return film;
-}
-
-static void errors_of_films_are_added(void **state) {
-  (void)state;
-  vlFilm *whole = film_of(0, 40, context),
-         *parts[2] = {film_of(0, 15, context), film_of(15, 40, context)};
-  vlImage *images[2];
-  assert_int_equal(vl_film_add_film(parts[0], parts[1]), VL_OK);
-  for (int kind = 0; kind < 2; kind++) {
-    for (int i = 0; i < 2; i++) {
-      const vlFilm *film = i ? parts[0] : whole;
-      assert_int_equal(kind ? vl_film_errors(film, NULL, &images[i])
-                            : vl_film_develop(film, NULL, &images[i]),
-                       VL_OK);
-    }
-    assert_memory_equal(vl_image_const_pixels(images[0]), vl_image_const_pixels(images[1]),
-                        (size_t)WIDTH * HEIGHT * vl_image_channels(images[0]) * sizeof(float));
-    for (int i = 0; i < 2; i++)
-      vl_image_destroy(images[i]);
-  }
-  vl_film_destroy(whole);
-  for (int i = 0; i < 2; i++)
-    vl_film_destroy(parts[i]);
-}
-
 static void sensors_have_names(void **state) {
   (void)state;
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
@@ -168,7 +120,6 @@ static void sensors_have_names(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rec709_stays_as_it_is), cmocka_unit_test(rec2020_is_that_of_bt_2087),
-      cmocka_unit_test(bright_colours_are_scaled), cmocka_unit_test(errors_of_films_are_added),
-      cmocka_unit_test(sensors_have_names)};
+      cmocka_unit_test(bright_colours_are_scaled), cmocka_unit_test(sensors_have_names)};
   return cmocka_run_group_tests(tests, begin, end);
 }

@@ -219,37 +219,6 @@ static void test_coarse_def(void **state) {
   assert_memory_equal(same.crop, crop, sizeof crop);
 }
 
-static void test_merge(void **state) {
-  (void)state;
-  random_samples(3);
-  vlFilm *whole = new_film(), *empty = new_film(), *parts[4];
-  whole_pass(whole, 0, COUNT);
-  vl_film_set_spp(whole, 8);
-  for (int k = 0; k < 4; k++) {
-    parts[k] = new_film();
-    whole_pass(parts[k], k * (COUNT / 4), COUNT / 4);
-    vl_film_set_spp(parts[k], 2);
-  }
-  static const int ORDER[4] = {2, 0, 3, 1};
-  for (int k = 0; k < 4; k++)
-    assert_int_equal(vl_film_add_film(empty, parts[ORDER[k]]), VL_OK);
-  assert_int_equal(vl_film_spp(empty), 8);
-  develop(whole, one_);
-  develop(empty, two_);
-  assert_memory_equal(one_, two_, sizeof one_);
-  vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
-  def.crop[0] = 1;
-  vlFilm *other;
-  assert_int_equal(vl_film_create(context_, &def, &other), VL_OK);
-  assert_int_equal(vl_film_add_film(empty, other), VL_ERROR_ARGUMENT);
-  assert_int_equal(vl_film_add_film(empty, empty), VL_ERROR_ARGUMENT);
-  vl_film_destroy(other);
-  vl_film_destroy(whole);
-  vl_film_destroy(empty);
-  for (int k = 0; k < 4; k++)
-    vl_film_destroy(parts[k]);
-}
-
 static void test_wrong_samples(void **state) {
   (void)state;
   random_samples(4);
@@ -411,18 +380,14 @@ static void test_memory(void **state) {
     assert_int_equal(vl_context_create(&def, &context), VL_OK);
     meager.left = n;
     vlFilmDef film_def = vl_default_film_def(WIDTH, HEIGHT);
-    vlFilm *film = NULL, *other = NULL;
+    vlFilm *film = NULL;
     vlImage *image = NULL;
     vlResult result = vl_film_create(context, &film_def, &film);
-    if (result == VL_OK)
-      result = vl_film_create(context, &film_def, &other);
     for (int pass = 0; pass < 2 && result == VL_OK; pass++) {
       result = vl_film_begin_pass(film);
       if (result == VL_OK)
         vl_film_commit_pass(film);
     }
-    if (result == VL_OK)
-      result = vl_film_add_film(other, film);
     vlDevelopDef develop_def = vl_default_develop_def();
     if (result == VL_OK)
       result = vl_film_develop(film, &develop_def, &image);
@@ -430,7 +395,6 @@ static void test_memory(void **state) {
     done = result == VL_OK;
     vl_image_destroy(image);
     vl_film_destroy(film);
-    vl_film_destroy(other);
     vl_context_destroy(context);
     assert_int_equal(meager.held, 0);
   }
@@ -439,11 +403,15 @@ static void test_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_exact),         cmocka_unit_test(test_constant),
-      cmocka_unit_test(test_passes),        cmocka_unit_test(test_pass_numbers_wrap),
-      cmocka_unit_test(test_coarse_def),    cmocka_unit_test(test_merge),
-      cmocka_unit_test(test_wrong_samples), cmocka_unit_test(test_crop_and_develop),
-      cmocka_unit_test(test_wrong_defs),    cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_exact),
+      cmocka_unit_test(test_constant),
+      cmocka_unit_test(test_passes),
+      cmocka_unit_test(test_pass_numbers_wrap),
+      cmocka_unit_test(test_coarse_def),
+      cmocka_unit_test(test_wrong_samples),
+      cmocka_unit_test(test_crop_and_develop),
+      cmocka_unit_test(test_wrong_defs),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -216,7 +216,10 @@ static void read_element(const vlGltfAccessor *a, const uint8_t *p, uint32_t com
     out[c] = p ? read_float(p + c * one, a->type, a->normalized) : 0.0f;
 }
 
-void vl_gltf_read_floats(const vlGltfAccessor *a, uint32_t wanted, float *out) {
+/* Reads all elements as floats, `components` per element. Components that the accessor lacks
+ * are left unchanged in out. Normalised integers map to [-1, 1] or [0, 1]; other integers keep
+ * their value. */
+static void read_floats(const vlGltfAccessor *a, uint32_t wanted, float *out) {
   uint32_t n = wanted < a->components ? wanted : a->components;
   if (a->data && a->type == VL_GLTF_FLOAT && n == wanted) {
     if (n == a->components && a->stride == 4 * n)
@@ -288,7 +291,7 @@ float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
   if (components > a->components)
     for (size_t i = 0; i < a->count * components; i++)
       out[i] = i % components == 3 ? 1.0f : 0.0f;
-  vl_gltf_read_floats(a, components, out);
+  read_floats(a, components, out);
   if (read)
     *read = a->count;
   return out;

@@ -5,7 +5,7 @@
 #include "import/import.h"
 #include "import/plain.h"
 
-bool vl_gltf_choose_variant(vlGltf *g) {
+static bool choose_variant(vlGltf *g) {
   g->variant = -1;
   if (!g->def->variant)
     return true;
@@ -41,9 +41,9 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def,
   bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g);
   if (ok)
     vl_gltf_check_names(&g);
-  ok = ok && vl_gltf_count_unread(&g) && vl_gltf_read_buffers(&g) &&
-       vl_gltf_choose_variant(&g) && vl_gltf_read_nodes(&g) && vl_gltf_make_labels(&g) &&
-       vl_gltf_pose(&g) && vl_gltf_draw(&g) && vl_gltf_list_choices(&g);
+  ok = ok && vl_gltf_count_unread(&g) && vl_gltf_read_buffers(&g) && choose_variant(&g) &&
+       vl_gltf_read_nodes(&g) && vl_gltf_make_labels(&g) && vl_gltf_pose(&g) &&
+       vl_gltf_draw(&g) && vl_gltf_list_choices(&g);
   ok = ok && vl_gltf_frame_animation(&g);
   vl_repairs_report(g.context, &g.repairs, path);
   if (ok && g.shapes_made == 0)

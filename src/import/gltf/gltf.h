@@ -78,7 +78,7 @@ typedef struct vlGltfMaterial {
   vlMaterialId material;
   vlFloatInput alpha;
   vlEmissionId emission;
-  bool double_sided, needs_tangents, needs_uvs;
+  bool double_sided, needs_tangents;
   vlMediumId inside;
   uint32_t tangent_set; /* uv set from which the tangents are computed */
 } vlGltfMaterial;
@@ -241,10 +241,6 @@ void vl_gltf_check_names(vlGltf *g);
 
 /* The accessor, checked; null after an error. */
 const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfLocation *at, size_t index);
-/* Reads all elements as floats, `components` per element. Components that the accessor lacks
- * are left unchanged in out. Normalised integers map to [-1, 1] or [0, 1]; other integers keep
- * their value. */
-void vl_gltf_read_floats(const vlGltfAccessor *accessor, uint32_t components, float *out);
 void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uint32_t *out);
 /* A new block of count * components floats from an accessor. The accessor must have one of the
  * given numbers of components and count elements (0: any; *read receives the count). Null after
@@ -391,6 +387,5 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *a
 bool vl_gltf_choose_camera(vlGltf *g);
 /* Reads a camera that no node has. The scene's own camera is replaced. */
 bool vl_gltf_check_camera(vlGltf *g, size_t index);
-bool vl_gltf_choose_variant(vlGltf *g);
 
 #endif

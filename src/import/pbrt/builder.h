@@ -33,7 +33,6 @@ typedef struct vlGraphicsState {
   const char *material_name; /* named material, resolved at the end; may be null */
   vlSource material_source;
   vlEmissionId emission;
-  bool emission_given;
   const char *inside, *outside;       /* names of the media inside and outside of shapes */
   size_t attributes[VL_ATTR_TARGETS]; /* number of parameters in import->attributes[target] that
                                          apply */

@@ -92,8 +92,10 @@ void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths 
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
 }
 
-void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min,
-                       const float *t_max) {
+/* Traces lane i's ray again from t_min on, and writes the hit to h. t_max: the batch's row, or
+ * null for no limit. The ray is counted. */
+static void closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min,
+                           const float *t_max) {
   float time = vl_path_time(p, i);
   vlRays ray = {p->ox + i,
                 p->oy + i,
@@ -130,7 +132,7 @@ static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t 
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
     t_min = vl_past_surface(&at, d, t_min);
-    vl_closest_beyond(t, p, h, i, t_min, t_max);
+    closest_beyond(t, p, h, i, t_min, t_max);
   }
 }
 

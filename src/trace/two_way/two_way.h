@@ -154,7 +154,6 @@ typedef struct vlTwoWay {
   float paths;         /* N: light paths of a pass */
   float merged;        /* H = N pi radius^2; 0 without merging */
   float merged_volume; /* in media: H = N 4/3 pi radius^3 */
-  float inv_merged;    /* 1 / H */
   float shared;  /* random number in [0, 1) that samples the wavelengths of all paths of the
                     pass;  below 0: each path has  its own number */
   float connect; /* C: density of connections between inner vertices, relative to one light

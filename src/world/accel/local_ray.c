@@ -51,8 +51,13 @@ static vlTextureQuery world_query(const vlWorld *world, const vlLocalRay *r,
   return q;
 }
 
-bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *r,
-                     uint32_t prim, float t, const vlTextureQuery *at) {
+/* Whether a ray passes through a shape because of the shape's alpha. A hash of ray and
+ * primitive decides, so that the result does not depend on the order of traversal. t: distance
+ * of the hit; it enters the hash for shapes that a ray can intersect twice, so that each hit is
+ * decided separately; 0 for triangles. at: the point of the hit, in the space of the ray's
+ * group. */
+static bool alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *r,
+                         uint32_t prim, float t, const vlTextureQuery *at) {
   const vlTextureQuery q = world_query(world, r, at);
   const float alpha = vl_texture_float_at(world, shape->alpha, &q);
   return ray_hash(r, (uint32_t)(shape - world->shapes.items), prim, t) >= alpha;
@@ -107,7 +112,7 @@ bool vl_triangle_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i,
   bool behind = vl_local_triangle(shape, prim, &r, &at, corner.weights);
   if (behind && shape->one_sided)
     return true;
-  return shape->alpha >= 0 && vl_alpha_passes(world, shape, &r, prim, 0, &at);
+  return shape->alpha >= 0 && alpha_passes(world, shape, &r, prim, 0, &at);
 }
 
 /* Whether the shape's texture lets ray i pass at a hit. */
@@ -121,7 +126,7 @@ static __attribute__((noinline)) bool texture_passes(const vlWorld *world, const
   vlTextureQuery at = {point.uv[0], point.uv[1],
                        vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
                        vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
-  return vl_alpha_passes(world, shape, &r, prim, (float)hit->t, &at);
+  return alpha_passes(world, shape, &r, prim, (float)hit->t, &at);
 }
 
 bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,

@@ -19,14 +19,6 @@ typedef struct vlLocalRay {
 vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *rays, uint32_t i,
                         uint32_t instance);
 
-/* Whether a ray passes through a shape because of the shape's alpha. A hash of ray and
- * primitive decides, so that the result does not depend on the order of traversal. t: distance
- * of the hit; it enters the hash for shapes that a ray can intersect twice, so that each hit is
- * decided separately; 0 for triangles. at: the point of the hit, in the space of the ray's
- * group. */
-bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *ray,
-                     uint32_t prim, float t, const vlTextureQuery *at);
-
 /* Computes where the ray intersects triangle prim. `at` receives uv, position and normal (its
  * member corner is not set); b receives the barycentric coordinates. Returns true if the ray
  * comes from behind. */

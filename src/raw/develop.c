@@ -7,6 +7,7 @@
 #include "image/pixel.h"
 #include "raw/demosaic.h"
 #include "raw/raw.h"
+#include "raw/tone.h"
 
 enum { COLORS = VL_RAW_MAX_COLORS };
 
@@ -24,7 +25,9 @@ typedef struct Develop {
   double neutral[COLORS];
   double matrix[3 * COLORS]; /* linear sRGB from white-balanced colours */
   const float *from;
-  vlImage *to; /* of the parallel step */
+  vlImage *to;        /* of the parallel step */
+  const vlTone *tone; /* of the step TONE */
+  double scale;       /* before it */
 } Develop;
 
 static vlResult check(const vlRaw *raw, const vlRawDevelopDef *def, vlImage **image,
@@ -77,15 +80,8 @@ static void color_row(void *user, uint32_t y, uint32_t worker) {
 static void tone_row(void *user, uint32_t y, uint32_t worker) {
   const Develop *d = user;
   (void)worker;
-  uint32_t count = d->to->width * d->to->channels;
-  double exposure = (double)d->raw->def.baseline_exposure + (double)d->def->exposure;
-  double scale = vl_exp2_exact(exposure);
-  const float *from = d->from + (size_t)y * count;
-  uint16_t *to = vl_image_row(d->to, y);
-  for (uint32_t i = 0; i < count; i++) {
-    double linear = fmin(fmax(scale * (double)from[i], 0.0), 1.0);
-    to[i] = (uint16_t)(vl_linear_to_srgb(linear) * 65535.0 + 0.5);
-  }
+  size_t count = (size_t)d->to->width * d->to->channels;
+  vl_tone_apply(d->tone, d->scale, d->from + y * count, count, vl_image_row(d->to, y));
 }
 
 /* ---- their images ------------------------------------------------------------------------ */
@@ -134,6 +130,18 @@ static vlResult demosaic(Develop *d, vlImage **image, vlError *error) {
   return VL_OK;
 }
 
+static vlResult apply_tone(Develop *d, uint32_t channels, vlImage **image, vlError *error) {
+  vlTone *tone = vl_alloc_array(d->raw->context, 1, sizeof *tone);
+  if (!tone)
+    return vl_fail_memory(error);
+  vl_tone_make(d->raw->context, tone);
+  d->tone = tone;
+  d->scale = vl_exp2_exact((double)d->raw->def.baseline_exposure + (double)d->def->exposure);
+  vlResult result = run_step(d, tone_row, channels, VL_PIXEL_U16, image, error);
+  vl_free(d->raw->context, tone);
+  return result;
+}
+
 /* Prepares the matrix for white-balanced colours. */
 static vlResult prepare(Develop *d, vlError *error) {
   double kelvin;
@@ -173,7 +181,7 @@ vlResult vl_raw_develop(const vlRaw *raw, const vlRawDevelopDef *def, vlImage **
   if (result == VL_OK && d.def->stop_at >= VL_RAW_STEP_COLOR && !is_mono)
     result = run_step(&d, color_row, 3, VL_PIXEL_F32, &made, error);
   if (result == VL_OK && d.def->stop_at >= VL_RAW_STEP_TONE)
-    result = run_step(&d, tone_row, is_mono ? 1 : 3, VL_PIXEL_U16, &made, error);
+    result = apply_tone(&d, is_mono ? 1 : 3, &made, error);
   if (result == VL_OK)
     *image = made;
   else

@@ -59,9 +59,11 @@ static vlResult write_image(const vlRaw *raw, const char *path, vlError *error) 
 
 #ifndef VELO_TIFF
 static vlResult lacks_tiff(const char *path, vlError *error) {
-  return vl_fail(error, VL_ERROR_UNSUPPORTED,
-                 "%s: this velo was built without libtiff, which DNG and TIFF files need",
-                 path);
+  return vl_fail(
+      error, VL_ERROR_UNSUPPORTED,
+      "%s: this build has no DNG: it was made without libtiff 4.5, which DNG and raw "
+      "numbers as TIFF need",
+      path);
 }
 #endif
 

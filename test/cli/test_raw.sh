@@ -6,7 +6,7 @@ case "$("$VELO" --version)" in
   *)
     cp "$VELO_SOURCE_DIR/test/fuzz/corpus/raw/bayer.dng" a.dng
     expect_code 3 "a velo without libtiff says so" "$VELO" raw info a.dng
-    expect_text "and what it lacks" libtiff
+    expect_text "and what it lacks" "this build has no DNG: it was made without libtiff"
     skip "$(basename "$0")" "needs a velo with libtiff"
     finish
     exit

@@ -116,7 +116,8 @@ static void test_bare(void **state) {
   } else {
     vlError error;
     assert_int_equal(vl_raw_write(raw, path, &error), VL_ERROR_UNSUPPORTED);
-    assert_non_null(strstr(error.message, "libtiff"));
+    assert_non_null(
+        strstr(error.message, "this build has no DNG: it was made without libtiff"));
     assert_int_equal(vl_raw_read(context, path, &back, &error), VL_ERROR_UNSUPPORTED);
   }
   vl_raw_destroy(back);

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""DNG files of velo in the hands of other programs: dcraw, LibRaw's and exiftool, where they are installed; and velo's
-development against theirs."""
+"""DNG files of velo in the hands of other programs: dcraw, LibRaw's, RawTherapee, darktable and exiftool, where they are installed; and
+velo's development against theirs."""
 import functools
 import os
 import shutil
@@ -26,20 +26,20 @@ def sensitivities():
                         for middle, width, height in ((600, 45, 0.9), (535, 50, 1.0), (455, 35, 0.8))])
 
 
-def chart(pattern):
-    """Patches of different colours, exact to the last number, as a raw image."""
+def chart(pattern, scale=1):
+    """Patches of different colours, exact to the last number, as a raw image. scale: of its size."""
     letters = "RGB"
     rows = pattern.split("/")
-    raw = velo.Raw(numpy.zeros((HEIGHT, WIDTH), "uint16"), pattern=pattern, bits=14, black=BLACK, white=WHITE, camera="Chart",
+    raw = velo.Raw(numpy.zeros((scale * HEIGHT, scale * WIDTH), "uint16"), pattern=pattern, bits=14, black=BLACK, white=WHITE, camera="Chart",
                    exposure_time=1 / 250, f_number=4.0, focal_length=0.035, iso=200, gain=0.5, read_noise=3.0)
     raw.match_color(sensitivities())
     colors = numpy.array([[0.05, 0.05, 0.05], [0.4, 0.4, 0.4], [0.5, 0.35, 0.25], [0.2, 0.4, 0.3], [0.25, 0.3, 0.45],
                           [0.8, 0.8, 0.8], [0.1, 0.12, 0.09], [0.5, 0.5, 0.3], [0.3, 0.4, 0.4], [0.45, 0.35, 0.42]])
     numbers = raw.numbers
-    for y in range(HEIGHT):
-        for x in range(WIDTH):
+    for y in range(scale * HEIGHT):
+        for x in range(scale * WIDTH):
             k = letters.index(rows[y % len(rows)][x % len(rows[0])])
-            patch = y // PATCH * (WIDTH // PATCH) + x // PATCH
+            patch = y // (scale * PATCH) * (WIDTH // PATCH) + x // (scale * PATCH)
             numbers[y, x] = round(BLACK + colors[patch, k] * raw.neutral[k] * (WHITE - BLACK))
     return raw, colors
 
@@ -51,7 +51,7 @@ def run(*command):
 
 
 def read_tiff(path):
-    """A TIFF file of one strip of 16-bit values."""
+    """A TIFF file of 16-bit values, uncompressed."""
     with open(path, "rb") as file:
         data = file.read()
     order = "<" if data[:2] == b"II" else ">"
@@ -59,9 +59,13 @@ def read_tiff(path):
     tags = {}
     for i in range(struct.unpack_from(order + "H", data, at)[0]):
         tag, kind, count, value = struct.unpack_from(order + "HHII", data, at + 2 + 12 * i)
-        tags[tag] = struct.unpack_from(order + "H", data, at + 10 + 12 * i)[0] if kind == 3 and count == 1 else value
-    width, height, samples = tags[256], tags[257], tags[277]
-    return numpy.frombuffer(data, order + "u2", width * height * samples, tags[273]).reshape(height, width, samples)
+        letter = {3: "H", 4: "I"}.get(kind)
+        if letter:
+            place = at + 10 + 12 * i if count * struct.calcsize(letter) <= 4 else value
+            tags[tag] = struct.unpack_from(f"{order}{count}{letter}", data, place)
+    (width,), (height,), (samples,) = tags[256], tags[257], tags[277]
+    strips = b"".join(data[start:start + size] for start, size in zip(tags[273], tags[279]))
+    return numpy.frombuffer(strips, order + "u2", width * height * samples).reshape(height, width, samples)
 
 
 def middles(image):
@@ -134,6 +138,56 @@ def libraw_develops_as_velo():
     own = middles(numpy.asarray(raw.develop("color")))
     worst = abs(theirs - numpy.clip(own, 0, 1)).max()
     assert worst < 1e-3, worst
+
+
+def compare_large(pattern, develop, border=0):
+    """Patches that a program develops, against velo's. develop(input, output) writes linear values from 0 to 1; border: pixels that it cuts."""
+    raw, _ = chart(pattern, 4)
+    raw.write(work("large.dng"))
+    theirs = numpy.zeros((4 * HEIGHT, 4 * WIDTH, 3))
+    linear = develop("large.dng", "large.tif")
+    theirs[border:border + linear.shape[0], border:border + linear.shape[1]] = linear
+    own = numpy.clip(numpy.asarray(raw.develop("color")), 0, 1)
+    worst = abs(middles(theirs[::4, ::4]) - middles(own[::4, ::4])).max()
+    assert worst < 1e-3, (pattern, worst)
+
+
+def run_in_home(*command):
+    """For programs that write settings: their home is the test's folder."""
+    subprocess.run(command, cwd=WORK, check=True, capture_output=True, env={**os.environ, "HOME": WORK})
+
+
+@wants("rawtherapee-cli")
+def rawtherapee_develops_as_velo():
+    with open(work("linear.pp3"), "w") as file:
+        file.write("[Version]\nVersion=349\n[Exposure]\nAuto=false\nHistogramMatching=false\nCurve=0;\nCurve2=0;\n"
+                   "[HLRecovery]\nEnabled=false\n[White Balance]\nSetting=Camera\n[Color Management]\nInputProfile=(embedded)\n"
+                   "ToneCurve=false\nApplyLookTable=false\nWorkingProfile=sRGB\nOutputProfile=RTv4_sRGB\n"
+                   "[Sharpening]\nEnabled=false\n[RAW Bayer]\nCcSteps=0\n")
+
+    def develop(source, result):
+        run_in_home("rawtherapee-cli", "-q", "-o", work(result), "-p", work("linear.pp3"), "-t", "-b16", "-Y", "-c", work(source))
+        value = read_tiff(work(result)) / 65535
+        return numpy.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+
+    for pattern in ("RG/GB", "BG/GR", "GR/BG", "GB/RG"):
+        compare_large(pattern, develop, 4)
+
+
+@wants("darktable-cli")
+def darktable_develops_as_velo():
+    def develop(source, result):
+        for name in (result, source + ".xmp"):
+            if os.path.exists(work(name)):
+                os.remove(work(name))
+        run_in_home("darktable-cli", source, result, "--icc-type", "LIN_REC709", "--apply-custom-presets", "false", "--core",
+                    "--configdir", work("darktable"), "--conf", "plugins/imageio/format/tiff/bpp=16",
+                    "--conf", "plugins/imageio/format/tiff/compress=0", "--conf", "plugins/darkroom/workflow=none",
+                    "--conf", "plugins/darkroom/chromatic-adaptation=legacy")
+        return read_tiff(work(result)) / 65535
+
+    for pattern in ("RG/GB", "BG/GR", "GR/BG", "GB/RG"):
+        compare_large(pattern, develop)
 
 
 @wants("raw-identify")

@@ -44,10 +44,11 @@ def render_frame(depsgraph, names, number):
     made = export.Export(depsgraph, camera.image_size(scene))
     image = made.scene.render(channels=CHANNELS, **settings.tracing(scene, scene.velo.samples))
     ids, instances = numpy.asarray(image["id.instance"]), []
-    for place, (name, matrix) in enumerate(made.placed, 1):
+    for place, placed in enumerate(made.instances, 1):
+        name = placed.kind
         if name not in names:
             continue
-        pose, scale = _rigid(matrix)
+        pose, scale = _rigid(placed.matrix)
         mask = ids == place
         instances.append(Instance(names.index(name), name, pose, scale, mask, mask))
     return Frame(number, scene.camera.name, made.camera, image, instances)

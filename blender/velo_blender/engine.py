@@ -5,7 +5,7 @@ import traceback
 import bpy
 import velo
 
-from . import camera, draw_view, export, motion, passes, report, settings, viewport
+from . import camera, draw_view, export, motion, passes, report, settings, vectors, viewport
 
 REFRESH = 1.0  # seconds between images of a render that goes on
 
@@ -74,7 +74,8 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         crop = camera.crop_window(scene, size)
         self.update_stats("", "velo: reading the scene")
         moves = motion.Motion(self, depsgraph) if scene.render.use_motion_blur else None
-        made = export.Export(depsgraph, size, self.test_break, moves)
+        flow = vectors.Vectors(self, depsgraph, size) if depsgraph.view_layer.use_pass_vector else None
+        made = export.Export(depsgraph, size, self.test_break, moves, keep_triangles=flow is not None)
         report.remember(scene.name, made.notes)
         for text in made.notes.texts():
             print("velo: " + text)
@@ -83,13 +84,18 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         self.update_stats("", "velo: building")
         made.scene.world(progress=lambda step: not self.test_break(), **settings.world_words(scene))
         width, height = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
+        passes.add(self, depsgraph.view_layer)
         result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
+        fields = {}
         try:
-            self._trace(scene, made, crop, result)
+            fields = self._trace(scene, made, crop, result, flow)
         finally:
             self.end_result(result, cancel=False)
+        for field, value in fields.items():
+            self.get_result().stamp_data_add_field(field, value)
 
-    def _trace(self, scene, made, crop, result):
+    def _trace(self, scene, made, crop, result, flow):
+        """Renders into the result. Returns the fields of the file's header."""
         layer = result.layers[0]
         shown = [time.monotonic()]
 
@@ -106,7 +112,9 @@ class VeloRenderEngine(bpy.types.RenderEngine):
 
         image = made.scene.render(channels=passes.wanted(layer), progress=progress, denoise=scene.velo.denoise, crop=crop,
                                   **settings.tracing(scene, scene.velo.samples))
-        passes.fill(layer, image, scene.render.film_transparent, made)
+        more = passes.Made(made, image, flow)
+        passes.fill(layer, image, scene.render.film_transparent, more)
+        return more.mattes.fields(layer.name)
 
 
 def _redraw_views():

@@ -8,14 +8,13 @@ import velo
 from . import atlas, camera, camera_files, displace, geometry, hair, lights, materials, motion, object_info, points, textures, world
 from .report import Notes, Refused
 
-MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
-
 
 class Part(NamedTuple):
     """The triangles of one material slot of a mesh, ready to be placed."""
     words: dict
     surface: Any
     material: Any
+    corners: Any  # positions of the whole mesh, n x 3, and the part's triangles, m x 3; None: they are displaced
 
 
 class Place(NamedTuple):
@@ -33,18 +32,29 @@ class Prepared(NamedTuple):
     emissive: list
 
 
-class Export:
-    """A velo scene made from a depsgraph. Members: scene (velo.Scene), notes, camera (velo.Camera), size; instances, shapes: the pass
-    index of what has velo's id 1, 2, ...; material_indices: {name: pass index}. moves: motion.Motion, or None: everything is at rest.
-    view: the camera, in place of the scene's."""
+class Placed(NamedTuple):
+    """An object at its place. kind: its class in data sets; asset: the object at the top of its parents; key: motion.key_of."""
+    name: str
+    asset: str
+    pass_index: int
+    kind: str
+    key: tuple
+    matrix: Any
 
-    def __init__(self, depsgraph, size, cancelled=None, moves=None, view=None):
+
+class Export:
+    """A velo scene made from a depsgraph. Members: scene (velo.Scene), notes, camera (velo.Camera), size; instances, shapes: a Placed for
+    each of velo's ids 1, 2, ..., None for shapes of groups and lamps; triangles: {id of a shape: (positions and triangles of its whole
+    mesh)}, where keep_triangles asks for them; material_indices: {name: pass index}. moves: motion.Motion, or None: everything is at
+    rest. view: the camera, in place of the scene's."""
+
+    def __init__(self, depsgraph, size, cancelled=None, moves=None, view=None, keep_triangles=False):
         self.depsgraph, self.size = depsgraph, size
         self.notes = Notes()
         self.scene = velo.Scene()
         self.instances, self.shapes, self.material_indices = [], [], {}
-        self.placed = []  # (class, world from object) of velo's instances
-        self._moves = moves
+        self.triangles = {}
+        self._moves, self._keep_triangles = moves, keep_triangles
         self._handles = {}  # {motion.key_of(instance): handle}
         self._meshes, self._surfaces, self._cache = {}, {}, {}
         self._copies, self._varying = {}, {}  # objects of a mesh whose materials ask for the object; {material: whether it does}
@@ -72,24 +82,25 @@ class Export:
                 self.notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
             elif item.type == "LIGHT":
                 lights.add(self.scene, item, instance.matrix_world, self._camera_sees, self.notes)
-                self.shapes += [0] * (len(self.scene.handles("shapes")) - len(self.shapes))
-            elif item.type in MESHES:
-                handle = self._place(instance, matrix, self._moves.of(instance) if self._moves is not None else None)
+                self.shapes += [None] * (len(self.scene.handles("shapes")) - len(self.shapes))
+            elif item.type in geometry.MESHES:
+                placed = _placed(instance, matrix)
+                handle = self._place(instance, placed, self._moves.of(instance) if self._moves is not None else None)
                 if handle is not None:
-                    self._handles[motion.key_of(instance)] = handle
+                    self._handles[placed.key] = handle
                 for system in item.particle_systems:
                     if system.settings.type == "HAIR" and system.settings.render_type == "PATH" and not instance.is_instance:
-                        self._add_hair(item, hair.of_particles(item, system), system.settings.material - 1, numpy.eye(4))
+                        self._add_hair(item, hair.of_particles(item, system), system.settings.material - 1, placed, numpy.eye(4))
             elif item.type == "POINTCLOUD":
-                self._add_points(item, matrix)
+                self._add_points(item, _placed(instance, matrix))
             elif item.type == "CURVES":
-                self._add_hair(item, hair.of_curves(item.data), 0, matrix)
+                self._add_hair(item, hair.of_curves(item.data), 0, _placed(instance, matrix), matrix)
             elif item.type != "GPENCIL":
                 self.notes.add(item.name, "", "objects of type %s are not rendered" % item.type.lower())
 
     def _note_unseen(self, item):
         """What an object has that velo does not render."""
-        if item.type not in MESHES:
+        if item.type not in geometry.MESHES:
             return
         if not (item.visible_camera and item.visible_shadow and item.visible_diffuse and item.visible_glossy and item.visible_transmission):
             self.notes.add(item.name, "Ray visibility", "all rays see it")
@@ -130,9 +141,9 @@ class Export:
         margin = 0.1 * numpy.array(self.size)
         return bool((high > -margin).all() and (low < numpy.array(self.size) + margin).all())
 
-    def _place(self, instance, matrix, poses):
+    def _place(self, instance, placed, poses):
         """Adds an object; returns the handle of its instance if that is all that it is and it is at rest."""
-        item = instance.object
+        item, matrix = instance.object, placed.matrix
         if abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
             self.notes.add(item.name, "", "it is scaled to nothing and left out")
             return None
@@ -145,15 +156,14 @@ class Export:
                 handle = self.scene.add_instance(prepared.group, matrix)
             else:
                 self.scene.add_instance(prepared.group, poses, times=motion.TIMES)
-            self.instances.append(item.pass_index)
-            self.placed.append((str(item.get("class", "")), matrix))
+            self.instances.append(placed)
         for part in prepared.emissive:
             if poses is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
-            self._add_shape(part, item, pose=matrix, name=item.name)
+            self._add_shape(part, placed, pose=matrix, name=item.name)
         return None if prepared.emissive else handle
 
-    def _add_hair(self, item, strands, slot, matrix):
+    def _add_hair(self, item, strands, slot, placed, matrix):
         if strands is None:
             return
         positions, widths = hair.segments(*strands)
@@ -163,7 +173,7 @@ class Export:
         surface, words = self._bare_surface(item, slots[min(max(slot, 0), len(slots) - 1)], matrix, "hair")
         self.scene.add_shape("curves", positions=positions, widths=widths, curve="cylinder", material=surface.material, pose=matrix,
                              name=item.name, **words)
-        self.shapes.append(item.pass_index)
+        self.shapes.append(placed)
 
     def _bare_surface(self, item, material, matrix, what):
         """(surface, keywords of the shape) of what has no uv maps and does not emit."""
@@ -171,34 +181,41 @@ class Export:
         surface = self._surface(material, textures.Maps(None), None, place)
         if surface.emission is not None:
             self.notes.add(item.name, "", "%s does not emit" % what)
+        if self._moves is not None:
+            self.notes.add(item.name, "", "%s is at rest" % what)
         return surface, {} if surface.alpha is None else {"alpha": surface.alpha}
 
-    def _add_points(self, item, matrix):
+    def _add_points(self, item, placed):
+        matrix = placed.matrix
         centers, radii = points.read(item.data, self.notes, item.name)
         if len(radii) == 0:
             return
         slots = [known.material for known in item.material_slots] or [None]
         surface, words = self._bare_surface(item, slots[0], matrix, "a point cloud")
         self.scene.add_shape("sphere", centers=centers, radii=radii, material=surface.material, pose=matrix, name=item.name, **words)
-        self.shapes.append(item.pass_index)
+        self.shapes.append(placed)
 
     def indices(self, name, image):
         """The pass IndexOB or IndexMA, height x width, from the channels of ids."""
         if name == "IndexMA":
             known = {entry["id"]: self.material_indices.get(entry.get("name"), 0) for entry in self.scene.world().ids("material")}
             return _look_up(known, numpy.asarray(image["id.material"]))
-        by_instance = _look_up(dict(enumerate(self.instances, 1)), numpy.asarray(image["id.instance"]))
-        by_shape = _look_up(dict(enumerate(self.shapes, 1)), numpy.asarray(image["id.object"]))
+        by_instance, by_shape = (_look_up({number: 0 if placed is None else placed.pass_index for number, placed in enumerate(owners, 1)},
+                                          numpy.asarray(image[channel]))
+                                 for owners, channel in ((self.instances, "id.instance"), (self.shapes, "id.object")))
         return numpy.where(numpy.asarray(image["id.instance"]) > 0, by_instance, by_shape)
 
-    def _add_shape(self, part, item, **words):
+    def _add_shape(self, part, placed, **words):
+        """placed: None in a group."""
         surface = part.surface
         if surface.alpha is not None:
             words["alpha"] = surface.alpha
         if surface.emission is not None:
             words["emission"] = surface.emission
         self.scene.add_shape("triangles", material=surface.material, **part.words, **words)
-        self.shapes.append(item.pass_index)
+        self.shapes.append(placed)
+        if self._keep_triangles and part.corners is not None:
+            self.triangles[len(self.shapes)] = part.corners
 
     # ---- meshes
 
@@ -240,7 +257,7 @@ class Export:
         plain = [part for part in parts if part.surface.emission is None]
         group = self.scene.add_group(item.name) if plain else None
         for part in plain:
-            self._add_shape(part, item, group=group, name=item.name)
+            self._add_shape(part, None, group=group, name=item.name)
         return Prepared(group, parts, [part for part in parts if part.surface.emission is not None])
 
     def _displace(self, arrays, slots, place):
@@ -249,9 +266,14 @@ class Export:
             if displace.is_displaced(material):
                 inputs = self._inputs(material, textures.Maps(arrays), None, place)
                 displace.apply(arrays, slot, material, inputs, place.matrix)
+                arrays.displaced = True
 
     def _parts(self, item, arrays, slots, place):
         maps = textures.Maps(arrays)
+        moving = self._moves.meshes_of(item.name_full, arrays) if self._moves is not None else None
+        if moving is not None and arrays.displaced:
+            moving = None
+            self.notes.add(item.name, "", "vertices that are displaced are at rest")
         if len(maps.names) > 4:
             self.notes.add(item.name, "", "of its %d uv maps the first 4 are rendered" % len(maps.names))
         parts = []
@@ -259,7 +281,11 @@ class Export:
             material = slots[slot] if 0 <= slot < len(slots) else slots[-1]
             corners = atlas.Corners(arrays, slot, place.matrix, maps.names[:4], arrays.texture_space)
             surface = self._surface(material, maps, corners, place)
-            parts.append(Part(self._arrays_of(arrays, slot, maps, surface), surface, material))
+            if moving is not None and surface.emission is not None:
+                self.notes.add(item.name, "", "surfaces that emit are at rest")
+            words = self._arrays_of(arrays, slot, maps, surface, moving if surface.emission is None else None)
+            whole = None if arrays.displaced else (arrays.positions, arrays.triangles[arrays.slots == slot])
+            parts.append(Part(words, surface, material, whole))
         return parts
 
     def _inputs(self, material, maps, corners, place):
@@ -277,8 +303,8 @@ class Export:
             self._surfaces[key] = surface
         return self._surfaces[key]
 
-    def _arrays_of(self, arrays, slot, maps, surface):
-        """Keywords of velo's triangles for one slot."""
+    def _arrays_of(self, arrays, slot, maps, surface, moving):
+        """Keywords of velo's triangles for one slot. moving: the meshes when the shutter opens and closes; None: it is at rest."""
         triangles, used = arrays.part(slot)
         if surface.atlas is not None:  # each triangle has corners of its own
             used = arrays.triangles[arrays.slots == slot].ravel()
@@ -287,6 +313,11 @@ class Export:
         words = {"positions": pick(arrays.positions), "indices": triangles}
         if arrays.normals is not None:
             words["normals"] = geometry.clean_normals(pick(arrays.normals))
+        if moving is not None:
+            first, last = moving
+            words.update(positions=pick(first.positions), positions_close=pick(last.positions), times=(0.0, 1.0))
+            if arrays.normals is not None and first.normals is not None and last.normals is not None:
+                words.update(normals=geometry.clean_normals(pick(first.normals)), normals_close=geometry.clean_normals(pick(last.normals)))
         uvs = [numpy.nan_to_num(pick(arrays.uvs[name])) for name in maps.names[:4]]
         if surface.atlas is not None:
             uvs = uvs[:3] + [surface.atlas.uvs.reshape(-1, 2)]
@@ -305,6 +336,22 @@ def _camera_of(depsgraph, size):
         raise Refused("the scene has no camera")
     item = item.evaluated_get(depsgraph)
     return camera_files.convert(item, size) or camera.convert(depsgraph.scene, item, depsgraph, size)
+
+
+def camera_or_none(depsgraph, size):
+    """The scene's camera in velo; None: it cannot be made."""
+    try:
+        return _camera_of(depsgraph, size)
+    except (Refused, velo.Error):
+        return None
+
+
+def _placed(instance, matrix):
+    item = instance.object
+    top = item.parent
+    while top is not None and top.parent is not None:
+        top = top.parent
+    return Placed(item.name, top.name if top is not None else item.name, item.pass_index, str(item.get("class", "")), motion.key_of(instance), matrix)
 
 
 def _look_up(known, ids):

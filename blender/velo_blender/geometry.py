@@ -3,6 +3,8 @@ import numpy
 
 from . import versions
 
+MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
 
 def _read(collection, name, width, dtype):
     """A property of all elements: n x width, or n."""
@@ -16,7 +18,7 @@ class MeshArrays:
     corners of one vertex, its corners.
 
     positions, normals: n x 3, in the object's space; normals may be None (flat). triangles: m x 3. slots: m, the material's slot.
-    uvs: {name: n x 2}. smooth: m, whether a triangle is shaded smoothly."""
+    displaced: whether vertices were moved by a material. uvs: {name: n x 2}. smooth: m, whether a triangle is shaded smoothly."""
 
     def __init__(self, mesh):
         mesh.calc_loop_triangles()
@@ -37,6 +39,7 @@ class MeshArrays:
         self.color_names = [attribute.name for attribute in mesh.color_attributes]
         low, size = numpy.array(mesh.texspace_location), numpy.array(mesh.texspace_size)
         self.texture_space = low - size, 2 * size  # corner and size of the box of generated coordinates
+        self.displaced = False
         self._mesh = mesh
 
     def _normals(self, mesh, smooth, points):
@@ -96,6 +99,10 @@ class MeshArrays:
         used, triangles = numpy.unique(self.triangles[mine], return_inverse=True)
         return triangles.reshape(-1, 3).astype(numpy.int32), used
 
+    def is_like(self, other):
+        """Whether another mesh has the same triangles."""
+        return len(self.positions) == len(other.positions) and numpy.array_equal(self.triangles, other.triangles)
+
     def is_finite(self):
         return bool(numpy.isfinite(self.positions).all())
 
@@ -105,6 +112,15 @@ def read(mesh):
     if mesh is None or len(mesh.polygons) == 0:
         return None
     return MeshArrays(mesh)
+
+
+def of_object(item):
+    """The arrays of an evaluated object's mesh; None: it has no faces. Colours are not to be read from them."""
+    mesh = item.to_mesh()
+    try:
+        return read(mesh)
+    finally:
+        item.to_mesh_clear()
 
 
 def clean_normals(normals):

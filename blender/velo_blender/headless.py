@@ -194,9 +194,9 @@ def _choose_format(scene, suffix, half):
 
 
 def _extra_passes(scene):
-    """The switches of passes besides the colours that are on."""
+    """The passes besides the colours that are on."""
     from . import passes
-    return [name for layer in scene.view_layers if layer.use for name in passes.switches() if getattr(layer, name)]
+    return [words for layer in scene.view_layers if layer.use for words in passes.wanted_of(layer)]
 
 
 def _render(scene, paths, suffixes, half):

@@ -1,10 +1,12 @@
-"""motion.py: motion blur: the poses of instances and camera while the shutter is open.
+"""motion.py: the scene at other times than that of the frame: for motion blur and for the pass Vector.
 
-velo's time runs from 0, when the shutter opens, to 1. Poses are read at three times, and velo interpolates between them. Vertices that
-move are at rest."""
+velo's time runs from 0, when the shutter opens, to 1. Poses are read at three times, and velo interpolates between them; vertices that
+move are read when the shutter opens and when it closes, and move straight on."""
 import math
 
 import numpy
+
+from . import geometry
 
 TIMES = (0.0, 0.5, 1.0)
 
@@ -23,36 +25,86 @@ def interval(scene):
     return begin, begin + length
 
 
+def deforms(item, scene):
+    """Whether the vertices of an evaluated object may move."""
+    if item.type not in geometry.MESHES:
+        return False
+    original = item.original
+    data = original.data
+    moves = original.is_deform_modified(scene, "RENDER") or any(known.type == "NODES" for known in original.modifiers)
+    return moves or getattr(data, "animation_data", None) is not None or getattr(data, "shape_keys", None) is not None
+
+
+class Step:
+    """The scene at one time. poses: {key_of(instance): 4 x 4}; matrix: of Blender's camera; camera: velo's, None where it is not asked
+    for or cannot be made; meshes: {object: geometry.MeshArrays} of those that deform()."""
+
+    def __init__(self, depsgraph, with_meshes, size):
+        from . import export
+        self.poses, self.meshes, self.matrix, self.camera = {}, {}, None, None
+        scene = depsgraph.scene
+        for instance in depsgraph.object_instances:
+            item = instance.object
+            if item.type in ("CAMERA", "LIGHT", "EMPTY"):
+                continue
+            self.poses[key_of(instance)] = numpy.array(instance.matrix_world, dtype=float)
+            if with_meshes and item.name_full not in self.meshes and deforms(item, scene):
+                arrays = geometry.of_object(item)
+                if arrays is not None and arrays.is_finite():
+                    self.meshes[item.name_full] = arrays
+        if scene.camera is not None:
+            self.matrix = scene.camera.evaluated_get(depsgraph).matrix_world.copy()
+        if size is not None:
+            self.camera = export.camera_or_none(depsgraph, size)
+
+    def pose_of(self, key, otherwise):
+        """The pose of an instance that is there and has a place."""
+        pose = self.poses.get(key)
+        return otherwise if pose is None or not numpy.isfinite(pose).all() else pose
+
+
+def read_steps(engine, depsgraph, frames, size=None, meshes_at=None):
+    """The scene at times, in frames from the frame that is rendered: a list of Step. size: of the image, for velo's cameras; meshes_at:
+    the indices of the times at which meshes are read, default all."""
+    scene = depsgraph.scene
+    frame = scene.frame_current + scene.frame_subframe
+    steps = []
+    try:
+        for number, offset in enumerate(frames):
+            at = frame + offset
+            engine.frame_set(math.floor(at), at - math.floor(at))
+            steps.append(Step(depsgraph, meshes_at is None or number in meshes_at, size))
+    finally:
+        engine.frame_set(math.floor(frame), frame - math.floor(frame))
+    return steps
+
+
 class Motion:
-    """Poses at TIMES. poses: {key_of(instance): [4 x 4, ...]}; camera: [4 x 4, ...] of Blender's camera."""
+    """What moves while the shutter is open. camera: [4 x 4, ...] of Blender's camera at TIMES."""
 
     def __init__(self, engine, depsgraph):
-        scene = depsgraph.scene
-        frame = scene.frame_current + scene.frame_subframe
-        begin, end = interval(scene)
-        self.poses, self.camera = {}, []
-        try:
-            for time in TIMES:
-                at = frame + begin + time * (end - begin)
-                engine.frame_set(math.floor(at), at - math.floor(at))
-                self._read(depsgraph)
-        finally:
-            engine.frame_set(math.floor(frame), frame - math.floor(frame))
-
-    def _read(self, depsgraph):
-        for instance in depsgraph.object_instances:
-            if instance.object.type in ("CAMERA", "LIGHT", "EMPTY"):
-                continue
-            self.poses.setdefault(key_of(instance), []).append(numpy.array(instance.matrix_world, dtype=float))
-        if depsgraph.scene.camera is not None:
-            camera = depsgraph.scene.camera.evaluated_get(depsgraph)
-            self.camera.append(camera.matrix_world.copy())
+        begin, end = interval(depsgraph.scene)
+        self._steps = read_steps(engine, depsgraph, [begin + time * (end - begin) for time in TIMES], meshes_at=(0, len(TIMES) - 1))
+        self.camera = [step.matrix for step in self._steps if step.matrix is not None]
 
     def of(self, instance):
         """The poses of an instance that moves; None: it is at rest, or is not there all the time."""
-        poses = self.poses.get(key_of(instance), [])
-        if len(poses) != len(TIMES) or not numpy.isfinite(poses).all():
+        key = key_of(instance)
+        poses = [step.poses.get(key) for step in self._steps]
+        if any(pose is None for pose in poses) or not numpy.isfinite(poses).all():
             return None
         if min(abs(numpy.linalg.det(pose[:3, :3])) for pose in poses) < 1e-30:
             return None
         return None if all(numpy.allclose(pose, poses[0], rtol=0, atol=1e-7) for pose in poses[1:]) else poses
+
+    def meshes_of(self, name, arrays):
+        """The meshes of an object when the shutter opens and closes; None: its vertices are at rest, or it has other triangles then.
+
+        arrays: geometry.MeshArrays of the frame."""
+        ends = [self._steps[k].meshes.get(name) for k in (0, -1)]
+        if any(mesh is None or not mesh.is_like(arrays) for mesh in ends):
+            return None
+        size = max(float(numpy.abs(arrays.positions).max()), 1e-30)
+        if all(numpy.allclose(mesh.positions, arrays.positions, rtol=0, atol=1e-6 * size) for mesh in ends):
+            return None
+        return ends

@@ -1,7 +1,7 @@
 """panels.py: the settings of velo in Blender's properties editor, and the list of what velo renders otherwise."""
 import bpy
 
-from . import report, versions
+from . import cryptomatte, passes, report, versions
 
 #: Panels of Blender that a renderer has to ask for and velo does not read.
 EXCLUDED = {"RENDER_PT_freestyle", "VIEWLAYER_PT_filter"}
@@ -32,6 +32,22 @@ class VELO_PT_sampling(_Panel, bpy.types.Panel):
         row.prop(options, "bounces")
 
 
+class VELO_PT_passes(_Panel, bpy.types.Panel):
+    """The passes of a view layer."""
+    bl_label = "Passes"
+    bl_context = "view_layer"
+
+    def draw(self, context):
+        layout, layer = self.layout, context.view_layer
+        layout.use_property_split = True
+        for name in passes.SWITCHES:
+            layout.prop(layer, name)
+        layout.prop(layer.velo, "denoising_data")
+        for name in cryptomatte.KINDS.values():
+            layout.prop(layer, name)
+        layout.prop(layer, "pass_cryptomatte_depth")
+
+
 class VELO_PT_notes(_Panel, bpy.types.Panel):
     """What velo cannot render, by material and node."""
     bl_label = "Rendered otherwise"
@@ -46,7 +62,7 @@ class VELO_PT_notes(_Panel, bpy.types.Panel):
             self.layout.label(text=line, icon="ERROR")
 
 
-CLASSES = (VELO_PT_sampling, VELO_PT_notes)
+CLASSES = (VELO_PT_sampling, VELO_PT_passes, VELO_PT_notes)
 
 
 def _shared():

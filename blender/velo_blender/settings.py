@@ -24,6 +24,12 @@ class VeloSettings(bpy.types.PropertyGroup):
         ("exr", "OpenEXR", "Linear colours, depth, normals, ids")])
 
 
+class VeloLayerSettings(bpy.types.PropertyGroup):
+    """The settings of a view layer."""
+    denoising_data: bpy.props.BoolProperty(name="Denoising data", default=False,
+                                           description="Passes of albedo, normal and depth, means over the samples, for denoisers")
+
+
 def bounces(scene):
     """The largest number of bounces: 0 is direct light alone, as in Cycles."""
     cycles = getattr(scene, "cycles", None)
@@ -49,9 +55,13 @@ def world_words(scene):
 
 def register():
     bpy.utils.register_class(VeloSettings)
+    bpy.utils.register_class(VeloLayerSettings)
     bpy.types.Scene.velo = bpy.props.PointerProperty(type=VeloSettings)
+    bpy.types.ViewLayer.velo = bpy.props.PointerProperty(type=VeloLayerSettings)
 
 
 def unregister():
+    del bpy.types.ViewLayer.velo
     del bpy.types.Scene.velo
+    bpy.utils.unregister_class(VeloLayerSettings)
     bpy.utils.unregister_class(VeloSettings)

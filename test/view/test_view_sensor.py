@@ -152,6 +152,62 @@ def test_hostile(page):
         other.close()
 
 
+def test_command(page, folder):
+    """The copied commands make the raw file of the page."""
+    expose(page, exposure_time=0.003, iso=160, frame=2, seed=5, temperature=30)
+    said = ask(page, "command", type="command", exposure=0, view="standard")
+    check("commands", said["type"] == "command" and said["image"] == "scene-sensor.dng" and said["spp"] == SPP, said)
+    program = os.path.join(folder, "velo")
+    os.symlink(VELO, program)
+    ran = subprocess.run(["sh", "-c", said["command"]], cwd=folder, capture_output=True, text=True,
+                         env={**os.environ, "PATH": folder + ":" + os.environ["PATH"]})
+    saved = ask(page, "saved", type="save", what="image", name="page2.dng")["file"]
+    read = lambda name: open(os.path.join(folder, name), "rb").read()
+    same = ran.returncode == 0 and read(said["image"]) == read(saved)
+    check("commands_make_the_same", same, said["command"], ran.stderr[-300:])
+    expose(page, white="auto")
+    said = ask(page, "command", type="command", exposure=0, view="standard")
+    check("no_command_of_auto_white", said["type"] == "refused" and "D65" in said["message"], said)
+    said = ask(page, "verified", type="verify")
+    check("nothing_to_verify", said["type"] == "refused", said)
+    expose(page, white="D65")
+
+
+SENSOR_FILE = """preset: generic_rggb
+full_well: 9000 e-
+bits: 12 bits
+"""
+
+
+def test_start(folder):
+    """--expose begins in this mode, also with a sensor file."""
+    with open(os.path.join(folder, "own.yaml"), "w") as file:
+        file.write(SENSOR_FILE)
+    view = View(VELO, "scene.pbrt", "--expose", "./own.yaml", "--iso", "250", "--seconds", "0.01", "--f-number", "2.5", "--filter", "gaussian", cwd=folder)
+    page = Page(view)
+    check("file_is_listed_first", page.wait_text("lists")["sensors"][0] == "own.yaml")
+    state = page.wait_text("state")
+    sensor = state["sensor"]
+    check("start", state["channel"] == CAMERA and (sensor["preset"], sensor["iso"], sensor["exposure_time"]) == ("own.yaml", 250, 0.01), sensor)
+    whole_image(page)
+    exposed, _ = expose(page, frame=1)
+    check("own_sensor", exposed["bits"] == 12 and exposed["f_number"] == 2.5 and exposed["preset"] == "own.yaml", exposed["bits"], exposed["f_number"])
+    command = ask(page, "command", type="command", exposure=0, view="standard")["command"]
+    check("own_file_in_command", "--sensor ./own.yaml" in command and command.count("--filter") == 1 and "--expose" not in command, command)
+    expose(page, preset="ideal_rggb")
+    exposed, _ = expose(page, preset="own.yaml")
+    check("chosen_again", exposed["bits"] == 12)
+    page.close()
+    view.end()
+    bad = [(["--expose", "generic_rgb"], 2, "generic_rggb"), (["--expose", "missing.yaml"], 4, "missing.yaml"),
+           (["--expose", "generic_rggb", "--color", "rgb"], 2, "spectrum"), (["--expose", "generic_rggb", "--iso", "1e30"], 2, "--iso"),
+           (["--expose", ""], 2, "--expose")]
+    for words, code, text in bad:
+        ran = subprocess.run([VELO, "view", "scene.pbrt", "--no-open", *words], cwd=folder, capture_output=True, text=True, timeout=60)
+        lines = [line for line in ran.stderr.splitlines() if line]
+        check("start_refused " + " ".join(words), ran.returncode == code and text in lines[-1] and len(lines) == 1, ran.returncode, ran.stderr)
+
+
 def test_engine(folder):
     scene = os.path.join(folder, "scene.pbrt")
     view = View(VELO, scene, cwd=folder)
@@ -175,8 +231,7 @@ def test_engine(folder):
     test_exposures(page)
     test_lens(page)
     test_hostile(page)
-    said = ask(page, "command", type="command", exposure=0, view="standard")
-    check("command_refused", said["type"] == "refused" and "sensor expose" in said["message"], said)
+    test_command(page, folder)
     other = Page(view)
     check("told_to_new_pages", other.wait_text("exposed")["bits"] == 14)
     other.close()
@@ -288,6 +343,7 @@ def main():
     test_engine(folder)
     test_without(folder)
     test_film(folder)
+    test_start(folder)
     reason = cannot_view(VELO)
     if reason:
         print(f"skip view_sensor page: {reason}")

@@ -284,8 +284,8 @@ static int run(const Command *command, const Arguments *arguments) {
     def.threads = (uint32_t)v[EXPOSE_THREADS].integer;
   status = context_open(&def, &e.context);
   if (status < 0)
-    status = sensor_open(e.context, v[EXPOSE_SENSOR].given ? v[EXPOSE_SENSOR].text : "ideal",
-                         &e.sensor);
+    status = sensor_open(e.context, "--sensor",
+                         v[EXPOSE_SENSOR].given ? v[EXPOSE_SENSOR].text : "ideal", &e.sensor);
   if (status < 0)
     status = image_load(e.context, e.path, &e.image);
   if (status < 0)

@@ -7,20 +7,19 @@
 #include "cli/report.h"
 #include "velo/setting.h"
 
-/* Whether the name is meant as a file's. */
-static bool is_path(const char *name) {
+bool sensor_is_file(const char *name) {
   const char *dot = strrchr(name, '.');
   return strchr(name, '/') || (dot && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0));
 }
 
-int sensor_open(vlContext *context, const char *name, vlSensor **sensor) {
+int sensor_open(vlContext *context, const char *option, const char *name, vlSensor **sensor) {
   vlSensorDef def = vl_default_sensor_def();
   vlError error = {0};
-  bool file = is_path(name);
+  bool file = sensor_is_file(name);
   vlResult result =
       file ? vl_sensor_read(context, name, &def, &error) : vl_sensor_preset(name, &def, &error);
   if (result == VL_ERROR_ARGUMENT)
-    return report_usage("--sensor: %s (a sensor file has the suffix .yaml)", error.message);
+    return report_usage("%s: %s (a sensor file has the suffix .yaml)", option, error.message);
   if (result == VL_OK)
     result = vl_sensor_create(context, &def, sensor, &error);
   return result == VL_OK ? -1 : report_error(&error, result, file ? name : NULL);

@@ -11,9 +11,11 @@ typedef struct ExposureOption {
   const char *keyword;
 } ExposureOption;
 
-/* Makes the sensor of a name: a preset, or else a file. Returns -1, or the exit code after
- * reporting the error. */
-int sensor_open(vlContext *context, const char *name, vlSensor **sensor);
+/* Whether the name is meant as a sensor file's. */
+bool sensor_is_file(const char *name);
+/* Makes the sensor of a name: a preset, or else a file. option: which gives the name
+ * ("--sensor"). Returns -1, or the exit code after reporting the error. */
+int sensor_open(vlContext *context, const char *option, const char *name, vlSensor **sensor);
 /* Sets what the options give. Returns -1, or the exit code. */
 int exposure_options(const Arguments *arguments, const ExposureOption *options, size_t count,
                      vlExposureDef *exposure);

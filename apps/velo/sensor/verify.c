@@ -135,7 +135,7 @@ static int run(const Command *command, const Arguments *arguments) {
     def.threads = (uint32_t)values[VERIFY_THREADS].integer;
   status = context_open(&def, &v.context);
   if (status < 0)
-    status = sensor_open(v.context, arguments->operands[0], &v.sensor);
+    status = sensor_open(v.context, "sensor verify", arguments->operands[0], &v.sensor);
   if (status < 0)
     status = verify(&v, &values[VERIFY_PLOT]);
   verify_folder_close(&v);

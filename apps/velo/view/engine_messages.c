@@ -42,7 +42,7 @@ void engine_post_state(Engine *e, uint32_t client) {
 
 void engine_greet(void *user, uint32_t client) {
   Engine *e = user;
-  char *lists = state_lists(has_camera_mode(e));
+  char *lists = state_lists(has_camera_mode(e) ? &e->sensors : NULL);
   if (lists)
     server_post(e->server, client, lists);
   free(lists);
@@ -229,7 +229,8 @@ static void edit_sensor(Engine *e, uint32_t client, const ViewMessage *m) {
   vlError error = {0};
   if (!has_camera_mode(e)) {
     post_refusal(e, client, m, "this page has no sensor");
-  } else if (sensor_edit(&e->wanted.sensor, m, &e->wanted.sensor, &error) != VL_OK) {
+  } else if (sensor_edit(&e->wanted.sensor, &e->sensors, m, &e->wanted.sensor, &error) !=
+             VL_OK) {
     engine_post_state(e, client); /* its inputs show the sensor as it is */
     post_refusal(e, client, m, error.message);
   } else {

@@ -149,6 +149,7 @@ struct Engine {
   bool coarser_denoised;
   DenoisedPreview preview;
   WarpSource warp;
+  ViewSensors sensors; /* constant */
   Shot shot;
   uint32_t coarse;    /* scale of the next image that is not the film's; 0: none is next */
   uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the

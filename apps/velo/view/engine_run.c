@@ -417,9 +417,11 @@ int engine_create(const EngineDef *def, Engine **result) {
     status = check_options(engine);
   if (status < 0)
     status = engine_take_model(engine);
+  engine->wanted.sensor = sensor_default();
+  if (status < 0)
+    status = engine_sensor_begin(engine);
   engine->wanted.paused = def->lecture; /* until a page chooses a scene */
   engine->wanted.denoise = !def->lecture && !def->stepwise;
-  engine->wanted.sensor = sensor_default();
   *result = engine;
   return status;
 }

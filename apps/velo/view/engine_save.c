@@ -188,14 +188,14 @@ static void put_word(FILE *out, const char *format, ...) {
  * matter. */
 static bool option_is_replaced(int id) {
   static const int replaced[] = {
-      VIEW_PORT,       VIEW_LISTEN,           VIEW_NO_OPEN,          RENDER_SPP,
-      RENDER_FILM,     RENDER_RESOLUTION,     RENDER_CROP,           RENDER_CAMERA,
-      RENDER_FRAME,    RENDER_SIZE,           RENDER_SEQUENCE,       RENDER_VIEW,
-      RENDER_EXPOSURE, RENDER_FOCUS_PIXEL,    RENDER_LENS_RADIUS,    RENDER_F_NUMBER,
-      RENDER_THREADS,  RENDER_FOCUS_DISTANCE, RENDER_QUIET,          RENDER_MAX_MEMORY,
-      RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,           RENDER_TRAJECTORY,
-      RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS, RENDER_AT,
-      RENDER_SHUTTER};
+      VIEW_PORT,         VIEW_LISTEN,     VIEW_NO_OPEN,          VIEW_EXPOSE,
+      RENDER_SPP,        RENDER_FILM,     RENDER_RESOLUTION,     RENDER_CROP,
+      RENDER_CAMERA,     RENDER_FRAME,    RENDER_SIZE,           RENDER_SEQUENCE,
+      RENDER_VIEW,       RENDER_EXPOSURE, RENDER_FOCUS_PIXEL,    RENDER_LENS_RADIUS,
+      RENDER_F_NUMBER,   RENDER_THREADS,  RENDER_FOCUS_DISTANCE, RENDER_QUIET,
+      RENDER_MAX_MEMORY, RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,
+      RENDER_TRAJECTORY, RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS,
+      RENDER_AT,         RENDER_SHUTTER};
   return option_is_in(id, replaced, sizeof replaced / sizeof *replaced);
 }
 
@@ -207,7 +207,8 @@ static void put_options(FILE *out, const Engine *e) {
   for (const Option *o = view_options; o->name; o++) {
     const OptionValue *value = &arguments->values[o->id];
     const char *text = value->text;
-    const bool replaced = added_replaces(o->id) || option_is_replaced(o->id);
+    const bool of_sensor = o->id == RENDER_FILTER && e->now.channel == CHANNEL_CAMERA;
+    const bool replaced = added_replaces(o->id) || option_is_replaced(o->id) || of_sensor;
     if (!added_has(&added, o->id, &text) && (!value->given || replaced))
       continue;
     if (o->kind == OPTION_FOLDERS) {
@@ -263,11 +264,11 @@ static void put_time(FILE *out, const vlLoadDef *load) {
   put_word(out, "%s:%s", open, close);
 }
 
-static void put_command(FILE *out, const Engine *e, const Copied *copied, const char *camera) {
+/* The part of the command that makes the samples. */
+static void put_render(FILE *out, const Engine *e, const char *camera) {
   const vlRenderDef *render = &e->model.job.defs->render;
   const vlCamera *made = &e->now.camera.made;
   const uint32_t *c = e->now.crop;
-  char number[40];
   put_word(out, "velo");
   put_word(out, "render");
   put_word(out, "%s", e->def.path);
@@ -290,11 +291,16 @@ static void put_command(FILE *out, const Engine *e, const Copied *copied, const 
     put_word(out, "--light-paths");
     put_word(out, "%u", e->shown.light_paths);
   }
-  format_number(number, sizeof number, copied->exposure);
   put_word(out, "--spp");
-  put_word(out, "%u", copied->spp);
+  put_word(out, "%u", vl_film_spp(e->film));
   put_word(out, "--sequence");
   put_word(out, "%u", render->sequence ? render->sequence : 65536);
+}
+
+static void put_command(FILE *out, const Engine *e, const Copied *copied, const char *camera) {
+  char number[40];
+  put_render(out, e, camera);
+  format_number(number, sizeof number, copied->exposure);
   put_word(out, "--view");
   put_word(out, "%s", choice_name(view_choices, (int)copied->view));
   put_word(out, "--exposure");
@@ -345,6 +351,14 @@ void copied_free(Copied *copied) {
   free(copied);
 }
 
+/* Words, each with its zero, as a shell reads them. */
+static void put_text(FILE *out, const char *word, size_t size) {
+  const char *end = word + size;
+  fputs(word, out);
+  for (word += strlen(word) + 1; word < end; word += strlen(word) + 1)
+    text_shell_word(out, word);
+}
+
 /* The command as a shell reads it; null: memory is exhausted. The caller frees it. */
 static char *command_text(const Copied *copied) {
   char *text = NULL;
@@ -352,10 +366,7 @@ static char *command_text(const Copied *copied) {
   FILE *out = open_memstream(&text, &size);
   if (!out)
     return NULL;
-  const char *word = copied->words, *end = copied->words + copied->size;
-  fputs(word, out);
-  for (word += strlen(word) + 1; word < end; word += strlen(word) + 1)
-    text_shell_word(out, word);
+  put_text(out, copied->words, copied->size);
   return fclose(out) == 0 ? text : NULL;
 }
 
@@ -368,14 +379,117 @@ static void keep_command(Engine *e, Copied *copied) {
   copied_free(before);
 }
 
+/* ---- the commands of an exposure --------------------------------------------------------- */
+
+static void put_number(FILE *out, const char *option, double value) {
+  char number[40];
+  format_number(number, sizeof number, value);
+  put_word(out, "%s", option);
+  put_word(out, "%s", number);
+}
+
+/* The film of the mode "camera". */
+static void put_light(FILE *out, const Engine *e, const char *camera, const char *image) {
+  put_render(out, e, camera);
+  if (e->model.job.defs->film.buckets != e->shot.buckets) {
+    put_word(out, "--spectrum");
+    put_word(out, "%u", e->shot.buckets);
+  }
+  put_word(out, "--filter");
+  put_word(out, "box");
+  put_word(out, "--channels");
+  put_word(out, "error");
+  put_word(out, "--no-receipt");
+  put_word(out, "-o");
+  put_word(out, "%s", image);
+}
+
+static void put_sensor(FILE *out, const Engine *e, const char *image, const char *raw) {
+  const vlExposureDef *exposure = &e->shot.exposure;
+  const bool own = strcmp(e->shot.preset, e->sensors.own) == 0;
+  put_word(out, "velo");
+  put_word(out, "sensor");
+  put_word(out, "expose");
+  put_word(out, "%s", image);
+  put_word(out, "--sensor");
+  put_word(out, "%s", own ? e->def.arguments->values[VIEW_EXPOSE].text : e->shot.preset);
+  put_number(out, "--exposure-time", exposure->time);
+  put_number(out, "--f-number", exposure->f_number);
+  put_number(out, "--iso", exposure->iso);
+  put_number(out, "--gain", exposure->gain);
+  put_number(out, "--temperature", exposure->temperature);
+  put_number(out, "--seed", exposure->seed);
+  put_number(out, "--frame", exposure->frame);
+  if (e->now.sensor.white == VIEW_WHITE_A) {
+    put_word(out, "--white");
+    put_word(out, "stdillum-A");
+  }
+  put_word(out, "-o");
+  put_word(out, "%s", raw);
+}
+
+/* Both commands as a shell reads them; null: memory is exhausted. The caller frees it. */
+static char *exposure_text(const Engine *e, const char *camera, const char *image,
+                           const char *raw) {
+  char *words[2] = {NULL}, *text = NULL;
+  size_t sizes[2] = {0}, size = 0;
+  bool made = true;
+  for (int i = 0; i < 2 && made; i++) {
+    FILE *out = open_memstream(&words[i], &sizes[i]);
+    if (out && i == 0)
+      put_light(out, e, camera, image);
+    else if (out)
+      put_sensor(out, e, image, raw);
+    made = out && fclose(out) == 0;
+  }
+  FILE *out = made ? open_memstream(&text, &size) : NULL;
+  if (out) {
+    put_text(out, words[0], sizes[0]);
+    fputs(" && ", out);
+    put_text(out, words[1], sizes[1]);
+    made = fclose(out) == 0;
+  }
+  free(words[0]);
+  free(words[1]);
+  return made ? text : NULL;
+}
+
+/* Posts the commands that render the light of the present exposure and expose the sensor. */
+static void exposure_command(Engine *e, const Task *task) {
+  char stem[NAME_SIZE - 60], whole[NAME_SIZE], camera[NAME_SIZE], image[NAME_SIZE],
+      raw[NAME_SIZE];
+  JsonText text;
+  if (!e->shot.raw || e->shot.scale != 1)
+    return engine_refuse(e, task, "the image has no samples yet");
+  if (e->now.sensor.white == VIEW_WHITE_AUTO)
+    return engine_refuse(e, task, "the white auto is this image's; a command has D65 or A");
+  scene_stem(e, whole);
+  snprintf(stem, sizeof stem, "%.190s-sensor", whole);
+  if (!free_pair(stem, camera, image))
+    return engine_refuse(e, task, "there are too many files of this name");
+  snprintf(raw, sizeof raw, "%.*s.dng", (int)strlen(image) - 4, image);
+  strcpy(image + strlen(image) - 4, ".exr");
+  if (!write_camera(e, task, camera))
+    return;
+  char *command = exposure_text(e, camera, image, raw);
+  keep_command(e, NULL); /* what is verified is one command */
+  if (command && json_text_begin(&text, "command")) {
+    json_integer(&text.json, "id", task->message.id);
+    json_text(&text.json, "command", command);
+    json_text(&text.json, "file", camera);
+    json_text(&text.json, "image", raw);
+    json_integer(&text.json, "spp", e->shot.spp);
+    json_text_post(&text, e->server, task->client);
+  }
+  free(command);
+}
+
 void engine_command(Engine *e, const Task *task) {
   char camera[NAME_SIZE];
   if (!e->film || !vl_film_spp(e->film))
     return engine_refuse(e, task, "the image has no samples yet");
   if (e->now.channel == CHANNEL_CAMERA)
-    return engine_refuse(e, task,
-                         "no one command makes an exposure: save it as .dng, or see "
-                         "velo help sensor expose");
+    return exposure_command(e, task);
   Copied *copied = make_command(e, task, camera);
   char *command = copied ? command_text(copied) : NULL;
   JsonText text;

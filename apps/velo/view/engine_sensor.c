@@ -8,8 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/report.h"
+#include "sensor/sensor.h"
 #include "velo/filter_kinds.h"
+#include "velo/setting.h"
 #include "view/engine_sensor.h"
+#include "view/view.h"
 
 /* Buckets of the film: 48 bytes per pixel each. Samples have 4 wavelengths: with two samples
  * per bucket hardly one is without. */
@@ -33,6 +37,58 @@ void engine_sensor_forget(Engine *e) {
   *s = (Shot){.spp = 0};
 }
 
+/* ---- the command line -------------------------------------------------------------------- */
+
+/* Sets a number of the exposure that an option gives. */
+static int take_number(const OptionValue *value, const char *option, const char *row_name,
+                       vlExposureDef *exposure) {
+  char why[VL_GIVEN_MESSAGE];
+  const vlParameter *row = vl_setting(VL_SETTING_EXPOSURE, row_name);
+  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = value->number};
+  double number;
+  if (!value->given)
+    return -1;
+  if (!vl_given_check(row, option, &given, &number, why))
+    return report_usage("--expose: %s", why);
+  vl_given_put(row, number, exposure);
+  return -1;
+}
+
+/* The sensor of a file: its name is the file's, without the folder. */
+static void take_file(ViewSensors *sensors, const char *path, const vlSensor *sensor) {
+  const char *slash = strrchr(path, '/');
+  const char *name = slash ? slash + 1 : path;
+  sensors->file = *vl_sensor_def(sensor);
+  snprintf(sensors->own, sizeof sensors->own, "%s",
+           strlen(name) < sizeof sensors->own ? name : "the sensor file");
+}
+
+int engine_sensor_begin(Engine *e) {
+  const OptionValue *v = e->def.arguments->values;
+  const char *name = v[VIEW_EXPOSE].text;
+  ViewSensor *wanted = &e->wanted.sensor;
+  vlSensor *sensor = NULL;
+  if (!v[VIEW_EXPOSE].given)
+    return -1;
+  if (e->model.job.defs->build.color == VL_COLOR_RGB)
+    return report_usage("--expose: --color rgb has no spectrum, which a sensor needs");
+  int status = sensor_open(e->def.context, "--expose", name, &sensor);
+  if (status < 0)
+    status = take_number(&v[RENDER_ISO], "--iso", "iso", &wanted->exposure);
+  if (status < 0)
+    status = take_number(&v[RENDER_SECONDS], "--seconds", "exposure_time", &wanted->exposure);
+  if (status < 0 && sensor_is_file(name))
+    take_file(&e->sensors, name, sensor);
+  vl_sensor_destroy(sensor);
+  if (status >= 0)
+    return status;
+  snprintf(wanted->preset, sizeof wanted->preset, "%s",
+           e->sensors.own[0] ? e->sensors.own : name);
+  wanted->metered = !v[RENDER_SECONDS].given;
+  e->wanted.channel = CHANNEL_CAMERA;
+  return -1;
+}
+
 /* ---- what the sensor sees ---------------------------------------------------------------- */
 
 /* The sensor of the preset that is chosen. */
@@ -46,7 +102,7 @@ static vlResult take_sensor(Engine *e, vlError *error) {
   s->sensor = NULL;
   s->is_collected = false;
   snprintf(s->preset, sizeof s->preset, "%s", preset);
-  vlResult result = vl_sensor_preset(preset, &def, error);
+  vlResult result = sensor_find(&e->sensors, preset, &def, error);
   return result == VL_OK ? vl_sensor_create(e->def.context, &def, &s->sensor, error) : result;
 }
 

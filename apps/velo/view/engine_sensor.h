@@ -8,6 +8,9 @@
 /* Gives a film's def what the sensor needs: a spectrum, and the filter of a pixel's own area.
  */
 void engine_sensor_film(vlFilmDef *def);
+/* Begins with the mode "camera" if --expose is given. Returns -1, or the exit code after
+ * reporting the error. */
+int engine_sensor_begin(Engine *engine);
 /* Exposes the sensor to the film, or to a coarse one, and sends the developed image and the
  * numbers about it; on the render thread. Sends an error where that cannot be. */
 void engine_publish_camera(Engine *engine, const vlFilm *film, uint32_t scale);

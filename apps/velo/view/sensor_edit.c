@@ -25,11 +25,20 @@ static vlResult refuse(vlError *error, const char *text) {
   return VL_ERROR_ARGUMENT;
 }
 
-static vlResult set_preset(const MessageField *field, ViewSensor *sensor, vlError *error) {
+vlResult sensor_find(const ViewSensors *sensors, const char *name, vlSensorDef *def,
+                     vlError *error) {
+  if (!sensors->own[0] || strcmp(name, sensors->own) != 0)
+    return vl_sensor_preset(name, def, error);
+  *def = sensors->file;
+  return VL_OK;
+}
+
+static vlResult set_preset(const MessageField *field, const ViewSensors *sensors,
+                           ViewSensor *sensor, vlError *error) {
   vlSensorDef def;
   if (field->null || field->count)
     return refuse(error, "preset must be the name of a sensor");
-  const vlResult result = vl_sensor_preset(field->text, &def, error);
+  const vlResult result = sensor_find(sensors, field->text, &def, error);
   if (result == VL_OK)
     snprintf(sensor->preset, sizeof sensor->preset, "%s", field->text);
   return result;
@@ -72,11 +81,12 @@ static vlResult set_number(const MessageField *field, ViewSensor *sensor, vlErro
   return VL_OK;
 }
 
-static vlResult set_field(const MessageField *field, ViewSensor *sensor, vlError *error) {
+static vlResult set_field(const MessageField *field, const ViewSensors *sensors,
+                          ViewSensor *sensor, vlError *error) {
   char why[VL_GIVEN_MESSAGE];
   const char *names[ROWS + 2] = {"preset", "white"};
   if (strcmp(field->name, "preset") == 0)
-    return set_preset(field, sensor, error);
+    return set_preset(field, sensors, sensor, error);
   if (strcmp(field->name, "white") == 0)
     return set_white(field, sensor, error);
   for (int i = 0; i < ROWS; i++)
@@ -87,11 +97,11 @@ static vlResult set_field(const MessageField *field, ViewSensor *sensor, vlError
   return refuse(error, why);
 }
 
-vlResult sensor_edit(const ViewSensor *now, const ViewMessage *message, ViewSensor *result,
-                     vlError *error) {
+vlResult sensor_edit(const ViewSensor *now, const ViewSensors *sensors,
+                     const ViewMessage *message, ViewSensor *result, vlError *error) {
   ViewSensor next = *now;
   for (uint32_t i = 0; i < message->field_count; i++) {
-    const vlResult set = set_field(&message->fields[i], &next, error);
+    const vlResult set = set_field(&message->fields[i], sensors, &next, error);
     if (set != VL_OK)
       return set;
   }
@@ -112,9 +122,11 @@ void sensor_put(Json *json, const ViewSensor *sensor) {
   json_integer(json, "frame", exposure->frame);
 }
 
-void sensor_put_lists(Json *json) {
+void sensor_put_lists(Json *json, const ViewSensors *sensors) {
   const char *name;
   json_begin(json, "sensors", '[');
+  if (sensors->own[0])
+    json_text(json, NULL, sensors->own);
   for (uint32_t i = 0; (name = vl_sensor_preset_name(i)); i++)
     json_text(json, NULL, name);
   json_end(json, ']');

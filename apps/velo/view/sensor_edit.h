@@ -14,8 +14,18 @@ typedef enum ViewWhite {
   VIEW_WHITE_AUTO /* the mean of the image */
 } ViewWhite;
 
+/* The sensors that can be chosen: the presets, and that of a sensor file. */
+typedef struct ViewSensors {
+  char own[40];     /* name of the file's; empty: there is none */
+  vlSensorDef file; /* its def */
+} ViewSensors;
+
+/* The def of a sensor. ARGUMENT: there is none of that name; the error names the nearest. */
+vlResult sensor_find(const ViewSensors *sensors, const char *name, vlSensorDef *def,
+                     vlError *error);
+
 typedef struct ViewSensor {
-  char preset[48]; /* a name of vl_sensor_preset_name */
+  char preset[48]; /* a name of vl_sensor_preset_name, or that of the file's */
   ViewWhite white;
   bool metered;           /* the exposure time is the one that a meter chooses */
   vlExposureDef exposure; /* f_number: of a camera whose lens has no opening */
@@ -27,11 +37,11 @@ ViewSensor sensor_default(void);
  * temperature, seed, frame, which are rows of vlExposureDef. exposure_time null: the meter's.
  * ARGUMENT: a field or value is
  * refused, and the error says which and why in one line; *result is unchanged then. */
-vlResult sensor_edit(const ViewSensor *now, const ViewMessage *message, ViewSensor *result,
-                     vlError *error);
+vlResult sensor_edit(const ViewSensor *now, const ViewSensors *sensors,
+                     const ViewMessage *message, ViewSensor *result, vlError *error);
 /* Writes the values as members of the open JSON object. */
 void sensor_put(Json *json, const ViewSensor *sensor);
 /* Writes the names that can be chosen as lists of the open JSON object. */
-void sensor_put_lists(Json *json);
+void sensor_put_lists(Json *json, const ViewSensors *sensors);
 
 #endif

@@ -40,7 +40,7 @@ static void greet(void *user, uint32_t client) {
                            .view = (int)s->view,
                            .info = &s->info,
                            .camera = &s->camera};
-  post_and_free(s->server, client, state_lists(false));
+  post_and_free(s->server, client, state_lists(NULL));
   post_and_free(s->server, client, state_text(&state));
   s->fresh = true;
 }

@@ -68,7 +68,7 @@ char *state_text(const ViewState *s) {
   return json_text_end(&text);
 }
 
-char *state_lists(bool camera) {
+char *state_lists(const ViewSensors *sensors) {
   JsonText text;
   if (!json_text_begin(&text, "lists"))
     return NULL;
@@ -86,7 +86,7 @@ char *state_lists(bool camera) {
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     json_text(json, NULL, state_shows_channel(i) ? vl_channel_name(i) : "");
   json_end(json, ']');
-  if (camera)
-    sensor_put_lists(json);
+  if (sensors)
+    sensor_put_lists(json, sensors);
   return json_text_end(&text);
 }

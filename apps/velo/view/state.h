@@ -43,7 +43,7 @@ bool state_shows_channel(uint32_t index);
 /* Both texts are for the caller to free; null: no memory. */
 char *state_text(const ViewState *state);
 /* Dialects, projections, sensors, channels by their bits: "" for those that pages do not show.
- * camera: pages have the mode "camera". */
-char *state_lists(bool camera);
+ * sensors: those of the mode "camera"; null: pages have no such mode. */
+char *state_lists(const ViewSensors *sensors);
 
 #endif

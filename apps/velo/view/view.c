@@ -172,6 +172,9 @@ const Option view_options[] = {
      "exposure of the first view: a number, or auto for models"},
     {RENDER_ISO, 0, "iso", OPTION_NUMBER, "S", "sensitivity for a physical exposure"},
     {RENDER_SECONDS, 0, "seconds", OPTION_NUMBER, "T", "exposure time for --iso, in seconds"},
+    {VIEW_EXPOSE, 0, "expose", OPTION_TEXT, "NAME|FILE",
+     "begin as the camera sees it, with this sensor: a name of velo sensor expose, or a sensor "
+     "file (.yaml). --iso and --seconds are those of its exposure"},
     {RENDER_FOCUS_PIXEL, 0, "focus-pixel", OPTION_TEXT, "X,Y",
      "focus on the surface that is seen at this point"},
     {RENDER_FOCUS_DISTANCE, 0, "focus-distance", OPTION_NUMBER, "D",

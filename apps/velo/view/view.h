@@ -12,6 +12,7 @@ enum {
   VIEW_NO_OPEN,
   VIEW_LECTURE,
   VIEW_LANGUAGE,
+  VIEW_EXPOSE,
   VIEW_OPTIONS
 };
 _Static_assert((int)VIEW_OPTIONS <= (int)MAX_OPTIONS,

@@ -12,6 +12,7 @@
 #include "render/film_claim.h"
 #include "render/job.h"
 #include "render/output_names.h"
+#include "sensor/sensor.h"
 #include "view/browser.h"
 #include "view/engine.h"
 #include "view/lecture.h"
@@ -75,6 +76,8 @@ static void confine(const Arguments *arguments) {
   for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
     if (v[inputs[i]].given)
       confine_read_folder(&c, v[inputs[i]].text);
+  if (v[VIEW_EXPOSE].given && sensor_is_file(v[VIEW_EXPOSE].text))
+    confine_read_folder(&c, v[VIEW_EXPOSE].text);
   confine_write(&c, "saved.exr");
   if (v[RENDER_FILM].given)
     confine_write(&c, v[RENDER_FILM].text);

@@ -11,12 +11,11 @@ LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])  # Rec. 709, as Blender turns 
 
 
 class Unsupported(Exception):
-    """A node that cannot be evaluated here; its text says which and why."""
+    """A node that cannot be evaluated here; its text says which and why. is_missing: it has no image."""
 
-    def __init__(self, node, text):
+    def __init__(self, node, text, is_missing=False):
         super().__init__(text)
-        self.node = node
-        self.text = text
+        self.node, self.text, self.is_missing = node, text, is_missing
 
 
 def as_value(array):

@@ -9,7 +9,7 @@ import math
 import numpy
 import velo
 
-from . import evaluate, links, versions, world
+from . import evaluate, links, square, versions
 
 SHARP_SUN = 1e-3  # radians from the middle to the rim; suns of a smaller disk are points
 SUN_PIXELS = 12  # of a sun's image from the middle to the rim, where MAX_SUN_SIDE allows it
@@ -100,10 +100,13 @@ def _sun(scene, item, light, pose, words, power, camera_sees, notes):
         if half >= SHARP_SUN:
             notes.add(item.name, "Angle", "its disk, which the camera would see, is a point")
         return
-    values = sun_disk(half)
-    image = velo.Image(numpy.ascontiguousarray((values * power)[..., None] * numpy.array(words["color"]), dtype=numpy.float32),
-                       encoding="linear")
-    scene.add_light("infinite", image=image, scale=1.0, pose=frame)
+    add_disk(scene, axis, half, power * numpy.array(words["color"]))
+
+
+def add_disk(scene, axis, half, total):
+    """A sun with a disk: half its angle, radians; total: its radiance summed over directions, a colour."""
+    image = velo.Image(numpy.ascontiguousarray(sun_disk(half)[..., None] * total, dtype=numpy.float32), encoding="linear")
+    scene.add_light("infinite", image=image, scale=1.0, pose=_frame_along(axis, numpy.zeros(3)))
 
 
 def sun_disk(half):
@@ -116,7 +119,7 @@ def sun_disk(half):
     fine = 4
     local = (numpy.arange(2 * reach * fine) + 0.5) / fine - reach
     v, u = numpy.meshgrid(2 * local / side, 2 * local / side, indexing="ij")
-    cosines = world.square_cosines(u, v)
+    cosines = square.cosines(u, v)
     share = (cosines >= math.cos(half)).reshape(2 * reach, fine, 2 * reach, fine).mean(axis=(1, 3))
     middle = slice(side // 2 - reach, side // 2 + reach)
     values[middle, middle] = share
@@ -141,7 +144,7 @@ def _spot(scene, item, light, pose, words, power, camera_sees, notes):
         scene.add_light("projection", pose=frame, fov=2 * half, image=_intensity(cosines, half, light.spot_blend, color), scale=1.0)
         return
     side = 2 * SPOT_SIDE
-    cosines = world.square_directions(side)[:, 2].reshape(side, side)
+    cosines = square.directions(side)[:, 2].reshape(side, side)
     # A goniometric light's axis is y.
     turned = frame @ numpy.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
     scene.add_light("goniometric", pose=turned, image=_intensity(cosines, half, light.spot_blend, color), scale=1.0)

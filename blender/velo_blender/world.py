@@ -4,33 +4,10 @@ import math
 import numpy
 import velo
 
-from . import evaluate, images, links
+from . import evaluate, images, lights, links, sky, square
 
 MAX_SIDE = 2048  # of the octahedral image, pixels
 PLAIN_SIDE = 512  # where no image asks for more
-
-
-def square_directions(side):
-    """The unit directions of the pixels of an equal-area octahedral square (Clarberg 2008; pbrt book 3.8.3), side * side x 3, rows
-    from the top."""
-    place = 2 * (numpy.arange(side) + 0.5) / side - 1
-    v, u = numpy.meshgrid(place, place, indexing="ij")
-    up, vp = numpy.abs(u), numpy.abs(v)
-    distance = 1 - (up + vp)
-    r = 1 - numpy.abs(distance)
-    safe = numpy.where(r == 0, 1, r)
-    phi = numpy.where(r == 0, 1, (vp - up) / safe + 1) * math.pi / 4
-    z = numpy.copysign(1 - r * r, distance)
-    around = r * numpy.sqrt(numpy.maximum(0, 2 - r * r))
-    x, y = numpy.copysign(numpy.cos(phi), u) * around, numpy.copysign(numpy.sin(phi), v) * around
-    return numpy.stack((x.ravel(), y.ravel(), z.ravel()), axis=1)
-
-
-def square_cosines(u, v):
-    """z of the directions at places of an octahedral square, -1 to 1 along each side."""
-    distance = 1 - (numpy.abs(u) + numpy.abs(v))
-    r = 1 - numpy.abs(distance)
-    return numpy.copysign(1 - r * r, distance)
 
 
 def _image_size(tree, seen=()):
@@ -54,7 +31,7 @@ class _Look:
     def __call__(self, node):
         why = images.problem(node.image)
         if why is not None:
-            raise evaluate.Unsupported(node, why)
+            raise evaluate.Unsupported(node, why, is_missing=True)
         name = node.image.name_full
         if node.image.source == "TILED":
             raise evaluate.Unsupported(node, "a tiled image in a world")
@@ -97,7 +74,7 @@ def add(scene, world, notes):
     surface, look = output.inputs["Surface"], _Look(notes)
     try:
         try:
-            values = _radiance(surface, (), evaluate.Evaluator({}, look), notes, world.name)
+            values = _radiance(surface, (), _evaluator({}, look, notes, world), notes, world.name)
         except evaluate.Unsupported:
             values = None
         if values is not None and len(values) == 1:
@@ -107,7 +84,11 @@ def add(scene, world, notes):
     except links.Cyclic as error:
         notes.add(world.name, "", "%s; it is black" % error)
     except evaluate.Unsupported as error:
-        notes.add(world.name, error.node.name, "%s; the world is black" % error.text)
+        _add_sky(scene, world, error, notes)
+
+
+def _evaluator(fields, look, notes, world):
+    return evaluate.Evaluator(fields, look, lambda node, text: notes.add(world.name, node.name, text))
 
 
 def _add_color(scene, color):
@@ -119,11 +100,38 @@ def _add_color(scene, color):
 def _add_image(scene, world, surface, look, notes):
     height = _image_size(world.node_tree)
     side = PLAIN_SIDE if height == 0 else min(MAX_SIDE, max(64, int(1.5 * height)))
-    directions = square_directions(side)
+    directions = square.directions(side)
     fields = {"direction": directions, "generated": directions, "object": directions, "normal": directions,
               "world position": directions, "world normal": directions, "world incoming": -directions}
-    values = _radiance(surface, (), evaluate.Evaluator(fields, look), notes, world.name)
-    array = numpy.broadcast_to(values, (side * side, 3)).reshape(side, side, 3).astype(numpy.float32)
+    values = _radiance(surface, (), _evaluator(fields, look, notes, world), notes, world.name)
+    _add_square(scene, numpy.broadcast_to(values, (side * side, 3)).reshape(side, side, 3))
+
+
+def _add_square(scene, values):
+    array = values.astype(numpy.float32)
     high = float(array.max())
     if high > 0 and math.isfinite(high):
         scene.add_light("infinite", image=velo.Image(numpy.ascontiguousarray(array), encoding="linear"), scale=1.0)
+
+
+def _add_sky(scene, world, error, notes):
+    """A world that is rendered by Cycles."""
+    if error.is_missing:
+        notes.add(world.name, error.node.name, "%s; the world is black" % error.text)
+        return
+    try:
+        made = sky.of(world)
+    except sky.Failed as reason:
+        notes.add(world.name, error.node.name, "%s, and %s; the world is black" % (error.text, reason))
+        return
+    side = sky.WIDTH // 2
+    directions = square.directions(side)
+    texels = images.Texels(made.texels, "REPEAT")
+    u = 0.5 - numpy.arctan2(directions[:, 1], directions[:, 0]) / (2 * math.pi)
+    v = 0.5 + numpy.arctan2(directions[:, 2], numpy.hypot(directions[:, 0], directions[:, 1])) / math.pi
+    # Not above the first or below the last row, which would be those of the other pole.
+    edge = 0.5 / len(made.texels)
+    _add_square(scene, numpy.maximum(texels.at(u, numpy.clip(v, edge, 1 - edge)), 0).reshape(side, side, 3))
+    for axis, half, total in made.suns:
+        if total.max() > 0:
+            lights.add_disk(scene, axis, half, total)

@@ -1,0 +1,107 @@
+"""sky.py: a world that velo cannot evaluate, such as one with a sky texture, rendered once by Cycles in a Blender of its own to an image of
+all directions; the disk of a sky's sun is rendered apart, with more pixels. Results are kept by what the world's nodes say."""
+import hashlib
+import math
+import os
+import subprocess
+import tempfile
+
+import bpy
+import numpy
+import velo
+
+WIDTH = 2048  # of the image of all directions, pixels
+SECONDS = 300  # after which Cycles is given up
+KEPT = 8
+
+_known = {}
+
+
+class Sky:
+    """texels: WIDTH / 2 x WIDTH x 3, equirectangular, rows from the top. suns: list of (direction, half the disk's angle, its radiance summed
+    over directions, 3)."""
+
+    def __init__(self, texels, suns):
+        self.texels, self.suns = texels, suns
+
+
+class Failed(Exception):
+    """Cycles gave no image; its text is one line."""
+
+
+def of(world):
+    """The Sky of a world of Blender."""
+    world = world.original
+    key = signature(world.node_tree)
+    if key not in _known:
+        while len(_known) >= KEPT:
+            del _known[next(iter(_known))]
+        _known[key] = _render(world)
+    return _known[key]
+
+
+def signature(tree):
+    """A hash of what the nodes of a tree say."""
+    text = []
+    _describe(tree, text, ())
+    return hashlib.sha256("\n".join(text).encode()).hexdigest()
+
+
+def _describe(tree, text, seen):
+    for node in tree.nodes:
+        text.append("%s %s %s" % (node.name, node.type, node.mute))
+        for known in node.bl_rna.properties:
+            if known.type in ("FLOAT", "INT", "BOOLEAN", "ENUM", "STRING") and not known.identifier.startswith(("location", "select", "width")):
+                value = getattr(node, known.identifier)
+                text.append("%s=%r" % (known.identifier, value if isinstance(value, (int, float, str)) else list(value)))
+        for socket in node.inputs:
+            value = getattr(socket, "default_value", None)
+            text.append("%s=%r" % (socket.identifier, value if isinstance(value, (int, float, str, type(None))) else list(value)))
+        image = getattr(node, "image", None)
+        if image is not None:
+            text.append("image %s %s %s" % (image.name_full, image.filepath, image.as_pointer()))
+        ramp = getattr(node, "color_ramp", None)
+        if ramp is not None:
+            text += ["%r %r %s" % (point.position, list(point.color), ramp.interpolation) for point in ramp.elements]
+        inner = getattr(node, "node_tree", None)
+        if node.type == "GROUP" and inner is not None and inner.name_full not in seen:
+            _describe(inner, text, seen + (inner.name_full,))
+    text += ["%s.%s>%s.%s" % (link.from_node.name, link.from_socket.identifier, link.to_node.name, link.to_socket.identifier)
+             for link in tree.links]
+
+
+def _render(world):
+    with tempfile.TemporaryDirectory(prefix="velo") as folder:
+        bpy.data.libraries.write(os.path.join(folder, "world.blend"), {world}, path_remap="ABSOLUTE", fake_user=True)
+        script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "sky_render.py")
+        command = [bpy.app.binary_path, "-b", "--factory-startup", "--disable-autoexec", "-P", script, "--", folder, str(WIDTH)]
+        try:
+            done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=SECONDS, check=False)
+        except (OSError, subprocess.TimeoutExpired) as error:
+            raise Failed("Cycles could not be started or took too long (%s)" % type(error).__name__) from None
+        if not os.path.exists(os.path.join(folder, "done")):
+            raise Failed("Cycles ended with %d" % done.returncode)
+        texels = _read(os.path.join(folder, "sky.exr"))
+        suns = []
+        with open(os.path.join(folder, "done"), encoding="ascii") as file:
+            for number, line in enumerate(file):
+                *axis, half = (float(part) for part in line.split())
+                suns.append((numpy.array(axis), half, _sum_of_sun(folder, number)))
+        return Sky(texels, suns)
+
+
+def _read(path):
+    image = velo.read_image(path)
+    values = numpy.stack([numpy.asarray(image[letter], dtype=numpy.float32) for letter in "RGB"], axis=2)
+    return numpy.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _sum_of_sun(folder, number):
+    """The radiance that a sun's disk adds, summed over directions: from two perspective images, with the disk and without."""
+    with_disk, without = (_read(os.path.join(folder, "sun%d_%s.exr" % (number, name))) for name in ("with", "without"))
+    side = len(with_disk)
+    with open(os.path.join(folder, "sun%d_angle" % number), encoding="ascii") as file:
+        reach = math.tan(0.5 * float(file.read()))
+    place = reach * (2 * (numpy.arange(side) + 0.5) / side - 1)
+    solid = (2 * reach / side)**2 / (1 + place[:, None]**2 + place[None, :]**2)**1.5
+    return numpy.maximum((with_disk - without) * solid[..., None], 0).sum(axis=(0, 1)).astype(float)

@@ -1,0 +1,53 @@
+"""Cases of test_world.py: worlds that velo cannot evaluate."""
+import bpy
+import numpy
+
+from inside import agrees, ball, case, colors, material, new_scene, notes, plane, render
+
+
+def under_the_sky(kind, **values):
+    """A floor and a ball, both diffuse, under a sky texture."""
+    scene = new_scene()
+    plane(material("ShaderNodeBsdfDiffuse", Color=(0.5, 0.5, 0.5))[0])
+    ball(material("ShaderNodeBsdfDiffuse", Color=(0.7, 0.3, 0.2))[0])
+    tree = scene.world.node_tree
+    sky = tree.nodes.new("ShaderNodeTexSky")
+    sky.sky_type = kind
+    for name, value in values.items():
+        setattr(sky, name, value)
+    tree.nodes["Background"].inputs[1].default_value = 0.1
+    tree.links.new(sky.outputs[0], tree.nodes["Background"].inputs[0])
+    return scene
+
+
+@case
+def a_sky_with_a_sun_lights_as_in_cycles():
+    scene = under_the_sky("NISHITA", sun_elevation=0.7, sun_rotation=2.0)
+    agrees(scene, 0.02)
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    assert abs(other - mine).mean() < 0.08 * other.mean(), abs(other - mine).mean() / other.mean()
+    assert not notes(scene), notes(scene)
+
+
+@case
+def older_skies_and_what_else_cycles_knows():
+    agrees(under_the_sky("PREETHAM"), 0.02)
+    scene = under_the_sky("HOSEK_WILKIE")
+    tree = scene.world.node_tree
+    points = tree.nodes.new("ShaderNodeTexPointDensity")
+    points.name = "unknown to velo"
+    tree.links.new(points.outputs["Density"], tree.nodes["Background"].inputs[1])
+    tree.nodes["Background"].inputs[1].default_value = 0
+    assert colors(render(scene)).max() == 0
+
+
+@case
+def a_world_without_its_image_is_black_and_listed():
+    scene = under_the_sky("HOSEK_WILKIE")
+    tree = scene.world.node_tree
+    picture = tree.nodes.new("ShaderNodeTexEnvironment")
+    picture.image = bpy.data.images.new("lost", 4, 4)
+    picture.image.source, picture.image.filepath = "FILE", "/nowhere/lost.exr"
+    tree.links.new(picture.outputs[0], tree.nodes["Background"].inputs[0])
+    assert numpy.asarray(colors(render(scene))).max() == 0
+    assert any("lost.exr is missing" in line for line in notes(scene)), notes(scene)

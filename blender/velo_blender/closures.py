@@ -6,7 +6,7 @@ specular colour, F90 the specular factor, and light between microfacets is lost 
 import math
 from typing import Any, NamedTuple
 
-from . import bumps, principled
+from . import bumps, principled, subsurface
 
 
 class Closure:
@@ -176,8 +176,17 @@ def _emission(inputs, node, groups):
 
 
 def _subsurface(inputs, node, groups):
-    inputs.notes.add(inputs.owner, node.name, "subsurface scattering is diffuse")
-    return Closure(diffuse(inputs, inputs.color(node.inputs["Color"], groups), bumps.words(inputs, node, groups)))
+    color, words = inputs.color(node.inputs["Color"], groups), bumps.words(inputs, node, groups)
+    scale, radius = inputs.constant(node.inputs["Scale"], groups), inputs.constant(node.inputs["Radius"], groups)
+    if not isinstance(scale, float) or radius is None:
+        inputs.notes.add(inputs.owner, node.name, "a radius that varies is 0: the scattering is diffuse")
+        return Closure(diffuse(inputs, color, words))
+    radius = tuple(max(0.0, part * scale) for part in subsurface.three(radius))
+    if max(radius) <= 0:
+        return Closure(diffuse(inputs, color, words))
+    index = inputs.constant(node.inputs["IOR"], groups) if node.inputs.get("IOR") is not None else subsurface.DEFAULT_ETA
+    index = index if isinstance(index, float) else subsurface.DEFAULT_ETA
+    return Closure(subsurface.material(inputs, color, radius, node.falloff, max(index, 1.01), {**words, "eta": subsurface.MIN_ETA}))
 
 
 def _velvet(inputs, node, groups):

@@ -5,7 +5,7 @@ import bpy
 import numpy
 import velo
 
-from . import atlas, camera, camera_files, displace, geometry, hair, lights, materials, motion, object_info, points, textures, world
+from . import atlas, camera, camera_files, displace, geometry, hair, lights, materials, motion, object_info, points, textures, volumes, world
 from .report import Notes, Refused
 
 
@@ -284,9 +284,29 @@ class Export:
             if moving is not None and surface.emission is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
             words = self._arrays_of(arrays, slot, maps, surface, moving if surface.emission is None else None)
+            medium = self._medium(material, arrays, maps, place)
+            if medium is not None:
+                words["inside"] = medium
+                self._note_inside(item, place.matrix, arrays)
             whole = None if arrays.displaced else (arrays.positions, arrays.triangles[arrays.slots == slot])
             parts.append(Part(words, surface, material, whole))
         return parts
+
+    def _note_inside(self, item, matrix, arrays):
+        """Notes a camera inside of the box of a volume: velo's camera is in a vacuum."""
+        camera_item = self.depsgraph.scene.camera
+        if camera_item is None:
+            return
+        eye = numpy.linalg.solve(matrix, numpy.append(numpy.array(camera_item.matrix_world.translation), 1.0))[:3]
+        if (eye > arrays.positions.min(axis=0)).all() and (eye < arrays.positions.max(axis=0)).all():
+            self.notes.add(item.name, "Volume", "the camera is inside; what lies before the first surface is clear")
+
+    def _medium(self, material, arrays, maps, place):
+        box = arrays.positions.min(axis=0), arrays.positions.max(axis=0)
+        key = ("medium", None if material is None else material.name_full, place.owner, box[0].tobytes(), box[1].tobytes())
+        if key not in self._cache:
+            self._cache[key] = volumes.medium(material, self._inputs(material, maps, None, place), box, place.matrix)
+        return self._cache[key]
 
     def _inputs(self, material, maps, corners, place):
         owner = "default" if material is None else material.name

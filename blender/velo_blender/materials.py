@@ -1,7 +1,7 @@
 """materials.py: Blender's materials as velo's: the tree of closures becomes a material, a coverage and an emission."""
 import math
 
-from . import closures, displace, facing, links
+from . import closures, displace, facing, links, volumes
 from .closures import Closure
 from .evaluate import Unsupported
 
@@ -31,8 +31,8 @@ def convert(material, inputs):
     except links.Cyclic as error:
         inputs.notes.add(inputs.owner, "", "%s; it is black" % error)
         closure = Closure()
-    if output.inputs["Volume"].is_linked:
-        inputs.notes.add(inputs.owner, "Volume", "volumes of surfaces are not rendered")
+    if volumes.is_alone(material):
+        return Surface(inputs.scene.add_material("interface", name=inputs.owner), None, None, inputs)
     return _finish(closure, inputs)
 
 

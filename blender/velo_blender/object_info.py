@@ -1,7 +1,7 @@
 """object_info.py: what a material may ask of the object that it is on: place, colour, index, a random number, custom properties."""
 import numpy
 
-from . import noise
+from . import links, noise
 
 MAX_COPIES = 1000  # of a mesh whose material differs between its objects
 
@@ -36,6 +36,9 @@ def varies(material):
     """Whether a material may differ between objects that share a mesh."""
     if material is None or not material.use_nodes or material.node_tree is None:
         return False
+    output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
+    if output is not None and output.inputs["Volume"].is_linked:
+        return True  # its medium is that of one place
     return _tree_varies(material.node_tree, ())
 
 

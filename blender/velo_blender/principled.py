@@ -1,7 +1,7 @@
 """principled.py: Blender's Principled shader, both generations of its sockets, as velo's principled material."""
 import math
 
-from . import bumps, versions
+from . import bumps, subsurface, versions
 
 SHEEN_BEFORE_4 = 0.15  # of Burley's sheen, as a part of velo's: the same light from a ball in a white room, measured
 
@@ -50,9 +50,15 @@ def convert(inputs, node, groups, glossy, glass):
     words.update(anisotropy(inputs, versions.principled_socket(node, "anisotropic"),
                             versions.principled_socket(node, "anisotropic_rotation"), roughness, groups, node))
     roughness = words.pop("roughness", roughness)
-    _note_subsurface(inputs, node, get, generation)
+    if generation == 2 and get("film_thickness", 0.0) != 0.0:
+        inputs.notes.add(inputs.owner, node.name, "the thin film is left out")
     multiple = generation == 2 or node.distribution == "MULTI_GGX"
-    if metallic == 1.0 and plain and not multiple:
+    scattering = _subsurface(inputs, node, groups, get, generation, base, {"roughness": roughness, **words})
+    if scattering is not None and metallic != 1.0 and transmission != 1.0:
+        if not plain or metallic != 0.0 or transmission != 0.0:
+            inputs.notes.add(inputs.owner, node.name, "below its surface light scatters; metal, transmission, coat and sheen are left out")
+        material = scattering
+    elif metallic == 1.0 and plain and not multiple:
         material = _lossy_metal(inputs, base, roughness, words)
     elif transmission == 1.0 and metallic == 0.0 and plain:
         material = glass(inputs, base, roughness, _index(inputs, node, groups), words)
@@ -147,11 +153,38 @@ def _layers(get, generation, coat, base):
     return words
 
 
-def _note_subsurface(inputs, node, get, generation):
-    if get("subsurface", 0.0) != 0.0:
-        inputs.notes.add(inputs.owner, node.name, "subsurface scattering is diffuse")
-    if generation == 2 and get("film_thickness", 0.0) != 0.0:
-        inputs.notes.add(inputs.owner, node.name, "the thin film is left out")
+def _subsurface(inputs, node, groups, get, generation, base, surface):
+    """velo's subsurface material; None: light does not scatter below the surface. surface: keywords of the reflection. Before 4.0 the
+    factor scales the radius and mixes two colours; from then on it is the share of the light that scatters."""
+    factor = inputs.constant(versions.principled_socket(node, "subsurface"), groups)
+    radius = inputs.constant(versions.principled_socket(node, "subsurface_radius"), groups)
+    scale = versions.principled_socket(node, "subsurface_scale")
+    scale = 1.0 if scale is None else inputs.constant(scale, groups)
+    if not isinstance(factor, float) or not isinstance(scale, float) or radius is None:
+        inputs.notes.add(inputs.owner, node.name, "subsurface scattering that varies is diffuse")
+        return None
+    if factor <= 0 or scale <= 0 or max(subsurface.three(radius)) <= 0:
+        return None
+    color = base
+    if generation == 1:
+        other = inputs.color(node.inputs["Subsurface Color"], groups)
+        if isinstance(base, tuple) and isinstance(other, tuple):
+            color = tuple(a + factor * (b - a) for a, b in zip(base, other))
+        elif factor > 0.5:
+            color = other
+        if not isinstance(color, tuple) and factor != 1.0:
+            inputs.notes.add(inputs.owner, node.name, "of the two colours of subsurface scattering the heavier one is rendered")
+    elif factor < 1:
+        inputs.notes.add(inputs.owner, node.name, "all light that enters scatters below the surface, not a share")
+    amount = factor if generation == 1 else scale
+    radius = tuple(max(0.0, part * amount) for part in subsurface.three(radius))
+    specular, rough = get("specular", 0.5), surface["roughness"]
+    level = specular if isinstance(specular, float) else 0.5
+    surface["eta"] = eta_of_reflectance(0.08 * level)
+    surface["alpha"] = rough * rough if isinstance(rough, float) else 0.25
+    index = node.inputs.get("Subsurface IOR")
+    index = inputs.constant(index, groups) if index is not None else subsurface.DEFAULT_ETA
+    return subsurface.material(inputs, color, radius, node.subsurface_method, max(index, 1.01) if isinstance(index, float) else 1.4, surface)
 
 
 def _emission(inputs, node, groups, get):

@@ -40,7 +40,7 @@ def bounces(scene):
 
 def tracing(scene, samples):
     """Keywords of velo's render: samples, bounces, seed, colours."""
-    words = {"spp": samples, "max_depth": bounces(scene) + 1, "seed": scene.velo.seed, **world_words(scene)}
+    words = {"spp": samples, "tracer": "volpath", "max_depth": bounces(scene) + 1, "seed": scene.velo.seed, **world_words(scene)}
     if scene.render.film_transparent:
         words["transparent"] = True
     if scene.velo.noise > 0:

@@ -1,0 +1,155 @@
+"""volumes.py: volumes of meshes as velo's media: homogeneous ones, and those whose density varies as a grid over the object's box.
+
+Coefficients are per unit of length of the world, as in Cycles (kernel/svm/closure.h): scattering colour * density, absorption
+(1 - colour) * density."""
+from typing import Any, NamedTuple
+
+import numpy
+
+from . import evaluate, links
+
+CELLS = 64  # along a side of a grid of densities
+
+
+class Volume(NamedTuple):
+    """Coefficients for a density of 1; density: a number, or None where it varies and density_socket and groups say how."""
+    absorption: Any
+    scattering: Any
+    emission: Any
+    g: float
+    density: Any
+    socket: Any = None
+    groups: tuple = ()
+
+
+def medium(material, inputs, box, matrix):
+    """velo's medium inside of a material's surface; None: it has no volume, or none that velo has (noted). box: (low, high) of the mesh in
+    the object's space; matrix: world from object."""
+    if material is None or not material.use_nodes or material.node_tree is None:
+        return None
+    output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
+    if output is None or not output.inputs["Volume"].is_linked:
+        return None
+    try:
+        volume = _volume(output.inputs["Volume"], (), inputs, 0)
+        return _add(volume, inputs, box, matrix) if volume is not None else None
+    except evaluate.Unsupported as error:
+        inputs.notes.add(inputs.owner, error.node.name, "%s; the volume is not rendered" % error.text)
+    except links.Cyclic as error:
+        inputs.notes.add(inputs.owner, "Volume", "%s; it is not rendered" % error)
+    return None
+
+
+def is_alone(material):
+    """Whether a material is a volume without a surface."""
+    if material is None or not material.use_nodes or material.node_tree is None:
+        return False
+    output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
+    return output is not None and output.inputs["Volume"].is_linked and links.follow(output.inputs["Surface"])[0] is None
+
+
+def _volume(socket, groups, inputs, depth):
+    source, _ = links.follow(socket, groups)
+    if source is None:
+        return None
+    if depth > 50:
+        raise links.Cyclic("its nodes feed themselves")
+    node = source.node
+    if node.type == "ADD_SHADER":
+        return _sum(*(_volume(node.inputs[i], source.groups, inputs, depth + 1) for i in (0, 1)), node)
+    if node.type == "MIX_SHADER":
+        factor = inputs.constant(node.inputs[0], source.groups)
+        if not isinstance(factor, float):
+            raise evaluate.Unsupported(node, "volumes are mixed by what varies")
+        first, second = (_volume(node.inputs[i], source.groups, inputs, depth + 1) for i in (1, 2))
+        return _sum(_scaled(first, 1 - factor), _scaled(second, factor), node)
+    if node.type not in ("PRINCIPLED_VOLUME", "VOLUME_SCATTER", "VOLUME_ABSORPTION", "EMISSION"):
+        raise evaluate.Unsupported(node, "velo has no such volume (%s)" % node.bl_label)
+    return _single(node, source.groups, inputs)
+
+
+def _single(node, groups, inputs):
+    def color(name):
+        value = inputs.constant(node.inputs[name], groups)
+        if value is None:
+            raise evaluate.Unsupported(node, "its %s varies" % name.lower())
+        return numpy.maximum(numpy.array(value if isinstance(value, tuple) else (value,) * 3), 0)
+
+    def number(name):
+        value = inputs.constant(node.inputs[name], groups)
+        if not isinstance(value, float):
+            raise evaluate.Unsupported(node, "its %s varies" % name.lower())
+        return value
+
+    none = numpy.zeros(3)
+    if node.type == "EMISSION":
+        return Volume(none, none, color("Color") * max(number("Strength"), 0.0), 0.0, 1.0)
+    density = inputs.constant(node.inputs["Density"], groups)
+    density = max(density, 0.0) if isinstance(density, float) else None
+    rest = (density, node.inputs["Density"], groups)
+    hue = color("Color")
+    if node.type == "VOLUME_ABSORPTION":
+        return Volume(numpy.maximum(1 - hue, 0), none, none, 0.0, *rest)
+    if node.type == "VOLUME_SCATTER":
+        return Volume(none, hue, none, number("Anisotropy"), *rest)
+    tint = numpy.maximum(1 - numpy.sqrt(color("Absorption Color")), 0)
+    emission = color("Emission Color") * max(number("Emission Strength"), 0.0)
+    if inputs.constant(node.inputs["Blackbody Intensity"], groups) != 0.0:
+        inputs.notes.add(inputs.owner, node.name, "the emission of its temperature is left out")
+    if emission.max() > 0 and density != 1.0:
+        inputs.notes.add(inputs.owner, node.name, "its emission grows with its density") if density is None else None
+        emission = emission / density if density else emission
+    return Volume(numpy.maximum(1 - hue, 0) * tint, hue, emission, number("Anisotropy"), *rest)
+
+
+def _scaled(volume, factor):
+    if volume is None:
+        return None
+    return volume._replace(absorption=volume.absorption * factor, scattering=volume.scattering * factor, emission=volume.emission * factor)
+
+
+def _sum(first, second, node):
+    if first is None or second is None:
+        return first or second
+    if first.density is None or second.density is None:
+        raise evaluate.Unsupported(node, "a sum of volumes of which one varies")
+    parts = [(volume.absorption * volume.density, volume.scattering * volume.density, volume.emission * volume.density) for volume in
+             (first, second)]
+    shares = [part[1].mean() for part in parts]
+    g = (first.g * shares[0] + second.g * shares[1]) / max(sum(shares), 1e-30)
+    return Volume(parts[0][0] + parts[1][0], parts[0][1] + parts[1][1], parts[0][2] + parts[1][2], g, 1.0)
+
+
+def _add(volume, inputs, box, matrix):
+    factor = 1.0 if volume.density is None else volume.density
+    absorption, scattering, emission = (part * factor for part in (volume.absorption, volume.scattering, volume.emission))
+    words = {"g": min(max(volume.g, -0.99), 0.99), "name": inputs.owner}
+    if emission.max() > 0:  # velo's media emit by what they absorb
+        absorption = numpy.where(emission > 0, numpy.maximum(absorption, 1e-3), absorption)
+        color = numpy.where(emission > 0, emission / numpy.maximum(absorption, 1e-30), 0)
+        high = float(color.max())
+        words.update(emission=tuple(float(x) / high for x in color), emission_scale=high)
+    words.update(sigma_a=tuple(float(x) for x in absorption), sigma_s=tuple(float(x) for x in scattering))
+    if max(absorption.max(), scattering.max()) <= 0:
+        return None
+    if volume.density is not None:
+        return inputs.scene.add_medium("homogeneous", **words)
+    low, high, density = _grid(volume, inputs, box, matrix)
+    if density.max() <= 0:
+        return None
+    return inputs.scene.add_medium("grid", density=density, low=low, high=high, pose=matrix, **words)
+
+
+def _grid(volume, inputs, box, matrix):
+    """(low, high, densities z x y x x) of a box with a cell more on each side, where velo's grids fall to 0."""
+    low, high = (numpy.array(corner, dtype=float) for corner in box)
+    size = numpy.maximum(high - low, 1e-6)
+    cell = size / CELLS
+    axes = [low[i] + (numpy.arange(-1, CELLS + 1) + 0.5) * cell[i] for i in range(3)]
+    z, y, x = numpy.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
+    points = numpy.stack((x.ravel(), y.ravel(), z.ravel()), axis=1)
+    fields = dict(inputs.known)
+    fields.update({"object": points, "generated": (points - low) / size, "world position": points @ matrix[:3, :3].T + matrix[:3, 3]})
+    values = evaluate.as_value(evaluate.Evaluator(fields, inputs.look_up).input(volume.socket, volume.groups))
+    density = numpy.broadcast_to(numpy.maximum(values, 0), (len(points),)).reshape(z.shape)
+    return tuple(low - cell), tuple(high + cell), numpy.ascontiguousarray(density, dtype=numpy.float32)

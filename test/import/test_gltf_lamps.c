@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "import/gltf_load.h"
+#include "velo/export.h"
 #include "velo/light.h"
 #include "velo/world.h"
 
@@ -101,6 +102,67 @@ static void embedded(void **state) {
   free(g);
 }
 
+/* Written again as .gltf (a file beside it) and .glb (inside), the light and its file are the
+ * same. */
+static void written(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  Loaded first;
+  write_lamp("lamp.ies");
+  fine(&first, g, WITH_LAMP(NODE, "\"uri\":\"lamp.ies\""));
+  static const char *const names[2] = {"again.gltf", "again.glb"};
+  for (int i = 0; i < 2; i++) {
+    vlSaveDef strict = vl_default_save_def();
+    strict.strict = true;
+    vlError error = {0};
+    if (vl_scene_save(first.scene, in_folder(names[i]), &strict, &error) != VL_OK)
+      fail_msg("%s: %s", names[i], error.message);
+    Loaded l;
+    start_load(&l);
+    l.result = vl_scene_load(l.scene, in_folder(names[i]), NULL, &l.error);
+    if (l.result != VL_OK)
+      fail_msg("%s: %s", names[i], l.error.message);
+    check_light(l.scene);
+    check_world(&l);
+    const vlLightDef *light = &l.scene->lights.items[0];
+    for (int c = 0; c < 3; c++)
+      is_near((double)light->color.rgb[c], 1.0 / (1 << c), 1e-6);
+    if (i) {
+      assert_int_equal(light->lamp_size, strlen(LAMP));
+      assert_memory_equal(light->lamp_data, LAMP, strlen(LAMP));
+    } else {
+      assert_non_null(strstr(light->path, "again-lamp1.ies"));
+    }
+    end_load(&l);
+  }
+  end_load(&first);
+  free(g);
+}
+
+/* What glTF has not is left out, and said. */
+static void not_written(void **state) {
+  (void)state;
+  static const char eulumdat[] = "a EULUMDAT file";
+  Loaded l;
+  start_load(&l);
+  vlLightDef def = vl_default_light_def(VL_LIGHT_GONIOMETRIC);
+  def.lamp_data = eulumdat;
+  def.lamp_size = sizeof eulumdat - 1;
+  assert_int_not_equal(vl_scene_add_light(l.scene, &def).index, 0);
+  vlSaveDef strict = vl_default_save_def();
+  strict.strict = true;
+  vlError error = {0};
+  assert_int_equal(vl_scene_save(l.scene, in_folder("none.gltf"), &strict, &error),
+                   VL_ERROR_UNSUPPORTED);
+  assert_non_null(strstr(error.message, "EULUMDAT"));
+  def = vl_default_light_def(VL_LIGHT_GONIOMETRIC);
+  def.path = "/no/such/lamp.ies";
+  assert_int_not_equal(vl_scene_add_light(l.scene, &def).index, 0);
+  assert_int_equal(vl_scene_save(l.scene, in_folder("none.gltf"), NULL, &error),
+                   VL_ERROR_MISSING);
+  end_load(&l);
+}
+
 static void wrong(void **state) {
   (void)state;
   static const struct {
@@ -126,6 +188,7 @@ static void wrong(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(external), cmocka_unit_test(embedded),
+                                     cmocka_unit_test(written), cmocka_unit_test(not_written),
                                      cmocka_unit_test(wrong)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

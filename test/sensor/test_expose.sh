@@ -79,4 +79,24 @@ check plain "$VELO" render flat.pbrt --spp 1 -o plain.exr --quiet
 expect_code 3 no_spectrum "$VELO" sensor expose plain.exr -o no.png
 expect_text no_spectrum_says 'plain.exr: the image has no spectrum'
 check nothing_written test ! -e no.png
+
+silent() { # NAME: the last command did not speak of a shutter
+  case "$err" in *shutter*) fail "$1" ;; *) pass "$1" ;; esac
+}
+# The exposure of an image with motion is that of its shutter.
+{
+  printf 'ActiveTransform EndTime\nTranslate .1 0 0\nActiveTransform All\n'
+  sed 's/^Camera "perspective"/& "float shutteropen" 0 "float shutterclose" 0.02/' flat.pbrt
+} >moving.pbrt
+check moving "$VELO" render moving.pbrt --spectrum 4 --spp 1 -o moving.exr --quiet
+check moving_expose "$VELO" sensor expose moving.exr --exposure-time 0.1 -o moving.png
+expect_text moving_says 'camera moves, and its shutter is open for 0.02 s; the sensor is exposed for 0.1 s: --exposure-time 0.02 has'
+check moving_alike "$VELO" sensor expose moving.exr --exposure-time 0.02 -o moving.png
+silent moving_is_silent
+sed 's/^Camera "perspective"/Camera "pinhole" "float shutterclose" 0.02 "float readout" 0.03/' flat.pbrt >rolling.pbrt
+check rolling "$VELO" render rolling.pbrt --spectrum 4 --spp 1 -o rolling.exr --quiet
+check rolling_expose "$VELO" sensor expose rolling.exr --exposure-time 0.1 -o rolling.png
+expect_text rolling_says 'camera has a rolling shutter, and its shutter is open for 0.02 s'
+check still_expose "$VELO" sensor expose flat.exr --exposure-time 0.1 -o still.png
+silent still_is_silent
 finish

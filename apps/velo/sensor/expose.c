@@ -217,6 +217,26 @@ static void tell(const Expose *e, uint32_t frame, const vlSensorOutput *out) {
       100.0 * (double)out->black / pixels);
 }
 
+/* Of an image whose camera moves or whose rows have times of their own, the exposure is the
+ * interval of its shutter. */
+static void tell_motion(const Expose *e) {
+  vlAttribute shutter;
+  vlAttribute readout;
+  vlAttribute moves;
+  if (vl_image_find_attribute(e->image, "velo.shutter", &shutter) != VL_OK)
+    return;
+  bool rolls = vl_image_find_attribute(e->image, "velo.readout", &readout) == VL_OK;
+  if (!rolls && vl_image_find_attribute(e->image, "velo.worldFromCameraOpen", &moves) != VL_OK)
+    return;
+  double open = shutter.numbers[1] - shutter.numbers[0];
+  double time = e->exposure.time;
+  if (open > 0.0 && fabs(time - open) > 0.01 * open)
+    report_warning(
+        "the image's camera %s, and its shutter is open for %g s; the sensor is exposed for "
+        "%g s: --exposure-time %g has the light of that motion",
+        rolls ? "has a rolling shutter" : "moves", open, time, open);
+}
+
 static int expose(Expose *e) {
   uint32_t width = vl_image_width(e->image);
   uint32_t height = vl_image_height(e->image);
@@ -292,6 +312,8 @@ static int run(const Command *command, const Arguments *arguments) {
     status = check_names(&e);
   if (status < 0)
     status = make_frames(&e);
+  if (status < 0)
+    tell_motion(&e);
   if (status < 0)
     status = expose(&e);
   free(e.means);

@@ -1,8 +1,10 @@
 /* export/gltf/scene.c: camera and lights of a scene as glTF. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/text.h"
 #include "base/unfinished.h"
 #include "export/export.h"
@@ -167,6 +169,117 @@ static json_t *light_node(const vlLightDef *d, json_int_t index) {
   return node;
 }
 
+/* Adds an extension of the whole file. Takes ownership of value. */
+static void put_extension(vlExport *x, const char *name, json_t *value) {
+  json_t *all = json_object_get(x->root, "extensions");
+  if (!all)
+    json_object_set_new(x->root, "extensions", all = json_object());
+  json_object_set_new(all, name, value);
+  vl_gltf_use(x, name);
+}
+
+/* ---- lamp files -------------------------------------------------------------------------- */
+
+/* The contents of a light's lamp file. *owned: the block to free, or null. */
+static bool lamp_file(vlExport *x, const vlLightDef *d, const char **data, size_t *size,
+                      char **owned) {
+  *data = d->lamp_data;
+  *size = d->lamp_size;
+  *owned = NULL;
+  if (d->lamp_data)
+    return true;
+  vlError error = {0};
+  vlResult r = vl_file_read(x->context, d->path, false, owned, size, &error);
+  *data = *owned;
+  return r == VL_OK || vl_export_fail(x, r, "%s", error.message);
+}
+
+/* The profile of a lamp: a buffer view, or a file beside the scene. Null after an error. */
+static json_t *lamp_profile(vlExport *x, size_t number, const char *data, size_t size) {
+  if (x->binary) {
+    json_int_t view = vl_gltf_put_view(x, data, size, 0);
+    return json_pack("{s:I,s:s}", "bufferView", view, "mimeType", "application/x-ies-lm-63");
+  }
+  char name[300];
+  snprintf(name, sizeof name, "%.200s-lamp%zu.ies", x->stem, number);
+  return vl_export_data(x, name, data, size) ? json_pack("{s:s}", "uri", name) : NULL;
+}
+
+/* Light space has -y where the node has -z, x where it has x, and -z where it has y. */
+static json_t *lamp_node(const vlLightDef *d, json_int_t index, const float color[3],
+                         double multiplier) {
+  vlMat4 m = vl_mat4_load(d->world_from_light);
+  double from[3] = {d->from[0], d->from[1], d->from[2]}, place[3];
+  vl_mat4_point(&m, from, place);
+  float matrix[16] = {[15] = 1};
+  for (int i = 0; i < 3; i++) {
+    matrix[i] = (float)m.m[4 * i];
+    matrix[4 + i] = (float)-m.m[4 * i + 2];
+    matrix[8 + i] = (float)m.m[4 * i + 1];
+    matrix[12 + i] = (float)place[i];
+  }
+  json_t *node = json_pack("{s:{s:{s:I,s:f}}}", "extensions", "EXT_lights_ies", "light", index,
+                           "multiplier", multiplier);
+  json_t *own = json_object_get(json_object_get(node, "extensions"), "EXT_lights_ies");
+  json_object_set_new(own, "color", vl_gltf_array_of(color, 3));
+  json_object_set_new(node, "matrix", vl_gltf_array_of(matrix, 16));
+  return node;
+}
+
+/* Puts a light of a lamp file. lights: the profiles of EXT_lights_ies. */
+static bool put_lamp(vlExport *x, const vlLightDef *d, json_t *lights, json_t *nodes) {
+  static const char sign[] = "TILT="; /* every IES file has it, and no EULUMDAT file */
+  const char *data;
+  char *owned;
+  size_t size;
+  float rgb[3];
+  vl_export_light_rgb(&d->color, rgb);
+  float most = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
+  if (!(most > 0.0f))
+    return true;
+  if (!lamp_file(x, d, &data, &size, &owned))
+    return false;
+  json_t *profile = NULL;
+  bool ies = memmem(data, size, sign, sizeof sign - 1) != NULL;
+  if (!ies)
+    vl_export_lose(x, "lamp files in EULUMDAT, which glTF has not: left out");
+  else
+    profile = lamp_profile(x, (size_t)(d - x->scene->lights.items) + 1, data, size);
+  vl_free(x->context, owned);
+  if (!profile)
+    return !ies;
+  if (!isnan(d->power))
+    vl_export_lose(x, "the power of lamp files: that of the file is written");
+  const float color[3] = {rgb[0] / most, rgb[1] / most, rgb[2] / most};
+  json_t *node =
+      lamp_node(d, (json_int_t)json_array_size(lights), color, (double)most * (double)d->scale);
+  json_array_append_new(lights, profile);
+  json_array_append_new(nodes, json_integer(vl_gltf_put(x, "nodes", node)));
+  return true;
+}
+
+/* Whether put_lamps writes the light. */
+static bool is_lamp(const vlLightDef *d) {
+  return d->kind == VL_LIGHT_GONIOMETRIC &&
+         (d->lamp_data || (!d->image && vl_names_lamp(d->path)));
+}
+
+static bool put_lamps(vlExport *x, json_t *nodes) {
+  json_t *lights = json_array();
+  bool fine = true;
+  for (size_t i = 0; fine && i < x->scene->lights.count; i++) {
+    const vlLightDef *d = &x->scene->lights.items[i];
+    if (is_lamp(d) && !vl_scene_light_is_removed(x->scene, i))
+      fine = put_lamp(x, d, lights, nodes);
+  }
+  if (json_array_size(lights))
+    put_extension(x, "EXT_lights_ies", json_pack("{s:O}", "lights", lights));
+  json_decref(lights);
+  return fine;
+}
+
+/* ---- all lights -------------------------------------------------------------------------- */
+
 bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
   /* The KHR_lights_punctual object; null when the extension has no such light. */
   static const char *const types[] = {
@@ -175,8 +288,8 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
   for (size_t i = 0; i < x->scene->lights.count; i++) {
     const vlLightDef *d = &x->scene->lights.items[i];
     float rgb[3];
-    if (d->kind == VL_LIGHT_INFINITE || vl_scene_light_is_removed(x->scene, i))
-      continue; /* vl_gltf_put_environment */
+    if (d->kind == VL_LIGHT_INFINITE || is_lamp(d) || vl_scene_light_is_removed(x->scene, i))
+      continue; /* vl_gltf_put_environment, put_lamps */
     if (d->kind >= VL_LENGTH(types) || !types[d->kind]) {
       vl_export_lose(x, "lights of kinds that glTF has not: left out");
       continue;
@@ -186,11 +299,11 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
     if (!(most > 0))
       continue;
     if (!isnan(d->illuminance))
-      intensity = most * d->illuminance;
+      intensity *= d->illuminance;
     if (!isnan(d->power)) {
       double cone =
           2 * 3.14159265358979 * (1 - vl_precise_cos(d->cone_angle - 0.5 * d->cone_delta));
-      intensity = most * d->power / (d->kind == VL_LIGHT_SPOT ? cone : 4 * 3.14159265358979);
+      intensity *= d->power / (d->kind == VL_LIGHT_SPOT ? cone : 4 * 3.14159265358979);
       vl_export_lose(x, "lights given by their power: an approximate intensity is written");
     }
     json_t *light =
@@ -207,11 +320,8 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
     json_t *node = light_node(d, (json_int_t)json_array_size(lights) - 1);
     json_array_append_new(nodes, json_integer(vl_gltf_put(x, "nodes", node)));
   }
-  if (json_array_size(lights)) {
-    vl_gltf_use(x, "KHR_lights_punctual");
-    json_object_set_new(x->root, "extensions",
-                        json_pack("{s:{s:O}}", "KHR_lights_punctual", "lights", lights));
-  }
+  if (json_array_size(lights))
+    put_extension(x, "KHR_lights_punctual", json_pack("{s:O}", "lights", lights));
   json_decref(lights);
-  return true;
+  return put_lamps(x, nodes);
 }

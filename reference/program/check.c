@@ -1,4 +1,6 @@
 /* program/check.c: the one list of what the core and more/ have; all else is refused by its name in files. */
+#include <string.h>
+
 #include "program.h"
 #include "refuse.h"
 
@@ -52,21 +54,20 @@ static bool is_square(vlContext *context, const vlLightDef *def, vlError *error)
 }
 
 static bool check_light(vlContext *context, const vlLightDef *def, vlError *error) {
+  bool lamp = def->lamp_data || (def->path && (strstr(def->path, ".ies") || strstr(def->path, ".ldt")));
+  if (def->kind == VL_LIGHT_GONIOMETRIC && lamp) return refuse(error, def->source, "a lamp file");
   return def->kind != VL_LIGHT_INFINITE || is_square(context, def, error);
 }
 
 static bool check_emission(const vlEmissionDef *def, const vlShapeDef *shape, vlError *error) {
-  bool by_power = def->power > 0;
-  if (by_power && (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index || def->image))
-    return refuse(error, def->source, "this emission by power");
-  return true;
+  bool by_power = def->power > 0 && (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index || def->image);
+  return !by_power || refuse(error, def->source, "this emission by power");
 }
 
 static bool check_medium(const vlMediumDef *def, vlError *error) {
   if (def->rgb_absorption) return refuse(error, def->source, "absorption by RGB channel");
   if (def->temperature || def->rgb_emission) return refuse(error, def->source, "this emission of a medium");
-  if (def->kind <= VL_MEDIUM_CLOUD) return true;
-  return refuse_kind(error, def->source, "media", (uint32_t)def->kind);
+  return def->kind <= VL_MEDIUM_CLOUD || refuse_kind(error, def->source, "media", (uint32_t)def->kind);
 }
 
 static bool check_camera(const vlCamera *c, vlSource source, vlError *error) {

@@ -131,6 +131,11 @@ VELO_REFERENCE=$PWD/wrong.sh expect_code 1 reference_of_the_environment verify p
 # One that refuses the scene, fails, is ended, writes no image, is not there; and --sandbox.
 check refused verify solid.pbrt
 line refused_says_so '^reference  *not compared: .*solid.pbrt:[0-9:]* material "subsurface" is not part of the reference renderer'
+printf 'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 180\n0\n9 9\n' >lamp.ies
+printf '%s\n' "$head" 'AttributeBegin Translate 1 -.5 1.5 LightSource "goniometric" "string filename" "lamp.ies" AttributeEnd' "$body" >lamp.pbrt
+check lamp verify lamp.pbrt
+line lamp_says_so '^reference  *not compared: .*lamp.pbrt:[0-9:]* a lamp file is not part of the reference renderer'
+line lamp_agrees '^0 of [0-9]* comparisons differ'
 program() {
   printf '#!/bin/sh\n%s\n' "$1" >program.sh
   chmod +x program.sh

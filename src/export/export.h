@@ -144,6 +144,8 @@ json_int_t vl_gltf_put_view(vlExport *x, const void *data, size_t size, int targ
 /* Appends to the array `key` of the root and returns the index. Takes ownership of value. */
 json_int_t vl_gltf_put(vlExport *x, const char *key, json_t *value);
 void vl_gltf_use(vlExport *x, const char *extension);
+/* A JSON array of numbers. */
+json_t *vl_gltf_array_of(const float *values, size_t count);
 /* Index of the shape's material in the glTF file; -1: none. */
 json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, bool *tangents);
 bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d);

@@ -17,7 +17,7 @@ enum {
   TYPE_FLOAT = 5126
 };
 
-static json_t *array_of(const float *values, size_t count) {
+json_t *vl_gltf_array_of(const float *values, size_t count) {
   json_t *array = json_array();
   for (size_t i = 0; i < count; i++)
     json_array_append_new(array, json_real((double)values[i]));
@@ -70,8 +70,8 @@ static json_int_t put_floats(vlExport *x, const float *values, size_t count,
       low[i % 3] = fminf(low[i % 3], values[i]);
       high[i % 3] = fmaxf(high[i % 3], values[i]);
     }
-    json_object_set_new(accessor, "min", array_of(low, 3));
-    json_object_set_new(accessor, "max", array_of(high, 3));
+    json_object_set_new(accessor, "min", vl_gltf_array_of(low, 3));
+    json_object_set_new(accessor, "max", vl_gltf_array_of(high, 3));
   }
   return vl_gltf_put(x, "accessors", accessor);
 }

@@ -160,6 +160,7 @@ static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *rec
 
 const vlCameraFormat vl_format_basalt = {
     .name = "basalt",
+    .rotates = true,
     .marks = {"intrinsics"},
     .marks_in = "value0",
     .known =

@@ -81,6 +81,7 @@ static bool is_bop(const json_t *tree) {
 
 const vlCameraFormat vl_format_bop = {
     .name = "bop",
+    .rotates = true,
     .known =
         "/ cam_K cam_R_w2c cam_t_w2c depth_scale view_level fx fy cx cy width height elev "
         "mode azimuth",

@@ -90,6 +90,7 @@ static vlResult write_bundler(const vlCameraFile *file, const vlCameraRecord *re
 }
 
 const vlCameraFormat vl_format_bundler = {.name = "bundler",
+                                          .rotates = true,
                                           .is_text = is_bundler,
                                           .read_text = read_bundler,
                                           .write = write_bundler};

@@ -206,6 +206,7 @@ static vlResult write_camodocal(const vlCameraFile *file, const vlCameraRecord *
 
 const vlCameraFormat vl_format_camodocal = {
     .name = "camodocal",
+    .rotates = true,
     .marks = {"model_type", "cam0_calib", "projection_parameters"},
     .one_mark = true,
     .known =

@@ -23,6 +23,8 @@ typedef struct {
 
 /* Returns the next line that is not a comment, zero-terminated, or null at the end. */
 static char *next_line(Lines *lines) {
+  if (lines->line == 0 && lines->end - lines->at >= 3 && !memcmp(lines->at, "\xef\xbb\xbf", 3))
+    lines->at += 3; /* byte order mark */
   while (lines->at < lines->end) {
     char *line = lines->at, *stop = memchr(line, '\n', (size_t)(lines->end - line));
     lines->at = stop ? stop + 1 : lines->end;
@@ -45,7 +47,7 @@ static vlResult wrong_line(const vlCameraFile *file, const char *path, uint32_t 
 
 static bool next_number(char **at, double *value) {
   char *end;
-  *value = strtod(*at, &end);
+  *value = vl_camera_parse(*at, &end);
   bool found = end != *at && isfinite(*value) && (*end == ' ' || *end == '\t' || *end == 0);
   *at = end;
   return found;

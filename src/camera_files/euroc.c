@@ -58,6 +58,7 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_euroc = {
     .name = "euroc",
+    .rotates = true,
     .marks = {"T_BS", "sensor_type"},
     .one_mark = true,
     .known =

@@ -117,6 +117,8 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
     record->dialect = dialect;
     result = source->tree ? format->read(file, source->tree, record)
                           : format->read_text(file, source->text, source->size, record);
+    if (result == VL_OK && format->rotates)
+      result = vl_camera_check_rotation(file, record);
     if (sink)
       frames = record->frames;
     else if (result == VL_OK)

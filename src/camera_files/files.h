@@ -248,6 +248,9 @@ void vl_camera_get_pose(const vlCamera *camera, double r[9], double t[3]);
  * false if the matrix is singular. */
 bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world);
 void vl_camera_set_origin(vlCameraDef *def);
+/* Returns an error if the pose, given as a matrix, scales, shears or mirrors by more than the
+ * rounding of numbers with two digits. */
+vlResult vl_camera_check_rotation(const vlCameraFile *file, const vlCameraRecord *record);
 /* Converts a world-from-camera matrix between the camera axes x right, y up, z back and velo's
  * axes, in either direction. It negates columns y and z. */
 void vl_camera_flip_axes(const double m[16], double result[16]);
@@ -302,6 +305,7 @@ typedef struct vlCameraFormat {
   uint32_t least;                        /* $k has at least so many coefficients */
   const char *lens_words[VL_LENS_OTHER]; /* by family */
   const char *unnamed;                   /* $name of a record without a name; null: "camera" */
+  bool rotates;         /* poses are rotations and translations: vl_camera_check_rotation */
   bool centred, square; /* the principal point must be the image's centre; fx must be fy */
 } vlCameraFormat;
 

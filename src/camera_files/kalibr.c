@@ -152,7 +152,7 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree,
       return vl_camera_wrong_in(file, tree, key, "kalibr: the pose of \"%s\" is singular", key);
     record->camera.has_matrix = true;
     for (int e = 0; e < 16; e++)
-      record->camera.world_from_camera[e] = e < 12 ? pose.m[e] + 0.0 : e == 15;
+      record->camera.world_from_camera[e] = pose.m[e] + 0.0;
     vl_camera_name(record, key);
     return read_cam(file, cam, record);
   }
@@ -221,6 +221,7 @@ static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *rec
 
 const vlCameraFormat vl_format_kalibr = {
     .name = "kalibr",
+    .rotates = true,
     .marks = {"cam0"},
     .known =
         "cam* T_cam_imu T_cn_cnm1 T_imu_cam camera_model distortion_coeffs distortion_model "

@@ -135,6 +135,7 @@ static bool is_kitti(const char *text, size_t size) {
 
 const vlCameraFormat vl_format_kitti = {
     .name = "kitti",
+    .rotates = true,
     .known = "P0 P1 P2 P3 P_* S_* K_* D_* R_* T_* R0_rect Tr* calib_time corner_dist",
     .separator = ':',
     .is_text = is_kitti,

@@ -1,5 +1,6 @@
 /* camera_files/lens.c: the lens models that calibration tools have in common, and poses given
  * as matrices. */
+#include <math.h>
 #include <string.h>
 
 #include "camera_files/files.h"
@@ -66,15 +67,40 @@ vlLensFamily vl_camera_lens_family(const vlCameraDef *d, double k[14], uint32_t 
 }
 
 bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world) {
-  vlMat4 pose = vl_mat4_load(m);
-  pose.m[12] = pose.m[13] = pose.m[14] = 0.0;
-  pose.m[15] = 1.0;
+  vlMat4 pose = vl_mat4_load(m); /* vl_camera_make refuses another last row than 0 0 0 1 */
   if (from_world && !vl_mat4_inverse(pose, &pose))
     return false;
   def->has_matrix = true;
   for (int i = 0; i < 16; i++)
     def->world_from_camera[i] = pose.m[i] + 0.0;
   return true;
+}
+
+vlResult vl_camera_check_rotation(const vlCameraFile *file, const vlCameraRecord *record) {
+  const double *m = record->camera.world_from_camera, most = 0.05; /* of rounded numbers */
+  double dot[3][3];
+  bool unit = true, right = true;
+  if (!record->camera.has_matrix || !vl_mat4_is_finite(vl_mat4_load(m)))
+    return VL_OK; /* vl_camera_make refuses what is not finite */
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      dot[i][j] = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+      unit = unit && (i != j || fabs(dot[i][i] - 1.0) <= most);
+      right = right && (i == j || fabs(dot[i][j]) <= most);
+    }
+  if (!unit)
+    return vl_camera_wrong(file,
+                           "%s: the pose is no rotation and translation: its axes have the "
+                           "lengths %.4g, %.4g, %.4g",
+                           file->dialect, sqrt(dot[0][0]), sqrt(dot[1][1]), sqrt(dot[2][2]));
+  if (!right)
+    return vl_camera_wrong(
+        file, "%s: the pose is no rotation and translation: its axes are not perpendicular",
+        file->dialect);
+  if (vl_mat4_determinant3(vl_mat4_load(m)) < 0.0)
+    return vl_camera_wrong(file, "%s: the pose is no rotation and translation: it mirrors",
+                           file->dialect);
+  return VL_OK;
 }
 
 void vl_camera_set_origin(vlCameraDef *def) {

@@ -267,6 +267,7 @@ static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *r
 
 const vlCameraFormat vl_format_meshroom = {
     .name = "meshroom",
+    .rotates = true,
     .known =
         "version featuresFolders! matchesFolders! views viewId poseId frameId intrinsicId "
         "resectionId path width height metadata! intrinsics initialFocalLength focalLength "

@@ -99,6 +99,7 @@ static bool is_middlebury(const char *text, size_t size) {
 
 const vlCameraFormat vl_format_middlebury = {
     .name = "middlebury",
+    .rotates = true,
     .known = "cam0 cam1 doffs baseline width height ndisp isint vmin vmax dyavg dymax",
     .separator = '=',
     .is_text = is_middlebury,

@@ -74,5 +74,8 @@ static vlResult write_mvsnet(const vlCameraFile *file, const vlCameraRecord *rec
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_mvsnet = {
-    .name = "mvsnet", .is_text = is_mvsnet, .read_text = read_mvsnet, .write = write_mvsnet};
+const vlCameraFormat vl_format_mvsnet = {.name = "mvsnet",
+                                         .rotates = true,
+                                         .is_text = is_mvsnet,
+                                         .read_text = read_mvsnet,
+                                         .write = write_mvsnet};

@@ -94,6 +94,26 @@ static vlResult read_size(const vlCameraFile *file, const json_t *frame, const j
   return result == VL_OK ? vl_camera_side(file, h, "h", &record->camera.height) : result;
 }
 
+/* Where one object has a focal length and the angle of the same axis, both must agree. */
+static vlResult check_angle(const vlCameraFile *file, const json_t *object, const char *focal,
+                            const char *angle, uint32_t side) {
+  double pixels = 0.0, radians = 0.0;
+  if (!vl_camera_has(object, focal) || !vl_camera_has(object, angle))
+    return VL_OK;
+  vlResult result = vl_camera_number(file, object, focal, &pixels);
+  if (result == VL_OK)
+    result = vl_camera_number(file, object, angle, &radians);
+  if (result != VL_OK || !(radians > 0.0 && radians < 3.14159))
+    return result;
+  const double other = 0.5 * side / vl_precise_tan(0.5 * radians);
+  if (fabs(other - pixels) <= 0.02 * fabs(pixels)) /* rounding */
+    return VL_OK;
+  return vl_camera_wrong_in(file, object, focal,
+                            "nerf: \"%s\" is %.7g, but \"%s\" and the image's size make it "
+                            "%.7g; remove one",
+                            focal, pixels, angle, other);
+}
+
 vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame,
                                    const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
@@ -112,6 +132,11 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
   for (size_t i = 0; i < 6 && result == VL_OK; i++)
     result = vl_camera_optional(file, holder(frame, tree, fields[i].key), fields[i].key,
                                 fields[i].value);
+  if (result == VL_OK)
+    result = check_angle(file, holder(frame, tree, "fl_x"), "fl_x", "camera_angle_x", d->width);
+  if (result == VL_OK)
+    result =
+        check_angle(file, holder(frame, tree, "fl_y"), "fl_y", "camera_angle_y", d->height);
   if (result == VL_OK)
     result = refuse_others(file, frame, tree);
   if (result == VL_OK)

@@ -83,6 +83,7 @@ static vlResult write_okvis(const vlCameraFile *file, const vlCameraRecord *reco
 
 const vlCameraFormat vl_format_okvis = {
     .name = "okvis",
+    .rotates = true,
     .marks = {"T_SC"},
     .marks_in = "cameras",
     .known =

@@ -78,6 +78,7 @@ static bool is_open3d(const json_t *tree) {
 
 const vlCameraFormat vl_format_open3d = {
     .name = "open3d",
+    .rotates = true,
     .known =
         "class_name extrinsic intrinsic intrinsic_matrix width height parameters "
         "version_major version_minor",

@@ -213,6 +213,7 @@ static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *re
 
 const vlCameraFormat vl_format_openmvg = {
     .name = "openmvg",
+    .rotates = true,
     .known =
         "sfm_data_version root_path views key value polymorphic_id polymorphic_name "
         "ptr_wrapper id data local_path filename width height id_view id_intrinsic id_pose "

@@ -208,6 +208,7 @@ static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *re
 
 const vlCameraFormat vl_format_opensfm = {
     .name = "opensfm",
+    .rotates = true,
     .known =
         "/ cameras/ shots/ projection_type width height focal focal_x focal_y c_x c_y k1 k2 "
         "k3 k4 p1 p2 focal_prior k1_prior k2_prior camera rotation translation orientation "

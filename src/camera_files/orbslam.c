@@ -106,6 +106,7 @@ static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *re
 
 const vlCameraFormat vl_format_orbslam = {
     .name = "orbslam",
+    .rotates = true,
     .marks = {"Camera.fx", "Camera1.fx", "Camera.type"},
     .one_mark = true,
     .known =

@@ -50,6 +50,12 @@ static const Tool by_beginning[] = {
      "a project of Hugin, whose lenses are those of panoramas; " GIVE_OPENCV},
     {"#MVE view meta data", "a view of MVE; " GIVE_MATCHED},
     {"fileName imageWidth imageHeight", "parameters of Pix4D; " GIVE_MATCHED},
+    {"\x1f\x8b", "a file packed by gzip; unpack it: gunzip"},
+    {"PK\x03\x04", "a ZIP archive; unpack it"},
+    {"ARROW1", "a table of Apache Arrow, as Argoverse 2's calibration; " GIVE_OPENCV},
+    {"#polynomial coefficients for the DIRECT mapping",
+     "OCamCalib's polynomial, which is no projection of velo; calibrate it as Kalibr's omni-radtan or "
+     "as OpenCV's fisheye"},
     {"PXR-USDC", "USD's binary form; velo reads its text form: usdcat in.usd -o out.usda"},
     {"\x93NUMPY", "a NumPy array, which does not say what its numbers mean"},
 };
@@ -61,6 +67,11 @@ static const Tool by_text[] = {
      ", or give projection_matrix and view_matrix with graphics_api: opengl"},
     {"# PhotoID, X, Y, Z", "Metashape's angles; export the cameras as XML"},
     {"ParGroup:", "parameters of HALCON; " GIVE_OPENCV},
+    {"drone-dji:", "DJI's data of an image, without a camera's model; " GIVE_MATCHED},
+    {"<ExportAPERO", "MicMac's orientation; " GIVE_MATCHED},
+    {"<OrientationConique", "MicMac's orientation; " GIVE_MATCHED},
+    {"\"rolling_shutter_direction\"", "Waymo's calibration, as it seems; " GIVE_OPENCV
+                                      " of its f_u, f_v, c_u, c_v, k1, k2, p1, p2, k3"},
     {"<BlocksExchange", "a block of ContextCapture; " GIVE_MATCHED},
     {"<sdf", "a model of Gazebo; give the YAML of its camera_info message"},
     {"<robot", "a robot's description (URDF); give the YAML of its camera_info message"},

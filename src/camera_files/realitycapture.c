@@ -332,6 +332,7 @@ static bool is_csv(const char *text, size_t size) {
 
 const vlCameraFormat vl_format_realitycapture = {
     .name = "realitycapture",
+    .rotates = true,
     .known =
         "x:* xmlns:* rdf:* xcr:Version xcr:PosePrior xcr:Coordinates xcr:DistortionModel "
         "xcr:DistortionCoeficients xcr:FocalLength35mm xcr:Skew xcr:AspectRatio "

@@ -97,6 +97,7 @@ static bool is_calibio(const json_t *tree) {
 
 const vlCameraFormat vl_format_calibio = {
     .name = "calibio",
+    .rotates = true,
     .known =
         "Calibration cameras model polymorphic_id polymorphic_name ptr_wrapper id data "
         "parameters val state f ar cx cy k1 k2 k3 k4 k5 k6 p1 p2 s1 s2 s3 s4 tauX tauY "
@@ -144,6 +145,7 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_nuscenes = {
     .name = "nuscenes",
+    .rotates = true,
     .known = "token sensor_token translation rotation camera_intrinsic",
 
     .marks = {"camera_intrinsic", "rotation"},
@@ -177,6 +179,7 @@ static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_panoptic = {
     .name = "panoptic",
+    .rotates = true,
     .known = "calibDataSource cameras name type resolution panel node K distCoef R t",
 
     .marks = {"distCoef", "K"},
@@ -222,6 +225,7 @@ static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree,
 
 const vlCameraFormat vl_format_nerfies = {
     .name = "nerfies",
+    .rotates = true,
     .known =
         "orientation position focal_length principal_point skew pixel_aspect_ratio "
         "radial_distortion tangential_distortion image_size",

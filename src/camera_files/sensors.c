@@ -124,6 +124,7 @@ static bool is_depthai(const json_t *tree) {
 
 const vlCameraFormat vl_format_depthai = {
     .name = "depthai",
+    .rotates = true,
     .known =
         "cameraData cameraType distortionCoeff extrinsics rotationMatrix translation "
         "specTranslation x y z toCameraSocket height width intrinsicMatrix lensPosition "
@@ -192,6 +193,7 @@ static bool is_kinect(const json_t *tree) {
 
 const vlCameraFormat vl_format_kinect = {
     .name = "kinect",
+    .rotates = true,
     .known =
         "CalibrationInformation Cameras Intrinsics ModelParameterCount ModelParameters "
         "ModelType Location Purpose MetricRadius Rt Rotation Translation SensorHeight "

@@ -171,6 +171,7 @@ static vlResult write_svo(const vlCameraFile *file, const vlCameraRecord *record
 
 const vlCameraFormat vl_format_svo = {
     .name = "svo",
+    .rotates = true,
     .is_tree = is_svo,
     .known =
         "cam_model cam_width cam_height cam_cx cam_cy cam_fx cam_fy cam_d0 cam_d1 cam_d2 cam_d3 "

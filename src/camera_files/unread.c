@@ -12,10 +12,10 @@
 enum { MAX_DEPTH = 32 };
 
 /* Parts of names that speak of another image than that of the camera as read. */
-static const char *const parts[] = {"binning",   "crop",  "flip",      "mirror",  "rolling",
-                                    "skew",      "shear", "distort",   "fisheye", "ftheta",
-                                    "warp",      "shift", "principal", "ortho",   "resize",
-                                    "downsampl", "rotate"};
+static const char *const parts[] = {"binning",   "crop",   "flip",      "mirror",    "rolling",
+                                    "skew",      "shear",  "distort",   "fisheye",   "ftheta",
+                                    "warp",      "shift",  "principal", "ortho",     "resize",
+                                    "downsampl", "rotate", "readout",   "line_delay"};
 /* Values that name a lens which is none of perspective. */
 static const char *const lenses[] = {"fisheye",  "ftheta",       "f-theta", "equirectangular",
                                      "ortho",    "orthographic", "omni",    "panoramic",

@@ -126,6 +126,7 @@ static vlResult write_visualsfm(const vlCameraFile *file, const vlCameraRecord *
 }
 
 const vlCameraFormat vl_format_visualsfm = {.name = "visualsfm",
+                                            .rotates = true,
                                             .is_text = is_visualsfm,
                                             .read_text = read_visualsfm,
                                             .write = write_visualsfm};

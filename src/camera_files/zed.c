@@ -151,6 +151,7 @@ static bool is_zed(const char *text, size_t size) {
 
 const vlCameraFormat vl_format_zed = {
     .name = "zed",
+    .rotates = true,
     .known =
         "fx fy cx cy k1 k2 k3 p1 p2 Baseline TY TZ RX_* RY_* RZ_* CV_* CX_* R_* T_* Sensor_ID* "
         "ConvergenceType* StereoLeft* StereoRight*",

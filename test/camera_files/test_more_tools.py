@@ -320,6 +320,32 @@ CASES = [
     Case("projection.txt", P_MATRIX, "matrix", options=SIZE, **PLAIN, **own("matrix"), damage=False),
 ]
 
+KALIBR = """cam0:
+  camera_model: pinhole
+  distortion_coeffs: [0.1, 0.0, 0.0, 0.0]
+  distortion_model: equidistant
+  intrinsics: [500, 500, 320, 240]
+  resolution: [640, 480]
+  line_delay: %s
+  T_cam_imu:
+  - [%s, 0, 0, 0]
+  - [0, 1, 0, 0]
+  - [0, 0, %s, 0]
+  - [%s, 0, 0, 1]
+"""
+EUROC = """sensor_type: camera
+T_BS:
+  cols: 4
+  rows: 4
+  data: [%s]
+resolution: [640, 480]
+camera_model: pinhole
+intrinsics: [500, 500, 320, 240]
+distortion_model: equidistant
+distortion_coefficients: [0.1, 0.0, 0.0, 0.0]
+"""
+ANGLE = '{"w":640,"h":480,"%s":500,"%s":%s,"frames":[{"file_path":"a","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}'
+
 # broken files: the place and the format in the message, and what it must not blame
 BROKEN = [
     ("online_calibration.jsonl", 2 * (ARIA_ONLINE + "\n"), "give one line", "YAML"),
@@ -328,6 +354,19 @@ BROKEN = [
     ("bad.conf", "[LEFT_CAM_HD]\nfx=700\nfy=7x0\n", 'bad.conf:3:5: zed: no finite number: "x0"', "JSON"),
     ("poses.txt", "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "poses.txt:1:1: no camera of a known dialect", "matrix"),
     ("bad.nvm", "NVM_V3\n\n1\na.jpg 500 1 0 x 0 0 0 0 0 0\n", "bad.nvm:4:15: visualsfm: no finite number", "YAML"),
+    ("mirror.yaml", KALIBR % (0, -1, 1, 0), "kalibr: the pose is no rotation and translation: it mirrors", "JSON"),
+    ("scaled.yaml", KALIBR % (0, 1, 2, 0), "kalibr: the pose is no rotation and translation: its axes have the lengths 1, 1, 0.5", "JSON"),
+    ("transposed.yaml", KALIBR % (0, 1, 1, 0.5), "the last row of world_from_camera is -0.5 0 0 1", "JSON"),
+    ("delay.yaml", KALIBR % (2e-5, 1, 1, 0), 'delay.yaml:7:15: kalibr: "line_delay" is not understood', "JSON"),
+    ("columns.yaml", EUROC % "1,0,0,0,0,1,0,0,0,0,1,0,0.1,0.2,0.3,1", "the last row of world_from_camera is 0.1 0.2 0.3 1", "JSON"),
+    ("sheared.yaml", EUROC % "1,0.1,0,0,0,1,0,0,0,0,1,0,0,0,0,1", "euroc: the pose is no rotation and translation: its axes are not", "JSON"),
+    ("angle.json", ANGLE % ("fl_x", "camera_angle_x", 0.7), 'angle.json:1:25: nerf: "fl_x" is 500, but "camera_angle_x"', "YAML"),
+    ("angle.json", ANGLE.replace('"w"', '"fl_x":500,"w"') % ("fl_y", "camera_angle_y", 0.7), 'nerf: "fl_y" is 500, but "camera_angle_y"', "YAML"),
+    ("dji.xmp", '<x:xmpmeta><a drone-dji:CalibratedFocalLength="3666.6"/></x:xmpmeta>', "DJI's data of an image", "dialect"),
+    ("micmac.xml", "<ExportAPERO><CalibrationInternConique/></ExportAPERO>", "MicMac's orientation", "dialect"),
+    ("calib.txt", "#polynomial coefficients for the DIRECT mapping function\n5 -188\n", "OCamCalib's polynomial", "dialect"),
+    ("a.json.gz", b"\x1f\x8b\x08\0\0\0\0\0", "a file packed by gzip", "JSON"),
+    ("waymo.json", '{"name":"FRONT","rolling_shutter_direction":"LEFT_TO_RIGHT"}', "Waymo's calibration", "dialect"),
     ("bad.txt", "500 0 320\n0 500 24o\n0 0 1\n", "bad.txt:2:7: matrix: no finite number", "YAML"),
     ("bad.dae", '<COLLADA><library_visual_scenes><visual_scene><node id="a">\n<translate>0 0</translate>'
      '<instance_camera url="#x"/></node></visual_scene></library_visual_scenes>\n<library_cameras><camera id="x"><optics>'
@@ -365,7 +404,20 @@ def check_note():
         result(code == 0 and wanted in err, "names the fields that are not understood", err)
 
 
+def check_good():
+    """Numbers that are rounded, and files that begin with a byte order mark."""
+    rounded = "0.01,-1.0,0.0,0,1.0,0.01,0.03,0,-0.03,0.0,1.0,0,0,0,0,1"
+    with tempfile.TemporaryDirectory() as work:
+        write(work, {"kalibr.yaml": KALIBR % (0, 1, 1, 0), "euroc.yaml": EUROC % rounded,
+                     "angle.json": ANGLE % ("fl_x", "camera_angle_x", 1.1386),
+                     "model/cameras.txt": "\ufeff1 PINHOLE 640 480 500 501 320 240\r\n"})
+        for name in ("kalibr.yaml", "euroc.yaml", "angle.json", "model"):
+            code, _, err = run("info", os.path.join(work, name))
+            result(code == 0, "reads " + name, err)
+
+
 if __name__ == "__main__":
     check_broken()
+    check_good()
     check_note()
     sys.exit(main(CASES, SUFFIXES, ()))

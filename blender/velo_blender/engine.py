@@ -73,16 +73,17 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         size = camera.image_size(scene)
         crop = camera.crop_window(scene, size)
         self.update_stats("", "velo: reading the scene")
-        moves = motion.Motion(self, depsgraph) if scene.render.use_motion_blur else None
         flow = vectors.Vectors(self, depsgraph, size) if depsgraph.view_layer.use_pass_vector else None
-        made = export.Export(depsgraph, size, self.test_break, moves, keep_triangles=flow is not None)
+        made = self._export(depsgraph, size, flow)
         report.remember(scene.name, made.notes)
         for text in made.notes.texts():
             print("velo: " + text)
         if made.notes.lines:
             self.report({"WARNING"}, "velo: %d things of the scene are rendered otherwise or not (panel velo)" % len(made.notes.lines))
         self.update_stats("", "velo: building")
-        made.scene.world(progress=lambda step: not self.test_break(), **settings.world_words(scene))
+        # Of an animation, the worlds of two frames share what is the same.
+        self.world = made.scene.world(previous=getattr(self, "world", None), progress=lambda step: not self.test_break(),
+                                      **settings.world_words(scene))
         width, height = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
         passes.add(self, depsgraph.view_layer)
         result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
@@ -93,6 +94,20 @@ class VeloRenderEngine(bpy.types.RenderEngine):
             self.end_result(result, cancel=False)
         for field, value in fields.items():
             self.get_result().stamp_data_add_field(field, value)
+
+    def _export(self, depsgraph, size, flow):
+        """The scene in velo. With Blender's persistent data it is that of the frame before, where places alone have changed."""
+        scene = depsgraph.scene
+        if not scene.render.use_persistent_data or scene.render.use_motion_blur or flow is not None:
+            moves = motion.Motion(self, depsgraph) if scene.render.use_motion_blur else None
+            return export.Export(depsgraph, size, self.test_break, moves, keep_triangles=flow is not None)
+        key = depsgraph.view_layer.name, size, scene.velo.bake_size
+        kept = getattr(self, "kept", {})
+        made = kept.get(key)
+        if made is None or not made.follow(depsgraph):
+            made = export.Export(depsgraph, size, self.test_break)
+        self.kept = {**{known: value for known, value in kept.items() if known[1:] == key[1:]}, key: made}
+        return made
 
     def _trace(self, scene, made, crop, result, flow):
         """Renders into the result. Returns the fields of the file's header."""

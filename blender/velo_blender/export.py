@@ -32,6 +32,9 @@ class Prepared(NamedTuple):
     emissive: list
 
 
+UNSEEN = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
+
+
 class Placed(NamedTuple):
     """An object at its place. kind: its class in data sets; asset: the object at the top of its parents; key: motion.key_of."""
     name: str
@@ -40,6 +43,7 @@ class Placed(NamedTuple):
     kind: str
     key: tuple
     matrix: Any
+    look: tuple  # what else a render depends on and Blender may change without its mesh: names of materials, colour
 
 
 class Export:
@@ -56,6 +60,8 @@ class Export:
         self.triangles = {}
         self._moves, self._keep_triangles = moves, keep_triangles
         self._handles = {}  # {motion.key_of(instance): handle}
+        self._keys = set()  # of all instances
+        self._asked = False  # whether something depends on what the camera sees
         self._meshes, self._surfaces, self._cache = {}, {}, {}
         self._copies, self._varying = {}, {}  # objects of a mesh whose materials ask for the object; {material: whether it does}
         self._cancelled = cancelled or (lambda: False)
@@ -74,9 +80,10 @@ class Export:
             if self._cancelled():
                 raise Cancelled()
             item = instance.object
-            if not instance.show_self or item.type in ("CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"):
+            if not instance.show_self or item.type in UNSEEN:
                 continue
             self._note_unseen(item)
+            self._keys.add(motion.key_of(instance))
             matrix = numpy.array(instance.matrix_world, dtype=float)
             if not numpy.isfinite(matrix).all():
                 self.notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
@@ -130,8 +137,41 @@ class Export:
             self.scene.set(handle, transform=matrix)
         return True
 
+    def follow(self, depsgraph):
+        """For the next frame of an animation, with Blender's persistent data: moves the camera and the instances whose place alone has
+        changed. False: something else has changed, too; nothing is moved then."""
+        changed = _changed_objects(depsgraph)
+        if changed is None or (self._asked and any(kind == "CAMERA" for kind in changed.values())):
+            return False
+        known = {placed.key: number for number, placed in enumerate(self.instances)}
+        keys, changes = set(), []
+        for instance in depsgraph.object_instances:
+            if not instance.show_self or instance.object.type in UNSEEN:
+                continue
+            key = motion.key_of(instance)
+            keys.add(key)
+            if instance.object.name_full not in changed:
+                continue
+            matrix = numpy.array(instance.matrix_world, dtype=float)
+            placed, handle = _placed(instance, matrix), self._handles.get(key)
+            if handle is None or not numpy.isfinite(matrix).all() or abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
+                return False
+            slots = [slot.material for slot in instance.object.material_slots]
+            if placed._replace(matrix=None) != self.instances[known[key]]._replace(matrix=None) or any(map(self._varies, slots)):
+                return False
+            changes.append((known[key], handle, placed))
+        if keys != self._keys:
+            return False
+        self.depsgraph, self.camera = depsgraph, _camera_of(depsgraph, self.size)
+        self.scene.camera = self.camera
+        for number, handle, placed in changes:
+            self.instances[number] = placed
+            self.scene.set(handle, transform=placed.matrix)
+        return True
+
     def _camera_sees(self, points):
         """Whether some point of a box may be in the image: the box of its film points, a tenth wider."""
+        self._asked = True
         pixels, _, valid = self.camera.project(points)
         if not valid.any():
             return False
@@ -371,7 +411,28 @@ def _placed(instance, matrix):
     top = item.parent
     while top is not None and top.parent is not None:
         top = top.parent
-    return Placed(item.name, top.name if top is not None else item.name, item.pass_index, str(item.get("class", "")), motion.key_of(instance), matrix)
+    look = tuple("" if slot.material is None else slot.material.name_full for slot in item.material_slots), tuple(item.color)
+    return Placed(item.name, top.name if top is not None else item.name, item.pass_index, str(item.get("class", "")), motion.key_of(instance),
+                  matrix, look)
+
+
+def _changed_objects(depsgraph):
+    """{name: type} of the objects that have changed since the last evaluation; None: more than the places of meshes and the camera has."""
+    changed = {}
+    for update in depsgraph.updates:
+        item = update.id
+        if isinstance(item, (bpy.types.Action, bpy.types.Camera)):
+            changed[item.name_full] = "CAMERA" if isinstance(item, bpy.types.Camera) else "ACTION"
+        elif isinstance(item, bpy.types.Scene):
+            if update.is_updated_geometry or update.is_updated_shading:
+                return None
+        elif not isinstance(item, bpy.types.Object) or (item.type == "MESH" and update.is_updated_geometry):
+            return None
+        elif item.type not in ("MESH", "CAMERA", "EMPTY"):
+            return None
+        else:
+            changed[item.name_full] = item.type
+    return changed
 
 
 def _look_up(known, ids):

@@ -166,6 +166,7 @@ def _open(path):
     scene = bpy.context.scene
     scene.render.engine = "VELO"
     scene.render.use_multiview = False
+    scene.render.use_persistent_data = True  # frames share what does not change
     for node in scene.node_tree.nodes if scene.use_nodes and scene.node_tree is not None else ():
         if node.type == "OUTPUT_FILE" and not node.mute:
             node.mute = True

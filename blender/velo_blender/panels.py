@@ -27,6 +27,7 @@ class VELO_PT_sampling(_Panel, bpy.types.Panel):
         layout.use_property_split = True
         for name in ("samples", "preview_samples", "noise", "denoise", "seed", "spectral", "bake_size", "bounces_of_cycles"):
             layout.prop(options, name)
+        layout.prop(context.scene.render, "use_persistent_data")
         row = layout.row()
         row.enabled = not (options.bounces_of_cycles and hasattr(context.scene, "cycles"))
         row.prop(options, "bounces")

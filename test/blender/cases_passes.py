@@ -1,10 +1,11 @@
 """Cases of test_passes.py: Vector, Cryptomatte and denoising data agree with Cycles' passes, vertices that move with Cycles' blur."""
 import json
+import os
 
 import bpy
 import numpy
 
-from inside import add_object, ball, case, channel, colors, material, new_scene, notes, plane, render
+from inside import FOLDER, add_object, ball, case, channel, colors, lamp, material, new_scene, notes, plane, render
 
 DIFFUSE = "ShaderNodeBsdfDiffuse"
 
@@ -210,3 +211,65 @@ def meshes_whose_triangles_change_are_at_rest():
     change.keyframe_insert("ratio", frame=3)
     scene.frame_set(2)
     assert numpy.isfinite(colors(render(scene))).all()
+
+
+def changing_scene(change):
+    """Frames 1 to 3 of a scene with a floor, a ball that moves, and one more change: a function of the scene and the frame."""
+    scene = new_scene(world=(0.5, 0.5, 0.5), samples=4)
+    plane(material(DIFFUSE)[0])
+    item = ball(material(DIFFUSE, Color=(0.8, 0.3, 0.2))[0])
+    other = ball(material(DIFFUSE, Color=(0.2, 0.3, 0.8))[0], (1.5, 1, 1))
+    lamp(scene, "AREA", 100, size=1.0)
+    animate(item, ((-1, 0, 1), (0, 0, 1), (1, 0, 1.3)))
+    for frame in (1, 2, 3):
+        for owner, name, value in change(scene, item, other, frame):
+            path, _, member = name.rpartition(".")
+            setattr(owner.path_resolve(path) if path else owner, member, value)
+            owner.keyframe_insert(name, frame=frame)
+    return scene
+
+
+CHANGES = (
+    lambda scene, item, other, frame: (),
+    lambda scene, item, other, frame: ((scene.camera, "location", (0.2 * frame, -6, 3)),),
+    lambda scene, item, other, frame: ((scene.camera.data, "lens", 30 + 5 * frame),),
+    lambda scene, item, other, frame: ((other, "hide_render", frame == 2),),
+    lambda scene, item, other, frame: ((bpy.data.lights[0], "energy", 100.0 * frame),),
+    lambda scene, item, other, frame: ((other, "scale", (1, 1, 0.5 * frame)),),
+    lambda scene, item, other, frame: ((other.data.materials[0].node_tree, 'nodes["Diffuse BSDF"].inputs[0].default_value', (0.3 * frame, 0.2, 0.2, 1)),),
+    lambda scene, item, other, frame: ((scene.world.node_tree, 'nodes["Background"].inputs[1].default_value', 0.5 * frame),),
+)
+
+
+def frames_of(scene, keep):
+    """The colours of the animation's frames. keep: with Blender's persistent data."""
+    import velo
+    scene.render.use_persistent_data, scene.frame_end = keep, 3
+    scene.render.filepath = os.path.join(FOLDER, "frame_")
+    bpy.ops.render.render(animation=True)
+    return numpy.stack([colors(velo.read_image(scene.render.filepath + "%04d.exr" % frame)) for frame in (1, 2, 3)])
+
+
+@case
+def frames_share_what_does_not_change():
+    for number, change in enumerate(CHANGES):
+        images = [frames_of(changing_scene(change), keep) for keep in (False, True)]
+        assert abs(images[0] - images[1]).max() < 1e-4, (number, abs(images[0] - images[1]).max(axis=(1, 2, 3)))
+        assert abs(images[1][0] - images[1][2]).max() > 0.05, number
+
+
+@case
+def frames_that_only_move_are_not_read_again():
+    from velo_blender import export
+    scene = changing_scene(CHANGES[0])
+    made, original = [], export.Export.__init__
+
+    def counted(self, *words, **more):
+        made.append(1)
+        original(self, *words, **more)
+    export.Export.__init__ = counted
+    try:
+        frames_of(scene, True)
+    finally:
+        export.Export.__init__ = original
+    assert len(made) == 1, len(made)

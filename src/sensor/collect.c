@@ -14,9 +14,10 @@
 typedef struct Collect {
   const vlSensor *sensor;
   const vlImage *image;
+  const float *floats; /* the image's values, if they are linear floats; else null */
   vlSensorSpectrum spectrum;
   const double *weights; /* of each filter: spectrum.count electrons per radiance */
-  uint32_t width, height;
+  uint32_t width, height, channels;
   uint32_t window[4]; /* left, top, width and height of the whole */
   double scale;       /* energy per radiance, J / (W/(m^2 sr nm)) / nm */
   double chief;       /* tangent of the chief ray's angle / distance from the middle, pixels */
@@ -71,6 +72,13 @@ static bool is_noisy(const Collect *c, uint32_t x, uint32_t y, double mean) {
   return film > 0.1 * __builtin_sqrt(mean);
 }
 
+static double radiance(const Collect *c, uint32_t x, uint32_t y, uint32_t channel) {
+  if (!c->floats)
+    return (double)vl_image_get(c->image, x, y, channel);
+  size_t pixel = (size_t)y * c->width + x;
+  return (double)c->floats[pixel * c->channels + channel];
+}
+
 static void collect_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   Collect *c = user;
@@ -85,7 +93,7 @@ static void collect_row(void *user, uint32_t y, uint32_t worker) {
     const double *weights = c->weights + (size_t)c->sensor->cell[cell] * buckets;
     double sum = 0.0;
     for (uint32_t i = 0; i < buckets; i++)
-      sum += weights[i] * (double)vl_image_get(c->image, x, y, c->spectrum.channels[i]);
+      sum += weights[i] * radiance(c, x, y, c->spectrum.channels[i]);
     if (!isfinite(sum))
       not_finite++;
     else if (sum < 0.0)
@@ -189,7 +197,10 @@ vlResult vl_sensor_collect(const vlSensor *sensor, const vlImage *image,
                .image = image,
                .width = vl_image_width(image),
                .height = vl_image_height(image),
+               .channels = vl_image_channels(image),
                .means = means};
+  if (vl_image_type(image) == VL_PIXEL_F32 && vl_image_encoding(image) == VL_ENCODING_LINEAR)
+    c.floats = vl_image_const_pixels(image);
   if (result == VL_OK)
     result = vl_exposure_window(exposure, c.width, c.height, c.window, error);
   if (result == VL_OK)

@@ -1,11 +1,12 @@
 /* Fuzzes the messages that a page of `velo view` sends: parses one and applies its fields to a
- * camera. What is accepted has numbers within the limits that apps/velo/view/message.h
- * states. */
+ * camera or to a sensor. What is accepted has numbers within the limits that
+ * apps/velo/view/message.h states. */
 #include "fuzz.h"
 
 #include <math.h>
 
 #include "view/camera_edit.h"
+#include "view/sensor_edit.h"
 
 static void check_limits(const ViewMessage *m) {
   bool good = m->field_count <= MESSAGE_FIELDS && fabs(m->x) <= 65536 && fabs(m->y) <= 65536 &&
@@ -18,6 +19,25 @@ static void check_limits(const ViewMessage *m) {
       good &= isfinite(m->fields[i].numbers[k]);
   }
   if (!good)
+    abort();
+}
+
+/* What is accepted can be exposed; what is refused is told in a line. */
+static void edit_sensor(const ViewMessage *m) {
+  static const ViewSensors sensors;
+  const ViewSensor now = sensor_default();
+  ViewSensor next = now;
+  vlSensorDef def;
+  vlError error = {0};
+  if (sensor_edit(&now, &sensors, m, &next, &error) != VL_OK) {
+    if (!error.message[0] || strchr(error.message, '\n') ||
+        memcmp(&now, &next, sizeof now) != 0)
+      abort();
+    return;
+  }
+  const vlExposureDef *e = &next.exposure;
+  if (!(e->time >= 0 && e->time <= 1e6 && e->iso >= 0 && e->iso <= 1e7 && e->f_number >= 0.5) ||
+      sensor_find(&sensors, next.preset, &def, &error) != VL_OK)
     abort();
 }
 
@@ -39,6 +59,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     abort();
   if (camera_take(&def, &made, 2, &camera, &error) != VL_OK)
     abort();
+  if (message.kind == MESSAGE_SENSOR)
+    edit_sensor(&message);
   if (message.kind != MESSAGE_CAMERA)
     return 0;
   if (camera_edit(&camera, &message, &next, &warning, &error) != VL_OK && !error.message[0])

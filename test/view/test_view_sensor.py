@@ -173,6 +173,24 @@ def test_command(page, folder):
     expose(page, white="D65")
 
 
+def test_crop(page, folder):
+    """A rectangle is that part of the whole sensor, as the commands have it."""
+    whole, _ = expose(page, exposure_time=0.002, iso=100, frame=0)
+    page.send(type="settings", crop=[21, 11, 70, 51], change=90)
+    page.wait_frame(lambda f: f.change == 90 and f.channel == CAMERA and f.scale == 1 and f.spp == SPP)
+    part, frame = expose(page, frame=1)
+    part, frame = expose(page, frame=0)
+    counts = [sum(f["bins"]) for f in part["filters"]]
+    check("crop", (frame.x0, frame.y0, frame.columns, frame.rows) == (21, 11, 49, 40) and counts == [480, 980, 500], counts)
+    said = ask(page, "command", type="command", exposure=0, view="standard")
+    subprocess.run(["sh", "-c", said["command"]], cwd=folder, capture_output=True, env={**os.environ, "PATH": folder + ":" + os.environ["PATH"]})
+    saved = ask(page, "saved", type="save", what="image", name="part.dng")["file"]
+    read = lambda name: open(os.path.join(folder, name), "rb").read()
+    check("crop_by_commands", read(said["image"]) == read(saved), said["command"])
+    page.send(type="settings", crop=None, change=91)
+    page.wait_frame(lambda f: f.change == 91 and f.columns == WIDTH and f.spp == SPP)
+
+
 SENSOR_FILE = """preset: generic_rggb
 full_well: 9000 e-
 bits: 12 bits
@@ -232,6 +250,7 @@ def test_engine(folder):
     test_lens(page)
     test_hostile(page)
     test_command(page, folder)
+    test_crop(page, folder)
     other = Page(view)
     check("told_to_new_pages", other.wait_text("exposed")["bits"] == 14)
     other.close()

@@ -23,6 +23,7 @@ static void count(const Shot *s, Behind behind[VL_SENSOR_FILTERS]) {
   const vlSensorDef *sensor = vl_sensor_def(s->sensor);
   const vlRawDef *raw = vl_raw_def(s->raw);
   const uint16_t *numbers = vl_raw_const_numbers(s->raw);
+  const uint32_t left = s->exposure.window[0], top = s->exposure.window[1];
   uint32_t filters[VL_SENSOR_CELLS];
   for (uint32_t i = 0; i < sensor->pattern_width * sensor->pattern_height; i++) {
     filters[i] = 0;
@@ -31,8 +32,8 @@ static void count(const Shot *s, Behind behind[VL_SENSOR_FILTERS]) {
   }
   for (uint32_t y = 0; y < raw->height; y++)
     for (uint32_t x = 0; x < raw->width; x++) {
-      const uint32_t cell =
-          y % sensor->pattern_height * sensor->pattern_width + x % sensor->pattern_width;
+      const uint32_t cell = (top + y) % sensor->pattern_height * sensor->pattern_width +
+                            (left + x) % sensor->pattern_width;
       Behind *b = &behind[filters[cell]];
       const uint32_t number = numbers[(size_t)y * raw->width + x];
       b->count++;
@@ -82,7 +83,7 @@ static void put_metering(Json *json, const Shot *s) {
   json_number(json, "ev", log2(n * n / exposure->time) - log2(iso / 100));
   json_number(json, "luminance", s->luminance);
   json_number(json, "metered_ev",
-              s->luminance > 0 ? log2(s->luminance * 100 / meter_constant) : NAN);
+              s->luminance > 0 ? log2(s->luminance * 100 / meter_constant) : (double)NAN);
   json_number(json, "suggested_iso", iso * time / exposure->time);
   json_number(json, "suggested_time", time);
 }

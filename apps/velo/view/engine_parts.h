@@ -75,8 +75,11 @@ typedef struct Shot {
   uint32_t generation, scale, spp; /* at this time */
   uint32_t buckets;                /* channels of the spectrum */
   double luminance;                /* mean of the film, cd/m^2; NaN: it has none */
-  double *means;                   /* photoelectrons of its pixels, if is_collected */
+  vlImage *errors; /* colours and their errors, of error_spp samples of that film; null */
+  uint32_t error_spp;
+  double *means; /* photoelectrons of its pixels, if is_collected */
   bool is_collected;
+  bool keeps_light;       /* the next exposure may do with the light that is there */
   double electrons;       /* mean of the means */
   vlExposureDef exposure; /* of the means and of the numbers */
   vlSensorOutput out;     /* counts; no arrays */

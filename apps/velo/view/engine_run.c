@@ -43,6 +43,13 @@ static bool must_stop(const Engine *e) {
   return e->quit || e->next || e->task_count || e->wanted.generation != e->now.generation;
 }
 
+/* Whether the samples that are there are to be shown in another way. */
+static bool shows_other(const Engine *e) {
+  const Wanted *w = &e->wanted;
+  const bool sensor = w->channel == CHANNEL_CAMERA && w->sensor_edits != e->now.sensor_edits;
+  return w->channel != e->now.channel || w->denoise != e->now.denoise || sensor;
+}
+
 void engine_interrupt(Engine *engine) {
   if (engine->first_runs && engine->clients && !engine->quit)
     return;
@@ -147,7 +154,7 @@ static void tell_if_due(Engine *e, bool always) {
 /* After the work: a change does not wait for an estimate of the error. */
 static void tell_end(Engine *e) {
   pthread_mutex_lock(&e->lock);
-  bool changed = must_stop(e);
+  bool changed = must_stop(e) || shows_other(e);
   pthread_mutex_unlock(&e->lock);
   tell_if_due(e, !changed);
 }
@@ -242,7 +249,7 @@ static bool take_wanted(Engine *e) {
   if (denoise)
     e->preview.spp = 0;
   if (!anew)
-    return channel || denoise || (sensor && e->now.channel == CHANNEL_CAMERA);
+    return engine_sensor_changed(e, sensor && !channel) || channel || denoise;
   e->failed = false;
   vl_film_destroy(e->film);
   e->film = NULL;
@@ -260,9 +267,7 @@ static bool take_wanted(Engine *e) {
 /* Whether there is something to do; the caller holds the lock. */
 static bool has_work(const Engine *e) {
   const Wanted *w = &e->wanted;
-  bool samples = engine_is_of_film(w->channel),
-       sensor = w->channel == CHANNEL_CAMERA && w->sensor_edits != e->now.sensor_edits,
-       other_channel = w->channel != e->now.channel || w->denoise != e->now.denoise || sensor;
+  bool samples = engine_is_of_film(w->channel), other_channel = shows_other(e);
   bool unfinished = samples && (is_unfinished(e, w->spp) || denoise_due(e)),
        changed = other_channel || w->spp != e->now.spp;
   return must_stop(e) ||

@@ -265,7 +265,7 @@ static void put_time(FILE *out, const vlLoadDef *load) {
 }
 
 /* The part of the command that makes the samples. */
-static void put_render(FILE *out, const Engine *e, const char *camera) {
+static void put_render(FILE *out, const Engine *e, const char *camera, uint32_t spp) {
   const vlRenderDef *render = &e->model.job.defs->render;
   const vlCamera *made = &e->now.camera.made;
   const uint32_t *c = e->now.crop;
@@ -292,14 +292,14 @@ static void put_render(FILE *out, const Engine *e, const char *camera) {
     put_word(out, "%u", e->shown.light_paths);
   }
   put_word(out, "--spp");
-  put_word(out, "%u", vl_film_spp(e->film));
+  put_word(out, "%u", spp);
   put_word(out, "--sequence");
   put_word(out, "%u", render->sequence ? render->sequence : 65536);
 }
 
 static void put_command(FILE *out, const Engine *e, const Copied *copied, const char *camera) {
   char number[40];
-  put_render(out, e, camera);
+  put_render(out, e, camera, copied->spp);
   format_number(number, sizeof number, copied->exposure);
   put_word(out, "--view");
   put_word(out, "%s", choice_name(view_choices, (int)copied->view));
@@ -390,7 +390,7 @@ static void put_number(FILE *out, const char *option, double value) {
 
 /* The film of the mode "camera". */
 static void put_light(FILE *out, const Engine *e, const char *camera, const char *image) {
-  put_render(out, e, camera);
+  put_render(out, e, camera, e->shot.spp);
   if (e->model.job.defs->film.buckets != e->shot.buckets) {
     put_word(out, "--spectrum");
     put_word(out, "%u", e->shot.buckets);

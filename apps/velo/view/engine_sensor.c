@@ -32,6 +32,7 @@ void engine_sensor_forget(Engine *e) {
   Shot *s = &e->shot;
   vl_sensor_destroy(s->sensor);
   vl_image_destroy(s->light);
+  vl_image_destroy(s->errors);
   vl_raw_destroy(s->raw);
   free(s->means);
   *s = (Shot){.spp = 0};
@@ -89,6 +90,11 @@ int engine_sensor_begin(Engine *e) {
   return -1;
 }
 
+bool engine_sensor_changed(Engine *e, bool alone) {
+  e->shot.keeps_light = alone && e->now.channel == CHANNEL_CAMERA;
+  return e->shot.keeps_light;
+}
+
 /* ---- what the sensor sees ---------------------------------------------------------------- */
 
 /* The sensor of the preset that is chosen. */
@@ -106,7 +112,8 @@ static vlResult take_sensor(Engine *e, vlError *error) {
   return result == VL_OK ? vl_sensor_create(e->def.context, &def, &s->sensor, error) : result;
 }
 
-/* The channels of some images of the same size in one image, which replaces the first. */
+/* The channels of some images of the same size in one image, with the first one's attributes.
+ */
 static vlResult join(vlContext *context, vlImage *const *parts, uint32_t count,
                      vlImage **joined) {
   const char *names[MAX_CHANNELS];
@@ -119,6 +126,8 @@ static vlResult join(vlContext *context, vlImage *const *parts, uint32_t count,
   def.names = names;
   def.type = VL_PIXEL_F32;
   vlResult result = vl_image_create(context, &def, joined);
+  if (result == VL_OK)
+    result = vl_image_add_attributes(*joined, parts[0]); /* which part of the whole it is */
   if (result != VL_OK)
     return result;
   float *to = vl_image_pixels(*joined);
@@ -132,24 +141,44 @@ static vlResult join(vlContext *context, vlImage *const *parts, uint32_t count,
   return VL_OK;
 }
 
-/* The film's spectrum, the first channels; with errors also its colours and their standard
- * errors: by them the render's own noise is compared with that of photons. */
-static vlResult read_light(Engine *e, const vlFilm *film, bool errors, vlImage **light) {
+/* The film's colours and their standard errors, by which the render's own noise is compared
+ * with that of photons. They take long: those of half as many samples will do, until the image
+ * is done. */
+static vlResult take_errors(Engine *e, const vlFilm *film) {
+  Shot *s = &e->shot;
   const vlDevelopDef *develop = &e->model.job.defs->develop;
-  vlImage *parts[3] = {NULL};
-  vlResult result = vl_film_spectrum(film, &parts[0]);
-  if (result == VL_OK && !errors) {
-    *light = parts[0];
+  const uint32_t spp = vl_film_spp(film);
+  vlImage *parts[2] = {NULL};
+  if (s->errors && spp < 2 * s->error_spp && spp < e->now.spp)
+    return VL_OK;
+  vl_image_destroy(s->errors);
+  s->errors = NULL;
+  vlResult result = vl_film_develop(film, develop, &parts[0]);
+  if (result == VL_OK)
+    result = vl_film_errors(film, develop, &parts[1]);
+  if (result == VL_OK)
+    result = join(e->def.context, parts, 2, &s->errors);
+  s->error_spp = spp;
+  vl_image_destroy(parts[0]);
+  vl_image_destroy(parts[1]);
+  return result;
+}
+
+/* The film's spectrum, and behind it what take_errors makes. A coarse film has no errors. */
+static vlResult read_light(Engine *e, const vlFilm *film, uint32_t scale) {
+  Shot *s = &e->shot;
+  vlImage *spectrum = NULL;
+  vlResult result = vl_film_spectrum(film, &spectrum);
+  if (result == VL_OK && (scale > 1 || vl_film_spp(film) < 2)) {
+    s->light = spectrum;
     return VL_OK;
   }
   if (result == VL_OK)
-    result = vl_film_develop(film, develop, &parts[1]);
+    result = take_errors(e, film);
+  vlImage *parts[2] = {spectrum, s->errors};
   if (result == VL_OK)
-    result = vl_film_errors(film, develop, &parts[2]);
-  if (result == VL_OK)
-    result = join(e->def.context, parts, 3, light);
-  for (int i = 0; i < 3; i++)
-    vl_image_destroy(parts[i]);
+    result = join(e->def.context, parts, 2, &s->light);
+  vl_image_destroy(spectrum);
   return result;
 }
 
@@ -201,20 +230,26 @@ static double mean_luminance(const vlFilm *film) {
   return sum / (double)pixels;
 }
 
-/* The light of the film, unless it is there already. */
+/* The light of the film, unless it is there already. After a change of the sensor alone that of
+ * somewhat fewer samples will do: to read a large film takes longer than to expose it. */
 static vlResult take_light(Engine *e, const vlFilm *film, uint32_t scale) {
   Shot *s = &e->shot;
   const uint32_t spp = vl_film_spp(film);
+  const bool is_enough = s->keeps_light || s->spp == spp;
+  s->keeps_light = false;
   if (s->light && s->film == film && s->generation == e->now.generation && s->scale == scale &&
-      s->spp == spp)
+      is_enough)
     return VL_OK;
+  if (s->film != film || s->generation != e->now.generation || s->scale != scale) {
+    vl_image_destroy(s->errors);
+    s->errors = NULL;
+  }
   vl_image_destroy(s->light);
   free(s->means);
   s->light = NULL;
   s->means = NULL;
   s->is_collected = false;
-  /* coarse films have none, and one sample per pixel */
-  vlResult result = read_light(e, film, scale == 1 && spp > 1, &s->light);
+  vlResult result = read_light(e, film, scale);
   if (result != VL_OK)
     return result;
   const size_t pixels = (size_t)vl_image_width(s->light) * vl_image_height(s->light);
@@ -307,6 +342,7 @@ static bool find_white(const Engine *e, float values[VL_SPECTRUM_VALUES]) {
 static vlResult expose(Engine *e, vlError *error) {
   Shot *s = &e->shot;
   vlExposureDef exposure = present_exposure(e);
+  vl_exposure_set_window(&exposure, s->light);
   const uint32_t width = vl_image_width(s->light), height = vl_image_height(s->light);
   float white[VL_SPECTRUM_VALUES];
   vlResult result = e->now.sensor.metered ? meter(s, &exposure, error) : VL_OK;
@@ -369,7 +405,7 @@ void engine_publish_camera(Engine *e, const vlFilm *film, uint32_t scale) {
   const FrameKind kind = {.format = FRAME_HALF,
                           .channels = 3,
                           .scale = scale,
-                          .spp = scale > 1 ? 0 : vl_film_spp(film),
+                          .spp = scale > 1 ? 0 : e->shot.spp,
                           .developed = true};
   if (result == VL_OK) {
     engine_publish(e, image, &kind);

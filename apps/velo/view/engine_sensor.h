@@ -11,6 +11,9 @@ void engine_sensor_film(vlFilmDef *def);
 /* Begins with the mode "camera" if --expose is given. Returns -1, or the exit code after
  * reporting the error. */
 int engine_sensor_begin(Engine *engine);
+/* Notes whether the sensor, and nothing else, is another one than before: then it is exposed to
+ * the light that is there. Returns whether that is to be shown. */
+bool engine_sensor_changed(Engine *engine, bool alone);
 /* Exposes the sensor to the film, or to a coarse one, and sends the developed image and the
  * numbers about it; on the render thread. Sends an error where that cannot be. */
 void engine_publish_camera(Engine *engine, const vlFilm *film, uint32_t scale);

@@ -1,7 +1,6 @@
 /* view/sensor_edit.c: see sensor_edit.h. */
 #include "view/sensor_edit.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -109,29 +108,6 @@ vlResult sensor_edit(const ViewSensor *now, const ViewSensors *sensors,
   return VL_OK;
 }
 
-void sensor_put(Json *json, const ViewSensor *sensor) {
-  const vlExposureDef *exposure = &sensor->exposure;
-  json_text(json, "preset", sensor->preset);
-  json_text(json, "white", whites[sensor->white]);
-  json_number(json, "exposure_time", sensor->metered ? NAN : exposure->time);
-  json_number(json, "f_number", exposure->f_number);
-  json_number(json, "iso", exposure->iso);
-  json_number(json, "gain", exposure->gain);
-  json_number(json, "temperature", exposure->temperature);
-  json_integer(json, "seed", exposure->seed);
-  json_integer(json, "frame", exposure->frame);
-}
-
-void sensor_put_lists(Json *json, const ViewSensors *sensors) {
-  const char *name;
-  json_begin(json, "sensors", '[');
-  if (sensors->own[0])
-    json_text(json, NULL, sensors->own);
-  for (uint32_t i = 0; (name = vl_sensor_preset_name(i)); i++)
-    json_text(json, NULL, name);
-  json_end(json, ']');
-  json_begin(json, "whites", '[');
-  for (int i = 0; i < WHITES; i++)
-    json_text(json, NULL, whites[i]);
-  json_end(json, ']');
+const char *sensor_white_name(uint32_t index) {
+  return index < WHITES ? whites[index] : NULL;
 }

@@ -3,7 +3,6 @@
 #ifndef APP_VIEW_SENSOR_EDIT_H
 #define APP_VIEW_SENSOR_EDIT_H
 
-#include "cli/json.h"
 #include "velo/sensor.h"
 #include "view/message.h"
 
@@ -39,9 +38,7 @@ ViewSensor sensor_default(void);
  * refused, and the error says which and why in one line; *result is unchanged then. */
 vlResult sensor_edit(const ViewSensor *now, const ViewSensors *sensors,
                      const ViewMessage *message, ViewSensor *result, vlError *error);
-/* Writes the values as members of the open JSON object. */
-void sensor_put(Json *json, const ViewSensor *sensor);
-/* Writes the names that can be chosen as lists of the open JSON object. */
-void sensor_put_lists(Json *json, const ViewSensors *sensors);
+/* "D65", "A", "auto": the name of a ViewWhite; null past the end. */
+const char *sensor_white_name(uint32_t index);
 
 #endif

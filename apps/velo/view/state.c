@@ -29,6 +29,33 @@ char *json_text_end(JsonText *json) {
   return fclose(json->json.out) == 0 ? json->text : NULL;
 }
 
+static void put_sensor(Json *json, const ViewSensor *sensor) {
+  const vlExposureDef *exposure = &sensor->exposure;
+  json_text(json, "preset", sensor->preset);
+  json_text(json, "white", sensor_white_name(sensor->white));
+  json_number(json, "exposure_time", sensor->metered ? (double)NAN : exposure->time);
+  json_number(json, "f_number", exposure->f_number);
+  json_number(json, "iso", exposure->iso);
+  json_number(json, "gain", exposure->gain);
+  json_number(json, "temperature", exposure->temperature);
+  json_integer(json, "seed", exposure->seed);
+  json_integer(json, "frame", exposure->frame);
+}
+
+static void put_sensor_lists(Json *json, const ViewSensors *sensors) {
+  const char *name;
+  json_begin(json, "sensors", '[');
+  if (sensors->own[0])
+    json_text(json, NULL, sensors->own);
+  for (uint32_t i = 0; (name = vl_sensor_preset_name(i)); i++)
+    json_text(json, NULL, name);
+  json_end(json, ']');
+  json_begin(json, "whites", '[');
+  for (uint32_t i = 0; (name = sensor_white_name(i)); i++)
+    json_text(json, NULL, name);
+  json_end(json, ']');
+}
+
 char *state_text(const ViewState *s) {
   JsonText text;
   if (!json_text_begin(&text, "state"))
@@ -62,7 +89,7 @@ char *state_text(const ViewState *s) {
   json_end(json, '}');
   if (s->sensor) {
     json_begin(json, "sensor", '{');
-    sensor_put(json, s->sensor);
+    put_sensor(json, s->sensor);
     json_end(json, '}');
   }
   return json_text_end(&text);
@@ -87,6 +114,6 @@ char *state_lists(const ViewSensors *sensors) {
     json_text(json, NULL, state_shows_channel(i) ? vl_channel_name(i) : "");
   json_end(json, ']');
   if (sensors)
-    sensor_put_lists(json, sensors);
+    put_sensor_lists(json, sensors);
   return json_text_end(&text);
 }

@@ -5,6 +5,7 @@ import numpy
 
 from . import evaluate, links
 
+MAX_HEIGHT = 1e12  # scene units
 
 def _method(material):
     return getattr(getattr(material, "cycles", None), "displacement_method", None) or getattr(material, "displacement_method", "BUMP")
@@ -71,9 +72,10 @@ def apply(arrays, slot, material, inputs, matrix):
     except evaluate.Unsupported as error:
         inputs.notes.add(inputs.owner, error.node.name, "%s; the displacement is not rendered" % error.text)
         return
-    if not numpy.isfinite(moved).all():
-        inputs.notes.add(inputs.owner, source.node.name, "heights that are no numbers are 0")
-        moved = numpy.nan_to_num(moved, nan=0.0, posinf=0.0, neginf=0.0)
+    wrong = ~(abs(moved) < MAX_HEIGHT)
+    if wrong.any():
+        inputs.notes.add(inputs.owner, source.node.name, "heights that are no numbers or huge are 0")
+        moved = numpy.where(wrong, 0.0, moved)
     arrays.move(vertices, moved)
     if _method(material) == "BOTH":
         inputs.notes.add(inputs.owner, source.node.name, "displacement and bump is displacement alone")
@@ -92,7 +94,7 @@ def _heights(arrays, rows, normals, source, inputs, matrix):
         fields["uv:"] = fields["uv:" + arrays.render_uv]
     for name in arrays.color_names:
         fields["color:" + name] = arrays.colors(name)[rows].astype(float)
-    evaluator = evaluate.Evaluator(fields, inputs.look_up)
+    evaluator = evaluate.Evaluator(fields, inputs.look_up, lambda node, text: inputs.notes.add(inputs.owner, node.name, text))
     height, middle, scale = (evaluator.named(source.node, name, source.groups) for name in ("Height", "Midlevel", "Scale"))
     heights = numpy.broadcast_to(scale * (height - middle), (len(rows),))
     if source.node.space == "WORLD":

@@ -60,7 +60,11 @@ class Evaluator:
         """The value of an input socket."""
         source, socket_here = links.follow(socket, groups)
         if source is None:
-            return convert(default_of(socket_here), socket_here.type, socket.type)
+            value = default_of(socket_here)
+            if not numpy.isfinite(value).all():
+                self.note(socket_here.node, "%s is no finite number; it is 0" % socket_here.name)
+                value = numpy.where(numpy.isfinite(value), value, 0.0)
+            return convert(value, socket_here.type, socket.type)
         array = self.output(source)
         return convert(array, source.socket.type, socket.type)
 
@@ -82,6 +86,8 @@ class Evaluator:
             raise links.Cyclic("its nodes feed themselves")
         try:
             array = function(self, source.node, source.socket, source.groups)
+        except ArithmeticError:
+            raise Unsupported(source.node, "its numbers cannot be computed") from None
         finally:
             self._depth = max(0, self._depth - 1)
         return numpy.nan_to_num(numpy.asarray(array, dtype=float), nan=0.0, posinf=1e30, neginf=-1e30)

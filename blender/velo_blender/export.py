@@ -8,6 +8,8 @@ import velo
 from . import atlas, camera, camera_files, displace, geometry, hair, lights, materials, motion, object_info, points, textures, volumes, world
 from .report import Notes, Refused
 
+FARTHEST = 1e12  # coordinates, scene units
+
 
 class Part(NamedTuple):
     """The triangles of one material slot of a mesh, ready to be placed."""
@@ -87,6 +89,10 @@ class Export:
             matrix = numpy.array(instance.matrix_world, dtype=float)
             if not numpy.isfinite(matrix).all():
                 self.notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
+            elif abs(matrix).max() > FARTHEST:
+                self.notes.add(item.name, "", "it is too large or too far away; it is left out")
+            elif item.type != "LIGHT" and abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
+                self.notes.add(item.name, "", "it is scaled to nothing and left out")
             elif item.type == "LIGHT":
                 lights.add(self.scene, item, instance.matrix_world, self._camera_sees, self.notes)
                 self.shapes += [None] * (len(self.scene.handles("shapes")) - len(self.shapes))
@@ -184,9 +190,6 @@ class Export:
     def _place(self, instance, placed, poses):
         """Adds an object; returns the handle of its instance if that is all that it is and it is at rest."""
         item, matrix = instance.object, placed.matrix
-        if abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
-            self.notes.add(item.name, "", "it is scaled to nothing and left out")
-            return None
         prepared = self._prepared(item, matrix, object_info.random_id(instance))
         if prepared is None:
             return None
@@ -201,7 +204,8 @@ class Export:
             if poses is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
             self._add_shape(part, placed, pose=matrix, name=item.name)
-        return None if prepared.emissive else handle
+        alone = any(self._varies(slot.material) for slot in item.material_slots)  # its colours change with its place
+        return None if prepared.emissive or alone else handle
 
     def _add_hair(self, item, strands, slot, placed, matrix):
         if strands is None:
@@ -287,8 +291,8 @@ class Export:
             arrays = geometry.read(mesh)
             if arrays is None:
                 return None
-            if not arrays.is_finite():
-                self.notes.add(item.name, "", "its vertices are no numbers (NaN or infinite); it is left out")
+            if not arrays.is_finite() or abs(arrays.positions).max() > FARTHEST:
+                self.notes.add(item.name, "", "its vertices are no numbers (NaN or infinite) or too far away; it is left out")
                 return None
             self._displace(arrays, slots, place)
             parts = self._parts(item, arrays, slots, place)

@@ -14,6 +14,7 @@ from . import evaluate, links, square, versions
 SHARP_SUN = 1e-3  # radians from the middle to the rim; suns of a smaller disk are points
 SUN_PIXELS = 12  # of a sun's image from the middle to the rim, where MAX_SUN_SIDE allows it
 MAX_SUN_SIDE = 2048
+LARGEST = 1e12  # radius or side of a lamp, scene units
 FAR = 1e6  # where the camera would see a sun
 SPOT_SIDE = 512  # of the image of a spot's intensity, pixels
 
@@ -75,6 +76,9 @@ def _hidden(item, points, camera_sees):
 
 def _point(scene, item, light, pose, words, power, camera_sees, notes):
     place, radius = pose[:3, 3], light.shadow_soft_size
+    if not radius < LARGEST:
+        notes.add(item.name, "", "its radius is huge or no number; it is left out")
+        return
     if radius <= 1e-6:
         scene.add_light("point", position=tuple(place), scale=power / (4 * math.pi), **words)
         return
@@ -93,7 +97,7 @@ def _sun(scene, item, light, pose, words, power, camera_sees, notes):
         return
     axis = axis / length
     frame = _frame_along(axis, numpy.zeros(3))
-    half = 0.5 * min(light.angle, math.pi)
+    half = 0.5 * min(light.angle, math.pi) if math.isfinite(light.angle) else 0.0
     rim = frame[:3, :2] @ (math.tan(min(half, 1.5)) * numpy.array([[1, -1, 0, 0], [0, 0, 1, -1.0]]))
     if half < SHARP_SUN or _hidden(item, FAR * (axis + rim.T), camera_sees):
         scene.add_light("distant", position=tuple(axis), to=(0.0, 0.0, 0.0), scale=power, **words)
@@ -176,6 +180,9 @@ def _area(scene, item, light, pose, words, power, camera_sees, notes):
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
     scales = numpy.linalg.norm(pose[:3, :2], axis=0)
+    if not max(width * scales[0], height * scales[1]) < LARGEST:
+        notes.add(item.name, "", "its size is huge or no number; it is left out")
+        return
     if not width * height * scales[0] * scales[1] > 1e-12:
         notes.add(item.name, "", "its area is 0; it is left out")
         return

@@ -74,8 +74,9 @@ def _closure(socket, groups, inputs, depth):
         return _add(first, second, node, inputs)
     function = closures.CLOSURES.get(node.type)
     if function is None:
-        inputs.notes.add(inputs.owner, node.name, "velo has no such shader (%s); it is black" % node.bl_label)
-        return Closure()
+        has_color = node.inputs.get("Color") is not None
+        inputs.notes.add(inputs.owner, node.name, "velo has no such shader (%s); it is %s" % (node.bl_label, "diffuse" if has_color else "black"))
+        return Closure(closures.diffuse(inputs, inputs.color(node.inputs["Color"], source.groups), {})) if has_color else Closure()
     try:
         return function(inputs, node, source.groups)
     except Unsupported as error:

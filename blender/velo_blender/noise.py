@@ -95,9 +95,10 @@ def _gradient(corner, f):
 def in_pieces(function):
     """A function of points, called for some thousand of them at once."""
     def whole(points, *rest):
-        if len(points) <= PIECE:
-            return function(points, *rest)
-        return numpy.concatenate([function(points[i:i + PIECE], *rest) for i in range(0, len(points), PIECE)])
+        with numpy.errstate(all="ignore"):
+            if len(points) <= PIECE:
+                return function(points, *rest)
+            return numpy.concatenate([function(points[i:i + PIECE], *rest) for i in range(0, len(points), PIECE)])
     return whole
 
 

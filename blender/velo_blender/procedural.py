@@ -83,15 +83,20 @@ def _octaves(points, lacunarity, whole, first):
     return [points * lacunarity**k for k in range(first, max(whole, first))], points * lacunarity**max(whole, first)
 
 
+def _fall(lacunarity, dimension):
+    """What an octave has of the one before it."""
+    return numpy.minimum(numpy.float64(lacunarity)**-dimension, 1e15)
+
+
 def _fbm(points, dimension, lacunarity, octaves, offset, gain):
-    fall, whole = lacunarity**-dimension, int(octaves)
+    fall, whole = _fall(lacunarity, dimension), int(octaves)
     steps, rest = _octaves(points, lacunarity, whole, 0)
     total = sum((noise.perlin(p) * fall**k for k, p in enumerate(steps)), numpy.zeros(len(points)))
     return total + (octaves - whole) * noise.perlin(rest) * fall**whole if octaves > whole else total
 
 
 def _multifractal(points, dimension, lacunarity, octaves, offset, gain):
-    fall, whole = lacunarity**-dimension, int(octaves)
+    fall, whole = _fall(lacunarity, dimension), int(octaves)
     steps, rest = _octaves(points, lacunarity, whole, 0)
     total = numpy.ones(len(points))
     for k, p in enumerate(steps):
@@ -100,7 +105,7 @@ def _multifractal(points, dimension, lacunarity, octaves, offset, gain):
 
 
 def _hetero(points, dimension, lacunarity, octaves, offset, gain):
-    fall, whole = lacunarity**-dimension, int(octaves)
+    fall, whole = _fall(lacunarity, dimension), int(octaves)
     total = offset + noise.perlin(points)
     steps, rest = _octaves(points, lacunarity, whole, 1)
     for k, p in enumerate(steps, 1):
@@ -111,7 +116,7 @@ def _hetero(points, dimension, lacunarity, octaves, offset, gain):
 
 
 def _hybrid(points, dimension, lacunarity, octaves, offset, gain):
-    fall, whole = lacunarity**-dimension, int(octaves)
+    fall, whole = _fall(lacunarity, dimension), int(octaves)
     total = noise.perlin(points) + offset
     weight = gain * total
     steps, rest = _octaves(points, lacunarity, whole, 1)
@@ -125,7 +130,7 @@ def _hybrid(points, dimension, lacunarity, octaves, offset, gain):
 
 
 def _ridged(points, dimension, lacunarity, octaves, offset, gain):
-    fall = lacunarity**-dimension
+    fall = _fall(lacunarity, dimension)
     signal = (offset - abs(noise.perlin(points)))**2
     total = signal
     for k in range(1, int(octaves)):
@@ -144,7 +149,7 @@ def musgrave(e, node, output, groups):
     detail, dimension, lacunarity, offset, gain = _numbers(e, node, groups, "Detail", "Dimension", "Lacunarity", "Offset", "Gain")
     octaves = min(max(detail, 0.0), 15.0)
     with numpy.errstate(all="ignore"):
-        return MUSGRAVE[node.musgrave_type](points, max(dimension, 1e-5), max(lacunarity, 1e-5), octaves, offset, gain)
+        return MUSGRAVE[node.musgrave_type](points, max(dimension, 1e-5), numpy.float64(max(lacunarity, 1e-5)), octaves, offset, gain)
 
 
 def wave(e, node, output, groups):

@@ -19,10 +19,10 @@ _known = {}
 
 class Sky:
     """texels: WIDTH / 2 x WIDTH x 3, equirectangular, rows from the top. suns: list of (direction, half the disk's angle, its radiance summed
-    over directions, 3)."""
+    over directions, 3). is_finite: all its numbers were; else those that were not are 0."""
 
-    def __init__(self, texels, suns):
-        self.texels, self.suns = texels, suns
+    def __init__(self, texels, suns, is_finite):
+        self.texels, self.suns, self.is_finite = texels, suns, is_finite
 
 
 class Failed(Exception):
@@ -81,24 +81,25 @@ def _render(world):
             raise Failed("Cycles could not be started or took too long (%s)" % type(error).__name__) from None
         if not os.path.exists(os.path.join(folder, "done")):
             raise Failed("Cycles ended with %d" % done.returncode)
-        texels = _read(os.path.join(folder, "sky.exr"))
+        texels, is_finite = _read(os.path.join(folder, "sky.exr"))
         suns = []
         with open(os.path.join(folder, "done"), encoding="ascii") as file:
             for number, line in enumerate(file):
                 *axis, half = (float(part) for part in line.split())
                 suns.append((numpy.array(axis), half, _sum_of_sun(folder, number)))
-        return Sky(texels, suns)
+        return Sky(texels, suns, is_finite)
 
 
 def _read(path):
+    """(height x width x 3 with 0 for what is not finite, whether all was finite)."""
     image = velo.read_image(path)
     values = numpy.stack([numpy.asarray(image[letter], dtype=numpy.float32) for letter in "RGB"], axis=2)
-    return numpy.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
+    return numpy.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), bool(numpy.isfinite(values).all())
 
 
 def _sum_of_sun(folder, number):
     """The radiance that a sun's disk adds, summed over directions: from two perspective images, with the disk and without."""
-    with_disk, without = (_read(os.path.join(folder, "sun%d_%s.exr" % (number, name))) for name in ("with", "without"))
+    with_disk, without = (_read(os.path.join(folder, "sun%d_%s.exr" % (number, name)))[0] for name in ("with", "without"))
     side = len(with_disk)
     with open(os.path.join(folder, "sun%d_angle" % number), encoding="ascii") as file:
         reach = math.tan(0.5 * float(file.read()))

@@ -127,8 +127,8 @@ def _add(volume, inputs, box, matrix):
     if emission.max() > 0:  # velo's media emit by what they absorb
         absorption = numpy.where(emission > 0, numpy.maximum(absorption, 1e-3), absorption)
         color = numpy.where(emission > 0, emission / numpy.maximum(absorption, 1e-30), 0)
-        high = float(color.max())
-        words.update(emission=tuple(float(x) / high for x in color), emission_scale=high)
+        high = min(float(color.max()), 1e30)
+        words.update(emission=tuple(min(float(x) / high, 1.0) for x in color), emission_scale=high)
     words.update(sigma_a=tuple(float(x) for x in absorption), sigma_s=tuple(float(x) for x in scattering))
     if max(absorption.max(), scattering.max()) <= 0:
         return None

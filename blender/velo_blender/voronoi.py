@@ -13,8 +13,9 @@ def _distance(a, b, metric, exponent):
         return abs(a - b).sum(axis=1)
     if metric == "CHEBYCHEV":
         return abs(a - b).max(axis=1)
+    power = numpy.float64(exponent)
     with numpy.errstate(all="ignore"):
-        return (abs(a - b)**exponent).sum(axis=1)**(1 / exponent)
+        return (abs(a - b)**power).sum(axis=1)**(1 / power)
 
 
 def _offsets(reach, dimensions):

@@ -124,6 +124,8 @@ def _add_sky(scene, world, error, notes):
     except sky.Failed as reason:
         notes.add(world.name, error.node.name, "%s, and %s; the world is black" % (error.text, reason))
         return
+    if not made.is_finite:
+        notes.add(world.name, error.node.name, "radiance that is no finite number is 0")
     side = sky.WIDTH // 2
     directions = square.directions(side)
     texels = images.Texels(made.texels, "REPEAT")

@@ -382,6 +382,8 @@ class Export:
             words.update(positions=pick(first.positions), positions_close=pick(last.positions), times=(0.0, 1.0))
             if arrays.normals is not None and first.normals is not None and last.normals is not None:
                 words.update(normals=geometry.clean_normals(pick(first.normals)), normals_close=geometry.clean_normals(pick(last.normals)))
+        if surface.tangent is not None:
+            words["tangents"] = pick(arrays.radial_tangents(surface.tangent))
         uvs = [numpy.nan_to_num(pick(arrays.uvs[name])) for name in maps.names[:4]]
         if surface.atlas is not None:
             uvs = uvs[:3] + [surface.atlas.uvs.reshape(-1, 2)]

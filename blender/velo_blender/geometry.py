@@ -61,6 +61,14 @@ class MeshArrays:
         colors = _read(attribute.data, "color", 4, numpy.float32)
         return colors[self.corners] if attribute.domain == "POINT" else colors
 
+    def radial_tangents(self, axis):
+        """Directions about an axis, X, Y or Z, through the middle of the texture space, n x 3: Cycles' tangents where none are given."""
+        low, size = self.texture_space
+        x, y, z = ((self.positions - low) / numpy.where(size == 0, 1, size) - 0.5).T
+        none = numpy.zeros_like(x)
+        around = {"X": (none, -z, y), "Y": (-z, none, x), "Z": (-y, x, none)}[axis]
+        return numpy.stack(around, axis=1).astype(numpy.float32)
+
     def vertex_of(self, rows):
         """The mesh's vertices of rows of positions."""
         return self.corners[rows] if self.by_corner else rows

@@ -16,6 +16,7 @@ SUN_PIXELS = 12  # of a sun's image from the middle to the rim, where MAX_SUN_SI
 MAX_SUN_SIDE = 2048
 LARGEST = 1e12  # radius or side of a lamp, scene units
 FAR = 1e6  # where the camera would see a sun
+SPOT_POINTS = 16  # of a spot with a radius
 SPOT_SIDE = 512  # of the image of a spot's intensity, pixels
 
 
@@ -137,21 +138,39 @@ def _spot(scene, item, light, pose, words, power, camera_sees, notes):
         notes.add(item.name, "", "its direction is not defined; it is left out")
         return
     half = min(0.5 * light.spot_size, 0.5 * math.pi)
-    if light.shadow_soft_size > 0.01:
-        notes.add(item.name, "Radius", "a spot's radius is 0; its shadows are sharp")
-    frame = _frame_along(-axis / length, pose[:3, 3])
-    color = numpy.array(words["color"]) * power / (4 * math.pi)
-    if half <= math.radians(60):
-        side = SPOT_SIDE
-        place = math.tan(half) * (2 * (numpy.arange(side) + 0.5) / side - 1)
-        cosines = 1 / numpy.sqrt(1 + place[:, None]**2 + place[None, :]**2)
-        scene.add_light("projection", pose=frame, fov=2 * half, image=_intensity(cosines, half, light.spot_blend, color), scale=1.0)
+    if not light.shadow_soft_size < LARGEST:
+        notes.add(item.name, "", "its radius is huge or no number; it is left out")
         return
+    frame = _frame_along(-axis / length, pose[:3, 3])
+    places = [frame[:3, 3]]
+    if light.shadow_soft_size > 1e-6:
+        places = [frame[:3, 3] + frame[:3, :2] @ point * light.shadow_soft_size for point in disk_points(SPOT_POINTS)]
+        notes.add(item.name, "Radius", "its disk is %d points" % SPOT_POINTS)
+    color = numpy.array(words["color"]) * power / (4 * math.pi * len(places))
+    kind, image, turn = _spot_image(half, light.spot_blend, color)
+    for place in places:
+        frame[:3, 3] = place
+        size = {"fov": 2 * half} if kind == "projection" else {}
+        scene.add_light(kind, pose=frame @ turn, image=image, scale=1.0, **size)
+
+
+def disk_points(count):
+    """Points spread evenly over a disk of radius 1, count x 2: Vogel's spiral."""
+    number = numpy.arange(count) + 0.5
+    turn = number * math.pi * (3 - math.sqrt(5))
+    return numpy.sqrt(number / count)[:, None] * numpy.stack((numpy.cos(turn), numpy.sin(turn)), axis=1)
+
+
+def _spot_image(half, blend, color):
+    """(velo's kind of light, its image, the turn of its axes) for a spot of half an angle."""
+    if half <= math.radians(60):
+        place = math.tan(half) * (2 * (numpy.arange(SPOT_SIDE) + 0.5) / SPOT_SIDE - 1)
+        cosines = 1 / numpy.sqrt(1 + place[:, None]**2 + place[None, :]**2)
+        return "projection", _intensity(cosines, half, blend, color), numpy.eye(4)
     side = 2 * SPOT_SIDE
     cosines = square.directions(side)[:, 2].reshape(side, side)
     # A goniometric light's axis is y.
-    turned = frame @ numpy.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
-    scene.add_light("goniometric", pose=turned, image=_intensity(cosines, half, light.spot_blend, color), scale=1.0)
+    return "goniometric", _intensity(cosines, half, blend, color), numpy.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 
 
 def _frame_along(axis, place):

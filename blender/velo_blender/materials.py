@@ -8,11 +8,12 @@ from .evaluate import Unsupported
 
 class Surface:
     """What a shape needs: material (handle), alpha (number, texture or None), emission (handle or None), color_attribute (name of
-    its vertex colours, or None), atlas (atlas.Atlas of what is baked by triangles, or None)."""
+    its vertex colours, or None), atlas (atlas.Atlas of what is baked by triangles, or None), tangent (the axis about which tangents
+    run, or None)."""
 
     def __init__(self, material, alpha, emission, inputs):
         self.material, self.alpha, self.emission = material, alpha, emission
-        self.color_attribute, self.atlas = inputs.color_attribute, inputs.atlas
+        self.color_attribute, self.atlas, self.tangent = inputs.color_attribute, inputs.atlas, inputs.tangent
 
 
 def convert(material, inputs):

@@ -1,7 +1,7 @@
 """principled.py: Blender's Principled shader, both generations of its sockets, as velo's principled material."""
 import math
 
-from . import bumps, subsurface, versions
+from . import bumps, links, subsurface, versions
 
 SHEEN_BEFORE_4 = 0.15  # of Burley's sheen, as a part of velo's: the same light from a ball in a white room, measured
 
@@ -19,22 +19,36 @@ def eta_of_reflectance(f0):
     return (1 + root) / (1 - root)
 
 
+def _tangent_axis(inputs, node, groups):
+    """The axis about which a shader's tangents run; None: they are those of the uv map."""
+    source = links.follow(node.inputs["Tangent"], groups)[0] if node.inputs.get("Tangent") is not None else None
+    if source is None:
+        return "Z"
+    if source.node.type == "TANGENT":
+        return source.node.axis if source.node.direction_type == "RADIAL" else None
+    inputs.notes.add(inputs.owner, source.node.name, "tangents by this node are radial about z")
+    return "Z"
+
+
 def anisotropy(inputs, strength_socket, rotation_socket, roughness, groups, node):
-    """Keywords for Cycles' anisotropy; numbers only. Cycles: alpha / aspect along the tangent, alpha * aspect across it, aspect =
-    sqrt(1 - 0.9 |strength|). velo: alpha along the tangent is mix(alpha, 1, strength^2)."""
+    """Keywords for Cycles' anisotropy; numbers only. Principled: alpha / aspect along the tangent, alpha * aspect across it, aspect =
+    sqrt(1 - 0.9 |strength|); the glossy shader: aspect = 1 - |strength|, and the longer side across the tangent. velo: alpha along the
+    tangent is mix(alpha, 1, strength^2)."""
     strength, turn = inputs.constant(strength_socket, groups), inputs.constant(rotation_socket, groups)
     if strength == 0.0:
         return {}
     if not all(isinstance(value, float) for value in (strength, turn, roughness)):
         inputs.notes.add(inputs.owner, node.name, "anisotropy by textures is left out")
         return {}
+    inputs.tangent = _tangent_axis(inputs, node, groups)
     alpha = roughness * roughness
-    aspect = math.sqrt(1 - 0.9 * min(abs(strength), 1.0))
+    is_principled = node.type == "BSDF_PRINCIPLED"
+    aspect = math.sqrt(1 - 0.9 * min(abs(strength), 1.0)) if is_principled else 1 - min(abs(strength), 0.99)
     across, along = alpha * aspect, min(alpha / aspect, 1.0)
     if across >= 1:
         return {}
     share = math.sqrt(max(0.0, (along - across) / (1 - across)))
-    rotation = 2 * math.pi * turn + (0.5 * math.pi if strength < 0 else 0.0)
+    rotation = 2 * math.pi * turn + (0.5 * math.pi if (strength < 0) == is_principled else 0.0)
     return {"roughness": math.sqrt(across), "anisotropy": share, "anisotropy_rotation": rotation}
 
 

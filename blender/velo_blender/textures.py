@@ -34,6 +34,7 @@ class Inputs:
 
     def __init__(self, scene, notes, owner, maps, cache, bake_size, corners=None, known=None):
         self.known = known or {}
+        self.tangent = None  # the axis about which tangents run, where the material has a direction; None: along u
         self.relief = None  # a float texture, the height of the material's displacement where it is rendered as a bump
         self.corners = corners  # atlas.Corners of the mesh; None: nothing can be baked by its triangles
         self.atlas = None  # the layout of what is baked by triangles; None: nothing is

@@ -176,3 +176,24 @@ def what_depends_on_rays_is_listed():
     image = colors(render(scene))
     assert any("Light Path" in line for line in notes(scene)), notes(scene)
     assert numpy.isfinite(image).all() and image[24, 24, 2] < 0.7
+
+
+@case
+def highlights_run_as_in_cycles():
+    for kind, values in (("ShaderNodeBsdfAnisotropic", {"Roughness": 0.4, "Anisotropy": 0.7}),
+                         ("ShaderNodeBsdfPrincipled", {"Metallic": 1.0, "Roughness": 0.35, "Anisotropic": 0.8, "Anisotropic_Rotation": 0.1})):
+        scene = new_scene(world=(0.05, 0.05, 0.05))
+        ball(material(kind, **values)[0], (0, 0, 0.5), 1.7)
+        lamp(scene, "AREA", 500, (3, -4, 5), size=1.0)
+        agrees(scene, 0.02)
+        assert differs(scene) < 0.08, (kind, differs(scene))
+
+
+@case
+def a_spot_with_a_radius_has_soft_shadows():
+    scene = new_scene()
+    plane(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+    ball(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+    lamp(scene, "SPOT", 800, spot_size=1.0, spot_blend=0.3, shadow_soft_size=0.25)
+    agrees(scene, 0.01)
+    assert differs(scene) < 0.05, differs(scene)

@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "camera/numbers.h"
 #include "camera/poses.h"
 #include "camera/scene_world.h"
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "image/image.h"
 #include "render/lens_options.h"
 #include "render/needs.h"

@@ -5,11 +5,11 @@
 #include <stdio.h>
 
 #include "camera/camera.h"
-#include "camera/numbers.h"
 #include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/json.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "cli/vector.h"
 #include "image/image.h"
 #include "image/overlay.h"

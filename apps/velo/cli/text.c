@@ -1,6 +1,8 @@
 /* cli/text.c: see text.h. */
 #include "cli/text.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -36,4 +38,17 @@ void text_shell_word(FILE *out, const char *word) {
       fputc(*word, out);
   }
   fputc('\'', out);
+}
+
+bool parse_numbers(const char *text, int count, double *values) {
+  for (int i = 0; i < count; i++) {
+    char *end;
+    values[i] = strtod(text, &end);
+    if (end == text || !isfinite(values[i]))
+      return false;
+    text = end;
+    if (i + 1 < count && *text++ != ',')
+      return false;
+  }
+  return *text == 0;
 }

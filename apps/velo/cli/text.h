@@ -1,4 +1,4 @@
-/* cli/text.h: small work on texts. */
+/* cli/text.h: small work on texts, and numbers in them. */
 #ifndef APP_CLI_TEXT_H
 #define APP_CLI_TEXT_H
 
@@ -12,5 +12,7 @@ void text_print_plain(const char *text);
 /* Writes a space and a word, quoted so that a POSIX shell reads it as one. No control
  * characters that a terminal would obey are written: the shell gets them of printf. */
 void text_shell_word(FILE *out, const char *word);
+/* Reads `count` finite numbers separated by commas, and nothing else. */
+bool parse_numbers(const char *text, int count, double *values);
 
 #endif

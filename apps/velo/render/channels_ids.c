@@ -158,3 +158,19 @@ int channels_write_ids(const Channels *c, const Channels *right, vlContext *cont
   free(text);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, target);
 }
+
+/* Ids and counts in a form that other programs display (docs/ground-truth.md, "In other
+ * programs"). */
+vlResult channels_make_visible(vlImage **ids) {
+  if (!*ids)
+    return VL_OK;
+  vlImage *shown = NULL;
+  vlResult result = vl_image_show_ids(*ids, &shown);
+  if (result != VL_OK)
+    return result;
+  if (vl_image_type(shown) == VL_PIXEL_U32)
+    report_note("ids of 2^24 and more are written as integers, which not every program shows");
+  vl_image_destroy(*ids);
+  *ids = shown;
+  return VL_OK;
+}

@@ -40,6 +40,26 @@ typedef struct Descent {
   VL_ROW uint32_t side[VL_ROW_SIZE];
 } Descent;
 
+/* By lane, what vl_light_tree_counts says. */
+static void find_counts(const vlLightTree *tree, uint32_t n, const vlSurface *restrict f,
+                        uint32_t *restrict counts) {
+  uint32_t padded = VL_PAD(n);
+  if (tree->node_count == 0 || tree->unbounded_count == 0) {
+    for (uint32_t i = 0; i < padded; i++)
+      counts[i] = tree->node_count > 0;
+    return;
+  }
+  vlLightCluster root = vl_light_cluster((const float *)tree->nodes, 0);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    float side = f->side[i]; /* gcc's report names this line: tools/check_vectorised */
+    vlReceiver at = vl_receiver(f, i);
+    at.side = side;
+    counts[i] = vl_light_importance(root, at) > 0.0f ? 1u : 0u;
+  }
+}
+
 /* Lane i has arrived at its light. */
 static inline void choose(Descent *d, uint32_t i, uint32_t light, float pmf, float rest) {
   d->out->light[i] = light;
@@ -108,14 +128,14 @@ static void step_apart(const float *restrict nodes, const vlSurface *restrict f,
 
 /* Starts the descent. Lanes that choose a light without bounds are done; the others start at
  * the root. */
-static void start(Descent *d, uint32_t n, const float *u) {
+static void start(Descent *d, uint32_t n, const float *u, const uint32_t *counts) {
   const vlLightTree *tree = d->tree;
   uint32_t count = 0;
   Walk *w = &d->together;
   for (uint32_t i = 0; i < n; i++) {
     vlLightChoice c = {VL_INNER, 1.0f, u[i]};
     if (tree->unbounded_count)
-      c = vl_light_choose_slot(tree, vl_receiver(d->f, i), u[i]);
+      c = vl_light_choose_slot(tree, vl_receiver(d->f, i), counts[i] != 0, u[i]);
     bool beside = c.light != VL_INNER, none = !(c.pmf > 0.0f);
     d->out->light[i] = 0;
     d->out->pmf[i] = 0.0f; /* for lanes that no light reaches */
@@ -210,10 +230,14 @@ static void descend_apart(Descent *d) {
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f,
                            const float *u, vlLightSamples *out, float *rest,
                            vlLanesByLight *by_light) {
+  VL_ROW uint32_t counts[VL_ROW_SIZE];
   by_light->count = 0;
+  if (tree->kind == VL_LIGHT_SAMPLER_BVH)
+    find_counts(tree, n, f, counts);
   if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* no tree to descend */
     for (uint32_t i = 0; i < n; i++) {
-      vlLightChoice c = vl_light_choose(tree, vl_receiver(f, i), u[i]);
+      bool in_tree = tree->kind == VL_LIGHT_SAMPLER_BVH && counts[i] != 0;
+      vlLightChoice c = vl_light_choose(tree, vl_receiver(f, i), in_tree, u[i]);
       out->light[i] = c.light;
       out->pmf[i] = c.pmf;
       rest[i] = c.rest;
@@ -229,7 +253,7 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
   d.rest = rest;
   d.by_light = by_light;
   d.segment_count = d.apart.count = 0;
-  start(&d, n, u);
+  start(&d, n, u, counts);
   arrive(&d, 0, &d.together, d.together.count);
   while (d.segment_count)
     descend_together(&d);

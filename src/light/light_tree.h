@@ -170,21 +170,26 @@ typedef struct vlLightSlots {
   uint32_t outside;
   bool tree;
 } vlLightSlots;
-static inline vlLightSlots vl_light_slots(const vlLightTree *tree, vlReceiver at) {
-  vlLightSlots r = {0, tree->node_count > 0};
+/* Whether the tree is one of the slots. Without lights outside it, it is the only one. */
+static inline bool vl_light_tree_counts(const vlLightTree *tree, vlReceiver at) {
+  return tree->node_count > 0 &&
+         (!tree->unbounded_count || vl_light_node_importance(tree->nodes, at) > 0.0f);
+}
+/* counts: what vl_light_tree_counts says. */
+static inline vlLightSlots vl_light_slots(const vlLightTree *tree, vlReceiver at, bool counts) {
+  vlLightSlots r = {0, counts};
   if (!tree->distant_count)
     r.outside = tree->unbounded_count;
   for (uint32_t k = 0; tree->distant_count && k < tree->unbounded_count; k++)
     r.outside += vl_light_reaches(tree, k, at);
-  if (tree->unbounded_count && r.tree)
-    r.tree = vl_light_node_importance(tree->nodes, at) > 0.0f;
   return r;
 }
 
-/* Chooses a light outside the tree, or the tree (light: VL_INNER). pmf 0: no light counts. */
+/* Chooses a light outside the tree, or the tree (light: VL_INNER). pmf 0: no light counts.
+ * counts: as above. */
 static inline vlLightChoice vl_light_choose_slot(const vlLightTree *tree, vlReceiver at,
-                                                 float u) {
-  vlLightSlots slots = vl_light_slots(tree, at);
+                                                 bool counts, float u) {
+  vlLightSlots slots = vl_light_slots(tree, at, counts);
   uint32_t count = slots.outside + slots.tree, wanted, last = count ? count - 1 : 0;
   if (count == 0)
     return (vlLightChoice){VL_INNER, 0.0f, 0.0f};
@@ -202,13 +207,15 @@ static inline vlLightChoice vl_light_choose_slot(const vlLightTree *tree, vlRece
   return r;
 }
 
-static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlReceiver at, float u) {
+/* counts: what vl_light_tree_counts says, computed for many receivers at once. */
+static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlReceiver at, bool counts,
+                                            float u) {
   vlLightChoice none = {VL_INNER, 0.0f, 0.0f};
   if (tree->light_count == 0)
     return none;
   if (tree->kind != VL_LIGHT_SAMPLER_BVH)
     return vl_light_choose_cdf(tree, u);
-  vlLightChoice slot = vl_light_choose_slot(tree, at, u);
+  vlLightChoice slot = vl_light_choose_slot(tree, at, counts, u);
   if (slot.light != VL_INNER || !(slot.pmf > 0.0f))
     return slot;
   const vlLightNode *root = tree->nodes;
@@ -223,7 +230,7 @@ static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlReceiver 
 static inline float vl_light_pmf(const vlLightTree *tree, vlReceiver at, uint32_t light) {
   if (tree->kind != VL_LIGHT_SAMPLER_BVH)
     return tree->cdf[light + 1] - tree->cdf[light];
-  vlLightSlots slots = vl_light_slots(tree, at);
+  vlLightSlots slots = vl_light_slots(tree, at, vl_light_tree_counts(tree, at));
   uint32_t count = slots.outside + slots.tree;
   float pmf = count ? 1.0f / (float)count : 0.0f;
   if (tree->slot[light] != VL_INNER)

@@ -8,6 +8,8 @@
 
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "velo/edit.h"
+#include "velo/export.h"
 #include "velo/filter_kinds.h"
 #include "velo/light.h"
 #include "velo/tracer.h"
@@ -157,6 +159,32 @@ static void check_delta_light(const char *kind, const LightVariant *v, const cha
 #define FLOOR \
   "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9]\n"
 
+/* The edge of glTF's spots has another profile, and the writer says so; the angles between
+ * which it lies are the same. */
+static void check_spot_as_gltf(void) {
+  char path[100];
+  vlError error = {0};
+  vlScene *scene = load_text(context,
+                             HEAD
+                             "WorldBegin LightSource \"spot\" \"float coneangle\" 40 "
+                             "\"float conedeltaangle\" 10 Shape \"sphere\"\n",
+                             &error);
+  assert_non_null(scene);
+  snprintf(path, sizeof path, "%s/spot.gltf", folder);
+  assert_int_equal(vl_scene_save(scene, path, NULL, &error), VL_OK);
+  vl_scene_destroy(scene);
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  assert_int_equal(vl_scene_load(scene, path, NULL, &error), VL_OK);
+  const vlLightDef *light = vl_scene_light(scene, (vlLightId){1});
+  double end = light ? (double)light->cone_angle : 0;
+  double begin = light ? end - (double)light->cone_delta : 0;
+  double degree = acos(-1) / 180;
+  if (!(fabs(end - 40 * degree) < 1e-5 && fabs(begin - 30 * degree) < 1e-5))
+    broken("lights", "spot", "as gltf: its edge from %.3f to %.3f degrees", begin / degree,
+           end / degree);
+  vl_scene_destroy(scene);
+}
+
 static void laws_of_lights(void **state) {
   (void)state;
   static char form[TEXT];
@@ -178,6 +206,7 @@ static void laws_of_lights(void **state) {
                         c->variants[i].compensated);
     }
   }
+  check_spot_as_gltf();
   expect_no_failures();
 }
 

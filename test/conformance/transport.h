@@ -223,6 +223,36 @@ static const char *const below_sun = PLATE
     "LightSource \"distant\" \"point3 from\" [0 -.8660254 .5] \"point3 to\" [0 0 0] \"rgb L\" "
     "[3.1415927 3.1415927 3.1415927]\n";
 
+/* The scene's text with further statements before its world, and with a seed. */
+static void with_seed(const char *scene, const char *more, uint32_t seed, char text[TEXT]) {
+  const char *rest = strstr(scene, "WorldBegin");
+  snprintf(text, TEXT, "%.*s %s Sampler \"zsobol\" \"integer seed\" %u\n%s",
+           (int)(rest - scene), scene, more, seed, rest);
+}
+
+/* The sun again, through a pane that reflects nothing, but that no connection passes. */
+static const char *const below_pane = PLATE
+    "LightSource \"distant\" \"point3 from\" [0 -.8660254 .5] \"point3 to\" [0 0 0] \"rgb L\" "
+    "[3.1415927 3.1415927 3.1415927]\n"
+    "Rotate 60 1 0 0 Material \"thindielectric\" \"float eta\" 1 Shape \"bilinearmesh\" "
+    "\"point3 P\" [-9 -9 1 9 -9 1 -9 9 1 9 9 1]\n";
+
+/* Merging alone finds light that passes a pane on both of its ways. The plate is even, so that
+ * it does not matter how far merging blurs. Pixels share photons; images of other seeds do
+ * not. */
+static void check_merging(const char *name) {
+  enum { SEEDS = 16, SPP_OF_PANE = 256 };
+  Mean off = {0};
+  for (uint32_t seed = 0; seed < SEEDS; seed++) {
+    char text[TEXT];
+    with_seed(below_pane, "", seed + 1, text);
+    vlImage *image = image_of(text, name, SPP_OF_PANE);
+    mean_add(&off, mean_of_green(image));
+    vl_image_destroy(image);
+  }
+  check_mean("tracers", name, "pane", &off, 0.5, (Sight){0.002 * 0.5, 0.08 * 0.5});
+}
+
 /* Light paths add their light to the pixels around the point where the camera sees their end,
  * by the filter: the image of an even plate stays as bright, where no light comes from beyond
  * the image's edge. A pixel's filter takes light from its neighbours, so pixels are not
@@ -233,12 +263,12 @@ static void check_splats(const char *name, vlPixelFilterKind kind) {
   Mean off = {0};
   for (uint32_t seed = 0; seed < SEEDS; seed++) {
     char text[TEXT];
-    const char *rest = strstr(below_sun, "WorldBegin");
-    snprintf(text, sizeof text,
-             "%.*s Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d \"string "
-             "filename\" \"x.pfm\" Sampler \"zsobol\" \"integer seed\" %u\n%s",
-             (int)(rest - below_sun), below_sun, SIDE_OF_SPLATS, SIDE_OF_SPLATS, seed + 1,
-             rest);
+    char film[200];
+    snprintf(film, sizeof film,
+             "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d \"string "
+             "filename\" \"x.pfm\"",
+             SIDE_OF_SPLATS, SIDE_OF_SPLATS);
+    with_seed(below_sun, film, seed + 1, text);
     vlImage *image = filtered_image(text, "lightpath", kind, SPP_OF_SPLATS);
     double sum = 0;
     for (uint32_t y = EDGE; y < SIDE_OF_SPLATS - EDGE; y++)
@@ -270,6 +300,8 @@ static void laws_of_tracers(void **state) {
       check_room(name, paths, c);
     check_tracer(name, "sky", below_sky, c->sky, c);
     check_tracer(name, "lamp", below_lamp, c->lamp, c);
+    if (c->blurs)
+      check_merging(name);
     if (k != VL_TRACER_AMBIENT_OCCLUSION)
       continue;
     const char *rest = strstr(below_lamp, "WorldBegin");

@@ -76,24 +76,30 @@ static void rgb_from_radiance(const float *cmf, const float m[9], uint32_t n,
   }
 }
 
+/* Sigmoids at one wavelength of each lane, times `scale` and a dense spectrum. Both may be
+ * null; callers give constants, so that each loop has what it needs alone. */
+static inline __attribute__((always_inline)) void sigmoid_row(uint32_t count, const float *c0,
+                                                              const float *c1, const float *c2,
+                                                              const float *scale,
+                                                              const float *dense,
+                                                              const float *l, float *o) {
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float value = vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]);
+    value = scale ? scale[i] * value : value;
+    o[i] = dense ? value * vl_dense_at(dense, l[i]) : value;
+  }
+}
+
 static void sigmoid_eval(uint32_t n, const float *c0, const float *c1, const float *c2,
                          const float *scale, const float *const lambda[4],
                          float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
-    const float *l = lambda[c];
-    float *o = out[c];
-    if (scale) {
-      /* must vectorise */
-      VL_SIMD for (uint32_t i = 0; i < count; i++) {
-        o[i] = scale[i] * vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]);
-      }
-    } else {
-      /* must vectorise */
-      VL_SIMD for (uint32_t i = 0; i < count; i++) {
-        o[i] = vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]);
-      }
-    }
+    if (scale)
+      sigmoid_row(count, c0, c1, c2, scale, NULL, lambda[c], out[c]);
+    else
+      sigmoid_row(count, c0, c1, c2, NULL, NULL, lambda[c], out[c]);
   }
 }
 
@@ -102,20 +108,10 @@ static void light_eval(uint32_t n, const float *c0, const float *c1, const float
                        float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
-    const float *l = lambda[c];
-    float *o = out[c];
-    if (scale) {
-      /* must vectorise */
-      VL_SIMD for (uint32_t i = 0; i < count; i++) {
-        o[i] = scale[i] * vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]) *
-               vl_dense_at(dense, l[i]);
-      }
-    } else {
-      /* must vectorise */
-      VL_SIMD for (uint32_t i = 0; i < count; i++) {
-        o[i] = vl_sigmoid((vlSigmoid){c0[i], c1[i], c2[i]}, l[i]) * vl_dense_at(dense, l[i]);
-      }
-    }
+    if (scale)
+      sigmoid_row(count, c0, c1, c2, scale, dense, lambda[c], out[c]);
+    else
+      sigmoid_row(count, c0, c1, c2, NULL, dense, lambda[c], out[c]);
   }
 }
 

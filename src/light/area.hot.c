@@ -150,22 +150,28 @@ static void store(const Block *b, uint32_t count, vlLightSamples *out) {
   }
 }
 
+typedef void Directions(uint32_t padded, Block *b);
+
+/* Inlined with `directions`, the kernel of triangles or of spheres. */
+static inline __attribute__((always_inline)) void sample_block(
+    Directions *directions, const vlWorld *world, const vlPaths *paths, const vlSurface *f,
+    const uint32_t *lanes, uint32_t count, const float *u, const float *v,
+    vlLightSamples *out) {
+  Block b;
+  uint32_t padded = gather(world, paths, f, lanes, count, u, v, out, &b);
+  directions(padded, &b);
+  radiance(world, out, padded, &b);
+  store(&b, count, out);
+}
+
 void vl_sample_triangles(const vlWorld *world, const vlPaths *paths, const vlSurface *f,
                          const uint32_t *lanes, uint32_t count, const float *u, const float *v,
                          vlLightSamples *out) {
-  Block b;
-  uint32_t padded = gather(world, paths, f, lanes, count, u, v, out, &b);
-  triangles(padded, &b);
-  radiance(world, out, padded, &b);
-  store(&b, count, out);
+  sample_block(triangles, world, paths, f, lanes, count, u, v, out);
 }
 
 void vl_sample_spheres(const vlWorld *world, const vlPaths *paths, const vlSurface *f,
                        const uint32_t *lanes, uint32_t count, const float *u, const float *v,
                        vlLightSamples *out) {
-  Block b;
-  uint32_t padded = gather(world, paths, f, lanes, count, u, v, out, &b);
-  spheres(padded, &b);
-  radiance(world, out, padded, &b);
-  store(&b, count, out);
+  sample_block(spheres, world, paths, f, lanes, count, u, v, out);
 }

@@ -78,6 +78,13 @@ bool context_check(const Context *context) {
   return true;
 }
 
+locale_t plain_locale(void) {
+  static locale_t plain; /* guarded by the GIL */
+  if (!plain)
+    plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+  return plain;
+}
+
 bool call_begin(Call *call, const Context *context, bool *busy) {
   *call = (Call){0};
   if (!context_check(context))
@@ -89,12 +96,14 @@ bool call_begin(Call *call, const Context *context, bool *busy) {
   if (busy)
     *busy = true;
   call->busy = busy;
+  call->locale = uselocale(plain_locale());
   call->thread = PyEval_SaveThread();
   return true;
 }
 
 void call_end(Call *call) {
   PyEval_RestoreThread(call->thread);
+  uselocale(call->locale);
   if (call->busy)
     *call->busy = false;
 }

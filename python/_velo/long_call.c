@@ -43,6 +43,7 @@ struct Waiting {
 static Waiting *running;
 static Runner *idle;
 static long running_pid;
+static locale_t plain; /* of the threads of calls */
 static bool shutting_down;
 static pthread_t shutter; /* the thread that ends the interpreter; only if shutting_down */
 
@@ -50,6 +51,7 @@ static pthread_t shutter; /* the thread that ends the interpreter; only if shutt
 
 static void *run_calls(void *argument) {
   Runner *runner = argument;
+  uselocale(plain);
   for (;;) {
     while (sem_wait(&runner->begin) != 0) {
     }
@@ -91,6 +93,7 @@ static bool start(Runner *runner) {
   pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &old);
+  plain = plain_locale();
   bool started = pthread_create(&thread, &attributes, run_calls, runner) == 0;
   pthread_sigmask(SIG_SETMASK, &old, NULL);
   pthread_attr_destroy(&attributes);

@@ -9,6 +9,7 @@
 #endif
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
+#include <locale.h>
 #include <velo/edit.h>
 #include <velo/setting.h>
 #include <velo/velo.h>
@@ -120,10 +121,14 @@ bool is_object(PyObject *object, int type);
 typedef struct Call {
   PyThreadState *thread;
   bool *busy;
+  locale_t locale; /* of the thread before */
 } Call;
 /* Checks that the context may be used by this process and thread, marks `busy` (may be null)
  * and releases the GIL. False: an exception is set. */
 bool call_begin(Call *call, const Context *context, bool *busy);
+/* The locale "C", in which calls run: numbers of files have a decimal point, whatever locale
+ * Python has. */
+locale_t plain_locale(void);
 void call_end(Call *call);
 /* The same check alone, for calls that keep the GIL. */
 bool context_check(const Context *context);

@@ -1,6 +1,7 @@
 /* base/machine.c: see machine.h. */
 #include "base/machine.h"
 
+#include <locale.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <sys/mman.h>
@@ -120,4 +121,14 @@ void vl_machine_restore_floats(unsigned state) {
 #else
   (void)state;
 #endif
+}
+
+void *vl_machine_set_numerals(void) {
+  locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+  return plain ? (void *)uselocale(plain) : NULL;
+}
+
+void vl_machine_restore_numerals(void *before) {
+  if (before)
+    freelocale(uselocale((locale_t)before));
 }

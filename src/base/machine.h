@@ -26,4 +26,10 @@ void vl_machine_large_pages(void *block, size_t size);
 unsigned vl_machine_set_floats(void);
 void vl_machine_restore_floats(unsigned state);
 
+/* Gives this thread the locale "C", in which numbers of texts have a decimal point: a program
+ * may have chosen one with a comma, which strtod and printf would follow. Returns the locale
+ * before, for vl_machine_restore_numerals; null if nothing was changed. */
+void *vl_machine_set_numerals(void);
+void vl_machine_restore_numerals(void *before);
+
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/cookie.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "camera_files/formats.h"
@@ -216,8 +217,8 @@ static vlResult begin(vlContext *context, const char *path, const vlCameraFileDe
   return VL_OK;
 }
 
-vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def,
-                        vlCameraRecord *record, vlError *error) {
+static vlResult read_plainly(vlContext *context, const char *path, const vlCameraFileDef *def,
+                             vlCameraRecord *record, vlError *error) {
   vlCameraFileDef standard;
   vlResult result = begin(context, path, &def, &standard, error);
   if (result != VL_OK)
@@ -245,6 +246,14 @@ vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFile
   }
   if (result == VL_OK)
     *record = read;
+  return result;
+}
+
+vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def,
+                        vlCameraRecord *record, vlError *error) {
+  void *locale = vl_machine_set_numerals();
+  vlResult result = read_plainly(context, path, def, record, error);
+  vl_machine_restore_numerals(locale);
   return result;
 }
 
@@ -276,8 +285,8 @@ bool vl_camera_writes_folder(const char *path, vlCameraDialect dialect) {
   return format && format->write_folder;
 }
 
-vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFileDef *def,
-                         const vlCameraRecord *record, vlError *error) {
+static vlResult write_plainly(vlContext *context, const char *path, const vlCameraFileDef *def,
+                              const vlCameraRecord *record, vlError *error) {
   vlCameraFileDef standard;
   vlResult result = begin(context, path, &def, &standard, error);
   if (result != VL_OK)
@@ -317,5 +326,13 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
     result = vl_file_commit(&writer, error);
   }
   VL_ARRAY_FREE(context, &text.text);
+  return result;
+}
+
+vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFileDef *def,
+                         const vlCameraRecord *record, vlError *error) {
+  void *locale = vl_machine_set_numerals();
+  vlResult result = write_plainly(context, path, def, record, error);
+  vl_machine_restore_numerals(locale);
   return result;
 }

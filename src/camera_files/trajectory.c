@@ -9,6 +9,7 @@
 
 #include "base/cookie.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "base/text.h"
 #include "camera_files/formats.h"
 #include "math/double3.h"
@@ -201,7 +202,9 @@ vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCamera
   t->context = context;
   vlCameraFile file = {
       .context = context, .path = path, .dialect = "trajectory", .def = &plain, .error = error};
+  void *locale = vl_machine_set_numerals();
   vlResult result = read_any(t, &file);
+  vl_machine_restore_numerals(locale);
   if (result == VL_OK && t->frames.count == 0)
     result = vl_fail_at(error, VL_ERROR_SCENE, path, 0, 0, "the file holds no pose");
   if (result != VL_OK) {

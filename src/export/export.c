@@ -5,6 +5,7 @@
 #include <stdarg.h>
 
 #include "base/cookie.h"
+#include "base/machine.h"
 #include "base/text.h"
 #include "image/image.h"
 #include "velo/texture.h"
@@ -197,8 +198,8 @@ static void finish(vlExport *x) {
   x->root = NULL;
 }
 
-vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *def,
-                       vlError *error) {
+static vlResult save_plainly(const vlScene *scene, const char *path, const vlSaveDef *def,
+                             vlError *error) {
   vl_error_clear(error);
   vlSaveDef plain = vl_default_save_def();
   if (!scene || !path)
@@ -243,4 +244,12 @@ vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *
   vlResult r = fine ? VL_OK : x->result != VL_OK ? x->result : vl_fail_memory(error);
   vl_free(scene->context, x);
   return r;
+}
+
+vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *def,
+                       vlError *error) {
+  void *locale = vl_machine_set_numerals();
+  vlResult result = save_plainly(scene, path, def, error);
+  vl_machine_restore_numerals(locale);
+  return result;
 }

@@ -2,6 +2,8 @@
  * rejected content by name, memory. */
 #include "camera_files/files.h"
 
+#include <locale.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +11,7 @@
 #include "velo/load.h"
 #include "velo/projection.h"
 #include "velo/render.h"
+#include "velo/trajectory.h"
 
 static vlCameraRecord read_as(const char *path, vlCameraDialect dialect, const char *frame) {
   vlCameraRecord record;
@@ -380,6 +383,39 @@ static void test_drop_names(void **state) {
   }
 }
 
+/* Numbers have a decimal point, though the program's locale has a comma. */
+static void test_decimal_comma(void **state) {
+  (void)state;
+  char command[512];
+  const char *source = put("comma",
+                           "comment_char %\nescape_char /\nLC_NUMERIC\n"
+                           "decimal_point \",\"\nthousands_sep \".\"\ngrouping 3\n"
+                           "END LC_NUMERIC\n");
+  snprintf(command, sizeof command, "localedef -c -i %s %s/xx >%s/said 2>&1", source, folder,
+           folder);
+  if (system(command) < 0 || setenv("LOCPATH", folder, 1) != 0 || !setlocale(LC_NUMERIC, "xx"))
+    skip(); /* there is no localedef */
+  const vlCameraRecord record = some_camera();
+  vlCameraFileDef def = vl_default_camera_file_def();
+  vlError error;
+  def.dialect = VL_CAMERA_DIALECT_VELO;
+  vlResult wrote = vl_camera_write(context, path_of("comma.json"), &def, &record, &error);
+  const vlCameraRecord back = read_with(path_of("comma.json"), NULL);
+  const char *poses = put("comma.csv", "1.5 0.5 2.5 3.5 0 0 0 1\n");
+  vlTrajectory *trajectory = NULL;
+  vlTrajectoryFrame frame;
+  vlResult loaded = vl_trajectory_load(context, poses, NULL, &trajectory, &error);
+  snprintf(command, sizeof command, "%.1f", 0.5);
+  setlocale(LC_NUMERIC, "C");
+  assert_string_equal(command, "0,5"); /* the locale is the program's again */
+  assert_int_equal(wrote, VL_OK);
+  assert_true(back.camera.fx == record.camera.fx);
+  assert_int_equal(loaded, VL_OK);
+  assert_int_equal(vl_trajectory_frame(trajectory, 0, &frame), VL_OK);
+  assert_true(frame.time == 1.5);
+  vl_trajectory_destroy(trajectory);
+}
+
 static void test_memory(void **state) {
   (void)state;
   vlCameraRecord record = some_camera();
@@ -393,7 +429,8 @@ int main(void) {
       cmocka_unit_test(test_blender_shift), cmocka_unit_test(test_colmap_images),
       cmocka_unit_test(test_kalibr_chain),  cmocka_unit_test(test_pbrt),
       cmocka_unit_test(test_wrong_files),   cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_drop_names),    cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_drop_names),    cmocka_unit_test(test_decimal_comma),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, files_setup, files_teardown);
 }

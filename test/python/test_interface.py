@@ -3,7 +3,9 @@
 read again, types of keywords, and the unit of every angle."""
 import copy
 import inspect
+import locale
 import math
+import os
 import pickle
 import re
 import subprocess
@@ -92,6 +94,64 @@ def words_of_other_programs_are_answered():
         with raises(velo.UsageError, text):
             call()
     assert image[..., 0].shape == (6, 8) and numpy.array_equal(image[..., 0], image["R"])
+
+
+COMMA = """comment_char %
+escape_char /
+LC_NUMERIC
+decimal_point ","
+thousands_sep "."
+grouping 3
+END LC_NUMERIC
+"""
+
+
+def comma_locale():
+    """Makes a locale whose numbers have a decimal comma, and chooses it. False: the system cannot."""
+    source, folder = work("comma"), work("locales")
+    with open(source, "w") as file:
+        file.write(COMMA)
+    os.makedirs(folder)
+    try:
+        subprocess.run(["localedef", "-c", "-i", source, folder + "/xx"], capture_output=True)
+        os.environ["LOCPATH"] = folder
+        locale.setlocale(locale.LC_NUMERIC, "xx")
+    except (OSError, locale.Error):
+        return False
+    return locale.localeconv()["decimal_point"] == ","
+
+
+@case
+def files_have_decimal_points_in_every_locale():
+    camera = velo.Camera(64, 48, fx=50.25, fy=50.25)
+    written = ("c.json", "c.yaml", "c.pbrt", "c.usda", "c.xml", "c.gltf")
+    for name in written:
+        camera.write(work(name))
+    texts = [open(work(name)).read() for name in written]
+    scene = small()
+    scene.save(work("s.pbrt"))
+    saved = open(work("s.pbrt")).read()
+    picture = scene.render(spp=1)
+    picture.write(work("plain.exr"))
+    try:
+        if not comma_locale():
+            raise cases.Skip("there is no localedef")
+        for name, text in zip(written, texts):
+            camera.write(work(name))
+            assert open(work(name)).read() == text, name
+        assert velo.read_camera(work("c.json")).get("fx") == 50.25
+        os.makedirs(work("model"), exist_ok=True)
+        with open(work("model/cameras.txt"), "w") as file:
+            file.write("1 PINHOLE 640 480 500.75 501 320 240\n")
+        assert velo.read_camera(work("model")).get("fx") == 500.75
+        scene.save(work("s.pbrt"))
+        assert open(work("s.pbrt")).read() == saved
+        again = scene.render(spp=1)
+        assert again.attributes == picture.attributes
+        again.write(work("comma.exr"))
+        assert open(work("comma.exr"), "rb").read() == open(work("plain.exr"), "rb").read()
+    finally:
+        locale.setlocale(locale.LC_NUMERIC, "C")
 
 
 @case

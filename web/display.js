@@ -21,6 +21,7 @@ const shown = {
   error: { label: "standard error", kind: 8 },
   forward: { label: "flow", kind: 7 },
   luminance: { label: "luminance", kind: 9, unit: "cd/m²" },
+  illuminance: { label: "illuminance", kind: 9, unit: "lx" },
   camera: { label: "as the camera sees it", kind: 5 }, // no ground truth: sensor.js
 };
 const camera = 64; // its number in states and frames

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """velo view: the luminance of the image in cd/m²: its numbers where they are known, its legend in the page, and what has none."""
+import math
 import os
 import shutil
 import struct
@@ -15,7 +16,7 @@ from results import check  # noqa: E402
 ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
 SHOTS = os.environ.get("VELO_SCREENSHOTS")  # a folder to which the images of the page are written
-WIDTH, HEIGHT, LUMINANCE = 320, 200, 22
+WIDTH, HEIGHT, LUMINANCE, ILLUMINANCE = 320, 200, 22, 23
 # A sky of 250 cd/m2, before it a lamp of 40000 cd/m2 and a black ball.
 SCENE = '''LookAt 0 0 6 0 0 0 0 1 0
 Camera "perspective" "float fov" 40
@@ -64,6 +65,12 @@ def test_numbers(scene, folder):
     check("first_image_has_it", frame.channel == LUMINANCE and frame.channels == 1, frame.channel, frame.channels)
     page.wait_frame(lambda f: f.change == 9 and f.spp == 8)
     check("moved", abs(value_at(page, BLACK) - 250) < 0.01 * 250, value_at(page, BLACK))
+    page.send(type="reset", change=10)
+    page.wait_frame(lambda f: f.change == 10)
+    show(page, "illuminance")
+    page.wait_frame(lambda f: f.channel == ILLUMINANCE and f.scale == 1 and f.spp == 8)
+    ball, sky = value_at(page, BLACK), value_at(page, SKY)
+    check("illuminance", 0.7 * math.pi * 250 < ball < 1.5 * math.pi * 250 and sky == 0, ball, sky)
     show(page, "image")
     frame = page.wait_frame(lambda f: f.channel == 0)
     check("image_again", frame.channels == 3 and frame.format == 0, frame.channels, frame.format)
@@ -107,6 +114,10 @@ def test_page(scene, folder):
         check("without_webgl_the_same", plain <= 2, plain)
         if SHOTS:
             b.screenshot(os.path.join(SHOTS, "luminance.png"))
+        b.run("(() => { const s = document.getElementById('channel'); s.value = 'illuminance'; s.onchange(); })()")
+        b.wait("velo.screen.frame.channel === 23 && velo.screen.frame.spp === 8")
+        legend = b.run("document.getElementById('legend').textContent")
+        check("legend_in_lux", legend.startswith("illuminance, lx"), legend)
         b.run("(() => { const s = document.getElementById('channel'); s.value = 'image'; s.onchange(); })()")
         b.wait("velo.screen.frame.channel === 0 && document.getElementById('legend').hidden")
         b.run("velo.hover(100, 100)")

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "velo/channels.h"
+#include "velo/tracer.h"
 #include "view/engine_sensor.h"
 
 /* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before
@@ -121,6 +122,20 @@ static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage
   return image;
 }
 
+/* The illuminance takes as many samples as a film has: this one, whose light nobody sees. */
+static vlResult make_film(Engine *e, const vlCamera *camera, const vlFilmDef *def,
+                          vlRenderDef *render, vlFilm **film, vlError *error) {
+  render->tracer = VL_TRACER_RAYCAST;
+  render->spp = e->light_spp;
+  render->first_sample = 0;
+  render->time_limit = 0;
+  render->noise = 0;
+  render->cancel = e->stop;
+  const vlResult result = vl_film_create(e->def.context, def, film);
+  return result == VL_OK ? vl_render(e->model.world, camera, *film, render, NULL, error)
+                         : result;
+}
+
 /* False: interrupted. The standard error is that of the film. */
 static bool render_channel(Engine *e, uint32_t scale) {
   vlFilmDef whole = e->model.job.defs->film;
@@ -141,6 +156,14 @@ static bool render_channel(Engine *e, uint32_t scale) {
   def.film = e->film;
   def.exposure = e->model.job.defs->develop.exposure;
   def.cancel = e->stop;
+  vlFilm *few = NULL;
+  vlRenderDef render = e->model.job.defs->render;
+  const bool light = e->now.channel == CHANNEL_ILLUMINANCE;
+  if (light && result == VL_OK) {
+    result = make_film(e, &camera, &film, &render, &few, &error);
+    def.film = few;
+    def.render = &render;
+  }
   double start = engine_clock();
   if (result == VL_OK)
     result = vl_render_channels(e->model.world, &camera, &def, &floats, &ids, &error);
@@ -148,7 +171,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
       def.forward && result == VL_OK ? join_flow(e->def.context, floats, ids, scale) : NULL;
   const vlImage *image = flow ? flow : floats ? floats : ids;
   if (result == VL_OK && image) {
-    if (e->now.channel != CHANNEL_ERROR)
+    if (e->now.channel != CHANNEL_ERROR && !light)
       engine_note_speed(&e->channel_seconds,
                         (uint64_t)vl_image_width(image) * vl_image_height(image),
                         engine_clock() - start);
@@ -156,7 +179,10 @@ static bool render_channel(Engine *e, uint32_t scale) {
         .format = FRAME_FLOAT,
         .channels = vl_image_channels(image) < 3 ? vl_image_channels(image) : 3,
         .scale = scale,
-        .spp = e->film && scale == 1 ? vl_film_spp(e->film) : 0};
+        .spp = scale > 1 ? 0
+               : light   ? e->light_spp
+               : e->film ? vl_film_spp(e->film)
+                         : 0};
     engine_publish(e, image, &kind);
   }
   if (result != VL_OK && result != VL_CANCELLED)
@@ -164,6 +190,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
   vl_image_destroy(floats);
   vl_image_destroy(ids);
   vl_image_destroy(flow);
+  vl_film_destroy(few);
   return result != VL_CANCELLED;
 }
 
@@ -175,17 +202,30 @@ bool engine_render_error(Engine *e) {
 
 void engine_coarse_begin(Engine *e) {
   bool colours = engine_is_of_film(e->now.channel);
-  e->coarse = first_scale(e, colours ? e->coarse_seconds : e->channel_seconds);
+  bool light = e->now.channel == CHANNEL_ILLUMINANCE;
+  e->light_spp = 1;
+  e->coarse = first_scale(e, colours || light ? e->coarse_seconds : e->channel_seconds);
   if (colours && (e->coarse == 1 || e->now.channel == CHANNEL_ERROR))
     e->coarse = 0; /* the film is next */
+}
+
+/* The whole image of the illuminance is rendered again with four times the samples, up to those
+ * that are wanted. */
+static void more_light(Engine *e, uint32_t scale) {
+  if (scale > 1 || e->now.channel != CHANNEL_ILLUMINANCE || e->light_spp >= e->now.spp)
+    return;
+  e->light_spp = 4 * e->light_spp < e->now.spp ? 4 * e->light_spp : e->now.spp;
+  e->coarse = 1;
 }
 
 bool engine_coarse_next(Engine *e) {
   const uint32_t scale = e->coarse;
   if (!engine_is_of_film(e->now.channel)) {
     e->coarse = scale / 2;
-    if (render_channel(e, scale))
+    if (render_channel(e, scale)) {
+      more_light(e, scale);
       return true;
+    }
     e->now.channel = UINT32_MAX; /* it is rendered anew */
     e->coarse = 0;
     return false;

@@ -13,9 +13,15 @@
 #define LUMINANCE_NEEDS "it needs the sensor cie1931 and no white balance"
 enum { MAX_TASKS = 32, HISTORY = 256 };
 /* Values of Wanted.channel that are not plain ground truth: the standard error and the
- * luminance need the film, flow needs a camera. CAMERA is no ground truth: what a sensor makes
- * of the film (engine_sensor.c). */
-enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16, CHANNEL_LUMINANCE = 22, CHANNEL_CAMERA = 64 };
+ * luminance need the film, flow needs a camera, the illuminance is a render of its own. CAMERA
+ * is no ground truth: what a sensor makes of the film (engine_sensor.c). */
+enum {
+  CHANNEL_ERROR = 15,
+  CHANNEL_FLOW = 16,
+  CHANNEL_LUMINANCE = 22,
+  CHANNEL_ILLUMINANCE = 23,
+  CHANNEL_CAMERA = 64
+};
 
 /* What makes the samples of a film, as in vlRenderDef. */
 typedef struct ViewTracer {
@@ -155,6 +161,7 @@ struct Engine {
   ViewSensors sensors; /* constant */
   Shot shot;
   uint32_t coarse;    /* scale of the next image that is not the film's; 0: none is next */
+  uint32_t light_spp; /* samples per pixel of the next image of the illuminance */
   uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the
                          choice is made */
   bool racing;        /* it goes on */

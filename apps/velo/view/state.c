@@ -8,7 +8,8 @@
 #include "velo/projection.h"
 
 /* A further channel is a bit here and a row of web/display.js. */
-static const uint32_t shown_channels = 2u * VL_CHANNEL_FORWARD - 1u + VL_CHANNEL_LUMINANCE;
+static const uint32_t shown_channels =
+    2u * VL_CHANNEL_FORWARD - 1u + VL_CHANNEL_LUMINANCE + VL_CHANNEL_ILLUMINANCE;
 
 bool state_shows_channel(uint32_t index) {
   return index < VL_CHANNEL_COUNT && (shown_channels >> index & 1);

@@ -37,42 +37,6 @@ vlCastDef vl_default_cast_def(void) {
 
 /* ---- reading ----------------------------------------------------------------------------- */
 
-/* The numbers of the rays [first, first + n), one each; `other` where the array is not
- * given. */
-static void read_numbers(const vlRayArray *a, uint64_t first, uint32_t n, double other,
-                         double *to) {
-  const char *from = (const char *)a->data + (int64_t)first * a->step;
-  for (uint32_t i = 0; i < n && !a->data; i++)
-    to[i] = other;
-  for (uint32_t i = 0; i < n && a->data && a->doubles; i++)
-    memcpy(&to[i], from + (int64_t)i * a->step, sizeof(double));
-  for (uint32_t i = 0; i < n && a->data && !a->doubles; i++) {
-    float x;
-    memcpy(&x, from + (int64_t)i * a->step, sizeof x);
-    to[i] = (double)x;
-  }
-}
-
-/* The same for three numbers each. */
-static void read_vectors(const vlRayArray *a, uint64_t first, uint32_t n,
-                         double to[3][VL_ROW_SIZE]) {
-  const char *from = (const char *)a->data + (int64_t)first * a->step;
-  for (uint32_t i = 0; i < n && a->doubles; i++, from += a->step) {
-    double x[3];
-    memcpy(x, from, sizeof x);
-    to[0][i] = x[0];
-    to[1][i] = x[1];
-    to[2][i] = x[2];
-  }
-  for (uint32_t i = 0; i < n && !a->doubles; i++, from += a->step) {
-    float x[3];
-    memcpy(x, from, sizeof x);
-    to[0][i] = (double)x[0];
-    to[1][i] = (double)x[1];
-    to[2][i] = (double)x[2];
-  }
-}
-
 /* What becomes of a ray. */
 typedef enum Fate { TRACED, EMPTY, NOT_FINITE, ZERO_DIRECTION, TOO_FAR } Fate;
 
@@ -118,11 +82,11 @@ static void read_rays(Cast *c, uint64_t first, uint32_t count, vlCastBatch *b,
   double time[VL_BATCH];
   uint64_t fates[TOO_FAR + 1] = {0};
   uint32_t n = 0;
-  read_vectors(&r->origins, first, count, b->o);
-  read_vectors(&r->directions, first, count, b->d);
-  read_numbers(&r->t_min, first, count, 0, b->start);
-  read_numbers(&r->t_max, first, count, (double)INFINITY, b->end);
-  read_numbers(&r->times, first, count, 0, time);
+  c->kernels->read_vectors(&r->origins, first, count, b->o);
+  c->kernels->read_vectors(&r->directions, first, count, b->d);
+  c->kernels->read_numbers(&r->t_min, first, count, 0, b->start);
+  c->kernels->read_numbers(&r->t_max, first, count, (double)INFINITY, b->end);
+  c->kernels->read_numbers(&r->times, first, count, 0, time);
   b->n = count;
   bool plain = c->kernels->check(b) && !r->times.data;
   for (uint32_t i = 0; plain && i < count; i++)
@@ -207,7 +171,7 @@ static void put_hits(const Cast *c, const vlCastBatch *b, const Rows *r) {
   const vlCastHits *h = c->hits;
   put_ids(c, b, r);
   for (uint32_t i = 0; h->t && i < r->count; i++)
-    h->t[r->row[i]] = b->distance[r->ray[i]] / b->length[r->ray[i]];
+    h->t[r->row[i]] = b->t[r->ray[i]];
   for (uint32_t i = 0; h->distance && i < r->count; i++)
     h->distance[r->row[i]] = b->distance[r->ray[i]];
   for (uint32_t i = 0; h->position && i < r->count; i++)
@@ -259,6 +223,18 @@ static void find_occluded(Cast *c, CastWorker *w, const uint64_t lane[VL_BATCH])
   atomic_fetch_add(&c->met, met);
 }
 
+/* Brings the rays of the batch behind the one that begins at `first` into the cache, while that
+ * one is traced. */
+static void prefetch_next(const Cast *c, uint64_t first) {
+  uint64_t next = first + VL_BATCH;
+  if (next >= c->rays->count)
+    return;
+  uint64_t left = c->rays->count - next;
+  uint32_t count = left < VL_BATCH ? (uint32_t)left : VL_BATCH;
+  c->kernels->prefetch(&c->rays->origins, next, count);
+  c->kernels->prefetch(&c->rays->directions, next, count);
+}
+
 static void run_batch(void *user, uint32_t index, uint32_t worker) {
   Cast *c = user;
   CastWorker *w = &c->workers[worker];
@@ -273,6 +249,7 @@ static void run_batch(void *user, uint32_t index, uint32_t worker) {
   else
     memset(c->occluded + first, 0, count);
   read_rays(c, first, count, w->batch, lane);
+  prefetch_next(c, first);
   if (w->batch->n) {
     c->kernels->prepare(c->world, w->scratch, w->batch);
     if (c->hits)

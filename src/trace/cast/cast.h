@@ -4,6 +4,7 @@
 #define TRACE_CAST_CAST_H
 
 #include "trace/trace.h"
+#include "velo/rays.h"
 
 /* What to compute besides the ids, as bits. */
 enum {
@@ -30,7 +31,7 @@ typedef struct vlCastBatch {
   float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
   /* The hits, by `next`: indices; shape VL_NONE: none. */
   uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE];
-  double distance[VL_ROW_SIZE];
+  double distance[VL_ROW_SIZE], t[VL_ROW_SIZE]; /* t in lengths of the caller's direction */
   float normal[3][VL_ROW_SIZE], shading[3][VL_ROW_SIZE], uv[2][VL_ROW_SIZE];
   double velocity[3][VL_ROW_SIZE];
   uint8_t occluded[VL_ROW_SIZE];
@@ -44,6 +45,15 @@ typedef struct vlCastBatch {
 #define VL_CAST_LONGEST 1e300
 
 typedef struct vlCastKernels {
+  /* The numbers of the rays first to first + n - 1, one each; `other` where the array is not
+   * given. */
+  void (*read_numbers)(const vlRayArray *from, uint64_t first, uint32_t n, double other,
+                       double *to);
+  /* The same for three numbers each, which are given. */
+  void (*read_vectors)(const vlRayArray *from, uint64_t first, uint32_t n,
+                       double to[3][VL_ROW_SIZE]);
+  /* Begins to bring the numbers of rays into the cache, which another batch will read. */
+  void (*prefetch)(const vlRayArray *from, uint64_t first, uint32_t n);
   /* Raises starts below 0 to 0. Whether all rays can be traced: their numbers (but for times)
    * are finite, directions not 0, ends beyond starts. */
   bool (*check)(vlCastBatch *batch);

@@ -2,120 +2,18 @@
  * for camera rays; then only what is wanted is computed, for all hits of the batch. */
 #include "trace/cast/cast.h"
 
+#include "trace/cast/rays.h"
 #include "trace/ground_truth/exact.h"
 #include "trace/stages.h"
 #include "velo/schema.h"
 
-/* ---- rays -------------------------------------------------------------------------------- */
-
-static inline double largest(double a, double b, double c) {
-  a = __builtin_fabs(a);
-  b = __builtin_fabs(b);
-  c = __builtin_fabs(c);
-  a = a > b ? a : b;
-  return a > c ? a : c;
-}
-
-static bool check(vlCastBatch *b) {
-  uint32_t wrong = 0;
-  /* must vectorise */
-  VL_SIMD
-  for (uint32_t i = 0; i < b->n; i++)
-    b->start[i] = b->start[i] < 0.0 ? 0.0 : b->start[i];
-  for (uint32_t i = 0; i < b->n; i++) {
-    double length = largest(b->d[0][i], b->d[1][i], b->d[2][i]);
-    double reach = largest(b->o[0][i], b->o[1][i], b->o[2][i]);
-    double sum = (b->d[0][i] - b->d[0][i]) + (b->d[1][i] - b->d[1][i]) +
-                 (b->d[2][i] - b->d[2][i]) + (b->o[0][i] - b->o[0][i]) +
-                 (b->o[1][i] - b->o[1][i]) + (b->o[2][i] - b->o[2][i]);
-    uint32_t fine = (sum == 0.0) & (length > 0.0) & (length <= VL_CAST_LONGEST) &
-                    (reach < VL_CAST_FAR) & (b->end[i] > b->start[i]) &
-                    (b->start[i] < (double)VL_INFINITY);
-    wrong |= !fine;
-  }
-  return !wrong;
-}
-
-/* Makes directions unit, and distances of t. The largest component is taken out first, since
- * squares may leave the range of double. */
-static void normalize(vlCastBatch *b) {
-  uint32_t padded = VL_PAD(b->n);
-  /* must vectorise */
-  VL_SIMD
-  for (uint32_t i = 0; i < padded; i++) {
-    double most = largest(b->d[0][i], b->d[1][i], b->d[2][i]);
-    double scale = 1.0 / most;
-    double x = b->d[0][i] * scale, y = b->d[1][i] * scale, z = b->d[2][i] * scale;
-    double l = __builtin_sqrt(x * x + y * y + z * z), unit = 1.0 / l;
-    b->d[0][i] = x * unit;
-    b->d[1][i] = y * unit;
-    b->d[2][i] = z * unit;
-    b->length[i] = most * l;
-    b->start[i] = b->start[i] * b->length[i];
-    b->end[i] = b->end[i] * b->length[i];
-  }
-}
-
-/* The part of a ray in float that holds all of the exact one: distances are compared with its
- * end in double afterwards (drop_beyond). */
-static const double WIDER = 1.0 + 0x1p-18;
-
-static void round_rays(vlCastBatch *b, vlPaths *p) {
-  uint32_t padded = VL_PAD(b->n);
-  /* must vectorise */
-  VL_SIMD
-  for (uint32_t i = 0; i < padded; i++) {
-    p->ox[i] = (float)b->o[0][i];
-    p->oy[i] = (float)b->o[1][i];
-    p->oz[i] = (float)b->o[2][i];
-    p->dx[i] = (float)b->d[0][i];
-    p->dy[i] = (float)b->d[1][i];
-    p->dz[i] = (float)b->d[2][i];
-    b->t_min[i] = (float)b->start[i];
-    b->t_max[i] = (float)(b->end[i] * WIDER);
-  }
-}
-
-/* Whether most neighbours start close to each other, as the world is large, in directions
- * within 8 degrees. Every fourth pair is looked at. */
-static bool are_coherent(const vlWorld *world, uint32_t n, const vlPaths *p) {
-  const float close = 0.02f * world->radius, least_cosine = 0.99f;
-  uint32_t similar = 0, pairs = 0;
-  for (uint32_t i = 1; i < n; i += 4) {
-    vlVec3 a = vl_lane3(p->dx, p->dy, p->dz, i), b = vl_lane3(p->dx, p->dy, p->dz, i - 1);
-    vlVec3 step =
-        vl_sub(vl_lane3(p->ox, p->oy, p->oz, i), vl_lane3(p->ox, p->oy, p->oz, i - 1));
-    similar += vl_dot(a, b) > least_cosine && vl_length2(step) <= close * close;
-    pairs++;
-  }
-  return 8 * similar >= 7 * pairs && pairs;
-}
-
-static void prepare(const vlWorld *world, vlTraceScratch *s, vlCastBatch *b) {
-  vlPaths *p = &s->rays;
-  for (uint32_t i = b->n; i < VL_PAD(b->n); i++) {
-    for (int k = 0; k < 3; k++) {
-      b->o[k][i] = b->o[k][0];
-      b->d[k][i] = b->d[k][0];
-    }
-    b->start[i] = b->start[0];
-    b->end[i] = b->end[0];
-  }
-  normalize(b);
-  round_rays(b, p);
-  b->coherent = are_coherent(world, b->n, p);
-  b->finite_ends = false;
-  for (uint32_t i = 0; i < b->n; i++)
-    b->finite_ends = b->finite_ends || b->end[i] < VL_INFINITY;
-}
+/* ---- hits -------------------------------------------------------------------------------- */
 
 static vlRays rays_of(const vlWorld *world, const vlPaths *p, const vlCastBatch *b) {
   return (vlRays){p->ox,    p->oy,    p->oz,
                   p->dx,    p->dy,    p->dz,
                   b->t_min, b->t_max, world->moves ? b->time : NULL};
 }
-
-/* ---- hits -------------------------------------------------------------------------------- */
 
 static bool is_interface(const vlWorld *world, uint32_t shape) {
   uint32_t material = world->shapes.items[shape].material;
@@ -211,65 +109,79 @@ static void put_surface(uint32_t n, const vlVertices *at, uint32_t wanted, vlCas
 
 /* Large meshes are not in the cache: what later lanes read is prefetched, first the indices,
  * then the corners. */
-enum { AHEAD = 8, LARGE_MESH = 4096 };
-static inline __attribute__((always_inline)) const vlWorldShape *large_mesh(
-    const vlWorld *world, const vlHits *h, uint32_t i) {
-  const vlWorldShape *s = h->shape[i] == VL_NONE ? NULL : &world->shapes.items[h->shape[i]];
-  return s && s->triangles && s->faces >= LARGE_MESH ? s : NULL;
-}
-static inline __attribute__((always_inline)) void prefetch(const vlWorld *world,
-                                                           const vlHits *h, uint32_t n,
-                                                           uint32_t i) {
-  const vlWorldShape *later = i + 2 * AHEAD < n ? large_mesh(world, h, i + 2 * AHEAD) : NULL;
-  if (later)
-    __builtin_prefetch(later->indices + 3 * (size_t)h->prim[i + 2 * AHEAD]);
-  const vlWorldShape *soon = i + AHEAD < n ? large_mesh(world, h, i + AHEAD) : NULL;
-  const uint32_t *f = soon ? soon->indices + 3 * (size_t)h->prim[i + AHEAD] : NULL;
-  if (!f)
-    return;
-  __builtin_prefetch(soon->positions + 3 * (size_t)f[0]);
-  __builtin_prefetch(soon->positions + 3 * (size_t)f[1]);
-  __builtin_prefetch(soon->positions + 3 * (size_t)f[2]);
-}
+enum { INDEX_AHEAD = 48, CORNER_AHEAD = 16, LARGE_MESH = 4096 };
 
-/* Whether a hit is on a triangle at rest outside of instances, as most are. */
-static inline __attribute__((always_inline)) bool is_plain(const vlWorld *world,
-                                                           const vlHits *h, uint32_t i) {
-  const vlWorldShape *s = &world->shapes.items[h->shape[i]];
-  return h->instance[i] == VL_NONE && s->triangles && s->steps <= 1;
-}
-
-static inline __attribute__((always_inline)) void put_corner(const vlWorldShape *s,
+static inline __attribute__((always_inline)) void put_corner(const float *positions,
                                                              uint32_t vertex,
                                                              float (*rows)[VL_ROW_SIZE],
                                                              uint32_t i) {
-  const float *x = s->positions + 3 * (size_t)vertex;
+  const float *x = positions + 3 * (size_t)vertex;
   rows[0][i] = x[0];
   rows[1][i] = x[1];
   rows[2][i] = x[2];
 }
 
+/* Whether a hit is on a triangle at rest outside of instances, as most are. */
+static inline bool is_plain(const vlWorld *world, const vlHits *h, uint32_t i) {
+  const vlWorldShape *s = &world->shapes.items[h->shape[i]];
+  return h->instance[i] == VL_NONE && s->triangles && s->steps <= 1;
+}
+
+/* Gathers the corners of the plain hits first to last - 1 on one shape. */
+static void gather_run(const vlWorldShape *s, const uint32_t *prim, uint32_t first,
+                       uint32_t last, vlCorners *c) {
+  const float *positions = s->positions;
+  const uint32_t *indices = s->indices;
+  bool large = s->faces >= LARGE_MESH;
+  for (uint32_t i = first; i < last; i++) {
+    if (large && i + INDEX_AHEAD < last)
+      __builtin_prefetch(indices + 3 * (size_t)prim[i + INDEX_AHEAD]);
+    if (large && i + CORNER_AHEAD < last) {
+      const uint32_t *later = indices + 3 * (size_t)prim[i + CORNER_AHEAD];
+      __builtin_prefetch(positions + 3 * (size_t)later[0]);
+      __builtin_prefetch(positions + 3 * (size_t)later[1]);
+      __builtin_prefetch(positions + 3 * (size_t)later[2]);
+    }
+    const uint32_t *f = indices + 3 * (size_t)prim[i];
+    put_corner(positions, f[0], c->p, i);
+    put_corner(positions, f[1], c->p + 3, i);
+    put_corner(positions, f[2], c->p + 6, i);
+  }
+}
+
 /* Gathers the corners of plain hits. False: there are others, too. */
 static bool gather_corners(const vlWorld *world, const vlHits *h, uint32_t n, vlCorners *c) {
   bool all = true;
-  for (uint32_t i = 0; i < n; i++) {
-    prefetch(world, h, n, i);
-    if (h->shape[i] == VL_NONE)
+  for (uint32_t first = 0, last; first < n; first = last) {
+    uint32_t shape = h->shape[first], instance = h->instance[first];
+    last = first + 1;
+    while (last < n && h->shape[last] == shape && h->instance[last] == instance)
+      last++;
+    if (shape == VL_NONE)
       continue;
-    if (!is_plain(world, h, i)) {
+    if (is_plain(world, h, first))
+      gather_run(&world->shapes.items[shape], h->prim, first, last, c);
+    else
       all = false;
-      continue;
-    }
-    const vlWorldShape *s = &world->shapes.items[h->shape[i]];
-    const uint32_t *f = s->indices + 3 * (size_t)h->prim[i];
-    put_corner(s, f[0], c->p, i);
-    put_corner(s, f[1], c->p + 3, i);
-    put_corner(s, f[2], c->p + 6, i);
   }
   return all;
 }
 
-/* Distances in double. Rows of rays without a hit get numbers that nobody reads. */
+/* Distances of hits that are not plain, and t. */
+static void measure_other(const vlWorld *world, const vlHits *h, vlCastBatch *b) {
+  const double none = (double)__builtin_nanf("");
+  for (uint32_t i = 0; i < b->n; i++) {
+    if (h->shape[i] == VL_NONE || is_plain(world, h, i))
+      continue;
+    const double o[3] = {b->o[0][i], b->o[1][i], b->o[2][i]},
+                 d[3] = {b->d[0][i], b->d[1][i], b->d[2][i]};
+    b->distance[i] = vl_exact_distance(world, b->time[i], o, d, h->shape[i], h->prim[i],
+                                       h->instance[i], h->t[i], none);
+    b->t[i] = b->distance[i] / b->length[i];
+  }
+}
+
+/* Distances in double, and t. Rows of rays without a hit get numbers that nobody reads. */
 static void measure(const vlWorld *world, const vlHits *h, vlCorners *c, vlCastBatch *b) {
   const double none = (double)__builtin_nanf("");
   bool all = gather_corners(world, h, b->n, c);
@@ -281,15 +193,10 @@ static void measure(const vlWorld *world, const vlHits *h, vlCorners *c, vlCastB
           z = {c->p[6][i], c->p[7][i], c->p[8][i]};
     Exact o = {b->o[0][i], b->o[1][i], b->o[2][i]}, d = {b->d[0][i], b->d[1][i], b->d[2][i]};
     b->distance[i] = exact_plane_distance(x, y, z, o, d, none);
+    b->t[i] = b->distance[i] / b->length[i];
   }
-  for (uint32_t i = 0; i < b->n && !all; i++) {
-    if (h->shape[i] == VL_NONE || is_plain(world, h, i))
-      continue;
-    const double o[3] = {b->o[0][i], b->o[1][i], b->o[2][i]},
-                 d[3] = {b->d[0][i], b->d[1][i], b->d[2][i]};
-    b->distance[i] = vl_exact_distance(world, b->time[i], o, d, h->shape[i], h->prim[i],
-                                       h->instance[i], h->t[i], none);
-  }
+  if (!all)
+    measure_other(world, h, b);
 }
 
 /* Takes away hits beyond the exact end of their ray. */
@@ -375,4 +282,11 @@ static void keep(vlTraceScratch *s, vlCastBatch *b, uint32_t from[VL_ROW_SIZE]) 
   b->n = count;
 }
 
-const vlCastKernels vl_cast_kernel_table = {check, prepare, next, occluded, keep};
+const vlCastKernels vl_cast_kernel_table = {vl_cast_read_numbers,
+                                            vl_cast_read_vectors,
+                                            vl_cast_prefetch,
+                                            vl_cast_check,
+                                            vl_cast_prepare,
+                                            next,
+                                            occluded,
+                                            keep};

@@ -43,6 +43,9 @@ typedef struct vlAccel {
    * instance 0. It can then be shared with the previous world, although instances have moved.
    * The numbers of the other instances are the same. */
   bool split;
+  /* For Embree: packets of 8 are traced as they are, and filters see Embree's memory of each
+   * ray's hit. Its oldest instruction set splits them. */
+  bool packets;
   vlAccelBundle *bundles; /* one per group */
   uint32_t *members;      /* memory of the members of all bundles */
   struct vlBruteForce

@@ -24,8 +24,9 @@
 #include "velo/shape.h"
 #include "world/accel/bundle.h"
 #include "world/accel/local_ray.h"
-#include "world/accel/nearest.h"
+#include "world/accel/nearest_packet.h"
 #include "world/accel/occluders.h"
+#include "world/accel/packet_rays.h"
 #include "world/accel/share.h"
 #include "world/moving.h"
 #include "world/world.h"
@@ -35,28 +36,6 @@
 #else
 #include <embree3/rtcore.h>
 #endif
-
-/* Embree's accessors for packets of any size exist in C++ only. These are the rows of a packet
- * of N rays in the layout of Embree's manual: row k holds N values. */
-enum {
-  ORIGIN = 0,
-  TNEAR = 3,
-  DIRECTION = 4,
-  TIME = 7,
-  TFAR = 8,
-  ID = 10,
-  NORMAL = 0,
-  PRIM = 5,
-  GEOM = 6,
-  INST = 7,
-  HIT = 12
-};
-static inline float *ray_row(void *ray, unsigned n, int row, unsigned i) {
-  return (float *)ray + (size_t)row * n + i;
-}
-static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
-  return (unsigned *)hit + (size_t)row * n + i;
-}
 
 /* What user_bounds reads; needed only while a scene is built. During queries the world of the
  * query gives the shape, because worlds share Embree's scenes. */
@@ -137,41 +116,77 @@ static __attribute__((noinline)) bool compare_hits(
   return vl_nearest_offer(known, &hit);
 }
 
-/* Whether the hit of ray i of n is the nearest so far. Sets the ray's largest t, beyond which
- * further hits do not matter. */
+/* What is known of the ray of a packet that Embree calls lane k. */
+static vlNearest known_of(const vlEmbreeQuery *q, uint32_t k) {
+  const vlNearestPacket *p = q->packet;
+  return vl_packet_known(p, q->world, q->rays, instance_of(q->world, p->instance[k]),
+                         q->first + k, k);
+}
+
+/* Keeps the rays of hits that are inside of an instance, for later comparisons. */
+static void keep_rays(const struct RTCFilterFunctionNArguments *args, vlNearestPacket *p) {
+  for (int j = 0; j < 3; j++) {
+    vl_packet_blend(p->o[j], ray_row(args->ray, VL_PACKET, ORIGIN + j, 0), args->valid);
+    vl_packet_blend(p->d[j], ray_row(args->ray, VL_PACKET, DIRECTION + j, 0), args->valid);
+  }
+  vl_packet_blend(p->time, ray_row(args->ray, VL_PACKET, TIME, 0), args->valid);
+}
+
+/* Takes out the hits that are not the nearest. */
+static __attribute__((noinline)) void compare_packet(
+    const struct RTCFilterFunctionNArguments *args, const vlEmbreeQuery *q) {
+  for (unsigned k = 0; k < VL_PACKET; k++) {
+    if (!args->valid[k])
+      continue;
+    vlNearest known = known_of(q, k), hit;
+    read_hit(args, VL_PACKET, k, &hit);
+    if (!vl_nearest_offer(&known, &hit))
+      args->valid[k] = 0;
+  }
+}
+
+/* Takes the hits of a packet that are the nearest so far, and takes out the others. Sets the
+ * rays' largest t, beyond which further hits do not matter. */
+static inline void take_nearest(const struct RTCFilterFunctionNArguments *args,
+                                const vlEmbreeQuery *q) {
+  float *far = ray_row(args->ray, VL_PACKET, TFAR, 0), limit[VL_PACKET];
+  if (!vl_packet_clearly(q->packet, far, args->valid))
+    compare_packet(args, q);
+  if (args->context->instID[0] != RTC_INVALID_GEOMETRY_ID)
+    keep_rays(args, q->packet);
+  vl_packet_blend(q->packet->t, far, args->valid);
+  VL_SIMD
+  for (int k = 0; k < VL_PACKET; k++)
+    limit[k] = far[k] * VL_NEAREST_WINDOW;
+  vl_packet_blend(far, limit, args->valid);
+}
+
+/* Whether the hit of a single ray is the nearest so far; as take_nearest. */
 static inline __attribute__((always_inline)) bool is_nearest(
-    const struct RTCFilterFunctionNArguments *args, unsigned n, unsigned i) {
-  const vlEmbreeQuery *q = query_of(args->context);
-  vlNearest *known = q->nearest + (*hit_row(args->ray, n, ID, i) - q->first);
-  float t = *ray_row(args->ray, n, TFAR, i);
-  if (vl_nearest_clearly(known, t))
-    read_hit(args, n, i, known);
-  else if (!compare_hits(args, n, i, known))
+    const struct RTCFilterFunctionNArguments *args, const vlEmbreeQuery *q) {
+  float t = *ray_row(args->ray, 1, TFAR, 0);
+  if (vl_nearest_clearly(q->nearest, t))
+    read_hit(args, 1, 0, q->nearest);
+  else if (!compare_hits(args, 1, 0, q->nearest))
     return false;
-  *ray_row(args->ray, n, TFAR, i) = t * VL_NEAREST_WINDOW;
+  *ray_row(args->ray, 1, TFAR, 0) = t * VL_NEAREST_WINDOW;
   return true;
 }
 
 /* The filter for VL_BITS_PORTABLE, for triangles that need no other filter. */
 static void filter_nearest(const struct RTCFilterFunctionNArguments *args) {
-  if (!query_of(args->context)->nearest)
-    return;
-  if (args->N == 1) { /* single rays, as constants: the compiler then knows all offsets */
-    if (args->valid[0] == -1 && !is_nearest(args, 1, 0))
-      args->valid[0] = 0;
-    return;
-  }
-  for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && !is_nearest(args, args->N, i))
-      args->valid[i] = 0;
+  const vlEmbreeQuery *q = query_of(args->context);
+  if (q->packet)
+    take_nearest(args, q);
+  else if (q->nearest && args->valid[0] == -1 && !is_nearest(args, q))
+    args->valid[0] = 0;
 }
 
 static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
-  bool any = !query_of(args->context)->nearest;
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 &&
-        (filter_rejects(args, i, false) || !(any || is_nearest(args, args->N, i))))
+    if (args->valid[i] == -1 && filter_rejects(args, i, false))
       args->valid[i] = 0;
+  filter_nearest(args);
 }
 
 static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
@@ -218,6 +233,17 @@ static bool user_hit(const EmbreeContext *context, void *ray, unsigned n, unsign
       (double)*ray_row(ray, n, TNEAR, i), (double)*ray_row(ray, n, TFAR, i), t);
 }
 
+/* vl_nearest_offer for ray i of a callback. */
+static bool offer_user_hit(const vlEmbreeQuery *q, unsigned i, const vlNearest *hit) {
+  if (!q->packet)
+    return vl_nearest_offer(q->nearest, hit);
+  vlNearest known = known_of(q, i);
+  if (!vl_nearest_offer(&known, hit))
+    return false;
+  q->packet->t[i] = hit->t;
+  return true;
+}
+
 static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
   void *ray = args->rayhit, *hit = ray_row(ray, args->N, HIT, 0);
   for (unsigned i = 0; i < args->N; i++) {
@@ -227,12 +253,12 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
       continue;
     const vlEmbreeQuery *q = query_of(args->context);
     float limit = (float)t;
-    if (q->nearest) {
+    if (q->nearest || q->packet) {
       vlNearest met = {.t = (float)t,
                        .instance = instance_of(q->world, args->context->instID[0]),
                        .geometry = args->geomID,
                        .primitive = args->primID};
-      if (!vl_nearest_offer(q->nearest + (*hit_row(ray, args->N, ID, i) - q->first), &met))
+      if (!offer_user_hit(q, i, &met))
         continue;
       limit = met.t * VL_NEAREST_WINDOW;
     }
@@ -329,77 +355,6 @@ static RTCScene new_scene(const vlWorld *world) {
   return scene;
 }
 
-#if defined(__x86_64__)
-/* Embree's instruction sets. fused: uses fused multiply-add; its hits at edges differ from
- * those of the other sets. */
-typedef struct EmbreeSet {
-  const char *name;
-  bool there, fused;
-} EmbreeSet;
-
-enum { SETS = 4 };
-static void list_sets(EmbreeSet sets[SETS]) {
-  __builtin_cpu_init();
-  sets[0] = (EmbreeSet){"sse4.2", true, false};
-  sets[1] = (EmbreeSet){"avx", __builtin_cpu_supports("avx"), false};
-  sets[2] = (EmbreeSet){"avx2", vl_isa_best() >= VL_ISA_V3, true};
-  sets[3] = (EmbreeSet){"avx512", vl_isa_best() >= VL_ISA_V4, true};
-}
-
-/* Chooses the instruction set that Embree must use; null: Embree's own choice. For
- * VL_BITS_PORTABLE it is the widest set without fused multiply-add. The environment variable
- * VELO_EMBREE overrides both. */
-static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
-  EmbreeSet sets[SETS];
-  list_sets(sets);
-  const char *wish = getenv("VELO_EMBREE");
-  *name = NULL;
-  if (!wish || !*wish) {
-    if (bits == VL_BITS_PORTABLE)
-      *name = sets[sets[1].there ? 1 : 0].name;
-    return VL_OK;
-  }
-  for (size_t k = 0; k < SETS; k++) {
-    if (strcmp(wish, sets[k].name) != 0)
-      continue;
-    if (!sets[k].there)
-      return vl_fail(error, VL_ERROR_UNSUPPORTED,
-                     "VELO_EMBREE=%s: this machine does not have it", wish);
-    if (sets[k].fused && bits == VL_BITS_PORTABLE)
-      return vl_fail(error, VL_ERROR_UNSUPPORTED,
-                     "VELO_EMBREE=%s: portable bits need sse4.2 or avx", wish);
-    *name = sets[k].name;
-    return VL_OK;
-  }
-  return vl_fail(error, VL_ERROR_ARGUMENT,
-                 "VELO_EMBREE=%s: not one of sse4.2, avx, avx2, avx512", wish);
-}
-
-const char *vl_embree_fast_set(void) {
-  const char *wish = getenv("VELO_EMBREE"), *widest = NULL;
-  EmbreeSet sets[SETS];
-  list_sets(sets);
-  for (size_t k = 0; k < SETS; k++) {
-    if (wish && strcmp(wish, sets[k].name) == 0)
-      return sets[k].name;
-    if (sets[k].there)
-      widest = sets[k].name;
-  }
-  return widest;
-}
-#else
-static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
-  (void)bits;
-  (void)error;
-  *name = NULL;
-  return VL_OK;
-}
-
-const char *vl_embree_fast_set(void) {
-  return "neon";
-}
-#endif
-
 /* Whether the address space has room for Embree's threads (their stacks and heaps). Embree's
  * threads end the process when they run out of memory during a build. The test reserves that
  * much address space, which takes no memory, and releases it again. */
@@ -436,7 +391,7 @@ static vlResult open_device(vlWorld *world, RTCDevice *device, vlError *error) {
   if (startable != VL_OK)
     return startable;
   const char *set;
-  vlResult chosen = choose_set(world->def.bits, &set, error);
+  vlResult chosen = vl_embree_choose_set(world->def.bits, &set, error);
   if (chosen != VL_OK)
     return chosen;
   snprintf(config, sizeof config, "threads=%u,hugepages=1%s%s",
@@ -556,6 +511,7 @@ vlResult vl_embree_build(vlWorld *world, vlError *error) {
   if (r != VL_OK)
     return r;
   a->device = device;
+  a->packets = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
   Builder b = {world, device,
                vl_alloc_array(world->context, world->shapes.count + 1, sizeof *b.geometries)};
   if (!b.geometries)
@@ -583,10 +539,6 @@ void vl_embree_destroy(vlAccel *a) {
 /* ---- tracing ----------------------------------------------------------------------------- */
 
 /* Macros that hide the difference between the queries of Embree 3 and 4. */
-/* Camera rays in a packet: as many as fit into the vectors of the widest set without fused
- * multiply-add. */
-enum { PACKET = 8 };
-
 #if VELO_EMBREE_MAJOR >= 4
 #define BEGIN_QUERY(query, r, coherent)                                         \
   Query query;                                                                  \
@@ -619,83 +571,57 @@ enum { PACKET = 8 };
 #define OCCLUDED8(valid, scene, ray) rtcOccluded8((valid), (scene), &query.context, (ray))
 #endif
 
+/* The shape whose ids were stored last: neighbours often meet the same. */
+typedef struct LastShape {
+  bool known;              /* false also where a geometry has several shapes */
+  unsigned geometry, inst; /* Embree's numbers */
+  uint32_t shape, instance;
+} LastShape;
+
 static inline void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst,
-                             uint32_t *shape, uint32_t *prim_out, uint32_t *instance) {
+                             LastShape *last, uint32_t *shape, uint32_t *prim_out,
+                             uint32_t *instance) {
   if (geom == RTC_INVALID_GEOMETRY_ID) {
     *shape = *prim_out = *instance = VL_NONE;
     return;
   }
-  uint32_t number = instance_of(world, inst);
-  *instance = index_of(world, number);
   *prim_out = prim;
-  *shape = (uint32_t)(vl_accel_shape(world, number, geom, prim_out) - world->shapes.items);
-}
-
-/* Embree accepts neither NaN nor origins beyond its range, and may end the process. Such rays
- * miss everything. Only cameras, and media around them, can be that far away, because the
- * extent of the world is limited (shapes.c); directions that are NaN come from cameras whose
- * numbers are too large for a double. */
-static inline bool is_sound(const vlRays *r, uint32_t i) {
-  const float far = 1.8e18f;
-  bool near = fabsf(r->ox[i]) < far && fabsf(r->oy[i]) < far && fabsf(r->oz[i]) < far;
-  bool turned = fabsf(r->dx[i]) < far && fabsf(r->dy[i]) < far && fabsf(r->dz[i]) < far;
-  bool from = !r->t_min || r->t_min[i] >= 0.0f;
-  bool to = !r->t_max || r->t_max[i] == r->t_max[i];
-  return near && turned && from && to;
-}
-
-/* Rays first to first + PACKET - 1 as a packet. Lanes past the last ray, and rays that Embree
- * does not accept, are not valid. */
-static void fill_packet(struct RTCRay8 *q, int valid[PACKET], const vlRays *r, uint32_t first,
-                        uint32_t n) {
-  const float *const from[6] = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz};
-  float *const to[6] = {q->org_x, q->org_y, q->org_z, q->dir_x, q->dir_y, q->dir_z};
-  uint32_t count = n - first < PACKET ? n - first : PACKET, last = first + count - 1;
-  for (int j = 0; j < 6; j++) {
-    memcpy(to[j], from[j] + first, count * sizeof(float));
-    for (uint32_t k = count; k < PACKET; k++)
-      to[j][k] = from[j][last];
+  if (!last->known || geom != last->geometry || inst != last->inst) {
+    uint32_t number = instance_of(world, inst);
+    const vlWorldShape *s = vl_accel_shape(world, number, geom, prim_out);
+    *last = (LastShape){s->triangles, geom, inst, (uint32_t)(s - world->shapes.items),
+                        index_of(world, number)};
   }
-  for (uint32_t k = 0; k < PACKET; k++) {
-    uint32_t i = k < count ? first + k : last;
-    valid[k] = k < count ? -1 : 0;
-    q->tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
-    q->tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
-    q->time[k] = r->time ? r->time[i] : 0;
-    q->mask[k] = (unsigned)-1;
-    q->id[k] = i;
-    q->flags[k] = 0;
-    if (!is_sound(r, i)) {
-      /* Embree may check lanes that are not valid; this one hits nothing */
-      valid[k] = 0;
-      q->org_x[k] = q->org_y[k] = q->org_z[k] = 0.0f;
-      q->dir_x[k] = q->dir_y[k] = q->dir_z[k] = 1.0f;
-      q->tnear[k] = q->tfar[k] = INFINITY;
-    }
-  }
+  *shape = last->shape;
+  *instance = last->instance;
 }
 
 static void closest_packets(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape,
                             uint32_t *prim, uint32_t *instance, float *t) {
   BEGIN_QUERY(query, r, true);
-  vlNearest nearest[PACKET];
-  if (world->def.bits == VL_BITS_PORTABLE)
-    query.q.nearest = nearest;
-  for (uint32_t first = 0; first < n; first += PACKET) {
+  struct RTCRayHit8 q;
+  vlNearestPacket nearest = {.normal = {q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z},
+                             .instance = q.hit.instID[0],
+                             .geometry = q.hit.geomID,
+                             .primitive = q.hit.primID};
+  bool portable = world->def.bits == VL_BITS_PORTABLE;
+  LastShape last = {.known = false};
+  query.q.packet = portable ? &nearest : NULL;
+  vl_packet_begin(&q.ray);
+  for (uint32_t first = 0; first < n; first += VL_PACKET) {
+    int valid[VL_PACKET] __attribute__((aligned(32)));
     query.q.first = first;
-    for (uint32_t k = 0; k < PACKET; k++)
-      nearest[k].t = INFINITY;
-    struct RTCRayHit8 q;
-    int valid[PACKET] __attribute__((aligned(32)));
-    fill_packet(&q.ray, valid, r, first, n);
-    for (uint32_t k = 0; k < PACKET; k++)
-      q.hit.geomID[k] = q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    vl_packet_clear(&nearest);
+    vl_packet_fill(&q.ray, valid, r, first, n);
+    memset(q.hit.geomID, 0xff, sizeof q.hit.geomID); /* RTC_INVALID_GEOMETRY_ID */
+    memset(q.hit.instID, 0xff, sizeof q.hit.instID);
     INTERSECT8(valid, world->accel.scene, &q);
-    for (uint32_t k = 0; k < PACKET && first + k < n; k++)
-      t[first + k] = query.q.nearest ? nearest[k].t : q.ray.tfar[k];
-    for (uint32_t k = 0; k < PACKET && first + k < n; k++)
-      store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k],
-                &prim[first + k], &instance[first + k]);
+    const float *found = portable ? nearest.t : q.ray.tfar;
+    for (uint32_t k = 0; k < VL_PACKET && first + k < n; k++) {
+      t[first + k] = found[k];
+      store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &last,
+                &shape[first + k], &prim[first + k], &instance[first + k]);
+    }
   }
 }
 
@@ -718,12 +644,13 @@ static inline void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
 
 void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent,
                        uint32_t *shape, uint32_t *prim, uint32_t *instance, float *t) {
-  if (coherent) {
+  if (coherent && world->accel.packets) {
     closest_packets(world, n, rays, shape, prim, instance, t);
     return;
   }
   BEGIN_QUERY(query, rays, false);
   vlNearest nearest;
+  LastShape last = {.known = false};
   if (world->def.bits == VL_BITS_PORTABLE)
     query.q.nearest = &nearest;
   for (uint32_t i = 0; i < n; i++) {
@@ -733,10 +660,10 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
     fill_ray(&q.ray, rays, i);
     q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    if (is_sound(rays, i))
+    if (vl_ray_is_sound(rays, i))
       INTERSECT1(world->accel.scene, &q);
     t[i] = query.q.nearest ? nearest.t : q.ray.tfar;
-    store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i],
+    store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &last, &shape[i], &prim[i],
               &instance[i]);
   }
 }
@@ -744,12 +671,13 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
 void vl_embree_occluded_packets(const vlWorld *world, uint32_t n, const vlRays *r,
                                 uint8_t *occluded) {
   BEGIN_QUERY(query, r, true);
-  for (uint32_t first = 0; first < n; first += PACKET) {
-    struct RTCRay8 q;
-    int valid[PACKET] __attribute__((aligned(32)));
-    fill_packet(&q, valid, r, first, n);
+  struct RTCRay8 q;
+  vl_packet_begin(&q);
+  for (uint32_t first = 0; first < n; first += VL_PACKET) {
+    int valid[VL_PACKET] __attribute__((aligned(32)));
+    vl_packet_fill(&q, valid, r, first, n);
     OCCLUDED8(valid, world->accel.scene, &q);
-    for (uint32_t k = 0; k < PACKET && first + k < n; k++)
+    for (uint32_t k = 0; k < VL_PACKET && first + k < n; k++)
       occluded[first + k] = q.tfar[k] < 0;
   }
 }
@@ -763,7 +691,7 @@ void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays,
       continue;
     struct RTCRay q;
     fill_ray(&q, rays, i);
-    if (is_sound(rays, i))
+    if (vl_ray_is_sound(rays, i))
       OCCLUDED1(world->accel.scene, &q);
     occluded[i] = q.tfar < 0;
   }

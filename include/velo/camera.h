@@ -313,6 +313,14 @@ VL_API bool vl_camera_unproject(const vlCamera *camera, double x, double y, doub
 VL_API bool vl_camera_project(const vlCamera *camera, const double point[3], double pixel[2],
                               double *z);
 
+/** The times, in seconds, at which `count` film points (x, y), pixels, see the world: those of
+ * vl_camera_unproject's rays, and of the points that vl_camera_project finds there. The middle
+ * of the exposure, with a rolling shutter of each film point's row, linear between the rows'
+ * centres, beyond the image's edges (and where x or y is NaN) that at an edge. Writes nothing
+ * if a pointer is null. */
+VL_API void vl_camera_film_times(const vlCamera *camera, size_t count, const double *pixels,
+                                 double *times);
+
 /** vl_camera_unproject for `count` film points (x, y) in `pixels`, with bitwise equal results.
  * Writes 3 numbers per point to `origins` (may be null) and to `directions`. valid[i] (may be
  * null) is 1; for a point outside the domain it is 0, and its other outputs are 0. */

@@ -450,6 +450,20 @@ static PyObject *camera_unproject(Camera *self, PyObject *pixels) {
   return NULL;
 }
 
+/* _film_times(pixels): seconds as a bytearray. */
+static PyObject *camera_film_times(Camera *self, PyObject *pixels) {
+  Numbers n;
+  if (!read_rows(pixels, "pixels", 2, &n))
+    return NULL;
+  size_t count = n.count / 2;
+  void *data = NULL;
+  PyObject *times = make_bytes(count * sizeof(double), &data);
+  if (times)
+    vl_camera_film_times(&self->camera, count, n.data, data);
+  numbers_release(&n);
+  return times;
+}
+
 typedef vlResult JacobianFn(const vlCamera *camera, size_t count, const double *in, double *out,
                             uint8_t *valid, vlError *error);
 
@@ -745,6 +759,7 @@ static PyMethodDef camera_methods[] = {
     {"_stereo", (PyCFunction)camera_stereo, METH_NOARGS, "Both eyes."},
     {"_project", (PyCFunction)camera_project, METH_O, "Points to pixels."},
     {"_unproject", (PyCFunction)camera_unproject, METH_O, "Pixels to rays."},
+    {"_film_times", (PyCFunction)camera_film_times, METH_O, "Times of pixels."},
     {"_project_jacobian", (PyCFunction)camera_project_jacobian, METH_O,
      "Derivatives of pixels."},
     {"_unproject_jacobian", (PyCFunction)camera_unproject_jacobian, METH_O,

@@ -151,6 +151,12 @@ class Camera(_velo.Camera):
         n = _shape_of(pixels, len(valid))
         return Rays(_arrays.from_bytes(origins, "d", (*n, 3)), _arrays.from_bytes(directions, "d", (*n, 3)), _flags(valid, n))
 
+    def film_times(self, pixels: Any) -> Any:
+        """When film points (n x 2 or rows x columns x 2) see the world, seconds: the times of `project` and `unproject`. The
+        middle of the exposure, with a rolling shutter that of each film point's row."""
+        times = self._film_times(pixels)
+        return _arrays.from_bytes(times, "d", _shape_of(pixels, len(times) // 8))
+
     def write(self, path: Path, *, dialect: Optional[str] = None, name: str = "", drop: Sequence[str] = (),
               context: Any = None) -> None:
         """Writes a camera file of velo or of another tool (docs/camera-files.md).

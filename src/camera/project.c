@@ -162,6 +162,16 @@ static void project_rows(const vlCameraCompiled *c, size_t count, const double *
   }
 }
 
+void vl_camera_film_times(const vlCamera *camera, size_t count, const double *pixels,
+                          double *times) {
+  if (!camera || !pixels || !times)
+    return;
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  for (size_t i = 0; i < count; i++)
+    times[i] = vl_camera_film_time(&c, pixels[2 * i], pixels[2 * i + 1]);
+}
+
 void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const double *pixels,
                                double *origins, double *directions, uint8_t *valid) {
   if (!camera)

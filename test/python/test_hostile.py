@@ -156,6 +156,7 @@ CALLS = [
     Call("Camera.at", lambda: FIRST.camera, time=(0.5, NUMBER)),
     Call("Camera.eyes", lambda: FIRST.camera.replace(stereo_mode="parallel")),
     Call("Camera.project", lambda: FIRST.camera, points=(QUAD, ANY), jacobian=(True, FLAG)),
+    Call("Camera.film_times", lambda: FIRST.camera, pixels=([[1, 2]], ANY)),
     Call("Camera.unproject", lambda: FIRST.camera, pixels=([[1, 2]], ANY), jacobian=(True, FLAG)),
     Call("Camera.solid_angle", lambda: FIRST.camera, _0=(1, ANY)),
     Call("Camera.write", lambda: FIRST.camera, path=(work("c.json"), PATH), dialect=("velo", OBJECT), name=("", TEXT), drop=((), ANY),

@@ -101,6 +101,38 @@ def points_inside_count_as_seen_up_to_a_depth():
 
 
 @case
+def a_rolling_shutter_has_the_time_of_each_row():
+    """Pixels, points in camera space and what hides them, by formulas: the camera moves along x with 2 units per second, a
+    shutter passes from left to right between it and the points."""
+    height, readout, speed = 48, 0.5, 2.0
+    camera = velo.Camera(64, height, eye=(0, 0, 5), lookat=(0, 0, 0), eye_close=(speed * readout, 0, 5), lookat_close=(speed * readout, 0, 0),
+                         fov=0.8, shutter_open=0, shutter_close=0, readout=readout, readout_direction="down", pose_times=(0, readout))
+    assert numpy.allclose(camera.film_times([[3, 0.5], [60, height - 0.5], [1, -9], [1, 99]]),
+                          [0, readout * (height - 1) / height, -readout / 2 / height, readout * (1 - 0.5 / height)])
+    scene = velo.Scene()
+    group = scene.add_group("shutter")
+    scene.add_box((-4, -4, 1), (0, 4, 1.1), group=group)
+    poses = numpy.tile(numpy.eye(4), (2, 1, 1))
+    poses[:, 0, 3] = -1.5, 2.5
+    scene.add_instance(group, poses, [0, readout])
+    world = scene.world()
+    points = RANDOM.uniform((-1, -1, -0.5), (2, 1, 0.5), size=(400, 3))
+    found, seen = dataset.project_keypoints(world, camera, points), camera.project(points)
+    rows = seen.pixels[:, 1]
+    inside = seen.valid & (seen.pixels >= 0).all(1) & (seen.pixels < (64, height)).all(1)
+    times = (rows - 0.5) / height * readout
+    eyes = numpy.stack([speed * times, 0 * times, 0 * times + 5], 1)
+    to = points - eyes
+    assert inside.sum() > 200 and numpy.allclose(found.points[inside], (to * (1, -1, -1))[inside], atol=1e-9)
+    assert numpy.allclose(found.points[inside][:, 2], seen.z[inside], atol=1e-9)
+    edge = -1.5 + 4 * times / readout
+    across = eyes[:, 0] + to[:, 0] * (5 - 1.1) / (5 - points[:, 2])
+    sure = inside & (numpy.abs(across - edge) > 0.1)
+    assert 50 < (found.visibility[sure] == 1).sum() < sure.sum() - 50
+    assert ((found.visibility == 1) == (across < edge))[sure].all()
+
+
+@case
 def points_without_a_place_in_the_image_are_outside():
     camera = velo.Camera(64, 48, eye=(0, 0, 5), lookat=(0, 0, 0), fov=0.6)
     found = dataset.project_keypoints(stage().world(), camera, [(0, 0, 9), (50, 0, 0), (math.nan, 0, 0), (math.inf, 0, 0), (0, 0, 0.5)])

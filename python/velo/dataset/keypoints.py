@@ -25,7 +25,8 @@ class Keypoints(NamedTuple):
 
 def project_keypoints(world: Any, camera: Any, points: Any, *, depth: float = 0.0) -> Keypoints:
     """Where points (n x 3, world space, scene units) are in a camera's image, and whether they are seen: a ray from the camera to
-    each is traced, at the exposure's middle.
+    each is traced. Pixels, points in camera space and rays are those of the time at which `camera.project` sees the point: the middle of the
+    exposure, with a rolling shutter that of the row of its pixel (of a point without a projection, of the image's middle).
 
     world: of a scene (Scene.world()). depth: how far below a surface a visible keypoint may be, scene units: for points inside of
     objects, such as joints. Points that are not finite, and points without a projection, are OUTSIDE."""
@@ -49,19 +50,21 @@ def project_keypoints(world: Any, camera: Any, points: Any, *, depth: float = 0.
     hidden, hider = _hidden(world, camera, at, seen.pixels, inside, depth)
     inside &= hidden >= 0
     visibility = numpy.where(inside, numpy.where(hidden == 1, HIDDEN, VISIBLE), OUTSIDE).astype("uint8")
-    pixels = numpy.where((finite & seen.valid)[:, None], seen.pixels, 0)
-    return Keypoints(pixels, visibility, _in_camera(camera, at), numpy.where(inside, hider, 0).astype("uint32"))
+    known = (finite & seen.valid)[:, None]
+    pixels = numpy.where(known, seen.pixels, 0)
+    times = camera.film_times(numpy.where(known, seen.pixels, (width / 2, height / 2)))
+    return Keypoints(pixels, visibility, _in_camera(camera, at, times), numpy.where(inside, hider, 0).astype("uint32"))
 
 
-def _in_camera(camera: Any, at: Any) -> Any:
-    # Sums of products in a fixed order: matrix products differ in their last bits between machines.
-    m = camera.at(_middle(camera)).camera_from_world
-    return numpy.stack([m[i, 0] * at[:, 0] + m[i, 1] * at[:, 1] + m[i, 2] * at[:, 2] + m[i, 3] for i in range(3)], 1)
-
-
-def _middle(camera: Any) -> float:
-    times = camera.get("shutter_open"), camera.get("shutter_close")
-    return float(times[0] + times[1]) / 2
+def _in_camera(camera: Any, at: Any, times: Any) -> Any:
+    """Points in the space of the camera of each point's time."""
+    points = numpy.zeros((len(at), 3))
+    for time in numpy.unique(times):
+        # Sums of products in a fixed order: matrix products differ in their last bits between machines.
+        m, which = camera.at(time).camera_from_world, times == time
+        x, y, z = at[which].T
+        points[which] = numpy.stack([m[i, 0] * x + m[i, 1] * y + m[i, 2] * z + m[i, 3] for i in range(3)], 1)
+    return points
 
 
 def _hidden(world: Any, camera: Any, at: Any, pixels: Any, inside: Any, depth: float) -> tuple[Any, Any]:
@@ -75,7 +78,7 @@ def _hidden(world: Any, camera: Any, at: Any, pixels: Any, inside: Any, depth: f
     which, origins, directions = which[rays.valid], rays.origins[rays.valid], rays.directions[rays.valid]
     to = at[which] - origins
     along = to[:, 0] * directions[:, 0] + to[:, 1] * directions[:, 1] + to[:, 2] * directions[:, 2]
-    hits = world.trace(origins, directions, t_max=numpy.maximum(along * (1 - _SLACK) - depth, 0), times=_middle(camera),
+    hits = world.trace(origins, directions, t_max=numpy.maximum(along * (1 - _SLACK) - depth, 0), times=camera.film_times(pixels[which]),
                        fields=["valid", "instance_id"])
     hidden[which], hider[which] = hits.valid, hits.instance_id
     return hidden, hider

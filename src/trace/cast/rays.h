@@ -3,7 +3,8 @@
 #ifndef TRACE_CAST_RAYS_H
 #define TRACE_CAST_RAYS_H
 
-#include "trace/cast/cast.h"
+#include "trace/cast/batch.h"
+#include "velo/rays.h"
 
 /* As many rays as stay in the first level of the cache from one loop to the next. */
 enum { VL_CAST_BLOCK = 128 };

@@ -3,6 +3,8 @@ import numpy
 
 from .math_nodes import column
 
+#: Linear Rec. 709 from CIE XYZ (IEC 61966-2-1).
+RGB_FROM_XYZ = numpy.array([[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]])
 LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])
 
 
@@ -144,9 +146,50 @@ def hue_saturation(e, node, output, groups):
     return numpy.maximum(color + column(factor) * (from_hsv(hsv) - color), 0)
 
 
+def _bell(wavelength, middle, below, above):
+    """A Gaussian with a width on each side."""
+    t = (wavelength - middle) / numpy.where(wavelength < middle, below, above)
+    return numpy.exp(-0.5 * t * t)
+
+
+def black_body(e, node, output, groups):
+    """Planck's law through the fits of Wyman, Sloan and Shirley 2013 to the CIE 1931 observer, linear Rec. 709 of luminance 1, as Cycles'
+    to 1 %."""
+    kelvin = numpy.clip(e.input(node.inputs[0], groups), 800.0, 12000.0)[:, None]
+    nm = numpy.arange(380.0, 781.0, 5.0)[None, :]
+    with numpy.errstate(all="ignore"):
+        power = nm**-5.0 / numpy.expm1(1.4387769e7 / (nm * kelvin))
+    x = 1.056 * _bell(nm, 599.8, 37.9, 31.0) + 0.362 * _bell(nm, 442.0, 16.0, 26.7) - 0.065 * _bell(nm, 501.1, 20.4, 26.2)
+    y = 0.821 * _bell(nm, 568.8, 46.9, 40.5) + 0.286 * _bell(nm, 530.9, 16.3, 31.1)
+    z = 1.217 * _bell(nm, 437.0, 11.8, 36.0) + 0.681 * _bell(nm, 459.0, 26.0, 13.8)
+    xyz = numpy.stack([(power * part).sum(axis=1) for part in (x, y, z)], axis=1)
+    xyz = xyz / numpy.maximum(xyz[:, 1:2], 1e-30)
+    return numpy.maximum(xyz @ RGB_FROM_XYZ.T, 0)
+
+
+def separate_color(e, node, output, groups):
+    index = [socket.identifier for socket in node.outputs].index(output.identifier)
+    color = e.input(node.inputs[0], groups)
+    return (to_hsv(color) if _mode(node) == "HSV" else color)[:, index]
+
+
+def combine_color(e, node, output, groups):
+    parts = numpy.stack(numpy.broadcast_arrays(*(e.input(socket, groups) for socket in list(node.inputs)[:3])), axis=1)
+    return from_hsv(parts) if _mode(node) == "HSV" else parts
+
+
+def _mode(node):
+    """RGB or HSV; the older nodes have it in their kind."""
+    mode = "HSV" if node.type in ("SEPHSV", "COMBHSV") else getattr(node, "mode", "RGB")
+    if mode not in ("RGB", "HSV"):
+        raise _unsupported(node, "colours as %s" % mode)
+    return mode
+
+
 def to_gray(e, node, output, groups):
     return e.input(node.inputs[0], groups) @ LUMINANCE
 
 
 NODES = {"RGB": rgb, "MIX_RGB": mix_rgb, "MIX": mix, "VALTORGB": ramp, "CURVE_RGB": curves, "INVERT": invert, "GAMMA": gamma,
-         "BRIGHTCONTRAST": bright_contrast, "HUE_SAT": hue_saturation, "RGBTOBW": to_gray}
+         "BRIGHTCONTRAST": bright_contrast, "HUE_SAT": hue_saturation, "RGBTOBW": to_gray, "BLACKBODY": black_body,
+         "SEPARATE_COLOR": separate_color, "COMBINE_COLOR": combine_color, "SEPHSV": separate_color, "COMBHSV": combine_color}

@@ -146,14 +146,10 @@ def map_range(e, node, output, groups):
 
 def separate(e, node, output, groups):
     index = [socket.identifier for socket in node.outputs].index(output.identifier)
-    if getattr(node, "mode", "RGB") != "RGB":
-        raise _unsupported(node, "separation into %s" % node.mode)
     return e.input(node.inputs[0], groups)[:, index]
 
 
 def combine(e, node, output, groups):
-    if getattr(node, "mode", "RGB") != "RGB":
-        raise _unsupported(node, "combination of %s" % node.mode)
     return numpy.stack(numpy.broadcast_arrays(*(e.input(socket, groups) for socket in list(node.inputs)[:3])), axis=1)
 
 
@@ -162,4 +158,4 @@ def value(e, node, output, groups):
 
 
 NODES = {"MATH": math_node, "VECT_MATH": vector_math, "CLAMP": clamp, "MAP_RANGE": map_range, "VALUE": value, "SEPRGB": separate,
-         "SEPXYZ": separate, "SEPARATE_COLOR": separate, "COMBRGB": combine, "COMBXYZ": combine, "COMBINE_COLOR": combine}
+         "SEPXYZ": separate, "COMBRGB": combine, "COMBXYZ": combine}

@@ -74,3 +74,12 @@ def white_noise_of_each_dimension():
     for count in ("2D", "3D", "4D"):
         difference, scene = shown("ShaderNodeTexWhiteNoise", noise_dimensions=count)
         assert difference < 0.1 and not notes(scene), (difference, notes(scene))
+
+
+@case
+def black_bodies_and_hues():
+    for kelvin in (1500.0, 3000.0, 6500.0, 11000.0):
+        same("ShaderNodeBlackbody", 0.02, inputs={"Temperature": kelvin}, coordinate=None)
+    same("ShaderNodeCombineColor", mode="HSV", inputs={"Red": 0.6, "Green": 0.7, "Blue": 0.9}, coordinate=None)
+    for channel in ("Red", "Green", "Blue"):
+        same("ShaderNodeSeparateColor", output=channel, mode="HSV", inputs={"Color": (0.2, 0.7, 0.4, 1)}, coordinate=None)

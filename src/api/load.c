@@ -17,7 +17,7 @@
 
 typedef vlResult Import(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
-#define FORMAT(suffix, name) {suffix, vl_import_##name},
+#define FORMAT(suffix, function) {suffix, function},
 static const struct {
   const char *suffix;
   Import *import;

@@ -7,24 +7,23 @@
 #include "velo/load.h"
 #include "velo/scene_base.h"
 
-/* X(suffix, name) for each suffix of scene files; vl_import_NAME reads them. def may be
- * null. */
-#define VL_SCENE_FORMATS(X) \
-  X(".pbrt", pbrt)          \
-  X(".pbrt.gz", pbrt)       \
-  X(".gltf", gltf)          \
-  X(".glb", gltf)           \
-  X(".obj", obj)            \
-  X(".obj.gz", obj)         \
-  X(".ply", ply)            \
-  X(".ply.gz", ply)         \
-  X(".stl", stl)            \
-  X(".stl.gz", stl)         \
-  X(".off", off)            \
-  X(".off.gz", off)
-#define VL_DECLARE_IMPORT(suffix, name)                                             \
-  vlResult vl_import_##name(vlScene *scene, const char *path, const vlLoadDef *def, \
-                            vlError *error);
+/* X(suffix, function) for each suffix of scene files, with the function that reads them. def
+ * may be null. */
+#define VL_SCENE_FORMATS(X)     \
+  X(".pbrt", vl_import_pbrt)    \
+  X(".pbrt.gz", vl_import_pbrt) \
+  X(".gltf", vl_import_gltf)    \
+  X(".glb", vl_import_gltf)     \
+  X(".obj", vl_import_obj)      \
+  X(".obj.gz", vl_import_obj)   \
+  X(".ply", vl_import_ply)      \
+  X(".ply.gz", vl_import_ply)   \
+  X(".stl", vl_import_stl)      \
+  X(".stl.gz", vl_import_stl)   \
+  X(".off", vl_import_off)      \
+  X(".off.gz", vl_import_off)
+#define VL_DECLARE_IMPORT(suffix, function) \
+  vlResult function(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 VL_SCENE_FORMATS(VL_DECLARE_IMPORT)
 #undef VL_DECLARE_IMPORT
 

@@ -25,6 +25,7 @@ long="--spp 16777216 --quiet -o a.exr"
 refused 1 too_large_for_the_limit 'film 132 MB' "$V" render scene.pbrt --resolution 1000x1000 --max-memory 100M $long
 refused 1 limit_in_other_units 'film 132 MB' "$V" render scene.pbrt --resolution 1000x1000 --max-memory 100MiB $long
 refused 1 truth_is_reckoned 'ground truth' "$V" render scene.pbrt --resolution 300x300 --channels all,crypto --max-memory 30M $long
+refused 1 second_render_is_reckoned 'ground truth 1' "$V" render scene.pbrt --resolution 1000x1000 --channels illuminance --max-memory 100M $long
 refused 1 trajectory_is_reckoned 'out of memory: this needs' "$V" render scene.pbrt --stereo parallel --resolution 1000x1000 --max-memory 100M $long
 refused 1 too_large_for_the_process 'the process may have' bash -c "ulimit -v 500000; exec \"\$0\" \"\$@\"" "$V" render scene.pbrt -t 2 --resolution 2000x2000 $long
 refused 1 building_is_limited '--max-memory allows' "$V" render scene.pbrt --max-memory 1k $long

@@ -8,6 +8,7 @@
 
 #include "cli/report.h"
 #include "render/progress.h"
+#include "velo/tracer.h"
 
 /* ---- the process ------------------------------------------------------------------------- */
 
@@ -58,6 +59,18 @@ static uint64_t film_bytes(const Job *job, const Frames *frames) {
   return sum;
 }
 
+/* The second render of --channels illuminance: its film, its workers, two images. */
+static uint64_t illuminance_bytes(const vlWorld *world, const Job *job) {
+  const vlFilmDef *film = &job->defs->film;
+  vlFilmDef own = vl_default_film_def(film->width, film->height);
+  memcpy(own.crop, film->crop, sizeof own.crop);
+  vlRenderDef render = job->defs->render;
+  render.tracer = VL_TRACER_VOLPATH;
+  uint64_t pixels = (uint64_t)(own.crop[2] - own.crop[0]) * (own.crop[3] - own.crop[1]);
+  return vl_film_memory(&own) + vl_render_memory(world, &own, &render) +
+         pixels * 5 * sizeof(float);
+}
+
 void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job,
                  const Outputs *outputs, const Channels *channels, const Frames *frames) {
   enum {
@@ -93,7 +106,10 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
   memory_add(plan, "film", film_bytes(job, frames));
   memory_add(plan, "rendering", vl_render_memory(world, &job->defs->film, &job->defs->render));
   memory_add(plan, "image", copies * pixels * (eight_bit ? 20 : 16));
-  memory_add(plan, "ground truth", copies * pixels * values * 4);
+  uint64_t ground_truth = copies * pixels * values * 4;
+  if (layers && (channels->bits & VL_CHANNEL_ILLUMINANCE))
+    ground_truth += illuminance_bytes(world, job);
+  memory_add(plan, "ground truth", ground_truth);
   memory_add(plan, "writing", writing(context, outputs, width, height, values));
 }
 

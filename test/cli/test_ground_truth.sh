@@ -80,6 +80,12 @@ for name, wanted in (("forward.pfm", 3.28 * (1 - share)), ("backward.pfm", -3.28
     got = sum(moved) / len(moved) if moved else 0
     assert abs(got - wanted) < 0.05, (name, got, wanted)' "$moment"
 done
+# A moving object's flow to another camera, whose exposure is later: it cannot be checked, and the pixels are counted.
+sed 's/shutteropen" 0 "float shutterclose" 1/shutteropen" 1 "float shutterclose" 2/' moving.pbrt >later.pbrt
+check moving_flow "$VELO" render moving.pbrt --spp 1 --quiet --channels P,distance,id.object,id.instance,forward --channels-time open -o from.exr --flow-camera later.pbrt
+check later_image "$VELO" render later.pbrt --spp 1 --quiet --channels distance,id.object,id.instance -o to.exr
+expect_code 1 moving_flow_is_not_checked "$VELO" image check from.exr --flow to.exr
+expect_text moving_pixels 'leads elsewhere than in a world at rest'
 expect_code 2 channels_time_word "$VELO" render a.pbrt -o no.exr --channels Z --channels-time opn
 expect_text says_how 'row, open, middle, close or seconds'
 expect_code 2 odd_ranks "$VELO" render a.pbrt -o no.exr --channels crypto --crypto-ranks 5

@@ -264,6 +264,8 @@ static int load_other(Check *c, vlContext *context, const Arguments *arguments,
     if (header_rows(*image, &c->other_camera, &rolling) == ROWS_EACH)
       c->other_camera = rolling;
     c->other_distance = vl_image_find_channel(*image, "distance.Y");
+    c->other_object = find_whole(*image, "id.object");
+    c->other_instance = find_whole(*image, "id.instance");
     c->other = *image;
   }
   return -1;
@@ -334,6 +336,7 @@ static int run_check(const Command *command, const Arguments *arguments) {
     check_all(c);
     print_result(c, arguments, threshold);
     status = image_finish_output(judge(c, c->path, threshold));
+    check_explain_flow(c, threshold);
   }
   free(c->material_of);
   check_free_mattes(c);

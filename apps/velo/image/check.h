@@ -81,6 +81,10 @@ typedef struct Check {
   uint32_t other_x0, other_y0;
   int other_distance, which; /* other_distance: channel index; which: 0 forward, 1 backward */
   uint64_t flow_seen, flow_wrong;
+  /* Pixels whose flow leads elsewhere than in a world at rest, and those of them that lead to
+   * the same object and instance: what moves does so. */
+  uint64_t flow_elsewhere, flow_same;
+  int other_object, other_instance; /* channel indices; -1: not in the other file */
 
   Rule rules[RULES];
 } Check;
@@ -101,5 +105,7 @@ void check_mattes(Check *c);
 /* check_flow.c */
 void check_flow(Check *c);
 void check_finish_flow(Check *c);
+/* Says which wrong flow may be that of what moves. threshold: of RULE_FLOW. */
+void check_explain_flow(const Check *c, double threshold);
 
 #endif

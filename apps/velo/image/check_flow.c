@@ -1,6 +1,7 @@
 /* image/check_flow.c: whether flow leads to the same point in the other image. */
 #include <math.h>
 
+#include "cli/report.h"
 #include "cli/vector.h"
 #include "image/check.h"
 #include "velo/channels.h"
@@ -88,6 +89,29 @@ static double pixels_of_rounding(const Check *c, const double p[3], const double
   return step > 0 ? largest * size / step : 0;
 }
 
+/* The pixel of the other image to which the flow leads; null: it is outside. */
+static const float *led_to(const Check *c, const float flow[2]) {
+  double x = floor(c->point[0] + (double)flow[0]) - c->other_x0,
+         y = floor(c->point[1] + (double)flow[1]) - c->other_y0;
+  uint32_t width = vl_image_width(c->other), height = vl_image_height(c->other);
+  if (!(x >= 0 && y >= 0 && x < width && y < height))
+    return NULL;
+  return vl_image_const_pixels(c->other) +
+         ((size_t)y * width + (size_t)x) * vl_image_channels(c->other);
+}
+
+/* Counts a pixel whose flow leads elsewhere than in a world at rest. */
+static void count_elsewhere(Check *c, const float flow[2]) {
+  const float *there = led_to(c, flow);
+  c->flow_elsewhere++;
+  if (!there || c->object < 0 || c->other_object < 0)
+    return;
+  bool same = c->pixel[c->object] > 0 && c->pixel[c->object] == there[c->other_object];
+  if (c->instance >= 0 && c->other_instance >= 0)
+    same = same && c->pixel[c->instance] == there[c->other_instance];
+  c->flow_same += same;
+}
+
 void check_flow(Check *c) {
   int hidden = (int)c->pixel[c->hidden[c->which]];
   const float *flow = c->pixel + c->flow[c->which];
@@ -112,6 +136,8 @@ void check_flow(Check *c) {
       hypot(at[0] - c->point[0] - (double)flow[0], at[1] - c->point[1] - (double)flow[1]);
   if (hidden != VL_HIDDEN_NOWHERE)
     check_note(c, RULE_FLOW, error / fmax(larger, pixels_of_rounding(c, p, at)));
+  if (hidden != VL_HIDDEN_NOWHERE && error > 0.01)
+    count_elsewhere(c, flow);
   const double margin = 1e-3;
   bool inside = at[0] > margin && at[1] > margin && at[0] < c->other_camera.width - margin &&
                 at[1] < c->other_camera.height - margin;
@@ -127,4 +153,13 @@ void check_flow(Check *c) {
 void check_finish_flow(Check *c) {
   if (c->flow_seen)
     check_note(c, RULE_SEEN, (double)c->flow_wrong / (double)c->flow_seen);
+}
+
+void check_explain_flow(const Check *c, double threshold) {
+  if (c->rules[RULE_FLOW].worst <= threshold || !c->flow_elsewhere)
+    return;
+  report_note(
+      "%s: the flow of %llu pixels leads elsewhere than in a world at rest, of %llu of "
+      "them to the same object there: of objects that move, flow cannot be checked",
+      c->path, (unsigned long long)c->flow_elsewhere, (unsigned long long)c->flow_same);
 }

@@ -80,7 +80,7 @@ def layer_weight(e, node, output, groups):
 
 def light_path(e, node, output, groups):
     """Cycles asks what a ray is; here all rays are the same."""
-    is_view = "direction" not in e.fields  # of a surface: the camera's; of a world: the light's
+    is_view = "is world" not in e.fields  # of a surface: the camera's; of a world: the light's
     known = {"Is Camera Ray": 1.0 if is_view else 0.0, "Ray Length": 1.0}
     e.note(node, "all rays see what %s" % ("the camera sees" if is_view else "lights"))
     return numpy.array([known.get(output.name, 0.0)])

@@ -88,7 +88,7 @@ def add(scene, world, notes):
 
 
 def _evaluator(fields, look, notes, world):
-    return evaluate.Evaluator(fields, look, lambda node, text: notes.add(world.name, node.name, text))
+    return evaluate.Evaluator({**fields, "is world": numpy.ones(1)}, look, lambda node, text: notes.add(world.name, node.name, text))
 
 
 def _add_color(scene, color):

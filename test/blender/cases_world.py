@@ -51,3 +51,20 @@ def a_world_without_its_image_is_black_and_listed():
     tree.links.new(picture.outputs[0], tree.nodes["Background"].inputs[0])
     assert numpy.asarray(colors(render(scene))).max() == 0
     assert any("lost.exr is missing" in line for line in notes(scene)), notes(scene)
+
+
+@case
+def a_world_that_the_camera_sees_otherwise_lights_as_in_cycles():
+    scene = new_scene(world=(0.8, 0.8, 0.8))
+    plane(material("ShaderNodeBsdfDiffuse", Color=(0.5, 0.5, 0.5))[0])
+    tree = scene.world.node_tree
+    seen, mix = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeMixShader")
+    seen.inputs[0].default_value = (0, 0.1, 0.5, 1)
+    rays = tree.nodes.new("ShaderNodeLightPath")
+    tree.links.new(rays.outputs["Is Camera Ray"], mix.inputs[0])
+    tree.links.new(tree.nodes["Background"].outputs[0], mix.inputs[1])
+    tree.links.new(seen.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], next(node for node in tree.nodes if node.type == "OUTPUT_WORLD").inputs[0])
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    assert abs(mine[30:] / other[30:] - 1).mean() < 0.03
+    assert any("Light Path" in line for line in notes(scene)), notes(scene)

@@ -7,6 +7,7 @@
 #include "cli/report.h"
 #include "render/channels.h"
 #include "render/outputs.h"
+#include "velo/header.h"
 
 static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t count) {
   int channel = vl_image_find_channel(ids, name);

@@ -190,9 +190,27 @@ static int write_frame(Expose *e, uint32_t frame, const vlExposureDef *exposure)
   return -1;
 }
 
+/* A bucket without a sample is 0 in the image. With as many samples as buckets, of 4
+ * wavelengths each, about one in fifty is empty. */
+static void tell_empty_buckets(const vlImage *image) {
+  vlAttribute samples;
+  uint32_t buckets = 0;
+  for (uint32_t c = 0; c < vl_image_channels(image); c++)
+    buckets += strncmp(vl_image_channel_name(image, c), "S0.", 3) == 0;
+  if (vl_image_find_attribute(image, "samplesPerPixel", &samples) != VL_OK ||
+      samples.numbers[0] >= buckets)
+    return;
+  report_warning(
+      "the image has %.0f samples per pixel for %u buckets of its spectrum; those without a "
+      "sample are 0, so the sensor sees it too dark: render it with --spp %u or more",
+      samples.numbers[0], buckets, buckets);
+}
+
 /* What a reader of the frame should know. */
 static void tell(const Expose *e, uint32_t frame, const vlSensorOutput *out) {
   double pixels = (double)vl_image_width(e->image) * vl_image_height(e->image);
+  if (frame == 0)
+    tell_empty_buckets(e->image);
   if (frame == 0 && out->not_finite)
     report_warning("%llu pixels of the image are not finite; the sensor sees them black",
                    (unsigned long long)out->not_finite);

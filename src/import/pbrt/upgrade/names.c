@@ -34,9 +34,10 @@ static bool makes(const vlOldStatement *s, Family *family) {
   return s->name_count > 0;
 }
 
-/* The last one of that name; one whose block has ended counts only where `ended` is true. */
+/* The last one of that name; one whose block has ended counts only where `ended` is true. name:
+ * null finds nothing (a parameter without values). */
 static const vlOldName *find(const vlUpgrade *u, Family family, const char *name, bool ended) {
-  for (size_t i = u->names.count; i > 0; i--) {
+  for (size_t i = name ? u->names.count : 0; i > 0; i--) {
     const vlOldName *n = &u->names.items[i - 1];
     if (n->family == (int)family && (ended || !n->ended) && vl_text_is(n->old, name))
       return n;

@@ -53,6 +53,9 @@ check whole "$VELO" sensor expose flat.exr --sensor ideal_rggb --radiance 1e-4 -
 check crop "$VELO" render flat.pbrt --spectrum 47 --filter box --channels error --crop 21,11,50,40 -o part.exr --quiet
 check expose_crop "$VELO" sensor expose part.exr --sensor ideal_rggb --radiance 1e-4 --focal-length 4 -o part_e.exr
 check crop_of_whole "$VELO" image convert whole.exr whole_part.exr --crop 21,11,50,40
+check blurred "$VELO" render flat.pbrt --spectrum 47 --spp 64 -o blurred.exr --quiet
+check expose_blurred "$VELO" sensor expose blurred.exr -o blurred_e.exr
+expect_text filter 'render it with --filter box'
 check few "$VELO" render flat.pbrt --spectrum 47 --filter box --spp 16 -o few.exr --quiet
 check expose_few "$VELO" sensor expose few.exr -o few_e.exr
 expect_text empty_buckets 'the image has 16 samples per pixel for 47 buckets'

@@ -505,6 +505,29 @@ static void bad_values(void **state) {
   vl_sensor_destroy(sensor);
 }
 
+/* The read noise that was measured at two gains, e-. */
+static void measured_camera(void **state) {
+  (void)state;
+  vlSensorDef def;
+  assert_int_equal(vl_sensor_preset("raspberry_pi_hq", &def, NULL), VL_OK);
+  static const double gains[2] = {1, 16};
+  static const double noise[2] = {3, 1.5};
+  fill(0);
+  for (int i = 0; i < 2; i++) {
+    vlExposureDef exposure = vl_default_exposure_def();
+    vlSensorOutput out = {.numbers = numbers_};
+    double mean;
+    double variance;
+    exposure.gain = gains[i];
+    read_out(&def, &exposure, &out);
+    moments(numbers_, &mean, &variance);
+    double rounding = 1.0 / 12.0; /* DN^2 */
+    double electrons = (variance - rounding) / (0.47 * 0.47 * gains[i] * gains[i]);
+    near(mean, 256, 0.3);
+    near(electrons / (noise[i] * noise[i]), 1, 5 * sqrt(2.0 / PIXELS));
+  }
+}
+
 static void presets(void **state) {
   (void)state;
   uint32_t count = 0;
@@ -514,7 +537,7 @@ static void presets(void **state) {
     assert_int_equal(vl_sensor_preset(name, &def, &error), VL_OK);
     vl_sensor_destroy(sensor_of(&def));
   }
-  assert_int_equal(count, 22);
+  assert_int_equal(count, 23);
   assert_int_equal(vl_sensor_preset("canon_eos_5c", &def, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "the nearest is \"canon_eos_5d\""));
 }
@@ -527,6 +550,7 @@ int main(void) {
       cmocka_unit_test(mosaics),          cmocka_unit_test(crosstalk),
       cmocka_unit_test(angles),           cmocka_unit_test(images),
       cmocka_unit_test(windows),          cmocka_unit_test(film_noise),
-      cmocka_unit_test(bad_values),       cmocka_unit_test(presets)};
+      cmocka_unit_test(bad_values),       cmocka_unit_test(presets),
+      cmocka_unit_test(measured_camera)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

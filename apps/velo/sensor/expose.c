@@ -206,11 +206,24 @@ static void tell_empty_buckets(const vlImage *image) {
       samples.numbers[0], buckets, buckets);
 }
 
+/* Pixels of a sensor collect the light of their own area. */
+static void tell_filter(const vlImage *image) {
+  vlAttribute filter;
+  if (vl_image_find_attribute(image, "velo.filter", &filter) == VL_OK &&
+      filter.type == VL_ATTRIBUTE_STRING && strcmp(filter.string, "box") != 0)
+    report_warning(
+        "the image has the filter \"%s\", which takes light of the neighbours; a pixel of a "
+        "sensor has its own area: render it with --filter box",
+        filter.string);
+}
+
 /* What a reader of the frame should know. */
 static void tell(const Expose *e, uint32_t frame, const vlSensorOutput *out) {
   double pixels = (double)vl_image_width(e->image) * vl_image_height(e->image);
   if (frame == 0)
     tell_empty_buckets(e->image);
+  if (frame == 0)
+    tell_filter(e->image);
   if (frame == 0 && out->not_finite)
     report_warning("%llu pixels of the image are not finite; the sensor sees them black",
                    (unsigned long long)out->not_finite);
@@ -349,7 +362,7 @@ static const Option options[] = {
      "has the numbers (16 bits), .exr the electrons"},
     {EXPOSE_SENSOR, 0, "sensor", OPTION_TEXT, "NAME|FILE",
      "a sensor file (.yaml), or ideal, ideal_rggb, generic_mono, generic_rggb, generic_quad, "
-     "or generic_rggb with the sensitivities of a measured camera (canon_eos_5d, ...). "
+     "raspberry_pi_hq, or generic_rggb with the sensitivities of a measured camera (canon_eos_5d, ...). "
      "Default: ideal"},
     {EXPOSE_TIME, 0, "exposure-time", OPTION_TEXT, "S", "exposure time in seconds"},
     {EXPOSE_F_NUMBER, 0, "f-number", OPTION_TEXT, "N",

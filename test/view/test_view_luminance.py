@@ -43,6 +43,12 @@ def value_at(page, place):
     return struct.unpack_from("<f", page.pixels, 4 * (place[1] * WIDTH + place[0]))[0]
 
 
+def wait_last(page, frame):
+    """The frame of all samples: `frame` itself, if it came that late."""
+    if frame.scale != 1 or frame.spp != 8:
+        page.wait_frame(lambda f: f.channel == frame.channel and f.change == frame.change and f.scale == 1 and f.spp == 8)
+
+
 def show(page, channel):
     page.send(type="settings", channel=channel)
     return page.wait(lambda m: isinstance(m, dict) and m["type"] in ("state", "refused"))
@@ -56,14 +62,14 @@ def test_numbers(scene, folder):
     show(page, "luminance")
     first = page.wait_frame(lambda f: f.channel == LUMINANCE)
     check("form", first.format == 1 and first.channels == 1, first.format, first.channels)
-    page.wait_frame(lambda f: f.channel == LUMINANCE and f.scale == 1 and f.spp == 8)
+    wait_last(page, first)
     check("sky", abs(value_at(page, SKY) - 250) < 0.01 * 250, value_at(page, SKY))
     check("lamp", abs(value_at(page, LAMP) - 40000) < 0.01 * 40000, value_at(page, LAMP))
     check("black", abs(value_at(page, BLACK)) < 1e-3, value_at(page, BLACK))
     page.send(type="camera", change=9, set={"eye": [0, 0, 60]})
     frame = page.wait_frame(lambda f: f.change == 9)
     check("first_image_has_it", frame.channel == LUMINANCE and frame.channels == 1, frame.channel, frame.channels)
-    page.wait_frame(lambda f: f.change == 9 and f.spp == 8)
+    wait_last(page, frame)
     check("moved", abs(value_at(page, BLACK) - 250) < 0.01 * 250, value_at(page, BLACK))
     page.send(type="reset", change=10)
     page.wait_frame(lambda f: f.change == 10)

@@ -158,9 +158,10 @@ PyMODINIT_FUNC PyInit__velo(void) {
     Py_INCREF(type);
     types[i] = (PyTypeObject *)type;
   }
-  PyMethodDef *tables[] = {camera_functions,    film_functions,  image_functions,
-                           render_functions,    world_functions, own_functions,
-                           own_trace_functions, raw_functions,   sensor_functions};
+  PyMethodDef *tables[] = {camera_functions, camera_file_functions, film_functions,
+                           image_functions,  render_functions,      world_functions,
+                           own_functions,    own_trace_functions,   raw_functions,
+                           sensor_functions};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
     if (PyModule_AddFunctions(module, tables[i]) < 0)
       return NULL;

@@ -317,8 +317,10 @@ PyObject *scene_instance(Scene *self, PyObject *handle);
 PyObject *world_trace(World *self, PyObject *arguments);
 PyObject *world_occluded(World *self, PyObject *arguments);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
-extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[],
-    world_functions[], own_functions[], own_trace_functions[], raw_functions[],
-    sensor_functions[];
+PyObject *camera_write(Camera *self, PyObject *arguments);
+PyObject *numbers_tuple(const double *values, int count); /* of floats */
+extern PyMethodDef camera_functions[], camera_file_functions[], film_functions[],
+    image_functions[], render_functions[], world_functions[], own_functions[],
+    own_trace_functions[], raw_functions[], sensor_functions[];
 
 #endif

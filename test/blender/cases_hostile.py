@@ -2,7 +2,7 @@
 import bpy
 import numpy
 
-from inside import add_object, ball, case, colors, lamp, material, new_scene, notes, plane, render
+from inside import add, add_object, ball, case, colors, lamp, material, new_scene, notes, plane, render
 
 NAN, HUGE = float("nan"), 1e30
 
@@ -11,19 +11,6 @@ def small():
     scene = new_scene(world=(0.5, 0.5, 0.5), size=(16, 16), samples=4)
     scene.velo.bake_size = 128
     return scene
-
-
-def add(tree, kind, to=None, output=0, **values):
-    node = tree.nodes.new(kind)
-    for name, value in values.items():
-        socket = node.inputs.get(name.replace("_", " "))
-        if socket is None:
-            setattr(node, name, value)
-        else:
-            socket.default_value = value
-    if to is not None:
-        tree.links.new(node.outputs[output], to)
-    return node
 
 
 def said(scene, *texts):

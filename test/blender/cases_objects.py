@@ -4,23 +4,9 @@ import os
 import bpy
 import numpy
 
-from inside import FOLDER, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
+from inside import FOLDER, add, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
 
 GRAY = (0.8, 0.6, 0.4)
-
-
-def add(tree, kind, to=None, output=0, **values):
-    """A node, linked to a socket."""
-    node = tree.nodes.new(kind)
-    for name, value in values.items():
-        socket = node.inputs.get(name)
-        if socket is None:
-            setattr(node, name, value)
-        else:
-            socket.default_value = value
-    if to is not None:
-        tree.links.new(node.outputs[output], to)
-    return node
 
 
 def output_of(made):

@@ -2,7 +2,7 @@
 import bpy
 import numpy
 
-from inside import agrees, ball, case, lamp, material, new_scene, notes, plane, render
+from inside import add, agrees, ball, case, lamp, material, new_scene, notes, plane, render
 
 COORDINATES = ("UV", "Object", "Generated")
 
@@ -14,20 +14,6 @@ def painted(build, kind="ShaderNodeBsdfDiffuse", world=(1, 1, 1), shape=plane):
     item = plane(made, 4.0, (0, 0, 0.5)) if shape is plane else ball(made)
     build(made.node_tree, node, item)
     return scene
-
-
-def add(tree, kind, to=None, output=0, **values):
-    """A node, linked to a socket."""
-    node = tree.nodes.new(kind)
-    for name, value in values.items():
-        socket = node.inputs.get(name)
-        if socket is None:
-            setattr(node, name, value)
-        else:
-            socket.default_value = value
-    if to is not None:
-        tree.links.new(node.outputs[output], to)
-    return node
 
 
 def coordinates(tree, node, name):

@@ -1,16 +1,7 @@
 """Cases of test_volumes.py: what lies below surfaces agrees with Cycles."""
 import bpy
 
-from inside import agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
-
-
-def add(tree, kind, to=None, **values):
-    node = tree.nodes.new(kind)
-    for name, value in values.items():
-        node.inputs[name.replace("_", " ")].default_value = value
-    if to is not None:
-        tree.links.new(node.outputs[0], to)
-    return node
+from inside import add, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
 
 
 def filled(surface, kind, **values):

@@ -73,6 +73,20 @@ def material(kind, **values):
     return made, node
 
 
+def add(tree, kind, to=None, output=0, **values):
+    """A node whose sockets, or else members, have these values ("_" stands for a space in a socket's name); linked to a socket."""
+    node = tree.nodes.new(kind)
+    for name, value in values.items():
+        socket = node.inputs.get(name.replace("_", " "))
+        if socket is None:
+            setattr(node, name, value)
+        else:
+            socket.default_value = value
+    if to is not None:
+        tree.links.new(node.outputs[output], to)
+    return node
+
+
 def plane(made, size=20.0, place=(0, 0, 0)):
     bpy.ops.mesh.primitive_plane_add(size=size, location=place)
     if made is not None:

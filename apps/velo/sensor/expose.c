@@ -220,10 +220,10 @@ static void tell_filter(const vlImage *image) {
 /* What a reader of the frame should know. */
 static void tell(const Expose *e, uint32_t frame, const vlSensorOutput *out) {
   double pixels = (double)vl_image_width(e->image) * vl_image_height(e->image);
-  if (frame == 0)
+  if (frame == 0) {
     tell_empty_buckets(e->image);
-  if (frame == 0)
     tell_filter(e->image);
+  }
   if (frame == 0 && out->not_finite)
     report_warning("%llu pixels of the image are not finite; the sensor sees them black",
                    (unsigned long long)out->not_finite);

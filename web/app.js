@@ -51,9 +51,14 @@ const app = {
     app.connection.send({ ...message, id });
   },
 
-  undo: () => app.connection.send({ type: "undo", change: ++app.change }),
-  redo: () => app.connection.send({ type: "redo", change: ++app.change }),
-  reset: () => app.connection.send({ type: "reset", change: ++app.change }),
+  // A step of the history comes after the edits that were made before it.
+  step(type) {
+    app.flush();
+    app.connection.send({ type, change: ++app.change });
+  },
+  undo: () => app.step("undo"),
+  redo: () => app.step("redo"),
+  reset: () => app.step("reset"),
   pause: () => app.connection.send({ type: "settings", paused: !app.state.paused }),
   denoise: () => app.settings({ denoise: !app.state.denoise }),
   settings: message => app.connection.send({ type: "settings", ...message }),

@@ -108,8 +108,11 @@ class Browser:
         self.mouse("mouseReleased", x, y, buttons=0)
 
     def click_on(self, selector):
-        x, y = self.run(f"(() => {{ const e = document.querySelector({json.dumps(selector)}); e.scrollIntoView({{block: 'center'}});"
-                        "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
+        """Clicks on the middle of an element, once it can be clicked: nothing covers it, and it is not disabled."""
+        name = json.dumps(selector)
+        x, y = self.wait(f"(() => {{ const e = document.querySelector({name}); e.scrollIntoView({{block: 'center'}});"
+                         "const b = e.getBoundingClientRect(), at = [b.x + b.width / 2, b.y + b.height / 2];"
+                         "return !e.disabled && e.contains(document.elementFromPoint(...at)) ? at : null; })()")
         self.click(x, y)
 
     def type_into(self, selector, text):

@@ -252,6 +252,10 @@ def test_outside(b):
     b.click_on("#undo")
     b.wait(f"Math.abs(velo.state.camera.eye[1] - {eye[1]}) < 1e-9")
     settle(b)
+    edited = [eye[0] + 0.5, eye[1], eye[2]]
+    b.run(f"velo.edit({{eye: {edited}}}, velo.next()); velo.undo()")
+    settle(b)
+    check("undo_of_an_edit_on_its_way", math.dist(camera(b, "eye"), eye) < 1e-9, camera(b, "eye"), eye)
     x, y = handle("plane")
     towards = b.run("(() => { const o = velo.outside, c = velo.camera(), p = o.project(o.handles.plane), q = o.project(c.lookat);"
                     " const n = Math.hypot(q[0] - p[0], q[1] - p[1]); return [(q[0] - p[0]) / n, (q[1] - p[1]) / n]; })()")

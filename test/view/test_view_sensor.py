@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """velo view: the scene as the camera sees it. The raw file of the page has the bytes of `velo render` and `velo sensor expose`; shutter and
 ISO speed need no new samples; hostile values are refused in a line; the camera's back in the page."""
+import itertools
 import math
 import os
 import shutil
@@ -39,15 +40,19 @@ def set_sensor(page, **fields):
     return page.wait(lambda m: isinstance(m, dict) and m["type"] in ("state", "refused"))
 
 
+changes = itertools.count(1000)
+
+
 def expose(page, **fields):
-    """Sets fields; the exposure and the frame that follow, in either order."""
-    page.send(type="sensor", set=fields)
+    """Sets fields; the exposure and the frame that follow, in either order. Those of earlier changes may still come: they are passed over."""
+    change = next(changes)
+    page.send(type="sensor", set=fields, change=change)
     got = {}
     while len(got) < 2:
         message = page.receive(60)
-        if isinstance(message, Frame):
+        if isinstance(message, Frame) and message.change == change:
             got["frame"] = message
-        elif message["type"] == "exposed":
+        elif isinstance(message, dict) and message["type"] == "exposed" and message["change"] == change:
             got["exposed"] = message
     return got["exposed"], got["frame"]
 

@@ -60,6 +60,19 @@ def check_steps(frames, name):
     check(name + "_stays", all(f.denoised for f in frames[[f.spp > 0 and f.denoised for f in frames].index(True):]), denoised)
 
 
+def first_frames(page, eye):
+    """The first image of a change is not denoised. A frame that comes while the one before is on its way to a busy page is left out: some are tried."""
+    seen = []
+    for change in range(40, 46):
+        page.send(type="camera", change=change, set={"eye": [eye[0] + 0.001 * change, eye[1], eye[2]]})
+        frames = follow(page, change)
+        seen.append([f.denoised for f in frames])
+        if not frames[0].denoised:
+            break
+    check("first_is_quick", not frames[0].denoised, seen)
+    return frames
+
+
 def test_preview(folder):
     view = View(VELO, SCENE, "--resolution", f"{WIDTH}x{HEIGHT}", "--spp", str(SPP), cwd=folder)
     page = Page(view)
@@ -67,9 +80,7 @@ def test_preview(folder):
     check("on_at_first", state["denoise"] is True, state)
     check_steps(follow(page, 0), "loaded")
     eye = state["camera"]["eye"]
-    page.send(type="camera", change=50, set={"eye": [eye[0] + 0.01, eye[1], eye[2]]})
-    frames = follow(page, 50)
-    check("first_is_quick", frames[0].denoised != 1, [f.denoised for f in frames])
+    frames = first_frames(page, eye)
     check_steps(frames, "moved")
     clean = halves(page)
     saved = ask(page, "saved", type="save", what="image", name="saved.pfm")

@@ -3,7 +3,7 @@ from . import links
 
 
 def words(inputs, node, groups):
-    """Keywords of velo's material for a shader node's socket Normal and the material's relief: normal, normal_scale, displacement; none
+    """Keywords of velo's material for a shader node's socket Normal and the material's relief: normal, displacement; none
     where it has none."""
     result = _of_socket(inputs, node, groups)
     if inputs.relief is not None:
@@ -42,7 +42,6 @@ def without_map(inputs, node, groups):
     result = words(inputs, node, groups)
     if result.pop("normal", None) is not None:
         inputs.notes.add(inputs.owner, node.name, "this shader has no normal map in velo; the surface's own normal is taken")
-    result.pop("normal_scale", None)
     return result
 
 
@@ -67,12 +66,12 @@ def _normal_map(inputs, node, groups, result):
     if node.space != "TANGENT":
         inputs.notes.add(inputs.owner, node.name, "a normal map in %s space is left out" % node.space.lower())
         return
-    color = inputs.color(node.inputs["Color"], groups)
-    if isinstance(color, tuple):
+    if inputs.constant(node.inputs["Color"], groups) is not None:
         return
     strength = inputs.constant(node.inputs["Strength"], groups)
     if not isinstance(strength, float):
         inputs.notes.add(inputs.owner, node.name, "a strength that varies is 1")
         strength = 1.0
-    result["normal"] = color
-    result["normal_scale"] = max(0.0, strength)
+    handle = inputs.normals(node.inputs["Color"], groups, max(0.0, strength))
+    if handle is not None:
+        result["normal"] = handle

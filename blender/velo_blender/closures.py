@@ -6,11 +6,11 @@ specular colour, F90 the specular factor, and light between microfacets is lost 
 import math
 from typing import Any, NamedTuple
 
-from . import bumps, principled, subsurface
+from . import bumps, glow, principled, subsurface
 
 
 class Closure:
-    """material: a handle or None (reflects nothing). emission: list of (colour or texture, strength). coverage: share of the surface
+    """material: a handle or None (reflects nothing). emission: list of glow.Glow. coverage: share of the surface
     that is there, a number or a texture; None: 1. is_clear: nothing is there. lobe: what a single lobe is made of, for facing.coated."""
 
     def __init__(self, material=None, emission=(), coverage=None, is_clear=False, lobe=None):
@@ -51,23 +51,6 @@ def mixed_coverage(inputs, factor, first, second):
     if all(isinstance(value, float) for value in (factor, a, b)):
         return a + factor * (b - a)
     return inputs.scene.add_texture("mix", spectrum=False, float_a=a, float_b=b, amount=factor)
-
-
-def emission_handle(closure, inputs):
-    """velo's emission for a closure; None: it emits nothing."""
-    parts = [(color, strength) for color, strength in closure.emission if strength != 0 and color != (0.0, 0.0, 0.0)]
-    if not parts:
-        return None
-    if all(is_color(color) for color, _ in parts):
-        total = tuple(sum(color[i] * strength for color, strength in parts) for i in range(3))
-        high = max(total)
-        if high <= 0:
-            return None
-        return inputs.scene.add_emission(radiance=tuple(max(0.0, x) / high for x in total), scale=high, two_sided=True)
-    if len(parts) > 1:
-        inputs.notes.add(inputs.owner, "Emission", "of several textured emissions the first one is rendered")
-    color, strength = next(part for part in parts if not is_color(part[0]))
-    return inputs.scene.add_emission(texture=color, scale=strength, two_sided=True)
 
 
 # ---- shaders -------------------------------------------------------------------------------------------------------------
@@ -168,11 +151,7 @@ def _transparent(inputs, node, groups):
 
 
 def _emission(inputs, node, groups):
-    strength = inputs.constant(node.inputs["Strength"], groups)
-    if not isinstance(strength, float):
-        inputs.notes.add(inputs.owner, node.name, "a strength that varies is 1")
-        strength = 1.0
-    return Closure(emission=[(inputs.color(node.inputs["Color"], groups), max(0.0, strength))])
+    return Closure(emission=[glow.of_sockets(inputs, node, node.inputs["Color"], node.inputs["Strength"], groups)])
 
 
 def _subsurface(inputs, node, groups):

@@ -11,6 +11,14 @@ class Source(NamedTuple):
     groups: tuple
 
 
+class Nothing:
+    """Stands for the unlinked input of a muted node or of a reroute: to Cycles its value is 0."""
+    default_value = 0.0
+
+    def __init__(self, socket):
+        self.name, self.type, self.node = socket.name, socket.type, socket.node
+
+
 class Cyclic(Exception):
     """Nodes that feed themselves."""
 
@@ -18,7 +26,7 @@ class Cyclic(Exception):
 def follow(socket, groups=()):
     """The source of an input socket; None: it is not linked. The second value is the socket whose own value counts then."""
     for _ in range(MAX_STEPS):
-        links = [link for link in socket.links if link.is_valid and not link.is_muted] if socket.is_linked else []
+        links = _links_of(socket)
         if not links:
             return None, socket
         node, output = links[0].from_node, links[0].from_socket
@@ -26,9 +34,9 @@ def follow(socket, groups=()):
             inner = [link for link in node.internal_links if link.to_socket == output]
             if not inner:
                 return None, socket
-            socket = inner[0].from_socket
+            socket = _passed(inner[0].from_socket)
         elif node.type == "REROUTE":
-            socket = node.inputs[0]
+            socket = _passed(node.inputs[0])
         elif node.type == "GROUP" and node.node_tree is not None:
             inside = _output_of(node.node_tree, "GROUP_OUTPUT")
             if inside is None:
@@ -44,6 +52,17 @@ def follow(socket, groups=()):
         if socket is None:
             return None, links[0].to_socket
     raise Cyclic("its nodes feed themselves")
+
+
+def _links_of(socket):
+    if isinstance(socket, Nothing) or not socket.is_linked:
+        return []
+    return [link for link in socket.links if link.is_valid and not link.is_muted]
+
+
+def _passed(socket):
+    """An input whose value is passed on as it is."""
+    return socket if _links_of(socket) else Nothing(socket)
 
 
 def _same(sockets, other):

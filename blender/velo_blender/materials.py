@@ -1,7 +1,7 @@
 """materials.py: Blender's materials as velo's: the tree of closures becomes a material, a coverage and an emission."""
 import math
 
-from . import closures, displace, facing, links, volumes
+from . import closures, displace, facing, glow, links, volumes
 from .closures import Closure
 from .evaluate import Unsupported
 
@@ -46,7 +46,7 @@ def _finish(closure, inputs):
     handle = closure.material
     if handle is None:
         handle = inputs.scene.add_material("diffuse", reflectance=(0, 0, 0), name=inputs.owner)
-    emission = closures.emission_handle(closure, inputs)
+    emission = glow.emission(closure.emission, inputs)
     return Surface(handle, closure.coverage, emission, inputs)
 
 
@@ -69,7 +69,7 @@ def _closure(socket, groups, inputs, depth):
         if factor == 0.0 or factor == 1.0:
             return _closure(node.inputs[1 + int(factor)], source.groups, inputs, depth + 1)
         first, second = (_closure(node.inputs[i], source.groups, inputs, depth + 1) for i in (1, 2))
-        return _mix(factor, first, second, node, inputs)
+        return _mix(factor, first, second, node, source.groups, inputs)
     if node.type == "ADD_SHADER":
         first, second = (_closure(node.inputs[i], source.groups, inputs, depth + 1) for i in (0, 1))
         return _add(first, second, node, inputs)
@@ -85,7 +85,7 @@ def _closure(socket, groups, inputs, depth):
         return Closure()
 
 
-def _mix(factor, first, second, node, inputs):
+def _mix(factor, first, second, node, groups, inputs):
     """(1 - factor) first + factor second."""
     if first.is_clear and second.is_clear:
         return first
@@ -93,11 +93,7 @@ def _mix(factor, first, second, node, inputs):
         return _thinned(second, factor, node, inputs)
     if second.is_clear:
         return _thinned(first, closures.one_minus(inputs, factor), node, inputs)
-    number = factor if isinstance(factor, float) else 0.5
-    emission = [(color, strength * (1 - number)) for color, strength in first.emission]
-    emission += [(color, strength * number) for color, strength in second.emission]
-    if emission and not isinstance(factor, float):
-        inputs.notes.add(inputs.owner, node.name, "emission that is mixed by a texture has half of its strength")
+    emission = glow.mixed(first.emission, second.emission, factor, node.inputs[0], groups)
     material = _mixed_material(factor, first.material, second.material, inputs)
     coverage = first.coverage
     if first.coverage is not None or second.coverage is not None:

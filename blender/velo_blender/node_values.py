@@ -143,6 +143,11 @@ def gradient(e, node, output, groups):
     return values if output.name == "Fac" else numpy.repeat(values[:, None], 3, axis=1)
 
 
-NODES = {"TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
+def ambient_occlusion(e, node, output, groups):
+    e.note(node, "nothing is occluded")
+    return numpy.ones(1) if output.name == "AO" else e.named(node, "Color", groups)
+
+
+NODES = {"AMBIENT_OCCLUSION": ambient_occlusion, "TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
          "OBJECT_INFO": object_info, "VERTEX_COLOR": vertex_color, "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment,
          "TEX_CHECKER": checker, "TEX_GRADIENT": gradient, **math_nodes.NODES, **color_nodes.NODES, **facing.NODES, **procedural.NODES}

@@ -25,7 +25,7 @@ def fields(item, matrix, number):
 def random_id(instance):
     """The number from which Cycles makes an object's random one: Blender's for instances, else a hash of its name (util/hash.h)."""
     if instance.is_instance:
-        return instance.random_id
+        return instance.random_id & 0xffffffff  # Blender shows 32 bits with a sign
     total = 0
     for byte in instance.object.name.encode():
         total = (total * 37 + byte) & 0xffffffff

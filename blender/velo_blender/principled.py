@@ -1,7 +1,7 @@
 """principled.py: Blender's Principled shader, both generations of its sockets, as velo's principled material."""
 import math
 
-from . import bumps, links, subsurface, versions
+from . import bumps, glow, links, subsurface, versions
 
 SHEEN_BEFORE_4 = 0.15  # of Burley's sheen, as a part of velo's: the same light from a ball in a white room, measured
 
@@ -84,7 +84,7 @@ def convert(inputs, node, groups, glossy, glass):
             words.update(_layers(get, generation, coat, base))
         material = inputs.scene.add_material("principled", reflectance=base, metallic=metallic, roughness=roughness,
                                              transmission=transmission, thin_walled=False, name=inputs.owner, **words)
-    return material, _emission(inputs, node, groups, get), _coverage(get)
+    return material, _emission(inputs, node, groups), _coverage(get)
 
 
 def _brightened(inputs, base, specular, roughness):
@@ -201,15 +201,11 @@ def _subsurface(inputs, node, groups, get, generation, base, surface):
     return subsurface.material(inputs, color, radius, node.subsurface_method, max(index, 1.01) if isinstance(index, float) else 1.4, surface)
 
 
-def _emission(inputs, node, groups, get):
-    strength = inputs.constant(versions.principled_socket(node, "emission_strength"), groups)
-    if not isinstance(strength, float):
-        inputs.notes.add(inputs.owner, node.name, "an emission strength that varies is 1")
-        strength = 1.0
-    if strength <= 0:
+def _emission(inputs, node, groups):
+    color, strength = (versions.principled_socket(node, name) for name in ("emission", "emission_strength"))
+    if inputs.constant(color, groups) == (0.0, 0.0, 0.0):
         return []
-    color = get("emission", (0.0,) * 3)
-    return [] if color == (0.0, 0.0, 0.0) else [(color, strength)]
+    return [glow.of_sockets(inputs, node, color, strength, groups)]
 
 
 def _coverage(get):

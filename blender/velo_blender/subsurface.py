@@ -41,7 +41,7 @@ def material(inputs, color, radius, method, eta, surface):
     """velo's material. radius: three numbers; surface: its keywords: eta, roughness (squared: alpha), normal, displacement."""
     plain = color if isinstance(color, tuple) else (GRAY,) * 3
     paths = tuple(mean_free_path(part, albedo, method, eta) for part, albedo in zip(radius, plain))
-    words = {name: value for name, value in surface.items() if name in ("normal", "normal_scale", "displacement")}
+    words = {name: value for name, value in surface.items() if name in ("normal", "displacement")}
     alpha = surface.get("alpha", 0.0)
     if isinstance(color, tuple):
         color = tuple(min(part, 1.0) for part in color)

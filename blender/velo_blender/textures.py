@@ -68,7 +68,9 @@ class Inputs:
         source, _ = links.follow(socket, groups)
         try:
             handle = self._direct(source, spectrum)
-            return self.baked(socket, groups, spectrum) if handle is None else handle
+            if handle is not None:
+                return handle
+            return self.baked(lambda e: e.input(socket, groups), source.node, spectrum)
         except evaluate.Unsupported as error:
             self.notes.add(self.owner, error.node.name, "%s; %s has its own value" % (error.text, socket.name))
         default = evaluate.default_of(socket)
@@ -126,8 +128,21 @@ class Inputs:
             return self.maps.number(node.attribute_name)
         return None
 
-    def image(self, node, place, spectrum, channel):
-        """velo's texture of an image node."""
+    def normals(self, socket, groups, strength):
+        """An image texture of a normal map, whose normals a strength draws towards the surface's own; None: it cannot be evaluated."""
+        source, _ = links.follow(socket, groups)
+        node = source.node
+        try:
+            place = self._place(node, source.groups) if node.type == "TEX_IMAGE" and node.projection == "FLAT" else None
+            if place is not None:
+                return self.image(node, place, True, -1, strength)
+            return self.baked(lambda e: weakened(evaluate.as_vector(e.input(socket, groups)), strength), node, True)
+        except evaluate.Unsupported as error:
+            self.notes.add(self.owner, error.node.name, "%s; the surface's own normal is taken" % error.text)
+            return None
+
+    def image(self, node, place, spectrum, channel, strength=1.0):
+        """velo's texture of an image node. strength: of normals, for weakened."""
         why = images.problem(node.image)
         if why is not None:
             raise evaluate.Unsupported(node, why)
@@ -137,10 +152,11 @@ class Inputs:
         number, matrix = place
         matrix = self._tiled(node, matrix)
         key = ("image", node.image.name_full, spectrum, channel, number, tuple(matrix.ravel()), node.extension, node.interpolation,
-               is_multiplied(node))
+               is_multiplied(node), strength)
         if key not in self.cache:
             words = {} if spectrum else {"channel": channel}
             wrap = "black" if node.image.source == "TILED" else WRAPS[node.extension]
+            array = array if strength == 1.0 else weakened(array[..., :3], strength)
             self.cache[key] = self._add(array, spectrum, number, matrix, wrap=wrap,
                                         filter="point" if node.interpolation == "Closest" else "bilinear", **words)
         return self.cache[key]
@@ -178,33 +194,37 @@ class Inputs:
 
     # ---- baking
 
-    def baked(self, socket, groups, spectrum):
-        """An image texture of what feeds a socket, over the box of the mesh's uvs or, where it depends on more, by triangles."""
+    def plain_evaluator(self):
+        """An evaluator that knows what is the same on the whole object."""
+        return evaluate.Evaluator(self.known, evaluate._no_textures, self._note)
+
+    def baked(self, value, node, spectrum):
+        """An image texture of a value, a function (evaluate.Evaluator) -> n or n x 3, over the box of the mesh's uvs or, where it depends
+        on more, by triangles. node: which is named where it cannot be."""
         try:
-            number, (low, high) = self._only_map(socket, groups)
+            number, (low, high) = self._only_map(value, node)
         except evaluate.Unsupported:
             if self.corners is None:
                 raise
-            return self._baked_by_triangles(socket, groups, spectrum)
+            return self._baked_by_triangles(value, node, spectrum)
         size = high - low
         side = self.bake_size
         v, u = numpy.meshgrid(high[1] - (numpy.arange(side) + 0.5) / side * size[1], low[0] + (numpy.arange(side) + 0.5) / side * size[0],
                               indexing="ij")
-        values = self._values(socket, groups, numpy.stack((u.ravel(), v.ravel()), axis=1))
+        values = self._values(value, numpy.stack((u.ravel(), v.ravel()), axis=1))
         array = evaluate.as_vector(values) if spectrum else evaluate.as_value(values)[:, None]
         array = numpy.broadcast_to(array, (side * side, array.shape[1])).reshape(side, side, -1).astype(numpy.float32)
         matrix = numpy.array([[1 / size[0], 0, -low[0] / size[0]], [0, 1 / size[1], -low[1] / size[1]]])
         words = {} if spectrum else {"channel": 0}
         return self._add(numpy.maximum(array, 0) if spectrum else array, spectrum, number, matrix, wrap="clamp", filter="bilinear", **words)
 
-    def _baked_by_triangles(self, socket, groups, spectrum):
+    def _baked_by_triangles(self, value, node, spectrum):
         layout = self.atlas or atlas.Atlas(len(self.corners.triangles), self.bake_size)
         if not layout.fits:
-            source, _ = links.follow(socket, groups)
-            raise evaluate.Unsupported(source.node, "the mesh has too many triangles to bake it")
+            raise evaluate.Unsupported(node, "the mesh has too many triangles to bake it")
         fields = {name: layout.points(values) for name, values in self.corners.fields().items()}
         fields.update(self.known)
-        values = evaluate.Evaluator(fields, self.look_up, self._note).input(socket, groups)
+        values = value(evaluate.Evaluator(fields, self.look_up, self._note))
         array = evaluate.as_vector(values) if spectrum else evaluate.as_value(values)[:, None]
         count = len(layout.corner) * layout.block**2
         image = layout.image(numpy.broadcast_to(array, (count, array.shape[1])).astype(numpy.float32))
@@ -214,27 +234,26 @@ class Inputs:
         plain = numpy.array([[1.0, 0, 0], [0, 1, 0]])
         return self._add(numpy.maximum(image, 0) if spectrum else image, spectrum, number, plain, wrap="clamp", filter="bilinear", **words)
 
-    def _only_map(self, socket, groups):
-        """The uv map that a socket depends on and the box of its uvs: each map is tried, with points in the middle."""
+    def _only_map(self, value, node):
+        """The uv map that a value depends on and the box of its uvs: each map is tried, with points in the middle."""
         last = None
         for number, name in enumerate(self.maps.names[:4]):
             try:
-                self._values(socket, groups, numpy.full((2, 2), 0.5), only=name)
+                self._values(value, numpy.full((2, 2), 0.5), only=name)
                 return number, self.maps.bounds[name]
             except evaluate.Unsupported as error:
                 last = error
         if last is None:
-            source, _ = links.follow(socket, groups)
-            raise evaluate.Unsupported(source.node, "it varies, and the mesh has no uv map to bake it over")
+            raise evaluate.Unsupported(node, "it varies, and the mesh has no uv map to bake it over")
         raise last
 
-    def _values(self, socket, groups, uv, only=None):
+    def _values(self, value, uv, only=None):
         fields = dict(self.known)
         for name in [only] if only is not None else self.maps.names[:4]:
             fields["uv:" + name] = uv
             if name == self.maps.names[0]:
                 fields["uv:"] = uv
-        return evaluate.Evaluator(fields, self.look_up, self._note).input(socket, groups)
+        return value(evaluate.Evaluator(fields, self.look_up, self._note))
 
     def look_up(self, node):
         """The texels of an image node, for evaluate.Evaluator."""
@@ -245,6 +264,17 @@ class Inputs:
         if node.image.source == "TILED":
             return images.Texels(self.texels(node), "CLIP", closest, self._joined(node).matrix())
         return images.Texels(self.texels(node), getattr(node, "extension", "REPEAT"), closest)
+
+
+def weakened(colors, strength):
+    """The colours of a normal map, ... x 3, whose normals n are (0, 0, 1) + strength (n - (0, 0, 1)), as in Cycles."""
+    if strength == 1.0:
+        return colors
+    normals = 2 * colors - 1
+    normals = normals / numpy.maximum(numpy.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+    normals = numpy.array([0.0, 0.0, 1.0]) * (1 - strength) + normals * strength
+    normals = normals / numpy.maximum(numpy.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+    return (0.5 + 0.5 * normals).astype(numpy.float32)
 
 
 def is_multiplied(node):

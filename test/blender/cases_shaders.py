@@ -1,0 +1,118 @@
+"""Cases of test_shaders.py: shaders and their sockets as artists wire them: emission that varies, normal maps, muted nodes, occlusion."""
+import bpy
+import numpy
+
+from inside import add, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
+
+GRAY = (0.6, 0.6, 0.6)
+
+
+def floor():
+    plane(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+
+
+def image_of(color):
+    image = bpy.data.images.new("image", 8, 8, float_buffer=True)
+    image.colorspace_settings.name = "Non-Color"
+    image.pixels.foreach_set(numpy.tile(numpy.array((*color, 1), dtype=numpy.float32), 64))
+    return image
+
+
+@case
+def emission_whose_strength_varies():
+    scene = new_scene()
+    floor()
+    made, node = material("ShaderNodeEmission", Color=(1, 0.5, 0.2))
+    spread = add(made.node_tree, "ShaderNodeMapRange", node.inputs["Strength"], To_Max=8.0)
+    add(made.node_tree, "ShaderNodeTexChecker", spread.inputs["Value"], 1, Scale=5.0)
+    ball(made, (0, 0, 1.2), 0.7)
+    agrees(scene)
+    assert not notes(scene), notes(scene)
+
+
+@case
+def emission_that_a_texture_mixes():
+    scene = new_scene()
+    floor()
+    made, node = material("ShaderNodeMixShader")
+    add(made.node_tree, "ShaderNodeTexGradient", node.inputs[0], 1)
+    add(made.node_tree, "ShaderNodeEmission", node.inputs[1], Color=(0.1, 0.8, 0.1, 1), Strength=4.0)
+    add(made.node_tree, "ShaderNodeEmission", node.inputs[2], Color=(1, 0.1, 0.1, 1), Strength=1.0)
+    ball(made, (0, 0, 1.2), 0.7)
+    agrees(scene)
+    assert not notes(scene), notes(scene)
+
+
+@case
+def emission_of_painted_vertices():
+    scene = new_scene()
+    floor()
+    made, node = material("ShaderNodeBsdfPrincipled", Emission_Strength=3.0, Specular=0.0)
+    add(made.node_tree, "ShaderNodeVertexColor", node.inputs["Emission"], layer_name="paint")
+    item = plane(made, 1.5, (0, 0.5, 1))
+    item.rotation_euler = (1.2, 0, 0)
+    paint = item.data.color_attributes.new("paint", "FLOAT_COLOR", "CORNER")
+    paint.data.foreach_set("color", numpy.array([[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 2, 1], [1, 1, 0, 1]], dtype=numpy.float32).ravel())
+    agrees(scene)
+
+
+@case
+def normal_maps_have_the_strength_of_cycles():
+    # Towards the light, where Cycles does not soften the shadows of bumps.
+    for strength, color in ((1.0, (0.8, 0.5, 0.85)), (0.5, (0.95, 0.5, 0.7)), (0.5, (0.5, 0.05, 0.7)), (1.5, (0.75, 0.45, 0.85))):
+        scene = new_scene(samples=16)
+        made, node = material("ShaderNodeBsdfDiffuse", Color=GRAY)
+        bend = add(made.node_tree, "ShaderNodeNormalMap", node.inputs["Normal"], Strength=strength)
+        add(made.node_tree, "ShaderNodeTexImage", bend.inputs["Color"], image=image_of(color))
+        plane(made, 8)
+        lamp(scene, "SUN", 2, (2, -2, 3))
+        agrees(scene, 0.02)
+
+
+@case
+def unlinked_inputs_of_muted_nodes_are_nothing():
+    scene = new_scene(world=(0.5, 0.5, 0.5), samples=16)
+    made, node = material("ShaderNodeBsdfDiffuse")
+    add(made.node_tree, "ShaderNodeMixRGB", node.inputs["Color"], Color1=(0.1, 0.8, 0.3, 1)).mute = True
+    ball(made)
+    made, node = material("ShaderNodeBsdfDiffuse", Color=(0.9, 0.1, 0.1))
+    muted = add(made.node_tree, "ShaderNodeInvert", node.inputs["Color"])
+    muted.mute = True
+    add(made.node_tree, "ShaderNodeRGB", muted.inputs["Color"]).outputs[0].default_value = (0.2, 0.7, 0.3, 1)
+    ball(made, (2, 0, 1))
+    agrees(scene, 0.005)
+
+
+@case
+def random_numbers_of_geometry_nodes():
+    scene = new_scene(world=(1, 1, 1), samples=64)
+    bpy.ops.mesh.primitive_cube_add(size=0.25, location=(50, 0, 0))
+    kid = bpy.context.object
+    made, node = material("ShaderNodeEmission")
+    add(made.node_tree, "ShaderNodeObjectInfo", node.inputs["Strength"], 5)
+    kid.data.materials.append(made)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=4)
+    group = bpy.data.node_groups.new("scatter", "GeometryNodeTree")
+    group.inputs.new("NodeSocketGeometry", "Geometry")
+    group.outputs.new("NodeSocketGeometry", "Geometry")
+    begin, end, known, placed = (group.nodes.new(kind) for kind in (
+        "NodeGroupInput", "NodeGroupOutput", "GeometryNodeObjectInfo", "GeometryNodeInstanceOnPoints"))
+    known.inputs[0].default_value = kid
+    known.inputs["As Instance"].default_value = True
+    for output, socket in ((begin.outputs[0], placed.inputs["Points"]), (known.outputs["Geometry"], placed.inputs["Instance"]),
+                           (placed.outputs[0], end.inputs[0])):
+        group.links.new(output, socket)
+    bpy.context.object.modifiers.new("scatter", "NODES").node_group = group
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    assert abs(other - mine).mean() < 0.01, abs(other - mine).mean()
+
+
+@case
+def occlusion_keeps_its_color():
+    scene = new_scene(world=(0.5, 0.5, 0.5), samples=16)
+    made, node = material("ShaderNodeBsdfDiffuse", Color=GRAY)
+    add(made.node_tree, "ShaderNodeAmbientOcclusion", node.inputs["Color"], Color=(0.9, 0.2, 0.1, 1))
+    ball(made)
+    image = colors(render(scene))
+    assert image[24, 24, 0] > 3 * image[24, 24, 1]
+    assert any("nothing is occluded" in line for line in notes(scene)), notes(scene)

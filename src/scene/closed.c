@@ -211,7 +211,7 @@ static bool survey_mesh(vlContext *context, Survey *s, const vlShapeDef *d, size
   p->blocks = s->blocks[shape];
   p->shape = shape;
   p->fixed = fixed;
-  p->flip = d->reverse_orientation != (vl_mat4_determinant3(m) < 0);
+  p->flip = d->reverse_orientation; /* mirroring keeps the side: rays are met in shape space */
   vlExtent box = vl_extent_nothing;
   for (size_t i = 0; i < d->vertices; i++) {
     double v[3] = {d->positions[3 * i], d->positions[3 * i + 1], d->positions[3 * i + 2]}, q[3];
@@ -475,7 +475,8 @@ static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face,
     to_middle[i] = closed->middle[i] - c[0][i];
   }
   double a = vl_dot3(n, to_eye), b = vl_dot3(n, to_middle);
-  if (closed->inward && (a < 0) == d->reverse_orientation)
+  const bool mirrored = vl_mat4_determinant3(*m) < 0; /* it reverses the order of the corners */
+  if (closed->inward && (a < 0) == (d->reverse_orientation != mirrored))
     return false;
   return (a > 0 && b < 0) || (a < 0 && b > 0);
 }

@@ -9,13 +9,14 @@
 
 /* Half of the cross product of the edges, and the corners' mean. */
 typedef struct Face {
-  double area[3]; /* the normal's direction, length: the area */
+  double area[3]; /* the outside's direction, length: the area */
   double middle[3];
 } Face;
 
 typedef void Visit(void *user, const vlShapeDef *shape, const Face *face);
 
-static Face face_of(const vlShapeDef *shape, const vlMat4 *m, size_t index) {
+/* sign: 1, or -1 where the outside is opposite to the side that the corners' order gives. */
+static Face face_of(const vlShapeDef *shape, const vlMat4 *m, double sign, size_t index) {
   double p[3][3];
   Face face;
   for (int c = 0; c < 3; c++) {
@@ -25,8 +26,9 @@ static Face face_of(const vlShapeDef *shape, const vlMat4 *m, size_t index) {
   }
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    face.area[i] = 0.5 * ((p[1][j] - p[0][j]) * (p[2][k] - p[0][k]) -
-                          (p[1][k] - p[0][k]) * (p[2][j] - p[0][j]));
+    face.area[i] =
+        0.5 * sign *
+        ((p[1][j] - p[0][j]) * (p[2][k] - p[0][k]) - (p[1][k] - p[0][k]) * (p[2][j] - p[0][j]));
     face.middle[i] = (p[0][i] + p[1][i] + p[2][i]) / 3;
   }
   return face;
@@ -38,8 +40,11 @@ static void visit_faces(const vlScene *scene, Visit *visit, void *user) {
     if (shape->kind != VL_SHAPE_TRIANGLES || shape->group.index)
       continue;
     const vlMat4 m = vl_mat4_load(shape->group_from_shape);
+    const bool mirrored =
+        vl_mat4_determinant3(m) < 0; /* it reverses the corners' order alone */
+    const double sign = shape->reverse_orientation != mirrored ? -1 : 1;
     for (size_t i = 0; i < shape->faces; i++) {
-      const Face face = face_of(shape, &m, i);
+      const Face face = face_of(shape, &m, sign, i);
       visit(user, shape, &face);
     }
   }
@@ -55,11 +60,9 @@ typedef struct Mean {
 
 static void add_normal(void *user, const vlShapeDef *shape, const Face *face) {
   Mean *mean = user;
-  double sign = shape->reverse_orientation ? -1 : 1;
-  if (mean->one_sided && !shape->one_sided)
-    sign = 0;
+  const double counts = mean->one_sided && !shape->one_sided ? 0 : 1;
   for (int i = 0; i < 3; i++)
-    mean->sum[i] += sign * face->area[i];
+    mean->sum[i] += counts * face->area[i];
   mean->area += vl_norm3(face->area);
 }
 
@@ -81,14 +84,15 @@ typedef struct Detail {
 
 static void add_detail(void *user, const vlShapeDef *shape, const Face *face) {
   Detail *d = user;
-  const double sign = shape->reverse_orientation ? -1 : 1, area = vl_norm3(face->area);
+  (void)shape;
+  const double area = vl_norm3(face->area);
   if (!(area > 0) || !isfinite(area))
     return;
-  const double cosine = sign * vl_dot3(face->area, d->front) / area;
+  const double cosine = vl_dot3(face->area, d->front) / area;
   d->ahead += fmax(cosine, 0);
   d->behind += fmax(-cosine, 0);
   for (int i = 0; i < 3; i++)
-    d->volume += sign * face->area[i] * (face->middle[i] - d->center[i]);
+    d->volume += face->area[i] * (face->middle[i] - d->center[i]);
   d->faces++;
 }
 

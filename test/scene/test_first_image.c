@@ -201,6 +201,29 @@ static void sheet_from_behind(void **state) {
   }
 }
 
+/* Mirroring turns the corners' order and keeps the outside on its side. */
+static void mirrored_sheet(void **state) {
+  (void)state;
+  for (int axis = 0; axis < 3; axis++) {
+    Model m = begin();
+    const float p[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const uint32_t front[3] = {0, 1, 2};
+    vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+    shape.vertices = 3;
+    shape.faces = 1;
+    shape.positions = p;
+    shape.indices = front;
+    shape.group_from_shape[5 * axis] = -1;
+    assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    double d[3];
+    toward_eye(&m, d);
+    assert_true(axis == 2 ? d[2] < -0.8 : d[2] > 0.8);
+    end(&m);
+  }
+}
+
 /* A ground whose faces look down is seen from above, unless it cannot be seen from there. */
 static void ground_from_above(void **state) {
   (void)state;
@@ -354,6 +377,22 @@ static void objects(void **state) {
     vlCompleteDef def = first_image();
     complete(&m, &def);
     assert_int_equal(m.scene->shapes.items[0].faces, 12);
+    end(&m);
+  }
+}
+
+/* Mirrored objects of one-sided faces are whole, and mirrored rooms are opened. */
+static void mirrored_walls(void **state) {
+  (void)state;
+  for (int inward = 0; inward < 2; inward++) {
+    Model m = begin();
+    add_box(&m, wall_low, wall_high, inward, true);
+    m.scene->shapes.items[0].group_from_shape[0] = -1;
+    if (inward)
+      add_box(&m, table_low, table_high, false, false);
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    assert_int_equal(m.scene->shapes.items[0].faces, inward ? 6 : 12);
     end(&m);
   }
 }
@@ -554,6 +593,8 @@ int main(void) {
       cmocka_unit_test(upright),
       cmocka_unit_test(rooms),
       cmocka_unit_test(objects),
+      cmocka_unit_test(mirrored_sheet),
+      cmocka_unit_test(mirrored_walls),
       cmocka_unit_test(dome),
       cmocka_unit_test(ground),
       cmocka_unit_test(lamps),

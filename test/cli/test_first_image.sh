@@ -50,6 +50,10 @@ def write(path, parts, light=None, glass=False, eye=None):
     open(path, "wb").write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data)) +
                            struct.pack("<I4s", len(text), b"JSON") + text +
                            struct.pack("<I4s", len(data), b"BIN\0") + data)
+black = (box((-1, 0, -1), (1, 2, 1)), [0, 0, 0, [1, 1, 1, 1000]], True)
+write("lantern.glb", [black])
+write("ember.glb", [(black[0], [0, 0, 0, [0.05, 0.01, 0]], True)])
+write("away.glb", [black], eye=[0, 1, -9])
 navy = [0.01, 0.015, 0.08]
 sofa = [(box((-1, 0.2, -0.4), (1, 0.5, 0.4)), navy, True), (box((-1, 0.5, -0.4), (1, 1, -0.2)), navy, True)]
 white = [(box((-1, 0, -1), (1, 2, 1)), [0.8, 0.8, 0.8], True)]
@@ -103,6 +107,14 @@ check glass "$VELO" render glass.glb $small -o glass.png
 expect_absent glass_as_it_is 'exposed by'
 check glass_sun "$VELO" render glass_sun.glb $small -o glass_sun.png
 expect_text glass_in_the_sun 'exposed by -'
+# A model that only emits light is made darker where it is burnt out, and never brighter.
+check lantern "$VELO" render lantern.glb $small -o lantern.png
+expect_text lantern_darker 'exposed by -10'
+check ember "$VELO" render ember.glb $small -o ember.png
+expect_absent ember_as_it_is 'exposed by'
+expect_absent ember_is_seen 'nothing of the model'
+check away "$VELO" render away.glb $small -o away.png
+expect_text away_is_told 'nothing of the model is seen'
 # A model that encloses its own camera is lit by lamps, if nothing else lights it; the option says so, and repeats it.
 for m in inside city signs; do
   check "lit_$m" "$VELO" render $m.glb $small -o $m.png -o $m.exr

@@ -70,6 +70,7 @@ float exposure_meter(const vlImage *image) {
  * image: both take (96^2 + 60^2) / 256^2 = 20 % of the rays of a first image of 256 pixels. */
 enum { METER_SIDE = 96, UNLIT_SIDE = 60, METER_SPP = 8, METER_DEPTH = 6 };
 #define WHITE 0.62 /* mean of a white model in the studio */
+#define SHEEN 0.04 /* what dark surfaces reflect like glass */
 
 /* Sums of a model's pixels: luminance of radiance and albedo; and the luminance of all pixels
  * of the image. */
@@ -84,17 +85,15 @@ static int ascending(const void *a, const void *b) {
   return (*x > *y) - (*x < *y);
 }
 
-/* Radiance per albedo of a model's pixels. What dark surfaces reflect like glass counts as
- * albedo, too. A pixel counts at most as four times the median: lamps and highlights. 0: there
- * are no pixels. */
+/* Radiance per albedo of a model's pixels. SHEEN counts as albedo, too. A pixel counts at most
+ * as four times the median: lamps and highlights. 0: there are no pixels. */
 static double mean_light(ModelLight *light) {
-  const double sheen = 0.04;
   double radiance = 0, albedo = 0;
   size_t n = light->count;
   if (n == 0)
     return 0;
   for (size_t i = 0; i < n; i++) {
-    light->albedo[i] += sheen;
+    light->albedo[i] += SHEEN;
     light->ratio[i] = light->radiance[i] / light->albedo[i];
   }
   qsort(light->ratio, n, sizeof *light->ratio, ascending);
@@ -139,9 +138,18 @@ typedef struct SmallRender {
   vlImage *color, *albedos, *ids;
 } SmallRender;
 
-/* clear: what one sees through counts, too. */
-static void gather(ModelLight *light, const vlScene *scene, bool clear,
-                   const SmallRender *small) {
+/* Which pixels of the model count. */
+typedef enum Counted {
+  REFLECTING,    /* those that reflect light, glass left out */
+  CLEAR_AS_WELL, /* glass counts, too */
+  EMITTING       /* those that only emit light; each as a white surface of that radiance */
+} Counted;
+
+/* Returns how many pixels show any of the model, if only in part. */
+static size_t gather(ModelLight *light, const vlScene *scene, Counted counted,
+                     const SmallRender *small) {
+  size_t seen = 0;
+  light->count = light->all_count = 0;
   const vlImage *image = small->color;
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")},
@@ -153,16 +161,23 @@ static void gather(ModelLight *light, const vlScene *scene, bool clear,
   for (uint32_t y = 0; y < vl_image_height(image); y++)
     for (uint32_t x = 0; x < vl_image_width(image); x++, id++) {
       light->all[light->all_count++] = luminance(image, rgb, x, y);
-      if (!(vl_image_get(image, x, y, (uint32_t)alpha) > 0.99f))
+      const float opacity = vl_image_get(image, x, y, (uint32_t)alpha);
+      seen += opacity > 0;
+      if (!(opacity > 0.99f))
         continue;
       double albedo = luminance(small->albedos, own, x, y);
-      if (!(albedo > 1e-4))
-        continue; /* it only emits light, or is black */
-      if (!clear && is_clear(scene, *id))
+      const bool reflects = albedo > 1e-4; /* else it only emits light, or is black */
+      if (reflects == (counted == EMITTING))
         continue;
-      light->radiance[light->count] = luminance(image, rgb, x, y);
-      light->albedo[light->count++] = albedo;
+      if (counted != CLEAR_AS_WELL && is_clear(scene, *id))
+        continue;
+      const double radiance = luminance(image, rgb, x, y);
+      if (counted == EMITTING && !(radiance > 0))
+        continue;
+      light->radiance[light->count] = radiance;
+      light->albedo[light->count++] = counted == EMITTING ? 1 - SHEEN : albedo;
     }
+  return seen;
 }
 
 static vlResult render_small(vlContext *context, const vlWorld *world, const vlCamera *camera,
@@ -194,6 +209,7 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
 typedef struct Metered {
   double white, unlit, most_stops;
   size_t pixels, all;
+  size_t seen; /* pixels that show any of the model */
 } Metered;
 
 /* side: the longer side of the small render, at most METER_SIDE. lamps: the light is not that
@@ -215,11 +231,10 @@ static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld 
   if (result == VL_OK && !light)
     result = VL_ERROR_MEMORY;
   if (result == VL_OK) {
-    gather(light, scene, false, &small);
-    if (light->count == 0 && lamps) {
-      light->all_count = 0;
-      gather(light, scene, true, &small);
-    }
+    metered->seen = gather(light, scene, REFLECTING, &small);
+    if (light->count == 0 && lamps)
+      gather(light, scene, CLEAR_AS_WELL, &small);
+    bool emits = light->count == 0 && gather(light, scene, EMITTING, &small) && light->count;
     metered->white = mean_light(light);
     metered->pixels = light->count;
     metered->all = light->all_count;
@@ -227,7 +242,7 @@ static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld 
     for (size_t i = 0; i < light->count; i++)
       unlit += light->ratio[i] <= 0.25 * metered->white;
     metered->unlit = light->count ? (double)unlit / (double)light->count : 0;
-    metered->most_stops = light->count ? most_stops(light, WHITE) : 0;
+    metered->most_stops = light->count && !emits ? most_stops(light, WHITE) : 0;
   }
   free(light);
   vl_image_destroy(small.color);
@@ -250,6 +265,10 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
   stops = stops > 0 && stops > m.most_stops ? m.most_stops : stops;
   stops = round(10 * (fabs(stops) <= leave ? 0 : stops)) / 10;
   *ev = (float)(stops < -64 ? -64 : stops > 64 ? 64 : stops);
+  if (m.all && !m.seen)
+    report_note(
+        "note: nothing of the model is seen: the camera looks elsewhere, or the model is "
+        "transparent or very thin");
   if (report_is_verbose() && m.all)
     report_note(
         "exposure: white has %.3g on %zu of %zu pixels of the model, %.2g is wanted: %+.1f EV",

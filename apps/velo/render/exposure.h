@@ -16,8 +16,10 @@ float exposure_meter(const vlImage *image);
  * compares the radiance of the model's pixels (alpha > 0) with their albedo. *ev: the exposure
  * in stops, rounded to a tenth, that makes a white surface in this light bright; within `leave`
  * of 0 it becomes 0. What one sees through (glass) does not count, and a tenth of all pixels at
- * most becomes brighter than a white model. scene: that of the world. Returns -1, or the exit
- * code after reporting the error. */
+ * most becomes brighter than a white model. A model of which only surfaces are seen that emit
+ * light and reflect none is made darker where they are brighter than a white model, never
+ * brighter. A note says where nothing of the model is seen. scene: that of the world. Returns
+ * -1, or the exit code after reporting the error. */
 int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld *world,
                          const vlCamera *camera, const vlSceneDefs *defs, double leave,
                          float *ev);

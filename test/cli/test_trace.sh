@@ -46,6 +46,9 @@ printf '10.5,20.5\n400,300\n' >pixels.csv
 check with_unproject bash -c '"$VELO" camera unproject --camera scene.pbrt pixels.csv | "$VELO" trace scene.pbrt -'
 expect_text unprojected "1,0,1,"
 : >empty.csv
+printf '\xef\xbb\xbf"ox","oy",oz,"dx","dy","dz"\r\n0,0,5,0,0,-1\r\n' >sheet.csv
+check of_a_spreadsheet "$VELO" trace scene.pbrt sheet.csv
+expect_text sheet_hit "0,0,1,4,4,0,0,1,"
 check no_rays "$VELO" trace scene.pbrt empty.csv
 expect_text no_hits "$header"
 
@@ -68,6 +71,23 @@ CODE
   check array "$VELO" trace scene.pbrt rays.npy --hits 2 -o hits.npy
   check single "$VELO" trace scene.pbrt single.npy --occluded -o blocked.npy
   check no_array "$VELO" trace scene.pbrt none.npy -o none_hits.npy
+  check archive "$VELO" trace scene.pbrt rays.npy --hits 2 -o hits.npz
+  check archive_of_one "$VELO" trace scene.pbrt rays.npy -o one.npz
+  check archive_occluded "$VELO" trace scene.pbrt single.npy --occluded -o blocked.npz
+  check archive_of_none "$VELO" trace scene.pbrt none.npy -o none_hits.npz
+  check read_archives python3 - <<'CODE'
+import numpy, zipfile
+hits, several = numpy.load("hits.npy"), numpy.load("hits.npz")
+assert zipfile.ZipFile("hits.npz").testzip() is None
+assert several.files == list(hits.dtype.names), several.files
+for name in several.files:
+    numpy.testing.assert_array_equal(several[name], hits[name])
+    assert several[name].dtype == hits[name].dtype
+one, none = numpy.load("one.npz"), numpy.load("none_hits.npz")
+assert one["position"].shape == (3, 3) and one["t"].tolist() == [4, numpy.inf, 7]
+assert none["uv"].shape == (0, 2) and none["t"].shape == (0,)
+assert numpy.load("blocked.npz")["occluded"].tolist() == [True, False, True]
+CODE
   check read_back python3 - <<'CODE'
 import numpy
 hits, blocked = numpy.load("hits.npy"), numpy.load("blocked.npy")
@@ -112,6 +132,10 @@ wrong few 1:1 'a ray has 6 to 9 numbers' '0,0,5\n'
 wrong unknown 1:19 'unknown column "tmax"; did you mean "t_max"' 'ox,oy,oz,dx,dy,dz,tmax\n'
 wrong twice 1:4 'this column is there twice' 'ox,ox,oz,dx,dy,dz\n'
 wrong lacking 1:1 'the column dz is missing' 'ox,oy,oz,dx,dy\n'
+wrong zero 2:7 'this is no text' '0,0,5,0,0,-1\n0,0,5,\0000,0,-1\n'
+wrong quoted 1:4 'the quotation mark at the end of the name is missing' '"ox\n'
+wrong archive_in 1:1 'this is an archive' 'PK\003\004'
+wrong array_in 1:1 'this is an array of NumPy; its file' '\x93NUMPY\001'
 expect_code 4 no_file "$VELO" trace scene.pbrt nowhere.csv
 expect_code 2 one_operand "$VELO" trace scene.pbrt
 expect_code 2 suffix "$VELO" trace scene.pbrt rays.csv -o hits.json

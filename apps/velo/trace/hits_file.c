@@ -40,16 +40,22 @@ void hits_write_csv(const HitsFile *h, FILE *out) {
 
 /* ---- .npy -------------------------------------------------------------------------------- */
 
-/* Writes the start of the format, whose header is filled with blanks to a multiple of 64. */
-static void put_start(FILE *out, const char *type, const char *shape) {
-  char header[1024];
+size_t hits_npy_start(char start[HITS_NPY_START], const char *type, const char *shape) {
+  char header[HITS_NPY_START / 2];
   int length = snprintf(header, sizeof header,
                         "{'descr': %s, 'fortran_order': False, 'shape': (%s), }", type, shape);
-  unsigned total = (10u + (unsigned)length + 1 + 63) / 64 * 64, size = total - 10;
-  fwrite("\x93NUMPY\1\0", 1, 8, out);
-  fputc((int)(size & 255), out);
-  fputc((int)(size >> 8), out);
-  fprintf(out, "%-*s\n", (int)size - 1, header);
+  const size_t before = 10, total = (before + (size_t)length + 1 + 63) / 64 * 64,
+               size = total - before;
+  memcpy(start, "\x93NUMPY\1\0", 8);
+  start[8] = (char)(size & 255);
+  start[9] = (char)(size >> 8);
+  snprintf(start + before, HITS_NPY_START - before, "%-*s\n", (int)size - 1, header);
+  return total;
+}
+
+static void put_start(FILE *out, const char *type, const char *shape) {
+  char start[HITS_NPY_START];
+  fwrite(start, 1, hits_npy_start(start, type, shape), out);
 }
 
 static void put_record(const vlCastHits *h, uint64_t k, FILE *out) {

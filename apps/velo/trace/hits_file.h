@@ -1,7 +1,9 @@
-/* trace/hits_file.h: files of hits: .csv and .npy. */
+/* trace/hits_file.h: files of hits: .csv, .npy and .npz. */
 #ifndef APP_TRACE_HITS_FILE_H
 #define APP_TRACE_HITS_FILE_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -20,5 +22,16 @@ void hits_write_csv(const HitsFile *h, FILE *out);
 /* Writes an array of NumPy: of records with the fields of velo.RayHits, n x hits where hits is
  * above 1; or of bools. */
 void hits_write_npy(const HitsFile *h, FILE *out);
+/* Whether an archive can hold so many: its lengths have 32 bits. */
+bool hits_fit_npz(const HitsFile *h);
+/* Writes an archive of NumPy's arrays, one for each field, n or n x hits, as np.savez does it
+ * (hits_npz.c). Call only where hits_fit_npz. */
+void hits_write_npz(const HitsFile *h, FILE *out);
+
+/* Room for what an array's file begins with. */
+enum { HITS_NPY_START = 2048 };
+/* Makes the start of a .npy file (NumPy's documentation, numpy.lib.format, version 1), filled
+ * with blanks to a multiple of 64 bytes; returns its length. type: in Python's spelling. */
+size_t hits_npy_start(char start[HITS_NPY_START], const char *type, const char *shape);
 
 #endif

@@ -54,7 +54,9 @@ static bool at_end(const char *text) {
 /* Reads the names of the columns. */
 static int read_header(Reader *r, const char *text) {
   do {
-    size_t length = strcspn(text, ", \t\r\n");
+    const bool quoted = *text == '"';
+    text += quoted;
+    size_t length = strcspn(text, quoted ? "\"\r\n" : ", \t\r\n");
     char word[40];
     snprintf(word, sizeof word, "%.*s", (int)(length < 39 ? length : 39), text);
     int k = 0;
@@ -69,6 +71,9 @@ static int read_header(Reader *r, const char *text) {
         return wrong(r, text, "this column is there twice");
     r->column[r->columns++] = k;
     text += length;
+    if (quoted && *text != '"')
+      return wrong(r, text, "the quotation mark at the end of the name is missing");
+    text += quoted;
   } while (next_column(&text));
   if (!at_end(text))
     return wrong(r, skip(text), "column names are separated by commas");
@@ -146,11 +151,30 @@ static bool is_header(const char *text) {
                          (*text >= 'A' && *text <= 'Z'));
 }
 
+/* Refuses lines of files that are no text. A byte order mark, as spreadsheets write it, is
+ * passed. */
+static int begin_line(Reader *r, size_t length, const char **text) {
+  *text = r->line;
+  r->number++;
+  if (r->number == 1 && strncmp(r->line, "\xef\xbb\xbf", 3) == 0)
+    *text += 3;
+  *text = skip(*text);
+  if (r->number == 1 && strncmp(r->line, "\x93NUMPY", 6) == 0)
+    return wrong(r, r->line, "this is an array of NumPy; its file's name must end in .npy");
+  if (r->number == 1 && strncmp(r->line, "PK", 2) == 0)
+    return wrong(r, r->line, "this is an archive; save one array of rays with numpy.save");
+  return strlen(r->line) == length ? -1
+                                   : wrong(r, r->line + strlen(r->line), "this is no text");
+}
+
 static int read_lines(Reader *r) {
   int status = -1;
-  while (status < 0 && getline(&r->line, &r->room, r->file) >= 0) {
-    const char *text = skip(r->line);
-    r->number++;
+  ssize_t length;
+  while (status < 0 && (length = getline(&r->line, &r->room, r->file)) >= 0) {
+    const char *text;
+    status = begin_line(r, (size_t)length, &text);
+    if (status >= 0)
+      break;
     if (at_end(text) || *text == '#')
       continue;
     if (!r->columns && is_header(text)) {

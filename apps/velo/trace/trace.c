@@ -27,6 +27,10 @@ typedef struct State {
   const char *output; /* null: stdout */
 } State;
 
+static bool ends_with(const State *s, const char *suffix) {
+  return s->output && text_ends_with(s->output, suffix);
+}
+
 /* ---- tracing ----------------------------------------------------------------------------- */
 
 /* Takes the next `size` bytes per row of a block, on a multiple of 8. */
@@ -49,10 +53,13 @@ static int make_room(State *s, bool occluded) {
     return report_failure(STATUS_OTHER, "out of memory: %llu hits need %.1f GB",
                           (unsigned long long)rows, 1e-9 * (double)bytes);
   h->count = s->rays.count;
-  if (occluded) {
-    h->occluded = s->memory;
+  h->occluded = occluded ? s->memory : NULL;
+  if (ends_with(s, ".npz") && !hits_fit_npz(h))
+    return report_failure(
+        STATUS_OTHER, "%s: %llu hits are more than an archive of 4 GB holds; .npy holds them",
+        s->output, (unsigned long long)rows);
+  if (occluded)
     return -1;
-  }
   h->rows.t = take(&at, rows, sizeof(double));
   h->rows.distance = take(&at, rows, sizeof(double));
   h->rows.position = take(&at, rows, 3 * sizeof(double));
@@ -105,13 +112,11 @@ static int cast(State *s, const char *path) {
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
-static bool is_npy(const State *s) {
-  return s->output && text_ends_with(s->output, ".npy");
-}
-
 static void put(const State *s, FILE *out) {
-  if (is_npy(s))
+  if (ends_with(s, ".npy"))
     hits_write_npy(&s->results, out);
+  else if (ends_with(s, ".npz"))
+    hits_write_npz(&s->results, out);
   else
     hits_write_csv(&s->results, out);
 }
@@ -158,8 +163,8 @@ static int run_trace(const Command *command, const Arguments *arguments) {
                  ? v[TRACE_OUTPUT].text
                  : NULL;
   s.results.hits = v[TRACE_HITS].given ? (uint32_t)v[TRACE_HITS].integer : 1;
-  if (s.output && !is_npy(&s) && !text_ends_with(s.output, ".csv"))
-    return report_usage("-o %s: hits are written as .csv or .npy", s.output);
+  if (s.output && !ends_with(&s, ".npy") && !ends_with(&s, ".npz") && !ends_with(&s, ".csv"))
+    return report_usage("-o %s: hits are written as .csv, .npy or .npz", s.output);
   if (v[TRACE_HITS].given && v[TRACE_OCCLUDED].given)
     return report_usage("--hits and --occluded exclude each other");
   int status = rays_file_read(path, &s.rays);
@@ -181,7 +186,7 @@ static int run_trace(const Command *command, const Arguments *arguments) {
 
 static const Option trace_options[] = {
     {TRACE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE",
-     "file of the hits, .csv or .npy; default: .csv on stdout"},
+     "file of the hits, .csv, .npy or .npz; default: .csv on stdout"},
     {TRACE_HITS, 0, "hits", OPTION_INTEGER, "K", "up to K hits along each ray; default 1", 1,
      VL_MAX_CAST_HITS, NULL},
     {TRACE_OCCLUDED, 0, "occluded", OPTION_FLAG, NULL,

@@ -64,7 +64,7 @@ def diffuse(inputs, color, words):
 
 
 def _diffuse(inputs, node, groups):
-    color = inputs.color(node.inputs["Color"], groups)
+    color = inputs.albedo(node.inputs["Color"], groups)
     if inputs.constant(node.inputs["Roughness"], groups) != 0.0:
         inputs.notes.add(inputs.owner, node.name, "a rough diffuse reflection (Oren and Nayar) is a smooth one (Lambert)")
     words = bumps.words(inputs, node, groups)
@@ -84,7 +84,7 @@ def glossy(inputs, color, roughness, multiple, words):
 
 
 def _glossy(inputs, node, groups):
-    color = inputs.color(node.inputs["Color"], groups)
+    color = inputs.albedo(node.inputs["Color"], groups)
     distribution = node.distribution
     roughness = 0.0 if distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
     if distribution in ("BECKMANN", "ASHIKHMIN_SHIRLEY") and roughness != 0.0:
@@ -106,41 +106,33 @@ def glass(inputs, color, roughness, eta, words):
                                      transmission=1.0, thin_walled=False, name=inputs.owner, **words)
 
 
-def index_of(inputs, node, groups):
-    value = inputs.constant(node.inputs["IOR"], groups)
-    if not isinstance(value, float):
-        inputs.notes.add(inputs.owner, node.name, "an index of refraction that varies is 1.45")
-        value = 1.45
-    return min(max(value, 1.0001), 5.0)
-
-
 def _glass(inputs, node, groups):
-    color = inputs.color(node.inputs["Color"], groups)
+    color = inputs.albedo(node.inputs["Color"], groups)
     roughness = 0.0 if node.distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
     if node.distribution == "BECKMANN" and roughness != 0.0:
         inputs.notes.add(inputs.owner, node.name, "the distribution BECKMANN is GGX")
-    return Closure(glass(inputs, color, roughness, index_of(inputs, node, groups), bumps.words(inputs, node, groups)))
+    return Closure(glass(inputs, color, roughness, inputs.index(node.inputs["IOR"], groups), bumps.words(inputs, node, groups)))
 
 
 def _refraction(inputs, node, groups):
-    color = inputs.color(node.inputs["Color"], groups)
+    color = inputs.albedo(node.inputs["Color"], groups)
     roughness = 0.0 if node.distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
     words = bumps.words(inputs, node, groups)
     handle = inputs.scene.add_material("principled", reflectance=color, specular=0.0, metallic=0.0, roughness=roughness,
-                                       eta=index_of(inputs, node, groups), transmission=1.0, thin_walled=False, name=inputs.owner,
+                                       eta=inputs.index(node.inputs["IOR"], groups), transmission=1.0, thin_walled=False, name=inputs.owner,
                                        **words)
     return Closure(handle, lobe=Lobe("refraction", color, roughness, words))
 
 
 def _translucent(inputs, node, groups):
-    color = inputs.color(node.inputs["Color"], groups)
+    color = inputs.albedo(node.inputs["Color"], groups)
     handle = inputs.scene.add_material("diffuse_transmission", reflectance=(0, 0, 0), transmittance=color, scale=1.0, name=inputs.owner,
                                        **bumps.without_map(inputs, node, groups))
     return Closure(handle)
 
 
 def _transparent(inputs, node, groups):
-    color = inputs.color(node.inputs["Color"], groups)
+    color = inputs.albedo(node.inputs["Color"], groups)
     if is_color(color) and min(color) > 0.999:
         return Closure(is_clear=True, coverage=0.0, lobe=Lobe("clear", (1.0, 1.0, 1.0), 0.0, {}))
     if color == (0.0, 0.0, 0.0):
@@ -155,7 +147,7 @@ def _emission(inputs, node, groups):
 
 
 def _subsurface(inputs, node, groups):
-    color, words = inputs.color(node.inputs["Color"], groups), bumps.words(inputs, node, groups)
+    color, words = inputs.albedo(node.inputs["Color"], groups), bumps.words(inputs, node, groups)
     scale, radius = inputs.constant(node.inputs["Scale"], groups), inputs.constant(node.inputs["Radius"], groups)
     if not isinstance(scale, float) or radius is None:
         inputs.notes.add(inputs.owner, node.name, "a radius that varies is 0: the scattering is diffuse")
@@ -169,7 +161,7 @@ def _subsurface(inputs, node, groups):
 
 
 def _velvet(inputs, node, groups):
-    color = inputs.color(node.inputs["Color"], groups)
+    color = inputs.albedo(node.inputs["Color"], groups)
     roughness = (node.inputs.get("Sigma") or node.inputs.get("Roughness"))
     handle = inputs.scene.add_material("principled", reflectance=(0, 0, 0), specular=0.0, metallic=0.0, sheen_color=color,
                                        sheen_roughness=inputs.number(roughness, groups), name=inputs.owner)
@@ -184,10 +176,10 @@ def _background(inputs, node, groups):
 def _hair(inputs, node, groups):
     """The hair of Chiang and others 2016, which velo has, too. Cycles' pigments absorb (0.506, 0.841, 1.653) and (0.343, 0.733, 1.924)."""
     number = lambda name: inputs.number(node.inputs[name], groups)
-    words = {"eta": index_of(inputs, node, groups), "beta_m": number("Roughness"), "beta_n": number("Radial Roughness"),
+    words = {"eta": inputs.index(node.inputs["IOR"], groups), "beta_m": number("Roughness"), "beta_n": number("Radial Roughness"),
              "alpha": math.degrees(inputs.constant(node.inputs["Offset"], groups) or 0.0)}
     if node.parametrization == "COLOR":
-        words.update(color="reflectance", reflectance=inputs.color(node.inputs["Color"], groups))
+        words.update(color="reflectance", reflectance=inputs.albedo(node.inputs["Color"], groups))
     elif node.parametrization == "ABSORPTION":
         words.update(color="sigma_a", sigma_a=inputs.color(node.inputs["Absorption Coefficient"], groups))
     else:

@@ -98,8 +98,9 @@ class VeloRenderEngine(bpy.types.RenderEngine):
     def _export(self, depsgraph, size, flow):
         """The scene in velo. With Blender's persistent data it is that of the frame before, where places alone have changed."""
         scene = depsgraph.scene
-        if not scene.render.use_persistent_data or scene.render.use_motion_blur or flow is not None:
-            moves = motion.Motion(self, depsgraph) if scene.render.use_motion_blur else None
+        blurred = scene.render.use_motion_blur and depsgraph.view_layer.use_motion_blur
+        if not scene.render.use_persistent_data or blurred or flow is not None:
+            moves = motion.Motion(self, depsgraph) if blurred else None
             return export.Export(depsgraph, size, self.test_break, moves, keep_triangles=flow is not None)
         key = depsgraph.view_layer.name, size, scene.velo.bake_size
         kept = getattr(self, "kept", {})
@@ -112,7 +113,7 @@ class VeloRenderEngine(bpy.types.RenderEngine):
     def _trace(self, scene, made, crop, result, flow):
         """Renders into the result. Returns the fields of the file's header."""
         layer = result.layers[0]
-        shown = [time.monotonic()]
+        shown, exposure = [time.monotonic()], settings.exposure(scene)
 
         def progress(state):
             self.update_progress(min(max(state.fraction, 0.0), 1.0))
@@ -120,7 +121,7 @@ class VeloRenderEngine(bpy.types.RenderEngine):
                 report.listener(state.fraction)
             self.update_stats("", "velo: sample %d of %d" % (state.spp, state.spp_total))
             if state.pass_done and time.monotonic() - shown[0] > REFRESH and not bpy.app.background:
-                passes.fill(layer, made.scene.film.image(), scene.render.film_transparent)
+                passes.fill(layer, made.scene.film.image(), scene.render.film_transparent, exposure)
                 self.update_result(result)
                 shown[0] = time.monotonic()
             return not self.test_break()
@@ -128,7 +129,7 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         image = made.scene.render(channels=passes.wanted(layer), progress=progress, denoise=scene.velo.denoise, crop=crop,
                                   **settings.tracing(scene, scene.velo.samples))
         more = passes.Made(made, image, flow)
-        passes.fill(layer, image, scene.render.film_transparent, more)
+        passes.fill(layer, image, scene.render.film_transparent, exposure, more)
         return more.mattes.fields(layer.name)
 
 

@@ -5,7 +5,7 @@ import bpy
 import numpy
 import velo
 
-from . import atlas, camera, camera_files, displace, geometry, hair, lights, materials, motion, object_info, points, textures, volumes, world
+from . import atlas, camera, camera_files, displace, geometry, hair, ignored, lights, materials, motion, object_info, points, textures, volumes, world
 from .report import Notes, Refused
 
 FARTHEST = 1e12  # coordinates, scene units
@@ -63,6 +63,7 @@ class Export:
         self._moves, self._keep_triangles = moves, keep_triangles
         self._handles = {}  # {motion.key_of(instance): handle}
         self._keys = set()  # of all instances
+        self._noted = set()  # names of objects
         self._asked = False  # whether something depends on what the camera sees
         self._meshes, self._surfaces, self._cache = {}, {}, {}
         self._copies, self._varying = {}, {}  # objects of a mesh whose materials ask for the object; {material: whether it does}
@@ -72,7 +73,9 @@ class Export:
         if moves is not None and len(moves.camera) > 1:
             self.camera = camera.moving(self.camera, moves.camera)
         self.scene.camera = self.camera
-        world.add(self.scene, depsgraph.scene.world, self.notes)
+        ignored.note_scene(depsgraph, self.notes)
+        if depsgraph.view_layer.use_sky:
+            world.add(self.scene, depsgraph.scene.world, self.notes)
         self._read_objects()
 
     # ---- objects
@@ -84,7 +87,7 @@ class Export:
             item = instance.object
             if not instance.show_self or item.type in UNSEEN:
                 continue
-            self._note_unseen(item)
+            self._note_ignored(item)
             self._keys.add(motion.key_of(instance))
             matrix = numpy.array(instance.matrix_world, dtype=float)
             if not numpy.isfinite(matrix).all():
@@ -97,13 +100,7 @@ class Export:
                 lights.add(self.scene, item, instance.matrix_world, self._camera_sees, self.notes)
                 self.shapes += [None] * (len(self.scene.handles("shapes")) - len(self.shapes))
             elif item.type in geometry.MESHES:
-                placed = _placed(instance, matrix)
-                handle = self._place(instance, placed, self._moves.of(instance) if self._moves is not None else None)
-                if handle is not None:
-                    self._handles[placed.key] = handle
-                for system in item.particle_systems:
-                    if system.settings.type == "HAIR" and system.settings.render_type == "PATH" and not instance.is_instance:
-                        self._add_hair(item, hair.of_particles(item, system), system.settings.material - 1, placed, numpy.eye(4))
+                self._add_mesh(instance, _placed(instance, matrix))
             elif item.type == "POINTCLOUD":
                 self._add_points(item, _placed(instance, matrix))
             elif item.type == "CURVES":
@@ -111,14 +108,32 @@ class Export:
             elif item.type != "GPENCIL":
                 self.notes.add(item.name, "", "objects of type %s are not rendered" % item.type.lower())
 
-    def _note_unseen(self, item):
-        """What an object has that velo does not render."""
-        if item.type not in geometry.MESHES:
+    def _add_mesh(self, instance, placed):
+        """A mesh, and the hair that grows on it."""
+        item, layer = instance.object, self.depsgraph.view_layer
+        if layer.use_solid:
+            handle = self._place(instance, placed, self._moves.of(instance) if self._moves is not None else None)
+            if handle is not None:
+                self._handles[placed.key] = handle
+        for system in item.particle_systems if layer.use_strand and not instance.is_instance else ():
+            if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
+                self._add_hair(item, hair.of_particles(item, system), system.settings.material - 1, placed, numpy.eye(4))
+
+    def _note_ignored(self, item):
+        """Notes what an object has that velo does not, once for all its instances."""
+        if item.name_full in self._noted:
             return
-        if not (item.visible_camera and item.visible_shadow and item.visible_diffuse and item.visible_glossy and item.visible_transmission):
-            self.notes.add(item.name, "Ray visibility", "all rays see it")
-        if item.is_holdout or item.is_shadow_catcher:
-            self.notes.add(item.name, "Holdout, shadow catcher", "it is an object like others")
+        self._noted.add(item.name_full)
+        if item.type == "LIGHT":
+            ignored.note_light(item, self.depsgraph.scene, self.notes)
+        else:
+            ignored.note_object(item, self.depsgraph.scene, self.notes)
+
+    def _slots_of(self, item):
+        """The materials of an object's slots, at least one; those of the view layer's override where it has one."""
+        override = self.depsgraph.view_layer.material_override
+        slots = [slot.material for slot in item.material_slots] or [None]
+        return slots if override is None else [override] * len(slots)
 
     def move(self, depsgraph):
         """Moves the instances whose place alone has changed. False: something else has changed, too; nothing is moved then."""
@@ -162,7 +177,7 @@ class Export:
             placed, handle = _placed(instance, matrix), self._handles.get(key)
             if handle is None or not numpy.isfinite(matrix).all() or abs(numpy.linalg.det(matrix[:3, :3])) < 1e-30:
                 return False
-            slots = [slot.material for slot in instance.object.material_slots]
+            slots = self._slots_of(instance.object)
             if placed._replace(matrix=None) != self.instances[known[key]]._replace(matrix=None) or any(map(self._varies, slots)):
                 return False
             changes.append((known[key], handle, placed))
@@ -204,7 +219,7 @@ class Export:
             if poses is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
             self._add_shape(part, placed, pose=matrix, name=item.name)
-        alone = any(self._varies(slot.material) for slot in item.material_slots)  # its colours change with its place
+        alone = any(map(self._varies, self._slots_of(item)))  # its colours change with its place
         return None if prepared.emissive or alone else handle
 
     def _add_hair(self, item, strands, slot, placed, matrix):
@@ -213,7 +228,7 @@ class Export:
         positions, widths = hair.segments(*strands)
         if len(widths) == 0:
             return
-        slots = [known.material for known in item.material_slots] or [None]
+        slots = self._slots_of(item)
         surface, words = self._bare_surface(item, slots[min(max(slot, 0), len(slots) - 1)], matrix, "hair")
         self.scene.add_shape("curves", positions=positions, widths=widths, curve="cylinder", material=surface.material, pose=matrix,
                              name=item.name, **words)
@@ -234,7 +249,7 @@ class Export:
         centers, radii = points.read(item.data, self.notes, item.name)
         if len(radii) == 0:
             return
-        slots = [known.material for known in item.material_slots] or [None]
+        slots = self._slots_of(item)
         surface, words = self._bare_surface(item, slots[0], matrix, "a point cloud")
         self.scene.add_shape("sphere", centers=centers, radii=radii, material=surface.material, pose=matrix, name=item.name, **words)
         self.shapes.append(placed)
@@ -265,7 +280,7 @@ class Export:
 
     def _prepared(self, item, matrix, number):
         """The mesh of an object in velo, made once for all objects that share it and its materials; None: it has no faces."""
-        slots = [slot.material for slot in item.material_slots] or [None]
+        slots = self._slots_of(item)
         data = item.data if item.type == "MESH" else item
         key = (data.as_pointer(), tuple(None if material is None else material.name_full for material in slots))
         owner = ()
@@ -362,6 +377,8 @@ class Export:
             inputs = self._inputs(material, maps, corners, place)
             surface = materials.convert(material, inputs)
             self.material_indices[inputs.owner] = 0 if material is None else material.pass_index
+            if material is not None and surface.alpha is not None:
+                ignored.note_shadow(material, self.notes)
             if surface.atlas is not None:
                 return surface  # of this mesh alone
             self._surfaces[key] = surface

@@ -65,7 +65,7 @@ def _closure(socket, groups, inputs, depth):
             made = facing.coated(lobes[0].lobe, lobes[1].lobe, eta, inputs)
             if made is not None:
                 return Closure(material=made)
-        factor = inputs.number(node.inputs[0], source.groups)
+        factor = inputs.share(node.inputs[0], source.groups)
         if factor == 0.0 or factor == 1.0:
             return _closure(node.inputs[1 + int(factor)], source.groups, inputs, depth + 1)
         first, second = (_closure(node.inputs[i], source.groups, inputs, depth + 1) for i in (1, 2))
@@ -77,7 +77,7 @@ def _closure(socket, groups, inputs, depth):
     if function is None:
         has_color = node.inputs.get("Color") is not None
         inputs.notes.add(inputs.owner, node.name, "velo has no such shader (%s); it is %s" % (node.bl_label, "diffuse" if has_color else "black"))
-        return Closure(closures.diffuse(inputs, inputs.color(node.inputs["Color"], source.groups), {})) if has_color else Closure()
+        return Closure(closures.diffuse(inputs, inputs.albedo(node.inputs["Color"], source.groups), {})) if has_color else Closure()
     try:
         return function(inputs, node, source.groups)
     except Unsupported as error:

@@ -25,14 +25,19 @@ def interval(scene):
     return begin, begin + length
 
 
+def moves(item, switch):
+    """Whether Cycles' switch use_motion_blur or use_deform_motion of an object is on."""
+    return getattr(getattr(item, "cycles", None), switch, True)
+
+
 def deforms(item, scene):
     """Whether the vertices of an evaluated object may move."""
-    if item.type not in geometry.MESHES:
+    if item.type not in geometry.MESHES or not (moves(item, "use_motion_blur") and moves(item, "use_deform_motion")):
         return False
     original = item.original
     data = original.data
-    moves = original.is_deform_modified(scene, "RENDER") or any(known.type == "NODES" for known in original.modifiers)
-    return moves or getattr(data, "animation_data", None) is not None or getattr(data, "shape_keys", None) is not None
+    is_modified = original.is_deform_modified(scene, "RENDER") or any(known.type == "NODES" for known in original.modifiers)
+    return is_modified or getattr(data, "animation_data", None) is not None or getattr(data, "shape_keys", None) is not None
 
 
 class Step:
@@ -89,6 +94,8 @@ class Motion:
 
     def of(self, instance):
         """The poses of an instance that moves; None: it is at rest, or is not there all the time."""
+        if not moves(instance.object, "use_motion_blur"):
+            return None
         key = key_of(instance)
         poses = [step.poses.get(key) for step in self._steps]
         if any(pose is None for pose in poses) or not numpy.isfinite(poses).all():

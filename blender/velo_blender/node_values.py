@@ -148,6 +148,7 @@ def ambient_occlusion(e, node, output, groups):
     return numpy.ones(1) if output.name == "AO" else e.named(node, "Color", groups)
 
 
-NODES = {"AMBIENT_OCCLUSION": ambient_occlusion, "TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
+NODES = {"TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
          "OBJECT_INFO": object_info, "VERTEX_COLOR": vertex_color, "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment,
-         "TEX_CHECKER": checker, "TEX_GRADIENT": gradient, **math_nodes.NODES, **color_nodes.NODES, **facing.NODES, **procedural.NODES}
+         "TEX_CHECKER": checker, "TEX_GRADIENT": gradient, "AMBIENT_OCCLUSION": ambient_occlusion, **math_nodes.NODES, **color_nodes.NODES,
+         **facing.NODES, **procedural.NODES}

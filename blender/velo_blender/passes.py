@@ -63,14 +63,15 @@ class Made:
         self.mattes = cryptomatte.Mattes(export, image)
 
 
-def fill(layer, image, transparent, made=None):
-    """Fills the layer's passes from velo's image. transparent: the background is not there; else alpha is 1 everywhere. made: what is
-    known of the scene; None: passes that need it stay empty."""
+def fill(layer, image, transparent, exposure, made=None):
+    """Fills the layer's passes from velo's image. transparent: the background is not there; else alpha is 1 everywhere. exposure: factor on
+    colours. made: what is known of the scene; None: passes that need it stay empty."""
     for item in layer.passes:
         array = _array(item.name, image, made)
-        if item.name == "Combined" and not transparent:
-            array = array.copy()
-            array[..., 3] = 1
+        if item.name == "Combined":
+            array = array * numpy.array((exposure, exposure, exposure, 1), dtype=numpy.float32)
+            if not transparent:
+                array[..., 3] = 1
         if array is not None and array.shape[2] == item.channels:
             write(item, array)
 

@@ -10,7 +10,9 @@ def _get(inputs, node, name, groups, default):
     socket = versions.principled_socket(node, name)
     if socket is None:
         return default
-    return inputs.color(socket, groups) if isinstance(default, tuple) else inputs.number(socket, groups)
+    if isinstance(default, tuple):
+        return inputs.albedo(socket, groups)
+    return inputs.number(socket, groups) if name == "specular" else inputs.share(socket, groups)
 
 
 def eta_of_reflectance(f0):
@@ -75,7 +77,7 @@ def convert(inputs, node, groups, glossy, glass):
     elif metallic == 1.0 and plain and not multiple:
         material = _lossy_metal(inputs, base, roughness, words)
     elif transmission == 1.0 and metallic == 0.0 and plain:
-        material = glass(inputs, base, roughness, _index(inputs, node, groups), words)
+        material = glass(inputs, base, roughness, inputs.index(versions.principled_socket(node, "ior"), groups), words)
     else:
         words.update(_dielectric(inputs, node, groups, get, generation, transmission, base))
         if generation == 1 and metallic == 0.0 and transmission == 0.0:
@@ -106,18 +108,10 @@ def _lossy_metal(inputs, base, roughness, words):
                                      roughness=roughness, name=inputs.owner, **words)
 
 
-def _index(inputs, node, groups):
-    value = inputs.constant(versions.principled_socket(node, "ior"), groups)
-    if not isinstance(value, float):
-        inputs.notes.add(inputs.owner, node.name, "an index of refraction that varies is 1.45")
-        return 1.45
-    return min(max(value, 1.0001), 5.0)
-
-
 def _dielectric(inputs, node, groups, get, generation, transmission, base):
     """eta, specular and specular_color."""
     specular, tint = get("specular", 0.5), versions.principled_socket(node, "specular_tint")
-    index = _index(inputs, node, groups)
+    index = inputs.index(versions.principled_socket(node, "ior"), groups) if transmission != 0.0 or generation == 2 else None
     if transmission != 0.0:
         if generation == 1 and specular != 0.5 and transmission != 1.0:
             inputs.notes.add(inputs.owner, node.name, "where it transmits light, its reflection has the index, not Specular")

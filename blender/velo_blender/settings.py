@@ -38,9 +38,22 @@ def bounces(scene):
     return int(scene.velo.bounces)
 
 
+def exposure(scene):
+    """The factor of Cycles' film on colours."""
+    return float(getattr(getattr(scene, "cycles", None), "film_exposure", 1.0))
+
+
+def pixel_filter(scene):
+    """Keywords of velo's pixel filter: a box where Cycles has it, else velo's own."""
+    if getattr(getattr(scene, "cycles", None), "pixel_filter_type", "") != "BOX":
+        return {}
+    return {"filter": "box", "filter_radius_x": 0.5, "filter_radius_y": 0.5}
+
+
 def tracing(scene, samples):
     """Keywords of velo's render: samples, bounces, seed, colours."""
-    words = {"spp": samples, "tracer": "volpath", "max_depth": bounces(scene) + 1, "seed": scene.velo.seed, **world_words(scene)}
+    words = {"spp": samples, "tracer": "volpath", "max_depth": bounces(scene) + 1, "seed": scene.velo.seed, **pixel_filter(scene),
+             **world_words(scene)}
     if scene.render.film_transparent:
         words["transparent"] = True
     if scene.velo.noise > 0:

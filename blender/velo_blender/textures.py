@@ -5,6 +5,7 @@ import velo
 
 from . import atlas, evaluate, images, links, node_values, tiles
 
+LOWEST_INDEX, HIGHEST_INDEX = 1.0001, 5.0  # of refraction
 WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
 
 
@@ -38,6 +39,7 @@ class Inputs:
         self.relief = None  # a float texture, the height of the material's displacement where it is rendered as a bump
         self.corners = corners  # atlas.Corners of the mesh; None: nothing can be baked by its triangles
         self.atlas = None  # the layout of what is baked by triangles; None: nothing is
+        self.highest = cache.setdefault("highest", {})  # {id of a handle of a colour texture: (its largest value, the handle)}
         self.scene, self.notes, self.owner, self.maps, self.cache, self.bake_size = scene, notes, owner, maps, cache, bake_size
         self.color_attribute = None  # the name of the vertex colours that are used; None: none
 
@@ -56,6 +58,30 @@ class Inputs:
             return self._texture(socket, groups, True)
         value = (value,) * 3 if isinstance(value, float) else value
         return tuple(max(0.0, x) for x in value)
+
+    def albedo(self, socket, groups=()):
+        """As color, for what reflects, scatters or lets light pass, which velo limits to 1."""
+        value = self.color(socket, groups)
+        highest = max(value) if isinstance(value, tuple) else self.highest.get(id(value), (0.0, None))[0]
+        if highest > 1 + 1e-6:
+            self.notes.add(self.owner, socket.node.name, "%s has values above 1, up to %.3g; they are 1" % (socket.name, highest))
+        return tuple(min(x, 1.0) for x in value) if isinstance(value, tuple) else value
+
+    def share(self, socket, groups=()):
+        """As number, from 0 to 1, as Cycles limits it."""
+        value = self.number(socket, groups)
+        return min(max(value, 0.0), 1.0) if isinstance(value, float) else value
+
+    def index(self, socket, groups=()):
+        """An index of refraction, a number that velo can have."""
+        value = self.constant(socket, groups)
+        if not isinstance(value, float):
+            self.notes.add(self.owner, socket.node.name, "an index of refraction that varies is 1.45")
+            return 1.45
+        limited = min(max(value, LOWEST_INDEX), HIGHEST_INDEX)
+        if abs(limited - value) > 1e-3:
+            self.notes.add(self.owner, socket.node.name, "an index of refraction of %.4g is %.4g" % (value, limited))
+        return limited
 
     def number(self, socket, groups=()):
         """A number or a float texture."""
@@ -189,8 +215,11 @@ class Inputs:
 
     def _add(self, array, spectrum, number, matrix, **words):
         image = velo.Image(numpy.ascontiguousarray(array[..., :3] if spectrum else array), encoding="linear")
-        return self.scene.add_texture("image", spectrum=spectrum, image=image, uv_set=number,
-                                      st_from_uv=[float(x) for x in numpy.ravel(matrix)], **words)
+        handle = self.scene.add_texture("image", spectrum=spectrum, image=image, uv_set=number,
+                                        st_from_uv=[float(x) for x in numpy.ravel(matrix)], **words)
+        if spectrum:
+            self.highest[id(handle)] = float(array[..., :3].max()), handle
+        return handle
 
     # ---- baking
 

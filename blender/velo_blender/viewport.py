@@ -66,6 +66,7 @@ class ViewRender:
                 previous = None if self._made is None else self._made.scene.world(**settings.world_words(depsgraph.scene))
                 self._made = export.Export(depsgraph, (max(1, region.width), max(1, region.height)), view=view_camera(region, view))
                 self._made.scene.world(previous=previous, **settings.world_words(depsgraph.scene))
+            self._exposure = settings.exposure(depsgraph.scene)
             self._words = settings.tracing(depsgraph.scene, depsgraph.scene.velo.preview_samples)
             self.error = None
         except (Refused, velo.Error, MemoryError) as error:
@@ -131,6 +132,7 @@ class ViewRender:
 
     def _show(self, image, samples, transparent, stop):
         pixels = numpy.array(image)[::-1, :, :4]
+        pixels[..., :3] *= self._exposure
         if not transparent:
             pixels[..., 3] = 1
         if not stop.is_set():

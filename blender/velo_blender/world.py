@@ -114,8 +114,20 @@ def _add_square(scene, values):
         scene.add_light("infinite", image=velo.Image(numpy.ascontiguousarray(array), encoding="linear"), scale=1.0)
 
 
+def _is_no_number(socket):
+    """Whether a socket's own value counts and is NaN or infinite."""
+    if socket.is_linked or socket.type not in ("VALUE", "RGBA", "VECTOR"):
+        return False
+    return not numpy.isfinite(evaluate.default_of(socket)).all()
+
+
 def _add_sky(scene, world, error, notes):
     """A world that is rendered by Cycles."""
+    wrong = [socket for node in world.node_tree.nodes for socket in node.inputs if _is_no_number(socket)]
+    for socket in wrong:
+        notes.add(world.name, socket.node.name, "%s is no finite number; the world is black" % socket.name)
+    if wrong:
+        return
     if error.is_missing:
         notes.add(world.name, error.node.name, "%s; the world is black" % error.text)
         return

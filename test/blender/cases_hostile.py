@@ -114,3 +114,58 @@ def shaders_that_velo_has_not_keep_their_color():
     said(scene, "Toon BSDF); it is diffuse")
     image = colors(render(scene))
     assert image[8, 8, 0] > 0.3 and image[8, 8, 1] < 0.1, image[8, 8]
+
+
+@case
+def settings_that_velo_does_not_have():
+    scene = small()
+    c = scene.cycles
+    c.sample_clamp_direct, c.sample_clamp_indirect, c.blur_glossy, c.caustics_reflective, c.use_fast_gi = 1.0, 10.0, 1.0, False, True
+    c.rolling_shutter_type, scene.render.use_motion_blur = "TOP", True
+    scene.render.use_simplify, c.texture_limit_render, c.use_camera_cull = True, "128", True
+    scene.render.motion_blur_shutter_curve.curves[0].points[0].location.y = 0
+    scene.render.use_freestyle = False
+    c.feature_set = "EXPERIMENTAL"
+    scene.world.cycles_visibility.glossy = False
+    scene.world.cycles.max_bounces = 1
+    layer = bpy.context.view_layer
+    layer.use_pass_mist = layer.use_pass_diffuse_direct = layer.cycles.use_pass_shadow_catcher = True
+    layer.aovs.add().name = "mask"
+    for name in ("held", "hidden"):
+        scene.collection.children.link(bpy.data.collections.new(name))
+    layer.layer_collection.children["held"].holdout = layer.layer_collection.children["hidden"].indirect_only = True
+    item = ball(material("ShaderNodeBsdfDiffuse")[0])
+    item.visible_volume_scatter, item.cycles.use_adaptive_subdivision, item.cycles.shadow_terminator_offset = False, True, 0.5
+    light = lamp(scene, "POINT", 10)
+    light.visible_glossy, light.data.cycles.cast_shadow, light.data.cycles.max_bounces = False, False, 0
+    made, node = material("ShaderNodeBsdfPrincipled", Alpha=0.5)
+    made.name, made.cycles.use_transparent_shadow = "pane", False
+    plane(made, 1.0)
+    said(scene, "Clamp direct: ", "Clamp indirect: ", "Filter glossy: ", "Reflective caustics: ", "Fast GI: ", "Rolling shutter: ",
+         "Shutter curve: ", "Texture limit: ", "Culling: ", "world, Ray visibility: ", "world, Max bounces: ", "Pass Mist: ",
+         "Pass Diffuse Direct: ", "Pass Shadow Catcher: ", "Shader AOV mask: ", "held, Holdout: ", "hidden, Indirect only: ",
+         "Sphere, Ray visibility: ", "Adaptive subdivision: ", "Shadow terminator: ", "lamp, Ray visibility: ", "lamp, Cast shadow: ",
+         "lamp, Max bounces: ", "pane, Transparent shadows: ")
+
+
+@case
+def colors_and_indices_beyond_what_velo_has():
+    scene = small()
+    ball(material("ShaderNodeBsdfDiffuse", Color=(3.0, 0.5, 0.5))[0])
+    ball(material("ShaderNodeBsdfGlass", IOR=0.7)[0], (2, 0, 1))
+    made, node = material("ShaderNodeBsdfPrincipled", Metallic=7.0, Roughness=-1.0, Alpha=2.0, Transmission=-3.0)
+    scaled = add(made.node_tree, "ShaderNodeVectorMath", node.inputs["Base Color"], operation="SCALE", Scale=4.0)
+    add(made.node_tree, "ShaderNodeTexNoise", scaled.inputs[0], 1)
+    plane(made, 1.0, (-2, 0, 1))
+    said(scene, "Diffuse BSDF: Color has values above 1, up to 3; they are 1", "an index of refraction of 0.7 is 1",
+         "Principled BSDF: Base Color has values above 1")
+
+
+@case
+def a_sky_whose_strength_is_no_number():
+    scene = small()
+    tree = scene.world.node_tree
+    add(tree, "ShaderNodeTexSky", tree.nodes["Background"].inputs["Color"], sky_type="PREETHAM")
+    tree.nodes["Background"].inputs["Strength"].default_value = NAN
+    ball(material("ShaderNodeBsdfDiffuse")[0])
+    said(scene, "Background: Strength is no finite number; the world is black")

@@ -116,3 +116,44 @@ def occlusion_keeps_its_color():
     image = colors(render(scene))
     assert image[24, 24, 0] > 3 * image[24, 24, 1]
     assert any("nothing is occluded" in line for line in notes(scene)), notes(scene)
+
+
+@case
+def settings_of_film_and_view_layer():
+    def scene_of(samples=64):
+        scene = new_scene(world=(0.5, 0.5, 0.5), samples=samples)
+        plane(material("ShaderNodeBsdfDiffuse", Color=GRAY)[0])
+        ball(material("ShaderNodeBsdfDiffuse", Color=(0.8, 0.2, 0.1))[0])
+        lamp(scene, "POINT", 100)
+        return scene
+
+    scene = scene_of()
+    scene.cycles.film_exposure = 2.5
+    bpy.context.view_layer.material_override = material("ShaderNodeBsdfDiffuse", Color=(0.1, 0.7, 0.2))[0]
+    agrees(scene, 0.005)
+    scene = scene_of()
+    bpy.context.view_layer.use_sky = False
+    agrees(scene, 0.01)
+    scene = scene_of(256)
+    scene.cycles.pixel_filter_type = "BOX"
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    assert abs(other - mine).mean() < 0.01 * other.mean(), abs(other - mine).mean() / other.mean()
+    assert not notes(scene), notes(scene)
+    scene.cycles.pixel_filter_type = "GAUSSIAN"
+    render(scene)
+    assert any("Pixel filter: it is a Gaussian" in line for line in notes(scene)), notes(scene)
+
+
+@case
+def objects_whose_blur_is_off():
+    scene = new_scene(world=(0.5, 0.5, 0.5))
+    scene.render.use_motion_blur = True
+    scene.frame_set(2)
+    item = ball(material("ShaderNodeBsdfDiffuse", Color=(0.8, 0.2, 0.1))[0])
+    for frame, x in ((1, -2.0), (3, 2.0)):
+        item.location.x = x
+        item.keyframe_insert("location", frame=frame)
+    item.cycles.use_motion_blur = False
+    scene.frame_set(2)
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    assert abs(other - mine).mean() < 0.02 * other.mean(), abs(other - mine).mean() / other.mean()

@@ -150,6 +150,23 @@ static double y_integral(void) {
   return sum;
 }
 
+/* Buckets of a pixel to which no sample came get what lies between those beside them, or the
+ * value of the only one beside them: 0 would make the light of few samples too dark. A pixel
+ * without samples stays 0. weights: those of the pixel. */
+static void fill_empty(const int64_t *weights, uint32_t count, float *values) {
+  uint32_t done = 0; /* buckets before it have values */
+  for (uint32_t i = 0; i < count; i++) {
+    if (weights[i] <= 0)
+      continue;
+    const float before = values[done ? done - 1 : i], steps = (float)(i - done + 1);
+    for (uint32_t k = done; k < i; k++)
+      values[k] = before + (values[i] - before) * (float)(k - done + 1) / steps;
+    done = i + 1;
+  }
+  for (uint32_t k = done; done && k < count; k++)
+    values[k] = values[done - 1];
+}
+
 vlResult vl_film_spectrum(const vlFilm *film, vlImage **image) {
   if (!image)
     return VL_ERROR_ARGUMENT;
@@ -168,5 +185,8 @@ vlResult vl_film_spectrum(const vlFilm *film, vlImage **image) {
   for (size_t i = 0; s->sums[0] && s->weights[0] && i < cells(film); i++)
     if (s->weights[0][i] > 0)
       out[i] = (float)((double)s->sums[0][i] / (double)s->weights[0][i] * unit);
+  const uint32_t n = film->def.buckets;
+  for (size_t i = 0; s->weights[0] && i < cells(film); i += n)
+    fill_empty(s->weights[0] + i, n, out + i);
   return VL_OK;
 }

@@ -132,6 +132,33 @@ static void exact(void **state) {
   }
 }
 
+/* A sample of four wavelengths leaves three of seven buckets empty: they get what lies between
+ * those beside them. Pixels without samples are 0, and so is what was seen to be 0. */
+static void empty_buckets(void **state) {
+  (void)state;
+  vlFilm *film = new_film();
+  const float lambda[4] = {460, 500, 590, 640},
+              value[4] = {8, 2, 0, 3}; /* buckets 1, 2, 4, 5 */
+  const float expected[BUCKETS] = {8, 8, 2, 1, 0, 3, 3};
+  px_[0] = 1;
+  py_[0] = 0;
+  weight_[0] = 1;
+  for (int c = 0; c < 4; c++) {
+    lambda_[c][0] = lambda[c];
+    value_[c][0] = value[c];
+  }
+  pass(film, 0, 1);
+  spectrum(film, one_);
+  const float unit = one_[BUCKETS] / 8;
+  assert_true(unit > 0);
+  for (int i = 0; i < CELLS; i++) {
+    const bool sampled = i / BUCKETS == 1;
+    const float wanted = sampled ? unit * expected[i % BUCKETS] : 0;
+    assert_true(fabsf(one_[i] - wanted) <= 1e-5f * unit);
+  }
+  vl_film_destroy(film);
+}
+
 static void names(void **state) {
   (void)state;
   vlFilm *film = new_film();
@@ -205,7 +232,8 @@ static void no_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(exact), cmocka_unit_test(names),
-                                     cmocka_unit_test(wrong), cmocka_unit_test(no_memory)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(exact), cmocka_unit_test(empty_buckets),
+                                     cmocka_unit_test(names), cmocka_unit_test(wrong),
+                                     cmocka_unit_test(no_memory)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -59,8 +59,10 @@ typedef struct Expose {
 
 /* ---- what is asked ---------------------------------------------------------------------- */
 
-static bool holds_metadata(const char *path) {
-  return text_ends_with(path, ".dng");
+/* Files of velo/raw.h. */
+static bool is_raw_file(const char *path) {
+  return text_ends_with(path, ".dng") || text_ends_with(path, ".tif") ||
+         text_ends_with(path, ".tiff");
 }
 
 static bool holds_electrons(const char *path) {
@@ -91,9 +93,9 @@ static int check_outputs(const Expose *e) {
     return report_usage("sensor expose: give the name of the raw image with -o");
   for (int i = 0; i < e->count; i++) {
     const char *path = e->paths[i];
-    if (!holds_electrons(path) && !holds_metadata(path) && !text_ends_with(path, ".png"))
+    if (!holds_electrons(path) && !is_raw_file(path) && !text_ends_with(path, ".png"))
       return report_usage(
-          "output \"%s\": the suffix must be .dng (a raw file), .png (numbers, 16 bits) or "
+          "output \"%s\": the suffix must be .dng (a raw file), .tif or .png (numbers, 16 bits) or "
           ".exr (electrons)",
           path);
     int status = pattern_check(path);
@@ -182,27 +184,26 @@ static int write_frame(Expose *e, uint32_t frame, const vlExposureDef *exposure)
     vlError error = {0};
     path_of(e->paths[i], frame, path);
     const vlImage *image = holds_electrons(path) ? e->electrons : e->numbers;
-    result = holds_metadata(path) ? write_raw(e, path, exposure, &error)
-                                  : vl_image_write(image, path, NULL, &error);
+    result = is_raw_file(path) ? write_raw(e, path, exposure, &error)
+                               : vl_image_write(image, path, NULL, &error);
     if (result != VL_OK)
       return report_error(&error, result, path);
   }
   return -1;
 }
 
-/* A bucket without a sample is 0 in the image. With as many samples as buckets, of 4
- * wavelengths each, about one in fifty is empty. */
-static void tell_empty_buckets(const vlImage *image) {
+/* A sample has 4 wavelengths. */
+static void tell_few_samples(const vlImage *image) {
   vlAttribute samples;
   uint32_t buckets = 0;
   for (uint32_t c = 0; c < vl_image_channels(image); c++)
     buckets += strncmp(vl_image_channel_name(image, c), "S0.", 3) == 0;
   if (vl_image_find_attribute(image, "samplesPerPixel", &samples) != VL_OK ||
-      samples.numbers[0] >= buckets)
+      4 * samples.numbers[0] >= buckets)
     return;
   report_warning(
-      "the image has %.0f samples per pixel for %u buckets of its spectrum; those without a "
-      "sample are 0, so the sensor sees it too dark: render it with --spp %u or more",
+      "the image has %.0f samples per pixel for %u buckets of its spectrum; most buckets have "
+      "what lies between those beside them: render it with --spp %u or more",
       samples.numbers[0], buckets, buckets);
 }
 
@@ -221,7 +222,7 @@ static void tell_filter(const vlImage *image) {
 static void tell(const Expose *e, uint32_t frame, const vlSensorOutput *out) {
   double pixels = (double)vl_image_width(e->image) * vl_image_height(e->image);
   if (frame == 0) {
-    tell_empty_buckets(e->image);
+    tell_few_samples(e->image);
     tell_filter(e->image);
   }
   if (frame == 0 && out->not_finite)
@@ -358,8 +359,8 @@ static int run(const Command *command, const Arguments *arguments) {
 
 static const Option options[] = {
     {EXPOSE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "file to write; may be given several times: .dng is a raw file with all metadata, .png "
-     "has the numbers (16 bits), .exr the electrons"},
+     "file to write; may be given several times: .dng is a raw file with all metadata, .tif "
+     "and .png have the numbers (16 bits), .exr the electrons"},
     {EXPOSE_SENSOR, 0, "sensor", OPTION_TEXT, "NAME|FILE",
      "a sensor file (.yaml), or ideal, ideal_rggb, generic_mono, generic_rggb, generic_quad, "
      "raspberry_pi_hq, or generic_rggb with the sensitivities of a measured camera (canon_eos_5d, ...). "

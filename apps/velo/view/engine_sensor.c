@@ -15,9 +15,8 @@
 #include "view/engine_sensor.h"
 #include "view/view.h"
 
-/* Buckets of the film: 48 bytes per pixel each. Samples have 4 wavelengths: with two samples
- * per bucket hardly one is without. */
-enum { BUCKETS = 24, MAX_BUCKETS = 1000, MAX_CHANNELS = MAX_BUCKETS + 10, SPP_PER_BUCKET = 2 };
+/* Buckets of the film: 48 bytes per pixel each. */
+enum { BUCKETS = 24, MAX_BUCKETS = 1000, MAX_CHANNELS = MAX_BUCKETS + 10 };
 
 /* Of the meter, seconds. */
 static const double shortest_time = 1e-6, longest_time = 1e5;
@@ -191,31 +190,6 @@ static uint32_t count_buckets(const vlImage *light) {
   return count;
 }
 
-/* With few samples some buckets of a pixel have none, and are 0: such a gap gets the values
- * between those beside it. Else the image of few samples were too dark. */
-static void fill_gaps(float *values, uint32_t count) {
-  uint32_t end = 0; /* of what is filled */
-  for (uint32_t i = 0; i < count; i++) {
-    if (values[i] == 0)
-      continue;
-    const float before = values[end ? end - 1 : i];
-    const float steps = (float)(i - end + 1);
-    for (uint32_t k = end; k < i; k++)
-      values[k] = before + (values[i] - before) * (float)(k - end + 1) / steps;
-    end = i + 1;
-  }
-  for (uint32_t k = end; end && k < count; k++)
-    values[k] = values[end - 1];
-}
-
-static void fill_spectra(vlImage *light, uint32_t buckets) {
-  const uint32_t channels = vl_image_channels(light);
-  const size_t pixels = (size_t)vl_image_width(light) * vl_image_height(light);
-  float *values = vl_image_pixels(light);
-  for (size_t i = 0; i < pixels; i++)
-    fill_gaps(values + i * channels, buckets);
-}
-
 /* The mean luminance of the film in cd/m^2; NaN: it has none. */
 static double mean_luminance(const vlFilm *film) {
   vlImage *image = NULL;
@@ -258,8 +232,6 @@ static vlResult take_light(Engine *e, const vlFilm *film, uint32_t scale) {
   s->scale = scale;
   s->spp = spp;
   s->buckets = count_buckets(s->light);
-  if (spp < SPP_PER_BUCKET * s->buckets)
-    fill_spectra(s->light, s->buckets);
   s->luminance = mean_luminance(film);
   s->means = malloc(pixels * sizeof *s->means);
   return s->means ? VL_OK : VL_ERROR_MEMORY;

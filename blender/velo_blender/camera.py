@@ -2,7 +2,9 @@
 
 Blender's camera looks along -z with y up; velo's x points right, y down, z forward."""
 import math
+from typing import Any, NamedTuple
 
+import mathutils
 import numpy
 import velo
 
@@ -10,6 +12,47 @@ from . import panorama
 from .report import Refused
 
 FLIP = numpy.diag((1.0, -1.0, -1.0, 1.0))
+
+
+class Eye(NamedTuple):
+    """From where one of the views of a camera sees. item: the evaluated camera object; matrix: world from Blender's camera; shift_x:
+    Blender's lens shift; name: of the view, empty where there is one."""
+    item: Any
+    matrix: Any
+    shift_x: float
+    name: str = ""
+
+
+def eye_of(depsgraph):
+    """The only eye of the scene's camera."""
+    if depsgraph.scene.camera is None:
+        raise Refused("the scene has no camera")
+    item = depsgraph.scene.camera.evaluated_get(depsgraph)
+    return Eye(item, item.matrix_world.copy(), item.data.shift_x)
+
+
+def eyes_of(engine, depsgraph, names):
+    """The eyes of the scene's camera for views by their names: of a stereo image Blender moves, turns and shifts the camera for each."""
+    if list(names) == [""]:
+        return [eye_of(depsgraph)]
+    eyes = []
+    for name in names:
+        engine.active_view_set(name)
+        item = _camera_for(depsgraph, name)
+        eyes.append(Eye(item, mathutils.Matrix(engine.camera_model_matrix(item)), engine.camera_shift_x(item), name))
+    return eyes
+
+
+def _camera_for(depsgraph, name):
+    """The camera object of a view: the scene's, or with several cameras that of the same name with the view's suffix."""
+    scene, item = depsgraph.scene, eye_of(depsgraph).item
+    views = scene.render.views
+    if scene.render.views_format == "MULTIVIEW":
+        for view in views:
+            if view.camera_suffix and item.name.endswith(view.camera_suffix):
+                wanted = item.name[:-len(view.camera_suffix)] + views[name].camera_suffix
+                return scene.objects.get(wanted, item).evaluated_get(depsgraph)
+    return item
 
 
 def image_size(scene):
@@ -65,12 +108,12 @@ def focus_distance(camera, matrix):
     return max(abs((place - matrix.translation).dot(axis)), 1e-6)
 
 
-def convert(scene, item, depsgraph, size):
-    """velo's camera for an image of a size (width, height) from a camera object."""
+def convert(depsgraph, size, eye):
+    """velo's camera for an image of a size (width, height) from an eye of Blender's camera."""
+    item, matrix = eye.item, eye.matrix
     camera = item.data
-    matrix = item.matrix_world
     words = {"world_from_camera": pose(matrix)}
-    render = scene.render
+    render = depsgraph.scene.render
     if camera.type == "PANO":
         return panorama.convert(camera, size, words)
     projection = numpy.array(item.calc_matrix_camera(depsgraph, x=size[0], y=size[1], scale_x=render.pixel_aspect_x,
@@ -78,6 +121,7 @@ def convert(scene, item, depsgraph, size):
     if not numpy.isfinite(projection).all() or projection[0, 0] == 0 or projection[1, 1] == 0:
         raise Refused("camera %s: its projection is degenerate" % item.name)
     words.update(near_plane=float(camera.clip_start), far_plane=float(camera.clip_end))
+    shift_to(projection, eye.shift_x - camera.shift_x, camera, render, size)
     if camera.type == "ORTHO":
         words.update(orthographic_window(projection))
     else:
@@ -86,6 +130,18 @@ def convert(scene, item, depsgraph, size):
     if lens:
         words.update(lens, focus_distance=focus_distance(camera, matrix))
     return velo.Camera(*size, **words)
+
+
+def shift_to(projection, shift, camera, render, size):
+    """Moves the window of an OpenGL projection by a lens shift along x, in Blender's units: the longer side of the image, or that of the
+    sensor's fit (BKE_camera_params_compute_viewplane)."""
+    width, height = size[0] * render.pixel_aspect_x, size[1] * render.pixel_aspect_y
+    horizontal = camera.sensor_fit == "HORIZONTAL" or (camera.sensor_fit == "AUTO" and width >= height)
+    shares = 2 * shift * (1.0 if horizontal else height / width)  # of half of the width
+    if camera.type == "ORTHO":
+        projection[0, 3] -= shares
+    else:
+        projection[0, 2] += shares
 
 
 def moving(still, matrices):

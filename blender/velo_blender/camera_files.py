@@ -31,10 +31,10 @@ def read(data):
         raise Refused("camera %s: %s" % (data.name, error)) from None
 
 
-def convert(item, size):
-    """velo's camera for an image of a size at the object's place; None: the camera has no file."""
-    found = read(item.data)
-    return None if found is None else found.resize(*size).move(camera.pose(item.matrix_world))
+def convert(eye, size):
+    """velo's camera for an image of a size at the place of a camera.Eye; None: the camera has no file."""
+    found = read(eye.item.data)
+    return None if found is None else found.resize(*size).move(camera.pose(eye.matrix))
 
 
 def show_frustum(scene, item, found):

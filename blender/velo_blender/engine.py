@@ -73,8 +73,10 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         size = camera.image_size(scene)
         crop = camera.crop_window(scene, size)
         self.update_stats("", "velo: reading the scene")
-        flow = vectors.Vectors(self, depsgraph, size) if depsgraph.view_layer.use_pass_vector else None
-        made = self._export(depsgraph, size, flow)
+        views = self._views(depsgraph)
+        flow = vectors.Vectors(self, depsgraph, size, views) if depsgraph.view_layer.use_pass_vector else None
+        made = self._export(depsgraph, size, flow, views)
+        eyes = camera.eyes_of(self, depsgraph, views)
         report.remember(scene.name, made.notes)
         for text in made.notes.texts():
             print("velo: " + text)
@@ -84,9 +86,29 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         # Of an animation, the worlds of two frames share what is the same.
         self.world = made.scene.world(previous=getattr(self, "world", None), progress=lambda step: not self.test_break(),
                                       **settings.world_words(scene))
-        width, height = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
         passes.add(self, depsgraph.view_layer)
-        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
+        for eye in eyes:
+            self._render_view(depsgraph, made, eye, size, crop, flow)
+
+    def _views(self, depsgraph):
+        """The names of the views that Blender wants, [""] where there is one."""
+        if not depsgraph.scene.render.use_multiview:
+            return [""]
+        result = self.begin_result(0, 0, 1, 1, layer=depsgraph.view_layer.name)
+        names = [view.name for view in result.views]
+        self.end_result(result, cancel=True, do_merge_results=False)
+        return names or [""]
+
+    def _render_view(self, depsgraph, made, eye, size, crop, flow):
+        """Renders one view of the result; see camera.Eye."""
+        if eye.name:
+            self.active_view_set(eye.name)
+            made.see(export.camera_of(depsgraph, size, eye), eye.name)
+        if flow is not None:
+            flow.view = eye.name
+        scene = depsgraph.scene
+        width, height = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
+        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name, view=eye.name)
         fields = {}
         try:
             fields = self._trace(scene, made, crop, result, flow)
@@ -95,12 +117,12 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         for field, value in fields.items():
             self.get_result().stamp_data_add_field(field, value)
 
-    def _export(self, depsgraph, size, flow):
+    def _export(self, depsgraph, size, flow, views):
         """The scene in velo. With Blender's persistent data it is that of the frame before, where places alone have changed."""
         scene = depsgraph.scene
         blurred = scene.render.use_motion_blur and depsgraph.view_layer.use_motion_blur
         if not scene.render.use_persistent_data or blurred or flow is not None:
-            moves = motion.Motion(self, depsgraph) if blurred else None
+            moves = motion.Motion(self, depsgraph, views) if blurred else None
             return export.Export(depsgraph, size, self.test_break, moves, keep_triangles=flow is not None)
         key = depsgraph.view_layer.name, size, scene.velo.bake_size
         kept = getattr(self, "kept", {})

@@ -69,14 +69,20 @@ class Export:
         self._copies, self._varying = {}, {}  # objects of a mesh whose materials ask for the object; {material: whether it does}
         self._cancelled = cancelled or (lambda: False)
         self._settings = depsgraph.scene.velo
-        self.camera = view if view is not None else _camera_of(depsgraph, size)
-        if moves is not None and len(moves.camera) > 1:
-            self.camera = camera.moving(self.camera, moves.camera)
-        self.scene.camera = self.camera
+        self.camera = view if view is not None else camera_of(depsgraph, size)
+        self.see(self.camera)
         ignored.note_scene(depsgraph, self.notes)
         if depsgraph.view_layer.use_sky:
             world.add(self.scene, depsgraph.scene.world, self.notes)
         self._read_objects()
+
+    def see(self, view, name=""):
+        """Sets the camera that sees the scene. name: of the view of a stereo image; the camera moves as this one does."""
+        self.camera = view
+        poses = self._moves.cameras.get(name, ()) if self._moves is not None else ()
+        if len(poses) > 1:
+            self.camera = camera.moving(view, poses)
+        self.scene.camera = self.camera
 
     # ---- objects
 
@@ -183,7 +189,7 @@ class Export:
             changes.append((known[key], handle, placed))
         if keys != self._keys:
             return False
-        self.depsgraph, self.camera = depsgraph, _camera_of(depsgraph, self.size)
+        self.depsgraph, self.camera = depsgraph, camera_of(depsgraph, self.size)
         self.scene.camera = self.camera
         for number, handle, placed in changes:
             self.instances[number] = placed
@@ -413,18 +419,16 @@ class Export:
         return words
 
 
-def _camera_of(depsgraph, size):
-    item = depsgraph.scene.camera
-    if item is None:
-        raise Refused("the scene has no camera")
-    item = item.evaluated_get(depsgraph)
-    return camera_files.convert(item, size) or camera.convert(depsgraph.scene, item, depsgraph, size)
+def camera_of(depsgraph, size, eye=None):
+    """The scene's camera in velo. eye: camera.Eye; None: its only one."""
+    eye = eye or camera.eye_of(depsgraph)
+    return camera_files.convert(eye, size) or camera.convert(depsgraph, size, eye)
 
 
-def camera_or_none(depsgraph, size):
+def camera_or_none(depsgraph, size, eye):
     """The scene's camera in velo; None: it cannot be made."""
     try:
-        return _camera_of(depsgraph, size)
+        return camera_of(depsgraph, size, eye)
     except (Refused, velo.Error):
         return None
 
@@ -470,4 +474,4 @@ class Cancelled(Exception):
     """The user ended the export."""
 
 
-__all__ = ["Cancelled", "Export", "Refused"]
+__all__ = ["Cancelled", "Export", "Refused", "camera_of", "camera_or_none"]

@@ -165,6 +165,8 @@ def _open(path):
             tell("warning", "the library %s is missing" % library.filepath)
     scene = bpy.context.scene
     scene.render.engine = "VELO"
+    if scene.render.use_multiview:
+        tell("warning", "of a stereo image the view of the camera itself is rendered")
     scene.render.use_multiview = False
     scene.render.use_persistent_data = True  # frames share what does not change
     for node in scene.node_tree.nodes if scene.use_nodes and scene.node_tree is not None else ():

@@ -15,6 +15,8 @@ def note_scene(depsgraph, notes):
     if cycles is not None:
         _note_light_paths(scene, cycles, notes)
         _note_film(scene, cycles, notes)
+    if scene.render.use_multiview and scene.camera is not None and scene.camera.data.stereo.use_spherical_stereo:
+        notes.add(scene.camera.name, "Spherical stereo", "both eyes are at one place of their own for all directions")
     _note_layer(layer, notes)
     if scene.world is not None and layer.use_sky:
         _note_world(scene, notes)

@@ -6,7 +6,7 @@ import math
 
 import numpy
 
-from . import geometry
+from . import camera, geometry
 
 TIMES = (0.0, 0.5, 1.0)
 
@@ -41,12 +41,12 @@ def deforms(item, scene):
 
 
 class Step:
-    """The scene at one time. poses: {key_of(instance): 4 x 4}; matrix: of Blender's camera; camera: velo's, None where it is not asked
-    for or cannot be made; meshes: {object: geometry.MeshArrays} of those that deform()."""
+    """The scene at one time. poses: {key_of(instance): 4 x 4}; matrices: {view: of Blender's camera}; cameras: {view: velo's, None where it
+    cannot be made}, empty where they are not asked for; meshes: {object: geometry.MeshArrays} of those that deform()."""
 
-    def __init__(self, depsgraph, with_meshes, size):
+    def __init__(self, depsgraph, with_meshes, size, eyes):
         from . import export
-        self.poses, self.meshes, self.matrix, self.camera = {}, {}, None, None
+        self.poses, self.meshes, self.matrices, self.cameras = {}, {}, {}, {}
         scene = depsgraph.scene
         for instance in depsgraph.object_instances:
             item = instance.object
@@ -57,10 +57,10 @@ class Step:
                 arrays = geometry.of_object(item)
                 if arrays is not None and arrays.is_finite():
                     self.meshes[item.name_full] = arrays
-        if scene.camera is not None:
-            self.matrix = scene.camera.evaluated_get(depsgraph).matrix_world.copy()
-        if size is not None:
-            self.camera = export.camera_or_none(depsgraph, size)
+        for eye in eyes:
+            self.matrices[eye.name] = eye.matrix
+            if size is not None:
+                self.cameras[eye.name] = export.camera_or_none(depsgraph, size, eye)
 
     def pose_of(self, key, otherwise):
         """The pose of an instance that is there and has a place."""
@@ -68,8 +68,8 @@ class Step:
         return otherwise if pose is None or not numpy.isfinite(pose).all() else pose
 
 
-def read_steps(engine, depsgraph, frames, size=None, meshes_at=None):
-    """The scene at times, in frames from the frame that is rendered: a list of Step. size: of the image, for velo's cameras; meshes_at:
+def read_steps(engine, depsgraph, frames, views, size=None, meshes_at=None):
+    """The scene at times, in frames from the frame that is rendered: a list of Step. views: their names; size: of the image, for velo's cameras; meshes_at:
     the indices of the times at which meshes are read, default all."""
     scene = depsgraph.scene
     frame = scene.frame_current + scene.frame_subframe
@@ -78,19 +78,21 @@ def read_steps(engine, depsgraph, frames, size=None, meshes_at=None):
         for number, offset in enumerate(frames):
             at = frame + offset
             engine.frame_set(math.floor(at), at - math.floor(at))
-            steps.append(Step(depsgraph, meshes_at is None or number in meshes_at, size))
+            eyes = camera.eyes_of(engine, depsgraph, views) if scene.camera is not None else []
+            steps.append(Step(depsgraph, meshes_at is None or number in meshes_at, size, eyes))
     finally:
         engine.frame_set(math.floor(frame), frame - math.floor(frame))
     return steps
 
 
 class Motion:
-    """What moves while the shutter is open. camera: [4 x 4, ...] of Blender's camera at TIMES."""
+    """What moves while the shutter is open. cameras: {view: [4 x 4, ...] of Blender's camera at TIMES}."""
 
-    def __init__(self, engine, depsgraph):
+    def __init__(self, engine, depsgraph, views):
         begin, end = interval(depsgraph.scene)
-        self._steps = read_steps(engine, depsgraph, [begin + time * (end - begin) for time in TIMES], meshes_at=(0, len(TIMES) - 1))
-        self.camera = [step.matrix for step in self._steps if step.matrix is not None]
+        self._steps = read_steps(engine, depsgraph, [begin + time * (end - begin) for time in TIMES], views,
+                                 meshes_at=(0, len(TIMES) - 1))
+        self.cameras = {name: [step.matrices[name] for step in self._steps] for name in self._steps[0].matrices}
 
     def of(self, instance):
         """The poses of an instance that moves; None: it is at rest, or is not there all the time."""

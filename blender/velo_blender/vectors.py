@@ -12,11 +12,12 @@ FRAMES = (-1.0, 1.0)  # from the frame that is rendered
 class Vectors:
     """What is known of the frames before and after. It is made before the scene is exported."""
 
-    def __init__(self, engine, depsgraph, size):
-        self.steps = motion.read_steps(engine, depsgraph, FRAMES, size)
+    def __init__(self, engine, depsgraph, size, views):
+        self.steps = motion.read_steps(engine, depsgraph, FRAMES, views, size)
+        self.view = views[0]  # that is being rendered
 
     def layer(self, export, image):
-        """height x width x 4 of the pass."""
+        """height x width x 4 of the pass in one view."""
         points = numpy.asarray(image["P"], dtype=float)
         shape = points.shape[:2]
         seen = numpy.isfinite(numpy.asarray(image["Z"])).ravel()
@@ -25,9 +26,9 @@ class Vectors:
         now = export.camera.project(points)
         result = numpy.zeros((len(points), 4))
         for column, step in enumerate(self.steps):
-            if step.camera is None:
+            if step.cameras.get(self.view) is None:
                 continue
-            then = step.camera.project(_moved(export, step, points, instance, thing, face))
+            then = step.cameras[self.view].project(_moved(export, step, points, instance, thing, face))
             good = seen & numpy.asarray(now.valid) & numpy.asarray(then.valid)
             sign = 1 if column == 0 else -1
             difference = sign * (numpy.asarray(then.pixels) - numpy.asarray(now.pixels))[good]

@@ -64,6 +64,34 @@ check moving_one "$VELO" image denoise m8.exr -o mn8.pfm
 check moving_truth "$VELO" render moving.pbrt $times --spp 1024 -o mt%d.pfm
 check moving_near below "$(mse mc8.pfm mt8.pfm)" "$(mse mn8.pfm mt8.pfm)" 1.1
 
+# Nor do reflections, which stay in place while the surface passes below them.
+cat >shiny.pbrt <<'END'
+LookAt 0 2.2 5  0 0.6 0  0 1 0
+Camera "perspective" "float fov" 30
+Film "rgb" "integer xresolution" 96 "integer yresolution" 72
+Sampler "zsobol" "integer pixelsamples" 8
+Integrator "path" "integer maxdepth" 4
+WorldBegin
+LightSource "infinite" "rgb L" [0.3 0.35 0.4]
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [8 7 6]
+  Shape "trianglemesh" "point3 P" [-1 4 -1  1 4 -1  1 4 1  -1 4 1] "integer indices" [0 1 2  0 2 3]
+AttributeEnd
+Texture "checks" "spectrum" "checkerboard" "float uscale" 12 "float vscale" 12 "rgb tex1" [0.8 0.7 0.6] "rgb tex2" [0.2 0.1 0.1]
+Material "diffuse" "texture reflectance" "checks"
+Shape "bilinearmesh" "point3 P" [-6 0 -6  6 0 -6  -6 0 6  6 0 6]
+AttributeBegin
+  Translate 0 0.9 0
+  Material "conductor" "float roughness" 0.05
+  Shape "sphere" "float radius" 0.9
+AttributeEnd
+END
+shiny="shiny.pbrt --trajectory turn.csv --frames 8 --quiet"
+check shiny "$VELO" render $shiny -o g%d.exr --channels error,features --denoise gc%d.pfm
+check shiny_one "$VELO" image denoise g8.exr -o gn8.pfm
+check shiny_truth "$VELO" render $shiny --spp 512 -o gt%d.pfm
+check shiny_near below "$(mse gc8.pfm gt8.pfm)" "$(mse gn8.pfm gt8.pfm)" 1.4
+
 check display "$VELO" render round.pbrt $turn --frames 0-1 --exposure auto -o f%d.png --denoise %n.png
 check display_named test -s p1.png
 check dry "$VELO" render round.pbrt $turn --dry-run -o f%d.pfm --denoise c%d.pfm

@@ -10,13 +10,15 @@ enum { TAPS = 4, NORMAL = 3, DISPARITY = 6, FEATURES = 7 };
 /* Differences of features from which on two pixels show different things. */
 static const float MAX_ALBEDO = 0.1f, MAX_NORMAL2 = 0.1f, MAX_DISPARITY = 0.05f;
 /* Squared difference of two frames, over the variance of their noise, from which on an earlier
- * frame has no weight. */
-static const float FARTHEST = 9.0f;
+ * frame has no weight: of a single pixel, and in the mean of the patch around it, where the
+ * differences of single pixels count up to MAX_DISTANCE. */
+static const float FARTHEST = 9.0f, FARTHEST_PATCH = 3.0f, MAX_DISTANCE = 16.0f;
+enum { PATCH = 2 }; /* a patch has (2 PATCH + 1)^2 pixels */
 
 uint64_t steady_memory(uint64_t pixels) {
-  enum { CLEAN = 7, IDS = 2, FLOW = 6, SUMS = 4 };
+  enum { CLEAN = 7, IDS = 2, FLOW = 6, SUMS = 4, WARPED = 4 };
   const uint64_t kept = CLEAN + FEATURES + IDS;
-  return pixels * sizeof(float) * ((STEADY_BEFORE + 1) * kept + FLOW + SUMS);
+  return pixels * sizeof(float) * ((STEADY_BEFORE + 1) * kept + FLOW + SUMS + WARPED);
 }
 
 const SteadyFrame *steady_find(const Steady *s, uint32_t number) {
@@ -133,11 +135,37 @@ static bool same_surface(const View *a, size_t i, const View *b, size_t k, float
   return normal2 < MAX_NORMAL2 && fabsf(g[DISPARITY] - disparity) <= MAX_DISPARITY * disparity;
 }
 
-/* Adds an earlier frame's colour to sum[0..2] and its weight to sum[3]. u, v: where it is in
- * that frame, in pixels from the centre of the first one. */
-static void add_pixel(const View *now, size_t i, const View *before, float u, float v,
-                      const uint32_t size[2], float disparity, float sum[4]) {
-  float color[3] = {0}, variance[3] = {0}, weights = 0;
+/* An earlier frame's light at the surface point of one of this frame's pixels. */
+typedef struct Warped {
+  float color[3];
+  float distance; /* squared difference from the pixel's own colour over the variance of the
+                     noise, mean of the channels, up to MAX_DISTANCE; -1: the point is not seen
+                     there */
+} Warped;
+_Static_assert(sizeof(Warped) == 4 * sizeof(float), "an image of four channels holds them");
+
+/* Squared difference of the pixel's own colour and another, over the variance of their noise.
+ * own: its colour; error: its standard errors. */
+static float distance_of(const float own[3], const float error[3], const float color[3],
+                         const float variance[3]) {
+  float sum = 0;
+  for (int j = 0; j < 3; j++) {
+    /* a pixel at an edge has much noise: it is no reason to take its light */
+    const float noise = error[j] * error[j], most = 4 * noise;
+    const float other = variance[j] < most ? variance[j] : most;
+    const float scale = noise + other + 1e-6f * own[j] * own[j], d = color[j] - own[j];
+    if (d != 0)
+      sum += scale > 0 ? d * d / scale : INFINITY;
+  }
+  return sum < 3 * MAX_DISTANCE ? sum / 3 : MAX_DISTANCE;
+}
+
+/* The earlier frame's light at pixel i. u, v: where its point is in that frame, in pixels from
+ * the centre of the first one. */
+static Warped warp_pixel(const View *now, size_t i, const View *before, float u, float v,
+                         const uint32_t size[2], float disparity) {
+  Warped to = {.distance = -1};
+  float variance[3] = {0}, weights = 0;
   const float left = floorf(u), top = floorf(v);
   for (int k = 0; k < TAPS; k++) {
     const float x = left + (float)(k & 1), y = top + (float)(k >> 1);
@@ -150,29 +178,55 @@ static void add_pixel(const View *now, size_t i, const View *before, float u, fl
     const float *c = before->clean + at * before->stride;
     weights += w;
     for (int j = 0; j < 3; j++) {
-      color[j] += w * c[j];
+      to.color[j] += w * c[j];
       variance[j] += w * c[before->error + j] * c[before->error + j];
     }
   }
   if (!(weights > 0.25f))
-    return;
-  const float *own = now->clean + i * now->stride;
-  float distance = 0;
+    return to;
   for (int j = 0; j < 3; j++) {
-    /* a pixel at an edge has much noise: it is no reason to take its light */
-    const float e = own[now->error + j], noise = e * e, other = variance[j] / weights;
-    const float d = color[j] / weights - own[j],
-                scale =
-                    noise + (other < 4 * noise ? other : 4 * noise) + 1e-6f * own[j] * own[j];
-    if (d != 0)
-      distance += scale > 0 ? d * d / scale : INFINITY;
+    to.color[j] /= weights;
+    variance[j] /= weights;
   }
-  const float t = 1 - distance / (3 * FARTHEST);
-  if (!(t > 0))
-    return;
-  for (int j = 0; j < 3; j++)
-    sum[j] += t * t * color[j] / weights;
-  sum[3] += t * t;
+  const float *own = now->clean + i * now->stride;
+  to.distance = distance_of(own, own + now->error, to.color, variance);
+  return to;
+}
+
+/* Mean distance of the pixels around (x, y) that are seen in the earlier frame. */
+static float patch_distance(const Warped *warped, const uint32_t size[2], uint32_t x,
+                            uint32_t y) {
+  const uint32_t x0 = x > PATCH ? x - PATCH : 0, y0 = y > PATCH ? y - PATCH : 0;
+  float sum = 0, count = 0;
+  for (uint32_t j = y0; j <= y + PATCH && j < size[1]; j++)
+    for (uint32_t i = x0; i <= x + PATCH && i < size[0]; i++) {
+      const float distance = warped[(size_t)j * size[0] + i].distance;
+      if (distance < 0)
+        continue;
+      sum += distance;
+      count++;
+    }
+  return sum / count;
+}
+
+/* Adds an earlier frame's colours to the pixels' sums[0..2], each times its weight, and the
+ * weights to sums[3]. Light that changes by less than the noise of one pixel differs in the
+ * whole patch. */
+static void add_warped(const Warped *warped, const uint32_t size[2], float *sums) {
+  for (uint32_t y = 0; y < size[1]; y++)
+    for (uint32_t x = 0; x < size[0]; x++) {
+      const size_t i = (size_t)y * size[0] + x;
+      if (warped[i].distance < 0)
+        continue;
+      const float own = 1 - warped[i].distance / FARTHEST,
+                  around = 1 - patch_distance(warped, size, x, y) / FARTHEST_PATCH,
+                  t = own < around ? own : around;
+      if (!(t > 0))
+        continue;
+      for (int c = 0; c < 3; c++)
+        sums[4 * i + (size_t)c] += t * t * warped[i].color[c];
+      sums[4 * i + 3] += t * t;
+    }
 }
 
 /* A camera as it is in the middle of its exposure, at another time. */
@@ -204,15 +258,9 @@ static vlResult find_flow(const Steady *s, vlContext *context, const SteadyFrame
   return result;
 }
 
-/* Adds an earlier frame to the pixels' sums of weighted colours and weights. */
-static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame *now,
-                          const SteadyFrame *before, const vlWorld *world, const Job *job,
-                          vlStopFn *stop, void *stop_user, float *sums, vlError *error) {
-  vlImage *floats = NULL, *ids = NULL;
-  vlResult result =
-      find_flow(s, context, before, world, job, stop, stop_user, &floats, &ids, error);
-  if (result != VL_OK)
-    return result;
+/* Warps all pixels of the earlier frame. floats: the flow and the points; ids: what hides. */
+static void warp_frame(const SteadyFrame *now, const SteadyFrame *before, const vlImage *floats,
+                       const vlImage *ids, Warped *warped) {
   const uint32_t size[2] = {vl_image_width(floats), vl_image_height(floats)};
   const float *values = vl_image_const_pixels(floats);
   const uint32_t *hidden = vl_image_const_pixels(ids);
@@ -224,6 +272,7 @@ static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame
   const double *pose = before->camera.world_from_camera;
   for (size_t i = 0; i < (size_t)size[0] * size[1]; i++) {
     const float *value = values + i * stride;
+    warped[i] = (Warped){.distance = -1};
     if (hidden[i * hidden_stride + (size_t)hides] != VL_HIDDEN_NOT)
       continue;
     double square = 0;
@@ -232,13 +281,32 @@ static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame
       square += d * d;
     }
     const bool nothing = a.ids[2 * i] == 0;
-    add_pixel(&a, i, &b, (float)(i % size[0]) + value[flow],
-              (float)(i / size[0]) + value[flow + 1], size,
-              nothing || !(square > 0) ? 0 : (float)(1 / sqrt(square)), sums + 4 * i);
+    warped[i] = warp_pixel(&a, i, &b, (float)(i % size[0]) + value[flow],
+                           (float)(i / size[0]) + value[flow + 1], size,
+                           nothing || !(square > 0) ? 0 : (float)(1 / sqrt(square)));
+  }
+}
+
+/* Adds an earlier frame to the pixels' sums of weighted colours and weights. */
+static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame *now,
+                          const SteadyFrame *before, const vlWorld *world, const Job *job,
+                          vlStopFn *stop, void *stop_user, float *sums, vlError *error) {
+  vlImage *floats = NULL, *ids = NULL, *warped = NULL;
+  vlResult result =
+      find_flow(s, context, before, world, job, stop, stop_user, &floats, &ids, error);
+  if (result != VL_OK)
+    return result;
+  const uint32_t size[2] = {vl_image_width(floats), vl_image_height(floats)};
+  const vlImageDef def = vl_default_image_def(size[0], size[1], 4);
+  result = vl_image_create(context, &def, &warped);
+  if (result == VL_OK) {
+    warp_frame(now, before, floats, ids, vl_image_pixels(warped));
+    add_warped(vl_image_const_pixels(warped), size, sums);
   }
   vl_image_destroy(floats);
   vl_image_destroy(ids);
-  return VL_OK;
+  vl_image_destroy(warped);
+  return result;
 }
 
 /* ---- the result -------------------------------------------------------------------------- */

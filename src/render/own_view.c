@@ -91,6 +91,8 @@ static void look_at(const vlCameraView *view, uint32_t n, const float *x, const 
   double at[3][CHUNK], film_x[CHUNK], film_y[CHUNK], points_x[CHUNK * RAYS],
       points_y[CHUNK * RAYS];
   vlOwnRay rays[CHUNK * RAYS];
+  if (n == 0)
+    return;
   for (uint32_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++)
       at[k][i] = m[4 * k] * (double)x[i] + m[4 * k + 1] * (double)y[i] +

@@ -66,7 +66,7 @@ static void test_hash(void **state) {
                    0x2e4ff723);
   assert_int_equal(vl_cryptomatte_hash(""), 0x00800000); /* hash 0 is reserved for no object */
   for (int i = 0; i < 5000; i++) {
-    char name[16];
+    char name[20];
     snprintf(name, sizeof name, "name %d", i);
     uint32_t bits = vl_cryptomatte_hash(name);
     float f;

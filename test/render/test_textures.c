@@ -379,7 +379,7 @@ static void mappings(void **state) {
     int compared = 0;
     for (uint32_t y = 0; y < SIZE; y++)
       for (uint32_t x = 0; x < SIZE; x++) {
-        double q[3] = {2 * at_u(x) - 1 + 0.05, 2 * at_v(y) - 1 + 0.02, 0.4}, st[2];
+        double q[3] = {2 * at_u(x) - 1 + 0.05, 2 * at_v(y) - 1 + 0.02, 0.4}, st[2] = {0, 0};
         double r = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), phi = atan2(q[1], q[0]);
         if (kind == 0) {
           st[0] = acos(q[2] / r) / M_PI;

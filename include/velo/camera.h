@@ -29,6 +29,10 @@ VL_API const char *vl_projection_name(vlProjection projection);
  * of velo/distortion.h. It acts on the plane of the projection. */
 typedef uint32_t vlDistortion;
 
+/** "none", "opencv", "radial", "thinprism", "rad_tan_thin_prism": the name in headers of images
+ * (velo.distortion); a constant string; "unknown" for another number. */
+VL_API const char *vl_distortion_name(vlDistortion distortion);
+
 /** The extent of the image that vlCameraDef.fov spans. SMALLER and LARGER mean the smaller and
  * the larger of width and height. */
 typedef enum vlFovAxis {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/machine.h"
 #include "image/image.h"
 #include "math/transform.h"
 #include "schema/camera_parameters.h"
@@ -98,7 +99,6 @@ static void set_camera_matrices(Header *header, const vlCamera *c) {
 /* The projection's own parameters, and the lens distortion's coefficients in the order of its
  * calibration files. */
 static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def) {
-  static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
   /* omits parameters that the projection does not have; Panini's has a default */
   if (!isnan(def->shape[0]) || c->shape[0] != 0)
     set_double(header, "velo.shape0", c->shape[0]);
@@ -112,7 +112,7 @@ static void set_model(Header *header, const vlCamera *c, const vlCameraDef *def)
     snprintf(text + n, sizeof text - n, "%s%.17g", i ? " " : "",
              def->distortion_coefficients[i]);
   }
-  set_text(header, "velo.distortion", names[def->distortion]);
+  set_text(header, "velo.distortion", vl_distortion_name(def->distortion));
   set_text(header, "velo.distortionCoefficients", text);
 }
 
@@ -258,9 +258,7 @@ vlHeaderDef vl_default_header_def(void) {
   return (vlHeaderDef){.cookie = VL_COOKIE_HEADER, .time = VL_UNSET};
 }
 
-vlResult vl_image_set_header(vlImage *image, const vlHeaderDef *given) {
-  if (!image || !given || given->cookie != VL_COOKIE_HEADER || !given->camera || !given->defs)
-    return VL_ERROR_ARGUMENT;
+static vlResult set_plainly(vlImage *image, const vlHeaderDef *given) {
   vlHeaderDef held = *given, *def = &held;
   const vlCamera *c = def->camera;
   bool rows = isnan(def->time);
@@ -307,6 +305,15 @@ vlResult vl_image_set_header(vlImage *image, const vlHeaderDef *given) {
     set_double(&header, "velo.lightPaths", render->light_paths);
   set_text(&header, "velo.lightSampler", choice("light_sampler", (int)build->light_sampler));
   return header.result;
+}
+
+vlResult vl_image_set_header(vlImage *image, const vlHeaderDef *given) {
+  if (!image || !given || given->cookie != VL_COOKIE_HEADER || !given->camera || !given->defs)
+    return VL_ERROR_ARGUMENT;
+  void *locale = vl_machine_set_numerals();
+  vlResult result = set_plainly(image, given);
+  vl_machine_restore_numerals(locale);
+  return result;
 }
 
 vlResult vl_image_show_ids(const vlImage *ids, vlImage **shown) {

@@ -99,7 +99,9 @@ vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data
   start_task(scene, &task, def);
   const Before before = before_load(scene);
   unsigned floats = vl_machine_set_floats();
+  void *locale = vl_machine_set_numerals();
   result = vl_import_pbrt_memory(scene, data ? data : "", size, name, def, error);
+  vl_machine_restore_numerals(locale);
   vl_machine_restore_floats(floats);
   state_unit(scene, &before, def);
   scene->task = NULL;
@@ -126,8 +128,10 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
     start_task(scene, &task, def);
     const Before before = before_load(scene);
     unsigned floats = vl_machine_set_floats();
+    void *locale = vl_machine_set_numerals();
     vlResult result = vl_scene_stopped(scene, 0) ? vl_scene_result(scene, error)
                                                  : import(scene, path, def, error);
+    vl_machine_restore_numerals(locale);
     vl_machine_restore_floats(floats);
     state_unit(scene, &before, def);
     scene->task = NULL;

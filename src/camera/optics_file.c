@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "base/text.h"
 #include "camera/optics.h"
 
@@ -86,7 +87,9 @@ vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef 
   vlLensSurface surfaces[VL_MAX_SURFACES];
   vlOpticsDef filled = *def;
   Reader r = {path, data, data, 1};
+  void *locale = vl_machine_set_numerals();
   result = read(&r, surfaces, &filled.count, error);
+  vl_machine_restore_numerals(locale);
   if (result == VL_OK && strlen(data) != size)
     result =
         vl_fail_at(error, VL_ERROR_SCENE, path, r.line, 0, "lens file: it is not a text file");

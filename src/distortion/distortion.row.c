@@ -16,5 +16,12 @@ const vlDistortionRow *vl_distortion_row(vlDistortion kind) {
   return kind < KINDS ? rows[kind] : NULL;
 }
 
+const char *vl_distortion_name(vlDistortion distortion) {
+  const vlDistortionRow *row = vl_distortion_row(distortion);
+  if (!row)
+    return "unknown";
+  return row->header_name ? row->header_name : row->name;
+}
+
 #define NAME(kind, name) #name,
 const char *const vl_distortion_names[] = {VL_DISTORTION_KINDS(NAME) NULL};

@@ -5,11 +5,12 @@
 #include "velo/distortion.h"
 
 typedef struct vlDistortionRow {
-  const char *name;     /* in settings */
-  const char *key;      /* in velo's JSON */
-  const char *title;    /* in messages */
-  uint32_t counts;      /* bit n: there may be n coefficients */
-  const char *how_many; /* the same in words */
+  const char *name;        /* in settings */
+  const char *header_name; /* in headers of images; null: `name` */
+  const char *key;         /* in velo's JSON */
+  const char *title;       /* in messages */
+  uint32_t counts;         /* bit n: there may be n coefficients */
+  const char *how_many;    /* the same in words */
 } vlDistortionRow;
 
 /* The row of a kind; null: there is no such kind. */

@@ -4,6 +4,7 @@
 
 const vlDistortionRow vl_distortion_row_thin_prism = {
     .name = "thin_prism",
+    .header_name = "thinprism",
     .key = "thin-prism",
     .title = "thin-prism",
     .counts = 1u << 8,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/machine.h"
 #include "base/text.h"
 #include "camera_files/files.h"
 #include "schema/schema.h"
@@ -289,6 +290,7 @@ vlResult vl_sensor_read(vlContext *context, const char *path, vlSensorDef *def,
                        .locations = &locations};
   vlSensorDef read = vl_default_sensor_def();
   json_t *tree = NULL;
+  void *locale = vl_machine_set_numerals();
   result = vl_camera_yaml(&file, text, size, &tree);
   locations.root = tree;
   if (result == VL_OK)
@@ -297,6 +299,7 @@ vlResult vl_sensor_read(vlContext *context, const char *path, vlSensorDef *def,
     result = check_whole(&file, tree, &read);
   if (result == VL_OK)
     *def = read;
+  vl_machine_restore_numerals(locale);
   json_decref(tree);
   vl_camera_locations_free(&file);
   vl_free(context, text);

@@ -8,9 +8,13 @@
 #include <unistd.h>
 
 #include "velo/distortion.h"
+#include "velo/header.h"
+#include "velo/image.h"
+#include "velo/lens.h"
 #include "velo/load.h"
 #include "velo/projection.h"
 #include "velo/render.h"
+#include "velo/sensor.h"
 #include "velo/trajectory.h"
 
 static vlCameraRecord read_as(const char *path, vlCameraDialect dialect, const char *frame) {
@@ -383,9 +387,8 @@ static void test_drop_names(void **state) {
   }
 }
 
-/* Numbers have a decimal point, though the program's locale has a comma. */
-static void test_decimal_comma(void **state) {
-  (void)state;
+/* Makes a locale with a decimal comma that of this program. False: there is no localedef. */
+static bool choose_comma(void) {
   char command[512];
   const char *source = put("comma",
                            "comment_char %\nescape_char /\nLC_NUMERIC\n"
@@ -393,8 +396,16 @@ static void test_decimal_comma(void **state) {
                            "END LC_NUMERIC\n");
   snprintf(command, sizeof command, "localedef -c -i %s %s/xx >%s/said 2>&1", source, folder,
            folder);
-  if (system(command) < 0 || setenv("LOCPATH", folder, 1) != 0 || !setlocale(LC_NUMERIC, "xx"))
-    skip(); /* there is no localedef */
+  return system(command) >= 0 && setenv("LOCPATH", folder, 1) == 0 &&
+         setlocale(LC_NUMERIC, "xx");
+}
+
+/* Numbers have a decimal point, though the program's locale has a comma. */
+static void test_decimal_comma(void **state) {
+  (void)state;
+  char command[32];
+  if (!choose_comma())
+    skip();
   const vlCameraRecord record = some_camera();
   vlCameraFileDef def = vl_default_camera_file_def();
   vlError error;
@@ -416,6 +427,51 @@ static void test_decimal_comma(void **state) {
   vl_trajectory_destroy(trajectory);
 }
 
+/* Lens files, sensor files, scenes and the headers of images. */
+static void test_other_files_with_comma(void **state) {
+  (void)state;
+  if (!choose_comma())
+    skip();
+  vlError error;
+  vlOpticsDef lens = vl_default_optics_def();
+  vlOptics *optics = NULL;
+  lens.aperture_diameter = 10;
+  lens.focus_distance = 2;
+  const char *surfaces = put("comma.dat", "50.5 4.5 1.5 20\n-50.5 0.5 1 20\n");
+  vlResult loaded = vl_optics_load(context, surfaces, &lens, &optics, &error);
+  vlSensorDef sensor;
+  vlResult sensed =
+      vl_sensor_read(context, put("comma.yaml", "pixel: 3.45 um\n"), &sensor, &error);
+  vlImageDef small = vl_default_image_def(4, 4, 1);
+  vlImage *image = NULL;
+  assert_int_equal(vl_image_create(context, &small, &image), VL_OK);
+  vlScene *scene = NULL;
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->camera = vl_default_camera_def(4, 4);
+  defs->camera.distortion = VL_DISTORTION_RADIAL;
+  defs->camera.distortion_count = 1;
+  defs->camera.distortion_coefficients[0] = -0.125;
+  vlCamera camera;
+  assert_int_equal(vl_camera_make(&defs->camera, &camera, NULL, &error), VL_OK);
+  vlHeaderDef header = vl_default_header_def();
+  header.camera = &camera;
+  header.defs = defs;
+  vlResult described = vl_image_set_header(image, &header);
+  setlocale(LC_NUMERIC, "C");
+  assert_int_equal(loaded, VL_OK);
+  assert_int_equal(sensed, VL_OK);
+  assert_true(sensor.pixel == 3.45);
+  assert_int_equal(described, VL_OK);
+  vlAttribute attribute;
+  assert_int_equal(vl_image_find_attribute(image, "velo.distortionCoefficients", &attribute),
+                   VL_OK);
+  assert_string_equal(attribute.string, "-0.125");
+  vl_image_destroy(image);
+  vl_optics_destroy(optics);
+  vl_scene_destroy(scene);
+}
+
 static void test_memory(void **state) {
   (void)state;
   vlCameraRecord record = some_camera();
@@ -424,12 +480,19 @@ static void test_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_round_trips),   cmocka_unit_test(test_round_trips_at_the_origin),
-      cmocka_unit_test(test_velo_is_exact), cmocka_unit_test(test_half_pixel_table),
-      cmocka_unit_test(test_blender_shift), cmocka_unit_test(test_colmap_images),
-      cmocka_unit_test(test_kalibr_chain),  cmocka_unit_test(test_pbrt),
-      cmocka_unit_test(test_wrong_files),   cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_drop_names),    cmocka_unit_test(test_decimal_comma),
+      cmocka_unit_test(test_round_trips),
+      cmocka_unit_test(test_round_trips_at_the_origin),
+      cmocka_unit_test(test_velo_is_exact),
+      cmocka_unit_test(test_half_pixel_table),
+      cmocka_unit_test(test_blender_shift),
+      cmocka_unit_test(test_colmap_images),
+      cmocka_unit_test(test_kalibr_chain),
+      cmocka_unit_test(test_pbrt),
+      cmocka_unit_test(test_wrong_files),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_drop_names),
+      cmocka_unit_test(test_decimal_comma),
+      cmocka_unit_test(test_other_files_with_comma),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, files_setup, files_teardown);

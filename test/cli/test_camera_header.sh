@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The EXR header's camera, as OpenEXR defines it: row vectors, left-handed camera space, NDC from the upper left corner.
+# The EXR header's camera, as OpenEXR defines it: row vectors, left-handed camera space, NDC from the upper left corner; and in velo's
+# own attributes with every model of a calibrated lens, from which the image is checked.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 cd "$work" || exit 1
 # Eye (0, 0, 5) looking along -z, 40 x 20 pixels, f = d / pixelsize = 10 pixels.
@@ -37,4 +38,21 @@ for name in "abc":
     near(a["chromaticities"], (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290), "chromaticities", 1e-4)
 CODE
 check header python3 header.py
+# Each model of COLMAP by its parameters, of an image of 40 x 30 pixels.
+while read -r model parameters; do
+  mkdir -p "$model"
+  echo "1 $model 40 30 $parameters" >"$model/cameras.txt"
+  check "render_$model" "$VELO" render scene.pbrt --camera "$model/cameras.txt" --channels Z,P -o lens.exr --quiet
+  check "check_$model" "$VELO" image check lens.exr
+done <<'MODELS'
+PINHOLE 30 31 20 15
+RADIAL 30 20 15 -0.02 0.001
+FULL_OPENCV 30 31 20 15 -0.02 0.001 0.001 0.002 0.01 0.001 0.002 0.001
+OPENCV_FISHEYE 30 31 20 15 0.01 -0.001 0.001 0.0002
+FOV 30 31 20 15 0.6
+THIN_PRISM_FISHEYE 30 31 20 15 0.01 -0.001 0.001 0.0002 0.001 0.0001 0.001 -0.001
+DIVISION 30 31 20 15 -0.1
+EUCM 30 31 20 15 0.6 1.1
+RAD_TAN_THIN_PRISM_FISHEYE 30 31 20 15 0.1 -0.02 0.003 0.001 -0.0002 0.00001 0.001 -0.002 0.0005 0.0001 -0.0003 0.0002
+MODELS
 finish

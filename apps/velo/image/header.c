@@ -40,7 +40,6 @@ enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(COUNT_ONE) };
 
 /* Reads projection and lens. Returns false for an unknown name or coefficient. */
 static bool read_model(const vlImage *image, const char *projection, vlCameraDef *def) {
-  static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
   int kind = 0;
   while (kind < PROJECTIONS && strcmp(vl_projection_name((vlProjection)kind), projection) != 0)
     kind++;
@@ -52,8 +51,8 @@ static bool read_model(const vlImage *image, const char *projection, vlCameraDef
   const char *distortion, *at;
   if (!text(image, "velo.distortion", &distortion))
     return true;
-  for (int i = 0; i < 4; i++)
-    if (strcmp(names[i], distortion) == 0)
+  for (int i = 0; i < VL_DISTORTION_KIND_COUNT; i++)
+    if (strcmp(vl_distortion_name((vlDistortion)i), distortion) == 0)
       def->distortion = (vlDistortion)i;
   if (def->distortion == VL_DISTORTION_NONE || !text(image, "velo.distortionCoefficients", &at))
     return false;

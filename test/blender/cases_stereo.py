@@ -52,6 +52,7 @@ def plain_eye(scene, side):
     half, far = 0.5 * stereo.interocular_distance, stereo.convergence_distance
     item = bpy.data.objects.new("eye", center.data.copy())
     scene.collection.objects.link(item)
+    item.rotation_mode = "QUATERNION"  # Euler's angles lose digits near their poles
     turn = math.atan(half / far) * side if stereo.convergence_mode == "TOE" else 0.0
     item.matrix_world = (center.matrix_world.normalized() @ mathutils.Matrix.Translation((side * half, 0, 0)) @
                          mathutils.Matrix.Rotation(turn, 4, "Y"))

@@ -64,9 +64,9 @@ def add(scene, item, matrix, camera_sees, notes):
 
 
 def _lamp_surface(scene, words, radiance, item, hidden, **shape):
-    """A shape that emits. hidden: no ray sees it."""
+    """A shape that emits and that, as in Cycles, other light passes. hidden: no ray sees it."""
     emission = scene.add_emission(radiance=words["color"], scale=radiance, two_sided=False)
-    material = scene.add_material("diffuse", reflectance=(0, 0, 0), name=item.name)
+    material = scene.add_material("interface", name=item.name)
     extra = {"alpha": 0.0} if hidden else {}
     scene.add_shape(emission=emission, material=material, name=item.name, **extra, **shape)
 

@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from . import color_nodes, facing, images, math_nodes, procedural
+from . import box_projection, color_nodes, facing, images, math_nodes, procedural
 
 
 def _unsupported(node, text):
@@ -32,7 +32,8 @@ def tex_coord(e, node, output, groups):
     if output.name == "UV":
         return three(e.field("uv:", node))
     if output.name == "Object" and node.object is not None:
-        raise _unsupported(node, "coordinates of another object")
+        inverse = numpy.linalg.pinv(numpy.nan_to_num(numpy.array(node.object.matrix_world, dtype=float)))
+        return e.field("world position", node) @ inverse[:3, :3].T + inverse[:3, 3]
     return e.field(output.name.lower(), node)
 
 
@@ -90,10 +91,11 @@ def rotation_matrix(euler):
 # ---- textures ------------------------------------------------------------------------------------------------------------
 
 def image(e, node, output, groups):
-    if node.projection == "BOX":
-        raise _unsupported(node, "box projection")
     texels = e.textures(node)
     vector = vector_of(e, node, groups, "uv")
+    if node.projection == "BOX":
+        values = box_projection.look_up(texels, vector, e.field("normal", node), node.projection_blend)
+        return values[:, 3] if output.name == "Alpha" else values[:, :3]
     if node.projection in ("SPHERE", "TUBE"):
         vector = _round(vector * 2 - 1, node.projection)
     values = texels.at(vector[:, 0], vector[:, 1])

@@ -47,6 +47,8 @@ def _tree_varies(tree, seen):
         linked = {socket.name for socket in node.outputs if socket.is_linked}
         if node.type == "OBJECT_INFO" and linked:
             return True
+        if node.type == "TEX_COORD" and "Object" in linked and node.object is not None:
+            return True
         if node.type == "NEW_GEOMETRY" and linked & _OF_PLACE:
             return True
         if node.type == "ATTRIBUTE" and linked and node.attribute_type != "GEOMETRY":

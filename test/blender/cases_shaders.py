@@ -157,3 +157,37 @@ def objects_whose_blur_is_off():
     scene.frame_set(2)
     other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
     assert abs(other - mine).mean() < 0.02 * other.mean(), abs(other - mine).mean() / other.mean()
+
+
+@case
+def lamps_do_not_stand_in_the_way_of_light():
+    for kind, values in (("AREA", {"size": 3.0}), ("AREA", {"shape": "DISK", "size": 3.0}), ("POINT", {"shadow_soft_size": 1.0})):
+        scene = new_scene(world=(1, 1, 1))
+        floor()
+        ball(material("ShaderNodeBsdfGlossy", Roughness=0.1)[0], (0, 1, 0.6), 0.6)
+        lamp(scene, kind, 30, (0, -2, 4), **values)
+        agrees(scene, 0.003)
+
+
+@case
+def images_on_boxes_and_by_other_objects():
+    for projection, place in (("BOX", None), ("BOX", (0.3, 0.1, 0.2)), ("FLAT", (-0.5, 0.2, 0.4))):
+        scene = new_scene(world=(0.5, 0.5, 0.5))
+        floor()
+        made, node = material("ShaderNodeBsdfDiffuse")
+        image = bpy.data.images.new("checks", 8, 8)
+        values = numpy.ones((8, 8, 4), dtype=numpy.float32)
+        values[..., :3] = numpy.random.default_rng(1).random((8, 8, 3))
+        image.pixels.foreach_set(values.ravel())
+        picture = add(made.node_tree, "ShaderNodeTexImage", node.inputs["Color"], image=image, projection=projection, interpolation="Closest",
+                      projection_blend=0.3)
+        where = add(made.node_tree, "ShaderNodeTexCoord", picture.inputs["Vector"], 3)
+        if place is not None:
+            where.object = bpy.data.objects.new("empty", None)
+            where.object.location, where.object.rotation_euler, where.object.scale = place, (0.3, 0.2, 0.5), (0.7, 0.7, 0.7)
+            scene.collection.objects.link(where.object)
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, location=(0, 0, 1))
+        bpy.context.object.data.materials.append(made)
+        other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+        assert abs(other - mine).mean() < 0.03 * other.mean(), (projection, place, abs(other - mine).mean() / other.mean())
+        assert not notes(scene), notes(scene)

@@ -613,8 +613,10 @@ static PyObject *image_describe(PyObject *module, PyObject *arguments) {
                         base_types[TYPE_CAMERA], &camera, base_types[TYPE_SETTINGS], &settings,
                         &file, &def.samples, &time, &texts[0], &texts[1]))
     return NULL;
+  vlSceneDefs defs = settings->defs;
+  defs.camera = camera->def; /* not the scene's: another one may have been given */
   def.camera = &camera->camera;
-  def.defs = &settings->defs;
+  def.defs = &defs;
   if (time != Py_None && (def.time = PyFloat_AsDouble(time)) == -1.0 && PyErr_Occurred())
     return NULL;
   if (file != Py_None && !(def.scene = PyUnicode_AsUTF8AndSize(file, NULL)))

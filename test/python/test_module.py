@@ -153,6 +153,18 @@ def the_header_is_that_of_the_program_but_for_the_receipt():
 
 
 @case
+def the_header_has_the_camera_that_was_given():
+    lenses = [{"projection": "eucm", "shape": (0.6, 1.1)}, {"projection": "double_sphere", "shape": (-0.2, 0.6)}]
+    for distortion, count in (("opencv", 5), ("radial", 2), ("thin_prism", 8), ("rad_tan_thin_prism", 12)):
+        lenses.append({"distortion": distortion, "distortion_coefficients": [0.01 * 0.5 ** k for k in range(count)]})
+    path = work("given.exr")
+    for lens in lenses:
+        camera = velo.Camera(40, 30, fx=30, fy=31, cx=20.5, cy=15, eye=(0, 0, 50), lookat=(0, 0, 0), **lens)
+        scene.render(camera=camera, spp=1, channels=["Z", "P", "ray"], crop=(3, 4, 33, 30)).write(path)
+        subprocess.run([cases.VELO, "image", "check", path], check=True, capture_output=True)
+
+
+@case
 def the_pixels_are_those_of_the_program():
     path = work("program.exr")
     subprocess.run([cases.VELO, "render", cases.PINHOLE, "--spp", "3", "--resolution", "80x60", "-o", path], check=True,

@@ -135,7 +135,8 @@ class VeloRenderEngine(bpy.types.RenderEngine):
     def _trace(self, scene, made, crop, result, flow):
         """Renders into the result. Returns the fields of the file's header."""
         layer = result.layers[0]
-        shown, exposure = [time.monotonic()], settings.exposure(scene)
+        shown = [time.monotonic()]
+        film = passes.Film(scene, made, crop)
 
         def progress(state):
             self.update_progress(min(max(state.fraction, 0.0), 1.0))
@@ -143,15 +144,17 @@ class VeloRenderEngine(bpy.types.RenderEngine):
                 report.listener(state.fraction)
             self.update_stats("", "velo: sample %d of %d" % (state.spp, state.spp_total))
             if state.pass_done and time.monotonic() - shown[0] > REFRESH and not bpy.app.background:
-                passes.fill(layer, made.scene.film.image(), scene.render.film_transparent, exposure)
+                passes.fill(layer, made.scene.film.image(), film)
                 self.update_result(result)
                 shown[0] = time.monotonic()
             return not self.test_break()
 
-        image = made.scene.render(channels=passes.wanted(layer), progress=progress, denoise=scene.velo.denoise, crop=crop,
-                                  **settings.tracing(scene, scene.velo.samples))
+        words = settings.tracing(scene, scene.velo.samples)
+        if made.backdrop is not None:
+            words["transparent"] = True
+        image = made.scene.render(channels=passes.wanted(layer), progress=progress, denoise=scene.velo.denoise, crop=crop, **words)
         more = passes.Made(made, image, flow)
-        passes.fill(layer, image, scene.render.film_transparent, exposure, more)
+        passes.fill(layer, image, film, more)
         return more.mattes.fields(layer.name)
 
 

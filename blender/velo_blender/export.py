@@ -5,7 +5,8 @@ import bpy
 import numpy
 import velo
 
-from . import atlas, camera, camera_files, displace, geometry, hair, ignored, lights, materials, motion, object_info, points, textures, volumes, world
+from . import (atlas, backdrop, camera, camera_files, displace, geometry, hair, ignored, lights, materials, motion, object_info, points, textures,
+               volumes, world)
 from .report import Notes, Refused
 
 FARTHEST = 1e12  # coordinates, scene units
@@ -52,7 +53,7 @@ class Export:
     """A velo scene made from a depsgraph. Members: scene (velo.Scene), notes, camera (velo.Camera), size; instances, shapes: a Placed for
     each of velo's ids 1, 2, ..., None for shapes of groups and lamps; triangles: {id of a shape: (positions and triangles of its whole
     mesh)}, where keep_triangles asks for them; material_indices: {name: pass index}. moves: motion.Motion, or None: everything is at
-    rest. view: the camera, in place of the scene's."""
+    rest. view: the camera, in place of the scene's. backdrop: backdrop.Backdrop, or None."""
 
     def __init__(self, depsgraph, size, cancelled=None, moves=None, view=None, keep_triangles=False):
         self.depsgraph, self.size = depsgraph, size
@@ -71,6 +72,7 @@ class Export:
         self._settings = depsgraph.scene.velo
         self.camera = view if view is not None else camera_of(depsgraph, size)
         self.see(self.camera)
+        self.backdrop = backdrop.of(depsgraph, self.notes)
         ignored.note_scene(depsgraph, self.notes)
         if depsgraph.view_layer.use_sky:
             world.add(self.scene, depsgraph.scene.world, self.notes)

@@ -79,7 +79,9 @@ def layer_weight(e, node, output, groups):
 
 
 def light_path(e, node, output, groups):
-    """Cycles asks what a ray is; here all rays are the same."""
+    """Cycles asks what a ray is; here all rays are the same, but for the camera's in a world (backdrop.py)."""
+    if "is world" in e.fields and output.name == "Is Camera Ray":
+        return numpy.array([1.0 if "is camera" in e.fields else 0.0])
     is_view = "is world" not in e.fields  # of a surface: the camera's; of a world: the light's
     known = {"Is Camera Ray": 1.0 if is_view else 0.0, "Ray Length": 1.0}
     e.note(node, "all rays see what %s" % ("the camera sees" if is_view else "lights"))

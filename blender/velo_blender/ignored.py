@@ -91,8 +91,8 @@ def _note_collections(collection, notes):
 def _note_world(scene, notes):
     world = scene.world
     seen = getattr(world, "cycles_visibility", None)
-    if seen is not None and not all(getattr(seen, name) for name in ("camera", "diffuse", "glossy", "transmission", "scatter")):
-        notes.add(world.name, "Ray visibility", "all rays see it")
+    if seen is not None and not all(getattr(seen, name) for name in ("diffuse", "glossy", "transmission", "scatter")):
+        notes.add(world.name, "Ray visibility", "all rays but the camera's see it")
     if getattr(getattr(world, "cycles", None), "max_bounces", 1024) < settings.bounces(scene):
         notes.add(world.name, "Max bounces", "it lights at every bounce")
 

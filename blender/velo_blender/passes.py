@@ -1,7 +1,7 @@
 """passes.py: velo's images as Blender's passes. Blender's rows run from the bottom."""
 import numpy
 
-from . import cryptomatte
+from . import cryptomatte, settings
 
 #: Switch of the view layer -> (pass, channels' letters, type of the compositor's socket).
 SWITCHES = {"use_pass_z": ("Depth", "Z", "VALUE"), "use_pass_normal": ("Normal", "XYZ", "VECTOR"),
@@ -63,23 +63,34 @@ class Made:
         self.mattes = cryptomatte.Mattes(export, image)
 
 
-def fill(layer, image, transparent, exposure, made=None):
-    """Fills the layer's passes from velo's image. transparent: the background is not there; else alpha is 1 everywhere. exposure: factor on
-    colours. made: what is known of the scene; None: passes that need it stay empty."""
+class Film:
+    """What Combined needs besides velo's image. scene: Blender's; made: export.Export; crop: the window that is rendered, or None."""
+
+    def __init__(self, scene, made, crop):
+        self._transparent, self._exposure = scene.render.film_transparent, settings.exposure(scene)
+        self._made, self._crop = made, crop
+
+    def combined(self, image):
+        """height x width x 4: alpha is 1 everywhere where the film is not transparent."""
+        array = numpy.array(image, dtype=numpy.float32)
+        if self._made.backdrop is not None:
+            array = self._made.backdrop.behind(array, self._made.camera, self._crop)
+        array[..., :3] *= self._exposure
+        if not self._transparent:
+            array[..., 3] = 1
+        return array
+
+
+def fill(layer, image, film, made=None):
+    """Fills the layer's passes from velo's image. film: Film; made: what is known of the scene; None: passes that need it stay empty."""
     for item in layer.passes:
-        array = _array(item.name, image, made)
-        if item.name == "Combined":
-            array = array * numpy.array((exposure, exposure, exposure, 1), dtype=numpy.float32)
-            if not transparent:
-                array[..., 3] = 1
+        array = film.combined(image) if item.name == "Combined" else _array(item.name, image, made)
         if array is not None and array.shape[2] == item.channels:
             write(item, array)
 
 
 def _array(name, image, made):
     """height x width x channels of a pass; None: it is not known."""
-    if name == "Combined":
-        return numpy.asarray(image)
     if cryptomatte.is_matte(name):
         return made.mattes.layer(name) if made is not None else None
     if name.startswith("Denoising"):

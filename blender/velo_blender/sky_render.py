@@ -23,6 +23,9 @@ def prepare(folder):
         loaded.worlds = source.worlds
     scene = bpy.context.scene
     scene.world = loaded.worlds[0]
+    if getattr(scene.world, "cycles_visibility", None) is not None:
+        scene.world.cycles_visibility.camera = True
+    see_as_light(scene.world.node_tree, ())
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.samples, scene.cycles.use_adaptive_sampling, scene.cycles.use_denoising = 4, False, False
@@ -33,6 +36,17 @@ def prepare(folder):
     scene.camera = bpy.data.objects.new("camera", lens)
     scene.collection.objects.link(scene.camera)
     return scene
+
+
+def see_as_light(tree, seen):
+    """Makes nodes that ask for camera rays say that there are none."""
+    for link in [link for link in tree.links if link.from_node.type == "LIGHT_PATH" and link.from_socket.name == "Is Camera Ray"]:
+        nothing, socket = tree.nodes.new("ShaderNodeValue"), link.to_socket
+        nothing.outputs[0].default_value = 0.0
+        tree.links.new(nothing.outputs[0], socket)
+    for node in tree.nodes:
+        if node.type == "GROUP" and node.node_tree is not None and node.node_tree not in seen:
+            see_as_light(node.node_tree, seen + (node.node_tree,))
 
 
 def render(scene, size, path):

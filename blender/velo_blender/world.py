@@ -51,6 +51,8 @@ def _radiance(socket, groups, evaluator, notes, owner, depth=0):
         return numpy.maximum(color, 0) * numpy.maximum(strength, 0)[:, None]
     if node.type == "MIX_SHADER":
         factor = evaluator.input(node.inputs[0], inner)[:, None]
+        if len(factor) == 1 and (factor[0, 0] <= 0 or factor[0, 0] >= 1):
+            return _radiance(node.inputs[1 if factor[0, 0] <= 0 else 2], inner, evaluator, notes, owner, depth + 1)
         first, second = (_radiance(node.inputs[i], inner, evaluator, notes, owner, depth + 1) for i in (1, 2))
         return first + numpy.clip(factor, 0, 1) * (second - first)
     if node.type == "ADD_SHADER":
@@ -97,13 +99,26 @@ def _add_color(scene, color):
         scene.add_light("infinite", color=tuple(float(x) / high for x in color), scale=high)
 
 
+def _fields(directions):
+    """What is known of directions, n x 3."""
+    return {"direction": directions, "generated": directions, "object": directions, "normal": directions, "world position": directions,
+            "world normal": directions, "world incoming": -directions}
+
+
+def seen_by_camera(world, directions, notes):
+    """The radiance that the camera sees in directions, n x 3, of a world with nodes. Unsupported, links.Cyclic: it is not known."""
+    output = links.output_node(world.node_tree, "OUTPUT_WORLD")
+    if output is None:
+        return numpy.zeros_like(directions)
+    fields = {**_fields(directions), "is camera": numpy.ones(1)}
+    values = _radiance(output.inputs["Surface"], (), _evaluator(fields, _Look(notes), notes, world), notes, world.name)
+    return numpy.broadcast_to(values, directions.shape)
+
+
 def _add_image(scene, world, surface, look, notes):
     height = _image_size(world.node_tree)
     side = PLAIN_SIDE if height == 0 else min(MAX_SIDE, max(64, int(1.5 * height)))
-    directions = square.directions(side)
-    fields = {"direction": directions, "generated": directions, "object": directions, "normal": directions,
-              "world position": directions, "world normal": directions, "world incoming": -directions}
-    values = _radiance(surface, (), _evaluator(fields, look, notes, world), notes, world.name)
+    values = _radiance(surface, (), _evaluator(_fields(square.directions(side)), look, notes, world), notes, world.name)
     _add_square(scene, numpy.broadcast_to(values, (side * side, 3)).reshape(side, side, 3))
 
 

@@ -15,6 +15,17 @@ static const json_t *holder(const json_t *frame, const json_t *tree, const char 
   return json_object_get(frame, key) ? frame : tree;
 }
 
+/* Project Aria's Fisheye624, as nerfstudio writes it: k0 to k5, p0 p1, s0 to s3. */
+static vlResult read_fisheye624(const vlCameraFile *file, const json_t *frame,
+                                const json_t *tree, vlCameraDef *d) {
+  const char *key = "distortion_params";
+  d->projection = VL_PROJECTION_EQUIDISTANT;
+  d->distortion = VL_DISTORTION_RAD_TAN_THIN_PRISM;
+  d->distortion_count = 12;
+  return vl_camera_numbers(file, holder(frame, tree, key), key, d->distortion_coefficients, 12,
+                           12, NULL);
+}
+
 static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const json_t *tree,
                           vlCameraDef *d) {
   static const char *const names[] = {"k1", "k2", "p1", "p2", "k3", "k4"};
@@ -25,6 +36,19 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
   if (result != VL_OK)
     return result;
   const char *model = vl_camera_text(holder(frame, tree, "camera_model"), "camera_model");
+  if (model && vl_text_is(model, "FISHEYE624")) {
+    for (int i = 0; i < 6; i++)
+      if (k[i] != 0.0)
+        return vl_camera_wrong_in(file, holder(frame, tree, names[i]), names[i],
+                                  "nerf: FISHEYE624 has \"distortion_params\" and no \"%s\"",
+                                  names[i]);
+    return read_fisheye624(file, frame, tree, d);
+  }
+  if (json_object_get(holder(frame, tree, "distortion_params"), "distortion_params"))
+    return vl_camera_wrong_in(file, holder(frame, tree, "distortion_params"),
+                              "distortion_params",
+                              "nerf: \"distortion_params\" is taken with the camera_model "
+                              "FISHEYE624 only");
   bool fisheye =
       model && (vl_text_is(model, "OPENCV_FISHEYE") || vl_text_is(model, "RADIAL_FISHEYE"));
   fisheye = fisheye || json_is_true(json_object_get(tree, "is_fisheye"));
@@ -34,7 +58,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
     return vl_camera_wrong_in(
         file, holder(frame, tree, "camera_model"), "camera_model",
         "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
-        "RADIAL, OPENCV, OPENCV_FISHEYE",
+        "RADIAL, OPENCV, OPENCV_FISHEYE, FISHEYE624",
         vl_short_text(model).text);
   bool tangential = k[2] != 0.0 || k[3] != 0.0;
   if (fisheye && tangential)
@@ -191,9 +215,12 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE, &c);
   if (result != VL_OK)
     return result;
-  bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
-  if (fisheye &&
-      (d->distortion == VL_DISTORTION_RADIAL || d->distortion == VL_DISTORTION_NONE)) {
+  bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT,
+       aria = fisheye && d->distortion == VL_DISTORTION_RAD_TAN_THIN_PRISM;
+  if (aria) {
+    n = 0; /* its coefficients are a list */
+  } else if (fisheye &&
+             (d->distortion == VL_DISTORTION_RADIAL || d->distortion == VL_DISTORTION_NONE)) {
     memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
     n = 4;
   } else if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n)) {
@@ -206,11 +233,15 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
               "{\n  \"camera_model\": \"$model\",\n  \"w\": $width,\n  \"h\": $height,\n  "
               "\"fl_x\": $fx,\n"
               "  \"fl_y\": $fy,\n  \"cx\": $cx,\n  \"cy\": $cy",
-              VL_WORD("model", fisheye ? "OPENCV_FISHEYE"
-                               : n     ? "OPENCV"
-                                       : "PINHOLE"));
+              VL_WORD("model", aria      ? "FISHEYE624"
+                               : fisheye ? "OPENCV_FISHEYE"
+                               : n       ? "OPENCV"
+                                         : "PINHOLE"));
   for (uint32_t i = 0; n && i < (fisheye ? 4u : 5u); i++)
     vl_camera_put(text, ",\n  \"%s\": %.17g", fisheye ? radial_names[i] : names[i], k[i]);
+  for (uint32_t i = 0; aria && i < 12; i++)
+    vl_camera_put(text, "%s%.17g%s", i ? ", " : ",\n  \"distortion_params\": [",
+                  d->distortion_coefficients[i], i == 11 ? "]" : "");
   vl_camera_put(text, ",\n  \"frames\": [\n    {\"file_path\": ");
   vl_camera_put_string(text, record->name);
   return vl_camera_put_form(text, record, &c, NULL,
@@ -229,6 +260,8 @@ const vlCameraFormat vl_format_nerf = {
          * (scale, offset, applied_transform): the poses are taken as they are */
         "rolling_shutter rotation time aabb_scale sharpness depth_file_path mask_path colmap_im_id ply_file_path "
         "train_filenames val_filenames test_filenames integer_depth_scale enable_depth_loading "
-        "depth_unit_scale_factor",
+        "depth_unit_scale_factor "
+        /* the coefficients of FISHEYE624, and in which pixels of it to train */
+        "distortion_params fisheye_crop_radius",
     .read = read_nerf,
     .write = write_nerf};

@@ -106,6 +106,11 @@ static void test_round_trips(void **state) {
   there_and_back(&r, VL_CAMERA_DIALECT_OPENCV, "b.json", 1e-9);
   there_and_back(&r, VL_CAMERA_DIALECT_COLMAP, "cameras.txt", 1e-9);
   there_and_back(&r, VL_CAMERA_DIALECT_NERF, "transforms.json", 1e-9);
+  r.camera.distortion = VL_DISTORTION_RAD_TAN_THIN_PRISM;
+  r.camera.distortion_count = 12;
+  for (int i = 0; i < 12; i++)
+    r.camera.distortion_coefficients[i] = (i % 2 ? -0.001 : 0.002) / (i + 1);
+  there_and_back(&r, VL_CAMERA_DIALECT_NERF, "transforms.json", 1e-9);
 }
 
 /* These hold no pose of their own. */

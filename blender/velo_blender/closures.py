@@ -137,9 +137,15 @@ def _transparent(inputs, node, groups):
         return Closure(is_clear=True, coverage=0.0, lobe=Lobe("clear", (1.0, 1.0, 1.0), 0.0, {}))
     if color == (0.0, 0.0, 0.0):
         return Closure()
+    # What all colours let pass is not there, so that light samples pass it; the rest of the surface has the rest of the colour.
+    coverage = None
+    if is_color(color):
+        low = min(color)
+        coverage = 1.0 - low if low > 0 else None
+        color = tuple((x - low) / (1 - low) for x in color)
     handle = inputs.scene.add_material("principled", reflectance=color, specular=0.0, metallic=0.0, roughness=0.0, eta=1.5,
                                        transmission=1.0, thin_walled=True, name=inputs.owner)
-    return Closure(handle)
+    return Closure(handle, coverage=coverage)
 
 
 def _emission(inputs, node, groups):

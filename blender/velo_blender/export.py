@@ -93,7 +93,9 @@ class Export:
             if self._cancelled():
                 raise Cancelled()
             item = instance.object
-            if not instance.show_self or item.type in UNSEEN:
+            if not (instance.show_self or instance.show_particles) or item.type in UNSEEN:
+                continue
+            if not instance.show_self and item.type not in geometry.MESHES:
                 continue
             self._note_ignored(item)
             self._keys.add(motion.key_of(instance))
@@ -119,11 +121,11 @@ class Export:
     def _add_mesh(self, instance, placed):
         """A mesh, and the hair that grows on it."""
         item, layer = instance.object, self.depsgraph.view_layer
-        if layer.use_solid:
+        if layer.use_solid and instance.show_self:
             handle = self._place(instance, placed, self._moves.of(instance) if self._moves is not None else None)
             if handle is not None:
                 self._handles[placed.key] = handle
-        for system in item.particle_systems if layer.use_strand and not instance.is_instance else ():
+        for system in item.particle_systems if layer.use_strand and instance.show_particles and not instance.is_instance else ():
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
                 self._add_hair(item, hair.of_particles(item, system), system.settings.material - 1, placed, numpy.eye(4))
 

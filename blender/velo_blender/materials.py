@@ -94,6 +94,9 @@ def _mix(factor, first, second, node, groups, inputs):
     if second.is_clear:
         return _thinned(first, closures.one_minus(inputs, factor), node, inputs)
     emission = glow.mixed(first.emission, second.emission, factor, node.inputs[0], groups)
+    parts = factor, first.coverage if first.coverage is not None else 1.0, second.coverage if second.coverage is not None else 1.0
+    if all(isinstance(part, float) for part in parts):
+        return _mix_of_numbers(*parts, first, second, emission, inputs)
     material = _mixed_material(factor, first.material, second.material, inputs)
     coverage = first.coverage
     if first.coverage is not None or second.coverage is not None:
@@ -101,6 +104,14 @@ def _mix(factor, first, second, node, groups, inputs):
         if first.coverage is not second.coverage:
             inputs.notes.add(inputs.owner, node.name, "two transparent shaders are mixed with a mean transparency")
     return Closure(material, emission, coverage)
+
+
+def _mix_of_numbers(factor, first_part, second_part, first, second, emission, inputs):
+    """A mix of two surfaces of which parts are there: the parts are in proportion to what is there of each."""
+    shares = (1 - factor) * first_part, factor * second_part
+    total = sum(shares)
+    material = _mixed_material(shares[1] / total if total > 0 else factor, first.material, second.material, inputs)
+    return Closure(material, emission, None if total >= 1 else total)
 
 
 def _mixed_material(factor, first, second, inputs):

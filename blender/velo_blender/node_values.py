@@ -42,6 +42,9 @@ def uv_map(e, node, output, groups):
 
 
 def geometry(e, node, output, groups):
+    if output.name == "Backfacing":
+        e.note(node, "back faces are as front faces")
+        return numpy.zeros(1)
     return e.field("world " + output.name.lower(), node)
 
 

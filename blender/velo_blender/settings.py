@@ -53,7 +53,7 @@ def pixel_filter(scene):
 def tracing(scene, samples):
     """Keywords of velo's render: samples, bounces, seed, colours."""
     words = {"spp": samples, "tracer": "volpath", "max_depth": bounces(scene) + 1, "seed": scene.velo.seed, **pixel_filter(scene),
-             **world_words(scene)}
+             "sharp_textures": True, **world_words(scene)}
     if scene.render.film_transparent:
         words["transparent"] = True
     if scene.velo.noise > 0:

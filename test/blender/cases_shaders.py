@@ -191,3 +191,54 @@ def images_on_boxes_and_by_other_objects():
         other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
         assert abs(other - mine).mean() < 0.03 * other.mean(), (projection, place, abs(other - mine).mean() / other.mean())
         assert not notes(scene), notes(scene)
+
+
+@case
+def light_passes_tinted_panes():
+    for tint, factor in (((0.9, 0.95, 0.8), 0.0), ((1.0, 0.7, 0.4), 0.4)):
+        scene = new_scene(world=(0.3, 0.3, 0.3), samples=256)
+        floor()
+        made, node = material("ShaderNodeMixShader")
+        node.inputs[0].default_value = factor
+        add(made.node_tree, "ShaderNodeBsdfTransparent", node.inputs[1], Color=(*tint, 1))
+        add(made.node_tree, "ShaderNodeBsdfDiffuse", node.inputs[2], Color=(0.2, 0.3, 0.8, 1))
+        plane(made, 2.0, (0, 0, 1))
+        lamp(scene, "SUN", 3, (0, -1, 4), angle=0.02)
+        agrees(scene)
+        assert not notes(scene), notes(scene)
+
+
+@case
+def what_is_baked_by_triangles_is_not_blurred():
+    scene = new_scene(world=(1, 1, 1), size=(12, 12), samples=256, bounces=0)
+    made, node = material("ShaderNodeBsdfDiffuse")
+    ramp = add(made.node_tree, "ShaderNodeValToRGB", node.inputs["Color"])
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.1, 0.1, 0.5, 1), (0.9, 0.9, 0.9, 1)
+    parts = add(made.node_tree, "ShaderNodeSeparateXYZ", ramp.inputs[0], 2)
+    add(made.node_tree, "ShaderNodeNewGeometry", parts.inputs[0], 1)
+    ball(made, (0, 0, 0.5), 2.0)
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    assert abs(mine - other).mean() < 0.015 * other.mean(), abs(mine - other).mean() / other.mean()
+
+
+@case
+def back_faces_are_listed():
+    scene = new_scene(world=(0.5, 0.5, 0.5), samples=16)
+    made, node = material("ShaderNodeBsdfDiffuse")
+    mix = add(made.node_tree, "ShaderNodeMixRGB", node.inputs["Color"], Color1=(0.1, 0.8, 0.1, 1), Color2=(0.8, 0.1, 0.1, 1))
+    add(made.node_tree, "ShaderNodeNewGeometry", mix.inputs[0], 6)
+    ball(made)
+    agrees(scene)
+    assert notes(scene) == ["material, Geometry: back faces are as front faces"], notes(scene)
+
+
+@case
+def hair_of_an_emitter_that_is_not_shown():
+    scene = new_scene(world=(0.5, 0.5, 0.5))
+    floor()
+    item = ball(material("ShaderNodeBsdfDiffuse", Color=(0.2, 0.5, 0.2))[0])
+    options = item.modifiers.new("hair", "PARTICLE_SYSTEM").particle_system.settings
+    options.type, options.count, options.hair_length, options.radius_scale = "HAIR", 300, 0.5, 0.05
+    item.show_instancer_for_render = False
+    other, mine = (colors(render(scene, engine)) for engine in ("CYCLES", "VELO"))
+    assert abs(mine - other).mean() < 0.05 * other.mean(), abs(mine - other).mean() / other.mean()

@@ -1,4 +1,4 @@
-"""datasets.py: data sets of velo's formats from a scene and its animation: COCO, nerfstudio, OpenEXR channels.
+"""datasets.py: data sets of velo's formats from a scene and its animation: BOP, COCO, nerfstudio, OpenEXR channels.
 
 An object's class is its custom property `class`; objects without it are background. Headless:
 blender -b file.blend --addons velo_blender --python-expr "import velo_blender.datasets as d; d.write('out', ['coco'])"."""
@@ -7,15 +7,16 @@ from types import SimpleNamespace
 import bpy
 import numpy
 import velo
+from velo.dataset.bop import BopWriter
 from velo.dataset.coco import CocoWriter
 from velo.dataset.exr import ExrWriter
 from velo.dataset.nerfstudio import NerfstudioWriter
 from velo.dataset.stage import Frame, Instance
 
-from . import camera, export, settings
+from . import camera, export, rigid, settings
 from .report import Refused
 
-WRITERS = {"coco": CocoWriter, "nerfstudio": NerfstudioWriter, "exr": ExrWriter}
+WRITERS = {"bop": BopWriter, "coco": CocoWriter, "nerfstudio": NerfstudioWriter, "exr": ExrWriter}
 CHANNELS = ["Z", "N", "id.instance"]
 
 
@@ -30,32 +31,41 @@ def _stage(names):
     return SimpleNamespace(names=names, recipe=SimpleNamespace(occluded=False, models=models), context=velo.Scene().context)
 
 
-def _rigid(matrix):
-    """(pose without scale, its mean scale)."""
-    scale = numpy.linalg.norm(matrix[:3, :3], axis=0)
-    pose = matrix.copy()
-    pose[:3, :3] = matrix[:3, :3] / scale
-    return pose.tolist(), float(scale.mean())
+def _metres(scene):
+    """The length of a unit of Blender."""
+    units = scene.unit_settings
+    return 1.0 if units.system == "NONE" else float(units.scale_length)
 
 
-def render_frame(depsgraph, names, number):
-    """An annotated image of the depsgraph's frame."""
-    scene = depsgraph.scene
-    made = export.Export(depsgraph, camera.image_size(scene))
+def _annotated(made, names, number):
+    """The image of an export with its annotations: (frame, for each of its instances which of the export's it is, from 0)."""
+    scene = made.depsgraph.scene
     image = made.scene.render(channels=CHANNELS, **settings.tracing(scene, scene.velo.samples))
-    ids, instances = numpy.asarray(image["id.instance"]), []
-    for place, placed in enumerate(made.instances, 1):
+    ids, instances, places = numpy.asarray(image["id.instance"]), [], []
+    for place, placed in enumerate(made.instances):
         name = placed.kind
         if name not in names:
             continue
-        pose, scale = _rigid(placed.matrix)
-        mask = ids == place
-        instances.append(Instance(names.index(name), name, pose, scale, mask, mask))
-    return Frame(number, scene.camera.name, made.camera, image, instances)
+        pose, stretch = rigid.pose_of(placed.matrix)
+        mask = ids == place + 1
+        instances.append(Instance(names.index(name), name, pose.tolist(), float(numpy.trace(stretch)) / 3, mask, mask))
+        places.append(place)
+    return Frame(number, bpy.path.clean_name(scene.camera.name), made.camera, image, instances), places
 
 
-def write(folder, formats=("coco",), frames=None, context=None):
-    """Writes the frames of the current scene (default: all of its animation) in these formats into a folder."""
+def _write_frame(depsgraph, number, names, writers, models):
+    """Renders the depsgraph's frame and writes it in all formats. writers: {format: writer}; models: those of BOP."""
+    made = export.Export(depsgraph, camera.image_size(depsgraph.scene))
+    for writer in writers.values():
+        writer.check_camera(made.camera)
+    frame, places = _annotated(made, names, number)
+    for name, writer in writers.items():
+        writer.write(models.frame(frame, places, made) if name == "bop" else frame, 0)
+
+
+def write(folder, formats=("coco",), frames=None, context=None, depth_step=None):
+    """Writes the frames of the current scene (default: all of its animation) in these formats into a folder. depth_step: millimetres of a
+    step of BOP's depth, default the panel's."""
     unknown = [name for name in formats if name not in WRITERS]
     if unknown or not formats:
         raise Refused("there is no data set %s (known: %s)" % (", ".join(unknown) or "without a format", ", ".join(sorted(WRITERS))))
@@ -63,22 +73,21 @@ def write(folder, formats=("coco",), frames=None, context=None):
     scene = context.scene
     if scene.camera is None:
         raise Refused("the scene has no camera")
-    names = classes_of(scene)
+    step = scene.velo.depth_step if depth_step is None else float(depth_step)
+    if not 1e-6 <= step <= 1e6:
+        raise Refused("a step of depth is from 1e-6 to 1e6 mm; it is %g" % step)
+    names, models = classes_of(scene), rigid.Models(_metres(scene), step)
     stage = _stage(names)
-    writers = [WRITERS[name](stage, folder) for name in formats]
-    for writer in writers:
-        writer.begin()
+    writers = {name: WRITERS[name](models if name == "bop" else stage, folder) for name in formats}
     before = scene.frame_current
     try:
         for number in range(scene.frame_start, scene.frame_end + 1) if frames is None else frames:
             scene.frame_set(number)
-            frame = render_frame(context.evaluated_depsgraph_get(), names, number)
-            for writer in writers:
-                writer.check_camera(frame.camera)
-                writer.write(frame, 0)
+            _write_frame(context.evaluated_depsgraph_get(), number, names, writers, models)
     finally:
         scene.frame_set(before)
-    for writer in writers:
+    for writer in writers.values():
+        writer.begin()  # the models are known when all frames are
         writer.finish()
 
 
@@ -113,6 +122,8 @@ class VELO_PT_dataset(bpy.types.Panel):
         layout, options = self.layout, context.scene.velo
         layout.prop(options, "dataset_folder")
         layout.prop(options, "dataset_formats")
+        if "bop" in options.dataset_formats:
+            layout.prop(options, "depth_step")
         layout.label(text="Classes: %s" % (", ".join(classes_of(context.scene)) or "none (custom property class)"))
         layout.operator("velo.write_dataset")
 

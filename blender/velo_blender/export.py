@@ -51,7 +51,7 @@ class Placed(NamedTuple):
 
 class Export:
     """A velo scene made from a depsgraph. Members: scene (velo.Scene), notes, camera (velo.Camera), size; instances, shapes: a Placed for
-    each of velo's ids 1, 2, ..., None for shapes of groups and lamps; triangles: {id of a shape: (positions and triangles of its whole
+    each of velo's ids 1, 2, ..., None for shapes of groups and lamps; prepared: a Prepared for each of the instances; triangles: {id of a shape: (positions and triangles of its whole
     mesh)}, where keep_triangles asks for them; material_indices: {name: pass index}. moves: motion.Motion, or None: everything is at
     rest. view: the camera, in place of the scene's. backdrop: backdrop.Backdrop, or None."""
 
@@ -60,6 +60,7 @@ class Export:
         self.notes = Notes()
         self.scene = velo.Scene()
         self.instances, self.shapes, self.material_indices = [], [], {}
+        self.prepared = []
         self.triangles = {}
         self._moves, self._keep_triangles = moves, keep_triangles
         self._handles = {}  # {motion.key_of(instance): handle}
@@ -115,6 +116,8 @@ class Export:
                 self._add_points(item, _placed(instance, matrix))
             elif item.type == "CURVES":
                 self._add_hair(item, hair.of_curves(item.data), 0, _placed(instance, matrix), matrix)
+            elif item.type == "VOLUME":
+                self.notes.add(item.name, volumes.file_of(item.data), "volumes of OpenVDB files are not rendered")
             elif item.type != "GPENCIL":
                 self.notes.add(item.name, "", "objects of type %s are not rendered" % item.type.lower())
 
@@ -225,6 +228,7 @@ class Export:
             else:
                 self.scene.add_instance(prepared.group, poses, times=motion.TIMES)
             self.instances.append(placed)
+            self.prepared.append(prepared)
         for part in prepared.emissive:
             if poses is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")

@@ -21,7 +21,9 @@ class VeloSettings(bpy.types.PropertyGroup):
     dataset_folder: bpy.props.StringProperty(name="Folder", default="//dataset", subtype="DIR_PATH", description="Where the data set is written")
     dataset_formats: bpy.props.EnumProperty(name="Formats", options={"ENUM_FLAG"}, default={"coco"}, items=[
         ("coco", "COCO", "Instances, boxes, masks"), ("nerfstudio", "nerfstudio", "transforms.json, images, depths"),
-        ("exr", "OpenEXR", "Linear colours, depth, normals, ids")])
+        ("exr", "OpenEXR", "Linear colours, depth, normals, ids"), ("bop", "BOP", "Poses, masks and depths of rigid models")])
+    depth_step: bpy.props.FloatProperty(name="Step of depth", default=1.0, min=0.001, max=1000.0,
+                                        description="BOP: millimetres of a step of the depth; an image holds 65535 steps")
 
 
 class VeloLayerSettings(bpy.types.PropertyGroup):

@@ -2,6 +2,7 @@
 
 Coefficients are per unit of length of the world, as in Cycles (kernel/svm/closure.h): scattering colour * density, absorption
 (1 - colour) * density."""
+import os
 from typing import Any, NamedTuple
 
 import numpy
@@ -20,6 +21,11 @@ class Volume(NamedTuple):
     density: Any
     socket: Any = None
     groups: tuple = ()
+
+
+def file_of(volume):
+    """The name of the file of a volume object's data; empty: it has none, as those that geometry nodes make."""
+    return os.path.basename(volume.filepath.replace("\\", "/"))
 
 
 def medium(material, inputs, box, matrix):

@@ -69,7 +69,7 @@ class BopWriter(Writer):
         folder = os.path.join(self.folder, "train_pbr", f"{scene:06d}")
         name = f"{frame.frame:06d}"
         self.write_bytes(os.path.join(folder, "rgb", f"{name}.png"), png(display(frame)))
-        depth = depth_steps("bop", frame, self.depth_scale, "give Recipe.depth_scale a larger value, or use the writer exr")
+        depth = depth_steps("bop", frame, self.depth_scale, "a larger step (depth_scale) or the writer exr can hold it")
         self.write_bytes(os.path.join(folder, "depth", f"{name}.png"), png(depth))
         k = numpy.array(frame.camera.K)
         k[0, 2] -= 0.5

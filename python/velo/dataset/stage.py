@@ -15,7 +15,7 @@ from velo._errors import UsageError, at_place, unknown
 from velo.dataset.cameras import Cameras, View
 from velo.dataset.check import MAX_FRAMES, checked
 from velo.dataset.files import images_of
-from velo.dataset.geometry import Matrix, multiply, place, rigid_inverse, transform
+from velo.dataset.geometry import Matrix, Vector3, multiply, place, rigid_inverse, transform
 from velo.dataset.keypoints import Keypoints, project_keypoints
 from velo.dataset.placing import Thing, place_things
 from velo.dataset.random import Random
@@ -98,6 +98,28 @@ def _load_model(scene: Any, model: Model, folder: str) -> tuple[Any, str, Any, A
     scene.add_mesh(positions, numpy.ascontiguousarray(model.indices, dtype="uint32"), group=group, name=model.name,
                    **keywords)
     return group, model.name, positions.min(0).tolist(), positions.max(0).tolist()
+
+
+def silhouette(scene: velo.Scene, low: Vector3, high: Vector3, pose: Matrix, camera: velo.Camera) -> Any:
+    """The pixels whose centres would show an object if it were alone, height x width, bool. scene: the object alone, in its own space,
+    as instance 1; low, high: its bounding box there; pose: world from that space, a rotation, uniform scale and translation."""
+    width, height = camera.resolution
+    mask = numpy.zeros((height, width), dtype=bool)
+    there = [[float(value) for value in row] for row in camera.world_from_camera]
+    camera = camera.move(multiply(rigid_inverse(pose), there))
+    corners = [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    seen = camera.project(corners)
+    crop = [0, 0, width, height]
+    # The image of a box is inside that of its corners for perspective cameras without distortion only.
+    if seen.valid.all() and camera.projection == "perspective" and not len(camera.distortion_coefficients):
+        first, last = numpy.floor(seen.pixels.min(0)) - 1, numpy.ceil(seen.pixels.max(0)) + 1
+        crop = [int(min(max(first[0], 0), width)), int(min(max(first[1], 0), height)),
+                int(max(min(last[0], width), 0)), int(max(min(last[1], height), 0))]
+    if crop[0] >= crop[2] or crop[1] >= crop[3]:
+        return mask
+    truth = scene.ground_truth(["id.instance"], camera=camera, crop=crop)
+    mask[crop[1]:crop[3], crop[0]:crop[2]] = truth["id.instance"] == 1
+    return mask
 
 
 def _random_material(bounds: Materials, random: Random) -> dict[str, Any]:
@@ -372,7 +394,8 @@ class Stage:
             mask = ids == first + k
             scale = recipe.models[item.model].scale
             rigid = [[value / scale if j < 3 else value for j, value in enumerate(row)] for row in item.pose[:3]]
-            whole = mask | self._silhouette(item, view) if recipe.occluded else mask
+            solo = self._solo[item.model]
+            whole = mask | silhouette(solo.scene, solo.low, solo.high, item.pose, view.camera) if recipe.occluded else mask
             instances.append(Instance(item.model, self.names[item.model], rigid + [[0.0, 0.0, 0.0, 1.0]], scale, mask, whole,
                                       self._keypoints(scene, item, view), _covers(ids, whole & ~mask, first, len(plan.objects))))
         return Frame(plan.frame, view.name, view.camera, image, instances, exposure)
@@ -387,26 +410,3 @@ class Stage:
             low, high = self.boxes[item.model]
             depth = 0.01 * math.sqrt(sum((b - a) * (b - a) for a, b in zip(low, high)))
         return project_keypoints(scene.world(**self._build), view.camera, points, depth=depth)
-
-    def _silhouette(self, item: Placed, view: View) -> Any:
-        """The pixels whose centres would show the object if it were alone: its own scene, seen from where the camera is
-        relative to it."""
-        solo = self._solo[item.model]
-        width, height = view.camera.resolution
-        mask = numpy.zeros((height, width), dtype=bool)
-        pose = [[float(value) for value in row] for row in view.camera.world_from_camera]
-        camera = view.camera.move(multiply(rigid_inverse(item.pose), pose))
-        corners = [[x, y, z] for x in (solo.low[0], solo.high[0]) for y in (solo.low[1], solo.high[1])
-                   for z in (solo.low[2], solo.high[2])]
-        seen = camera.project(corners)
-        crop = [0, 0, width, height]
-        # The image of a box is inside that of its corners for perspective cameras without distortion only.
-        if seen.valid.all() and camera.projection == "perspective" and not len(camera.distortion_coefficients):
-            low, high = numpy.floor(seen.pixels.min(0)) - 1, numpy.ceil(seen.pixels.max(0)) + 1
-            crop = [int(min(max(low[0], 0), width)), int(min(max(low[1], 0), height)),
-                    int(max(min(high[0], width), 0)), int(max(min(high[1], height), 0))]
-        if crop[0] >= crop[2] or crop[1] >= crop[3]:
-            return mask
-        truth = solo.scene.ground_truth(["id.instance"], camera=camera, crop=crop)
-        mask[crop[1]:crop[3], crop[0]:crop[2]] = truth["id.instance"] == 1
-        return mask

@@ -143,6 +143,8 @@ static float find_nearest(const Denoise *d) {
   return most > 0.0f ? most : 1.0f;
 }
 
+/* Reads a row. Leaves the means of R, G and B in the plane result[1], for the search of
+ * outliers; 0 for a pixel that is not valid. */
 static void read_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   Denoise *d = user;
@@ -167,6 +169,7 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
     p->valid[at] = valid ? 1.0f : 0.0f;
     for (int c = 0; c < COLOR && !valid; c++)
       p->color[c][at] = p->variance[c][at] = 0.0f;
+    p->result[1][at] = (p->color[0][at] + p->color[1][at] + p->color[2][at]) * (1.0f / 3.0f);
     if (!valid)
       atomic_fetch_add_explicit(&d->not_finite, 1, memory_order_relaxed);
   }
@@ -215,49 +218,10 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
 
 /* ---- outliers ---------------------------------------------------------------------------- */
 
-static float mean3(float *const plane[COLOR], ptrdiff_t at) {
-  return (plane[0][at] + plane[1][at] + plane[2][at]) * (1.0f / 3.0f);
-}
-
-/* The third largest mean of R, G and B among the 24 pixels of the ring at a distance of 3
- * around a pixel (7 x 7). Nearer pixels may have counted the same samples as the pixel
- * itself. */
-static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
-  enum { REACH = 3, RANK = 3 };
-  float top[RANK] = {0};
-  for (int dy = -REACH; dy <= REACH; dy++)
-    for (int dx = -REACH; dx <= REACH; dx += dy == -REACH || dy == REACH ? 1 : 2 * REACH) {
-      ptrdiff_t q = at + dy * p->stride + dx;
-      if (p->valid[q] == 0.0f)
-        continue;
-      float v = mean3(p->color, q);
-      for (int k = 0; k < RANK; k++)
-        if (v > top[k]) {
-          float less = top[k];
-          top[k] = v;
-          v = less;
-        }
-    }
-  return top[RANK - 1];
-}
-
-/* Finds outliers: pixels whose value comes from few samples (the standard error is above half
- * of the value), and whose light the fit would spread over the whole window. Their factor
- * scales them to at most 4 times the third largest neighbour. Factors are stored in the plane
- * result[0], since neighbours still need the original values. */
 static void cap_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
-  const vlDenoisePlanes *p = &((const Denoise *)user)->planes[0];
-  for (uint32_t x = 0; x < p->width; x++) {
-    ptrdiff_t at = index_of(p, x, y);
-    float v = mean3(p->color, at), factor = 1.0f;
-    if (v > 0.0f && mean3(p->variance, at) > 0.25f * v * v) {
-      float most = 4.0f * third_neighbour(p, at);
-      if (most < v)
-        factor = most / v;
-    }
-    p->result[0][at] = factor;
-  }
+  const Denoise *d = user;
+  d->kernels->cap(&d->planes[0], y);
 }
 
 static void scale_row(void *user, uint32_t y, uint32_t worker) {

@@ -61,15 +61,20 @@ typedef struct vlDenoiseKernels {
    * VL_DENOISE_STEP * VL_LANES pixels from column i on. */
   void (*correct)(const vlDenoisePlanes *planes, const vlDenoisePlanes *lattice, int32_t i,
                   int32_t j);
+  /* Finds the outliers of a row: writes the factors that scale them to result[0], 1 for other
+   * pixels. Reads the means of R, G and B of valid pixels in result[1] (0 for others, and
+   * outside of the image), of rows up to a distance of 3. */
+  void (*cap)(const vlDenoisePlanes *planes, uint32_t y);
   /* Writes the variances of a row, raised, to the planes `result`. Reads those of rows up to a
    * distance of 3, and of the border. */
   void (*raise)(const vlDenoisePlanes *planes, uint32_t y);
 } vlDenoiseKernels;
 VL_KERNEL_TABLE(vlDenoiseKernels, vl_denoise)
 
-/* The kernels `correct` and `raise`, for hot files. */
+/* The kernels `correct`, `cap` and `raise`, for hot files. */
 void vl_denoise_correct(const vlDenoisePlanes *planes, const vlDenoisePlanes *lattice,
                         int32_t i, int32_t j);
+void vl_denoise_cap(const vlDenoisePlanes *planes, uint32_t y);
 void vl_denoise_raise(const vlDenoisePlanes *planes, uint32_t y);
 
 /* The image's channels that the denoisers read; -1: there is none. */

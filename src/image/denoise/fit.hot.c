@@ -369,4 +369,5 @@ static void tile(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint
   }
 }
 
-const vlDenoiseKernels vl_denoise_kernel_table = {tile, vl_denoise_correct, vl_denoise_raise};
+const vlDenoiseKernels vl_denoise_kernel_table = {tile, vl_denoise_correct, vl_denoise_cap,
+                                                  vl_denoise_raise};

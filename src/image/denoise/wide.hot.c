@@ -14,35 +14,58 @@ typedef struct Pixels {
   float feature[F][S][N], result[3][S][N], scale[3][S][N];
 } Pixels;
 
+/* Sorts a row of N * S values by their place between two points of the lattice. */
+static void sort_row(const float *from, float to[S][N]) {
+  for (int i = 0; i < N; i++)
+    for (int phase = 0; phase < S; phase++)
+      to[phase][i] = from[i * S + phase];
+}
+
 static void sort_pixels(const vlDenoisePlanes *p, ptrdiff_t at, Pixels *to) {
   for (int k = 0; k < F; k++)
-    for (int i = 0; i < N * S; i++)
-      to->feature[k][i % S][i / S] = p->feature[k][at + i];
-  for (int c = 0; c < 3; c++)
-    for (int i = 0; i < N * S; i++) {
-      float v = p->noise[c][at + i] * VL_DENOISE_CORRELATION, r = p->result[c][at + i],
-            scale = v + 1e-6f * r * r;
-      to->result[c][i % S][i / S] = r;
-      to->scale[c][i % S][i / S] = 1.0f / (scale > TINY ? scale : TINY);
+    sort_row(p->feature[k] + at, to->feature[k]);
+  for (int c = 0; c < 3; c++) {
+    const float *noise = p->noise[c] + at, *result = p->result[c] + at;
+    float scale[N * S];
+    /* must vectorise */
+    VL_SIMD for (int i = 0; i < N * S; i++) {
+      float r = result[i], s = noise[i] * VL_DENOISE_CORRELATION + 1e-6f * r * r;
+      scale[i] = 1.0f / (s > TINY ? s : TINY);
     }
+    sort_row(scale, to->scale[c]);
+    sort_row(result, to->result[c]);
+  }
+}
+
+/* Adds sorted values to a row of N * S pixels. */
+static void add_sorted(float from[S][N], float *to) {
+  float row[N * S];
+  for (int i = 0; i < N; i++)
+    for (int phase = 0; phase < S; phase++)
+      row[i * S + phase] = from[phase][i];
+  /* must vectorise */
+  VL_SIMD for (int i = 0; i < N * S; i++) to[i] += row[i];
 }
 
 /* Adds to sum[] the difference of the predictions of the lattice's points from index `at` on, N
  * of them, from the pixels' values, times weights. dx, dy: where the pixels are, seen from the
  * points, in units of the window's radius. share: the points' share in the interpolation. */
 static void add_prediction(const vlDenoisePlanes *lattice, ptrdiff_t at, const Pixels *pixels,
-                           int phase, float dx, float dy, float share, float sum[3][N]) {
+                           int phase, float dx, float dy, float share, float sum[3][S][N]) {
   float difference[3][N];
   for (int c = 0; c < 3; c++) {
     const float *a = lattice->result[c] + at, *bx = lattice->slope[c][F] + at,
                 *by = lattice->slope[c][F + 1] + at, *own = pixels->result[c][phase];
     float *restrict to = difference[c];
+    const float *slope[F];
+    for (int k = 0; k < F; k++)
+      slope[k] = lattice->slope[c][k] + at;
     /* must vectorise (gcc) */
-    VL_SIMD for (int i = 0; i < N; i++) to[i] = a[i] + bx[i] * dx + by[i] * dy - own[i];
-    for (int k = 0; k < F; k++) {
-      const float *b = lattice->slope[c][k] + at, *f = pixels->feature[k][phase];
-      /* must vectorise (gcc) */
-      VL_SIMD for (int i = 0; i < N; i++) to[i] += b[i] * f[i];
+    VL_SIMD for (int i = 0; i < N; i++) {
+      float d = a[i] + bx[i] * dx + by[i] * dy - own[i];
+      for (int k = 0; k < F; k++)
+        d += slope[k][i] * pixels->feature[k][phase][i];
+      to[i] = d;
     }
   }
   const float *gain = lattice->noise[0] + at;
@@ -54,9 +77,9 @@ static void add_prediction(const vlDenoisePlanes *lattice, ptrdiff_t at, const P
     float t = 1.0f - d * (1.0f / (3.0f * FARTHEST));
     t = t > 0.0f ? t : 0.0f;
     float w = share * gain[i] * t * t;
-    sum[0][i] += w * difference[0][i];
-    sum[1][i] += w * difference[1][i];
-    sum[2][i] += w * difference[2][i];
+    sum[0][phase][i] += w * difference[0][i];
+    sum[1][phase][i] += w * difference[1][i];
+    sum[2][phase][i] += w * difference[2][i];
   }
 }
 
@@ -71,8 +94,8 @@ void vl_denoise_correct(const vlDenoisePlanes *p, const vlDenoisePlanes *lattice
     ptrdiff_t at = (ptrdiff_t)y * p->stride + i * S + S / 2;
     Pixels pixels;
     sort_pixels(p, at, &pixels);
-    for (int phase = 0; phase < S; phase++) {
-      float sum[3][N] = {{0}};
+    float sum[3][S][N] = {{{0}}};
+    for (int phase = 0; phase < S; phase++)
       for (int corner = 0; corner < 4; corner++) {
         int cx = corner & 1, cy = corner >> 1;
         float dx = (float)phase * part - (float)cx, dy = (float)row * part - (float)cy;
@@ -81,9 +104,7 @@ void vl_denoise_correct(const vlDenoisePlanes *p, const vlDenoisePlanes *lattice
           add_prediction(lattice, (j + cy) * lattice->stride + i + cx, &pixels, phase,
                          dx * unit, dy * unit, share, sum);
       }
-      for (int c = 0; c < 3; c++)
-        for (int k = 0; k < N; k++)
-          p->result[c][at + k * S + phase] += sum[c][k];
-    }
+    for (int c = 0; c < 3; c++)
+      add_sorted(sum[c], p->result[c] + at);
   }
 }

@@ -20,12 +20,34 @@ static void match_pose(vlCameraDef *def) {
   def->roll = 0;
 }
 
+/* The second pose of a def, which is a matrix where the camera moves. */
+static void set_motion(vlCameraDef *def, const vlCamera *made) {
+  for (int i = 0; i < 3; i++)
+    def->eye_close[i] = def->lookat_close[i] = def->up_close[i] = VL_UNSET;
+  def->roll_close = VL_UNSET;
+  def->has_matrix_close = made->moves;
+  if (!made->moves)
+    return;
+  memcpy(def->world_from_camera_close, made->world_from_camera_close,
+         sizeof def->world_from_camera_close);
+  memcpy(def->pose_times, made->pose_times, sizeof def->pose_times);
+}
+
+/* Roll beside a matrix becomes a part of the matrix. */
+static void take_roll(vlCameraDef *def, const vlCamera *made) {
+  if (!def->has_matrix || def->roll == 0)
+    return;
+  memcpy(def->world_from_camera, made->world_from_camera, sizeof def->world_from_camera);
+  set_motion(def, made);
+}
+
 static PyObject *camera_wrap(const vlCameraDef *def, const vlCamera *compiled,
                              const char *warning, PyObject *keep) {
   Camera *self = make_object(TYPE_CAMERA);
   if (!self)
     return NULL;
   self->def = *def;
+  take_roll(&self->def, compiled);
   match_pose(&self->def);
   self->camera = *compiled;
   Py_XINCREF(keep);
@@ -320,6 +342,7 @@ static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made
   def.height = made->height;
   def.has_matrix = true;
   memcpy(def.world_from_camera, made->world_from_camera, sizeof def.world_from_camera);
+  set_motion(&def, made);
   return camera_wrap(&def, made, NULL, self->keep);
 }
 
@@ -340,6 +363,13 @@ static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) 
     memcpy(def->lookat, self->def.lookat, sizeof def->lookat);
     memcpy(def->up, self->def.up, sizeof def->up);
     def->roll = self->def.roll;
+    def->has_matrix = self->def.has_matrix;
+    def->has_matrix_close = self->def.has_matrix_close;
+    memcpy(def->eye_close, self->def.eye_close, sizeof def->eye_close);
+    memcpy(def->lookat_close, self->def.lookat_close, sizeof def->lookat_close);
+    memcpy(def->up_close, self->def.up_close, sizeof def->up_close);
+    def->roll_close = self->def.roll_close;
+    memcpy(def->pose_times, self->def.pose_times, sizeof def->pose_times);
   }
   return result;
 }

@@ -42,11 +42,15 @@ static bool second_pose(const vlCameraDef *def, vlCameraDef *close) {
   bool given = !vl_is_unset(def->roll_close);
   if (given)
     close->roll = def->roll_close;
-  if (def->has_matrix) {
-    if (def->has_matrix_close)
-      memcpy(close->world_from_camera, def->world_from_camera_close, 16 * sizeof(double));
-    return given || def->has_matrix_close;
+  if (def->has_matrix_close) {
+    if (!given && !def->has_matrix)
+      close->roll = 0.0; /* it is that of eye and lookat */
+    close->has_matrix = true;
+    memcpy(close->world_from_camera, def->world_from_camera_close, 16 * sizeof(double));
+    return true;
   }
+  if (def->has_matrix)
+    return given;
   const double *from[3] = {def->eye_close, def->lookat_close, def->up_close};
   double *to[3] = {close->eye, close->lookat, close->up};
   for (int k = 0; k < 3; k++) {
@@ -56,6 +60,19 @@ static bool second_pose(const vlCameraDef *def, vlCameraDef *close) {
     given = true;
   }
   return given;
+}
+
+/* A matrix and a second eye have no common up and roll: not to move would be wrong without a
+ * word. */
+static vlResult check_second_pose(const vlCameraDef *def, vlError *error) {
+  const double *given[3] = {def->eye_close, def->lookat_close, def->up_close};
+  for (int k = 0; k < 3 && def->has_matrix && !def->has_matrix_close; k++)
+    for (int i = 0; i < 3; i++)
+      if (!vl_is_unset(given[k][i]))
+        return vl_fail(error, VL_ERROR_ARGUMENT,
+                       "camera: eye_close, lookat_close and up_close go with eye and lookat; "
+                       "with world_from_camera give world_from_camera_close");
+  return VL_OK;
 }
 
 /* Sets the camera's motion from its pose to the pose `close`. */
@@ -102,10 +119,11 @@ static vlResult make_motion(const vlCameraDef *def, vlCamera *camera, const char
   camera->pose_times[0] =
       vl_is_unset(def->pose_times[0]) ? def->shutter_open : def->pose_times[0];
   camera->pose_times[1] = vl_is_unset(def->pose_times[1]) ? end : def->pose_times[1];
-  if (!second_pose(def, &close))
-    return VL_OK;
+  vlResult result = check_second_pose(def, error);
+  if (result != VL_OK || !second_pose(def, &close))
+    return result;
   vlCamera there = *camera;
-  vlResult result = vl_camera_pose(&close, &there, warning, error);
+  result = vl_camera_pose(&close, &there, warning, error);
   return result == VL_OK ? go_to(there.world_from_camera, camera, error) : result;
 }
 

@@ -5,7 +5,9 @@
 
 #include "projection/functions.h"
 
-/* m = X / (a d2 + (1 - a)(xi d1 + Z)), d1 = |P|, d2 = sqrt(R^2 + (xi d1 + Z)^2). */
+/* m = X / (a d2 + (1 - a)(xi d1 + Z)), d1 = |P|, d2 = sqrt(R^2 + (xi d1 + Z)^2). The points
+ * that it takes back are those with xi d1 + Z > -w1 d2, which is the unified model's condition
+ * on the second sphere; the paper's Z > -w2 d1 leaves out a part of them at the rim. */
 static inline vlDirection vl_double_sphere_unproject(double xi, double a, double x, double y) {
   double r2 = x * x + y * y, root = 1.0 - (2.0 * a - 1.0) * r2;
   double z = (1.0 - a * a * r2) / (a * vl_root(root) + (1.0 - a));
@@ -18,8 +20,8 @@ static inline vlPlanePoint vl_double_sphere_project(double xi, double a, double 
   double across2 = x * x + y * y, d1 = __builtin_sqrt(across2 + z * z), shifted = xi * d1 + z;
   double d2 = __builtin_sqrt(across2 + shifted * shifted), under = a * d2 + (1.0 - a) * shifted;
   double k = 1.0 / vl_not_tiny(under), w1 = a > 0.5 ? (1.0 - a) / a : a / (1.0 - a);
-  double w2 = (w1 + xi) / __builtin_sqrt(2.0 * w1 * xi + xi * xi + 1.0);
-  return (vlPlanePoint){x * k, y * k, z > -w2 * d1 && under > VL_HORIZON * d1 ? 1.0 : 0.0};
+  return (vlPlanePoint){x * k, y * k,
+                        shifted > -w1 * d2 && under > VL_HORIZON * d1 ? 1.0 : 0.0};
 }
 
 VL_CAMERA_INLINE vlDirection vl_unproject_double_sphere(VL_UNPROJECT_INPUT) {

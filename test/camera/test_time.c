@@ -146,6 +146,37 @@ static void rows_are_read_in_turn(void **state) {
   }
 }
 
+/* The second pose is a matrix, or a second eye; a second eye beside a first matrix is refused.
+ */
+static void second_poses(void **state) {
+  (void)state;
+  vlCameraDef eyes = vl_default_camera_def(64, 48), mixed = eyes, wrong = eyes;
+  vlCamera a, b, there;
+  vlError error;
+  set3(eyes.eye, 1, 2, 3);
+  set3(eyes.lookat, 0, 0.5, -4);
+  eyes.roll = 0.3;
+  mixed = eyes;
+  set3(eyes.eye_close, 1.5, 1, 3.2);
+  vlCameraDef at_end = eyes;
+  memcpy(at_end.eye, eyes.eye_close, sizeof at_end.eye);
+  set3(at_end.eye_close, VL_UNSET, VL_UNSET, VL_UNSET);
+  assert_int_equal(vl_camera_make(&at_end, &there, NULL, &error), VL_OK);
+  mixed.has_matrix_close = true;
+  memcpy(mixed.world_from_camera_close, there.world_from_camera,
+         sizeof mixed.world_from_camera_close);
+  assert_int_equal(vl_camera_make(&eyes, &a, NULL, &error), VL_OK);
+  assert_int_equal(vl_camera_make(&mixed, &b, NULL, &error), VL_OK);
+  assert_true(a.moves && b.moves);
+  for (int i = 0; i < 16; i++)
+    assert_true(fabs(a.world_from_camera_close[i] - b.world_from_camera_close[i]) < 1e-15);
+  wrong.has_matrix = true;
+  memcpy(wrong.world_from_camera, there.world_from_camera, sizeof wrong.world_from_camera);
+  set3(wrong.eye_close, 1, 1, 1);
+  assert_int_equal(vl_camera_make(&wrong, &a, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "give world_from_camera_close"));
+}
+
 static vlCameraDef moving_def(int k) {
   vlCameraDef def = vl_default_camera_def(640, 480);
   set3(def.eye, 1, 2, 3);
@@ -272,6 +303,7 @@ int main(void) {
       cmocka_unit_test(rows_are_read_in_turn),
       cmocka_unit_test(rays_are_those_of_held_cameras),
       cmocka_unit_test(matrices_travel_too),
+      cmocka_unit_test(second_poses),
       cmocka_unit_test(nonsense_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

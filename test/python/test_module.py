@@ -51,6 +51,27 @@ def a_render_is_a_numpy_array():
 
 
 @case
+def changed_cameras_keep_their_motion_and_roll():
+    first = numpy.eye(4)
+    first[:3, 3] = 1, 2, 3
+    last = first + [[0, 0, 0, 1], [0] * 4, [0] * 4, [0] * 4]
+    points, path = [[0.1, 0.2, 9.0]], work("moving.json")
+    size = {"width": 40, "height": 30, "shutter_close": 1}
+    for camera in (velo.Camera(world_from_camera=first, world_from_camera_close=last, **size), velo.Camera(world_from_camera=first, roll=0.3, **size),
+                   velo.Camera(eye=(1, 2, 3), lookat=(1, 2, 4), up=(0, -1, 0), world_from_camera_close=last, **size),
+                   velo.Camera(eye=(1, 2, 3), lookat=(1, 2, 4), eye_close=(1.5, 2, 3), roll_close=0.2, **size),
+                   velo.Camera(world_from_camera=first, roll=0.3, roll_close=0.5, **size)):
+        assert numpy.array_equal(camera.replace(exposure_time=2.0).project(points).pixels, camera.project(points).pixels)
+        for changed in (camera, camera.resize(80, 60), camera.coarse(2), camera.move(last), camera.at(0.5)):
+            pixels = changed.project(points).pixels
+            changed.write(path)
+            for other in (velo.read_camera(path), changed.replace(exposure_time=2.0), pickle.loads(pickle.dumps(changed))):
+                assert numpy.allclose(other.project(points).pixels, pixels, rtol=0, atol=1e-9), (camera, other.project(points).pixels, pixels)
+    with raises(velo.Error):
+        velo.Camera(40, 30, world_from_camera=first, eye_close=(1, 1, 1))
+
+
+@case
 def cameras_and_images_are_pickled_and_copied():
     random = numpy.random.default_rng(7)
     points, pixels = random.normal(size=(50, 3)) * 3, random.uniform(0, 48, size=(50, 2))

@@ -346,6 +346,19 @@ static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made
   return camera_wrap(&def, made, NULL, self->keep);
 }
 
+/* The lens of a def whose pixels become those of `made`: a focal length in millimetres fixes
+ * the sensor's width, a pixel in focus moves, and a lens of many elements has a focal length of
+ * its own. */
+static void fit_lens(vlCameraDef *def, const vlCameraDef *before, const vlCamera *made) {
+  if (!isnan(before->focal_mm) && made->fx > 0)
+    def->sensor_width_mm = before->focal_mm * made->width / made->fx;
+  memcpy(def->lens.focus_pixel, made->lens.focus_pixel, sizeof def->lens.focus_pixel);
+  const bool alike =
+      (uint64_t)made->width * before->height == (uint64_t)made->height * before->width;
+  if (def->lens.optics && alike)
+    def->fx = def->fy = def->cx = def->cy = VL_UNSET; /* else replace() is refused */
+}
+
 /* A camera with other pixels. */
 static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) {
   PyObject *result = with_compiled(self, done, made, NULL);
@@ -359,6 +372,7 @@ static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) 
     def->cx = made->cx;
     def->cy = made->cy;
     def->skew = made->skew;
+    fit_lens(def, &self->def, made);
     memcpy(def->eye, self->def.eye, sizeof def->eye); /* the pose stays as it was given */
     memcpy(def->lookat, self->def.lookat, sizeof def->lookat);
     memcpy(def->up, self->def.up, sizeof def->up);

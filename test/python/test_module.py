@@ -72,6 +72,16 @@ def changed_cameras_keep_their_motion_and_roll():
 
 
 @case
+def resized_cameras_keep_their_lens():
+    points, cameras = [[0.3, 1.0, -5], [0, 1.5, -3]], os.path.join(cases.SCENES, "cameras")
+    for name in ("lens_blades", "lens_tilt", "optics_single", "vignetting", "lens_anamorphic"):
+        camera = velo.load(os.path.join(cameras, name + ".pbrt")).camera
+        for changed in (camera.resize(48, 32), camera.coarse(2)):
+            again = changed.replace(exposure_time=2.0)
+            assert numpy.array_equal(again.project(points).pixels, changed.project(points).pixels), name
+
+
+@case
 def cameras_and_images_are_pickled_and_copied():
     random = numpy.random.default_rng(7)
     points, pixels = random.normal(size=(50, 3)) * 3, random.uniform(0, 48, size=(50, 2))

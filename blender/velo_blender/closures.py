@@ -142,6 +142,8 @@ def _transparent(inputs, node, groups):
     if is_color(color):
         low = min(color)
         coverage = 1.0 - low if low > 0 else None
+        if max(color) - low > 0.01:
+            inputs.notes.add(inputs.owner, node.name, "the light of lamps without a size passes it without its tint")
         color = tuple((x - low) / (1 - low) for x in color)
     handle = inputs.scene.add_material("principled", reflectance=color, specular=0.0, metallic=0.0, roughness=0.0, eta=1.5,
                                        transmission=1.0, thin_walled=True, name=inputs.owner)

@@ -29,7 +29,8 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         except export.Cancelled:
             pass
         except (report.Refused, velo.Error, MemoryError) as error:
-            self._refuse(str(error) or "there is not enough memory", getattr(error, "code", 1))
+            if not (isinstance(error, velo.Error) and self.test_break()):  # else the user has stopped velo
+                self._refuse(str(error) or "there is not enough memory", getattr(error, "code", 1))
         except Exception as error:  # pylint: disable=broad-except; Blender shows one line, the terminal the rest
             traceback.print_exc()
             self._refuse("a fault of the add-on: %s: %s" % (type(error).__name__, error))

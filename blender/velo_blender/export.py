@@ -7,7 +7,7 @@ import velo
 
 from . import (atlas, backdrop, camera, camera_files, displace, geometry, hair, ignored, lights, materials, motion, object_info, points, textures,
                volumes, world)
-from .report import Notes, Refused
+from .report import Cancelled, Notes, Refused
 
 FARTHEST = 1e12  # coordinates, scene units
 
@@ -383,7 +383,7 @@ class Export:
 
     def _inputs(self, material, maps, corners, place):
         owner = "default" if material is None else material.name
-        return textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size, corners, place.known)
+        return textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size, corners, place.known, self._cancelled)
 
     def _surface(self, material, maps, corners, place):
         key = (None if material is None else material.name_full, maps.key(), place.owner if self._varies(material) else ())
@@ -476,10 +476,6 @@ def _look_up(known, ids):
     for number, value in known.items():
         table[number] = value
     return numpy.where(ids < len(table), table[numpy.minimum(ids, len(table) - 1).astype(int)], 0)
-
-
-class Cancelled(Exception):
-    """The user ended the export."""
 
 
 __all__ = ["Cancelled", "Export", "Refused", "camera_of", "camera_or_none"]

@@ -26,6 +26,10 @@ class Refused(Exception):
     code = 3
 
 
+class Cancelled(Exception):
+    """The user ended the export."""
+
+
 #: Called with the finished part of a render, 0 to 1; None: nobody asks. headless.py sets it.
 listener = None
 #: Exit code that velo's program has for the error that ended the last render; 0: there was none.

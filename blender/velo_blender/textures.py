@@ -3,8 +3,9 @@ texture for is baked to an image over the uv map that it depends on."""
 import numpy
 import velo
 
-from . import atlas, evaluate, images, links, node_values, tiles
+from . import atlas, evaluate, images, links, node_values, report, tiles
 
+BAKED_AT_ONCE = 16384  # points, some milliseconds for each node
 LOWEST_INDEX, HIGHEST_INDEX = 1.0001, 5.0  # of refraction
 WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
 
@@ -33,8 +34,9 @@ class Inputs:
     mesh's uvs. cache: {key: handle}, shared by all materials. bake_size: pixels of baked images. known: fields for evaluate.Evaluator
     that are the same on the whole object (object_info.fields)."""
 
-    def __init__(self, scene, notes, owner, maps, cache, bake_size, corners=None, known=None):
+    def __init__(self, scene, notes, owner, maps, cache, bake_size, corners=None, known=None, cancelled=None):
         self.known = known or {}
+        self._cancelled = cancelled or (lambda: False)  # whether the user has ended the export
         self.tangent = None  # the axis about which tangents run, where the material has a direction; None: along u
         self.relief = None  # a float texture, the height of the material's displacement where it is rendered as a bump
         self.corners = corners  # atlas.Corners of the mesh; None: nothing can be baked by its triangles
@@ -241,7 +243,7 @@ class Inputs:
         side = self.bake_size
         v, u = numpy.meshgrid(high[1] - (numpy.arange(side) + 0.5) / side * size[1], low[0] + (numpy.arange(side) + 0.5) / side * size[0],
                               indexing="ij")
-        values = self._values(value, numpy.stack((u.ravel(), v.ravel()), axis=1))
+        values = self._in_parts(side * side, {"uv": numpy.stack((u.ravel(), v.ravel()), axis=1)}, lambda part: self._values(value, part["uv"]))
         array = evaluate.as_vector(values) if spectrum else evaluate.as_value(values)[:, None]
         array = numpy.broadcast_to(array, (side * side, array.shape[1])).reshape(side, side, -1).astype(numpy.float32)
         matrix = numpy.array([[1 / size[0], 0, -low[0] / size[0]], [0, 1 / size[1], -low[1] / size[1]]])
@@ -253,16 +255,26 @@ class Inputs:
         if not layout.fits:
             raise evaluate.Unsupported(node, "the mesh has too many triangles to bake it")
         fields = {name: layout.points(values) for name, values in self.corners.fields().items()}
-        fields.update(self.known)
-        values = value(evaluate.Evaluator(fields, self.look_up, self._note))
-        array = evaluate.as_vector(values) if spectrum else evaluate.as_value(values)[:, None]
         count = len(layout.corner) * layout.block**2
+        values = self._in_parts(count, fields, lambda part: value(evaluate.Evaluator({**part, **self.known}, self.look_up, self._note)))
+        array = evaluate.as_vector(values) if spectrum else evaluate.as_value(values)[:, None]
         image = layout.image(numpy.broadcast_to(array, (count, array.shape[1])).astype(numpy.float32))
         self.atlas = layout
         number = min(len(self.maps.names), 3)
         words = {} if spectrum else {"channel": 0}
         plain = numpy.array([[1.0, 0, 0], [0, 1, 0]])
         return self._add(numpy.maximum(image, 0) if spectrum else image, spectrum, number, plain, wrap="clamp", filter="bilinear", **words)
+
+    def _in_parts(self, count, fields, value):
+        """The values of a function of fields, {name: count x n}, part by part; report.Cancelled where the user ends the export."""
+        parts = []
+        for start in range(0, count, BAKED_AT_ONCE):
+            if self._cancelled():
+                raise report.Cancelled()
+            stop = min(start + BAKED_AT_ONCE, count)
+            part = value({name: array[start:stop] for name, array in fields.items()})
+            parts.append(numpy.broadcast_to(part, (stop - start,) + part.shape[1:]))
+        return numpy.concatenate(parts)
 
     def _only_map(self, value, node):
         """The uv map that a value depends on and the box of its uvs: each map is tried, with points in the middle."""

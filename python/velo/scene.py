@@ -433,7 +433,7 @@ class Scene(_velo.Scene):
         camera: default the scene's; a velo.OwnCamera takes its place and its size. resolution: (width, height), pixels. crop: x0, y0, x1, y1, pixels, exclusive.
         channels: ground truth of the pixels' centres as further channels: "Z", "P", "N", "uv", "albedo", "id.object",
         "id.instance", ... (velo.channel_names(), docs/ground-truth.md).
-        progress: called about ten times a second with a velo.Progress; False ends the render after its finished passes.
+        progress: called about twenty times a second with a velo.Progress; False ends the render after its finished passes.
         film: adds samples to this film, until it has spp per pixel.
         denoise: denoises the colours.
         Further keywords: the members of vlRenderDef, vlFilmDef, vlBuildDef and vlDevelopDef: spp, seed, tracer, sampler,

@@ -325,6 +325,9 @@ static PyObject *camera_replace(Camera *self, PyObject *keywords) {
     return NULL;
   }
   PyObject *result = set_keywords(&def, keep, keywords) ? camera_object(&def, keep) : NULL;
+  /* of an eye of omnidirectional stereo, which no def has */
+  if (result && ((Camera *)result)->camera.projection == self->camera.projection)
+    ((Camera *)result)->camera.eye_circle = self->camera.eye_circle;
   Py_XDECREF(keep);
   return result;
 }
@@ -350,6 +353,7 @@ static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made
  * the sensor's width, a pixel in focus moves, and a lens of many elements has a focal length of
  * its own. */
 static void fit_lens(vlCameraDef *def, const vlCameraDef *before, const vlCamera *made) {
+  def->sensor_width_mm = before->sensor_width_mm;
   if (!isnan(before->focal_mm) && made->fx > 0)
     def->sensor_width_mm = before->focal_mm * made->width / made->fx;
   memcpy(def->lens.focus_pixel, made->lens.focus_pixel, sizeof def->lens.focus_pixel);
@@ -359,20 +363,33 @@ static void fit_lens(vlCameraDef *def, const vlCameraDef *before, const vlCamera
     def->fx = def->fy = def->cx = def->cy = VL_UNSET; /* else replace() is refused */
 }
 
+/* Focal length and principal point of a def become those of `made`. */
+static void set_pixels(vlCameraDef *def, const vlCameraDef *before, const vlCamera *made) {
+#define UNSET(field) def->field = VL_UNSET;
+  FOCAL(UNSET)
+#undef UNSET
+  def->fx = made->fx;
+  def->fy = made->fy;
+  def->cx = made->cx;
+  def->cy = made->cy;
+  def->skew = made->skew;
+  fit_lens(def, before, made);
+}
+
+/* An eye of a stereo pair. That of off-axis stereo has a principal point of its own. */
+static PyObject *with_eye(Camera *self, const vlCamera *made) {
+  PyObject *result = with_compiled(self, VL_OK, made, NULL);
+  if (result && made->cx != self->camera.cx)
+    set_pixels(&((Camera *)result)->def, &self->def, made);
+  return result;
+}
+
 /* A camera with other pixels. */
 static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) {
   PyObject *result = with_compiled(self, done, made, NULL);
   if (result) {
     vlCameraDef *def = &((Camera *)result)->def;
-#define UNSET(field) def->field = VL_UNSET;
-    FOCAL(UNSET)
-#undef UNSET
-    def->fx = made->fx;
-    def->fy = made->fy;
-    def->cx = made->cx;
-    def->cy = made->cy;
-    def->skew = made->skew;
-    fit_lens(def, &self->def, made);
+    set_pixels(def, &self->def, made);
     memcpy(def->eye, self->def.eye, sizeof def->eye); /* the pose stays as it was given */
     memcpy(def->lookat, self->def.lookat, sizeof def->lookat);
     memcpy(def->up, self->def.up, sizeof def->up);
@@ -434,8 +451,7 @@ static PyObject *camera_stereo(Camera *self, PyObject *unused) {
   vlResult done = vl_camera_stereo(&self->def, &eyes[0], &eyes[1], NULL, &error);
   if (done != VL_OK)
     return raise_result(done, &error);
-  return Py_BuildValue("(NN)", with_compiled(self, VL_OK, &eyes[0], NULL),
-                       with_compiled(self, VL_OK, &eyes[1], NULL));
+  return Py_BuildValue("(NN)", with_eye(self, &eyes[0]), with_eye(self, &eyes[1]));
 }
 
 /* ---- projection of arrays ---------------------------------------------------------------- */

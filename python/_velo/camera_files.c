@@ -103,6 +103,11 @@ PyObject *camera_write(Camera *self, PyObject *arguments) {
     return NULL;
   }
   vlCameraRecord record = {.camera = self->def, .frames = 1};
+  if (self->camera.eye_circle != 0) {
+    Py_DECREF(keep);
+    return raise_usage(
+        "an eye of omnidirectional stereo is held by no file; write the camera of both eyes");
+  }
   if (strlen(name) >= sizeof record.name) {
     Py_DECREF(keep);
     return raise_value("name", text, "at most %zu bytes long", sizeof record.name - 1);

@@ -72,6 +72,23 @@ def changed_cameras_keep_their_motion_and_roll():
 
 
 @case
+def eyes_of_stereo_cameras_can_be_changed_and_written():
+    points, path = [[10.0, 20.0, -50.0]], work("eye.json")
+    place = {"eye": (0, 100, 500), "lookat": (0, 0, 0), "interocular": 6.0}
+    for keywords in (dict(stereo="off-axis", convergence=100.0, fov=1.0), dict(stereo="toe-in", convergence=100.0, fov=1.0),
+                     dict(stereo="omnidirectional", projection="equirectangular")):
+        for eye in velo.Camera(60, 40, **place, **keywords).eyes():
+            pixels = eye.project(points).pixels
+            assert numpy.allclose(eye.replace(exposure_time=2.0).project(points).pixels, pixels, rtol=0, atol=1e-9), keywords
+            if keywords["stereo"] == "omnidirectional":
+                with raises(velo.Error):
+                    eye.write(path)
+                continue
+            eye.write(path)
+            assert numpy.allclose(velo.read_camera(path).project(points).pixels, pixels, rtol=0, atol=1e-9), keywords
+
+
+@case
 def resized_cameras_keep_their_lens():
     points, cameras = [[0.3, 1.0, -5], [0, 1.5, -3]], os.path.join(cases.SCENES, "cameras")
     for name in ("lens_blades", "lens_tilt", "optics_single", "vignetting", "lens_anamorphic"):

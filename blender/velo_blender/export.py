@@ -117,7 +117,7 @@ class Export:
             elif item.type == "CURVES":
                 self._add_hair(item, hair.of_curves(item.data), 0, _placed(instance, matrix), matrix)
             elif item.type == "VOLUME":
-                self.notes.add(item.name, volumes.file_of(item.data), "volumes of OpenVDB files are not rendered")
+                self._add_volume(item, _placed(instance, matrix))
             elif item.type != "GPENCIL":
                 self.notes.add(item.name, "", "objects of type %s are not rendered" % item.type.lower())
 
@@ -258,6 +258,21 @@ class Export:
             self.notes.add(item.name, "", "%s is at rest" % what)
         return surface, {} if surface.alpha is None else {"alpha": surface.alpha}
 
+    def _add_volume(self, item, placed):
+        """The density of an OpenVDB file, inside of the box of its voxels."""
+        place = Place(placed.matrix, object_info.fields(item, placed.matrix, 0), (item.name_full,))
+        inputs = self._inputs(self._slots_of(item)[0], textures.Maps(None), None, place)
+        inputs.owner = item.name
+        found = volumes.add_file(item.data, self._slots_of(item)[0], inputs, placed.matrix)
+        if found is None:
+            return
+        medium, pose, grid = found
+        if self._moves is not None:
+            self.notes.add(item.name, "", "a volume is at rest")
+        self._note_inside(item, pose, grid.low, grid.high)
+        self.scene.add_box(grid.low, grid.high, pose=pose, inside=medium, material=self.scene.add_material("interface"), name=item.name)
+        self.shapes.append(placed)
+
     def _add_points(self, item, placed):
         matrix = placed.matrix
         centers, radii = points.read(item.data, self.notes, item.name)
@@ -360,18 +375,18 @@ class Export:
             medium = self._medium(material, arrays, maps, place)
             if medium is not None:
                 words["inside"] = medium
-                self._note_inside(item, place.matrix, arrays)
+                self._note_inside(item, place.matrix, arrays.positions.min(axis=0), arrays.positions.max(axis=0))
             whole = None if arrays.displaced else (arrays.positions, arrays.triangles[arrays.slots == slot])
             parts.append(Part(words, surface, material, whole))
         return parts
 
-    def _note_inside(self, item, matrix, arrays):
-        """Notes a camera inside of the box of a volume: velo's camera is in a vacuum."""
+    def _note_inside(self, item, matrix, low, high):
+        """Notes a camera inside of the box of a volume: velo's camera is in a vacuum. low, high: the box; matrix: world from its space."""
         camera_item = self.depsgraph.scene.camera
         if camera_item is None:
             return
         eye = numpy.linalg.solve(matrix, numpy.append(numpy.array(camera_item.matrix_world.translation), 1.0))[:3]
-        if (eye > arrays.positions.min(axis=0)).all() and (eye < arrays.positions.max(axis=0)).all():
+        if (eye > low).all() and (eye < high).all():
             self.notes.add(item.name, "Volume", "the camera is inside; what lies before the first surface is clear")
 
     def _medium(self, material, arrays, maps, place):

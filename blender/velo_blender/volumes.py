@@ -1,13 +1,13 @@
-"""volumes.py: volumes of meshes as velo's media: homogeneous ones, and those whose density varies as a grid over the object's box.
+"""volumes.py: volumes of meshes as velo's media: homogeneous ones, and those whose density varies as a grid over the object's box; volumes
+of OpenVDB files.
 
 Coefficients are per unit of length of the world, as in Cycles (kernel/svm/closure.h): scattering colour * density, absorption
 (1 - colour) * density."""
-import os
 from typing import Any, NamedTuple
 
 import numpy
 
-from . import evaluate, links
+from . import evaluate, links, openvdb_files
 
 CELLS = 64  # along a side of a grid of densities
 
@@ -23,11 +23,6 @@ class Volume(NamedTuple):
     groups: tuple = ()
 
 
-def file_of(volume):
-    """The name of the file of a volume object's data; empty: it has none, as those that geometry nodes make."""
-    return os.path.basename(volume.filepath.replace("\\", "/"))
-
-
 def medium(material, inputs, box, matrix):
     """velo's medium inside of a material's surface; None: it has no volume, or none that velo has (noted). box: (low, high) of the mesh in
     the object's space; matrix: world from object."""
@@ -36,14 +31,63 @@ def medium(material, inputs, box, matrix):
     output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
     if output is None or not output.inputs["Volume"].is_linked:
         return None
-    try:
+
+    def made():
         volume = _volume(output.inputs["Volume"], (), inputs, 0)
         return _add(volume, inputs, box, matrix) if volume is not None else None
+
+    return _noted(inputs, made)
+
+
+def _noted(inputs, function):
+    """What a function returns; None, with a line in the list, where it raises what velo does not have."""
+    try:
+        return function()
     except evaluate.Unsupported as error:
         inputs.notes.add(inputs.owner, error.node.name, "%s; the volume is not rendered" % error.text)
     except links.Cyclic as error:
         inputs.notes.add(inputs.owner, "Volume", "%s; it is not rendered" % error)
     return None
+
+
+def add_file(data, material, inputs, matrix):
+    """velo's medium of a volume object: (handle, world from voxels, openvdb_files.Grid); None: it has none (noted). data: the evaluated
+    object's; matrix: world from object. As in Cycles, a density for the object's space is that of the length of its diagonal."""
+    shader = _noted(inputs, lambda: _shader_of_file(material, inputs))
+    if shader is None:
+        return None
+    volume, name = shader
+    try:
+        grid = openvdb_files.read(data, name)
+    except openvdb_files.Unread as error:
+        inputs.notes.add(inputs.owner, openvdb_files.name_of(data), "%s; the volume is not rendered" % error)
+        return None
+    scale = numpy.linalg.norm(matrix[:3, :3] @ numpy.full(3, 3 ** -0.5)) if data.render.space == "OBJECT" else 1.0
+    words = _words(volume, inputs, volume.density / max(scale, 1e-30))
+    if words is None or grid.values.max() <= 0:
+        return None
+    pose = matrix @ grid.matrix
+    return inputs.scene.add_medium("grid", density=grid.values, low=grid.low, high=grid.high, pose=pose, **words), pose, grid
+
+
+def _shader_of_file(material, inputs):
+    """(Volume, the name of the grid of its density) of a volume object's material; None: it has no volume."""
+    if material is None or not material.use_nodes or material.node_tree is None:
+        half = numpy.full(3, 0.5)
+        return Volume(half, half, numpy.zeros(3), 0.0, 1.0), "density"
+    output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
+    source = None if output is None else links.follow(output.inputs["Volume"])[0]
+    if source is None:
+        return None
+    node = source.node
+    if node.type != "PRINCIPLED_VOLUME" or any(socket.is_linked for socket in node.inputs):
+        raise evaluate.Unsupported(node, "OpenVDB files have a Principled Volume without links alone")
+    volume = _single(node, source.groups, inputs)
+    if node.inputs["Color Attribute"].default_value:
+        inputs.notes.add(inputs.owner, node.name, "colours of grids are left out")
+    if volume.emission.max() > 0:
+        inputs.notes.add(inputs.owner, node.name, "its emission grows with its density")
+    return volume, node.inputs["Density Attribute"].default_value
 
 
 def is_alone(material):
@@ -126,8 +170,8 @@ def _sum(first, second, node):
     return Volume(parts[0][0] + parts[1][0], parts[0][1] + parts[1][1], parts[0][2] + parts[1][2], g, 1.0)
 
 
-def _add(volume, inputs, box, matrix):
-    factor = 1.0 if volume.density is None else volume.density
+def _words(volume, inputs, factor):
+    """Keywords of velo's medium, for a factor on the coefficients; None: there is nothing."""
     absorption, scattering, emission = (part * factor for part in (volume.absorption, volume.scattering, volume.emission))
     words = {"g": min(max(volume.g, -0.99), 0.99), "name": inputs.owner}
     if emission.max() > 0:  # velo's media emit by what they absorb
@@ -136,7 +180,12 @@ def _add(volume, inputs, box, matrix):
         high = min(float(color.max()), 1e30)
         words.update(emission=tuple(min(float(x) / high, 1.0) for x in color), emission_scale=high)
     words.update(sigma_a=tuple(float(x) for x in absorption), sigma_s=tuple(float(x) for x in scattering))
-    if max(absorption.max(), scattering.max()) <= 0:
+    return words if max(absorption.max(), scattering.max()) > 0 else None
+
+
+def _add(volume, inputs, box, matrix):
+    words = _words(volume, inputs, 1.0 if volume.density is None else volume.density)
+    if words is None:
         return None
     if volume.density is not None:
         return inputs.scene.add_medium("homogeneous", **words)

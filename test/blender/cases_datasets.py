@@ -7,7 +7,7 @@ import bpy
 import mathutils
 import numpy
 from bpy_extras.object_utils import world_to_camera_view
-from inside import FOLDER, ball, case, channel, material, new_scene, plane, render
+from inside import FOLDER, case, channel, material, new_scene, plane, render
 
 UNIT = 0.1  # metres of a unit of Blender
 SIZE = 160, 120
@@ -230,18 +230,3 @@ def panel_writes_bop():
     assert table(os.path.join(FOLDER, "panel"), "camera.json")["depth_scale"] == 0.5
     names = [os.path.join(root, name) for root, _, names in os.walk(FOLDER) for name in names if "left" in name]
     assert names and all(name.startswith(os.path.join(FOLDER, "panel")) and not os.path.dirname(name).endswith("left") for name in names)
-
-
-@case
-def files_of_volumes_are_listed():
-    from velo_blender import report
-    scene = new_scene(samples=1)
-    ball(material("ShaderNodeBsdfDiffuse")[0])
-    for name in ("smoke.vdb", "fire.vdb"):
-        data = bpy.data.volumes.new(name)
-        data.filepath = os.path.join(FOLDER, "missing", name)
-        item = bpy.data.objects.new("cloud of " + name, data)
-        scene.collection.objects.link(item)
-    render(scene)
-    for name in ("smoke.vdb", "fire.vdb"):
-        assert any(line.startswith("cloud of %s, %s:" % (name, name)) for line in report.last[scene.name]), report.last[scene.name]

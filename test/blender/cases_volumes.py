@@ -1,7 +1,10 @@
 """Cases of test_volumes.py: what lies below surfaces agrees with Cycles."""
-import bpy
+import os
 
-from inside import add, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
+import bpy
+import numpy
+
+from inside import FOLDER, add, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
 
 
 def filled(surface, kind, **values):
@@ -79,3 +82,109 @@ def volumes_that_velo_has_not_are_listed():
     scene.collection.objects.link(item)
     assert colors(render(scene)).min() > 0.9
     assert any("world's volume" in line for line in notes(scene)) and any("type volume" in line for line in notes(scene)), notes(scene)
+
+
+def cloud(path, render_space="OBJECT", scale=(1, 1, 1), **values):
+    """A volume object of an OpenVDB file in the light of a lamp, and nothing else: (scene, object)."""
+    scene = new_scene(samples=200)
+    scene.cycles.volume_bounces = 8
+    scene.cycles.volume_step_rate = 0.2
+    made, _ = material("ShaderNodeBsdfDiffuse")
+    tree = made.node_tree
+    output = next(known for known in tree.nodes if known.type == "OUTPUT_MATERIAL")
+    tree.nodes.remove(next(known for known in tree.nodes if known.type != "OUTPUT_MATERIAL"))
+    add(tree, "ShaderNodeVolumePrincipled", output.inputs["Volume"], **values)
+    data = bpy.data.volumes.new("cloud")
+    data.filepath, data.render.space = path, render_space
+    item = bpy.data.objects.new("cloud", data)
+    scene.collection.objects.link(item)
+    data.materials.append(made)
+    item.location, item.scale, item.rotation_euler = (0.2, 0, 1.2), scale, (0.2, 0.1, 0.5)
+    lamp(scene, "AREA", 800, size=2)
+    return scene, item
+
+
+def write_grid(name="density", ijk=(-16, -12, -8)):
+    """An OpenVDB file of 32 x 24 x 16 voxels of 0.06, dense on one side; None: the module that writes it is missing."""
+    try:
+        import pyopenvdb
+    except ImportError:
+        return None
+    x, y, z = numpy.meshgrid(numpy.linspace(-1, 1, 32), numpy.linspace(-1, 1, 24), numpy.linspace(-1, 1, 16), indexing="ij")
+    values = numpy.maximum(0, 1.2 - x * x - y * y - z * z) * (2 + x)
+    grid = pyopenvdb.FloatGrid()
+    grid.copyFromArray(values.astype("float32"), ijk=ijk)
+    grid.name, grid.transform = name, pyopenvdb.createLinearTransform(0.06)
+    path = os.path.join(FOLDER, "cloud.vdb")
+    pyopenvdb.write(path, grids=[grid])
+    return path
+
+
+@case
+def files_of_openvdb():
+    path = write_grid()
+    if path is None:
+        return
+    for space, scale, density in (("OBJECT", (1, 1, 1), 1.0), ("OBJECT", (1.3, 1.3, 1.3), 4.0), ("WORLD", (1.0, 1.2, 1.4), 2.0)):
+        scene, _ = cloud(path, space, scale, Color=(0.6, 0.7, 0.9, 1), Density=density)
+        mine, other = colors(render(scene)), colors(render(scene, "CYCLES"))
+        assert not notes(scene), notes(scene)
+        assert (abs(mine.mean(axis=(0, 1)) / other.mean(axis=(0, 1)) - 1) < 0.03).all(), (space, scale, mine.mean(), other.mean())
+        blocks = [image.reshape(8, 6, 8, 6, 3).mean(axis=(1, 3, 4)) for image in (mine, other)]  # the light and dark sides, without the noise
+        difference = abs(blocks[0] - blocks[1]).mean() / blocks[1].mean()
+        assert difference < 0.04, (space, scale, difference)
+
+
+@case
+def files_of_openvdb_that_are_not_rendered_are_listed():
+    garbage = os.path.join(FOLDER, "garbage.vdb")
+    with open(garbage, "wb") as file:
+        file.write(b" BDV" + bytes(range(200)))
+    paths = {garbage: "garbage.vdb", "": "", os.path.join(FOLDER, "missing.vdb"): "missing.vdb"}
+    other = write_grid("smoke")
+    if other is not None:
+        paths[other] = "cloud.vdb"
+    for path, name in paths.items():
+        scene, _ = cloud(path)
+        render(scene)
+        start = "cloud, %s: " % name if name else "cloud: "
+        assert any(line.startswith(start) and line.endswith("the volume is not rendered") for line in notes(scene)), (path, notes(scene))
+    scene, item = cloud(write_grid() or garbage)
+    tree = item.data.materials[0].node_tree
+    volume = next(node for node in tree.nodes if node.type == "PRINCIPLED_VOLUME")
+    add(tree, "ShaderNodeTexNoise", volume.inputs["Density"])
+    render(scene)
+    assert any("cloud, Principled Volume" in line for line in notes(scene)), notes(scene)
+
+
+@case
+def grids_without_numbers_are_read():
+    """Values that are no numbers or negative are 0; an empty grid and one of too many voxels are listed."""
+    from velo_blender import openvdb_files
+    if write_grid() is None:
+        return
+    import pyopenvdb
+    path = os.path.join(FOLDER, "odd.vdb")
+    data = bpy.data.volumes.new("odd")
+    data.filepath = path
+    values = numpy.array([float("nan"), float("inf"), -1.0, 2.0], dtype="float32").reshape(1, 1, 4)
+
+    def read(*voxels):
+        grid = pyopenvdb.FloatGrid()
+        for place, value in voxels:
+            grid.fill(place, place, value)
+        grid.name = "density"
+        pyopenvdb.write(path, grids=[grid])
+        data.grids.unload()
+        return openvdb_files.read(data, "density")
+
+    grid = read(*(((5, 6, 7 + k), float(value)) for k, value in enumerate(values.ravel())))
+    assert grid.values.shape == (6, 3, 3) and grid.values[4, 1, 1] == 2 and grid.values.sum() == 2
+    assert grid.low == (4, 5, 6) and grid.high == (7, 8, 12)
+    for voxels, text in (((), "empty"), ((((0, 0, 0), 1.0), ((9000, 9000, 9000), 1.0)), "too many")):
+        try:
+            read(*voxels)
+        except openvdb_files.Unread as error:
+            assert text in str(error), error
+            continue
+        raise AssertionError("it was read")

@@ -1,0 +1,70 @@
+"""openvdb_files.py: the grids of OpenVDB files that volume objects refer to, read by the Python module pyopenvdb where it is installed."""
+import importlib
+import os
+from typing import Any, NamedTuple
+
+import numpy
+
+MAX_VOXELS = 1 << 27  # of the box of a grid's active voxels
+MODULES = "pyopenvdb", "openvdb"  # before and since OpenVDB 11
+
+
+class Grid(NamedTuple):
+    """The voxels of a grid with a layer of its background around them. values: z x y x x, float32, at least 0; low, high: the box, where
+    voxel (i, j, k) is from i to i + 1, as in Cycles (OpenVDB's own begin half a voxel earlier); matrix: object from voxels, 4 x 4."""
+    values: Any
+    low: tuple
+    high: tuple
+    matrix: Any
+
+
+class Unread(Exception):
+    """A grid that cannot be read; its text says why."""
+
+
+def name_of(volume):
+    """The name of the file of a volume object's data; empty: it has none, as those that geometry nodes make."""
+    return os.path.basename(volume.filepath.replace("\\", "/"))
+
+
+def _module():
+    for name in MODULES:
+        try:
+            return importlib.import_module(name)
+        except ImportError:
+            continue
+    raise Unread("the Python module pyopenvdb is not installed")
+
+
+def read(volume, name):
+    """The Grid of a name in the file of an evaluated volume object's data, of the scene's frame. Unread."""
+    if not volume.filepath:
+        raise Unread("it has no file")
+    if not volume.grids.load():
+        raise Unread("the file cannot be read")
+    known = next((grid for grid in volume.grids if grid.name == name), None)
+    if known is None or known.data_type not in ("FLOAT", "DOUBLE"):
+        raise Unread("it has no grid %s of numbers" % name)
+    try:
+        grid = _module().read(volume.grids.frame_filepath, name)
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+        raise Unread("the file cannot be read (%s)" % " ".join(str(error).split())) from error
+    if "Frustum" in grid.transform.typeName:
+        raise Unread("its voxels are in the frustum of a camera")
+    matrix = numpy.array(known.matrix_object, dtype=float)
+    if not numpy.isfinite(matrix).all() or abs(numpy.linalg.det(matrix)) < 1e-30:
+        raise Unread("its voxels have no size")
+    return _dense(grid, matrix)
+
+
+def _dense(grid, matrix):
+    low, high = (numpy.array(corner, dtype=numpy.int64) for corner in grid.evalActiveVoxelBoundingBox())
+    size = high - low + 3
+    if grid.activeVoxelCount() == 0 or size.min() < 3:
+        raise Unread("the grid is empty")
+    if float(size[0]) * float(size[1]) * float(size[2]) > MAX_VOXELS:
+        raise Unread("its %d x %d x %d voxels are too many" % tuple(size))
+    values = numpy.zeros(tuple(size), dtype=numpy.float32)
+    grid.copyToArray(values, ijk=tuple(int(index) - 1 for index in low))
+    values = numpy.where(numpy.isfinite(values), numpy.maximum(values, 0), 0).transpose(2, 1, 0)
+    return Grid(numpy.ascontiguousarray(values, dtype=numpy.float32), tuple(low - 1.0), tuple(high + 2.0), matrix)

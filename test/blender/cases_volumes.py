@@ -81,7 +81,7 @@ def volumes_that_velo_has_not_are_listed():
     item = bpy.data.objects.new("cloud", bpy.data.volumes.new("cloud"))
     scene.collection.objects.link(item)
     assert colors(render(scene)).min() > 0.9
-    assert any("world's volume" in line for line in notes(scene)) and any("type volume" in line for line in notes(scene)), notes(scene)
+    assert any("world's volume" in line for line in notes(scene)) and any("the volume is not rendered" in line for line in notes(scene)), notes(scene)
 
 
 def cloud(path, render_space="OBJECT", scale=(1, 1, 1), **values):

@@ -148,7 +148,8 @@ typedef struct vlCameraDef {
    * at pose_times[0]. Between these times translation, rotation (along the shortest arc, at
    * constant speed) and scale are interpolated separately; before and after them the camera is
    * at rest. Unset vectors equal those of the first pose. With has_matrix_close only
-   * world_from_camera_close and roll_close are used. */
+   * world_from_camera_close and roll_close are used, also beside eye and lookat; with
+   * has_matrix alone the vectors are an error. */
   double eye_close[3], lookat_close[3], up_close[3], roll_close;
   bool has_matrix_close; /**< world_from_camera_close is given */
   /** The pose at pose_times[1], and both times in seconds. Unset times are shutter_open and

@@ -91,21 +91,9 @@ static inline __attribute__((always_inline)) void sigmoid_row(uint32_t count, co
   }
 }
 
-static void sigmoid_eval(uint32_t n, const float *c0, const float *c1, const float *c2,
-                         const float *scale, const float *const lambda[4],
-                         float *const out[4]) {
-  uint32_t count = VL_PAD(n);
-  for (int c = 0; c < 4; c++) {
-    if (scale)
-      sigmoid_row(count, c0, c1, c2, scale, NULL, lambda[c], out[c]);
-    else
-      sigmoid_row(count, c0, c1, c2, NULL, NULL, lambda[c], out[c]);
-  }
-}
-
-static void light_eval(uint32_t n, const float *c0, const float *c1, const float *c2,
-                       const float *scale, const float *dense, const float *const lambda[4],
-                       float *const out[4]) {
+static inline __attribute__((always_inline)) void light_eval(
+    uint32_t n, const float *c0, const float *c1, const float *c2, const float *scale,
+    const float *dense, const float *const lambda[4], float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
     if (scale)
@@ -113,6 +101,12 @@ static void light_eval(uint32_t n, const float *c0, const float *c1, const float
     else
       sigmoid_row(count, c0, c1, c2, NULL, dense, lambda[c], out[c]);
   }
+}
+
+static void sigmoid_eval(uint32_t n, const float *c0, const float *c1, const float *c2,
+                         const float *scale, const float *const lambda[4],
+                         float *const out[4]) {
+  light_eval(n, c0, c1, c2, scale, NULL, lambda, out);
 }
 
 static void dense_eval(uint32_t n, const float *dense, const float *const lambda[4],

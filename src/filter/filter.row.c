@@ -5,18 +5,13 @@
 #include "filter/kinds.row.h"
 #include "velo/filter_kinds.h"
 
-#define DECLARE(kind, row, value) extern const vlKindRow row;
-VL_PIXEL_FILTER_FUNCTIONS(DECLARE)
-
-#define ROW(kind, row, value) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_PIXEL_FILTER_FUNCTIONS(ROW)};
+VL_PIXEL_FILTER_FUNCTIONS(VL_DECLARE_ROW)
+static const vlKindRow *const rows[] = {VL_PIXEL_FILTER_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_pixel_filter_family =
     VL_KIND_FAMILY(rows, VL_PIXEL_FILTER_KINDS, "filters", "pixel filter", "PixelFilter");
 
 vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind) {
   vlPixelFilter filter = {.kind = kind};
-  const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, (int)kind);
-  if (row)
-    vl_row_set_defaults(row, &filter);
+  vl_kind_set_defaults(&vl_pixel_filter_family, (int)kind, &filter);
   return filter;
 }

@@ -102,10 +102,14 @@ static bool separate_faces(vlContext *context, vlPlainMesh *m) {
   return true;
 }
 
-bool vl_import_plain_read(vlScene *scene, const char *path, char **data, size_t *size) {
+bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const char **at,
+                          const char **end) {
+  size_t size = 0;
   vlError inside = {0};
   vl_import_plain_settings(scene);
-  vlResult r = vl_file_read_given(scene->context, path, true, data, size, &inside);
+  vlResult r = vl_file_read_given(scene->context, path, true, data, &size, &inside);
+  *at = *data;
+  *end = *data + size;
   if (r != VL_OK)
     vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
   return r == VL_OK;

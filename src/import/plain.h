@@ -8,9 +8,10 @@
 /* Marks camera and lights as missing, so that vl_scene_complete adds them. */
 void vl_import_plain_settings(vlScene *scene);
 
-/* Sets them, and reads the file, which is freed with the context's allocator. False: the scene
- * has an error. */
-bool vl_import_plain_read(vlScene *scene, const char *path, char **data, size_t *size);
+/* Sets them, and reads the file, which is freed with the context's allocator. *at, *end: its
+ * bytes. False: the scene has an error. */
+bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const char **at,
+                          const char **end);
 
 /* Adds the mesh to the scene. Without triangles its vertices are points: discs across their
  * normals; without normals small balls. The median distance to the fourth neighbour is their

@@ -12,8 +12,7 @@
   vlLightPower power;
 VL_LIGHT_FUNCTIONS(DECLARE)
 
-#define ROW(kind, row, power, compile, sample, emit, density) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_LIGHT_FUNCTIONS(ROW)};
+static const vlKindRow *const rows[] = {VL_LIGHT_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_light_family =
     VL_KIND_FAMILY(rows, VL_LIGHT_KINDS, "lights", "light", "LightSource");
 

@@ -5,6 +5,12 @@
 vlBsdfEval vl_bsdf_conductor_eval;
 vlBsdfSample vl_bsdf_conductor_sample;
 
+/* g times the reflectance at the cosine c of a metal of index eta + i k; 0 unless valid. */
+static inline float tinted(int valid, float g, float c, float eta, float k) {
+  float f = vl_fresnel_conductor(c, eta, k);
+  return valid ? f * g : 0.0f;
+}
+
 void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
                             vlBsdfDirections wi, float *const value[4], float *pdf) {
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *ix = wi.x, *iy = wi.y, *iz = wi.z;
@@ -25,14 +31,10 @@ void vl_bsdf_conductor_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     float lo = vl_ggx_length(o, rx, ry), li = vl_ggx_length(w, rx, ry);
     float p = 0.25f * vl_ggx_visible(h, rx, ry, o.z, lo);
     float g = p * vl_ggx_shadowing(o.z, lo, w.z, li);
-    float f0 = vl_fresnel_conductor(c, e0[i], k0[i]),
-          f1 = vl_fresnel_conductor(c, e1[i], k1[i]);
-    float f2 = vl_fresnel_conductor(c, e2[i], k2[i]),
-          f3 = vl_fresnel_conductor(c, e3[i], k3[i]);
-    v0[i] = valid ? f0 * g : 0.0f;
-    v1[i] = valid ? f1 * g : 0.0f;
-    v2[i] = valid ? f2 * g : 0.0f;
-    v3[i] = valid ? f3 * g : 0.0f;
+    v0[i] = tinted(valid, g, c, e0[i], k0[i]);
+    v1[i] = tinted(valid, g, c, e1[i], k1[i]);
+    v2[i] = tinted(valid, g, c, e2[i], k2[i]);
+    v3[i] = tinted(valid, g, c, e3[i], k3[i]);
     pdf[i] = valid ? p : 0.0f;
   }
 }
@@ -54,10 +56,7 @@ void vl_bsdf_conductor_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDire
     float rx = vl_ggx_alpha(ax[i]), ry = vl_ggx_alpha(ay[i]);
     int smooth = vl_ggx_is_smooth(ax[i], ay[i]);
     vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i]));
-    vlVec3 h = vl_ggx_sample(o, rx, ry, u[i], v[i]);
-    h.x = smooth ? 0.0f : h.x;
-    h.y = smooth ? 0.0f : h.y;
-    h.z = smooth ? 1.0f : h.z;
+    vlVec3 h = vl_microfacet(o, rx, ry, smooth, u[i], v[i]);
     float c = vl_dot(o, h);
     vlVec3 w = vl_reflect(o, h, c);
     int valid = (o.z > 0.0f) & (w.z > 0.0f) & (c > 0.0f);
@@ -68,14 +67,10 @@ void vl_bsdf_conductor_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDire
     ix[i] = w.x;
     iy[i] = w.y;
     iz[i] = oz[i] < 0.0f ? -w.z : w.z;
-    float f0 = vl_fresnel_conductor(c, e0[i], k0[i]),
-          f1 = vl_fresnel_conductor(c, e1[i], k1[i]);
-    float f2 = vl_fresnel_conductor(c, e2[i], k2[i]),
-          f3 = vl_fresnel_conductor(c, e3[i], k3[i]);
-    w0[i] = valid ? f0 * g : 0.0f;
-    w1[i] = valid ? f1 * g : 0.0f;
-    w2[i] = valid ? f2 * g : 0.0f;
-    w3[i] = valid ? f3 * g : 0.0f;
+    w0[i] = tinted(valid, g, c, e0[i], k0[i]);
+    w1[i] = tinted(valid, g, c, e1[i], k1[i]);
+    w2[i] = tinted(valid, g, c, e2[i], k2[i]);
+    w3[i] = tinted(valid, g, c, e3[i], k3[i]);
     pdf[i] = valid ? (smooth ? 1.0f : p) : 0.0f;
     flags[i] =
         valid ? (smooth ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) : (uint32_t)VL_SAMPLED_NONE;

@@ -45,10 +45,7 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     float g = vl_ggx_shadowing(o.z, lo, vl_abs(w.z), li);
     g = p * g * (reflect ? 1.0f : inverse * inverse);
     g = valid ? g : 0.0f;
-    v0[i] = g;
-    v1[i] = g;
-    v2[i] = g;
-    v3[i] = g;
+    v0[i] = v1[i] = v2[i] = v3[i] = g;
     pdf[i] = valid ? p : 0.0f;
   }
 }
@@ -70,10 +67,7 @@ void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDir
     float forth = index[i], back = 1.0f / forth;
     float eta = below ? back : forth, inverse = below ? forth : back;
     vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i]));
-    vlVec3 h = vl_ggx_sample(o, rx, ry, u[i], v[i]);
-    h.x = smooth ? 0.0f : h.x;
-    h.y = smooth ? 0.0f : h.y;
-    h.z = smooth ? 1.0f : h.z;
+    vlVec3 h = vl_microfacet(o, rx, ry, smooth, u[i], v[i]);
     float oh = vl_dot(o, h);
     vlFresnel f = vl_fresnel_dielectric(oh, eta);
     float fr = index[i] == 1.0f ? 0.0f : f.reflected;
@@ -99,10 +93,7 @@ void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDir
     ix[i] = w.x;
     iy[i] = w.y;
     iz[i] = below ? -w.z : w.z;
-    w0[i] = g;
-    w1[i] = g;
-    w2[i] = g;
-    w3[i] = g;
+    w0[i] = w1[i] = w2[i] = w3[i] = g;
     pdf[i] = valid ? p : 0.0f;
     flags[i] = valid ? flag : (uint32_t)VL_SAMPLED_NONE;
     eta_scale[i] = reflect ? 1.0f : eta * eta;

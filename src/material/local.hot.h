@@ -37,6 +37,14 @@ static inline vlVec3 vl_cosine_direction(float u, float v) {
       d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f)); /* z is at least VL_MIN_FRACTION */
 }
 
+/* A sample of the normals that are visible from o (vl_ggx_sample); of a smooth lane the
+ * surface's. */
+static inline vlVec3 vl_microfacet(vlVec3 o, float alpha_x, float alpha_y, int smooth, float u,
+                                   float v) {
+  vlVec3 h = vl_ggx_sample(o, alpha_x, alpha_y, u, v);
+  return vl_vec3(smooth ? 0.0f : h.x, smooth ? 0.0f : h.y, smooth ? 1.0f : h.z);
+}
+
 /* Reflects wo about the normal h; oh: the dot product of wo and h. */
 static inline vlVec3 vl_reflect(vlVec3 wo, vlVec3 h, float oh) {
   float s = 2.0f * oh;

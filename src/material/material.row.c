@@ -5,18 +5,13 @@
 #include "base/cookie.h"
 #include "material/kinds.row.h"
 
-#define DECLARE(kind, row, compile) extern const vlKindRow row;
-VL_MATERIAL_FUNCTIONS(DECLARE)
-
-#define ROW(kind, row, compile) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_MATERIAL_FUNCTIONS(ROW)};
+VL_MATERIAL_FUNCTIONS(VL_DECLARE_ROW)
+static const vlKindRow *const rows[] = {VL_MATERIAL_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_material_family =
     VL_KIND_FAMILY(rows, VL_MATERIAL_KINDS, "materials", "material", "Material");
 
 vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
   vlMaterialDef def = {.cookie = VL_COOKIE_MATERIAL, .kind = kind};
-  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)kind);
-  if (row)
-    vl_row_set_defaults(row, &def);
+  vl_kind_set_defaults(&vl_material_family, (int)kind, &def);
   return def;
 }

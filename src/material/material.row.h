@@ -35,12 +35,14 @@
   BOOL("remaproughness", remap_roughness,                                                \
        "true: alpha is the square root of the roughness; false: alpha is the roughness", \
        VL_DEFAULT(1))
-#define ROUGHNESS                                                                   \
-  INPUT("roughness", u_roughness, "sets uroughness and vroughness",                 \
-        VL_SECOND(vlMaterialDef, v_roughness), VL_FROM(0),                          \
-        .flags = VL_PARAMETER_SHORTHAND | VL_PARAMETER_CLAMPED),                    \
-      INPUT("uroughness", u_roughness, "roughness along the tangent", ROUGH_RANGE), \
-      INPUT("vroughness", v_roughness, "roughness across the tangent", ROUGH_RANGE), REMAP
+/* layer: prefix of the names; of: whose roughness it is, with a comma. */
+#define ROUGHNESS_OF(layer, u, v, of)                                                 \
+  INPUT(layer "roughness", u, "sets " layer "uroughness and " layer "vroughness",     \
+        VL_SECOND(vlMaterialDef, v), VL_FROM(0),                                      \
+        .flags = VL_PARAMETER_SHORTHAND | VL_PARAMETER_CLAMPED),                      \
+      INPUT(layer "uroughness", u, "roughness " of "along the tangent", ROUGH_RANGE), \
+      INPUT(layer "vroughness", v, "roughness " of "across the tangent", ROUGH_RANGE)
+#define ROUGHNESS ROUGHNESS_OF("", u_roughness, v_roughness, ""), REMAP
 #define ROUGH_RANGE VL_FROM(0), .flags = VL_PARAMETER_CLAMPED
 #define ETA_DIELECTRIC        \
   VL_DEFAULT(1.5), UNBOUNDED, \

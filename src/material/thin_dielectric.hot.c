@@ -38,10 +38,7 @@ void vl_bsdf_thin_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     ix[i] = -ox[i];
     iy[i] = -oy[i];
     iz[i] = reflect ? zo : -zo;
-    w0[i] = w;
-    w1[i] = w;
-    w2[i] = w;
-    w3[i] = w;
+    w0[i] = w1[i] = w2[i] = w3[i] = w;
     pdf[i] = valid ? p : 0.0f;
     flags[i] = valid ? f : (uint32_t)VL_SAMPLED_NONE;
     eta_scale[i] = 1.0f;

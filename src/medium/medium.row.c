@@ -5,11 +5,8 @@
 #include "base/cookie.h"
 #include "medium/kinds.row.h"
 
-#define DECLARE(kind, row, compile, density) extern const vlKindRow row;
-VL_MEDIUM_FUNCTIONS(DECLARE)
-
-#define ROW(kind, row, compile, density) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_MEDIUM_FUNCTIONS(ROW)};
+VL_MEDIUM_FUNCTIONS(VL_DECLARE_ROW)
+static const vlKindRow *const rows[] = {VL_MEDIUM_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_medium_family =
     VL_KIND_FAMILY(rows, VL_MEDIUM_KINDS, "media", "medium type", "MakeNamedMedium");
 

@@ -9,41 +9,33 @@
   vlSampler2d two;
 VL_SAMPLER_FUNCTIONS(DECLARE)
 
-static void get_1d(VL_SAMPLER_INPUT, float *u) {
-  if (s->own) {
-    vl_own_numbers(s, n, px, py, index, dimension, u, NULL);
-    return;
-  }
-  uint32_t count = VL_PAD(n);
-  switch ((vlSamplerKind)s->kind) {
-#define CASE(kind, row, one, two)               \
-  case kind:                                    \
-    one(s, count, px, py, index, dimension, u); \
-    return;
-    VL_SAMPLER_FUNCTIONS(CASE)
-#undef CASE
-  }
-}
-
-static void get_2d(VL_SAMPLER_INPUT, float *u, float *v) {
+/* v: null for one dimension. */
+static void get(VL_SAMPLER_INPUT, float *u, float *v) {
   if (s->own) {
     vl_own_numbers(s, n, px, py, index, dimension, u, v);
     return;
   }
   uint32_t count = VL_PAD(n);
   switch ((vlSamplerKind)s->kind) {
-#define CASE(kind, row, one, two)                  \
-  case kind:                                       \
-    two(s, count, px, py, index, dimension, u, v); \
+#define CASE(kind, row, one, two)                    \
+  case kind:                                         \
+    if (v)                                           \
+      two(s, count, px, py, index, dimension, u, v); \
+    else                                             \
+      one(s, count, px, py, index, dimension, u);    \
     return;
     VL_SAMPLER_FUNCTIONS(CASE)
 #undef CASE
   }
 }
 
+static void get_1d(VL_SAMPLER_INPUT, float *u) {
+  get(s, n, px, py, index, dimension, u, NULL);
+}
+
 static void get_2d_with(VL_SAMPLER_INPUT, uint32_t with, float *u, float *v) {
   if (s->own || (s->kind != VL_SAMPLER_SOBOL && s->kind != VL_SAMPLER_ZSOBOL)) {
-    get_2d(s, n, px, py, index, dimension, u, v);
+    get(s, n, px, py, index, dimension, u, v);
     return;
   }
   vlSobolChunk c;
@@ -58,4 +50,4 @@ static void get_2d_with(VL_SAMPLER_INPUT, uint32_t with, float *u, float *v) {
   }
 }
 
-const vlSamplerKernels vl_sampler_kernel_table = {get_1d, get_2d, get_2d_with};
+const vlSamplerKernels vl_sampler_kernel_table = {get_1d, get, get_2d_with};

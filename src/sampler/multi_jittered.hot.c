@@ -2,12 +2,7 @@
  */
 #include "sampler/cells.hot.h"
 
-vlSampler1d vl_sampler_multi_jittered_1d;
 vlSampler2d vl_sampler_multi_jittered_2d;
-
-void vl_sampler_multi_jittered_1d(VL_SAMPLER_INPUT, float *u) {
-  VL_SAMPLER_IN_CHUNKS(vl_cells_1d(1, s, c, u + k))
-}
 
 void vl_sampler_multi_jittered_2d(VL_SAMPLER_INPUT, float *u, float *v) {
   VL_SAMPLER_IN_CHUNKS(vl_multi_jittered_2d(s, c, u + k, v + k))

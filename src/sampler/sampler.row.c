@@ -8,10 +8,7 @@
 const char *const vl_sampler_randomizations[] = {"none", "permutedigits", "fastowen", "owen",
                                                  NULL};
 
-#define DECLARE(kind, row, one, two) extern const vlKindRow row;
-VL_SAMPLER_FUNCTIONS(DECLARE)
-
-#define ROW(kind, row, one, two) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_SAMPLER_FUNCTIONS(ROW)};
+VL_SAMPLER_FUNCTIONS(VL_DECLARE_ROW)
+static const vlKindRow *const rows[] = {VL_SAMPLER_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_sampler_family =
     VL_KIND_FAMILY(rows, VL_SAMPLER_KINDS, "samplers", "sampler", "Sampler");

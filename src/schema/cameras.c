@@ -154,8 +154,7 @@ const vlKindRow vl_camera_settings_row = {
   X(VL_CAMERA_COLMAP, colmap_row)
 _Static_assert(0 CAMERA_ROWS(VL_COUNT_KIND) == 0 VL_CAMERA_KINDS(VL_COUNT_KIND),
                "each camera has a row");
-#define ROW(kind, row) [kind] = &row,
-static const vlKindRow *const rows[] = {CAMERA_ROWS(ROW)
+static const vlKindRow *const rows[] = {CAMERA_ROWS(VL_LIST_ROW)
                                             VL_PROJECTION_KINDS(ROW_OF_PROJECTION)};
 #define CAMERA_KINDS(X) VL_CAMERA_KINDS(X) VL_PROJECTION_KINDS(X)
 const vlKindFamily vl_camera_family =

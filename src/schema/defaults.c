@@ -46,9 +46,7 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
                       .tint = {1, 1, 1, 1},
                       .channel = -1,
                       .cutoff = VL_UNSET};
-  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)kind);
-  if (row)
-    vl_row_set_defaults(row, &def);
+  vl_kind_set_defaults(&vl_texture_family, (int)kind, &def);
   memcpy(def.texture_from_world, identity, sizeof identity);
   return def;
 }

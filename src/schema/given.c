@@ -270,26 +270,22 @@ bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *giv
   return false;
 }
 
-static void put(const vlParameter *row, double number, char *at) {
-  float single = (float)number;
-  uint32_t count = row->type == VL_PARAMETER_COUNT ? (uint32_t)number : 0;
-  int choice = row->type == VL_PARAMETER_CHOICE ? (int)number : 0;
-  bool flag = number != 0;
+static void put(const vlParameter *row, double number, void *at) {
   switch (row->type) {
-    case VL_PARAMETER_BOOL:
-      memcpy(at, &flag, sizeof flag);
-      break;
     case VL_PARAMETER_COUNT:
-      memcpy(at, &count, sizeof count);
+      *(uint32_t *)at = (uint32_t)number;
       break;
     case VL_PARAMETER_CHOICE:
-      memcpy(at, &choice, sizeof choice);
+      *(int *)at = (int)number;
+      break;
+    case VL_PARAMETER_BOOL:
+      *(bool *)at = number != 0;
       break;
     case VL_PARAMETER_FLOAT:
-      memcpy(at, &single, sizeof single);
+      *(float *)at = (float)number;
       break;
     case VL_PARAMETER_DOUBLE:
-      memcpy(at, &number, sizeof number);
+      *(double *)at = number;
       break;
     case VL_PARAMETER_FLOAT3:
     case VL_PARAMETER_DOUBLE3:

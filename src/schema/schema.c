@@ -128,12 +128,16 @@ void vl_row_set_defaults(const vlKindRow *row, void *def) {
   }
 }
 
+void vl_kind_set_defaults(const vlKindFamily *family, int kind, void *def) {
+  const vlKindRow *row = vl_kind_row(family, kind);
+  if (row)
+    vl_row_set_defaults(row, def);
+}
+
 void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def) {
-  const vlKindRow *own = vl_kind_row(family, kind);
   for (uint32_t i = 0; i < family->kind_count; i++)
     vl_row_set_defaults(family->rows[i], def);
-  if (own)
-    vl_row_set_defaults(own, def);
+  vl_kind_set_defaults(family, kind, def);
 }
 
 /* ---- members ----------------------------------------------------------------------------- */

@@ -49,6 +49,11 @@
 #define VL_ROW_PARAMETERS(array) \
   .parameters = (array), .parameter_count = sizeof(array) / sizeof *(array)
 
+/* For the list of a family's kinds (FAMILY/kinds.row.h), X(kind, row, ...): declares each row;
+ * lists each row at its kind. */
+#define VL_DECLARE_ROW(kind, row, ...) extern const vlKindRow row;
+#define VL_LIST_ROW(kind, row, ...) [kind] = &row,
+
 /* Initialises a family with the array of its rows and the list of its kinds. */
 #define VL_KIND_FAMILY(array, KINDS, family_name, thing_name, directive_name) \
   {                                                                           \
@@ -121,6 +126,8 @@ const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
 /* Sets the members that the row describes to their defaults. Other members are unchanged. */
 void vl_row_set_defaults(const vlKindRow *row, void *def);
+/* The same with the row of a kind; an unknown kind has none. */
+void vl_kind_set_defaults(const vlKindFamily *family, int kind, void *def);
 /* Sets all members that any row of the family describes to their defaults, because a def may
  * change its kind. The defaults of `kind` are set last and take precedence. */
 void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def);

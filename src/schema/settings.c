@@ -278,8 +278,7 @@ static const vlKindRow program_row = {VL_ROW_PARAMETERS(program_parameters), .na
   X(VL_SETTING_EXPOSURE, vl_exposure_settings_row)
 _Static_assert(0 GROUP_ROWS(VL_COUNT_KIND) == 0 VL_SETTING_GROUPS(VL_COUNT_KIND),
                "each group has a row");
-#define ROW(kind, row) [kind] = &row,
-static const vlKindRow *const rows_of_group[] = {GROUP_ROWS(ROW)};
+static const vlKindRow *const rows_of_group[] = {GROUP_ROWS(VL_LIST_ROW)};
 const vlKindFamily vl_setting_family =
     VL_KIND_FAMILY(rows_of_group, VL_SETTING_GROUPS, "settings", "setting", NULL);
 

@@ -19,8 +19,7 @@ enum { VL_SHAPE_FUNCTIONS(LISTED) };
 #define IS_LISTED(kind, name) _Static_assert((int)LISTED_##kind == (int)kind, #name);
 VL_SHAPE_KINDS(IS_LISTED)
 
-#define ROW(kind, row, box, functions) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_SHAPE_FUNCTIONS(ROW)};
+static const vlKindRow *const rows[] = {VL_SHAPE_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_shape_family =
     VL_KIND_FAMILY(rows, VL_SHAPE_KINDS, "shapes", "shape", "Shape");
 

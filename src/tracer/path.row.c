@@ -1,9 +1,7 @@
 /* tracer/path.row.c: the name and the parameters of the tracer path. */
 #include "tracer/tracer.row.h"
 
-static const vlParameter parameters[] = {DEPTH, LIGHT_SAMPLER, REGULARIZE,
-                                         IGNORED(BOOL, "samplelights"),
-                                         IGNORED(BOOL, "samplebsdf")};
+static const vlParameter parameters[] = {ONE_WAY};
 
 const vlKindRow vl_tracer_row_path = {
     .name = "path",

@@ -7,10 +7,7 @@
 
 const char *const vl_tracer_light_samplers[] = {"bvh", "power", "uniform", "exhaustive", NULL};
 
-#define DECLARE(kind, row, trace) extern const vlKindRow row;
-VL_TRACER_FUNCTIONS(DECLARE)
-
-#define ROW(kind, row, trace) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_TRACER_FUNCTIONS(ROW)};
+VL_TRACER_FUNCTIONS(VL_DECLARE_ROW)
+static const vlKindRow *const rows[] = {VL_TRACER_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_tracer_family =
     VL_KIND_FAMILY(rows, VL_TRACER_KINDS, "tracers", "integrator", "Integrator");

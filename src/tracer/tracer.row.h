@@ -28,6 +28,9 @@ extern const char *const vl_tracer_light_samplers[];
     .name = file_name, .member = "", .type = VL_PARAMETER_##TYPE,                 \
     .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, .description = "ignored" \
   }
+/* All of the tracers that follow paths from the camera only. */
+#define ONE_WAY \
+  DEPTH, LIGHT_SAMPLER, REGULARIZE, IGNORED(BOOL, "samplelights"), IGNORED(BOOL, "samplebsdf")
 #define PATHS                                                       \
   PARAMETER(COUNT, "photonsperiteration", render.light_paths,       \
             "number of light paths per pass; unset: one per pixel", \

@@ -257,13 +257,7 @@ vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load,
   Off s = {.scene = scene, .path = path};
   vlContext *context = scene->context;
   char *data = NULL;
-  size_t size = 0;
-  bool ok = vl_import_plain_read(scene, path, &data, &size);
-  if (ok) {
-    s.at = data;
-    s.end = data + size;
-    ok = read(&s);
-  }
+  bool ok = vl_import_plain_read(scene, path, &data, &s.at, &s.end) && read(&s);
   vl_free(context, data);
   VL_ARRAY_FREE(context, &s.indices);
   VL_ARRAY_FREE(context, &s.corners);

@@ -16,84 +16,38 @@ typedef struct Rule {
   Part part;
 } Rule;
 
-static Rule rule_of(vlDirective d) {
-  switch (d) {
-    case VL_DIR_WORLD_BEGIN:
-      return (Rule){"WorldBegin", OPTIONS};
-    case VL_DIR_TRANSFORM_TIMES:
-      return (Rule){"TransformTimes", OPTIONS};
-    case VL_DIR_FILM:
-      return (Rule){"Film", OPTIONS};
-    case VL_DIR_SAMPLER:
-      return (Rule){"Sampler", OPTIONS};
-    case VL_DIR_INTEGRATOR:
-      return (Rule){"Integrator", OPTIONS};
-    case VL_DIR_PIXEL_FILTER:
-      return (Rule){"PixelFilter", OPTIONS};
-    case VL_DIR_ACCELERATOR:
-      return (Rule){"Accelerator", OPTIONS};
-    case VL_DIR_CAMERA:
-      return (Rule){"Camera", OPTIONS};
-    case VL_DIR_ATTRIBUTE_BEGIN:
-      return (Rule){"AttributeBegin", WORLD};
-    case VL_DIR_ATTRIBUTE_END:
-      return (Rule){"AttributeEnd", WORLD};
-    case VL_DIR_TRANSFORM_BEGIN:
-      return (Rule){"TransformBegin", WORLD};
-    case VL_DIR_TRANSFORM_END:
-      return (Rule){"TransformEnd", WORLD};
-    case VL_DIR_REVERSE_ORIENTATION:
-      return (Rule){"ReverseOrientation", WORLD};
-    case VL_DIR_OBJECT_END:
-      return (Rule){"ObjectEnd", WORLD};
-    case VL_DIR_IMPORT_BEGIN:
-      return (Rule){"Import", WORLD};
-    case VL_DIR_NAMED_MATERIAL:
-      return (Rule){"NamedMaterial", WORLD};
-    case VL_DIR_OBJECT_BEGIN:
-      return (Rule){"ObjectBegin", WORLD};
-    case VL_DIR_OBJECT_INSTANCE:
-      return (Rule){"ObjectInstance", WORLD};
-    case VL_DIR_MATERIAL:
-      return (Rule){"Material", WORLD};
-    case VL_DIR_MAKE_NAMED_MATERIAL:
-      return (Rule){"MakeNamedMaterial", WORLD};
-    case VL_DIR_AREA_LIGHT_SOURCE:
-      return (Rule){"AreaLightSource", WORLD};
-    case VL_DIR_LIGHT_SOURCE:
-      return (Rule){"LightSource", WORLD};
-    case VL_DIR_SHAPE:
-      return (Rule){"Shape", WORLD};
-    case VL_DIR_TEXTURE:
-      return (Rule){"Texture", WORLD};
-    case VL_DIR_IDENTITY:
-    case VL_DIR_ACTIVE_ALL:
-    case VL_DIR_ACTIVE_START:
-    case VL_DIR_ACTIVE_END:
-    case VL_DIR_IMPORT_END:
-    case VL_DIR_TRANSLATE:
-    case VL_DIR_SCALE:
-    case VL_DIR_ROTATE:
-    case VL_DIR_LOOK_AT:
-    case VL_DIR_TRANSFORM:
-    case VL_DIR_CONCAT_TRANSFORM:
-    case VL_DIR_COORDINATE_SYSTEM:
-    case VL_DIR_COORD_SYS_TRANSFORM:
-    case VL_DIR_COLOR_SPACE:
-    case VL_DIR_MEDIUM_INTERFACE:
-    case VL_DIR_OPTION:
-    case VL_DIR_ATTRIBUTE:
-    case VL_DIR_MAKE_NAMED_MEDIUM:
-      break;
-  }
-  return (Rule){NULL, ANYWHERE};
-}
+static const Rule rules[VL_DIR_TEXTURE + 1] = {
+    [VL_DIR_WORLD_BEGIN] = {"WorldBegin", OPTIONS},
+    [VL_DIR_TRANSFORM_TIMES] = {"TransformTimes", OPTIONS},
+    [VL_DIR_FILM] = {"Film", OPTIONS},
+    [VL_DIR_SAMPLER] = {"Sampler", OPTIONS},
+    [VL_DIR_INTEGRATOR] = {"Integrator", OPTIONS},
+    [VL_DIR_PIXEL_FILTER] = {"PixelFilter", OPTIONS},
+    [VL_DIR_ACCELERATOR] = {"Accelerator", OPTIONS},
+    [VL_DIR_CAMERA] = {"Camera", OPTIONS},
+    [VL_DIR_ATTRIBUTE_BEGIN] = {"AttributeBegin", WORLD},
+    [VL_DIR_ATTRIBUTE_END] = {"AttributeEnd", WORLD},
+    [VL_DIR_TRANSFORM_BEGIN] = {"TransformBegin", WORLD},
+    [VL_DIR_TRANSFORM_END] = {"TransformEnd", WORLD},
+    [VL_DIR_REVERSE_ORIENTATION] = {"ReverseOrientation", WORLD},
+    [VL_DIR_OBJECT_END] = {"ObjectEnd", WORLD},
+    [VL_DIR_IMPORT_BEGIN] = {"Import", WORLD},
+    [VL_DIR_NAMED_MATERIAL] = {"NamedMaterial", WORLD},
+    [VL_DIR_OBJECT_BEGIN] = {"ObjectBegin", WORLD},
+    [VL_DIR_OBJECT_INSTANCE] = {"ObjectInstance", WORLD},
+    [VL_DIR_MATERIAL] = {"Material", WORLD},
+    [VL_DIR_MAKE_NAMED_MATERIAL] = {"MakeNamedMaterial", WORLD},
+    [VL_DIR_AREA_LIGHT_SOURCE] = {"AreaLightSource", WORLD},
+    [VL_DIR_LIGHT_SOURCE] = {"LightSource", WORLD},
+    [VL_DIR_SHAPE] = {"Shape", WORLD},
+    [VL_DIR_TEXTURE] = {"Texture", WORLD},
+};
 
 /* Records a directive that precedes WorldBegin. The last directive of a kind counts. */
 static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
   if (choice->given)
     vl_import_remark(import, s->source, "%s a second time: this one counts",
-                     rule_of(s->directive).name);
+                     rules[s->directive].name);
   vl_param_list_free(import->context, &choice->params);
   choice->given = true;
   choice->source = s->source;
@@ -155,7 +109,7 @@ static void note_space(vlImport *import, const vlStatement *s) {
 /* ---- statements -------------------------------------------------------------------------- */
 
 static bool in_right_part(vlImport *import, const vlStatement *s) {
-  const Rule rule = rule_of(s->directive);
+  const Rule rule = rules[s->directive];
   switch (rule.part) {
     case ANYWHERE:
       return true;
@@ -182,7 +136,7 @@ static bool obey(vlImport *import, const vlStatement *s) {
                             s->source); /* pbrt-v4: both save the whole graphics state */
     case VL_DIR_ATTRIBUTE_END:
     case VL_DIR_TRANSFORM_END:
-      return vl_import_pop(import, 'a', rule_of(s->directive).name, s->source);
+      return vl_import_pop(import, 'a', rules[s->directive].name, s->source);
     case VL_DIR_IMPORT_BEGIN:
       return vl_import_push(import, 'i', s->source);
     case VL_DIR_IMPORT_END: {

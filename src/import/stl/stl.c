@@ -139,13 +139,7 @@ vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load,
                        vlError *error) {
   Stl s = {.scene = scene, .path = path};
   char *data = NULL;
-  size_t size = 0;
-  bool ok = vl_import_plain_read(scene, path, &data, &size);
-  if (ok) {
-    s.at = data;
-    s.end = data + size;
-    ok = read(&s);
-  }
+  bool ok = vl_import_plain_read(scene, path, &data, &s.at, &s.end) && read(&s);
   vl_free(scene->context, data);
   size_t vertices = s.positions.count / 3;
   uint32_t *indices = ok ? vl_alloc_array(scene->context, vertices + 1, sizeof *indices) : NULL;

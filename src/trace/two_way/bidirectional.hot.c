@@ -225,11 +225,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
     vl_stage_connect(t, n, depth, &x, &s->values, &r->back, &q);
   if (way->merge)
     vl_stage_merge(t, n, depth, &x, &s->values, &r->back, &r->list);
-  uint32_t count =
-      vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
-  if (vl_has_media(t))
-    vl_volume_go_on(t, count, &s->at, &s->volume->at, s->order, &s->rays, &s->volume->rays);
-  vl_stage_reverse(t, n, &s->at, s->samples.wi, &r->back);
+  uint32_t count = vl_two_way_scatter(t, n, depth, dimension);
   carry_on(t, count, depth, &s->rays, s->order, &s->at.surface, &s->samples, &r->back,
            &r->ways);
   return count;

@@ -81,18 +81,7 @@ static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CAN
                       float worth[CANDIDATES]) {
   _Alignas(64) float p[3][CANDIDATES], g[3][CANDIDATES], n[3][CANDIDATES], power[4][CANDIDATES];
   _Alignas(64) float back[CANDIDATES], near[CANDIDATES];
-  for (uint32_t k = 0; k < CANDIDATES; k++) {
-    const vlLightVertex *x = &way->inner.vertices[at[k]];
-    for (int j = 0; j < 3; j++) {
-      p[j][k] = x->p[j];
-      g[j][k] = x->g[j];
-      n[j][k] = x->n[j];
-    }
-    for (int c = 0; c < 4; c++)
-      power[c][k] = x->power[c];
-    back[k] = x->back;
-    near[k] = x->bounce > e->room ? 0.0f : 1.0f;
-  }
+  vl_gather(way, e, at, p, g, n, power, back, near);
   float cosines = e->diffuse ? 1.0f : 0.0f,
         bents = 1.0f - cosines; /* a select would keep the loop from being a vector */
   /* one vector of 8 */

@@ -22,21 +22,13 @@ void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL
       b[VL_CANDIDATES];
   _Alignas(64) float near[VL_CANDIDATES], sigma[VL_CANDIDATES], in[VL_CANDIDATES];
   float extinction = e->air ? t->world->media.items[e->air - 1].extinction : 0.0f;
+  vl_gather(way, e, at, p, g, n, power, b, near);
   for (uint32_t k = 0; k < VL_CANDIDATES; k++) {
     const vlLightVertex *x = &way->inner.vertices[at[k]];
-    for (int j = 0; j < 3; j++) {
-      p[j][k] = x->p[j];
-      g[j][k] = x->g[j];
-      n[j][k] = x->n[j];
-    }
-    for (int c = 0; c < 4; c++)
-      power[c][k] = x->power[c];
     in[k] = x->inside ? 1.0f : 0.0f;
     a[k] = in[k] * x->a;
     dense[k] = x->dense;
     asymmetry[k] = in[k] * x->asymmetry;
-    b[k] = x->back;
-    near[k] = x->bounce > e->room ? 0.0f : 1.0f;
     sigma[k] = x->air == e->air ? extinction : 0.0f;
   }
   vlEnd end = *e;

@@ -265,11 +265,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vl_connect_to_camera(t, n, depth, dimension, &x, &r->back, r->views, &r->splats, &q);
   if (last)
     return 0;
-  uint32_t count =
-      vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
-  if (vl_has_media(t))
-    vl_volume_go_on(t, count, &s->at, &s->volume->at, s->order, &s->rays, &s->volume->rays);
-  vl_stage_reverse(t, n, &s->at, s->samples.wi, &r->back);
+  uint32_t count = vl_two_way_scatter(t, n, depth, dimension);
   carry_on(t, count, &s->at, s->order, &s->samples, &r->back, &r->ways, &s->rays);
   return count;
 }

@@ -77,6 +77,25 @@ enum {
   VL_CANDIDATES = 8,
   VL_CONNECTION_KEY = 1 << 20
 }; /* the key: its random numbers differ from light samples' */
+/* Sets the candidates' vertices. near: 1, or 0 where the path would be too long. */
+static inline void vl_gather(const vlTwoWay *way, const vlEnd *e,
+                             const uint32_t at[VL_CANDIDATES], float p[3][VL_CANDIDATES],
+                             float g[3][VL_CANDIDATES], float n[3][VL_CANDIDATES],
+                             float power[4][VL_CANDIDATES], float back[VL_CANDIDATES],
+                             float near[VL_CANDIDATES]) {
+  for (uint32_t k = 0; k < VL_CANDIDATES; k++) {
+    const vlLightVertex *x = &way->inner.vertices[at[k]];
+    for (int j = 0; j < 3; j++) {
+      p[j][k] = x->p[j];
+      g[j][k] = x->g[j];
+      n[j][k] = x->n[j];
+    }
+    for (int c = 0; c < 4; c++)
+      power[c][k] = x->power[c];
+    back[k] = x->back;
+    near[k] = x->bounce > e->room ? 0.0f : 1.0f;
+  }
+}
 /* In worlds with media: what the connections to the candidates would contribute if they were
  * visible. */
 void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL_CANDIDATES],
@@ -229,6 +248,18 @@ static inline vlTwoWayVertices vl_two_way_at(const vlTracing *t) {
 static inline vlTwoWayVertices vl_two_way_scattered(const vlTracing *t) {
   const vlMediumVertices *in = &t->s->volume->scattered;
   return (vlTwoWayVertices){&in->paths, &in->rows, NULL, &t->batch->two_way->ways};
+}
+/* Scatters the paths of the n vertices on surfaces; evaluates the way back. Returns how many go
+ * on: the scratch's rays, which leave the vertices in its order. */
+static inline uint32_t vl_two_way_scatter(vlTracing *t, uint32_t n, uint32_t depth,
+                                          uint32_t dimension) {
+  vlTraceScratch *s = t->s;
+  uint32_t count =
+      vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
+  if (vl_has_media(t))
+    vl_volume_go_on(t, count, &s->at, &s->volume->at, s->order, &s->rays, &s->volume->rays);
+  vl_stage_reverse(t, n, &s->at, s->samples.wi, &t->batch->two_way->back);
+  return count;
 }
 /* The odds (vlFlight.odds) of the path's last flight. ends: null without media. */
 static inline float vl_last_odds(const vlFlightEnds *ends, uint32_t lane) {

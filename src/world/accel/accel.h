@@ -20,6 +20,20 @@ typedef struct vlRays {
   const float *time;          /* in the world's time, 0 to 1 (world/moving.h); null: 0 */
 } vlRays;
 
+/* Copies rays first to first + n - 1 into rows: ox, oy, oz, dx, dy, dz, t_min, t_max. Copies of
+ * the last ray fill the rows up to `padded`. */
+static inline void vl_load_rays(const vlRays *r, uint32_t first, uint32_t n, uint32_t padded,
+                                float *const rows[8]) {
+  const float *const from[6] = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz};
+  for (uint32_t i = 0; i < padded; i++) {
+    uint32_t at = first + (i < n ? i : n - 1);
+    for (int k = 0; k < 6; k++)
+      rows[k][i] = from[k][at];
+    rows[6][i] = r->t_min ? r->t_min[at] : 0.0f;
+    rows[7][i] = r->t_max ? r->t_max[at] : __builtin_inff();
+  }
+}
+
 /* For benchmarks: receives every batch of rays before it is traced. kind: 0 for
  * vl_accel_closest with coherent rays, 1 with other rays, 2 for vl_accel_occluded. */
 typedef void vlRayLogFn(void *user, int kind, uint32_t n, const vlRays *rays);

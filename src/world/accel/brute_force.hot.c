@@ -78,16 +78,9 @@ static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t firs
   k->n = n;
   vlVec3 center = vl_vec3(b->center[0], b->center[1], b->center[2]);
   uint32_t padded = k->padded = n <= FEW_RAYS ? n : VL_PAD(n);
+  float *const rows[8] = {k->ox, k->oy, k->oz, k->dx, k->dy, k->dz, k->low, k->height};
+  vl_load_rays(r, first, n, padded, rows);
   for (uint32_t i = 0; i < padded; i++) {
-    uint32_t at = first + (i < n ? i : n - 1);
-    k->ox[i] = r->ox[at];
-    k->oy[i] = r->oy[at];
-    k->oz[i] = r->oz[at];
-    k->dx[i] = r->dx[at];
-    k->dy[i] = r->dy[at];
-    k->dz[i] = r->dz[at];
-    k->low[i] = r->t_min ? r->t_min[at] : 0.0f;
-    k->height[i] = r->t_max ? r->t_max[at] : __builtin_inff();
     k->speed[i] = 1.0f;
     k->id[i] = NO_HIT;
   }

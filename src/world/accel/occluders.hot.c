@@ -25,17 +25,8 @@ static void load(Block *k, const vlOccluders *o, const vlRays *r, uint32_t first
   vlVec3 center = vl_vec3(o->center[0], o->center[1], o->center[2]);
   float reach2 = o->reach * o->reach;
   uint32_t padded = k->padded = VL_PAD(n);
-  for (uint32_t i = 0; i < padded; i++) {
-    uint32_t at = first + (i < n ? i : n - 1);
-    k->ox[i] = r->ox[at];
-    k->oy[i] = r->oy[at];
-    k->oz[i] = r->oz[at];
-    k->dx[i] = r->dx[at];
-    k->dy[i] = r->dy[at];
-    k->dz[i] = r->dz[at];
-    k->low[i] = r->t_min ? r->t_min[at] : 0.0f;
-    k->high[i] = r->t_max ? r->t_max[at] : __builtin_inff();
-  }
+  float *const rows[8] = {k->ox, k->oy, k->oz, k->dx, k->dy, k->dz, k->low, k->high};
+  vl_load_rays(r, first, n, padded, rows);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]),

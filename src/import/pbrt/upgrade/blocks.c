@@ -50,8 +50,8 @@ static bool repeat(vlOldFile *file, vlOldStatement *s, const vlOldBlock *block) 
     if (block->set[i].end == block->set[i].start)
       continue;
     char *text = vl_old_render(file, block->set[i]);
-    bool fine =
-        text ? vl_old_after(file, s, "%s", last_statement(text)) : vl_old_fail_memory(file->u);
+    bool fine = text ? vl_old_insert(file, s, VL_OLD_AFTER, "%s", last_statement(text))
+                     : vl_old_fail_memory(file->u);
     vl_free(file->u->context, text);
     if (!fine)
       return false;

@@ -149,25 +149,18 @@ static LineBegin line_of(const vlOldFile *file, const vlOldStatement *s) {
   return result;
 }
 
-bool vl_old_before(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
-  const LineBegin suffix = line_of(file, s);
+bool vl_old_insert(vlOldFile *file, const vlOldStatement *s, vlOldSide side, const char *format,
+                   ...) {
+  const bool after = side == VL_OLD_AFTER;
+  const LineBegin line = line_of(file, s);
+  const size_t at = after ? s->whole.end : s->keyword.start;
   va_list args;
   va_start(args, format);
   char *text = format_text(file->u->context, format, args);
   va_end(args);
-  return edit_parts(file, (vlOldSpan){s->keyword.start, s->keyword.start}, "", 0, text,
-                    suffix.text, suffix.length);
-}
-
-bool vl_old_after(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
-  const LineBegin prefix = line_of(file, s);
-  va_list args;
-  va_start(args, format);
-  char *text = format_text(file->u->context, format, args);
-  va_end(args);
-  bool fine = edit_parts(file, (vlOldSpan){s->whole.end, s->whole.end}, prefix.text,
-                         prefix.length, text, "", 0);
-  if (fine)
+  bool fine = edit_parts(file, (vlOldSpan){at, at}, line.text, after ? line.length : 0, text,
+                         line.text, after ? 0 : line.length);
+  if (fine && after)
     file->edits.items[file->edits.count - 1].order |= AFTER;
   return fine;
 }

@@ -46,7 +46,7 @@ static bool mix_with_nothing(vlOldFile *file, vlOldStatement *s, const vlOldPara
   if (!amount_text(file, s, opacity, "opacity", amount, sizeof amount))
     return false;
   if (!u->see_through &&
-      !vl_old_before(file, s,
+      !vl_old_insert(file, s, VL_OLD_BEFORE,
                      "MakeNamedMaterial \"see-through\" \"string type\" \"interface\""))
     return false;
   u->see_through = true;
@@ -56,18 +56,19 @@ static bool mix_with_nothing(vlOldFile *file, vlOldStatement *s, const vlOldPara
     if (!vl_old_edit(file, head, "MakeNamedMaterial \"%s\" \"string type\" \"coateddiffuse\"",
                      solid))
       return false;
-    return vl_old_after(file, s,
-                        "Material \"mix\" \"string materials\" [ \"see-through\" \"%s\" ] %s",
-                        solid, amount);
+    return vl_old_insert(file, s, VL_OLD_AFTER,
+                         "Material \"mix\" \"string materials\" [ \"see-through\" \"%s\" ] %s",
+                         solid, amount);
   }
   snprintf(solid, sizeof solid, "%.200s-solid", s->name[0]);
   s->renamed = 0; /* the name is written here */
   if (!vl_old_edit(file, s->names[0], "\"%s\"", solid))
     return false;
-  return vl_old_after(file, s,
-                      "MakeNamedMaterial \"%s\" \"string type\" \"mix\" \"string materials\" [ "
-                      "\"see-through\" \"%s\" ] %s",
-                      s->name[0], solid, amount);
+  return vl_old_insert(
+      file, s, VL_OLD_AFTER,
+      "MakeNamedMaterial \"%s\" \"string type\" \"mix\" \"string materials\" [ "
+      "\"see-through\" \"%s\" ] %s",
+      s->name[0], solid, amount);
 }
 
 static void drop_black(vlOldStatement *s, const char *name) {

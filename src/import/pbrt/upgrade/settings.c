@@ -308,7 +308,7 @@ bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
   double iso = u->iso * u->exposure;
   if (!u->filter_given && u->is_old) {
     vl_old_note(s, "PixelFilter \"box\", pbrt-v3's default, before it");
-    if (!vl_old_before(file, s, "PixelFilter \"box\""))
+    if (!vl_old_insert(file, s, VL_OLD_BEFORE, "PixelFilter \"box\""))
       return false;
   }
   if (iso == 100)

@@ -177,10 +177,10 @@ static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
   s->renamed = 0; /* its name is written here */
   return vl_old_edit(file, s->names[0], "\"%s\"", name) &&
          vl_old_edit(file, s->names[1], "\"float\"") &&
-         vl_old_after(file, s,
-                      "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb "
-                      "tex2\" [ 1 1 1 ] \"texture amount\" \"%s\"",
-                      s->name[0], name);
+         vl_old_insert(file, s, VL_OLD_AFTER,
+                       "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb "
+                       "tex2\" [ 1 1 1 ] \"texture amount\" \"%s\"",
+                       s->name[0], name);
 }
 
 /* pbrt-v4's marble is of colours. pbrt-v3 accepts a marble of numbers, but makes no texture of
@@ -228,7 +228,9 @@ const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *te
     vl_old_fail_memory(u);
     return NULL;
   }
-  return vl_old_before(file, s, "Texture \"%s\" \"float\" %s", name, t->text) ? t->copy : NULL;
+  return vl_old_insert(file, s, VL_OLD_BEFORE, "Texture \"%s\" \"float\" %s", name, t->text)
+             ? t->copy
+             : NULL;
 }
 
 /* Keeps what follows name and type of an image texture in the new text. */

@@ -174,10 +174,9 @@ bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...)
 /* Removes a whole statement, with its line where it stands alone. */
 bool vl_old_remove(vlOldFile *file, vlOldStatement *s);
 /* Adds a statement before or after s, on a line of its own with the same indentation. */
-bool vl_old_before(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-bool vl_old_after(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+typedef enum vlOldSide { VL_OLD_BEFORE, VL_OLD_AFTER } vlOldSide;
+bool vl_old_insert(vlOldFile *file, const vlOldStatement *s, vlOldSide side, const char *format,
+                   ...) __attribute__((format(printf, 4, 5)));
 /* Adds a parameter at the end of the statement. */
 bool vl_old_add(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -117,16 +117,24 @@ static bool all_exist(const Arguments *arguments) {
   return true;
 }
 
-static int render_before(const Command *command, const Arguments *arguments, const Animation *a,
-                         uint32_t frame, Videos *videos, AnimateRender *render,
-                         AnimateShared *shared);
+/* What all frames of a run have in common. */
+typedef struct Animator {
+  const Command *command;
+  const Arguments *arguments; /* the command line */
+  Animation animation;
+  Videos *videos;
+  AnimateRender *render;
+  AnimateShared shared;
+} Animator;
+
+static int render_before(Animator *x, uint32_t frame);
 
 /* The command line of one frame: the animation's options become --at or --turn. */
-static int render_frame(const Command *command, const Arguments *arguments, const Animation *a,
-                        uint32_t frame, Videos *videos, AnimateRender *render,
-                        AnimateShared *shared) {
+static int render_frame(Animator *x, uint32_t frame) {
+  const Animation *a = &x->animation;
+  AnimateShared *shared = &x->shared;
   char(*paths)[PATH_SIZE] = malloc((MAX_TEXTS + 1) * sizeof *paths), moment[40];
-  Arguments one = *arguments;
+  Arguments one = *x->arguments;
   const PatternValues values = {.number = frame};
   int status = paths ? -1 : report_error(NULL, VL_ERROR_MEMORY, NULL);
   for (int i = 0; i <= one.text_count && status < 0; i++) {
@@ -146,31 +154,25 @@ static int render_frame(const Command *command, const Arguments *arguments, cons
   one.values[RENDER_FRAMES].given = false;
   const bool skip = one.values[RENDER_SKIP_EXISTING].given;
   one.values[RENDER_SKIP_EXISTING].given = false;
-  if (status < 0 && skip && !shared->steady.only_kept && all_exist(&one))
+  if (status < 0 && skip && !shared->preparing && !shared->steady.only_kept && all_exist(&one))
     status = STATUS_OK;
   const bool denoises = one.values[RENDER_DENOISE].given && !one.values[RENDER_DRY_RUN].given;
   if (status < 0 && denoises && !shared->preparing && !shared->steady.only_kept)
-    status = render_before(command, arguments, a, frame, videos, render, shared);
+    status = render_before(x, frame);
   if (status < 0)
-    status = render(command, &one, shared, videos);
+    status = x->render(x->command, &one, shared, x->videos);
   free(paths);
   return status;
 }
-
-/* What `between` needs. */
-typedef struct Between {
-  const Animation *animation;
-  const Arguments *arguments; /* the command line */
-} Between;
 
 /* A SteadyBetween: loads the model for the moments of both frames, in the middle of their
  * exposures. */
 static vlResult between(void *user, vlContext *context, uint32_t before, uint32_t now,
                         const Job *job, const vlWorld *world, vlWorld **result, double *span,
                         vlError *error) {
-  const Between *b = user;
-  const Animation *a = b->animation;
-  Arguments both = *b->arguments;
+  const Animator *x = user;
+  const Animation *a = &x->animation;
+  Arguments both = *x->arguments;
   OptionValue *v = both.values;
   char text[80];
   const double middle = v[RENDER_SHUTTER].given ? 0.5 * v[RENDER_SHUTTER].number : 0;
@@ -198,26 +200,21 @@ static vlResult between(void *user, vlContext *context, uint32_t before, uint32_
   return code;
 }
 
-/* Renders those frames that the denoised frame uses and that are not kept: the ones before it,
- * of a turntable around the turn. */
-static int render_before(const Command *command, const Arguments *arguments, const Animation *a,
-                         uint32_t frame, Videos *videos, AnimateRender *render,
-                         AnimateShared *shared) {
-  Steady *s = &shared->steady;
+/* A SteadyRender. */
+static int render_kept(void *user, uint32_t k) {
+  Animator *x = user;
+  return render_frame(x, x->shared.steady.before[k]);
+}
+
+/* A denoised frame uses the ones before it, of a turntable around the turn. */
+static int render_before(Animator *x, uint32_t frame) {
+  Steady *s = &x->shared.steady;
+  const Animation *a = &x->animation;
   const uint32_t most = a->turns ? a->count - 1 : frame;
   s->count = most < STEADY_BEFORE ? most : STEADY_BEFORE;
   for (uint32_t k = 0; k < s->count; k++)
     s->before[k] = (frame + a->count - 1 - k) % a->count;
-  int status = STATUS_OK;
-  for (uint32_t k = 0; k < s->count && status == STATUS_OK; k++) {
-    if (steady_find(s, s->before[k]))
-      continue;
-    s->number = s->before[k];
-    s->only_kept = true;
-    status = render_frame(command, arguments, a, s->number, videos, render, shared);
-    s->only_kept = false;
-  }
-  s->number = frame;
+  const int status = steady_prepare(s, frame, render_kept, x);
   return status == STATUS_OK ? -1 : status;
 }
 
@@ -231,51 +228,51 @@ static bool needs_first(const Arguments *arguments, const Animation *a) {
          !(tracer && exposure) && !v[RENDER_DRY_RUN].given;
 }
 
-static int prepare(const Command *command, const Arguments *arguments, const Animation *a,
-                   Videos *videos, AnimateRender *render, AnimateShared *shared) {
-  Arguments all = *arguments;
-  all.values[RENDER_SKIP_EXISTING].given = false;
-  shared->preparing = true;
-  int status = render_frame(command, &all, a, 0, videos, render, shared);
-  shared->preparing = false;
+static int prepare(Animator *x) {
+  x->shared.preparing = true;
+  int status = render_frame(x, 0);
+  x->shared.preparing = false;
   return status;
 }
 
 int animate_run(const Command *command, const Arguments *arguments, Videos *videos,
                 AnimateRender *render) {
-  Animation a = {0};
-  AnimateShared shared = {.exposure = NAN, .whole = arguments};
+  Animator x = {.command = command,
+                .arguments = arguments,
+                .videos = videos,
+                .render = render,
+                .shared = {.exposure = NAN, .whole = arguments}};
+  Animation *a = &x.animation;
+  AnimateShared *shared = &x.shared;
   int status = check(arguments);
   if (status < 0)
-    status = read_animation(arguments, &a);
+    status = read_animation(arguments, a);
   if (status < 0)
-    status = choose_frames(arguments, &a);
+    status = choose_frames(arguments, a);
   if (status >= 0)
     return status;
-  shared.still = a.turns;
-  Between moments = {&a, arguments};
-  if (!a.turns) {
-    shared.steady.between = between;
-    shared.steady.between_user = &moments;
+  shared->still = a->turns;
+  if (!a->turns) {
+    shared->steady.between = between;
+    shared->steady.between_user = &x;
   }
   if (videos)
-    videos_range(videos, a.first, (a.last - a.first) / a.step + 1, a.step);
-  status = needs_first(arguments, &a) ? prepare(command, arguments, &a, videos, render, &shared)
-                                      : STATUS_OK;
-  for (uint64_t i = a.first; i <= a.last && status == STATUS_OK; i += a.step) {
+    videos_range(videos, a->first, (a->last - a->first) / a->step + 1, a->step);
+  status = needs_first(arguments, a) ? prepare(&x) : STATUS_OK;
+  for (uint64_t i = a->first; i <= a->last && status == STATUS_OK; i += a->step) {
     if (videos)
       videos->number = (uint32_t)i;
-    status = render_frame(command, arguments, &a, (uint32_t)i, videos, render, &shared);
+    status = render_frame(&x, (uint32_t)i);
     if (videos)
       videos->shown.done++;
     if (status != STATUS_OK || signals_pending() || arguments->values[RENDER_DRY_RUN].given)
       break;
   }
   if (status == STATUS_OK && arguments->values[RENDER_DRY_RUN].given)
-    report_note("%u frames", (a.last - a.first) / a.step + 1);
-  steady_free(&shared.steady);
-  vl_world_destroy(shared.world);
-  vl_scene_destroy(shared.scene);
-  context_close(shared.context);
+    report_note("%u frames", (a->last - a->first) / a->step + 1);
+  steady_free(&shared->steady);
+  vl_world_destroy(shared->world);
+  vl_scene_destroy(shared->scene);
+  context_close(shared->context);
   return status;
 }

@@ -179,27 +179,29 @@ static bool keep_stopped(Run *run, FrameImage *image) {
   return image->stopped = true;
 }
 
-/* Renders those frames that the denoised frame uses and that are not kept. */
+/* What render_kept needs. */
+typedef struct Earlier {
+  Run *run;
+  Frame frames[STEADY_BEFORE];
+} Earlier;
+
+/* A SteadyRender. */
+static int render_kept(void *user, uint32_t k) {
+  const Earlier *earlier = user;
+  FrameImage image;
+  memset(&image, 0, sizeof image);
+  const int status = render_view(earlier->run, &earlier->frames[k], 0, &image);
+  frame_image_free(&image);
+  return status;
+}
+
 static int render_before(Run *run, const Frame *frame) {
   Steady *s = &run->frames->steady;
-  Frame before[STEADY_BEFORE];
-  int status = STATUS_OK;
-  s->count = frames_before(run->frames, frame, before);
+  Earlier earlier = {.run = run};
+  s->count = frames_before(run->frames, frame, earlier.frames);
   for (uint32_t k = 0; k < s->count; k++)
-    s->before[k] = before[k].number;
-  s->only_kept = true;
-  for (uint32_t k = 0; k < s->count && status == STATUS_OK; k++) {
-    if (steady_find(s, before[k].number))
-      continue;
-    FrameImage image;
-    memset(&image, 0, sizeof image);
-    s->number = before[k].number;
-    status = render_view(run, &before[k], 0, &image);
-    frame_image_free(&image);
-  }
-  s->only_kept = false;
-  s->number = frame->number;
-  return status;
+    s->before[k] = earlier.frames[k].number;
+  return steady_prepare(s, frame->number, render_kept, &earlier);
 }
 
 /* Renders all views of a frame. */

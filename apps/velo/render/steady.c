@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/report.h"
+
 /* Features: albedo, normal, disparity. */
 enum { TAPS = 4, NORMAL = 3, DISPARITY = 6, FEATURES = 7 };
 
@@ -26,6 +28,19 @@ const SteadyFrame *steady_find(const Steady *s, uint32_t number) {
     if (s->frames[i].used && s->frames[i].number == number)
       return &s->frames[i];
   return NULL;
+}
+
+int steady_prepare(Steady *s, uint32_t number, SteadyRender *render, void *user) {
+  int status = STATUS_OK;
+  s->only_kept = true;
+  for (uint32_t k = 0; k < s->count && status == STATUS_OK; k++) {
+    s->number = s->before[k];
+    if (!steady_find(s, s->number))
+      status = render(user, k);
+  }
+  s->only_kept = false;
+  s->number = number;
+  return status;
 }
 
 static void forget(SteadyFrame *frame) {

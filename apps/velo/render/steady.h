@@ -42,6 +42,11 @@ typedef struct Steady {
 uint64_t steady_memory(uint64_t pixels);
 /* Null: the frame is not kept. */
 const SteadyFrame *steady_find(const Steady *s, uint32_t number);
+/* Renders frame s->before[k], which is only kept. Returns the exit code. */
+typedef int SteadyRender(void *user, uint32_t k);
+/* Renders those frames that the frame `number` uses (s->before) and that are not kept. Returns
+ * the exit code. */
+int steady_prepare(Steady *s, uint32_t number, SteadyRender *render, void *user);
 /* Keeps the frame s->number, and forgets one that is not used any more. image: of the samples,
  * with the denoiser's features. Takes ownership of `clean`, also after an error. */
 vlResult steady_keep(Steady *s, vlContext *context, const vlWorld *world, const Job *job,

@@ -2,11 +2,9 @@
  * harris. */
 #include "filter/filter.row.h"
 
-static const vlParameter parameters[] = {RADII(2)};
-
 const vlKindRow vl_filter_row_blackman_harris = {
     .name = "blackmanharris",
     .alias = "blackman-harris",
     .description = "the Blackman-Harris window",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(RADII(2)),
 };

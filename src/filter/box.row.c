@@ -1,11 +1,9 @@
 /* filter/box.row.c: the name and the parameters of the pixel filter box. */
 #include "filter/filter.row.h"
 
-static const vlParameter parameters[] = {RADII(0.5)};
-
 const vlKindRow vl_filter_row_box = {
     .name = "box",
     .traits = VL_TRAIT_PBRT_NAME,
     .description = "constant weight in a rectangle",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(RADII(0.5)),
 };

@@ -1,11 +1,9 @@
 /* filter/triangle.row.c: the name and the parameters of the pixel filter triangle. */
 #include "filter/filter.row.h"
 
-static const vlParameter parameters[] = {RADII(2)};
-
 const vlKindRow vl_filter_row_triangle = {
     .name = "triangle",
     .traits = VL_TRAIT_PBRT_NAME,
     .description = "weight that falls linearly from the centre to 0 at the edge",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(RADII(2)),
 };

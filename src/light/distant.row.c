@@ -1,19 +1,13 @@
 /* light/distant.row.c: the name, the parameters and the power of distant lights. */
 #include "light/light.row.h"
 
-static const vlParameter parameters[] = {
-    RADIANCE,
-    SCALE,
-    ILLUMINANCE,
-    IRRADIANCE,
-    FROM("start point of the vector along which the light travels"),
-    TO("end point of the vector along which the light travels")};
-
 const vlKindRow vl_light_row_distant = {
     .name = "distant",
     .description = "light from infinitely far away, with one direction everywhere",
     .traits = VL_LIGHT_TRAIT_FAR | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_AIMS,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(RADIANCE, SCALE, ILLUMINANCE, IRRADIANCE,
+                  FROM("start point of the vector along which the light travels"),
+                  TO("end point of the vector along which the light travels")),
 };
 
 vlLightPower vl_light_power_distant;

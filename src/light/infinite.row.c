@@ -3,23 +3,18 @@
 
 #include "light/light.row.h"
 
-static const vlParameter parameters[] = {
-    RADIANCE,
-    SCALE,
-    ILLUMINANCE,
-    IRRADIANCE,
-    IMAGE("a square image, an equal-area octahedral map of the radiance; replaces L"),
-    PARAMETER(BLOCK, "portal", portal,
-              "portal: 4 world-space corners of the rectangle through which the light enters "
-              "the scene",
-              .text = "point3"),
-};
-
 const vlKindRow vl_light_row_infinite = {
     .name = "infinite",
     .description = "light from all directions, from outside the scene (an environment map)",
     .traits = VL_LIGHT_TRAIT_FAR,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(
+        RADIANCE, SCALE, ILLUMINANCE, IRRADIANCE,
+        IMAGE("a square image, an equal-area octahedral map of the radiance; replaces L"),
+        PARAMETER(
+            BLOCK, "portal", portal,
+            "portal: 4 world-space corners of the rectangle through which the light enters "
+            "the scene",
+            .text = "point3")),
 };
 
 vlLightPower vl_light_power_infinite;

@@ -2,32 +2,25 @@
 #include "light/light.row.h"
 #include "math/elementary.h"
 
-static const vlParameter parameters[] = {
-    INTENSITY,
-    SCALE,
-    POWER,
-    RADIANT_POWER,
-    RADIANT_INTENSITY,
-    FROM("position of the light"),
-    TO("a point on the cone's axis, towards which the light points"),
-    PARAMETER(FLOAT, "coneangle", cone_angle, "angle between the axis and the edge of the cone",
-              ANGLE(30 * DEGREES), VL_RANGE(0, 180 * DEGREES + 1e-6),
-              .flags = VL_PARAMETER_ABOVE_LOW),
-    PARAMETER(FLOAT, "conedeltaangle", cone_delta,
-              "angle inside the cone's edge over which the intensity falls to 0",
-              ANGLE(5 * DEGREES), VL_FROM(0)),
-    PARAMETER(
-        BOOL, NULL, cone_squared,
-        "true: the falloff is t^2, t linear in the cosine, as in glTF; false: 3t^2 - 2t^3, "
-        "as in pbrt",
-        VL_DEFAULT(0)),
-};
-
 const vlKindRow vl_light_row_spot = {
     .name = "spot",
     .description = "a point that emits into a cone",
     .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_AIMS,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(
+        INTENSITY, SCALE, POWER, RADIANT_POWER, RADIANT_INTENSITY,
+        FROM("position of the light"),
+        TO("a point on the cone's axis, towards which the light points"),
+        PARAMETER(FLOAT, "coneangle", cone_angle,
+                  "angle between the axis and the edge of the cone", ANGLE(30 * DEGREES),
+                  VL_RANGE(0, 180 * DEGREES + 1e-6), .flags = VL_PARAMETER_ABOVE_LOW),
+        PARAMETER(FLOAT, "conedeltaangle", cone_delta,
+                  "angle inside the cone's edge over which the intensity falls to 0",
+                  ANGLE(5 * DEGREES), VL_FROM(0)),
+        PARAMETER(
+            BOOL, NULL, cone_squared,
+            "true: the falloff is t^2, t linear in the cosine, as in glTF; false: 3t^2 - 2t^3, "
+            "as in pbrt",
+            VL_DEFAULT(0))),
 };
 
 vlLightPower vl_light_power_spot;

@@ -1,16 +1,11 @@
 /* material/coated_diffuse.row.c: the name and the parameters of the material coated diffuse. */
 #include "material/material.row.h"
 
-static const vlParameter parameters[] = {
-    REFLECTANCE(0.5, "reflectance of the base"),
-    ROUGHNESS,
-    SPECTRUM("eta", eta, "index of refraction of the coat", ETA_DIELECTRIC),
-    LAYERS,
-    BUMPS,
-};
 const vlKindRow vl_material_row_coated_diffuse = {
     .name = "coateddiffuse",
     .description = "a dielectric coat over a diffuse base",
     .traits = VL_MATERIAL_OPAQUE | VL_MATERIAL_ROUGH,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(REFLECTANCE(0.5, "reflectance of the base"), ROUGHNESS,
+                  SPECTRUM("eta", eta, "index of refraction of the coat", ETA_DIELECTRIC),
+                  LAYERS, BUMPS),
 };

@@ -1,13 +1,9 @@
 /* material/diffuse.row.c: the name and the parameters of the material diffuse. */
 #include "material/material.row.h"
 
-static const vlParameter parameters[] = {
-    REFLECTANCE(0.5, "fraction of light that is reflected"),
-    BUMPS,
-};
 const vlKindRow vl_material_row_diffuse = {
     .name = "diffuse",
     .description = "Lambertian reflection",
     .traits = VL_MATERIAL_OPAQUE,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(REFLECTANCE(0.5, "fraction of light that is reflected"), BUMPS),
 };

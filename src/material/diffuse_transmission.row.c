@@ -2,15 +2,13 @@
  * transmission. */
 #include "material/material.row.h"
 
-static const vlParameter parameters[] = {
-    REFLECTANCE(0.25, "fraction of light that is reflected"),
-    SPECTRUM("transmittance", transmittance, "fraction of light that is transmitted",
-             VL_DEFAULT(0.25), ALBEDO),
-    FLOAT("scale", scale, "factor on reflectance and transmittance", VL_DEFAULT(1), VL_FROM(0)),
-    BUMPS,
-};
 const vlKindRow vl_material_row_diffuse_transmission = {
     .name = "diffusetransmission",
     .description = "Lambertian reflection and transmission, as of leaves and paper",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(REFLECTANCE(0.25, "fraction of light that is reflected"),
+                  SPECTRUM("transmittance", transmittance,
+                           "fraction of light that is transmitted", VL_DEFAULT(0.25), ALBEDO),
+                  FLOAT("scale", scale, "factor on reflectance and transmittance",
+                        VL_DEFAULT(1), VL_FROM(0)),
+                  BUMPS),
 };

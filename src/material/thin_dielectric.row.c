@@ -2,12 +2,8 @@
  */
 #include "material/material.row.h"
 
-static const vlParameter parameters[] = {
-    SPECTRUM("eta", eta, "index of refraction", ETA_DIELECTRIC),
-    BUMPS,
-};
 const vlKindRow vl_material_row_thin_dielectric = {
     .name = "thindielectric",
     .description = "a thin sheet of glass, without refraction",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(SPECTRUM("eta", eta, "index of refraction", ETA_DIELECTRIC), BUMPS),
 };

@@ -3,11 +3,6 @@
 
 static const char *const layouts[] = {"row", "cross", NULL};
 
-static const vlParameter parameters[] = {
-    MODEL,
-    WORD("layout", CHOICE, shape[0], "arrangement of the six faces", .choices = layouts),
-};
-
 static void whole_cube(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   bool cross = camera->shape[0] > 0.0;
   focal[0] = d->width / (cross ? 4.0 : 6.0);
@@ -24,7 +19,8 @@ const vlProjectionRow vl_projection_row_cube = {
         {
             .name = "cube",
             .description = "panorama: the six faces of a cube",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(MODEL, WORD("layout", CHOICE, shape[0],
+                                      "arrangement of the six faces", .choices = layouts)),
         },
     .name = "cube",
     .key = "cube",

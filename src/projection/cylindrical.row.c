@@ -1,10 +1,6 @@
 /* projection/cylindrical.row.c: the name and the parameters of the cylindrical projection. */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-};
-
 static void whole_cylinder(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   (void)camera;
   focal[0] = focal[1] = d->width / (2.0 * PI);
@@ -15,7 +11,7 @@ const vlProjectionRow vl_projection_row_cylindrical = {
         {
             .name = "cylindrical",
             .description = "panorama: x is the longitude, y the tangent of the latitude",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(MODEL),
         },
     .name = "cylindrical",
     .key = "cylindrical",

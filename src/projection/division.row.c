@@ -1,17 +1,14 @@
 /* projection/division.row.c: the name and the parameters of the division projection. */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-    SHAPE("lambda", 0, "required: the model's distortion parameter", VL_RANGE(-1e3, 1e3)),
-};
-
 const vlProjectionRow vl_projection_row_division = {
     .in_files =
         {
             .name = "division",
             .description = "the division model (Fitzgibbon)",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(MODEL,
+                          SHAPE("lambda", 0, "required: the model's distortion parameter",
+                                VL_RANGE(-1e3, 1e3))),
         },
     .name = "division",
     .key = "division",

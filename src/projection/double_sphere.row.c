@@ -2,12 +2,6 @@
  */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-    SHAPE("xi", 0, "required: the model's parameter xi", VL_RANGE(-0.999, 0.999)),
-    SHAPE("alpha", 1, "required: the model's parameter alpha", VL_RANGE(0, 1)),
-};
-
 static double spread(const double shape[2]) {
   return 1.0 + shape[0];
 }
@@ -17,7 +11,10 @@ const vlProjectionRow vl_projection_row_double_sphere = {
         {
             .name = "doublesphere",
             .description = "the double sphere model (Usenko)",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(
+                MODEL,
+                SHAPE("xi", 0, "required: the model's parameter xi", VL_RANGE(-0.999, 0.999)),
+                SHAPE("alpha", 1, "required: the model's parameter alpha", VL_RANGE(0, 1))),
         },
     .name = "double sphere",
     .key = "double-sphere",

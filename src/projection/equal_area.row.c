@@ -1,10 +1,6 @@
 /* projection/equal_area.row.c: the name and the parameters of the equal area projection. */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-};
-
 static void whole_square(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   (void)camera;
   focal[0] = 0.5 * d->width;
@@ -21,7 +17,7 @@ const vlProjectionRow vl_projection_row_equal_area = {
         {
             .name = "equalarea",
             .description = "panorama: equal-area octahedral map of the sphere to a square",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(MODEL),
         },
     .name = "equal-area",
     .key = "equal-area",

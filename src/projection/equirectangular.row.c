@@ -2,14 +2,6 @@
  * projection. */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-    BLOCK("longitude", screen_min_x, "float",
-          "smallest and largest longitude in the image, degrees; unset: -180 180"),
-    BLOCK("latitude", screen_min_y, "float",
-          "smallest and largest latitude in the image, degrees; unset: -90 90"),
-};
-
 /* The image shows the whole sphere, cylinder or cube. */
 static void whole_sphere(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   (void)camera;
@@ -22,7 +14,12 @@ const vlProjectionRow vl_projection_row_equirectangular = {
         {
             .name = "equirectangular",
             .description = "panorama: x is the longitude, y the latitude",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(
+                MODEL,
+                BLOCK("longitude", screen_min_x, "float",
+                      "smallest and largest longitude in the image, degrees; unset: -180 180"),
+                BLOCK("latitude", screen_min_y, "float",
+                      "smallest and largest latitude in the image, degrees; unset: -90 90")),
         },
     .name = "equirectangular",
     .key = "equirectangular",

@@ -1,18 +1,15 @@
 /* projection/eucm.row.c: the name and the parameters of the eucm projection. */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-    SHAPE("alpha", 0, "required: the model's parameter alpha", VL_RANGE(0, 1)),
-    SHAPE("beta", 1, "required: the model's parameter beta", VL_RANGE(1e-6, 1e6)),
-};
-
 const vlProjectionRow vl_projection_row_eucm = {
     .in_files =
         {
             .name = "eucm",
             .description = "the enhanced unified model (Khomutenko)",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(
+                MODEL,
+                SHAPE("alpha", 0, "required: the model's parameter alpha", VL_RANGE(0, 1)),
+                SHAPE("beta", 1, "required: the model's parameter beta", VL_RANGE(1e-6, 1e6))),
         },
     .name = "EUCM",
     .key = "eucm",

@@ -1,12 +1,6 @@
 /* projection/fov.row.c: the name and the parameters of the fov projection. */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-    SHAPE("omega", 0, "required: the model's field-of-view parameter", VL_RANGE(1e-6, 3.14),
-          .unit = "radians"),
-};
-
 static double spread(const double shape[2]) {
   return shape[0] / shape[1];
 }
@@ -16,7 +10,9 @@ const vlProjectionRow vl_projection_row_fov = {
         {
             .name = "fov",
             .description = "the FOV model (Devernay and Faugeras)",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(MODEL,
+                          SHAPE("omega", 0, "required: the model's field-of-view parameter",
+                                VL_RANGE(1e-6, 3.14), .unit = "radians")),
         },
     .name = "FOV",
     .key = "fov",

@@ -1,19 +1,16 @@
 /* projection/panini.row.c: the name and the parameters of the panini projection. */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-    SHAPE("panini", 0,
-          "d: distance of the projection centre from the cylinder's axis; unset: 1",
-          VL_RANGE(0, 1e3)),
-};
-
 const vlProjectionRow vl_projection_row_panini = {
     .in_files =
         {
             .name = "panini",
             .description = "the general Panini projection",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(
+                MODEL,
+                SHAPE("panini", 0,
+                      "d: distance of the projection centre from the cylinder's axis; unset: 1",
+                      VL_RANGE(0, 1e3))),
         },
     .name = "Panini",
     .key = "panini",

@@ -1,12 +1,6 @@
 /* projection/unified.row.c: the name and the parameters of the unified projection. */
 #include "projection/projection.row.h"
 
-static const vlParameter parameters[] = {
-    MODEL,
-    COEFFICIENTS,
-    SHAPE("xi", 0, "required: the model's mirror parameter", VL_RANGE(0, 1e3)),
-};
-
 static double spread(const double shape[2]) {
   return 1.0 + shape[0];
 }
@@ -16,7 +10,9 @@ const vlProjectionRow vl_projection_row_unified = {
         {
             .name = "unified",
             .description = "the unified model (Mei)",
-            VL_ROW_PARAMETERS(parameters),
+            VL_PARAMETERS(
+                MODEL, COEFFICIENTS,
+                SHAPE("xi", 0, "required: the model's mirror parameter", VL_RANGE(0, 1e3))),
         },
     .name = "unified",
     .key = "unified",

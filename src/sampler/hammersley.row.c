@@ -1,10 +1,8 @@
 /* sampler/hammersley.row.c: the name and the parameters of the sampler hammersley. */
 #include "sampler/sampler.row.h"
 
-static const vlParameter parameters[] = {SAMPLES(16)};
-
 const vlKindRow vl_sampler_row_hammersley = {
     .name = "hammersley",
     .description = "the Hammersley point set",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(SAMPLES(16)),
 };

@@ -1,10 +1,8 @@
 /* sampler/regular.row.c: the name and the parameters of the sampler regular. */
 #include "sampler/sampler.row.h"
 
-static const vlParameter parameters[] = {SAMPLES(16)};
-
 const vlKindRow vl_sampler_row_regular = {
     .name = "regular",
     .description = "the centres of the cells of a grid over the pixel",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(SAMPLES(16)),
 };

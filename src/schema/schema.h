@@ -45,7 +45,10 @@
 #define VL_POINTER_TEXTURE const vlTextureId *
 #define VL_POINTER_BLOCK const void *
 
-/* Initialises the parameters of a row with an array. */
+/* Initialises the parameters of a row with a list of them, or with an array. */
+#define VL_PARAMETERS(...)                          \
+  .parameters = (const vlParameter[]){__VA_ARGS__}, \
+  .parameter_count = sizeof((const vlParameter[]){__VA_ARGS__}) / sizeof(vlParameter)
 #define VL_ROW_PARAMETERS(array) \
   .parameters = (array), .parameter_count = sizeof(array) / sizeof *(array)
 
@@ -124,6 +127,8 @@ const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
 /* ---- defs -------------------------------------------------------------------------------- */
 
+/* Sets a member that is a number, a bool or a choice. Members of other types are unchanged. */
+void vl_parameter_put(const vlParameter *parameter, double number, void *at);
 /* Sets the members that the row describes to their defaults. Other members are unchanged. */
 void vl_row_set_defaults(const vlKindRow *row, void *def);
 /* The same with the row of a kind; an unknown kind has none. */

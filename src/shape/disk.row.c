@@ -1,21 +1,15 @@
 /* shape/disk.row.c: the name, the parameters and the box of disks. */
 #include "shape/shape.row.h"
 
-static const vlParameter parameters[] = {
-    ALPHA,
-    RADIUS,
-    PARAMETER(FLOAT, "innerradius", inner_radius,
-              "radius of the hole in the middle; less than radius", .unit = "length",
-              VL_FROM(0)),
-    LENGTH("height", height, "z of the disk", 0),
-    PHI_MAX,
-};
-
 const vlKindRow vl_shape_row_disk = {
     .name = "disk",
     .description = "a disk perpendicular to the z axis, or a part of one",
     .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(ALPHA, RADIUS,
+                  PARAMETER(FLOAT, "innerradius", inner_radius,
+                            "radius of the hole in the middle; less than radius",
+                            .unit = "length", VL_FROM(0)),
+                  LENGTH("height", height, "z of the disk", 0), PHI_MAX),
 };
 
 vlShapeBox vl_shape_box_disk;

@@ -1,21 +1,16 @@
 /* shape/sphere.row.c: the name, the parameters and the box of spheres. */
 #include "shape/shape.row.h"
 
-static const vlParameter parameters[] = {
-    ALPHA,
-    RADIUS,
-    LENGTH("zmin", z_min, "z of the lower end; unset in a file: -radius", -1),
-    LENGTH("zmax", z_max, "z of the upper end; unset in a file: radius", 1),
-    PHI_MAX,
-    ARRAY(NULL, centers, NULL, "centres of several whole spheres in one shape"),
-    ARRAY(NULL, radii, NULL, "radii of the spheres whose centres are given"),
-};
-
 const vlKindRow vl_shape_row_sphere = {
     .name = "sphere",
     .description = "a sphere or a part of one",
     .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(ALPHA, RADIUS,
+                  LENGTH("zmin", z_min, "z of the lower end; unset in a file: -radius", -1),
+                  LENGTH("zmax", z_max, "z of the upper end; unset in a file: radius", 1),
+                  PHI_MAX,
+                  ARRAY(NULL, centers, NULL, "centres of several whole spheres in one shape"),
+                  ARRAY(NULL, radii, NULL, "radii of the spheres whose centres are given")),
 };
 
 vlShapeBox vl_shape_box_sphere;

@@ -1,9 +1,8 @@
 /* texture/constant.row.c: the name and the parameters of the texture constant. */
 #include "texture/texture.row.h"
 
-static const vlParameter parameters[] = {INPUT("value", a, "the texture's value", 1)};
 const vlKindRow vl_texture_row_constant = {
     .name = "constant",
     .description = "the same value everywhere",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(INPUT("value", a, "the texture's value", 1)),
 };

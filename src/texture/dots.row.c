@@ -3,13 +3,9 @@
 
 /* pbrt-v4 interchanges the two: its constructor takes the texture between the dots first, and
  * is given "inside". */
-static const vlParameter parameters[] = {
-    INPUT("inside", a, "texture between the dots, as pbrt-v4 renders it", 1),
-    INPUT("outside", b, "texture in the dots", 0),
-    MAPPING,
-};
 const vlKindRow vl_texture_row_dots = {
     .name = "dots",
     .description = "dots in randomly chosen cells of (s, t)",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(INPUT("inside", a, "texture between the dots, as pbrt-v4 renders it", 1),
+                  INPUT("outside", b, "texture in the dots", 0), MAPPING),
 };

@@ -1,10 +1,9 @@
 /* texture/fbm.row.c: the name and the parameters of the texture fbm. */
 #include "texture/texture.row.h"
 
-static const vlParameter parameters[] = {OCTAVES};
 const vlKindRow vl_texture_row_fbm = {
     .name = "fbm",
     .description = "fractional Brownian motion: a sum of octaves of noise",
     .traits = VL_TEXTURE_FLOAT_ONLY,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(OCTAVES),
 };

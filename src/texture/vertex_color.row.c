@@ -1,8 +1,7 @@
 /* texture/vertex_color.row.c: the name and the parameters of the texture vertex color. */
 #include "texture/texture.row.h"
 
-static const vlParameter parameters[] = {CHANNELS};
 const vlKindRow vl_texture_row_vertex_color = {
     .description = "the colours of the shape's vertices",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(CHANNELS),
 };

@@ -1,10 +1,9 @@
 /* texture/windy.row.c: the name and the parameters of the texture windy. */
 #include "texture/texture.row.h"
 
-static const vlParameter parameters[] = {TRANSFORM};
 const vlKindRow vl_texture_row_windy = {
     .name = "windy",
     .description = "waves on windy water, from noise",
     .traits = VL_TEXTURE_FLOAT_ONLY,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(TRANSFORM),
 };

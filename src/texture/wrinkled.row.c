@@ -1,10 +1,9 @@
 /* texture/wrinkled.row.c: the name and the parameters of the texture wrinkled. */
 #include "texture/texture.row.h"
 
-static const vlParameter parameters[] = {OCTAVES};
 const vlKindRow vl_texture_row_wrinkled = {
     .name = "wrinkled",
     .description = "turbulence: a sum of octaves of the absolute value of noise",
     .traits = VL_TEXTURE_FLOAT_ONLY,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(OCTAVES),
 };

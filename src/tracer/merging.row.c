@@ -1,10 +1,8 @@
 /* tracer/merging.row.c: the name and the parameters of the tracer merging. */
 #include "tracer/tracer.row.h"
 
-static const vlParameter parameters[] = {TWO_WAY, RADIUS};
-
 const vlKindRow vl_tracer_row_merging = {
     .name = "merging",
     .description = "bidirectional path tracing that also merges path vertices within a radius",
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(TWO_WAY, RADIUS),
 };

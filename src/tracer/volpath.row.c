@@ -1,13 +1,11 @@
 /* tracer/volpath.row.c: the name and the parameters of the tracer volpath. */
 #include "tracer/tracer.row.h"
 
-static const vlParameter parameters[] = {ONE_WAY};
-
 const vlKindRow vl_tracer_row_volpath = {
     .name = "volpath",
     .alias = "simplevolpath",
     .description =
         "volumetric path tracing: paths from the camera, also through media and subsurface materials",
     .traits = VL_TRAIT_PBRT_NAME,
-    VL_ROW_PARAMETERS(parameters),
+    VL_PARAMETERS(ONE_WAY),
 };

@@ -25,14 +25,14 @@ static const Model models[] = {{"pinhole", VL_LENS_PINHOLE, {NULL}, {NULL}},
 enum { MODELS = VL_LENGTH(models) };
 
 static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
-  const json_t *type, *values;
+  const json_t *values;
+  const char *name;
   double f[4], k[8];
-  vlResult result = vl_camera_field(file, camera, "camera_type", &type);
+  vlResult result = vl_camera_word(file, camera, "camera_type", &name);
   if (result == VL_OK)
     result = vl_camera_field(file, camera, "intrinsics", &values);
   if (result != VL_OK)
     return result;
-  const char *name = json_string_value(type);
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
     if (vl_text_is(name, models[i].name))
@@ -119,28 +119,22 @@ static vlResult read_basalt(const vlCameraFile *file, const json_t *tree,
                             vl_camera_asked(file, "0").text, record->frames);
 }
 
-static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *record,
-                             vlCameraText *text) {
-  vlCamera c;
-  double k[14], r[9], q[4];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK)
-    return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+static vlResult write_basalt(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  double r[9], q[4];
   const Model *model = NULL;
-  if (family == VL_LENS_UNIFIED)
-    return vl_camera_no_model(file, &record->camera);
+  if (fit->family == VL_LENS_UNIFIED)
+    return vl_camera_no_model(fit->file, &fit->record->camera);
   for (int i = 0; i < MODELS; i++)
-    if (models[i].family == family && !model)
+    if (models[i].family == fit->family && !model)
       model = &models[i];
-  if (!model || (family == VL_LENS_OPENCV && n > 8))
-    return vl_camera_no_model(file, &record->camera);
+  if (!model || (fit->family == VL_LENS_OPENCV && fit->count > 8))
+    return vl_camera_no_model(fit->file, &fit->record->camera);
   for (int i = 0; i < 9; i++)
-    r[i] = c.world_from_camera[4 * (i / 3) + i % 3];
+    r[i] = c->world_from_camera[4 * (i / 3) + i % 3];
   vl_rotation_to_quaternion(r, q);
   VL_PUT_FORM(
-      text, record, &c,
+      text, fit,
       "{\n  \"value0\": {\n    \"T_imu_cam\": [\n      {\"px\": $centre@0, \"py\": "
       "$centre@1, \"pz\": $centre@2, "
       "\"qx\": $q@1, \"qy\": $q@2, \"qz\": $q@3, \"qw\": $q@0}\n    ],\n"
@@ -149,12 +143,12 @@ static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *rec
       "\"cx\": $cx0, \"cy\": $cy0",
       VL_WORD("type", model->name), VL_VALUES("q", q, 4));
   for (int i = 0; i < 2 && model->shapes[i]; i++)
-    vl_camera_put(text, ", \"%s\": %.17g", model->shapes[i], c.shape[i]);
+    vl_camera_put(text, ", \"%s\": %.17g", model->shapes[i], c->shape[i]);
   for (int i = 0; i < 8 && model->lens[i]; i++)
-    vl_camera_put(text, ", \"%s\": %.17g", model->lens[i], k[i] + 0.0);
-  if (family == VL_LENS_OPENCV)
+    vl_camera_put(text, ", \"%s\": %.17g", model->lens[i], fit->k[i] + 0.0);
+  if (fit->family == VL_LENS_OPENCV)
     vl_camera_put(text, ", \"rpmax\": 0");
-  return vl_camera_put_form(text, record, &c, NULL,
+  return vl_camera_put_form(text, fit, NULL,
                             "}}\n    ],\n    \"resolution\": [[$width, $height]]\n  }\n}\n");
 }
 
@@ -171,4 +165,5 @@ const vlCameraFormat vl_format_basalt = {
         "accel_bias_std gyro_bias_std cam_time_offset_ns T_mocap_world T_imu_marker "
         "mocap_time_offset_ns mocap_to_imu_offset_ns vignette view_offset",
     .read = read_basalt,
+    .holds = VL_HOLDS_POSE,
     .write = write_basalt};

@@ -63,32 +63,30 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
   return VL_OK;
 }
 
-static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
-  const vlCameraDef *d = &record->camera;
-  vlCamera c;
+static vlResult write_blender(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCameraDef *d = &fit->record->camera;
+  const vlCamera *c = &fit->camera;
   double m[16];
-  vlResult result = vl_camera_fit_plain(file, record, VL_HOLDS_POSE | VL_HOLDS_PLANES, &c);
-  if (result != VL_OK)
-    return result;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
   /* Blender requires that the smaller of the two aspects is 1 */
-  double ratio = c.fx / c.fy, w = c.width, h = c.height, side = w >= ratio * h ? w : ratio * h;
+  double ratio = c->fx / c->fy, w = c->width, h = c->height,
+         side = w >= ratio * h ? w : ratio * h;
   double sensor = d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0;
-  vl_camera_flip_axes(c.world_from_camera, m);
+  vl_camera_flip_axes(c->world_from_camera, m);
   vl_camera_put(text, "{\n  \"name\": ");
-  vl_camera_put_string(text, record->name[0] ? record->name : "Camera");
+  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : "Camera");
   vl_camera_put(text, ",\n  \"type\": \"%s\",\n  \"%s\": %.17g,\n", flat ? "ORTHO" : "PERSP",
-                flat ? "ortho_scale" : "lens", flat ? side / c.fx : c.fx * sensor / side);
+                flat ? "ortho_scale" : "lens", flat ? side / c->fx : c->fx * sensor / side);
   vl_camera_put(
       text, "  \"sensor_fit\": \"AUTO\",\n  \"sensor_width\": %.17g,\n  \"shift_x\": %.17g,\n",
-      sensor, (0.5 * w - c.cx) / side + 0.0);
-  vl_camera_put(text, "  \"shift_y\": %.17g,\n", (c.cy - 0.5 * h) * ratio / side + 0.0);
-  if (c.near_plane > 0.0)
-    vl_camera_put(text, "  \"clip_start\": %.17g,\n", c.near_plane);
-  if (!isinf(c.far_plane))
-    vl_camera_put(text, "  \"clip_end\": %.17g,\n", c.far_plane);
-  vl_camera_put(text, "  \"resolution_x\": %u,\n  \"resolution_y\": %u,\n", c.width, c.height);
+      sensor, (0.5 * w - c->cx) / side + 0.0);
+  vl_camera_put(text, "  \"shift_y\": %.17g,\n", (c->cy - 0.5 * h) * ratio / side + 0.0);
+  if (c->near_plane > 0.0)
+    vl_camera_put(text, "  \"clip_start\": %.17g,\n", c->near_plane);
+  if (!isinf(c->far_plane))
+    vl_camera_put(text, "  \"clip_end\": %.17g,\n", c->far_plane);
+  vl_camera_put(text, "  \"resolution_x\": %u,\n  \"resolution_y\": %u,\n", c->width,
+                c->height);
   vl_camera_put(text, "  \"pixel_aspect_x\": %.17g,\n  \"pixel_aspect_y\": %.17g,\n",
                 ratio < 1.0 ? 1.0 / ratio : 1.0, ratio < 1.0 ? 1.0 : ratio);
   vl_camera_put(text, "  \"matrix_world\": [");
@@ -107,4 +105,6 @@ const vlCameraFormat vl_format_blender = {
         "pixel_aspect_x pixel_aspect_y",
     .geometry = "use_border use_crop_to_border",
     .read = read_blender,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_PLANES,
+    .plain = true,
     .write = write_blender};

@@ -57,29 +57,22 @@ static bool is_bundler(const char *text, size_t size) {
   return size > sizeof begin && memcmp(text, begin, sizeof begin - 1) == 0;
 }
 
-static vlResult write_bundler(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
-  vlCamera c;
-  double k[14] = {0}, r[9], t[3];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK)
-    return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool radial = family == VL_LENS_PINHOLE || family == VL_LENS_OPENCV;
-  for (uint32_t i = 2; i < 14 && radial && family == VL_LENS_OPENCV; i++)
-    radial = k[i] == 0.0;
+static vlResult write_bundler(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  double r[9], t[3];
+  bool radial = fit->family == VL_LENS_PINHOLE || fit->family == VL_LENS_OPENCV;
+  for (uint32_t i = 2; i < 14 && radial; i++)
+    radial = fit->k[i] == 0.0;
   if (!radial)
-    return vl_camera_no_model(file, &record->camera);
-  result = vl_camera_refuse_off_centre(file, &c);
+    return vl_camera_no_model(fit->file, &fit->record->camera);
+  vlResult result = vl_camera_refuse_off_centre(fit->file, c);
   if (result == VL_OK)
-    result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+    result = vl_camera_refuse(fit->file, "fy", c->fx != c->fy);
   if (result != VL_OK)
     return result;
-  vl_camera_get_pose(&c, r, t);
-  if (family == VL_LENS_PINHOLE)
-    k[0] = k[1] = 0.0;
-  vl_camera_put(text, "# Bundle file v0.3\n1 0\n%.17g %.17g %.17g\n", c.fx, k[0], k[1]);
+  vl_camera_get_pose(c, r, t);
+  vl_camera_put(text, "# Bundle file v0.3\n1 0\n%.17g %.17g %.17g\n", c->fx, fit->k[0],
+                fit->k[1]);
   for (int i = 0; i < 3; i++) {
     double sign = i ? -1 : 1;
     vl_camera_put(text, "%.17g %.17g %.17g\n", sign * r[3 * i] + 0.0, sign * r[3 * i + 1] + 0.0,
@@ -93,4 +86,5 @@ const vlCameraFormat vl_format_bundler = {.name = "bundler",
                                           .rotates = true,
                                           .is_text = is_bundler,
                                           .read_text = read_bundler,
+                                          .holds = VL_HOLDS_POSE,
                                           .write = write_bundler};

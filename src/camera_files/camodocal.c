@@ -61,11 +61,10 @@ static vlResult read_model(const vlCameraFile *file, const json_t *tree, const M
 
 static vlResult read_camera(const vlCameraFile *file, const json_t *tree,
                             vlCameraRecord *record) {
-  const json_t *field;
-  vlResult result = vl_camera_field(file, tree, "model_type", &field);
+  const char *name;
+  vlResult result = vl_camera_word(file, tree, "model_type", &name);
   if (result != VL_OK)
     return result;
-  const char *name = json_string_value(field);
   if (name && (vl_text_is(name, "SCARAMUZZA") || vl_text_is(name, "scaramuzza")))
     return vl_camera_wrong_in(
         file, tree, "model_type",
@@ -168,35 +167,29 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
   return result;
 }
 
-static vlResult write_camodocal(const vlCameraFile *file, const vlCameraRecord *record,
-                                vlCameraText *text) {
-  vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
-  if (result != VL_OK)
-    return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+static vlResult write_camodocal(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  vlLensFamily family = fit->family;
   if (family == VL_LENS_PINHOLE)
     family = VL_LENS_OPENCV;
-  bool full = family == VL_LENS_OPENCV && n > 4, fits = !full || n <= 8;
+  bool full = family == VL_LENS_OPENCV && fit->count > 4, fits = !full || fit->count <= 8;
   const Model *model = NULL;
   for (int i = 0; i < MODELS && fits; i++)
     if (models[i].family == family && (!full || models[i].lens[4]) && !model)
       model = &models[i];
-  if (!model || (family == VL_LENS_UNIFIED && n > 4))
-    return vl_camera_no_model(file, &record->camera);
-  const double f[4] = {c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
-  VL_PUT_FORM(text, record, &c,
+  if (!model || (family == VL_LENS_UNIFIED && fit->count > 4))
+    return vl_camera_no_model(fit->file, &fit->record->camera);
+  const double f[4] = {c->fx, c->fy, c->cx - 0.5, c->cy - 0.5};
+  VL_PUT_FORM(text, fit,
               "%YAML:1.0\n---\nmodel_type: $model\ncamera_name: $name\nimage_width: $width\n"
               "image_height: $height\n",
               VL_WORD("model", model->name));
   if (family == VL_LENS_UNIFIED)
-    vl_camera_put(text, "mirror_parameters:\n  xi: %.17g\n", c.shape[0]);
+    vl_camera_put(text, "mirror_parameters:\n  xi: %.17g\n", c->shape[0]);
   bool fisheye = family == VL_LENS_FISHEYE;
   vl_camera_put(text, fisheye ? "projection_parameters:\n" : "distortion_parameters:\n");
   for (int i = 0; i < 8 && model->lens[i]; i++)
-    vl_camera_put(text, "  %s: %.17g\n", model->lens[i], k[i] + 0.0);
+    vl_camera_put(text, "  %s: %.17g\n", model->lens[i], fit->k[i] + 0.0);
   if (!fisheye)
     vl_camera_put(text, "projection_parameters:\n");
   for (int i = 0; i < 4; i++)

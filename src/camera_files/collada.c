@@ -255,31 +255,24 @@ static bool is_collada(const json_t *tree) {
   return has_tag(tree, "COLLADA");
 }
 
-static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
-  vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result =
-      vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
+static vlResult write_collada(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  if (!flat && fit->family != VL_LENS_PINHOLE)
+    return vl_camera_no_model(fit->file, &fit->record->camera);
+  vlResult result = vl_camera_refuse_off_centre(fit->file, c);
   if (result != VL_OK)
     return result;
-  bool flat = c.projection == VL_PROJECTION_ORTHOGRAPHIC;
-  if (!flat && vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
-  result = vl_camera_refuse_off_centre(file, &c);
-  if (result != VL_OK)
-    return result;
-  double x = 0.5 * c.width / c.fx, y = 0.5 * c.height / c.fy;
+  double x = 0.5 * c->width / c->fx, y = 0.5 * c->height / c->fy;
   const char *kind = flat ? "orthographic" : "perspective", *side = flat ? "mag" : "fov";
   if (!flat) {
     x = 2.0 / degree * vl_precise_atan(x);
     y = 2.0 / degree * vl_precise_atan(y);
   }
-  const double planes[2] = {c.near_plane > 0.0 || flat ? c.near_plane : 0.01,
-                            isinf(c.far_plane) ? 10000.0 : c.far_plane};
+  const double planes[2] = {c->near_plane > 0.0 || flat ? c->near_plane : 0.01,
+                            isinf(c->far_plane) ? 10000.0 : c->far_plane};
   return VL_PUT_FORM(
-      text, record, &c,
+      text, fit,
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n"
       "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
       "  <asset><created>1970-01-01T00:00:00</created><modified>1970-01-01T00:00:00</modified>"
@@ -300,4 +293,8 @@ static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *re
 }
 
 const vlCameraFormat vl_format_collada = {
-    .name = "collada", .is_tree = is_collada, .read = read_collada, .write = write_collada};
+    .name = "collada",
+    .is_tree = is_collada,
+    .read = read_collada,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES,
+    .write = write_collada};

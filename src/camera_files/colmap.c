@@ -40,6 +40,14 @@ static char *next_line(Lines *lines) {
   return NULL;
 }
 
+/* The same for lines that are not blank. */
+static char *next_entry(Lines *lines) {
+  char *line = next_line(lines);
+  while (line && line[strspn(line, " \t")] == 0)
+    line = next_line(lines);
+  return line;
+}
+
 static vlResult wrong_line(const vlCameraFile *file, const char *path, uint32_t line,
                            const char *what) {
   return vl_fail_at(file->error, VL_ERROR_SCENE, path, line, 1, "colmap: %s", what);
@@ -100,16 +108,12 @@ static vlResult open_lines(const vlCameraFile *file, const char *path, char **te
 /* Reads the camera with this id, or the first camera if id is null. */
 static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id,
                              vlCameraRecord *record) {
-  char *text;
+  char *text = NULL;
   Lines lines;
   vlResult result = open_lines(file, path, &text, &lines);
-  if (result != VL_OK)
-    return result;
   bool found = false;
-  for (char *line; result == VL_OK && !found && (line = next_line(&lines));) {
+  for (char *line; result == VL_OK && !found && (line = next_entry(&lines));) {
     double number;
-    if (line[strspn(line, " \t")] == 0)
-      continue;
     if (!next_number(&line, &number))
       result = wrong_line(file, path, lines.line, "a line begins with the camera's number");
     else if ((found = !id || number == *id))
@@ -143,16 +147,12 @@ static vlResult read_image_line(const vlCameraFile *file, const char *path, uint
 
 static vlResult read_images(const vlCameraFile *file, const char *path, double *id,
                             vlCameraRecord *record) {
-  char *text;
+  char *text = NULL;
   Lines lines;
   vlResult result = open_lines(file, path, &text, &lines);
-  if (result != VL_OK)
-    return result;
   bool taken = false;
   record->frames = 0;
-  for (char *line; result == VL_OK && (line = next_line(&lines));) {
-    if (line[strspn(line, " \t")] == 0)
-      continue;
+  for (char *line; result == VL_OK && (line = next_entry(&lines));) {
     bool found = false;
     if (!taken)
       result =
@@ -183,11 +183,9 @@ static int by_id(const void *a, const void *b) {
 static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, const char *path,
                                  char *text, size_t size, CameraIds *ids) {
   Lines lines = {text, text + size, 0};
-  for (char *line; (line = next_line(&lines));) {
+  for (char *line; (line = next_entry(&lines));) {
     vlCameraRecord record;
     CameraId id;
-    if (line[strspn(line, " \t")] == 0)
-      continue;
     memset(&record, 0, sizeof record);
     record.camera = vl_default_camera_def(1, 1);
     record.dialect = VL_CAMERA_DIALECT_COLMAP;
@@ -216,9 +214,7 @@ static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const
   vlCameraFile copy = *file;
   copy.def = &any;
   any.frame = NULL;
-  for (char *line; (line = next_line(&lines));) {
-    if (line[strspn(line, " \t")] == 0)
-      continue;
+  for (char *line; (line = next_entry(&lines));) {
     vlCameraRecord record = {.frames = 0};
     CameraId wanted = {0, 0};
     bool found = false;
@@ -402,11 +398,12 @@ static void put_lines(vlCameraText *cameras, vlCameraText *images, const vlColma
 
 static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *record) {
   char cameras[4096], images[4096];
-  vlCamera c;
+  vlFittedCamera fit;
+  const vlCamera *c = &fit.camera;
   double p[12], r[9];
   uint32_t count = 0;
   vlColmapRecord out = {.name = record->name[0] ? record->name : "camera"};
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  vlResult result = vl_camera_fit(file, record, &vl_format_colmap, &fit);
   if (result == VL_OK)
     result = choose_model(file, &record->camera, &out.model, p, &count);
   if (result != VL_OK)
@@ -416,13 +413,13 @@ static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *reco
   if (is_folder(file->path) && mkdir(file->path, 0777) != 0 && errno != EEXIST)
     return vl_fail(file->error, VL_ERROR_IO, "cannot make the folder %s: %s", file->path,
                    strerror(errno));
-  out.width = c.width;
-  out.height = c.height;
-  const double intrinsics[4] = {c.fx, c.fy, c.cx, c.cy};
+  out.width = c->width;
+  out.height = c->height;
+  const double intrinsics[4] = {c->fx, c->fy, c->cx, c->cy};
   memcpy(out.parameters, intrinsics, sizeof intrinsics);
   memcpy(out.parameters + 4, p, count * sizeof *p);
   out.count = 4 + count;
-  vl_camera_get_pose(&c, r, out.translation);
+  vl_camera_get_pose(c, r, out.translation);
   vl_rotation_to_quaternion(r, out.quaternion);
   vlCameraText text = {.context = file->context}, poses = {.context = file->context};
   if (vl_ends_with(cameras, ".bin"))
@@ -439,4 +436,5 @@ static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *reco
 
 /* The row has no functions: a model consists of two files, so vl_camera_read and
  * vl_camera_write call COLMAP's functions directly. */
-const vlCameraFormat vl_format_colmap = {.name = "colmap", .write_folder = write_model};
+const vlCameraFormat vl_format_colmap = {
+    .name = "colmap", .holds = VL_HOLDS_POSE, .write_folder = write_model};

@@ -191,8 +191,9 @@ static void put_value(vlCameraText *text, const vlCameraRecord *record,
     vl_camera_put_string(text, record->name[0] ? record->name : "camera");
 }
 
-vlResult vl_camera_put_form(vlCameraText *text, const vlCameraRecord *record, const vlCamera *c,
+vlResult vl_camera_put_form(vlCameraText *text, const vlFittedCamera *fit,
                             const vlCameraValue *own, const char *form) {
+  const vlCamera *c = &fit->camera;
   const Values v = values_of(c);
   const vlCameraValue all[] = {VL_VALUES("width", &v.sides[0], 1),
                                VL_VALUES("height", &v.sides[1], 1),
@@ -233,30 +234,21 @@ vlResult vl_camera_put_form(vlCameraText *text, const vlCameraRecord *record, co
     if (!value)
       value = find_value(all, &key);
     if (value)
-      put_value(text, record, value, &key);
+      put_value(text, fit->record, value, &key);
   }
   return VL_OK;
 }
 
-vlResult vl_camera_write_form(const vlCameraFile *file, const vlCameraFormat *format,
-                              const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  vlFittedLens lens;
-  vlResult result =
-      vl_camera_fit_lens(file, record, format->holds, format->lenses, format->most, &c, &lens);
-  if (result == VL_OK && format->centred)
-    result = vl_camera_refuse_off_centre(file, &c);
-  if (result == VL_OK && format->square)
-    result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK)
-    return result;
-  if (lens.family == VL_LENS_FOV)
-    lens.k[0] = c.shape[0];
-  vlCameraRecord named = *record;
+vlResult vl_camera_write_form(const vlCameraFormat *format, const vlFittedCamera *fit,
+                              vlCameraText *text) {
+  vlCameraRecord named = *fit->record;
   if (!named.name[0] && format->unnamed)
     vl_camera_name(&named, format->unnamed);
-  const uint32_t count = lens.count > format->least ? lens.count : format->least;
-  const char *word = format->lens_words[lens.family];
-  return VL_PUT_FORM(text, &named, &c, format->form, VL_VALUES("k", lens.k, count),
-                     VL_WORD("lens", word));
+  vlFittedCamera own = *fit;
+  own.record = &named;
+  if (fit->family == VL_LENS_FOV)
+    own.k[0] = fit->camera.shape[0];
+  const uint32_t count = fit->count > format->least ? fit->count : format->least;
+  return VL_PUT_FORM(text, &own, format->form, VL_VALUES("k", own.k, count),
+                     VL_WORD("lens", format->lens_words[fit->family]));
 }

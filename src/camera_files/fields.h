@@ -84,13 +84,12 @@ typedef struct vlCameraValue {
  * $key@N is number N of a list, from 0. Lists are written as "1, 2, 3"; after :s as "1 2 3";
  * after :q with each number in quotation marks; after :1, :3 or :4 in brackets, so many at a
  * time. Returns VL_OK: text->failed says if memory is lacking. */
-vlResult vl_camera_put_form(vlCameraText *text, const vlCameraRecord *record,
-                            const vlCamera *camera, const vlCameraValue *own, const char *form);
-#define VL_PUT_FORM(text, record, camera, form, ...) \
-  vl_camera_put_form(text, record, camera,           \
-                     (const vlCameraValue[]){__VA_ARGS__, {.key = NULL}}, form)
+vlResult vl_camera_put_form(vlCameraText *text, const vlFittedCamera *fit,
+                            const vlCameraValue *own, const char *form);
+#define VL_PUT_FORM(text, fit, form, ...) \
+  vl_camera_put_form(text, fit, (const vlCameraValue[]){__VA_ARGS__, {.key = NULL}}, form)
 /* Writes a camera by the form of its dialect's row. */
-vlResult vl_camera_write_form(const vlCameraFile *file, const vlCameraFormat *format,
-                              const vlCameraRecord *record, vlCameraText *text);
+vlResult vl_camera_write_form(const vlCameraFormat *format, const vlFittedCamera *fit,
+                              vlCameraText *text);
 
 #endif

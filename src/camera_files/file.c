@@ -201,8 +201,8 @@ vlResult vl_camera_read_each(const vlCameraFile *file, const vlCameraSink *sink)
   return read_file(&own, sink, &record);
 }
 
-static vlResult begin(vlContext *context, const char *path, const vlCameraFileDef **def,
-                      vlCameraFileDef *standard, vlError *error) {
+static vlResult begin(vlContext *context, const char *path, const vlCameraRecord *record,
+                      const vlCameraFileDef **def, vlCameraFileDef *standard, vlError *error) {
   vl_error_clear(error);
   *standard = vl_default_camera_file_def();
   if (!context || !path)
@@ -214,17 +214,17 @@ static vlResult begin(vlContext *context, const char *path, const vlCameraFileDe
   if ((uint32_t)(*def)->dialect >= VL_CAMERA_DIALECT_COUNT)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: unknown dialect %d",
                    (int)(*def)->dialect);
+  if (!record)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
   return VL_OK;
 }
 
 static vlResult read_plainly(vlContext *context, const char *path, const vlCameraFileDef *def,
                              vlCameraRecord *record, vlError *error) {
   vlCameraFileDef standard;
-  vlResult result = begin(context, path, &def, &standard, error);
+  vlResult result = begin(context, path, record, &def, &standard, error);
   if (result != VL_OK)
     return result;
-  if (!record)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
   if (def->dialect == VL_CAMERA_DIALECT_EXR)
     return vl_fail(error, VL_ERROR_UNSUPPORTED,
                    "camera file: this is an image; it is read as one");
@@ -288,11 +288,9 @@ bool vl_camera_writes_folder(const char *path, vlCameraDialect dialect) {
 static vlResult write_plainly(vlContext *context, const char *path, const vlCameraFileDef *def,
                               const vlCameraRecord *record, vlError *error) {
   vlCameraFileDef standard;
-  vlResult result = begin(context, path, &def, &standard, error);
+  vlResult result = begin(context, path, record, &def, &standard, error);
   if (result != VL_OK)
     return result;
-  if (!record)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
   if (record->camera.own)
     return vl_fail(error, VL_ERROR_UNSUPPORTED,
                    "camera file: none can hold a camera of one's own, \"%s\"",
@@ -314,8 +312,11 @@ static vlResult write_plainly(vlContext *context, const char *path, const vlCame
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: %s is not written: %s",
                    format->name, format->not_written);
   vlCameraText text = {.context = context};
-  result = format->form ? vl_camera_write_form(&file, format, record, &text)
-                        : format->write(&file, record, &text);
+  vlFittedCamera fit;
+  result = vl_camera_fit(&file, record, format, &fit);
+  if (result == VL_OK)
+    result =
+        format->form ? vl_camera_write_form(format, &fit, &text) : format->write(&fit, &text);
   if (result == VL_OK && text.failed)
     result = vl_fail_memory(error);
   vlFileWriter writer;

@@ -86,6 +86,9 @@ vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size,
 /* Reads a required number. If it is missing, the error names the nearest key. */
 vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key,
                          const json_t **value);
+/* Reads a required text; *text is null if the field is something else. */
+vlResult vl_camera_word(const vlCameraFile *file, const json_t *object, const char *key,
+                        const char **text);
 /* A value of the tree, for its row. */
 vlGiven vl_json_given(const json_t *item);
 vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key,
@@ -150,7 +153,8 @@ enum {
   VL_HOLDS_LENS = 8,
   VL_HOLDS_PLANES = 16,
   VL_HOLDS_TIME = 32, /* shutter */
-  VL_HOLDS_EXPOSURE = 64
+  VL_HOLDS_EXPOSURE = 64,
+  VL_HOLDS_ALL = 128 /* every property; nothing is checked */
 };
 
 void vl_camera_put(vlCameraText *text, const char *format, ...)
@@ -172,13 +176,6 @@ vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool pres
 vlResult vl_camera_check_drop(const vlCameraFileDef *def, vlError *error);
 /* Returns whether the field is in the list of fields that may be dropped. */
 bool vl_camera_drops(const vlCameraFile *file, const char *field);
-/* Makes *camera from the record. Returns an error for any property that the flags `holds` do
- * not include. */
-vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
-                       vlCamera *camera);
-/* vl_camera_fit for dialects with perspective and orthographic cameras without distortion. */
-vlResult vl_camera_fit_plain(const vlCameraFile *file, const vlCameraRecord *record,
-                             uint32_t holds, vlCamera *camera);
 /* The lens models that calibration tools name. */
 typedef enum vlLensFamily {
   VL_LENS_PINHOLE,
@@ -192,22 +189,19 @@ typedef enum vlLensFamily {
 } vlLensFamily;
 /* A bit for each of the lenses that most tools have. */
 enum { VL_LENSES_COMMON = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV | 1 << VL_LENS_FISHEYE };
-typedef struct vlFittedLens {
-  vlLensFamily family;
+struct vlCameraFormat;
+/* A camera that its dialect can hold. */
+typedef struct vlFittedCamera {
+  const vlCameraFile *file;
+  const vlCameraRecord *record;
+  vlCamera camera;     /* of the record */
+  vlLensFamily family; /* of the lens; k: its coefficients (vl_camera_lens_family) */
   double k[14];
   uint32_t count;
-} vlFittedLens;
-/* vl_camera_fit for dialects with several lenses. families: a bit for each (1 << VL_LENS_FOV);
- * most: how many coefficients there may be. */
-vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *record,
-                            uint32_t holds, uint32_t families, uint32_t most, vlCamera *camera,
-                            vlFittedLens *lens);
-/* vl_camera_fit for dialects without lens distortion. */
-vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record,
-                               uint32_t holds, vlCamera *camera);
-/* vl_camera_fit for dialects with the first five of OpenCV's coefficients, k1 k2 p1 p2 k3. */
-vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record,
-                              uint32_t holds, double k[14], vlCamera *camera);
+} vlFittedCamera;
+/* Makes it from the record. Returns an error for what the dialect's row does not include. */
+vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
+                       const struct vlCameraFormat *format, vlFittedCamera *fit);
 /* vl_camera_refuse for a principal point that is not the image's centre. */
 vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *camera);
 /* Reports that the dialect cannot express the def's projection, or the distortion of that
@@ -265,8 +259,7 @@ typedef vlResult vlCameraReadTree(const vlCameraFile *file, const json_t *tree,
 /* A function that reads a camera from the file's text. */
 typedef vlResult vlCameraReadText(const vlCameraFile *file, const char *text, size_t size,
                                   vlCameraRecord *record);
-typedef vlResult vlCameraWriteText(const vlCameraFile *file, const vlCameraRecord *record,
-                                   vlCameraText *text);
+typedef vlResult vlCameraWriteText(const vlFittedCamera *fit, vlCameraText *text);
 typedef vlResult vlCameraWriteFolder(const vlCameraFile *file, const vlCameraRecord *record);
 
 /* A row of the table of dialects. Each row is defined at the end of the dialect's own file. */
@@ -297,16 +290,19 @@ typedef struct vlCameraFormat {
                                       general ones (unread.c) do not say so: errors; may be null */
   bool (*knows)(const char *name); /* further names; may be null */
   char separator; /* of texts whose lines are NAME, this character, a value; 0: of no others */
-  /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
-   * the lens, and $lens, its word. holds: of vl_camera_fit. lenses, most: of
-   * vl_camera_fit_lens. */
-  const char *form;
+  /* What the dialect can hold (vl_camera_fit). holds: VL_HOLDS_POSE, ... lenses: a bit for each
+   * family (1 << VL_LENS_FOV); 0: the writer checks the lens. most: how many coefficients there
+   * may be. plain, in place of lenses: perspective and orthographic cameras without distortion.
+   * centred, square: the principal point must be the image's centre; fx must be fy. */
   uint32_t holds, lenses, most;
+  bool plain, centred, square;
+  /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
+   * the lens, and $lens, its word. */
+  const char *form;
   uint32_t least;                        /* $k has at least so many coefficients */
   const char *lens_words[VL_LENS_OTHER]; /* by family */
   const char *unnamed;                   /* $name of a record without a name; null: "camera" */
-  bool rotates;         /* poses are rotations and translations: vl_camera_check_rotation */
-  bool centred, square; /* the principal point must be the image's centre; fx must be fy */
+  bool rotates; /* poses are rotations and translations: vl_camera_check_rotation */
 } vlCameraFormat;
 
 /* For files of which the camera is a part: counts what is not in the list of names (as

@@ -86,11 +86,11 @@ static void unmirror(vlCamera *c) {
   c->skew = 0.0 - c->skew;
 }
 
-vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
-                       vlCamera *camera) {
-  const vlCameraDef *d = &record->camera;
+/* Makes the camera. Refuses any property that `holds` does not include. */
+static vlResult hold(const vlCameraFile *file, const vlCameraDef *d, uint32_t holds,
+                     vlCamera *camera) {
   vlResult result = vl_camera_make(d, camera, NULL, file->error);
-  if (result != VL_OK)
+  if (result != VL_OK || holds & VL_HOLDS_ALL)
     return result;
   bool posed = holds & VL_HOLDS_POSE;
   const vlLens *lens = &camera->lens;
@@ -174,45 +174,30 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) 
   return true;
 }
 
-vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *record,
-                            uint32_t holds, uint32_t families, uint32_t most, vlCamera *camera,
-                            vlFittedLens *lens) {
-  vlResult result = vl_camera_fit(file, record, holds, camera);
-  if (result != VL_OK)
-    return result;
-  lens->family = vl_camera_lens_family(&record->camera, lens->k, &lens->count);
-  if ((families >> lens->family & 1u) && lens->count <= most)
-    return VL_OK;
-  return vl_camera_no_model(file, &record->camera);
-}
-
-vlResult vl_camera_fit_plain(const vlCameraFile *file, const vlCameraRecord *record,
-                             uint32_t holds, vlCamera *camera) {
-  vlResult result = vl_camera_fit(file, record, holds, camera);
-  if (result != VL_OK)
-    return result;
-  if (record->camera.projection > VL_PROJECTION_ORTHOGRAPHIC)
-    return vl_camera_no_model(file, &record->camera);
-  return vl_camera_refuse(file, "distortion", camera->distortion.steps != 0);
-}
-
-vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record,
-                               uint32_t holds, vlCamera *camera) {
-  vlFittedLens lens;
-  return vl_camera_fit_lens(file, record, holds, 1 << VL_LENS_PINHOLE, 0, camera, &lens);
-}
-
-vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record,
-                              uint32_t holds, double k[14], vlCamera *camera) {
-  vlFittedLens lens = {.count = 0};
-  vlResult result = vl_camera_fit_lens(
-      file, record, holds, 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV, 5, camera, &lens);
-  memcpy(k, lens.k, sizeof lens.k);
-  return result;
-}
-
 vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *camera) {
   vlResult result = vl_camera_refuse(file, "cx", camera->cx != 0.5 * camera->width);
   return result == VL_OK ? vl_camera_refuse(file, "cy", camera->cy != 0.5 * camera->height)
                          : result;
+}
+
+vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
+                       const vlCameraFormat *format, vlFittedCamera *fit) {
+  const vlCameraDef *d = &record->camera;
+  vlCamera *c = &fit->camera;
+  vlResult result = hold(file, d, format->holds, c);
+  if (result != VL_OK)
+    return result;
+  fit->file = file;
+  fit->record = record;
+  fit->family = vl_camera_lens_family(d, fit->k, &fit->count);
+  const bool known = format->lenses >> fit->family & 1 && fit->count <= format->most;
+  if (format->plain ? d->projection > VL_PROJECTION_ORTHOGRAPHIC : format->lenses && !known)
+    return vl_camera_no_model(file, d);
+  if (format->plain)
+    result = vl_camera_refuse(file, "distortion", c->distortion.steps != 0);
+  if (result == VL_OK && format->centred)
+    result = vl_camera_refuse_off_centre(file, c);
+  if (result == VL_OK && format->square)
+    result = vl_camera_refuse(file, "fy", c->fx != c->fy);
+  return result;
 }

@@ -262,21 +262,18 @@ static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
   return result == VL_OK ? check_members(file, holder, chosen, record) : result;
 }
 
-static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *record,
-                           vlCameraText *text) {
-  const vlCameraDef *d = &record->camera;
-  vlCamera c;
+static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCameraDef *d = &fit->record->camera;
+  const vlCamera *c = &fit->camera;
   vlResult result =
-      vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
+      vl_camera_refuse(fit->file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC);
   if (result == VL_OK)
-    result = vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC);
+    result = vl_camera_refuse(fit->file, "distortion", c->distortion.steps != 0);
   if (result == VL_OK)
-    result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
-  if (result == VL_OK)
-    result = vl_camera_refuse_off_centre(file, &c);
+    result = vl_camera_refuse_off_centre(fit->file, c);
   if (result != VL_OK)
     return result;
-  Numbers n = numbers_of(&c);
+  Numbers n = numbers_of(c);
   const double *m = n.matrix;
   double dots[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
   for (int i = 0; i < 12; i += 4)
@@ -286,13 +283,13 @@ static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *recor
     }
   for (int k = 0; k < 3; k++)
     if (fabs(dots[k]) > 1e-9 * sqrt(squares[k] * squares[(k + 1) % 3]))
-      return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+      return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
                         "gltf cannot hold a pose that shears");
   vl_camera_put(
       text,
       "{\n  \"asset\": {\"version\": \"2.0\", \"generator\": \"velo\"},\n  \"scene\": 0,\n");
   vl_camera_put(text, "  \"scenes\": [{\"nodes\": [0]}],\n  \"nodes\": [{\n    \"name\": ");
-  vl_camera_put_string(text, record->name[0] ? record->name : "Camera");
+  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : "Camera");
   vl_camera_put(text, ",\n    \"camera\": 0,\n    \"matrix\": [");
   for (int i = 0; i < 16; i++)
     vl_camera_put(text, "%s%.17g", i ? ", " : "", m[4 * (i % 4) + i / 4]);
@@ -306,14 +303,14 @@ static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *recor
   /* glTF requires a near plane, and a far plane of orthographic cameras; the extras record that
    * the camera has none */
   double near_plane =
-      c.near_plane > 0.0 || n.flat ? c.near_plane : fmin(0.01, 1e-3 * c.far_plane);
+      c->near_plane > 0.0 || n.flat ? c->near_plane : fmin(0.01, 1e-3 * c->far_plane);
   vl_camera_put(text, ", \"znear\": %.17g", near_plane);
-  if (!isinf(c.far_plane) || n.flat)
+  if (!isinf(c->far_plane) || n.flat)
     vl_camera_put(text, ", \"zfar\": %.17g",
-                  isinf(c.far_plane) ? near_plane + 1e4 : c.far_plane);
+                  isinf(c->far_plane) ? near_plane + 1e4 : c->far_plane);
   vl_camera_put(text, "},\n    \"extras\": {\"velo\": ");
   vlCameraText whole = {.context = text->context};
-  result = vl_camera_write_velo(file, record, &whole);
+  result = vl_camera_write_velo(fit, &whole);
   vl_camera_put_text(text, &whole);
   VL_ARRAY_FREE(text->context, &whole.text);
   vl_camera_put(text, "}\n  }]\n}\n");
@@ -321,4 +318,8 @@ static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *recor
 }
 
 const vlCameraFormat vl_format_gltf = {
-    .name = "gltf", .marks = {"asset"}, .read = read_gltf, .write = write_gltf};
+    .name = "gltf",
+    .marks = {"asset"},
+    .read = read_gltf,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES,
+    .write = write_gltf};

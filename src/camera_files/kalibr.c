@@ -22,16 +22,13 @@ static const Model models[] = {{"pinhole", VL_PROJECTION_PERSPECTIVE, 0},
 enum { MODELS = VL_LENGTH(models) };
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraDef *d) {
-  const json_t *field;
+  const char *lens;
   double k[4] = {0};
   uint32_t n = 0;
-  vlResult result = vl_camera_field(file, cam, "distortion_model", &field);
-  if (result != VL_OK)
-    return result;
-  const char *lens = json_string_value(field);
+  vlResult result = vl_camera_word(file, cam, "distortion_model", &lens);
   bool plain = d->projection == VL_PROJECTION_PERSPECTIVE;
-  if (vl_text_is(lens, "none"))
-    return VL_OK;
+  if (result != VL_OK || vl_text_is(lens, "none"))
+    return result;
   result = vl_camera_numbers(file, cam, "distortion_coeffs", k, 0, 4, &n);
   if (result != VL_OK)
     return result;
@@ -63,12 +60,11 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraD
 
 static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  const json_t *field;
+  const char *name;
   double k[6] = {0};
-  vlResult result = vl_camera_field(file, cam, "camera_model", &field);
+  vlResult result = vl_camera_word(file, cam, "camera_model", &name);
   if (result != VL_OK)
     return result;
-  const char *name = json_string_value(field);
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
     if (vl_text_is(name, models[i].name))
@@ -160,15 +156,11 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree,
                          vl_camera_asked(file, "cam0").text);
 }
 
-static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *record,
-                             vlCameraText *text) {
-  const vlCameraDef *d = &record->camera;
-  vlCamera c;
+static vlResult write_kalibr(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCameraDef *d = &fit->record->camera;
+  const vlCamera *c = &fit->camera;
   double k[14] = {0};
   uint32_t n = 0;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK)
-    return result;
   bool fov = d->projection == VL_PROJECTION_FOV,
        equi = d->projection == VL_PROJECTION_EQUIDISTANT;
   const char *lens = "none";
@@ -177,16 +169,16 @@ static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *rec
     if (d->projection == models[i].projection)
       model = &models[i];
   if (!model)
-    return vl_camera_no_model(file, d);
+    return vl_camera_no_model(fit->file, d);
   if (fov) {
     if (d->distortion != VL_DISTORTION_NONE)
-      return vl_camera_no_model(file, d);
+      return vl_camera_no_model(fit->file, d);
     k[0] = d->shape[0];
     n = 1;
     lens = "fov";
   } else if (equi) {
     if (d->distortion != VL_DISTORTION_NONE && d->distortion != VL_DISTORTION_RADIAL)
-      return vl_camera_no_model(file, d);
+      return vl_camera_no_model(fit->file, d);
     memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
     n = 4;
     lens = "equidistant";
@@ -195,25 +187,25 @@ static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *rec
     for (int i = 4; i < 14; i++)
       fits = fits && k[i] == 0.0;
     if (!fits || model->shapes == 2)
-      return vl_camera_no_model(file, d);
+      return vl_camera_no_model(fit->file, d);
     n = 4;
     lens = "radtan";
   }
   vl_camera_put(text, "cam0:\n  camera_model: %s\n  intrinsics: [", model->name);
   for (uint32_t i = 0; i < model->shapes; i++)
-    vl_camera_put(text, "%.17g, ", c.shape[i]);
-  VL_PUT_FORM(text, record, &c,
+    vl_camera_put(text, "%.17g, ", c->shape[i]);
+  VL_PUT_FORM(text, fit,
               "$fx, $fy, $cx0, $cy0]\n  distortion_model: $lens\n  distortion_coeffs: [$k]\n"
               "  resolution: [$width, $height]\n",
               VL_WORD("lens", lens), VL_VALUES("k", k, n));
   bool posed = false;
   for (int i = 0; i < 16; i++)
-    posed = posed || c.camera_from_world[i] != (i % 5 == 0 ? 1.0 : 0.0);
+    posed = posed || c->camera_from_world[i] != (i % 5 == 0 ? 1.0 : 0.0);
   if (posed)
     vl_camera_put(text, "  T_cam_imu:\n"); /* the world's space is the IMU's */
   for (int i = 0; i < 16 && posed; i += 4) {
     vl_camera_put(text, "  - [");
-    vl_camera_put_numbers(text, c.camera_from_world + i, 4);
+    vl_camera_put_numbers(text, c->camera_from_world + i, 4);
     vl_camera_put(text, "]\n");
   }
   return VL_OK;
@@ -229,4 +221,5 @@ const vlCameraFormat vl_format_kalibr = {
         /* of topics and clocks */
         "rostopic timeshift_cam_imu",
     .read = vl_camera_read_kalibr,
+    .holds = VL_HOLDS_POSE,
     .write = write_kalibr};

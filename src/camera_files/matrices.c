@@ -28,9 +28,8 @@ enum { API_COUNT = VL_LENGTH(apis) };
 /* A string that must be one of two words. */
 static vlResult choice(const vlCameraFile *file, const json_t *tree, const char *key,
                        const char *yes, const char *no, bool *value) {
-  const json_t *field;
-  vlResult result = vl_camera_field(file, tree, key, &field);
-  const char *word = json_string_value(field);
+  const char *word;
+  vlResult result = vl_camera_word(file, tree, key, &word);
   if (result != VL_OK)
     return result;
   *value = vl_text_is(word, yes);
@@ -152,11 +151,10 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
                               vlCameraRecord *record) {
   static const char *const names[] = {"opengl", "vulkan", "d3d"};
   vlCameraDef *d = &record->camera;
-  const json_t *field;
-  vlResult result = vl_camera_field(file, tree, "graphics_api", &field);
+  const char *word;
+  vlResult result = vl_camera_word(file, tree, "graphics_api", &word);
   if (result != VL_OK)
     return result;
-  const char *word = json_string_value(field);
   const Api *api = NULL;
   for (int i = 0; i < API_COUNT && word; i++)
     if (vl_text_is(apis[i].name, word))
@@ -250,29 +248,24 @@ static void put_matrix(vlCameraText *text, const char *name, const vlMat4 *m, bo
   vl_camera_put(text, "\n  ]");
 }
 
-static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *record,
-                               vlCameraText *text) {
+static vlResult write_matrices(const vlFittedCamera *fit, vlCameraText *text) {
   const Api *api = &apis[0];
-  vlCamera c;
+  const vlCamera *c = &fit->camera;
   for (int i = 0; i < API_COUNT; i++)
-    if (vl_text_is(apis[i].name, file->dialect))
+    if (vl_text_is(apis[i].name, fit->file->dialect))
       api = &apis[i];
-  uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES;
-  vlResult result = vl_camera_fit_plain(file, record, holds, &c);
-  if (result != VL_OK)
-    return result;
-  vlMat4 projection = projection_of(&c, api), view = vl_mat4_load(c.camera_from_world);
+  vlMat4 projection = projection_of(c, api), view = vl_mat4_load(c->camera_from_world);
   for (int i = 4; i < 12; i++)
     view.m[i] = 0.0 - view.m[i];
   bool transposed = api->rows_first == api->row_vectors;
   vl_camera_put(text, "{\n  \"graphics_api\": \"%s\",\n", api->name);
-  if (record->name[0]) {
+  if (fit->record->name[0]) {
     vl_camera_put(text, "  \"name\": ");
-    vl_camera_put_string(text, record->name);
+    vl_camera_put_string(text, fit->record->name);
     vl_camera_put(text, ",\n");
   }
   vl_camera_put(text, "  \"width\": %u,\n  \"height\": %u,\n  \"pixel_origin\": \"corner\",\n",
-                c.width, c.height);
+                c->width, c->height);
   vl_camera_put(text,
                 "  \"view_axes\": \"x right, y up, z back\",\n  \"order\": \"%s\",\n  "
                 "\"vectors\": \"%s\",\n",
@@ -280,8 +273,8 @@ static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *r
                 api->row_vectors ? "row" : "column");
   vl_camera_put(text, "  \"clip_y\": \"%s\",\n  \"clip_z\": [%g, 1],\n",
                 api->down ? "down" : "up", api->z_near);
-  vl_camera_put(text, "  \"near_plane\": %.17g,\n  \"far_plane\": ", c.near_plane);
-  vl_camera_put(text, isinf(c.far_plane) ? "null,\n" : "%.17g,\n", c.far_plane);
+  vl_camera_put(text, "  \"near_plane\": %.17g,\n  \"far_plane\": ", c->near_plane);
+  vl_camera_put(text, isinf(c->far_plane) ? "null,\n" : "%.17g,\n", c->far_plane);
   put_matrix(text, "projection_matrix", &projection, transposed);
   vl_camera_put(text, ",\n");
   put_matrix(text, "view_matrix", &view, transposed);
@@ -306,18 +299,27 @@ static bool is_d3d(const json_t *tree) {
 static const char known_names[] =
     "graphics_api pixel_origin view_axes projection_matrix view_matrix order vectors clip_y clip_z near_plane "
     "far_plane width height name";
-const vlCameraFormat vl_format_opengl = {.name = "opengl",
-                                         .known = known_names,
-                                         .is_tree = is_opengl,
-                                         .read = read_matrices,
-                                         .write = write_matrices};
-const vlCameraFormat vl_format_vulkan = {.name = "vulkan",
-                                         .known = known_names,
-                                         .is_tree = is_vulkan,
-                                         .read = read_matrices,
-                                         .write = write_matrices};
-const vlCameraFormat vl_format_d3d = {.name = "d3d",
-                                      .known = known_names,
-                                      .is_tree = is_d3d,
-                                      .read = read_matrices,
-                                      .write = write_matrices};
+const vlCameraFormat vl_format_opengl = {
+    .name = "opengl",
+    .known = known_names,
+    .is_tree = is_opengl,
+    .read = read_matrices,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES,
+    .plain = true,
+    .write = write_matrices};
+const vlCameraFormat vl_format_vulkan = {
+    .name = "vulkan",
+    .known = known_names,
+    .is_tree = is_vulkan,
+    .read = read_matrices,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES,
+    .plain = true,
+    .write = write_matrices};
+const vlCameraFormat vl_format_d3d = {
+    .name = "d3d",
+    .known = known_names,
+    .is_tree = is_d3d,
+    .read = read_matrices,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES,
+    .plain = true,
+    .write = write_matrices};

@@ -248,14 +248,10 @@ static bool is_matrix(const char *text, size_t size) {
   return rows >= 2 && words >= 6 && words <= LARGEST && numbers + 2 >= words;
 }
 
-static vlResult write_matrix(const vlCameraFile *file, const vlCameraRecord *record,
-                             vlCameraText *text) {
-  vlCamera c;
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
-  if (result != VL_OK)
-    return result;
-  const double i[9] = {c.fx, c.skew, c.cx - 0.5, 0.0, c.fy, c.cy - 0.5, 0.0, 0.0, 1.0},
-               *m = c.camera_from_world;
+static vlResult write_matrix(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  const double i[9] = {c->fx, c->skew, c->cx - 0.5, 0.0, c->fy, c->cy - 0.5, 0.0, 0.0, 1.0},
+               *m = c->camera_from_world;
   for (int row = 0; row < 3; row++)
     for (int column = 0; column < 4; column++) {
       double sum = 0.0;
@@ -266,5 +262,9 @@ static vlResult write_matrix(const vlCameraFile *file, const vlCameraRecord *rec
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_matrix = {
-    .name = "matrix", .is_text = is_matrix, .read_text = read_matrix, .write = write_matrix};
+const vlCameraFormat vl_format_matrix = {.name = "matrix",
+                                         .is_text = is_matrix,
+                                         .read_text = read_matrix,
+                                         .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
+                                         .lenses = 1 << VL_LENS_PINHOLE,
+                                         .write = write_matrix};

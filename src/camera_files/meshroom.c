@@ -219,24 +219,18 @@ static bool is_meshroom(const json_t *tree) {
          !vl_camera_has(tree, "sfm_data_version");
 }
 
-static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *record,
-                               vlCameraText *text) {
-  vlCamera c;
-  vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE,
-                                       VL_LENSES_COMMON | 1 << VL_LENS_FOV, 5, &c, &fit);
-  if (result != VL_OK)
-    return result;
+static vlResult write_meshroom(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
   static const char *const words[] = {"none", "brown", "fisheye4", "fisheye1"};
-  const bool brown = fit.family == VL_LENS_OPENCV, fov = fit.family == VL_LENS_FOV;
-  const double k[5] = {fit.k[0], fit.k[1], fit.k[4], fit.k[2], fit.k[3]};
+  const bool brown = fit->family == VL_LENS_OPENCV, fov = fit->family == VL_LENS_FOV;
+  const double k[5] = {fit->k[0], fit->k[1], fit->k[4], fit->k[2], fit->k[3]};
   const double sensor =
-      record->camera.sensor_width_mm > 0.0 ? record->camera.sensor_width_mm : 36.0;
-  const double values[] = {sensor, sensor * (c.fx / c.fy) * c.height / c.width,
-                           c.fx * sensor / c.width};
-  const double middle[2] = {c.cx - 0.5 * c.width, c.cy - 0.5 * c.height};
+      fit->record->camera.sensor_width_mm > 0.0 ? fit->record->camera.sensor_width_mm : 36.0;
+  const double values[] = {sensor, sensor * (c->fx / c->fy) * c->height / c->width,
+                           c->fx * sensor / c->width};
+  const double middle[2] = {c->cx - 0.5 * c->width, c->cy - 0.5 * c->height};
   return VL_PUT_FORM(
-      text, record, &c,
+      text, fit,
       "{\n  \"version\": [\"1\", \"2\", \"8\"],\n  \"views\": [\n    {\"viewId\": \"1\", "
       "\"poseId\": \"1\", "
       "\"frameId\": \"0\", \"intrinsicId\": \"1\",\n     \"path\": $name, \"width\": $width:q, "
@@ -255,14 +249,14 @@ static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *r
       "[$axes:q],\n"
       "      \"center\": [$centre:q]}, \"locked\": \"0\"}}\n  ]\n}\n",
       VL_VALUES("sensor", values, 3), VL_VALUES("middle", middle, 2),
-      VL_WORD("lens", words[fit.family]),
+      VL_WORD("lens", words[fit->family]),
       VL_VALUES("own",
-                fov     ? c.shape
+                fov     ? c->shape
                 : brown ? k
-                        : fit.k,
+                        : fit->k,
                 fov     ? 1
                 : brown ? 5
-                        : fit.count));
+                        : fit->count));
 }
 
 const vlCameraFormat vl_format_meshroom = {
@@ -280,4 +274,7 @@ const vlCameraFormat vl_format_meshroom = {
     .geometry = "rigId subPoseId undistortionParams undistortionOffset rigs",
     .is_tree = is_meshroom,
     .read = read_meshroom,
+    .holds = VL_HOLDS_POSE,
+    .lenses = VL_LENSES_COMMON | 1 << VL_LENS_FOV,
+    .most = 5,
     .write = write_meshroom};

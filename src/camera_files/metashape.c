@@ -210,31 +210,28 @@ static bool is_metashape(const json_t *tree) {
                  (vl_text_is(tag, "document") && vl_camera_child(tree, "chunk")));
 }
 
-static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *record,
-                                vlCameraText *text) {
+static vlResult write_metashape(const vlFittedCamera *fit, vlCameraText *text) {
   static const char *const names[] = {"k1", "k2", "p2", "p1", "k3", "k4"};
-  const vlCameraDef *d = &record->camera;
-  vlCamera c;
+  const vlCameraDef *d = &fit->record->camera;
+  const vlCamera *c = &fit->camera;
   double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
-  if (result != VL_OK)
-    return result;
-  vlLensFamily family = vl_camera_lens_family(d, k, &n);
+  memcpy(k, fit->k, sizeof k);
   bool prism = d->distortion == VL_DISTORTION_THIN_PRISM &&
                d->distortion_coefficients[6] == 0.0 && d->distortion_coefficients[7] == 0.0;
   bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
   if (prism && (fisheye || d->projection == VL_PROJECTION_PERSPECTIVE)) {
     memcpy(k, d->distortion_coefficients, 6 * sizeof *k);
-  } else if (family == VL_LENS_FISHEYE) {
+  } else if (fit->family == VL_LENS_FISHEYE) {
     const double radial[6] = {k[0], k[1], 0.0, 0.0, k[2], k[3]};
     memcpy(k, radial, sizeof radial);
-  } else if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5) {
-    return vl_camera_no_model(file, d);
+  } else if ((fit->family != VL_LENS_PINHOLE && fit->family != VL_LENS_OPENCV) ||
+             fit->count > 5) {
+    return vl_camera_no_model(fit->file, d);
   }
   const char *type = fisheye ? "fisheye" : "frame";
-  const char *name =
-      record->name[0] && !strpbrk(record->name, "<>&\"") ? record->name : "camera";
+  const char *name = fit->record->name[0] && !strpbrk(fit->record->name, "<>&\"")
+                         ? fit->record->name
+                         : "camera";
   vl_camera_put(text,
                 "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n  "
                 "<chunk label=\"Chunk\" enabled=\"true\">\n    <sensors next_id=\"1\">\n");
@@ -242,15 +239,15 @@ static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *
       text,
       "      <sensor id=\"0\" label=\"sensor\" type=\"%s\">\n        <resolution width=\"%u\" "
       "height=\"%u\"/>\n",
-      type, c.width, c.height);
+      type, c->width, c->height);
   vl_camera_put(text,
                 "        <calibration type=\"%s\" class=\"adjusted\">\n          <resolution "
                 "width=\"%u\" height=\"%u\"/>\n          <f>%.17g</f>\n",
-                type, c.width, c.height, c.fy);
+                type, c->width, c->height, c->fy);
   vl_camera_put(text, "          <cx>%.17g</cx>\n          <cy>%.17g</cy>\n",
-                c.cx - 0.5 * c.width + 0.0, c.cy - 0.5 * c.height + 0.0);
-  vl_camera_put(text, "          <b1>%.17g</b1>\n          <b2>%.17g</b2>\n", c.fx - c.fy + 0.0,
-                c.skew + 0.0);
+                c->cx - 0.5 * c->width + 0.0, c->cy - 0.5 * c->height + 0.0);
+  vl_camera_put(text, "          <b1>%.17g</b1>\n          <b2>%.17g</b2>\n",
+                c->fx - c->fy + 0.0, c->skew + 0.0);
   for (int i = 0; i < 6; i++)
     vl_camera_put(text, "          <%s>%.17g</%s>\n", names[i], k[i] + 0.0, names[i]);
   vl_camera_put(
@@ -259,7 +256,7 @@ static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *
       "      <camera id=\"0\" sensor_id=\"0\" label=\"%s\">\n        <transform>",
       name);
   for (int i = 0; i < 16; i++)
-    vl_camera_put(text, "%s%.17g", i ? " " : "", c.world_from_camera[i] + 0.0);
+    vl_camera_put(text, "%s%.17g", i ? " " : "", c->world_from_camera[i] + 0.0);
   vl_camera_put(text,
                 "</transform>\n      </camera>\n    </cameras>\n  </chunk>\n</document>\n");
   return VL_OK;
@@ -281,4 +278,5 @@ const vlCameraFormat vl_format_metashape = {
     .geometry = "film_camera rolling_shutter",
     .is_tree = is_metashape,
     .read = read_metashape,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
     .write = write_metashape};

@@ -478,31 +478,28 @@ static void put_name(vlCameraText *text, const char *name) {
   }
 }
 
-static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
-  const vlCameraDef *d = &record->camera;
-  vlCamera c;
-  uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_LENS | VL_HOLDS_PLANES | VL_HOLDS_TIME;
-  vlResult result = vl_camera_fit_plain(file, record, holds, &c);
-  bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC, lens = c.lens_radius > 0.0 && !flat;
+static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCameraDef *d = &fit->record->camera;
+  const vlCamera *c = &fit->camera;
+  bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC, lens = c->lens_radius > 0.0 && !flat;
   bool centred = flat || lens; /* these have no principal point */
+  vlResult result =
+      vl_camera_refuse(fit->file, "fy", !flat && fabs(c->fy - c->fx) > 1e-12 * c->fx);
   if (result == VL_OK)
-    result = vl_camera_refuse(file, "fy", !flat && fabs(c.fy - c.fx) > 1e-12 * c.fx);
+    result = vl_camera_refuse(fit->file, "cx", centred && c->cx != 0.5 * c->width);
   if (result == VL_OK)
-    result = vl_camera_refuse(file, "cx", centred && c.cx != 0.5 * c.width);
+    result = vl_camera_refuse(fit->file, "cy", centred && c->cy != 0.5 * c->height);
   if (result == VL_OK)
-    result = vl_camera_refuse(file, "cy", centred && c.cy != 0.5 * c.height);
+    result = vl_camera_refuse(fit->file, "lens_radius", flat && c->lens_radius > 0.0);
   if (result == VL_OK)
-    result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
-  if (result == VL_OK)
-    result = vl_camera_refuse(file, "focus_distance", lens && isinf(c.focus_distance));
+    result = vl_camera_refuse(fit->file, "focus_distance", lens && isinf(c->focus_distance));
   if (result != VL_OK)
     return result;
   double m[16];
-  vl_camera_flip_columns(c.world_from_camera, -1.0, -1.0, 1.0, m);
+  vl_camera_flip_columns(c->world_from_camera, -1.0, -1.0, 1.0, m);
   for (int i = 0; i < 12 && flat; i += 4) {
-    m[i] *= 0.5 * c.width / c.fx;
-    m[i + 1] *= 0.5 * c.width / c.fy;
+    m[i] *= 0.5 * c->width / c->fx;
+    m[i + 1] *= 0.5 * c->width / c->fy;
   }
   vl_camera_put(
       text,
@@ -512,9 +509,9 @@ static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *re
                 flat   ? "orthographic"
                 : lens ? "thinlens"
                        : "perspective");
-  if (record->name[0]) {
+  if (fit->record->name[0]) {
     vl_camera_put(text, " id=\"");
-    put_name(text, record->name);
+    put_name(text, fit->record->name);
     vl_camera_put(text, "\"");
   }
   vl_camera_put(text, ">\n    <transform name=\"to_world\">\n      <matrix value=\"");
@@ -523,31 +520,31 @@ static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *re
   vl_camera_put(text, "\"/>\n    </transform>\n");
   if (!flat) {
     vl_camera_put(text, "    <string name=\"fov_axis\" value=\"x\"/>\n");
-    put_float(text, "fov", 2.0 * vl_precise_atan(0.5 * c.width / c.fx) / degree);
+    put_float(text, "fov", 2.0 * vl_precise_atan(0.5 * c->width / c->fx) / degree);
   }
-  if (!centred && c.cx != 0.5 * c.width)
-    put_float(text, "principal_point_offset_x", 0.5 - c.cx / c.width);
-  if (!centred && c.cy != 0.5 * c.height)
-    put_float(text, "principal_point_offset_y", 0.5 - c.cy / c.height);
+  if (!centred && c->cx != 0.5 * c->width)
+    put_float(text, "principal_point_offset_x", 0.5 - c->cx / c->width);
+  if (!centred && c->cy != 0.5 * c->height)
+    put_float(text, "principal_point_offset_y", 0.5 - c->cy / c->height);
   if (lens)
-    put_float(text, "aperture_radius", c.lens_radius);
-  if (!isinf(c.focus_distance) && !vl_camera_drops(file, "focus_distance"))
-    put_float(text, "focus_distance", c.focus_distance);
-  if (c.near_plane > 0.0)
-    put_float(text, "near_clip", c.near_plane);
-  if (!isinf(c.far_plane))
-    put_float(text, "far_clip", c.far_plane);
-  if (c.shutter_open != 0.0 || c.shutter_close != 1.0) {
-    put_float(text, "shutter_open", c.shutter_open);
-    put_float(text, "shutter_close", c.shutter_close);
+    put_float(text, "aperture_radius", c->lens_radius);
+  if (!isinf(c->focus_distance) && !vl_camera_drops(fit->file, "focus_distance"))
+    put_float(text, "focus_distance", c->focus_distance);
+  if (c->near_plane > 0.0)
+    put_float(text, "near_clip", c->near_plane);
+  if (!isinf(c->far_plane))
+    put_float(text, "far_clip", c->far_plane);
+  if (c->shutter_open != 0.0 || c->shutter_close != 1.0) {
+    put_float(text, "shutter_open", c->shutter_open);
+    put_float(text, "shutter_close", c->shutter_close);
   }
   vl_camera_put(text,
                 "    <film type=\"hdrfilm\">\n      <integer name=\"width\" value=\"%u\"/>\n",
-                c.width);
+                c->width);
   vl_camera_put(
       text,
       "      <integer name=\"height\" value=\"%u\"/>\n    </film>\n  </sensor>\n</scene>\n",
-      c.height);
+      c->height);
   return VL_OK;
 }
 
@@ -558,7 +555,10 @@ static bool is_mitsuba(const char *text, size_t size) {
          (vl_text_is(tag, "scene") || vl_text_is(tag, "sensor"));
 }
 
-const vlCameraFormat vl_format_mitsuba = {.name = "mitsuba",
-                                          .is_text = is_mitsuba,
-                                          .read_text = read_mitsuba,
-                                          .write = write_mitsuba};
+const vlCameraFormat vl_format_mitsuba = {
+    .name = "mitsuba",
+    .is_text = is_mitsuba,
+    .read_text = read_mitsuba,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_LENS | VL_HOLDS_PLANES | VL_HOLDS_TIME,
+    .plain = true,
+    .write = write_mitsuba};

@@ -58,19 +58,15 @@ static bool is_mvsnet(const char *text, size_t size) {
   return vl_camera_next_line(&lines) && vl_text_is(lines.text, "extrinsic");
 }
 
-static vlResult write_mvsnet(const vlCameraFile *file, const vlCameraRecord *record,
-                             vlCameraText *text) {
-  vlCamera c;
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
-  if (result != VL_OK)
-    return result;
-  const double *m = c.camera_from_world;
+static vlResult write_mvsnet(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  const double *m = c->camera_from_world;
   vl_camera_put(text, "extrinsic\n");
   for (int i = 0; i < 4; i++)
     vl_camera_put(text, "%.17g %.17g %.17g %.17g\n", m[4 * i], m[4 * i + 1], m[4 * i + 2],
                   m[4 * i + 3]);
-  vl_camera_put(text, "\nintrinsic\n%.17g %.17g %.17g\n0 %.17g %.17g\n0 0 1\n", c.fx, c.skew,
-                c.cx - 0.5, c.fy, c.cy - 0.5);
+  vl_camera_put(text, "\nintrinsic\n%.17g %.17g %.17g\n0 %.17g %.17g\n0 0 1\n", c->fx, c->skew,
+                c->cx - 0.5, c->fy, c->cy - 0.5);
   return VL_OK;
 }
 
@@ -78,4 +74,6 @@ const vlCameraFormat vl_format_mvsnet = {.name = "mvsnet",
                                          .rotates = true,
                                          .is_text = is_mvsnet,
                                          .read_text = read_mvsnet,
+                                         .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
+                                         .lenses = 1 << VL_LENS_PINHOLE,
                                          .write = write_mvsnet};

@@ -203,18 +203,13 @@ static vlResult read_nerf(const vlCameraFile *file, const json_t *tree,
   return vl_camera_no_frame(file, "frame", record->frames);
 }
 
-static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *record,
-                           vlCameraText *text) {
+static vlResult write_nerf(const vlFittedCamera *fit, vlCameraText *text) {
   static const char *const radial_names[] = {"k1", "k2", "k3", "k4"}, *const names[] = {
                                                                           "k1", "k2", "p1",
                                                                           "p2", "k3"};
-  const vlCameraDef *d = &record->camera;
-  vlCamera c;
+  const vlCameraDef *d = &fit->record->camera;
   double k[14] = {0};
   uint32_t n = 0;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE, &c);
-  if (result != VL_OK)
-    return result;
   bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT,
        aria = fisheye && d->distortion == VL_DISTORTION_RAD_TAN_THIN_PRISM;
   if (aria) {
@@ -224,12 +219,12 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
     memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
     n = 4;
   } else if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n)) {
-    return vl_camera_no_model(file, d);
+    return vl_camera_no_model(fit->file, d);
   }
   for (int i = 5; i < 14; i++)
     if (k[i] != 0.0)
-      return vl_camera_no_model(file, d);
-  VL_PUT_FORM(text, record, &c,
+      return vl_camera_no_model(fit->file, d);
+  VL_PUT_FORM(text, fit,
               "{\n  \"camera_model\": \"$model\",\n  \"w\": $width,\n  \"h\": $height,\n  "
               "\"fl_x\": $fx,\n"
               "  \"fl_y\": $fy,\n  \"cx\": $cx,\n  \"cy\": $cy",
@@ -243,8 +238,8 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
     vl_camera_put(text, "%s%.17g%s", i ? ", " : ",\n  \"distortion_params\": [",
                   d->distortion_coefficients[i], i == 11 ? "]" : "");
   vl_camera_put(text, ",\n  \"frames\": [\n    {\"file_path\": ");
-  vl_camera_put_string(text, record->name);
-  return vl_camera_put_form(text, record, &c, NULL,
+  vl_camera_put_string(text, fit->record->name);
+  return vl_camera_put_form(text, fit, NULL,
                             ",\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n");
 }
 
@@ -264,4 +259,5 @@ const vlCameraFormat vl_format_nerf = {
         /* the coefficients of FISHEYE624, and in which pixels of it to train */
         "distortion_params fisheye_crop_radius",
     .read = read_nerf,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE,
     .write = write_nerf};

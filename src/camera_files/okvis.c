@@ -6,15 +6,12 @@
 #include "camera_files/fields.h"
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
-  const json_t *type;
+  const char *name;
   double k[8] = {0};
   uint32_t n = 0;
-  vlResult result = vl_camera_field(file, camera, "distortion_type", &type);
-  if (result != VL_OK)
+  vlResult result = vl_camera_word(file, camera, "distortion_type", &name);
+  if (result != VL_OK || vl_text_is(name, "none"))
     return result;
-  const char *name = json_string_value(type);
-  if (vl_text_is(name, "none"))
-    return VL_OK;
   result = vl_camera_numbers(file, camera, "distortion_coefficients", k, 4, 8, &n);
   if (result != VL_OK)
     return result;
@@ -60,25 +57,18 @@ static vlResult read_okvis(const vlCameraFile *file, const json_t *tree,
   return VL_OK;
 }
 
-static vlResult write_okvis(const vlCameraFile *file, const vlCameraRecord *record,
-                            vlCameraText *text) {
-  vlCamera c;
-  vlFittedLens fit;
-  vlResult result =
-      vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 8, &c, &fit);
-  if (result != VL_OK)
-    return result;
-  const bool full = fit.count > 4;
+static vlResult write_okvis(const vlFittedCamera *fit, vlCameraText *text) {
+  const bool full = fit->count > 4;
   const char *brown = full ? "radialtangential8" : "radialtangential";
   return VL_PUT_FORM(
-      text, record, &c,
+      text, fit,
       "%YAML:1.0\ncameras:\n  - {T_SC: [$pose],\n     image_dimension: [$width, $height],\n"
       "     distortion_coefficients: [$k],\n     distortion_type: $lens,\n     focal_length: "
       "[$fx, "
       "$fy],\n"
       "     principal_point: [$cx0, $cy0]}\n",
-      VL_VALUES("k", fit.k, full ? 8 : 4),
-      VL_WORD("lens", fit.family == VL_LENS_FISHEYE ? "equidistant" : brown));
+      VL_VALUES("k", fit->k, full ? 8 : 4),
+      VL_WORD("lens", fit->family == VL_LENS_FISHEYE ? "equidistant" : brown));
 }
 
 const vlCameraFormat vl_format_okvis = {
@@ -94,4 +84,7 @@ const vlCameraFormat vl_format_okvis = {
         "numImuFrames ceres_options displayImages useDriver publishing_options "
         "frontend* output_parameters",
     .read = read_okvis,
+    .holds = VL_HOLDS_POSE,
+    .lenses = VL_LENSES_COMMON,
+    .most = 8,
     .write = write_okvis};

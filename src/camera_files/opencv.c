@@ -346,24 +346,21 @@ static void put_xml(vlCameraText *text, const vlCamera *c, bool fisheye, const d
   vl_camera_put(text, "</opencv_storage>\n");
 }
 
-static vlResult write_opencv(const vlCameraFile *file, const vlCameraRecord *record,
-                             vlCameraText *text) {
-  vlCamera c;
+static vlResult write_opencv(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
   double k[14], r[9], v[3], t[3];
   uint32_t n = 0;
   bool fisheye = false;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result == VL_OK)
-    result = vl_opencv_lens_of(file, &record->camera, k, &n, &fisheye);
+  vlResult result = vl_opencv_lens_of(fit->file, &fit->record->camera, k, &n, &fisheye);
   if (result != VL_OK)
     return result;
-  vl_camera_get_pose(&c, r, t);
+  vl_camera_get_pose(c, r, t);
   vl_rotation_to_vector(r, v);
-  const double m[9] = {c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1};
-  if (vl_ends_with(file->path, ".json")) {
+  const double m[9] = {c->fx, 0, c->cx - 0.5, 0, c->fy, c->cy - 0.5, 0, 0, 1};
+  if (vl_ends_with(fit->file->path, ".json")) {
     vl_camera_put(text,
                   "{\n  \"image_width\": %u,\n  \"image_height\": %u,\n  \"camera_matrix\": [",
-                  c.width, c.height);
+                  c->width, c->height);
     for (int i = 0; i < 3; i++) {
       vl_camera_put(text, "%s[", i ? ", " : "");
       vl_camera_put_numbers(text, m + 3 * i, 3);
@@ -380,12 +377,12 @@ static vlResult write_opencv(const vlCameraFile *file, const vlCameraRecord *rec
   }
   if (n == 0)
     n = 4; /* FileStorage has no empty matrix; four zeros are equivalent */
-  if (vl_ends_with(file->path, ".xml")) {
-    put_xml(text, &c, fisheye, m, k, n, v, t);
+  if (vl_ends_with(fit->file->path, ".xml")) {
+    put_xml(text, c, fisheye, m, k, n, v, t);
     return VL_OK;
   }
-  vl_camera_put(text, "%%YAML:1.0\n---\nimage_width: %u\nimage_height: %u\n", c.width,
-                c.height);
+  vl_camera_put(text, "%%YAML:1.0\n---\nimage_width: %u\nimage_height: %u\n", c->width,
+                c->height);
   vl_opencv_put_matrix(text, "camera_matrix", 3, 3, m, true);
   if (fisheye)
     vl_camera_put(text, "distortion_model: fisheye\n");
@@ -411,4 +408,5 @@ const vlCameraFormat vl_format_opencv = {
         "Image_points grid_points calibrate_* reprojection_error rms rms_error",
     .knows = vl_opencv_is_field,
     .read = vl_camera_read_opencv,
+    .holds = VL_HOLDS_POSE,
     .write = write_opencv};

@@ -163,30 +163,22 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree,
                         json_array_get(json_object_get(tree, "intrinsics"), 0), record);
 }
 
-static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
-  vlCamera c;
-  vlFittedLens fit;
-  vlResult result =
-      vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 5, &c, &fit);
-  if (result == VL_OK)
-    result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK)
-    return result;
-  const double brown[5] = {fit.k[0], fit.k[1], fit.k[4], fit.k[2], fit.k[3]};
+static vlResult write_openmvg(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  const double brown[5] = {fit->k[0], fit->k[1], fit->k[4], fit->k[2], fit->k[3]};
   double r[9], t[3], centre[3];
-  vl_camera_get_pose(&c, r, t);
+  vl_camera_get_pose(c, r, t);
   for (int i = 0; i < 3; i++)
     centre[i] = -(r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
-  const bool fisheye = fit.family == VL_LENS_FISHEYE, bent = fit.family == VL_LENS_OPENCV;
+  const bool fisheye = fit->family == VL_LENS_FISHEYE, bent = fit->family == VL_LENS_OPENCV;
   vl_camera_put_form(
-      text, record, &c, NULL,
+      text, fit, NULL,
       "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": "
       "0, \"value\": {\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, "
       "\"data\": {\"local_path\": \"\", \"filename\": ");
-  vl_camera_put_string(text, record->name);
+  vl_camera_put_string(text, fit->record->name);
   return VL_PUT_FORM(
-      text, record, &c,
+      text, fit,
       ", \"width\": $width, \"height\": $height, \"id_view\": 0, \"id_intrinsic\": 0, "
       "\"id_pose\": "
       "0}}}}],\n"
@@ -204,7 +196,7 @@ static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *re
       VL_WORD("before", fisheye ? ", \"fisheye\": ["
                         : bent  ? ", \"disto_t2\": ["
                                 : ""),
-      VL_VALUES("k", fisheye ? fit.k : brown,
+      VL_VALUES("k", fisheye ? fit->k : brown,
                 fisheye ? 4
                 : bent  ? 5
                         : 0),
@@ -222,4 +214,8 @@ const vlCameraFormat vl_format_openmvg = {
         "center_weight! center_prior! use_pose_rotation_prior rotation_weight! rotation!",
     .marks = {"sfm_data_version"},
     .read = read_openmvg,
+    .holds = VL_HOLDS_POSE,
+    .lenses = VL_LENSES_COMMON,
+    .most = 5,
+    .square = true,
     .write = write_openmvg};

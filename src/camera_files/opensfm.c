@@ -162,45 +162,35 @@ static bool is_sphere(const vlCamera *c) {
   return sphere;
 }
 
-static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
+static vlResult write_opensfm(const vlFittedCamera *fit, vlCameraText *text) {
   static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {
                                                                          "k1", "k2", "k3",
                                                                          "k4"};
-  vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK)
-    return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool bent = family == VL_LENS_FISHEYE,
-       whole = record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
-  if (whole && !is_sphere(&c))
-    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+  const vlCamera *c = &fit->camera;
+  bool bent = fit->family == VL_LENS_FISHEYE,
+       whole = fit->record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
+  if (whole && !is_sphere(c))
+    return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
                       "opensfm holds the equirectangular image of the whole sphere only");
-  if (whole) {
-    family = VL_LENS_PINHOLE;
-    n = 0;
-  }
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && !bent) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
+  if (!whole && ((fit->family != VL_LENS_PINHOLE && fit->family != VL_LENS_OPENCV && !bent) ||
+                 fit->count > 5))
+    return vl_camera_no_model(fit->file, &fit->record->camera);
   const char *type = whole ? "spherical" : bent ? "fisheye_opencv" : "brown";
-  const double side = c.width > c.height ? c.width : c.height;
-  const double f[4] = {c.fx / side, c.fy / side, (c.cx - 0.5 * c.width) / side,
-                       (c.cy - 0.5 * c.height) / side};
-  VL_PUT_FORM(text, record, &c,
+  const double side = c->width > c->height ? c->width : c->height;
+  const double f[4] = {c->fx / side, c->fy / side, (c->cx - 0.5 * c->width) / side,
+                       (c->cy - 0.5 * c->height) / side};
+  VL_PUT_FORM(text, fit,
               "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": "
               "\"$type\", \"width\": $width, \"height\": $height",
               VL_WORD("type", type));
   if (!whole)
-    VL_PUT_FORM(text, record, &c,
+    VL_PUT_FORM(text, fit,
                 ",\n        \"focal_x\": $f@0, \"focal_y\": $f@1, \"c_x\": $f@2, \"c_y\": $f@3",
                 VL_VALUES("f", f, 4));
   for (int i = 0; i < (bent ? 4 : 5) && !whole; i++)
-    vl_camera_put(text, ", \"%s\": %.17g", bent ? fisheye[i] : brown[i], k[i] + 0.0);
+    vl_camera_put(text, ", \"%s\": %.17g", bent ? fisheye[i] : brown[i], fit->k[i] + 0.0);
   return vl_camera_put_form(
-      text, record, &c, NULL,
+      text, fit, NULL,
       "}\n    },\n    \"shots\": {\n      $name: {\"camera\": \"camera\",\n"
       "        \"rotation\": [$V],\n        \"translation\": [$t]}\n    },\n"
       "    \"points\": {}\n  }\n]\n");
@@ -217,4 +207,5 @@ const vlCameraFormat vl_format_opensfm = {
         "accuracy! exposure! bundle_structure_only is_panorama metadata!",
     .is_tree = is_opensfm,
     .read = read_opensfm,
+    .holds = VL_HOLDS_POSE,
     .write = write_opensfm};

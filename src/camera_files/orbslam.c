@@ -81,26 +81,20 @@ static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree,
   return result;
 }
 
-static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
+static vlResult write_orbslam(const vlFittedCamera *fit, vlCameraText *text) {
   static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3"}, *const radial[] = {
                                                                            "k1", "k2", "k3",
                                                                            "k4"};
-  vlCamera c;
-  vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON, 5, &c, &fit);
-  if (result != VL_OK)
-    return result;
-  bool fisheye = fit.family == VL_LENS_FISHEYE;
-  VL_PUT_FORM(text, record, &c,
+  bool fisheye = fit->family == VL_LENS_FISHEYE;
+  VL_PUT_FORM(text, fit,
               "%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"$type\"\n\nCamera1.fx: "
               "$fx\nCamera1.fy: $fy\n"
               "Camera1.cx: $cx0\nCamera1.cy: $cy0\n\n",
               VL_WORD("type", fisheye ? "KannalaBrandt8" : "PinHole"));
-  for (uint32_t i = 0; i < fit.count; i++)
+  for (uint32_t i = 0; i < fit->count; i++)
     vl_camera_put(text, "Camera1.%s: %.17g\n", fisheye ? radial[i] : pinhole[i],
-                  fit.k[i] + 0.0);
-  return vl_camera_put_form(text, record, &c, NULL,
+                  fit->k[i] + 0.0);
+  return vl_camera_put_form(text, fit, NULL,
                             "\nCamera.width: $width\nCamera.height: $height\n");
 }
 
@@ -115,4 +109,6 @@ const vlCameraFormat vl_format_orbslam = {
         "IMU.* ORBextractor.* Viewer.* System.* ThDepth DepthMapFactor RGBD.* Tbc loopClosing "
         "IMU loopClosing",
     .read = read_orbslam,
+    .lenses = VL_LENSES_COMMON,
+    .most = 5,
     .write = write_orbslam};

@@ -4,14 +4,9 @@
 
 #include "camera_files/files.h"
 
-static vlResult write_pbrt(const vlCameraFile *file, const vlCameraRecord *record,
-                           vlCameraText *text) {
-  const vlCameraDef *d = &record->camera;
-  vlCamera c;
-  vlResult result = vl_camera_fit_plain(
-      file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_TIME, &c);
-  if (result != VL_OK)
-    return result;
+static vlResult write_pbrt(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCameraDef *d = &fit->record->camera;
+  const vlCamera *c = &fit->camera;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
   vl_camera_put(text,
                 "# pixels count from the image's upper left corner; camera axes x right, y up, "
@@ -19,25 +14,25 @@ static vlResult write_pbrt(const vlCameraFile *file, const vlCameraRecord *recor
   vl_camera_put(text, "Transform [");
   for (int column = 0; column < 4; column++)
     for (int row = 0; row < 4; row++) {
-      double v = c.camera_from_world[4 * row + column];
+      double v = c->camera_from_world[4 * row + column];
       vl_camera_put(text, "%s%.17g", row + column ? " " : "", (row == 1 ? 0.0 - v : v) + 0.0);
     }
   vl_camera_put(text, "]\nCamera \"%s\"", flat ? "orthographic" : "perspective");
   /* the screen window is on the plane at distance 1: fov 90 degrees does not scale it */
   if (!flat)
     vl_camera_put(text, " \"float fov\" [90]");
-  vl_camera_put(text, "\n  \"float screenwindow\" [%.17g %.17g %.17g %.17g]", -c.cx / c.fx,
-                (c.width - c.cx) / c.fx, (c.cy - c.height) / c.fy, c.cy / c.fy);
-  if (c.lens_radius > 0.0)
-    vl_camera_put(text, "\n  \"float lensradius\" [%.17g]", c.lens_radius);
-  if (!isinf(c.focus_distance))
-    vl_camera_put(text, " \"float focaldistance\" [%.17g]", c.focus_distance);
-  if (c.shutter_open != 0.0 || c.shutter_close != 1.0)
+  vl_camera_put(text, "\n  \"float screenwindow\" [%.17g %.17g %.17g %.17g]", -c->cx / c->fx,
+                (c->width - c->cx) / c->fx, (c->cy - c->height) / c->fy, c->cy / c->fy);
+  if (c->lens_radius > 0.0)
+    vl_camera_put(text, "\n  \"float lensradius\" [%.17g]", c->lens_radius);
+  if (!isinf(c->focus_distance))
+    vl_camera_put(text, " \"float focaldistance\" [%.17g]", c->focus_distance);
+  if (c->shutter_open != 0.0 || c->shutter_close != 1.0)
     vl_camera_put(text, "\n  \"float shutteropen\" [%.17g] \"float shutterclose\" [%.17g]",
-                  c.shutter_open, c.shutter_close);
+                  c->shutter_open, c->shutter_close);
   vl_camera_put(text,
                 "\nFilm \"rgb\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n",
-                c.width, c.height);
+                c->width, c->height);
   vl_camera_put(
       text,
       "WorldBegin # an empty world makes this a whole scene; leave the line out of what "
@@ -45,6 +40,10 @@ static vlResult write_pbrt(const vlCameraFile *file, const vlCameraRecord *recor
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_pbrt = {.name = "pbrt", .write = write_pbrt};
+const vlCameraFormat vl_format_pbrt = {
+    .name = "pbrt",
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_TIME,
+    .plain = true,
+    .write = write_pbrt};
 const vlCameraFormat vl_format_exr = {
     .name = "exr", .not_written = "an image's header is written with its image"};

@@ -130,17 +130,11 @@ static bool is_xmp(const json_t *tree) {
                          property(description, "xcr:FocalLength35mm"));
 }
 
-static vlResult write_xmp(const vlCameraFile *file, const vlCameraRecord *record,
-                          vlCameraText *text) {
-  vlCamera c;
-  double k[14];
-  vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE, k, &c);
-  if (result == VL_OK)
-    result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK)
-    return result;
-  const double side = c.width > c.height ? c.width : c.height, *m = c.camera_from_world,
-               *p = c.world_from_camera;
+static vlResult write_xmp(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  const double *k = fit->k;
+  const double side = c->width > c->height ? c->width : c->height, *m = c->camera_from_world,
+               *p = c->world_from_camera;
   vl_camera_put(
       text,
       "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n"
@@ -151,10 +145,10 @@ static vlResult write_xmp(const vlCameraFile *file, const vlCameraRecord *record
       "xcr:AspectRatio=\"1\"\n"
       "       xcr:PrincipalPointU=\"%.17g\" xcr:PrincipalPointV=\"%.17g\"\n"
       "       xmlns:xcr=\"http://www.capturingreality.com/ns/xcr/1.1#\">\n",
-      c.distortion.steps == 0      ? "perspective"
+      c->distortion.steps == 0     ? "perspective"
       : k[2] == 0.0 && k[3] == 0.0 ? "brown3"
                                    : "brown3t2",
-      36.0 * c.fx / side, (c.cx - 0.5 * c.width) / side, (c.cy - 0.5 * c.height) / side);
+      36.0 * c->fx / side, (c->cx - 0.5 * c->width) / side, (c->cy - 0.5 * c->height) / side);
   vl_camera_put(text, "      <xcr:Rotation>");
   for (int i = 0; i < 9; i++)
     vl_camera_put(text, "%s%.17g", i ? " " : "", m[4 * (i / 3) + i % 3] + 0.0);
@@ -344,4 +338,8 @@ const vlCameraFormat vl_format_realitycapture = {
     .is_text = is_csv,
     .read = read_xmp,
     .read_text = read_csv,
+    .holds = VL_HOLDS_POSE,
+    .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,
+    .most = 5,
+    .square = true,
     .write = write_xmp};

@@ -153,22 +153,19 @@ static void put_rows(vlCameraText *text, const char *name, const double *m, int 
     vl_camera_put(text, "%.17g%s", m[i] + 0.0, (i + 1) % columns ? " " : "\n");
 }
 
-static vlResult write_ros(const vlCameraFile *file, const vlCameraRecord *record,
-                          vlCameraText *text) {
-  vlCamera c;
+static vlResult write_ros(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
   double k[14];
   uint32_t n = 0;
   bool fisheye = false;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
-  if (result == VL_OK)
-    result = vl_opencv_lens_of(file, &record->camera, k, &n, &fisheye);
+  vlResult result = vl_opencv_lens_of(fit->file, &fit->record->camera, k, &n, &fisheye);
   if (result != VL_OK)
     return result;
   if (n > 8) {
     bool present = false;
     for (int i = 8; i < 14; i++)
       present = present || k[i] != 0.0;
-    result = vl_camera_refuse(file, "distortion",
+    result = vl_camera_refuse(fit->file, "distortion",
                               present); /* s1 to s4, tilt: ROS has no such coefficients */
     if (result != VL_OK)
       return result;
@@ -176,22 +173,22 @@ static vlResult write_ros(const vlCameraFile *file, const vlCameraRecord *record
   }
   if (!fisheye && n < 5)
     n = 5;
-  const double m[9] = {c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1};
+  const double m[9] = {c->fx, 0, c->cx - 0.5, 0, c->fy, c->cy - 0.5, 0, 0, 1};
   const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const double p[12] = {m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, 0, 0, 1, 0};
-  if (vl_ends_with(file->path, ".ini")) {
+  if (vl_ends_with(fit->file->path, ".ini")) {
     if (fisheye)
-      return vl_camera_no_model(file, &record->camera);
-    vl_camera_put(text, "[image]\n\nwidth\n%u\n\nheight\n%u\n\n[%s]\n", c.width, c.height,
-                  record->name[0] ? record->name : "camera");
+      return vl_camera_no_model(fit->file, &fit->record->camera);
+    vl_camera_put(text, "[image]\n\nwidth\n%u\n\nheight\n%u\n\n[%s]\n", c->width, c->height,
+                  fit->record->name[0] ? fit->record->name : "camera");
     put_rows(text, "camera matrix", m, 3, 3);
     put_rows(text, "distortion", k, 1, (int)n);
     put_rows(text, "rectification", identity, 3, 3);
     put_rows(text, "projection", p, 3, 4);
     return VL_OK;
   }
-  vl_camera_put(text, "image_width: %u\nimage_height: %u\ncamera_name: ", c.width, c.height);
-  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
+  vl_camera_put(text, "image_width: %u\nimage_height: %u\ncamera_name: ", c->width, c->height);
+  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : "camera");
   vl_camera_put(text, "\n");
   vl_opencv_put_matrix(text, "camera_matrix", 3, 3, m, false);
   vl_camera_put(text, "distortion_model: %s\n",

@@ -141,31 +141,23 @@ static void put_matrix(vlCameraText *text, const char *indent, const char *name,
   vl_camera_put(text, "]\n");
 }
 
-static vlResult write_svo(const vlCameraFile *file, const vlCameraRecord *record,
-                          vlCameraText *text) {
+static vlResult write_svo(const vlFittedCamera *fit, vlCameraText *text) {
   static const char *const words[] = {"none", "radial-tangential", "equidistant", "fisheye"};
-  vlCamera c;
-  vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(
-      file, record, VL_HOLDS_POSE, VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED,
-      4, &c, &fit);
-  if (result != VL_OK)
-    return result;
-  const bool unified = fit.family == VL_LENS_UNIFIED, fov = fit.family == VL_LENS_FOV;
-  const double f[5] = {c.shape[0], c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
-  if (fov)
-    fit.k[0] = c.shape[0];
+  const vlCamera *c = &fit->camera;
+  const bool unified = fit->family == VL_LENS_UNIFIED, fov = fit->family == VL_LENS_FOV;
+  const double f[5] = {c->shape[0], c->fx, c->fy, c->cx - 0.5, c->cy - 0.5};
   vl_camera_put(text, "label: rig\ncameras:\n- camera:\n    label: ");
-  vl_camera_put_string(text, record->name[0] ? record->name : "cam0");
-  VL_PUT_FORM(text, record, &c,
+  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : "cam0");
+  VL_PUT_FORM(text, fit,
               "\n    type: $type\n    image_width: $width\n    image_height: $height\n",
               VL_WORD("type", unified ? "omni" : "pinhole"));
   put_matrix(text, "    ", "intrinsics", unified ? 5 : 4, 1, unified ? f : f + 1);
   vl_camera_put(text, "    distortion:\n      type: %s\n",
-                unified ? words[fit.count > 0] : words[fit.family]);
-  if (fit.count || fov)
-    put_matrix(text, "      ", "parameters", fov ? 1 : (int)fit.count, 1, fit.k);
-  put_matrix(text, "  ", "T_B_C", 4, 4, c.world_from_camera);
+                unified ? words[fit->count > 0] : words[fit->family]);
+  if (fit->count || fov)
+    put_matrix(text, "      ", "parameters", fov ? 1 : (int)fit->count, 1,
+               fov ? c->shape : fit->k);
+  put_matrix(text, "  ", "T_B_C", 4, 4, c->world_from_camera);
   return VL_OK;
 }
 
@@ -179,4 +171,7 @@ const vlCameraFormat vl_format_svo = {
         "image_width T_B_C cols rows data line-delay-nanoseconds id time-delay "
         "serialno imu_params imu_initialization mask",
     .read = read_svo,
+    .holds = VL_HOLDS_POSE,
+    .lenses = VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED,
+    .most = 4,
     .write = write_svo};

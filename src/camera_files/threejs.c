@@ -82,20 +82,13 @@ static bool is_threejs(const json_t *tree) {
   return vl_camera_has(tree, "metadata") && is_camera(json_object_get(tree, "object"));
 }
 
-static vlResult write_threejs(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
-  vlCamera c;
-  vlResult result =
-      vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
-  if (result == VL_OK)
-    result = vl_camera_refuse_off_centre(file, &c);
-  if (result != VL_OK)
-    return result;
-  const double aspect = c.width / c.fx * c.fy / c.height;
-  const double planes[2] = {c.near_plane > 0.0 ? c.near_plane : 0.01,
-                            c.far_plane < 1e30 ? c.far_plane : 10000.0};
+static vlResult write_threejs(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  const double aspect = c->width / c->fx * c->fy / c->height;
+  const double planes[2] = {c->near_plane > 0.0 ? c->near_plane : 0.01,
+                            c->far_plane < 1e30 ? c->far_plane : 10000.0};
   return VL_PUT_FORM(
-      text, record, &c,
+      text, fit,
       "{\n  \"metadata\": {\"version\": 4.6, \"type\": \"Object\", \"generator\": \"velo\"},\n"
       "  \"object\": {\"type\": \"PerspectiveCamera\", \"fov\": $yfov, \"zoom\": 1, "
       "\"aspect\": "
@@ -114,4 +107,7 @@ const vlCameraFormat vl_format_threejs = {
         "quaternion! scale!",
     .is_tree = is_threejs,
     .read = read_threejs,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES,
+    .lenses = 1 << VL_LENS_PINHOLE,
+    .centred = true,
     .write = write_threejs};

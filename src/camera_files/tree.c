@@ -148,6 +148,14 @@ vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const c
                             near ? near : "", near ? "\"?" : "");
 }
 
+vlResult vl_camera_word(const vlCameraFile *file, const json_t *object, const char *key,
+                        const char **text) {
+  const json_t *value;
+  vlResult result = vl_camera_field(file, object, key, &value);
+  *text = json_string_value(value);
+  return result;
+}
+
 double vl_camera_parse(const char *text, char **end) {
   const char *first = text + strspn(text, " \t\r\n,;");
   double value = strtod(first, end);

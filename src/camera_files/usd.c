@@ -365,31 +365,26 @@ static void put_name(vlCameraText *text, const char *name) {
   }
 }
 
-static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record,
-                          vlCameraText *text) {
-  const vlCameraDef *d = &record->camera;
-  vlCamera c;
-  uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_PLANES |
-                   VL_HOLDS_TIME | VL_HOLDS_EXPOSURE;
-  vlResult result = vl_camera_fit_plain(file, record, holds, &c);
+static vlResult write_usd(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCameraDef *d = &fit->record->camera;
+  const vlCamera *c = &fit->camera;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  if (result == VL_OK)
-    result = vl_camera_refuse(file, "lens_radius", flat && c.lens_radius > 0.0);
+  vlResult result = vl_camera_refuse(fit->file, "lens_radius", flat && c->lens_radius > 0.0);
   if (result != VL_OK)
     return result;
-  double w = c.width, h = c.height, m[16];
+  double w = c->width, h = c->height, m[16];
   /* the scene unit is a metre: 36 mm are 0.36 tenths of it */
   double across = 0.01 * (d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0),
-         focal = c.fx * (across / w);
+         focal = c->fx * (across / w);
   if (flat) {
-    across = 10.0 * w / c.fx;
+    across = 10.0 * w / c->fx;
     focal = 0.5;
   }
-  double down = flat ? 10.0 * h / c.fy : across * (h / w) * (c.fx / c.fy);
-  bool timed = c.shutter_open != 0.0 || c.shutter_close != 1.0;
-  vl_camera_flip_axes(c.world_from_camera, m);
+  double down = flat ? 10.0 * h / c->fy : across * (h / w) * (c->fx / c->fy);
+  bool timed = c->shutter_open != 0.0 || c->shutter_close != 1.0;
+  vl_camera_flip_axes(c->world_from_camera, m);
   vl_camera_put(text, "#usda 1.0\n(\n    defaultPrim = \"");
-  put_name(text, record->name);
+  put_name(text, fit->record->name);
   vl_camera_put(
       text,
       "\"\n    doc = \"pixels count from the image's upper left corner; camera axes x right, "
@@ -397,28 +392,28 @@ static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record
   if (timed)
     vl_camera_put(text, "    timeCodesPerSecond = 1\n");
   vl_camera_put(text, "    upAxis = \"Y\"\n)\n\ndef Camera \"");
-  put_name(text, record->name);
-  const double film[] = {focal, across, down, (0.5 * w - c.cx) * (across / w),
-                         (c.cy - 0.5 * h) * (down / h)};
-  VL_PUT_FORM(text, record, &c,
+  put_name(text, fit->record->name);
+  const double film[] = {focal, across, down, (0.5 * w - c->cx) * (across / w),
+                         (c->cy - 0.5 * h) * (down / h)};
+  VL_PUT_FORM(text, fit,
               "\"\n{\n    token projection = \"$kind\"\n    float focalLength = $film@0\n"
               "    float horizontalAperture = $film@1\n    float verticalAperture = $film@2\n"
               "    float horizontalApertureOffset = $film@3\n    float verticalApertureOffset "
               "= $film@4\n",
               VL_WORD("kind", flat ? "orthographic" : "perspective"),
               VL_VALUES("film", film, 5));
-  if (c.near_plane > 0.0 || !isinf(c.far_plane))
-    vl_camera_put(text, "    float2 clippingRange = (%.17g, %.17g)\n", c.near_plane,
-                  isinf(c.far_plane) ? 1e38 : c.far_plane);
-  if (c.lens_radius > 0.0 && !flat)
-    vl_camera_put(text, "    float fStop = %.17g\n", 0.1 * focal / (2.0 * c.lens_radius));
-  if (!isinf(c.focus_distance))
-    vl_camera_put(text, "    float focusDistance = %.17g\n", c.focus_distance);
-  if (c.exposure_time != 1.0)
-    vl_camera_put(text, "    float exposure = %.17g\n", vl_precise_log2(c.exposure_time));
+  if (c->near_plane > 0.0 || !isinf(c->far_plane))
+    vl_camera_put(text, "    float2 clippingRange = (%.17g, %.17g)\n", c->near_plane,
+                  isinf(c->far_plane) ? 1e38 : c->far_plane);
+  if (c->lens_radius > 0.0 && !flat)
+    vl_camera_put(text, "    float fStop = %.17g\n", 0.1 * focal / (2.0 * c->lens_radius));
+  if (!isinf(c->focus_distance))
+    vl_camera_put(text, "    float focusDistance = %.17g\n", c->focus_distance);
+  if (c->exposure_time != 1.0)
+    vl_camera_put(text, "    float exposure = %.17g\n", vl_precise_log2(c->exposure_time));
   if (timed)
     vl_camera_put(text, "    double shutter:open = %.17g\n    double shutter:close = %.17g\n",
-                  c.shutter_open, c.shutter_close);
+                  c->shutter_open, c->shutter_close);
   vl_camera_put(text, "    matrix4d xformOp:transform = (");
   for (int row = 0; row < 4; row++) {
     vl_camera_put(text, "%s(", row ? ", " : " ");
@@ -431,11 +426,11 @@ static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record
       text,
       "def Scope \"Render\"\n{\n    def RenderSettings \"Settings\"\n    {\n        rel "
       "camera = </");
-  put_name(text, record->name);
+  put_name(text, fit->record->name);
   vl_camera_put(text,
                 ">\n        uniform int2 resolution = (%u, %u)\n        uniform float "
                 "pixelAspectRatio = %.17g\n",
-                c.width, c.height, c.fy / c.fx);
+                c->width, c->height, c->fy / c->fx);
   vl_camera_put(text, "    }\n}\n");
   return VL_OK;
 }
@@ -444,5 +439,11 @@ static bool is_usd(const char *text, size_t size) {
   return size >= 5 && memcmp(text, "#usda", 5) == 0;
 }
 
-const vlCameraFormat vl_format_usd = {
-    .name = "usd", .is_text = is_usd, .read_text = read_usd, .write = write_usd};
+const vlCameraFormat vl_format_usd = {.name = "usd",
+                                      .is_text = is_usd,
+                                      .read_text = read_usd,
+                                      .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS |
+                                               VL_HOLDS_PLANES | VL_HOLDS_TIME |
+                                               VL_HOLDS_EXPOSURE,
+                                      .plain = true,
+                                      .write = write_usd};

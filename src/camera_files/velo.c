@@ -498,21 +498,19 @@ void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text) {
   vl_camera_put(text, "\n}\n");
 }
 
-vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *record,
-                              vlCameraText *text) {
-  vlCamera camera;
-  vlResult result = vl_camera_make(&record->camera, &camera, NULL, file->error);
-  if (result == VL_OK)
-    result = vl_camera_refuse(file, "aperture", record->camera.lens.aperture != NULL);
-  if (result == VL_OK && record->camera.projection == VL_PROJECTION_OPTICS)
-    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+vlResult vl_camera_write_velo(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCameraDef *d = &fit->record->camera;
+  vlResult result = vl_camera_refuse(fit->file, "aperture", d->lens.aperture != NULL);
+  if (result == VL_OK && d->projection == VL_PROJECTION_OPTICS)
+    return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
                       "velo cannot hold a lens of many elements");
   if (result == VL_OK)
-    vl_camera_put_velo(record, text);
+    vl_camera_put_velo(fit->record, text);
   return result;
 }
 
 const vlCameraFormat vl_format_velo = {.name = "velo",
                                        .marks = {"velo_camera"},
                                        .read = vl_camera_read_velo,
+                                       .holds = VL_HOLDS_ALL,
                                        .write = vl_camera_write_velo};

@@ -115,26 +115,19 @@ static bool is_visp(const json_t *tree) {
   return vl_text_is(tag, "root") && vl_camera_child(model, "px");
 }
 
-static vlResult write_visp(const vlCameraFile *file, const vlCameraRecord *record,
-                           vlCameraText *text) {
-  vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
-  if (result != VL_OK)
-    return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool fits =
-      family == VL_LENS_PINHOLE || family == VL_LENS_OPENCV || family == VL_LENS_FISHEYE;
-  bool fisheye = family == VL_LENS_FISHEYE;
+static vlResult write_visp(const vlFittedCamera *fit, vlCameraText *text) {
+  const double *k = fit->k;
+  bool fits = VL_LENSES_COMMON >> fit->family & 1;
+  bool fisheye = fit->family == VL_LENS_FISHEYE;
   for (int i = 1; i < 14 && !fisheye; i++)
     fits = fits && k[i] == 0.0; /* ViSP's model has k1 only */
   if (!fits)
-    return vl_camera_no_model(file, &record->camera);
+    return vl_camera_no_model(fit->file, &fit->record->camera);
   bool bent = !fisheye && k[0] != 0.0;
-  const char *name = record->name[0] && !strpbrk(record->name, "<>&") ? record->name : "Camera";
+  const char *name =
+      fit->record->name[0] && !strpbrk(fit->record->name, "<>&") ? fit->record->name : "Camera";
   VL_PUT_FORM(
-      text, record, &c,
+      text, fit,
       "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>$own</name>\n"
       "    <image_width>$width</image_width>\n    <image_height>$height</image_height>\n"
       "    <model>\n      <type>$type</type>\n      <px>$fx</px>\n      <py>$fy</py>\n"

@@ -108,19 +108,16 @@ static bool is_visualsfm(const char *text, size_t size) {
   return strncmp(text, "NVM_V3", 6) == 0;
 }
 
-static vlResult write_visualsfm(const vlCameraFile *file, const vlCameraRecord *record,
-                                vlCameraText *text) {
-  vlCamera c;
+static vlResult write_visualsfm(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
   double r[9], t[3], q[4];
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK)
-    return result;
-  vl_camera_get_pose(&c, r, t);
+  vl_camera_get_pose(c, r, t);
   vl_rotation_to_quaternion(r, q);
-  const char *name =
-      record->name[0] && !strpbrk(record->name, "\"\n") ? record->name : "image.jpg";
+  const char *name = fit->record->name[0] && !strpbrk(fit->record->name, "\"\n")
+                         ? fit->record->name
+                         : "image.jpg";
   return VL_PUT_FORM(
-      text, record, &c,
+      text, fit,
       "NVM_V3 FixedK $fx $cx $fy $cy 0\n\n1\n\"$own\"\t$fx $q:s $centre:s 0 0\n\n0\n",
       VL_WORD("own", name), VL_VALUES("q", q, 4));
 }
@@ -129,4 +126,6 @@ const vlCameraFormat vl_format_visualsfm = {.name = "visualsfm",
                                             .rotates = true,
                                             .is_text = is_visualsfm,
                                             .read_text = read_visualsfm,
+                                            .holds = VL_HOLDS_POSE,
+                                            .lenses = 1 << VL_LENS_PINHOLE,
                                             .write = write_visualsfm};

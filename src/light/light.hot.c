@@ -323,7 +323,7 @@ void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, con
   for (uint32_t k = 0; k < chosen.count; k++) {
     uint32_t i = chosen.lane[k];
     const vlWorldLight *light = &world->lights.items[out->light[i]];
-    vlVec3 p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
+    vlVec3 p = vl_lane3(f->px, f->py, f->pz, i);
     if (vl_light_is_environment(world, light)) {
       skies[sky_count++] = i;
     } else if (light->plain_triangle ||

@@ -160,8 +160,8 @@ static inline float hair_value(const Hair *h, vlVec3 wi, float value[4]) {
 void vl_bsdf_hair_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
                        vlBsdfDirections wi, float *const value[4], float *pdf) {
   for (uint32_t i = 0; i < n; i++) {
-    Hair h = hair_of(params, i, vl_vec3(wo.x[i], wo.y[i], wo.z[i]));
-    float f[4], p = hair_value(&h, vl_vec3(wi.x[i], wi.y[i], wi.z[i]), f);
+    Hair h = hair_of(params, i, vl_lane3(wo.x, wo.y, wo.z, i));
+    float f[4], p = hair_value(&h, vl_lane3(wi.x, wi.y, wi.z, i), f);
     float on = (wo.z[i] != 0.0f) & (wi.z[i] != 0.0f) ? 1.0f : 0.0f;
     for (int c = 0; c < 4; c++)
       value[c][i] = f[c] * on;
@@ -174,7 +174,7 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
                          vlBsdfDirections wi, float *const weight[4], float *pdf,
                          uint32_t *flags, float *eta_scale) {
   for (uint32_t i = 0; i < n; i++) {
-    Hair h = hair_of(params, i, vl_vec3(wo.x[i], wo.y[i], wo.z[i]));
+    Hair h = hair_of(params, i, vl_lane3(wo.x, wo.y, wo.z, i));
     int p = 0;
     float lobe = u_lobe[i];
     for (; p < LOBES - 1 && !(lobe < h.share[p]); p++)
@@ -197,9 +197,7 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     vlVec3 w = vl_normalize(vl_vec3(sin_i, cos_i * at.cos, cos_i * at.sin));
     float f[4], d = hair_value(&h, w, f);
     bool valid = wo.z[i] != 0.0f && w.z != 0.0f && d > VL_MIN_POSITIVE;
-    wi.x[i] = w.x;
-    wi.y[i] = w.y;
-    wi.z[i] = w.z;
+    vl_set_lane3(wi.x, wi.y, wi.z, i, w);
     for (int c = 0; c < 4; c++)
       weight[c][i] = valid ? f[c] / d : 0.0f;
     pdf[i] = valid ? d : 0.0f;

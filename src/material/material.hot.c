@@ -43,12 +43,8 @@ static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i)
   vlVec3 dv = vl_mul(vl_sub(vl_mul(m2, u1), vl_mul(m1, u2)), scale);
   du = vl_sub(du, vl_mul(ns, vl_dot(du, ns)));
   dv = vl_sub(dv, vl_mul(ns, vl_dot(dv, ns)));
-  f->dn[0][i] = du.x;
-  f->dn[1][i] = du.y;
-  f->dn[2][i] = du.z;
-  f->dn[3][i] = dv.x;
-  f->dn[4][i] = dv.y;
-  f->dn[5][i] = dv.z;
+  vl_set_lane3(f->dn[0], f->dn[1], f->dn[2], i, du);
+  vl_set_lane3(f->dn[3], f->dn[4], f->dn[5], i, dv);
 }
 
 /* Bump mapping: the surface p + h n has the derivatives dpdu + h' n + h dndu, and likewise in
@@ -89,13 +85,11 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
   for (uint32_t i = r->first; i < r->last; i++) {
     if (r->world->shapes.items[r->at->hits.shape[i]].triangles)
       triangle_normal_slopes(&r->s->corners, f, i);
-    vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
-    vlVec3 du =
-        vl_add(vl_vec3(f->ux[i], f->uy[i], f->uz[i]), vl_mul(n, (hu[i] - h[i]) / step[i]));
-    vlVec3 dv =
-        vl_add(vl_vec3(f->vx[i], f->vy[i], f->vz[i]), vl_mul(n, (hv[i] - h[i]) / step[i]));
-    du = vl_add(du, vl_mul(vl_vec3(f->dn[0][i], f->dn[1][i], f->dn[2][i]), h[i]));
-    dv = vl_add(dv, vl_mul(vl_vec3(f->dn[3][i], f->dn[4][i], f->dn[5][i]), h[i]));
+    vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i);
+    vlVec3 du = vl_add(vl_lane3(f->ux, f->uy, f->uz, i), vl_mul(n, (hu[i] - h[i]) / step[i]));
+    vlVec3 dv = vl_add(vl_lane3(f->vx, f->vy, f->vz, i), vl_mul(n, (hv[i] - h[i]) / step[i]));
+    du = vl_add(du, vl_mul(vl_lane3(f->dn[0], f->dn[1], f->dn[2], i), h[i]));
+    dv = vl_add(dv, vl_mul(vl_lane3(f->dn[3], f->dn[4], f->dn[5], i), h[i]));
     vlVec3 m = vl_cross(du, dv);
     if (!(vl_length2(m) > 0.0f))
       continue;
@@ -113,7 +107,7 @@ static void normal_map(vlTextureRun *r, int32_t image) {
   for (uint32_t i = r->first; i < r->last; i++) {
     vlTexel t = vl_bilinear(mip, 0, f->u[i], 1.0f - f->v[i], VL_WRAP_REPEAT);
     vlVec3 local = vl_normalize(vl_vec3(2 * t.c[0] - 1, 2 * t.c[1] - 1, 2 * t.c[2] - 1));
-    vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
+    vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i), u = vl_lane3(f->ux, f->uy, f->uz, i);
     vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n))));
     vlFrame frame = {x, vl_cross(n, x), n};
     vlVec3 m = vl_normalize(vl_from_local(frame, local));

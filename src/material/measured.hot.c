@@ -106,8 +106,8 @@ void vl_bsdf_measured_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirecti
     if (!(wo.z[i] * wi.z[i] > 0.0f))
       continue;
     const vlMeasured *m = params->measured[i];
-    Seen s = seen_from(m, vl_vec3(wo.x[i], wo.y[i], wo.z[i]));
-    vlVec3 h = vl_normalize(vl_add(s.o, turned(&s, vl_vec3(wi.x[i], wi.y[i], wi.z[i]))));
+    Seen s = seen_from(m, vl_lane3(wo.x, wo.y, wo.z, i));
+    vlVec3 h = vl_normalize(vl_add(s.o, turned(&s, vl_lane3(wi.x, wi.y, wi.z, i))));
     float x = theta_to_u(elevation(h)), y = phi_to_u(vl_atan2(h.y, h.x) - s.phi);
     vlMeasuredPoint at = vl_measured_invert(&m->vndf, s.slices, x, y);
     float lambda[4], f[4];
@@ -136,7 +136,7 @@ void vl_bsdf_measured_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     if (wo.z[i] == 0.0f)
       continue;
     const vlMeasured *m = params->measured[i];
-    Seen s = seen_from(m, vl_vec3(wo.x[i], wo.y[i], wo.z[i]));
+    Seen s = seen_from(m, vl_lane3(wo.x, wo.y, wo.z, i));
     vlMeasuredPoint at = vl_measured_sample(&m->luminance, s.slices, u[i], v[i]);
     vlMeasuredPoint normal = vl_measured_sample(&m->vndf, s.slices, at.x, at.y);
     vlSinCos theta = vl_sincos(normal.x * normal.x * (0.5f * VL_PI));
@@ -153,9 +153,7 @@ void vl_bsdf_measured_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     for (int c = 0; c < 4; c++)
       weight[c][i] = vl_min(f[c] / p, 1e30f);
     w = turned(&s, w);
-    wi.x[i] = w.x;
-    wi.y[i] = w.y;
-    wi.z[i] = w.z;
+    vl_set_lane3(wi.x, wi.y, wi.z, i, w);
     pdf[i] = p;
     flags[i] = 0;
   }

@@ -175,8 +175,7 @@ static void coat_energies(const vlPrincipledSlice *s, const vlPrincipledLanes *l
       continue;
     }
     vlVec3 n = vl_principled_coat(s, i, l->side[i]);
-    vlAlbedoCell c =
-        vl_albedo_cell(vl_abs(vl_dot(vl_vec3(x[i], y[i], z[i]), n)), VL_ALBEDO_COS);
+    vlAlbedoCell c = vl_albedo_cell(vl_abs(vl_dot(vl_lane3(x, y, z, i), n)), VL_ALBEDO_COS);
     energy[i] = coat * (0.04f * vl_albedo_at(t->a, alpha, c) + vl_albedo_at(t->b, alpha, c));
   }
 }
@@ -349,8 +348,7 @@ void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_
     coat_energies(s, l, ox, oy, l->z, l->coat_o);
     coat_energies(s, l, NULL, NULL, NULL, l->coat_mean);
     for (uint32_t i = 0; i < count; i++)
-      coat_cos[i] =
-          vl_dot(vl_vec3(ox[i], oy[i], l->z[i]), vl_principled_coat(s, i, l->side[i]));
+      coat_cos[i] = vl_dot(vl_lane3(ox, oy, l->z, i), vl_principled_coat(s, i, l->side[i]));
   }
   if (s->sheen)
     sheen_at_view(s, l);
@@ -383,7 +381,7 @@ void vl_principled_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdf
   for (uint32_t i = 0; i < count; i++) {
     if (!(s->row[VL_P_FILM][i] > 0.0f))
       continue;
-    vlVec3 o = vl_vec3(ox[i], oy[i], l->z[i]),
+    vlVec3 o = vl_lane3(ox, oy, l->z, i),
            h = vl_normalize(vl_vec3(o.x + ix[i], o.y + iy[i], o.z + vl_abs(z[i])));
     for (int c = 0; c < 4; c++) {
       float f0 = s->row[VL_P_F0 + c][i];

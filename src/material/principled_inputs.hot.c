@@ -25,8 +25,8 @@ static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float sca
                                vl_texture_point_of(r, node, i));
   vlVec3 local =
       vl_normalize(vl_vec3(scale * (2 * t.c[0] - 1), scale * (2 * t.c[1] - 1), 2 * t.c[2] - 1));
-  vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]),
-         v = vl_vec3(f->vx[i], f->vy[i], f->vz[i]);
+  vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i), u = vl_lane3(f->ux, f->uy, f->uz, i),
+         v = vl_lane3(f->vx, f->vy, f->vz, i);
   vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n)))), y = vl_cross(n, x);
   y = vl_dot(y, v) < 0.0f ? vl_neg(y) : y; /* mirrored uv */
   vlVec3 m = vl_normalize(vl_from_local((vlFrame){x, y, n}, local));
@@ -48,7 +48,7 @@ static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
     for (uint32_t i = r->first; i < r->last; i++) {
       vlVec3 c =
           map ? mapped(r, &r->world->nodes.items[p->coat_normal], p->coat_normal_scale, i)
-              : vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
+              : vl_lane3(f->nx, f->ny, f->nz, i);
       rows[VL_P_COAT_X][i] = c.x;
       rows[VL_P_COAT_Y][i] = c.y;
       rows[VL_P_COAT_Z][i] = c.z;
@@ -68,9 +68,9 @@ static void turn_tangent(vlTextureRun *r, const float *angle) {
   vlSurface *f = &r->at->surface;
   for (uint32_t i = r->first; i < r->last; i++) {
     vlSinCos a = vl_sincos(angle[i]);
-    vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
+    vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i), u = vl_lane3(f->ux, f->uy, f->uz, i);
     vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n)))), y = vl_cross(n, x);
-    y = vl_dot(y, vl_vec3(f->vx[i], f->vy[i], f->vz[i])) < 0.0f ? vl_neg(y) : y;
+    y = vl_dot(y, vl_lane3(f->vx, f->vy, f->vz, i)) < 0.0f ? vl_neg(y) : y;
     vlVec3 t = vl_add(vl_mul(x, a.cos), vl_mul(y, a.sin));
     vl_set_lane3(f->ux, f->uy, f->uz, i, t);
   }
@@ -159,9 +159,9 @@ void vl_stage_coat_frames(const vlSurface *f, vlShade *shade, uint32_t first, ui
   for (uint32_t i = first; i < last; i++) {
     vlVec3 c = vl_vec3(rows[VL_P_COAT_X][i], rows[VL_P_COAT_Y][i], rows[VL_P_COAT_Z][i]);
     if (!(rows[VL_P_COAT][i] > 0.0f))
-      c = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
-    rows[VL_P_COAT_X][i] = vl_dot(c, vl_vec3(shade->tx[i], shade->ty[i], shade->tz[i]));
-    rows[VL_P_COAT_Y][i] = vl_dot(c, vl_vec3(shade->bx[i], shade->by[i], shade->bz[i]));
-    rows[VL_P_COAT_Z][i] = vl_dot(c, vl_vec3(f->nx[i], f->ny[i], f->nz[i]));
+      c = vl_lane3(f->nx, f->ny, f->nz, i);
+    rows[VL_P_COAT_X][i] = vl_dot(c, vl_lane3(shade->tx, shade->ty, shade->tz, i));
+    rows[VL_P_COAT_Y][i] = vl_dot(c, vl_lane3(shade->bx, shade->by, shade->bz, i));
+    rows[VL_P_COAT_Z][i] = vl_dot(c, vl_lane3(f->nx, f->ny, f->nz, i));
   }
 }

@@ -43,6 +43,11 @@ static inline vlVec3 vl_normalize(vlVec3 a) {
 static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
   return vl_vec3(x[i], y[i], z[i]);
 }
+static inline void vl_set_lane3(float *x, float *y, float *z, uint32_t i, vlVec3 v) {
+  x[i] = v.x;
+  y[i] = v.y;
+  z[i] = v.z;
+}
 /* The product of a 3x3 matrix and a vector. */
 static inline vlVec3 vl_turn(const float m[9], vlVec3 v) {
   return vl_vec3(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,

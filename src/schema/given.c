@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "base/unset.h"
+#include "schema/schema.h"
 
 /* ---- what a value must be ---------------------------------------------------------------- */
 
@@ -270,41 +271,10 @@ bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *giv
   return false;
 }
 
-static void put(const vlParameter *row, double number, void *at) {
-  switch (row->type) {
-    case VL_PARAMETER_COUNT:
-      *(uint32_t *)at = (uint32_t)number;
-      break;
-    case VL_PARAMETER_CHOICE:
-      *(int *)at = (int)number;
-      break;
-    case VL_PARAMETER_BOOL:
-      *(bool *)at = number != 0;
-      break;
-    case VL_PARAMETER_FLOAT:
-      *(float *)at = (float)number;
-      break;
-    case VL_PARAMETER_DOUBLE:
-      *(double *)at = number;
-      break;
-    case VL_PARAMETER_FLOAT3:
-    case VL_PARAMETER_DOUBLE3:
-    case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE:
-    case VL_PARAMETER_SPECTRUM:
-    case VL_PARAMETER_FLOAT_INPUT:
-    case VL_PARAMETER_SPECTRUM_INPUT:
-    case VL_PARAMETER_EITHER_INPUT:
-    case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK:
-      break;
-  }
-}
-
 void vl_given_put(const vlParameter *row, double number, void *def) {
-  put(row, number, (char *)def + row->offset);
+  vl_parameter_put(row, number, (char *)def + row->offset);
   if (row->second)
-    put(row, number, (char *)def + row->second);
+    vl_parameter_put(row, number, (char *)def + row->second);
 }
 
 const char *vl_near_name(const char *name, const char *const *names, size_t count) {

@@ -64,20 +64,30 @@ static vlSpectrum default_spectrum(const vlParameter *p) {
   return vl_spectrum_constant((float)p->value[0]);
 }
 
+void vl_parameter_put(const vlParameter *p, double number, void *at) {
+  if (p->type == VL_PARAMETER_BOOL)
+    *(bool *)at = number != 0;
+  else if (p->type == VL_PARAMETER_COUNT)
+    *(uint32_t *)at = (uint32_t)number;
+  else if (p->type == VL_PARAMETER_CHOICE)
+    *(int *)at = (int)number;
+  else if (p->type == VL_PARAMETER_FLOAT)
+    *(float *)at = (float)number;
+  else if (p->type == VL_PARAMETER_DOUBLE)
+    *(double *)at = number;
+}
+
 static void set_default(const vlParameter *p, void *at) {
   double number = p->value[0];
   switch (p->type) {
     case VL_PARAMETER_BOOL:
-      *(bool *)at = number != 0;
-      break;
     case VL_PARAMETER_COUNT:
-      *(uint32_t *)at = (uint32_t)number;
-      break;
     case VL_PARAMETER_FLOAT:
-      *(float *)at = (float)number;
-      break;
+    case VL_PARAMETER_CHOICE:
     case VL_PARAMETER_DOUBLE:
-      *(double *)at = p->flags & VL_PARAMETER_UNSET ? VL_UNSET : number;
+      if (p->type == VL_PARAMETER_DOUBLE && p->flags & VL_PARAMETER_UNSET)
+        number = VL_UNSET;
+      vl_parameter_put(p, number, at);
       break;
     case VL_PARAMETER_FLOAT3:
       for (int i = 0; i < 3; i++)
@@ -86,9 +96,6 @@ static void set_default(const vlParameter *p, void *at) {
     case VL_PARAMETER_DOUBLE3:
       for (int i = 0; i < 3; i++)
         ((double *)at)[i] = p->flags & VL_PARAMETER_UNSET ? VL_UNSET : p->value[i];
-      break;
-    case VL_PARAMETER_CHOICE:
-      *(int *)at = (int)number;
       break;
     case VL_PARAMETER_STRING:
     case VL_PARAMETER_FILE:

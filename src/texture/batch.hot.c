@@ -289,7 +289,7 @@ static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t
                            float rgb[3][VL_SKY_BLOCK], uint32_t first, float *const out[4]) {
   if (up->rgb_mode || count < VL_LANES / 4) {
     for (uint32_t k = 0; k < count; k++)
-      upsample(r, up, vl_vec3(rgb[0][k], rgb[1][k], rgb[2][k]), first + k, out);
+      upsample(r, up, vl_lane3(rgb[0], rgb[1], rgb[2], k), first + k, out);
     return;
   }
   VL_ROW float lambda[4][VL_SKY_BLOCK], value[4][VL_SKY_BLOCK];
@@ -320,10 +320,8 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node,
     for (uint32_t k = 0; k < VL_LANES; k++) {
       uint32_t j = k < l.count ? k : l.count - 1;
       vlVec3 c = j == k ? vl_plain_rgb(mip, value_of(node, mip, &l, k))
-                        : vl_vec3(rgb[0][j], rgb[1][j], rgb[2][j]);
-      rgb[0][k] = c.x;
-      rgb[1][k] = c.y;
-      rgb[2][k] = c.z;
+                        : vl_lane3(rgb[0], rgb[1], rgb[2], j);
+      vl_set_lane3(rgb[0], rgb[1], rgb[2], k, c);
     }
     upsample_lanes(r, &up, l.count, rgb, first, out);
   }

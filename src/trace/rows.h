@@ -178,11 +178,6 @@ static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
 
 /* ---- elements of the arrays */
 
-static inline void vl_set_lane3(float *x, float *y, float *z, uint32_t i, vlVec3 v) {
-  x[i] = v.x;
-  y[i] = v.y;
-  z[i] = v.z;
-}
 static inline void vl_path_lambda(const vlPaths *p, uint32_t i, float lambda[4]) {
   for (int c = 0; c < 4; c++)
     lambda[c] = p->lambda[c][i];

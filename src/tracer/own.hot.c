@@ -12,13 +12,11 @@ static void clear(float (*rows)[VL_OWN_BATCH], int count) {
 }
 
 static void put3(float (*rows)[VL_OWN_BATCH], uint32_t lane, vlVec3 v) {
-  rows[0][lane] = v.x;
-  rows[1][lane] = v.y;
-  rows[2][lane] = v.z;
+  vl_set_lane3(rows[0], rows[1], rows[2], lane, v);
 }
 
 static vlVec3 get3(float (*rows)[VL_OWN_BATCH], uint32_t lane) {
-  return vl_vec3(rows[0][lane], rows[1][lane], rows[2][lane]);
+  return vl_lane3(rows[0], rows[1], rows[2], lane);
 }
 
 static void no_rays(vlTraceRays *r, uint32_t count) {

@@ -105,9 +105,9 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
                      VL_DIM_BOUNCE + VL_DIM_BSDF_UV, u.u1, u.u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 nn = vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i],
-                        s->at.surface.gz[i]); /* geometric normal, as in pbrt */
-    vlVec3 d = vl_vec3(s->at.paths.dx[i], s->at.paths.dy[i], s->at.paths.dz[i]);
+    vlVec3 nn = vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz,
+                         i); /* geometric normal, as in pbrt */
+    vlVec3 d = vl_lane3(s->at.paths.dx, s->at.paths.dy, s->at.paths.dz, i);
     if (vl_dot(nn, d) > 0.0f)
       nn = vl_neg(nn);
     bool cosine = t->def->ao_cosine;
@@ -115,8 +115,8 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
                           : vl_warp_hemisphere(u.u1[i], u.u2[i]);
     vlVec3 w = vl_from_local(vl_frame_from_z(nn), local);
     vlVec3 o =
-        vl_offset_origin(vl_vec3(s->at.surface.px[i], s->at.surface.py[i], s->at.surface.pz[i]),
-                         vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i], s->at.surface.gz[i]),
+        vl_offset_origin(vl_lane3(s->at.surface.px, s->at.surface.py, s->at.surface.pz, i),
+                         vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz, i),
                          s->at.surface.offset[i], w);
     float lambda[4];
     vl_path_lambda(&s->at.paths, i, lambda);

@@ -348,7 +348,7 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
                            const vlCorners *c, vlSurface *out) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
-  vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]), k[3];
+  vlVec3 p = vl_lane3(out->px, out->py, out->pz, i), k[3];
   for (int j = 0; j < 3; j++)
     k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
   vlVec3 g = vl_cross(vl_sub(k[1], k[0]), vl_sub(k[2], k[0]));
@@ -375,15 +375,11 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   }
   if (!(vl_length2(t) > 0.0f))
     return;
-  vlVec3 v = vl_cross(vl_vec3(out->nx[i], out->ny[i], out->nz[i]), t);
+  vlVec3 v = vl_cross(vl_lane3(out->nx, out->ny, out->nz, i), t);
   if (s->tangent_signs && (s->tangent_signs[f[0]] < 0.0f) != mirrored)
     v = vl_neg(v);
-  out->ux[i] = t.x;
-  out->uy[i] = t.y;
-  out->uz[i] = t.z;
-  out->vx[i] = v.x;
-  out->vy[i] = v.y;
-  out->vz[i] = v.z;
+  vl_set_lane3(out->ux, out->uy, out->uz, i, t);
+  vl_set_lane3(out->vx, out->vy, out->vz, i, v);
 }
 
 void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
@@ -441,8 +437,8 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
   }
   for (uint32_t i = 0; others && i < n; i++) {
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]),
-           d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
+    vlVec3 o = vl_lane3(paths->ox, paths->oy, paths->oz, i),
+           d = vl_lane3(paths->dx, paths->dy, paths->dz, i);
     if (!s->triangles) {
       float t = hits->t[i];
       vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i],
@@ -588,16 +584,14 @@ void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays,
     uint32_t i = lanes[k];
     if (world->shapes.items[x->shape[i]].triangles)
       continue;
-    vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]),
-           d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);
+    vlVec3 o = vl_lane3(rays->ox, rays->oy, rays->oz, i),
+           d = vl_lane3(rays->dx, rays->dy, rays->dz, i);
     float t = x->hit[i];
     vlSurfacePoint q = other_point(world, rays->time ? rays->time[i] : 0.0f, o, d, x->shape[i],
                                    x->prim[i], x->instance[i], &t);
     vlPoint at = point_of(&q, t);
     x->t[i] = at.t;
-    x->gx[i] = at.g.x;
-    x->gy[i] = at.g.y;
-    x->gz[i] = at.g.z;
+    vl_set_lane3(x->gx, x->gy, x->gz, i, at.g);
     x->offset[i] = at.offset;
   }
 }

@@ -150,8 +150,14 @@ typedef struct vlRenderDef {
    * film with samples ignores it and continues after its last sample. */
   uint32_t first_sample;
   uint32_t max_depth; /**< largest number of bounces of a path */
-  float ao_distance;  /**< ambient occlusion: length of its rays, scene units */
-  bool ao_cosine;     /**< ambient occlusion: directions weighted by the cosine; else uniform */
+  /** Further limits, of bounces of one kind: diffuse reflection; glossy or specular reflection;
+   * transmission; scattering in media. A path that has so many bounces of the kind ends at its
+   * next hit, whose emission it still adds. Subsurface scattering counts as diffuse; light that
+   * passes through interfaces and cut-outs has no bounce there. The tracers path and volpath
+   * have them; others are replaced by volpath. Default 0: no such limit. */
+  uint32_t max_diffuse_depth, max_glossy_depth, max_transmission_depth, max_volume_depth;
+  float ao_distance; /**< ambient occlusion: length of its rays, scene units */
+  bool ao_cosine;    /**< ambient occlusion: directions weighted by the cosine; else uniform */
   /** For comparisons (as pbrt's disablepixeljitter and similar options). centred: all samples
    * are at the centre of the pixel, of the lens and of the exposure. same_wavelengths: all
    * paths have the same wavelengths. sharp_textures: textures are not filtered by the

@@ -80,7 +80,8 @@ enum { VL_S_SIGMA /* extinction, 4 */, VL_S_ALBEDO = VL_S_SIGMA + 4 /* 4 */ }; /
 enum {
   VL_SAMPLED_SPECULAR = 1,     /* a delta lobe, which eval does not include */
   VL_SAMPLED_TRANSMISSION = 2, /* wi is on the other side of the surface */
-  VL_SAMPLED_NONE = 4          /* no direction: the path ends; weight is 0 */
+  VL_SAMPLED_NONE = 4,         /* no direction: the path ends; weight is 0 */
+  VL_SAMPLED_DIFFUSE = 8       /* a diffuse lobe was chosen */
 };
 
 /* Parameters of a batch, one array of VL_PAD(n) lanes each. A kind reads only the arrays whose

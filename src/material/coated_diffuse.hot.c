@@ -347,7 +347,9 @@ PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float
     pdf[i] = d * on;
     iz[i] = __builtin_copysignf(zi, oz[i]);
     int alive = valid & (d > 0.0f);
-    flag[i] = alive ? (mirror ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) : (uint32_t)VL_SAMPLED_NONE;
+    uint32_t chosen = lobe[i] < p ? 0u : (uint32_t)VL_SAMPLED_DIFFUSE;
+    flag[i] =
+        alive ? (mirror ? (uint32_t)VL_SAMPLED_SPECULAR : chosen) : (uint32_t)VL_SAMPLED_NONE;
   }
 }
 

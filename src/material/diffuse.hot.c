@@ -51,7 +51,7 @@ void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     w2[i] = r2[i] * on;
     w3[i] = r3[i] * on;
     pdf[i] = d.z * VL_INV_PI * on;
-    flags[i] = valid ? 0u : (uint32_t)VL_SAMPLED_NONE;
+    flags[i] = valid ? (uint32_t)VL_SAMPLED_DIFFUSE : (uint32_t)VL_SAMPLED_NONE;
     eta_scale[i] = 1.0f;
   }
 }

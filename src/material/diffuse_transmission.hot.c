@@ -72,7 +72,7 @@ void vl_bsdf_translucent_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDi
     w2[i] = (a2 * up + b2 * down) * scale;
     w3[i] = (a3 * up + b3 * down) * scale;
     pdf[i] = chosen * d.z * VL_INV_PI * on;
-    uint32_t f = reflect ? 0u : (uint32_t)VL_SAMPLED_TRANSMISSION;
+    uint32_t f = VL_SAMPLED_DIFFUSE | (reflect ? 0u : (uint32_t)VL_SAMPLED_TRANSMISSION);
     flags[i] = valid ? f : (uint32_t)VL_SAMPLED_NONE;
     eta_scale[i] = 1.0f;
   }

@@ -319,8 +319,9 @@ void vl_bsdf_layered_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     wi.y[i] = w.y;
     wi.z[i] = __builtin_copysignf(w.z, wo.z[i]);
     pdf[i] = valid ? p : 0.0f;
+    uint32_t chosen = u_lobe[i] < lobes.coat + lobes.base ? 0u : (uint32_t)VL_SAMPLED_DIFFUSE;
     flags[i] =
-        valid ? (mirror ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) : (uint32_t)VL_SAMPLED_NONE;
+        valid ? (mirror ? (uint32_t)VL_SAMPLED_SPECULAR : chosen) : (uint32_t)VL_SAMPLED_NONE;
     eta_scale[i] = 1.0f;
   }
 }

@@ -262,6 +262,14 @@ void vl_bsdf_principled_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
   }
 }
 
+/* Whether the number u chooses one of the diffuse lobes: reflection, or transmission, the last
+ * of all. */
+static inline bool is_diffuse(const vlPrincipledLanes *l, uint32_t i, float u) {
+  float to_diffuse = l->specular[i] + l->diffuse[i];
+  return (u >= l->specular[i] && u < to_diffuse) ||
+         u >= to_diffuse + l->coat[i] + l->refract[i];
+}
+
 /* Chooses the lobe and samples its direction. For the last two lobes, wi is on the other side
  * of the surface than wo. */
 static __attribute__((noinline)) void choose(const vlPrincipledSlice *s,
@@ -347,8 +355,9 @@ void vl_bsdf_principled_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDir
       for (int c = 0; c < 4; c++)
         weight[c][k] *= inverse;
       int below = (wi.z[k] > 0.0f) != (wo.z[k] > 0.0f);
-      flags[k] = pdf[k] > 0.0f ? (below ? (uint32_t)VL_SAMPLED_TRANSMISSION : 0u)
-                               : (uint32_t)VL_SAMPLED_NONE;
+      uint32_t chosen = (below ? (uint32_t)VL_SAMPLED_TRANSMISSION : 0u) |
+                        (is_diffuse(&lanes, i, u_lobe[k]) ? (uint32_t)VL_SAMPLED_DIFFUSE : 0u);
+      flags[k] = pdf[k] > 0.0f ? chosen : (uint32_t)VL_SAMPLED_NONE;
     }
   }
 }

@@ -167,6 +167,11 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
   return VL_OK;
 }
 
+static bool is_limited(const vlRenderDef *def) {
+  return def->max_diffuse_depth || def->max_glossy_depth || def->max_transmission_depth ||
+         def->max_volume_depth;
+}
+
 /* The tracer that is used: volpath in place of one that lacks something of the scene
  * (support.c). */
 static vlTracer tracer_of(vlRenderRun *r, const vlCamera *camera) {
@@ -176,6 +181,13 @@ static vlTracer tracer_of(vlRenderRun *r, const vlCamera *camera) {
     return VL_TRACER_PATH; /* no light paths */
   if (tracer == VL_TRACER_BIDIRECTIONAL && r->def->light_paths == 0)
     return VL_TRACER_VOLPATH;
+  const vlKindRow *row = vl_kind_family_find("tracers")->rows[tracer];
+  if (is_limited(r->def) && vl_row_find(row, "maxdepth") &&
+      !vl_row_find(row, "maxdiffusedepth")) {
+    vl_log(world->context, VL_LOG_INFO, NULL,
+           "tracer \"%s\" has no limits of one kind of bounces: volpath is used", row->name);
+    return VL_TRACER_VOLPATH;
+  }
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
            "this tracer renders material \"subsurface\" as clear glass; volpath renders its "
@@ -204,6 +216,15 @@ static vlResult prepare_two_way(vlRenderRun *r, const vlCamera *camera, vlError 
   for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++)
     vl_two_way_use(r->two_way, i, r->workers[i].scratch);
   return VL_OK;
+}
+
+/* Limits of 0 are none. The numbers of the kinds are those of vlBounceKind. */
+static void take_limits(const vlRenderDef *def, vlTraceDef *to) {
+  const uint32_t limits[VL_BOUNCE_KINDS] = {def->max_diffuse_depth, def->max_glossy_depth,
+                                            def->max_transmission_depth, def->max_volume_depth};
+  for (int k = 0; k < VL_BOUNCE_KINDS; k++)
+    to->max_of_kind[k] = limits[k] ? limits[k] : VL_NONE;
+  to->limited = is_limited(def);
 }
 
 void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
@@ -240,6 +261,7 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
                    .lambda_span = f->buckets ? (float)(f->lambda_max - f->lambda_min) : 0.0f,
                    .pixel_spread = footprint * r->film_rays.camera.pixel_spread,
                    .pixel_width = footprint * r->film_rays.camera.pixel_width};
+  take_limits(r->def, &r->trace);
   memcpy(r->crop, f->crop, sizeof r->crop);
   r->tile_x0 = r->crop[0] / VL_RENDER_TILE;
   r->tile_y0 = r->crop[1] / VL_RENDER_TILE;

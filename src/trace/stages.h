@@ -49,6 +49,7 @@ struct vlTraceScratch {
   vlOccluders occluders; /* of the shadow rays so far */
   /* As long as a path, by lane of the batch; see vlTracing. */
   VL_ROW uint8_t scattered[VL_ROW_SIZE];
+  VL_ROW uint16_t bounces[VL_BOUNCE_KINDS][VL_ROW_SIZE];
   vlByChannel *by_channel; /* null: nothing in the world attenuates by channel */
   vlVolumeScratch *volume; /* null: the world has neither media nor subsurface materials */
   vlSubsurfaceScratch *subsurface; /* null: the world has no subsurface materials */
@@ -69,8 +70,10 @@ typedef struct vlTracing {
   float (*passed)[VL_ROW_SIZE];
   uint8_t *scattered; /* by lane of the batch, only with regularisation: 1 if a non-specular
                          lobe has scattered the path */
-  struct vlTwoWayLanes *lanes; /* what the paths of two-way tracers carry; else null */
-  struct vlLightBatch *light;  /* the paths are light paths; null: camera paths */
+  uint16_t (*bounces)[VL_ROW_SIZE]; /* by kind and lane of the batch, only with
+                                       vlTraceDef.limited: the path's bounces of the kind */
+  struct vlTwoWayLanes *lanes;      /* what the paths of two-way tracers carry; else null */
+  struct vlLightBatch *light;       /* the paths are light paths; null: camera paths */
 } vlTracing;
 static inline vlTracing vl_tracing_of(const vlWorld *world, const vlTraceDef *def,
                                       vlTraceScratch *s, vlTraceBatch *batch) {
@@ -81,7 +84,8 @@ static inline vlTracing vl_tracing_of(const vlWorld *world, const vlTraceDef *de
                      .sampler = vl_sampler_kernels(def->isa),
                      .bsdf = vl_bsdf_kernels(def->isa),
                      .passed = s->by_channel ? s->by_channel->passed : NULL,
-                     .scattered = s->scattered};
+                     .scattered = s->scattered,
+                     .bounces = s->bounces};
 }
 
 /* What a tracer does at each bounce with the paths of t->s. */
@@ -139,6 +143,20 @@ static inline void vl_note_scattered(const vlTracing *t, uint32_t lane) {
   if (t->world->def.regularize)
     t->scattered[lane] = 1;
 }
+/* Limits of bounces of one kind (limits.hot.c), where vlTraceDef.limited. Begins n paths. */
+void vl_limits_start(const vlTracing *t, uint32_t n);
+/* Counts the bounces of those of the n sampled vertices whose paths go on: alive[i] is 1. */
+void vl_limits_count(const vlTracing *t, uint32_t n, const vlVertices *at,
+                     const vlBsdfSamples *samples, const uint32_t *alive);
+/* Counts a scattering in a medium. */
+static inline void vl_limits_count_medium(const vlTracing *t, uint32_t lane) {
+  if (t->def->limited)
+    t->bounces[VL_BOUNCE_VOLUME][lane]++;
+}
+/* Of the n rays, ends those whose paths have reached a limit: they have no hit, and no event in
+ * a medium. ends: null without media. */
+void vl_limits_end(const vlTracing *t, uint32_t n, const vlPaths *rays, vlHits *hits,
+                   struct vlFlightEnds *ends);
 /* Sets vlTracing.passed for paths that begin in lanes 0 to n - 1. */
 static inline void vl_passed_start(const vlTracing *t, uint32_t n) {
   for (int c = 0; t->world->by_channel && c < 3; c++)

@@ -55,6 +55,15 @@ enum {
   VL_DIM_EXIT_UV = 6     /* 2 */
 };
 
+/* Kinds of bounces, which have limits of their own. */
+typedef enum vlBounceKind {
+  VL_BOUNCE_DIFFUSE,
+  VL_BOUNCE_GLOSSY, /* glossy and specular reflection */
+  VL_BOUNCE_TRANSMISSION,
+  VL_BOUNCE_VOLUME, /* scattering in a medium */
+  VL_BOUNCE_KINDS
+} vlBounceKind;
+
 /* Asks volpath whether the media of the world fit together (medium/fit.hot.c). */
 typedef struct vlMediaFit {
   const uint32_t *light_medium; /* by light: vlTraceKernels.light_media */
@@ -70,6 +79,8 @@ typedef struct vlTraceDef {
   const vlSampler *sampler;
   vlIsa isa;
   uint32_t max_depth;
+  uint32_t max_of_kind[VL_BOUNCE_KINDS]; /* limits of bounces of one kind; VL_NONE: none */
+  bool limited;                          /* there is such a limit */
   float ao_distance;
   bool ao_cosine;
   bool same_wavelengths; /* all paths share the same four wavelengths */

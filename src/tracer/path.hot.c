@@ -289,6 +289,8 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     if (broken[i] > 0.0f)
       t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
   }
+  if (t->def->limited)
+    vl_limits_count(t, n, at, samples, alive);
   for (uint32_t k = 0; t->world->by_channel && k < count; k++)
     vl_passed_go_on(t, at, order[k], samples->wi[2][order[k]]);
   if (t->batch->recorder)

@@ -12,6 +12,15 @@
   PARAMETER(COUNT, "maxdepth", render.max_depth,                                        \
             "largest number of bounces of a path; numbers above 4096 are read as 4096", \
             VL_DEFAULT(5), VL_FROM(0), .flags = VL_PARAMETER_RULE)
+#define LIMIT(name, member, kind)                                                              \
+  PARAMETER(COUNT, name, render.member,                                                        \
+            "largest number of " kind " of a path; 0: no other limit than maxdepth", .low = 0, \
+            .high = 4096)
+#define LIMITS                                                                     \
+  LIMIT("maxdiffusedepth", max_diffuse_depth, "diffuse bounces"),                  \
+      LIMIT("maxglossydepth", max_glossy_depth, "glossy or specular reflections"), \
+      LIMIT("maxtransmissiondepth", max_transmission_depth, "transmissions"),      \
+      LIMIT("maxvolumedepth", max_volume_depth, "scatterings in media")
 #define REGULARIZE                                                                            \
   PARAMETER(BOOL, "regularize", build.regularize,                                             \
             "regularization: surfaces that a path hits after it has been scattered are made " \
@@ -29,8 +38,9 @@ extern const char *const vl_tracer_light_samplers[];
     .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, .description = "ignored" \
   }
 /* All of the tracers that follow paths from the camera only. */
-#define ONE_WAY \
-  DEPTH, LIGHT_SAMPLER, REGULARIZE, IGNORED(BOOL, "samplelights"), IGNORED(BOOL, "samplebsdf")
+#define ONE_WAY                                                            \
+  DEPTH, LIMITS, LIGHT_SAMPLER, REGULARIZE, IGNORED(BOOL, "samplelights"), \
+      IGNORED(BOOL, "samplebsdf")
 #define PATHS                                                       \
   PARAMETER(COUNT, "photonsperiteration", render.light_paths,       \
             "number of light paths per pass; unset: one per pixel", \

@@ -54,6 +54,8 @@ static void start_paths(vlTracing *t) {
     t->scattered[i] = 0;
   }
   vl_passed_start(t, padded);
+  if (t->def->limited)
+    vl_limits_start(t, padded);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = 0; i < padded; i++) {
       p->beta[c][i] = 1.0f;
@@ -181,6 +183,8 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
       forget_light(t, n, &s->hits);
     if (depth >= most)
       break;
+    if (t->def->limited)
+      vl_limits_end(t, n, &s->rays, &s->hits, media ? &media->ends : NULL);
     uint32_t inside = media ? steps->in_media(t, n, depth) : 0;
     n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
     if (n) {

@@ -136,6 +136,7 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
     p->pdf[i] = pdf;
     p->specular[i] = 0;
     vl_note_scattered(t, p->lane[i]);
+    vl_limits_count_medium(t, p->lane[i]);
     kept[count++] = i;
   }
   return count;

@@ -40,6 +40,16 @@ def bounces(scene):
     return int(scene.velo.bounces)
 
 
+def limits(scene):
+    """Keywords of the limits of one kind of bounces that Cycles has, where they are below the number of all bounces."""
+    cycles = getattr(scene, "cycles", None)
+    if not scene.velo.bounces_of_cycles or cycles is None:
+        return {}
+    kinds = {"diffuse": cycles.diffuse_bounces, "glossy": cycles.glossy_bounces, "transmission": cycles.transmission_bounces,
+             "volume": cycles.volume_bounces}
+    return {f"max_{kind}_depth": count + 1 for kind, count in kinds.items() if count < bounces(scene)}
+
+
 def exposure(scene):
     """The factor of Cycles' film on colours."""
     return float(getattr(getattr(scene, "cycles", None), "film_exposure", 1.0))
@@ -54,8 +64,8 @@ def pixel_filter(scene):
 
 def tracing(scene, samples):
     """Keywords of velo's render: samples, bounces, seed, colours."""
-    words = {"spp": samples, "tracer": "volpath", "max_depth": bounces(scene) + 1, "seed": scene.velo.seed, **pixel_filter(scene),
-             "sharp_textures": True, **world_words(scene)}
+    words = {"spp": samples, "tracer": "volpath", "max_depth": bounces(scene) + 1, **limits(scene), "seed": scene.velo.seed,
+             **pixel_filter(scene), "sharp_textures": True, **world_words(scene)}
     if scene.render.film_transparent:
         words["transparent"] = True
     if scene.velo.noise > 0:

@@ -32,6 +32,10 @@ class Settings(TypedDict, total=False):
     light_sampler: Any
     max_component: Any
     max_depth: Any
+    max_diffuse_depth: Any
+    max_glossy_depth: Any
+    max_transmission_depth: Any
+    max_volume_depth: Any
     merge_radius: Any
     noise: Any
     noise_exposure: Any

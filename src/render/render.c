@@ -10,6 +10,7 @@
 #include "camera/parts.h"
 #include "render/block.h"
 #include "render/support.h"
+#include "schema/schema.h"
 #include "velo/focus.h"
 #include "velo/schema.h"
 #include "velo/trace.h"

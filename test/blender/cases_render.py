@@ -46,6 +46,25 @@ def bounces_are_counted_as_in_cycles():
 
 
 @case
+def bounces_of_one_kind_are_counted_as_in_cycles():
+    """In a closed room with glass and a mirror, that each limit makes darker. Its lamp hides nothing behind it."""
+    limits = ("diffuse_bounces", "glossy_bounces", "transmission_bounces")
+    means = []
+    for counts in ((12, 12, 12), (0, 12, 12), (1, 12, 12), (12, 0, 12), (12, 12, 1)):
+        scene = new_scene(bounces=12, samples=256)
+        for name, count in zip(limits, counts):
+            setattr(scene.cycles, name, count)
+        bpy.ops.mesh.primitive_cube_add(size=8, location=(0, -3, 3))
+        bpy.context.object.data.materials.append(material("ShaderNodeBsdfDiffuse", Color=(0.6, 0.6, 0.6))[0])
+        ball(material("ShaderNodeBsdfGlass", IOR=1.45)[0], (-1, 0, 1), 0.9)
+        ball(material("ShaderNodeBsdfGlossy", Roughness=0.1)[0], (1, 0, 1), 0.9)
+        lamp(scene, "AREA", 300, size=1.5)
+        agrees(scene, 0.01)
+        means.append(colors(render(scene)).mean())
+    assert all(mean < 0.98 * means[0] for mean in means[1:]), means
+
+
+@case
 def shaders_that_transmit_and_mix():
     for kind, words in (("ShaderNodeBsdfTranslucent", {"Color": GRAY}), ("ShaderNodeBsdfRefraction", {"IOR": 1.3, "distribution": "SHARP"}),
                         ("ShaderNodeBsdfTransparent", None), ("ShaderNodeBsdfGlossy", None)):

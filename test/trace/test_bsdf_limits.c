@@ -222,7 +222,7 @@ static void never_nan(void **state) {
                    (double)b->alpha_y[j], (double)b->eta_s[j]);
       }
       assert_true(none || (b->pdf[j] > 0 && isfinite(b->ix[j] + b->iy[j] + b->iz[j])));
-      assert_true(b->flags[j] < 8 && (b->oz[j] != 0 || none));
+      assert_true(b->flags[j] < 2 * VL_SAMPLED_DIFFUSE && (b->oz[j] != 0 || none));
     }
   }
 }

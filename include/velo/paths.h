@@ -21,7 +21,8 @@ typedef enum vlPathEvent {
 } vlPathEvent;
 /** How the path goes on from a vertex. ON: to the next vertex, in `direction`. LEFT: the ray
  * left the scene. ABSORBED: the BSDF or the medium gave no direction or no weight. ROULETTE:
- * Russian roulette ended the path. DEPTH: the path has its largest number of bounces. */
+ * Russian roulette ended the path. DEPTH: the path has its largest number of
+ * bounces, of all or of one kind. */
 typedef enum vlPathFate {
   VL_PATH_ON,
   VL_PATH_LEFT,

@@ -1,6 +1,7 @@
 /* tracer/limits.hot.c: limits of a path's bounces of one kind: vlRenderDef.max_diffuse_depth
  * and the like. */
 #include "trace/medium/volume.h"
+#include "tracer/record.h"
 
 void vl_limits_start(const vlTracing *t, uint32_t n) {
   for (int k = 0; k < VL_BOUNCE_KINDS; k++)
@@ -31,6 +32,8 @@ void vl_limits_end(const vlTracing *t, uint32_t n, const vlPaths *rays, vlHits *
       done |= t->bounces[k][rays->lane[i]] >= t->def->max_of_kind[k];
     if (!done)
       continue;
+    if (t->batch->recorder)
+      vl_record_limit(t, rays->lane[i]);
     hits->shape[i] = VL_NONE;
     if (ends)
       ends->event[i] = VL_AT_END;

@@ -33,8 +33,10 @@ void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVe
 void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t depth, const vlVertices *at,
                        const vlBsdfSamples *samples, const vlPaths *next, const uint32_t *order,
                        uint32_t count);
-/* The paths of the n rays end because they have their largest number of bounces. */
-void vl_record_depth(vlTracing *t, uint32_t n, const vlPaths *rays);
+/* The path of a lane ends because it has its largest number of bounces, or of one kind. */
+void vl_record_limit(const vlTracing *t, uint32_t lane);
+/* The same for the paths of n rays. */
+void vl_record_depth(const vlTracing *t, uint32_t n, const vlPaths *rays);
 
 /* ---- media and subsurface materials ------------------------------------------------------ */
 

@@ -79,12 +79,15 @@ void vl_record_arrivals(vlTracing *t, uint32_t n, uint32_t bounce, const vlPaths
   }
 }
 
-void vl_record_depth(vlTracing *t, uint32_t n, const vlPaths *rays) {
-  for (uint32_t i = 0; i < n; i++) {
-    vlPathVertex *v = last_vertex(t, rays->lane[i]);
-    if (v && v->event != VL_PATH_NOTHING)
-      v->fate = VL_PATH_DEPTH;
-  }
+void vl_record_limit(const vlTracing *t, uint32_t lane) {
+  vlPathVertex *v = last_vertex(t, lane);
+  if (v && v->event != VL_PATH_NOTHING)
+    v->fate = VL_PATH_DEPTH;
+}
+
+void vl_record_depth(const vlTracing *t, uint32_t n, const vlPaths *rays) {
+  for (uint32_t i = 0; i < n; i++)
+    vl_record_limit(t, rays->lane[i]);
 }
 
 /* ---- light ------------------------------------------------------------------------------- */

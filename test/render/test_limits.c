@@ -2,6 +2,7 @@
  * that shines and reflects by rho, a limit of n leaves the sum of rho^k up to k = n. Where all
  * bounces are of one kind, its limit is max_depth. */
 #include "fog.h"
+#include "velo/paths.h"
 #include "velo/tracer.h"
 
 typedef enum Kind { DIFFUSE, GLOSSY, TRANSMISSION, VOLUME } Kind;
@@ -33,8 +34,7 @@ static vlMaterialId wall_of(Stage *s, const Room *room) {
 }
 
 /* The camera is at the centre, so it sees the wall from straight above. */
-static Image room_image(vlContext *context, const void *what) {
-  const Room *room = what;
+static Stage room_stage(vlContext *context, const Room *room) {
   Stage s = stage_open_in(context, 16, 16);
   s.camera.fov = 0.1;
   s.build.color = VL_COLOR_RGB;
@@ -50,6 +50,11 @@ static Image room_image(vlContext *context, const void *what) {
   def.material = wall_of(&s, room);
   def.emission = add_emission(&s, 1, true);
   assert_int_not_equal(vl_scene_add_shape(s.scene, &def).index, 0);
+  return s;
+}
+
+static Image room_image(vlContext *context, const void *what) {
+  Stage s = room_stage(context, what);
   return stage_finish(&s);
 }
 
@@ -109,6 +114,30 @@ static void same_bits(void **state) {
   const Room room = {VL_MATERIAL_COATED_DIFFUSE, {2, 1, 0, 0}, 20, VL_TRACER_VOLPATH};
   Image p = assert_same_bits(room_image, &room, 2);
   image_free(&p);
+}
+
+/* Recorded paths end where the image's do, and say why. */
+static void recorded(void **state) {
+  (void)state;
+  const Room room = {VL_MATERIAL_DIFFUSE, {2, 0, 0, 0}, 60, VL_TRACER_PATH};
+  Stage s = room_stage(NULL, &room);
+  s.render.share_samples = false;
+  vlWorld *world = NULL;
+  vlCamera camera;
+  vlPixelPaths *paths = NULL;
+  assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
+  assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
+  assert_int_equal(vl_trace_paths(world, &camera, &s.film, &s.render, 3, 4, 0, 8, &paths, NULL),
+                   VL_OK);
+  assert_int_equal(paths->count, 8);
+  for (uint32_t i = 0; i < paths->count; i++) {
+    const vlPath *path = &paths->paths[i];
+    assert_int_equal(path->vertex_count, 3);
+    assert_int_equal(path->vertices[2].fate, VL_PATH_DEPTH);
+  }
+  vl_pixel_paths_destroy(paths);
+  vl_world_destroy(world);
+  stage_close(&s);
 }
 
 /* ---- panes ------------------------------------------------------------------------------- */
@@ -177,6 +206,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(partial_sums),  cmocka_unit_test(one_kind_alone),
       cmocka_unit_test(other_tracers), cmocka_unit_test(same_bits),
-      cmocka_unit_test(through_panes), cmocka_unit_test(in_fog)};
+      cmocka_unit_test(recorded),      cmocka_unit_test(through_panes),
+      cmocka_unit_test(in_fog)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -182,26 +182,22 @@ static vlTracer tracer_of(vlRenderRun *r, const vlCamera *camera) {
     return VL_TRACER_PATH; /* no light paths */
   if (tracer == VL_TRACER_BIDIRECTIONAL && r->def->light_paths == 0)
     return VL_TRACER_VOLPATH;
-  const vlKindRow *row = vl_kind_family_find("tracers")->rows[tracer];
-  if (is_limited(r->def) && vl_row_find(row, "maxdepth") &&
-      !vl_row_find(row, "maxdiffusedepth")) {
-    vl_log(world->context, VL_LOG_INFO, NULL,
-           "tracer \"%s\" has no limits of one kind of bounces: volpath is used", row->name);
-    return VL_TRACER_VOLPATH;
-  }
-  if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
+  const vlKindRow *row = vl_kind_row(vl_kind_family_find("tracers"), (int)tracer);
+  const bool unlimited =
+      row && vl_row_find(row, "maxdepth") && !vl_row_find(row, "maxdiffusedepth");
+  const char *lack = is_limited(r->def) && unlimited ? "limits of one kind of bounces" : NULL;
+  if (!lack && world->has_subsurface &&
+      (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
            "this tracer renders material \"subsurface\" as clear glass; volpath renders its "
            "scattering");
-  const char *lack = NULL;
-  if (!r->raced)
+  if (!lack && !r->raced)
     r->prepared =
         vl_tracers_lack(world, camera, vl_film_def(r->film), VL_TRACER_BIT(tracer), &lack);
   if (!lack)
     return tracer;
   vl_log(world->context, VL_LOG_INFO, NULL,
-         "tracer \"%s\" does not support %s: volpath is used",
-         vl_kind_family_find("tracers")->rows[tracer]->name, lack);
+         "tracer \"%s\" does not support %s: volpath is used", row ? row->name : "?", lack);
   return VL_TRACER_VOLPATH;
 }
 

@@ -179,6 +179,16 @@ static void detail_is_in_front(void **state) {
         }
 }
 
+/* The arrays must live until the shape is added. */
+static vlShapeDef one_triangle(const float positions[9], const uint32_t corners[3]) {
+  vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  shape.vertices = 3;
+  shape.faces = 1;
+  shape.positions = positions;
+  shape.indices = corners;
+  return shape;
+}
+
 /* A sheet that looks backwards is seen from behind. */
 static void sheet_from_behind(void **state) {
   (void)state;
@@ -186,11 +196,7 @@ static void sheet_from_behind(void **state) {
     Model m = begin();
     const float p[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const uint32_t front[3] = {0, 1, 2}, behind[3] = {0, 2, 1};
-    vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-    shape.vertices = 3;
-    shape.faces = 1;
-    shape.positions = p;
-    shape.indices = back ? behind : front;
+    vlShapeDef shape = one_triangle(p, back ? behind : front);
     assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
     vlCompleteDef def = first_image();
     complete(&m, &def);
@@ -208,11 +214,7 @@ static void mirrored_sheet(void **state) {
     Model m = begin();
     const float p[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const uint32_t front[3] = {0, 1, 2};
-    vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-    shape.vertices = 3;
-    shape.faces = 1;
-    shape.positions = p;
-    shape.indices = front;
+    vlShapeDef shape = one_triangle(p, front);
     shape.group_from_shape[5 * axis] = -1;
     assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
     vlCompleteDef def = first_image();
@@ -231,11 +233,7 @@ static void ground_from_above(void **state) {
     Model m = begin();
     const float p[9] = {0, 0, 0, 1, 0, 0, 0, 0, 1};
     const uint32_t down[3] = {0, 1, 2};
-    vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-    shape.vertices = 3;
-    shape.faces = 1;
-    shape.positions = p;
-    shape.indices = down;
+    vlShapeDef shape = one_triangle(p, down);
     shape.one_sided = one_sided;
     assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
     vlCompleteDef def = first_image();

@@ -11,11 +11,13 @@ MODULES = "pyopenvdb", "openvdb"  # before and since OpenVDB 11
 
 class Grid(NamedTuple):
     """The voxels of a grid with a layer of its background around them. values: z x y x x, float32, at least 0; low, high: the box, where
-    voxel (i, j, k) is from i to i + 1, as in Cycles (OpenVDB's own begin half a voxel earlier); matrix: object from voxels, 4 x 4."""
+    voxel (i, j, k) is from i to i + 1, as in Cycles (OpenVDB's own begin half a voxel earlier); matrix: object from voxels, 4 x 4;
+    odd: the number of voxels that are NaN or infinite in the file; they are 0 here."""
     values: Any
     low: tuple
     high: tuple
     matrix: Any
+    odd: int = 0
 
 
 class Unread(Exception):
@@ -25,6 +27,12 @@ class Unread(Exception):
 def name_of(volume):
     """The name of the file of a volume object's data; empty: it has none, as those that geometry nodes make."""
     return os.path.basename(volume.filepath.replace("\\", "/"))
+
+
+def label(volume, name):
+    """What the list calls a grid of a volume object's data: its name and that of its file."""
+    file_name = name_of(volume)
+    return "grid %s of %s" % (name, file_name) if file_name else "grid %s" % name
 
 
 def _module():
@@ -66,5 +74,7 @@ def _dense(grid, matrix):
         raise Unread("its %d x %d x %d voxels are too many" % tuple(size))
     values = numpy.zeros(tuple(size), dtype=numpy.float32)
     grid.copyToArray(values, ijk=tuple(int(index) - 1 for index in low))
-    values = numpy.where(numpy.isfinite(values), numpy.maximum(values, 0), 0).transpose(2, 1, 0)
-    return Grid(numpy.ascontiguousarray(values, dtype=numpy.float32), tuple(low - 1.0), tuple(high + 2.0), matrix)
+    finite = numpy.isfinite(values)
+    odd = values.size - int(numpy.count_nonzero(finite))
+    values = numpy.maximum(numpy.where(finite, values, 0), 0).transpose(2, 1, 0)
+    return Grid(numpy.ascontiguousarray(values, dtype=numpy.float32), tuple(low - 1.0), tuple(high + 2.0), matrix, odd)

@@ -10,6 +10,7 @@ import numpy
 from . import evaluate, links, openvdb_files
 
 CELLS = 64  # along a side of a grid of densities
+DENSEST = 1e30  # coefficients per unit of length
 
 
 class Volume(NamedTuple):
@@ -57,17 +58,34 @@ def add_file(data, material, inputs, matrix):
     if shader is None:
         return None
     volume, name = shader
-    try:
-        grid = openvdb_files.read(data, name)
-    except openvdb_files.Unread as error:
-        inputs.notes.add(inputs.owner, openvdb_files.name_of(data), "%s; the volume is not rendered" % error)
+    grid = _grid_of_file(data, name, inputs)
+    if grid is None:
         return None
     scale = numpy.linalg.norm(matrix[:3, :3] @ numpy.full(3, 3 ** -0.5)) if data.render.space == "OBJECT" else 1.0
     words = _words(volume, inputs, volume.density / max(scale, 1e-30))
-    if words is None or grid.values.max() <= 0:
+    if words is None:
+        return None
+    if not max(words["sigma_a"] + words["sigma_s"]) * float(grid.values.max()) < DENSEST:
+        inputs.notes.add(inputs.owner, openvdb_files.label(data, name), "it is too dense; the volume is not rendered")
         return None
     pose = matrix @ grid.matrix
     return inputs.scene.add_medium("grid", density=grid.values, low=grid.low, high=grid.high, pose=pose, **words), pose, grid
+
+
+def _grid_of_file(data, name, inputs):
+    """The openvdb_files.Grid of a name with a value above 0; None: there is none (noted)."""
+    thing = openvdb_files.label(data, name)
+    try:
+        grid = openvdb_files.read(data, name)
+    except openvdb_files.Unread as error:
+        inputs.notes.add(inputs.owner, thing, "%s; the volume is not rendered" % error)
+        return None
+    if grid.odd > 0:
+        inputs.notes.add(inputs.owner, thing, "%d of its voxels are NaN or infinite; they are 0" % grid.odd)
+    if not grid.values.max() > 0:
+        inputs.notes.add(inputs.owner, thing, "it has no value above 0; the volume is not rendered")
+        return None
+    return grid
 
 
 def _shader_of_file(material, inputs):

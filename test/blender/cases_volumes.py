@@ -4,7 +4,7 @@ import os
 import bpy
 import numpy
 
-from inside import FOLDER, add, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
+from inside import FOLDER, Missing, add, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
 
 
 def filled(surface, kind, **values):
@@ -104,12 +104,18 @@ def cloud(path, render_space="OBJECT", scale=(1, 1, 1), **values):
     return scene, item
 
 
-def write_grid(name="density", ijk=(-16, -12, -8)):
-    """An OpenVDB file of 32 x 24 x 16 voxels of 0.06, dense on one side; None: the module that writes it is missing."""
+def openvdb():
+    """The Python module that writes OpenVDB files."""
     try:
         import pyopenvdb
-    except ImportError:
-        return None
+    except ImportError as error:
+        raise Missing("the Python module pyopenvdb is not installed (script/bootstrap blender)") from error
+    return pyopenvdb
+
+
+def write_grid(name="density", ijk=(-16, -12, -8)):
+    """An OpenVDB file of 32 x 24 x 16 voxels of 0.06, dense on one side."""
+    pyopenvdb = openvdb()
     x, y, z = numpy.meshgrid(numpy.linspace(-1, 1, 32), numpy.linspace(-1, 1, 24), numpy.linspace(-1, 1, 16), indexing="ij")
     values = numpy.maximum(0, 1.2 - x * x - y * y - z * z) * (2 + x)
     grid = pyopenvdb.FloatGrid()
@@ -123,8 +129,6 @@ def write_grid(name="density", ijk=(-16, -12, -8)):
 @case
 def files_of_openvdb():
     path = write_grid()
-    if path is None:
-        return
     for space, scale, density in (("OBJECT", (1, 1, 1), 1.0), ("OBJECT", (1.3, 1.3, 1.3), 4.0), ("WORLD", (1.0, 1.2, 1.4), 2.0)):
         scene, _ = cloud(path, space, scale, Color=(0.6, 0.7, 0.9, 1), Density=density)
         mine, other = colors(render(scene)), colors(render(scene, "CYCLES"))
@@ -141,15 +145,19 @@ def files_of_openvdb_that_are_not_rendered_are_listed():
     with open(garbage, "wb") as file:
         file.write(b" BDV" + bytes(range(200)))
     paths = {garbage: "garbage.vdb", "": "", os.path.join(FOLDER, "missing.vdb"): "missing.vdb"}
-    other = write_grid("smoke")
-    if other is not None:
-        paths[other] = "cloud.vdb"
     for path, name in paths.items():
         scene, _ = cloud(path)
         render(scene)
-        start = "cloud, %s: " % name if name else "cloud: "
+        start = "cloud, grid density of %s: " % name if name else "cloud, grid density: "
         assert any(line.startswith(start) and line.endswith("the volume is not rendered") for line in notes(scene)), (path, notes(scene))
-    scene, item = cloud(write_grid() or garbage)
+
+
+@case
+def grids_of_openvdb_that_are_not_rendered_are_listed():
+    scene, item = cloud(write_grid("smoke"))
+    render(scene)
+    assert "cloud, grid density of cloud.vdb: it has no grid density of numbers; the volume is not rendered" in notes(scene), notes(scene)
+    scene, item = cloud(write_grid())
     tree = item.data.materials[0].node_tree
     volume = next(node for node in tree.nodes if node.type == "PRINCIPLED_VOLUME")
     add(tree, "ShaderNodeTexNoise", volume.inputs["Density"])
@@ -157,29 +165,46 @@ def files_of_openvdb_that_are_not_rendered_are_listed():
     assert any("cloud, Principled Volume" in line for line in notes(scene)), notes(scene)
 
 
+def write_voxels(*voxels):
+    """An OpenVDB file of a grid density with a few voxels, (place, value) each."""
+    pyopenvdb = openvdb()
+    grid = pyopenvdb.FloatGrid()
+    for place, value in voxels:
+        grid.fill(place, place, value)
+    grid.name = "density"
+    path = os.path.join(FOLDER, "odd.vdb")
+    pyopenvdb.write(path, grids=[grid])
+    return path
+
+
+@case
+def voxels_that_are_left_out_are_listed():
+    line = "cloud, grid density of odd.vdb: %s"
+    nothing = line % "it has no value above 0; the volume is not rendered"
+    odd = line % "2 of its voxels are NaN or infinite; they are 0"
+    too_dense = line % "it is too dense; the volume is not rendered"
+    for values, wanted in (((-1.0, -2.0), [nothing]), ((0.0, 0.0), [nothing]), ((float("nan"), float("inf"), 1.0), [odd]),
+                           ((float("nan"), float("-inf"), -1.0), [odd, nothing]), ((-1.0, 2.0), []), ((1.0, 3e38), [too_dense])):
+        scene, _ = cloud(write_voxels(*(((k, 0, 0), value) for k, value in enumerate(values))))
+        scene.velo.samples = 4
+        image = colors(render(scene))
+        assert numpy.isfinite(image).all() and notes(scene) == wanted, (values, notes(scene))
+
+
 @case
 def grids_without_numbers_are_read():
     """Values that are no numbers or negative are 0; an empty grid and one of too many voxels are listed."""
     from velo_blender import openvdb_files
-    if write_grid() is None:
-        return
-    import pyopenvdb
-    path = os.path.join(FOLDER, "odd.vdb")
     data = bpy.data.volumes.new("odd")
-    data.filepath = path
-    values = numpy.array([float("nan"), float("inf"), -1.0, 2.0], dtype="float32").reshape(1, 1, 4)
 
     def read(*voxels):
-        grid = pyopenvdb.FloatGrid()
-        for place, value in voxels:
-            grid.fill(place, place, value)
-        grid.name = "density"
-        pyopenvdb.write(path, grids=[grid])
+        data.filepath = write_voxels(*voxels)
         data.grids.unload()
         return openvdb_files.read(data, "density")
 
-    grid = read(*(((5, 6, 7 + k), float(value)) for k, value in enumerate(values.ravel())))
-    assert grid.values.shape == (6, 3, 3) and grid.values[4, 1, 1] == 2 and grid.values.sum() == 2
+    values = float("nan"), float("inf"), -1.0, 2.0
+    grid = read(*(((5, 6, 7 + k), value) for k, value in enumerate(values)))
+    assert grid.values.shape == (6, 3, 3) and grid.values[4, 1, 1] == 2 and grid.values.sum() == 2 and grid.odd == 2
     assert grid.low == (4, 5, 6) and grid.high == (7, 8, 12)
     for voxels, text in (((), "empty"), ((((0, 0, 0), 1.0), ((9000, 9000, 9000), 1.0)), "too many")):
         try:

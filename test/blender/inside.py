@@ -1,4 +1,5 @@
-"""Runs inside Blender: scenes made by bpy, rendered by velo and, where it says so, by Cycles. Prints `ok NAME` and `not ok NAME`.
+"""Runs inside Blender: scenes made by bpy, rendered by velo and, where it says so, by Cycles. Prints `ok NAME`, `not ok NAME`
+and, where something is not installed, `skip NAME: why`.
 
 Usage: blender -b --factory-startup -P inside.py -- FILE_OF_CASES FOLDER"""
 import importlib.util
@@ -20,6 +21,10 @@ def case(function):
     """A function that is a case: it fails by an exception."""
     cases.append(function)
     return function
+
+
+class Missing(Exception):
+    """Something that a case needs is not installed; the text says what. The case is skipped."""
 
 
 # ---- scenes --------------------------------------------------------------------------------------------------------------
@@ -170,6 +175,8 @@ def main():
         try:
             function()
             print("\nok %s" % function.__name__, flush=True)
+        except Missing as reason:
+            print("\nskip %s: %s" % (function.__name__, reason), flush=True)
         except BaseException:  # pylint: disable=broad-except; the other cases go on
             traceback.print_exc()
             print("\nnot ok %s" % function.__name__, flush=True)

@@ -1,4 +1,4 @@
-"""Runs a file of cases inside Blender: `ok NAME`, `not ok NAME`, or `skip`, where Blender or the Python module is missing."""
+"""Runs a file of cases inside Blender: `ok NAME`, `not ok NAME`, or `skip NAME: why`, where Blender or a Python module is missing."""
 import os
 import re
 import shutil
@@ -43,7 +43,7 @@ def run(cases_file):
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(["nice", "blender", "-b", "--factory-startup", "-P", inside, "--", cases_file, folder],
                               env=environment(folder), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    lines = re.findall(r"^(?:ok|not ok) .*$", done.stdout, re.M)
+    lines = re.findall(r"^(?:ok|not ok|skip) .*$", done.stdout, re.M)
     for line in lines:
         print(line)
     if done.returncode != 0 or not lines:

@@ -1,6 +1,7 @@
 /* _velo/scene.c: scenes: files, camera, contents. */
 #include <string.h>
 
+#include "adding.h"
 #include "module.h"
 
 bool scene_open(const Scene *self) {
@@ -229,6 +230,24 @@ static PyObject *scene_set_camera(Scene *self, PyObject *object) {
   Py_RETURN_NONE;
 }
 
+static PyObject *scene_camera_medium(Scene *self, PyObject *unused) {
+  (void)unused;
+  if (!scene_open(self))
+    return NULL;
+  uint32_t index = vl_scene_defs(self->scene)->camera_medium.index;
+  if (!index)
+    Py_RETURN_NONE;
+  return new_handle(self, MEDIA, index);
+}
+
+static PyObject *scene_set_camera_medium(Scene *self, PyObject *value) {
+  uint32_t index;
+  if (!scene_open(self) || !read_handle(self, value, "media", "camera_medium", &index))
+    return NULL;
+  vl_scene_defs(self->scene)->camera_medium.index = index;
+  Py_RETURN_NONE;
+}
+
 static PyMethodDef scene_methods[] = {
     {"_load", (PyCFunction)scene_load, METH_VARARGS, "Adds the contents of a file."},
     {"_complete", (PyCFunction)scene_complete, METH_O, "Adds camera, light and ground."},
@@ -249,6 +268,10 @@ static PyMethodDef scene_methods[] = {
     {"_camera", (PyCFunction)scene_camera, METH_NOARGS, "The scene's camera."},
     {"_set_camera", (PyCFunction)scene_set_camera, METH_O,
      "Sets the scene's camera and image size."},
+    {"_camera_medium", (PyCFunction)scene_camera_medium, METH_NOARGS,
+     "The medium around the camera, or None."},
+    {"_set_camera_medium", (PyCFunction)scene_set_camera_medium, METH_O,
+     "Sets the medium around the camera."},
     {"_close", (PyCFunction)scene_close, METH_NOARGS, "Frees the scene."},
     {NULL, NULL, 0, NULL},
 };

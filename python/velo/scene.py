@@ -185,6 +185,17 @@ class Scene(_velo.Scene):
     def camera(self, camera: Camera) -> None:
         self._set_camera(camera)
 
+    @property
+    def camera_medium(self) -> Optional[Handle]:
+        """The medium that the camera is in, a handle that add_medium gave; None: vacuum. Light that crosses no surface with media stays
+        in it, so it is that of the whole space around the shapes. Any camera that the scene is rendered with is in it."""
+        return self._camera_medium()
+
+    @camera_medium.setter
+    def camera_medium(self, medium: Optional[Handle]) -> None:
+        self._set_camera_medium(medium)
+        self._changed = True
+
     # ---- contents
 
     def _new(self, family: str, kind: Optional[str], keywords: dict[str, Any]) -> Handle:

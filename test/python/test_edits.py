@@ -256,5 +256,35 @@ def a_thousand_edits_take_no_memory():
         check_flat(edit, 100 if SANITIZED else 1000)
 
 
+@case
+def the_medium_of_the_camera():
+    """Light that comes from 2 away is attenuated as the medium says, and by nothing without it."""
+    scene = velo.Scene()
+    glow = scene.add_emission(radiance=(1, 1, 1), scale=1.0)
+    scene.add_plane((0, 0, -2), (0, 0, 1), 9, 9, emission=glow)
+    scene.camera = velo.Camera(4, 4, eye=(0, 0, 0), lookat=(0, 0, -1), fov=0.01)
+
+    def seen():
+        return float(numpy.asarray(scene.render(spp=4, tracer="volpath", color="rgb"))[..., :3].mean())
+
+    fog = scene.add_medium("homogeneous", sigma_a=0.5, sigma_s=0.0)
+    assert scene.camera_medium is None and abs(seen() - 1) < 1e-4, seen()
+    scene.camera_medium = fog
+    assert scene.camera_medium == fog and abs(seen() - numpy.exp(-1)) < 1e-4, seen()
+    scene.set(fog, sigma_a=1.0)
+    assert abs(seen() - numpy.exp(-2)) < 1e-4, seen()
+    with raises(velo.Error):
+        scene.remove(fog)
+    for wrong in (glow, 1, "fog", velo.Scene().add_medium("homogeneous")):
+        with raises(velo.UsageError, "camera_medium"):
+            scene.camera_medium = wrong
+    assert scene.camera_medium == fog
+    scene.camera_medium = None
+    assert scene.camera_medium is None and abs(seen() - 1) < 1e-4, seen()
+    scene.remove(fog)
+    with raises(velo.UsageError):
+        scene.camera_medium = fog
+
+
 if __name__ == "__main__":
     cases.main()

@@ -190,8 +190,6 @@ bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t 
 bool vl_scene_copy_string(vlScene *scene, const char **text);
 bool vl_scene_copy_label(vlScene *scene, vlLabel *label);
 bool vl_scene_copy_source(vlScene *scene, vlSource *source);
-bool vl_scene_copy_spectrum(vlScene *scene, vlSpectrum *spectrum, vlSource source,
-                            const char *what);
 bool vl_scene_copy_image(vlScene *scene, const vlImage **image);
 
 /* Whether the light comes from a point of the scene: its unit is the candela. */

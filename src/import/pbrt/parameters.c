@@ -1,10 +1,260 @@
-/* import/pbrt/parameters.c: reads the parameters of a directive into the members of a def, by
- * the row of its kind. */
+/* import/pbrt/parameters.c: typed access to the parameters of a directive (param.h), and
+ * reading them into the members of a def, by the row of its kind. */
+#include "import/pbrt/param.h"
+
 #include <assert.h>
+#include <math.h>
+#include <stdio.h>
 #include <strings.h>
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
+#include "velo/setting.h"
+
+static const char *const type_names[VL_PARAM_TYPES] = {
+    "integer", "float",  "bool",     "string", "point2",    "vector2", "point3",
+    "vector3", "normal", "spectrum", "rgb",    "blackbody", "texture"};
+
+const char *vl_param_type_name(vlParamType type) {
+  return type_names[type];
+}
+
+bool vl_param_type_find(const char *text, size_t length, vlParamType *type) {
+  static const struct {
+    const char *name;
+    vlParamType type;
+  } old[] = {{"point", VL_PARAM_POINT3},
+             {"vector", VL_PARAM_VECTOR3},
+             {"color", VL_PARAM_RGB},
+             {"normal3", VL_PARAM_NORMAL}};
+  for (int i = 0; i < VL_PARAM_TYPES; i++) {
+    if (strlen(type_names[i]) == length && memcmp(type_names[i], text, length) == 0) {
+      *type = (vlParamType)i;
+      return true;
+    }
+  }
+  for (size_t i = 0; i < VL_LENGTH(old); i++) {
+    if (strlen(old[i].name) == length && memcmp(old[i].name, text, length) == 0) {
+      *type = old[i].type;
+      return true;
+    }
+  }
+  return false;
+}
+
+const char *vl_param_type_nearest(const char *text) {
+  return vl_nearest_name(text, type_names, VL_PARAM_TYPES);
+}
+
+void vl_param_free(vlContext *context, vlParam *param) {
+  if (!param)
+    return;
+  for (size_t i = 0; i < param->strings.count; i++)
+    vl_free(context, param->strings.items[i]);
+  VL_ARRAY_FREE(context, &param->strings);
+  VL_ARRAY_FREE(context, &param->floats);
+  VL_ARRAY_FREE(context, &param->integers);
+  VL_ARRAY_FREE(context, &param->bools);
+  vl_free(context, param->name);
+  vl_free(context, param);
+}
+
+void vl_param_list_free(vlContext *context, vlParamList *params) {
+  for (size_t i = 0; i < params->list.count; i++)
+    vl_param_free(context, params->list.items[i]);
+  VL_ARRAY_FREE(context, &params->list);
+}
+
+size_t vl_param_count(const vlParam *param) {
+  return param->floats.count + param->integers.count + param->strings.count +
+         param->bools.count;
+}
+
+/* ---- questions --------------------------------------------------------------------------- */
+
+/* Accepted types as text: "float" or "float, texture". */
+static const char *wanted_types(uint32_t bits, char *text, size_t size) {
+  size_t n = 0;
+  text[0] = 0;
+  for (int i = 0; i < VL_PARAM_TYPES; i++) {
+    if (!(bits & 1u << i))
+      continue;
+    int k = snprintf(text + n, size - n, "%s\"%s\"", n ? " or " : "", type_names[i]);
+    if (k > 0 && (size_t)k < size - n)
+      n += (size_t)k;
+  }
+  return text;
+}
+
+static vlParam *find_in(vlDict *dict, const vlParamList *params, const char *name,
+                        uint32_t bits, vlParam *found) {
+  for (size_t i = params->list.count; i > 0; i--) { /* the last of several values counts */
+    vlParam *p = params->list.items[i - 1];
+    if (!vl_text_is(p->name, name))
+      continue;
+    if (bits & 1u << p->type) {
+      p->used = true; /* also marks earlier duplicates as used */
+      if (!found)
+        found = p;
+    } else if (!p->optional && !found) {
+      char types[160];
+      p->used = true;
+      vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
+                     "%s: parameter \"%s\" must be of type %s, not \"%s\"", dict->what, name,
+                     wanted_types(bits, types, sizeof types), vl_param_type_name(p->type));
+      return NULL;
+    }
+  }
+  return found;
+}
+
+vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t bits) {
+  bool known = false;
+  for (uint32_t i = 0; i < dict->asked_count; i++)
+    known = known || vl_text_is(dict->asked[i], name);
+  if (!known && dict->asked_count < sizeof dict->asked / sizeof *dict->asked)
+    dict->asked[dict->asked_count++] = name;
+  vlParam *found = find_in(dict, dict->own, name, bits, NULL);
+  if (dict->attributes && dict->import->scene->error.code == VL_OK)
+    found = find_in(dict, dict->attributes, name, bits, found);
+  if (found && vl_param_count(found) == 0) {
+    vl_import_fail(dict->import, VL_ERROR_SCENE, found->source,
+                   "%s: parameter \"%s\" has no value", dict->what, name);
+    return NULL;
+  }
+  return found;
+}
+
+static vlParam *find_counted(vlDict *dict, const char *name, vlParamType type, size_t count) {
+  vlParam *p = vl_dict_find(dict, name, 1u << type);
+  if (p && vl_param_count(p) != count) {
+    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
+                   "%s: parameter \"%s\" takes %zu value%s, found %zu", dict->what, name, count,
+                   count == 1 ? "" : "s", vl_param_count(p));
+    return NULL;
+  }
+  return p;
+}
+
+bool vl_dict_double(vlDict *dict, const char *name, double *value) {
+  vlParam *p = find_counted(dict, name, VL_PARAM_FLOAT, 1);
+  if (p)
+    *value = p->exact[0];
+  return p != NULL;
+}
+
+bool vl_dict_float(vlDict *dict, const char *name, float *value) {
+  vlParam *p = find_counted(dict, name, VL_PARAM_FLOAT, 1);
+  if (p)
+    *value = p->floats.items[0];
+  return p != NULL;
+}
+
+bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value) {
+  vlParam *p = find_counted(dict, name, VL_PARAM_INTEGER, 1);
+  if (p)
+    *value = p->integers.items[0];
+  return p != NULL;
+}
+
+bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *value) {
+  vlParam *p = find_counted(dict, name, VL_PARAM_INTEGER, 1);
+  if (!p)
+    return false;
+  const vlParameter row = {.type = VL_PARAMETER_COUNT, .low = least, .high = (double)INFINITY};
+  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = p->integers.items[0]};
+  char what[200];
+  char message[VL_GIVEN_MESSAGE];
+  double number;
+  snprintf(what, sizeof what, "%s: parameter \"%s\"", dict->what, name);
+  if (!vl_given_check(&row, what, &given, &number, message))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s", message);
+  *value = (uint32_t)number;
+  return true;
+}
+
+bool vl_dict_bool(vlDict *dict, const char *name, bool *value) {
+  vlParam *p = find_counted(dict, name, VL_PARAM_BOOL, 1);
+  if (p)
+    *value = p->bools.items[0] != 0;
+  return p != NULL;
+}
+
+bool vl_dict_string(vlDict *dict, const char *name, const char **value) {
+  vlParam *p = find_counted(dict, name, VL_PARAM_STRING, 1);
+  if (p)
+    *value = p->strings.items[0];
+  return p != NULL;
+}
+
+bool vl_dict_vector(vlDict *dict, const char *name, vlParamType type, double value[3]) {
+  vlParam *p = find_counted(dict, name, type, 3);
+  for (int i = 0; p && i < 3; i++)
+    value[i] = p->exact[i];
+  return p != NULL;
+}
+
+bool vl_dict_floats(vlDict *dict, const char *name, size_t count, double *value) {
+  vlParam *p = find_counted(dict, name, VL_PARAM_FLOAT, count);
+  for (size_t i = 0; p && i < count; i++)
+    value[i] = p->exact[i];
+  return p != NULL;
+}
+
+bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, size_t count,
+                    int *value) {
+  vlParam *p = find_counted(dict, name, VL_PARAM_STRING, 1);
+  if (!p)
+    return false;
+  const char *text = p->strings.items[0];
+  for (size_t i = 0; i < count; i++) {
+    if (vl_text_is(text, names[i])) {
+      *value = (int)i;
+      return true;
+    }
+  }
+  char all[256];
+  size_t n = 0;
+  all[0] = 0;
+  for (size_t i = 0; i < count && n < sizeof all; i++)
+    n += (size_t)snprintf(all + n, sizeof all - n, "%s%s", i ? ", " : "", names[i]);
+  const char *near = vl_nearest_name(text, names, count);
+  if (near)
+    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
+                   "%s: \"%s\" cannot be \"%s\" (did you mean \"%s\"?)", dict->what, name,
+                   vl_short_text(text).text, near);
+  else
+    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
+                   "%s: \"%s\" cannot be \"%s\" (known: %s)", dict->what, name,
+                   vl_short_text(text).text, all);
+  return false;
+}
+
+bool vl_dict_done(vlDict *dict) {
+  vlImport *import = dict->import;
+  if (import->scene->error.code != VL_OK)
+    return false;
+  for (size_t i = 0; i < dict->own->list.count; i++) {
+    const vlParam *p = dict->own->list.items[i];
+    if (p->used || p->optional)
+      continue;
+    const char *near = vl_nearest_name(p->name, dict->asked, dict->asked_count);
+    if (near)
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
+                            "%s: unknown parameter \"%s\" (did you mean \"%s\"?)", dict->what,
+                            vl_short_text(p->name).text, near);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: unknown parameter \"%s\"",
+                          dict->what, vl_short_text(p->name).text);
+  }
+  return true;
+}
+
+void vl_dict_skip(vlDict *dict) {
+  for (size_t i = 0; i < dict->own->list.count; i++)
+    dict->own->list.items[i]->used = true;
+}
+
+/* ---- by the row of a kind ---------------------------------------------------------------- */
 
 /* Reads a choice. Upper and lower case are not distinguished, as in pbrt. */
 static bool read_choice(vlDict *dict, const char *name, const vlParameter *p, int *at) {

@@ -1,6 +1,5 @@
 /* import/pbrt/parser.h: declarations shared by the files of the parser: the file being read,
- * its next token, errors with their lines. parse_params.c reads parameters; directives.c reads
- * directives, files.c files. */
+ * its next token, errors with their lines. parser.c reads directives, files.c files. */
 #ifndef IMPORT_PBRT_PARSER_H
 #define IMPORT_PBRT_PARSER_H
 
@@ -33,27 +32,13 @@ typedef struct vlParserFile {
   vlToken token;
 } vlParserFile;
 
-/* Text of a token for messages: short, printable, in quotes. */
-typedef struct vlShownToken {
-  char text[sizeof(vlShortText) + 2];
-} vlShownToken;
-
-vlShownToken vl_parse_show(const vlToken *token);
-/* Reports a token of kind VL_TOKEN_BAD. Returns false. */
-bool vl_parse_fail_bad(vlParserFile *file, const vlToken *token);
 vlSource vl_parse_source(const vlParserFile *file, const vlToken *token);
 bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 bool vl_parse_fail_memory(const vlParserFile *file);
-vlToken vl_parse_peek(vlParserFile *file);
-vlToken vl_parse_take(vlParserFile *file); /* does not move past the end of the file */
-bool vl_parse_is_word(const vlToken *token, const char *word);
 /* Reads the directives of a file. data[size] must be a zero byte; the text is modified. */
 bool vl_parse_block(vlParserFile *file, char *data, size_t size);
 /* Reads the file that the token `at` names (files.c). */
 bool vl_parse_follow(vlParserFile *file, const vlToken *at, const char *name, bool included);
-/* Reads all parameters that follow a directive. At the end of an included file the list
- * continues after its Include. */
-bool vl_parse_params(vlParserFile *file, vlParamList *params);
 
 #endif

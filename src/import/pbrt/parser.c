@@ -1,0 +1,600 @@
+/* import/pbrt/parser.c: reads directives and their parameters (parse.h). */
+#include "import/pbrt/parser.h"
+
+#include "base/context.h"
+#include "base/text.h"
+
+/* ---- errors ------------------------------------------------------------------------------ */
+
+vlSource vl_parse_source(const vlParserFile *file, const vlToken *token) {
+  return (vlSource){file->path, token->line, token->column};
+}
+
+/* Reports a token of kind VL_TOKEN_BAD. Returns false. */
+static bool fail_bad(const vlParserFile *file, const vlToken *token) {
+  return vl_parse_fail(file, vl_parse_source(file, token), "%s", token->message);
+}
+
+bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...) {
+  char text[512];
+  VL_FORMAT(text, format);
+  const vlParseTarget *target = file->parser->target;
+  target->error(target->user, VL_ERROR_SCENE, source, text);
+  return false;
+}
+
+bool vl_parse_fail_memory(const vlParserFile *file) {
+  const vlParseTarget *target = file->parser->target;
+  target->error(target->user, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  return false;
+}
+
+/* Text of a token for messages: short, printable, in quotes. */
+typedef struct ShownToken {
+  char text[sizeof(vlShortText) + 2];
+} ShownToken;
+
+static ShownToken shown(const vlToken *token) {
+  ShownToken s;
+  if (token->kind == VL_TOKEN_END)
+    snprintf(s.text, sizeof s.text, "the end of the file");
+  else
+    snprintf(s.text, sizeof s.text, "\"%s\"",
+             vl_short_text_of(token->text, token->length).text);
+  return s;
+}
+
+/* ---- tokens ------------------------------------------------------------------------------ */
+
+static vlToken peek_token(vlParserFile *file) {
+  if (!file->has_token) {
+    file->token = vl_token_next(&file->tokens);
+    file->has_token = true;
+  }
+  return file->token;
+}
+
+/* Does not move past the end of the file. */
+static vlToken take_token(vlParserFile *file) {
+  vlToken token = peek_token(file);
+  if (token.kind != VL_TOKEN_END)
+    file->has_token = false;
+  return token;
+}
+
+static bool is_word(const vlToken *token, const char *word) {
+  return token->kind == VL_TOKEN_WORD && token->length == strlen(word) &&
+         memcmp(token->text, word, token->length) == 0;
+}
+
+/* ---- parameters -------------------------------------------------------------------------- */
+
+static bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+/* Splits "type name". */
+static bool declare(vlParserFile *file, const vlToken *token, vlParam *param) {
+  const char *p = token->text, *end = p + token->length;
+  while (p < end && is_blank(*p))
+    p++;
+  const char *type = p;
+  while (p < end && !is_blank(*p))
+    p++;
+  size_t type_length = (size_t)(p - type);
+  while (p < end && is_blank(*p))
+    p++;
+  const char *name = p;
+  while (p < end && !is_blank(*p))
+    p++;
+  size_t name_length = (size_t)(p - name);
+  while (p < end && is_blank(*p))
+    p++;
+  if (type_length == 0 || name_length == 0 || p != end)
+    return vl_parse_fail(file, param->source, "parameter %s is not of the form \"type name\"",
+                         shown(token).text);
+  if (!vl_param_type_find(type, type_length, &param->type)) {
+    const vlShortText text = vl_short_text_of(type, type_length);
+    const char *near = vl_param_type_nearest(text.text);
+    if (near)
+      return vl_parse_fail(file, param->source,
+                           "unknown parameter type \"%s\" (did you mean \"%s\"?)", text.text,
+                           near);
+    return vl_parse_fail(file, param->source, "unknown parameter type \"%s\"", text.text);
+  }
+  param->name = vl_alloc(file->parser->context, name_length + 1);
+  if (!param->name)
+    return vl_parse_fail_memory(file);
+  memcpy(param->name, name, name_length);
+  param->name[name_length] = 0;
+  return true;
+}
+
+static bool takes_numbers(vlParamType type) {
+  return type != VL_PARAM_BOOL && type != VL_PARAM_STRING && type != VL_PARAM_TEXTURE;
+}
+
+static bool add_number(vlParserFile *file, const vlToken *token, vlParam *param) {
+  vlContext *context = file->parser->context;
+  double value;
+  if (!vl_number_parse(token->text, token->length, &value))
+    return vl_parse_fail(
+        file, vl_parse_source(file, token), "\"%s %s\": expected a number, found %s",
+        vl_param_type_name(param->type), vl_short_text(param->name).text, shown(token).text);
+  if (param->type == VL_PARAM_INTEGER) {
+    if (value < -2147483648.0 || value > 2147483647.0 || value != (double)(int64_t)value)
+      return vl_parse_fail(file, vl_parse_source(file, token),
+                           "\"integer %s\": %s is not a 32-bit integer", param->name,
+                           shown(token).text);
+    int32_t *slot = VL_PUSH(context, &param->integers);
+    if (!slot)
+      return vl_parse_fail_memory(file);
+    *slot = (int32_t)value;
+    return true;
+  }
+  size_t n = param->floats.count;
+  if (n < 16)
+    param->exact[n] = value;
+  float *slot = VL_PUSH(context, &param->floats);
+  if (!slot)
+    return vl_parse_fail_memory(file);
+  *slot = (float)value;
+  return true;
+}
+
+static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) {
+  vlContext *context = file->parser->context;
+  const char *type = vl_param_type_name(param->type);
+  bool is_true = is_word(token, "true"), is_false = is_word(token, "false");
+  /* Files written for older versions put booleans in quotes. */
+  if (param->type == VL_PARAM_BOOL && token->kind == VL_TOKEN_STRING) {
+    is_true = vl_text_is(token->text, "true");
+    is_false = vl_text_is(token->text, "false");
+  }
+  if (param->type == VL_PARAM_BOOL) {
+    if (!is_true && !is_false)
+      return vl_parse_fail(file, vl_parse_source(file, token),
+                           "\"%s %s\": expected true or false, found %s", type,
+                           vl_short_text(param->name).text, shown(token).text);
+    uint8_t *slot = VL_PUSH(context, &param->bools);
+    if (!slot)
+      return vl_parse_fail_memory(file);
+    *slot = is_true;
+    return true;
+  }
+  if (token->kind == VL_TOKEN_STRING) {
+    if (takes_numbers(param->type) && param->type != VL_PARAM_SPECTRUM)
+      return vl_parse_fail(file, vl_parse_source(file, token),
+                           "\"%s %s\": expected a number, found the string %s", type,
+                           vl_short_text(param->name).text, shown(token).text);
+    if (param->floats.count)
+      return vl_parse_fail(file, vl_parse_source(file, token),
+                           "\"%s %s\": numbers and strings do not mix", type, param->name);
+    char **slot = VL_PUSH(context, &param->strings);
+    if (!slot || !(*slot = vl_strdup(context, token->text)))
+      return vl_parse_fail_memory(file);
+    return true;
+  }
+  if (!takes_numbers(param->type))
+    return vl_parse_fail(file, vl_parse_source(file, token),
+                         "\"%s %s\": expected a string in quotes, found %s", type,
+                         vl_short_text(param->name).text, shown(token).text);
+  if (param->strings.count)
+    return vl_parse_fail(file, vl_parse_source(file, token),
+                         "\"%s %s\": numbers and strings do not mix", type,
+                         vl_short_text(param->name).text);
+  return add_number(file, token, param);
+}
+
+/* Fast path: reads successive numbers without a token for each. Anything else is left to the
+ * general path. */
+static bool read_run(vlParserFile *file, vlParam *param) {
+  vlContext *context = file->parser->context;
+  bool integers = param->type == VL_PARAM_INTEGER;
+  for (size_t chunk = 4;; chunk = 1024) { /* most lists are short and there may be many */
+    if (integers ? !VL_RESERVE(context, &param->integers, chunk)
+                 : !VL_RESERVE(context, &param->floats, chunk))
+      return vl_parse_fail_memory(file);
+    for (size_t i = 0; i < chunk; i++) {
+      vlTokenizer before = file->tokens;
+      double value;
+      if (!vl_token_number(&file->tokens, &value))
+        return true;
+      if (!integers) {
+        size_t n = param->floats.count++;
+        param->floats.items[n] = (float)value;
+        if (n < 16)
+          param->exact[n] = value;
+      } else if (value >= -2147483648.0 && value <= 2147483647.0 &&
+                 value == (double)(int32_t)value) {
+        param->integers.items[param->integers.count++] = (int32_t)value;
+      } else {
+        file->tokens = before;
+        return true;
+      }
+    }
+  }
+}
+
+static bool read_values(vlParserFile *file, vlParam *param) {
+  vlToken token = take_token(file);
+  if (token.kind == VL_TOKEN_BAD)
+    return fail_bad(file, &token);
+  if (token.kind != VL_TOKEN_OPEN) {
+    if (token.kind == VL_TOKEN_END || token.kind == VL_TOKEN_CLOSE)
+      return vl_parse_fail(
+          file, vl_parse_source(file, &token), "\"%s %s\": expected a value, found %s",
+          vl_param_type_name(param->type), vl_short_text(param->name).text, shown(&token).text);
+    return add_value(file, &token, param);
+  }
+  vlToken open = token;
+  bool numbers = takes_numbers(param->type);
+  for (;;) {
+    if (numbers && param->strings.count == 0 && !read_run(file, param))
+      return false;
+    token = take_token(file);
+    if (token.kind == VL_TOKEN_CLOSE)
+      return true;
+    if (token.kind == VL_TOKEN_BAD)
+      return fail_bad(file, &token);
+    if (token.kind == VL_TOKEN_OPEN)
+      return vl_parse_fail(file, vl_parse_source(file, &token), "[ inside of [ ]");
+    if (token.kind == VL_TOKEN_END)
+      return vl_parse_fail(file, vl_parse_source(file, &open),
+                           "unclosed [ in \"%s %s\": the file ends before the ]",
+                           vl_param_type_name(param->type), param->name);
+    if (!add_value(file, &token, param))
+      return false;
+  }
+}
+
+/* Reads all parameters that follow a directive. At the end of an included file the list
+ * continues after its Include. */
+static bool read_params(vlParserFile *file, vlParamList *params) {
+  vlContext *context = file->parser->context;
+  for (;;) {
+    vlToken token = peek_token(file);
+    if (token.kind == VL_TOKEN_BAD)
+      return fail_bad(file, &token);
+    if (token.kind == VL_TOKEN_END && file->included &&
+        peek_token(file->parent).kind == VL_TOKEN_STRING) {
+      file = file->parent;
+      continue;
+    }
+    if (token.kind != VL_TOKEN_STRING)
+      return true;
+    take_token(file);
+    vlParam *param = vl_alloc_zero(context, 1, sizeof *param);
+    vlParam **slot = param ? VL_PUSH(context, &params->list) : NULL;
+    if (!slot) {
+      vl_free(context, param);
+      return vl_parse_fail_memory(file);
+    }
+    *slot = param;
+    param->source = vl_parse_source(file, &token);
+    if (!declare(file, &token, param) || !read_values(file, param))
+      return false;
+  }
+}
+
+static bool take_string(vlParserFile *file, const char *directive, const char *what,
+                        const char **text) {
+  vlToken token = take_token(file);
+  if (token.kind == VL_TOKEN_STRING) {
+    *text = token.text;
+    return true;
+  }
+  if (token.kind == VL_TOKEN_BAD)
+    return fail_bad(file, &token);
+  return vl_parse_fail(file, vl_parse_source(file, &token),
+                       "%s: expected %s in quotes, found %s", directive, what,
+                       shown(&token).text);
+}
+
+static bool take_number(vlParserFile *file, const char *directive, double *value) {
+  vlToken token = take_token(file);
+  if (token.kind == VL_TOKEN_WORD && vl_number_parse(token.text, token.length, value))
+    return true;
+  if (token.kind == VL_TOKEN_BAD)
+    return fail_bad(file, &token);
+  return vl_parse_fail(file, vl_parse_source(file, &token), "%s: expected a number, found %s",
+                       directive, shown(&token).text);
+}
+
+/* ---- directives -------------------------------------------------------------------------- */
+
+typedef enum Form {
+  ALONE,
+  NUMBERS,
+  MATRIX,
+  ONE_NAME,
+  MEDIA,
+  OPTION,
+  PARAMS,
+  TEXTURE,
+  ACTIVE,
+  INCLUDE,
+  IMPORT
+} Form;
+typedef struct Keyword {
+  const char *name;
+  Form form;
+  vlDirective directive;
+  uint32_t count; /* numbers */
+} Keyword;
+
+static const Keyword keywords[] = {
+    {"AttributeBegin", ALONE, VL_DIR_ATTRIBUTE_BEGIN, 0},
+    {"AttributeEnd", ALONE, VL_DIR_ATTRIBUTE_END, 0},
+    {"TransformBegin", ALONE, VL_DIR_TRANSFORM_BEGIN, 0},
+    {"TransformEnd", ALONE, VL_DIR_TRANSFORM_END, 0},
+    {"Identity", ALONE, VL_DIR_IDENTITY, 0},
+    {"ReverseOrientation", ALONE, VL_DIR_REVERSE_ORIENTATION, 0},
+    {"WorldBegin", ALONE, VL_DIR_WORLD_BEGIN, 0},
+    {"ObjectEnd", ALONE, VL_DIR_OBJECT_END, 0},
+    {"ActiveTransform", ACTIVE, VL_DIR_ACTIVE_ALL, 0},
+    {"Include", INCLUDE, VL_DIR_IMPORT_BEGIN, 0},
+    {"Import", IMPORT, VL_DIR_IMPORT_BEGIN, 0},
+    {"Translate", NUMBERS, VL_DIR_TRANSLATE, 3},
+    {"Scale", NUMBERS, VL_DIR_SCALE, 3},
+    {"Rotate", NUMBERS, VL_DIR_ROTATE, 4},
+    {"LookAt", NUMBERS, VL_DIR_LOOK_AT, 9},
+    {"TransformTimes", NUMBERS, VL_DIR_TRANSFORM_TIMES, 2},
+    {"Transform", MATRIX, VL_DIR_TRANSFORM, 16},
+    {"ConcatTransform", MATRIX, VL_DIR_CONCAT_TRANSFORM, 16},
+    {"CoordinateSystem", ONE_NAME, VL_DIR_COORDINATE_SYSTEM, 0},
+    {"CoordSysTransform", ONE_NAME, VL_DIR_COORD_SYS_TRANSFORM, 0},
+    {"ColorSpace", ONE_NAME, VL_DIR_COLOR_SPACE, 0},
+    {"NamedMaterial", ONE_NAME, VL_DIR_NAMED_MATERIAL, 0},
+    {"ObjectBegin", ONE_NAME, VL_DIR_OBJECT_BEGIN, 0},
+    {"ObjectInstance", ONE_NAME, VL_DIR_OBJECT_INSTANCE, 0},
+    {"MediumInterface", MEDIA, VL_DIR_MEDIUM_INTERFACE, 0},
+    {"Option", OPTION, VL_DIR_OPTION, 0},
+    {"Attribute", PARAMS, VL_DIR_ATTRIBUTE, 0},
+    {"Film", PARAMS, VL_DIR_FILM, 0},
+    {"Sampler", PARAMS, VL_DIR_SAMPLER, 0},
+    {"Integrator", PARAMS, VL_DIR_INTEGRATOR, 0},
+    {"PixelFilter", PARAMS, VL_DIR_PIXEL_FILTER, 0},
+    {"Accelerator", PARAMS, VL_DIR_ACCELERATOR, 0},
+    {"Camera", PARAMS, VL_DIR_CAMERA, 0},
+    {"MakeNamedMedium", PARAMS, VL_DIR_MAKE_NAMED_MEDIUM, 0},
+    {"Material", PARAMS, VL_DIR_MATERIAL, 0},
+    {"MakeNamedMaterial", PARAMS, VL_DIR_MAKE_NAMED_MATERIAL, 0},
+    {"AreaLightSource", PARAMS, VL_DIR_AREA_LIGHT_SOURCE, 0},
+    {"LightSource", PARAMS, VL_DIR_LIGHT_SOURCE, 0},
+    {"Shape", PARAMS, VL_DIR_SHAPE, 0},
+    {"Texture", TEXTURE, VL_DIR_TEXTURE, 0},
+};
+enum { KEYWORDS = VL_LENGTH(keywords) };
+
+static bool unknown_directive(vlParserFile *file, const vlToken *token) {
+  char text[64];
+  size_t n = token->length < sizeof text ? token->length : sizeof text - 1;
+  memcpy(text, token->text, n);
+  text[n] = 0;
+  const char *names[KEYWORDS];
+  for (size_t i = 0; i < KEYWORDS; i++)
+    names[i] = keywords[i].name;
+  const char *near = vl_nearest_name(text, names, KEYWORDS);
+  double number;
+  if (vl_number_parse(token->text, token->length, &number))
+    return vl_parse_fail(file, vl_parse_source(file, token),
+                         "expected a directive, found the number %s", shown(token).text);
+  if (near)
+    return vl_parse_fail(file, vl_parse_source(file, token),
+                         "unknown directive %s (did you mean %s?)", shown(token).text, near);
+  return vl_parse_fail(file, vl_parse_source(file, token), "unknown directive %s",
+                       shown(token).text);
+}
+
+static bool send(vlParserFile *file, const vlStatement *statement) {
+  return file->parser->target->statement(file->parser->target->user, statement);
+}
+
+static bool read_matrix(vlParserFile *file, const Keyword *k, vlStatement *s) {
+  vlToken open = take_token(file);
+  if (open.kind == VL_TOKEN_BAD)
+    return fail_bad(file, &open);
+  if (open.kind != VL_TOKEN_OPEN)
+    return vl_parse_fail(file, vl_parse_source(file, &open),
+                         "%s: expected [ and 16 numbers, found %s", k->name, shown(&open).text);
+  for (uint32_t i = 0; i < 16; i++) {
+    vlToken token = peek_token(file);
+    if (token.kind == VL_TOKEN_CLOSE)
+      return vl_parse_fail(file, vl_parse_source(file, &token),
+                           "%s: 16 numbers needed, found %u", k->name, i);
+    if (token.kind == VL_TOKEN_END)
+      return vl_parse_fail(file, vl_parse_source(file, &open),
+                           "unclosed [ of %s: the file ends before the ]", k->name);
+    if (!take_number(file, k->name, &s->numbers[i]))
+      return false;
+  }
+  vlToken close = take_token(file);
+  if (close.kind == VL_TOKEN_CLOSE)
+    return true;
+  if (close.kind == VL_TOKEN_END)
+    return vl_parse_fail(file, vl_parse_source(file, &open),
+                         "unclosed [ of %s: the file ends before the ]", k->name);
+  return vl_parse_fail(file, vl_parse_source(file, &close),
+                       "%s: expected ] after 16 numbers, found %s", k->name,
+                       shown(&close).text);
+}
+
+static bool read_active(vlParserFile *file, vlStatement *s) {
+  vlToken token = take_token(file);
+  if (is_word(&token, "All"))
+    s->directive = VL_DIR_ACTIVE_ALL;
+  else if (is_word(&token, "StartTime"))
+    s->directive = VL_DIR_ACTIVE_START;
+  else if (is_word(&token, "EndTime"))
+    s->directive = VL_DIR_ACTIVE_END;
+  else
+    return vl_parse_fail(file, vl_parse_source(file, &token),
+                         "ActiveTransform: expected StartTime, EndTime or All, found %s",
+                         shown(&token).text);
+  return true;
+}
+
+/* The value may be a word or a string. A word is not terminated, so it is copied. */
+static bool read_option(vlParserFile *file, vlStatement *s) {
+  if (!take_string(file, "Option", "a name", &s->names[0]))
+    return false;
+  const char *space =
+      strrchr(s->names[0], ' '); /* the type is optional: "bool name" or "name" */
+  if (space)
+    s->names[0] = space + 1;
+  vlToken token = take_token(file);
+  bool bracket = token.kind == VL_TOKEN_OPEN;
+  if (bracket)
+    token = take_token(file);
+  if (token.kind == VL_TOKEN_BAD)
+    return fail_bad(file, &token);
+  if (token.kind != VL_TOKEN_WORD && token.kind != VL_TOKEN_STRING)
+    return vl_parse_fail(file, vl_parse_source(file, &token),
+                         "Option: expected a value, found %s", shown(&token).text);
+  char value[1024];
+  size_t n = token.length < sizeof value ? token.length : sizeof value - 1;
+  memcpy(value, token.text, n);
+  value[n] = 0;
+  s->names[1] = value;
+  if (bracket) {
+    vlToken close = take_token(file);
+    if (close.kind != VL_TOKEN_CLOSE)
+      return vl_parse_fail(file, vl_parse_source(file, &close), "Option: expected ], found %s",
+                           shown(&close).text);
+  }
+  return send(file, s);
+}
+
+static bool read_media(vlParserFile *file, vlStatement *s) {
+  if (!take_string(file, "MediumInterface", "the name of a medium", &s->names[0]))
+    return false;
+  s->names[1] = s->names[0];
+  return peek_token(file).kind != VL_TOKEN_STRING ||
+         take_string(file, "MediumInterface", "the name of a medium", &s->names[1]);
+}
+
+static bool read_import(vlParserFile *file, const Keyword *k, const vlToken *at,
+                        vlStatement *s) {
+  vlToken where = peek_token(file);
+  const char *name = NULL;
+  if (!take_string(file, k->name, "a file name", &name))
+    return false;
+  if (k->form == INCLUDE)
+    return vl_parse_follow(file, &where, name, true);
+  (void)at;
+  if (!send(file, s) || !vl_parse_follow(file, &where, name, false))
+    return false;
+  s->directive = VL_DIR_IMPORT_END;
+  return send(file, s);
+}
+
+static bool read_directive(vlParserFile *file, const vlToken *token) {
+  const Keyword *k = NULL;
+  for (size_t i = 0; i < KEYWORDS && !k; i++)
+    if (is_word(token, keywords[i].name))
+      k = &keywords[i];
+  if (!k)
+    return unknown_directive(file, token);
+  vlParamList params = {0};
+  vlStatement s = {
+      .directive = k->directive, .source = vl_parse_source(file, token), .params = &params};
+  bool fine = true;
+  switch (k->form) {
+    case ALONE:
+      break;
+    case ACTIVE:
+      fine = read_active(file, &s);
+      break;
+    case NUMBERS:
+      for (uint32_t i = 0; i < k->count && fine; i++)
+        fine = take_number(file, k->name, &s.numbers[i]);
+      break;
+    case MATRIX:
+      fine = read_matrix(file, k, &s);
+      break;
+    case ONE_NAME:
+      fine = take_string(file, k->name, "a name", &s.names[0]);
+      break;
+    case MEDIA:
+      fine = read_media(file, &s);
+      break;
+    case OPTION:
+      return read_option(file, &s);
+    case INCLUDE:
+    case IMPORT:
+      return read_import(file, k, token, &s);
+    case PARAMS:
+      fine = take_string(file, k->name,
+                         k->directive == VL_DIR_MAKE_NAMED_MATERIAL ? "a name" : "a type name",
+                         &s.names[0]) &&
+             read_params(file, &params);
+      break;
+    case TEXTURE:
+      fine =
+          take_string(file, k->name, "the texture's name", &s.names[0]) &&
+          take_string(file, k->name, "the texture's type (float or spectrum)", &s.names[1]) &&
+          take_string(file, k->name, "the kind of texture", &s.names[2]) &&
+          read_params(file, &params);
+      break;
+  }
+  fine = fine && send(file, &s);
+  vl_param_list_free(file->parser->context, &params);
+  return fine;
+}
+
+/* ---- a block ----------------------------------------------------------------------------- */
+
+/* After an error: skips to the next directive when the target wants to continue. Invalid tokens
+ * are not skipped. */
+static bool go_on(vlParserFile *file) {
+  const vlParseTarget *target = file->parser->target;
+  if (!target->recover)
+    return false;
+  for (;;) {
+    vlToken token = peek_token(file);
+    if (token.kind == VL_TOKEN_BAD)
+      return false;
+    if (token.kind == VL_TOKEN_END)
+      break;
+    bool next = false;
+    for (size_t i = 0; i < KEYWORDS && !next; i++)
+      next = is_word(&token, keywords[i].name);
+    if (next)
+      break;
+    take_token(file);
+  }
+  return target->recover(target->user);
+}
+
+/* Offers the target to stop. Inside included files the fraction is unknown and given as 0. */
+static bool poll(const vlParserFile *file, size_t size) {
+  const vlParseTarget *target = file->parser->target;
+  if (!target->go_on)
+    return true;
+  double left = (double)(file->tokens.end - file->tokens.at);
+  return target->go_on(target->user, file->parent || !size ? 0 : 1 - left / (double)size);
+}
+
+bool vl_parse_block(vlParserFile *file, char *data, size_t size) {
+  const unsigned char *b = (const unsigned char *)data;
+  vlToken start = {.line = 1, .column = 1};
+  if (size >= 2 && ((b[0] == 0xfe && b[1] == 0xff) || (b[0] == 0xff && b[1] == 0xfe)))
+    return vl_parse_fail(file, vl_parse_source(file, &start),
+                         "the file is encoded as UTF-16; only UTF-8 is understood");
+  vl_tokenizer_start(&file->tokens, data, size);
+  for (;;) {
+    vlToken token = take_token(file);
+    if (token.kind == VL_TOKEN_END)
+      return true;
+    if (token.kind == VL_TOKEN_BAD)
+      return fail_bad(file, &token);
+    if (token.kind != VL_TOKEN_WORD)
+      return vl_parse_fail(file, vl_parse_source(file, &token),
+                           "expected a directive, found %s", shown(&token).text);
+    if (!poll(file, size))
+      return false;
+    if (!read_directive(file, &token) && !go_on(file))
+      return false;
+  }
+}

@@ -3,39 +3,91 @@
 
 #include <string.h>
 
-enum { SMALL = 1 << 20 };
+/* Longer strings are parts of scenes: what they lack is found when they are read. */
+enum { MAX_PAD = 1 << 20 };
 
 static void lack_memory(json_error_t *error) {
   error->text[JSON_ERROR_TEXT_LENGTH - 1] =
       json_error_out_of_memory; /* where json_error_code looks */
 }
 
-/* jansson loses bytes of a long string, without an error, if its buffer cannot grow. Small
- * texts are parsed a second time, so that this is found. Large texts are scenes: their errors
- * are found when they are read. */
-static json_t *checked(json_t *tree, const char *text, size_t size, size_t flags,
-                       json_error_t *error) {
-  json_t *again = size <= SMALL ? json_loadb(text, size, flags, error) : NULL;
-  if (size > SMALL || (again && json_equal(tree, again))) {
-    json_decref(again);
-    return tree;
+/* What jansson reads: the text as the second element of an array, whose first is a string of
+ * `pad` letters. jansson loses bytes of a long string or number, without an error, if its
+ * buffer for a token cannot grow. It reads all tokens into one buffer, so once it has read the
+ * pad whole, no token of the text makes that buffer grow. */
+typedef struct Part {
+  const char *text; /* null: letters of the pad */
+  size_t size;
+} Part;
+enum { PARTS = 5 };
+typedef struct Padded {
+  Part parts[PARTS];
+  int part;
+  size_t at; /* number of bytes of the part that were read */
+} Padded;
+
+/* A json_load_callback_t. */
+static size_t read_padded(void *buffer, size_t room, void *data) {
+  Padded *p = data;
+  while (p->part < PARTS && p->at == p->parts[p->part].size) {
+    p->part++;
+    p->at = 0;
   }
-  json_decref(tree);
-  json_decref(again);
-  lack_memory(error);
-  return NULL;
+  if (p->part == PARTS)
+    return 0;
+  const Part *part = &p->parts[p->part];
+  size_t n = part->size - p->at < room ? part->size - p->at : room;
+  if (part->text)
+    memcpy(buffer, part->text + p->at, n);
+  else
+    memset(buffer, 'x', n);
+  p->at += n;
+  return n;
+}
+
+/* The length of the longest token, with its quotes and escapes. */
+static size_t longest_token(const char *text, size_t size) {
+  size_t longest = 0, start = 0;
+  bool quoted = false;
+  for (size_t i = 0; i < size; i++) {
+    char c = text[i];
+    bool ends = !quoted && strchr(" \t\r\n,:[]{}", c);
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == '\\' && quoted)
+      i++;
+    if (ends)
+      start = i + 1;
+    else if (i + 1 - start > longest)
+      longest = i + 1 - start;
+  }
+  return longest;
 }
 
 json_t *vl_json_parse(const char *text, size_t size, size_t flags, json_error_t *error) {
-  json_t *tree = json_loadb(text, size, flags, error);
-  if (tree)
-    return checked(tree, text, size, flags, error);
-  json_error_t other;
-  json_t *again = json_loadb(text, size, flags, &other); /* wrong text is wrong twice */
-  json_t *probe = json_string("whether there is memory for a short string");
-  if (again || !probe)
+  size_t longest = longest_token(text, size), pad = longest < MAX_PAD ? longest : MAX_PAD;
+  Padded padded = {.parts = {{"[\"", 2}, {NULL, pad}, {"\",", 2}, {text, size}, {"\n]", 2}}};
+  json_t *both = json_load_callback(read_padded, &padded, flags, error);
+  json_t *tree = json_array_size(both) == 2 ? json_incref(json_array_get(both, 1)) : NULL;
+  bool whole = json_string_length(json_array_get(both, 0)) == pad;
+  json_decref(both);
+  if (json_is_array(tree) || json_is_object(tree)) {
+    if (whole)
+      return tree;
+    json_decref(tree);
     lack_memory(error);
-  json_decref(again);
+    return NULL;
+  }
+  json_decref(tree);
+  /* The message about the text alone. What is wrong is wrong without the array, too. */
+  bool deep = !both && json_error_code(error) == json_error_stack_overflow;
+  tree = json_loadb(text, size, flags, error);
+  if (tree && deep)
+    return tree; /* as deep as jansson allows, without the array */
+  json_t *probe = json_string("whether there is memory for a short string");
+  if (tree || !probe)
+    lack_memory(error);
+  json_decref(tree);
   json_decref(probe);
   return NULL;
 }

@@ -3,20 +3,20 @@
 
 #include <string.h>
 
-/* Longer strings are parts of scenes: what they lack is found when they are read. */
-enum { MAX_PAD = 1 << 20 };
+/* What a longer token, a part of a scene, lacks is found when it is read. */
+enum { MAX_PAD = 3 << 19 };
 
 static void lack_memory(json_error_t *error) {
   error->text[JSON_ERROR_TEXT_LENGTH - 1] =
       json_error_out_of_memory; /* where json_error_code looks */
 }
 
-/* What jansson reads: the text as the second element of an array, whose first is a string of
- * `pad` letters. jansson loses bytes of a long string or number, without an error, if its
- * buffer for a token cannot grow. It reads all tokens into one buffer, so once it has read the
- * pad whole, no token of the text makes that buffer grow. */
+/* What jansson reads: the text as the second element of an array, whose first is a string of x,
+ * the pad. jansson loses bytes of a long token, without an error, if its buffer for tokens
+ * cannot grow. It has one buffer, so once the pad is read whole, no shorter token makes the
+ * buffer grow. */
 typedef struct Part {
-  const char *text; /* null: letters of the pad */
+  const char *text; /* null: the pad's letters */
   size_t size;
 } Part;
 enum { PARTS = 5 };
@@ -64,8 +64,17 @@ static size_t longest_token(const char *text, size_t size) {
   return longest;
 }
 
+/* The buffer's size doubles. Its last growth for the pad is far from the closing quote: jansson
+ * would read on if that byte was lost. */
+static size_t pad_for(size_t longest) {
+  size_t pad = 24;
+  while (pad < longest && pad < MAX_PAD)
+    pad *= 2;
+  return pad;
+}
+
 json_t *vl_json_parse(const char *text, size_t size, size_t flags, json_error_t *error) {
-  size_t longest = longest_token(text, size), pad = longest < MAX_PAD ? longest : MAX_PAD;
+  size_t pad = pad_for(longest_token(text, size));
   Padded padded = {.parts = {{"[\"", 2}, {NULL, pad}, {"\",", 2}, {text, size}, {"\n]", 2}}};
   json_t *both = json_load_callback(read_padded, &padded, flags, error);
   json_t *tree = json_array_size(both) == 2 ? json_incref(json_array_get(both, 1)) : NULL;

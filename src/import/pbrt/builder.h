@@ -315,6 +315,10 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
 /* Takes over the parameters of a statement, so that they outlive it. The scene keeps the file
  * names of their sources. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
+/* Keeps a texture or a material, with the attributes of the target, until the end of the file.
+ * Null after an error. */
+vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTarget target,
+                          bool is_texture);
 bool vl_import_attribute(vlImport *import, const vlStatement *s);
 bool vl_import_object_begin(vlImport *import, const vlStatement *s);
 bool vl_import_object_end(vlImport *import, const vlStatement *s);

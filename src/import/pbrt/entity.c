@@ -21,10 +21,6 @@ bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *
   return true;
 }
 
-static bool keep_source(vlImport *import, vlSource *source) {
-  return vl_scene_copy_source(import->scene, source);
-}
-
 /* ---- state ------------------------------------------------------------------------------- */
 
 bool vl_import_attribute(vlImport *import, const vlStatement *s) {
@@ -65,7 +61,7 @@ static vlObject *find_object(vlImport *import, const char *name, vlSource source
   if (vl_names_find(&import->objects, name, &index))
     return &import->object_list.items[index];
   const char *kept = vl_import_keep(import, name);
-  if (!kept || !keep_source(import, &source))
+  if (!kept || !vl_scene_copy_source(import->scene, &source))
     return NULL;
   vlGroupId group = vl_scene_add_group(import->scene, kept);
   if (!group.index)
@@ -115,8 +111,8 @@ bool vl_import_object_instance(vlImport *import, const vlStatement *s) {
 
 /* ---- what waits -------------------------------------------------------------------------- */
 
-static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttributeTarget target,
-                              bool is_texture) {
+vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTarget target,
+                          bool is_texture) {
   vlPending *p = is_texture ? VL_PUSH(import->context, &import->textures)
                             : VL_PUSH(import->context, &import->materials);
   if (!p) {
@@ -127,7 +123,7 @@ static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttribut
   p->source = s->source;
   p->space = import->state.space;
   p->ctm = import->state.ctm[0];
-  if (!keep_source(import, &p->source) ||
+  if (!vl_scene_copy_source(import->scene, &p->source) ||
       !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
       !vl_import_keep_params(import, s, &own))
     return NULL;
@@ -146,70 +142,6 @@ static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttribut
   if (!fine)
     vl_import_fail_memory(import);
   return fine ? p : NULL;
-}
-
-bool vl_import_material(vlImport *import, const vlStatement *s) {
-  vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
-  if (!p || !(p->kind = vl_import_keep(import, s->names[0])))
-    return false;
-  import->state.material = (uint32_t)import->materials.count;
-  import->state.material_name = NULL;
-  return true;
-}
-
-bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
-  uint32_t index;
-  if (vl_names_find(&import->named_materials, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "material \"%s\" is made a second time (first in line %u)",
-                          vl_short_text(s->names[0]).text,
-                          import->materials.items[index].source.line);
-  vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
-  if (!p || !(p->name = vl_import_keep(import, s->names[0])))
-    return false;
-  if (vl_names_add(import->context, &import->named_materials, p->name,
-                   (uint32_t)import->materials.count - 1))
-    return true;
-  return vl_import_fail_memory(import);
-}
-
-bool vl_import_named_material(vlImport *import, const vlStatement *s) {
-  uint32_t index;
-  import->state.material = 0;
-  import->state.material_source = s->source;
-  if (vl_names_find(&import->named_materials, s->names[0], &index)) {
-    import->state.material_name = import->materials.items[index].name;
-    return keep_source(import, &import->state.material_source);
-  }
-  import->state.material_name = vl_import_keep(import, s->names[0]);
-  return import->state.material_name && keep_source(import, &import->state.material_source);
-}
-
-bool vl_import_texture(vlImport *import, const vlStatement *s) {
-  bool spectrum = vl_text_is(s->names[1], "spectrum") || vl_text_is(s->names[1], "color");
-  if (!spectrum && !vl_text_is(s->names[1], "float"))
-    return vl_import_fail(
-        import, VL_ERROR_SCENE, s->source,
-        "Texture \"%s\": the type must be \"float\" or \"spectrum\", not \"%s\"",
-        vl_short_text(s->names[0]).text, vl_short_text(s->names[1]).text);
-  vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
-  uint32_t index;
-  if (vl_names_find(table, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "%s texture \"%s\" is made a second time (first in line %u)",
-                          spectrum ? "spectrum" : "float", vl_short_text(s->names[0]).text,
-                          import->textures.items[index].source.line);
-  vlPending *p = add_pending(import, s, VL_ATTR_TEXTURE, true);
-  if (!p)
-    return false;
-  p->spectrum = spectrum;
-  if (!vl_import_ctm(import, s->source, &p->ctm) ||
-      !(p->name = vl_import_keep(import, s->names[0])) ||
-      !(p->kind = vl_import_keep(import, s->names[2])))
-    return false;
-  if (vl_names_add(import->context, table, p->name, (uint32_t)import->textures.count - 1))
-    return true;
-  return vl_import_fail_memory(import);
 }
 
 /* ---- the end ----------------------------------------------------------------------------- */

@@ -1,11 +1,53 @@
 /* import/pbrt/material.c: converts Material and MakeNamedMaterial to materials of the scene.
  * The parts of a mix are converted first. The rows describe the parameters
- * (schema/materials.c). */
+ * (material/NAME.row.c). */
 #include <assert.h>
 #include <stdio.h>
 
 #include "import/pbrt/builder.h"
 #include "velo/material.h"
+
+/* ---- the statements ---------------------------------------------------------------------- */
+
+bool vl_import_material(vlImport *import, const vlStatement *s) {
+  vlPending *p = vl_import_wait(import, s, VL_ATTR_MATERIAL, false);
+  if (!p || !(p->kind = vl_import_keep(import, s->names[0])))
+    return false;
+  import->state.material = (uint32_t)import->materials.count;
+  import->state.material_name = NULL;
+  return true;
+}
+
+bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
+  uint32_t index;
+  if (vl_names_find(&import->named_materials, s->names[0], &index))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "material \"%s\" is made a second time (first in line %u)",
+                          vl_short_text(s->names[0]).text,
+                          import->materials.items[index].source.line);
+  vlPending *p = vl_import_wait(import, s, VL_ATTR_MATERIAL, false);
+  if (!p || !(p->name = vl_import_keep(import, s->names[0])))
+    return false;
+  if (vl_names_add(import->context, &import->named_materials, p->name,
+                   (uint32_t)import->materials.count - 1))
+    return true;
+  return vl_import_fail_memory(import);
+}
+
+bool vl_import_named_material(vlImport *import, const vlStatement *s) {
+  uint32_t index;
+  import->state.material = 0;
+  import->state.material_source = s->source;
+  if (vl_names_find(&import->named_materials, s->names[0], &index)) {
+    import->state.material_name = import->materials.items[index].name;
+    return vl_scene_copy_source(import->scene, &import->state.material_source);
+  }
+  import->state.material_name = vl_import_keep(import, s->names[0]);
+  return import->state.material_name &&
+         vl_scene_copy_source(import->scene, &import->state.material_source);
+}
+
+/* ---- the end of the file ----------------------------------------------------------------- */
 
 bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
                            vlMaterialId *id, bool *is_interface) {

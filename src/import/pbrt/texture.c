@@ -8,6 +8,37 @@
 #include "import/pbrt/builder.h"
 #include "velo/texture.h"
 
+/* ---- the statement ----------------------------------------------------------------------- */
+
+bool vl_import_texture(vlImport *import, const vlStatement *s) {
+  bool spectrum = vl_text_is(s->names[1], "spectrum") || vl_text_is(s->names[1], "color");
+  if (!spectrum && !vl_text_is(s->names[1], "float"))
+    return vl_import_fail(
+        import, VL_ERROR_SCENE, s->source,
+        "Texture \"%s\": the type must be \"float\" or \"spectrum\", not \"%s\"",
+        vl_short_text(s->names[0]).text, vl_short_text(s->names[1]).text);
+  vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
+  uint32_t index;
+  if (vl_names_find(table, s->names[0], &index))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "%s texture \"%s\" is made a second time (first in line %u)",
+                          spectrum ? "spectrum" : "float", vl_short_text(s->names[0]).text,
+                          import->textures.items[index].source.line);
+  vlPending *p = vl_import_wait(import, s, VL_ATTR_TEXTURE, true);
+  if (!p)
+    return false;
+  p->spectrum = spectrum;
+  if (!vl_import_ctm(import, s->source, &p->ctm) ||
+      !(p->name = vl_import_keep(import, s->names[0])) ||
+      !(p->kind = vl_import_keep(import, s->names[2])))
+    return false;
+  if (vl_names_add(import->context, table, p->name, (uint32_t)import->textures.count - 1))
+    return true;
+  return vl_import_fail_memory(import);
+}
+
+/* ---- the end of the file ----------------------------------------------------------------- */
+
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source,
                           vlTextureId *id) {
   const vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;

@@ -1,5 +1,9 @@
 """velo in Blender: a render engine. Needs the Python module velo."""
 
+import importlib.util
+import os
+import sys
+
 bl_info = {
     "name": "velo",
     "author": "velo contributors",
@@ -11,11 +15,21 @@ bl_info = {
 }
 
 
-def _modules():
+def _find_velo():
+    """Imports velo: where Blender's Python has it, else from this add-on's own folder (tools/bundle_addon)."""
+    own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "modules")
+    if importlib.util.find_spec("velo") is None and os.path.isdir(own):
+        if sys.version_info < (3, 11):
+            raise ImportError("velo in Blender needs Python 3.11 or later, and this Blender has %d.%d" % sys.version_info[:2])
+        sys.path.append(own)
     try:
         import velo  # noqa: F401: the message is clearer than that of the first module which needs it
     except ImportError as error:
         raise ImportError("velo in Blender needs the Python module velo: install python3-velo or set PYTHONPATH (%s)" % error) from None
+
+
+def _modules():
+    _find_velo()
     from . import camera_files, datasets, engine, panels, settings
     return settings, camera_files, datasets, engine, panels
 

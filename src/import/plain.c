@@ -108,11 +108,13 @@ bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const c
   vlError inside = {0};
   vl_import_plain_settings(scene);
   vlResult r = vl_file_read_given(scene->context, path, true, data, &size, &inside);
+  if (r != VL_OK) {
+    vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
+    return false;
+  }
   *at = *data;
   *end = *data + size;
-  if (r != VL_OK)
-    vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
-  return r == VL_OK;
+  return true;
 }
 
 vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load,

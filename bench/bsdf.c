@@ -14,13 +14,13 @@
 /* The same kernels for one lane, without padding and vectors (VL_SCALAR, CMakeLists.txt). */
 extern const vlBsdfKernels vl_bsdf_kernel_table_scalar;
 
-enum { MOST = 4096, ROUNDS = 7 };
+enum { MAX_HITS = 4096, ROUNDS = 7 };
 
 typedef struct {
   /* longer than a power of two, so that rows do not share the same cache sets */
-  float in[24][MOST + 80], out[14][MOST + 80], own[VL_BSDF_ROWS][MOST + 80];
-  const vlCoatTable *coat[MOST];
-  uint32_t flags[MOST];
+  float in[24][MAX_HITS + 80], out[14][MAX_HITS + 80], own[VL_BSDF_ROWS][MAX_HITS + 80];
+  const vlCoatTable *coat[MAX_HITS];
+  uint32_t flags[MAX_HITS];
 } Arrays;
 
 static double seconds(void) {
@@ -85,7 +85,7 @@ static double cost(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a,
 
 int main(int argc, char **argv) {
   uint32_t n = argc > 1 ? (uint32_t)atoi(argv[1]) : 512;
-  n = n < 16 ? 16 : n > MOST ? MOST : (n + 15u) & ~15u;
+  n = n < 16 ? 16 : n > MAX_HITS ? MAX_HITS : (n + 15u) & ~15u;
   Arrays *a = calloc(1, sizeof *a);
   vlContextDef def = vl_default_context_def();
   vlContext *context;

@@ -14,7 +14,7 @@ from . import evaluate, links, square, versions
 SHARP_SUN = 1e-3  # radians from the middle to the rim; suns of a smaller disk are points
 SUN_PIXELS = 12  # of a sun's image from the middle to the rim, where MAX_SUN_SIDE allows it
 MAX_SUN_SIDE = 2048
-LARGEST = 1e12  # radius or side of a lamp, scene units
+MAX_SIZE = 1e12  # radius or side of a lamp, scene units
 FAR = 1e6  # where the camera would see a sun
 SPOT_POINTS = 16  # of a spot with a radius
 SPOT_SIDE = 512  # of the image of a spot's intensity, pixels
@@ -77,7 +77,7 @@ def _hidden(item, points, camera_sees):
 
 def _point(scene, item, light, pose, words, power, camera_sees, notes):
     place, radius = pose[:3, 3], light.shadow_soft_size
-    if not radius < LARGEST:
+    if not radius < MAX_SIZE:
         notes.add(item.name, "", "its radius is huge or no number; it is left out")
         return
     if radius <= 1e-6:
@@ -138,7 +138,7 @@ def _spot(scene, item, light, pose, words, power, camera_sees, notes):
         notes.add(item.name, "", "its direction is not defined; it is left out")
         return
     half = min(0.5 * light.spot_size, 0.5 * math.pi)
-    if not light.shadow_soft_size < LARGEST:
+    if not light.shadow_soft_size < MAX_SIZE:
         notes.add(item.name, "", "its radius is huge or no number; it is left out")
         return
     frame = _frame_along(-axis / length, pose[:3, 3])
@@ -199,7 +199,7 @@ def _area(scene, item, light, pose, words, power, camera_sees, notes):
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
     scales = numpy.linalg.norm(pose[:3, :2], axis=0)
-    if not max(width * scales[0], height * scales[1]) < LARGEST:
+    if not max(width * scales[0], height * scales[1]) < MAX_SIZE:
         notes.add(item.name, "", "its size is huge or no number; it is left out")
         return
     if not width * height * scales[0] * scales[1] > 1e-12:

@@ -307,12 +307,12 @@ void long_call_end(LongCall *call) {
 PyObject *shut_down(PyObject *module, PyObject *unused) {
   (void)module;
   (void)unused;
-  const int MOST = 5000; /* ms */
+  const int MAX_WAIT = 5000; /* ms */
   shutter = pthread_self();
   shutting_down = true;
   if (running_pid != (long)getpid())
     running = NULL;
-  for (int i = 0; running && i < MOST; i++) {
+  for (int i = 0; running && i < MAX_WAIT; i++) {
     const struct timespec pause = {0, 1000000};
     for (Waiting *w = running; w; w = w->next)
       vl_cancel_request(w->call->cancel);

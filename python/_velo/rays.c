@@ -195,7 +195,7 @@ static PyObject *stats_object(const vlCastStats *s) {
 /* ---- results ----------------------------------------------------------------------------- */
 
 /* The fields of velo.RayHits, in its order: bytes of a row. */
-enum { FIELDS = 12, MOST_ROWS_LOG2 = 48 };
+enum { FIELDS = 12, MAX_ROWS_LOG2 = 48 };
 static const size_t field_sizes[FIELDS] = {1, 8, 8, 24, 12, 12, 8, 24, 4, 4, 4, 4};
 
 static void point_at(vlCastHits *h, void *const data[FIELDS]) {
@@ -219,7 +219,7 @@ static PyObject *make_fields(const World *self, uint64_t rows, unsigned wanted,
   uint64_t bytes = 0;
   for (int i = 0; i < FIELDS; i++)
     bytes += wanted >> i & 1 ? field_sizes[i] : 0;
-  if (rows >> MOST_ROWS_LOG2)
+  if (rows >> MAX_ROWS_LOG2)
     return raise_usage("%llu rows of hits are too many", (unsigned long long)rows);
   if (!check_memory(self->context, bytes * rows, "the result"))
     return NULL;
@@ -238,7 +238,7 @@ static PyObject *make_fields(const World *self, uint64_t rows, unsigned wanted,
 
 static PyObject *trace(World *self, Casting *c, unsigned wanted) {
   void *data[FIELDS] = {NULL};
-  if (c->rays.count >> MOST_ROWS_LOG2)
+  if (c->rays.count >> MAX_ROWS_LOG2)
     return raise_usage("%llu rays are too many", (unsigned long long)c->rays.count);
   PyObject *fields = make_fields(self, c->rays.count * c->def.hits, wanted, data);
   if (!fields)
@@ -274,7 +274,7 @@ PyObject *world_trace(World *self, PyObject *arguments) {
 
 static PyObject *occluded(World *self, Casting *c) {
   void *data = NULL;
-  if (c->rays.count >> MOST_ROWS_LOG2)
+  if (c->rays.count >> MAX_ROWS_LOG2)
     return raise_usage("%llu rays are too many", (unsigned long long)c->rays.count);
   if (!check_memory(self->context, c->rays.count, "the result"))
     return NULL;

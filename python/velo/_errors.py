@@ -99,13 +99,13 @@ def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
     return UsageError(_velo.unknown_name(thing, plain, sorted(set(names))))
 
 
-_MOST_SHOWN = 200  # characters of a value in a message
+_MAX_SHOWN = 200  # characters of a value in a message
 
 
 def _brief(value: Any, depth: int) -> str:
     if isinstance(value, (str, bytes)):
-        return repr(value[:_MOST_SHOWN])
-    if isinstance(value, int) and value.bit_length() > 2 * _MOST_SHOWN:
+        return repr(value[:_MAX_SHOWN])
+    if isinstance(value, int) and value.bit_length() > 2 * _MAX_SHOWN:
         return f"{'-' if value < 0 else ''}2**{value.bit_length() - 1} or more"
     if isinstance(value, (list, tuple, dict)):
         if len(value) > 8 or depth > 2:
@@ -124,7 +124,7 @@ def shown(value: Any) -> str:
     except Exception:  # its own __repr__ fails
         text = f"<{type(value).__name__}>"
     text = " ".join(text.split()).encode(errors="backslashreplace").decode()
-    return text if len(text) <= _MOST_SHOWN else text[:_MOST_SHOWN - 3] + "..."
+    return text if len(text) <= _MAX_SHOWN else text[:_MAX_SHOWN - 3] + "..."
 
 
 def wrong_value(what: str, rule: str, value: Any) -> UsageError:

@@ -139,7 +139,7 @@ class OwnSampler:
 # ---- tracers ------------------------------------------------------------------------------------------------------------
 
 _BATCH = 1024
-_MOST = 4096  #: bounces of a path
+_MAX_INDEX = 4096  #: of a bounce, and of a purpose of numbers
 
 
 def _layout(*members: tuple[str, str, int]) -> list[Any]:
@@ -248,7 +248,7 @@ class Trace:
 
     def lights(self, bounce: int = 0) -> TraceLights:
         """A sample of a light for each of the last hits. bounce: 0 for hits of the camera's rays; selects the numbers."""
-        return TraceLights(self._ask("lights", _check.whole(bounce, "bounce", 0, _MOST), None, _LIGHTS), self._count)
+        return TraceLights(self._ask("lights", _check.whole(bounce, "bounce", 0, _MAX_INDEX), None, _LIGHTS), self._count)
 
     def bsdf(self, direction: Any) -> tuple[Any, Any]:
         """The BSDF of the last hits for light from these directions (n x 3, unit, world space), times the cosine: n x 4; and the
@@ -258,11 +258,11 @@ class Trace:
 
     def bounce(self, bounce: int = 0) -> TraceBounce:
         """Samples the BSDFs of the last hits. bounce: as lights."""
-        return TraceBounce(self._ask("bounce", _check.whole(bounce, "bounce", 0, _MOST), None, _BOUNCE), self._count)
+        return TraceBounce(self._ask("bounce", _check.whole(bounce, "bounce", 0, _MAX_INDEX), None, _BOUNCE), self._count)
 
     def numbers(self, purpose: int = 0) -> Any:
         """n x 2: numbers in [0, 1) of the render's sampler. Those of different purposes are independent."""
-        return self._ask("numbers", _check.whole(purpose, "purpose", 0, _MOST), None, ("f4", (2, _BATCH)))[:, :self._count].T
+        return self._ask("numbers", _check.whole(purpose, "purpose", 0, _MAX_INDEX), None, ("f4", (2, _BATCH)))[:, :self._count].T
 
 
 class Paths(NamedTuple):

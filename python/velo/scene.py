@@ -26,7 +26,7 @@ _LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "
 _ENVIRONMENTS = ("auto", "none", "studio", "sky", "white", "file", "lamps", "window", "evening")
 # Settings that the world depends on; the others belong to the film and the render.
 _BUILD = ("color", "light_sampler", "imitate_pbrt", "regularize", "bits", "accelerator")
-_MOST_RACED = 64  # samples for which a race is planned, as by velo render: longer renders have the same tracer
+_MAX_RACED = 64  # samples for which a race is planned, as by velo render: longer renders have the same tracer
 
 
 def _is_auto(tracer: Any) -> bool:
@@ -536,7 +536,7 @@ class Scene(_velo.Scene):
             return
         if film.spp:
             raise UsageError('tracer="auto": the film has samples of a tracer already; give its name')
-        chosen, _ = _velo.choose_tracer(world, view, settings, min(settings.get("spp"), _MOST_RACED))
+        chosen, _ = _velo.choose_tracer(world, view, settings, min(settings.get("spp"), _MAX_RACED))
         for name, value in chosen.items():
             settings.set(name, value)
 
@@ -547,7 +547,7 @@ class Scene(_velo.Scene):
         first. Without trials the image is too small for a race. camera, resolution, further keywords: as render."""
         words: dict[str, Any] = {**keywords}
         settings, view = self._prepare(camera, resolution, None, (), None, False, words)
-        return _velo.choose_tracer(self._build(settings), view, settings, min(settings.get("spp"), _MOST_RACED))
+        return _velo.choose_tracer(self._build(settings), view, settings, min(settings.get("spp"), _MAX_RACED))
 
     def _develop(self, world: World, view: Camera, film: Film, settings: Any, channels: Sequence[str],
                  denoise: bool) -> Image:

@@ -191,11 +191,11 @@ static vlResult join(Merge *m, const vlSampleSpan *b, uint32_t count) {
     vlSampleSpan next = first ? m->ranges[i++] : b[k++];
     if (n && m->joined[n - 1].end == next.first)
       m->joined[n - 1].end = next.end;
-    else if (n < VL_FILM_MOST_RANGES)
+    else if (n < VL_FILM_MAX_RANGES)
       m->joined[n++] = next;
     else
       return vl_fail(m->error, VL_ERROR_SCENE, "the films' samples have more than %d gaps",
-                     VL_FILM_MOST_RANGES);
+                     VL_FILM_MAX_RANGES);
   }
   vlSampleSpan *swap = m->ranges;
   m->ranges = m->joined;
@@ -334,8 +334,8 @@ static vlResult merge_opened(Merge *m, const char *output) {
   size_t size = vl_film_most_data(&shape->def);
   m->sum = vl_alloc(m->context, size);
   m->data = vl_alloc(m->context, size);
-  m->ranges = vl_alloc_array(m->context, VL_FILM_MOST_RANGES, sizeof *m->ranges);
-  m->joined = vl_alloc_array(m->context, VL_FILM_MOST_RANGES, sizeof *m->joined);
+  m->ranges = vl_alloc_array(m->context, VL_FILM_MAX_RANGES, sizeof *m->ranges);
+  m->joined = vl_alloc_array(m->context, VL_FILM_MAX_RANGES, sizeof *m->joined);
   char *header = vl_film_header_make(m->context, shape, choose_texts(m));
   vlResult result =
       m->sum && m->data && m->ranges && m->joined && header ? VL_OK : vl_fail_memory(m->error);

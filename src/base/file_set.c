@@ -74,14 +74,14 @@ static vlResult join(const vlFileSet *set, const char *name, char path[4096], vl
 
 vlResult vl_file_set_name(vlFileSet *set, char *name, size_t size, const void *data,
                           size_t bytes, vlError *error) {
-  enum { MOST = 10000 };
+  enum { MAX_NAMES = 10000 };
   char wanted[4096], path[4096];
   struct stat info;
   snprintf(wanted, sizeof wanted, "%s", name);
   const char *last = wanted + vl_folder_length(wanted), *dot = strrchr(last, '.');
   if (!dot)
     dot = last + strlen(last);
-  for (int i = 1; i < MOST; i++) {
+  for (int i = 1; i < MAX_NAMES; i++) {
     if (i > 1 &&
         snprintf(name, size, "%.*s-%d%s", (int)(dot - wanted), wanted, i, dot) >= (int)size)
       return vl_fail(error, VL_ERROR_IO, "the file's name is too long");

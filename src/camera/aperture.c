@@ -13,7 +13,7 @@
 #include "math/warp.h"
 
 static const double pi = 3.14159265358979323846;
-enum { LARGEST = 4096, NAMED = 256 };
+enum { MAX_SIDE = 4096, NAMED = 256 };
 
 /* ---- blades ------------------------------------------------------------------------------ */
 
@@ -108,10 +108,10 @@ static vlResult check(uint32_t width, uint32_t height, const float *values, doub
                       vlError *error) {
   if (!values)
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: values is null");
-  if (width == 0 || height == 0 || width > LARGEST || height > LARGEST)
+  if (width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "aperture: an image of %u x %u; each side must be 1 to %d", width, height,
-                   LARGEST);
+                   MAX_SIDE);
   *sum = 0.0;
   for (size_t i = 0; i < (size_t)width * height; i++) {
     if (!(values[i] >= 0.0f) || isinf(values[i]))

@@ -14,12 +14,12 @@
 #include "math/double3.h"
 #include "math/elementary.h"
 
-enum { LARGEST = 16 };
+enum { MAX_NUMBERS = 16 };
 static const char separators[] = " \t,;[]";
 
 /* The numbers of a text; rows and columns are 0 if it is no matrix. */
 typedef struct {
-  double m[LARGEST];
+  double m[MAX_NUMBERS];
   uint32_t rows, columns;
 } Matrix;
 
@@ -34,7 +34,7 @@ static Matrix parse(const char *text, size_t size) {
     for (const char *at = lines.text; *(at += strspn(at, separators));) {
       char *end;
       double value = vl_camera_parse(at, &end);
-      if (end == at || !isfinite(value) || count == LARGEST || !strchr(separators, *end))
+      if (end == at || !isfinite(value) || count == MAX_NUMBERS || !strchr(separators, *end))
         return none;
       matrix.m[count++] = value;
       at = end;
@@ -245,7 +245,7 @@ static bool is_matrix(const char *text, size_t size) {
     if (words - before > 4)
       return false; /* a list of poses */
   }
-  return rows >= 2 && words >= 6 && words <= LARGEST && numbers + 2 >= words;
+  return rows >= 2 && words >= 6 && words <= MAX_NUMBERS && numbers + 2 >= words;
 }
 
 static vlResult write_matrix(const vlFittedCamera *fit, vlCameraText *text) {

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "camera_files/opencv.h"
 
-enum { ENTRY = 46, LOCAL = 30, END = 22, MOST = 64 };
+enum { ENTRY = 46, LOCAL = 30, END = 22, MAX_NUMBERS = 64 };
 
 /* What calibrations save beside the camera and what says nothing about it: errors, the poses
  * and corners of the boards, the matrix of undistorted images. */
@@ -44,8 +44,8 @@ static double number_at(const char *at, bool whole, int bytes) {
   return bytes == 8 ? value : (double)narrow;
 }
 
-/* Reads an array of at most MOST numbers by rows as a list; without dimensions, a number. Null:
- * it is another one. */
+/* Reads an array of at most MAX_NUMBERS numbers by rows as a list; without dimensions, a
+ * number. Null: it is another one. */
 static json_t *read_array(const char *text, size_t size) {
   char header[272] = "";
   if (size < 10 || memcmp(text, "\x93NUMPY\1", 7) != 0)
@@ -67,7 +67,7 @@ static json_t *read_array(const char *text, size_t size) {
   int dimensions = 0;
   for (char *at = (char *)shape + 10, *end; *at != ')'; dimensions++) {
     unsigned long side = strtoul(at, &end, 10);
-    if (end == at || side < 1 || side > MOST || (count *= side) > MOST)
+    if (end == at || side < 1 || side > MAX_NUMBERS || (count *= side) > MAX_NUMBERS)
       return NULL;
     if (dimensions < 2)
       sides[dimensions] = side;

@@ -71,12 +71,12 @@ vlResult vl_trajectory_read_nerf(vlTrajectory *t, const vlCameraFile *from, cons
 /* Adds each camera as a frame, with its pose relative to the first camera. */
 vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *from,
                                    const json_t *tree) {
-  enum { MOST = 1024 };
+  enum { MAX_CAMERAS = 1024 };
   vlCameraFileDef def = *from->def;
   vlCameraFile copy = *from, *file = &copy;
   file->def = &def;
   file->dialect = "kalibr";
-  for (uint32_t i = 0; i < MOST; i++) {
+  for (uint32_t i = 0; i < MAX_CAMERAS; i++) {
     char key[16];
     snprintf(key, sizeof key, "cam%u", i);
     if (!json_object_get(tree, key))

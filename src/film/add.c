@@ -3,11 +3,6 @@
  * sum. There are no branches on the values. */
 #include "film/sums.h"
 
-enum {
-  COLOR_LIMIT = (127 + 40) << 23, /* bits of 2^40; infinities and NaNs are larger, too */
-  WEIGHT_LIMIT = (127 + 4) << 23
-};
-
 /* Copies a pixel's sums from the front when it is new in the pass. */
 static inline void begin_pixel(vlFilm *film, size_t at) {
   static const vlFilmPixel zero = {{0, 0, 0}, 0, 0};
@@ -34,8 +29,9 @@ uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32
     uint32_t r = vl_float_bits(s->r[i]) & 0x7fffffffu, g = vl_float_bits(s->g[i]) & 0x7fffffffu;
     uint32_t b = vl_float_bits(s->b[i]) & 0x7fffffffu, largest = r > g ? r : g;
     largest = largest > b ? largest : b;
-    bool fits = largest < COLOR_LIMIT && (vl_float_bits(w) & 0x7fffffffu) < WEIGHT_LIMIT &&
-                a - a == 0.0f && x < width && y < film->height && film->in_pass;
+    bool fits = largest < VL_MAX_COLOR_FLOAT &&
+                (vl_float_bits(w) & 0x7fffffffu) < VL_MAX_WEIGHT_FLOAT && a - a == 0.0f &&
+                x < width && y < film->height && film->in_pass;
     if (!fits) {
       if (bad++ == 0) {
         if (bad_x)

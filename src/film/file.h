@@ -13,8 +13,8 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
 
 enum {
   VL_FILM_FORMAT = 3, /* 1 and 2 are read, too: file_common.c */
-  VL_FILM_MOST_RANGES = 1 << 16,
-  VL_FILM_MOST_HEADER = 1 << 26 /* bytes */
+  VL_FILM_MAX_RANGES = 1 << 16,
+  VL_FILM_MAX_HEADER = 1 << 26 /* bytes */
 };
 
 typedef struct vlSampleSpan {

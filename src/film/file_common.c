@@ -21,7 +21,7 @@ uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count) {
 
 vlResult vl_film_put_header(vlFileWriter *writer, const char *header) {
   size_t size = strlen(header);
-  if (size > VL_FILM_MOST_HEADER)
+  if (size > VL_FILM_MAX_HEADER)
     return VL_ERROR_ARGUMENT;
   vlFilmPreamble p = {.format = VL_FILM_FORMAT, .header_size = (uint32_t)size};
   memcpy(p.magic, vl_film_magic, sizeof p.magic);

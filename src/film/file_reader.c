@@ -68,7 +68,7 @@ static vlResult read_header(vlFilmReader *r, vlError *error) {
     return vl_fail(error, VL_ERROR_UNSUPPORTED,
                    "%s: film file of format %u; this version of velo reads format %d", r->path,
                    p.format, VL_FILM_FORMAT);
-  if (p.header_size > r->size - sizeof p || p.header_size > VL_FILM_MOST_HEADER)
+  if (p.header_size > r->size - sizeof p || p.header_size > VL_FILM_MAX_HEADER)
     return damaged(r, "it ends too early", error);
   char *text = vl_alloc(r->context, (size_t)p.header_size + 1);
   if (!text)
@@ -152,7 +152,7 @@ vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {
   if (result != VL_OK)
     return result;
   vl_film_block_window(r->shape.def.crop, r->next, window);
-  bool good = h->magic == VL_FILM_BLOCK_MAGIC && h->range_count <= VL_FILM_MOST_RANGES;
+  bool good = h->magic == VL_FILM_BLOCK_MAGIC && h->range_count <= VL_FILM_MAX_RANGES;
   uint32_t ranges = good ? h->range_count : 0;
   size_t whole = vl_film_block_head(&r->shape.def, window, ranges, NULL, &expected);
   if (ranges && r->format < VL_FILM_FORMAT) {

@@ -9,8 +9,6 @@
 #include "film/sums.h"
 #include "velo/image.h"
 
-enum { LIMIT = (127 + 40) << 23, WEIGHT_LIMIT = (127 + 4) << 23 };
-
 static size_t cells(const vlFilm *film) {
   return vl_film_pixels(film) * film->def.buckets;
 }
@@ -53,7 +51,8 @@ void vl_film_add_spectra(vlFilm *film, const vlFilmSpectra *a) {
       uint32_t bits = vl_float_bits(a->radiance[c][i]) & 0x7fffffffu;
       largest = bits > largest ? bits : largest;
     }
-    if (largest >= LIMIT || (vl_float_bits(w) & 0x7fffffffu) >= WEIGHT_LIMIT || x >= width ||
+    if (largest >= VL_MAX_COLOR_FLOAT ||
+        (vl_float_bits(w) & 0x7fffffffu) >= VL_MAX_WEIGHT_FLOAT || x >= width ||
         y >= film->height || !film->in_pass)
       continue; /* vl_film_add counts it */
     size_t at = (size_t)y * width + x;

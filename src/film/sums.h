@@ -13,6 +13,9 @@ __extension__ typedef __int128 vlInt128;
  * 2^31 samples: 75 integer bits, a sign and 50 fraction bits. Sums of weights and alpha need 4
  * + 31 integer bits and a sign. */
 enum { VL_COLOR_BITS = 50, VL_WEIGHT_BITS = 24, VL_ALPHA_BITS = 28 };
+/* Bits of the floats 2^40 and 16: absolute values from these on do not fit. Infinities and NaNs
+ * are larger, too. */
+enum { VL_MAX_COLOR_FLOAT = (127 + 40) << 23, VL_MAX_WEIGHT_FLOAT = (127 + 4) << 23 };
 
 /* Sums of weight * channel, and of weight: one cache line. */
 typedef struct vlFilmPixel {

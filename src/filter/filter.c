@@ -241,8 +241,8 @@ static bool is_valid(const vlPixelFilter *filter) {
   if ((unsigned)filter->kind >= 0 VL_PIXEL_FILTER_KINDS(COUNT))
     return false;
 #undef COUNT
-  if (!in_range(filter->radius_x, 0, VL_FILTER_RADIUS_MAX) ||
-      !in_range(filter->radius_y, 0, VL_FILTER_RADIUS_MAX))
+  if (!in_range(filter->radius_x, 0, VL_MAX_FILTER_RADIUS) ||
+      !in_range(filter->radius_y, 0, VL_MAX_FILTER_RADIUS))
     return false;
   if (filter->kind == VL_PIXEL_FILTER_GAUSSIAN && !in_range(filter->sigma, 0, 1e6f))
     return false;

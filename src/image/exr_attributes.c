@@ -169,8 +169,8 @@ static exr_attr_box2i_t box_of(const double n[16]) {
 }
 
 static exr_result_t set_strings(exr_context_t exr, const char *name, const char *text) {
-  enum { MOST = 64 };
-  const char *strings[MOST];
+  enum { MAX_STRINGS = 64 };
+  const char *strings[MAX_STRINGS];
   char copy[2048];
   int count = 0;
   if (strlen(text) >= sizeof copy)
@@ -180,7 +180,7 @@ static exr_result_t set_strings(exr_context_t exr, const char *name, const char 
     char *end = strchr(at, '\n');
     if (end)
       *end = 0;
-    if (count == MOST)
+    if (count == MAX_STRINGS)
       return EXR_ERR_INVALID_ATTR;
     strings[count++] = at;
     at = end ? end + 1 : NULL;

@@ -26,7 +26,7 @@ enum {
   VL_LOSS_ALPHA = 16,
   VL_LOSS_ETA = 16
 };
-#define VL_LOSS_MOST_ROOT 0.5f /* largest tabulated (eta - 1) / (eta + 1), for eta = 3 */
+#define VL_LOSS_MAX_ROOT 0.5f /* largest tabulated (eta - 1) / (eta + 1), for eta = 3 */
 
 /* Rows are equal steps of sqrt(alpha) over [0, 1], columns equal steps of sqrt(cos) over [0,
  * 1]. Lookups interpolate linearly. */
@@ -69,7 +69,7 @@ static inline float vl_albedo_mean(const float *mean, vlAlbedoCell alpha) {
 
 /* Position of the index in the tables of losses; eta >= 1. */
 static inline vlAlbedoCell vl_loss_cell(float eta) {
-  float c = (eta - 1.0f) / (eta + 1.0f) * ((float)(VL_LOSS_ETA - 1) / VL_LOSS_MOST_ROOT);
+  float c = (eta - 1.0f) / (eta + 1.0f) * ((float)(VL_LOSS_ETA - 1) / VL_LOSS_MAX_ROOT);
   c = c > 0.0f ? c : 0.0f;
   uint32_t first = c < (float)(VL_LOSS_ETA - 2) ? (uint32_t)c : VL_LOSS_ETA - 2;
   float t = c - (float)first;

@@ -35,8 +35,8 @@ enum {
 };
 
 /* A small hash table: the weight of each id (object, material, instance) in one pixel. A pixel
- * with more than VL_TALLY_MOST ids loses the later ones. */
-enum { VL_TALLY_SLOTS = 1024, VL_TALLY_MOST = 768 };
+ * with more than VL_MAX_TALLY ids loses the later ones. */
+enum { VL_TALLY_SLOTS = 1024, VL_MAX_TALLY = 768 };
 typedef struct vlTallyEntry {
   uint64_t key;
   int64_t weight;  /* units of 2^-24 */
@@ -45,7 +45,7 @@ typedef struct vlTallyEntry {
 } vlTallyEntry;
 typedef struct vlTally {
   uint32_t round, count, last; /* last: the slot of the previous lookup */
-  uint32_t used[VL_TALLY_MOST];
+  uint32_t used[VL_MAX_TALLY];
   vlTallyEntry slots[VL_TALLY_SLOTS];
 } vlTally;
 

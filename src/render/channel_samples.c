@@ -35,7 +35,7 @@ static vlTallyEntry *tally_find(vlTally *t, uint64_t key) {
     t->last = at;
     if (e->round == t->round)
       return e;
-    if (t->count == VL_TALLY_MOST)
+    if (t->count == VL_MAX_TALLY)
       return NULL;
     t->used[t->count++] = at;
     *e = (vlTallyEntry){.key = key, .round = t->round, .off = INFINITY};

@@ -43,7 +43,7 @@ static bool add_one(vlSplats *s, float x, float y, const float color[3]) {
   if (!(most < 0x1p35f && sum == sum))
     return false;
   Taps across = find_taps(s, 0, x), down = find_taps(s, 1, y);
-  double value[2 * VL_FILTER_RADIUS_MAX + 1];
+  double value[2 * VL_MAX_FILTER_RADIUS + 1];
   for (uint32_t i = 0; i < across.count; i++)
     value[i] = (double)vl_filter_curve_at(
         &s->filter->curve[0], (float)((double)x - (s->x0 + across.first + i) - 0.5));

@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 /* Sums of colors are exact from 2^-50 to 2^35 (splats.c). */
-static const double MOST = 0x1p30, SQUARES = VL_TAIL_SQUARES;
+static const double MAX_TAIL = 0x1p30, SQUARES = VL_TAIL_SQUARES;
 
 static uint32_t pixel_at(float x, uint32_t size) {
   return x > 0.0f ? ((double)x < size ? (uint32_t)x : size - 1) : 0;
@@ -25,7 +25,7 @@ static double measure(const vlTails *t, float x, float y, double odds, const dou
     squared += sample * sample * part;
     both += color[c] * (1 + odds) * limit * sample * part;
   }
-  return squared > t->rare * t->rare ? fmin(both, MOST) : 0;
+  return squared > t->rare * t->rare ? fmin(both, MAX_TAIL) : 0;
 }
 
 void vl_tails_measure(const vlTails *tails, uint32_t n, const float *x, const float *y,

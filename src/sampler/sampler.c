@@ -17,9 +17,9 @@ static uint32_t floor_sqrt(uint32_t x) {
 
 void vl_sampler_init(vlSampler *sampler, uint32_t kind, uint32_t seed, uint32_t width,
                      uint32_t height, uint32_t spp) {
-  enum { SET_MAX = 1 << 20 };
+  enum { MAX_SET = 1 << 20 };
   uint32_t count = spp ? spp : 1;
-  uint32_t set = count < SET_MAX ? count : SET_MAX, root = floor_sqrt(set);
+  uint32_t set = count < MAX_SET ? count : MAX_SET, root = floor_sqrt(set);
   /* Rows and columns: a factorisation with an aspect ratio of at most 2, if there is one; else
    * about sqrt(set) rows, the last of which are shorter by one cell. */
   uint32_t rows = root;

@@ -14,11 +14,11 @@ enum {
   POINTS = 7, /* near the middle: itself and towards the faces of the box */
   LAMPS = 12,
   AROUND = 24, /* rays from a point in all directions */
-  MOST = POINTS * AROUND > LAMPS *AROUND ? POINTS *AROUND : LAMPS *AROUND
+  MAX_RAYS = POINTS * AROUND > LAMPS *AROUND ? POINTS *AROUND : LAMPS *AROUND
 };
 
 typedef struct Rays {
-  double from[MOST][3], toward[MOST][3], reach[MOST];
+  double from[MAX_RAYS][3], toward[MAX_RAYS][3], reach[MAX_RAYS];
   uint32_t count;
 } Rays;
 

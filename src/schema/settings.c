@@ -25,8 +25,8 @@
     .type = VL_PARAMETER_COUNT, .member = #path, .offset = offsetof(Def, path), \
     .size = sizeof(((const Def *)NULL)->path), .description = line, __VA_ARGS__ \
   }
-#define SPP_MOST 16777216
-#define SIDE_MOST 65536
+#define MAX_SPP 16777216
+#define MAX_SIDE 65536
 
 /* ---- renders ----------------------------------------------------------------------------- */
 
@@ -46,11 +46,11 @@ static const vlParameter render_parameters[] = {
            VL_DEFAULT(VL_TRACER_PATH)),
     RENDER(CHOICE, render.sampler, "generator of the sample points", .choices = samplers,
            VL_DEFAULT(VL_SAMPLER_ZSOBOL)),
-    RENDER(COUNT, render.spp, "samples per pixel", WITHIN(1, SPP_MOST), VL_DEFAULT(16)),
+    RENDER(COUNT, render.spp, "samples per pixel", WITHIN(1, MAX_SPP), VL_DEFAULT(16)),
     RENDER(COUNT, render.seed, "seed of the random numbers", .unit = NULL),
     RENDER(COUNT, render.sequence,
-           "length of the sequence of samples; 0: chosen by the sampler", WITHIN(0, SPP_MOST)),
-    RENDER(COUNT, render.first_sample, "index of the first sample", WITHIN(0, SPP_MOST)),
+           "length of the sequence of samples; 0: chosen by the sampler", WITHIN(0, MAX_SPP)),
+    RENDER(COUNT, render.first_sample, "index of the first sample", WITHIN(0, MAX_SPP)),
     RENDER(COUNT, render.max_depth, "largest number of bounces of a path", WITHIN(0, 4096),
            VL_DEFAULT(5)),
     RENDER(COUNT, render.max_diffuse_depth,
@@ -166,9 +166,9 @@ static const char *const environments[] = {"auto", "none",  "studio", "sky",    
 static const char *const framings[] = {"auto", "corner", "front", NULL};
 #define COMPLETE(TYPE, ...) VL_PARAMETER(TYPE, vlCompleteDef, NULL, __VA_ARGS__)
 static const vlParameter complete_parameters[] = {
-    COMPLETE(COUNT, width, "width of the image; 0: the film's", WITHIN(0, SIDE_MOST),
+    COMPLETE(COUNT, width, "width of the image; 0: the film's", WITHIN(0, MAX_SIDE),
              .unit = "pixels"),
-    COMPLETE(COUNT, height, "height of the image; 0: the film's", WITHIN(0, SIDE_MOST),
+    COMPLETE(COUNT, height, "height of the image; 0: the film's", WITHIN(0, MAX_SIDE),
              .unit = "pixels"),
     COMPLETE(CHOICE, environment, "light from all directions", .choices = environments),
     COMPLETE(FILE, path, "image of the environment", .text = NULL),
@@ -257,16 +257,16 @@ static const vlParameter program_parameters[] = {
     OWN(DOUBLE, "turn", "rotation of the camera about the vertical axis", WITHIN(-1e6, 1e6),
         .unit = "degrees"),
     OWN(DOUBLE, "shutter", "time for which the shutter is open", WITHIN(0, 1e6), .unit = "s"),
-    OWN(COUNT, "width", "width of an image", WITHIN(1, SIDE_MOST), VL_DEFAULT(1280),
+    OWN(COUNT, "width", "width of an image", WITHIN(1, MAX_SIDE), VL_DEFAULT(1280),
         .unit = "pixels"),
-    OWN(COUNT, "height", "height of an image", WITHIN(1, SIDE_MOST), VL_DEFAULT(720),
+    OWN(COUNT, "height", "height of an image", WITHIN(1, MAX_SIDE), VL_DEFAULT(720),
         .unit = "pixels"),
-    OWN(DOUBLE, "x", "column of a point of the image", WITHIN(-SIDE_MOST, SIDE_MOST),
+    OWN(DOUBLE, "x", "column of a point of the image", WITHIN(-MAX_SIDE, MAX_SIDE),
         .unit = "pixels"),
-    OWN(DOUBLE, "y", "row of a point of the image", WITHIN(-SIDE_MOST, SIDE_MOST),
+    OWN(DOUBLE, "y", "row of a point of the image", WITHIN(-MAX_SIDE, MAX_SIDE),
         .unit = "pixels"),
     OWN(COUNT, "samples", "number of samples whose paths are shown; 0: the usual number",
-        WITHIN(0, SIDE_MOST)),
+        WITHIN(0, MAX_SIDE)),
     OWN(COUNT, "show", "number of paths that are shown one by one", WITHIN(0, 64)),
 };
 static const vlKindRow program_row = {VL_ROW_PARAMETERS(program_parameters), .name = "program",

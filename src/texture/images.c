@@ -309,8 +309,8 @@ static bool list_image(vlWorld *world, Preload *job, const vlTextureDef *def, vl
 }
 
 vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *error) {
-  enum { MOST = 4096 }; /* duplicates are found by linear search */
-  size_t most = scene->textures.count < MOST ? scene->textures.count : MOST;
+  enum { MAX_TEXTURES = 4096 }; /* duplicates are found by linear search */
+  size_t most = scene->textures.count < MAX_TEXTURES ? scene->textures.count : MAX_TEXTURES;
   Preload job = {.world = world, .scene = scene};
   job.defs = vl_alloc_array(world->context, most + 1, sizeof *job.defs);
   job.keys = vl_alloc_array(world->context, most + 1, sizeof *job.keys);

@@ -12,15 +12,15 @@
   PARAMETER(COUNT, "maxdepth", render.max_depth,                                        \
             "largest number of bounces of a path; numbers above 4096 are read as 4096", \
             VL_DEFAULT(5), VL_FROM(0), .flags = VL_PARAMETER_RULE)
-#define LIMIT(name, member, kind)                                                              \
+#define MAX_DEPTH_OF_KIND(name, member, kind)                                                  \
   PARAMETER(COUNT, name, render.member,                                                        \
             "largest number of " kind " of a path; 0: no other limit than maxdepth", .low = 0, \
             .high = 4096)
-#define LIMITS                                                                     \
-  LIMIT("maxdiffusedepth", max_diffuse_depth, "diffuse bounces"),                  \
-      LIMIT("maxglossydepth", max_glossy_depth, "glossy or specular reflections"), \
-      LIMIT("maxtransmissiondepth", max_transmission_depth, "transmissions"),      \
-      LIMIT("maxvolumedepth", max_volume_depth, "scatterings in media")
+#define MAX_DEPTHS_OF_KINDS                                                                    \
+  MAX_DEPTH_OF_KIND("maxdiffusedepth", max_diffuse_depth, "diffuse bounces"),                  \
+      MAX_DEPTH_OF_KIND("maxglossydepth", max_glossy_depth, "glossy or specular reflections"), \
+      MAX_DEPTH_OF_KIND("maxtransmissiondepth", max_transmission_depth, "transmissions"),      \
+      MAX_DEPTH_OF_KIND("maxvolumedepth", max_volume_depth, "scatterings in media")
 #define REGULARIZE                                                                            \
   PARAMETER(BOOL, "regularize", build.regularize,                                             \
             "regularization: surfaces that a path hits after it has been scattered are made " \
@@ -38,8 +38,8 @@ extern const char *const vl_tracer_light_samplers[];
     .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, .description = "ignored" \
   }
 /* All of the tracers that follow paths from the camera only. */
-#define ONE_WAY                                                            \
-  DEPTH, LIMITS, LIGHT_SAMPLER, REGULARIZE, IGNORED(BOOL, "samplelights"), \
+#define ONE_WAY                                                                         \
+  DEPTH, MAX_DEPTHS_OF_KINDS, LIGHT_SAMPLER, REGULARIZE, IGNORED(BOOL, "samplelights"), \
       IGNORED(BOOL, "samplebsdf")
 #define PATHS                                                       \
   PARAMETER(COUNT, "photonsperiteration", render.light_paths,       \

@@ -7,7 +7,7 @@
 
 #include "velo/image.h"
 
-enum { MOST = 256 };
+enum { MAX_CHANNELS = 256 };
 
 static int fail(const char *what) {
   fprintf(stderr, "helper_mutate: %s\n", what);
@@ -44,9 +44,9 @@ int main(int argc, char **argv) {
   const vlPixelType types[2] = {VL_PIXEL_F32, VL_PIXEL_U32};
   bool found = false;
   for (int k = 0; k < 2; k++) {
-    const char *names[MOST];
+    const char *names[MAX_CHANNELS];
     uint32_t count = 0;
-    for (uint32_t i = 0; i < vl_image_channels(all) && count < MOST; i++)
+    for (uint32_t i = 0; i < vl_image_channels(all) && count < MAX_CHANNELS; i++)
       if (vl_image_stored_type(all, i) == types[k])
         names[count++] = vl_image_channel_name(all, i);
     if (count == 0)

@@ -15,7 +15,7 @@
 #include "api/small_world.h"
 #include "velo/film.h"
 
-enum { STOP = 2, SPP = 4, MOST = 1 << 20 };
+enum { STOP = 2, SPP = 4, MAX_SIZE = 1 << 20 };
 static char folder[64];
 static vlContext *context;
 static vlWorld *world;
@@ -57,15 +57,15 @@ static size_t bytes_of(const char *name, char *bytes) {
   FILE *file = fopen(path, "rb");
   if (!file)
     return 0;
-  size_t size = fread(bytes, 1, MOST, file);
+  size_t size = fread(bytes, 1, MAX_SIZE, file);
   fclose(file);
   return size;
 }
 
 static void assert_same_files(const char *a, const char *b) {
-  static char x[MOST], y[MOST];
+  static char x[MAX_SIZE], y[MAX_SIZE];
   size_t n = bytes_of(a, x), m = bytes_of(b, y);
-  assert_true(n > 0 && n < MOST);
+  assert_true(n > 0 && n < MAX_SIZE);
   assert_int_equal(n, m);
   assert_memory_equal(x, y, n);
 }

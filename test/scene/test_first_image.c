@@ -114,11 +114,11 @@ static void flat_models(void **state) {
 
 /* A ball at x = `x` whose triangles are smaller on the side of -z than on that of +z, finer
  * times as many. */
-enum { COLUMNS_OF_BALL = 24, COARSE = 16, RINGS_MOST = 80 };
+enum { COLUMNS_OF_BALL = 24, COARSE = 16, MAX_RINGS = 80 };
 
 static void add_ball(Model *m, float x, int finer, bool inward) {
-  static float p[3 * (RINGS_MOST + 1) * COLUMNS_OF_BALL];
-  static uint32_t indices[6 * RINGS_MOST * COLUMNS_OF_BALL];
+  static float p[3 * (MAX_RINGS + 1) * COLUMNS_OF_BALL];
+  static uint32_t indices[6 * MAX_RINGS * COLUMNS_OF_BALL];
   const int rings = COARSE * (1 + finer);
   const double pi = 3.14159265358979323846;
   size_t faces = 0;
@@ -266,9 +266,9 @@ static void charts(void **state) {
 /* A body that is turned about y: radii and heights from the lowest to the highest. z: turned
  * about z. */
 static void add_turned(Model *m, const float (*profile)[2], uint32_t rows, bool z) {
-  enum { AROUND = 24, MOST = 16 };
-  float p[3 * AROUND * MOST];
-  uint32_t indices[6 * AROUND * MOST], n = 0;
+  enum { AROUND = 24, MAX_ROWS = 16 };
+  float p[3 * AROUND * MAX_ROWS];
+  uint32_t indices[6 * AROUND * MAX_ROWS], n = 0;
   for (uint32_t i = 0; i < rows; i++)
     for (uint32_t k = 0; k < AROUND; k++) {
       const double turn = 2 * M_PI * k / AROUND;

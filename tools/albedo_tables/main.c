@@ -110,7 +110,7 @@ static void fill_row(vlPrincipledTables *t, uint32_t row) {
 }
 
 static void fill_losses(vlPrincipledTables *t, int side, uint32_t index) {
-  float root = VL_LOSS_MOST_ROOT * (float)index / (float)(VL_LOSS_ETA - 1),
+  float root = VL_LOSS_MAX_ROOT * (float)index / (float)(VL_LOSS_ETA - 1),
         eta = (1.0f + root) / (1.0f - root);
   for (uint32_t i = 0; i < VL_LOSS_ALPHA; i++) {
     float r = (float)i / (float)(VL_LOSS_ALPHA - 1),

@@ -6,7 +6,7 @@ import time
 
 CHECKPOINT = 0.02  # seconds
 SLACK = 2.0  # seconds for a pass, the writing of a film and other processes of the machine
-MOST = 8  # kills of one film; then it may be completed
+MAX_KILLS = 8  # kills of one film; then it may be completed
 VARIANTS = [[], ["--tracer", "volpath"], ["--tracer", "bidirectional"], ["--tracer", "merging"], ["--tracer", "sppm"], ["--tracer", "lightpath"],
             ["--channels", "error,Z"], ["--spectrum", "4"], ["--sampler", "stratified", "--sequence", "256"], ["--color", "rgb"],
             ["--crop", "10,20,100,90"]]
@@ -100,7 +100,7 @@ class Film:
 
 def trial_kill(trial):
     film = Film(trial)
-    for _ in range(trial.draw.randint(2, MOST)):
+    for _ in range(trial.draw.randint(2, MAX_KILLS)):
         if film.kill() or trial.problems:
             break
     if not trial.problems:

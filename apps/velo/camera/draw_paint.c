@@ -53,14 +53,14 @@ typedef enum Pieces { SEEN, HIDDEN } Pieces;
 
 static void draw_line(const Canvas *c, const vlDrawingLine *l, Pieces pieces, double width,
                       bool dashed) {
-  enum { MOST = 4096 };
+  enum { MAX_STEPS = 4096 };
   const vlCamera *camera = &c->outside->camera;
   double a[2], b[2];
   if (!vl_camera_project(camera, l->from, a, NULL) ||
       !vl_camera_project(camera, l->to, b, NULL))
     return;
   double length = hypot(b[0] - a[0], b[1] - a[1]), dash = 5 * c->pen;
-  int steps = (int)fmin(MOST, ceil(length / 1.5)) + 1;
+  int steps = (int)fmin(MAX_STEPS, ceil(length / 1.5)) + 1;
   double last[2] = {a[0], a[1]};
   for (int i = 1; i <= steps; i++) {
     double point[3], middle[3], p[2], q[2], z;

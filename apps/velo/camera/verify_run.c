@@ -26,7 +26,7 @@ typedef struct Expected {
 typedef struct Pose {
   const Verification *v;
   Placement placement;
-  Expected expected[TARGET_MAX * TARGET_MAX];
+  Expected expected[MAX_TARGET_SIDE * MAX_TARGET_SIDE];
   int count;
   uint32_t crop[4];
 } Pose;

@@ -41,7 +41,7 @@ static int differing_bits(unsigned a, unsigned b) {
 /* Marker k: the k-th of a fixed sequence of codes. Each differs in at least four bits from all
  * earlier ones and from itself, in every rotation. */
 static unsigned marker_code(int index) {
-  unsigned codes[TARGET_MAX * TARGET_MAX], candidate = 0;
+  unsigned codes[MAX_TARGET_SIDE * MAX_TARGET_SIDE], candidate = 0;
   Random random = {2026};
   for (int count = 0; count <= index;) {
     candidate = (unsigned)(random_unit(&random) * 65536.0);

@@ -8,7 +8,7 @@
 #include "velo/confine.h"
 
 void confine_read(Confine *confine, const char *path) {
-  if (path && confine->read_count < CONFINE_MOST)
+  if (path && confine->read_count < CONFINE_MAX_PATHS)
     confine->read[confine->read_count++] = path;
 }
 
@@ -29,7 +29,7 @@ void confine_read_folder(Confine *confine, const char *path) {
 }
 
 void confine_write(Confine *confine, const char *path) {
-  if (path && confine->write_count < CONFINE_MOST)
+  if (path && confine->write_count < CONFINE_MAX_PATHS)
     confine->write[confine->write_count++] = path;
 }
 

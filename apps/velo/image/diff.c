@@ -13,7 +13,7 @@
 enum { DIFF_OUTPUT, DIFF_THRESHOLD, DIFF_JSON };
 
 /* The metrics. The name of a metric is also the name of its threshold. */
-typedef enum MetricKind { METRIC_MOST, METRIC_LEAST, METRIC_FROM_ONE } MetricKind;
+typedef enum MetricKind { METRIC_UPPER_BOUND, METRIC_LOWER_BOUND, METRIC_FROM_ONE } MetricKind;
 typedef struct Metric {
   const char *name;
   MetricKind kind; /* whether the threshold is an upper bound, a lower bound, or a largest
@@ -25,14 +25,14 @@ enum { METRICS = 8 };
 
 static void list_metrics(const vlImageDiff *d, Metric metrics[METRICS]) {
   const Metric list[METRICS] = {
-      {"mse", METRIC_MOST, d->mse},
-      {"relmse", METRIC_MOST, d->rel_mse},
-      {"psnr", METRIC_LEAST, d->psnr},
-      {"flip", METRIC_MOST, d->flip},
+      {"mse", METRIC_UPPER_BOUND, d->mse},
+      {"relmse", METRIC_UPPER_BOUND, d->rel_mse},
+      {"psnr", METRIC_LOWER_BOUND, d->psnr},
+      {"flip", METRIC_UPPER_BOUND, d->flip},
       {"meanratio", METRIC_FROM_ONE, d->mean_ratio},
-      {"maxabs", METRIC_MOST, d->max_abs},
-      {"differing", METRIC_MOST, (double)d->differing},
-      {"notfinite", METRIC_MOST, (double)d->not_finite},
+      {"maxabs", METRIC_UPPER_BOUND, d->max_abs},
+      {"differing", METRIC_UPPER_BOUND, (double)d->differing},
+      {"notfinite", METRIC_UPPER_BOUND, (double)d->not_finite},
   };
   memcpy(metrics, list, sizeof list);
 }
@@ -68,9 +68,9 @@ static int read_threshold(const char *text, const Metric metrics[METRICS], int *
 /* A metric that is NaN always fails. */
 static bool accepted(const Metric *metric, double limit) {
   switch (metric->kind) {
-    case METRIC_MOST:
+    case METRIC_UPPER_BOUND:
       return metric->value <= limit;
-    case METRIC_LEAST:
+    case METRIC_LOWER_BOUND:
       return metric->value >= limit;
     case METRIC_FROM_ONE:
       return fabs(metric->value - 1) <= limit;

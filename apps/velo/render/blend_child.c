@@ -17,7 +17,7 @@
 #include "render/job.h"
 #include "render/noise.h"
 
-enum { PATH_SIZE = 4096, MOST_WORDS = 64, WORD_SIZE = 64 };
+enum { PATH_SIZE = 4096, WORD_SIZE = 64 };
 
 static const char PROGRAM[] =
     "import os, sys\n"
@@ -150,7 +150,7 @@ static int wait_for(Blender *b, BlenderEvent wanted) {
 
 /* The words of the options that the add-on follows: "spp=64". */
 typedef struct Words {
-  const char *list[MOST_WORDS];
+  const char *list[CHILD_MAX_WORDS];
   int count;
   char texts[16][WORD_SIZE];
   int text_count;
@@ -158,7 +158,7 @@ typedef struct Words {
 } Words;
 
 static void add_word(Words *words, const char *word) {
-  if (words->count < MOST_WORDS - 1)
+  if (words->count < CHILD_MAX_WORDS - 1)
     words->list[words->count++] = word;
 }
 

@@ -16,8 +16,6 @@
 
 extern char **environ;
 
-enum { MOST_WORDS = 64 };
-
 bool child_find(const char *folders, const char *name, char *program, size_t size) {
   while (folders && *folders) {
     const size_t n = strcspn(folders, ":");
@@ -43,9 +41,9 @@ static int spawn(Child *child, const char *program, const char *const *words,
                  const posix_spawn_file_actions_t *actions) {
   posix_spawnattr_t attributes;
   sigset_t none, reset;
-  char *copies[MOST_WORDS];
+  char *copies[CHILD_MAX_WORDS];
   int count = 0;
-  for (; words[count] && count < MOST_WORDS - 1; count++)
+  for (; words[count] && count < CHILD_MAX_WORDS - 1; count++)
     copies[count] = (char *)words[count];
   copies[count] = NULL;
   sigemptyset(&none);

@@ -9,8 +9,10 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-/* Milliseconds between two looks for a signal to velo. */
-enum { CHILD_WAIT = 50 };
+enum {
+  CHILD_WAIT = 50,     /* milliseconds between two looks for a signal to velo */
+  CHILD_MAX_WORDS = 64 /* arguments of a program, with the null behind them */
+};
 
 typedef struct Child {
   pid_t id;
@@ -21,7 +23,8 @@ typedef struct Child {
 /* Looks for a program in the folders of a list like PATH; those that are no absolute paths are
  * left out. False: it is not there. */
 bool child_find(const char *folders, const char *name, char *program, size_t size);
-/* Starts a program; words: its arguments, the first its name, a null last. output, further: its
+/* Starts a program; words: its arguments, the first its name, a null last; at most
+ * CHILD_MAX_WORDS. output, further: its
  * descriptors 1 and 3; -1: none. Returns 0, or the number of the system's error. */
 int child_start(Child *child, const char *program, const char *const *words, int output,
                 int further);

@@ -190,7 +190,7 @@ int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
 int receipt_check_scene(const char *path, const char *what, const char *owner,
                         const char *option) {
   struct stat info;
-  if (strlen(path) >= RECEIPT_MOST_WORD)
+  if (strlen(path) >= RECEIPT_MAX_WORD)
     return report_failure(STATUS_SCENE, "%s: the path of the scene in its receipt is too long",
                           owner);
   if (stat(path, &info) != 0)

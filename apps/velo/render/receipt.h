@@ -9,9 +9,7 @@
 
 /* The name of the attribute. */
 #define RECEIPT_ATTRIBUTE "velo.receipt"
-enum {
-  RECEIPT_MOST_WORD = 4096
-}; /* longest word of a receipt's command, bytes with the zero */
+enum { RECEIPT_MAX_WORD = 4096 }; /* longest word of a receipt's command, bytes with the zero */
 
 /* Settings shared by all receipts of a command. */
 typedef struct ReceiptPlan {

@@ -26,7 +26,7 @@ int receipt_parse_command(const vlReceipt *receipt, const char *path, Arguments 
       continue;
     if (count == most)
       return fail_command(path, "it is too long");
-    if (strlen(word) >= RECEIPT_MOST_WORD)
+    if (strlen(word) >= RECEIPT_MAX_WORD)
       return fail_command(path, "a word is too long");
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0)
       return fail_command(path, "it asks for help");

@@ -10,10 +10,10 @@
 #include "velo/channels.h"
 
 enum {
-  SIDE = 256,
-  SPP = 64,
-  MOST = 64
-}; /* pixels of the longer side; samples; materials printed */
+  SIDE = 256,    /* pixels of the longer side */
+  SPP = 64,      /* samples */
+  MAX_SHOWN = 64 /* materials printed */
+};
 
 /* An image of a scene, with the material of each pixel. */
 typedef struct Shot {
@@ -98,7 +98,7 @@ static void print_ratios(const Shot *before, const Sums *sums, uint32_t count) {
   for (uint32_t id = 0; id <= count; id++) {
     const Sums *s = &sums[id];
     vlIdInfo info = {0};
-    if (!s->pixels || printed++ >= MOST)
+    if (!s->pixels || printed++ >= MAX_SHOWN)
       continue;
     printf("%8llu ", (unsigned long long)s->pixels);
     for (int c = 0; c < 3; c++)

@@ -17,7 +17,7 @@ enum { VERIFY_REPLICATES = 32, VERIFY_SECOND = 4 };
 enum { VERIFY_TRIAL = 3 };
 /* The reference renderer's share of the rays, relative to another run's. */
 enum { VERIFY_REFERENCE_SHARES = 3 };
-enum { VERIFY_MOST_RUNS = 24, VERIFY_MOST_MATERIALS = 32, VERIFY_MOST_NOTES = 16 };
+enum { VERIFY_MAX_RUNS = 24, VERIFY_MAX_MATERIALS = 32, VERIFY_MAX_NOTES = 16 };
 
 /* ---- verify_plan.c: what is rendered, and what is compared with what --------------------- */
 
@@ -104,9 +104,9 @@ typedef struct Verify {
   vlEmissionId *emissions; /* of each shape, as in the file */
   uint32_t shapes, light_count;
 
-  VerifyRun runs[VERIFY_MOST_RUNS];
+  VerifyRun runs[VERIFY_MAX_RUNS];
   int run_count;
-  char notes[VERIFY_MOST_NOTES][240]; /* what is not compared, and why */
+  char notes[VERIFY_MAX_NOTES][240]; /* what is not compared, and why */
   int note_count;
 
   VerifyCell *cells;

@@ -12,7 +12,7 @@
 
 void verify_note(Verify *v, const char *format, ...) {
   va_list arguments;
-  if (v->note_count == VERIFY_MOST_NOTES)
+  if (v->note_count == VERIFY_MAX_NOTES)
     return;
   va_start(arguments, format);
   vsnprintf(v->notes[v->note_count++], sizeof v->notes[0], format, arguments);
@@ -110,7 +110,7 @@ static Features find_features(Verify *v) {
 /* ---- the runs ---------------------------------------------------------------------------- */
 
 static int add(Verify *v, VerifyRun run) {
-  if (v->run_count == VERIFY_MOST_RUNS)
+  if (v->run_count == VERIFY_MAX_RUNS)
     return run.against;
   v->runs[v->run_count] = run;
   return v->run_count++;

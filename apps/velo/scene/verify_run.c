@@ -157,7 +157,7 @@ static void make_materials(Verify *v, const vlImage *ids, uint32_t *pixels_of,
   const uint32_t *id = vl_image_const_pixels(ids);
   for (size_t i = 0; i < pixels; i++)
     pixels_of[id[i * step]]++;
-  for (uint32_t k = 0; k < VERIFY_MOST_MATERIALS; k++) {
+  for (uint32_t k = 0; k < VERIFY_MAX_MATERIALS; k++) {
     uint32_t most = 0;
     for (uint32_t m = 0; m <= materials; m++)
       if (pixels_of[m] > pixels_of[most])
@@ -179,7 +179,7 @@ static vlResult make_cells(Verify *v, const vlWorld *world, const vlImage *ids) 
   const uint32_t blocks = v->columns * v->rows,
                  materials = vl_world_id_count(world, VL_ID_MATERIAL);
   uint32_t *pixels_of = calloc((size_t)materials + 1, sizeof *pixels_of);
-  v->cells = calloc((size_t)1 + blocks + VERIFY_MOST_MATERIALS, sizeof *v->cells);
+  v->cells = calloc((size_t)1 + blocks + VERIFY_MAX_MATERIALS, sizeof *v->cells);
   v->block_of = calloc(pixels, sizeof *v->block_of);
   v->material_of = calloc(pixels, sizeof *v->material_of);
   if (pixels_of && v->cells && v->block_of && v->material_of) {

@@ -200,7 +200,7 @@ bool message_parse(const char *text, size_t size, ViewMessage *message,
                    char why[VL_GIVEN_MESSAGE]) {
   memset(message, 0, sizeof *message);
   strcpy(why, "not a JSON object");
-  if (size > MESSAGE_LARGEST) {
+  if (size > MESSAGE_MAX_SIZE) {
     strcpy(why, "too long");
     return false;
   }

@@ -10,10 +10,10 @@
 #include "velo/setting.h"
 
 enum {
-  MESSAGE_LARGEST = 65536, /* bytes */
-  MESSAGE_NAME = 200,      /* longest text of a message, bytes with the zero */
-  MESSAGE_NUMBERS = 16,    /* most numbers of a field */
-  MESSAGE_FIELDS = 40      /* most fields of an edit */
+  MESSAGE_MAX_SIZE = 65536, /* bytes */
+  MESSAGE_NAME = 200,       /* longest text of a message, bytes with the zero */
+  MESSAGE_NUMBERS = 16,     /* most numbers of a field */
+  MESSAGE_FIELDS = 40       /* most fields of an edit */
 };
 
 typedef enum MessageKind {

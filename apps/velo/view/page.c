@@ -65,7 +65,7 @@ double server_seconds(const Server *s) {
 
 /* The page has set a message. */
 EMSCRIPTEN_KEEPALIVE void velo_page_message(void) {
-  static char text[MESSAGE_LARGEST];
+  static char text[MESSAGE_MAX_SIZE];
   static ViewMessage message;
   char why[VL_GIVEN_MESSAGE];
   int size = velo_page_take(text, sizeof text);

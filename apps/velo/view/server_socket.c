@@ -259,7 +259,7 @@ static int receive(struct lws *wsi, Connection *connection, const char *in, size
     return 0;
   if (lws_frame_is_binary(wsi))
     return refuse(wsi, client, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "text is expected");
-  if (client->received_size + size > MESSAGE_LARGEST)
+  if (client->received_size + size > MESSAGE_MAX_SIZE)
     return refuse(wsi, client, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "too long");
   char *larger = realloc(client->received, client->received_size + size + 1);
   if (!larger)

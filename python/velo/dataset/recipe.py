@@ -193,8 +193,8 @@ _PLACINGS = {"poses": Poses, "on_surface": OnSurface, "on_scene": OnScene, "in_v
 _CAMERAS = {"fixed": Fixed, "around": Around, "trajectory": Trajectory, "rig": Rig}
 _MEMBERS = {"lights": Lights, "environment": Environment, "materials": Materials, "ground": Ground,
             "distractors": Distractors, "sensor": Sensor}
-_MOST_VALUES = 10000000  # of a recipe's file
-_MOST_LETTERS = 1 << 28
+_MAX_VALUES = 10000000  # of a recipe's file
+_MAX_LETTERS = 1 << 28
 
 
 def _make(kind: type, data: Any, where: str) -> Any:
@@ -251,14 +251,14 @@ def _bounded(data: Any, left: int, depth: int = 0) -> int:
         for item in data.values():
             left = _bounded(item, left, depth + 1)
     if left < 0:
-        raise UsageError(f"recipe: more than {_MOST_VALUES} values")
+        raise UsageError(f"recipe: more than {_MAX_VALUES} values")
     return left
 
 
 def recipe_from(data: dict[str, Any], folder: str = "") -> Recipe:
     """A recipe from dicts and lists, as YAML or JSON have them."""
     from velo.dataset.check import checked
-    _bounded(data, _MOST_VALUES)
+    _bounded(data, _MAX_VALUES)
     recipe: Recipe = _make(Recipe, data, "recipe")
     recipe = checked(recipe)
     recipe.folder = recipe.folder or folder
@@ -318,9 +318,9 @@ def read_recipe(path: Union[str, "os.PathLike[str]"]) -> Recipe:
     try:
         try:
             with open(path, encoding="utf-8") as file:
-                text = file.read(_MOST_LETTERS + 1)
-            if len(text) > _MOST_LETTERS:
-                raise UsageError(f"a recipe has at most {_MOST_LETTERS} letters")
+                text = file.read(_MAX_LETTERS + 1)
+            if len(text) > _MAX_LETTERS:
+                raise UsageError(f"a recipe has at most {_MAX_LETTERS} letters")
             data = _read_json(text) if os.fspath(path).endswith(".json") else _read_yaml(text)
         except UnicodeDecodeError as problem:
             raise UsageError(f"this is not UTF-8: byte {problem.start}") from None

@@ -13,7 +13,7 @@
 #include "math/octahedral.h"
 #include "velo/light.h"
 
-enum { SMALLEST = 16, LARGEST = 1024, LEVELS = 7, LOBE_SAMPLES = 128 };
+enum { MIN_SIDE = 16, MAX_SIDE = 1024, LEVELS = 7, LOBE_SAMPLES = 128 };
 
 typedef struct Sky {
   vlMipmap *map; /* null: uniform */
@@ -264,12 +264,12 @@ static void halve(const Level *from, Level *to) {
 }
 
 static bool make_levels(Cube *cube) {
-  uint32_t side = SMALLEST;
+  uint32_t side = MIN_SIDE;
   for (size_t i = 0; i < cube->skies.count; i++)
-    while (cube->skies.items[i].map && side < LARGEST &&
+    while (cube->skies.items[i].map && side < MAX_SIDE &&
            2.45 * side < cube->skies.items[i].map->levels[0].width)
       side *= 2;
-  for (cube->levels = 0; side >= SMALLEST; side /= 2, cube->levels++) {
+  for (cube->levels = 0; side >= MIN_SIDE; side /= 2, cube->levels++) {
     const uint32_t k = cube->levels;
     if (!new_level(cube, &cube->plain[k], side) ||
         (k && !new_level(cube, &cube->lobes[k], side)))

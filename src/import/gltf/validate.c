@@ -5,13 +5,13 @@
 
 #include "import/gltf/gltf.h"
 
-enum { MOST = 200 }; /* messages */
+enum { MAX_MESSAGES = 200 }; /* messages */
 
 /* The first error of the scene that is thrown away becomes a message, and the next object is
  * read. */
 static void flush(vlGltf *g, vlScene *kept, uint32_t *reported) {
   vlError *e = &g->scene->error;
-  if (e->code != VL_OK && e->code != VL_ERROR_MEMORY && ++*reported <= MOST)
+  if (e->code != VL_OK && e->code != VL_ERROR_MEMORY && ++*reported <= MAX_MESSAGES)
     vl_log(g->context, VL_LOG_ERROR, e, "no scene uses it, but: %s", e->message);
   if (e->code == VL_ERROR_MEMORY)
     vl_scene_fail(kept, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
@@ -37,7 +37,7 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
       }
       if (!json_is_number(number) || !isfinite(own) || own == (float)json_number_value(number))
         continue;
-      if (++*reported <= MOST)
+      if (++*reported <= MAX_MESSAGES)
         vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(at, keys[k], c),
                      "%s: %.9g is given, the data has %.9g", codes[k],
                      json_number_value(number), (double)own);
@@ -62,7 +62,7 @@ static void check_accessor(vlGltf *g, size_t index, uint32_t *reported) {
 /* ---- what nothing uses ------------------------------------------------------------------- */
 
 static void report_unused(vlGltf *g, const char *array, size_t index, uint32_t *reported) {
-  if (++*reported <= MOST)
+  if (++*reported <= MAX_MESSAGES)
     vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(NULL, array, index),
                  "UNUSED_OBJECT: the scene does not use it");
 }

@@ -49,11 +49,11 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
 /* Reads the name of the sensor. The default white of a measured sensor is daylight of 6500 K.
  * When permissive, the standard observer with the same white replaces an unknown sensor. */
 static bool read_sensor_name(vlDict *dict, double *white) {
-  enum { MOST = 64 };
-  const char *names[MOST], *plain = vl_sensor_name(0), *name = plain;
+  enum { MAX_SENSORS = 64 };
+  const char *names[MAX_SENSORS], *plain = vl_sensor_name(0), *name = plain;
   uint32_t count = 0;
   vlImport *import = dict->import;
-  while (count < MOST && vl_sensor_name(count)) {
+  while (count < MAX_SENSORS && vl_sensor_name(count)) {
     names[count] = vl_sensor_name(count);
     count++;
   }

@@ -179,11 +179,11 @@ static Rule *const rules[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
 /* ---- materials --------------------------------------------------------------------------- */
 
 static bool read_material(vlDict *dict, vlMaterialDef *def) {
-  enum { MOST = 64 };
-  bool is_given[MOST];
+  enum { MAX_PARAMETERS = 64 };
+  bool is_given[MAX_PARAMETERS];
   const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
   const Reading r = {dict, row, is_given};
-  assert(row->parameter_count <= MOST);
+  assert(row->parameter_count <= MAX_PARAMETERS);
   return vl_import_parameters(dict, row, def, true, is_given) &&
          (!rules[def->kind] || rules[def->kind](&r, def)) && vl_dict_done(dict);
 }

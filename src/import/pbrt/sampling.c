@@ -116,17 +116,17 @@ static bool read_filter(vlImport *import, vlSceneDefs *s) {
 
 /* ---- integrator -------------------------------------------------------------------------- */
 
-/* Reads the maximal path length and limits it to MOST. Longer paths do not contribute
+/* Reads the maximal path length and limits it to MAX_DEPTH. Longer paths do not contribute
  * visibly. */
 static void read_depth(vlDict *dict, vlSceneDefs *s) {
-  enum { MOST = 4096 };
+  enum { MAX_DEPTH = 4096 };
   vl_dict_count(dict, "maxdepth", 0, &s->render.max_depth);
-  if (s->render.max_depth <= MOST)
+  if (s->render.max_depth <= MAX_DEPTH)
     return;
-  vl_import_warn(dict->import, VL_LOG_INFO,
-                 vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->source,
-                 "%s: \"maxdepth\" %u: %d is taken", dict->what, s->render.max_depth, MOST);
-  s->render.max_depth = MOST;
+  vl_import_warn(
+      dict->import, VL_LOG_INFO, vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->source,
+      "%s: \"maxdepth\" %u: %d is taken", dict->what, s->render.max_depth, MAX_DEPTH);
+  s->render.max_depth = MAX_DEPTH;
 }
 
 static void read_light_sampler(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {

@@ -159,12 +159,12 @@ static Rule *const rules[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
 /* ---- textures ---------------------------------------------------------------------------- */
 
 static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pending) {
-  enum { MOST = 64 };
-  bool is_given[MOST];
+  enum { MAX_PARAMETERS = 64 };
+  bool is_given[MAX_PARAMETERS];
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
   const Reading r = {dict, row, is_given, &pending->ctm};
   vlMat4 texture_from_world;
-  assert(row->parameter_count <= MOST);
+  assert(row->parameter_count <= MAX_PARAMETERS);
   if (!vl_mat4_inverse(pending->ctm, &texture_from_world))
     return vl_import_fail(dict->import, VL_ERROR_SCENE, pending->source,
                           "%s: the current transform is singular", dict->what);

@@ -178,9 +178,9 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
 }
 
 bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOldAction others) {
-  enum { MOST = 64 };
-  bool known[MOST] = {false};
-  if (s->params.count > MOST)
+  enum { MAX_PARAMETERS = 64 };
+  bool known[MAX_PARAMETERS] = {false};
+  if (s->params.count > MAX_PARAMETERS)
     return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "too many parameters");
   for (const vlOldRow *row = rows; row && row->name; row++)
     if (!apply(file, s, row, known))

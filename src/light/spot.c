@@ -13,7 +13,9 @@ vlResult vl_compile_light_spot(vlWorld *world, const vlLightDef *def, vlWorldLig
   light->cone_squared = def->cone_squared;
   light->has_cone = true;
   float factor = def->scale;
-  float solid = 2 * VL_PI * ((1 - light->cos_start) + (light->cos_start - light->cos_end) / 2);
+  float mean_edge = def->cone_squared ? 1 / 3.0f : 0.5f; /* of the falloff over the edge */
+  float solid =
+      2 * VL_PI * ((1 - light->cos_start) + mean_edge * (light->cos_start - light->cos_end));
   if (def->power == def->power)
     factor *= (float)(def->power / solid);
   vlResult r = vl_light_color(world, &def->color, factor, e, error);

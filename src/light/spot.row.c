@@ -29,5 +29,6 @@ double vl_light_power_spot(const vlLightDef *def, double luminance, double radiu
   double inner = vl_precise_cos((double)def->cone_angle - (double)def->cone_delta),
          outer = vl_precise_cos((double)def->cone_angle);
   (void)radius;
-  return 2 * PI * luminance * ((1 - inner) + 0.5 * (inner - outer));
+  const double mean_edge = def->cone_squared ? 1 / 3.0 : 0.5; /* of the falloff over the edge */
+  return 2 * PI * luminance * ((1 - inner) + mean_edge * (inner - outer));
 }

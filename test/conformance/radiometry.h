@@ -74,18 +74,26 @@ static Mean receive(const char *text, const double normal[3],
   return r.light;
 }
 
-/* A light, given by its power of 10, sends 10 through the sphere around it. */
-static void check_power(const char *family, const char *kind, const char *text,
+/* A light, given by its power of 10, sends 10 through the sphere around it, and 4 with a scale
+ * of .4. form: a scene with the kind and its parameters. */
+static void check_power(const char *family, const char *kind, const char *form,
                         const char *parameters) {
-  Mean power = receive(text, NULL, ask_around, 72);
-  char what[200];
-  snprintf(what, sizeof what, "%.100s: power", parameters);
-  check_mean(family, kind, what, &power, 10, (Sight){0.15, 1});
+  static const char *const scales[2] = {"", " \"float scale\" .4"};
+  for (int i = 0; i < 2; i++) {
+    static char text[TEXT];
+    static char scaled[TEXT];
+    char what[200];
+    snprintf(scaled, sizeof scaled, "%s%s", parameters, scales[i]);
+    scene_text(text, form, kind, scaled);
+    const Mean power = receive(text, NULL, ask_around, 72);
+    const double known = i ? 4 : 10;
+    snprintf(what, sizeof what, "%.100s%s: power", parameters, scales[i]);
+    check_mean(family, kind, what, &power, known, (Sight){0.015 * known, 0.1 * known});
+  }
 }
 
 static void powers(void **state) {
   (void)state;
-  static char text[TEXT];
   static char parameters[TEXT];
   const vlKindFamily *family = vl_kind_family_find("lights");
   for (uint32_t k = 0; k < family->kind_count; k++) {
@@ -99,19 +107,16 @@ static void powers(void **state) {
     parameters[0] = 0;
     append_base(parameters, c ? c->base : NULL, NULL);
     strcat(parameters, "\"float power\" 10");
-    scene_text(text, HEAD "WorldBegin " AROUND "LightSource %s", row->name, parameters);
-    check_power("lights", row->name, text, parameters);
+    check_power("lights", row->name, HEAD "WorldBegin " AROUND "LightSource %s", parameters);
   }
   static const char *const emitted[] = {"\"float power\" 10",
                                         "\"float power\" 10 \"bool twosided\" true"};
-  for (int i = 0; i < 2; i++) {
-    scene_text(text,
-               HEAD "WorldBegin " AROUND
-                    "AreaLightSource %s Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 "
-                    "1 0 1 1 .3]",
-               "diffuse", emitted[i]);
-    check_power("emission", "diffuse", text, emitted[i]);
-  }
+  for (int i = 0; i < 2; i++)
+    check_power("emission", "diffuse",
+                HEAD "WorldBegin " AROUND
+                     "AreaLightSource %s Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 "
+                     "-1 1 0 1 1 .3]",
+                emitted[i]);
   expect_no_failures();
 }
 

@@ -4,6 +4,7 @@
 #include "conformance.h"
 #include "files.h"
 #include "hostile.h"
+#include "light_power.h"
 #include "lights.h"
 #include "materials.h"
 #include "parameters.h"
@@ -42,6 +43,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(laws_of_lights),
       cmocka_unit_test(powers),
+      cmocka_unit_test(chosen_powers),
       cmocka_unit_test(illuminances),
       cmocka_unit_test(light_paths),
       cmocka_unit_test(laws_of_emission),

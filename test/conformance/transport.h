@@ -180,7 +180,7 @@ static const TracerCase *const tracer_cases[] = {VL_TRACER_KINDS(TRACER_CASE)};
 
 /* A closed room whose lamp shines at the ceiling: nearly all light comes by two bounces and
  * more. */
-static const char *const room =
+static const char *const room_text =
     "LookAt 0 0 .9 0 0 -1 0 1 0 Camera \"perspective\" \"float fov\" 80\n" VIEW("12")
     "Integrator \"path\" \"integer maxdepth\" 3 WorldBegin Material \"diffuse\" \"rgb reflectance\" [.7 .7 .7]\n"
     "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"integer "
@@ -192,7 +192,7 @@ enum { ROOM_SPP = 1024 };
 
 /* Tracers that find the light of the room agree with the path tracer. */
 static void check_room(const char *name, const vlImage *paths, const TracerCase *c) {
-  vlImage *image = image_of(room, name, c->room_spp);
+  vlImage *image = image_of(room_text, name, c->room_spp);
   Mean off = mean_difference(image, paths);
   double whole = mean_of_green(paths);
   vl_image_destroy(image);
@@ -292,7 +292,7 @@ static void laws_of_tracers(void **state) {
   (void)state;
   static char uniform[TEXT];
   const vlKindFamily *family = vl_kind_family_find("tracers");
-  vlImage *paths = image_of(room, "path", ROOM_SPP);
+  vlImage *paths = image_of(room_text, "path", ROOM_SPP);
   for (uint32_t k = 0; k < family->kind_count; k++) {
     const char *name = family->rows[k]->name;
     const TracerCase *c = tracer_cases[k];

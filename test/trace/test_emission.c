@@ -14,6 +14,7 @@
 #include "statistics.h"
 
 #include "light/light_kind.h"
+#include "schema/schema.h"
 #include "trace/two_way/stages.h"
 #include "velo/shape_kinds.h"
 
@@ -180,6 +181,29 @@ static void whole_cone(void **state) {
   power_is(f, "spot of 180 degrees", 2 * M_PI * ((1 - start) + (start + 1) / 2), 0, 31);
   density_is_told(f, "spot of 180 degrees", 32);
   end(f);
+}
+
+/* A given power is sent whatever the falloff at the edge. */
+static void spots_of_a_power(void **state) {
+  (void)state;
+  for (int squared = 0; squared < 2; squared++) {
+    Fixture *f = begin();
+    add_ball(f, 1);
+    vlLightDef def = vl_default_light_def(VL_LIGHT_SPOT);
+    def.cone_angle = 1.2f;
+    def.cone_delta = 1.1f;
+    def.cone_squared = squared;
+    def.power = 7;
+    assert_int_not_equal(vl_scene_add_light(f->scene, &def).index, 0);
+    build(f);
+    power_is(f, squared ? "spot with an edge of t^2" : "spot", 7, 0, 33);
+    end(f);
+    def.power = NAN;
+    const double inner = 1 - cos(0.1);
+    const double edge = cos(0.1) - cos(1.2);
+    const double solid = 2 * M_PI * (inner + edge / (squared ? 3 : 2));
+    assert_true(fabs(vl_light_power(&def, 5, 0) - 5 * solid) < 1e-5 * solid);
+  }
 }
 
 static void check_disk(Fixture *f, vlVec3 w, unsigned seed) {
@@ -438,9 +462,15 @@ static void together(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(points), cmocka_unit_test(whole_cone), cmocka_unit_test(distant),
-      cmocka_unit_test(skies),  cmocka_unit_test(portal),     cmocka_unit_test(surfaces),
-      cmocka_unit_test(places), cmocka_unit_test(together),
+      cmocka_unit_test(points),
+      cmocka_unit_test(whole_cone),
+      cmocka_unit_test(spots_of_a_power),
+      cmocka_unit_test(distant),
+      cmocka_unit_test(skies),
+      cmocka_unit_test(portal),
+      cmocka_unit_test(surfaces),
+      cmocka_unit_test(places),
+      cmocka_unit_test(together),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,122 @@
+/* conformance/light_power.h: the law of the power by which lights are chosen: it is the
+ * integral of the radiance that the light emits, over its area and all directions, computed
+ * from the light's own emission of light paths. No image shows a wrong one: it only makes
+ * noise. */
+#ifndef TEST_CONFORMANCE_LIGHT_POWER_H
+#define TEST_CONFORMANCE_LIGHT_POWER_H
+
+#include "conformance.h"
+#include "lights.h"
+#include "radiometry.h"
+#include "trace/two_way/stages.h"
+#include "world/world.h"
+
+static double fraction(double x) {
+  return x - floor(x);
+}
+
+/* Luminance of what a light emits in all. The mean of samples: flux is radiance times the
+ * cosine over the density of point and direction. */
+static Mean emitted_power(const vlWorld *world, uint32_t light) {
+  enum { EMITTED = 1 << 15 };
+  const float lambda[4] = {0, 0, 0, 0};
+  float *choice = calloc(world->lights.count + 1, sizeof *choice);
+  assert_non_null(choice);
+  for (size_t k = light + 1; k <= world->lights.count; k++)
+    choice[k] = 1; /* no other light is chosen */
+  const vlTwoWay way = {.choice = choice};
+  Mean mean = {0};
+  for (uint32_t i = 0; i < EMITTED; i++) {
+    /* Roberts' sequence in four dimensions */
+    const float u = (float)fraction(0.5 + i * 0.8566748838545029);
+    const float v = (float)fraction(0.5 + i * 0.7338918566271260);
+    const float s = (float)fraction(0.5 + i * 0.6287067210378087);
+    const float t = (float)fraction(0.5 + i * 0.5385972572236101);
+    const vlEmission e = vl_emission_sample(world, &way, lambda, 0.5f, u, v, s, t);
+    mean_add(&mean, e.valid ? luminance_of(e.flux) : 0);
+  }
+  free(choice);
+  return mean;
+}
+
+/* The share of the sphere into which a light with a cone sends as much as at its middle: its
+ * power for the choice is that of a light that sends this to all sides. */
+static double share_of_sphere(const vlWorldLight *light) {
+  if (!light->has_cone && light->kind != VL_LIGHT_PROJECTION)
+    return 1;
+  const double edge = (double)light->cos_start - (double)light->cos_end;
+  return 0.5 * (1 - (double)light->cos_start + edge / (light->cone_squared ? 3 : 2));
+}
+
+static void check_chosen_power(const char *family, const char *kind, const char *parameters,
+                               const char *text) {
+  char what[200];
+  vlError error = {0};
+  vlWorld *world;
+  vlScene *scene = load_text(context, text, &error);
+  if (!scene)
+    fail_msg("%s\n%s", error.message, text);
+  vlBuildDef def = vl_default_build_def();
+  def.color = VL_COLOR_RGB;
+  assert_int_equal(vl_world_build(scene, &def, &world, &error), VL_OK);
+  if (world->lights.count == 0)
+    broken(family, kind, "%s: no light", parameters);
+  for (uint32_t i = 0; i < world->lights.count && i < 4; i++) {
+    const vlWorldLight *light = &world->lights.items[i];
+    const double power = (double)light->power * share_of_sphere(light);
+    const Mean mean = emitted_power(world, i);
+    snprintf(what, sizeof what, "%.140s: power for the choice of light %u", parameters, i);
+    /* an image's mean is taken for that of each face, whatever part of it the face shows */
+    const bool image = strstr(parameters, "filename") && light->shape != VL_NONE;
+    const Sight sight = {(image ? 0.25 : 0.01) * power, (image ? 0.5 : 0.05) * power};
+    check_mean(family, kind, what, &mean, power, sight);
+  }
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+}
+
+/* The same with another scale, which a power for the choice may forget. */
+static void check_scaled_power(const char *family, const char *kind, const char *form,
+                               const char *parameters) {
+  static char text[TEXT];
+  static char scaled[TEXT];
+  scene_text(text, form, kind, parameters);
+  check_chosen_power(family, kind, parameters, text);
+  if (strstr(parameters, "float scale"))
+    return;
+  snprintf(scaled, sizeof scaled, "%s \"float scale\" .4", parameters);
+  scene_text(text, form, kind, scaled);
+  check_chosen_power(family, kind, scaled, text);
+}
+
+static void chosen_powers(void **state) {
+  (void)state;
+  static char form[TEXT];
+  const vlKindFamily *family = vl_kind_family_find("lights");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const LightCase *c = light_cases[k];
+    snprintf(form, sizeof form,
+             HEAD "WorldBegin " FLOOR "AttributeBegin %s LightSource %%s AttributeEnd\n",
+             c->before ? c->before : "");
+    for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++)
+      check_scaled_power("lights", family->rows[k]->name, form, c->variants[i].parameters);
+  }
+  static const char *const shapes[] = {
+      "\"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3]",
+      "\"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 .5 1 1 .5] \"integer indices\" [0 1 "
+      "2 2 1 3] \"point2 uv\" [0 0 1 0 0 1 1 1]",
+      "\"sphere\" \"float radius\" .7", "\"disk\" \"float radius\" .7",
+      "\"cylinder\" \"float radius\" .4"};
+  for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++)
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) {
+      snprintf(form, sizeof form,
+               HEAD
+               "WorldBegin AttributeBegin AreaLightSource %%s Translate .3 1.1 .2 Rotate "
+               "70 1 .2 .1 Shape %s AttributeEnd\n",
+               shapes[k]);
+      check_scaled_power("emission", "diffuse", form, emissions[i]);
+    }
+  expect_no_failures();
+}
+
+#endif

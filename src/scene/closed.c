@@ -327,11 +327,18 @@ static int best_point(const Survey *s, double *covered, double *front) {
   return best;
 }
 
+/* Whether there is anything within the limits but the shell. */
+static bool has_contents(const vlScene *scene, const vlExtent *boxes, const bool *shell) {
+  vlExtent inner = vl_extent_nothing;
+  vl_extent_visit(scene, boxes, shell, vl_extent_grow, &inner);
+  return inner.low[0] <= inner.high[0];
+}
+
 /* A shell whose faces look inwards: from outside one sees mostly backs, from the middle mostly
  * fronts. */
-static bool find_inward(const vlScene *scene, const Survey *s, vlClosed *closed, double covered,
-                        double front) {
-  int met = 0, backs = 0, one_sided = 0, whole = 0, sides = 0;
+static bool find_inward(const vlScene *scene, const vlExtent *boxes, const Survey *s,
+                        vlClosed *closed, double covered, double front) {
+  int met = 0, backs = 0, one_sided = 0, whole = 0;
   for (int i = 0; i < OUTSIDE; i++) {
     const Seen *seen = &s->seen[i];
     met += seen->placed != NULL;
@@ -342,17 +349,15 @@ static bool find_inward(const vlScene *scene, const Survey *s, vlClosed *closed,
     whole += normals_disagree(seen->placed) || !seen->placed->fixed;
     closed->shell[seen->placed->shape] = true;
   }
-  for (size_t i = 0; i < scene->shapes.count; i++)
-    sides += !closed->shell[i];
   if (!(backs * 10 > met * 6 && covered > 0.8 && front > 0.6) || 2 * whole > backs)
     return false;
   return 2 * one_sided > backs ||
-         sides > 0; /* else an object whose winding is wrong is as likely */
+         has_contents(scene, boxes, closed->shell); /* else its winding may be wrong */
 }
 
 /* A convex shell of one shape that hides all others. */
-static bool find_outward(const vlScene *scene, const Survey *s, vlClosed *closed,
-                         double covered) {
+static bool find_outward(const vlScene *scene, const vlExtent *boxes, const Survey *s,
+                         vlClosed *closed, double covered) {
   const Placed *shell = NULL;
   for (int i = 0; i < OUTSIDE; i++) {
     const Placed *p = s->seen[i].placed;
@@ -367,7 +372,7 @@ static bool find_outward(const vlScene *scene, const Survey *s, vlClosed *closed
     return false;
   memset(closed->shell, 0, scene->shapes.count * sizeof *closed->shell);
   closed->shell[shell->shape] = true;
-  return true;
+  return has_contents(scene, boxes, closed->shell);
 }
 
 static double diagonal(const vlExtent *b) {
@@ -421,8 +426,8 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
     aim(s, box, eye);
     vl_parallel_for(scene->context, RAYS, cast, s);
     int best = best_point(s, &covered, &front);
-    found = closed->inward = find_inward(scene, s, closed, covered, front);
-    found = found || find_outward(scene, s, closed, covered);
+    found = closed->inward = find_inward(scene, boxes, s, closed, covered, front);
+    found = found || find_outward(scene, boxes, s, closed, covered);
     if (found)
       memcpy(closed->middle, s->o[OUTSIDE + best * AROUND], sizeof closed->middle);
   }

@@ -14,6 +14,8 @@
 #include "scene/facing.h"
 #include "scene/inside.h"
 #include "scene/lamps.h"
+#include "scene/plain.h"
+#include "scene/stray.h"
 #include "scene/studio.h"
 #include "scene/upright.h"
 #include "schema/schema.h"
@@ -63,6 +65,8 @@ typedef struct View {
   double right[3], up[3], front[3];
   double azimuth, elevation; /* radians: from the front to the right, above the horizon */
   bool front_unknown;        /* the file does not say which side is its front */
+  bool on_plain;             /* the model stands on a plain */
+  vlExtent ground;           /* the part of it that the image shows */
 } View;
 
 static double extent_along(const vlExtent *box, const double axis[3]) {
@@ -90,8 +94,9 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
   const double flat = 0.2, chart = 0.4, against = -0.05, half_turn = 3.14159265358979323846;
   vl_facing_mean_normal(scene, y <= flat * fmin(x, z), n);
   if (y <= flat * fmin(x, z)) {
-    bool below = vl_dot3(n, v->up) < against;
-    v->elevation = below ? -0.9 : 0.9;
+    const bool below = vl_dot3(n, v->up) < against;
+    const double high = 0.9 - 0.45 * y / (flat * fmin(x, z)); /* the flatter, the more so */
+    v->elevation = below ? -high : high;
     v->azimuth = 0.25;
     return below ? "flat: from below" : "flat: from above";
   }
@@ -144,6 +149,15 @@ static void set_camera(vlScene *scene, const double up[3], double fov, const dou
   s->camera_missing = false;
 }
 
+/* The whole model, and the ground that is to be seen around it. */
+static void widen_by_all(const vlScene *scene, const View *v, const vlExtent *boxes,
+                         const bool *without, Frame *f) {
+  const vlMat4 identity = vl_mat4_identity();
+  vl_extent_visit(scene, boxes, without, widen, f);
+  if (v->on_plain)
+    vl_extent_visit_box(&identity, &v->ground, widen, f);
+}
+
 /* without: shapes that need not be in the image; may be null. */
 static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
                          const vlExtent *boxes, const bool *without) {
@@ -163,7 +177,7 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
   vl_cross3(f.right, f.ahead, f.up);
   for (int i = 0; i < 4; i++)
     f.sides[i] = -INFINITY;
-  vl_extent_visit(scene, boxes, without, widen, &f);
+  widen_by_all(scene, v, boxes, without, &f);
   double x = 0, y = 0, d = 1;
   if (isfinite(f.sides[0])) {
     x = 0.5 * (f.sides[0] - f.sides[1]);
@@ -413,10 +427,25 @@ static bool find_own_view(const vlScene *scene, const vlExtent *box, View *v) {
   return !(inside > 0) && above > 0 && v->elevation >= 0;
 }
 
+/* Finds the plain on which a model stands. *box becomes that of the model, and the limits are
+ * those of what an image of it shows. */
+static void find_plain(const vlScene *scene, vlExtent *boxes, vlExtent *box, View *v) {
+  vlPlain plain;
+  int axis = 0;
+  while (axis < 2 && v->up[axis] != 1)
+    axis++;
+  if (v->up[axis] != 1 || !vl_plain_find(scene, boxes, axis, &plain))
+    return;
+  v->on_plain = true;
+  v->ground = boxes[scene->groups.count] = plain.shown;
+  v->ground.high[axis] = v->ground.low[axis];
+  *box = plain.model;
+  vl_log(scene->context, VL_LOG_DEBUG, NULL, "camera: the model stands on a wide flat ground");
+}
+
 /* Camera, opening and ground. The scene's `completed` has what is asked for and gets what is
  * chosen. */
-static bool complete_geometry(vlScene *scene, const View *axes, bool camera,
-                              const vlExtent *boxes) {
+static bool complete_geometry(vlScene *scene, const View *axes, bool camera, vlExtent *boxes) {
   vlCompleteDef *done = &scene->completed;
   const bool studio = vl_environment_is_studio(done->environment);
   const bool own = !camera && scene->camera_read;
@@ -425,6 +454,7 @@ static bool complete_geometry(vlScene *scene, const View *axes, bool camera,
   vlClosed closed = {.kind = VL_CLOSED_NOT};
   bool ok = true;
   vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &box);
+  find_plain(scene, boxes, &box, &view);
   if (camera) {
     const char *from = choose_view(scene, done, &box, &view);
     tell_camera(scene, from, &box);
@@ -432,6 +462,8 @@ static bool complete_geometry(vlScene *scene, const View *axes, bool camera,
     done->azimuth = view.azimuth;
     done->elevation = view.elevation;
   }
+  if (view.on_plain)
+    vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &box); /* the ground is under both */
   bool stands = camera || (own && find_own_view(scene, &box, &view));
   if (studio && vl_is_unset(done->rotation) && (camera || own))
     done->rotation = view.azimuth - 0.45; /* the main light stays to its left */
@@ -474,18 +506,32 @@ static void choose_size(vlSceneDefs *s, const vlCompleteDef *def) {
   memcpy(s->film.crop, whole, sizeof whole);
 }
 
+/* The boxes of the groups, and the limits without stray parts. Does nothing where *boxes has
+ * them. False: the scene holds the error. */
+static bool find_boxes(vlScene *scene, bool camera, vlExtent **boxes) {
+  uint64_t count = 0;
+  if (*boxes)
+    return true;
+  if (!vl_extent_groups(scene, boxes))
+    return false;
+  vl_stray_limit(scene, *boxes, &count);
+  if (camera && count)
+    vl_log(scene->context, VL_LOG_INFO, NULL,
+           "camera: %llu small parts, far away from the rest, are not in its view",
+           (unsigned long long)count);
+  return true;
+}
+
 /* Where the direction upwards is to be found. False: the scene holds the error. */
-static bool choose_up(vlScene *scene, vlCompleteDef *done) {
-  vlExtent *boxes = NULL;
+static bool choose_up(vlScene *scene, vlCompleteDef *done, bool camera, vlExtent **boxes) {
   if (!done->find_up)
     return true;
-  if (!vl_extent_groups(scene, &boxes))
+  if (!find_boxes(scene, camera, boxes))
     return false;
-  if (vl_upright_find(scene, boxes, done->up, done->front))
+  if (vl_upright_find(scene, *boxes, done->up, done->front))
     vl_log(scene->context, VL_LOG_DEBUG, NULL, "up: %s: the model stands on its base only so",
            done->up[2] != 0 ? "z" : "y");
   done->find_up = false;
-  vl_free(scene->context, boxes);
   return true;
 }
 
@@ -509,16 +555,18 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   bool fits =
       done->environment != def.environment && done->environment == VL_ENVIRONMENT_STUDIO;
   View axes = {.front_unknown = def.find_up};
-  if (!choose_up(scene, done))
-    return vl_scene_result(scene, error);
-  if (!vl_scene_axes(done, axes.right, axes.up, axes.front)) {
+  vlExtent *boxes = NULL;
+  bool ok = choose_up(scene, done, camera, &boxes);
+  if (ok && !vl_scene_axes(done, axes.right, axes.up, axes.front)) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0},
                   "camera: the axes up and front make no sense");
+    ok = false;
+  }
+  if (!ok) {
+    vl_free(scene->context, boxes);
     return vl_scene_result(scene, error);
   }
-  vlExtent *boxes = NULL;
-  bool ok = true;
-  if (fits && (ok = vl_extent_groups(scene, &boxes)))
+  if (fits && (ok = find_boxes(scene, camera, &boxes)))
     fit_studio(scene, boxes, done);
   const vlEnvironmentKind kind = done->environment;
   bool own_studio = scene->camera_read && vl_environment_is_studio(kind) &&
@@ -526,8 +574,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   bool geometry = camera || def.ground || own_studio ||
                   (def.backdrop && ground_is_given(&def)) || walls_are_given(&def);
   const bool lamps = kind == VL_ENVIRONMENT_LAMPS;
-  if (ok && (geometry || lamps) && !boxes)
-    ok = vl_extent_groups(scene, &boxes);
+  if (ok && (geometry || lamps))
+    ok = find_boxes(scene, camera, &boxes);
   if (ok && geometry)
     ok = complete_geometry(scene, &axes, camera, boxes);
   else

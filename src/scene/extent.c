@@ -7,11 +7,11 @@
 #include "schema/schema.h"
 #include "velo/shape.h"
 
-static void visit_box(const vlMat4 *m, const double low[3], const double high[3],
-                      vlPointVisit *visit, void *user) {
+void vl_extent_visit_box(const vlMat4 *m, const vlExtent *box, vlPointVisit *visit,
+                         void *user) {
   for (int k = 0; k < 8; k++) {
-    double corner[3] = {k & 1 ? low[0] : high[0], k & 2 ? low[1] : high[1],
-                        k & 4 ? low[2] : high[2]},
+    double corner[3] = {k & 1 ? box->low[0] : box->high[0], k & 2 ? box->low[1] : box->high[1],
+                        k & 4 ? box->low[2] : box->high[2]},
            p[3];
     vl_mat4_point(m, corner, p);
     visit(user, p);
@@ -23,18 +23,17 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
   vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
   for (size_t i = 0; d->centers && i < d->faces; i += d->faces / most + 1) {
     const double *c = d->centers + 3 * i;
-    double r = d->radii[i], low[3] = {c[0] - r, c[1] - r, c[2] - r},
-           high[3] = {c[0] + r, c[1] + r, c[2] + r};
-    visit_box(&m, low, high, visit, user);
+    const double r = d->radii[i];
+    const vlExtent box = {{c[0] - r, c[1] - r, c[2] - r}, {c[0] + r, c[1] + r, c[2] + r}};
+    vl_extent_visit_box(&m, &box, visit, user);
   }
   if (d->centers)
     return;
   if (!d->positions) {
-    double low[3], high[3];
-    vl_shape_own_box(d, low, high);
-    if (low[0] > high[0])
-      return;
-    visit_box(&m, low, high, visit, user);
+    vlExtent box;
+    vl_shape_own_box(d, box.low, box.high);
+    if (box.low[0] <= box.high[0])
+      vl_extent_visit_box(&m, &box, visit, user);
     return;
   }
   size_t step = d->vertices / most + 1;
@@ -56,22 +55,44 @@ void vl_extent_grow(void *user, const double p[3]) {
 const vlExtent vl_extent_nothing = {{INFINITY, INFINITY, INFINITY},
                                     {-INFINITY, -INFINITY, -INFINITY}};
 
+void vl_extent_visit_shape(const vlShapeDef *shape, vlPointVisit *visit, void *user) {
+  const vlMat4 identity = vl_mat4_identity();
+  visit_shape(shape, &identity, SIZE_MAX, visit, user);
+}
+
+/* Hands on the points within limits. */
+typedef struct Within {
+  const vlExtent *limits;
+  vlPointVisit *visit;
+  void *user;
+} Within;
+
+static void visit_within(void *user, const double p[3]) {
+  const Within *w = user;
+  bool inside = true;
+  for (int i = 0; i < 3; i++)
+    inside = inside && p[i] >= w->limits->low[i] && p[i] <= w->limits->high[i];
+  if (inside)
+    w->visit(w->user, p);
+}
+
 void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without,
                      vlPointVisit *visit, void *user) {
   vlMat4 identity = vl_mat4_identity();
+  Within within = {&boxes[scene->groups.count], visit, user};
   for (size_t i = 0; i + 2 < scene->frame_points.count; i += 3)
     visit(user, scene->frame_points.items + i);
   if (scene->frame_points.count)
     return;
   for (size_t i = 0; i < scene->shapes.count; i++)
     if (!scene->shapes.items[i].group.index && !(without && without[i]))
-      visit_shape(&scene->shapes.items[i], &identity, 20000, visit, user);
+      visit_shape(&scene->shapes.items[i], &identity, 20000, visit_within, &within);
   for (size_t i = 0; i < scene->instances.count; i++) {
     const vlSceneInstance *instance = &scene->instances.items[i];
     const vlExtent *b = &boxes[instance->group.index - 1];
     vlMat4 m = vl_mat4_load(instance->world_from_group);
     if (!instance->hidden && b->low[0] <= b->high[0])
-      visit_box(&m, b->low, b->high, visit, user);
+      vl_extent_visit_box(&m, b, visit_within, &within);
   }
 }
 
@@ -81,9 +102,12 @@ bool vl_extent_groups(vlScene *scene, vlExtent **boxes) {
     vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
     return false;
   }
+  const vlExtent everything = {{-INFINITY, -INFINITY, -INFINITY},
+                               {INFINITY, INFINITY, INFINITY}};
   vlMat4 identity = vl_mat4_identity();
   for (size_t i = 0; i < scene->groups.count; i++)
     (*boxes)[i] = vl_extent_nothing;
+  (*boxes)[scene->groups.count] = everything;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *d = &scene->shapes.items[i];
     if (d->group.index)

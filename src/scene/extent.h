@@ -2,6 +2,7 @@
 #ifndef SCENE_EXTENT_H
 #define SCENE_EXTENT_H
 
+#include "math/transform.h"
 #include "scene/scene.h"
 
 /* A bounding box; low > high if it is empty. */
@@ -14,12 +15,18 @@ extern const vlExtent vl_extent_nothing;
 typedef void vlPointVisit(void *user, const double p[3]);
 /* Grows the box `user`, a vlExtent. */
 void vl_extent_grow(void *user, const double p[3]);
-/* The bounding boxes of the groups, in group space; the caller frees the array. False: the
- * scene holds the error. */
+/* Calls `visit` with the eight corners of a box, transformed. */
+void vl_extent_visit_box(const vlMat4 *m, const vlExtent *box, vlPointVisit *visit, void *user);
+/* Calls `visit` with all points of a shape, or the corners of its box, in group space. */
+void vl_extent_visit_shape(const vlShapeDef *shape, vlPointVisit *visit, void *user);
+/* The bounding boxes of the groups, in group space, and after them, at index groups.count, the
+ * limits of what vl_extent_visit visits, in world space: everything; the caller frees the
+ * array. False: the scene holds the error. */
 bool vl_extent_groups(vlScene *scene, vlExtent **boxes);
 /* Calls `visit` with points of the scene: several thousand vertices of each mesh, and the
  * corners of the boxes of other shapes and of instances. A file that moves gives points of all
- * its times instead. boxes: those of the groups. without[i]: shape i is left out; null: none
+ * its times instead. boxes: those of the groups, and the limits within which points are
+ * visited. without[i]: shape i is left out; null: none
  * is. */
 void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without,
                      vlPointVisit *visit, void *user);

@@ -110,3 +110,46 @@ bool vl_facing_is_behind(const vlScene *scene, const vlExtent *box, const double
     return false;
   return d.volume > 0 ? d.ahead < clearly * d.behind : d.behind < clearly * d.ahead;
 }
+
+/* ---- blocks ------------------------------------------------------------------------------ */
+
+enum { LAYERS = 64 };
+
+typedef struct Blocks {
+  int axis;
+  double low, size;
+  double surface, flat, walls, layers[LAYERS];
+} Blocks;
+
+static void add_block(void *user, const vlShapeDef *shape, const Face *face) {
+  const double along = 0.996, across = 0.087; /* within 5 degrees */
+  Blocks *b = user;
+  (void)shape;
+  const double area = vl_norm3(face->area), cosine = fabs(face->area[b->axis]);
+  if (!(area > 0) || !isfinite(area))
+    return;
+  b->surface += area;
+  if (cosine < across * area)
+    b->walls += area;
+  if (!(cosine > along * area))
+    return;
+  const double at = b->size > 0 ? (face->middle[b->axis] - b->low) / b->size : 0;
+  const int layer = (int)(fmin(fmax(at, 0), 1) * (LAYERS - 1));
+  b->layers[layer] += area;
+  b->flat += area;
+}
+
+vlBlocks vl_facing_blocks(const vlScene *scene, const vlExtent *box, int axis) {
+  Blocks b = {.axis = axis, .low = box->low[axis], .size = box->high[axis] - box->low[axis]};
+  vlBlocks blocks = {.levels = 0};
+  visit_faces(scene, add_block, &b);
+  if (!(b.surface > 0))
+    return blocks;
+  blocks.flat = b.flat / b.surface;
+  blocks.walls = b.walls / b.surface;
+  for (int i = 0; i < LAYERS; i++) {
+    blocks.levels += b.layers[i] > 1e-3 * b.surface;
+    blocks.lower += i < LAYERS / 2 ? b.layers[i] / b.surface : 0;
+  }
+  return blocks;
+}

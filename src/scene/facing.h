@@ -20,4 +20,14 @@ void vl_facing_mean_normal(const vlScene *scene, bool one_sided, double n[3]);
  * models of few triangles. */
 bool vl_facing_is_behind(const vlScene *scene, const vlExtent *box, const double front[3]);
 
+/* How a model consists of blocks that stand on a plane: of the surface, the shares whose normal
+ * is along an axis, and at right angles to it; of the former, that in the lower half of the
+ * box; and in how many of 64 layers along the axis at least a thousandth of the surface lies
+ * flat. */
+typedef struct vlBlocks {
+  double flat, walls, lower;
+  int levels;
+} vlBlocks;
+vlBlocks vl_facing_blocks(const vlScene *scene, const vlExtent *box, int axis);
+
 #endif

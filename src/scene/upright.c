@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "math/elementary.h"
+#include "scene/facing.h"
+#include "scene/plain.h"
 
 enum { DIRECTIONS = 24, LOW = 0, HIGH = 1, WHOLE = 2 };
 
@@ -97,17 +99,42 @@ static bool is_round(const Ends *e, int axis) {
   return high - low < 0.03;
 }
 
+/* Whether the model is a city: many blocks of different heights on one plane. */
+static bool is_city(const vlScene *scene, const Ends *e, int axis) {
+  const double blocks_least = 0.9, walls_least = 0.1, lower_least = 0.6, plane = 0.5;
+  const int levels_least = 12;
+  if (share(e, axis, LOW) < plane)
+    return false;
+  const vlBlocks blocks = vl_facing_blocks(scene, &e->box, axis);
+  return blocks.flat + blocks.walls >= blocks_least && blocks.walls >= walls_least &&
+         blocks.lower >= lower_least * blocks.flat && blocks.levels >= levels_least;
+}
+
+/* Whether the model's ground, a plain or the plane of a city, is at right angles to the axis.
+ */
+static bool has_ground(const vlScene *scene, const vlExtent *boxes, const Ends *e, int axis) {
+  vlPlain plain;
+  return vl_plain_find(scene, boxes, axis, &plain) || is_city(scene, e, axis);
+}
+
+/* Whether the model stands on its lowest part along `other`, and not along `now`. */
+static bool stands(const Ends *e, int now, int other) {
+  const double no_base = 0.12, base = 0.15, larger = 0.25;
+  if (share(e, now, LOW) >= no_base)
+    return false;
+  const double most = fmax(size_of(e, 0), fmax(size_of(e, 1), size_of(e, 2)));
+  const double low = share(e, other, LOW), high = share(e, other, HIGH);
+  return (low - high >= larger || (low >= base && is_round(e, other))) &&
+         size_of(e, other) >= 0.5 * most;
+}
+
 bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, double up[3],
                      double front[3]) {
-  const double no_base = 0.12, base = 0.15, larger = 0.25;
   const int now = up[1] != 0 ? 1 : 2, other = 3 - now;
   Ends e;
-  if (!measure(scene, boxes, &e) || share(&e, now, LOW) >= no_base)
+  if (!measure(scene, boxes, &e) || has_ground(scene, boxes, &e, now))
     return false;
-  const double most = fmax(size_of(&e, 0), fmax(size_of(&e, 1), size_of(&e, 2)));
-  const double low = share(&e, other, LOW), high = share(&e, other, HIGH);
-  const bool stands = low - high >= larger || (low >= base && is_round(&e, other));
-  if (!stands || size_of(&e, other) < 0.5 * most)
+  if (!has_ground(scene, boxes, &e, other) && !stands(&e, now, other))
     return false;
   for (int i = 0; i < 3; i++) {
     up[i] = i == other;

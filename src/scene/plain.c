@@ -1,0 +1,68 @@
+/* scene/plain.c: see plain.h. */
+#include "scene/plain.h"
+
+#include <math.h>
+
+#include "scene/things.h"
+
+typedef struct Survey {
+  vlExtent limits;
+  int axis;
+  double top; /* of the lowest tenth */
+  vlExtent low, model;
+  double surface, flat; /* of what is low; of what lies flat of that */
+} Survey;
+
+static double size(const vlExtent *box, int axis) {
+  return box->high[axis] - box->low[axis];
+}
+
+static double widest(const vlExtent *box, int axis) {
+  return fmax(size(box, (axis + 1) % 3), size(box, (axis + 2) % 3));
+}
+
+static void visit(void *user, const vlExtent *box, double surface) {
+  Survey *s = user;
+  for (int i = 0; i < 3; i++)
+    if (!(box->low[i] >= s->limits.low[i] && box->high[i] <= s->limits.high[i]))
+      return;
+  const bool low = box->high[s->axis] <= s->top;
+  vlExtent *whole = low ? &s->low : &s->model;
+  vl_extent_grow(whole, box->low);
+  vl_extent_grow(whole, box->high);
+  if (low && surface > 0)
+    s->surface += surface;
+  if (low && surface > 0 && size(box, s->axis) <= 0.15 * widest(box, s->axis))
+    s->flat += surface;
+}
+
+bool vl_plain_find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain *plain) {
+  const double tenth = 0.1, most = 0.9, wide = 8, covered = 0.3;
+  vlExtent whole = vl_extent_nothing;
+  if (scene->frame_points.count || !vl_things_are_few(scene))
+    return false;
+  vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &whole);
+  const double height = size(&whole, axis);
+  if (!(height > 0) || !isfinite(height))
+    return false;
+  Survey s = {.limits = boxes[scene->groups.count],
+              .axis = axis,
+              .top = whole.low[axis] + tenth * height,
+              .low = vl_extent_nothing,
+              .model = vl_extent_nothing};
+  vl_things_visit(scene, boxes, visit, &s);
+  if (!(s.flat > most * s.surface) || !(s.model.low[0] <= s.model.high[0]))
+    return false;
+  const double model = fmax(widest(&s.model, axis), size(&s.model, axis));
+  const double footprint = size(&s.low, (axis + 1) % 3) * size(&s.low, (axis + 2) % 3);
+  if (!(widest(&s.low, axis) >= wide * model) || !(s.flat >= covered * footprint))
+    return false;
+  plain->model = plain->shown = s.model;
+  for (int i = 0; i < 3; i++) {
+    plain->shown.low[i] = fmax(s.model.low[i] - model, s.low.low[i]);
+    plain->shown.high[i] = fmin(s.model.high[i] + model, s.low.high[i]);
+  }
+  return plain->shown.low[0] <= plain->shown.high[0] &&
+         plain->shown.low[1] <= plain->shown.high[1] &&
+         plain->shown.low[2] <= plain->shown.high[2];
+}

@@ -1,0 +1,141 @@
+/* scene/stray.c: see stray.h. */
+#include "scene/stray.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "math/double3.h"
+#include "scene/things.h"
+
+enum { BINS = 1024, MAX_ROUNDS = 8, MAX_PASSES = 16 };
+
+/* ---- the core ---------------------------------------------------------------------------- */
+
+typedef struct Survey {
+  vlExtent limits;                    /* things that are not inside do not count */
+  vlExtent box;                       /* of all that count */
+  vlExtent core;                      /* grows */
+  double reach;                       /* what is no further from the core belongs to it */
+  double histogram[3][BINS], surface; /* along each axis of `box`; sum */
+  uint64_t outside;                   /* number of things outside of `limits` */
+} Survey;
+
+static bool counts(const Survey *s, const vlExtent *box) {
+  bool inside = true;
+  for (int i = 0; i < 3; i++)
+    inside = inside && box->low[i] >= s->limits.low[i] && box->high[i] <= s->limits.high[i];
+  return inside;
+}
+
+static void join(vlExtent *whole, const vlExtent *box) {
+  vl_extent_grow(whole, box->low);
+  vl_extent_grow(whole, box->high);
+}
+
+static void measure(void *user, const vlExtent *box, double surface) {
+  Survey *s = user;
+  (void)surface;
+  if (counts(s, box))
+    join(&s->box, box);
+  else
+    s->outside++;
+}
+
+static void weigh(void *user, const vlExtent *box, double surface) {
+  Survey *s = user;
+  if (!counts(s, box) || !(surface > 0) || !isfinite(surface))
+    return;
+  for (int i = 0; i < 3; i++) {
+    const double size = s->box.high[i] - s->box.low[i],
+                 at = 0.5 * (box->low[i] + box->high[i]) - s->box.low[i];
+    const int bin = size > 0 ? (int)(at / size * BINS) : 0;
+    s->histogram[i][bin < BINS ? bin : BINS - 1] += surface;
+  }
+  s->surface += surface;
+}
+
+static void absorb(void *user, const vlExtent *box, double surface) {
+  Survey *s = user;
+  (void)surface;
+  bool near = counts(s, box);
+  for (int i = 0; i < 3 && near; i++)
+    near =
+        box->low[i] <= s->core.high[i] + s->reach && box->high[i] >= s->core.low[i] - s->reach;
+  if (near)
+    join(&s->core, box);
+}
+
+/* The end of the core along an axis, from `bin` on in steps of `step`. */
+static int core_end(const double histogram[BINS], double surface, int bin, int step) {
+  const double share = 0.002;
+  double sum = histogram[bin];
+  while (!(sum > share * surface) && bin + step >= 0 && bin + step < BINS) {
+    bin += step;
+    sum += histogram[bin];
+  }
+  return bin;
+}
+
+static void find_core(Survey *s) {
+  for (int i = 0; i < 3; i++) {
+    const double size = s->box.high[i] - s->box.low[i];
+    const int first = core_end(s->histogram[i], s->surface, 0, 1),
+              last = core_end(s->histogram[i], s->surface, BINS - 1, -1);
+    s->core.low[i] = s->box.low[i] + size * first / BINS;
+    s->core.high[i] = s->box.low[i] + size * (last + 1) / BINS;
+  }
+}
+
+static double diagonal(const vlExtent *box) {
+  double d[3];
+  for (int i = 0; i < 3; i++)
+    d[i] = box->high[i] - box->low[i];
+  return vl_norm3(d);
+}
+
+static bool same(const vlExtent *a, const vlExtent *b) {
+  return memcmp(a, b, sizeof *a) == 0;
+}
+
+/* Of what counts, the core and all that belongs to it become the limits. Returns whether
+ * something that counted does not count any more. */
+static bool narrow(const vlScene *scene, const vlExtent *boxes, Survey *s) {
+  const vlExtent limits = s->limits;
+  *s = (Survey){.limits = limits, .box = vl_extent_nothing};
+  vl_things_visit(scene, boxes, measure, s);
+  if (!isfinite(diagonal(&s->box)))
+    return false;
+  vl_things_visit(scene, boxes, weigh, s);
+  if (!(s->surface > 0) || !isfinite(s->surface))
+    return false;
+  find_core(s);
+  for (int pass = 0; pass < MAX_PASSES; pass++) {
+    const vlExtent before = s->core;
+    s->reach = diagonal(&s->core);
+    vl_things_visit(scene, boxes, absorb, s);
+    if (same(&before, &s->core))
+      break;
+  }
+  for (int i = 0; i < 3; i++) {
+    s->limits.low[i] = fmax(s->core.low[i], s->box.low[i]);
+    s->limits.high[i] = fmin(s->core.high[i], s->box.high[i]);
+  }
+  return !same(&s->limits, &s->box);
+}
+
+void vl_stray_limit(const vlScene *scene, vlExtent *boxes, uint64_t *count) {
+  vlExtent *limits = &boxes[scene->groups.count];
+  *count = 0;
+  if (scene->frame_points.count || !vl_things_are_few(scene))
+    return;
+  Survey s = {.limits = *limits};
+  bool some = false;
+  for (int round = 0; round < MAX_ROUNDS && narrow(scene, boxes, &s); round++)
+    some = true;
+  if (!some)
+    return;
+  s.outside = 0;
+  vl_things_visit(scene, boxes, measure, &s);
+  *limits = s.limits;
+  *count = s.outside;
+}

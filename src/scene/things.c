@@ -1,0 +1,90 @@
+/* scene/things.c: see things.h. */
+#include "scene/things.h"
+
+#include <math.h>
+
+#include "math/double3.h"
+#include "math/transform.h"
+#include "velo/shape_kinds.h"
+
+static const uint64_t MAX_FACES = 8000000;
+
+static double surface_of(const vlExtent *box) {
+  const double x = box->high[0] - box->low[0], y = box->high[1] - box->low[1],
+               z = box->high[2] - box->low[2];
+  return 2 * (x * y + y * z + z * x);
+}
+
+static void visit_faces(const vlShapeDef *shape, vlThingVisit *visit, void *user) {
+  const vlMat4 m = vl_mat4_load(shape->group_from_shape);
+  for (size_t i = 0; i < shape->faces; i++) {
+    double p[3][3], b[3], c[3], n[3];
+    vlExtent box = vl_extent_nothing;
+    for (size_t k = 0; k < 3; k++) {
+      const float *v = shape->positions + 3 * (size_t)shape->indices[3 * i + k];
+      const double q[3] = {v[0], v[1], v[2]};
+      vl_mat4_point(&m, q, p[k]);
+      vl_extent_grow(&box, p[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+      b[k] = p[1][k] - p[0][k];
+      c[k] = p[2][k] - p[0][k];
+    }
+    vl_cross3(b, c, n);
+    visit(user, &box, 0.5 * vl_norm3(n));
+  }
+}
+
+static void visit_spheres(const vlShapeDef *shape, vlThingVisit *visit, void *user) {
+  const vlMat4 m = vl_mat4_load(shape->group_from_shape);
+  for (size_t i = 0; i < shape->faces; i++) {
+    const double *c = shape->centers + 3 * i;
+    const double r = shape->radii[i];
+    const vlExtent own = {{c[0] - r, c[1] - r, c[2] - r}, {c[0] + r, c[1] + r, c[2] + r}};
+    vlExtent box = vl_extent_nothing;
+    vl_extent_visit_box(&m, &own, vl_extent_grow, &box);
+    visit(user, &box, surface_of(&box));
+  }
+}
+
+void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *visit,
+                     void *user) {
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *shape = &scene->shapes.items[i];
+    vlExtent box = vl_extent_nothing;
+    if (shape->group.index)
+      continue;
+    if (shape->kind == VL_SHAPE_TRIANGLES && shape->indices) {
+      visit_faces(shape, visit, user);
+      continue;
+    }
+    if (shape->centers) {
+      visit_spheres(shape, visit, user);
+      continue;
+    }
+    vl_extent_visit_shape(shape, vl_extent_grow, &box);
+    if (box.low[0] <= box.high[0])
+      visit(user, &box, surface_of(&box));
+  }
+  for (size_t i = 0; i < scene->instances.count; i++) {
+    const vlSceneInstance *instance = &scene->instances.items[i];
+    const vlExtent *own = &boxes[instance->group.index - 1];
+    const vlMat4 m = vl_mat4_load(instance->world_from_group);
+    vlExtent box = vl_extent_nothing;
+    if (instance->hidden || !(own->low[0] <= own->high[0]))
+      continue;
+    vl_extent_visit_box(&m, own, vl_extent_grow, &box);
+    visit(user, &box, surface_of(&box));
+  }
+}
+
+static uint64_t count_faces(const vlScene *scene) {
+  uint64_t sum = 0;
+  for (size_t i = 0; i < scene->shapes.count; i++)
+    sum += scene->shapes.items[i].group.index ? 0 : scene->shapes.items[i].faces;
+  return sum;
+}
+
+bool vl_things_are_few(const vlScene *scene) {
+  return count_faces(scene) <= MAX_FACES;
+}

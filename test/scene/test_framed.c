@@ -1,0 +1,214 @@
+/* test/scene/test_framed.c: what of a model the added camera frames, and how it stands: stray
+ * parts, wide grounds, cities. */
+#include <string.h>
+
+#include "model.h"
+
+/* Of a point in world space: its place in the image of the added camera, -1 to 1 in the smaller
+ * direction. */
+static void project(const Model *m, const double p[3], double image[2]) {
+  const vlCameraDef *c = &m->scene->defs.camera;
+  double ahead[3], right[3], up[3], d[3], length = 0, along = 0;
+  for (int i = 0; i < 3; i++) {
+    ahead[i] = c->lookat[i] - c->eye[i];
+    length += ahead[i] * ahead[i];
+  }
+  for (int i = 0; i < 3; i++)
+    ahead[i] /= sqrt(length);
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    right[i] = ahead[j] * c->up[k] - ahead[k] * c->up[j];
+  }
+  length = sqrt(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]);
+  for (int i = 0; i < 3; i++)
+    right[i] /= length;
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    up[i] = right[j] * ahead[k] - right[k] * ahead[j];
+    d[i] = p[i] - c->eye[i];
+  }
+  image[0] = image[1] = 0;
+  for (int i = 0; i < 3; i++) {
+    along += d[i] * ahead[i];
+    image[0] += d[i] * right[i];
+    image[1] += d[i] * up[i];
+  }
+  for (int i = 0; i < 2; i++)
+    image[i] /= along * tan(0.5 * c->fov);
+}
+
+/* The larger side of the rectangle that a box takes in the image: 2 is the image's height. */
+static double size_in_image(const Model *m, const float low[3], const float high[3],
+                            bool *whole) {
+  double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+  const double aspect = 1.5;
+  for (int k = 0; k < 8; k++) {
+    const double p[3] = {(double)(k & 1 ? high[0] : low[0]), (double)(k & 2 ? high[1] : low[1]),
+                         (double)(k & 4 ? high[2] : low[2])};
+    double q[2];
+    project(m, p, q);
+    for (int i = 0; i < 2; i++) {
+      least[i] = fmin(least[i], q[i]);
+      most[i] = fmax(most[i], q[i]);
+    }
+  }
+  *whole = least[0] > -aspect && most[0] < aspect && least[1] > -1 && most[1] < 1;
+  return fmax(most[0] - least[0], most[1] - least[1]);
+}
+
+static const float low[3] = {-1, 0, -0.6f}, high[3] = {1, 1.5f, 0.6f};
+
+/* Small parts far away along an axis, to one side or both: the image is that of the model, and
+ * so is the ground. */
+static void stray_parts(void **state) {
+  (void)state;
+  const float distances[3] = {8, 1000, 1e5f};
+  for (int axis = 0; axis < 3; axis++)
+    for (int k = 0; k < 3; k++)
+      for (int sides = 1; sides < 3; sides++) {
+        Model m = begin();
+        add_box(&m, low, high, false, false);
+        for (int side = 0; side < sides; side++) {
+          float a[3] = {0, 0.5f, 0}, b[3];
+          a[axis] += side ? -distances[k] : distances[k];
+          for (int i = 0; i < 3; i++)
+            b[i] = a[i] + 0.02f;
+          add_box(&m, a, b, false, false);
+        }
+        vlCompleteDef def = first_image();
+        complete(&m, &def);
+        bool whole;
+        assert_true(size_in_image(&m, low, high, &whole) > 1 && whole);
+        const vlShapeDef *disk = &m.scene->shapes.items[m.scene->shapes.count - 1];
+        assert_true(fabs(disk->group_from_shape[7]) < 0.01); /* the ground is under the model */
+        assert_true(vl_scene_completed(m.scene).ground_radius < 100);
+        end(&m);
+      }
+}
+
+/* What belongs to the model stays in the image: a thin mast that is ten times as high; a chain
+ * of small things, each near the next; a thing that is not small. */
+static void all_of_it(void **state) {
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    Model m = begin();
+    add_box(&m, low, high, false, false);
+    float a[3] = {-0.01f, 1.5f, -0.01f}, b[3] = {0.01f, 15, 0.01f};
+    if (k == 2)
+      memcpy(a, (float[3]){9, 0, 0}, sizeof a);
+    if (k == 2)
+      memcpy(b, (float[3]){10, 0.5f, 0.5f}, sizeof b);
+    for (int i = 0; k == 1 && i < 8; i++) {
+      memcpy(a, (float[3]){2.0f * (float)i + 2, 0, 0}, sizeof a);
+      memcpy(b, (float[3]){2.0f * (float)i + 2.02f, 0.02f, 0.02f}, sizeof b);
+      add_box(&m, a, b, false, false);
+    }
+    if (k != 1)
+      add_box(&m, a, b, false, false);
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    bool whole;
+    size_in_image(&m, a, b, &whole);
+    assert_true(whole);
+    end(&m);
+  }
+}
+
+/* An object on a ground that is a hundred times as wide is seen from near, with its size of
+ * ground around it; up to five times as wide, with all of it. z: y and z are exchanged. */
+static void on_a_plain(void **state) {
+  (void)state;
+  for (int z = 0; z < 2; z++)
+    for (int thick = 0; thick < 2; thick++)
+      for (int wide = 0; wide < 2; wide++) {
+        const float w = wide ? 100 : 5;
+        float object[2][3] = {{-1, 0, -1}, {1, 1.5f, 1}},
+              ground[2][3] = {{-w, thick ? -0.1f : 0, -w}, {w, 0, w}};
+        for (int i = 0; z && i < 2; i++)
+          for (int k = 0; k < 2; k++) {
+            float *p = k ? object[i] : ground[i];
+            memcpy(p, (float[3]){p[0], p[2], p[1]}, sizeof ground[i]);
+          }
+        Model m = begin();
+        add_box(&m, object[0], object[1], false, false);
+        add_box(&m, ground[0], ground[1], false, false);
+        vlCompleteDef def = first_image();
+        def.find_up = wide;
+        if (z && !wide) { /* that this is a ground is not obvious */
+          memcpy(def.up, (double[3]){0, 0, 1}, sizeof def.up);
+          memcpy(def.front, (double[3]){0, -1, 0}, sizeof def.front);
+        }
+        complete(&m, &def);
+        bool whole;
+        const double size = size_in_image(&m, object[0], object[1], &whole);
+        assert_true(whole && size > (wide ? 0.4 : 0.2));
+        size_in_image(&m, ground[0], ground[1], &whole);
+        assert_true(whole == !wide);
+        assert_true(m.scene->defs.camera.up[z ? 2 : 1] == 1);
+        double d[3];
+        toward_eye(&m, d);
+        assert_true(d[z ? 2 : 1] > 0.15 && d[z ? 2 : 1] < 0.75);
+        end(&m);
+      }
+}
+
+/* Blocks of different heights, along y or z, with a plane under them or without, are a city,
+ * which is seen from the side and above; a door with a few fittings is none. */
+static void cities(void **state) {
+  (void)state;
+  for (int z = 0; z < 2; z++)
+    for (int plane = 0; plane < 2; plane++)
+      for (int guess = 1; guess < 3; guess++) {
+        Model m = begin();
+        for (int i = 0; i < 144; i++) {
+          const float x = 25.0f * (float)(i % 12), y = 25.0f * (float)(i / 12),
+                      h = 6 + (float)(i * 37 % 101) * 0.3f;
+          float a[3] = {x, 0, y}, b[3] = {x + 15, h, y + 15};
+          if (z)
+            memcpy(a, (float[3]){x, y, 0}, sizeof a);
+          if (z)
+            memcpy(b, (float[3]){x + 15, y + 15, h}, sizeof b);
+          add_box(&m, a, b, false, false);
+        }
+        const float y_low[3] = {-10, -1, -10}, y_high[3] = {300, 0, 300},
+                    z_low[3] = {-10, -10, -1}, z_high[3] = {300, 300, 0};
+        if (plane)
+          add_box(&m, z ? z_low : y_low, z ? z_high : y_high, false, false);
+        vlCompleteDef def = first_image();
+        def.find_up = true;
+        if (guess == 2) {
+          memcpy(def.up, (double[3]){0, 0, 1}, sizeof def.up);
+          memcpy(def.front, (double[3]){0, -1, 0}, sizeof def.front);
+        }
+        complete(&m, &def);
+        assert_true(m.scene->defs.camera.up[z ? 2 : 1] == 1);
+        double d[3];
+        toward_eye(&m, d);
+        assert_true(d[z ? 2 : 1] > 0.2 && d[z ? 2 : 1] < 0.75);
+        end(&m);
+      }
+  Model m = begin();
+  const float boxes[4][2][3] = {{{0, 0, 0}, {1, 2, 0.04f}},
+                                {{0.85f, 1, 0.04f}, {0.95f, 1.05f, 0.12f}},
+                                {{0.1f, 1.1f, 0.04f}, {0.9f, 1.9f, 0.05f}},
+                                {{0.1f, 0.1f, 0.04f}, {0.9f, 0.9f, 0.05f}}};
+  for (int i = 0; i < 4; i++)
+    add_box(&m, boxes[i][0], boxes[i][1], false, false);
+  vlCompleteDef def = first_image();
+  def.find_up = true;
+  complete(&m, &def);
+  double d[3];
+  toward_eye(&m, d);
+  assert_true(d[2] > 0.9);
+  end(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(stray_parts),
+      cmocka_unit_test(all_of_it),
+      cmocka_unit_test(on_a_plain),
+      cmocka_unit_test(cities),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -99,6 +99,9 @@ typedef struct vlBounceSteps {
   uint32_t (*in_media)(vlTracing *t, uint32_t n, uint32_t depth);
   /* The same for n shaded vertices of t->s->at. The rays that go on are in t->s->rays. */
   uint32_t (*on_surfaces)(vlTracing *t, uint32_t n, uint32_t depth);
+  /* Adds the light of an emissive interface that a ray passes on its way through media. Null:
+   * none is added. */
+  vlAddLight *pass_light;
 } vlBounceSteps;
 /* The bounces of all tracers: traces n paths from t->s->rays on, for at most `most` bounces. */
 void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps);

@@ -325,6 +325,6 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
 }
 
 void vl_path_tracer(vlTracing *t) {
-  static const vlBounceSteps steps = {arrive, NULL, on_surfaces};
+  static const vlBounceSteps steps = {arrive, NULL, on_surfaces, NULL};
   vl_trace_bounces(t, t->batch->n, t->def->max_depth, &steps);
 }

@@ -170,8 +170,8 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     bool camera = depth == 0 && !t->light, irradiance = camera && t->def->irradiance;
     if (media) {
-      vl_volume_travel(t, n, depth, depth < most && !t->light, &s->rays, &media->rays, &s->hits,
-                       &media->ends);
+      vl_volume_travel(t, n, depth, depth < most && !t->light, steps->pass_light, &s->rays,
+                       &media->rays, &s->hits, &media->ends);
     } else {
       vl_stage_hits(t, n, camera, &s->rays, &s->hits);
       if (camera)

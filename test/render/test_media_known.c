@@ -158,6 +158,41 @@ static void lamp_in_shell(void **state) {
   assert_ratio("lamp in a shell", mean[1] / mean[0], exp(-0.5 * (2 + 6) - 0.3 * 4), 2e-3);
 }
 
+/* ---- lamps that light passes ------------------------------------------------------------- */
+
+/* An emissive interface in a medium: seen through 2 of it; and one near a wall, which
+ * directions of the wall's material meet often, by a medium so thin that it changes nothing.
+ * Both with another interface in between. */
+static void lamps_that_light_passes(void **state) {
+  (void)state;
+  double mean[2][2];
+  for (int wall = 0; wall < 2; wall++)
+    for (int with = 0; with < 2; with++) {
+      Stage s = narrow(1024, VL_COLOR_RGB);
+      vlMediumDef def = fog(wall ? 1e-7f : 0.4f, 0, 0);
+      if (with)
+        vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &def);
+      /* faces away from the camera where there is a wall */
+      Quad lamp = quad_at(0, 0, wall ? -1.5f : -2, wall ? -1 : 1, 0, 0, 0, 1, 0);
+      lamp.material = interface(&s);
+      lamp.emission = add_emission(&s, 3, false);
+      add_quad(&s, &lamp);
+      Quad pane = quad_at(0, 0, -1.75f, 4, 0, 0, 0, 4, 0);
+      pane.material = interface(&s);
+      add_quad(&s, &pane);
+      Quad back = quad_at(0, 0, -2, 4, 0, 0, 0, 4, 0);
+      back.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+      if (wall)
+        add_quad(&s, &back);
+      Image p = stage_finish(&s);
+      mean[wall][with] = image_mean(&p, 1);
+      image_free(&p);
+    }
+  assert_ratio("seen", mean[0][0], 3, 1e-4);
+  assert_ratio("seen in a medium", mean[0][1], 3 * exp(-0.4 * 2), 1e-4);
+  assert_ratio("before a wall", mean[1][1] / mean[1][0], 1, 2e-3);
+}
+
 /* ---- grids, turned and stretched --------------------------------------------------------- */
 
 /* A box of density 1 to 3 along its x, which the world stretches twofold and turns to the line
@@ -333,8 +368,8 @@ static void voxels(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(equilibrium),   cmocka_unit_test(nested),
-      cmocka_unit_test(lamp_in_shell), cmocka_unit_test(stretched),
-      cmocka_unit_test(rgb_grids),     cmocka_unit_test(emissive_fog),
-      cmocka_unit_test(voxels)};
+      cmocka_unit_test(lamp_in_shell), cmocka_unit_test(lamps_that_light_passes),
+      cmocka_unit_test(stretched),     cmocka_unit_test(rgb_grids),
+      cmocka_unit_test(emissive_fog),  cmocka_unit_test(voxels)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,6 +68,7 @@ typedef struct Rays {
   vlVolumeRows *rows;
   vlHits *hits;
   vlFlightEnds *ends;
+  vlAddLight *pass_light; /* may be null */
 } Rays;
 
 /* Stores how ray i ended. given: radiance that media added. */
@@ -178,6 +179,14 @@ static void end_flight(vlTracing *t, const Rays *r, const vlTravel *k, uint32_t 
   end_ray(t, r, first + i, event, f->odds[i], given);
 }
 
+/* Adds the light of the interface that ray i has met, where it emits. */
+static void meet_light(vlTracing *t, const Rays *r, uint32_t i) {
+  vlHitLight met;
+  if (r->pass_light && t->world->shapes.items[r->hits->shape[i]].first_light != VL_NONE &&
+      vl_hit_emission(t->world, r->paths, r->hits, i, &met))
+    r->pass_light(t, r->paths, r->rows, r->ends, i, &met, false);
+}
+
 /* Traces the lanes of a block through media and interfaces to their events. Their origins
  * remain those of their last scattering, which the densities of light sampling need. */
 static void travel_block(vlTracing *t, const Rays *r, vlTravel *k, uint32_t first,
@@ -196,6 +205,7 @@ static void travel_block(vlTracing *t, const Rays *r, vlTravel *k, uint32_t firs
       } else if (!vl_meets_interface(t->world, &k->x, i)) {
         end_flight(t, r, k, first, i, k->x.shape[i] != VL_NONE ? VL_ON_SURFACE : VL_IN_SKY);
       } else {
+        meet_light(t, r, first + i);
         medium[i] = vl_travel_pass(t, k, i, medium[i]);
         k->open[on++] = i;
       }
@@ -208,9 +218,10 @@ static void travel_block(vlTracing *t, const Rays *r, vlTravel *k, uint32_t firs
     end_flight(t, r, k, first, k->open[j], VL_AT_END);
 }
 
-void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission, vlPaths *p,
-                      vlVolumeRows *rows, vlHits *hits, vlFlightEnds *ends) {
-  const Rays r = {p, rows, hits, ends};
+void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission,
+                      vlAddLight *pass_light, vlPaths *p, vlVolumeRows *rows, vlHits *hits,
+                      vlFlightEnds *ends) {
+  const Rays r = {p, rows, hits, ends, pass_light};
   bool camera = depth == 0 && !t->light;
   const float *t_min = camera ? t->batch->t_min : NULL,
               *t_max = camera ? t->batch->t_max : NULL;

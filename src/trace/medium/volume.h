@@ -83,10 +83,12 @@ void vl_fit_shadows(const vlTracing *t, uint32_t count, const vlLightSamples *li
                     const vlShadowRays *q, const vlShadowFlights *f);
 
 /* Traces the n rays through media and interfaces to their events. depth: number of the bounce;
- * emission: add the emission of the media that the rays cross. Densities, weights and media
- * change in place; ray origins stay at the last scattering. */
-void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission, vlPaths *rays,
-                      vlVolumeRows *rows, vlHits *hits, vlFlightEnds *ends);
+ * emission: add the emission of the media that the rays cross; pass_light: adds that of the
+ * interfaces, may be null. Densities, weights and media change in place; ray origins stay at
+ * the last scattering. */
+void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission,
+                      vlAddLight *pass_light, vlPaths *rays, vlVolumeRows *rows, vlHits *hits,
+                      vlFlightEnds *ends);
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order,
                        uint32_t n);
 /* Normalises path i: the mean of its densities becomes 1, and beta becomes its weight. */

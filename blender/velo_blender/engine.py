@@ -8,6 +8,16 @@ import velo
 from . import camera, draw_view, export, motion, passes, report, settings, vectors, viewport
 
 REFRESH = 1.0  # seconds between images of a render that goes on
+TELL = 0.2  # seconds between lines about it
+QUICK = 0.03  # seconds; where an image was shown in less, the last one of an ended render is shown, too
+
+
+class Shown:
+    """What is told and shown of a render that goes on. at, told: when, seconds; samples: of the image, 0 before the first; cost: seconds
+    that it took."""
+
+    def __init__(self):
+        self.at, self.told, self.samples, self.cost = -REFRESH, -TELL, 0, 0.0
 
 
 class VeloRenderEngine(bpy.types.RenderEngine):
@@ -29,7 +39,7 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         except export.Cancelled:
             pass
         except (report.Refused, velo.Error, MemoryError) as error:
-            if not (isinstance(error, velo.Error) and self.test_break()):  # else the user has stopped velo
+            if not (isinstance(error, velo.Error) and self.is_stopped()):  # else the user has stopped velo
                 self._refuse(str(error) or "there is not enough memory", getattr(error, "code", 1))
         except Exception as error:  # pylint: disable=broad-except; Blender shows one line, the terminal the rest
             traceback.print_exc()
@@ -63,6 +73,10 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         if viewed is not None:
             viewed.stop()
 
+    def is_stopped(self):
+        """Whether the user has ended the render."""
+        return self.test_break()
+
     def _refuse(self, text, status=1):
         report.status = status
         line = " ".join(("velo: " + text).split())
@@ -85,7 +99,7 @@ class VeloRenderEngine(bpy.types.RenderEngine):
             self.report({"WARNING"}, "velo: %d things of the scene are rendered otherwise or not (panel velo)" % len(made.notes.lines))
         self.update_stats("", "velo: building")
         # Of an animation, the worlds of two frames share what is the same.
-        self.world = made.scene.world(previous=getattr(self, "world", None), progress=lambda step: not self.test_break(),
+        self.world = made.scene.world(previous=getattr(self, "world", None), progress=lambda step: not self.is_stopped(),
                                       **settings.world_words(scene))
         passes.add(self, depsgraph.view_layer)
         for eye in eyes:
@@ -110,11 +124,12 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         scene = depsgraph.scene
         width, height = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
         result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name, view=eye.name)
-        fields = {}
+        fields, whole = {}, False
         try:
             fields = self._trace(scene, made, crop, result, flow)
+            whole = True
         finally:
-            self.end_result(result, cancel=False)
+            self.end_result(result, cancel=not whole)  # what was shown before stays
         for field, value in fields.items():
             self.get_result().stamp_data_add_field(field, value)
 
@@ -124,39 +139,56 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         blurred = scene.render.use_motion_blur and depsgraph.view_layer.use_motion_blur
         if not scene.render.use_persistent_data or blurred or flow is not None:
             moves = motion.Motion(self, depsgraph, views) if blurred else None
-            return export.Export(depsgraph, size, self.test_break, moves, keep_triangles=flow is not None)
+            return export.Export(depsgraph, size, self.is_stopped, moves, keep_triangles=flow is not None)
         key = depsgraph.view_layer.name, size, scene.velo.bake_size
         kept = getattr(self, "kept", {})
         made = kept.get(key)
         if made is None or not made.follow(depsgraph):
-            made = export.Export(depsgraph, size, self.test_break)
+            made = export.Export(depsgraph, size, self.is_stopped)
         self.kept = {**{known: value for known, value in kept.items() if known[1:] == key[1:]}, key: made}
         return made
 
     def _trace(self, scene, made, crop, result, flow):
         """Renders into the result. Returns the fields of the file's header."""
         layer = result.layers[0]
-        shown = [time.monotonic()]
         film = passes.Film(scene, made, crop)
+        shown = Shown()
+
+        def show():
+            begin = time.monotonic()
+            passes.fill(layer, made.scene.film.image(), film)
+            self.update_result(result)
+            shown.at, shown.samples = time.monotonic(), made.scene.film.spp
+            shown.cost = shown.at - begin
 
         def progress(state):
-            self.update_progress(min(max(state.fraction, 0.0), 1.0))
-            if report.listener is not None:
-                report.listener(state.fraction)
-            self.update_stats("", "velo: sample %d of %d" % (state.spp, state.spp_total))
-            if state.pass_done and time.monotonic() - shown[0] > REFRESH and not bpy.app.background:
-                passes.fill(layer, made.scene.film.image(), film)
-                self.update_result(result)
-                shown[0] = time.monotonic()
-            return not self.test_break()
+            if self.is_stopped():
+                raise export.Cancelled()
+            now = time.monotonic()
+            if now - shown.told > TELL:
+                self._tell(state)
+                shown.told = now
+            if state.pass_done and now - shown.at > REFRESH and not (bpy.app.background and shown.samples):
+                show()
 
         words = settings.tracing(scene, scene.velo.samples)
         if made.backdrop is not None:
             words["transparent"] = True
-        image = made.scene.render(channels=passes.wanted(layer), progress=progress, denoise=scene.velo.denoise, crop=crop, **words)
+        try:
+            image = made.scene.render(channels=passes.wanted(layer), progress=progress, denoise=scene.velo.denoise, crop=crop, **words)
+        except export.Cancelled:
+            if shown.samples and shown.cost < QUICK and made.scene.film.spp > shown.samples:
+                show()
+            raise
         more = passes.Made(made, image, flow)
         passes.fill(layer, image, film, more)
         return more.mattes.fields(layer.name)
+
+    def _tell(self, state):
+        self.update_progress(min(max(state.fraction, 0.0), 1.0))
+        if report.listener is not None:
+            report.listener(state.fraction)
+        self.update_stats("", "velo: sample %d of %d" % (state.spp, state.spp_total))
 
 
 def _redraw_views():

@@ -76,7 +76,7 @@ class Export:
         self.backdrop = backdrop.of(depsgraph, self.notes)
         ignored.note_scene(depsgraph, self.notes)
         if depsgraph.view_layer.use_sky:
-            world.add(self.scene, depsgraph.scene.world, self.notes)
+            world.add(self.scene, depsgraph.scene.world, self.notes, self._cancelled)
         self._read_objects()
 
     def see(self, view, name=""):
@@ -89,10 +89,14 @@ class Export:
 
     # ---- objects
 
+    def _go_on(self):
+        """Called between steps that may take long: Cancelled where the user has ended the export."""
+        if self._cancelled():
+            raise Cancelled()
+
     def _read_objects(self):
         for instance in self.depsgraph.object_instances:
-            if self._cancelled():
-                raise Cancelled()
+            self._go_on()
             item = instance.object
             if not (instance.show_self or instance.show_particles) or item.type in UNSEEN:
                 continue
@@ -332,19 +336,23 @@ class Export:
     def _make(self, item, slots, place):
         mesh = item.to_mesh()
         try:
-            arrays = geometry.read(mesh)
+            self._go_on()
+            arrays = geometry.read(mesh, self._go_on)
             if arrays is None:
                 return None
             if not arrays.is_finite() or abs(arrays.positions).max() > FARTHEST:
                 self.notes.add(item.name, "", "its vertices are no numbers (NaN or infinite) or too far away; it is left out")
                 return None
+            self._go_on()
             self._displace(arrays, slots, place)
+            self._go_on()
             parts = self._parts(item, arrays, slots, place)
         finally:
             item.to_mesh_clear()
         plain = [part for part in parts if part.surface.emission is None]
         group = self.scene.add_group(item.name) if plain else None
         for part in plain:
+            self._go_on()
             self._add_shape(part, None, group=group, name=item.name)
         return Prepared(group, parts, [part for part in parts if part.surface.emission is not None])
 
@@ -368,10 +376,13 @@ class Export:
         for slot in numpy.unique(arrays.slots):
             material = slots[slot] if 0 <= slot < len(slots) else slots[-1]
             corners = atlas.Corners(arrays, slot, place.matrix, maps.names[:4], arrays.texture_space)
+            self._go_on()
             surface = self._surface(material, maps, corners, place)
             if moving is not None and surface.emission is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
+            self._go_on()
             words = self._arrays_of(arrays, slot, maps, surface, moving if surface.emission is None else None)
+            self._go_on()
             medium = self._medium(material, arrays, maps, place)
             if medium is not None:
                 words["inside"] = medium

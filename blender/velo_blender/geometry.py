@@ -20,8 +20,9 @@ class MeshArrays:
     positions, normals: n x 3, in the object's space; normals may be None (flat). triangles: m x 3. slots: m, the material's slot.
     displaced: whether vertices were moved by a material. uvs: {name: n x 2}. smooth: m, whether a triangle is shaded smoothly."""
 
-    def __init__(self, mesh):
+    def __init__(self, mesh, go_on):
         mesh.calc_loop_triangles()
+        go_on()
         points = _read(mesh.vertices, "co", 3, numpy.float32)
         corners = _read(mesh.loops, "vertex_index", 1, numpy.int32)
         self.slots = _read(mesh.loop_triangles, "material_index", 1, numpy.int32)
@@ -29,10 +30,13 @@ class MeshArrays:
         self.by_corner = bool(len(mesh.uv_layers) or len(mesh.color_attributes) or versions.splits_normals(mesh) or
                               (smooth.any() and not smooth.all()))
         of_triangles = "loops" if self.by_corner else "vertices"
+        go_on()
         self.triangles = _read(mesh.loop_triangles, of_triangles, 3, numpy.int32)
         self.corners = corners
         self.positions = points[corners] if self.by_corner else points
+        go_on()
         self.normals = self._normals(mesh, smooth, points) if smooth.any() else None
+        go_on()
         self.uv_names = [layer.name for layer in mesh.uv_layers]
         self.render_uv = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
         self.uvs = {layer.name: _read(layer.data, "uv", 2, numpy.float32) for layer in mesh.uv_layers}
@@ -115,11 +119,11 @@ class MeshArrays:
         return bool(numpy.isfinite(self.positions).all())
 
 
-def read(mesh):
-    """The arrays of an evaluated mesh; None: it has no faces."""
+def read(mesh, go_on=lambda: None):
+    """The arrays of an evaluated mesh; None: it has no faces. go_on is called between steps that may take long; its exception ends them."""
     if mesh is None or len(mesh.polygons) == 0:
         return None
-    return MeshArrays(mesh)
+    return MeshArrays(mesh, go_on)
 
 
 def of_object(item):

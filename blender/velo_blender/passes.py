@@ -69,13 +69,19 @@ class Film:
     def __init__(self, scene, made, crop):
         self._transparent, self._exposure = scene.render.film_transparent, settings.exposure(scene)
         self._made, self._crop = made, crop
+        self._rows = None  # of the last image, in Blender's order: new memory of this size costs more than what is computed
 
     def combined(self, image):
-        """height x width x 4: alpha is 1 everywhere where the film is not transparent."""
-        array = numpy.array(image, dtype=numpy.float32)
+        """height x width x 4, valid until the next call: alpha is 1 everywhere where the film is not transparent."""
+        pixels = numpy.asarray(image)[..., :4]
+        if self._rows is None or self._rows.shape != pixels.shape:
+            self._rows = numpy.empty(pixels.shape, dtype=numpy.float32)
+        array = self._rows[::-1]
+        array[:] = pixels
         if self._made.backdrop is not None:
-            array = self._made.backdrop.behind(array, self._made.camera, self._crop)
-        array[..., :3] *= self._exposure
+            array[:] = self._made.backdrop.behind(array, self._made.camera, self._crop)
+        if self._exposure != 1:
+            array[..., :3] *= self._exposure
         if not self._transparent:
             array[..., 3] = 1
         return array

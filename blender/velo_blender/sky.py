@@ -5,13 +5,17 @@ import math
 import os
 import subprocess
 import tempfile
+import time
 
 import bpy
 import numpy
 import velo
 
+from . import report
+
 WIDTH = 2048  # of the image of all directions, pixels
 SECONDS = 300  # after which Cycles is given up
+POLL = 0.02  # seconds between looks at Cycles
 KEPT = 8
 
 _known = {}
@@ -29,14 +33,14 @@ class Failed(Exception):
     """Cycles gave no image; its text is one line."""
 
 
-def of(world):
-    """The Sky of a world of Blender."""
+def of(world, cancelled):
+    """The Sky of a world of Blender. report.Cancelled where cancelled() says that the user has ended the export."""
     world = world.original
     key = signature(world.node_tree)
     if key not in _known:
         while len(_known) >= KEPT:
             del _known[next(iter(_known))]
-        _known[key] = _render(world)
+        _known[key] = _render(world, cancelled)
     return _known[key]
 
 
@@ -70,17 +74,14 @@ def _describe(tree, text, seen):
              for link in tree.links]
 
 
-def _render(world):
+def _render(world, cancelled):
     with tempfile.TemporaryDirectory(prefix="velo") as folder:
         bpy.data.libraries.write(os.path.join(folder, "world.blend"), {world}, path_remap="ABSOLUTE", fake_user=True)
         script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "sky_render.py")
         command = [bpy.app.binary_path, "-b", "--factory-startup", "--disable-autoexec", "-P", script, "--", folder, str(WIDTH)]
-        try:
-            done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=SECONDS, check=False)
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise Failed("Cycles could not be started or took too long (%s)" % type(error).__name__) from None
+        code = _run(command, cancelled)
         if not os.path.exists(os.path.join(folder, "done")):
-            raise Failed("Cycles ended with %d" % done.returncode)
+            raise Failed("Cycles ended with %d" % code)
         texels, is_finite = _read(os.path.join(folder, "sky.exr"))
         suns = []
         with open(os.path.join(folder, "done"), encoding="ascii") as file:
@@ -88,6 +89,25 @@ def _render(world):
                 *axis, half = (float(part) for part in line.split())
                 suns.append((numpy.array(axis), half, _sum_of_sun(folder, number)))
         return Sky(texels, suns, is_finite)
+
+
+def _run(command, cancelled):
+    """Runs a program; its exit code."""
+    try:
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as child:
+            begin = time.monotonic()
+            while child.poll() is None:
+                ended, late = cancelled(), time.monotonic() - begin > SECONDS
+                if ended or late:
+                    child.kill()
+                if ended:
+                    raise report.Cancelled()
+                if late:
+                    raise Failed("Cycles took too long")
+                time.sleep(POLL)
+            return child.returncode
+    except OSError as error:
+        raise Failed("Cycles could not be started (%s)" % type(error).__name__) from None
 
 
 def _read(path):

@@ -61,8 +61,8 @@ def _radiance(socket, groups, evaluator, notes, owner, depth=0):
     return numpy.zeros((1, 3))
 
 
-def add(scene, world, notes):
-    """Adds the light of a world; nothing where it is black."""
+def add(scene, world, notes, cancelled):
+    """Adds the light of a world; nothing where it is black. cancelled(): whether the user has ended the export."""
     if world is None:
         return
     if not world.use_nodes or world.node_tree is None:
@@ -86,7 +86,7 @@ def add(scene, world, notes):
     except links.Cyclic as error:
         notes.add(world.name, "", "%s; it is black" % error)
     except evaluate.Unsupported as error:
-        _add_sky(scene, world, error, notes)
+        _add_sky(scene, world, error, notes, cancelled)
 
 
 def _evaluator(fields, look, notes, world):
@@ -136,7 +136,7 @@ def _is_no_number(socket):
     return not numpy.isfinite(evaluate.default_of(socket)).all()
 
 
-def _add_sky(scene, world, error, notes):
+def _add_sky(scene, world, error, notes, cancelled):
     """A world that is rendered by Cycles."""
     wrong = [socket for node in world.node_tree.nodes for socket in node.inputs if _is_no_number(socket)]
     for socket in wrong:
@@ -147,7 +147,7 @@ def _add_sky(scene, world, error, notes):
         notes.add(world.name, error.node.name, "%s; the world is black" % error.text)
         return
     try:
-        made = sky.of(world)
+        made = sky.of(world, cancelled)
     except sky.Failed as reason:
         notes.add(world.name, error.node.name, "%s, and %s; the world is black" % (error.text, reason))
         return

@@ -247,8 +247,8 @@ typedef struct vlStep {
   double fraction;  /**< the estimated share of the call that is done, 0 to 1 */
   double elapsed;   /**< seconds since the call began */
 } vlStep;
-/** Called at the first step of a load or a build, then about ten times a second, on the thread
- * that made the call. Return false to stop the call with VL_CANCELLED. */
+/** Called at the first step of a load or a build, then about twenty times a second, on the
+ * thread that made the call. Return false to stop the call with VL_CANCELLED. */
 typedef bool vlStepFn(void *user, const vlStep *step);
 
 /** The number of bytes that the context and Embree hold now. *peak, which may be null, is set

@@ -122,7 +122,7 @@ typedef struct vlProgress {
   uint32_t rows;  /**< the rows of the film, from its top, whose pixels have spp_done samples;
                      after a pass, else 0. Fewer than all with vlRenderDef.pass_rows */
 } vlProgress;
-/** Called after each pass, and about twenty times a second inside one, on the thread that
+/** Called after each pass, and about forty times a second inside one, on the thread that
  * called vl_render. Return false to stop the render; a pass that is running is then discarded.
  */
 typedef bool vlProgressFn(void *user, const vlProgress *progress);

@@ -333,21 +333,40 @@ static PyObject *image_compare(Image *self, PyObject *arguments) {
                        (unsigned long long)d.not_finite, map);
 }
 
-static PyObject *image_denoise(Image *self, PyObject *denoiser) {
+typedef struct Denoising {
+  const vlImage *image;
+  vlDenoiseDef def;
+  vlImage *clean;
+  vlError error;
+} Denoising;
+static vlResult run_denoise(void *user) {
+  Denoising *d = user;
+  return vl_denoise(d->image, &d->def, &d->clean, NULL, &d->error);
+}
+
+/* _denoise(denoiser, poll or None) */
+static PyObject *image_denoise(Image *self, PyObject *arguments) {
   static const char *const denoisers[] = {"velo", "oidn", NULL};
-  vlDenoiseDef def = vl_default_denoise_def();
+  PyObject *denoiser, *poll;
+  if (!PyArg_ParseTuple(arguments, "OO:_denoise", &denoiser, &poll))
+    return NULL;
   int kind = find_choice(denoisers, "denoiser", denoiser);
   if (kind < 0 || !open_image(self))
     return NULL;
-  def.denoiser = (vlDenoiser)kind;
-  Call call;
-  if (!call_begin(&call, self->context, NULL))
+  Denoising d = {.image = self->image, .def = vl_default_denoise_def()};
+  d.def.denoiser = (vlDenoiser)kind;
+  LongCall call;
+  if (!long_call_begin(&call, self->context, Py_None))
     return NULL;
-  vlImage *clean = NULL;
-  vlError error = {0};
-  vlResult done = vl_denoise(self->image, &def, &clean, NULL, &error);
-  call_end(&call);
-  return done == VL_OK ? image_object(self->context, clean) : raise_result(done, &error);
+  d.def.cancel = call.cancel;
+  vlResult done;
+  bool fine = long_call_poll(&call, poll) && long_call_run(&call, NULL, run_denoise, &d, &done);
+  long_call_end(&call);
+  if (!fine) {
+    vl_image_destroy(d.clean);
+    return NULL;
+  }
+  return done == VL_OK ? image_object(self->context, d.clean) : raise_result(done, &d.error);
 }
 
 /* ---- attributes -------------------------------------------------------------------------- */
@@ -483,7 +502,7 @@ static PyMethodDef image_methods[] = {
     {"_view", (PyCFunction)image_view, METH_VARARGS,
      "8-bit image for displays: view, exposure."},
     {"_compare", (PyCFunction)image_compare, METH_VARARGS, "Differences from a reference."},
-    {"_denoise", (PyCFunction)image_denoise, METH_O, "A denoised copy."},
+    {"_denoise", (PyCFunction)image_denoise, METH_VARARGS, "A denoised copy."},
     {"_close", (PyCFunction)image_close, METH_NOARGS, "Frees the pixels."},
     {"_attributes", (PyCFunction)image_pickled_attributes, METH_NOARGS,
      "The attributes, for pickle."},

@@ -155,9 +155,9 @@ static bool call_back(const Waiting *w, int question) {
   return go_on;
 }
 
-/* Waits for the next event, at most 50 ms: the system may give a signal to another thread. */
+/* Waits for the next event, at most 20 ms: the system may give a signal to another thread. */
 static void wait(Waiting *w) {
-  const long POLL = 50 * 1000000L; /* ns */
+  const long POLL = 20 * 1000000L; /* ns */
   struct timespec until;
   clock_gettime(CLOCK_MONOTONIC, &until);
   until.tv_nsec += POLL;
@@ -166,6 +166,17 @@ static void wait(Waiting *w) {
     until.tv_sec++;
   }
   sem_clockwait(&w->runner->wake, CLOCK_MONOTONIC, &until);
+}
+
+/* Looks for signals and calls the call's poll. False: an exception is set. */
+static bool look_around(const Waiting *w) {
+  if (PyErr_CheckSignals() != 0)
+    return false;
+  if (!w->call->poll)
+    return true;
+  PyObject *answer = PyObject_CallFunctionObjArgs(w->call->poll, NULL);
+  Py_XDECREF(answer);
+  return answer != NULL;
 }
 
 /* Until the call is done. False: this is now another process, a child of a callback, where the
@@ -178,7 +189,7 @@ static bool attend(Waiting *w, Call *call) {
     if (atomic_load(&w->done))
       break;
     PyEval_RestoreThread(call->thread);
-    if (!stopped && !question && PyErr_CheckSignals() != 0) {
+    if (!stopped && !question && !look_around(w)) {
       vl_cancel_request(w->call->cancel);
       stopped = true;
     }
@@ -236,6 +247,15 @@ bool long_call_begin(LongCall *call, const Context *context, PyObject *callback)
   if (result != VL_OK)
     raise_result(result, NULL);
   return result == VL_OK;
+}
+
+bool long_call_poll(LongCall *call, PyObject *poll) {
+  if (poll != Py_None && !PyCallable_Check(poll)) {
+    raise_value("poll", poll, "callable, or None");
+    return false;
+  }
+  call->poll = poll == Py_None ? NULL : poll;
+  return true;
 }
 
 /* The interpreter ends, and this is not the thread that ends it, so it never runs Python again:

@@ -142,7 +142,9 @@ typedef struct LongCall {
   const Context *context;
   vlCancel *cancel;   /* for the def of the call */
   PyObject *callback; /* null: none */
-  Film *film;         /* which the callback may read after a pass; may be null */
+  PyObject *poll; /* called without arguments about fifty times a second while the call runs; an
+                     exception ends the call; its answer is not used. null: none */
+  Film *film;     /* which the callback may read after a pass; may be null */
   Waiting *waiting;
   const Own *own[6]; /* whose functions it calls; null: none */
   PyObject *error;   /* the first exception of these functions; null: none */
@@ -154,6 +156,8 @@ bool long_call_begin(LongCall *call, const Context *context, PyObject *callback)
 /* Runs body(user) without the GIL; *result is what it returns. False: an exception is set, by a
  * signal, the callback, or since the call could not run. */
 bool long_call_run(LongCall *call, bool *busy, LongBody *body, void *user, vlResult *result);
+/* Takes the poll of a call; None: none. False: an exception is set. */
+bool long_call_poll(LongCall *call, PyObject *poll);
 void long_call_end(LongCall *call);
 /* The callbacks for the def of a call; user is the LongCall. */
 bool long_call_progress(void *user, const vlProgress *progress);

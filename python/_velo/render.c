@@ -396,17 +396,17 @@ static bool other_camera(PyObject *object, const char *what, const vlCamera **ca
 }
 
 /* channels(world, camera, film or None, settings, [names], keywords, forward or None, backward
- * or None): (image of floats or None, image of ids or None). */
+ * or None, poll or None): (image of floats or None, image of ids or None). */
 static PyObject *channels(PyObject *module, PyObject *arguments) {
   (void)module;
   World *world;
   Camera *camera;
   Settings *settings;
-  PyObject *film, *names, *keywords, *forward, *backward;
-  if (!PyArg_ParseTuple(arguments, "O!O!OO!O!O!OO:channels", base_types[TYPE_WORLD], &world,
+  PyObject *film, *names, *keywords, *forward, *backward, *poll;
+  if (!PyArg_ParseTuple(arguments, "O!O!OO!O!O!OOO:channels", base_types[TYPE_WORLD], &world,
                         base_types[TYPE_CAMERA], &camera, &film, base_types[TYPE_SETTINGS],
                         &settings, &PyList_Type, &names, &PyDict_Type, &keywords, &forward,
-                        &backward))
+                        &backward, &poll))
     return NULL;
   if (!world->world)
     return raise_usage("the world is closed");
@@ -448,6 +448,10 @@ static PyObject *channels(PyObject *module, PyObject *arguments) {
   LongCall call;
   if (!long_call_begin(&call, world->context, Py_None))
     return NULL;
+  if (!long_call_poll(&call, poll)) {
+    long_call_end(&call);
+    return NULL;
+  }
   def->cancel = call.cancel;
   call.own[0] = own_of_camera(&camera->camera);
   call.own[1] = own_of_sampler(def->render);

@@ -111,14 +111,18 @@ class Image(_velo.Image):
     def denoise(self, denoiser: str = "velo") -> "Image":
         """A denoised copy. The image must have the channels "error" and should have "features" (scene.render(channels=...)).
         denoiser: velo, or oidn (the user's Open Image Denoise)."""
+        return self._denoised(denoiser, None)
+
+    def _denoised(self, denoiser: str, poll: Any) -> "Image":
+        # poll: called about fifty times a second without arguments; an exception ends the call.
         if len(self.parts) == 1:
-            return self._denoise(denoiser)
+            return self._denoise(denoiser, poll)
         numpy = _arrays.numpy_or_none()
         if numpy is None:
             raise UsageError("numpy is needed to join the image's channels")
         floats = [part for part in self.parts if numpy.asarray(part).dtype == numpy.float32]
         joined = numpy.concatenate([numpy.asarray(part) for part in floats], axis=2)
-        return Image(joined, [name for part in floats for name in part._names])._denoise(denoiser)
+        return Image(joined, [name for part in floats for name in part._names])._denoise(denoiser, poll)
 
     def __copy__(self) -> "Image":
         return _of_parts(*(_part(part) for part in self.parts))

@@ -132,6 +132,25 @@ def _channels(value: Any) -> list[str]:
     return names
 
 
+class _Asked:
+    # A progress callback, or None, that is asked again after the render: poll gets its last state, without an answer; None before.
+    def __init__(self, progress: Optional[Callback]) -> None:
+        self._progress, self._last = progress, None
+        self.callback: Any = self._ask if callable(progress) else progress
+
+    def _ask(self, state: Progress) -> Any:
+        self._last: Optional[Progress] = state
+        return self._progress(state) if self._progress is not None else None
+
+    @property
+    def poll(self) -> Optional[Callable[[], Any]]:
+        return None if self._last is None else self._again
+
+    def _again(self) -> None:
+        if self._progress is not None and self._last is not None:
+            self._progress(self._last._replace(pass_done=False))
+
+
 class Scene(_velo.Scene):
     """The description of a world and of how its image is taken. A new scene is empty; `velo.load` reads a file.
 
@@ -154,7 +173,7 @@ class Scene(_velo.Scene):
 
     def load(self, path: Path, *, progress: Optional[StepCallback] = None, **keywords: Unpack[_keywords.Load]) -> None:
         """Adds the contents of a file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. Keywords: vlLoadDef's. progress: called
-        about ten times a second with a velo.Step; False ends the load with a CancelledError. After this, and after a
+        about twenty times a second with a velo.Step; False ends the load with a CancelledError. After this, and after a
         KeyboardInterrupt, the scene is as it was before."""
         words: dict[str, Any] = {**keywords}
         self._changed = True
@@ -410,7 +429,7 @@ class Scene(_velo.Scene):
         their part of the accelerator, images; the bits are those of a world that shares nothing.
 
         previous: a world of another scene to share with, one that the same file was loaded into for example. progress: called
-        about ten times a second with a velo.Step; False ends the build with a CancelledError. Keywords: color, light_sampler,
+        about twenty times a second with a velo.Step; False ends the build with a CancelledError. Keywords: color, light_sampler,
         regularize, bits, accelerator."""
         _check.instance(previous, World, "previous", optional=True)
         return self._build(self.settings(**keywords), previous, _check.callback(progress, "progress"))
@@ -444,7 +463,8 @@ class Scene(_velo.Scene):
         camera: default the scene's; a velo.OwnCamera takes its place and its size. resolution: (width, height), pixels. crop: x0, y0, x1, y1, pixels, exclusive.
         channels: ground truth of the pixels' centres as further channels: "Z", "P", "N", "uv", "albedo", "id.object",
         "id.instance", ... (velo.channel_names(), docs/ground-truth.md).
-        progress: called about twenty times a second with a velo.Progress; False ends the render after its finished passes.
+        progress: called about forty times a second with a velo.Progress; False ends the render after its finished passes. While
+        channels and denoising are computed it gets the last one again, and False means nothing. Its exception ends the call at once.
         film: adds samples to this film, until it has spp per pixel.
         denoise: denoises the colours.
         Further keywords: the members of vlRenderDef, vlFilmDef, vlBuildDef and vlDevelopDef: spp, seed, tracer, sampler,
@@ -459,8 +479,9 @@ class Scene(_velo.Scene):
         world = self._build(settings)
         self._choose(world, view, target, settings, words)
         self._film = target
-        _velo.render(world, view, target, settings, progress)
-        return self._develop(world, view, target, settings, channels, denoise)
+        asked = _Asked(progress)
+        _velo.render(world, view, target, settings, asked.callback)
+        return self._develop(world, view, target, settings, channels, denoise, asked.poll)
 
     def passes(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
                crop: Optional[Sequence[int]] = None, channels: Sequence[str] = (), film: Optional[Film] = None,
@@ -550,14 +571,14 @@ class Scene(_velo.Scene):
         return _velo.choose_tracer(self._build(settings), view, settings, min(settings.get("spp"), _MAX_RACED))
 
     def _develop(self, world: World, view: Camera, film: Film, settings: Any, channels: Sequence[str],
-                 denoise: bool) -> Image:
+                 denoise: bool, poll: Optional[Callable[[], None]] = None) -> Image:
         image = film.image(exposure=settings.get("exposure"))
         wanted = list(channels) + [name for name in ("error", "features") if denoise and name not in channels]
         if wanted and film.spp:
-            join(image, _velo.channels(world, view, film, settings, wanted, {}, None, None))
+            join(image, _velo.channels(world, view, film, settings, wanted, {}, None, None, poll))
         if denoise:
-            more = _velo.channels(world, view, film, settings, list(channels), {}, None, None) if channels else ()
-            image = join(image.denoise(), more)
+            more = _velo.channels(world, view, film, settings, list(channels), {}, None, None, poll) if channels else ()
+            image = join(image._denoised("velo", poll), more)
         _velo.image_describe(list(image.parts), view, settings, self._file, film.spp, None, "centre" if channels else None,
                              "velo" if denoise else None)
         return image
@@ -578,7 +599,7 @@ class Scene(_velo.Scene):
         if time is not None:
             options["time"] = time
         parts = [part for part in _velo.channels(self._build(settings), view, film, settings, list(channels), options,
-                                                 forward, backward) if part is not None]
+                                                 forward, backward, None) if part is not None]
         _velo.image_describe(parts, view, settings, self._file, film.spp if film is not None else 0, time, mode, None)
         return join(parts[0], parts[1:])
 
@@ -623,7 +644,7 @@ for _group, _functions in _SHOWN.items():
 
 def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = None, **keywords: Unpack[_keywords.Opening]) -> Scene:
     """Reads a scene file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. A file without a camera or lights gets a camera that
-    frames it and a studio. progress: called about ten times a second with a velo.Step; False ends the load with a
+    frames it and a studio. progress: called about twenty times a second with a velo.Step; False ends the load with a
     CancelledError.
 
     Keywords: the members of vlLoadDef (permissive, strict, search_path, time, scene, animation, variant, camera, scene_unit) and of

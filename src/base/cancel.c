@@ -30,7 +30,7 @@ bool vl_cancel_requested(const vlCancel *cancel) {
   return vl_is_cancelled(cancel);
 }
 
-static const double step_interval = 0.1; /* seconds */
+static const double step_interval = 0.05; /* seconds */
 
 void vl_task_start(vlTask *task, const vlCancel *cancel, vlStepFn *progress, void *user) {
   *task = (vlTask){.cancel = cancel,

@@ -1,5 +1,5 @@
 /* render/stop.h: how a pass over many tasks is abandoned. The caller's callback is called about
- * twenty times a second, on the thread that called vl_render; every worker checks the request
+ * forty times a second, on the thread that called vl_render; every worker checks the request
  * to cancel and the deadline. */
 #ifndef RENDER_STOP_H
 #define RENDER_STOP_H
@@ -46,7 +46,7 @@ static inline bool vl_stop_check(vlStop *stop) {
     atomic_store(&stop->late, true);
     atomic_store(&stop->stopped, true);
   } else if (stop->ask && pthread_equal(pthread_self(), stop->caller) &&
-             now - stop->last > 0.05) {
+             now - stop->last > 0.025) {
     stop->last = now;
     if (stop->ask(stop->user))
       atomic_store(&stop->stopped, true);

@@ -1,4 +1,6 @@
 """Cases of test_render.py: light, materials and passes agree with Cycles; bad input is reported."""
+import time
+
 import bpy
 import numpy
 
@@ -254,3 +256,23 @@ def odd_things_are_rendered():
     lamp(scene, "SUN", -3.0)
     assert numpy.isfinite(colors(render(scene))).all()
     assert any("unfinished" in line for line in notes(scene)), notes(scene)
+
+
+@case
+def a_render_can_be_ended():
+    """Also while it denoises. What the first pass has shown is kept."""
+    from velo_blender import engine, passes
+    scene = room(size=(320, 240), samples=65536)
+    lamp(scene, "AREA", 300, size=1.5)
+    kept, filled = engine.VeloRenderEngine.is_stopped, []
+    fill = passes.fill
+    passes.fill = lambda *words: (filled.append(time.monotonic()), fill(*words))
+    engine.VeloRenderEngine.is_stopped = lambda self: bool(filled) and time.monotonic() > filled[0] + 0.1
+    try:
+        for samples, denoise in ((65536, False), (1, True)):
+            filled.clear()
+            scene.velo.samples, scene.velo.denoise = samples, denoise
+            bpy.ops.render.render()
+            assert time.monotonic() - filled[0] < 3, time.monotonic() - filled[0]
+    finally:
+        engine.VeloRenderEngine.is_stopped, passes.fill = kept, fill

@@ -283,6 +283,24 @@ def an_exception_in_a_callback_ends_the_render():
 
 
 @case
+def an_exception_in_a_callback_ends_denoising():
+    class Mine(Exception):
+        pass
+
+    seen = []
+
+    def callback(progress):
+        if seen and seen[-1].pass_done:
+            assert not progress.pass_done and progress.spp == 1
+            raise Mine("here")
+        seen.append(progress)
+
+    with raises(Mine, "here"):
+        scene.render(spp=1, resolution=(640, 480), denoise=True, progress=callback)
+    assert scene.film.spp == 1
+
+
+@case
 def a_callback_after_a_pass_may_read_the_film():
     images = []
 

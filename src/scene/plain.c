@@ -37,7 +37,7 @@ static void visit(void *user, const vlExtent *box, double surface) {
 }
 
 bool vl_plain_find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain *plain) {
-  const double tenth = 0.1, most = 0.9, wide = 8, covered = 0.3;
+  const double tenth = 0.1, most = 0.9, wide = 8, covered = 0.3, around = 0.25;
   vlExtent whole = vl_extent_nothing;
   if (scene->frame_points.count || !vl_things_are_few(scene))
     return false;
@@ -59,8 +59,8 @@ bool vl_plain_find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlai
     return false;
   plain->model = plain->shown = s.model;
   for (int i = 0; i < 3; i++) {
-    plain->shown.low[i] = fmax(s.model.low[i] - model, s.low.low[i]);
-    plain->shown.high[i] = fmin(s.model.high[i] + model, s.low.high[i]);
+    plain->shown.low[i] = fmax(s.model.low[i] - around * model, s.low.low[i]);
+    plain->shown.high[i] = fmin(s.model.high[i] + around * model, s.low.high[i]);
   }
   return plain->shown.low[0] <= plain->shown.high[0] &&
          plain->shown.low[1] <= plain->shown.high[1] &&

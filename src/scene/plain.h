@@ -8,8 +8,8 @@
 /* A model on a plain. */
 typedef struct vlPlain {
   vlExtent model; /* what stands on it */
-  vlExtent shown; /* the part of it that an image of the model shows: the model's size to each
-                     side */
+  vlExtent shown; /* the part of it that an image of the model shows: a quarter of the
+                     model's size to each side */
 } vlPlain;
 
 /* Whether the lowest tenth of the scene's height is a plain: nearly all of its surface lies

@@ -125,6 +125,18 @@ for m in inside city signs; do
   expect_absent "lit_${m}_again_given" 'lamps are added'
   same "lit_${m}_again_same" $m.exr again.exr
 done
+# The small renders by which light and exposure are chosen have at most a fifth of the rays of the image.
+for m in inside city signs; do
+  check "rays_$m" "$VELO" render $m.glb --resolution 160x120 -v -o rays.png
+  python3 - "$out$err" <<'END' && pass "rays_${m}_few" || fail "rays_${m}_few"
+import re, sys
+small = [int(n) for n in re.findall(r"pixels, (\d+) rays", sys.argv[1])]
+number, unit = re.search(r"([0-9.]+) ([kM]?) ?rays; wrote", sys.argv[1]).groups()
+whole = float(number) * {"": 1, "k": 1e3, "M": 1e6}[unit]
+print(small, whole)
+sys.exit(not (len(small) == 2 and sum(small) <= 0.2 * whole))
+END
+done
 for m in glow open; do
   check "own_light_$m" "$VELO" render $m.glb $small -o $m.png
   expect_absent "own_light_${m}_says" 'lamps are added'

@@ -66,9 +66,17 @@ float exposure_meter(const vlImage *image) {
 
 /* ---- models ------------------------------------------------------------------------------ */
 
-/* The longer sides of the small renders. Each pixel has as many samples as one of a first
- * image: both take (96^2 + 60^2) / 256^2 = 20 % of the rays of a first image of 256 pixels. */
-enum { METER_SIDE = 96, UNLIT_SIDE = 60, METER_SPP = 8, METER_DEPTH = 6 };
+/* The longer sides of the small renders: shares of the image's, in 16ths, within limits. Each
+ * pixel has as many samples as one of a first image: both take (6^2 + 3^2) / 16^2 = 18 % of the
+ * paths of a first image of 256 pixels or fewer, and less of a larger one. Below 128 pixels it
+ * is more. */
+enum { METER_SIDE = 96, METER_SPP = 8, METER_DEPTH = 6 };
+typedef struct SmallDef {
+  const char *what; /* it is for */
+  int share, least, most;
+} SmallDef;
+static const SmallDef meter_small = {"exposure", 6, 48, METER_SIDE},
+                      unlit_small = {"light", 3, 24, 48};
 #define WHITE 0.62 /* mean of a white model in the studio */
 #define SHEEN 0.04 /* what dark surfaces reflect like glass */
 
@@ -180,8 +188,17 @@ static size_t gather(ModelLight *light, const vlScene *scene, Counted counted,
   return seen;
 }
 
+static void tell_rays(const char *what, const vlCamera *camera, const vlRenderStats *stats) {
+  const uint64_t rays = stats->camera_rays + stats->bounce_rays + stats->shadow_rays;
+  if (report_is_verbose())
+    report_note("%s: a render of %u x %u pixels, %llu rays", what, camera->width,
+                camera->height, (unsigned long long)rays);
+}
+
+/* what: what it is for. */
 static vlResult render_small(vlContext *context, const vlWorld *world, const vlCamera *camera,
-                             const vlSceneDefs *defs, SmallRender *small, vlError *error) {
+                             const vlSceneDefs *defs, const char *what, SmallRender *small,
+                             vlError *error) {
   vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
   vlRenderDef render = vl_default_render_def();
   render.tracer = defs->render.tracer == VL_TRACER_PATH ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
@@ -193,9 +210,11 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
   vlChannelsDef channels = vl_default_channels_def(camera->width, camera->height);
   channels.channels = VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_MATERIAL;
   vlFilm *film = NULL;
+  vlRenderStats stats = {0};
   vlResult result = vl_film_create(context, &film_def, &film);
   if (result == VL_OK)
-    result = vl_render(world, camera, film, &render, NULL, error);
+    result = vl_render(world, camera, film, &render, &stats, error);
+  tell_rays(what, camera, &stats);
   if (result == VL_OK)
     result = vl_film_develop(film, &develop, &small->color);
   if (result == VL_OK)
@@ -212,11 +231,17 @@ typedef struct Metered {
   size_t seen; /* pixels that show any of the model */
 } Metered;
 
+/* The longer side of a small render of an image. */
+static uint32_t small_side(const SmallDef *def, uint32_t width, uint32_t height) {
+  const double side = def->share / 16.0 * (width > height ? width : height);
+  return (uint32_t)(side < def->least ? def->least : side > def->most ? def->most : side);
+}
+
 /* side: the longer side of the small render, at most METER_SIDE. lamps: the light is not that
  * of the studio alone: a model of glass, too, is metered. */
 static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld *world,
-                        const vlCamera *camera, const vlSceneDefs *defs, int side, bool lamps,
-                        Metered *metered, vlError *error) {
+                        const vlCamera *camera, const vlSceneDefs *defs, const char *what,
+                        uint32_t side, bool lamps, Metered *metered, vlError *error) {
   double k = side / (double)(camera->width > camera->height ? camera->width : camera->height);
   uint32_t width = (uint32_t)(camera->width * k + 0.5),
            height = (uint32_t)(camera->height * k + 0.5);
@@ -226,7 +251,7 @@ static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld 
   if (k < 1 &&
       vl_camera_resize(camera, width ? width : 1, height ? height : 1, &camera_small) != VL_OK)
     return VL_OK;
-  vlResult result = render_small(context, world, &camera_small, defs, &small, error);
+  vlResult result = render_small(context, world, &camera_small, defs, what, &small, error);
   ModelLight *light = result == VL_OK ? calloc(1, sizeof *light) : NULL;
   if (result == VL_OK && !light)
     result = VL_ERROR_MEMORY;
@@ -258,7 +283,8 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
   vlError error = {0};
   *ev = 0;
   vlResult result =
-      measure(context, scene, world, camera, defs, METER_SIDE, leave <= 0, &m, &error);
+      measure(context, scene, world, camera, defs, meter_small.what,
+              small_side(&meter_small, camera->width, camera->height), leave <= 0, &m, &error);
   if (result != VL_OK)
     return report_error(&error, result, "metering");
   double stops = m.white > 0 ? log2(WHITE / m.white) : 0;
@@ -277,11 +303,13 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
 }
 
 int exposure_find_unlit(vlContext *context, const vlScene *scene, const vlWorld *world,
-                        const vlCamera *camera, const vlSceneDefs *defs, bool *unlit) {
+                        const vlCamera *camera, const vlSceneDefs *defs, const uint32_t size[2],
+                        bool *unlit) {
   Metered m;
   vlError error = {0};
   *unlit = false;
-  vlResult result = measure(context, scene, world, camera, defs, UNLIT_SIDE, false, &m, &error);
+  vlResult result = measure(context, scene, world, camera, defs, unlit_small.what,
+                            small_side(&unlit_small, size[0], size[1]), false, &m, &error);
   if (result != VL_OK)
     return report_error(&error, result, "metering");
   *unlit = m.pixels > 0 && (m.white < WHITE / 1024 || (m.white < WHITE / 32 && m.unlit > 0.5));

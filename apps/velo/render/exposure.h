@@ -25,9 +25,11 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
                          float *ev);
 /* Whether the model's surfaces get hardly any light: a white one less than a 32nd of what it
  * has in the studio, and most of them still much less than the mean, or all of them nothing.
+ * size: width and height of the image that will be rendered, by which the small one is chosen.
  * Returns -1, or the exit code after reporting the error. */
 int exposure_find_unlit(vlContext *context, const vlScene *scene, const vlWorld *world,
-                        const vlCamera *camera, const vlSceneDefs *defs, bool *unlit);
+                        const vlCamera *camera, const vlSceneDefs *defs, const uint32_t size[2],
+                        bool *unlit);
 /* Prints the metered exposure. */
 void exposure_tell(float ev);
 

@@ -281,7 +281,11 @@ static int find_unlit(vlContext *context, const char *path, vlScene *scene,
   vlResult result = vl_world_build(scene, &build, &opening->metered, &error);
   if (result != VL_OK)
     return report_error(&error, result, path);
-  return exposure_find_unlit(context, scene, opening->metered, &camera, defs, unlit);
+  const OptionValue *resolution = &arguments->values[RENDER_RESOLUTION];
+  const uint32_t size[2] = {
+      resolution->given ? (uint32_t)resolution->integers[0] : camera.width,
+      resolution->given ? (uint32_t)resolution->integers[1] : camera.height};
+  return exposure_find_unlit(context, scene, opening->metered, &camera, defs, size, unlit);
 }
 
 void scene_opening_close(SceneOpening *opening) {

@@ -94,7 +94,7 @@ bool vl_file_is_input(vlContext *context, const char *path, vlOutputKind kind, c
 
 vlResult vl_note_input(vlContext *context, const char *path, vlOutputKind kind) {
   struct stat info;
-  if (!context || !path)
+  if (!context || !path || (unsigned)kind > VL_OUTPUT_FILM)
     return VL_ERROR_ARGUMENT;
   if (stat(path, &info) != 0)
     return VL_ERROR_IO;

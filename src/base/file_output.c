@@ -81,6 +81,8 @@ vlResult vl_check_output(vlContext *context, const char *path, vlOutputKind kind
   char input[4096];
   if (!path)
     return vl_fail(error, VL_ERROR_ARGUMENT, "check of an output: path is null");
+  if ((unsigned)kind > VL_OUTPUT_FILM)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "check of an output: no such kind of file");
   if (strlen(path) >= 4096)
     return vl_fail(error, VL_ERROR_IO, "cannot write: path too long");
   if (vl_text_is(path, VL_STDOUT))

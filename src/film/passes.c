@@ -5,6 +5,7 @@
 #include "color/sensor.h"
 #include "film/sums.h"
 #include "film/white.h"
+#include "schema/schema.h"
 #include "velo/film.h"
 
 enum { SIZE_MAX_PIXELS = 65536, MAX_BUCKETS = 1000 };
@@ -51,6 +52,10 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
     return VL_ERROR_ARGUMENT;
   *film = NULL;
   if (!context || !def || def->cookie != VL_COOKIE_FILM)
+    return VL_ERROR_ARGUMENT;
+  char wrong[VL_GIVEN_MESSAGE];
+  if (!vl_choices_check(VL_SETTING_RENDER, offsetof(vlSceneDefs, film), sizeof *def, def,
+                        wrong))
     return VL_ERROR_ARGUMENT;
   const uint32_t *c = def->crop;
   if (def->white_balance != 0.0 && !(def->white_balance >= 1000.0 && def->white_balance <= 1e5))

@@ -18,6 +18,7 @@
 #include "render/two_way.h"
 #include "trace/trace.h"
 #include "velo/render.h"
+#include "velo/setting.h"
 
 enum { VL_RENDER_TILE = 16, VL_RENDER_ROWS = VL_FILM_ROWS + 16 };
 /* Some of the rows after those of vlFilmRayRows: 4 wavelengths, 4 densities, 4 of radiance;
@@ -93,6 +94,9 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
                          vlError *error);
 /* Makes a run from world, film, def and sequence: rays, sampler, tracer, crop. In render.c. */
 void vl_render_prepare(vlRenderRun *r, const vlCamera *camera);
+/* Checks that the def's tracer, sampler and other choices are known. If the result is false,
+ * message holds the reason. In render.c. */
+bool vl_render_choices_check(const vlRenderDef *def, char message[VL_GIVEN_MESSAGE]);
 /* Checks the arguments of a render. In render.c. */
 vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film,
                          const vlRenderDef *def, vlError *error);

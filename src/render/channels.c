@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/free.h"
 #include "base/unset.h"
+#include "render/block.h"
 #include "render/channel_pass.h"
 
 /* ---- which channels there are ------------------------------------------------------------ */
@@ -89,6 +90,9 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "ground truth: def.render.cookie is not that of a default def of this version");
+  char wrong[VL_GIVEN_MESSAGE];
+  if (counts && !vl_render_choices_check(def->render, wrong))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: %s", wrong);
   if (film->width != camera->width || film->height != camera->height)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "ground truth: camera (%u x %u) and film (%u x %u) differ", camera->width,
@@ -127,6 +131,9 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "ground truth: mode %d or %u ranks: there is no such thing", (int)def->mode,
                    def->ranks);
+  if ((unsigned)def->space > VL_SPACE_ACES2065_1)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: space %d: there is no such thing",
+                   (int)def->space);
   if (((def->channels & VL_CHANNEL_FORWARD) && !def->forward) ||
       ((def->channels & VL_CHANNEL_BACKWARD) && !def->backward))
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: flow needs the other camera");

@@ -69,6 +69,8 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKin
     return bad(scene, d->source, what, "there is none of colours, only of floats");
   if (!d->spectrum && (row->traits & VL_TEXTURE_COLOR_ONLY))
     return bad(scene, d->source, what, "there is none of floats, only of colours");
+  if ((unsigned)d->encoding > VL_ENCODING_GAMMA)
+    return bad(scene, d->source, what, "unknown encoding");
   if (d->channel < -1 || d->channel > 3)
     return bad(scene, d->source, what, "its channels are 0 to 3");
   if (d->kind == VL_TEXTURE_IMAGE && !!d->path + !!d->image + !!d->data != 1)
@@ -337,6 +339,10 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   }
   char what[80];
   snprintf(what, sizeof what, "%s light", row->name);
+  if ((unsigned)def->space > VL_SPACE_ACES2065_1) {
+    bad(scene, def->source, what, "unknown colour space");
+    return none;
+  }
   vlLightDef d = vl_default_light_def(
       def->kind); /* members that the kind does not use keep their defaults */
   vl_row_copy_members(row, def, &d);

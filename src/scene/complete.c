@@ -542,6 +542,9 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: scene is null");
   if (def.cookie != VL_COOKIE_COMPLETE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: " VL_BAD_COOKIE);
+  char wrong[VL_GIVEN_MESSAGE];
+  if (!vl_choices_check(VL_SETTING_COMPLETE, 0, sizeof def, &def, wrong))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: %s", wrong);
   if (scene->error.code != VL_OK)
     return vl_scene_result(scene, error);
   vlSceneDefs *s = &scene->defs;

@@ -112,6 +112,10 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
     bad(scene, def, "unknown kind");
     return none;
   }
+  if ((unsigned)def->space > VL_SPACE_ACES2065_1) {
+    bad(scene, def, "unknown colour space");
+    return none;
+  }
   if (def->rgb_absorption && !check_rgb_absorption(scene, def))
     return none;
   char what[120];

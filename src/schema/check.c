@@ -356,3 +356,17 @@ bool vl_parameter_check(const vlParameter *p, const void *def, const char *name,
     return true;
   return !vl_parameter_number(p, def, &x) || check_number(p, x, name, message);
 }
+
+bool vl_choices_check(vlSettingGroup group, size_t begin, size_t size, const void *part,
+                      char message[VL_GIVEN_MESSAGE]) {
+  const vlKindRow *row = vl_settings(group);
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    vlParameter p = row->parameters[i];
+    if (p.type != VL_PARAMETER_CHOICE || p.offset < begin || p.offset >= begin + size)
+      continue;
+    p.offset -= begin;
+    if (!vl_parameter_check(&p, part, vl_setting_keyword(&row->parameters[i]), message))
+      return false;
+  }
+  return true;
+}

@@ -145,6 +145,11 @@ const char *vl_parameter_label(const vlParameter *parameter);
  * (velo/setting.h: VL_GIVEN_MESSAGE). name: of the value in the message. */
 bool vl_parameter_check(const vlParameter *parameter, const void *def, const char *name,
                         char message[VL_GIVEN_MESSAGE]);
+/* Checks the choices of a part of a group's def (velo/setting.h), such as the member film of
+ * vlSceneDefs: each must be one of those in its row. begin, size: of the part in the group's
+ * def, bytes. If the result is false, message holds the reason. */
+bool vl_choices_check(vlSettingGroup group, size_t begin, size_t size, const void *part,
+                      char message[VL_GIVEN_MESSAGE]);
 /* Gives the value of a parameter as a number. This works for counts, floats, doubles, choices,
  * bools, and inputs without texture that hold one number. False: the parameter is of another
  * type. */

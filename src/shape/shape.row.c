@@ -53,7 +53,8 @@ void vl_shape_own_box(const vlShapeDef *def, double low[3], double high[3]) {
 }
 
 bool vl_shape_is_mesh(uint32_t kind) {
-  return (vl_kind_row(&vl_shape_family, (int)kind)->traits & VL_SHAPE_TRAIT_MESH) != 0;
+  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)kind);
+  return row && (row->traits & VL_SHAPE_TRAIT_MESH) != 0;
 }
 
 vlShapeDef vl_default_shape_def(vlShapeKind kind) {

@@ -1,5 +1,6 @@
 /* world/build.c: compiles a scene into a constant world: materials (with their textures),
  * shapes, lights, accelerator. */
+#include <stddef.h>
 #include <string.h>
 
 #include "base/cookie.h"
@@ -7,6 +8,7 @@
 #include "base/file.h"
 #include "base/machine.h"
 #include "scene/scene.h"
+#include "schema/schema.h"
 #include "world/part.h"
 #include "world/world.h"
 
@@ -89,10 +91,9 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   vlBuildDef d = def ? *def : vl_default_build_def();
   if (d.cookie != VL_COOKIE_BUILD)
     return vl_fail(error, VL_ERROR_ARGUMENT, "world build: " VL_BAD_COOKIE);
-  if (d.bits != VL_BITS_PORTABLE && d.bits != VL_BITS_FAST)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: no such kind of bits");
-  if (d.accelerator < VL_ACCELERATOR_AUTO || d.accelerator > VL_ACCELERATOR_BVH)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: no such accelerator");
+  char wrong[VL_GIVEN_MESSAGE];
+  if (!vl_choices_check(VL_SETTING_RENDER, offsetof(vlSceneDefs, build), sizeof d, &d, wrong))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: %s", wrong);
   vlResult r = vl_scene_result(scene, error);
   if (r != VL_OK)
     return r;

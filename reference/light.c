@@ -48,7 +48,7 @@ spectrum emitted_by_surface(const world *w, const shade_record *at, vector towar
   if (at->what->light < 0) return gray(0);
   const light *l = &w->lights[at->what->light];
   if (!l->emission->two_sided && dot(towards, at->normal) <= 0) return gray(0);
-  spectrum radiance = light_color(l, lambda);
+  spectrum radiance = scaled(share_of_spread(l->emission, fabs(dot(towards, at->normal))), light_color(l, lambda));
   if (l->map.image) return times(radiance, shown_on_surface(l, at, lambda));
   vlSpectrumInput image = {.texture = l->emission->texture};
   if (!image.texture.index) return radiance;

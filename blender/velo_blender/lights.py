@@ -17,6 +17,7 @@ MAX_SUN_SIDE = 2048
 MAX_SIZE = 1e12  # radius or side of a lamp, scene units
 FAR = 1e6  # where the camera would see a sun
 SPOT_POINTS = 16  # of a spot with a radius
+NARROWEST = math.radians(1)  # spread of an area light, as in Cycles
 SPOT_SIDE = 512  # of the image of a spot's intensity, pixels
 
 
@@ -63,9 +64,9 @@ def add(scene, item, matrix, camera_sees, notes):
     {"POINT": _point, "SUN": _sun, "SPOT": _spot, "AREA": _area}[light.type](scene, item, light, pose, words, power, camera_sees, notes)
 
 
-def _lamp_surface(scene, words, radiance, item, hidden, **shape):
+def _lamp_surface(scene, words, radiance, item, hidden, spread=math.pi, **shape):
     """A shape that emits and that, as in Cycles, other light passes. hidden: no ray sees it."""
-    emission = scene.add_emission(radiance=words["color"], scale=radiance, two_sided=False)
+    emission = scene.add_emission(radiance=words["color"], scale=radiance, two_sided=False, spread=spread)
     material = scene.add_material("interface", name=item.name)
     extra = {"alpha": 0.0} if hidden else {}
     scene.add_shape(emission=emission, material=material, name=item.name, **extra, **shape)
@@ -205,19 +206,18 @@ def _area(scene, item, light, pose, words, power, camera_sees, notes):
     if not width * height * scales[0] * scales[1] > 1e-12:
         notes.add(item.name, "", "its area is 0; it is left out")
         return
-    if light.spread < math.pi - 1e-3:
-        notes.add(item.name, "Spread", "an area light's spread is 180 degrees")
     corners = 0.5 * numpy.array([[-width, -height, 0, 2], [width, -height, 0, 2], [width, height, 0, 2], [-width, height, 0, 2]]) @ pose.T
     hidden = _hidden(item, corners[:, :3], camera_sees)
     round_shape = light.shape in ("DISK", "ELLIPSE")
     area = width * height * scales[0] * scales[1] * (math.pi / 4 if round_shape else 1)
     radiance = power / (4 * area)
+    spread = min(max(light.spread, NARROWEST), math.pi) if math.isfinite(light.spread) else math.pi
     # The light leaves along -z.
     turned = pose @ numpy.diag((1.0, -1.0, -1.0, 1.0))
     if round_shape:
         stretched = turned @ numpy.diag((0.5 * width, 0.5 * height, 1.0, 1.0))
-        _lamp_surface(scene, words, radiance, item, hidden, kind="disk", radius=1.0, pose=stretched)
+        _lamp_surface(scene, words, radiance, item, hidden, kind="disk", radius=1.0, pose=stretched, spread=spread)
         return
     quad = 0.5 * numpy.array([[-width, -height, 0], [width, -height, 0], [width, height, 0], [-width, height, 0]])
     _lamp_surface(scene, words, radiance, item, hidden, kind="triangles", positions=quad.astype(numpy.float32),
-                  indices=numpy.array([[0, 1, 2], [0, 2, 3]], dtype=numpy.int32), pose=turned)
+                  indices=numpy.array([[0, 1, 2], [0, 2, 3]], dtype=numpy.int32), pose=turned, spread=spread)

@@ -25,7 +25,13 @@ struct vlEmissionDef {
    * vl_scene_add_emission turns it into power, and the scene's def has VL_UNSET. Default
    * VL_UNSET. */
   double radiant_power;
-  bool two_sided;      /**< true: both sides emit light; false: only the side of the normal */
+  bool two_sided; /**< true: both sides emit light; false: only the side of the normal */
+  /** Full angle about the normal into which each point emits, radians, 1 to 180 degrees. Below
+   * 180 degrees the radiance at an angle a from the normal is multiplied by
+   * max(0, 1 - tan a / tan h) / (1 - h / tan h), h half of the spread: what a grid of slats in
+   * front of the surface lets pass (a soft box), scaled to the same power. Default: 180
+   * degrees, the same radiance in all directions. */
+  float spread;
   const char *image;   /**< path of an emission image over uv; null: none; or */
   vlTextureId texture; /**< a colour texture of kind VL_TEXTURE_IMAGE: emits its value times
                           scale; radiance is ignored */

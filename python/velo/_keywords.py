@@ -316,6 +316,7 @@ class Emission(TypedDict, total=False):
     radiance: Any
     radiant_power: Any
     scale: Any
+    spread: Any
     texture: Any
     two_sided: Any
 

@@ -244,7 +244,7 @@ class Scene(_velo.Scene):
         return self._new("media", kind, words)
 
     def add_emission(self, **keywords: Unpack[_keywords.Emission]) -> Handle:
-        """Adds an emission of surfaces (keyword emission of add_shape). Keywords: radiance, scale, power (lm), radiant_power (W), two_sided, image."""
+        """Adds an emission of surfaces (keyword emission of add_shape). Keywords: radiance, scale, power (lm), radiant_power (W), two_sided, spread (radians), image."""
         words: dict[str, Any] = {**keywords}
         return self._new("emission", "diffuse", words)
 

@@ -92,3 +92,12 @@ double emission_factor(const world *w, const light *l) {
   shape_surface(w, l->what, 0, 0, &corner);
   return (double)def->scale * def->power * corner.area_density / (PI * (def->two_sided ? 2 : 1));
 }
+
+/* Slats in front of the surface let the share 1 - tan a / tan h pass at an angle a from the normal, h half of the
+ * spread; divided by its mean over the hemisphere, weighted by cosines, so that the power stays. */
+double share_of_spread(const vlEmissionDef *def, double cosine) {
+  double half = (double)def->spread / 2;
+  if (half > PI / 2 - 1e-4) return 1;
+  double tangent = sqrt(fmax(0, 1 - cosine * cosine)) / cosine;
+  return cosine > 0 ? fmax(0, 1 - tangent / tan(half)) / (1 - half / tan(half)) : 0;
+}

@@ -74,6 +74,7 @@ spectrum shown_on_surface(const light *l, const shade_record *at, const waveleng
 bool is_through_portal(const light *l, vector from, vector direction);
 void read_more_light(light *l);
 double emission_factor(const world *w, const light *l);
+double share_of_spread(const vlEmissionDef *def, double cosine);
 
 /* more/media.c: what a homogeneous medium emits along a distance; media that are not the same everywhere, along a ray.
  * As in world.h. */

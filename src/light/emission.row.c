@@ -3,6 +3,7 @@
 #include "schema/schema.h"
 #include "velo/light.h"
 
+#define PI 3.14159265358979323846
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlEmissionDef, __VA_ARGS__)
 
 static const vlParameter diffuse_parameters[] = {
@@ -17,6 +18,11 @@ static const vlParameter diffuse_parameters[] = {
               "radiant power of each face, in place of power: that of all directions and "
               "wavelengths, from 360 to 830 nm",
               VL_FROM(0), .unit = "W", .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW),
+    PARAMETER(FLOAT, "spread", spread,
+              "full angle about the normal into which each point emits, like a soft box with a "
+              "grid; the power is the same",
+              VL_DEFAULT(PI), .unit = "degrees", .factor = PI / 180,
+              VL_RANGE(PI / 180 - 1e-6, PI + 1e-6), .flags = VL_PARAMETER_OWN),
     PARAMETER(FILE, "filename", image, "image file of the radiance over uv; replaces L",
               .text = NULL),
     PARAMETER(TEXTURE, NULL, texture, "image texture of the radiance over uv; replaces L",
@@ -24,7 +30,9 @@ static const vlParameter diffuse_parameters[] = {
 };
 static const vlKindRow diffuse_row = {
     VL_ROW_PARAMETERS(diffuse_parameters), .name = "diffuse",
-    .description = "a surface that emits the same radiance in all directions", .traits = 0};
+    .description =
+        "a surface that emits the same radiance in all directions, or less away from its normal",
+    .traits = 0};
 
 static const vlKindRow *const rows[] = {&diffuse_row};
 #define EMISSION_KINDS(X) X(, diffuse)

@@ -5,6 +5,7 @@
 #include "light/kinds.hot.h"
 #include "light/kinds.row.h"
 #include "light/light_kind.h"
+#include "light/spread.h"
 #include "math/warp.h"
 #include "shape/surface_point.h"
 #include "texture/lookup.h"
@@ -50,7 +51,9 @@ static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 
 float vl_light_emit_pdf_area(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
                              float distance, const vlPoint *at) {
   (void)distance;
-  return p * VL_INV_PI * point_density(world, light, at->p) *
+  /* also outside of a spread, from where no light comes */
+  float sin2 = world->emitted.items[light->emitted].spread_sin2;
+  return p * VL_INV_PI / sin2 * point_density(world, light, at->p) *
          side_share(world, light, at->p, w);
 }
 
@@ -129,6 +132,14 @@ static Spot on_shape(const vlWorldLight *light, const vlWorldShape *s, float u, 
                 {0, 0, 0}};
 }
 
+/* A direction of the cosine hemisphere about z, drawn together into the spread. */
+static vlVec3 narrow(const vlEmitted *e, vlVec3 local) {
+  if (!vl_has_spread(e))
+    return local;
+  float by = __builtin_sqrtf(e->spread_sin2), x = by * local.x, y = by * local.y;
+  return vl_vec3(x, y, __builtin_sqrtf(vl_max(0.0f, 1.0f - x * x - y * y)));
+}
+
 void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   const vlWorld *world = q->world;
   const vlWorldLight *light = q->light;
@@ -148,7 +159,7 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
     if (back)
       side = vl_neg(side);
   }
-  vlVec3 local = vl_warp_cosine_hemisphere(s, t);
+  vlVec3 local = narrow(e, vl_warp_cosine_hemisphere(s, t));
   if (!(local.z > 0.0f))
     return;
   out->d = vl_normalize(vl_from_local(vl_frame_from_z(side), local));
@@ -159,9 +170,11 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   float scale = VL_PI * sides / at.pdf;
   if (shape->alpha >= 0 && !light->invisible)
     scale *= vl_light_coverage(world, light, at.p, at.n, at.u, at.v, at.weights);
+  out->share = vl_spread_at(e, local.z);
+  scale *= out->share * e->spread_sin2;
   for (int c = 0; c < 4; c++)
     out->flux[c] *= scale;
-  out->density = VL_INV_PI * at.pdf / sides;
+  out->density = VL_INV_PI / e->spread_sin2 * at.pdf / sides;
   out->delta = light->invisible;
   out->area_pdf = light->invisible ? 0.0f : at.pdf;
   out->offset = at.offset;

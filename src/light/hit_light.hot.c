@@ -2,6 +2,7 @@
  * light sampling would have sampled them, for the MIS weights of all tracers. Except for
  * environment maps, the code is scalar, because each lane hits its own light. */
 #include "light/kinds.hot.h"
+#include "light/spread.h"
 
 /* Infinite light k of the world as seen by ray i. */
 static vlHitLight hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
@@ -54,6 +55,11 @@ bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
   vl_path_lambda(p, i, lambda);
   vlVec2 uv = vl_emission_uv(world, light, &met->at);
   vl_emitted_at(world, e, lambda, uv.x, 1.0f - uv.y, false, met->radiance);
+  if (vl_has_spread(e)) {
+    float share = vl_spread_at(e, vl_abs(vl_dot(d, met->at.g)));
+    for (int c = 0; c < 4; c++)
+      met->radiance[c] *= share;
+  }
   met->pdf = 0.0f;
   if (!p->specular[i])
     met->pdf = vl_area_pdf(world, light, o, &met->at) *

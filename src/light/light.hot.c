@@ -6,6 +6,7 @@
 #include "light/kinds.hot.h"
 #include "light/kinds.row.h"
 #include "light/light_kind.h"
+#include "light/spread.h"
 #include "math/warp.h"
 #include "shape/surface_point.h"
 #include "texture/lookup.h"
@@ -224,6 +225,11 @@ void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
   if (!(at.pdf > 0.0f))
     return;
   vl_emitted_at(q->world, q->emitted, q->lambda, at.u, 1.0f - at.v, false, out->radiance);
+  if (vl_has_spread(q->emitted)) {
+    float share = vl_spread_at(q->emitted, vl_abs(facing));
+    for (int c = 0; c < 4; c++)
+      out->radiance[c] *= share;
+  }
   const vlWorldShape *shape = &q->world->shapes.items[light->shape];
   if (light->invisible) {
     out->delta = true;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "light/light_kind.h"
+#include "light/spread.h"
 #include "math/approx_double.h"
 #include "shape/surface_point.h"
 #include "velo/shape_kinds.h"
@@ -246,7 +247,8 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
     const vlWorldShape *shape = &world->shapes.items[light->shape];
     vl_world_prim_bounds(shape, light->prim, b->low, b->high);
     b->two_sided = world->emitted.items[light->emitted].two_sided;
-    b->cos_e = 0;
+    const vlEmitted *e = &world->emitted.items[light->emitted];
+    b->cos_e = vl_has_spread(e) ? fminf(sqrtf(1 - e->spread_sin2), 0.999f) : 0;
     b->cos_o = -1;
     if (shape->triangles || shape->kind == VL_SHAPE_DISK) {
       b->cos_o = 1;

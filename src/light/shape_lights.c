@@ -6,6 +6,8 @@
 #include "light/compile.h"
 #include "light/emissive_faces.h"
 #include "light/light_kind.h"
+#include "light/spread.h"
+#include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "shape/surface_point.h"
@@ -19,9 +21,23 @@ static float mean_image_luminance(const vlMipmap *mip) {
   return vl_light_texel_luminance(vl_texel(mip, last, 0, 0, VL_WRAP_CLAMP), mip->channels);
 }
 
+/* The numbers of light/spread.h. From 180 degrees on there is no spread. */
+static void set_spread(float spread, vlEmitted *e) {
+  const double half = 0.5 * (double)spread, widest = 0.5 * 3.14159265358979323846 - 1e-4;
+  e->spread_cot = 0;
+  e->spread_scale = e->spread_sin2 = 1;
+  if (half >= widest)
+    return;
+  double s = vl_precise_sin(half), cot = vl_precise_cos(half) / s;
+  e->spread_cot = (float)cot;
+  e->spread_scale = (float)(1 / (1 - half * cot));
+  e->spread_sin2 = (float)(s * s);
+}
+
 static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmissionDef *def,
                              vlEmitted *e, vlError *error) {
   e->two_sided = def->two_sided;
+  set_spread(def->spread, e);
   if (def->texture.index) {
     vlSpectrumInput input = vl_spectrum_input(vl_spectrum_constant(0.0f));
     input.texture = def->texture;
@@ -224,7 +240,7 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
     vlVec3 center;
     float radius;
     bool sphere = vl_whole_sphere(shape, &center, &radius),
-         plain = shape->alpha < 0 && e->image < 0;
+         plain = shape->alpha < 0 && e->image < 0 && !vl_has_spread(e);
     light->outer_side = light->invisible && sphere;
     light->environment = VL_NONE;
     float l =

@@ -207,6 +207,9 @@ typedef struct vlEmitted {
   float image_scale;
   vlColorSpace space;
   bool two_sided;
+  /* Of surfaces whose spread is below 180 degrees, with h half of it: 1 / tan h, the factor
+   * 1 / (1 - h / tan h) and sin^2 h. Of all others 0, 1 and 1 (light/spread.h). */
+  float spread_cot, spread_scale, spread_sin2;
 } vlEmitted;
 
 typedef struct vlWorldLight {

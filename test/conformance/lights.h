@@ -216,6 +216,8 @@ static const char *const emissions[] = {
     "\"rgb L\" [1 2 3] \"float scale\" 2",
     "\"rgb L\" [1 1 1] \"bool twosided\" true",
     "\"rgb L\" [1 1 1] \"float power\" 10",
+    "\"rgb L\" [1 2 3] \"float spread\" 100",
+    "\"rgb L\" [1 1 1] \"float spread\" 150 \"bool twosided\" true",
     "\"string filename\" \"quarters.pfm\"",
 };
 

@@ -110,8 +110,9 @@ static void powers(void **state) {
     check_power("lights", row->name, HEAD "WorldBegin " AROUND "LightSource %s", parameters);
   }
   static const char *const emitted[] = {"\"float power\" 10",
-                                        "\"float power\" 10 \"bool twosided\" true"};
-  for (int i = 0; i < 2; i++)
+                                        "\"float power\" 10 \"bool twosided\" true",
+                                        "\"float power\" 10 \"float spread\" 120"};
+  for (int i = 0; i < 3; i++)
     check_power("emission", "diffuse",
                 HEAD "WorldBegin " AROUND
                      "AreaLightSource %s Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 "

@@ -392,6 +392,8 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) 
     return;
   if (!isnan(e->power))
     vl_export_lose(x, "area lights given by their power: radiance 1 is written");
+  if (e->spread < 3.1415f)
+    vl_export_lose(x, "spreads of area lights: the same radiance in all directions");
   json_t *factor = json_array(), *info = t ? vl_gltf_texture_info(x, t, false) : NULL;
   double over = most * scale > 1 ? most * scale : 1;
   for (int i = 0; i < 3; i++)

@@ -109,6 +109,7 @@ static uint32_t set_out(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes
     starts->area_pdf[k] = e.area_pdf;
     starts->offset[k] = e.offset;
     starts->side[k] = e.side;
+    starts->share[k] = e.share;
   }
   return count;
 }

@@ -62,8 +62,9 @@ typedef struct vlSplatRows {
 
 /* Where light paths start, by ray. */
 typedef struct vlLightStarts {
-  VL_ROW float area_pdf[VL_ROW_SIZE], offset[VL_ROW_SIZE], side[VL_ROW_SIZE]; /* vlEmission */
-  VL_ROW uint32_t medium[VL_ROW_SIZE];                                        /* by lane */
+  VL_ROW float area_pdf[VL_ROW_SIZE], offset[VL_ROW_SIZE], side[VL_ROW_SIZE],
+      share[VL_ROW_SIZE];              /* vlEmission */
+  VL_ROW uint32_t medium[VL_ROW_SIZE]; /* by lane */
 } vlLightStarts;
 
 /* A worker's memory. */

@@ -1,6 +1,7 @@
 /* trace/two_way/splat.hot.c: connections of light paths to the camera: the film point of each
  * vertex, the radiance that arrives there, and its weight against the other strategies
  * (two_way.h). */
+#include "light/spread.h"
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
@@ -260,10 +261,13 @@ void vl_show_lights(vlTracing *t, uint32_t n, const vlPaths *p, const vlLightSta
     float shown = vl_shown(way, light, starts->area_pdf[i], view.per_square, vl_abs(cosine));
     if (!(shown > 0.0f))
       continue;
+    const vlWorldLight *lamp = &t->world->lights.items[light];
+    const vlEmitted *emitted = &t->world->emitted.items[lamp->emitted];
+    float towards = vl_spread_at(emitted, vl_abs(cosine)) / starts->share[i];
     vlVec3 o = vl_offset_origin(at, g, starts->offset[i], view.w);
     vlVec3 d = push(p, i, count, o, view.from, view.end, q);
     if (q->flights) {
-      const vlWorldShape *shape = &t->world->shapes.items[t->world->lights.items[light].shape];
+      const vlWorldShape *shape = &t->world->shapes.items[lamp->shape];
       q->flights->medium[count] = vl_medium_beyond(shape, g, d, way->medium[light]);
       vl_shadow_from_medium(t, lane, count, q->flights);
       for (int c = 0; c < 4; c++)
@@ -272,7 +276,7 @@ void vl_show_lights(vlTracing *t, uint32_t n, const vlPaths *p, const vlLightSta
     q->strategies->own[count] = shown;
     q->strategies->others[count] = 1.0f;
     for (int c = 0; c < 4; c++)
-      q->rays->radiance[c][count] = r->flux[c][lane] * r->density[lane] * view.weight;
+      q->rays->radiance[c][count] = r->flux[c][lane] * r->density[lane] * towards * view.weight;
     splats->x[count] = view.x;
     splats->y[count] = view.y;
     count++;

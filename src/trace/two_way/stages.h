@@ -180,6 +180,7 @@ typedef struct vlEmission {
   /* Of area lights that rays can hit: density of the point per area; as vlSurface.offset; the
    * side that emits: along n (1), against it (-1), or both (0). */
   float area_pdf, offset, side;
+  float share; /* of area lights: factor of the spread in direction d (light/spread.h) */
   uint32_t light;
 } vlEmission;
 vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4],

@@ -59,9 +59,12 @@ bool vl_plain_find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlai
     return false;
   plain->model = plain->shown = s.model;
   for (int i = 0; i < 3; i++) {
+    if (i == axis)
+      continue;
     plain->shown.low[i] = fmax(s.model.low[i] - around * model, s.low.low[i]);
     plain->shown.high[i] = fmin(s.model.high[i] + around * model, s.low.high[i]);
   }
+  plain->shown.low[axis] = s.low.low[axis];
   return plain->shown.low[0] <= plain->shown.high[0] &&
          plain->shown.low[1] <= plain->shown.high[1] &&
          plain->shown.low[2] <= plain->shown.high[2];

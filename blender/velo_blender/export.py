@@ -5,8 +5,8 @@ import bpy
 import numpy
 import velo
 
-from . import (atlas, backdrop, camera, camera_files, displace, geometry, hair, ignored, lights, materials, motion, object_info, points, textures,
-               volumes, world)
+from . import (atlas, backdrop, camera, camera_files, displace, fog, geometry, hair, ignored, lights, materials, motion, object_info, points,
+               textures, volumes, world)
 from .report import Cancelled, Notes, Refused
 
 FARTHEST = 1e12  # coordinates, scene units
@@ -18,6 +18,7 @@ class Part(NamedTuple):
     surface: Any
     material: Any
     corners: Any  # positions of the whole mesh, n x 3, and the part's triangles, m x 3; None: they are displaced
+    slot: int
 
 
 class Place(NamedTuple):
@@ -29,10 +30,11 @@ class Place(NamedTuple):
 
 
 class Prepared(NamedTuple):
-    """A mesh in velo: its parts that do not emit are in a group."""
+    """A mesh in velo: its parts that do not emit are in a group. volumes: (positions, triangles, medium) of its parts with a medium."""
     group: Any
     parts: list
     emissive: list
+    volumes: list = []
 
 
 UNSEEN = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
@@ -68,6 +70,8 @@ class Export:
         self._noted = set()  # names of objects
         self._asked = False  # whether something depends on what the camera sees
         self._meshes, self._surfaces, self._cache = {}, {}, {}
+        self._solids = []  # fog.Solid of each volume
+        self._fog, self._air = None, None  # the world's volumes.Volume and its medium
         self._copies, self._varying = {}, {}  # objects of a mesh whose materials ask for the object; {material: whether it does}
         self._cancelled = cancelled or (lambda: False)
         self._settings = depsgraph.scene.velo
@@ -77,7 +81,10 @@ class Export:
         ignored.note_scene(depsgraph, self.notes)
         if depsgraph.view_layer.use_sky:
             world.add(self.scene, depsgraph.scene.world, self.notes, self._cancelled)
+            self._add_fog(depsgraph.scene.world)
         self._read_objects()
+        fog.note_overlaps(self._solids, self.notes)
+        self.immerse(self.camera)
 
     def see(self, view, name=""):
         """Sets the camera that sees the scene. name: of the view of a stereo image; the camera moves as this one does."""
@@ -86,6 +93,21 @@ class Export:
         if len(poses) > 1:
             self.camera = camera.moving(view, poses)
         self.scene.camera = self.camera
+        self.immerse(self.camera)
+
+    def immerse(self, view):
+        """Puts the camera into the volume at its place."""
+        eye = numpy.array(view.world_from_camera, dtype=float)[:3, 3]
+        medium = fog.medium_at(eye, self._solids, self.notes, self._air)
+        if medium != self.scene.camera_medium:
+            self.scene.camera_medium = medium
+
+    def _add_fog(self, known):
+        if known is None:
+            return
+        inputs = textures.Inputs(self.scene, self.notes, known.name, textures.Maps(None), self._cache, self._settings.bake_size)
+        self._fog = fog.of_world(known, inputs)
+        self._air = None if self._fog is None else volumes.add_homogeneous(self._fog, inputs)
 
     # ---- objects
 
@@ -202,6 +224,7 @@ class Export:
             return False
         self.depsgraph, self.camera = depsgraph, camera_of(depsgraph, self.size)
         self.scene.camera = self.camera
+        self.immerse(self.camera)
         for number, handle, placed in changes:
             self.instances[number] = placed
             self.scene.set(handle, transform=placed.matrix)
@@ -233,12 +256,13 @@ class Export:
                 self.scene.add_instance(prepared.group, poses, times=motion.TIMES)
             self.instances.append(placed)
             self.prepared.append(prepared)
+        self._solids += [fog.Solid(item.name, matrix, *volume) for volume in prepared.volumes]
         for part in prepared.emissive:
             if poses is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
             self._add_shape(part, placed, pose=matrix, name=item.name)
         alone = any(map(self._varies, self._slots_of(item)))  # its colours change with its place
-        return None if prepared.emissive or alone else handle
+        return None if prepared.emissive or prepared.volumes or alone else handle
 
     def _add_hair(self, item, strands, slot, placed, matrix):
         if strands is None:
@@ -267,14 +291,16 @@ class Export:
         place = Place(placed.matrix, object_info.fields(item, placed.matrix, 0), (item.name_full,))
         inputs = self._inputs(self._slots_of(item)[0], textures.Maps(None), None, place)
         inputs.owner = item.name
-        found = volumes.add_file(item.data, self._slots_of(item)[0], inputs, placed.matrix)
+        found = volumes.add_file(item.data, self._slots_of(item)[0], inputs, placed.matrix, self._fog)
         if found is None:
             return
         medium, pose, grid = found
         if self._moves is not None:
             self.notes.add(item.name, "", "a volume is at rest")
-        self._note_inside(item, pose, grid.low, grid.high)
-        self.scene.add_box(grid.low, grid.high, pose=pose, inside=medium, material=self.scene.add_material("interface"), name=item.name)
+        box = self.scene.add_box(grid.low, grid.high, pose=pose, inside=medium, outside=self._air, material=self.scene.add_material("interface"),
+                                 name=item.name)
+        mesh = self.scene.mesh(box)
+        self._solids.append(fog.Solid(item.name, pose, mesh.positions, mesh.indices, medium))
         self.shapes.append(placed)
 
     def _add_points(self, item, placed):
@@ -350,11 +376,12 @@ class Export:
         finally:
             item.to_mesh_clear()
         plain = [part for part in parts if part.surface.emission is None]
+        inner = [(arrays.positions, arrays.triangles[arrays.slots == part.slot], part.words["inside"]) for part in parts if "inside" in part.words]
         group = self.scene.add_group(item.name) if plain else None
         for part in plain:
             self._go_on()
             self._add_shape(part, None, group=group, name=item.name)
-        return Prepared(group, parts, [part for part in parts if part.surface.emission is not None])
+        return Prepared(group, parts, [part for part in parts if part.surface.emission is not None], inner)
 
     def _displace(self, arrays, slots, place):
         for slot in numpy.unique(arrays.slots):
@@ -385,26 +412,16 @@ class Export:
             self._go_on()
             medium = self._medium(material, arrays, maps, place)
             if medium is not None:
-                words["inside"] = medium
-                self._note_inside(item, place.matrix, arrays.positions.min(axis=0), arrays.positions.max(axis=0))
+                words.update(inside=medium, outside=self._air)
             whole = None if arrays.displaced else (arrays.positions, arrays.triangles[arrays.slots == slot])
-            parts.append(Part(words, surface, material, whole))
+            parts.append(Part(words, surface, material, whole, slot))
         return parts
-
-    def _note_inside(self, item, matrix, low, high):
-        """Notes a camera inside of the box of a volume: velo's camera is in a vacuum. low, high: the box; matrix: world from its space."""
-        camera_item = self.depsgraph.scene.camera
-        if camera_item is None:
-            return
-        eye = numpy.linalg.solve(matrix, numpy.append(numpy.array(camera_item.matrix_world.translation), 1.0))[:3]
-        if (eye > low).all() and (eye < high).all():
-            self.notes.add(item.name, "Volume", "the camera is inside; what lies before the first surface is clear")
 
     def _medium(self, material, arrays, maps, place):
         box = arrays.positions.min(axis=0), arrays.positions.max(axis=0)
         key = ("medium", None if material is None else material.name_full, place.owner, box[0].tobytes(), box[1].tobytes())
         if key not in self._cache:
-            self._cache[key] = volumes.medium(material, self._inputs(material, maps, None, place), box, place.matrix)
+            self._cache[key] = volumes.medium(material, self._inputs(material, maps, None, place), box, place.matrix, self._fog)
         return self._cache[key]
 
     def _inputs(self, material, maps, corners, place):

@@ -85,6 +85,7 @@ class ViewRender:
         if self._camera is not None and same(self._camera, wanted):
             return
         self.stop()
+        self._made.immerse(wanted)
         self._camera = wanted
         self._stop = threading.Event()
         words = (self._made.scene, wanted, dict(self._words), self._stop)

@@ -11,6 +11,7 @@ from . import evaluate, links, openvdb_files
 
 CELLS = 64  # along a side of a grid of densities
 DENSEST = 1e30  # coefficients per unit of length
+LUMINANCE_OF_ONE = 106.856895  # of a spectrum that is 1: the integral of the eye's sensitivity, nm; velo's RGB grids emit by it
 
 
 class Volume(NamedTuple):
@@ -24,9 +25,9 @@ class Volume(NamedTuple):
     groups: tuple = ()
 
 
-def medium(material, inputs, box, matrix):
+def medium(material, inputs, box, matrix, fog=None):
     """velo's medium inside of a material's surface; None: it has no volume, or none that velo has (noted). box: (low, high) of the mesh in
-    the object's space; matrix: world from object."""
+    the object's space; matrix: world from object; fog: the world's Volume, which is there, too."""
     if material is None or not material.use_nodes or material.node_tree is None:
         return None
     output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
@@ -35,9 +36,25 @@ def medium(material, inputs, box, matrix):
 
     def made():
         volume = _volume(output.inputs["Volume"], (), inputs, 0)
-        return _add(volume, inputs, box, matrix) if volume is not None else None
+        return _add(volume, inputs, box, matrix, fog) if volume is not None else None
 
     return _noted(inputs, made)
+
+
+def of_socket(socket, inputs):
+    """The Volume of a socket; None: it has none, or none that velo has (noted)."""
+    return _noted(inputs, lambda: _volume(socket, (), inputs, 0))
+
+
+def with_density_1(volume):
+    """The same Volume, of a density that does not vary, with a density of 1."""
+    return _scaled(volume, volume.density)._replace(density=1.0)
+
+
+def add_homogeneous(volume, inputs):
+    """velo's medium of a Volume whose density does not vary; None: there is nothing in it."""
+    words = _words(volume, inputs, volume.density, 1e-6)
+    return None if words is None else inputs.scene.add_medium("homogeneous", **words)
 
 
 def _noted(inputs, function):
@@ -51,9 +68,10 @@ def _noted(inputs, function):
     return None
 
 
-def add_file(data, material, inputs, matrix):
+def add_file(data, material, inputs, matrix, fog=None):
     """velo's medium of a volume object: (handle, world from voxels, openvdb_files.Grid); None: it has none (noted). data: the evaluated
-    object's; matrix: world from object. As in Cycles, a density for the object's space is that of the length of its diagonal."""
+    object's; matrix: world from object; fog: the world's Volume, which is there, too. As in Cycles, a density for the object's space is
+    that of the length of its diagonal."""
     shader = _noted(inputs, lambda: _shader_of_file(material, inputs))
     if shader is None:
         return None
@@ -69,6 +87,10 @@ def add_file(data, material, inputs, matrix):
         inputs.notes.add(inputs.owner, openvdb_files.label(data, name), "it is too dense; the volume is not rendered")
         return None
     pose = matrix @ grid.matrix
+    if fog is not None:
+        wide = {"low": tuple(x - 1 for x in grid.low), "high": tuple(x + 1 for x in grid.high), "pose": pose}  # velo's grids fall to 0 there
+        values = numpy.pad(grid.values, 1)
+        return _add_in_fog(_scaled(volume, volume.density / max(scale, 1e-30)), fog, inputs, values, **wide), pose, grid
     return inputs.scene.add_medium("grid", density=grid.values, low=grid.low, high=grid.high, pose=pose, **words), pose, grid
 
 
@@ -164,6 +186,8 @@ def _single(node, groups, inputs):
     emission = color("Emission Color") * max(number("Emission Strength"), 0.0)
     if inputs.constant(node.inputs["Blackbody Intensity"], groups) != 0.0:
         inputs.notes.add(inputs.owner, node.name, "the emission of its temperature is left out")
+    if emission.max() > 0 and density == 0.0:
+        return Volume(none, none, emission, 0.0, 1.0)
     if emission.max() > 0 and density != 1.0:
         inputs.notes.add(inputs.owner, node.name, "its emission grows with its density") if density is None else None
         emission = emission / density if density else emission
@@ -188,12 +212,12 @@ def _sum(first, second, node):
     return Volume(parts[0][0] + parts[1][0], parts[0][1] + parts[1][1], parts[0][2] + parts[1][2], g, 1.0)
 
 
-def _words(volume, inputs, factor):
-    """Keywords of velo's medium, for a factor on the coefficients; None: there is nothing."""
+def _words(volume, inputs, factor, least=1e-3):
+    """Keywords of velo's medium, for a factor on the coefficients; None: there is nothing. least: absorption of what glows."""
     absorption, scattering, emission = (part * factor for part in (volume.absorption, volume.scattering, volume.emission))
     words = {"g": min(max(volume.g, -0.99), 0.99), "name": inputs.owner}
     if emission.max() > 0:  # velo's media emit by what they absorb
-        absorption = numpy.where(emission > 0, numpy.maximum(absorption, 1e-3), absorption)
+        absorption = numpy.where(emission > 0, numpy.maximum(absorption, least), absorption)
         color = numpy.where(emission > 0, emission / numpy.maximum(absorption, 1e-30), 0)
         high = min(float(color.max()), 1e30)
         words.update(emission=tuple(min(float(x) / high, 1.0) for x in color), emission_scale=high)
@@ -201,16 +225,39 @@ def _words(volume, inputs, factor):
     return words if max(absorption.max(), scattering.max()) > 0 else None
 
 
-def _add(volume, inputs, box, matrix):
-    words = _words(volume, inputs, 1.0 if volume.density is None else volume.density)
+def _add(volume, inputs, box, matrix, fog):
+    if volume.density is not None:
+        return add_homogeneous(volume if fog is None else _sum(volume, fog, None), inputs)
+    words = _words(volume, inputs, 1.0)
     if words is None:
         return None
-    if volume.density is not None:
-        return inputs.scene.add_medium("homogeneous", **words)
     low, high, density = _grid(volume, inputs, box, matrix)
     if density.max() <= 0:
         return None
+    if fog is not None:
+        return _add_in_fog(volume, fog, inputs, density, low=low, high=high, pose=matrix)
     return inputs.scene.add_medium("grid", density=density, low=low, high=high, pose=matrix, **words)
+
+
+def _add_in_fog(volume, fog, inputs, density, **place):
+    """velo's medium of a Volume times the densities of a grid, z x y x x, and the world's Volume. place: keywords of the grid's box."""
+    absorption, scattering, emission = (density[..., None] * of_one + of_all for of_one, of_all in
+                                        zip((volume.absorption, volume.scattering, volume.emission), (fog.absorption, fog.scattering, fog.emission)))
+    shares = volume.scattering.mean() * density.mean(), fog.scattering.mean()
+    g = (volume.g * shares[0] + fog.g * shares[1]) / max(sum(shares), 1e-30)
+    if abs(volume.g - fog.g) > 1e-6 and min(shares) > 0:
+        inputs.notes.add(inputs.owner, "Anisotropy", "in the world's volume it is the mean of both, %.2f" % g)
+    return add_colors(inputs, absorption, scattering, emission, g, **place)
+
+
+def add_colors(inputs, absorption, scattering, emission, g, **place):
+    """velo's medium of coefficients per unit of length on a grid, z x y x x x 3. place: keywords of the grid's box."""
+    words = {"rgb_s": scattering.astype(numpy.float32), "g": min(max(g, -0.99), 0.99), "name": inputs.owner, **place}
+    if emission.max() > 0:  # velo's media emit by what they absorb
+        absorption = numpy.where(emission > 0, numpy.maximum(absorption, 1e-3), absorption)
+        words["rgb_emission"] = numpy.where(emission > 0, emission / numpy.maximum(absorption, 1e-30), 0).astype(numpy.float32)
+        words["emission_scale"] = 1 / LUMINANCE_OF_ONE
+    return inputs.scene.add_medium("rgb_grid", rgb_a=absorption.astype(numpy.float32), **words)
 
 
 def _grid(volume, inputs, box, matrix):

@@ -71,8 +71,6 @@ def add(scene, world, notes, cancelled):
     output = links.output_node(world.node_tree, "OUTPUT_WORLD")
     if output is None:
         return
-    if output.inputs["Volume"].is_linked:
-        notes.add(world.name, "Volume", "the world's volume is not rendered")
     surface, look = output.inputs["Surface"], _Look(notes)
     try:
         try:

@@ -3,13 +3,14 @@
  *     def.allocator = fail_allocator(&state);
  * fail_everywhere runs a test for n = 1, 2, ... until no call fails. Each run with a failure
  * must return VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so the code
- * after it runs with partly built data. Include cmocka.h first. */
+ * after it runs with partly built data. */
 #ifndef TEST_FAILING_ALLOCATOR_H
 #define TEST_FAILING_ALLOCATOR_H
 
 #include <stdatomic.h>
 #include <stdlib.h>
 
+#include "unit.h"
 #include "velo/base.h"
 
 typedef struct failAllocator {

@@ -1,16 +1,11 @@
 /* test/api/test_cancel.c: a request to cancel stops a render, ground truth, a build and a load
  * between two tasks; the film keeps whole passes; the steps of loads and builds. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <math.h>
 #include <pthread.h>
 #include <time.h>
 
 #include "api/small_world.h"
+#include "unit.h"
 #include "velo/channels.h"
 #include "velo/load.h"
 

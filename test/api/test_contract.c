@@ -1,15 +1,10 @@
 /* test/api/test_contract.c: invalid arguments of every public function: a def without its
  * default function is rejected by its cookie, null arguments do not crash, and destroying null
  * is allowed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <math.h>
 #include <string.h>
 
+#include "unit.h"
 #include "velo/velo.h"
 
 static vlContext *context;

@@ -1,18 +1,13 @@
 /* test/api/test_edit.c: a scene that is changed, and worlds that share parts: the images have
  * the bytes of a world built from nothing; worlds may be destroyed in any order; parts that
  * have not changed are not built again. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "api/small_world.h"
+#include "unit.h"
 #include "velo/channels.h"
 #include "velo/edit.h"
 #include "velo/medium.h"

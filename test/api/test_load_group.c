@@ -1,14 +1,13 @@
 /* test/api/test_load_group.c: vl_scene_load_group: a file's shapes, its instances too, become
  * one group, and nothing else of the file is taken. The reference is the same content in a
  * world of its own. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <velo/velo.h>
+
+#include "unit.h"
 
 static const char model[] =
     "Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 7 \"integer yresolution\" 5\n"

@@ -1,17 +1,12 @@
 /* test/api/test_memory_files.c: scenes and images in memory give the same as files; coarse
  * images. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "api/small_world.h"
+#include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/load.h"
 

@@ -1,11 +1,6 @@
 /* test/api/test_receipt.c: receipts store exact values, comparisons find every difference, and
  * damaged receipts are refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 /* cmocka.h needs the four headers above */
-#include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +9,7 @@
 
 #include "base/digest.h"
 #include "failing_allocator.h"
+#include "unit.h"
 #include "velo/projection.h"
 #include "velo/receipt.h"
 #include "velo/render.h"

@@ -1,13 +1,8 @@
 /* test/api/test_remove.c: objects of every family are removed; an error names who still uses
  * one; places are given again, with other serials; all memory comes back. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <string.h>
 
+#include "unit.h"
 #include "velo/edit.h"
 #include "velo/velo.h"
 

@@ -1,15 +1,10 @@
 /* test/api/test_threads.c: one world shared by renders on several threads of the caller, each
  * with its own workers. Meant for the thread sanitizer; the images must also be
  * bit-identical. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <pthread.h>
 
 #include "api/small_world.h"
+#include "unit.h"
 #include "velo/channels.h"
 #include "velo/edit.h"
 

@@ -1,13 +1,8 @@
 /* test/api/test_version.c: the library's version; a def of another ABI version is rejected. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "unit.h"
 #include "velo/velo.h"
 #include "world/accel/accel.h"
 

@@ -1,18 +1,13 @@
 /* test/api/test_whole.c: the whole pipeline through the public API: the same bits for any
  * number of threads, instruction set, crop and split into calls; cancellation; a failure of
  * every single allocation. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "api/small_world.h"
 #include "failing_allocator.h"
+#include "unit.h"
 
 static vlImage *take_image(vlContext *context, uint32_t spp, const uint32_t crop[4],
                            vlColorMode color) {

@@ -1,11 +1,5 @@
 /* test/base/test_base.c: the base room: counted memory, arrays, names, errors, files that are
  * written whole or not at all, instruction sets. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,6 +14,7 @@
 #include "base/isa.h"
 #include "base/text.h"
 #include "failing_allocator.h"
+#include "unit.h"
 #include "velo/pending.h"
 
 static char folder[256];

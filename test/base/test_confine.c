@@ -1,11 +1,5 @@
 /* test/base/test_confine.c: vl_confine: what a confined process can open and start. Each case
  * confines a child, which tries and reports by its exit code. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -20,6 +14,7 @@
 #include <sys/prctl.h>
 #endif
 
+#include "unit.h"
 #include "velo/confine.h"
 
 extern char **environ;

@@ -1,15 +1,10 @@
 /* test/base/test_json.c: JSON is parsed once; refused allocations are found, whichever they
  * are; messages are those about the text alone. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/json.h"
+#include "unit.h"
 
 /* jansson's allocations: how many there were, and which is refused; 0: none. */
 static size_t made, refused;

@@ -1,12 +1,6 @@
 /* test/base/test_threads.c: the worker pool: each index runs once, worker numbers are in range,
  * loops follow each other, several callers at once, priorities, the caller's own parallel_for,
  * a log callback that is never entered twice at a time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
@@ -15,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/context.h"
+#include "unit.h"
 
 enum { COUNT = 1000 };
 

@@ -4,15 +4,10 @@
 #define TEST_CAMERA_CAMERAS_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/camera.h"
 
 #define RADIANS(degrees) ((degrees) * (3.14159265358979323846 / 180.0))

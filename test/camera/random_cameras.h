@@ -3,6 +3,7 @@
 #define TEST_CAMERA_RANDOM_CAMERAS_H
 
 #include "camera/cameras.h"
+#include "unit.h"
 
 #include "distortion/distortion.case.h"
 #include "projection/projection.case.h"

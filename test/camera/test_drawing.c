@@ -2,13 +2,9 @@
  * through the eye and meet the view plane in their image; of curved projections all points are
  * on rays of the camera; rigs; wrong defs. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/distortion.h"
 #include "velo/drawing.h"
 #include "velo/projection.h"

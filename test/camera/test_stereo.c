@@ -2,14 +2,10 @@
  * omnidirectional stereo in both directions against the published formula, and in the
  * renderer's batches. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "camera/rays.h"
+#include "unit.h"
 #include "velo/camera.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"

@@ -1,16 +1,11 @@
 /* Colour kernels: the same bits on every instruction set and as the inline functions;
  * wavelengths follow their density; an image of a constant spectrum has the exact colour. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "color/kernels.h"
+#include "unit.h"
 
 enum { N = 1000, PAD = VL_PAD(N) };
 

@@ -1,14 +1,9 @@
 /* RGB to spectrum: round trips in every space, exact greys and ends, spectra within [0, 1], no
  * discontinuities. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "color/rgb_table.h"
+#include "unit.h"
 
 static uint32_t seed;
 static float uniform(void) {

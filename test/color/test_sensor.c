@@ -2,15 +2,11 @@
  * equations of each row by Gaussian elimination), white stays white, daylight agrees with the
  * CIE's. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "color/named.h"
 #include "color/sensor.h"
+#include "unit.h"
 #include "velo/render.h"
 
 /* Linear between samples 10 nm apart from 380 nm, 0 outside; with its own walk over the

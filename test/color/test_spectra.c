@@ -1,17 +1,12 @@
 /* Spectra and colour spaces: standard values of the CIE, measured materials, the meaning of a
  * vlSpectrum, its errors. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "color/color.h"
 #include "color/named.h"
+#include "unit.h"
 
 static void xyz_of(const float *dense, double xyz[3]) {
   const float *cmf[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()};

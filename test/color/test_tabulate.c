@@ -1,15 +1,11 @@
 /* The public numbers behind a spectrum (velo/color.h): the tables agree with the spectra that
  * velo renders with. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
 #include <velo/color.h>
 
 #include "color/color.h"
+#include "unit.h"
 
 static void roles_give_their_spectra(void **state) {
   (void)state;

@@ -8,6 +8,7 @@
 #include "distortion/distortion.case.h"
 #include "files.h"
 #include "projection/projection.case.h"
+#include "unit.h"
 #include "velo/camera_file.h"
 #include "velo/distortion.h"
 #include "velo/export.h"

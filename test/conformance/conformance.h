@@ -9,16 +9,11 @@
 #define TEST_CONFORMANCE_CONFORMANCE_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/load.h"
 #include "velo/render.h"

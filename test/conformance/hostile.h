@@ -6,6 +6,7 @@
 #define TEST_CONFORMANCE_HOSTILE_H
 
 #include "parameters.h"
+#include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/light.h"
 #include "velo/material.h"

@@ -8,6 +8,7 @@
 
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "unit.h"
 #include "velo/edit.h"
 #include "velo/export.h"
 #include "velo/filter_kinds.h"

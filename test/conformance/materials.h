@@ -7,6 +7,7 @@
 
 #include "conformance.h"
 #include "material/material.case.h"
+#include "unit.h"
 #include "velo/schema.h"
 
 #define MATERIAL_CASE(kind, name) &name##_material,

@@ -9,6 +9,7 @@
 
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "unit.h"
 #include "velo/check.h"
 #include "velo/edit.h"
 #include "velo/export.h"

@@ -7,6 +7,7 @@
 #include "conformance.h"
 #include "filter/filter.case.h"
 #include "sampler/sampler.case.h"
+#include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/sampler.h"
 

@@ -8,6 +8,7 @@
 #include "conformance.h"
 #include "lights.h"
 #include "parameter_cases.h"
+#include "unit.h"
 
 /* ---- asking ------------------------------------------------------------------------------ */
 

@@ -6,6 +6,7 @@
 
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "unit.h"
 
 /* ---- asking ------------------------------------------------------------------------------ */
 

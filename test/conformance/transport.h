@@ -7,6 +7,7 @@
 #include "conformance.h"
 #include "medium/medium.case.h"
 #include "tracer/tracer.case.h"
+#include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/tracer.h"
 

@@ -1,15 +1,10 @@
 /* The pbrt exporter writes every parameter of the films' rows: a value other than the default
  * stands in the file. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/export.h"
 #include "velo/render.h"
 #include "velo/schema.h"

@@ -1,15 +1,11 @@
 /* Tests the conversion of radiance to the film's colours against the definitions of colour
  * spaces, and the merging of films with error sums against one film with all samples. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/isa.h"
 #include "film/expose.h"
 #include "statistics.h"
+#include "unit.h"
 #include "velo/image.h"
 
 enum { WIDTH = 9, HEIGHT = 7, N = 32 };

@@ -1,14 +1,9 @@
 /* The film: exact sums for any order and grouping, constant images, passes without effect on
  * the bits, merging, invalid samples, invalid defs, failing allocations. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "film/film.h"
 #include "film/sums.h"
 #include "statistics.h"
+#include "unit.h"
 #include "velo/image.h"
 
 enum { WIDTH = 12, HEIGHT = 9, COUNT = 6000 };

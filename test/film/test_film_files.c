@@ -2,21 +2,18 @@
  * damage is detected. */
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include "failing_allocator.h"
 #include "film/file.h"
 #include "film/sums.h"
 #include "math/hash.h"
+#include "unit.h"
 #include "velo/film.h"
 #include "velo/receipt.h"
 

@@ -1,14 +1,9 @@
 /* Pixel filters: samples follow the filter's shape, weights have mean 1, monotone, the same
  * bits on every instruction set. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "base/context.h"
 #include "filter/filter.h"
 #include "statistics.h"
+#include "unit.h"
 #include "velo/filter_kinds.h"
 
 enum { KINDS = VL_PIXEL_FILTER_BLACKMAN_HARRIS + 1, BATCH = 4096, TESTS = KINDS * 3 * 2 };

@@ -1,14 +1,9 @@
 /* The noise of a film's blocks: against the known standard error of normal samples, for each
  * view; how often it is below the true error; against the true error of rare bright samples;
  * blocks at the edges of a crop. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "film/film.h"
 #include "statistics.h"
+#include "unit.h"
 #include "velo/filter_kinds.h"
 
 enum { WIDTH = 100, HEIGHT = 70, SPP = 16 };

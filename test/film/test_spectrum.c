@@ -1,14 +1,9 @@
 /* Spectra in the film: exact sums of each bucket for any order, grouping and passes; merging;
  * names; invalid defs and samples; failing allocations. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "failing_allocator.h"
 #include "film/film.h"
 #include "statistics.h"
+#include "unit.h"
 #include "velo/image.h"
 
 enum { WIDTH = 5, HEIGHT = 4, BUCKETS = 7, COUNT = 4000, CELLS = WIDTH * HEIGHT * BUCKETS };

@@ -1,18 +1,14 @@
 /* test/film/test_threads.c: at the same time, a render with checkpoints is stopped by another
  * thread and continued, shards are rendered, and films are merged. The test is meant for the
  * thread sanitizer. The films must also have the same bytes as those of a single render. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 /* cmocka.h needs the four headers above */
-#include <cmocka.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "api/small_world.h"
+#include "unit.h"
 #include "velo/film.h"
 
 enum { STOP = 2, SPP = 4, MAX_SIZE = 1 << 20 };

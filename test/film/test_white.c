@@ -1,15 +1,11 @@
 /* test/film/test_white.c: white balance: daylight becomes white, D65 is unchanged, the matrix
  * of the Bradford transform as published. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "color/color.h"
 #include "film/white.h"
+#include "unit.h"
 
 static void apply(const float m[9], const double a[3], double r[3]) {
   for (int i = 0; i < 3; i++)

@@ -3,13 +3,6 @@
 #ifndef TEST_IMAGE_SAMPLE_IMAGES_H
 #define TEST_IMAGE_SAMPLE_IMAGES_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,6 +12,7 @@
 
 #include "failing_allocator.h"
 #include "image/image.h"
+#include "unit.h"
 
 static inline vlContext *make_context(failAllocator *failing) {
   vlContextDef def = vl_default_context_def();

@@ -1,16 +1,12 @@
 /* Several images in one OpenEXR file, each with its own type, and single channels read from
  * it. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "failing_allocator.h"
+#include "unit.h"
 #include "velo/image.h"
 
 static const char file[] = VELO_BINARY_DIR "/test_layers.exr";

@@ -3,19 +3,14 @@
 #define TEST_IMPORT_LOAD_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "import/import.h"
 #include "scene/scene.h"
+#include "unit.h"
 
 typedef struct Loaded {
   vlContext *context;

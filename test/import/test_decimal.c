@@ -1,17 +1,13 @@
 /* test/import/test_decimal.c: decimal numbers are converted to the nearest double, as by
  * strtod, in every notation. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "import/pbrt/token.h"
 #include "statistics.h"
+#include "unit.h"
 
 static void same(const char *text) {
   double value = 0, expected = strtod(text, NULL);

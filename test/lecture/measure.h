@@ -14,15 +14,10 @@
 #define TEST_LECTURE_MEASURE_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/load.h"
 #include "velo/render.h"

@@ -2,15 +2,10 @@
  * eye, lookat and f = zoom d / s. */
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/camera.h"
 #include "velo/load.h"
 #include "velo/render.h"

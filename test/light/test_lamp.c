@@ -2,15 +2,11 @@
  * from, in every symmetry and coordinate system; flux against an integration of the test's own;
  * factors; messages about wrong files. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/lamp.h"
 
 #define PI 3.14159265358979323846

@@ -1,16 +1,11 @@
 /* test/math/test_elementary.c: compares the correctly rounded elementary functions with those
  * of the C library in long double, whose error is some thousandths of a double's last place. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "math/elementary.h"
 #include "statistics.h"
+#include "unit.h"
 
 enum { N = 20000 };
 

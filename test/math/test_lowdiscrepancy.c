@@ -1,12 +1,7 @@
 /* The low-discrepancy building blocks of the samplers, each against its definition. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "math/lowdiscrepancy.h"
 #include "statistics.h"
+#include "unit.h"
 
 static void test_bits(void **state) {
   (void)state;

@@ -1,16 +1,11 @@
 /* Interpolation of two poses: the ends are exact, rotations stay rotations with constant speed,
  * mirroring and stretching are interpolated, poses that no rotation connects are rejected. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "math/hash.h"
 #include "math/motion.h"
+#include "unit.h"
 
 static double uniform(uint32_t *state) {
   *state = vl_hash2(*state, 12345u);

@@ -1,12 +1,7 @@
 /* The statistical tests themselves: known values of the chi-square distribution; correct
  * samplers pass, slightly wrong ones fail. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "statistics.h"
+#include "unit.h"
 
 static void test_distribution(void **state) {
   (void)state;

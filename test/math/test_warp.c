@@ -1,13 +1,8 @@
 /* Warps: densities by chi-square, integrals of 1, inverses, small cones and triangles. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "statistics.h"
+#include "unit.h"
 
 enum { COUNT = 400000, TESTS = 24 };
 

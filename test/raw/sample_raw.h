@@ -3,13 +3,6 @@
 #ifndef TEST_RAW_SAMPLE_RAW_H
 #define TEST_RAW_SAMPLE_RAW_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +10,7 @@
 #include <unistd.h>
 
 #include "failing_allocator.h"
+#include "unit.h"
 #include "velo/velo.h"
 
 static inline vlContext *make_context(uint32_t threads) {

@@ -1,16 +1,12 @@
 /* test_tone.c: sRGB's curve by the table is the curve itself, rounded, for values of all sizes;
  * numbers outside of [0, 1]. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "image/pixel.h"
 #include "raw/tone.h"
+#include "unit.h"
 
 enum { COUNT = 1 << 20 };
 

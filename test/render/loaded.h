@@ -3,14 +3,10 @@
 #ifndef TEST_RENDER_LOADED_H
 #define TEST_RENDER_LOADED_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/camera.h"
 #include "velo/load.h"
 #include "velo/render.h"

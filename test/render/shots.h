@@ -5,15 +5,11 @@
 #define TEST_RENDER_SHOTS_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/light.h"
 #include "velo/material.h"

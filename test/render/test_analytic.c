@@ -2,14 +2,10 @@
  * white furnaces, solid angles. Means over the whole image are compared with the exact
  * number. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/render.h"

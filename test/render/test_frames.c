@@ -1,12 +1,8 @@
 /* One film for many images: after clearing, it gives the same image as a new film. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/load.h"
 #include "velo/render.h"
 

@@ -1,17 +1,12 @@
 /* Pixels that share samples: weights follow the filter and sum to 1 over the pixels; the sums
  * of a block are those of a direct double loop; which films share. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "base/context.h"
 #include "filter/filter.h"
 #include "render/reconstruct.h"
+#include "unit.h"
 #include "velo/filter_kinds.h"
 
 enum { WIDTH = 13, HEIGHT = 9 };

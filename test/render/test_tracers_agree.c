@@ -9,15 +9,11 @@
  * 0.99. In most rows the standard error is a third of that, and 3 % are found. Seeds are
  * fixed. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/choose.h"
 #include "velo/load.h"
 #include "velo/tracer.h"

@@ -3,15 +3,11 @@
  * or a length; the same seeds make the images equal up to rounding, so that a forgotten one is
  * seen at once. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "velo/edit.h"
 #include "velo/filter_kinds.h"
 #include "velo/load.h"

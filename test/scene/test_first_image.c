@@ -1,17 +1,12 @@
 /* test/scene/test_first_image.c: the first image of a model: from where it is seen, how the
  * studio is scaled to its lamps, the walls that are hidden, the ground. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "model.h"
 #include "scene/lamps.h"
 #include "scene/studio.h"
+#include "unit.h"
 #include "velo/light.h"
 #include "velo/shape_kinds.h"
 

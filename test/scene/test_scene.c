@@ -1,17 +1,12 @@
 /* test/scene/test_scene.c: the scene as filled by a program: copies, ids, defaults, rejected
  * values, counts, memory. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "failing_allocator.h"
 #include "scene/scene.h"
+#include "unit.h"
 #include "velo/check.h"
 #include "velo/edit.h"
 #include "velo/light.h"

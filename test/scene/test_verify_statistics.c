@@ -1,15 +1,11 @@
 /* test/scene/test_verify_statistics.c: the statistics of `velo scene verify`: its distributions
  * against known values, and the rate of its false alarms, by simulation. */
 #include "../../apps/velo/scene/verify_statistics.h"
+#include "unit.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "statistics.h"
 

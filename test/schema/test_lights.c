@@ -2,16 +2,12 @@
  * vl_parameter_is_default; a number out of range is rejected with a message that names it;
  * members that a kind does not use are not kept. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "unit.h"
 #include "velo/light.h"
 #include "velo/medium.h"
 #include "velo/shape_kinds.h"

@@ -1,17 +1,12 @@
 /* test/scene/test_schema.c: the rows of all families: well formed, with defaults in range; the
  * functions that read them. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/material.h"
 #include "velo/render.h"

@@ -1,14 +1,9 @@
 /* Random numbers of sensors: the normal distribution's inverse, log k!, and Poisson numbers by
  * chi-square over means from 0.01 to 1e5, where both methods (inversion, rejection) are. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "math/approx_double.h"
 #include "sensor/random.h"
 #include "statistics.h"
+#include "unit.h"
 
 static void normal_inverse(void **state) {
   (void)state;

@@ -1,14 +1,11 @@
 /* Sensors: means, variances and fixed patterns against closed formulas; mosaics, crosstalk,
  * angles; the same numbers with any number of threads; bad values by name, value and unit. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 
-#include <cmocka.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "unit.h"
 #include "velo/sensor.h"
 #include "velo/sensor_raw.h"
 

@@ -1,15 +1,12 @@
 /* Sensor files: a file with every field; errors with line, column, field, value and unit; the
  * nearest name. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 
-#include <cmocka.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "unit.h"
 #include "velo/sensor.h"
 
 static vlContext *context_;

@@ -2,13 +2,10 @@
  * the density, the sampled weight is value / density, the sampled albedo is the integral of the
  * value. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bsdf_state.h"
+#include "unit.h"
 
 /* Tables of the state's coats: smooth, fine, rough, textured. */
 static int build_coats(void **state) {

@@ -1,13 +1,10 @@
 /* test_bsdf_furnace.c: BSDFs in a white furnace: lossless ones return everything, none returns
  * more, for any roughness, coat and angle. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bsdf_state.h"
+#include "unit.h"
 
 /* Energy that comes back from a unit of light, by channel 0; radiance scaling undone. */
 static double furnace(const State *s, const Surface *surface, double theta) {

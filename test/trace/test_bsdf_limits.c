@@ -1,14 +1,11 @@
 /* test_bsdf_limits.c: invariants of BSDFs: equal bits on all instruction sets, no NaN for
  * degenerate input, reciprocity, pbrt's special cases. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bsdf_state.h"
 #include "measured_file.h"
+#include "unit.h"
 
 /* What a test needs besides the coats of its state. */
 static vlMeasured *measured[2];

@@ -4,13 +4,10 @@
  * slope (x, y) of radius r maps to the point (r^2 / (1 + r^2), azimuth): the plane becomes a
  * rectangle on which the distribution of normals is constant. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bsdf_state.h"
+#include "unit.h"
 
 typedef struct Lobe {
   const State *s;

@@ -3,15 +3,11 @@
  * material takes the offset h from the axis), with turned points and normals; and the rays that
  * leave there meet the same neighbours. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "statistics.h"
+#include "unit.h"
 
 #include "trace/stages.h"
 #include "trace/surface/offset.h"

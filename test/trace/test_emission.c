@@ -3,15 +3,11 @@
  * and areas), and the density of a sampled path equals the one used by multiple importance
  * sampling. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "statistics.h"
+#include "unit.h"
 
 #include "light/light_kind.h"
 #include "schema/schema.h"

@@ -1,13 +1,10 @@
 /* test_hair.c: a white hair in a white furnace is invisible, sampled weights are correct,
  * samples follow their density, which integrates to 1. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bsdf_state.h"
+#include "unit.h"
 
 static void put(Batch *b, uint32_t i, float sigma_a, float h, float beta_m, float beta_n,
                 float alpha) {

@@ -2,14 +2,11 @@
  * the kernels of the interfaces, against the closed form for diffuse light, in white furnaces,
  * in both directions. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bsdf_state.h"
 #include "trace/medium/phase.h"
+#include "unit.h"
 
 typedef struct {
   bool metal;

@@ -3,15 +3,11 @@
  * direction hits (chi-square); the light tree's choice against its probabilities; the Monte
  * Carlo estimate of incident radiance against the same integral with uniform directions. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "statistics.h"
+#include "unit.h"
 
 #include "light/light_kind.h"
 #include "trace/stages.h"

@@ -2,17 +2,14 @@
  * microfacets, in files made by measured_file.h. Values, densities, sampling, albedo, furnace,
  * reciprocity, symmetries, wavelengths. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bsdf_state.h"
 #include "color/color.h"
 #include "material/measured_lookup.h"
 #include "math/ggx.h"
 #include "measured_file.h"
+#include "unit.h"
 
 static vlMeasured *measure(const State *s, const mfSurface *metal, bool rgb) {
   const char *path = VELO_BINARY_DIR "/measured.bsdf";

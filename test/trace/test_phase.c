@@ -2,15 +2,12 @@
  * and is reciprocal; free flights and transmittances through a grid do not depend on its
  * majorants. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "statistics.h"
 #include "trace/medium/medium.h"
 #include "trace/medium/phase.h"
+#include "unit.h"
 #include "velo/medium.h"
 
 static const float gs[] = {-0.99f, -0.8f, -0.3f, -0.0005f, 0.0f, 0.0005f,

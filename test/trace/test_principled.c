@@ -2,13 +2,10 @@
  * densities by chi-square, agreement of sampling and evaluation, the thin film against Fresnel
  * and against interference computed here; disabled layers change nothing. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bsdf_state.h"
+#include "unit.h"
 
 /* What a material says; least and most: bounds of what a white one sends back of a furnace. */
 typedef struct Look {

@@ -1,13 +1,8 @@
 /* Samplers: exact stratification, uniform projections, independent dimensions, the same bits on
  * every instruction set and in every grouping, any spp. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "sampler/sobol.hot.h"
 #include "statistics.h"
+#include "unit.h"
 #include "velo/sampler.h"
 
 enum { KINDS = VL_SAMPLER_ZSOBOL + 1, BATCH = 4096 };

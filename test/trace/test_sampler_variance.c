@@ -1,13 +1,8 @@
 /* The benefit of samplers: the error of pixel integrals relative to independent random numbers,
  * its rate of convergence, and its distribution over the image with zsobol. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
 #include "sampler/sampler.h"
 #include "statistics.h"
+#include "unit.h"
 #include "velo/sampler.h"
 
 enum { WIDTH = 32, PIXELS = WIDTH * WIDTH, KINDS = VL_SAMPLER_ZSOBOL + 1 };

@@ -1,14 +1,10 @@
 /* A worker's memory by what the world has: at most 0.95 MB without media and subsurface
  * materials, and more only with them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "trace/surface/probes.h"
+#include "unit.h"
 #include "velo/velo.h"
 
 typedef enum Has { NOTHING, MEDIUM, CHANNELS, SUBSURFACE, HAS_COUNT } Has;

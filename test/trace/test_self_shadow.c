@@ -4,15 +4,11 @@
  * origin of the world with points far from their own centre, corners and transforms, where
  * numbers are large and their sums small. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "statistics.h"
+#include "unit.h"
 
 #include "shape/surface_point.h"
 #include "trace/two_way/stages.h"

@@ -3,15 +3,12 @@
  * compares the sets); alpha, lights and mixed materials use the point's normal, uv set and
  * vertex colours. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "statistics.h"
+#include "unit.h"
 
 #include "texture/run.hot.h"
 #include "velo/light.h"

@@ -5,13 +5,10 @@
 #define TEST_WORLD_BVH_WORLDS_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
+#include "unit.h"
 #include "velo/material.h"
 #include "velo/shape_kinds.h"
 #include "velo/texture.h"

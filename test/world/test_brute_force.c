@@ -2,14 +2,11 @@
  * rays through edges and corners, instruction sets, single rays and blocks of them, and which
  * worlds are of that kind. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
+#include "unit.h"
 #include "velo/material.h"
 #include "velo/shape_kinds.h"
 #include "world/accel/brute_force.h"

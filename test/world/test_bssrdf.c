@@ -3,17 +3,14 @@
  * that are integrals, too (the library uses polynomials and a hundred points). Also reads from
  * the tables: sums, samples, the inversion of a reflectance. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "material/bssrdf.h"
 #include "statistics.h"
+#include "unit.h"
 
 #define PI 3.14159265358979323846
 

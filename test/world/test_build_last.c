@@ -1,14 +1,9 @@
 /* test/world/test_build_last.c: a scene that passes its meshes to its last world: the same
  * world with less memory. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "scene/scene.h"
+#include "unit.h"
 #include "velo/check.h"
 #include "velo/render.h"
 #include "velo/shape_kinds.h"

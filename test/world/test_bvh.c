@@ -5,17 +5,14 @@
  *
  * VELO_RAYS sets the number of rays of each case. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "bvh_worlds.h"
 #include "math/double3.h"
 #include "shape/surface_point.h"
+#include "unit.h"
 #include "velo/shape_kinds.h"
 #include "world/accel/bvh.h"
 #include "world/accel/local_ray.h"

@@ -2,16 +2,13 @@
  * interface, layer and base, with microfacets drawn from D(h) cos h (the library draws visible
  * ones). Also the properties that vl_coat_build guarantees. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "material/coat.h"
 #include "statistics.h"
+#include "unit.h"
 
 #define PI 3.14159265358979323846
 enum { BINS = 4, KEPT = 12 };

@@ -2,15 +2,12 @@
  * points along each segment, with those nearest to the ray refined by bisection. Splitting,
  * transforms and instances must not matter. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "shape/surface_point.h"
+#include "unit.h"
 #include "velo/shape_kinds.h"
 
 enum { SEGMENTS = 5, STEPS = 4000 };

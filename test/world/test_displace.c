@@ -1,14 +1,11 @@
 /* test_displace.c: displaced meshes: subdivision, displacement, no cracks; too fine a
  * subdivision is an error. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
+#include "unit.h"
 #include "velo/shape_kinds.h"
 #include "velo/texture.h"
 #include "world/world.h"

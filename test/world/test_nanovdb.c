@@ -1,17 +1,14 @@
 /* test_nanovdb.c: NanoVDB files made here, byte by byte, are read back voxel by voxel; invalid
  * ones are rejected with a reason, whichever byte is wrong. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "medium/lookup.h"
+#include "unit.h"
 #include "velo/medium.h"
 #include "velo/render.h"
 #include "world/nanovdb_file.h"

@@ -2,14 +2,11 @@
  * result, whatever the rays; it blocks most rays of a closed room; it is forgotten in another
  * world. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
+#include "unit.h"
 #include "velo/material.h"
 #include "velo/shape_kinds.h"
 #include "world/accel/occluders.h"

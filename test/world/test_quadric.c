@@ -2,15 +2,11 @@
  * points lie on the part, rays hit them there with the same uv and normal, densities are per
  * area, which a grid over the parameters gives. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "shape/surface_point.h"
+#include "unit.h"
 #include "velo/shape_kinds.h"
 #include "world/world.h"
 

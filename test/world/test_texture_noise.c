@@ -1,15 +1,12 @@
 /* test_texture_noise.c: noise against a plain implementation in double, and its properties;
  * dots by their geometry, marble by its colours, sums by their octaves. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
-#include <cmocka.h>
 
 #include "texture/kinds.h"
+#include "unit.h"
 
 static uint32_t seed = 3;
 static double random_unit(void) {

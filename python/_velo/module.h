@@ -291,8 +291,6 @@ PyObject *image_object(Context *context,
                        vlImage *image); /* takes the image, also when it fails */
 /* The dict of a def. */
 PyObject *raw_values(const vlRawDef *def);
-/* (image of the numbers, dict of the values) of a raw image, which is taken. */
-PyObject *raw_parts(Context *context, vlRaw *raw);
 bool scene_open(const Scene *self); /* false: an exception is set */
 /* Begins a call that adds to the scene; null with an exception. scene_settle ends it: if it is
  * not done, the scene is as it was. */

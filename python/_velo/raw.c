@@ -191,7 +191,8 @@ PyObject *raw_values(const vlRawDef *def) {
       (double)def->baseline_exposure, "neutral", neutral, "matrices", matrices_of(def, count));
 }
 
-PyObject *raw_parts(Context *context, vlRaw *raw) {
+/* (image of the numbers, dict of the values) of a raw image, which is taken. */
+static PyObject *parts_of(Context *context, vlRaw *raw) {
   const vlRawDef *def = vl_raw_def(raw);
   vlImageDef image_def = vl_default_image_def(def->width, def->height, 1);
   vlImage *image = NULL;
@@ -281,7 +282,7 @@ static PyObject *raw_read(PyObject *module, PyObject *arguments) {
   vlResult result = vl_raw_read(context->context, file, &raw, &error);
   call_end(&call);
   Py_DECREF(keep);
-  return result == VL_OK ? raw_parts(context, raw) : raise_result(result, &error);
+  return result == VL_OK ? parts_of(context, raw) : raise_result(result, &error);
 }
 
 /* raw_develop(numbers, values, step, exposure): an image */

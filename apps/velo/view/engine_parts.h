@@ -214,8 +214,6 @@ int engine_take_model(Engine *engine);
 /* Stops what the render thread does, unless that is the first image after a change; the caller
  * holds the lock. */
 void engine_interrupt(Engine *engine);
-/* Whether the render thread must stop what it does. Takes the lock. */
-bool engine_interrupted(Engine *engine);
 /* Sends a frame of `image`. spp: samples per pixel of the whole image; 0: it has none yet. */
 typedef struct FrameKind {
   FrameFormat format; /* and channels: as frame_make's */
@@ -300,16 +298,15 @@ void *engine_render(void *engine);
 void *engine_watch(void *engine);
 /* Sends errors and warnings of a load to the pages: for report_listen. */
 void engine_report(void *engine, const char *kind, const vlError *what);
+/* Gives the render thread a model to go on with, in place of one that it has not taken. path:
+ * of another scene; null: the same, which has changed. The engine then owns the model. */
+void engine_offer(Engine *engine, Model *model, const char *path, uint32_t change);
 /* Loads the scene that a page has chosen. False: none is chosen. */
 bool engine_load_choice(Engine *engine);
 /* Goes on with the scene that was loaded again, if there is one. Returns whether there was. */
 bool engine_swap_model(Engine *engine);
-/* The thread that loads what pages choose among the lecture's scenes. */
-void *engine_load_chosen(void *engine);
 /* Answers a task; on the render thread, without the lock. */
 void engine_answer(Engine *engine, const Task *task);
-/* The thread that answers questions while the render goes on. */
-void *engine_answer_questions(void *engine);
 /* Answers the first question. False: there is none. */
 bool engine_answer_question(Engine *engine);
 /* Writes a camera or an image; posts its name. */
@@ -337,8 +334,6 @@ void engine_cameras(Engine *engine, const Task *task);
 void engine_add_trace(Engine *engine, uint32_t client, const ViewMessage *message);
 /* Drops the pixels of a page, or of all (0), because of `why`; the caller holds the lock. */
 void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
-/* The thread that traces the paths of pixels. */
-void *engine_trace(void *engine);
 /* Traces the paths of the first pixel. False: there is none. */
 bool engine_trace_next(Engine *engine);
 /* Posts why a message is not answered. */

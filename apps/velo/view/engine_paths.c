@@ -108,17 +108,3 @@ bool engine_trace_next(Engine *e) {
   pthread_mutex_unlock(&e->lock);
   return true;
 }
-
-void *engine_trace(void *user) {
-  Engine *e = user;
-  for (;;) {
-    pthread_mutex_lock(&e->lock);
-    while (!e->quit && !e->trace_count)
-      pthread_cond_wait(&e->wake, &e->lock);
-    bool quit = e->quit;
-    pthread_mutex_unlock(&e->lock);
-    if (quit)
-      return NULL;
-    engine_trace_next(e);
-  }
-}

@@ -25,6 +25,23 @@ void engine_report(void *user, const char *kind, const vlError *what) {
   json_text_post(&text, e->server, 0);
 }
 
+void engine_offer(Engine *e, Model *model, const char *path, uint32_t change) {
+  pthread_mutex_lock(&e->lock);
+  Model *unused = e->next;
+  e->next = model;
+  if (path)
+    e->next_path = path;
+  e->next_change = change;
+  engine_interrupt(e);
+  if (!path)
+    engine_drop_traces(e, 0, "the scene changed");
+  pthread_cond_broadcast(&e->wake);
+  pthread_mutex_unlock(&e->lock);
+  if (unused)
+    model_free(unused);
+  free(unused);
+}
+
 /* ---- the lecture's scenes ---------------------------------------------------------------- */
 
 bool engine_load_choice(Engine *e) {
@@ -47,32 +64,8 @@ bool engine_load_choice(Engine *e) {
     free(model);
     return true;
   }
-  pthread_mutex_lock(&e->lock);
-  Model *unused = e->next;
-  e->next = model;
-  e->next_path = path;
-  e->next_change = change;
-  engine_interrupt(e);
-  pthread_cond_broadcast(&e->wake);
-  pthread_mutex_unlock(&e->lock);
-  if (unused)
-    model_free(unused);
-  free(unused);
+  engine_offer(e, model, path, change);
   return true;
-}
-
-void *engine_load_chosen(void *user) {
-  Engine *e = user;
-  for (;;) {
-    pthread_mutex_lock(&e->lock);
-    while (!e->quit && !e->chosen)
-      pthread_cond_wait(&e->wake, &e->lock);
-    bool quit = e->quit;
-    pthread_mutex_unlock(&e->lock);
-    if (quit)
-      return NULL;
-    engine_load_choice(e);
-  }
 }
 
 /* ---- the render thread ------------------------------------------------------------------- */

@@ -58,7 +58,8 @@ void engine_interrupt(Engine *engine) {
   vl_cancel_request(engine->stop);
 }
 
-bool engine_interrupted(Engine *engine) {
+/* Whether the render thread must stop what it does. Takes the lock. */
+static bool is_interrupted(Engine *engine) {
   pthread_mutex_lock(&engine->lock);
   bool stop = must_stop(engine) || engine->wanted.paused || !engine->clients;
   pthread_mutex_unlock(&engine->lock);
@@ -211,7 +212,7 @@ static bool render_pass(Engine *e) {
 static bool render_film(Engine *e) {
   if (!e->film)
     begin_film(e);
-  if (!e->film || (!e->first_runs && engine_interrupted(e)))
+  if (!e->film || (!e->first_runs && is_interrupted(e)))
     return false;
   if (!e->first_runs && denoise_due(e))
     return denoise_film(e);

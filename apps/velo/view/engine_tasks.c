@@ -153,7 +153,7 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_CAMERAS:
       engine_cameras(e, task);
       break;
-    case MESSAGE_PATHS:  /* engine_trace answers it */
+    case MESSAGE_PATHS:  /* engine_trace_next answers it */
     case MESSAGE_VERIFY: /* engine_verify_commands answers it */
     case MESSAGE_SEEN:   /* these need no world */
     case MESSAGE_CAMERA:
@@ -184,18 +184,4 @@ bool engine_answer_question(Engine *e) {
   engine_answer(e, &task);
   pthread_rwlock_unlock(&e->model_lock);
   return true;
-}
-
-void *engine_answer_questions(void *user) {
-  Engine *e = user;
-  for (;;) {
-    pthread_mutex_lock(&e->lock);
-    while (!e->quit && !e->question_count)
-      pthread_cond_wait(&e->wake, &e->lock);
-    bool quit = e->quit;
-    pthread_mutex_unlock(&e->lock);
-    if (quit)
-      return NULL;
-    engine_answer_question(e);
-  }
 }

@@ -5,18 +5,52 @@
 #include "cli/report.h"
 #include "view/engine_parts.h"
 
+/* Does one kind of work whenever some waits, until the engine ends. */
+static void *serve(Engine *e, bool (*waits)(const Engine *), bool (*work)(Engine *)) {
+  for (;;) {
+    pthread_mutex_lock(&e->lock);
+    while (!e->quit && !waits(e))
+      pthread_cond_wait(&e->wake, &e->lock);
+    bool quit = e->quit;
+    pthread_mutex_unlock(&e->lock);
+    if (quit)
+      return NULL;
+    work(e);
+  }
+}
+
+static bool question_waits(const Engine *e) {
+  return e->question_count > 0;
+}
+static void *answer(void *user) {
+  return serve(user, question_waits, engine_answer_question);
+}
+
+static bool trace_waits(const Engine *e) {
+  return e->trace_count > 0;
+}
+static void *trace(void *user) {
+  return serve(user, trace_waits, engine_trace_next);
+}
+
+static bool choice_waits(const Engine *e) {
+  return e->chosen != NULL;
+}
+static void *load(void *user) {
+  return serve(user, choice_waits, engine_load_choice);
+}
+
 int engine_start(Engine *engine, Server *server) {
   engine->server = server;
   if (pthread_create(&engine->thread, NULL, engine_render, engine) != 0)
     return report_failure(STATUS_OTHER, "the system refuses to start a thread");
   engine->started = true;
-  engine->answering =
-      pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
-  engine->tracing = pthread_create(&engine->tracer, NULL, engine_trace, engine) == 0;
+  engine->answering = pthread_create(&engine->answerer, NULL, answer, engine) == 0;
+  engine->tracing = pthread_create(&engine->tracer, NULL, trace, engine) == 0;
   if (!engine->def.lecture)
     engine->verifies =
         pthread_create(&engine->verifier, NULL, engine_verify_commands, engine) == 0;
-  void *(*watch)(void *) = engine->def.lecture ? engine_load_chosen : engine_watch;
+  void *(*watch)(void *) = engine->def.lecture ? load : engine_watch;
   engine->watching = pthread_create(&engine->watcher, NULL, watch, engine) == 0;
   return -1;
 }

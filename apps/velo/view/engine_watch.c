@@ -43,17 +43,7 @@ static bool load_again(Engine *e, Watch *watch, bool timed) {
   model->timed = timed;
   if (!timed)
     post(e, "loaded");
-  pthread_mutex_lock(&e->lock);
-  Model *unused = e->next;
-  e->next = model;
-  e->next_change = change;
-  engine_interrupt(e);
-  engine_drop_traces(e, 0, "the scene changed");
-  pthread_cond_broadcast(&e->wake);
-  pthread_mutex_unlock(&e->lock);
-  if (unused)
-    model_free(unused);
-  free(unused);
+  engine_offer(e, model, NULL, change);
   return true;
 }
 

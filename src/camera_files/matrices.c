@@ -288,38 +288,21 @@ static bool is_opengl(const json_t *tree) {
   return api && !vl_text_is(api, "vulkan") && !vl_text_is(api, "d3d");
 }
 static bool is_vulkan(const json_t *tree) {
-  const char *api = vl_camera_text(tree, "graphics_api");
-  return vl_text_is(api, "vulkan");
+  return vl_text_is(vl_camera_text(tree, "graphics_api"), "vulkan");
 }
 static bool is_d3d(const json_t *tree) {
-  const char *api = vl_camera_text(tree, "graphics_api");
-  return vl_text_is(api, "d3d");
+  return vl_text_is(vl_camera_text(tree, "graphics_api"), "d3d");
 }
 
 static const char known_names[] =
     "graphics_api pixel_origin view_axes projection_matrix view_matrix order vectors clip_y clip_z near_plane "
     "far_plane width height name";
-const vlCameraFormat vl_format_opengl = {
-    .name = "opengl",
-    .known = known_names,
-    .is_tree = is_opengl,
-    .read = read_matrices,
-    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES,
-    .plain = true,
-    .write = write_matrices};
-const vlCameraFormat vl_format_vulkan = {
-    .name = "vulkan",
-    .known = known_names,
-    .is_tree = is_vulkan,
-    .read = read_matrices,
-    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES,
-    .plain = true,
-    .write = write_matrices};
-const vlCameraFormat vl_format_d3d = {
-    .name = "d3d",
-    .known = known_names,
-    .is_tree = is_d3d,
-    .read = read_matrices,
-    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES,
-    .plain = true,
-    .write = write_matrices};
+#define MATRICES(api, is_api)                                                                 \
+  {                                                                                           \
+    .name = api, .known = known_names, .is_tree = is_api, .read = read_matrices,              \
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES, .plain = true, \
+    .write = write_matrices                                                                   \
+  }
+const vlCameraFormat vl_format_opengl = MATRICES("opengl", is_opengl);
+const vlCameraFormat vl_format_vulkan = MATRICES("vulkan", is_vulkan);
+const vlCameraFormat vl_format_d3d = MATRICES("d3d", is_d3d);

@@ -191,7 +191,7 @@ vlResult vl_material_spectrum(const vlMaterialBuild *b, const vlSpectrumInput *i
                                 b->error);
 }
 
-vlResult vl_material_metal(const vlMaterialBuild *b) {
+static vlResult compile_metal(const vlMaterialBuild *b) {
   b->m->use_reflectance = b->def->use_reflectance;
   if (b->def->use_reflectance)
     return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
@@ -199,8 +199,8 @@ vlResult vl_material_metal(const vlMaterialBuild *b) {
   return r == VL_OK ? vl_material_spectrum(b, &b->def->k, &b->m->k) : r;
 }
 
-vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
-                           bool disperses) {
+static vlResult compile_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
+                              bool disperses) {
   vlWorldMaterial *m = b->m;
   float value;
   if (vl_spectrum_is_constant(&eta->value, &value)) {
@@ -244,7 +244,7 @@ vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
   if (r == VL_OK)
     r = vl_material_roughness(b);
   if (r == VL_OK)
-    r = vl_material_index(b, &b->def->eta, false);
+    r = compile_index(b, &b->def->eta, false);
   if (r != VL_OK)
     return r;
   return vl_coat_in_closed_form(b->def) ? coat_of(b->world, b->def, b->m, b->error)
@@ -255,20 +255,20 @@ vlResult vl_compile_conductor_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_CONDUCTOR;
   b->m->smooth = VL_SMOOTH_BY_ALPHA;
   vlResult r = vl_material_roughness(b);
-  return r == VL_OK ? vl_material_metal(b) : r;
+  return r == VL_OK ? compile_metal(b) : r;
 }
 
 vlResult vl_compile_dielectric_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIELECTRIC;
   b->m->smooth = VL_SMOOTH_BY_ALPHA_OR_INDEX;
   vlResult r = vl_material_roughness(b);
-  return r == VL_OK ? vl_material_index(b, &b->def->eta, true) : r;
+  return r == VL_OK ? compile_index(b, &b->def->eta, true) : r;
 }
 
 vlResult vl_compile_thin_dielectric_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_THIN_DIELECTRIC;
   b->m->smooth = VL_SMOOTH_ALWAYS;
-  return vl_material_index(b, &b->def->eta, false);
+  return compile_index(b, &b->def->eta, false);
 }
 
 vlResult vl_compile_diffuse_transmission_material(const vlMaterialBuild *b) {
@@ -428,8 +428,8 @@ vlResult vl_material_layers(const vlMaterialBuild *b, bool metal) {
 vlResult vl_compile_coated_conductor_material(const vlMaterialBuild *b) {
   vlResult r = vl_material_roughness(b);
   if (r == VL_OK)
-    r = vl_material_metal(b);
+    r = compile_metal(b);
   if (r == VL_OK)
-    r = vl_material_index(b, &b->def->coat_eta, false);
+    r = compile_index(b, &b->def->coat_eta, false);
   return r == VL_OK ? vl_material_layers(b, true) : r;
 }

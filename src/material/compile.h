@@ -43,9 +43,6 @@ vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *flo
  * reflectance, or eta and k. Dielectric: index of refraction, one number or, if it is
  * dispersive, a spectrum. */
 vlResult vl_material_roughness(const vlMaterialBuild *b);
-vlResult vl_material_metal(const vlMaterialBuild *b);
-vlResult vl_material_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
-                           bool disperses);
 /* Compiles the inputs of a coat that random walks evaluate. metal: the base is a conductor. */
 vlResult vl_material_layers(const vlMaterialBuild *b, bool metal);
 

@@ -28,6 +28,18 @@ vlPart *vl_part_add(vlWorld *world) {
   return part;
 }
 
+static void release_part(vlPart *part) {
+  if (atomic_fetch_sub(&part->users, 1) > 1)
+    return;
+  vlContext *context = part->context;
+  if (part->destroy)
+    part->destroy(context, part->object);
+  for (size_t i = 0; i < part->blocks.count; i++)
+    vl_free(context, part->blocks.items[i]);
+  VL_ARRAY_FREE(context, &part->blocks);
+  vl_free(context, part);
+}
+
 bool vl_part_share(vlWorld *world, vlPart *part) {
   vlPart **slot = VL_PUSH(world->context, &world->parts);
   if (!slot)
@@ -38,7 +50,7 @@ bool vl_part_share(vlWorld *world, vlPart *part) {
 }
 
 void vl_part_drop_last(vlWorld *world) {
-  vl_part_release(world->parts.items[--world->parts.count]);
+  release_part(world->parts.items[--world->parts.count]);
 }
 
 /* ---- memory of a world ------------------------------------------------------------------- */
@@ -184,7 +196,7 @@ void vl_world_destroy(vlWorld *world) {
   vlContext *c = world->context;
   vl_accel_destroy(c, &world->accel);
   for (size_t i = 0; i < world->parts.count; i++)
-    vl_part_release(world->parts.items[i]); /* after the accelerator */
+    release_part(world->parts.items[i]); /* after the accelerator */
   VL_ARRAY_FREE(c, &world->parts);
   for (size_t i = 0; i < world->blocks.count; i++)
     vl_free(c, world->blocks.items[i]);
@@ -222,16 +234,4 @@ void vl_world_info(const vlWorld *world, vlWorldInfo *info) {
   info->moves = world->moves;
   info->time_open = world->moves ? world->time_open : 0;
   info->time_close = world->moves ? world->time_close : 0;
-}
-
-void vl_part_release(vlPart *part) {
-  if (atomic_fetch_sub(&part->users, 1) > 1)
-    return;
-  vlContext *context = part->context;
-  if (part->destroy)
-    part->destroy(context, part->object);
-  for (size_t i = 0; i < part->blocks.count; i++)
-    vl_free(context, part->blocks.items[i]);
-  VL_ARRAY_FREE(context, &part->blocks);
-  vl_free(context, part);
 }

@@ -26,6 +26,5 @@ vlPart *vl_part_add(struct vlWorld *world);
 bool vl_part_share(struct vlWorld *world, vlPart *part);
 /* Takes the part that was added last back. */
 void vl_part_drop_last(struct vlWorld *world);
-void vl_part_release(vlPart *part);
 
 #endif

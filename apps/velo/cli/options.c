@@ -202,7 +202,8 @@ static const vlParameter *setting_of(const char *name) {
   return row;
 }
 
-vlParameter option_row(const Option *option) {
+/* The row of an option of one number: of the setting of its name, or with its own range. */
+static vlParameter row_of(const Option *option) {
   const bool own = option->min != 0 || option->max != 0;
   const vlParameter *row =
       own ? NULL : setting_of(option->kind == OPTION_SIZE ? "width" : option->name);
@@ -233,7 +234,7 @@ int option_number(const char *name, const char *text, const vlParameter *row, do
 
 /* Reads WIDTHxHEIGHT. */
 static int read_size(const Option *option, const char *text, int64_t size[2]) {
-  const vlParameter row = option_row(option);
+  const vlParameter row = row_of(option);
   const char *x = strpbrk(text, "xX");
   char side[2][24] = {"", ""};
   if (!x || (size_t)(x - text) >= sizeof side[0] || strlen(x + 1) >= sizeof side[1])
@@ -286,7 +287,7 @@ static int read_choice(const Option *option, const char *text, OptionValue *valu
 
 /* Reads a value of OPTION_INTEGER or OPTION_NUMBER. */
 static int read_row(const Option *option, const char *text, OptionValue *value) {
-  const vlParameter row = option_row(option);
+  const vlParameter row = row_of(option);
   char name[80];
   snprintf(name, sizeof name, "--%s", option->name);
   int status = option_number(name, text, &row, &value->number);
@@ -297,7 +298,7 @@ static int read_row(const Option *option, const char *text, OptionValue *value) 
 
 /* Reads a value of OPTION_ANGLE, in the range of its row. */
 static int read_angle_row(const Option *option, const char *text, OptionValue *value) {
-  const vlParameter row = option_row(option);
+  const vlParameter row = row_of(option);
   char name[80], message[VL_GIVEN_MESSAGE];
   snprintf(name, sizeof name, "--%s", option->name);
   if (!read_angle(text, NULL, &value->numbers[0]))

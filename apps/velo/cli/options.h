@@ -114,8 +114,6 @@ void options_print_exit_statuses(void);
  * call. */
 const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names,
                          int count);
-/* The row of an option of one number: of the setting of its name, or with its own range. */
-vlParameter option_row(const Option *option);
 /* Reads a number by a row, in the row's unit. -1: it is read; else the exit code, after a
  * report. name: of the value in the message. number may be null. */
 int option_number(const char *name, const char *text, const vlParameter *row, double *number);

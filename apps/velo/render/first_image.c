@@ -51,7 +51,10 @@ static bool is_harmless(int option) {
   return option_is_in(option, harmless, sizeof harmless / sizeof *harmless);
 }
 
-bool first_image_wanted(const Render *render, const Arguments *arguments) {
+/* Whether the rule holds: the file is a model, velo adds its camera or its light, every output
+ * is a .png, .jpg or .tga, and every option is one that asks for no other quality than the
+ * default. Call when the outputs are chosen. */
+static bool is_wanted(const Render *render, const Arguments *arguments) {
   const SceneOpening *opening = &render->opening;
   const Outputs *outputs = &render->outputs;
   if (!opening->model ||
@@ -71,7 +74,7 @@ bool first_image_wanted(const Render *render, const Arguments *arguments) {
 }
 
 void first_image_plan(Render *render, const Arguments *arguments) {
-  if (!first_image_wanted(render, arguments))
+  if (!is_wanted(render, arguments))
     return;
   Denoised *denoised = &render->denoised;
   render->job.defs->render.spp = FIRST_IMAGE_SPP;

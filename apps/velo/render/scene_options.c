@@ -15,7 +15,8 @@
 #include "velo/check.h"
 #include "velo/world.h"
 
-bool scene_is_model(const char *path) {
+/* Whether the file holds a model: a format other than pbrt. */
+static bool is_model(const char *path) {
   return !text_ends_with(path, ".pbrt") && !text_ends_with(path, ".pbrt.gz");
 }
 
@@ -225,7 +226,7 @@ static int load_and_complete(vlContext *context, const char *path, const Argumen
   defs->camera_missing = camera; /* another file gives the camera */
   vlSceneInfo info;
   vl_scene_info(*scene, &info);
-  opening->model = scene_is_model(path);
+  opening->model = is_model(path);
   choose_completion(path, arguments, opening->model, &complete);
   if (lit_inside)
     complete.environment = VL_ENVIRONMENT_LAMPS;

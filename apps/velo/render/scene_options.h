@@ -39,8 +39,6 @@ void scene_opening_close(SceneOpening *opening);
 void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlSceneDefs *defs);
 /* Sets the directions up and front for an axis (0: x) that points up. */
 void scene_choose_up(int axis, vlCompleteDef *def);
-/* Whether the file holds a model: a format other than pbrt. */
-bool scene_is_model(const char *path);
 /* Whether it is a glTF file, by its name. */
 bool scene_is_gltf(const char *path);
 /* Returns whether --camera names a camera of the scene. This requires that the scene is glTF

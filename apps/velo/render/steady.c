@@ -23,7 +23,8 @@ uint64_t steady_memory(uint64_t pixels) {
   return pixels * sizeof(float) * ((STEADY_BEFORE + 1) * kept + FLOW + SUMS + WARPED);
 }
 
-const SteadyFrame *steady_find(const Steady *s, uint32_t number) {
+/* Null: the frame is not kept. */
+static const SteadyFrame *find_frame(const Steady *s, uint32_t number) {
   for (int i = 0; i <= STEADY_BEFORE; i++)
     if (s->frames[i].used && s->frames[i].number == number)
       return &s->frames[i];
@@ -35,7 +36,7 @@ int steady_prepare(Steady *s, uint32_t number, SteadyRender *render, void *user)
   s->only_kept = true;
   for (uint32_t k = 0; k < s->count && status == STATUS_OK; k++) {
     s->number = s->before[k];
-    if (!steady_find(s, s->number))
+    if (!find_frame(s, s->number))
       status = render(user, k);
   }
   s->only_kept = false;
@@ -328,7 +329,7 @@ static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame
 
 vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world, const Job *job,
                       vlStopFn *stop, void *stop_user, vlImage **result, vlError *error) {
-  const SteadyFrame *now = steady_find(s, s->number);
+  const SteadyFrame *now = find_frame(s, s->number);
   const uint32_t width = vl_image_width(now->clean), height = vl_image_height(now->clean);
   const size_t stride = vl_image_channels(now->clean), pixels = (size_t)width * height;
   const float *own = vl_image_const_pixels(now->clean);
@@ -341,7 +342,7 @@ vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world,
   if (code == VL_OK)
     code = vl_image_create(context, &def, result);
   for (uint32_t k = 0; k < s->count && code == VL_OK; k++)
-    code = add_frame(s, context, now, steady_find(s, s->before[k]), world, job, stop, stop_user,
+    code = add_frame(s, context, now, find_frame(s, s->before[k]), world, job, stop, stop_user,
                      vl_image_pixels(sums), error);
   if (code == VL_OK)
     code = vl_image_add_attributes(*result, now->clean);

@@ -40,8 +40,6 @@ typedef struct Steady {
 
 /* Memory in bytes for frames of so many pixels. */
 uint64_t steady_memory(uint64_t pixels);
-/* Null: the frame is not kept. */
-const SteadyFrame *steady_find(const Steady *s, uint32_t number);
 /* Renders frame s->before[k], which is only kept. Returns the exit code. */
 typedef int SteadyRender(void *user, uint32_t k);
 /* Renders those frames that the frame `number` uses (s->before) and that are not kept. Returns

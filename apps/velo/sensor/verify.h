@@ -58,8 +58,6 @@ typedef struct Verify {
  * frames; the second exposes a slanted edge and adds its row. */
 int verify_frames(Verify *verify);
 int verify_edge(Verify *verify);
-/* Exposes all pixels to a mean and keeps the numbers in frames[which]. */
-int verify_expose(Verify *verify, double electrons, double time, int which);
 /* Adds the rows of the parameters of EMVA 1288. */
 void verify_parameters(Verify *verify);
 /* Variance of a step's frame that the sensor's numbers give, DN^2. */

@@ -7,7 +7,8 @@
 #include "cli/report.h"
 #include "sensor/verify.h"
 
-int verify_expose(Verify *v, double electrons, double time, int which) {
+/* Exposes all pixels to a mean and keeps the numbers in frames[which]. */
+static int expose_all(Verify *v, double electrons, double time, int which) {
   size_t count = (size_t)v->size * v->size;
   for (size_t i = 0; i < count; i++)
     v->means[i] = electrons;
@@ -46,7 +47,7 @@ static int make_pair(Verify *v, char kind, double electrons, double time, double
                      double *variance) {
   int status = verify_folder_series(v, kind, time, electrons);
   for (int i = 0; i < 2 && status < 0; i++)
-    status = verify_expose(v, electrons, time, i);
+    status = expose_all(v, electrons, time, i);
   measure_pair(v, mean, variance);
   return status;
 }
@@ -59,7 +60,7 @@ static int make_stack(Verify *v, char kind, double electrons, double time, Verif
   int status = sums && squares ? verify_folder_series(v, kind, time, electrons)
                                : report_failure(STATUS_OTHER, "out of memory");
   for (uint32_t f = 0; f < v->stack && status < 0; f++) {
-    status = verify_expose(v, electrons, time, 0);
+    status = expose_all(v, electrons, time, 0);
     for (size_t i = 0; i < count; i++) {
       uint32_t number = v->frames[0][i];
       sums[i] += number;

@@ -393,6 +393,22 @@ static void once(vlObj *obj, uint32_t bit, const char *what, size_t length) {
               texts[bit >> 1]);
 }
 
+/* Index 0 stands for faces before the first o or g. A new object has no group. */
+static bool open_object(vlObj *obj, bool group) {
+  const char *name = vl_obj_rest(obj);
+  obj->part_open = false;
+  if (!VL_RESERVE(obj->context, &obj->objects, 2))
+    return vl_obj_fail_memory(obj);
+  if (!obj->objects.count)
+    obj->objects.items[obj->objects.count++] = (vlObjObject){NULL, NULL};
+  const char *object = group ? obj->objects.items[obj->objects.count - 1].object : name;
+  if (!vl_scene_copy_string(obj->scene, &name))
+    return false;
+  obj->objects.items[obj->objects.count++] =
+      (vlObjObject){.object = group ? object : name, .group = group ? name : NULL};
+  return true;
+}
+
 static bool read_statement(vlObj *obj) {
   static const char *const curves[] = {"vp",    "cstype", "deg",  "bmat",  "step", "curv",
                                        "curv2", "surf",   "parm", "trim",  "hole", "scrv",
@@ -413,7 +429,7 @@ static bool read_statement(vlObj *obj) {
         return use_smoothing(obj);
       case 'g':
       case 'o':
-        return vl_obj_open_object(obj, *word == 'g');
+        return open_object(obj, *word == 'g');
       case 'l':
       case 'p':
         return vl_obj_read_marks(obj, *word == 'l');
@@ -517,22 +533,6 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
 
 /* ---- names of objects (o), groups (g) and materials become labels of shapes ---------------
  */
-
-/* Index 0 stands for faces before the first o or g. A new object has no group. */
-bool vl_obj_open_object(vlObj *obj, bool group) {
-  const char *name = vl_obj_rest(obj);
-  obj->part_open = false;
-  if (!VL_RESERVE(obj->context, &obj->objects, 2))
-    return vl_obj_fail_memory(obj);
-  if (!obj->objects.count)
-    obj->objects.items[obj->objects.count++] = (vlObjObject){NULL, NULL};
-  const char *object = group ? obj->objects.items[obj->objects.count - 1].object : name;
-  if (!vl_scene_copy_string(obj->scene, &name))
-    return false;
-  obj->objects.items[obj->objects.count++] =
-      (vlObjObject){.object = group ? object : name, .group = group ? name : NULL};
-  return true;
-}
 
 /* A mesh of several materials is one part per material. */
 static bool has_neighbour(const vlObj *obj, size_t part) {

@@ -139,8 +139,6 @@ bool vl_obj_add_shapes(vlObj *obj);
 /* obj_line.c: reads a statement p or l; adds balls and tubes for all of them. */
 bool vl_obj_read_marks(vlObj *obj, bool lines);
 bool vl_obj_add_marks(vlObj *obj);
-/* obj_label.c: begins an object (statement o) or a group (g). */
-bool vl_obj_open_object(vlObj *obj, bool group);
 /* The label of a part's shape. The scene owns its strings. */
 bool vl_obj_label(vlObj *obj, vlNameTable *names, size_t part, vlLabel *label);
 

@@ -88,7 +88,6 @@ bool vl_dict_count(vlDict *dict, const char *name, int32_t least,
                    uint32_t *value); /* integer >= least */
 bool vl_dict_bool(vlDict *dict, const char *name, bool *value);
 bool vl_dict_string(vlDict *dict, const char *name, const char **value);
-bool vl_dict_vector(vlDict *dict, const char *name, vlParamType type, double value[3]);
 bool vl_dict_floats(vlDict *dict, const char *name, size_t count,
                     double *value); /* exactly count numbers, at most 16 */
 /* *value becomes the index of the string among the names. */

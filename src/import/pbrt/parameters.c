@@ -187,7 +187,7 @@ bool vl_dict_string(vlDict *dict, const char *name, const char **value) {
   return p != NULL;
 }
 
-bool vl_dict_vector(vlDict *dict, const char *name, vlParamType type, double value[3]) {
+static bool read_vector(vlDict *dict, const char *name, vlParamType type, double value[3]) {
   vlParam *p = find_counted(dict, name, type, 3);
   for (int i = 0; p && i < 3; i++)
     value[i] = p->exact[i];
@@ -306,7 +306,7 @@ static bool read_float3(vlDict *dict, const char *name, float at[3]) {
   double v[3];
   vlParam *p = vl_dict_find(
       dict, name, 1u << VL_PARAM_POINT3 | 1u << VL_PARAM_VECTOR3 | 1u << VL_PARAM_NORMAL);
-  if (!p || !vl_dict_vector(dict, name, p->type, v))
+  if (!p || !read_vector(dict, name, p->type, v))
     return false;
   for (int i = 0; i < 3; i++)
     at[i] = (float)v[i];
@@ -373,7 +373,7 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
     case VL_PARAMETER_FLOAT3:
       return read_float3(dict, name, at);
     case VL_PARAMETER_DOUBLE3:
-      return vl_dict_vector(
+      return read_vector(
           dict, name, p->flags & VL_PARAMETER_VECTOR ? VL_PARAM_VECTOR3 : VL_PARAM_POINT3, at);
     case VL_PARAMETER_CHOICE:
       return read_choice(dict, name, p, at);

@@ -241,8 +241,6 @@ vlOldRule vl_old_light, vl_old_area_light;                                /* lig
 vlOldRule vl_old_shape;                                                   /* shapes.c */
 vlOldRule vl_old_camera, vl_old_film, vl_old_sampler, vl_old_integrator;  /* settings.c */
 vlOldRule vl_old_filter, vl_old_accelerator, vl_old_medium, vl_old_world; /* settings.c */
-/* Adds what only WorldBegin knows: the default filter, the exposure. */
-bool vl_old_finish_settings(vlOldFile *file, vlOldStatement *world);
 /* A float texture with the values of the spectrum texture, written before the statement. Null:
  * there is none. */
 const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture);

@@ -2,17 +2,12 @@
  * every argument of the public API that is an enum. A call that can fail refuses them, others
  * return what stands for nothing; none crashes. test_enums.py looks for each field of the
  * headers in FIELDS, and for each function with an argument that is an enum in this file. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-/* cmocka wants these four before it */
-#include <cmocka.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "small_world.h"
+#include "unit.h"
 #include "velo/setting.h"
 #include "velo/velo.h"
 

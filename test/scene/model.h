@@ -3,14 +3,9 @@
 #define TEST_SCENE_MODEL_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "scene/scene.h"
+#include "unit.h"
 #include "velo/shape_kinds.h"
 
 typedef struct Model {

@@ -6,15 +6,11 @@
  * in each projection: the generator matrix of the second number, Pascal's triangle modulo 2,
  * keeps 2^16 of all 2^32 indices (it is its own inverse, and its rank over the identity is 16),
  * and there the numbers would be equal: one of 2^16 pairs, where chance makes one of 2^24. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 #include "math/lowdiscrepancy.h"
 #include "sampler/sampler.h"
 #include "statistics.h"
+#include "unit.h"
 #include "velo/sampler.h"
 
 enum {

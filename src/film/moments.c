@@ -5,6 +5,9 @@
 
 #include "film/sums.h"
 
+static const double SQUARE = 0x1p-80; /* 2^-VL_SQUARE_BITS: the unit of the sums of squares */
+_Static_assert((int)VL_SQUARE_BITS == 80, "SQUARE is its power of two");
+
 /* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their bits among
  * 192 bits. |value| < 2^40: with 2^31 samples the sum stays below 2^191. */
 static inline void add_square(uint64_t sum[3], float value) {
@@ -78,9 +81,9 @@ double vl_film_independent_error(const vlFilm *film, size_t at, int c) {
   if (m->samples < 2 || p->weight <= 0)
     return INFINITY;
   double n = (double)m->samples, plain = (double)m->plain[c] * 0x1p-50 / n;
-  double squares = ldexp((double)m->squares[c][2], 128 - VL_SQUARE_BITS) +
-                   ldexp((double)m->squares[c][1], 64 - VL_SQUARE_BITS) +
-                   ldexp((double)m->squares[c][0], -VL_SQUARE_BITS);
+  double squares = (double)m->squares[c][2] * 0x1p128 * SQUARE +
+                   (double)m->squares[c][1] * 0x1p64 * SQUARE +
+                   (double)m->squares[c][0] * SQUARE;
   double sum_w = (double)p->weight * 0x1p-24, mean = (double)p->color[c] * 0x1p-50 / sum_w;
   double spread = squares - n * plain * plain;
   if (spread < squares * 0x1p-48)

@@ -218,7 +218,7 @@ static vlResult clean_image(vlContext *context, const vlWorld *world, const vlCa
   if (result == VL_OK)
     result = vl_render_channels(world, camera, &channels, &floats, NULL, error);
   if (result == VL_OK)
-    result = denoised_join(context, color, floats, &joined);
+    result = denoised_join(context, (const vlImage *const[]){color, floats}, 2, &joined);
   if (result == VL_OK)
     result = vl_denoise(joined, NULL, image, NULL, error);
   vl_image_destroy(color);

@@ -81,22 +81,22 @@ double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double wri
   return per_pixel * (double)pixels / threads + ray * sample * features + writing;
 }
 
-vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *floats,
+vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,
                        vlImage **joined) {
-  const vlImage *parts[2] = {color, floats};
   const char *names[MAX_CHANNELS];
   uint32_t count = 0;
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < n; k++)
     for (uint32_t c = 0; c < vl_image_channels(parts[k]) && count < MAX_CHANNELS; c++)
       names[count++] = vl_image_channel_name(parts[k], c);
-  vlImageDef def = vl_default_image_def(vl_image_width(color), vl_image_height(color), count);
+  vlImageDef def =
+      vl_default_image_def(vl_image_width(parts[0]), vl_image_height(parts[0]), count);
   def.names = names;
   vlResult result = vl_image_create(context, &def, joined);
   if (result != VL_OK)
     return result;
   float *to = vl_image_pixels(*joined);
   for (size_t i = 0; i < (size_t)def.width * def.height; i++)
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < n; k++) {
       uint32_t channels = vl_image_channels(parts[k]);
       memcpy(to, (const float *)vl_image_const_pixels(parts[k]) + i * channels,
              channels * sizeof *to);
@@ -128,31 +128,36 @@ static vlResult clean_frame(Denoised *d, vlContext *context, const vlWorld *worl
   return result;
 }
 
-/* Makes the image with its standard errors and the denoiser's features. */
+/* Makes the image with its standard errors and the denoiser's features. The errors are those of
+ * independent samples, which the denoiser prefers; the others need not be estimated. */
 static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
                        const vlFilm *film, vlImage **joined, vlError *error) {
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = job->defs->develop.exposure;
+  develop.independent = true; /* does not matter to the colours */
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
-  def.channels = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
+  def.channels = VL_CHANNEL_FEATURES;
   def.space = job->defs->film.space;
   def.film = film;
   def.render = &job->defs->render;
-  def.exposure = develop.exposure;
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   int signals = signals_count();
   def.stop = stop_asked;
   def.stop_user = &signals;
-  vlImage *color = NULL, *floats = NULL;
+  vlImage *color = NULL, *errors = NULL, *features = NULL;
   vlResult result = vl_film_develop(film, &develop, &color);
   if (result == VL_OK)
-    result = vl_render_channels(world, &job->camera, &def, &floats, NULL, error);
+    result = vl_film_errors(film, &develop, &errors);
   if (result == VL_OK)
-    result = denoised_join(context, color, floats, joined);
+    result = vl_render_channels(world, &job->camera, &def, &features, NULL, error);
+  if (result == VL_OK)
+    result =
+        denoised_join(context, (const vlImage *const[]){color, errors, features}, 3, joined);
   if (result == VL_OK)
     result = attributes_set(*joined, job, vl_film_spp(film));
   vl_image_destroy(color);
-  vl_image_destroy(floats);
+  vl_image_destroy(errors);
+  vl_image_destroy(features);
   return result;
 }
 

@@ -48,8 +48,8 @@ int denoised_make(Denoised *d, vlContext *context, const vlWorld *world, const J
 int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
                    const vlFilm *film, OutputStage stage);
 
-/* Makes one image with the channels of both float images, which have the same size. */
-vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *floats,
+/* Makes one image with the channels of n float images, which have the same size. */
+vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,
                        vlImage **joined);
 
 #endif

@@ -85,18 +85,18 @@ static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_
     vl_shared_taps(&p->reconstruction, p->image.filter_kernels, 1, n, r.film_y, g->y[0] + at,
                    VL_FEATURE_GRID);
   }
-  for (uint32_t i = 0; i < n; i++, at++) {
-    if (!p->shares) {
-      g->x[0][at] = r.weight[i] > 0.0f ? r.weight[i] : 0.0f;
-      g->y[0][at] = 1.0f;
-    }
-    bool hit = b->object[i] != 0;
-    for (int k = 0; k < 3; k++) {
-      g->value[ALBEDO + k][at] = hit ? b->albedo[k][i] : 0.0f;
-      g->value[NORMAL + k][at] = hit ? b->n_shading[k][i] : 0.0f;
-    }
-    g->value[DISPARITY][at] = hit && b->distance[i] > 0 ? (float)(1.0 / b->distance[i]) : 0.0f;
+  for (uint32_t i = 0; i < n && !p->shares; i++) {
+    g->x[0][at + i] = r.weight[i] > 0.0f ? r.weight[i] : 0.0f;
+    g->y[0][at + i] = 1.0f;
   }
+  /* without a hit albedo and normal are 0, and the distance infinite */
+  for (int k = 0; k < 3; k++) {
+    memcpy(g->value[ALBEDO + k] + at, b->albedo[k], n * sizeof(float));
+    memcpy(g->value[NORMAL + k] + at, b->n_shading[k], n * sizeof(float));
+  }
+  float *disparity = g->value[DISPARITY] + at;
+  for (uint32_t i = 0; i < n; i++)
+    disparity[i] = b->distance[i] > 0 ? (float)(1.0 / b->distance[i]) : 0.0f;
 }
 
 /* Adds n hits, of the pixels at (u, v) from n pixels of a row, to these. at: grid point of the

@@ -7,6 +7,8 @@
  *
  * Hits are the same as those of the tracers: rays pass through interfaces, and a hash of the
  * ray decides mixed materials. */
+#include <string.h>
+
 #include "material/bssrdf.h"
 #include "material/measured_lookup.h"
 #include "trace/ground_truth/exact.h"
@@ -33,13 +35,11 @@ static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
     }
 }
 
-/* Albedo of one lane at channel c. For conductors and measured materials it is the reflectance
- * at normal incidence, for subsurface materials the diffuse reflectance, and for materials with
- * specular transmission 1. */
+/* Albedo of one lane at channel c, of a material without a reflectance. For conductors and
+ * measured materials it is the reflectance at normal incidence, for subsurface materials the
+ * diffuse reflectance, and for materials with specular transmission 1. */
 static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float lambda, int c,
                               uint32_t i) {
-  if (m->reflectance >= 0)
-    return sh->reflectance[c][i];
   if (m->measured)
     return vl_measured_albedo(m->measured, c, lambda);
   if (m->subsurface) {
@@ -52,22 +52,38 @@ static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float
   return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
 }
 
-static void add_albedo(const vlWorld *world, const vlGroundTruthDef *def, uint32_t set,
-                       uint32_t n, vlTraceScratch *s, vlGroundTruthBatch *batch) {
-  for (uint32_t i = 0; i < n; i++) {
-    const vlWorldMaterial *m = &world->materials.items[s->at.hits.material[i]];
-    uint32_t lane = s->at.paths.lane[i];
-    for (int c = 0; c < 4; c++) {
-      float a = albedo_at(m, &s->at.shade, s->at.paths.lambda[c][i], c, i);
-      for (int k = 0; k < 3; k++)
-        batch->albedo[k][lane] += a * def->weight[set][c][k];
+/* Adds to sum[] the albedo of the lanes [first, last), which have one material, at the four
+ * wavelengths of a set. */
+static void add_albedo(const vlWorldMaterial *m, const vlGroundTruthDef *def, uint32_t set,
+                       uint32_t first, uint32_t last, const vlTraceScratch *s,
+                       float sum[3][VL_ROW_SIZE]) {
+  float values[VL_ROW_SIZE];
+  for (int c = 0; c < 4; c++) {
+    const float *albedo = m->reflectance >= 0 ? s->at.shade.reflectance[c] : values,
+                *weight = def->weight[set][c];
+    for (uint32_t i = first; i < last && albedo == values; i++)
+      values[i] = albedo_at(m, &s->at.shade, s->at.paths.lambda[c][i], c, i);
+    for (int k = 0; k < 3; k++) {
+      float w = weight[k], *to = sum[k];
+      VL_SIMD for (uint32_t i = first; i < last; i++) to[i] += albedo[i] * w;
     }
+  }
+}
+
+static void add_albedos(const vlWorld *world, const vlGroundTruthDef *def, uint32_t set,
+                        uint32_t n, const vlTraceScratch *s, float sum[3][VL_ROW_SIZE]) {
+  const uint32_t *material = s->at.hits.material;
+  for (uint32_t first = 0, last; first < n; first = last) {
+    for (last = first + 1; last < n && material[last] == material[first];)
+      last++;
+    add_albedo(&world->materials.items[material[first]], def, set, first, last, s, sum);
   }
 }
 
 static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
                   vlGroundTruthScratch *scratch, vlGroundTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
+  memset(scratch->albedo, 0, sizeof scratch->albedo);
   keep_frames(scratch, n, false);
   for (uint32_t set = 0; set < def->sets; set++) {
     if (set)
@@ -84,59 +100,110 @@ static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
       vl_stage_material(world, first, last, material, &s->at, s);
     }
     if (def->albedo)
-      add_albedo(world, def, set, n, s, batch);
+      add_albedos(world, def, set, n, s, scratch->albedo);
   }
+  for (int k = 0; k < 3; k++)
+    for (uint32_t i = 0; i < n; i++)
+      batch->albedo[k][s->at.paths.lane[i]] = scratch->albedo[k][i];
 }
 
 /* ---- the batch --------------------------------------------------------------------------- */
 
+/* Fills n elements of a row with a value. */
+static void fill(float *row, uint32_t n, float value) {
+  VL_SIMD for (uint32_t i = 0; i < n; i++) row[i] = value;
+}
+
 static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPaths *p) {
-  for (uint32_t i = 0; i < batch->n; i++) {
-    p->ox[i] = (float)batch->o[0][i];
-    p->oy[i] = (float)batch->o[1][i];
-    p->oz[i] = (float)batch->o[2][i];
-    p->dx[i] = (float)batch->d[0][i];
-    p->dy[i] = (float)batch->d[1][i];
-    p->dz[i] = (float)batch->d[2][i];
-    p->cone[i] = def->pixel_width;
-    p->spread[i] = def->pixel_spread;
+  uint32_t n = batch->n;
+  float *const origin[3] = {p->ox, p->oy, p->oz}, *const direction[3] = {p->dx, p->dy, p->dz};
+  for (int k = 0; k < 3; k++) {
+    const double *o = batch->o[k], *d = batch->d[k];
+    float *to_o = origin[k], *to_d = direction[k];
+    VL_SIMD for (uint32_t i = 0; i < n; i++) {
+      to_o[i] = (float)o[i];
+      to_d[i] = (float)d[i];
+    }
+    fill(batch->n_shading[k], n, 0.0f);
+    fill(batch->n_geometric[k], n, 0.0f);
+    fill(batch->albedo[k], n, 0.0f);
+  }
+  fill(p->cone, n, def->pixel_width);
+  fill(p->spread, n, def->pixel_spread);
+  for (int c = 0; c < 4; c++) {
+    fill(p->lambda[c], n, def->lambda[0][c]);
+    fill(p->beta[c], n, 0.0f);
+  }
+  fill(batch->uv[0], n, 0.0f);
+  fill(batch->uv[1], n, 0.0f);
+  VL_SIMD for (uint32_t i = 0; i < n; i++) {
     p->lane[i] = i;
     p->specular[i] = 1;
-    for (int c = 0; c < 4; c++) {
-      p->lambda[c][i] = def->lambda[0][c];
-      p->beta[c][i] = 0.0f;
-    }
+  }
+  VL_SIMD for (uint32_t i = 0; i < n; i++) {
     batch->distance[i] = VL_INFINITY;
-    for (int k = 0; k < 3; k++)
-      batch->n_shading[k][i] = batch->n_geometric[k][i] = batch->albedo[k][i] = 0.0f;
-    batch->uv[0][i] = batch->uv[1][i] = 0.0f;
+  }
+  VL_SIMD for (uint32_t i = 0; i < n; i++) {
     batch->object[i] = batch->material[i] = batch->instance[i] = batch->primitive[i] = 0;
   }
 }
 
-/* Copies those lanes of a that have a hit to b, without gaps. */
+/* Copies the elements order[0] to order[n - 1] of a row. */
+static void take(const float *from, const uint32_t *order, uint32_t n, float *to) {
+  VL_SIMD for (uint32_t k = 0; k < n; k++) to[k] = from[order[k]];
+}
+static void take_ids(const uint32_t *from, const uint32_t *order, uint32_t n, uint32_t *to) {
+  VL_SIMD for (uint32_t k = 0; k < n; k++) to[k] = from[order[k]];
+}
+
+/* Copies n lanes of what `start` sets of paths. */
+static void take_paths(const vlPaths *a, const uint32_t *order, uint32_t n, vlPaths *b) {
+  take(a->ox, order, n, b->ox);
+  take(a->oy, order, n, b->oy);
+  take(a->oz, order, n, b->oz);
+  take(a->dx, order, n, b->dx);
+  take(a->dy, order, n, b->dy);
+  take(a->dz, order, n, b->dz);
+  for (int c = 0; c < 4; c++) {
+    take(a->beta[c], order, n, b->beta[c]);
+    take(a->lambda[c], order, n, b->lambda[c]);
+  }
+  take(a->cone, order, n, b->cone);
+  take(a->spread, order, n, b->spread);
+  take_ids(a->specular, order, n, b->specular);
+  take_ids(a->lane, order, n, b->lane);
+}
+
+/* Copies those lanes of the rays that have a hit to s->at, without gaps. */
 static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
                             vlGroundTruthBatch *batch) {
-  const vlPaths *a = &s->rays;
-  vlPaths *b = &s->at.paths;
-  vlHits *h = &s->hits, *g = &s->at.hits;
-  uint32_t count = 0;
+  const vlHits *h = &s->hits;
+  vlHits *g = &s->at.hits;
+  uint32_t count = 0, order[VL_ROW_SIZE];
   for (uint32_t i = 0; i < n; i++) {
-    if (h->shape[i] == VL_NONE)
-      continue;
-    uint32_t k = count++;
-    vl_path_copy(a, i, b, k);
-    g->shape[k] = h->shape[i];
-    g->prim[k] = h->prim[i];
-    g->instance[k] = h->instance[i];
-    g->t[k] = h->t[i];
-    g->material[k] = h->material[i];
-    batch->object[i] = h->shape[i] + 1;
-    batch->material[i] = world->shapes.items[h->shape[i]].material + 1;
-    batch->instance[i] = h->instance[i] == VL_NONE ? 0 : h->instance[i] + 1;
-    batch->primitive[i] = h->prim[i] + 1;
+    order[count] = i;
+    count += h->shape[i] != VL_NONE;
+  }
+  take_paths(&s->rays, order, count, &s->at.paths);
+  take_ids(h->shape, order, count, g->shape);
+  take_ids(h->prim, order, count, g->prim);
+  take_ids(h->instance, order, count, g->instance);
+  take_ids(h->material, order, count, g->material);
+  take(h->t, order, count, g->t);
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = order[k];
+    batch->object[i] = g->shape[k] + 1;
+    batch->material[i] = world->shapes.items[g->shape[k]].material + 1;
+    batch->instance[i] = g->instance[k] == VL_NONE ? 0 : g->instance[k] + 1;
+    batch->primitive[i] = g->prim[k] + 1;
   }
   return count;
+}
+
+/* Copies a value of each of the n paths to its lane of the batch. */
+static void give(const float *from, const uint32_t *lane, uint32_t n, float *to) {
+  for (uint32_t i = 0; i < n; i++)
+    to[lane[i]] = from[i];
 }
 
 static void trace(const vlWorld *world, const vlGroundTruthDef *def,
@@ -163,19 +230,20 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def,
   if (def->shading || def->albedo)
     shade(world, def, n, scratch, batch);
   const vlSurface *f = &s->at.surface;
-  for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = s->at.paths.lane[i];
-    batch->distance[lane] =
-        def->coarse ? f->t[i] : exact_distance(world, batch, lane, &s->at.hits, i, f->t[i]);
-    batch->n_shading[0][lane] = f->nx[i];
-    batch->n_shading[1][lane] = f->ny[i];
-    batch->n_shading[2][lane] = f->nz[i];
-    batch->n_geometric[0][lane] = f->gx[i];
-    batch->n_geometric[1][lane] = f->gy[i];
-    batch->n_geometric[2][lane] = f->gz[i];
-    batch->uv[0][lane] = f->u[i];
-    batch->uv[1][lane] = f->v[i];
-  }
+  const uint32_t *lane = s->at.paths.lane;
+  for (uint32_t i = 0; i < n; i++)
+    batch->distance[lane[i]] =
+        def->coarse ? f->t[i] : exact_distance(world, batch, lane[i], &s->at.hits, i, f->t[i]);
+  give(f->nx, lane, n, batch->n_shading[0]);
+  give(f->ny, lane, n, batch->n_shading[1]);
+  give(f->nz, lane, n, batch->n_shading[2]);
+  if (def->coarse)
+    return;
+  give(f->gx, lane, n, batch->n_geometric[0]);
+  give(f->gy, lane, n, batch->n_geometric[1]);
+  give(f->gz, lane, n, batch->n_geometric[2]);
+  give(f->u, lane, n, batch->uv[0]);
+  give(f->v, lane, n, batch->uv[1]);
 }
 
 /* ---- ids only ---------------------------------------------------------------------------- */

@@ -14,7 +14,8 @@ typedef struct vlGroundTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
   vlIsa isa;
   bool shading, albedo; /* what to compute: shading normals (with bump maps), albedo */
-  bool coarse; /* compute albedo from fewer wavelengths, and distances from the rays in float */
+  bool coarse; /* compute albedo from fewer wavelengths, distances from the rays in float, and
+                  neither geometric normals nor uv, which are 0 */
   uint32_t sets;
   float lambda[VL_GROUND_TRUTH_SETS][4];
   float weight[VL_GROUND_TRUTH_SETS][4][3];

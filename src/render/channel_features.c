@@ -17,23 +17,16 @@ static float instant(uint32_t s) {
   return u;
 }
 
-/* The tile's pixels inside the crop window, from x0, y0 on, and the border of pixels around
- * them whose samples count, too (none if pixels have samples of their own). */
-typedef struct Region {
-  uint32_t x0, y0, width, height, border[2];
-  uint32_t stride, count; /* pixels of a row and of all rows, with the border */
-} Region;
-
 static uint32_t least(uint32_t a, uint32_t b) {
   return a < b ? a : b;
 }
 
 /* False: the tile is empty. */
-static bool make_region(const vlChannelPass *p, uint32_t tile, Region *g) {
+static bool make_region(const vlChannelPass *p, uint32_t tile, vlFeatureRegion *g) {
   const uint32_t *crop = p->def->crop;
   uint32_t x, y;
   vl_channel_corner(p, tile, &x, &y);
-  *g = (Region){.x0 = x > crop[0] ? x : crop[0], .y0 = y > crop[1] ? y : crop[1]};
+  *g = (vlFeatureRegion){.x0 = x > crop[0] ? x : crop[0], .y0 = y > crop[1] ? y : crop[1]};
   if (g->x0 >= crop[2] || g->y0 >= crop[3])
     return false;
   g->width = least(x + VL_CHANNEL_TILE, crop[2]) - g->x0;
@@ -47,14 +40,18 @@ static bool make_region(const vlChannelPass *p, uint32_t tile, Region *g) {
 
 /* Makes the camera rays of sample s of n pixels of the region, from number `done` on, in
  * w->rows and in the batch. */
-static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *g,
+static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const vlFeatureRegion *g,
                       uint32_t done, uint32_t n, uint32_t s) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
+  uint32_t x = done % g->stride, y = done / g->stride;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t k = done + i;
-    r.px[i] = (int32_t)(g->x0 + k % g->stride) - (int32_t)g->border[0];
-    r.py[i] = (int32_t)(g->y0 + k / g->stride) - (int32_t)g->border[1];
+    r.px[i] = (int32_t)(g->x0 + x) - (int32_t)g->border[0];
+    r.py[i] = (int32_t)(g->y0 + y) - (int32_t)g->border[1];
     r.index[i] = s;
+    if (++x == g->stride) {
+      x = 0;
+      y++;
+    }
   }
   vl_film_rays_make(rays, n, &r);
   vlGroundTruthBatch *b = w->batch;
@@ -99,35 +96,6 @@ static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_
     disparity[i] = b->distance[i] > 0 ? (float)(1.0 / b->distance[i]) : 0.0f;
 }
 
-/* Adds n hits, of the pixels at (u, v) from n pixels of a row, to these. at: grid point of the
- * first hit. */
-static void add_hits(const vlFeatureGrid *g, uint32_t n, uint32_t u, uint32_t v, size_t at,
-                     float *const sums[COUNT], float *restrict total) {
-  const float *x = g->x[u] + at, *y = g->y[v] + at;
-  float weight[VL_CHANNEL_TILE];
-  VL_SIMD for (uint32_t i = 0; i < n; i++) weight[i] = x[i] * y[i];
-  for (int k = 0; k < COUNT; k++) {
-    const float *value = g->value[k] + at;
-    float *restrict sum = sums[k];
-    VL_SIMD for (uint32_t i = 0; i < n; i++) sum[i] += weight[i] * value[i];
-  }
-  VL_SIMD for (uint32_t i = 0; i < n; i++) total[i] += weight[i];
-}
-
-/* Adds the hits of one sample of each pixel to the region's pixels. */
-static void add(vlChannelWorker *w, const Region *g, float sums[COUNT + 1][VL_TILE_PIXELS]) {
-  uint32_t bx = g->border[0], by = g->border[1];
-  for (uint32_t y = 0; y < g->height; y++) {
-    float *row[COUNT + 1];
-    for (int k = 0; k <= COUNT; k++)
-      row[k] = sums[k] + (size_t)y * VL_CHANNEL_TILE;
-    for (uint32_t v = 0; v <= 2 * by; v++)
-      for (uint32_t u = 0; u <= 2 * bx; u++)
-        add_hits(w->features, g->width, 2 * bx - u, 2 * by - v, (size_t)(y + v) * g->stride + u,
-                 row, row[COUNT]);
-  }
-}
-
 /* Half of the image's samples, since features cost about a half of what the shortest paths
  * cost; but at least FEW, and at most VL_FEATURE_SAMPLES. */
 static uint32_t samples_of(uint32_t spp) {
@@ -136,9 +104,10 @@ static uint32_t samples_of(uint32_t spp) {
 }
 
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
-  float sums[COUNT + 1][VL_TILE_PIXELS]; /* the last: sums of weights */
+  float sums[COUNT + 1][VL_FEATURE_PIXELS]; /* the last: sums of weights */
+  const vlFeatureKernels *kernels = vl_feature_kernels(vl_context_isa(p->world->context));
   vlFilmRays rays = p->image;
-  Region g;
+  vlFeatureRegion g;
   if (!make_region(p, tile, &g))
     return;
   memset(sums, 0, sizeof sums);
@@ -154,7 +123,7 @@ void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t ti
       p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
       keep(p, w, n, done);
     }
-    add(w, &g, sums);
+    kernels->add(w->features, &g, sums);
   }
   for (uint32_t y = 0; y < g.height; y++)
     for (uint32_t x = 0; x < g.width; x++) {

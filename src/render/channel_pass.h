@@ -3,6 +3,7 @@
 #define RENDER_CHANNEL_PASS_H
 
 #include "render/cryptomatte.h"
+#include "render/feature_grid.h"
 #include "render/film_rays.h"
 #include "render/reconstruct.h"
 #include "render/stop.h"
@@ -11,6 +12,7 @@
 
 enum { VL_CHANNEL_TILE = 32, VL_TILE_PIXELS = VL_CHANNEL_TILE * VL_CHANNEL_TILE };
 _Static_assert((int)VL_TILE_PIXELS <= (int)VL_BATCH, "a tile is a batch");
+_Static_assert((int)VL_FEATURE_SIDE == (int)VL_CHANNEL_TILE, "features are added by tiles");
 
 /* Bit numbers of the channels: indices into the tables below. */
 enum {
@@ -56,21 +58,6 @@ typedef struct vlSampleHit {
   float x, y, z;
 } vlSampleHit;
 enum { VL_SHARED_HITS = 1 << 17 }; /* most hits that a worker holds at once */
-
-/* The features of one sample of each pixel of a tile and its border, row by row, and the
- * samples' weights along x and y in the pixels around (reconstruct.h). */
-enum { VL_FEATURES = 7 };
-enum {
-  VL_FEATURE_GRID =
-      (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER) * (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER)
-};
-_Static_assert((int)VL_FEATURE_GRID == (int)VL_PAD(VL_FEATURE_GRID),
-               "rows of weights are padded");
-typedef struct vlFeatureGrid {
-  float value[VL_FEATURES][VL_FEATURE_GRID];
-  float x[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID],
-      y[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID];
-} vlFeatureGrid;
 
 typedef struct vlChannelWorker {
   vlGroundTruthScratch *scratch;

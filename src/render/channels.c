@@ -266,7 +266,7 @@ static vlResult make_workers(vlChannelPass *p, vlError *error) {
     if (p->shares)
       w->hits = vl_alloc_array(context, VL_SHARED_HITS, sizeof *w->hits);
     if (features)
-      w->features = vl_alloc_array(context, 1, sizeof *w->features);
+      w->features = vl_alloc_zero(context, 1, sizeof *w->features);
     if (flow)
       w->other = vl_alloc_zero(context, 1, sizeof *w->other);
     if (flow)

@@ -4,51 +4,24 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "render/added.h"
 #include "render/frames.h"
 
-/* Options with which a first image is denoised: they choose what is seen, how it is shown, or
- * where and how velo works. With any other option the image is rendered as it always was. */
-static const int harmless[] = {RENDER_OUTPUT,
-                               RENDER_THREADS,
-                               RENDER_RESOLUTION,
-                               RENDER_CAMERA,
-                               RENDER_FRAME,
-                               RENDER_SIZE,
-                               RENDER_SCENE,
-                               RENDER_AT,
-                               RENDER_SHUTTER,
-                               RENDER_ANIMATION,
-                               RENDER_TURN,
-                               RENDER_VARIANT,
-                               RENDER_SCENE_UNIT,
-                               RENDER_ENVIRONMENT,
-                               RENDER_ENVIRONMENT_ROTATION,
-                               RENDER_ENVIRONMENT_STRENGTH,
-                               RENDER_GROUND,
-                               RENDER_NO_GROUND,
-                               RENDER_GROUND_MIDDLE,
-                               RENDER_GROUND_RADIUS,
-                               RENDER_FRAMING,
-                               RENDER_WALLS,
-                               RENDER_UP,
-                               RENDER_VIEW,
-                               RENDER_EXPOSURE,
-                               RENDER_ISA,
-                               RENDER_ACCELERATOR,
-                               RENDER_MAX_MEMORY,
-                               RENDER_MAX_TEXTURE,
-                               RENDER_SANDBOX,
-                               RENDER_SEARCH,
-                               RENDER_PERMISSIVE,
-                               RENDER_STRICT,
-                               RENDER_STRICT_OPTIONS,
-                               RENDER_DRY_RUN,
-                               RENDER_QUIET,
-                               RENDER_VERBOSE,
-                               RENDER_LOG_JSON};
+/* Options with which a first image is denoised, beside those that complete a model
+ * (added_replaces): they choose what is seen, how it is shown, or where and how velo works.
+ * With any other option the image is rendered as it always was. */
+static const int harmless[] = {
+    RENDER_OUTPUT,      RENDER_THREADS,    RENDER_RESOLUTION,  RENDER_CAMERA,
+    RENDER_FRAME,       RENDER_SIZE,       RENDER_SCENE,       RENDER_AT,
+    RENDER_SHUTTER,     RENDER_ANIMATION,  RENDER_TURN,        RENDER_VARIANT,
+    RENDER_SCENE_UNIT,  RENDER_VIEW,       RENDER_EXPOSURE,    RENDER_ISA,
+    RENDER_ACCELERATOR, RENDER_MAX_MEMORY, RENDER_MAX_TEXTURE, RENDER_SANDBOX,
+    RENDER_SEARCH,      RENDER_PERMISSIVE, RENDER_STRICT,      RENDER_STRICT_OPTIONS,
+    RENDER_DRY_RUN,     RENDER_QUIET,      RENDER_VERBOSE,     RENDER_LOG_JSON};
 
 static bool is_harmless(int option) {
-  return option_is_in(option, harmless, sizeof harmless / sizeof *harmless);
+  return added_replaces(option) ||
+         option_is_in(option, harmless, sizeof harmless / sizeof *harmless);
 }
 
 /* Whether the rule holds: the file is a model, velo adds its camera or its light, every output

@@ -153,9 +153,13 @@ def _bell(wavelength, middle, below, above):
 
 
 def black_body(e, node, output, groups):
-    """Planck's law through the fits of Wyman, Sloan and Shirley 2013 to the CIE 1931 observer, linear Rec. 709 of luminance 1, as Cycles'
-    to 1 %."""
-    kelvin = numpy.clip(e.input(node.inputs[0], groups), 800.0, 12000.0)[:, None]
+    return black_body_color(e.input(node.inputs[0], groups))
+
+
+def black_body_color(kelvin):
+    """n x 3 for n temperatures: Planck's law through the fits of Wyman, Sloan and Shirley 2013 to the CIE 1931 observer, linear Rec. 709
+    of luminance 1, as Cycles' to 1 %."""
+    kelvin = numpy.clip(kelvin, 800.0, 12000.0)[:, None]
     nm = numpy.arange(380.0, 781.0, 5.0)[None, :]
     with numpy.errstate(all="ignore"):
         power = nm**-5.0 / numpy.expm1(1.4387769e7 / (nm * kelvin))

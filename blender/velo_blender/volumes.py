@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy
 
-from . import evaluate, links, openvdb_files
+from . import evaluate, heat, links, openvdb_files
 
 CELLS = 64  # along a side of a grid of densities
+MAX_RICH = 1 << 22  # voxels of grids of colours and temperatures
 DENSEST = 1e30  # coefficients per unit of length
 LUMINANCE_OF_ONE = 106.856895  # of a spectrum that is 1: the integral of the eye's sensitivity, nm; velo's RGB grids emit by it
 
@@ -23,6 +24,8 @@ class Volume(NamedTuple):
     density: Any
     socket: Any = None
     groups: tuple = ()
+    tint: Any = 1.0  # factor on 1 - the colour, of the absorption
+    density_of_color: float = 1.0  # factor on the coefficients since they were those of the colour
 
 
 def medium(material, inputs, box, matrix, fog=None):
@@ -72,26 +75,83 @@ def add_file(data, material, inputs, matrix, fog=None):
     """velo's medium of a volume object: (handle, world from voxels, openvdb_files.Grid); None: it has none (noted). data: the evaluated
     object's; matrix: world from object; fog: the world's Volume, which is there, too. As in Cycles, a density for the object's space is
     that of the length of its diagonal."""
-    shader = _noted(inputs, lambda: _shader_of_file(material, inputs))
+    shader = _noted(inputs, lambda: _shader_of_file(data, material, inputs))
     if shader is None:
         return None
-    volume, name = shader
+    volume, name, more = shader
     grid = _grid_of_file(data, name, inputs)
     if grid is None:
         return None
     scale = numpy.linalg.norm(matrix[:3, :3] @ numpy.full(3, 3 ** -0.5)) if data.render.space == "OBJECT" else 1.0
     words = _words(volume, inputs, volume.density / max(scale, 1e-30))
-    if words is None:
+    if words is None and more is None:
         return None
-    if not max(words["sigma_a"] + words["sigma_s"]) * float(grid.values.max()) < DENSEST:
+    if words is not None and not max(words["sigma_a"] + words["sigma_s"]) * float(grid.values.max()) < DENSEST:
         inputs.notes.add(inputs.owner, openvdb_files.label(data, name), "it is too dense; the volume is not rendered")
         return None
     pose = matrix @ grid.matrix
+    if more is not None:
+        more = more._replace(strength=1 / max(scale, 1e-30))
+        found = _add_rich(_scaled(volume, volume.density * more.strength), grid, more, data, inputs, pose, fog)
+        if found is not None or words is None:
+            return found
     if fog is not None:
         wide = {"low": tuple(x - 1 for x in grid.low), "high": tuple(x + 1 for x in grid.high), "pose": pose}  # velo's grids fall to 0 there
         values = numpy.pad(grid.values, 1)
         return _add_in_fog(_scaled(volume, volume.density / max(scale, 1e-30)), fog, inputs, values, **wide), pose, grid
     return inputs.scene.add_medium("grid", density=grid.values, low=grid.low, high=grid.high, pose=pose, **words), pose, grid
+
+
+class Rich(NamedTuple):
+    """What the other grids of a file are for. color: the name of that by which the colour is multiplied, or empty; temperature: that of
+    the temperatures of warmth, a heat.Heat; None: it emits nothing by them. strength: factor on the emission."""
+    color: str
+    temperature: str
+    warmth: Any
+    strength: float = 1.0
+
+
+def _add_rich(volume, grid, more, data, inputs, pose, fog):
+    """add_file's result for a grid of densities and those of colours and temperatures, cell by cell; None: there are none (noted)."""
+    color = _like(data, more.color, True, grid, inputs) if more.color else None
+    warm = _like(data, more.temperature, False, grid, inputs) if more.warmth is not None else None
+    if color is None and warm is None:
+        return None
+    boxes = [known for known in (grid, warm) if known is not None]
+    low = tuple(min(known.low[i] for known in boxes) - 1 for i in range(3))
+    high = tuple(max(known.high[i] for known in boxes) + 1 for i in range(3))
+    if numpy.prod([high[i] - low[i] for i in range(3)]) > MAX_RICH:
+        inputs.notes.add(inputs.owner, openvdb_files.name_of(data), "it has too many voxels; grids of colours and temperatures are left out")
+        return None
+    density = grid.in_box(low, high)[..., None]
+    absorption, scattering, emission = (density * part for part in (volume.absorption, volume.scattering, volume.emission))
+    if color is not None:
+        hue = volume.scattering * color.in_box(low, high)
+        scattering = density * hue
+        unit = max(volume.density_of_color, 1e-30)
+        absorption = density * numpy.maximum(unit - hue, 0) * volume.tint
+    if fog is not None:
+        absorption, scattering, emission = absorption + fog.absorption, scattering + fog.scattering, emission + fog.emission
+    emission = heat.finer(emission)
+    if warm is not None:
+        emission = emission + more.strength * heat.emission(more.warmth, heat.finer(warm.in_box(low, high)))
+    least = max(1e-3, 0.02 / max(numpy.linalg.norm(pose[:3, :3] @ (numpy.array(high) - low)), 1e-30))
+    medium = add_colors(inputs, absorption, scattering, emission, volume.g, least, low=low, high=high, pose=pose)
+    return medium, pose, grid._replace(low=low, high=high)
+
+
+def _like(data, name, colors, grid, inputs):
+    """The grid of a name, where its voxels are those of another grid; None: it cannot be read, or they are not (noted)."""
+    try:
+        found = openvdb_files.read(data, name, colors)
+        if not numpy.allclose(found.matrix, grid.matrix, rtol=1e-5, atol=1e-12):
+            raise openvdb_files.Unread("its voxels are not those of the density")
+    except openvdb_files.Unread as error:
+        inputs.notes.add(inputs.owner, openvdb_files.label(data, name), "%s; it is left out" % error)
+        return None
+    if found.odd > 0:
+        inputs.notes.add(inputs.owner, openvdb_files.label(data, name), "%d of its numbers are NaN or infinite; they are 0" % found.odd)
+    return found
 
 
 def _grid_of_file(data, name, inputs):
@@ -110,11 +170,11 @@ def _grid_of_file(data, name, inputs):
     return grid
 
 
-def _shader_of_file(material, inputs):
-    """(Volume, the name of the grid of its density) of a volume object's material; None: it has no volume."""
+def _shader_of_file(data, material, inputs):
+    """(Volume, the name of the grid of its density, Rich or None) of a volume object's material; None: it has no volume."""
     if material is None or not material.use_nodes or material.node_tree is None:
         half = numpy.full(3, 0.5)
-        return Volume(half, half, numpy.zeros(3), 0.0, 1.0), "density"
+        return Volume(half, half, numpy.zeros(3), 0.0, 1.0), "density", None
     output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
     source = None if output is None else links.follow(output.inputs["Volume"])[0]
     if source is None:
@@ -122,12 +182,13 @@ def _shader_of_file(material, inputs):
     node = source.node
     if node.type != "PRINCIPLED_VOLUME" or any(socket.is_linked for socket in node.inputs):
         raise evaluate.Unsupported(node, "OpenVDB files have a Principled Volume without links alone")
-    volume = _single(node, source.groups, inputs)
-    if node.inputs["Color Attribute"].default_value:
-        inputs.notes.add(inputs.owner, node.name, "colours of grids are left out")
+    color, temperature = (node.inputs[name + " Attribute"].default_value for name in ("Color", "Temperature"))
+    warmth = heat.of_node(node, source.groups, inputs) if openvdb_files.has(data, temperature) else None
+    volume = _single(node, source.groups, inputs, warmth is None)
     if volume.emission.max() > 0:
         inputs.notes.add(inputs.owner, node.name, "its emission grows with its density")
-    return volume, node.inputs["Density Attribute"].default_value
+    color = color if openvdb_files.has(data, color) else ""
+    return volume, node.inputs["Density Attribute"].default_value, Rich(color, temperature, warmth) if color or warmth is not None else None
 
 
 def is_alone(material):
@@ -158,7 +219,8 @@ def _volume(socket, groups, inputs, depth):
     return _single(node, source.groups, inputs)
 
 
-def _single(node, groups, inputs):
+def _single(node, groups, inputs, is_warm=True):
+    """The Volume of one node. is_warm: it emits by the temperature of the node, as where no grid has temperatures."""
     def color(name):
         value = inputs.constant(node.inputs[name], groups)
         if value is None:
@@ -184,20 +246,22 @@ def _single(node, groups, inputs):
         return Volume(none, hue, none, number("Anisotropy"), *rest)
     tint = numpy.maximum(1 - numpy.sqrt(color("Absorption Color")), 0)
     emission = color("Emission Color") * max(number("Emission Strength"), 0.0)
-    if inputs.constant(node.inputs["Blackbody Intensity"], groups) != 0.0:
-        inputs.notes.add(inputs.owner, node.name, "the emission of its temperature is left out")
+    warmth = heat.of_node(node, groups, inputs) if is_warm else None
+    if warmth is not None:
+        emission = emission + heat.emission(warmth, 1.0)
     if emission.max() > 0 and density == 0.0:
         return Volume(none, none, emission, 0.0, 1.0)
     if emission.max() > 0 and density != 1.0:
         inputs.notes.add(inputs.owner, node.name, "its emission grows with its density") if density is None else None
         emission = emission / density if density else emission
-    return Volume(numpy.maximum(1 - hue, 0) * tint, hue, emission, number("Anisotropy"), *rest)
+    return Volume(numpy.maximum(1 - hue, 0) * tint, hue, emission, number("Anisotropy"), *rest, tint)
 
 
 def _scaled(volume, factor):
     if volume is None:
         return None
-    return volume._replace(absorption=volume.absorption * factor, scattering=volume.scattering * factor, emission=volume.emission * factor)
+    return volume._replace(absorption=volume.absorption * factor, scattering=volume.scattering * factor, emission=volume.emission * factor,
+                           density_of_color=volume.density_of_color * factor)
 
 
 def _sum(first, second, node):
@@ -247,16 +311,16 @@ def _add_in_fog(volume, fog, inputs, density, **place):
     g = (volume.g * shares[0] + fog.g * shares[1]) / max(sum(shares), 1e-30)
     if abs(volume.g - fog.g) > 1e-6 and min(shares) > 0:
         inputs.notes.add(inputs.owner, "Anisotropy", "in the world's volume it is the mean of both, %.2f" % g)
-    return add_colors(inputs, absorption, scattering, emission, g, **place)
+    return add_colors(inputs, absorption, scattering, heat.finer(emission), g, 1e-3, **place)
 
 
-def add_colors(inputs, absorption, scattering, emission, g, **place):
-    """velo's medium of coefficients per unit of length on a grid, z x y x x x 3. place: keywords of the grid's box."""
+def add_colors(inputs, absorption, scattering, emission, g, least, **place):
+    """velo's medium of coefficients per unit of length on a grid, z x y x x x 3. emission: on cells of half the size; least: absorption of
+    what emits; place: keywords of the grid's box."""
     words = {"rgb_s": scattering.astype(numpy.float32), "g": min(max(g, -0.99), 0.99), "name": inputs.owner, **place}
     if emission.max() > 0:  # velo's media emit by what they absorb
-        absorption = numpy.where(emission > 0, numpy.maximum(absorption, 1e-3), absorption)
-        words["rgb_emission"] = numpy.where(emission > 0, emission / numpy.maximum(absorption, 1e-30), 0).astype(numpy.float32)
-        words["emission_scale"] = 1 / LUMINANCE_OF_ONE
+        absorption, factors = heat.by_absorption(absorption, emission, least)
+        words.update(rgb_emission=factors.astype(numpy.float32), emission_scale=1 / LUMINANCE_OF_ONE)
     return inputs.scene.add_medium("rgb_grid", rgb_a=absorption.astype(numpy.float32), **words)
 
 

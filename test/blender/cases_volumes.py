@@ -137,6 +137,60 @@ def files_of_openvdb():
         assert difference < 0.04, (space, scale, difference)
 
 
+def write_fire(odd=False, step=0.06):
+    """An OpenVDB file of smoke whose colour and temperature vary: grids density, color and temperature. odd: a voxel of the temperature is
+    NaN. step: size of the voxels of the temperature."""
+    pyopenvdb = openvdb()
+    x, y, z = numpy.meshgrid(numpy.linspace(-1, 1, 32), numpy.linspace(-1, 1, 24), numpy.linspace(-1, 1, 16), indexing="ij")
+    ball = numpy.maximum(0, 1.2 - x * x - y * y - z * z)
+    heat = numpy.where(ball > 0, 1 + 0.3 * x + 0.2 * z, 0)
+    grids = []
+    for name, values in (("density", ball * 2), ("color", numpy.stack((0.5 + 0.4 * x, 0.5 + 0 * y, 0.5 - 0.4 * z), axis=3)), ("temperature", heat)):
+        grid = pyopenvdb.Vec3SGrid() if name == "color" else pyopenvdb.FloatGrid()
+        grid.copyFromArray(values.astype("float32"), ijk=(-16, -12, -8))
+        if odd and name == "temperature":
+            grid.fill((0, 0, 0), (0, 0, 0), float("nan"))
+        grid.name, grid.transform = name, pyopenvdb.createLinearTransform(step if name == "temperature" else 0.06)
+        grids.append(grid)
+    path = os.path.join(FOLDER, "fire.vdb")
+    pyopenvdb.write(path, grids=grids)
+    return path
+
+
+@case
+def grids_of_colors_and_temperatures():
+    for scale, values, share in ((1, {"Color_Attribute": "color", "Color": (0.9, 0.8, 1, 1)}, 0.02),
+                                 (1.3, {"Color_Attribute": "color", "Absorption_Color": (0.2, 0.3, 0.1, 1)}, 0.02),
+                                 (1, {"Blackbody_Intensity": 1.0, "Temperature": 1500.0}, 0.04),
+                                 (1.3, {"Blackbody_Intensity": 0.7, "Temperature": 2000.0, "Blackbody_Tint": (1, 0.8, 0.9, 1),
+                                        "Color_Attribute": "color"}, 0.04)):
+        scene, _ = cloud(write_fire(), scale=(scale,) * 3, **{"Density": 2.0, **values})
+        agrees(scene, share)
+        assert not notes(scene), notes(scene)
+
+
+@case
+def grids_of_temperatures_that_are_left_out_are_listed():
+    for words, line in (({"odd": True}, "1 of its numbers are NaN or infinite; they are 0"),
+                        ({"step": 0.07}, "its voxels are not those of the density; it is left out")):
+        scene, _ = cloud(write_fire(**words), Blackbody_Intensity=1.0)
+        scene.velo.samples = 4
+        assert numpy.isfinite(colors(render(scene))).all()
+        assert notes(scene) == ["cloud, grid temperature of fire.vdb: " + line], notes(scene)
+    scene, _ = cloud(write_fire(), Temperature_Attribute="density", Color_Attribute="temperature", Blackbody_Intensity=1.0)
+    scene.velo.samples = 4
+    render(scene)
+    assert notes(scene) == ["cloud, grid temperature of fire.vdb: it has no grid temperature of colours; it is left out"], notes(scene)
+
+
+@case
+def a_volume_of_one_temperature():
+    for kelvin, density in ((1500.0, 1.0), (3000.0, 0.0)):
+        scene, _, _ = filled(None, "ShaderNodeVolumePrincipled", Density=density, Blackbody_Intensity=1.0, Temperature=kelvin)
+        agrees(scene, 0.02)
+        assert not notes(scene), notes(scene)
+
+
 @case
 def files_of_openvdb_in_the_fog_of_the_world():
     scene, _ = cloud(write_grid(), Color=(0.6, 0.7, 0.9, 1), Density=4.0)

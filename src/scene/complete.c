@@ -76,6 +76,11 @@ static double extent_along(const vlExtent *box, const double axis[3]) {
   return sum;
 }
 
+/* Whether a surface with this mean normal is as good as closed: it does not say its front. */
+static bool is_closed(const double mean_normal[3]) {
+  return vl_norm3(mean_normal) < 0.05;
+}
+
 /* Flat models are seen nearly along their normal, from the side of their faces' fronts (flat
  * ground from below only if it cannot be seen from above); charts that are less flat, from the
  * front. */
@@ -101,13 +106,16 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
     return below ? "flat: from below" : "flat: from above";
   }
   if (z <= chart * fmin(x, y)) {
-    bool behind = z <= flat * fmin(x, y) && vl_dot3(n, v->front) < against;
+    const bool raised =
+        v->front_unknown && is_closed(n) && vl_facing_raised_is_behind(scene, box, v->front);
+    const bool behind = z <= flat * fmin(x, y) && (vl_dot3(n, v->front) < against || raised);
     v->azimuth = (behind ? half_turn : 0) + 0.25;
     v->elevation = 0.15;
     return behind ? "flat: from behind" : "flat: from the front";
   }
   if (x <= flat * fmin(y, z)) {
-    bool left = vl_dot3(n, v->right) < against;
+    const bool raised = is_closed(n) && vl_facing_raised_is_behind(scene, box, v->right);
+    const bool left = vl_dot3(n, v->right) < against || raised;
     v->azimuth = left ? -0.5 * half_turn - 0.25 : 0.5 * half_turn - 0.25;
     v->elevation = 0.15;
     return left ? "flat: from the left" : "flat: from the right";

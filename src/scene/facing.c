@@ -151,5 +151,20 @@ vlBlocks vl_facing_blocks(const vlScene *scene, const vlExtent *box, int axis) {
     blocks.levels += b.layers[i] > 1e-3 * b.surface;
     blocks.lower += i < LAYERS / 2 ? b.layers[i] / b.surface : 0;
   }
+  blocks.ends[0] = b.layers[0] / b.surface;
+  blocks.ends[1] = b.layers[LAYERS - 1] / b.surface;
   return blocks;
+}
+
+bool vl_facing_raised_is_behind(const vlScene *scene, const vlExtent *box,
+                                const double front[3]) {
+  const double least = 0.1, most = 0.8;
+  int axis = 0;
+  while (axis < 2 && fabs(front[axis]) != 1)
+    axis++;
+  if (fabs(front[axis]) != 1)
+    return false;
+  const vlBlocks blocks = vl_facing_blocks(scene, box, axis);
+  const double ahead = blocks.ends[front[axis] > 0], behind = blocks.ends[front[axis] < 0];
+  return behind >= least * ahead && behind <= most * ahead;
 }

@@ -23,11 +23,16 @@ bool vl_facing_is_behind(const vlScene *scene, const vlExtent *box, const double
 /* How a model consists of blocks that stand on a plane: of the surface, the shares whose normal
  * is along an axis, and at right angles to it; of the former, that in the lower half of the
  * box; and in how many of 64 layers along the axis at least a thousandth of the surface lies
- * flat. */
+ * flat; and the shares that lie flat in the first and the last layer. */
 typedef struct vlBlocks {
-  double flat, walls, lower;
+  double flat, walls, lower, ends[2];
   int levels;
 } vlBlocks;
 vlBlocks vl_facing_blocks(const vlScene *scene, const vlExtent *box, int axis);
+
+/* Whether the model has raised parts on the side away from `front`, and a plane on its side:
+ * flat parts at its outermost behind, of a tenth to four fifths of those in front. */
+bool vl_facing_raised_is_behind(const vlScene *scene, const vlExtent *box,
+                                const double front[3]);
 
 #endif

@@ -21,6 +21,7 @@ typedef struct Ends {
   vlExtent box;
   double cosine[DIRECTIONS], sine[DIRECTIONS];
   Hull hulls[3][3]; /* of each axis: low end, high end, the whole */
+  double arms[3];   /* where along each axis the ends of x are, as a sum; of x: their number */
 } Ends;
 
 static void grow(const Ends *e, Hull *hull, double x, double y) {
@@ -28,8 +29,21 @@ static void grow(const Ends *e, Hull *hull, double x, double y) {
     hull->most[k] = fmax(hull->most[k], x * e->cosine[k] + y * e->sine[k]);
 }
 
+/* The model's ends to the left and right: hands, wings. */
+static void add_arm(Ends *e, const double p[3]) {
+  double at[3];
+  for (int i = 0; i < 3; i++)
+    at[i] = (p[i] - e->box.low[i]) / (e->box.high[i] - e->box.low[i]);
+  if (at[0] > 0.02 && at[0] < 0.98)
+    return;
+  e->arms[0]++;
+  e->arms[1] += at[1];
+  e->arms[2] += at[2];
+}
+
 static void visit(void *user, const double p[3]) {
   Ends *e = user;
+  add_arm(e, p);
   for (int axis = 0; axis < 3; axis++) {
     const double low = e->box.low[axis], size = e->box.high[axis] - low,
                  at = (p[axis] - low) / size;
@@ -62,7 +76,7 @@ static double share(const Ends *e, int axis, int end) {
 }
 
 static bool measure(const vlScene *scene, const vlExtent *boxes, Ends *e) {
-  e->box = vl_extent_nothing;
+  *e = (Ends){.box = vl_extent_nothing};
   vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &e->box);
   for (int i = 0; i < 3; i++)
     if (!(e->box.high[i] > e->box.low[i]))
@@ -87,7 +101,7 @@ static double size_of(const Ends *e, int axis) {
 static bool is_round(const Ends *e, int axis) {
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   const double most = fmax(size_of(e, i), size_of(e, j));
-  if (fabs(size_of(e, i) - size_of(e, j)) > 0.02 * most)
+  if (fabs(size_of(e, i) - size_of(e, j)) > 0.03 * most)
     return false;
   const double ends[4] = {share(e, i, LOW), share(e, i, HIGH), share(e, j, LOW),
                           share(e, j, HIGH)};
@@ -96,13 +110,13 @@ static bool is_round(const Ends *e, int axis) {
     low = fmin(low, ends[k]);
     high = fmax(high, ends[k]);
   }
-  return high - low < 0.03;
+  return high - low < 0.05;
 }
 
 /* Whether the model is a city: many blocks of different heights on one plane. */
 static bool is_city(const vlScene *scene, const Ends *e, int axis) {
   const double blocks_least = 0.9, walls_least = 0.1, lower_least = 0.6, plane = 0.5;
-  const int levels_least = 12;
+  const int levels_least = 10;
   if (share(e, axis, LOW) < plane)
     return false;
   const vlBlocks blocks = vl_facing_blocks(scene, &e->box, axis);
@@ -117,22 +131,52 @@ static bool has_ground(const vlScene *scene, const vlExtent *boxes, const Ends *
   return vl_plain_find(scene, boxes, axis, &plain) || is_city(scene, e, axis);
 }
 
+/* Whether the model is an open sheet that lies: terrain. */
+static bool is_sheet(const vlScene *scene, int axis) {
+  const double most = 0.7;
+  double n[3];
+  vl_facing_mean_normal(scene, false, n);
+  return fabs(n[axis]) >= most;
+}
+
+/* Whether the model is a figure on its feet with its arms stretched out: the same on the left
+ * and on the right, flat, with its arms high up (those of aircraft are in the middle). */
+static bool is_figure(const Ends *e, int now, int other) {
+  const double feet = 0.15, more = 2, none = 0.35, same = 0.02, flat = 0.4, wide = 0.5,
+               arms = 0.7;
+  const double low = share(e, other, LOW), high = share(e, other, HIGH);
+  return low >= feet && low >= more * high && share(e, now, LOW) < none &&
+         share(e, now, HIGH) < none && fabs(share(e, 0, LOW) - share(e, 0, HIGH)) < same &&
+         size_of(e, now) <= flat * size_of(e, other) &&
+         size_of(e, 0) >= wide * size_of(e, other) && e->arms[other] >= arms * e->arms[0];
+}
+
+/* Whether the model has a wide base and a small top along `other`, and along `now` no such
+ * thing: a chair. */
+static bool has_foot(const Ends *e, int now, int other) {
+  const double wide = 0.8, small = 0.3, most = 0.6;
+  return share(e, other, LOW) >= wide && share(e, other, HIGH) <= small &&
+         share(e, now, LOW) - share(e, now, HIGH) <= most;
+}
+
 /* Whether the model stands on its lowest part along `other`, and not along `now`. */
 static bool stands(const Ends *e, int now, int other) {
   const double no_base = 0.12, base = 0.15, larger = 0.25;
-  if (share(e, now, LOW) >= no_base)
-    return false;
   const double most = fmax(size_of(e, 0), fmax(size_of(e, 1), size_of(e, 2)));
   const double low = share(e, other, LOW), high = share(e, other, HIGH);
-  return (low - high >= larger || (low >= base && is_round(e, other))) &&
-         size_of(e, other) >= 0.5 * most;
+  if (size_of(e, other) < 0.5 * most)
+    return false;
+  if (has_foot(e, now, other) || is_figure(e, now, other))
+    return true;
+  return share(e, now, LOW) < no_base &&
+         (low - high >= larger || (low >= base && is_round(e, other)));
 }
 
 bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, double up[3],
                      double front[3]) {
   const int now = up[1] != 0 ? 1 : 2, other = 3 - now;
   Ends e;
-  if (!measure(scene, boxes, &e) || has_ground(scene, boxes, &e, now))
+  if (!measure(scene, boxes, &e) || has_ground(scene, boxes, &e, now) || is_sheet(scene, now))
     return false;
   if (!has_ground(scene, boxes, &e, other) && !stands(&e, now, other))
     return false;

@@ -203,12 +203,130 @@ static void cities(void **state) {
   end(&m);
 }
 
+/* Adds a box; of z, y and z are exchanged so that z is upwards and -y the front. */
+static void add_block(Model *m, const float b[2][3], bool z) {
+  float a[2][3];
+  memcpy(a, b, sizeof a);
+  for (int i = 0; z && i < 2; i++) {
+    a[i][1] = -b[1 - i][2];
+    a[i][2] = b[i][1];
+  }
+  add_box(m, a[0], a[1], false, false);
+}
+
+/* The up axis that is found for blocks that stand along y or z; aircraft lie. */
+static void assert_stands(const float (*blocks)[2][3], int count, bool z, bool changes) {
+  for (int guess = 1; guess < 3; guess++) {
+    Model m = begin();
+    for (int i = 0; i < count; i++)
+      add_block(&m, blocks[i], z);
+    vlCompleteDef def = first_image();
+    def.find_up = true;
+    if (guess == 2) {
+      memcpy(def.up, (double[3]){0, 0, 1}, sizeof def.up);
+      memcpy(def.front, (double[3]){0, -1, 0}, sizeof def.front);
+    }
+    complete(&m, &def);
+    assert_true(m.scene->defs.camera.up[changes ? (z ? 2 : 1) : guess] == 1);
+    end(&m);
+  }
+}
+
+static void figures_and_chairs(void **state) {
+  (void)state;
+  static const float figure[5][2][3] = {{{-0.2f, 0.8f, -0.12f}, {0.2f, 1.5f, 0.12f}},
+                                        {{-0.85f, 1.36f, -0.06f}, {0.85f, 1.48f, 0.06f}},
+                                        {{-0.1f, 1.5f, -0.1f}, {0.1f, 1.8f, 0.1f}},
+                                        {{-0.17f, 0, -0.1f}, {-0.03f, 0.8f, 0.2f}},
+                                        {{0.03f, 0, -0.1f}, {0.17f, 0.8f, 0.2f}}};
+  static const float chair[6][2][3] = {{{-0.25f, 0.45f, -0.25f}, {0.25f, 0.5f, 0.25f}},
+                                       {{-0.25f, 0.5f, -0.25f}, {0.25f, 1, -0.2f}},
+                                       {{-0.25f, 0, -0.25f}, {-0.2f, 0.45f, -0.2f}},
+                                       {{0.2f, 0, -0.25f}, {0.25f, 0.45f, -0.2f}},
+                                       {{-0.25f, 0, 0.2f}, {-0.2f, 0.45f, 0.25f}},
+                                       {{0.2f, 0, 0.2f}, {0.25f, 0.45f, 0.25f}}};
+  static const float aircraft[4][2][3] = {{{-1, 1, -8}, {1, 3, 7}},
+                                          {{-0.2f, 1.5f, 7}, {0.2f, 2, 8}},
+                                          {{-9, 1.5f, -1}, {9, 1.8f, 1.5f}},
+                                          {{-3, 2.2f, -8}, {3, 2.4f, -7}}};
+  for (int z = 0; z < 2; z++) {
+    assert_stands(figure, 5, z, true);
+    assert_stands(chair, 6, z, true);
+  }
+  for (int z = 0; z < 2; z++)
+    assert_stands(aircraft, 4, z, false);
+}
+
+/* Hills, an open sheet over y, lie, whatever the shapes of their edges are. */
+static void terrain(void **state) {
+  (void)state;
+  enum { SIDE = 30 };
+  float p[SIDE * SIDE * 3];
+  uint32_t indices[6 * (SIDE - 1) * (SIDE - 1)], n = 0;
+  for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+    const double x = (double)(i % SIDE) / SIDE, z = (double)(i / SIDE) / SIDE;
+    p[3 * i] = (float)x;
+    p[3 * i + 1] =
+        (float)(0.08 * sin(7 * x - 2) * cos(6 * z - 3) + 0.05 * sin(19 * x * z + 3 * z));
+    p[3 * i + 2] = (float)z;
+  }
+  for (uint32_t i = 0; i < SIDE * (SIDE - 1); i++) {
+    const uint32_t quad[6] = {i, i + SIDE, i + 1, i + 1, i + SIDE, i + SIDE + 1};
+    if (i % SIDE == SIDE - 1)
+      continue;
+    memcpy(indices + n, quad, sizeof quad);
+    n += 6;
+  }
+  Model m = begin();
+  vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  shape.vertices = SIDE * SIDE;
+  shape.faces = n / 3;
+  shape.positions = p;
+  shape.indices = indices;
+  assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
+  vlCompleteDef def = first_image();
+  def.find_up = true;
+  complete(&m, &def);
+  assert_true(m.scene->defs.camera.up[1] == 1);
+  end(&m);
+}
+
+/* A plate with bars is seen from the side of the bars: along x always, along z if the file does
+ * not say which side is its front; one with a small hook behind is seen from the front. */
+static void raised_parts(void **state) {
+  (void)state;
+  for (int axis = 0; axis < 3; axis += 2)
+    for (int side = -1; side < 2; side += 2)
+      for (int hook = 0; hook < 2; hook++) {
+        Model m = begin();
+        float b[3][2][3] = {{{0, 0, 0}, {1, 0.8f, 0.01f}},
+                            {{0.1f, 0.1f, 0.01f}, {0.3f, 0.7f, 0.02f}},
+                            {{0.5f, 0.1f, 0.01f}, {0.9f, 0.4f, 0.02f}}};
+        if (hook)
+          memcpy(b[1], (float[2][3]){{0.4f, 0.7f, 0.01f}, {0.42f, 0.72f, 0.02f}}, sizeof b[1]);
+        for (int i = 0; i < (hook ? 2 : 3); i++) {
+          float a[2][3];
+          for (int k = 0; k < 2; k++)
+            for (int c = 0; c < 3; c++)
+              a[k][axis == 0 ? 2 - c : c] = c == 2 && side < 0 ? -b[i][1 - k][c] : b[i][k][c];
+          add_box(&m, a[0], a[1], false, false);
+        }
+        vlCompleteDef def = first_image();
+        def.find_up = true;
+        complete(&m, &def);
+        double d[3];
+        toward_eye(&m, d);
+        assert_true(d[axis] * (hook ? 1 : side) > 0.8);
+        end(&m);
+      }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stray_parts),
-      cmocka_unit_test(all_of_it),
-      cmocka_unit_test(on_a_plain),
-      cmocka_unit_test(cities),
+      cmocka_unit_test(stray_parts),        cmocka_unit_test(all_of_it),
+      cmocka_unit_test(on_a_plain),         cmocka_unit_test(cities),
+      cmocka_unit_test(figures_and_chairs), cmocka_unit_test(terrain),
+      cmocka_unit_test(raised_parts),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* camera/poses.c: see string.h. */
+/* camera/poses.c: see poses.h. */
 #include "camera/poses.h"
 #include "velo/trajectory.h"
 

@@ -154,3 +154,25 @@ void model_free(Model *model) {
   free(model->cameras);
   memset(model, 0, sizeof *model);
 }
+
+/* ---- the list of its files --------------------------------------------------------------- */
+
+void file_list_add(FileList *list, const char *path) {
+  for (uint32_t i = 0; i < list->count; i++)
+    if (strcmp(list->paths[i], path) == 0)
+      return;
+  char **larger = realloc(list->paths, (list->count + 1) * sizeof *larger);
+  if (!larger)
+    return;
+  list->paths = larger;
+  larger[list->count] = strdup(path);
+  if (larger[list->count])
+    list->count++;
+}
+
+void file_list_free(FileList *list) {
+  for (uint32_t i = 0; i < list->count; i++)
+    free(list->paths[i]);
+  free(list->paths);
+  *list = (FileList){.count = 0};
+}

@@ -3,9 +3,19 @@
 #ifndef APP_VIEW_MODEL_H
 #define APP_VIEW_MODEL_H
 
+#include <stdint.h>
+
 #include "render/job.h"
 #include "render/scene_options.h"
-#include "view/file_list.h"
+
+/* Paths of files, each once. */
+typedef struct FileList {
+  char **paths;
+  uint32_t count;
+} FileList;
+/* Adds a path unless the list has it, or there is no memory. */
+void file_list_add(FileList *list, const char *path);
+void file_list_free(FileList *list);
 
 /* The time at which an animated model is shown. */
 typedef struct ModelTime {

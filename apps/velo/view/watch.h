@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "view/file_list.h"
+#include "view/model.h"
 
 typedef struct Watch Watch;
 /* Null: the system gives no inotify. */

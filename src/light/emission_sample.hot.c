@@ -160,7 +160,8 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
       side = vl_neg(side);
   }
   vlVec3 local = narrow(e, vl_warp_cosine_hemisphere(s, t));
-  if (!(local.z > 0.0f))
+  out->share = vl_spread_at(e, local.z);
+  if (!(local.z > 0.0f && out->share > 0.0f))
     return;
   out->d = vl_normalize(vl_from_local(vl_frame_from_z(side), local));
   out->o = vl_offset_origin(at.p, side, at.offset, out->d);
@@ -170,7 +171,6 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   float scale = VL_PI * sides / at.pdf;
   if (shape->alpha >= 0 && !light->invisible)
     scale *= vl_light_coverage(world, light, at.p, at.n, at.u, at.v, at.weights);
-  out->share = vl_spread_at(e, local.z);
   scale *= out->share * e->spread_sin2;
   for (int c = 0; c < 4; c++)
     out->flux[c] *= scale;

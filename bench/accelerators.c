@@ -58,7 +58,7 @@ static void record(void *user, int kind, uint32_t n, const vlRays *r) {
 
 static void trace(const vlWorld *world, const Batch *b, int which) {
   float *const *r = b->rows;
-  vlRays rays = {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]};
+  vlRays rays = {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], NULL};
   uint32_t *ids = b->ids[which];
   static float t[1 << 20];
   if (b->n > sizeof t / sizeof *t)

@@ -159,7 +159,8 @@ typedef struct vlShadowRays {
       dy[VL_ROW_SIZE], dz[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
   VL_ROW float radiance[4][VL_ROW_SIZE];
   VL_ROW uint32_t lane[VL_ROW_SIZE];
-  VL_ROW float time[VL_ROW_SIZE]; /* the world's time; only set if something moves */
+  VL_ROW float time[VL_ROW_SIZE];       /* the world's time; only set if something moves */
+  VL_ROW uint32_t crossed[VL_ROW_SIZE]; /* vlRays.crossed */
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 

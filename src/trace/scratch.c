@@ -6,7 +6,7 @@
 
 /* What every scene has fits the L2 cache of a core (1 to 2 MB). docs/performance.md has these
  * numbers. */
-_Static_assert(sizeof(struct vlTraceScratch) <= 950000,
+_Static_assert(sizeof(struct vlTraceScratch) <= 954000,
                "a worker's memory for a world without media");
 
 /* The parts in this order, each aligned to 64 bytes. */

@@ -211,7 +211,9 @@ static inline float vl_roulette_survival(float carried, uint32_t depth) {
   float survive = factor * carried;
   return depth > bounces_without && survive < 1.0f ? survive : 1.0f;
 }
-/* Finds which of the shadow rays of the paths p are occluded. */
+/* Finds which of the shadow rays of the paths p are occluded. The radiance of the others is
+ * weakened by the surfaces with an alpha that they cross. Chance decides there instead in
+ * worlds with interfaces: media between them are passed by rays that find the closest hits. */
 void vl_stage_occluded(vlTracing *t, uint32_t count, const vlPaths *p, vlShadowRays *shadow);
 /* Samples the BSDFs of n vertices, and writes the rays that go on to `next`: ray k leaves
  * vertex order[k]. Returns their number. depth: the number of this bounce, from 1. */

@@ -133,7 +133,7 @@ static void occluded(vlTrace *w, const vlTraceRays *r, uint8_t *result) {
   if (count == 0)
     return;
   vlRays rays = {r->origin[0],    r->origin[1], r->origin[2], r->direction[0], r->direction[1],
-                 r->direction[2], r->t_min,     r->t_max,     w->batch.time};
+                 r->direction[2], r->t_min,     r->t_max,     w->batch.time,   NULL};
   vl_accel_occluded(w->t.world, count, &rays, &w->t.s->occluders, result);
   w->batch.shadow_rays += count;
   for (uint32_t i = 0; i < count; i++)

@@ -2,6 +2,7 @@
  * sampling (power heuristic) and Russian roulette (pbrt book 13.4), bounce by bounce over a
  * batch. */
 #include "tracer/record.h"
+#include "world/accel/crossed.h"
 
 /* ---- runs of one BSDF -------------------------------------------------------------------- */
 
@@ -145,11 +146,33 @@ static uint32_t make_shadow_rays(uint32_t n, const vlVertices *at, const vlLight
   return count;
 }
 
-/* Which of the shadow rays of the paths p are occluded. */
+/* Weakens the light of shadow rays by what they have crossed. */
+static void weaken(uint32_t count, vlShadowRays *q) {
+  for (uint32_t k = 0; k < count; k++) {
+    if (q->crossed[k] == 0)
+      continue;
+    float passes = vl_crossed_passes(q->crossed[k]);
+    for (int c = 0; c < 4; c++)
+      q->radiance[c][k] *= passes;
+  }
+}
+
 void vl_stage_occluded(vlTracing *t, uint32_t count, const vlPaths *p, vlShadowRays *q) {
-  vlRays rays = {
-      q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
+  bool weighs = t->world->has_alpha && !t->world->has_interfaces;
+  vlRays rays = {.ox = q->ox,
+                 .oy = q->oy,
+                 .oz = q->oz,
+                 .dx = q->dx,
+                 .dy = q->dy,
+                 .dz = q->dz,
+                 .t_max = q->t_max,
+                 .time = p->time ? q->time : NULL,
+                 .crossed = weighs ? q->crossed : NULL};
+  if (weighs)
+    memset(q->crossed, 0, count * sizeof *q->crossed);
   vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
+  if (weighs)
+    weaken(count, q);
 }
 
 /* Takes light samples, and adds the radiance of those that arrive. light, values, shadow:

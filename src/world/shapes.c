@@ -174,6 +174,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   store_affine_d(&inverse, s->to_shape);
   vlResult result = add_geometry(world, scene, index, &m, &inverse, s, error);
   world->has_one_sided = world->has_one_sided || s->one_sided;
+  world->has_alpha = world->has_alpha || s->alpha >= 0;
   return result;
 }
 

@@ -318,6 +318,7 @@ struct vlWorld {
   bool has_interfaces, has_mixtures; /* a material is an interface; a material is mixed */
   bool has_subsurface;               /* a shape has subsurface scattering */
   bool has_one_sided;                /* rays pass through a shape from one side */
+  bool has_alpha;                    /* a shape has an alpha */
   bool by_channel;                   /* a medium (vlWorldMedium.by_channel) or a material
                                         (vlWorldPrincipled.by_channel) attenuates light                   per
                                         channel of linear sRGB */

@@ -35,6 +35,28 @@ def a_scene_from_arrays_has_known_radiance():
     assert numpy.allclose(middle, (0.2, 0.5, 0.8), rtol=0.01), middle
 
 
+def lit_through(alphas, **keywords):
+    """A floor that the camera sees, lit by a lamp behind it through cards with these alphas, of one sample."""
+    scene = velo.Scene()
+    scene.add_mesh(8 * QUAD, FACES, material=scene.add_material("diffuse", reflectance=0.5))
+    for number, alpha in enumerate(alphas):
+        card = QUAD * (4, 4, 1) + (0, 0, 5 + number)
+        scene.add_shape("triangles", positions=card.astype(numpy.float32), indices=FACES, alpha=alpha, material=scene.add_material("diffuse"))
+    scene.add_light("distant", from_=(0, 0, 1), to=(0, 0, 0), color=(1, 1, 1))
+    scene.camera = camera()
+    return numpy.asarray(scene.render(spp=1, color="rgb", max_depth=1, **keywords))[..., :3].astype(float)
+
+
+@case
+def shadow_rays_carry_what_surfaces_with_an_alpha_let_pass():
+    """Exactly, not as a mean over many rays, and in the same bits with both accelerators."""
+    free = lit_through(())
+    for alphas, passes in (((0.5,), 0.5), ((0.5, 0.25, 0.9), 0.0375), ((0.0, 1e-3), 0.999), ((0.3, 1.0), 0), ((0.999999,) * 9, 0)):
+        image = lit_through(alphas)
+        assert numpy.allclose(image, passes * free, rtol=1e-5, atol=1e-7), (alphas, (image / free).min(), (image / free).max())
+        assert numpy.array_equal(image, lit_through(alphas, accelerator="bvh")), alphas
+
+
 @case
 def arrays_of_any_type_and_layout_do():
     reference = numpy.array(quad_scene(reflectance=0.5).render(spp=1))

@@ -62,7 +62,7 @@ static vlEmissionId emission(Fixture *f, bool two_sided) {
 static double density(void *user, const double d[3]) {
   Fixture *f = user;
   float o[3] = {f->p.x, f->p.y, f->p.z}, w[3] = {(float)d[0], (float)d[1], (float)d[2]};
-  vlRays ray = {o, o + 1, o + 2, w, w + 1, w + 2, NULL, NULL, NULL};
+  vlRays ray = {o, o + 1, o + 2, w, w + 1, w + 2, NULL, NULL, NULL, NULL};
   uint32_t shape, prim, instance;
   float t;
   vl_accel_closest(f->world, 1, &ray, false, &shape, &prim, &instance, &t);

@@ -323,7 +323,8 @@ typedef struct Hit {
 
 static Hit trace(const vlWorld *world, vlVec3 o, vlVec3 d, float time) {
   Hit h;
-  vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, NULL, NULL, world->moves ? &time : NULL};
+  vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, NULL, NULL, world->moves ? &time : NULL,
+                NULL};
   vl_accel_closest(world, 1, &ray, false, &h.shape, &h.prim, &h.instance, &h.t);
   return h;
 }
@@ -407,7 +408,8 @@ static uint32_t passing(const Scene *s, statRng *rng, uint32_t *tried) {
     for (; crossed <= most; crossed++) {
       Hit h;
       vlRays ray = {
-          &o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &t_min, NULL, s->world->moves ? &time : NULL};
+          &o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &t_min, NULL, s->world->moves ? &time : NULL,
+          NULL};
       vl_accel_closest(s->world, 1, &ray, false, &h.shape, &h.prim, &h.instance, &h.t);
       if (h.shape == VL_NONE)
         break;
@@ -508,7 +510,7 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
       if (media)
         d = vl_normalize(d);
       uint8_t occluded;
-      vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, NULL, &end, NULL};
+      vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, NULL, &end, NULL, NULL};
       vl_accel_occluded(s->world, 1, &ray, NULL, &occluded);
       ++*tried;
       blocked += occluded;

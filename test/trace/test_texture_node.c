@@ -181,7 +181,7 @@ static void same_bits(void **state) {
 
 /* Number of shapes hit: 0 or 1. */
 static int hits(const Fixture *f, float ox, float oy, float oz, float dx, float dy, float dz) {
-  vlRays ray = {&ox, &oy, &oz, &dx, &dy, &dz, NULL, NULL, NULL};
+  vlRays ray = {&ox, &oy, &oz, &dx, &dy, &dz, NULL, NULL, NULL, NULL};
   uint32_t shape, prim, instance;
   float t;
   vl_accel_closest(f->world, 1, &ray, false, &shape, &prim, &instance, &t);

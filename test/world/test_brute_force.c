@@ -127,7 +127,7 @@ static float t_[2][RAYS];
 static vlRays rays_at(uint32_t first, bool ends) {
   return (vlRays){o_[0] + first, o_[1] + first, o_[2] + first, d_[0] + first,
                   d_[1] + first, d_[2] + first, NULL,          ends ? end_ + first : NULL,
-                  NULL};
+                  NULL,          NULL};
 }
 
 static void make_rays(float shift) {

@@ -26,7 +26,8 @@ enum { BATCH = 1024 };
 /* ---- rays -------------------------------------------------------------------------------- */
 
 static float o_[3][BATCH], d_[3][BATCH], start_[BATCH], end_[BATCH], time_[BATCH];
-static const vlRays all_rays = {o_[0], o_[1], o_[2], d_[0], d_[1], d_[2], start_, end_, time_};
+static const vlRays all_rays = {o_[0], o_[1],  o_[2], d_[0], d_[1],
+                                d_[2], start_, end_,  time_, NULL};
 
 typedef enum Way { ANYWHERE, CORNERS, EDGES, ALONG, AXES, WAYS } Way;
 static const char *const way_names[WAYS] = {"anywhere", "through corners", "through edges",

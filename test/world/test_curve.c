@@ -197,7 +197,7 @@ static int compare(vlWorld *world, const Hair *h, vlCurveKind kind, bool instanc
     to_shape(od, false, so);
     to_shape(dd, true, sd);
     Found f = brute_force(h, kind, so, sd);
-    vlRays ray = {o, o + 1, o + 2, d, d + 1, d + 2, NULL, NULL, NULL};
+    vlRays ray = {o, o + 1, o + 2, d, d + 1, d + 2, NULL, NULL, NULL, NULL};
     uint32_t shape, prim, at;
     uint8_t occluded;
     vl_accel_closest(world, 1, &ray, k % 2, &shape, &prim, &at, &t);

@@ -12,7 +12,8 @@
 static vlRays rays_of(const vlWorld *world, const vlPaths *p, const vlCastBatch *b) {
   return (vlRays){p->ox,    p->oy,    p->oz,
                   p->dx,    p->dy,    p->dz,
-                  b->t_min, b->t_max, world->moves ? b->time : NULL};
+                  b->t_min, b->t_max, world->moves ? b->time : NULL,
+                  NULL};
 }
 
 static bool is_interface(const vlWorld *world, uint32_t shape) {
@@ -34,8 +35,8 @@ static void pass_interfaces(const vlWorld *world, const vlPaths *p, const vlCast
     vlPoint at = vl_point_at_time(world, b->time[i], o, d, h->shape[i], h->prim[i],
                                   h->instance[i], h->t[i]);
     t_min = vl_past_surface(&at, d, t_min);
-    vlRays ray = {p->ox + i, p->oy + i, p->oz + i,    p->dx + i,  p->dy + i,
-                  p->dz + i, &t_min,    b->t_max + i, b->time + i};
+    vlRays ray = {p->ox + i, p->oy + i, p->oz + i,    p->dx + i,   p->dy + i,
+                  p->dz + i, &t_min,    b->t_max + i, b->time + i, NULL};
     vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i,
                      h->t + i);
   }

@@ -36,7 +36,8 @@ static uint32_t before_light(const vlTracing *t, const vlShadowRays *q, uint32_t
   vlVec3 o = vl_lane3(q->ox, q->oy, q->oz, k), d = vl_lane3(q->dx, q->dy, q->dz, k);
   float from = 0.999f * q->t_max[k], to = 1.001f * q->t_max[k], hit, time = q->time[k];
   uint32_t shape, prim, instance;
-  vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &from, &to, t->world->moves ? &time : NULL};
+  vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &from, &to, t->world->moves ? &time : NULL,
+                NULL};
   vl_accel_closest(t->world, 1, &ray, false, &shape, &prim, &instance, &hit);
   if (shape != light_shape)
     return here;

@@ -31,15 +31,9 @@ void vl_travel_closest(const vlTracing *t, vlTravel *k) {
     if (r->time)
       time[j] = r->time[i];
   }
-  vlRays rays = {o[0],
-                 o[1],
-                 o[2],
-                 d[0],
-                 d[1],
-                 d[2],
-                 t_min,
-                 r->t_max ? t_max : NULL,
-                 r->time ? time : NULL};
+  vlRays rays = {
+      o[0], o[1], o[2], d[0], d[1], d[2], t_min, r->t_max ? t_max : NULL, r->time ? time : NULL,
+      NULL};
   vl_accel_closest(t->world, k->count, &rays, false, shape, prim, instance, hit);
   for (uint32_t j = 0; j < k->count; j++) {
     uint32_t i = k->open[j];
@@ -113,10 +107,10 @@ static void begin_block(const Rays *r, vlTravel *k, uint32_t first, uint32_t n,
   vlVolumeRows *v = r->rows;
   vlFlights *f = &k->f;
   f->n = n;
-  f->rays =
-      (vlRays){p->ox + first,        p->oy + first, p->oz + first, p->dx + first,
-               p->dy + first,        p->dz + first, NULL,          t_max ? t_max + first : NULL,
-               p->time ? time : NULL};
+  f->rays = (vlRays){
+      p->ox + first,         p->oy + first, p->oz + first, p->dx + first,
+      p->dy + first,         p->dz + first, NULL,          t_max ? t_max + first : NULL,
+      p->time ? time : NULL, NULL};
   for (uint32_t i = 0; p->time && i < n; i++)
     time[i] = vl_path_time(p, first + i);
   for (int c = 0; c < 4; c++) {

@@ -42,7 +42,7 @@ static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const 
     return corner;
   float time = vl_path_time(p, i);
   vlRays rays = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i,
-                 p->dz + i, NULL,      NULL,      &time};
+                 p->dz + i, NULL,      NULL,      &time,     NULL};
   vlLocalRay ray = vl_local_ray(world, &rays, 0, h->instance[i]);
   vlTextureQuery at;
   vl_local_triangle(corner.shape, corner.prim, &ray, &at, corner.weights);
@@ -88,7 +88,7 @@ void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths 
               *t_max = camera ? t->batch->t_max : NULL;
   VL_ROW float time[VL_ROW_SIZE];
   vlRays rays = {
-      p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time)};
+      p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time), NULL};
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
 }
 
@@ -105,7 +105,8 @@ static void closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i
                 p->dz + i,
                 &t_min,
                 t_max ? t_max + i : NULL,
-                p->time ? &time : NULL};
+                p->time ? &time : NULL,
+                NULL};
   vl_accel_closest(t->world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i,
                    h->t + i);
   t->batch->bounce_rays++;

@@ -198,7 +198,8 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth, const vlEntr
       q->time[k] = vl_path_time(p, j);
     }
     vlRays rays = {
-        q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, from, q->t_max, p->time ? q->time : NULL};
+        q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, from, q->t_max, p->time ? q->time : NULL,
+        NULL};
     vl_accel_closest(t->world, active, &rays, false, hits->shape, hits->prim, hits->instance,
                      hits->t);
     t->batch->bounce_rays += active;

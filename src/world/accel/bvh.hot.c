@@ -199,6 +199,11 @@ static __attribute__((noinline)) void move(const Query *q, vlBvhFour *f) {
   }
 }
 
+/* Whether slot k only repeats the first. A surface with an alpha must not be crossed twice. */
+static inline bool is_left_over(const vlBvhFour *f, int k) {
+  return k > 0 && f->geometry[k] == f->geometry[0] && f->primitive[k] == f->primitive[0];
+}
+
 static inline bool meet_triangles(Query *q, const vlBvhFour *f, bool moving, const Ray *r,
                                   bool any) {
   vlBvhFour now;
@@ -210,6 +215,8 @@ static inline bool meet_triangles(Query *q, const vlBvhFour *f, bool moving, con
   }
   for (uint32_t met = meet_four(f->corner, r, q->t_min, q->limit, t); met; met &= met - 1) {
     int k = __builtin_ctz(met);
+    if (any && is_left_over(f, k))
+      continue;
     if (take(q, f->geometry[k], f->primitive[k], t[k], moving, any))
       return true;
   }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "math/hash.h"
+#include "world/accel/crossed.h"
 #include "world/moving.h"
 
 vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *r, uint32_t i, uint32_t instance) {
@@ -51,15 +52,19 @@ static vlTextureQuery world_query(const vlWorld *world, const vlLocalRay *r,
   return q;
 }
 
-/* Whether a ray passes through a shape because of the shape's alpha. A hash of ray and
- * primitive decides, so that the result does not depend on the order of traversal. t: distance
- * of the hit; it enters the hash for shapes that a ray can intersect twice, so that each hit is
- * decided separately; 0 for triangles. at: the point of the hit, in the space of the ray's
- * group. */
-static bool alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *r,
-                         uint32_t prim, float t, const vlTextureQuery *at) {
+/* Whether ray i, which is r in the space of the group, passes through a shape because of the
+ * shape's alpha. A shadow ray passes wherever some light does, and notes how much. Else a hash
+ * of ray and primitive decides, so that the result does not depend on the order of traversal.
+ * t: distance of the hit; it enters the hash for shapes that a ray can intersect twice, so that
+ * each hit is decided separately; 0 for triangles. at: the point of the hit, in the space of
+ * the ray's group. */
+static bool alpha_passes(const vlWorld *world, const vlRays *rays, uint32_t i, bool shadow,
+                         const vlWorldShape *shape, const vlLocalRay *r, uint32_t prim, float t,
+                         const vlTextureQuery *at) {
   const vlTextureQuery q = world_query(world, r, at);
   const float alpha = vl_texture_float_at(world, shape->alpha, &q);
+  if (shadow && rays->crossed)
+    return vl_cross_surface(alpha, &rays->crossed[i]);
   return ray_hash(r, (uint32_t)(shape - world->shapes.items), prim, t) >= alpha;
 }
 
@@ -112,21 +117,21 @@ bool vl_triangle_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i,
   bool behind = vl_local_triangle(shape, prim, &r, &at, corner.weights);
   if (behind && shape->one_sided)
     return true;
-  return shape->alpha >= 0 && alpha_passes(world, shape, &r, prim, 0, &at);
+  return shape->alpha >= 0 && alpha_passes(world, rays, i, shadow, shape, &r, prim, 0, &at);
 }
 
 /* Whether the shape's texture lets ray i pass at a hit. */
 static __attribute__((noinline)) bool texture_passes(const vlWorld *world, const vlRays *rays,
                                                      uint32_t i, uint32_t instance,
                                                      const vlWorldShape *shape, uint32_t prim,
-                                                     const vlShapeHit *hit) {
+                                                     bool shadow, const vlShapeHit *hit) {
   vlLocalRay r = vl_local_ray(world, rays, i, instance);
   vlSurfacePoint point;
   vl_shape_point(shape, prim, hit, &point);
   vlTextureQuery at = {point.uv[0], point.uv[1],
                        vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
                        vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
-  return alpha_passes(world, shape, &r, prim, (float)hit->t, &at);
+  return alpha_passes(world, rays, i, shadow, shape, &r, prim, (float)hit->t, &at);
 }
 
 bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
@@ -143,7 +148,8 @@ bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, ui
   }
   vlShapeHit hit;
   while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
-    if (shape->alpha >= 0 && texture_passes(world, rays, i, instance, shape, prim, &hit)) {
+    if (shape->alpha >= 0 &&
+        texture_passes(world, rays, i, instance, shape, prim, shadow, &hit)) {
       t_min = hit.t *
               (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
       continue;

@@ -10,6 +10,7 @@ _SIGMA = 5.670373e-8 * 1e-6 / numpy.pi
 _KELVIN = numpy.linspace(800.0, 12000.0, 561)  # of the table of colours
 
 FITS = 12  # steps towards the factors of emission
+BRIGHTEST = 1e9  # radiance per unit of length; velo drops samples from about 1e12 on
 
 
 class Heat(NamedTuple):
@@ -32,12 +33,12 @@ def of_node(node, groups, inputs):
 
 
 def emission(heat, factors):
-    """The radiance per unit of length for the node's temperature times factors, an array of any shape: that shape x 3, at most 1e30."""
+    """The radiance per unit of length for the node's temperature times factors, an array of any shape: that shape x 3, at most BRIGHTEST."""
     kelvin = numpy.maximum(heat.kelvin * numpy.asarray(factors, dtype=float), 0)
-    total = numpy.minimum(numpy.maximum(_SIGMA * (1 + heat.intensity * (kelvin**4 - 1)), 0), 1e30)
+    total = numpy.minimum(numpy.maximum(_SIGMA * (1 + heat.intensity * (kelvin**4 - 1)), 0), BRIGHTEST)
     table = color_nodes.black_body_color(_KELVIN)
     colors = numpy.stack([numpy.interp(kelvin, _KELVIN, table[:, channel]) for channel in range(3)], axis=-1)
-    return numpy.minimum(total[..., None] * colors * heat.tint, 1e30)
+    return numpy.minimum(total[..., None] * colors * heat.tint, BRIGHTEST)
 
 
 def _moved(values, axis, step):

@@ -79,12 +79,26 @@ static void judge(const Pair *pair, const char *kind, int a, int b, const char *
              where);
 }
 
+/* How many neighbours of a set have the same position within their cells, one of SPP equal
+ * intervals each. */
+static uint32_t equal_within(const float *numbers) {
+  uint32_t equal = 0;
+  for (uint32_t i = 0; i + 1 < SPP; i++) {
+    const float a = numbers[i] * SPP;
+    const float b = numbers[i + 1] * SPP;
+    equal += a - floorf(a) == b - floorf(b);
+  }
+  return equal;
+}
+
 static void pairs_of_a_kind(vlSamplerKind kind, const char *name) {
   static Pairs pairs;
   float numbers[NUMBERS][LANES];
+  uint32_t within = 0;
   memset(&pairs, 0, sizeof pairs);
   for (uint32_t call = 0; call < CALLS; call++) {
     draw(kind, call, numbers);
+    within += equal_within(numbers[SINGLE]);
     for (int a = 0; a < NUMBERS; a++) {
       for (int b = a + 1; b < NUMBERS; b++)
         count_pairs(&pairs.same[a][b], LANES, numbers[a], numbers[b]);
@@ -92,6 +106,9 @@ static void pairs_of_a_kind(vlSamplerKind kind, const char *name) {
         count_pairs(&pairs.apart[a][b], SPP, numbers[a], numbers[b] + SPP);
     }
   }
+  /* By chance 2^22 pairs are equal in 17 bits or more 32 times. */
+  if (within > 100)
+    fail_msg("%s: two numbers stand alike in their cells %u times", name, within);
   for (int a = 0; a < NUMBERS; a++)
     for (int b = 0; b < NUMBERS; b++) {
       if (b > a)

@@ -206,7 +206,12 @@ def _principled(inputs, node, groups):
     return Closure(material, emission, coverage, is_clear=isinstance(coverage, float) and math.isclose(coverage, 0.0, abs_tol=1e-9))
 
 
-CLOSURES = {"BSDF_DIFFUSE": _diffuse, "BSDF_GLOSSY": _glossy, "BSDF_ANISOTROPIC": _glossy, "BSDF_GLASS": _glass,
+def _holdout(inputs, node, groups):
+    """Black; visibility.is_hole makes a hole of it."""
+    return Closure(diffuse(inputs, (0.0, 0.0, 0.0), {}))
+
+
+CLOSURES = {"HOLDOUT": _holdout, "BSDF_DIFFUSE": _diffuse, "BSDF_GLOSSY": _glossy, "BSDF_ANISOTROPIC": _glossy, "BSDF_GLASS": _glass,
             "BSDF_REFRACTION": _refraction, "BSDF_TRANSLUCENT": _translucent, "BSDF_TRANSPARENT": _transparent, "EMISSION": _emission,
             "BACKGROUND": _background, "SUBSURFACE_SCATTERING": _subsurface, "BSDF_VELVET": _velvet, "BSDF_SHEEN": _velvet,
             "BSDF_HAIR_PRINCIPLED": _hair, "BSDF_PRINCIPLED": _principled}

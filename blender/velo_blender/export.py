@@ -6,7 +6,7 @@ import numpy
 import velo
 
 from . import (atlas, backdrop, camera, camera_files, displace, fog, geometry, hair, ignored, lights, materials, motion, object_info, points,
-               textures, volumes, world)
+               textures, visibility, volumes, world)
 from .report import Cancelled, Notes, Refused
 
 FARTHEST = 1e12  # coordinates, scene units
@@ -23,10 +23,11 @@ class Part(NamedTuple):
 
 class Place(NamedTuple):
     """Where a mesh is and what its materials may ask of the object. matrix: world from object; known: object_info.fields; owner: what
-    tells it from other objects that share the mesh, () where all are alike."""
+    tells it from other objects that share the mesh, () where all are alike; seen: visibility.words_of."""
     matrix: Any
     known: dict
     owner: tuple
+    seen: dict
 
 
 class Prepared(NamedTuple):
@@ -68,6 +69,7 @@ class Export:
         self._handles = {}  # {motion.key_of(instance): handle}
         self._keys = set()  # of all instances
         self._noted = set()  # names of objects
+        self._seen = {}  # visibility.words_of of the instance that is read
         self._asked = False  # whether something depends on what the camera sees
         self._meshes, self._surfaces, self._cache = {}, {}, {}
         self._solids = []  # fog.Solid of each volume
@@ -126,6 +128,7 @@ class Export:
                 continue
             self._note_ignored(item)
             self._keys.add(motion.key_of(instance))
+            self._seen = self._words_of(instance)
             matrix = numpy.array(instance.matrix_world, dtype=float)
             if not numpy.isfinite(matrix).all():
                 self.notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
@@ -167,6 +170,13 @@ class Export:
             ignored.note_light(item, self.depsgraph.scene, self.notes)
         else:
             ignored.note_object(item, self.depsgraph.scene, self.notes)
+
+    def _words_of(self, instance):
+        """Keywords of the shapes of an instance: what the camera sees of them."""
+        words = visibility.words_of(instance, self.depsgraph.view_layer)
+        if "backdrop" in words:
+            visibility.note_opaque_film(self.depsgraph.scene, instance.object.name, self.notes)
+        return words
 
     def _slots_of(self, item):
         """The materials of an object's slots, at least one; those of the view layer's override where it has one."""
@@ -278,17 +288,17 @@ class Export:
 
     def _bare_surface(self, item, material, matrix, what):
         """(surface, keywords of the shape) of what has no uv maps and does not emit."""
-        place = Place(matrix, object_info.fields(item, matrix, 0), (item.name_full,))
+        place = Place(matrix, object_info.fields(item, matrix, 0), (item.name_full,), self._seen)
         surface = self._surface(material, textures.Maps(None), None, place)
         if surface.emission is not None:
             self.notes.add(item.name, "", "%s does not emit" % what)
         if self._moves is not None:
             self.notes.add(item.name, "", "%s is at rest" % what)
-        return surface, {} if surface.alpha is None else {"alpha": surface.alpha}
+        return surface, {**place.seen, **({} if surface.alpha is None else {"alpha": surface.alpha})}
 
     def _add_volume(self, item, placed):
         """The density of an OpenVDB file, inside of the box of its voxels."""
-        place = Place(placed.matrix, object_info.fields(item, placed.matrix, 0), (item.name_full,))
+        place = Place(placed.matrix, object_info.fields(item, placed.matrix, 0), (item.name_full,), self._seen)
         inputs = self._inputs(self._slots_of(item)[0], textures.Maps(None), None, place)
         inputs.owner = item.name
         found = volumes.add_file(item.data, self._slots_of(item)[0], inputs, placed.matrix, self._fog)
@@ -298,7 +308,7 @@ class Export:
         if self._moves is not None:
             self.notes.add(item.name, "", "a volume is at rest")
         box = self.scene.add_box(grid.low, grid.high, pose=pose, inside=medium, outside=self._air, material=self.scene.add_material("interface"),
-                                 name=item.name)
+                                 name=item.name, **place.seen)
         mesh = self.scene.mesh(box)
         self._solids.append(fog.Solid(item.name, pose, mesh.positions, mesh.indices, medium))
         self.shapes.append(placed)
@@ -341,7 +351,7 @@ class Export:
         """The mesh of an object in velo, made once for all objects that share it and its materials; None: it has no faces."""
         slots = self._slots_of(item)
         data = item.data if item.type == "MESH" else item
-        key = (data.as_pointer(), tuple(None if material is None else material.name_full for material in slots))
+        key = (data.as_pointer(), tuple(None if material is None else material.name_full for material in slots), tuple(self._seen))
         owner = ()
         if any(self._varies(material) for material in slots):
             self._copies[key] = self._copies.get(key, 0) + 1
@@ -350,7 +360,7 @@ class Export:
             else:
                 self.notes.add(item.name, "", "of its copies the first %d have colours of their own" % object_info.MAX_COPIES)
         if key + owner not in self._meshes:
-            self._meshes[key + owner] = self._make(item, slots, Place(matrix, object_info.fields(item, matrix, number), owner))
+            self._meshes[key + owner] = self._make(item, slots, Place(matrix, object_info.fields(item, matrix, number), owner, self._seen))
         return self._meshes[key + owner]
 
     def _varies(self, material):
@@ -410,6 +420,10 @@ class Export:
             self._go_on()
             words = self._arrays_of(arrays, slot, maps, surface, moving if surface.emission is None else None)
             self._go_on()
+            words.update(place.seen)
+            if visibility.is_hole(material):
+                words["backdrop"] = True
+                visibility.note_opaque_film(self.depsgraph.scene, material.name, self.notes)
             medium = self._medium(material, arrays, maps, place)
             if medium is not None:
                 words.update(inside=medium, outside=self._air)
@@ -489,7 +503,8 @@ def _placed(instance, matrix):
     top = item.parent
     while top is not None and top.parent is not None:
         top = top.parent
-    look = tuple("" if slot.material is None else slot.material.name_full for slot in item.material_slots), tuple(item.color)
+    look = (tuple("" if slot.material is None else slot.material.name_full for slot in item.material_slots), tuple(item.color),
+            item.visible_camera, item.is_holdout)
     return Placed(item.name, top.name if top is not None else item.name, item.pass_index, str(item.get("class", "")), motion.key_of(instance),
                   matrix, look)
 

@@ -74,18 +74,6 @@ def _note_layer(layer, notes):
         notes.add(layer.name, "Shader AOV %s" % aov.name, "velo has no such pass; it is empty")
     for group in getattr(layer, "lightgroups", ()):
         notes.add(layer.name, "Light group %s" % group.name, "velo has no such pass; it is empty")
-    _note_collections(layer.layer_collection, notes)
-
-
-def _note_collections(collection, notes):
-    if collection.exclude:
-        return
-    if collection.holdout:
-        notes.add(collection.name, "Holdout", "its objects are rendered")
-    if collection.indirect_only:
-        notes.add(collection.name, "Indirect only", "the camera sees its objects")
-    for inner in collection.children:
-        _note_collections(inner, notes)
 
 
 def _note_world(scene, notes):
@@ -112,11 +100,11 @@ def note_light(item, scene, notes):
 
 def note_object(item, scene, notes):
     """The settings of an object with a surface."""
-    if not (item.visible_camera and item.visible_shadow and item.visible_diffuse and item.visible_glossy and item.visible_transmission and
+    if not (item.visible_shadow and item.visible_diffuse and item.visible_glossy and item.visible_transmission and
             item.visible_volume_scatter):
-        notes.add(item.name, "Ray visibility", "all rays see it")
-    if item.is_holdout or item.is_shadow_catcher:
-        notes.add(item.name, "Holdout, shadow catcher", "it is an object like others")
+        notes.add(item.name, "Ray visibility", "all rays see it but, where they are switched off, those of the camera")
+    if item.is_shadow_catcher:
+        notes.add(item.name, "Shadow catcher", "it is an object like others")
     cycles, of_scene = getattr(item, "cycles", None), getattr(scene, "cycles", None)
     if cycles is None or of_scene is None:
         return

@@ -1,9 +1,7 @@
 """lights.py: Blender's lights as velo's, with the units of Cycles.
 
 Point and spot of P watts: intensity P / (4 pi) in all directions, along a spot's axis. Sun: irradiance. Area: radiance P / (4 A) on one side.
-Cycles hides lights from the camera unless their visibility says otherwise; velo's surfaces of lights are seen by all rays or, with
-alpha 0, by none. So a light whose surface the camera might see, though it is hidden from it, has alpha 0: it lights, and mirrors do
-not show it."""
+Cycles hides lights from the camera unless their visibility says otherwise, and mirrors show them: so do velo's."""
 import math
 
 import numpy
@@ -64,16 +62,11 @@ def add(scene, item, matrix, camera_sees, notes):
     {"POINT": _point, "SUN": _sun, "SPOT": _spot, "AREA": _area}[light.type](scene, item, light, pose, words, power, camera_sees, notes)
 
 
-def _lamp_surface(scene, words, radiance, item, hidden, spread=math.pi, **shape):
-    """A shape that emits and that, as in Cycles, other light passes. hidden: no ray sees it."""
+def _lamp_surface(scene, words, radiance, item, spread=math.pi, **shape):
+    """A shape that emits and that, as in Cycles, other light passes."""
     emission = scene.add_emission(radiance=words["color"], scale=radiance, two_sided=False, spread=spread)
     material = scene.add_material("interface", name=item.name)
-    extra = {"alpha": 0.0} if hidden else {}
-    scene.add_shape(emission=emission, material=material, name=item.name, **extra, **shape)
-
-
-def _hidden(item, points, camera_sees):
-    return not item.visible_camera and camera_sees(points)
+    scene.add_shape(emission=emission, material=material, name=item.name, hidden_from_camera=not item.visible_camera, **shape)
 
 
 def _point(scene, item, light, pose, words, power, camera_sees, notes):
@@ -84,11 +77,10 @@ def _point(scene, item, light, pose, words, power, camera_sees, notes):
     if radius <= 1e-6:
         scene.add_light("point", position=tuple(place), scale=power / (4 * math.pi), **words)
         return
-    corners = place + radius * numpy.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     matrix = numpy.eye(4)
     matrix[:3, 3] = place
-    _lamp_surface(scene, words, power / (4 * math.pi**2 * radius**2), item, _hidden(item, corners, camera_sees), kind="sphere",
-                  radius=radius, z_min=-radius, z_max=radius, pose=matrix)
+    _lamp_surface(scene, words, power / (4 * math.pi**2 * radius**2), item, kind="sphere", radius=radius, z_min=-radius, z_max=radius,
+                  pose=matrix)
 
 
 def _sun(scene, item, light, pose, words, power, camera_sees, notes):
@@ -101,7 +93,7 @@ def _sun(scene, item, light, pose, words, power, camera_sees, notes):
     frame = _frame_along(axis, numpy.zeros(3))
     half = 0.5 * min(light.angle, math.pi) if math.isfinite(light.angle) else 0.0
     rim = frame[:3, :2] @ (math.tan(min(half, 1.5)) * numpy.array([[1, -1, 0, 0], [0, 0, 1, -1.0]]))
-    if half < SHARP_SUN or _hidden(item, FAR * (axis + rim.T), camera_sees):
+    if half < SHARP_SUN or (not item.visible_camera and camera_sees(FAR * (axis + rim.T))):
         scene.add_light("distant", position=tuple(axis), to=(0.0, 0.0, 0.0), scale=power, **words)
         if half >= SHARP_SUN:
             notes.add(item.name, "Angle", "its disk, which the camera would see, is a point")
@@ -206,8 +198,6 @@ def _area(scene, item, light, pose, words, power, camera_sees, notes):
     if not width * height * scales[0] * scales[1] > 1e-12:
         notes.add(item.name, "", "its area is 0; it is left out")
         return
-    corners = 0.5 * numpy.array([[-width, -height, 0, 2], [width, -height, 0, 2], [width, height, 0, 2], [-width, height, 0, 2]]) @ pose.T
-    hidden = _hidden(item, corners[:, :3], camera_sees)
     round_shape = light.shape in ("DISK", "ELLIPSE")
     area = width * height * scales[0] * scales[1] * (math.pi / 4 if round_shape else 1)
     radiance = power / (4 * area)
@@ -216,8 +206,8 @@ def _area(scene, item, light, pose, words, power, camera_sees, notes):
     turned = pose @ numpy.diag((1.0, -1.0, -1.0, 1.0))
     if round_shape:
         stretched = turned @ numpy.diag((0.5 * width, 0.5 * height, 1.0, 1.0))
-        _lamp_surface(scene, words, radiance, item, hidden, kind="disk", radius=1.0, pose=stretched, spread=spread)
+        _lamp_surface(scene, words, radiance, item, kind="disk", radius=1.0, pose=stretched, spread=spread)
         return
     quad = 0.5 * numpy.array([[-width, -height, 0], [width, -height, 0], [width, height, 0], [-width, height, 0]])
-    _lamp_surface(scene, words, radiance, item, hidden, kind="triangles", positions=quad.astype(numpy.float32),
+    _lamp_surface(scene, words, radiance, item, kind="triangles", positions=quad.astype(numpy.float32),
                   indices=numpy.array([[0, 1, 2], [0, 2, 3]], dtype=numpy.int32), pose=turned, spread=spread)

@@ -58,6 +58,9 @@ struct vlShapeDef {
   /** The shape is a part of the background: it is rendered, but alpha is 0 where camera rays
    * meet it first. */
   bool backdrop;
+  /** Camera rays pass through the shape, also behind interfaces and alpha; all other rays meet
+   * it. Tracers with light paths lack this: volpath takes their place. */
+  bool hidden_from_camera;
   /** Moving triangles: positions and normals at times[1]; `positions` and `normals` are those
    * at times[0]. Between these times they are interpolated linearly; before and after them the
    * mesh is at rest. May be null. A moving mesh cannot emit light. */

@@ -329,6 +329,8 @@ static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value
     return read_flag(value, name, &d->reverse_orientation) ? 1 : -1;
   if (IS("backdrop"))
     return read_flag(value, name, &d->backdrop) ? 1 : -1;
+  if (IS("hidden_from_camera"))
+    return read_flag(value, name, &d->hidden_from_camera) ? 1 : -1;
   if (IS("indices")) {
     const Numbers *n = read_array(a, value, 'I', name);
     size_t per = d->kind == VL_SHAPE_BILINEAR ? 4 : 3;
@@ -473,11 +475,13 @@ static bool append_extra(PyObject *names, Family family, const vlKindRow *row) {
                                       "lamp_data", "portal",    NULL};
   static const char *const position[] = {"position", "from_", NULL};
   static const char *const shape[] = {
-      "name",      "pose",    "transform", "material", "emission",
-      "group",     "inside",  "outside",   "times",    "indices",
-      "positions", "normals", "uvs",       "tangents", "colors",
-      "radii",     "centers", "widths",    "backdrop", "reverse_orientation",
-      "uvs_1",     "uvs_2",   "uvs_3",     NULL};
+      "name",     "pose",     "transform", "material",
+      "emission", "group",    "inside",    "outside",
+      "times",    "indices",  "positions", "normals",
+      "uvs",      "tangents", "colors",    "radii",
+      "centers",  "widths",   "backdrop",  "reverse_orientation",
+      "uvs_1",    "uvs_2",    "uvs_3",     "hidden_from_camera",
+      NULL};
   const char *const *const lists[] = {
       [TEXTURES] = texture, [MATERIALS] = material, [MEDIA] = medium,
       [LIGHTS] = light,     [SHAPES] = shape,       [INSTANCES] = NULL};

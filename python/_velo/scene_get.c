@@ -276,6 +276,7 @@ static bool get_shape(const Getting *g, const vlShapeDef *d) {
       put(g, "transform", matrix_of(d->group_from_shape)) &&
       put(g, "reverse_orientation", PyBool_FromLong(d->reverse_orientation)) &&
       put(g, "backdrop", PyBool_FromLong(d->backdrop)) &&
+      put(g, "hidden_from_camera", PyBool_FromLong(d->hidden_from_camera)) &&
       (!d->indices || put(g, "indices", array_of(d->indices, 'I', faces))) &&
       (!d->positions_close || put(g, "times", Py_BuildValue("(dd)", d->times[0], d->times[1])));
   for (int i = 0; fine && i < SHAPE_ARRAYS; i++) {

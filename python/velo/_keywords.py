@@ -353,6 +353,7 @@ class AllShapes(TypedDict, total=False):
     backdrop: Any
     emission: Any
     group: Any
+    hidden_from_camera: Any
     inside: Any
     material: Any
     name: Any

@@ -45,6 +45,11 @@ static bool has_one_sided(Scene *s) {
   return s->world->has_one_sided;
 }
 
+/* Light paths would show the camera what camera rays do not meet. */
+static bool has_hidden(Scene *s) {
+  return s->world->has_hidden;
+}
+
 /* A curve turns to face the ray that hits it (shape/curves.c). The surface that a light
  * path hits is not the surface that a camera path hits: their points, normals and areas differ,
  * and so do the shadow rays from them. */
@@ -111,6 +116,7 @@ static const Feature features[] = {
     {"motion with a rolling shutter", has_rolling_shutter, FROM_LIGHTS},
     {"material \"subsurface\"", has_subsurface, FROM_LIGHTS},
     {"surfaces that rays pass through from one side", has_one_sided, FROM_LIGHTS},
+    {"shapes that are hidden from the camera", has_hidden, FROM_LIGHTS},
     {"shape \"curve\"", has_curves, FROM_LIGHTS},
     {"material \"hair\"", has_hair, FROM_LIGHTS},
     {"regularization", has_regularisation, FROM_LIGHTS},

@@ -116,9 +116,13 @@ static inline uint32_t vl_bounce_dimension(uint32_t depth) {
  * camera rays and have the batch's t_min and t_max. */
 void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *rays, vlHits *hits);
 /* Finds the closest hits of n rays, and writes only ids. camera: the rays have the batch's
- * t_min and t_max. */
+ * t_min and t_max, and pass what is hidden from the camera. */
 void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *rays,
                      vlHits *hits);
+/* Replaces the hits of n camera rays on shapes that are hidden from the camera by what the rays
+ * meet behind them. */
+void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t *shape,
+                    uint32_t *prim, uint32_t *instance, float *hit);
 /* Returns the material of a hit. For a mixed material, chooses one of its materials. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 /* Adds the radiance of the lights that the n rays hit: infinite lights and emissive

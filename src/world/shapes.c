@@ -141,6 +141,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   s->first_light = VL_NONE;
   s->flip = def->reverse_orientation != mirrored;
   s->backdrop = def->backdrop;
+  s->hidden = def->hidden_from_camera;
   s->alpha = -1; /* opaque */
   if (vl_scene_shape_is_removed(scene, index)) {
     s->steps = 1;
@@ -175,6 +176,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   vlResult result = add_geometry(world, scene, index, &m, &inverse, s, error);
   world->has_one_sided = world->has_one_sided || s->one_sided;
   world->has_alpha = world->has_alpha || s->alpha >= 0;
+  world->has_hidden = world->has_hidden || s->hidden;
   return result;
 }
 

@@ -34,7 +34,7 @@ static Arrays arrays_of(const vlWorldShape *s) {
 static void mask(vlWorldShape *s) {
   s->material = s->first_light = s->inside = s->outside = 0;
   s->alpha = 0;
-  s->pass_shadow = s->backdrop = false;
+  s->pass_shadow = s->backdrop = s->hidden = false;
   s->positions = s->normals = s->tangents = s->uvs = s->tangent_signs = s->colors =
       s->emission_uvs = s->widths = NULL;
   s->radii = NULL;
@@ -83,6 +83,7 @@ static void take(const vlWorldShape *from, vlWorldShape *s) {
   s->alpha = own.alpha;
   s->pass_shadow = own.pass_shadow;
   s->backdrop = own.backdrop;
+  s->hidden = own.hidden;
   s->first_light = VL_NONE;
   s->inside = s->outside = 0;
   s->light_of = NULL;

@@ -50,6 +50,7 @@ typedef struct vlWorldShape {
                          first_light + i */
   bool one_sided;     /* rays that come from behind pass through */
   bool backdrop;      /* alpha is 0 where camera rays meet it first */
+  bool hidden;        /* camera rays pass through it */
   uint32_t steps; /* number of sets of positions and normals, at equal time steps; 1: at rest */
   /* For spheres, disks and cylinders: the parameters of vlShapeDef. All shapes but meshes have
    * the two affine maps below. */
@@ -319,6 +320,7 @@ struct vlWorld {
   bool has_subsurface;               /* a shape has subsurface scattering */
   bool has_one_sided;                /* rays pass through a shape from one side */
   bool has_alpha;                    /* a shape has an alpha */
+  bool has_hidden;                   /* camera rays pass through a shape */
   bool by_channel;                   /* a medium (vlWorldMedium.by_channel) or a material
                                         (vlWorldPrincipled.by_channel) attenuates light                   per
                                         channel of linear sRGB */

@@ -210,7 +210,7 @@ CALLS = [
     Call("Scene.add_mesh", quad_scene, keywords={
         "normals": VECTOR, "uvs": VECTOR, "uvs_1": VECTOR, "tangents": VECTOR, "colors": VECTOR, "tangent_signs": VECTOR, "positions_close": VECTOR,
         "normals_close": VECTOR, "transform": VECTOR, "material": ANY, "emission": ANY, "group": ANY, "inside": ANY, "outside": ANY,
-        "name": TEXT, "times": VECTOR, "reverse_orientation": FLAG, "backdrop": FLAG}, positions=(QUAD, VECTOR), indices=(FACES, VECTOR)),
+        "name": TEXT, "times": VECTOR, "reverse_orientation": FLAG, "backdrop": FLAG, "hidden_from_camera": FLAG}, positions=(QUAD, VECTOR), indices=(FACES, VECTOR)),
     Call("Scene.add_sphere", quad_scene, center=((0, 0, 0), VECTOR), radius=(0.5, NUMBER)),
     Call("Scene.add_box", quad_scene, low=((0, 0, 0), VECTOR), high=((1, 1, 1), VECTOR), keywords={"pose": VECTOR}),
     Call("Scene.add_plane", quad_scene, center=((0, 0, 0), VECTOR), normal=((0, 0, 1), VECTOR), width=(1.0, NUMBER), height=(2.0, NUMBER),

@@ -169,6 +169,8 @@ static bool put_shape(vlExport *x, const vlShapeDef *d, size_t index) {
     return true;
   if (d->positions_close)
     vl_export_lose(x, "meshes that change in time: as they are at first");
+  if (d->hidden_from_camera)
+    vl_export_lose(x, "shapes that are hidden from the camera: seen");
   if (d->one_sided)
     vl_export_lose(x, "surfaces that are seen from one side only: from both");
   if (d->tangents && d->tangent_signs)

@@ -35,6 +35,8 @@ void vl_travel_closest(const vlTracing *t, vlTravel *k) {
       o[0], o[1], o[2], d[0], d[1], d[2], t_min, r->t_max ? t_max : NULL, r->time ? time : NULL,
       NULL};
   vl_accel_closest(t->world, k->count, &rays, false, shape, prim, instance, hit);
+  if (k->camera && t->world->has_hidden)
+    vl_pass_hidden(t, k->count, &rays, shape, prim, instance, hit);
   for (uint32_t j = 0; j < k->count; j++) {
     uint32_t i = k->open[j];
     k->x.shape[i] = shape[j];
@@ -233,6 +235,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission,
   k.f.purpose = VL_KEY_FLIGHT;
   k.f.odds = odds;
   k.clear = camera && t->def->irradiance;
+  k.camera = camera;
   for (uint32_t first = 0; first < n; first += VL_FLIGHTS) {
     begin_block(&r, &k, first, n - first < VL_FLIGHTS ? n - first : VL_FLIGHTS, t_max, time);
     open_lanes(t, &r, &k, first, t_min);
@@ -242,5 +245,9 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission,
     travel_block(t, &r, &k, first, emission);
   }
   for (uint32_t i = 0; camera && i < n; i++)
-    t->batch->alpha[i] = ends->event[i] == VL_IN_SKY ? 0.0f : 1.0f;
+    t->batch->alpha[i] =
+        ends->event[i] == VL_IN_SKY || (ends->event[i] == VL_ON_SURFACE &&
+                                        t->world->shapes.items[hits->shape[i]].backdrop)
+            ? 0.0f
+            : 1.0f;
 }

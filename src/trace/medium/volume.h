@@ -59,7 +59,8 @@ typedef struct vlTravel {
   vlFlights f;
   vlCrossings x; /* the next surface */
   uint32_t open[VL_FLIGHTS], count;
-  bool clear; /* media are crossed as if they were vacuum */
+  bool clear;  /* media are crossed as if they were vacuum */
+  bool camera; /* camera rays, which pass what is hidden from the camera */
 } vlTravel;
 static inline bool vl_meets_interface(const vlWorld *world, const vlCrossings *x, uint32_t i) {
   return x->shape[i] != VL_NONE && vl_is_interface(world, x->shape[i]);

@@ -83,6 +83,29 @@ uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h
   return material;
 }
 
+void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t *shape,
+                    uint32_t *prim, uint32_t *instance, float *hit) {
+  const uint32_t most = 1024; /* a bound; no ray meets so many hidden surfaces */
+  const vlWorld *world = t->world;
+  for (uint32_t i = 0; i < n; i++) {
+    vlVec3 o = vl_lane3(rays->ox, rays->oy, rays->oz, i),
+           d = vl_lane3(rays->dx, rays->dy, rays->dz, i);
+    float t_min = rays->t_min ? rays->t_min[i] : 0.0f, time = rays->time ? rays->time[i] : 0.0f;
+    vlRays ray = {&o.x, &o.y, &o.z,   &d.x,
+                  &d.y, &d.z, &t_min, rays->t_max ? rays->t_max + i : NULL,
+                  &time};
+    for (uint32_t step = 0; shape[i] != VL_NONE && world->shapes.items[shape[i]].hidden;
+         step++) {
+      vlPoint at = vl_point_at_time(world, time, o, d, shape[i], prim[i], instance[i], hit[i]);
+      t_min = vl_past_surface(&at, d, t_min);
+      vl_accel_closest(world, 1, &ray, false, shape + i, prim + i, instance + i, hit + i);
+      t->batch->bounce_rays++;
+      if (step == most)
+        shape[i] = VL_NONE;
+    }
+  }
+}
+
 void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHits *h) {
   const float *t_min = camera ? t->batch->t_min : NULL,
               *t_max = camera ? t->batch->t_max : NULL;
@@ -90,12 +113,14 @@ void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths 
   vlRays rays = {
       p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time), NULL};
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
+  if (camera && t->world->has_hidden)
+    vl_pass_hidden(t, n, &rays, h->shape, h->prim, h->instance, h->t);
 }
 
-/* Traces lane i's ray again from t_min on, and writes the hit to h. t_max: the batch's row, or
- * null for no limit. The ray is counted. */
-static void closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min,
-                           const float *t_max) {
+/* Traces lane i's ray again from t_min on, and writes the hit to h. camera: it is a camera ray.
+ * t_max: the batch's row, or null for no limit. The ray is counted. */
+static void closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, bool camera,
+                           float t_min, const float *t_max) {
   float time = vl_path_time(p, i);
   vlRays ray = {p->ox + i,
                 p->oy + i,
@@ -110,11 +135,13 @@ static void closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i
   vl_accel_closest(t->world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i,
                    h->t + i);
   t->batch->bounce_rays++;
+  if (camera && t->world->has_hidden)
+    vl_pass_hidden(t, 1, &ray, h->shape + i, h->prim + i, h->instance + i, h->t + i);
 }
 
 /* Passes interface surfaces, which do not change the ray's direction. The ray keeps its origin,
  * which multiple importance sampling needs, and its end. */
-static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i,
+static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, bool camera,
                             const float *t_max) {
   const vlWorld *world = t->world;
   float t_min = 0;
@@ -133,7 +160,7 @@ static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t 
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
     t_min = vl_past_surface(&at, d, t_min);
-    closest_beyond(t, p, h, i, t_min, t_max);
+    closest_beyond(t, p, h, i, camera, t_min, t_max);
   }
 }
 
@@ -151,7 +178,7 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHi
     if (h->shape[i] == VL_NONE)
       continue;
     if (t->world->has_interfaces)
-      pass_interfaces(t, p, h, i, camera ? t->batch->t_max : NULL);
+      pass_interfaces(t, p, h, i, camera, camera ? t->batch->t_max : NULL);
     if (h->shape[i] != VL_NONE)
       h->material[i] = vl_hit_material(t->world, p, h, i);
   }

@@ -1,6 +1,8 @@
 """Cases of test_render.py: light, materials and passes agree with Cycles; bad input is reported."""
 import time
 
+import math
+
 import bpy
 import numpy
 
@@ -119,6 +121,18 @@ def principled_without_layers():
         scene = new_scene(world=(1, 1, 1))
         ball(material("ShaderNodeBsdfPrincipled", Base_Color=GRAY, Roughness=rough, Specular=specular)[0], (0, 0, 0.5), 1.7)
         agrees(scene, 0.006)
+
+
+@case
+def principled_is_no_source_of_light():
+    """A white plane in a white world, at a slant: 1, where Cycles 3.4 has 1.16."""
+    scene = new_scene(world=(1, 1, 1))
+    plane(material("ShaderNodeBsdfPrincipled", Base_Color=(1, 1, 1), Roughness=0.5)[0], size=400)
+    tilt = math.radians(80)
+    scene.camera.location, scene.camera.rotation_euler = (0, -6 * math.sin(tilt), 6 * math.cos(tilt)), (tilt, 0, 0)
+    scene.camera.data.lens = 300
+    image = colors(render(scene))
+    assert abs(image.mean() - 1) < 0.005, image.mean()
 
 
 @case

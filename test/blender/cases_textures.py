@@ -126,3 +126,25 @@ def what_depends_on_the_view_is_listed():
     scene = painted(build)
     render(scene)
     assert any("Fresnel" in line for line in notes(scene)), notes(scene)
+
+
+@case
+def magnified_images_keep_their_mean():
+    """Black and white squares of 8 bits in sRGB, seen large: half of white, as of an image of 32 bits in Cycles."""
+    for floats, share in ((True, 0.01), (False, None)):
+        scene = new_scene(samples=16)
+        image = bpy.data.images.new("squares", 4, 4, float_buffer=floats)
+        pixels = numpy.ones((4, 4, 4), dtype=numpy.float32)
+        pixels[..., :3] = (numpy.indices((4, 4)).sum(axis=0) % 2)[..., None]
+        image.pixels.foreach_set(pixels.ravel())
+        image.pack()
+        made, node = material("ShaderNodeEmission")
+        picture = made.node_tree.nodes.new("ShaderNodeTexImage")
+        picture.image = image
+        made.node_tree.links.new(picture.outputs[0], node.inputs[0])
+        plane(made, size=3)
+        scene.camera.location, scene.camera.rotation_euler = (0, 0, 6), (0, 0, 0)
+        scene.camera.data.lens = 75
+        assert abs(colors(render(scene))[4:44, 4:44].mean() - 0.5) < 0.02
+        if share is not None:
+            agrees(scene, share)

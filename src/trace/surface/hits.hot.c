@@ -91,9 +91,9 @@ void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t
     vlVec3 o = vl_lane3(rays->ox, rays->oy, rays->oz, i),
            d = vl_lane3(rays->dx, rays->dy, rays->dz, i);
     float t_min = rays->t_min ? rays->t_min[i] : 0.0f, time = rays->time ? rays->time[i] : 0.0f;
-    vlRays ray = {&o.x, &o.y, &o.z,   &d.x,
-                  &d.y, &d.z, &t_min, rays->t_max ? rays->t_max + i : NULL,
-                  &time};
+    vlRays ray = {&o.x,  &o.y, &o.z,   &d.x,
+                  &d.y,  &d.z, &t_min, rays->t_max ? rays->t_max + i : NULL,
+                  &time, NULL};
     for (uint32_t step = 0; shape[i] != VL_NONE && world->shapes.items[shape[i]].hidden;
          step++) {
       vlPoint at = vl_point_at_time(world, time, o, d, shape[i], prim[i], instance[i], hit[i]);

@@ -99,9 +99,9 @@ typedef struct vlBounceSteps {
   uint32_t (*in_media)(vlTracing *t, uint32_t n, uint32_t depth);
   /* The same for n shaded vertices of t->s->at. The rays that go on are in t->s->rays. */
   uint32_t (*on_surfaces)(vlTracing *t, uint32_t n, uint32_t depth);
-  /* Adds the light of an emissive interface that a ray passes on its way through media. Null:
-   * none is added. */
-  vlAddLight *pass_light;
+  /* Adds the light of an emissive interface that a ray passes: a camera ray, and a later one.
+   * Null: none is added. */
+  vlAddLight *pass_first, *pass_later;
 } vlBounceSteps;
 /* The bounces of all tracers: traces n paths from t->s->rays on, for at most `most` bounces. */
 void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps);
@@ -111,10 +111,16 @@ static inline uint32_t vl_bounce_dimension(uint32_t depth) {
 
 /* ---- stages ------------------------------------------------------------------------------ */
 
-/* Finds the closest hits of n rays: ids and materials. Rays pass through interfaces, whose
- * emission is added; for a mixed material, one of its materials is chosen. camera: the rays are
- * camera rays and have the batch's t_min and t_max. */
-void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *rays, vlHits *hits);
+/* Finds the closest hits of n rays: ids and materials. Rays pass through interfaces;
+ * pass_light adds the light of those that emit, may be null; for a mixed material, one of its
+ * materials is chosen. camera: the rays are camera rays and have the batch's t_min and t_max.
+ */
+void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, vlAddLight *pass_light,
+                   const vlPaths *rays, vlHits *hits);
+/* Adds the radiance of a light that ray i has hit, weighted against light sampling; without
+ * media. */
+void vl_add_hit_light(vlTracing *t, const vlPaths *rays, const vlVolumeRows *rows,
+                      const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky);
 /* Finds the closest hits of n rays, and writes only ids. camera: the rays have the batch's
  * t_min and t_max, and pass what is hidden from the camera. */
 void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *rays,

@@ -95,7 +95,7 @@ static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
   w->batch.t_max = w->t_max;
   for (int c = 0; c < 4; c++)
     w->batch.radiance[c] = h->emission[c];
-  vl_stage_hits(t, count, true, &s->rays, &s->hits);
+  vl_stage_hits(t, count, true, vl_add_hit_light, &s->rays, &s->hits);
   if (w->begun)
     w->batch.bounce_rays += count;
   for (uint32_t i = 0; i < count && !w->begun; i++) {

@@ -348,6 +348,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
 }
 
 void vl_path_tracer(vlTracing *t) {
-  static const vlBounceSteps steps = {arrive, NULL, on_surfaces, NULL};
+  static const vlBounceSteps steps = {arrive, NULL, on_surfaces, vl_add_hit_light,
+                                      vl_add_hit_light};
   vl_trace_bounces(t, t->batch->n, t->def->max_depth, &steps);
 }

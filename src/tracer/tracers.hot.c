@@ -70,7 +70,7 @@ void vl_trace_raycast(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
   uint32_t n = t->batch->n;
-  vl_stage_hits(t, n, true, &s->rays, &s->hits);
+  vl_stage_hits(t, n, true, vl_add_hit_light, &s->rays, &s->hits);
   vl_stage_alpha(t, &s->hits);
   vl_stage_emission(t, n, &s->rays, &s->hits);
   n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
@@ -99,7 +99,7 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
   vlTraceScratch *s = t->s;
   vlNumbers u;
   uint32_t n = t->batch->n;
-  vl_stage_hits(t, n, true, &s->rays, &s->hits);
+  vl_stage_hits(t, n, true, NULL, &s->rays, &s->hits);
   vl_stage_alpha(t, &s->hits);
   n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
   vl_stage_shade(t, n, &s->at);
@@ -169,11 +169,12 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
   vlVolumeScratch *media = steps->in_media ? s->volume : NULL;
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     bool camera = depth == 0 && !t->light, irradiance = camera && t->def->irradiance;
+    vlAddLight *pass = depth == 0 ? steps->pass_first : steps->pass_later;
     if (media) {
-      vl_volume_travel(t, n, depth, depth < most && !t->light, steps->pass_light, &s->rays,
-                       &media->rays, &s->hits, &media->ends);
+      vl_volume_travel(t, n, depth, depth < most && !t->light, pass, &s->rays, &media->rays,
+                       &s->hits, &media->ends);
     } else {
-      vl_stage_hits(t, n, camera, &s->rays, &s->hits);
+      vl_stage_hits(t, n, camera, pass, &s->rays, &s->hits);
       if (camera)
         vl_stage_alpha(t, &s->hits);
     }

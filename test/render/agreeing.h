@@ -57,6 +57,9 @@
 {.name = "cylinder light", .weak = true, .world = WALLS "AreaLightSource \"diffuse\" \"rgb L\" [9 8 7] AttributeBegin Translate .2 .3 1.3 Shape \"cylinder\" \"float radius\" .1 \"float zmin\" 0 \"float zmax\" .4 AttributeEnd "},
 {.name = "mirrored lights", .world = WALLS "AreaLightSource \"diffuse\" \"rgb L\" [9 8 7] AttributeBegin Translate .2 .3 1.5 Scale 1 1 -1 Shape \"disk\" \"float radius\" .3 AttributeEnd "},
 {.name = "invisible light", .world = WALLS "AreaLightSource \"diffuse\" \"rgb L\" [9 8 7] AttributeBegin Translate .2 .3 1.5 Shape \"sphere\" \"float radius\" .2 \"float alpha\" 0 AttributeEnd "},
+{.name = "light with a spread", .world = WALLS "AreaLightSource \"diffuse\" \"rgb L\" [3 4 5] \"float spread\" 100 AttributeBegin Translate .2 .3 1.5 Rotate 200 1 0 0 Shape \"disk\" \"float radius\" .3 AttributeEnd "},
+{.name = "light that light passes", .passes = true, .world = ROOM "Material \"interface\" "
+   "AttributeBegin Translate .2 .5 .5 Rotate 200 1 0 0 Shape \"disk\" \"float radius\" .5 AttributeEnd "},
 {.name = "light through a hole", .weak = true, .world = WALLS PANEL "Material \"diffuse\" Shape \"disk\" \"float height\" 1.2 \"float radius\" .9 \"float innerradius\" .3"},
 {.name = "light on glass", .world = WALLS "AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] Material \"dielectric\" \"float roughness\" .4 " BALL},
 
@@ -85,6 +88,8 @@
    .world = ROOM "Material \"interface\" MediumInterface \"\" \"fog\" " BALL},
 {.name = "light that names no fog", .lacking = "media that do not fit together", .head = IN_FOG,
    .world = WALLS "MediumInterface \"fog\" \"\" " PANEL},
+{.name = "light in fog that light passes", .passes = true, .weak = true, .head = IN_FOG, .world = "MediumInterface \"fog\" \"fog\" " ROOM "Material \"interface\" "
+   "AttributeBegin Translate .2 .5 .5 Rotate 200 1 0 0 Shape \"disk\" \"float radius\" .5 AttributeEnd "},
 {.name = "ball of fog", .head = FOG CAMERA, .world = ROOM "Material \"interface\" MediumInterface \"fog\" \"\" " BALL},
 {.name = "light from media", .unseen = true, .head = "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.5 .4 .3] \"rgb sigma_s\" [.6 .4 .2] \"rgb Le\" [2 1 .5] " CAMERA,
    .world = ROOM "Material \"interface\" MediumInterface \"fire\" \"\" " BALL},

@@ -222,7 +222,7 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def,
   vlTraceDef trace_def = {
       .isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
   vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
-  vl_stage_hits(&tracing, batch->n, true, &s->rays, &s->hits);
+  vl_stage_hits(&tracing, batch->n, true, NULL, &s->rays, &s->hits);
   uint32_t n = gather_hits(world, batch->n, s, batch);
   if (n == 0)
     return;
@@ -278,7 +278,7 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
   vlTraceDef trace_def = {
       .isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
   vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
-  vl_stage_hits(&tracing, n, true, &s->rays, &s->hits);
+  vl_stage_hits(&tracing, n, true, NULL, &s->rays, &s->hits);
   const vlHits *h = &s->hits;
   for (uint32_t i = 0; i < n; i++) {
     bool hit = h->shape[i] != VL_NONE;

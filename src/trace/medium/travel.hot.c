@@ -175,12 +175,15 @@ static void end_flight(vlTracing *t, const Rays *r, const vlTravel *k, uint32_t 
   end_ray(t, r, first + i, event, f->odds[i], given);
 }
 
-/* Adds the light of the interface that ray i has met, where it emits. */
-static void meet_light(vlTracing *t, const Rays *r, uint32_t i) {
+/* Adds the light of the interface that ray i has met, where it emits. odds: of getting there.
+ */
+static void meet_light(vlTracing *t, const Rays *r, uint32_t i, float odds) {
   vlHitLight met;
-  if (r->pass_light && t->world->shapes.items[r->hits->shape[i]].first_light != VL_NONE &&
-      vl_hit_emission(t->world, r->paths, r->hits, i, &met))
-    r->pass_light(t, r->paths, r->rows, r->ends, i, &met, false);
+  if (!r->pass_light || t->world->shapes.items[r->hits->shape[i]].first_light == VL_NONE ||
+      !vl_hit_emission(t->world, r->paths, r->hits, i, &met))
+    return;
+  r->ends->odds[r->paths->lane[i]] = vl_some_odds(odds);
+  r->pass_light(t, r->paths, r->rows, r->ends, i, &met, false);
 }
 
 /* Traces the lanes of a block through media and interfaces to their events. Their origins
@@ -201,7 +204,7 @@ static void travel_block(vlTracing *t, const Rays *r, vlTravel *k, uint32_t firs
       } else if (!vl_meets_interface(t->world, &k->x, i)) {
         end_flight(t, r, k, first, i, k->x.shape[i] != VL_NONE ? VL_ON_SURFACE : VL_IN_SKY);
       } else {
-        meet_light(t, r, first + i);
+        meet_light(t, r, first + i, k->f.odds[i]);
         medium[i] = vl_travel_pass(t, k, i, medium[i]);
         k->open[on++] = i;
       }

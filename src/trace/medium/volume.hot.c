@@ -338,7 +338,8 @@ static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
 }
 
 void vl_volume_tracer(vlTracing *t) {
-  static const vlBounceSteps steps = {arrive, scatter_in_media, scatter_on_surfaces, add_light};
+  static const vlBounceSteps steps = {arrive, scatter_in_media, scatter_on_surfaces, add_light,
+                                      add_light};
   vl_volume_start(t, t->batch->n, NULL, &t->s->rays, &t->s->volume->rays);
   vl_trace_bounces(t, t->batch->n, t->def->max_depth, &steps);
 }

@@ -9,10 +9,8 @@
 
 /* ---- lights that rays hit ---------------------------------------------------------------- */
 
-/* Adds the light's radiance with the weight of multiple importance sampling. */
-static void add_hit_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                          const vlFlightEnds *ends, uint32_t i, const vlHitLight *met,
-                          bool sky) {
+void vl_add_hit_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
+                      const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
   (void)rows;
   (void)ends;
   (void)sky;
@@ -28,7 +26,7 @@ vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
 }
 
 void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits) {
-  vl_stage_lights_hit(t, n, rays, hits, NULL, NULL, add_hit_light);
+  vl_stage_lights_hit(t, n, rays, hits, NULL, NULL, vl_add_hit_light);
 }
 
 /* ---- hits -------------------------------------------------------------------------------- */
@@ -141,8 +139,8 @@ static void closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i
 
 /* Passes interface surfaces, which do not change the ray's direction. The ray keeps its origin,
  * which multiple importance sampling needs, and its end. */
-static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, bool camera,
-                            const float *t_max) {
+static void pass_interfaces(vlTracing *t, vlAddLight *pass_light, const vlPaths *p, vlHits *h,
+                            uint32_t i, bool camera, const float *t_max) {
   const vlWorld *world = t->world;
   float t_min = 0;
   for (int step = 0; h->shape[i] != VL_NONE; step++) {
@@ -154,9 +152,9 @@ static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t 
     if (h->shape[i] == VL_NONE)
       return;
     vlHitLight met;
-    if (world->shapes.items[h->shape[i]].first_light != VL_NONE &&
+    if (pass_light && world->shapes.items[h->shape[i]].first_light != VL_NONE &&
         vl_hit_emission(world, p, h, i, &met))
-      add_hit_light(t, p, NULL, NULL, i, &met, false);
+      pass_light(t, p, NULL, NULL, i, &met, false);
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
     t_min = vl_past_surface(&at, d, t_min);
@@ -164,7 +162,8 @@ static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t 
   }
 }
 
-void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHits *h) {
+void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, vlAddLight *pass_light,
+                   const vlPaths *p, vlHits *h) {
   vl_closest_hits(t, n, camera, p, h);
   if (!camera)
     t->batch->bounce_rays += n;
@@ -178,7 +177,7 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHi
     if (h->shape[i] == VL_NONE)
       continue;
     if (t->world->has_interfaces)
-      pass_interfaces(t, p, h, i, camera, camera ? t->batch->t_max : NULL);
+      pass_interfaces(t, pass_light, p, h, i, camera, camera ? t->batch->t_max : NULL);
     if (h->shape[i] != VL_NONE)
       h->material[i] = vl_hit_material(t->world, p, h, i);
   }

@@ -234,7 +234,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
 void vl_bidirectional_tracer(vlTracing *t) {
   const vlTwoWay *way = t->def->two_way;
   const vlBounceSteps steps = {arrive, vl_has_media(t) ? vl_eye_in_media : NULL, on_surfaces,
-                               NULL};
+                               add_first, add_later};
   if (way->alone)
     return;
   vl_measure_camera_rays(t, t->batch->two_way->views);

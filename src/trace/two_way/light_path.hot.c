@@ -291,7 +291,7 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   s->at.paths.time = batch->time;
   uint32_t n = set_out(&t, batch, &r->lanes, &s->rays, &r->starts);
   const vlBounceSteps steps = {NULL, vl_has_media(&t) ? vl_light_in_media : NULL, on_surfaces,
-                               NULL};
+                               NULL, NULL};
   const vlTwoWayShadows q = vl_two_way_shadows_of(&t);
   if (vl_has_media(&t))
     vl_volume_start(&t, n, r->starts.medium, &s->rays, &s->volume->rays);

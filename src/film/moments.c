@@ -35,7 +35,7 @@ void vl_film_join_parts(vlFilmMoments *moments, const vlFilmPixel *pixel) {
 }
 
 void vl_film_begin_moments(vlFilm *film, size_t at) {
-  film->moments[1][at] = film->moments[0][at];
+  film->moments[1][at] = vl_film_front_moments(film, at);
   if (film->part_moves)
     vl_film_join_parts(&film->moments[1][at], &film->back[at]);
 }

@@ -173,7 +173,7 @@ vlResult vl_film_begin_pass(vlFilm *film) {
     film->back = vl_alloc_array(film->context, count, sizeof *film->back);
   for (int i = 0; i < 2 && film->def.errors; i++)
     if (!film->moments[i] &&
-        !(film->moments[i] = vl_alloc_zero(film->context, count, sizeof(vlFilmMoments))))
+        !(film->moments[i] = vl_alloc_array(film->context, count, sizeof(vlFilmMoments))))
       return VL_ERROR_MEMORY;
   if (!film->stamp || !film->back || !vl_film_spectrum_begin(film))
     return VL_ERROR_MEMORY;
@@ -211,7 +211,7 @@ void vl_film_commit_pass(vlFilm *film) {
     if (film->stamp[i] != film->pass) {
       film->back[i] = film->front ? film->front[i] : zero;
       if (film->def.errors)
-        film->moments[1][i] = film->moments[0][i];
+        film->moments[1][i] = vl_film_front_moments(film, i);
     }
   vlFilmMoments *moments = film->moments[0];
   film->moments[0] = film->moments[1];
@@ -244,8 +244,6 @@ void vl_film_clear(vlFilm *film) {
     film->back = film->front;
   }
   film->front = NULL;
-  if (film->moments[0])
-    memset(film->moments[0], 0, vl_film_pixels(film) * sizeof *film->moments[0]);
   vl_film_spectrum_clear(film);
 }
 

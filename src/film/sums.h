@@ -75,8 +75,9 @@ struct vlFilm {
   uint32_t end;            /* index behind the last sample of any pixel, with def.errors */
   uint32_t part, pass_end; /* of the running pass: vl_first_part and `end` after it */
   bool part_moves; /* all samples before the running pass belong to the first part after it */
-  vlFilmMoments *moments[2]; /* front and back, front and back, only with def.errors; valid
-                                where the pixel's sums are valid */
+  vlFilmMoments *moments[2]; /* front and back, only with def.errors; valid where the pixel's
+                                sums are: without a front, those of the front are zero,
+                                whatever the memory holds */
   vlFilmSpectrum spectrum;   /* with def.buckets */
   vlFilterTable filter;
   float balance[9]; /* white balance matrix for XYZ; only with def.white_balance */
@@ -85,6 +86,10 @@ struct vlFilm {
   size_t scratch_size;
 };
 
+/* The committed moments of a pixel, in films with errors. */
+static inline vlFilmMoments vl_film_front_moments(const vlFilm *film, size_t at) {
+  return film->front ? film->moments[0][at] : (vlFilmMoments){0};
+}
 /* In moments.c. begin: copies a pixel's moments from the front, when it is new in the pass. */
 void vl_film_begin_moments(vlFilm *film, size_t at);
 void vl_film_add_moments(vlFilm *film, size_t at, const float color[3]);

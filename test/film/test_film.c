@@ -1,5 +1,5 @@
 /* The film: exact sums for any order and grouping, constant images, passes without effect on
- * the bits, merging, invalid samples, invalid defs, failing allocations. */
+ * the bits, merging, invalid samples, invalid defs, failing allocations, memory with junk. */
 #include "film/film.h"
 #include "film/sums.h"
 #include "statistics.h"
@@ -396,6 +396,70 @@ static void test_memory(void **state) {
   assert_true(done);
 }
 
+enum { JUNK = 0xa5 };
+static void *junk_allocate(void *user, size_t size) {
+  (void)user;
+  void *block = malloc(size);
+  if (block)
+    memset(block, JUNK, size);
+  return block;
+}
+static void junk_release(void *user, void *block) {
+  (void)user;
+  free(block);
+}
+
+static vlFilm *film_with_errors(vlContext *context) {
+  vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
+  vlFilm *film;
+  def.errors = true;
+  assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
+  return film;
+}
+
+/* Two passes, the first of which leaves pixels without samples. */
+static void two_passes(vlFilm *film) {
+  whole_pass(film, 0, WIDTH);
+  whole_pass(film, WIDTH, COUNT - WIDTH);
+  vl_film_set_spp(film, 2);
+}
+
+static void assert_same_sums(const vlFilm *a, const vlFilm *b) {
+  assert_memory_equal(a->front, b->front, WIDTH * HEIGHT * sizeof *a->front);
+  assert_memory_equal(a->moments[0], b->moments[0], WIDTH * HEIGHT * sizeof *a->moments[0]);
+}
+
+/* The moments of a film, which are many, are not cleared at the begin of its first pass, where
+ * nobody could end the render. What their memory held is in no sum: not after an abandoned
+ * pass, nor after the film was cleared. */
+static void test_moments_are_not_cleared(void **state) {
+  (void)state;
+  random_samples(7);
+  vlContextDef def = vl_default_context_def();
+  def.allocator = (vlAllocator){NULL, junk_allocate, junk_release};
+  def.threads = 1;
+  vlContext *context;
+  assert_int_equal(vl_context_create(&def, &context), VL_OK);
+  vlFilm *plain = film_with_errors(context_), *film = film_with_errors(context);
+  two_passes(plain);
+  assert_int_equal(vl_film_begin_pass(film), VL_OK);
+  for (int i = 0; i < 2; i++) {
+    const unsigned char *bytes = (const unsigned char *)film->moments[i];
+    for (size_t k = 0; k < WIDTH * HEIGHT * sizeof *film->moments[i]; k++)
+      assert_int_equal(bytes[k], JUNK);
+  }
+  add(film, 3000, 500);
+  vl_film_abandon_pass(film);
+  two_passes(film);
+  assert_same_sums(film, plain);
+  vl_film_clear(film);
+  two_passes(film);
+  assert_same_sums(film, plain);
+  vl_film_destroy(plain);
+  vl_film_destroy(film);
+  vl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_exact),
@@ -407,6 +471,7 @@ int main(void) {
       cmocka_unit_test(test_crop_and_develop),
       cmocka_unit_test(test_wrong_defs),
       cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_moments_are_not_cleared),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

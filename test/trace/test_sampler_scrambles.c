@@ -5,7 +5,9 @@
  * The second law finds Sobol' points whose two numbers have the same scramble, which stay even
  * in each projection: the generator matrix of the second number, Pascal's triangle modulo 2,
  * keeps 2^16 of all 2^32 indices (it is its own inverse, and its rank over the identity is 16),
- * and there the numbers would be equal: one of 2^16 pairs, where chance makes one of 2^24. */
+ * and there the numbers would be equal: one of 2^16 pairs, where chance makes one of 2^24.
+ *
+ * Halton's digits: each branch has a permutation of its own. */
 
 #include "math/lowdiscrepancy.h"
 #include "sampler/sampler.h"
@@ -148,6 +150,55 @@ static void sobol(void **state) {
 static void zsobol(void **state) {
   (void)state;
   pairs_of_a_kind(VL_SAMPLER_ZSOBOL, "zsobol");
+}
+
+/* ---- nested scrambles of Halton points -------------------------------------------------- */
+
+/* Digit k of the fraction u in base b; digit 0 is the first. */
+static uint32_t digit_of(float u, uint32_t b, int k) {
+  double x = (double)u;
+  for (int i = 0; i < k; i++)
+    x = x * b - floor(x * b);
+  return (uint32_t)(x * b);
+}
+
+/* Nested scrambling (Owen 1995): each digit is permuted by a permutation of its own for the
+ * digits before it. So what becomes of the digit 0 in the branches after no digit, 0, 1, 00, 10
+ * and 01 are numbers that have nothing to do with each other. The points 0, 1 and b have these
+ * digits. */
+static void digits_of_branches(uint32_t dimension, uint32_t b) {
+  enum { BRANCHES = 6, SEEDS = 1 << 15, MAX_BASE = 7 };
+  static const struct {
+    int point, digit;
+  } branch[BRANCHES] = {{0, 0}, {0, 1}, {1, 1}, {0, 2}, {1, 2}, {2, 2}};
+  static uint32_t grid[BRANCHES][BRANCHES][MAX_BASE * MAX_BASE];
+  const vlSamplerKernels *k = vl_sampler_kernels(vl_isa_best());
+  memset(grid, 0, sizeof grid);
+  for (uint32_t seed = 0; seed < SEEDS; seed++) {
+    vlSampler s;
+    const int32_t pixel[16] = {0};
+    const uint32_t index[16] = {0, 1, b};
+    float u[16];
+    vl_sampler_init(&s, VL_SAMPLER_HALTON, seed, 16, 16, 1024);
+    k->get_1d(&s, 16, pixel, pixel, index, dimension, u);
+    uint32_t digit[BRANCHES];
+    for (int i = 0; i < BRANCHES; i++)
+      digit[i] = digit_of(u[branch[i].point], b, branch[i].digit);
+    for (int i = 0; i < BRANCHES; i++)
+      for (int j = i + 1; j < BRANCHES; j++)
+        grid[i][j][digit[i] * b + digit[j]]++;
+  }
+  for (int i = 0; i < BRANCHES; i++)
+    for (int j = i + 1; j < BRANCHES; j++)
+      if (!stat_accept(stat_chi2_uniform(grid[i][j], b * b), 4 * BRANCHES * BRANCHES))
+        fail_msg("base %u: branches %d and %d are scrambled alike", b, i, j);
+}
+
+static void halton_scrambles_branches_apart(void **state) {
+  (void)state;
+  static const uint32_t primes[4] = {2, 3, 5, 7};
+  for (uint32_t dimension = 0; dimension < 4; dimension++)
+    digits_of_branches(dimension, primes[dimension]);
 }
 
 /* ---- Sobol' points from their definition --------------------------------------------------
@@ -323,6 +374,7 @@ int main(void) {
       cmocka_unit_test(sobol),
       cmocka_unit_test(zsobol),
       cmocka_unit_test(scrambles_follow_their_definition),
+      cmocka_unit_test(halton_scrambles_branches_apart),
       cmocka_unit_test(numbers_follow_their_definition),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,12 +1,16 @@
 /* test_texture_noise.c: noise against a plain implementation in double, and its properties;
- * dots by their geometry, marble by its colours, sums by their octaves. */
+ * dots by their geometry and places, marble by its colours, sums by their octaves, clouds by
+ * pbrt's definition. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 /* cmocka.h needs the headers above */
 
+#include "medium/lookup.h"
 #include "texture/kinds.h"
 #include "unit.h"
+
+vlMediumDensity vl_medium_density_cloud;
 
 static uint32_t seed = 3;
 static double random_unit(void) {
@@ -108,6 +112,13 @@ static vlTextureNode node_of(vlTextureKind kind) {
   return node;
 }
 
+/* Where the dot of the cell about (s, t) is; false: it has none. */
+static bool plain_dot(double s, double t, double middle[2]) {
+  middle[0] = s + 0.15 * plain_noise(s + 1.5, t + 2.8, 0.5);
+  middle[1] = t + 0.15 * plain_noise(s + 4.5, t + 9.8, 0.5);
+  return plain_noise(s + 0.5, t + 0.5, 0.5) > 0;
+}
+
 static void dots(void **state) {
   (void)state;
   vlTextureNode node = node_of(VL_TEXTURE_DOTS);
@@ -138,8 +149,10 @@ static void dots(void **state) {
     with += count > 0;
     if (count)
       assert_true(fabs(count / (double)(N * N) - 3.14159265 * 0.35 * 0.35) < 0.02);
+    double middle[2];
+    assert_true(plain_dot(u0, v0, middle) == (count > 0));
     if (count)
-      assert_true(fabs(x - u0) < 0.152 && fabs(y - v0) < 0.152); /* within its cell */
+      assert_true(fabs(x - middle[0]) < 2e-3 && fabs(y - middle[1]) < 2e-3);
   }
   assert_true(with > 120 && with < 280);
 }
@@ -171,8 +184,55 @@ static void marble(void **state) {
   assert_true(low > 1.5 * 0.2 && low < 0.75 && high < 1.5 * 0.6 && high > 0.85);
 }
 
+/* pbrt-v4's cloud (CloudMedium::Density): two octaves of wisps move the point along the noise's
+ * slope, five octaves of noise are thinner with height, and below y = 0.5 a floor is added. */
+static double plain_cloud(const double p[3], double density, double wispiness,
+                          double frequency) {
+  double q[3];
+  for (int k = 0; k < 3; k++)
+    q[k] = frequency * p[k];
+  for (int i = 0; i < 2 && wispiness > 0; i++) {
+    const double size = 10 * pow(1.99, i);
+    const double at[3] = {size * q[0], size * q[1], size * q[2]};
+    const double here = plain_noise(at[0], at[1], at[2]);
+    for (int k = 0; k < 3; k++) {
+      const double there = plain_noise(at[0] + (k == 0 ? 0.01 : 0), at[1] + (k == 1 ? 0.01 : 0),
+                                       at[2] + (k == 2 ? 0.01 : 0));
+      q[k] += 0.05 * wispiness * pow(0.5, i) * (there - here) / 0.01;
+    }
+  }
+  double sum = 0;
+  for (int i = 0; i < 5; i++) {
+    const double size = pow(1.99, i);
+    sum += pow(0.5, i + 1) * plain_noise(size * q[0], size * q[1], size * q[2]);
+  }
+  const double thin = fmin(fmax((1 - p[1]) * 4.5 * density * sum, 0), 1);
+  return fmin(thin + 2 * fmax(0, 0.5 - p[1]), 1);
+}
+
+static void clouds(void **state) {
+  (void)state;
+  int between = 0;
+  for (int i = 0; i < 20000; i++) {
+    const double density = 0.1 + random_unit();
+    const double wispiness = i % 4 ? 2 * random_unit() : 0;
+    const double frequency = 1 + 7 * random_unit();
+    vlWorldMedium medium = {.own = {(float)density, (float)wispiness, (float)frequency}};
+    const double p[3] = {2 * random_unit() - 1, 1.4 * random_unit() - 0.2,
+                         2 * random_unit() - 1};
+    const vlVec3 at = vl_vec3((float)p[0], (float)p[1], (float)p[2]);
+    const double want = plain_cloud(p, density, wispiness, frequency);
+    const double is = (double)vl_medium_density_cloud(&medium, at, at);
+    if (!(fabs(is - want) < 5e-3))
+      fail_msg("at %g %g %g: %g, not %g", p[0], p[1], p[2], is, want);
+    between += want > 0.01 && want < 0.99;
+  }
+  assert_true(between > 8000);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(noise), cmocka_unit_test(sums),
-                                     cmocka_unit_test(dots), cmocka_unit_test(marble)};
+                                     cmocka_unit_test(dots), cmocka_unit_test(marble),
+                                     cmocka_unit_test(clouds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

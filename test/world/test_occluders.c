@@ -89,7 +89,8 @@ static void close_room(Made *m) {
 
 static float o_[3][BATCH], d_[3][BATCH], end_[BATCH];
 
-static const vlRays all_rays = {o_[0], o_[1], o_[2], d_[0], d_[1], d_[2], NULL, end_, NULL};
+static const vlRays all_rays = {o_[0], o_[1], o_[2], d_[0], d_[1],
+                                d_[2], NULL,  end_,  NULL,  NULL};
 
 typedef struct Face {
   const vlWorldShape *shape;

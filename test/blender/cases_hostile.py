@@ -131,10 +131,12 @@ def settings_that_velo_does_not_have():
     layer = bpy.context.view_layer
     layer.use_pass_mist = layer.use_pass_diffuse_direct = layer.cycles.use_pass_shadow_catcher = True
     layer.aovs.add().name = "mask"
-    for name in ("held", "hidden"):
-        scene.collection.children.link(bpy.data.collections.new(name))
-    layer.layer_collection.children["held"].holdout = layer.layer_collection.children["hidden"].indirect_only = True
     item = ball(material("ShaderNodeBsdfDiffuse")[0])
+    held = bpy.data.collections.new("held")
+    scene.collection.children.link(held)
+    held.objects.link(item)
+    scene.collection.objects.unlink(item)
+    layer.layer_collection.children["held"].holdout = True
     item.visible_volume_scatter, item.cycles.use_adaptive_subdivision, item.cycles.shadow_terminator_offset = False, True, 0.5
     light = lamp(scene, "POINT", 10)
     light.visible_glossy, light.data.cycles.cast_shadow, light.data.cycles.max_bounces = False, False, 0
@@ -143,7 +145,7 @@ def settings_that_velo_does_not_have():
     plane(made, 1.0)
     said(scene, "Clamp direct: ", "Clamp indirect: ", "Filter glossy: ", "Reflective caustics: ", "Fast GI: ", "Rolling shutter: ",
          "Shutter curve: ", "Texture limit: ", "Culling: ", "world, Ray visibility: ", "world, Max bounces: ", "Pass Mist: ",
-         "Pass Diffuse Direct: ", "Pass Shadow Catcher: ", "Shader AOV mask: ", "held, Holdout: ", "hidden, Indirect only: ",
+         "Pass Diffuse Direct: ", "Pass Shadow Catcher: ", "Shader AOV mask: ", "Sphere, Holdout: ",
          "Sphere, Ray visibility: ", "Adaptive subdivision: ", "Shadow terminator: ", "lamp, Ray visibility: ", "lamp, Cast shadow: ",
          "lamp, Max bounces: ", "pane, Transparent shadows: ")
 

@@ -2,7 +2,7 @@
 import bpy
 import numpy
 
-from inside import add, agrees, ball, case, lamp, material, new_scene, notes, plane, render
+from inside import add, agrees, ball, case, colors, lamp, material, new_scene, notes, plane, render
 
 COORDINATES = ("UV", "Object", "Generated")
 

@@ -72,7 +72,7 @@ typedef struct Search {
   void *user;
 } Search;
 
-/* A share of the readout. Exact is what doubles can hold. Places of moving objects have times
+/* A share of the readout. Exact is what doubles can hold. Poses of moving objects have times
  * in float: what is close is a solution as near as these have one, and no jump of the film
  * point. */
 static const double EXACT = 1e-15, CLOSE = 1e-5;

@@ -120,7 +120,7 @@ void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirection
   }
 }
 
-static inline __attribute__((always_inline)) void place_loop(
+static inline __attribute__((always_inline)) void to_world_loop(
     const int eyes, const vlCameraCompiled *camera, uint32_t count, const double *dx,
     const double *dy, const double *dz, const double *valid, vlCameraPoints *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
@@ -186,9 +186,9 @@ void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCa
     }
     vl_camera_directions(c, count, &d);
     if (c->eye_circle != 0.0)
-      place_loop(1, c, count, d.dx, d.dy, d.dz, d.valid, out);
+      to_world_loop(1, c, count, d.dx, d.dy, d.dz, d.valid, out);
     else
-      place_loop(0, c, count, d.dx, d.dy, d.dz, d.valid, out);
+      to_world_loop(0, c, count, d.dx, d.dy, d.dz, d.valid, out);
   }
 }
 

@@ -53,7 +53,7 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
 vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t size,
                            json_t **tree);
 /* Records the position of the next value. Returns false if out of memory. */
-bool vl_camera_to_world(const vlCameraFile *file, uint32_t line, uint32_t column);
+bool vl_camera_push_location(const vlCameraFile *file, uint32_t line, uint32_t column);
 /* Adds a position to an error that has none: the position of the first field that the message
  * quotes, or of the top-level value. */
 void vl_camera_locate_error(const vlCameraFile *file);

@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "camera_files/files.h"
 
-bool vl_camera_to_world(const vlCameraFile *file, uint32_t line, uint32_t column) {
+bool vl_camera_push_location(const vlCameraFile *file, uint32_t line, uint32_t column) {
   if (!file->locations)
     return true;
   uint64_t *location = VL_PUSH(file->context, &file->locations->at);

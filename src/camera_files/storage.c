@@ -10,9 +10,11 @@
 #include "base/text.h"
 #include "camera_files/files.h"
 
-static bool place_of(const vlCameraFile *file, const json_t *element) {
-  return vl_camera_to_world(file, (uint32_t)json_number_value(json_object_get(element, "#")),
-                            (uint32_t)json_number_value(json_object_get(element, "|")));
+/* Records the line and column of an element of vl_camera_xml. False: out of memory. */
+static bool push_location(const vlCameraFile *file, const json_t *element) {
+  return vl_camera_push_location(file,
+                                 (uint32_t)json_number_value(json_object_get(element, "#")),
+                                 (uint32_t)json_number_value(json_object_get(element, "|")));
 }
 
 static json_t *token(const char *text, size_t length) {
@@ -56,9 +58,10 @@ static json_t *value_of(const vlCameraFile *file, const json_t *element, const c
   if (!next)
     return value;
   json_t *list = json_array();
-  bool failed = json_array_append_new(list, value) != 0 || !place_of(file, element);
+  bool failed = json_array_append_new(list, value) != 0 || !push_location(file, element);
   for (; next && !failed; next = next_token(&text, &length))
-    failed = json_array_append_new(list, token(next, length)) != 0 || !place_of(file, element);
+    failed =
+        json_array_append_new(list, token(next, length)) != 0 || !push_location(file, element);
   if (!failed)
     return list;
   json_decref(list);
@@ -69,7 +72,7 @@ static json_t *convert(const vlCameraFile *file, const json_t *element, int dept
   const json_t *children = json_object_get(element, "/"), *child;
   const char *text = vl_camera_text(element, "$");
   size_t i;
-  if (!place_of(file, element) || depth == 0)
+  if (!push_location(file, element) || depth == 0)
     return NULL;
   if (json_array_size(children) == 0)
     return value_of(file, element, text ? text : "");

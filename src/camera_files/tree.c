@@ -49,7 +49,7 @@ static bool locate_json(const vlCameraFile *file, const char *text, size_t size)
     } else {
       at += strcspn(at, " \t\r\n,:]}");
     }
-    if (!vl_camera_to_world(file, line, (uint32_t)(first - line_start) + 1))
+    if (!vl_camera_push_location(file, line, (uint32_t)(first - line_start) + 1))
       return false;
   }
   return true;
@@ -97,7 +97,7 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
   if (first >= size)
     return vl_camera_wrong(file, "the file is empty");
   bool list = text[first] == '[';
-  if (list && !vl_camera_to_world(file, 1, 1))
+  if (list && !vl_camera_push_location(file, 1, 1))
     return vl_fail_memory(file->error);
   if (text[first] == '{' || list)
     result = parse_json(file, text, size, tree);

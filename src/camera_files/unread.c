@@ -157,16 +157,17 @@ static vlResult take_unknown(const vlCameraFile *file, const vlCameraFormat *for
              : vl_camera_wrong_in(file, object, key, "%s: %s", file->dialect, message);
 }
 
+/* Where an object is in the tree. */
 typedef struct {
-  int depth;
+  int depth;  /* of objects and lists around it */
   bool names; /* the fields of this object have the names of cameras or images */
-} Place;
+} Level;
 
 static vlResult check(const vlCameraFile *file, const vlCameraFormat *format,
-                      const json_t *item, Place place, vlCameraRecord *record) {
+                      const json_t *item, Level level, vlCameraRecord *record) {
   vlResult result = VL_OK;
-  const Place below = {place.depth + 1, false};
-  if (place.depth == MAX_DEPTH)
+  const Level below = {level.depth + 1, false};
+  if (level.depth == MAX_DEPTH)
     return VL_OK;
   /* a list of numbers is passed at its first one */
   for (size_t i = 0; i < json_array_size(item) && result == VL_OK; i++) {
@@ -187,27 +188,27 @@ static vlResult check(const vlCameraFile *file, const vlCameraFormat *format,
       if (result != VL_OK)
         return result;
       const Knowledge known = knowledge_of(format, key);
-      if (known == UNKNOWN && place.names && json_is_object(value))
+      if (known == UNKNOWN && level.names && json_is_object(value))
         result = check(file, format, value, below, record);
       else if (known == UNKNOWN)
         result = take_unknown(file, format, item, key, key, value, record);
       else if (known != CLOSED)
         result =
-            check(file, format, value, (Place){place.depth + 1, known == OF_NAMES}, record);
+            check(file, format, value, (Level){level.depth + 1, known == OF_NAMES}, record);
     }
   return result;
 }
 
 vlResult vl_camera_check_unread(const vlCameraFile *file, const vlCameraFormat *format,
                                 const json_t *tree, vlCameraRecord *record) {
-  const Place top = {0, knowledge(format->known, "/") != UNKNOWN};
+  const Level top = {0, knowledge(format->known, "/") != UNKNOWN};
   return format->known || format->knows ? check(file, format, tree, top, record) : VL_OK;
 }
 
 vlResult vl_camera_check_part(const vlCameraFile *file, const char *known, const json_t *object,
                               vlCameraRecord *record) {
   const vlCameraFormat part = {.name = file->dialect, .known = known};
-  return check(file, &part, object, (Place){0, false}, record);
+  return check(file, &part, object, (Level){0, false}, record);
 }
 
 /* The name is looked at like that of an element of XML. length: of the name. */
@@ -217,7 +218,7 @@ static vlResult check_name(const vlCameraFile *file, const vlCameraFormat *forma
                               (int)name->line, "|", 1, "$", name->value);
   if (!element) /* no text in UTF-8 */
     return VL_OK;
-  vlResult result = check(file, format, element, (Place){0, false}, record);
+  vlResult result = check(file, format, element, (Level){0, false}, record);
   json_decref(element);
   return result;
 }

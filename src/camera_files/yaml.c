@@ -71,8 +71,9 @@ static vlResult add(const vlCameraFile *file, Builder *b, json_t *value, yaml_ma
 }
 
 static vlResult locate(const vlCameraFile *file, yaml_mark_t mark) {
-  bool placed = vl_camera_to_world(file, (uint32_t)mark.line + 1, (uint32_t)mark.column + 1);
-  return placed ? VL_OK : vl_fail_memory(file->error);
+  bool pushed =
+      vl_camera_push_location(file, (uint32_t)mark.line + 1, (uint32_t)mark.column + 1);
+  return pushed ? VL_OK : vl_fail_memory(file->error);
 }
 
 /* Counts the values of a copy, which are all at the location of the alias. */

@@ -109,7 +109,7 @@ void vl_film_convert_old_data(const vlFilmDef *def, size_t pixels, void *data) {
   size_t spectra = pixels * def->buckets * (sizeof(vlInt128) + sizeof(int64_t));
   memmove(moments + pixels * sizeof(vlFilmMoments), moments + pixels * sizeof(OldMoments),
           spectra);
-  for (size_t i = pixels; i-- > 0;) { /* each moves to a later place, the last one first */
+  for (size_t i = pixels; i-- > 0;) { /* each moves to a later address, the last one first */
     OldMoments old;
     memcpy(&old, moments + i * sizeof old, sizeof old);
     vlFilmMoments made = {.samples = old.samples};

@@ -11,11 +11,11 @@
 #define VL_LAMP_EDGE 1e-5f
 
 /* The cell of a direction and the position in it. */
-typedef struct vlLampPlace {
+typedef struct vlLampCell {
   uint32_t azimuth, polar; /* of the cell's first corner */
   float across, down;      /* from 0 to 1 */
   bool inside;             /* false: outside of the table; the rest is not set */
-} vlLampPlace;
+} vlLampCell;
 
 /* The last i < count - 1 with at[i] <= x, at least 0. at: ascending. */
 static inline uint32_t vl_lamp_interval(const float *at, uint32_t count, float x) {
@@ -31,8 +31,8 @@ static inline uint32_t vl_lamp_interval(const float *at, uint32_t count, float x
 }
 
 /* d: unit, in the table's own frame. */
-static inline vlLampPlace vl_lamp_place(const vlLampTable *t, vlVec3 d) {
-  vlLampPlace p = {0};
+static inline vlLampCell vl_lamp_cell(const vlLampTable *t, vlVec3 d) {
+  vlLampCell p = {0};
   float polar = vl_atan2(__builtin_sqrtf(d.x * d.x + d.y * d.y), d.z);
   float azimuth = vl_atan2(d.y, d.x);
   if (azimuth < t->azimuth[0] - VL_LAMP_EDGE)
@@ -50,9 +50,9 @@ static inline vlLampPlace vl_lamp_place(const vlLampTable *t, vlVec3 d) {
   return p;
 }
 
-/* Candela; d as in vl_lamp_place. */
+/* Candela; d as in vl_lamp_cell. */
 static inline float vl_lamp_candela(const vlLampTable *t, vlVec3 d) {
-  vlLampPlace p = vl_lamp_place(t, d);
+  vlLampCell p = vl_lamp_cell(t, d);
   if (!p.inside)
     return 0.0f;
   const float *left = t->candela + (size_t)p.azimuth * t->polars + p.polar;
@@ -64,7 +64,7 @@ static inline float vl_lamp_candela(const vlLampTable *t, vlVec3 d) {
 
 /* Density per solid angle with which vl_lamp_sample gives d. */
 static inline float vl_lamp_density(const vlLampTable *t, vlVec3 d) {
-  vlLampPlace p = vl_lamp_place(t, d);
+  vlLampCell p = vl_lamp_cell(t, d);
   return p.inside ? t->density[(size_t)p.azimuth * (t->polars - 1) + p.polar] : 0.0f;
 }
 

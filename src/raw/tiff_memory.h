@@ -19,7 +19,7 @@ typedef struct vlTiffMemory {
   size_t size;         /* its bytes */
   bool writes;
   vlFileWriter writer; /* the file that is written, in memory */
-  uint64_t at;         /* the place of the next byte */
+  uint64_t at;         /* the offset of the next byte */
   char message[160];   /* libtiff's last error */
   TIFF *tiff;
 } vlTiffMemory;

@@ -249,10 +249,10 @@ static vlResult read_numbers(const Reader *r, vlRaw *raw) {
  * a broken one, have no such metadata. */
 static void read_exif(const Reader *r, vlRawDef *def) {
   TIFF *t = r->tiff;
-  uint64_t place = 0;
+  uint64_t offset = 0;
   uint16_t count = 0, *iso = NULL;
-  if (!TIFFGetField(t, TIFFTAG_EXIFIFD, &place) || place > r->memory.size ||
-      !is_small_directory(&r->memory, place) || !TIFFReadEXIFDirectory(t, place))
+  if (!TIFFGetField(t, TIFFTAG_EXIFIFD, &offset) || offset > r->memory.size ||
+      !is_small_directory(&r->memory, offset) || !TIFFReadEXIFDirectory(t, offset))
     return;
   def->exposure_time = fraction_tag(t, EXIFTAG_EXPOSURETIME);
   def->f_number = fraction_tag(t, EXIFTAG_FNUMBER);

@@ -59,13 +59,13 @@ static void simple_fraction(float value, uint32_t fraction[2]) {
 }
 
 /* Replaces the fraction of a tag, if it is there, in the directory of EXIF that libtiff has
- * written to `place`. */
-static void simplify(vlFileWriter *writer, uint64_t place, uint16_t tag, float value) {
+ * written at this offset. */
+static void simplify(vlFileWriter *writer, uint64_t offset, uint16_t tag, float value) {
   const uint8_t *bytes = (const uint8_t *)writer->memory;
-  uint32_t fraction[2], count = bytes[place] | (uint32_t)bytes[place + 1] << 8;
+  uint32_t fraction[2], count = bytes[offset] | (uint32_t)bytes[offset + 1] << 8;
   simple_fraction(value, fraction);
   for (uint32_t i = 0; i < count; i++) {
-    const uint8_t *entry = bytes + place + 2 + 12 * i;
+    const uint8_t *entry = bytes + offset + 2 + 12 * i;
     uint32_t at;
     memcpy(&at, entry + 8, sizeof at);
     if ((entry[0] | entry[1] << 8) == tag)
@@ -77,8 +77,8 @@ static bool set_fraction(TIFF *t, uint32_t tag, float value) {
   return !(value > 0.0f) || TIFFSetField(t, tag, (double)value);
 }
 
-/* Writes the directory of EXIF and stores its place in the file. */
-static bool write_exif(vlTiffMemory *memory, const vlRawDef *def, uint64_t *place) {
+/* Writes the directory of EXIF and stores its offset in the file. */
+static bool write_exif(vlTiffMemory *memory, const vlRawDef *def, uint64_t *offset) {
   TIFF *t = memory->tiff;
   uint16_t iso = (uint16_t)def->iso;
   float millimetres = (float)((double)def->focal_length * 1000.0);
@@ -87,12 +87,12 @@ static bool write_exif(vlTiffMemory *memory, const vlRawDef *def, uint64_t *plac
       set_fraction(t, EXIFTAG_EXPOSURETIME, def->exposure_time) &&
       set_fraction(t, EXIFTAG_FNUMBER, def->f_number) &&
       (!iso || TIFFSetField(t, EXIFTAG_ISOSPEEDRATINGS, 1, &iso)) &&
-      set_fraction(t, EXIFTAG_FOCALLENGTH, millimetres) && TIFFWriteCustomDirectory(t, place);
+      set_fraction(t, EXIFTAG_FOCALLENGTH, millimetres) && TIFFWriteCustomDirectory(t, offset);
   if (!is_written || memory->writer.failed_errno)
     return false;
-  simplify(&memory->writer, *place, EXIFTAG_EXPOSURETIME, def->exposure_time);
-  simplify(&memory->writer, *place, EXIFTAG_FNUMBER, def->f_number);
-  simplify(&memory->writer, *place, EXIFTAG_FOCALLENGTH, millimetres);
+  simplify(&memory->writer, *offset, EXIFTAG_EXPOSURETIME, def->exposure_time);
+  simplify(&memory->writer, *offset, EXIFTAG_FNUMBER, def->f_number);
+  simplify(&memory->writer, *offset, EXIFTAG_FOCALLENGTH, millimetres);
   return true;
 }
 

@@ -23,11 +23,11 @@ void vl_tone_make(vlContext *context, vlTone *tone) {
 /* Interpolation finds the code itself of most values, else one of its neighbours; the loops
  * make sure. */
 static inline uint32_t code_of(const vlTone *tone, double linear) {
-  float place = (float)(linear * VL_TONE_CELLS);
-  uint32_t cell = (uint32_t)place;
+  float position = (float)(linear * VL_TONE_CELLS);
+  uint32_t cell = (uint32_t)position;
   cell = cell < VL_TONE_CELLS ? cell : VL_TONE_CELLS - 1;
   float low = tone->near[cell], high = tone->near[cell + 1];
-  uint32_t code = (uint32_t)(low + (high - low) * (place - (float)cell));
+  uint32_t code = (uint32_t)(low + (high - low) * (position - (float)cell));
   code = code < VL_TONE_CODES ? code : WHITE;
   while (linear < tone->begin[code])
     code--;

@@ -141,7 +141,7 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
     if ((def->channels >> i & 1) &&
         ((channels[i].floats && !floats) || (channels[i].ids && !ids)))
       return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "ground truth: no place for the image that is wanted");
+                     "ground truth: a wanted channel has no image that receives it");
   return check_film(camera, def, error);
 }
 

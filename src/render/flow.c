@@ -50,7 +50,7 @@ typedef struct Chase {
   int which;
 } Chase;
 
-/* The place of the target's surface point at a time. */
+/* The position of the target's surface point at a time. */
 static void follow(const Chase *c, double seconds, double point[3]) {
   const vlGroundTruthBatch *b = c->w->batch;
   uint32_t i = c->lane;
@@ -82,7 +82,7 @@ static bool seen_at(void *user, double seconds, double film[2]) {
 }
 
 /* Finds the target's film point in the other camera, the time at which that camera sees it,
- * and its place then. An orthographic camera has one direction in all its pixels. */
+ * and its position then. An orthographic camera has one direction in all its pixels. */
 static bool find_pixel(const vlChannelPass *p, const vlChannelWorker *w, uint32_t lane,
                        int which, Target *t) {
   const vlCamera *camera = &p->other[which];

@@ -415,7 +415,7 @@ static bool walls_are_given(const vlCompleteDef *def) {
   return def->open_walls && !vl_is_unset(def->walls_from[0]);
 }
 
-/* Where the file's camera is, as an added one's place is described. Returns whether it looks
+/* The view of the file's camera, in the terms of an added one's. Returns whether it looks
  * from above at a model that it is not in, so that a ground does not come between them. */
 static bool find_own_view(const vlScene *scene, const vlExtent *box, View *v) {
   const vlCameraDef *c = &scene->defs.camera;

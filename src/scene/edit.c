@@ -462,15 +462,15 @@ vlInstanceId vl_scene_fill_instance(vlScene *scene) {
   size_t lowest = 0;
   for (size_t i = 1; i < scene->removed_instances.count; i++)
     lowest = ids[i] < ids[lowest] ? i : lowest;
-  const vlInstanceId place = {ids[lowest]};
+  const vlInstanceId freed = {ids[lowest]};
   vlSceneInstance *last = &scene->instances.items[scene->instances.count - 1];
   if (last->removed)
     return (vlInstanceId){0};
   ids[lowest] = ids[--scene->removed_instances.count];
-  scene->instances.items[place.index - 1] = *last;
-  scene->instances.items[place.index - 1].serial = vl_context_number(scene->context);
+  scene->instances.items[freed.index - 1] = *last;
+  scene->instances.items[freed.index - 1].serial = vl_context_number(scene->context);
   scene->instances.count--;
-  return place;
+  return freed;
 }
 
 uint64_t vl_scene_instance_serial(const vlScene *scene, vlInstanceId id) {

@@ -103,8 +103,8 @@ static bool find_free_point(vlScene *scene, const vlExtent *box, const double up
 }
 
 /* Places the lamps around a point, each halfway to what its direction meets. */
-static bool place(vlScene *scene, const double center[3], const double up[3], double most,
-                  Rays *r, double lamps[LAMPS][3]) {
+static bool place_lamps(vlScene *scene, const double center[3], const double up[3], double most,
+                        Rays *r, double lamps[LAMPS][3]) {
   r->count = 0;
   for (uint32_t k = 0; k < LAMPS; k++) {
     double d[3];
@@ -135,7 +135,7 @@ bool vl_scene_add_lamps(vlScene *scene, const vlExtent *boxes, const double up[3
     return false;
   }
   bool ok = find_eye(scene, &box, center) || find_free_point(scene, &box, up, r, most, center);
-  ok = ok && place(scene, center, up, most, r, lamps);
+  ok = ok && place_lamps(scene, center, up, most, r, lamps);
   r->count = 0;
   for (int k = 0; k < LAMPS && ok; k++)
     add_rays_around(r, lamps[k], up);

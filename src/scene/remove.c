@@ -1,4 +1,4 @@
-/* scene/remove.c: removes objects of a scene, which keep their ids' places for new ones
+/* scene/remove.c: removes objects of a scene, whose ids new ones can take
  * (velo/edit.h). The def of a removed object is the default of its family, so that what
  * visits all objects meets one that does nothing. */
 #include <stdio.h>
@@ -403,7 +403,7 @@ vlResult vl_scene_remove(vlScene *scene, vlSceneFamily family, uint32_t index, v
   return VL_OK;
 }
 
-/* ---- places ------------------------------------------------------------------------------ */
+/* ---- free ids ---------------------------------------------------------------------------- */
 
 /* The highest index in its own family that a def refers to; 0: none. */
 static uint32_t highest_input(vlSceneFamily family, const void *def) {

@@ -28,7 +28,7 @@ typedef struct vlSceneInstance {
   uint32_t keys; /* number of keys of the motion; 0: no motion */
   const double *times, *poses;
   bool hidden, removed;
-  uint64_t serial; /* of one in the place of a removed one: its number; else 0 */
+  uint64_t serial; /* of one with the id of a removed one: its number; else 0 */
 } vlSceneInstance;
 
 /* What vl_scene_set_* has allocated for an object; freed when the object is set again. */
@@ -42,7 +42,7 @@ typedef struct vlSceneEdit {
 /* The state of an object besides its def. Objects that were never changed have no mark. */
 typedef struct vlSceneMark {
   uint64_t generation; /* 0: as added; each vl_scene_set_* gives a new number */
-  uint64_t serial;     /* of an object in the place of a removed one: its number; else 0 */
+  uint64_t serial;     /* of an object with the id of a removed one: its number; else 0 */
   bool hidden;
   bool removed; /* its def is the default: of a shape, that of a mesh without vertices */
 } vlSceneMark;

@@ -12,19 +12,19 @@
  * False: another channel. */
 static bool wavelength_of(const char *name, double *wavelength) {
   double value = 0.0;
-  double place = 0.0;
+  double divisor = 0.0; /* 10 to the number of decimals; 0 before the decimal sign */
   if (strncmp(name, "S0.", 3) != 0)
     return false;
   const char *at = name + 3;
-  for (; (*at >= '0' && *at <= '9') || ((*at == ',' || *at == '.') && place == 0.0); at++) {
+  for (; (*at >= '0' && *at <= '9') || ((*at == ',' || *at == '.') && divisor == 0.0); at++) {
     if (*at == ',' || *at == '.') {
-      place = 1.0;
+      divisor = 1.0;
     } else {
       value = value * 10.0 + (*at - '0');
-      place *= 10.0;
+      divisor *= 10.0;
     }
   }
-  *wavelength = place > 1.0 ? value / place : value;
+  *wavelength = divisor > 1.0 ? value / divisor : value;
   return strcmp(at, "nm") == 0 && *wavelength > 0.0 && *wavelength < 1e5;
 }
 

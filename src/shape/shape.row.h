@@ -15,10 +15,10 @@
 #define LENGTH(name, member, text, ...) \
   PARAMETER(FLOAT, name, member, text, .unit = "length", VL_DEFAULT(__VA_ARGS__))
 /* A parameter in files from which an array of the def is computed. */
-#define IN_FILES(TYPE, file_name, place, text, ...)                                       \
+#define IN_FILES(TYPE, file_name, def_member, text, ...)                                  \
   {                                                                                       \
-    .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #place,                     \
-    .offset = offsetof(vlShapeDef, place),                                                \
+    .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #def_member,                \
+    .offset = offsetof(vlShapeDef, def_member),                                           \
     .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, .description = text, __VA_ARGS__ \
   }
 #define ALPHA                                                                              \

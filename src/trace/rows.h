@@ -164,7 +164,7 @@ typedef struct vlShadowRays {
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 
-/* Moves the way and the radiance of shadow ray i to place k. */
+/* Moves the way and the radiance of shadow ray i to index k. */
 static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
   q->ox[k] = q->ox[i];
   q->oy[k] = q->oy[i];

@@ -58,7 +58,7 @@ static void complete_ray(const vlPaths *p, uint32_t i, vlPaths *to, uint32_t k) 
   to->lane[k] = p->lane[i];
 }
 
-/* Moves ray i to place k <= i, without what complete_ray sets. */
+/* Moves ray i to index k <= i, without what complete_ray sets. */
 static void move_ray(vlPaths *r, uint32_t i, uint32_t k) {
   vl_set_lane3(r->ox, r->oy, r->oz, k, vl_lane3(r->ox, r->oy, r->oz, i));
   vl_set_lane3(r->dx, r->dy, r->dz, k, vl_lane3(r->dx, r->dy, r->dz, i));

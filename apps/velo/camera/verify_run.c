@@ -55,7 +55,8 @@ static bool in_one_piece(const vlCamera *c, double x, double y, double radius) {
   return true;
 }
 
-static bool place_of(const Pose *pose, double i, double j, double point[3], double pixel[2]) {
+static bool project_corner(const Pose *pose, double i, double j, double point[3],
+                           double pixel[2]) {
   double z;
   target_point(&pose->v->target, &pose->placement, i, j, point);
   return vl_camera_project(&pose->v->camera, point, pixel, &z);
@@ -92,10 +93,11 @@ static void expect_corners(Pose *pose) {
     for (int i = 1; i <= v->target.corners; i++) {
       Expected e = {.i = i, .j = j};
       double at[2], side[4][2], other[3], apart = INFINITY;
-      if (!place_of(pose, i, j, e.point, at) || !place_of(pose, i + 1, j, other, side[0]) ||
-          !place_of(pose, i, j + 1, other, side[1]) ||
-          !place_of(pose, i - 1, j, other, side[2]) ||
-          !place_of(pose, i, j - 1, other, side[3]))
+      if (!project_corner(pose, i, j, e.point, at) ||
+          !project_corner(pose, i + 1, j, other, side[0]) ||
+          !project_corner(pose, i, j + 1, other, side[1]) ||
+          !project_corner(pose, i - 1, j, other, side[2]) ||
+          !project_corner(pose, i, j - 1, other, side[3]))
         continue;
       for (int k = 0; k < 4; k++) {
         double ax = side[k][0] - at[0], ay = side[k][1] - at[1];

@@ -39,7 +39,7 @@ static void put_angle(char *text, size_t size, double radians) {
 
 /* ---- the options ------------------------------------------------------------------------- */
 
-/* Adds an option; its text goes to the returned place. */
+/* Adds an option. The caller writes its text to the buffer that is returned. */
 static char *add(AddedOptions *added, int id) {
   char *text = added->texts[added->count];
   added->items[added->count].id = id;

@@ -282,7 +282,7 @@ static void warp_frame(const SteadyFrame *now, const SteadyFrame *before, const 
   const uint32_t *hidden = vl_image_const_pixels(ids);
   const size_t stride = vl_image_channels(floats), hidden_stride = vl_image_channels(ids);
   const int flow = vl_image_find_channel(floats, "backward.U"),
-            place = vl_image_find_channel(floats, "P.X"),
+            position = vl_image_find_channel(floats, "P.X"),
             hides = vl_image_find_channel(ids, "backward.hidden");
   const View a = view_of(now), b = view_of(before);
   const double *pose = before->camera.world_from_camera;
@@ -293,7 +293,7 @@ static void warp_frame(const SteadyFrame *now, const SteadyFrame *before, const 
       continue;
     double square = 0;
     for (int k = 0; k < 3; k++) {
-      const double d = (double)value[place + k] - pose[4 * k + 3];
+      const double d = (double)value[position + k] - pose[4 * k + 3];
       square += d * d;
     }
     const bool nothing = a.ids[2 * i] == 0;

@@ -47,7 +47,7 @@ static void invert_similarity(const double m[16], double inverse[16]) {
 
 /* centre, distance: of what the camera sees. A scene at the origin is moved away from it,
  * another one to it. The scale is small: an offset that does not follow it would be seen. */
-static void choose_places(Verify *v, const double centre[3], double distance) {
+static void choose_poses(Verify *v, const double centre[3], double distance) {
   const double none[3] = {0, 0, 0}, way[3] = {0.66, 0.53, -0.53};
   const bool near = hypot(centre[0], hypot(centre[1], centre[2])) < 3 * distance;
   double shift[3];
@@ -258,7 +258,7 @@ vlResult verify_prepare(Verify *v, vlError *error) {
     result = make_cells(v, world, ids);
   if (result == VL_OK) {
     find_centre(floats, &v->camera, centre, &distance);
-    choose_places(v, centre, distance);
+    choose_poses(v, centre, distance);
     v->meets = share_of_light_paths(floats, &v->camera, world);
   }
   vl_image_destroy(floats);

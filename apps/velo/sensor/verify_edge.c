@@ -117,15 +117,15 @@ static Edge find_edge(const double *sums, double guess) {
   double sxy = 0.0;
   for (int y = 0; y < EDGE_SIDE; y++) {
     double weights = 0.0;
-    double places = 0.0;
+    double moment = 0.0;
     double middle = guess - (y - 0.5 * EDGE_SIDE) * tan(5.0 * PI / 180.0);
     for (int i = -WINDOW; i < WINDOW; i++) {
       int x = (int)floor(middle) + i;
       double step = sums[y * EDGE_SIDE + x + 1] - sums[y * EDGE_SIDE + x];
       weights += step;
-      places += step * (x + 0.5);
+      moment += step * (x + 0.5);
     }
-    double centre = places / weights;
+    double centre = moment / weights;
     sy += y;
     syy += (double)y * y;
     sx += centre;

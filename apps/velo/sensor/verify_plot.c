@@ -12,10 +12,10 @@ typedef struct Axes {
   double x, y; /* what the ends of the axes are */
 } Axes;
 
-static double place_x(const Axes *a, double x) {
+static double svg_x(const Axes *a, double x) {
   return LEFT + x / a->x * (WIDTH - LEFT - RIGHT);
 }
-static double place_y(const Axes *a, double y) {
+static double svg_y(const Axes *a, double y) {
   return HEIGHT - BOTTOM - y / a->y * (HEIGHT - TOP - BOTTOM);
 }
 
@@ -40,7 +40,7 @@ static void put_axes(FILE *file, const Axes *a) {
     fprintf(file,
             "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%g</text>\n"
             "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%g</text>\n",
-            place_x(a, x), HEIGHT - BOTTOM + 18, x, LEFT - 6, place_y(a, y) + 4, y);
+            svg_x(a, x), HEIGHT - BOTTOM + 18, x, LEFT - 6, svg_y(a, y) + 4, y);
   }
 }
 
@@ -63,14 +63,14 @@ int verify_plot(const Verify *v, const char *path) {
   fprintf(file, "<polyline fill=\"none\" stroke=\"#888\" points=\"");
   for (int i = 0; i < VERIFY_STEPS; i++) {
     const VerifyStep *step = &v->steps[i];
-    fprintf(file, "%.1f,%.1f ", place_x(&axes, step->mean - step->dark_mean),
-            place_y(&axes, verify_expected_variance(v, step)));
+    fprintf(file, "%.1f,%.1f ", svg_x(&axes, step->mean - step->dark_mean),
+            svg_y(&axes, verify_expected_variance(v, step)));
   }
   fprintf(file, "\"/>\n");
   for (int i = 0; i < VERIFY_STEPS; i++) {
     const VerifyStep *step = &v->steps[i];
     fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.5\" fill=\"#06c\"/>\n",
-            place_x(&axes, step->mean - step->dark_mean), place_y(&axes, step->variance));
+            svg_x(&axes, step->mean - step->dark_mean), svg_y(&axes, step->variance));
   }
   fprintf(file, "</svg>\n");
   bool failed = ferror(file) != 0;

@@ -40,18 +40,18 @@ void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
 
 /* Where pixel i of the finer image, whose pixels are `scale` of the whole image wide and begin
  * at `first`, lies between two pixels of the coarser one. */
-typedef struct Place {
+typedef struct Blend {
   uint32_t low, high;
   float share; /* of the high one */
-} Place;
+} Blend;
 
-static Place place(uint32_t i, uint32_t scale, uint32_t first, uint32_t coarse_scale,
-                   uint32_t count) {
+static Blend blend_at(uint32_t i, uint32_t scale, uint32_t first, uint32_t coarse_scale,
+                      uint32_t count) {
   double whole =
       ((double)(first / scale + i) + 0.5) * scale - first / coarse_scale * coarse_scale;
   double at = fmin(fmax(whole / coarse_scale - 0.5, 0), count - 1);
   uint32_t low = (uint32_t)at;
-  return (Place){low, low + 1 < count ? low + 1 : low, (float)(at - low)};
+  return (Blend){low, low + 1 < count ? low + 1 : low, (float)(at - low)};
 }
 
 /* Between the pixels of the coarser image it is linear. */
@@ -62,9 +62,9 @@ void engine_fill_rows(const Engine *e, vlImage *image, uint32_t scale, uint32_t 
   const float *pixels = vl_image_const_pixels(from);
   float *to = (float *)vl_image_pixels(image) + 4 * (size_t)rows * width;
   for (uint32_t y = rows; y < height; y++) {
-    Place v = place(y, scale, crop[1], e->coarser_scale, vl_image_height(from));
+    Blend v = blend_at(y, scale, crop[1], e->coarser_scale, vl_image_height(from));
     for (uint32_t x = 0; x < width; x++, to += 4) {
-      Place u = place(x, scale, crop[0], e->coarser_scale, columns);
+      Blend u = blend_at(x, scale, crop[0], e->coarser_scale, columns);
       const float *low = pixels + 4 * (size_t)v.low * columns,
                   *high = pixels + 4 * (size_t)v.high * columns;
       for (uint32_t c = 0; c < 4; c++) {

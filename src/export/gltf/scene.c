@@ -209,14 +209,14 @@ static json_t *lamp_profile(vlExport *x, size_t number, const char *data, size_t
 static json_t *lamp_node(const vlLightDef *d, json_int_t index, const float color[3],
                          double multiplier) {
   vlMat4 m = vl_mat4_load(d->world_from_light);
-  double from[3] = {d->from[0], d->from[1], d->from[2]}, place[3];
-  vl_mat4_point(&m, from, place);
+  double from[3] = {d->from[0], d->from[1], d->from[2]}, position[3];
+  vl_mat4_point(&m, from, position);
   float matrix[16] = {[15] = 1};
   for (int i = 0; i < 3; i++) {
     matrix[i] = (float)m.m[4 * i];
     matrix[4 + i] = (float)-m.m[4 * i + 2];
     matrix[8 + i] = (float)m.m[4 * i + 1];
-    matrix[12 + i] = (float)place[i];
+    matrix[12 + i] = (float)position[i];
   }
   json_t *node = json_pack("{s:{s:{s:I,s:f}}}", "extensions", "EXT_lights_ies", "light", index,
                            "multiplier", multiplier);

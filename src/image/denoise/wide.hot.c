@@ -8,13 +8,14 @@ static const float TINY = 1e-37f;
 /* Squared difference, over the noise's variance, from which on a prediction has no weight. */
 static const float FARTHEST = 9.0f;
 
-/* Values of one row of N * S pixels, sorted by their place between two points of the lattice.
+/* Values of one row of N * S pixels, sorted by their position between two points of the
+ * lattice.
  */
 typedef struct Pixels {
   float feature[F][S][N], result[3][S][N], scale[3][S][N];
 } Pixels;
 
-/* Sorts a row of N * S values by their place between two points of the lattice. */
+/* Sorts a row of N * S values by their position between two points of the lattice. */
 static void sort_row(const float *from, float to[S][N]) {
   for (int i = 0; i < N; i++)
     for (int phase = 0; phase < S; phase++)

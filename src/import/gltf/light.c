@@ -98,7 +98,7 @@ static bool read_profile(vlGltf *g, const vlGltfLocation *at, const json_t *json
 
 /* world_from_light: light space has -y where the node has -z, x where it has x, and -z where it
  * has y. */
-static void place(const vlMat4 *world, vlLightDef *def) {
+static void set_pose(const vlMat4 *world, vlLightDef *def) {
   for (int i = 0; i < 3; i++) {
     const double *row = world->m + 4 * i;
     def->world_from_light[4 * i] = row[0];
@@ -136,7 +136,7 @@ bool vl_gltf_add_lamp(vlGltf *g, size_t node) {
   def.scale = (float)multiplier;
   if (!read_profile(g, profile, json, &def))
     return false;
-  place(&g->nodes[node].world, &def);
+  set_pose(&g->nodes[node].world, &def);
   if (multiplier > 0 && vl_scene_add_light(g->scene, &def).index == 0)
     return false;
   g->lights_made++;

@@ -111,7 +111,7 @@ enum { MAX_NAMES = 24, MAX_MEMBERS = 24 };
 /* A name that the format does not have, where it is first, and how often it is there. */
 typedef struct {
   const char *object, *key;
-  char place[200];
+  char location[200];
   uint32_t count;
 } Unknown;
 
@@ -165,7 +165,7 @@ static void count_name(Look *look, const vlGltfLocation *at, const char *object,
   }
   Unknown *name = &look->names[look->count++];
   *name = (Unknown){.object = object, .key = key, .count = 1};
-  vl_gltf_write_location(at, name->place, sizeof name->place);
+  vl_gltf_write_location(at, name->location, sizeof name->location);
 }
 
 /* An extension that velo does not read, and that the file does not declare in extensionsUsed,
@@ -236,12 +236,12 @@ static void report(vlGltf *g, const Unknown *name) {
   if (name->count > 1)
     snprintf(times, sizeof times, ", here and in %u other place%s", name->count - 1,
              name->count > 2 ? "s" : "");
-  const char *place = *name->place ? name->place : "the root";
+  const char *location = *name->location ? name->location : "the root";
   if (extension)
-    vl_gltf_warn(g, VL_LOG_WARNING, NULL, "%s: %s is ignored: velo does not read it%s", place,
-                 vl_gltf_extension_text(name->key).text, times);
+    vl_gltf_warn(g, VL_LOG_WARNING, NULL, "%s: %s is ignored: velo does not read it%s",
+                 location, vl_gltf_extension_text(name->key).text, times);
   else
-    vl_gltf_warn(g, VL_LOG_WARNING, NULL, "%s: unknown name \"%s\" is ignored%s%s", place,
+    vl_gltf_warn(g, VL_LOG_WARNING, NULL, "%s: unknown name \"%s\" is ignored%s%s", location,
                  vl_short_text(name->key).text, near, times);
 }
 

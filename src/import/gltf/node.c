@@ -113,7 +113,7 @@ bool vl_gltf_pose_nodes(vlGltf *g) {
   for (size_t i = 0; i < g->node_count; i++)
     if (!vl_mat4_is_finite(g->nodes[i].world))
       return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "nodes", i),
-                          "its place in the world is not finite");
+                          "its transform to the world is not finite");
   return true;
 }
 

@@ -197,7 +197,7 @@ static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- scattering on surfaces -------------------------------------------------------------- */
 
-/* Makes the shadow rays of all n light samples, each at the place of its lane, as
+/* Makes the shadow rays of all n light samples, each at the index of its lane, as
  * vl_volume_push_shadow does. lit: 1 for those that contribute. */
 static void make_shadows(uint32_t n, const vlVertices *at, const vlLightSamples *l,
                          const vlBsdfValues *bsdf, vlShadowRays *q, vlShadowFlights *flights,

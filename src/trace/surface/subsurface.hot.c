@@ -368,7 +368,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension, const vlHits *hi
   }
 }
 
-/* The exits of the probes: their paths go on in s->subsurface->paths, at the places of the
+/* The exits of the probes: their paths go on in s->subsurface->paths, at the indices of the
  * paths that have entered. */
 static void go_through(vlTracing *t, uint32_t probes, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;

@@ -68,8 +68,8 @@ static bool draw(const vlTracing *t, uint32_t lane, uint32_t seed, uint32_t at[C
     return false;
   for (uint32_t k = 0; k < CANDIDATES; k++) {
     float u = ((float)k + vl_unit_float(vl_hash(seed + 1 + k))) * (1.0f / CANDIDATES);
-    uint32_t place = (uint32_t)(u * (float)count);
-    at[k] = first + (place < count ? place : count - 1);
+    uint32_t index = (uint32_t)(u * (float)count);
+    at[k] = first + (index < count ? index : count - 1);
     __builtin_prefetch(&inner->vertices[at[k]]); /* must prefetch */
   }
   return true;

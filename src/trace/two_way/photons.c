@@ -59,7 +59,7 @@ void vl_photon_map_build(vlPhotonMap *map, const vlPhoton *photons, uint32_t cou
     start[bucket_of(map, &photons[i]) + 1]++;
   for (uint32_t b = 0; b < buckets; b++)
     start[b + 1] += start[b];
-  /* start[b] is the place of the bucket's next photon; at the end it equals start[b + 1], so it
+  /* start[b] is the index of the bucket's next photon; at the end it equals start[b + 1], so it
    * is shifted back by one. */
   for (uint32_t i = 0; i < count; i++)
     sorted[start[bucket_of(map, &photons[i])]++] = photons[i];

@@ -10,6 +10,7 @@
 #include "base/json.h"
 #include "base/text.h"
 #include "camera/aperture.h"
+#include "camera/optics.h"
 #include "camera/parts.h"
 #include "camera_files/files.h"
 #include "sampler/sampler.h"
@@ -39,7 +40,7 @@ static bool put_velo(json_t *tree, const char *commit) {
 
 /* Makes a JSON string of any bytes. If they are not UTF-8 (paths may be so), each byte above
  * 0x7f becomes "?". */
-static json_t *string_of(vlContext *context, const char *text) {
+static json_t *json_of_text(vlContext *context, const char *text) {
   json_t *value = json_string(text);
   if (value)
     return value;
@@ -58,7 +59,7 @@ static bool put_strings(vlContext *context, json_t *tree, const char *key,
     return true;
   json_t *list = json_array();
   for (uint32_t i = 0; i < count; i++)
-    if (!vl_receipt_put(list, NULL, string_of(context, strings[i]))) {
+    if (!vl_receipt_put(list, NULL, json_of_text(context, strings[i]))) {
       json_decref(list);
       return false;
     }
@@ -81,7 +82,7 @@ static bool put_files(vlContext *context, json_t *tree, const char *scene) {
     vl_digest_text(record->digest, digest);
     json_t *file = json_object();
     bool good =
-        vl_receipt_put(file, "path", string_of(context, relative(record->path, scene))) &&
+        vl_receipt_put(file, "path", json_of_text(context, relative(record->path, scene))) &&
         vl_receipt_put(file, "size", json_integer((json_int_t)record->size)) &&
         vl_receipt_put(file, "murmur3", json_string(digest));
     if (!good) {
@@ -144,9 +145,9 @@ static bool put_optics(json_t *camera, const vlCameraDef *def) {
   if (def->projection != VL_PROJECTION_OPTICS || !def->lens.optics)
     return true;
   vlOpticsDef optics;
-  vlLensSurface surfaces[64];
+  vlLensSurface surfaces[VL_MAX_SURFACES];
   vl_optics_def(def->lens.optics, &optics, surfaces);
-  double numbers[64 * 4 + 4];
+  double numbers[4 * VL_MAX_SURFACES + 3];
   size_t count = 0;
   for (uint32_t i = 0; i < optics.count; i++) {
     numbers[count++] = surfaces[i].radius;
@@ -185,10 +186,12 @@ static bool put_camera(vlContext *context, json_t *tree, const vlReceiptDef *def
   return vl_receipt_put(tree, "camera", object);
 }
 
-static char *text_of(vlContext *context, const json_t *tree) {
+static char *compact_text(vlContext *context, const json_t *tree) {
   return vl_json_text(context, tree, JSON_COMPACT | JSON_PRESERVE_ORDER, "");
 }
 
+/* Makes a receipt, which owns tree and text. Null: they could not be made, for lack of memory;
+ * the other one is then freed. */
 static vlResult receipt_of(vlContext *context, json_t *tree, char *text, vlReceipt **receipt,
                            vlError *error) {
   vlReceipt *made = tree && text ? vl_alloc_zero(context, 1, sizeof *made) : NULL;
@@ -212,14 +215,15 @@ vlResult vl_receipt_make(vlContext *context, const vlReceiptDef *def, vlReceipt 
         "receipt: context, def, def.defs or receipt is null, or def.cookie is not that of a "
         "default def of this version");
   json_t *tree = json_object();
-  bool good = vl_receipt_put(tree, "velo_receipt", json_integer(VL_RECEIPT_FORMAT)) &&
-              put_velo(tree, def->commit) &&
-              put_strings(context, tree, "command", def->command, def->command_count) &&
-              (!def->scene || vl_receipt_put(tree, "scene", string_of(context, def->scene))) &&
-              put_files(context, tree, def->scene) && put_camera(context, tree, def) &&
-              vl_receipt_put_settings(tree, def) &&
-              put_strings(context, tree, "outputs", def->outputs, def->output_count);
-  return receipt_of(context, tree, good ? text_of(context, tree) : NULL, receipt, error);
+  bool good =
+      vl_receipt_put(tree, "velo_receipt", json_integer(VL_RECEIPT_FORMAT)) &&
+      put_velo(tree, def->commit) &&
+      put_strings(context, tree, "command", def->command, def->command_count) &&
+      (!def->scene || vl_receipt_put(tree, "scene", json_of_text(context, def->scene))) &&
+      put_files(context, tree, def->scene) && put_camera(context, tree, def) &&
+      vl_receipt_put_settings(tree, def) &&
+      put_strings(context, tree, "outputs", def->outputs, def->output_count);
+  return receipt_of(context, tree, good ? compact_text(context, tree) : NULL, receipt, error);
 }
 
 /* ---- reading ----------------------------------------------------------------------------- */
@@ -253,7 +257,7 @@ vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size,
   return receipt_of(context, tree, copy, receipt, error);
 }
 
-/* Replaces the word after --spp. */
+/* Replaces the word after --spp in the command, if it has that option. */
 static bool put_command_samples(json_t *command, uint32_t samples) {
   char text[16];
   size_t index;
@@ -280,8 +284,8 @@ vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt 
               put_command_samples(json_object_get(tree, "command"), samples);
   if (good)
     json_object_del(tree, "outputs");
-  return receipt_of(film->context, tree, good ? text_of(film->context, tree) : NULL, receipt,
-                    error);
+  return receipt_of(film->context, tree, good ? compact_text(film->context, tree) : NULL,
+                    receipt, error);
 }
 
 void vl_receipt_destroy(vlReceipt *receipt) {
@@ -340,8 +344,11 @@ float vl_receipt_exposure(const vlReceipt *receipt) {
   return json_is_number(value) ? (float)json_number_value(value) : 1.0f;
 }
 
-static int digit(char c) {
-  return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : 0;
+/* The value of a hexadecimal digit; 0 of any other character. */
+static int hex_digit(char c) {
+  if (c >= '0' && c <= '9')
+    return c - '0';
+  return c >= 'a' && c <= 'f' ? c - 'a' + 10 : 0;
 }
 
 const vlFileRecord *vl_receipt_file(const vlReceipt *receipt, uint32_t index,
@@ -354,7 +361,7 @@ const vlFileRecord *vl_receipt_file(const vlReceipt *receipt, uint32_t index,
   json_int_t size = json_integer_value(json_object_get(file, "size"));
   *record = (vlFileRecord){.path = path, .size = size > 0 ? (uint64_t)size : 0};
   for (int i = 0; i < 16; i++)
-    record->digest[i] = (uint8_t)(16 * digit(digest[2 * i]) + digit(digest[2 * i + 1]));
+    record->digest[i] = (uint8_t)(16 * hex_digit(digest[2 * i]) + hex_digit(digest[2 * i + 1]));
   return record;
 }
 

@@ -6,12 +6,12 @@
 
 #include "sensor/sensor.h"
 
-/* A value that is not known if it is beyond what a raw image holds. */
-static float known(double value) {
+/* The value; 0, which stands for an unknown one, if it is beyond what a raw image holds. */
+static float known_or_zero(double value) {
   return value >= 1e-6 && value <= 1e6 ? (float)value : 0.0f;
 }
 
-/* The levels and the noise of numbers. */
+/* Black and white level, gain and noise of the raw image's numbers. */
 static void set_levels(const vlSensorDef *sensor, const vlExposureDef *exposure,
                        vlRawDef *def) {
   double per_electron = vl_exposure_gain(sensor, exposure) / sensor->gain;
@@ -27,16 +27,16 @@ static void set_levels(const vlSensorDef *sensor, const vlExposureDef *exposure,
   def->white = (uint16_t)floor(full + 0.5);
   for (uint32_t i = 0; i < def->pattern_rows * def->pattern_columns; i++)
     def->black[i] = (uint16_t)floor(black + 0.5);
-  def->gain = known(per_electron);
-  def->read_noise = known(sqrt(variance));
+  def->gain = known_or_zero(per_electron);
+  def->read_noise = known_or_zero(sqrt(variance));
 }
 
 static void set_exposure(const vlSensorDef *sensor, const vlExposureDef *exposure,
                          vlRawDef *def) {
   double iso = sensor->base_iso * vl_exposure_gain(sensor, exposure) + 0.5;
-  def->exposure_time = known(vl_exposure_seconds(exposure));
-  def->f_number = known(exposure->f_number);
-  def->focal_length = known(exposure->focal_length / 1000.0);
+  def->exposure_time = known_or_zero(vl_exposure_seconds(exposure));
+  def->f_number = known_or_zero(exposure->f_number);
+  def->focal_length = known_or_zero(exposure->focal_length / 1000.0);
   def->iso = iso >= 1.0 && iso < 65536.0 ? (uint32_t)iso : 0;
 }
 
@@ -53,10 +53,10 @@ static void set_color(const vlSensorDef *sensor, const float *light, vlRawDef *d
       sensitivities[k * VL_SPECTRUM_VALUES + i] =
           filter->efficiency[i] * (float)(VL_SPECTRUM_FIRST_NM + i);
   }
-  vl_raw_match_color(def, sensitivities, light, NULL); /* else it has no colour */
+  vl_raw_match_color(def, sensitivities, light, NULL); /* if it fails, def has no colour */
 }
 
-/* The def with the mosaic as it is from the window's corner on. */
+/* The sensor whose mosaic begins at the window's first corner. */
 static vlSensorDef in_window(const vlSensorDef *sensor, const uint32_t window[4]) {
   vlSensorDef def = *sensor;
   for (uint32_t y = 0; y < def.pattern_height; y++)

@@ -12,8 +12,8 @@ enum { NUMBERS = 17 };
 
 typedef struct {
   const unsigned char *data;
-  size_t count, bytes; /* rows, bytes of a number */
-  bool columns;        /* Fortran's order */
+  size_t rows, bytes; /* bytes: of a number, 4 or 8 */
+  bool by_columns;    /* Fortran's order */
 } Array;
 
 /* Reads NumPy's header. False: it is not an array of N x 17 little-endian floating-point
@@ -23,12 +23,14 @@ static bool read_header(const char *text, size_t size, Array *array) {
   char header[512];
   if (size < 12 || memcmp(b, "\x93NUMPY", 6) != 0)
     return false;
-  size_t wide = b[6] == 1 ? 2 : 4, length = (size_t)b[8] | (size_t)b[9] << 8;
-  if (wide == 4)
+  /* format 1 gives the length of the header in 2 bytes, later formats in 4 */
+  const size_t start = b[6] == 1 ? 10 : 12;
+  size_t length = (size_t)b[8] | (size_t)b[9] << 8;
+  if (start == 12)
     length |= (size_t)b[10] << 16 | (size_t)b[11] << 24;
-  if (length >= sizeof header || 8 + wide + length > size)
+  if (length >= sizeof header || start + length > size)
     return false;
-  memcpy(header, b + 8 + wide, length);
+  memcpy(header, b + start, length);
   header[length] = 0;
   const char *shape = strstr(header, "'shape': ("), *type = strstr(header, "'descr': '<f");
   unsigned long rows = 0, columns = 0;
@@ -36,24 +38,27 @@ static bool read_header(const char *text, size_t size, Array *array) {
       columns != NUMBERS)
     return false;
   array->bytes = type[12] == '4' ? 4 : 8;
-  array->columns = strstr(header, "'fortran_order': True") != NULL;
-  array->count = rows;
-  array->data = b + 8 + wide + length;
-  return rows >= 1 && rows <= (size - 8 - wide - length) / NUMBERS / array->bytes;
+  array->by_columns = strstr(header, "'fortran_order': True") != NULL;
+  array->rows = rows;
+  array->data = b + start + length;
+  return rows >= 1 && rows <= (size - start - length) / NUMBERS / array->bytes;
 }
 
 static double number_at(const Array *array, size_t row, size_t column) {
-  size_t at = array->columns ? column * array->count + row : row * NUMBERS + column;
+  size_t at = array->by_columns ? column * array->rows + row : row * NUMBERS + column;
   const unsigned char *b = array->data + at * array->bytes;
   uint64_t bits = 0;
   for (size_t i = 0; i < array->bytes; i++)
     bits |= (uint64_t)b[i] << 8 * i;
-  double value;
-  float narrow;
-  uint32_t half = (uint32_t)bits;
-  memcpy(&value, &bits, sizeof value);
-  memcpy(&narrow, &half, sizeof narrow);
-  return array->bytes == 4 ? (double)narrow : value;
+  if (array->bytes == 4) {
+    const uint32_t float_bits = (uint32_t)bits;
+    float number;
+    memcpy(&number, &float_bits, sizeof number);
+    return (double)number;
+  }
+  double number;
+  memcpy(&number, &bits, sizeof number);
+  return number;
 }
 
 static vlResult read_llff(const vlCameraFile *file, const char *text, size_t size,
@@ -64,7 +69,7 @@ static vlResult read_llff(const vlCameraFile *file, const char *text, size_t siz
   double v[NUMBERS], m[16] = {[15] = 1.0};
   if (!read_header(text, size, &array))
     return vl_camera_wrong(file, "llff: the array must have N x 17 numbers");
-  record->frames = array.count < UINT32_MAX ? (uint32_t)array.count : UINT32_MAX;
+  record->frames = array.rows < UINT32_MAX ? (uint32_t)array.rows : UINT32_MAX;
   for (uint32_t i = 0; i < record->frames && chosen == UINT32_MAX; i++)
     if (vl_camera_is_frame(file, i, NULL))
       chosen = i;
@@ -79,6 +84,7 @@ static vlResult read_llff(const vlCameraFile *file, const char *text, size_t siz
   if (!vl_camera_set_sides(d, sides))
     return vl_camera_wrong(file, "llff: image %u is %g x %g; it must be whole pixels", chosen,
                            width, height);
+  /* from the axes down, right, back to right, down, forward; 0.0 - x is never -0 */
   for (int i = 0; i < 3; i++) {
     m[4 * i] = v[5 * i + 1];
     m[4 * i + 1] = v[5 * i];

@@ -1,6 +1,6 @@
-/* world/share.c: see share.h. Shapes of one scene are recognised by their index, if
- * they were not set since. Others, and displaced meshes, are compiled and then
- * compared number by number. */
+/* world/share.c: see share.h. A shape of the same scene is recognised by its index, if it was
+ * not set since the previous world was built. Others, and displaced meshes, are compiled and
+ * then compared number by number. */
 #include "world/share.h"
 
 #include <string.h>
@@ -11,27 +11,44 @@
 /* ---- comparison -------------------------------------------------------------------------- */
 
 enum { ARRAYS = 13 };
+
+/* The arrays of a shape's geometry; null: it has none of that kind. */
 typedef struct Arrays {
   void *item[ARRAYS];
   size_t bytes[ARRAYS];
+  int count;
 } Arrays;
 
+static void list(Arrays *a, void *item, size_t count, size_t size) {
+  a->item[a->count] = item;
+  a->bytes[a->count++] = count * size;
+}
+
 static Arrays arrays_of(const vlWorldShape *s) {
-  size_t v = sizeof(float) * (size_t)s->vertices, n = v * s->steps, f = s->faces;
-  size_t corners = s->kind == VL_SHAPE_BILINEAR ? 4 : 3, segments = f >> s->split;
-  bool curves = s->kind == VL_SHAPE_CURVES;
-  Arrays a = {{s->positions, s->normals, s->tangents, s->uvs, s->indices, s->tangent_signs,
-               s->more_uvs[0], s->more_uvs[1], s->more_uvs[2], s->colors, s->widths, s->centers,
-               s->radii},
-              {curves ? 12 * segments * sizeof(float) : 3 * n,
-               curves ? 6 * segments * sizeof(float) : 3 * n, 3 * v, 2 * v,
-               corners * f * sizeof(uint32_t), v, 2 * v, 2 * v, 2 * v, 4 * v,
-               2 * segments * sizeof(float), 3 * f * sizeof(double), f * sizeof(float)}};
+  const size_t vertices = s->vertices;
+  const size_t corners = s->kind == VL_SHAPE_BILINEAR ? 4 : 3;
+  const size_t segments = s->faces >> s->split;
+  const bool curves = s->kind == VL_SHAPE_CURVES;
+  const size_t points = curves ? 4 * segments : vertices * s->steps;
+  const size_t normals = curves ? 2 * segments : vertices * s->steps;
+  Arrays a = {.count = 0};
+  list(&a, s->positions, 3 * points, sizeof(float));
+  list(&a, s->normals, 3 * normals, sizeof(float));
+  list(&a, s->tangents, 3 * vertices, sizeof(float));
+  list(&a, s->uvs, 2 * vertices, sizeof(float));
+  list(&a, s->indices, corners * s->faces, sizeof(uint32_t));
+  list(&a, s->tangent_signs, vertices, sizeof(float));
+  for (int k = 0; k < 3; k++)
+    list(&a, s->more_uvs[k], 2 * vertices, sizeof(float));
+  list(&a, s->colors, 4 * vertices, sizeof(float));
+  list(&a, s->widths, 2 * segments, sizeof(float));
+  list(&a, s->centers, (size_t)3 * s->faces, sizeof(double));
+  list(&a, s->radii, s->faces, sizeof(float));
   return a;
 }
 
 /* Clears the members that do not describe the geometry, and the addresses. */
-static void mask(vlWorldShape *s) {
+static void clear_all_but_geometry(vlWorldShape *s) {
   s->material = s->first_light = s->inside = s->outside = 0;
   s->alpha = 0;
   s->pass_shadow = s->backdrop = s->hidden = false;
@@ -44,18 +61,19 @@ static void mask(vlWorldShape *s) {
     s->more_uvs[k] = NULL;
 }
 
+/* Whether all that describes the geometry, except for the arrays, is the same. */
 static bool same_numbers(const vlWorldShape *a, const vlWorldShape *b) {
   vlWorldShape x, y;
   memcpy(&x, a, sizeof x); /* with the padding, which is 0 */
   memcpy(&y, b, sizeof y);
-  mask(&x);
-  mask(&y);
+  clear_all_but_geometry(&x);
+  clear_all_but_geometry(&y);
   return memcmp(&x, &y, sizeof x) == 0;
 }
 
 static bool same_arrays(const vlWorldShape *a, const vlWorldShape *b) {
   Arrays x = arrays_of(a), y = arrays_of(b);
-  for (int k = 0; k < ARRAYS; k++) {
+  for (int k = 0; k < x.count; k++) {
     if (!x.item[k] != !y.item[k] || (x.item[k] && x.bytes[k] != y.bytes[k]))
       return false;
     if (x.item[k] && x.item[k] != y.item[k] && memcmp(x.item[k], y.item[k], x.bytes[k]) != 0)
@@ -76,7 +94,7 @@ bool vl_shape_same(const vlWorld *world, size_t i, const vlWorld *previous, size
 /* ---- reuse ------------------------------------------------------------------------------- */
 
 /* Gives *s the geometry of another shape. */
-static void take(const vlWorldShape *from, vlWorldShape *s) {
+static void take_geometry(const vlWorldShape *from, vlWorldShape *s) {
   vlWorldShape own = *s;
   memcpy(s, from, sizeof *s);
   s->material = own.material;
@@ -108,7 +126,7 @@ bool vl_shape_reuse(vlWorld *world, const vlScene *scene, size_t index, vlWorldS
   vlPart *part = previous->shape_parts[index];
   if (part && !vl_part_share(world, part))
     return false;
-  take(old, s);
+  take_geometry(old, s);
   world->shape_parts[index] = part;
   world->shape_from[index] = (uint32_t)index;
   *done = true;
@@ -126,7 +144,7 @@ struct vlShapeSearch {
 static uint32_t fingerprint(const vlWorldShape *s) {
   uint32_t h = (uint32_t)s->kind * 31 + s->vertices * 2654435761u + s->faces * 40503u;
   Arrays a = arrays_of(s);
-  for (int k = 0; k < ARRAYS; k++) {
+  for (int k = 0; k < a.count; k++) {
     size_t words = a.item[k] ? a.bytes[k] / 4 : 0;
     for (size_t i = 0; i < words; i += words / 8 + 1) {
       uint32_t word;
@@ -151,8 +169,8 @@ static struct vlShapeSearch *make_search(vlWorld *world) {
   if (!t->first || !t->next)
     return NULL;
   memset(t->first, 0, size * sizeof *t->first);
-  for (uint32_t i = (uint32_t)previous->shapes.count;
-       i-- > 0;) { /* the first of equal ones is found first */
+  /* from the last to the first, so that of equal shapes the first is found first */
+  for (uint32_t i = (uint32_t)previous->shapes.count; i-- > 0;) {
     if (!previous->shape_parts[i])
       continue;
     uint32_t *slot = &t->first[fingerprint(&previous->shapes.items[i]) & (size - 1)];
@@ -179,7 +197,7 @@ bool vl_shape_match(vlWorld *world, size_t index, vlWorldShape *s) {
     if (!same_numbers(old, s) || !same_arrays(old, s))
       continue;
     vl_part_drop_last(world);
-    take(old, s);
+    take_geometry(old, s);
     world->shape_parts[index] = previous->shape_parts[i - 1];
     world->shape_from[index] = i - 1;
     return vl_part_share(world, previous->shape_parts[i - 1]);

@@ -18,8 +18,8 @@ static void fill(const vlKindFamily *family, const Choice *more, Choice *choices
 }
 
 const Choice *kind_choices(const Choice *list) {
-  /* zero-initialised, so each list ends with zeros; the second list of a family has the further
-   * names */
+  /* Zero-initialised, so that each list ends with zeros. By family: first without, then with
+   * further names; the last list stays empty, for unknown families. */
   static Choice choices[2 * MAX_FAMILIES + 1][MAX_CHOICES];
   const vlKindFamily *family;
   for (uint32_t i = 0; i < MAX_FAMILIES && (family = vl_kind_family(i)); i++) {

@@ -5,9 +5,10 @@
 #include "cli/choice.h"
 #include "velo/schema.h"
 
-/* The names of a family's kinds, each followed by its aliases, and further names. list: the
- * family's name, the further names, and null; a family has one list with further names.
- * Constant, never freed. */
+/* The names of a family's kinds, each followed by its alias, and then further names. list:
+ * first the family's name, then the further names with their values, then a null name. All
+ * lists with further names of one family must be the same. Constant, never freed; the first
+ * call for each list must not run beside others. */
 const Choice *kind_choices(const Choice *list);
 /* The name of a kind in scene files. */
 const char *kind_name(const char *family, int kind);

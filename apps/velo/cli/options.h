@@ -98,7 +98,7 @@ typedef struct Command {
 /* Parses argv without the names of program and command. Returns -1 to continue, otherwise the
  * exit code after reporting (0 after --help). */
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);
-/* all: also of a command with a brief page everything. */
+/* all: the whole page, also of a command that has a brief one. */
 void options_print_help(const Command *command, bool all);
 
 typedef struct ExitStatus {

@@ -12,8 +12,8 @@
 
 enum { INFO_MISSING, INFO_CHECK };
 
-static bool is_whole(const uint32_t window[4], const uint32_t crop[4]) {
-  return memcmp(window, crop, 4 * sizeof *window) == 0;
+static bool same_rectangle(const uint32_t a[4], const uint32_t b[4]) {
+  return memcmp(a, b, 4 * sizeof *a) == 0;
 }
 
 static void print_ranges(const RangeList *list) {
@@ -21,6 +21,7 @@ static void print_ranges(const RangeList *list) {
     printf("%s%u:%u", i ? " " : "", list->ranges[i].first, list->ranges[i].end);
 }
 
+/* The samples per pixel that the render was to have; 0: not known. */
 static uint32_t planned_of(const vlFilmFile *file) {
   uint32_t planned = 0;
   const vlReceipt *receipt = vl_film_file_receipt(file);
@@ -42,7 +43,7 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
   const uint32_t *c = def->crop, whole[4] = {0, 0, def->width, def->height};
   uint32_t planned = planned_of(file);
   printf("%s\n  size      %u x %u pixels", path, def->width, def->height);
-  if (!is_whole(c, whole))
+  if (!same_rectangle(c, whole))
     printf(", crop %u,%u,%u,%u", c[0], c[1], c[2], c[3]);
   printf("\n  sums      colour%s", def->errors ? ", errors" : "");
   if (def->buckets)
@@ -55,7 +56,7 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
     print_ranges(&p->samples);
     if (planned)
       printf(" of %u", planned);
-    if (!is_whole(p->window, c))
+    if (!same_rectangle(p->window, c))
       printf(", pixels %u,%u,%u,%u", p->window[0], p->window[1], p->window[2], p->window[3]);
     putchar('\n');
   }
@@ -84,17 +85,30 @@ static void print_merge(const char *path, const char *stem, uint32_t count) {
   putchar('\n');
 }
 
+/* Prints the command that renders missing samples of a part into the film `name`. */
+static void print_render(const vlFilmFile *file, const FilmPart *part,
+                         const vlSampleRange *range, const char *name) {
+  const uint32_t *crop = vl_film_file_def(file)->crop, *w = part->window;
+  print_command(vl_film_file_receipt(file));
+  if (range->first || range->end != planned_of(file))
+    printf(" --samples %u:%u", range->first, range->end);
+  if (!same_rectangle(w, crop))
+    printf(" --tiles %u,%u,%u,%u", w[0], w[1], w[2], w[3]);
+  printf(" --film");
+  text_shell_word(stdout, name);
+  putchar('\n');
+}
+
 /* Prints one command for each rectangle and range, and then the command that merges their
  * films. With --noise, only rectangles without any sample are listed: how many samples the
  * others need is not known before. A last command continues the film until they have enough. */
 static int print_missing(const char *path, const vlFilmFile *file, const FilmParts *parts) {
   const vlReceipt *receipt = vl_film_file_receipt(file);
-  const uint32_t *crop = vl_film_file_def(file)->crop;
-  uint32_t count = 0, planned = planned_of(file);
+  uint32_t count = 0;
   size_t length = strlen(path);
   char stem[4096], name[4200];
   double noise = receipt ? vl_receipt_noise(receipt) : 0;
-  if (!receipt || !planned)
+  if (!receipt || !planned_of(file))
     return report_failure(STATUS_SCENE,
                           "%s: the film has no receipt: what made it is not known", path);
   if (length > 5 && strcmp(path + length - 5, ".film") == 0)
@@ -106,15 +120,8 @@ static int print_missing(const char *path, const vlFilmFile *file, const FilmPar
       const vlSampleRange *r = &p->samples.ranges[k];
       if (noise > 0 && r->first)
         continue;
-      print_command(receipt);
-      if (r->first || r->end != planned)
-        printf(" --samples %u:%u", r->first, r->end);
-      if (!is_whole(p->window, crop))
-        printf(" --tiles %u,%u,%u,%u", p->window[0], p->window[1], p->window[2], p->window[3]);
-      printf(" --film");
       snprintf(name, sizeof name, "%s-missing-%u.film", stem, ++count);
-      text_shell_word(stdout, name);
-      putchar('\n');
+      print_render(file, p, r, name);
     }
   if (count)
     print_merge(path, stem, count);

@@ -47,16 +47,18 @@ bool output_is_stream(const char *path);
 bool output_holds_layers(const char *path);
 /* Whether the file's format holds an alpha channel. */
 bool output_holds_alpha(const char *path);
-/* The suffix of the name with its dot; null: it has none. */
+/* The suffix of the name, from its dot on; null: it has none. */
 const char *output_dot(const char *path);
 /* Whether velo writes files with this suffix. *eight_bit: whether the format holds display
  * values. */
 bool output_suffix(const char *path, bool *eight_bit);
 /* The largest width and height of the format. */
 uint32_t output_largest_side(const char *path);
-/* Both functions return -1, or the exit code after reporting the error. The first does not
- * access the file system. */
+/* Checks that every name has a suffix that velo writes and is given once. Does not access the
+ * file system. Returns -1, or the exit code after reporting the error. */
 int outputs_check_names(const Outputs *outputs);
+/* Checks that every file can be written, and removes what an earlier run that was killed has
+ * left beside it. Returns as outputs_check_names. */
 int outputs_check_folders(const Outputs *outputs);
 /* Checks one name against the file system and against what the context, which may be null, has
  * read. Returns -1, or the exit code after reporting the error. */

@@ -111,7 +111,7 @@ static bool matte_rule(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-/* A roughness of pbrt-v3's default where none is given. */
+/* Adds pbrt-v3's default roughness, `value`, along the directions that have none. */
 static bool add_roughness(vlOldFile *file, vlOldStatement *s, const char *value) {
   if (vl_old_find(s, "roughness"))
     return true;
@@ -152,7 +152,7 @@ static bool metal_rule(vlOldFile *file, vlOldStatement *s) {
   return add_roughness(file, s, "0.01");
 }
 
-/* pbrt-v4's dielectric is not tinted. */
+/* pbrt-v4's dielectric is not tinted: Kr and Kt go, and are lost unless they are 1. */
 static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
   static const char *const names[] = {"Kr", "Kt"};
   for (int i = 0; i < 2; i++) {
@@ -176,18 +176,19 @@ static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-/* The integrator's name is written already. */
-static bool tell_path(vlOldFile *file, const vlOldStatement *s) {
+/* pbrt-v3's path tracer renders subsurface scattering, pbrt-v4's does not. Reports it once, if
+ * the integrator is written already and its name cannot be changed any more. */
+static void warn_of_path(vlOldFile *file, const vlOldStatement *s) {
   vlUpgrade *u = file->u;
   if (u->plain_path && !u->subsurface)
     vl_old_lose(file, s->line,
                 "pbrt-v4's \"path\" does not render subsurface scattering: name \"volpath\" as "
                 "integrator");
   u->plain_path = false;
-  return true;
 }
 
-/* A name says all; pbrt-v4 wants sigma_a and sigma_s both or neither. */
+/* The name of a measured substance replaces sigma_a and sigma_s. Without it pbrt-v4 wants both
+ * or neither: the one that is missing gets pbrt-v3's default. */
 static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *name = vl_old_find(s, "name"), *a = vl_old_find(s, "sigma_a"),
              *b = vl_old_find(s, "sigma_s");
@@ -196,7 +197,7 @@ static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
     vl_old_drop(s, a);
     vl_old_drop(s, b);
   }
-  tell_path(file, s);
+  warn_of_path(file, s);
   if (named || !a == !b)
     return true;
   return vl_old_add(
@@ -204,8 +205,9 @@ static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
       a ? "\"rgb sigma_s\" [ 2.55 3.21 3.77 ]" : "\"rgb sigma_a\" [ .0011 .0024 .014 ]");
 }
 
-static bool kd_rule(vlOldFile *file, vlOldStatement *s) {
-  return tell_path(file, s);
+static bool kdsubsurface_rule(vlOldFile *file, vlOldStatement *s) {
+  warn_of_path(file, s);
+  return true;
 }
 
 static bool none_rule(vlOldFile *file, vlOldStatement *s) {
@@ -227,7 +229,7 @@ static const vlOldKind kinds[] = {
     {"translucent", "diffusetransmission", translucent, vl_old_translucent},
     {"mix", "mix", mix, vl_old_mix},
     {"hair", "hair", hair},
-    {"kdsubsurface", "subsurface", kdsubsurface, kd_rule},
+    {"kdsubsurface", "subsurface", kdsubsurface, kdsubsurface_rule},
     {"subsurface", "subsurface", subsurface, subsurface_rule},
     {"disney", "principled", disney, vl_old_disney,
      "disney has no counterpart in pbrt-v4: velo's own principled is written"},
@@ -254,7 +256,8 @@ static bool is_new(const char *name, vlOldStatement *s) {
   return false;
 }
 
-/* A material without a coat: what its reflectance is, is known already. */
+/* The name of the kind in pbrt-v4. A coated one whose coat is black (coat_rule has dropped its
+ * "Ks") is diffuse. */
 static const char *new_kind(vlOldStatement *s, const vlOldKind *kind) {
   bool coated = vl_text_is(kind->to, "coateddiffuse");
   for (size_t i = 0; i < s->params.count && coated; i++) {
@@ -266,7 +269,9 @@ static const char *new_kind(vlOldStatement *s, const vlOldKind *kind) {
   return kind->to;
 }
 
-static const vlOldKind *find(vlOldFile *file, vlOldStatement *s, const char *name) {
+/* The kind of that name; an unknown one, which is reported, becomes grey diffuse. Null: the
+ * name is pbrt-v4's own, and the statement stays as it is. */
+static const vlOldKind *find_kind(vlOldFile *file, vlOldStatement *s, const char *name) {
   const vlOldKind *kind = vl_old_kind(kinds, name);
   if (is_new(name, s))
     return NULL;
@@ -284,18 +289,18 @@ static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
   if (kind->rule && !kind->rule(file, s))
     return false;
   const vlOldRow *rows = kind->rows;
-  static const vlOldRow bare[] = {
+  static const vlOldRow without_coat[] = {
       {"Kd", VL_OLD_RENAME, "reflectance"},
       BUMP,
       {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
       {0}};
   if (!vl_text_is(new_kind(s, kind), kind->to))
-    rows = bare;
+    rows = without_coat;
   return vl_old_rows(file, s, rows, VL_OLD_LOSE);
 }
 
 bool vl_old_material(vlOldFile *file, vlOldStatement *s) {
-  const vlOldKind *kind = find(file, s, s->name[0]);
+  const vlOldKind *kind = find_kind(file, s, s->name[0]);
   if (!kind)
     return true;
   if (!rewrite(file, s, kind))
@@ -306,7 +311,7 @@ bool vl_old_material(vlOldFile *file, vlOldStatement *s) {
 bool vl_old_named_material(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *type = vl_old_find(s, "type");
   const char *name = type && type->strings ? type->text[0] : "matte"; /* pbrt-v3's default */
-  const vlOldKind *kind = find(file, s, name);
+  const vlOldKind *kind = find_kind(file, s, name);
   if (!kind)
     return true;
   if (!rewrite(file, s, kind))

@@ -76,7 +76,7 @@ VL_API vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vl
 
 /** Replaces a shape: its arrays, its kind, its transform, its group. A def that keeps arrays of
  * the shape's own (vl_scene_shape) may point at them. The next world compiles the shape again,
- * and the accelerator of its group. A removed shape is there again, as a new one in its place.
+ * and the accelerator of its group. A removed shape is there again, as a new one with its id.
  * Errors: as above; the arrays are copied before the old ones are freed. */
 VL_API vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
                                    vlError *error);
@@ -112,7 +112,7 @@ VL_API bool vl_scene_has(const vlScene *scene, vlSceneFamily family, uint32_t in
 /** No object of this family has a higher index; 0: there is none. Removed ones may have it and
  * lower ones. */
 VL_API uint32_t vl_scene_highest(const vlScene *scene, vlSceneFamily family);
-/** The lowest index of a removed object whose place a new one can take by vl_scene_set_*; 0:
+/** The lowest index of a removed object whose id a new one can take by vl_scene_set_*; 0:
  * there is none. def: of the new object, of the family's type, or null; what it refers to in
  * its own family has lower ids. For instances see vl_scene_fill_instance. A program that
  * removes and adds objects in a loop sets them, so that the scene does not grow. */
@@ -121,7 +121,7 @@ VL_API uint32_t vl_scene_removed(const vlScene *scene, vlSceneFamily family, con
  * and if there is no such object. */
 VL_API uint64_t vl_scene_serial(const vlScene *scene, vlSceneFamily family, uint32_t index);
 /** Gives a group another name, which is copied (null: none). A removed group is there again, as
- * a new and empty one in its place. ARGUMENT, MEMORY. */
+ * a new and empty one with its id. ARGUMENT, MEMORY. */
 VL_API vlResult vl_scene_set_group(vlScene *scene, vlGroupId id, const char *name,
                                    vlError *error);
 
@@ -144,7 +144,7 @@ VL_API vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool sho
                                        vlError *error);
 /** Removes an instance for good; its id is given again by vl_scene_fill_instance only. */
 VL_API vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *error);
-/** Moves the instance that was added last into the place of the first one that was removed, so
+/** Gives the instance that was added last the lowest id of those that were removed, so
  * that a program that removes and adds instances in a loop does not make the scene grow.
  * Returns its id, which is its old one if none was removed; index 0: there is no instance, or
  * the last one is removed. */

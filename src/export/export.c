@@ -23,9 +23,11 @@ void vl_export_lose(vlExport *x, const char *format, ...) {
       return;
     }
   vlLoss *loss = &x->losses[x->loss_count++];
-  memcpy(loss->text, x->loss_count == VL_EXPORT_LOSSES ? "more of other kinds" : text,
-         x->loss_count == VL_EXPORT_LOSSES ? sizeof "more of other kinds" : sizeof text);
   loss->count = 1;
+  memcpy(loss->text, text, sizeof text);
+  /* the last row counts all kinds of loss that have no row of their own */
+  if (x->loss_count == VL_EXPORT_LOSSES)
+    snprintf(loss->text, sizeof loss->text, "more of other kinds");
 }
 
 static void lose_many(vlExport *x, uint64_t count, const char *text) {
@@ -95,7 +97,8 @@ bool vl_export_path(vlExport *x, const char *name, char *path, size_t size) {
          vl_export_fail(x, VL_ERROR_IO, "the file's name is too long");
 }
 
-static bool take(vlExport *x, vlResult result) {
+/* Keeps the first error of the export. Returns whether this result is none. */
+static bool keep_result(vlExport *x, vlResult result) {
   if (result != VL_OK && x->result == VL_OK)
     x->result = result;
   return result == VL_OK;
@@ -104,14 +107,14 @@ static bool take(vlExport *x, vlResult result) {
 bool vl_export_main(vlExport *x, const void *data, size_t size) {
   if (x->result != VL_OK)
     return false; /* whatever became of the part that failed */
-  return x->dry || take(x, vl_file_set_main(&x->files, data, size, x->error));
+  return x->dry || keep_result(x, vl_file_set_main(&x->files, data, size, x->error));
 }
 
 bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size) {
   if (x->dry)
     return true;
-  return take(x, vl_file_set_name(&x->files, name, 300, data, size, x->error)) &&
-         take(x, vl_file_set_write(&x->files, name, data, size, x->error));
+  return keep_result(x, vl_file_set_name(&x->files, name, 300, data, size, x->error)) &&
+         keep_result(x, vl_file_set_write(&x->files, name, data, size, x->error));
 }
 
 vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
@@ -121,8 +124,8 @@ vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
   vlResult r = t->data ? vl_image_read_memory(x->context, t->name ? t->name : "image", t->data,
                                               t->data_size, &image, &error)
                        : vl_image_read_named(x->context, NULL, t->path, &image, &error);
-  if (r != VL_OK &&
-      x->result == VL_OK) /* the scene's image is at fault, not the file being written */
+  /* the scene's image is at fault, not the file that is written: the error is at the image */
+  if (r != VL_OK && x->result == VL_OK)
     x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s",
                            error.message);
   return image;
@@ -138,7 +141,8 @@ bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char 
   return r == VL_OK || vl_export_fail(x, r, "%s", error.message);
 }
 
-static const char *kind_of(const char *data, size_t size) {
+/* The suffix of an image that both formats can hold as it is; null: another kind. */
+static const char *suffix_of(const char *data, size_t size) {
   if (size > 8 && memcmp(data, "\x89PNG\r\n\x1a\n", 8) == 0)
     return ".png";
   if (size > 3 && memcmp(data, "\xff\xd8\xff", 3) == 0)
@@ -162,7 +166,7 @@ bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *si
     if (r != VL_OK)
       return vl_export_fail(x, r, "%s", error.message);
   }
-  *suffix = *data ? kind_of(*data, *size) : NULL;
+  *suffix = *data ? suffix_of(*data, *size) : NULL;
   if (*suffix)
     return true;
   vl_free(x->context, *data);
@@ -177,7 +181,7 @@ bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *si
   return fine;
 }
 
-/* ---- the face ---------------------------------------------------------------------------- */
+/* ---- saving ------------------------------------------------------------------------------ */
 
 static void start(vlExport *x, bool dry) {
   x->dry = dry;

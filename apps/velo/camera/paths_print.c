@@ -35,9 +35,9 @@ static vlIdInfo info_of(const vlWorld *world, vlIdKind kind, uint32_t id) {
   return info;
 }
 
-/* Ground truth: floats are Z, distance, P, N, Ng, uv, albedo; ids: object, material, instance,
- * primitive. */
+/* The first float of each channel of the ground truth, and its ids. */
 enum { C_Z, C_DISTANCE, C_P, C_N = 5, C_NG = 8, C_UV = 11, C_ALBEDO = 13, C_COUNT = 16 };
+enum { ID_OBJECT, ID_MATERIAL, ID_INSTANCE, ID_PRIMITIVE };
 
 static double channel_at(const PathsReport *r, uint32_t channel) {
   return (double)vl_image_get(r->traced->channels, 0, 0, channel);
@@ -49,7 +49,8 @@ static uint32_t id_of(const PathsReport *r, uint32_t channel) {
 
 /* ---- text -------------------------------------------------------------------------------- */
 
-static void print_what(const PathsReport *r, vlIdKind kind, const char *word, uint32_t id) {
+/* A word, an id, and the name and type of what has it; nothing for id 0. */
+static void print_id(const PathsReport *r, vlIdKind kind, const char *word, uint32_t id) {
   vlIdInfo info = info_of(r->world, kind, id);
   if (id == 0)
     return;
@@ -69,19 +70,19 @@ static void print_numbers(const char *word, const PathsReport *r, uint32_t first
 }
 
 static void print_seen(const PathsReport *r) {
-  uint32_t object = id_of(r, 0);
+  uint32_t object = id_of(r, ID_OBJECT);
   printf("the centre of the pixel sees ");
   if (!object) {
     printf("nothing\n");
     return;
   }
-  print_what(r, VL_ID_OBJECT, "object", object);
+  print_id(r, VL_ID_OBJECT, "object", object);
   printf(", ");
-  print_what(r, VL_ID_MATERIAL, "material", id_of(r, 1));
-  if (id_of(r, 2))
+  print_id(r, VL_ID_MATERIAL, "material", id_of(r, ID_MATERIAL));
+  if (id_of(r, ID_INSTANCE))
     printf(", ");
-  print_what(r, VL_ID_INSTANCE, "instance", id_of(r, 2));
-  printf(", face %u\n", id_of(r, 3));
+  print_id(r, VL_ID_INSTANCE, "instance", id_of(r, ID_INSTANCE));
+  printf(", face %u\n", id_of(r, ID_PRIMITIVE));
   vlIdInfo info = info_of(r->world, VL_ID_OBJECT, object);
   if (info.source.file)
     printf("  in        %s:%u\n", info.source.file, info.source.line);
@@ -104,7 +105,7 @@ static void print_contribution(const PathsReport *r, const vlPathContribution *c
     printf(": %s %u", c->type, c->light);
   if (c->object) {
     printf(", ");
-    print_what(r, VL_ID_OBJECT, "object", c->object);
+    print_id(r, VL_ID_OBJECT, "object", c->object);
   }
   if (c->event != VL_PATH_LIGHT_MEDIUM)
     printf("; pdf light %.4g, bsdf %.4g, weight %.4g", (double)c->light_pdf,
@@ -142,11 +143,10 @@ static void print_vertex(const PathsReport *r, const vlPath *p, uint32_t index) 
   else if (v->event == VL_PATH_MEDIUM)
     printf("medium %u", v->medium);
   else
-    print_what(r, VL_ID_OBJECT, v->event == VL_PATH_EXIT ? "leaves object" : "object",
-               v->object);
+    print_id(r, VL_ID_OBJECT, v->event == VL_PATH_EXIT ? "leaves object" : "object", v->object);
   if (v->material) {
     printf(", ");
-    print_what(r, VL_ID_MATERIAL, "material", v->material);
+    print_id(r, VL_ID_MATERIAL, "material", v->material);
   }
   if (v->texture)
     printf(", texture %s%s%s", v->texture, v->image ? " " : "", v->image ? v->image : "");
@@ -242,13 +242,13 @@ static void json_channel(Json *json, const PathsReport *r, const char *key, uint
 }
 
 static void json_seen(Json *json, const PathsReport *r) {
-  if (!id_of(r, 0))
+  if (!id_of(r, ID_OBJECT))
     return;
   json_begin(json, "sees", '{');
-  json_what(json, r, "object", VL_ID_OBJECT, id_of(r, 0));
-  json_what(json, r, "material", VL_ID_MATERIAL, id_of(r, 1));
-  json_what(json, r, "instance", VL_ID_INSTANCE, id_of(r, 2));
-  json_integer(json, "primitive", id_of(r, 3));
+  json_what(json, r, "object", VL_ID_OBJECT, id_of(r, ID_OBJECT));
+  json_what(json, r, "material", VL_ID_MATERIAL, id_of(r, ID_MATERIAL));
+  json_what(json, r, "instance", VL_ID_INSTANCE, id_of(r, ID_INSTANCE));
+  json_integer(json, "primitive", id_of(r, ID_PRIMITIVE));
   json_channel(json, r, "depth", C_Z, 1);
   json_channel(json, r, "distance", C_DISTANCE, 1);
   json_channel(json, r, "position", C_P, 3);
@@ -279,15 +279,15 @@ static void json_contribution(Json *json, const PathsReport *r, const vlPathCont
 }
 
 static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v) {
-  bool placed = v->event != VL_PATH_NOTHING,
-       on_surface = v->event == VL_PATH_SURFACE || v->event == VL_PATH_EXIT;
+  const bool in_scene = v->event != VL_PATH_NOTHING;
+  const bool on_surface = v->event == VL_PATH_SURFACE || v->event == VL_PATH_EXIT;
   json_begin(json, NULL, '{');
   json_text(json, "event", events[v->event]);
   json_text(json, "fate", fates[v->fate]);
   json_integer(json, "bounce", v->bounce);
   json_floats(json, "arrival", v->arrival, 3);
   json_floats(json, "throughput", v->throughput, 4);
-  if (placed) {
+  if (in_scene) {
     json_floats(json, "position", v->position, 3);
     json_number(json, "distance", (double)v->distance);
   }

@@ -22,6 +22,7 @@ double random_unit(Random *random) { /* splitmix64 */
 
 /* ---- markers ----------------------------------------------------------------------------- */
 
+/* A marker's code after a quarter turn; bit BITS * y + x is cell (x, y). */
 static unsigned quarter_turn(unsigned code) {
   unsigned turned = 0;
   for (int y = 0; y < BITS; y++)
@@ -78,6 +79,7 @@ static bool cell_is_white(unsigned code, int x, int y) {
   return x >= 0 && y >= 0 && x < BITS && y < BITS && (code >> (BITS * y + x) & 1u);
 }
 
+/* The value at film point (x, y), linear between the centres of pixels. */
 static double sample(const Image *p, double x, double y) {
   double fx = fmin(fmax(x - 0.5, 0.0), p->width - 1.001),
          fy = fmin(fmax(y - 0.5, 0.0), p->height - 1.001);
@@ -113,6 +115,7 @@ int target_read_marker(const Target *target, int i, int j, const Image *image, d
       values[BITS * by + bx] = value;
     if (frame)
       black += value / (4.0 * BITS + 4.0);
+    /* the corners of the white border, one cell from the square's edge */
     if ((x == 1 || x == CELLS - 2) && (y == 1 || y == CELLS - 2))
       white += 0.25 * value;
   }
@@ -144,16 +147,12 @@ static bool point_at(const vlCamera *c, double x, double y, double distance, dou
   return true;
 }
 
-bool target_place(const Target *target, const vlCamera *camera, double x, double y, double side,
-                  Random *random, Placement *placement) {
-  const double *m = camera->world_from_camera;
-  const double eye[3] = {m[3], m[7], m[11]};
-  /* comparable to the distance of the world's origin, to preserve precision */
-  double distance = fmax(1.0, vector_length(eye)) * (1.0 + random_unit(random)), direction[3],
-         other[3], left[3], right[3], above[3], below[3], u[3], v[3], n[3];
-  double turn = 2.0 * M_PI * random_unit(random), tilt = 0.6 * random_unit(random);
-  double lean = 2.0 * M_PI * random_unit(random);
-  if (!point_at(camera, x, y, distance, placement->center, direction) ||
+/* The axes of a pixel around film point (x, y) at a distance: u to the right, v down, and
+ * the direction of its ray. center: the point itself. */
+static bool pixel_axes(const vlCamera *camera, double x, double y, double distance,
+                       double center[3], double direction[3], double u[3], double v[3]) {
+  double other[3], left[3], right[3], above[3], below[3];
+  if (!point_at(camera, x, y, distance, center, direction) ||
       !point_at(camera, x - 0.5, y, distance, left, other) ||
       !point_at(camera, x + 0.5, y, distance, right, other) ||
       !point_at(camera, x, y - 0.5, distance, above, other) ||
@@ -163,27 +162,47 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
     u[a] = right[a] - left[a];
     v[a] = below[a] - above[a];
   }
-  vector_cross(u, v, n);
-  double area = vector_length(n), size = side * sqrt(area);
-  /* a flat board cannot fill a hemisphere */
-  double widest = 1.1 * distance / (target->corners + 1);
-  if (camera->projection != VL_PROJECTION_ORTHOGRAPHIC && size > widest)
-    size = widest;
-  if (!(area > 0.0) || !isfinite(size))
-    return false;
-  /* u, v: orthogonal to the direction and rotated about it; then the board is tilted */
+  return true;
+}
+
+/* Makes u orthogonal to the direction (unit) and of length 1. False: it is parallel to it. */
+static bool make_orthogonal(const double direction[3], double u[3]) {
   double along = 0.0;
   for (int a = 0; a < 3; a++)
     along += u[a] * direction[a];
   for (int a = 0; a < 3; a++)
     u[a] -= along * direction[a];
-  double lu = vector_length(u);
-  if (!(lu > 0.0))
+  const double length = vector_length(u);
+  if (!(length > 0.0))
     return false;
   for (int a = 0; a < 3; a++)
-    u[a] /= lu;
+    u[a] /= length;
+  return true;
+}
+
+bool target_place(const Target *target, const vlCamera *camera, double x, double y, double side,
+                  Random *random, Placement *placement) {
+  const double *m = camera->world_from_camera;
+  const double eye[3] = {m[3], m[7], m[11]};
+  /* comparable to the distance of the world's origin, to preserve precision */
+  const double distance = fmax(1.0, vector_length(eye)) * (1.0 + random_unit(random));
+  const double turn = 2.0 * M_PI * random_unit(random);
+  const double tilt = 0.6 * random_unit(random);
+  const double lean = 2.0 * M_PI * random_unit(random); /* about which axis it is tilted */
+  double direction[3], u[3], v[3], normal[3];
+  if (!pixel_axes(camera, x, y, distance, placement->center, direction, u, v))
+    return false;
+  vector_cross(u, v, normal);
+  const double area = vector_length(normal); /* of a pixel at this distance */
+  double size = side * sqrt(area);
+  /* a flat board cannot fill a hemisphere */
+  const double widest = 1.1 * distance / (target->corners + 1);
+  if (camera->projection != VL_PROJECTION_ORTHOGRAPHIC && size > widest)
+    size = widest;
+  if (!(area > 0.0) || !isfinite(size) || !make_orthogonal(direction, u))
+    return false;
   vector_cross(direction, u, v);
-  double c = cos(turn), s = sin(turn);
+  const double c = cos(turn), s = sin(turn);
   for (int a = 0; a < 3; a++) {
     /* axes of the tilt: e stays; f is foreshortened and tilts away from the camera */
     double e = cos(lean) * u[a] + sin(lean) * v[a], f = -sin(lean) * u[a] + cos(lean) * v[a];

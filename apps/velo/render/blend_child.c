@@ -35,8 +35,9 @@ static const char PROGRAM[] =
 
 /* ---- where things are -------------------------------------------------------------------- */
 
-/* The folder above that of the running program, with what follows; empty: it is not there. */
-static void beside_program(const char *name, const char *inside, char *path, size_t size) {
+/* The folder `name` beside the folder of the running program (bin): of an installed velo or of
+ * a build. path is empty if there is no file `inside` in it. */
+static void find_beside_program(const char *name, const char *inside, char *path, size_t size) {
   char program[PATH_SIZE];
   const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
   program[n > 0 ? n : 0] = 0;
@@ -46,6 +47,7 @@ static void beside_program(const char *name, const char *inside, char *path, siz
   }
   const bool fits = snprintf(path, size, "%s/%s/%s", program, name, inside) < (int)size;
   const bool there = fits && access(path, R_OK) == 0;
+  /* cuts "/" and `inside` off, or everything */
   path[there ? strlen(path) - strlen(inside) - 1 : 0] = 0;
 }
 
@@ -67,6 +69,7 @@ static long next_number(char **line) {
 /* An event that ends a wait. */
 typedef enum BlenderEvent { EVENT_NONE, EVENT_SCENE, EVENT_DONE, EVENT_ERROR } BlenderEvent;
 
+/* Follows one line of headless.py: an event and its values, separated by tabs. */
 static BlenderEvent take_line(Blender *b, char *line) {
   const char *kind = next_word(&line);
   if (strcmp(kind, "warning") == 0)
@@ -96,7 +99,8 @@ static BlenderEvent take_line(Blender *b, char *line) {
   return EVENT_NONE;
 }
 
-/* Looks at the lines that are held. Returns the first event that ends a wait. */
+/* Takes the whole lines that were read, up to the first one whose event ends a wait. Returns
+ * that event; EVENT_NONE: there was none. */
 static BlenderEvent take_lines(Blender *b) {
   BlenderEvent event = EVENT_NONE;
   char *end;
@@ -234,9 +238,9 @@ int blender_open(Blender *b, const char *scene, const Arguments *arguments) {
                           "%s: Blender is not installed, and it reads .blend files (blender in "
                           "PATH); export the scene as glTF",
                           scene);
-  beside_program("python", "velo/__init__.py", module, sizeof module);
-  beside_program("share/blender/scripts/addons", "velo_blender/headless.py", addons,
-                 sizeof addons);
+  find_beside_program("python", "velo/__init__.py", module, sizeof module);
+  find_beside_program("share/blender/scripts/addons", "velo_blender/headless.py", addons,
+                      sizeof addons);
   const char *const first[] = {"blender",
                                "-b",
                                "-noaudio",

@@ -7,11 +7,19 @@
 #include "import/pbrt/token.h"
 #include "velo/render.h"
 
+static double clamped(double value, double high) {
+  if (value < 0)
+    return 0;
+  return value > high ? high : value;
+}
+
 /* Reads the crop window. pbrt's "pixelbounds" are x0 x1 y0 y1 in pixels. "cropwindow" gives the
  * same as fractions of the image size, which are rounded up; it takes precedence. */
 static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   vlImport *import = dict->import;
-  double w = s->film.width, h = s->film.height, box[4] = {0, w, 0, h}, crop[4];
+  double w = s->film.width, h = s->film.height;
+  double box[4] = {0, w, 0, h}; /* x0 x1 y0 y1, pixels */
+  double crop[4];
   vlParam *pixels = vl_dict_find(dict, "pixelbounds", 1u << VL_PARAM_INTEGER);
   vlSource source = dict->source;
   if (pixels) {
@@ -21,19 +29,19 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
                             "%s: parameter \"pixelbounds\" takes 4 values, found %zu",
                             dict->what, pixels->integers.count);
     for (int i = 0; i < 4; i++) {
-      double v = pixels->integers.items[i], top = i < 2 ? w : h;
-      box[i] = v < 0 ? 0 : v > top ? top : v;
+      const double bound = pixels->integers.items[i];
+      box[i] = clamped(bound, i < 2 ? w : h);
     }
   }
   if (vl_dict_floats(dict, "cropwindow", 4, crop)) {
     for (int i = 0; i < 4; i += 2) {
-      double size = i ? h : w, a = crop[i] < crop[i + 1] ? crop[i] : crop[i + 1],
-             b = crop[i] < crop[i + 1] ? crop[i + 1] : crop[i];
-      a = a < 0 ? 0 : a > 1 ? 1 : a;
-      b = b < 0 ? 0 : b > 1 ? 1 : b;
+      const bool ascending = crop[i] < crop[i + 1];
+      const double low = clamped(ascending ? crop[i] : crop[i + 1], 1);
+      const double high = clamped(ascending ? crop[i + 1] : crop[i], 1);
+      const float size = (float)(i ? h : w);
       /* single precision, as in pbrt, so that the result is the same pixels */
-      box[i] = ceilf((float)size * (float)a);
-      box[i + 1] = ceilf((float)size * (float)b);
+      box[i] = ceilf(size * (float)low);
+      box[i + 1] = ceilf(size * (float)high);
     }
   }
   if (!(box[0] < box[1] && box[2] < box[3]))
@@ -173,52 +181,65 @@ static void normalise(const char *name, char *result, size_t size) {
   result[n] = 0;
 }
 
+typedef struct Switch {
+  const char *name;
+  bool *value; /* null: the option changes the image and velo does not support it */
+} Switch;
+
+static bool read_switch(vlImport *import, const vlStatement *s, const Switch *row) {
+  const char *value = s->names[1];
+  const bool on = vl_text_is(value, "true");
+  if (!on && !vl_text_is(value, "false"))
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "Option \"%s\": expected true or false, found \"%s\"", row->name,
+                          vl_short_text(value).text);
+  if (row->value)
+    *row->value = on;
+  return row->value || !on ||
+         vl_import_unsupported(import, s->source,
+                               "Option \"%s\": velo cannot; its materials stay what they are",
+                               row->name);
+}
+
+static bool read_seed(vlImport *import, const vlStatement *s) {
+  const char *value = s->names[1];
+  double seed;
+  if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) ||
+      fabs(seed) > 4294967295.0)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "Option \"seed\": \"%s\" is not an integer",
+                          vl_short_text(value).text);
+  vl_scene_defs(import->scene)->render.seed = (uint32_t)(int64_t)seed;
+  return true;
+}
+
+static bool read_edge_scale(vlImport *import, const vlStatement *s, const char *name) {
+  const char *value = s->names[1];
+  if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0)
+    return true;
+  return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                        "Option \"%s\": \"%s\" is not a number above 0", name,
+                        vl_short_text(value).text);
+}
+
 bool vl_import_option(vlImport *import, const vlStatement *s) {
-  vlSceneDefs *defs = vl_scene_defs(import->scene);
-  const struct {
-    const char *name;
-    bool *value; /* null: the option changes the image and velo does not support it */
-  } switches[] = {{"disablepixeljitter", &defs->render.centred},
-                  {"disabletexturefiltering", &defs->render.sharp_textures},
-                  {"disablewavelengthjitter", &defs->render.same_wavelengths},
-                  {"forcediffuse", NULL}};
+  vlRenderDef *render = &vl_scene_defs(import->scene)->render;
+  const Switch switches[] = {{"disablepixeljitter", &render->centred},
+                             {"disabletexturefiltering", &render->sharp_textures},
+                             {"disablewavelengthjitter", &render->same_wavelengths},
+                             {"forcediffuse", NULL}};
+  /* they do not change the image */
   static const char *const harmless[] = {"msereferenceimage", "msereferenceout", "pixelstats",
                                          "wavefront", "rendercoordsys"};
   char name[64];
-  const char *value = s->names[1];
   normalise(s->names[0], name, sizeof name);
-  if (vl_text_is(name, "seed")) {
-    double seed;
-    if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) ||
-        fabs(seed) > 4294967295.0)
-      return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                            "Option \"seed\": \"%s\" is not an integer",
-                            vl_short_text(value).text);
-    defs->render.seed = (uint32_t)(int64_t)seed;
-    return true;
-  }
-  if (vl_text_is(name, "displacementedgescale")) {
-    if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0)
-      return true;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "Option \"%s\": \"%s\" is not a number above 0", name,
-                          vl_short_text(value).text);
-  }
-  for (size_t i = 0; i < VL_LENGTH(switches); i++) {
-    if (!vl_text_is(name, switches[i].name))
-      continue;
-    bool on = vl_text_is(value, "true");
-    if (!on && !vl_text_is(value, "false"))
-      return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                            "Option \"%s\": expected true or false, found \"%s\"",
-                            switches[i].name, vl_short_text(value).text);
-    if (switches[i].value)
-      *switches[i].value = on;
-    return switches[i].value || !on ||
-           vl_import_unsupported(import, s->source,
-                                 "Option \"%s\": velo cannot; its materials stay what they are",
-                                 name);
-  }
+  if (vl_text_is(name, "seed"))
+    return read_seed(import, s);
+  if (vl_text_is(name, "displacementedgescale"))
+    return read_edge_scale(import, s, name);
+  for (size_t i = 0; i < VL_LENGTH(switches); i++)
+    if (vl_text_is(name, switches[i].name))
+      return read_switch(import, s, &switches[i]);
   for (size_t i = 0; i < VL_LENGTH(harmless); i++)
     if (vl_text_is(name, harmless[i]))
       return true;

@@ -11,6 +11,7 @@ KINDS = {"CryptoObject": "use_pass_cryptomatte_object", "CryptoMaterial": "use_p
 CHANNELS = {"CryptoObject": ["crypto.instance", "crypto.object"], "CryptoAsset": ["crypto.instance", "crypto.object"],
             "CryptoMaterial": ["crypto.material"]}
 RANKS = 6  # that velo's channels have
+ROWS = 32  # that are merged between two calls of `ask`
 
 
 def levels(view_layer):
@@ -82,18 +83,28 @@ def _manifest(image, channel):
     return {}
 
 
-def _ranks(image, channel, table):
-    """[(numbers of names, coverages)] of all ranks that velo has, each height x width."""
+def _ranks(image, channel, table, ask):
+    """[(numbers of names, coverages)] of all ranks that velo has, each height x width. ask: as of passes.Made."""
     ranks = []
     for level in range(RANKS // 2):
         values = numpy.asarray(image["%s%02d" % (channel, level)])
         for first in (0, 2):
+            ask()
             ranks.append((table.numbers(values[..., first]), numpy.array(values[..., first + 1])))
     return ranks
 
 
-def _merge(ranks, count):
+def _merge(ranks, count, ask):
     """height x width x (2 count): hashes' numbers and coverages in turns, each name once, the largest coverage first."""
+    parts = []
+    for top in range(0, ranks[0][0].shape[0], ROWS):
+        ask()
+        parts.append(_merge_rows([(numbers[top:top + ROWS], covered[top:top + ROWS]) for numbers, covered in ranks], count))
+    return tuple(numpy.concatenate(part, axis=1) for part in zip(*parts))
+
+
+def _merge_rows(ranks, count):
+    """_merge of some rows."""
     numbers = numpy.stack([rank[0] for rank in ranks])
     covered = numpy.where(numbers > 0, numpy.stack([rank[1] for rank in ranks]), 0)
     for later in range(1, len(ranks)):
@@ -107,10 +118,10 @@ def _merge(ranks, count):
 
 
 class Mattes:
-    """The Cryptomattes of an image. export: export.Export."""
+    """The Cryptomattes of an image. export: export.Export; ask: as of passes.Made."""
 
-    def __init__(self, export, image):
-        self._export, self._image, self._made = export, image, {}
+    def __init__(self, export, image, ask):
+        self._export, self._image, self._ask, self._made = export, image, ask, {}
 
     def _tables(self, kind):
         """[(channel, table)] of a kind, with the same list of names."""
@@ -129,8 +140,8 @@ class Mattes:
         ranks = []
         for channel, table in tables:
             renumber = numpy.array([0] + [number[name] for name in table.names])
-            ranks += [(renumber[numbers], covered) for numbers, covered in _ranks(self._image, channel, table)]
-        numbers, covered = _merge(ranks, RANKS)
+            ranks += [(renumber[numbers], covered) for numbers, covered in _ranks(self._image, channel, table, self._ask)]
+        numbers, covered = _merge(ranks, RANKS, self._ask)
         values = numpy.array([0] + [as_float(hash_of(name)) for name in names], dtype=numpy.float32)
         return names, values[numbers], covered.astype(numpy.float32)
 

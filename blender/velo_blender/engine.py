@@ -161,9 +161,12 @@ class VeloRenderEngine(bpy.types.RenderEngine):
             shown.at, shown.samples = time.monotonic(), made.scene.film.spp
             shown.cost = shown.at - begin
 
-        def progress(state):
+        def ask():
             if self.is_stopped():
                 raise export.Cancelled()
+
+        def progress(state):
+            ask()
             now = time.monotonic()
             if now - shown.told > TELL:
                 self._tell(state)
@@ -180,7 +183,7 @@ class VeloRenderEngine(bpy.types.RenderEngine):
             if shown.samples and shown.cost < QUICK and made.scene.film.spp > shown.samples:
                 show()
             raise
-        more = passes.Made(made, image, flow)
+        more = passes.Made(made, image, flow, ask)
         passes.fill(layer, image, film, more)
         return more.mattes.fields(layer.name)
 

@@ -56,11 +56,12 @@ def write(item, array):
 
 
 class Made:
-    """What passes need besides the image. export: export.Export; vectors: vectors.Vectors or None."""
+    """What passes need besides the image. export: export.Export; vectors: vectors.Vectors or None. ask: called between steps of some
+    milliseconds; its exception ends what calls it."""
 
-    def __init__(self, export, image, vectors=None):
-        self.export, self.vectors = export, vectors
-        self.mattes = cryptomatte.Mattes(export, image)
+    def __init__(self, export, image, vectors, ask):
+        self.export, self.vectors, self.ask = export, vectors, ask
+        self.mattes = cryptomatte.Mattes(export, image, ask)
 
 
 class Film:
@@ -90,6 +91,8 @@ class Film:
 def fill(layer, image, film, made=None):
     """Fills the layer's passes from velo's image. film: Film; made: what is known of the scene; None: passes that need it stay empty."""
     for item in layer.passes:
+        if made is not None:
+            made.ask()
         array = film.combined(image) if item.name == "Combined" else _array(item.name, image, made)
         if array is not None and array.shape[2] == item.channels:
             write(item, array)
@@ -111,7 +114,7 @@ def _array(name, image, made):
         uv = numpy.asarray(image["uv"])
         return numpy.concatenate([uv, numpy.ones(uv.shape[:2] + (1,), dtype=numpy.float32)], axis=2)
     if name == "Vector":
-        return made.vectors.layer(made.export, image) if made is not None and made.vectors is not None else None
+        return made.vectors.layer(made.export, image, made.ask) if made is not None and made.vectors is not None else None
     if name in ("IndexOB", "IndexMA"):
         return None if made is None else made.export.indices(name, image)[..., None]
     return numpy.asarray(image[channels[0]])

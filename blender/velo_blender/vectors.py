@@ -16,19 +16,23 @@ class Vectors:
         self.steps = motion.read_steps(engine, depsgraph, FRAMES, views, size)
         self.view = views[0]  # that is being rendered
 
-    def layer(self, export, image):
-        """height x width x 4 of the pass in one view."""
+    def layer(self, export, image, ask):
+        """height x width x 4 of the pass in one view. ask: as of passes.Made."""
         points = numpy.asarray(image["P"], dtype=float)
         shape = points.shape[:2]
         seen = numpy.isfinite(numpy.asarray(image["Z"])).ravel()
         points = points.reshape(-1, 3)
         instance, thing, face = (numpy.asarray(image["id." + name]).astype(numpy.int64).ravel() for name in ("instance", "object", "primitive"))
+        ask()
         now = export.camera.project(points)
         result = numpy.zeros((len(points), 4))
         for column, step in enumerate(self.steps):
             if step.cameras.get(self.view) is None:
                 continue
-            then = step.cameras[self.view].project(_moved(export, step, points, instance, thing, face))
+            moved = _moved(export, step, points, (instance, thing, face), ask)
+            ask()
+            then = step.cameras[self.view].project(moved)
+            ask()
             good = seen & numpy.asarray(now.valid) & numpy.asarray(then.valid)
             sign = 1 if column == 0 else -1
             difference = sign * (numpy.asarray(then.pixels) - numpy.asarray(now.pixels))[good]
@@ -36,11 +40,13 @@ class Vectors:
         return result.reshape(shape + (4,))
 
 
-def _moved(export, step, points, instance, thing, face):
-    """Points, n x 3, where they are in another frame. instance, thing, face: velo's ids of each."""
+def _moved(export, step, points, ids_of, ask):
+    """Points, n x 3, where they are in another frame. ids_of: velo's ids of each: instance, object, primitive."""
+    instance, thing, face = ids_of
     result = points.copy()
     for owners, ids in ((export.instances, instance), (export.shapes, numpy.where(instance > 0, 0, thing))):
         for number, places in _groups(ids):
+            ask()
             placed = owners[number - 1]
             if placed is None:
                 continue

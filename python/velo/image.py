@@ -10,6 +10,7 @@ from velo._context import context_or_default
 from velo._errors import UsageError, shown, wrong_value
 
 Path = Union[str, "os.PathLike[str]"]
+_POLLED_ROWS = 32  # that are joined between two calls of poll
 #: What other programs call the channels.
 OTHER_NAMES = {"depth": "Z", "normal": "N", "normals": "N", "position": "P", "positions": "P", "points": "P", "base_color": "albedo",
                "basecolor": "albedo", "diffuse": "albedo", "color": "R, G, B", "rgb": "R, G, B", "alpha": "A", "ids": "id.object",
@@ -114,15 +115,26 @@ class Image(_velo.Image):
         return self._denoised(denoiser, None)
 
     def _denoised(self, denoiser: str, poll: Any) -> "Image":
-        # poll: called about fifty times a second without arguments; an exception ends the call.
+        # poll: called about fifty times a second without arguments, None: by nobody; an exception ends the call.
         if len(self.parts) == 1:
             return self._denoise(denoiser, poll)
         numpy = _arrays.numpy_or_none()
         if numpy is None:
             raise UsageError("numpy is needed to join the image's channels")
-        floats = [part for part in self.parts if numpy.asarray(part).dtype == numpy.float32]
-        joined = numpy.concatenate([numpy.asarray(part) for part in floats], axis=2)
-        return Image(joined, [name for part in floats for name in part._names])._denoise(denoiser, poll)
+        # Joined row by row, so that whoever waits can be asked in between.
+        kept, names = [], []
+        for part in self.parts:
+            array = numpy.asarray(part)
+            used = [i for i, name in enumerate(part._names) if part is self or name.startswith(("error.", "feature."))]
+            if array.dtype == numpy.float32 and used:
+                kept.append((array, used))
+                names += [part._names[i] for i in used]
+        joined = numpy.empty((self.height, self.width, len(names)), dtype=numpy.float32)
+        for row in range(self.height):
+            if poll is not None and row % _POLLED_ROWS == 0:
+                poll()
+            numpy.concatenate([array[row][:, used] for array, used in kept], axis=1, out=joined[row])
+        return Image(joined, names)._denoise(denoiser, poll)
 
     def __copy__(self) -> "Image":
         return _of_parts(*(_part(part) for part in self.parts))

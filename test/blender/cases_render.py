@@ -290,3 +290,30 @@ def a_render_can_be_ended():
             assert time.monotonic() - filled[0] < 3, time.monotonic() - filled[0]
     finally:
         engine.VeloRenderEngine.is_stopped, passes.fill = kept, fill
+
+
+@case
+def a_render_ends_while_passes_are_filled():
+    """Before each pass, and inside Vector and Cryptomatte: where it is asked, it ends."""
+    from velo_blender import engine, passes
+    scene = room(size=(96, 128), samples=1)
+    layer = scene.view_layers[0]
+    layer.use_pass_z = layer.use_pass_vector = layer.use_pass_cryptomatte_object = True
+    kept, made, asked, last = engine.VeloRenderEngine.is_stopped, passes.Made, [], []
+
+    def is_stopped(_):
+        if asked:
+            asked[0] += 1
+        return bool(asked) and asked[0] == last[0]
+    engine.VeloRenderEngine.is_stopped = is_stopped
+    passes.Made = lambda *words: (asked.append(0), made(*words))[1]
+    try:
+        counts = []
+        for end in (-1, 1, 9, 20):
+            asked.clear()
+            last[:] = [end]
+            bpy.ops.render.render()
+            counts.append(asked[0])
+    finally:
+        engine.VeloRenderEngine.is_stopped, passes.Made = kept, made
+    assert counts[0] > 6 + 8 + 12 + 4 and counts[1:] == [1, 9, 20], counts

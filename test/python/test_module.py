@@ -301,6 +301,32 @@ def an_exception_in_a_callback_ends_denoising():
 
 
 @case
+def a_callback_is_asked_while_channels_are_joined_for_denoising():
+    """It can end the render before the denoiser begins; channels that the denoiser does not read change nothing."""
+    from velo import _arrays
+
+    class Watched:
+        """numpy, whose first array for joined channels is noticed."""
+
+        def __getattr__(self, name):
+            return getattr(numpy, name)
+
+        def empty(self, *words, **keywords):
+            joins.append(len(asked))
+            return numpy.empty(*words, **keywords)
+
+    joins, asked, kept = [], [], _arrays.numpy_or_none
+    _arrays.numpy_or_none = Watched
+    try:
+        image = scene.render(spp=2, resolution=(64, 320), denoise=True, channels=["Z", "crypto.object", "N"], progress=asked.append)
+    finally:
+        _arrays.numpy_or_none = kept
+    assert len(joins) == 1 and len(asked) - joins[0] >= 320 // 32, (joins, len(asked))
+    plain = scene.render(spp=2, resolution=(64, 320), denoise=True)
+    assert numpy.asarray(image).tobytes() == numpy.asarray(plain).tobytes()
+
+
+@case
 def a_callback_after_a_pass_may_read_the_film():
     images = []
 

@@ -81,6 +81,13 @@ static uint32_t tiles_down(const vlDenoisePlanes *p) {
   return (p->height + VL_DENOISE_TILE_Y - 1) / VL_DENOISE_TILE_Y;
 }
 
+/* Runs body for each of the rows or tiles, unless the call is cancelled: then its result is not
+ * used. */
+static void for_each(Denoise *d, uint32_t count, vlParallelFn *body) {
+  if (!vl_is_cancelled(d->cancel))
+    vl_parallel_for(d->context, count, body, d);
+}
+
 /* Allocates planes of the given size in one block. */
 static float *make_planes(Denoise *d, vlDenoisePlanes *p, uint32_t width, uint32_t height,
                           bool slopes) {
@@ -280,7 +287,7 @@ static void raise_variances(Denoise *d) {
   vlDenoisePlanes *p = &d->planes[0];
   for (int c = 0; c < COLOR; c++)
     mirror_plane(p, p->variance[c]);
-  vl_parallel_for(d->context, p->height, raise_row, d);
+  for_each(d, p->height, raise_row);
   for (int c = 0; c < COLOR; c++) {
     float *raised = p->result[c];
     p->result[c] = p->variance[c];
@@ -302,7 +309,7 @@ static void fit_tile(void *user, uint32_t index, uint32_t worker) {
 
 static void fit(Denoise *d) {
   const vlDenoisePlanes *p = &d->planes[d->level];
-  vl_parallel_for(d->context, tiles_across(p) * tiles_down(p), fit_tile, d);
+  for_each(d, tiles_across(p) * tiles_down(p), fit_tile);
 }
 
 /* ---- wide windows ------------------------------------------------------------------------ */
@@ -409,16 +416,16 @@ static vlResult correct_widely(Denoise *d) {
   if (!d->memory[level])
     return VL_ERROR_MEMORY;
   d->level = level;
-  vl_parallel_for(d->context, height, lattice_row, d);
+  for_each(d, height, lattice_row);
   mirror_planes(lattice);
   fit(d);
   vlResult result = correct_widely(d);
   if (result != VL_OK)
     return result;
   d->level = level;
-  vl_parallel_for(d->context, height, finish_lattice_row, d);
+  for_each(d, height, finish_lattice_row);
   extend_lattice(lattice);
-  vl_parallel_for(d->context, height + 1, correct_rows, d);
+  for_each(d, height + 1, correct_rows);
   return VL_OK;
 }
 
@@ -454,7 +461,7 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
   if (d->memory[0] && d->scratch) {
     d->kernels = vl_denoise_kernels(vl_context_isa(context));
     d->nearest = find_nearest(d);
-    vl_parallel_for(context, p->height, read_row, d);
+    for_each(d, p->height, read_row);
     if (d->not_finite == (uint64_t)p->width * p->height)
       result = vl_fail(error, VL_ERROR_SCENE,
                        "denoise: no pixel has a finite value and standard error; at least 2 "
@@ -463,9 +470,9 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
     result = vl_fail_memory(error);
   }
   if (result == VL_OK) {
-    vl_parallel_for(context, p->height, fill_row, d);
-    vl_parallel_for(context, p->height, cap_row, d);
-    vl_parallel_for(context, p->height, scale_row, d);
+    for_each(d, p->height, fill_row);
+    for_each(d, p->height, cap_row);
+    for_each(d, p->height, scale_row);
     raise_variances(d);
     mirror_planes(p);
     fit(d);

@@ -135,11 +135,12 @@ def _channels(value: Any) -> list[str]:
 class _Asked:
     # A progress callback, or None, that is asked again after the render: poll gets its last state, without an answer; None before.
     def __init__(self, progress: Optional[Callback]) -> None:
-        self._progress, self._last = progress, None
+        self._progress = progress
+        self._last: Optional[Progress] = None
         self.callback: Any = self._ask if callable(progress) else progress
 
     def _ask(self, state: Progress) -> Any:
-        self._last: Optional[Progress] = state
+        self._last = state
         return self._progress(state) if self._progress is not None else None
 
     @property

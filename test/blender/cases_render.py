@@ -283,7 +283,7 @@ def a_render_can_be_ended():
     passes.fill = lambda *words: (filled.append(time.monotonic()), fill(*words))
     engine.VeloRenderEngine.is_stopped = lambda self: bool(filled) and time.monotonic() > filled[0] + 0.1
     try:
-        for samples, denoise in ((65536, False), (1, True)):
+        for samples, denoise in ((65536, False), (4, True)):
             filled.clear()
             scene.velo.samples, scene.velo.denoise = samples, denoise
             bpy.ops.render.render()

@@ -81,11 +81,48 @@ static uint32_t tiles_down(const vlDenoisePlanes *p) {
   return (p->height + VL_DENOISE_TILE_Y - 1) / VL_DENOISE_TILE_Y;
 }
 
-/* Runs body for each of the rows or tiles, unless the call is cancelled: then its result is not
- * used. */
+typedef struct Loop {
+  Denoise *denoise;
+  vlParallelFn *body;
+} Loop;
+
+static void run_unless_cancelled(void *user, uint32_t index, uint32_t worker) {
+  const Loop *loop = user;
+  if (!vl_is_cancelled(loop->denoise->cancel))
+    loop->body(loop->denoise, index, worker);
+}
+
+/* Runs body for each of the rows or tiles, and for none from the moment when the call is
+ * cancelled: then its result is not used. */
 static void for_each(Denoise *d, uint32_t count, vlParallelFn *body) {
-  if (!vl_is_cancelled(d->cancel))
-    vl_parallel_for(d->context, count, body, d);
+  Loop loop = {d, body};
+  vl_parallel_for(d->context, count, run_unless_cancelled, &loop);
+}
+
+enum { CLEARED = 1 << 18 }; /* floats of a task */
+
+typedef struct Clearing {
+  const vlCancel *cancel;
+  float *memory;
+  size_t floats;
+} Clearing;
+
+static void clear_part(void *user, uint32_t index, uint32_t worker) {
+  (void)worker;
+  const Clearing *clearing = user;
+  size_t first = (size_t)index * CLEARED, left = clearing->floats - first;
+  if (!vl_is_cancelled(clearing->cancel))
+    memset(clearing->memory + first, 0, (left < CLEARED ? left : CLEARED) * sizeof(float));
+}
+
+/* Memory of zeros, unless the call is cancelled: at 1280 x 720 it takes longer than one may
+ * wait for that. Null: out of memory. */
+static float *make_zeros(Denoise *d, size_t floats) {
+  Clearing clearing = {d->cancel, vl_alloc_array(d->context, floats, sizeof(float)), floats};
+  if (clearing.memory)
+    vl_parallel_for(d->context, (uint32_t)((floats + CLEARED - 1) / CLEARED), clear_part,
+                    &clearing);
+  return clearing.memory;
 }
 
 /* Allocates planes of the given size in one block. */
@@ -97,8 +134,7 @@ static float *make_planes(Denoise *d, vlDenoisePlanes *p, uint32_t width, uint32
   size_t stride = (size_t)tiles_across(p) * VL_DENOISE_TILE_X + 2 * VL_DENOISE_BORDER;
   size_t size = stride * ((size_t)tiles_down(p) * VL_DENOISE_TILE_Y + 2 * VL_DENOISE_BORDER);
   p->stride = (ptrdiff_t)stride;
-  float *memory =
-      vl_alloc_zero(d->context, size, (slopes ? PLANES + SLOPES : PLANES) * sizeof(float));
+  float *memory = make_zeros(d, size * (slopes ? PLANES + SLOPES : PLANES));
   if (!memory)
     return NULL;
   float *at = memory + VL_DENOISE_BORDER * stride + VL_DENOISE_BORDER;
@@ -301,8 +337,6 @@ static void fit_tile(void *user, uint32_t index, uint32_t worker) {
   const Denoise *d = user;
   const vlDenoisePlanes *p = &d->planes[d->level];
   uint32_t across = tiles_across(p);
-  if (vl_is_cancelled(d->cancel))
-    return;
   d->kernels->tile(p, &d->scratch[worker], index % across * VL_DENOISE_TILE_X,
                    index / across * VL_DENOISE_TILE_Y);
 }
@@ -462,7 +496,9 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
     d->kernels = vl_denoise_kernels(vl_context_isa(context));
     d->nearest = find_nearest(d);
     for_each(d, p->height, read_row);
-    if (d->not_finite == (uint64_t)p->width * p->height)
+    if (vl_is_cancelled(d->cancel))
+      result = vl_fail(error, VL_CANCELLED, "stopped");
+    else if (d->not_finite == (uint64_t)p->width * p->height)
       result = vl_fail(error, VL_ERROR_SCENE,
                        "denoise: no pixel has a finite value and standard error; at least 2 "
                        "samples per pixel are needed");

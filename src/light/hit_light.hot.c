@@ -55,11 +55,7 @@ bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
   vl_path_lambda(p, i, lambda);
   vlVec2 uv = vl_emission_uv(world, light, &met->at);
   vl_emitted_at(world, e, lambda, uv.x, 1.0f - uv.y, false, met->radiance);
-  if (vl_has_spread(e)) {
-    float share = vl_spread_at(e, vl_abs(vl_dot(d, met->at.g)));
-    for (int c = 0; c < 4; c++)
-      met->radiance[c] *= share;
-  }
+  vl_spread_radiance(e, vl_abs(vl_dot(d, met->at.g)), met->radiance);
   met->pdf = 0.0f;
   if (!p->specular[i])
     met->pdf = vl_area_pdf(world, light, o, &met->at) *

@@ -225,11 +225,7 @@ void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
   if (!(at.pdf > 0.0f))
     return;
   vl_emitted_at(q->world, q->emitted, q->lambda, at.u, 1.0f - at.v, false, out->radiance);
-  if (vl_has_spread(q->emitted)) {
-    float share = vl_spread_at(q->emitted, vl_abs(facing));
-    for (int c = 0; c < 4; c++)
-      out->radiance[c] *= share;
-  }
+  vl_spread_radiance(q->emitted, vl_abs(facing), out->radiance);
   const vlWorldShape *shape = &q->world->shapes.items[light->shape];
   if (light->invisible) {
     out->delta = true;

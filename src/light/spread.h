@@ -24,4 +24,13 @@ static inline float vl_spread_at(const vlEmitted *e, float cosine) {
   return vl_max(0.0f, 1.0f - tangent * e->spread_cot) * e->spread_scale;
 }
 
+/* Applies it to a radiance. */
+static inline void vl_spread_radiance(const vlEmitted *e, float cosine, float radiance[4]) {
+  if (!vl_has_spread(e))
+    return;
+  float share = vl_spread_at(e, cosine);
+  for (int c = 0; c < 4; c++)
+    radiance[c] *= share;
+}
+
 #endif

@@ -375,13 +375,6 @@ static bool find_outward(const vlScene *scene, const vlExtent *boxes, const Surv
   return has_contents(scene, boxes, closed->shell);
 }
 
-static double diagonal(const vlExtent *b) {
-  double sum = 0;
-  for (int i = 0; i < 3; i++)
-    sum += (b->high[i] - b->low[i]) * (b->high[i] - b->low[i]);
-  return b->low[0] <= b->high[0] ? sqrt(sum) : 0;
-}
-
 static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *boxes,
                      vlClosed *closed) {
   vlExtent inner = vl_extent_nothing;
@@ -392,7 +385,7 @@ static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *
     closed->emits =
         closed->emits || (closed->shell[i] && scene->shapes.items[i].emission.index);
   }
-  double share = diagonal(&inner) / diagonal(box);
+  double share = vl_extent_diagonal(&inner) / vl_extent_diagonal(box);
   closed->kind = share > 0.12 ? VL_CLOSED_ROOM : share > 0 ? VL_CLOSED_DOME : VL_CLOSED_EMPTY;
   /* A room in one mesh: its furniture is a part of the shell. Panoramas have few corners or are
    * convex. */
@@ -416,7 +409,7 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
   *closed = (vlClosed){.kind = VL_CLOSED_NOT};
   for (int i = 0; i < 3; i++)
     closed->middle[i] = 0.5 * (box->low[i] + box->high[i]);
-  if (!(diagonal(box) > 0))
+  if (!(vl_extent_diagonal(box) > 0))
     return true;
   Survey *s = vl_alloc_zero(scene->context, 1, sizeof *s);
   closed->shell = vl_alloc_zero(scene->context, scene->shapes.count + 1, sizeof *closed->shell);

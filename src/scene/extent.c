@@ -46,10 +46,29 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
 
 void vl_extent_grow(void *user, const double p[3]) {
   vlExtent *b = user;
-  for (int i = 0; i < 3; i++) {
-    b->low[i] = fmin(b->low[i], p[i]);
-    b->high[i] = fmax(b->high[i], p[i]);
+  for (int i = 0; i < 3; i++) { /* a NaN is passed over */
+    b->low[i] = p[i] < b->low[i] ? p[i] : b->low[i];
+    b->high[i] = p[i] > b->high[i] ? p[i] : b->high[i];
   }
+}
+
+void vl_extent_join(vlExtent *whole, const vlExtent *box) {
+  vl_extent_grow(whole, box->low);
+  vl_extent_grow(whole, box->high);
+}
+
+bool vl_extent_holds(const vlExtent *whole, const vlExtent *box) {
+  bool inside = true;
+  for (int i = 0; i < 3; i++)
+    inside = inside && box->low[i] >= whole->low[i] && box->high[i] <= whole->high[i];
+  return inside;
+}
+
+double vl_extent_diagonal(const vlExtent *box) {
+  double sum = 0;
+  for (int i = 0; i < 3; i++)
+    sum += (box->high[i] - box->low[i]) * (box->high[i] - box->low[i]);
+  return box->low[0] <= box->high[0] ? sqrt(sum) : 0;
 }
 
 const vlExtent vl_extent_nothing = {{INFINITY, INFINITY, INFINITY},

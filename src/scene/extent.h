@@ -15,6 +15,12 @@ extern const vlExtent vl_extent_nothing;
 typedef void vlPointVisit(void *user, const double p[3]);
 /* Grows the box `user`, a vlExtent. */
 void vl_extent_grow(void *user, const double p[3]);
+/* Grows a box by another one, which is not empty. */
+void vl_extent_join(vlExtent *whole, const vlExtent *box);
+/* Whether a box is within another one. */
+bool vl_extent_holds(const vlExtent *whole, const vlExtent *box);
+/* 0 of an empty box. */
+double vl_extent_diagonal(const vlExtent *box);
 /* Calls `visit` with the eight corners of a box, transformed. */
 void vl_extent_visit_box(const vlMat4 *m, const vlExtent *box, vlPointVisit *visit, void *user);
 /* Calls `visit` with all points of a shape, or the corners of its box, in group space. */

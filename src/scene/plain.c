@@ -23,13 +23,10 @@ static double widest(const vlExtent *box, int axis) {
 
 static void visit(void *user, const vlExtent *box, double surface) {
   Survey *s = user;
-  for (int i = 0; i < 3; i++)
-    if (!(box->low[i] >= s->limits.low[i] && box->high[i] <= s->limits.high[i]))
-      return;
+  if (!vl_extent_holds(&s->limits, box))
+    return;
   const bool low = box->high[s->axis] <= s->top;
-  vlExtent *whole = low ? &s->low : &s->model;
-  vl_extent_grow(whole, box->low);
-  vl_extent_grow(whole, box->high);
+  vl_extent_join(low ? &s->low : &s->model, box);
   if (low && surface > 0)
     s->surface += surface;
   if (low && surface > 0 && size(box, s->axis) <= 0.15 * widest(box, s->axis))

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "math/double3.h"
 #include "scene/things.h"
 
 enum { BINS = 1024, MAX_ROUNDS = 8, MAX_PASSES = 16 };
@@ -20,30 +19,18 @@ typedef struct Survey {
   uint64_t outside;                   /* number of things outside of `limits` */
 } Survey;
 
-static bool counts(const Survey *s, const vlExtent *box) {
-  bool inside = true;
-  for (int i = 0; i < 3; i++)
-    inside = inside && box->low[i] >= s->limits.low[i] && box->high[i] <= s->limits.high[i];
-  return inside;
-}
-
-static void join(vlExtent *whole, const vlExtent *box) {
-  vl_extent_grow(whole, box->low);
-  vl_extent_grow(whole, box->high);
-}
-
 static void measure(void *user, const vlExtent *box, double surface) {
   Survey *s = user;
   (void)surface;
-  if (counts(s, box))
-    join(&s->box, box);
+  if (vl_extent_holds(&s->limits, box))
+    vl_extent_join(&s->box, box);
   else
     s->outside++;
 }
 
 static void weigh(void *user, const vlExtent *box, double surface) {
   Survey *s = user;
-  if (!counts(s, box) || !(surface > 0) || !isfinite(surface))
+  if (!vl_extent_holds(&s->limits, box) || !(surface > 0) || !isfinite(surface))
     return;
   for (int i = 0; i < 3; i++) {
     const double size = s->box.high[i] - s->box.low[i],
@@ -54,15 +41,21 @@ static void weigh(void *user, const vlExtent *box, double surface) {
   s->surface += surface;
 }
 
+/* Whether a box is within the core's reach: any of it, or with `all` the whole of it. */
+static bool is_near(const Survey *s, const vlExtent *box, bool all) {
+  bool near = true;
+  for (int i = 0; i < 3; i++) {
+    const double from = all ? box->low[i] : box->high[i], to = all ? box->high[i] : box->low[i];
+    near = near && to <= s->core.high[i] + s->reach && from >= s->core.low[i] - s->reach;
+  }
+  return near;
+}
+
 static void absorb(void *user, const vlExtent *box, double surface) {
   Survey *s = user;
   (void)surface;
-  bool near = counts(s, box);
-  for (int i = 0; i < 3 && near; i++)
-    near =
-        box->low[i] <= s->core.high[i] + s->reach && box->high[i] >= s->core.low[i] - s->reach;
-  if (near)
-    join(&s->core, box);
+  if (vl_extent_holds(&s->limits, box) && is_near(s, box, false))
+    vl_extent_join(&s->core, box);
 }
 
 /* The end of the core along an axis, from `bin` on in steps of `step`. */
@@ -86,13 +79,6 @@ static void find_core(Survey *s) {
   }
 }
 
-static double diagonal(const vlExtent *box) {
-  double d[3];
-  for (int i = 0; i < 3; i++)
-    d[i] = box->high[i] - box->low[i];
-  return vl_norm3(d);
-}
-
 static bool same(const vlExtent *a, const vlExtent *b) {
   return memcmp(a, b, sizeof *a) == 0;
 }
@@ -103,7 +89,7 @@ static bool narrow(const vlScene *scene, const vlExtent *boxes, Survey *s) {
   const vlExtent limits = s->limits;
   *s = (Survey){.limits = limits, .box = vl_extent_nothing};
   vl_things_visit(scene, boxes, measure, s);
-  if (!isfinite(diagonal(&s->box)))
+  if (!isfinite(vl_extent_diagonal(&s->box)))
     return false;
   vl_things_visit(scene, boxes, weigh, s);
   if (!(s->surface > 0) || !isfinite(s->surface))
@@ -111,7 +97,11 @@ static bool narrow(const vlScene *scene, const vlExtent *boxes, Survey *s) {
   find_core(s);
   for (int pass = 0; pass < MAX_PASSES; pass++) {
     const vlExtent before = s->core;
-    s->reach = diagonal(&s->core);
+    s->reach = vl_extent_diagonal(&s->core);
+    if (is_near(s, &s->box, true)) { /* all belongs to the core */
+      s->limits = s->box;
+      return false;
+    }
     vl_things_visit(scene, boxes, absorb, s);
     if (same(&before, &s->core))
       break;

@@ -59,7 +59,10 @@ def add(scene, item, matrix, camera_sees, notes):
         return
     power = float(color.max())
     words = {"color": tuple(float(max(0.0, x)) / power for x in color)}
-    {"POINT": _point, "SUN": _sun, "SPOT": _spot, "AREA": _area}[light.type](scene, item, light, pose, words, power, camera_sees, notes)
+    if light.type == "SUN":
+        _sun(scene, item, light, pose, words, power, camera_sees, notes)
+    else:
+        {"POINT": _point, "SPOT": _spot, "AREA": _area}[light.type](scene, item, light, pose, words, power, notes)
 
 
 def _lamp_surface(scene, words, radiance, item, spread=math.pi, **shape):
@@ -69,7 +72,7 @@ def _lamp_surface(scene, words, radiance, item, spread=math.pi, **shape):
     scene.add_shape(emission=emission, material=material, name=item.name, hidden_from_camera=not item.visible_camera, **shape)
 
 
-def _point(scene, item, light, pose, words, power, camera_sees, notes):
+def _point(scene, item, light, pose, words, power, notes):
     place, radius = pose[:3, 3], light.shadow_soft_size
     if not radius < MAX_SIZE:
         notes.add(item.name, "", "its radius is huge or no number; it is left out")
@@ -124,7 +127,7 @@ def sun_disk(half):
     return values / (share.sum() * 4 * math.pi / side**2)
 
 
-def _spot(scene, item, light, pose, words, power, camera_sees, notes):
+def _spot(scene, item, light, pose, words, power, notes):
     axis = pose[:3, 2]
     length = numpy.linalg.norm(axis)
     if length < 1e-12:
@@ -188,7 +191,7 @@ def _intensity(cosines, half, blend, color):
     return velo.Image(numpy.ascontiguousarray(factor[..., None] * color, dtype=numpy.float32), encoding="linear")
 
 
-def _area(scene, item, light, pose, words, power, camera_sees, notes):
+def _area(scene, item, light, pose, words, power, notes):
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
     scales = numpy.linalg.norm(pose[:3, :2], axis=0)

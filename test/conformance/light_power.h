@@ -89,18 +89,15 @@ static void check_scaled_power(const char *family, const char *kind, const char 
   check_chosen_power(family, kind, scaled, text);
 }
 
+static void check_power_of_light(const vlKindRow *row, const LightVariant *v,
+                                 const char *form) {
+  check_scaled_power("lights", row->name, form, v->parameters);
+}
+
 static void chosen_powers(void **state) {
   (void)state;
   static char form[TEXT];
-  const vlKindFamily *family = vl_kind_family_find("lights");
-  for (uint32_t k = 0; k < family->kind_count; k++) {
-    const LightCase *c = light_cases[k];
-    snprintf(form, sizeof form,
-             HEAD "WorldBegin " FLOOR "AttributeBegin %s LightSource %%s AttributeEnd\n",
-             c->before ? c->before : "");
-    for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++)
-      check_scaled_power("lights", family->rows[k]->name, form, c->variants[i].parameters);
-  }
+  for_each_light(FLOOR, check_power_of_light);
   static const char *const shapes[] = {
       "\"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3]",
       "\"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 .5 1 1 .5] \"integer indices\" [0 1 "

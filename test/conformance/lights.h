@@ -186,27 +186,36 @@ static void check_spot_as_gltf(void) {
   vl_scene_destroy(scene);
 }
 
-static void laws_of_lights(void **state) {
-  (void)state;
+/* form: a scene over a floor, with %s for the light's kind and for its parameters. */
+typedef void LightCheck(const vlKindRow *row, const LightVariant *variant, const char *form);
+
+/* Calls `check` for each variant of each kind of light. */
+static void for_each_light(const char *floor, LightCheck *check) {
   static char form[TEXT];
-  static char text[TEXT];
   const vlKindFamily *family = vl_kind_family_find("lights");
   for (uint32_t k = 0; k < family->kind_count; k++) {
-    const vlKindRow *row = family->rows[k];
     const LightCase *c = light_cases[k];
     assert_non_null(c->variants[0].parameters);
     snprintf(form, sizeof form,
-             HEAD "WorldBegin " FLOOR "AttributeBegin %s LightSource %%s AttributeEnd\n",
+             HEAD "WorldBegin %sAttributeBegin %s LightSource %%s AttributeEnd\n", floor,
              c->before ? c->before : "");
-    for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++) {
-      scene_text(text, form, row->name, c->variants[i].parameters);
-      if (row->traits & VL_LIGHT_TRAIT_DELTA)
-        check_delta_light(row->name, &c->variants[i], text);
-      else
-        check_hit_light("lights", row->name, c->variants[i].parameters, text,
-                        c->variants[i].compensated);
-    }
+    for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++)
+      check(family->rows[k], &c->variants[i], form);
   }
+}
+
+static void check_light_samples(const vlKindRow *row, const LightVariant *v, const char *form) {
+  static char text[TEXT];
+  scene_text(text, form, row->name, v->parameters);
+  if (row->traits & VL_LIGHT_TRAIT_DELTA)
+    check_delta_light(row->name, v, text);
+  else
+    check_hit_light("lights", row->name, v->parameters, text, v->compensated);
+}
+
+static void laws_of_lights(void **state) {
+  (void)state;
+  for_each_light(FLOOR, check_light_samples);
   check_spot_as_gltf();
   expect_no_failures();
 }

@@ -6,6 +6,7 @@
 #define TEST_CONFORMANCE_RADIOMETRY_H
 
 #include "conformance.h"
+#include "lights.h"
 #include "parameters.h"
 #include "transport.h"
 #include "velo/filter_kinds.h"
@@ -244,21 +245,17 @@ static void check_light_paths(const char *family, const char *kind, const char *
   vl_image_destroy(both);
 }
 
+static void check_paths_of_light(const vlKindRow *row, const LightVariant *v,
+                                 const char *form) {
+  static char text[TEXT];
+  scene_text(text, form, row->name, v->parameters);
+  check_light_paths("lights", row->name, v->parameters, text);
+}
+
 static void light_paths(void **state) {
   (void)state;
-  static char form[TEXT];
   static char text[TEXT];
-  const vlKindFamily *family = vl_kind_family_find("lights");
-  for (uint32_t k = 0; k < family->kind_count; k++) {
-    const LightCase *c = light_cases[k];
-    snprintf(form, sizeof form,
-             HEAD "WorldBegin " SQUARE_FLOOR "AttributeBegin %s LightSource %%s AttributeEnd\n",
-             c->before ? c->before : "");
-    for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++) {
-      scene_text(text, form, family->rows[k]->name, c->variants[i].parameters);
-      check_light_paths("lights", family->rows[k]->name, c->variants[i].parameters, text);
-    }
-  }
+  for_each_light(SQUARE_FLOOR, check_paths_of_light);
   for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++) {
     scene_text(text,
                HEAD "WorldBegin " SQUARE_FLOOR

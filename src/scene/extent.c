@@ -46,7 +46,7 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
 
 void vl_extent_grow(void *user, const double p[3]) {
   vlExtent *b = user;
-  for (int i = 0; i < 3; i++) { /* a NaN is passed over */
+  for (int i = 0; i < 3; i++) { /* a NaN is ignored */
     b->low[i] = p[i] < b->low[i] ? p[i] : b->low[i];
     b->high[i] = p[i] > b->high[i] ? p[i] : b->high[i];
   }

@@ -14,7 +14,7 @@ class Corners:
     arrays: geometry.MeshArrays. matrix: world from object, 4 x 4. names: the uv maps, the rendered one first."""
 
     def __init__(self, arrays, slot, matrix, names, texture_space):
-        self._arrays, self._matrix, self._names, self._space = arrays, matrix, names, texture_space
+        self._arrays, self._slot, self._matrix, self._names, self._space = arrays, slot, matrix, names, texture_space
         self.triangles = arrays.triangles[arrays.slots == slot]
 
     def fields(self):
@@ -34,6 +34,11 @@ class Corners:
             found["uv:"] = found["uv:" + self._names[0]]
         for name in arrays.color_names:
             found["color:" + name] = arrays.colors(name)[self.triangles].astype(float)
+        if arrays.color_names:
+            found["color:"] = arrays.colors("")[self.triangles].astype(float)
+        for name in arrays.attribute_names:
+            found["attribute:" + name] = arrays.attribute(name, self._slot)
+        found["attributes"] = numpy.zeros(points.shape[:2] + (1,))  # says that all of them are known
         return found
 
     def _normals(self, points):
@@ -72,6 +77,11 @@ class Atlas:
         y, x = numpy.meshgrid(numpy.arange(self.block), numpy.arange(self.block), indexing="ij")
         b, c = x.ravel() / (self.block - 2), y.ravel() / (self.block - 2)
         return numpy.stack((1 - b - c, b, c), axis=1)
+
+    def inner(self, values):
+        """Of the values at all texels, triangles * block^2 x n, those inside of their triangles."""
+        inside = self.weights().min(axis=1) > -1e-6
+        return values.reshape(len(self.corner), len(inside), -1)[:, inside]
 
     def points(self, corners):
         """Values at all texels, triangles * block^2 x n, from those at the triangles' corners, triangles x 3 x n."""

@@ -13,6 +13,16 @@ def _read(collection, name, width, dtype):
     return values.reshape(-1, width) if width > 1 else values
 
 
+#: Kinds of generic attributes: (member of their elements, numbers of each).
+_GENERIC = {"FLOAT": ("value", 1), "INT": ("value", 1), "INT8": ("value", 1), "BOOLEAN": ("value", 1), "FLOAT2": ("vector", 2),
+            "FLOAT_VECTOR": ("vector", 3), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4)}
+
+
+def _is_generic(attribute, color_names):
+    """Whether a shader may read an attribute that is no colour attribute; Cycles has none of edges."""
+    return attribute.data_type in _GENERIC and attribute.domain in ("POINT", "FACE", "CORNER") and attribute.name not in color_names
+
+
 class MeshArrays:
     """The arrays of a mesh, float32 and int32. Vertices are the mesh's vertices or, where uvs, colours or normals differ between the
     corners of one vertex, its corners.
@@ -41,6 +51,7 @@ class MeshArrays:
         self.render_uv = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
         self.uvs = {layer.name: _read(layer.data, "uv", 2, numpy.float32) for layer in mesh.uv_layers}
         self.color_names = [attribute.name for attribute in mesh.color_attributes]
+        self.attribute_names = [attribute.name for attribute in mesh.attributes if _is_generic(attribute, self.color_names)]
         low, size = numpy.array(mesh.texspace_location), numpy.array(mesh.texspace_size)
         self.texture_space = low - size, 2 * size  # corner and size of the box of generated coordinates
         self.displaced = False
@@ -64,6 +75,21 @@ class MeshArrays:
             return None
         colors = _read(attribute.data, "color", 4, numpy.float32)
         return colors[self.corners] if attribute.domain == "POINT" else colors
+
+    def attribute(self, name, slot):
+        """The values of a generic attribute at the corners of a slot's triangles, m x 3 x n, n 1, 2, 3 or 4 (a colour, linear)."""
+        attribute = self._mesh.attributes[name]
+        member, width = _GENERIC[attribute.data_type]
+        values = _read(attribute.data, member, width, numpy.float32 if width > 1 or attribute.data_type == "FLOAT" else numpy.int32)
+        mine = self.slots == slot
+        if attribute.domain == "FACE":
+            faces = _read(self._mesh.loop_triangles, "polygon_index", 1, numpy.int32)[mine]
+            rows = numpy.repeat(faces[:, None], 3, axis=1)
+        elif attribute.domain == "CORNER":
+            rows = _read(self._mesh.loop_triangles, "loops", 3, numpy.int32)[mine]
+        else:
+            rows = self.vertex_of(self.triangles[mine])
+        return values[rows].reshape(len(rows), 3, -1).astype(float)
 
     def radial_tangents(self, axis):
         """Directions about an axis, X, Y or Z, through the middle of the texture space, n x 3: Cycles' tangents where none are given."""

@@ -38,6 +38,8 @@ def tex_coord(e, node, output, groups):
 
 
 def uv_map(e, node, output, groups):
+    if "uv:" + node.uv_map not in e.fields and "attribute:" + node.uv_map in e.fields:
+        return _generic(e, node, node.uv_map)[:, :3]
     return three(e.field("uv:" + node.uv_map, node))
 
 
@@ -53,8 +55,7 @@ def object_info(e, node, output, groups):
 
 
 def vertex_color(e, node, output, groups):
-    values = e.field("color:" + node.layer_name, node)
-    return values[:, 3] if output.name == "Alpha" else values[:, :3]
+    return _color_or_generic(e, node, output, node.layer_name)
 
 
 def attribute(e, node, output, groups):
@@ -63,10 +64,31 @@ def attribute(e, node, output, groups):
         if value is None:
             raise _unsupported(node, "the object has no property %s of numbers" % node.attribute_name)
         return value
-    if "color:" + node.attribute_name in e.fields:
-        values = e.field("color:" + node.attribute_name, node)
-        return values[:, 3] if output.name == "Alpha" else values[:, :3]
-    return three(e.field("uv:" + node.attribute_name, node))
+    if "uv:" + node.attribute_name in e.fields:
+        return three(e.field("uv:" + node.attribute_name, node))
+    return _color_or_generic(e, node, output, node.attribute_name)
+
+
+def _color_or_generic(e, node, output, name):
+    """The value of a colour attribute or of another one of the mesh, by its name."""
+    if "color:" + name in e.fields:
+        values = e.field("color:" + name, node)
+    elif "attributes" in e.fields:
+        values = _generic(e, node, name)
+    else:
+        raise _unsupported(node, "it depends on the attribute %s, which is not known here" % name)
+    if output.name == "Alpha":
+        return values[:, 3] if values.shape[1] > 3 else numpy.ones(len(values))
+    return values[:, 0] if values.shape[1] == 1 else values[:, :3]
+
+
+def _generic(e, node, name):
+    """The values of a mesh's attribute, n x 1, 3 or 4; one that it does not have is 0, as in Cycles."""
+    values = e.fields.get("attribute:" + name)
+    if values is None:
+        e.note(node, "the mesh has no attribute %s; it is 0" % name)
+        return numpy.zeros((1, 1))
+    return three(values)
 
 
 def mapping(e, node, output, groups):

@@ -65,7 +65,7 @@ class Inputs:
         """As color, for what reflects, scatters or lets light pass, which velo limits to 1."""
         value = self.color(socket, groups)
         highest = max(value) if isinstance(value, tuple) else self.highest.get(id(value), (0.0, None))[0]
-        most = 1 + 1e-6 if isinstance(value, tuple) else 1.05  # baked texels beyond the edges of triangles may be a little higher
+        most = 1 + 1e-6 if isinstance(value, tuple) else 1 + 1e-3  # of images, whose numbers are rounded
         if highest > most:
             self.notes.add(self.owner, socket.node.name, "%s has values above 1, up to %.3g; they are 1" % (socket.name, highest))
         return tuple(min(x, 1.0) for x in value) if isinstance(value, tuple) else value
@@ -125,8 +125,10 @@ class Inputs:
         name = node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
         if node.type == "ATTRIBUTE" and (node.attribute_type != "GEOMETRY" or name in self.maps.names):
             return None
+        if not self.maps.has_color(name):
+            return None
         if self.color_attribute not in (None, name):
-            raise evaluate.Unsupported(node, "a second colour attribute in one material")
+            return None  # velo's triangles have one; a second one is baked
         self.color_attribute = name
         channel = 3 if source.socket.name == "Alpha" else -1
         words = {} if spectrum else {"channel": channel}
@@ -263,7 +265,10 @@ class Inputs:
         number = min(len(self.maps.names), 3)
         words = {} if spectrum else {"channel": 0}
         plain = numpy.array([[1.0, 0, 0], [0, 1, 0]])
-        return self._add(numpy.maximum(image, 0) if spectrum else image, spectrum, number, plain, wrap="clamp", filter="bilinear", **words)
+        handle = self._add(numpy.maximum(image, 0) if spectrum else image, spectrum, number, plain, wrap="clamp", filter="bilinear", **words)
+        if spectrum:  # the texels beyond a triangle's edge may be higher than its own
+            self.highest[id(handle)] = float(layout.inner(numpy.broadcast_to(array, (count, 3))).max(initial=0.0)), handle
+        return handle
 
     def _in_parts(self, count, fields, value):
         """The values of a function of fields, {name: count x n}, part by part; report.Cancelled where the user ends the export."""
@@ -329,12 +334,14 @@ def is_multiplied(node):
 
 
 class Maps:
-    """The uv maps of a mesh: names with the rendered one first, the box of each map's uvs. None: of what has none."""
+    """The uv maps of a mesh: names with the rendered one first, the box of each map's uvs; the names of its colour attributes. None: of
+    what has none."""
 
     def __init__(self, mesh):
         if mesh is None:
-            self.names, self.bounds = [], {}
+            self.names, self.bounds, self.colors = [], {}, []
             return
+        self.colors = mesh.color_names
         first = [mesh.render_uv] if mesh.render_uv is not None else []
         self.names = first + [name for name in mesh.uv_names if name != mesh.render_uv]
         self.bounds = {name: _box(mesh.uvs[name]) for name in self.names}
@@ -343,8 +350,12 @@ class Maps:
         """The set of a map; an empty name is the rendered map. Missing maps are 0 everywhere, as in Cycles: set 0."""
         return self.names.index(name) if name in self.names[:4] else 0
 
+    def has_color(self, name):
+        """Whether the mesh has a colour attribute; an empty name is the one that is rendered."""
+        return name in self.colors or (not name and bool(self.colors))
+
     def key(self):
-        return tuple((name, tuple(self.bounds[name][0]), tuple(self.bounds[name][1])) for name in self.names)
+        return tuple(self.colors), tuple((name, tuple(self.bounds[name][0]), tuple(self.bounds[name][1])) for name in self.names)
 
 
 def _box(uvs):

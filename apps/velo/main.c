@@ -145,7 +145,7 @@ static int unknown_command(int argc, char **argv) {
 /* Values of the options of `velo help`. */
 enum { HELP_ALL, HELP_MAN, HELP_COMPLETION, HELP_COMMANDS };
 
-static const Option help_options[] = {
+static Option help_options[] = {
     {HELP_ALL, 0, "all", OPTION_FLAG, NULL,
      "print all options, where the page of COMMAND has the most used only"},
     {HELP_MAN, 0, "man", OPTION_FLAG, NULL,
@@ -259,6 +259,8 @@ static int print_version(void) {
 }
 
 static int run(int argc, char **argv) {
+  for (int i = 0; i < COMMANDS; i++)
+    options_share(commands[i]->options, render_command.options);
   if (argc < 2) {
     print_overview();
     return STATUS_USAGE;

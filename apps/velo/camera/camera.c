@@ -219,7 +219,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option convert_options[] = {
+static Option convert_options[] = {
     {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT",
      "dialect of IN; default: recognised by its content:", 0, 0, dialect_choices},
     {CONVERT_TO, 0, "to", OPTION_CHOICE, "DIALECT",

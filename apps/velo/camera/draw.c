@@ -245,7 +245,7 @@ static int run_draw(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option draw_options[] = {
+static Option draw_options[] = {
     {DRAW_OUT, 'o', "output", OPTION_TEXT, "FILE", "image file to write: .png .jpg .tga"},
     {DRAW_SIZE, 0, "size", OPTION_SIZE, "WxH", "size of the drawing in pixels; default 960x640",
      16, 16384, NULL},
@@ -277,20 +277,16 @@ static const Option draw_options[] = {
      "leave view plane and film empty, without the camera's image"},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N",
      "samples per pixel of the scene, which is then denoised; default 32", 2, 1 << 24, NULL},
-    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
-     "exposure of the scene in stops; default: metered"},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
-     "scene or camera file that gives the camera"},
-    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera to use, by name or number from 0, if the file of --camera has several"},
+    {RENDER_EXPOSURE, .help = "exposure of the scene in stops; default: metered"},
+    {RENDER_CAMERA, .help = "scene or camera file that gives the camera"},
+    {RENDER_FRAME},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
      "image size of the camera in pixels", 1, 65536, NULL},
-    {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
-     "draw the cameras of this trajectory or rig instead, with the line through their eyes; at "
-     "most 200 of them"},
-    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several "
-     "times"},
+    {RENDER_TRAJECTORY,
+     .help =
+         "draw the cameras of this trajectory or rig instead, with the line through their eyes; at "
+         "most 200 of them"},
+    {RENDER_SEARCH},
     STRICT_OPTIONS_OPTION,
     {0}};
 

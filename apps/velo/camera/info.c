@@ -149,7 +149,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option info_options[] = {
+static Option info_options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera to use, by name or number from 0, if the file has several"},

@@ -107,12 +107,10 @@ static int run_paths(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}},
-                    samplers[] = {{"samplers", 0}, {NULL, 0}},
-                    filters[] = {{"filters", 0}, {NULL, 0}};
+static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}};
 static const Choice sort_choices[] = {{"contribution", 0}, {"sample", 1}, {NULL, 0}};
 
-static const Option paths_options[] = {
+static Option paths_options[] = {
     {PATHS_PIXEL, 0, "pixel", OPTION_TEXT, "x,y", "the pixel; 0,0 is at the top left"},
     {PATHS_SAMPLES, 0, "samples", OPTION_INTEGER, "N",
      "number of samples per pixel; default 16", 1, 1 << 20, NULL},
@@ -124,34 +122,23 @@ static const Option paths_options[] = {
      "order of the paths: the largest share of the pixel first, or by sample:", 0, 0,
      sort_choices},
     {PATHS_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the image"},
-    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size in pixels"},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
-     "scene or camera file that gives the camera"},
-    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera to use, by name or number from 0, if the file of --camera has several"},
+    {RENDER_SPP, .help = "samples per pixel of the image"},
+    {RENDER_RESOLUTION, .help = "image size in pixels"},
+    {RENDER_CAMERA, .help = "scene or camera file that gives the camera"},
+    {RENDER_FRAME},
     {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME",
      "tracer; path and volpath are recorded:", 0, 0, tracers},
-    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N",
-     "largest number of bounces of a path"},
-    {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0,
-     samplers},
-    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers"},
-    {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N", "length of the sample sequence", 1,
-     1 << 24, NULL},
-    {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter:", 0, 0, filters},
-    {RENDER_FILTER_SAMPLES, 0, "filter-samples", OPTION_CHOICE, "NAME",
-     "samples that count in a pixel, its own or all that its filter covers:", 0, 0,
-     filter_samples_choices},
-    {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME",
-     "method that chooses one light for a shading point:", 0, 0, light_sampler_choices},
-    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME",
-     "regularization of the materials:", 0, 0, regularize_choices},
-    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME",
-     "representation of colours during light transport:", 0, 0, color_choices},
-    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several "
-     "times"},
+    {RENDER_MAX_DEPTH},
+    {RENDER_SAMPLER},
+    {RENDER_SEED, .help = "seed of the random numbers"},
+    {RENDER_SEQUENCE, .help = "length of the sample sequence"},
+    {RENDER_FILTER, .help = "pixel filter:"},
+    {RENDER_FILTER_SAMPLES,
+     .help = "samples that count in a pixel, its own or all that its filter covers:"},
+    {RENDER_LIGHT_SAMPLER},
+    {RENDER_REGULARIZE, .help = "regularization of the materials:"},
+    {RENDER_COLOR},
+    {RENDER_SEARCH},
     STRICT_OPTIONS_OPTION,
     {0}};
 

@@ -176,7 +176,7 @@ static int run_unproject(const Command *command, const Arguments *arguments) {
   return run_points(arguments, unproject_all);
 }
 
-static const Option points_options[] = {
+static Option points_options[] = {
     {POINTS_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
      "camera file in any dialect of `velo camera convert`, or a scene file"},
     {POINTS_ORIGIN, 0, "pixel-origin", OPTION_CHOICE, "WHERE",

@@ -392,7 +392,7 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option vanishing_options[] = {
+static Option vanishing_options[] = {
     {V_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {V_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera to use, by name or number from 0, if the file has several"},

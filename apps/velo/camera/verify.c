@@ -246,7 +246,7 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option verify_options[] = {
+static Option verify_options[] = {
     {VERIFY_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
      "camera file in any dialect of `velo camera convert`, or a scene file"},
     {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME",

@@ -66,6 +66,21 @@ static int unknown_option(const Command *command, const char *name, const char *
                       command->name);
 }
 
+static bool is_end(const Option *option) {
+  return option->id == 0 && !option->name;
+}
+
+void options_share(Option *options, const Option *from) {
+  for (Option *o = options; !is_end(o); o++) {
+    const char *help = o->help;
+    for (const Option *row = from; !o->name && row->name; row++)
+      if (row->id == o->id)
+        *o = *row;
+    if (help)
+      o->help = help;
+  }
+}
+
 const Choice *option_choices(const Option *option) {
   return option->kind == OPTION_KIND ? kind_choices(option->choices) : option->choices;
 }

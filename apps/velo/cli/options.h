@@ -36,12 +36,13 @@ typedef enum OptionList {
 } OptionList;
 enum { OPTION_LIST_GIVEN = -1 };
 
-/* A row of a table ends with its last member that is not zero. */
+/* A row of a table ends with its last member that is not zero. A row without a name is an
+ * option of `velo render`: options_share fills in what is not given here. */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 typedef struct Option {
   int id; /* index into Arguments.values */
   char letter;
-  const char *name; /* without dashes; null ends the list */
+  const char *name; /* without dashes; null ends the list, where the id is 0 */
   OptionKind kind;
   const char *value; /* placeholder in the help page; null for flags */
   const char *help;  /* the help page wraps it */
@@ -86,7 +87,7 @@ typedef struct Command {
   const char *summary;  /* one line */
   const char *text;     /* paragraphs between usage and options */
   const char *examples; /* lines after the options */
-  const Option *options;
+  Option *options;
   const Section *sections; /* null: the options are one section */
   const char *brief; /* for long pages: what `velo help` prints without --all between usage and
                         hint, lines of at most 80 columns with examples and the most used
@@ -95,6 +96,9 @@ typedef struct Command {
   int (*run)(const struct Command *command, const Arguments *arguments);
 } Command;
 
+/* Gives each row without a name the members of the row of `from` with the same id, and its help
+ * unless it has one of its own. For all commands, before anything else reads their rows. */
+void options_share(Option *options, const Option *from);
 /* Parses argv without the names of program and command. Returns -1 to continue, otherwise the
  * exit code after reporting (0 after --help). */
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);

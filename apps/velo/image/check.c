@@ -348,7 +348,7 @@ static int run_check(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option check_options[] = {
+static Option check_options[] = {
     {CHECK_THRESHOLD, 0, "threshold", OPTION_NUMBER, "ERROR",
      "largest relative error that is accepted; default 1e-6", 0, 1, NULL},
     {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE",

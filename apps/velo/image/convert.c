@@ -237,7 +237,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option convert_options[] = {
+static Option convert_options[] = {
     {CONVERT_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1",
      "write only these pixels; x1 and y1 are exclusive"},
     {CONVERT_VIEW, 0, "view", OPTION_CHOICE, "NAME",

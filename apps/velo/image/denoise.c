@@ -97,7 +97,7 @@ vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {
   return vl_image_set_attribute(clean, &name);
 }
 
-static const Option denoise_options[] = {
+static Option denoise_options[] = {
     {DENOISE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "denoised image to write: .exr .hdr .pfm (linear), .png .jpg .tga (display)"},
     {DENOISE_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",

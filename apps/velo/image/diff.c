@@ -163,7 +163,7 @@ static int run_diff(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option diff_options[] = {
+static Option diff_options[] = {
     {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE",
      "write an image of the FLIP differences in false colours"},
     {DIFF_THRESHOLD, 0, "threshold", OPTION_TEXTS, "NAME=VALUE",

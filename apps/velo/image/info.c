@@ -284,7 +284,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option info_options[] = {
+static Option info_options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"}, {0}};
 
 const Command image_info_command = {

@@ -137,7 +137,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option info_options[] = {
+static Option info_options[] = {
     {INFO_OUT, 'o', "output", OPTION_TEXT, "FILE.svg", "write the polar diagram to this file"},
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {0}};

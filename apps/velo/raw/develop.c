@@ -66,7 +66,7 @@ static int run_develop(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option develop_options[] = {
+static Option develop_options[] = {
     {DEVELOP_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "image file to write; may be given several times. .exr has the step's numbers (after "
      "tone: linear light); .png has 16 bits after tone, else 8"},

@@ -109,7 +109,7 @@ extern const Choice light_sampler_choices[], sensor_choices[], regularize_choice
     accelerator_choices[], shard_choices[], stereo_choices[], eye_choices[], framing_choices[],
     walls_choices[], up_choices[];
 
-extern const Option render_options[];
+extern Option render_options[];
 extern const Section render_sections[];
 
 /* The value of --tracer auto. */

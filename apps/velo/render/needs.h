@@ -6,12 +6,12 @@
 #include "render/run.h"
 
 /* The option of all commands that check. */
-#define STRICT_OPTIONS_OPTION                                                                  \
-  {                                                                                            \
-    RENDER_STRICT_OPTIONS, 0, "strict-options", OPTION_FLAG, NULL,                             \
-        "an option that has no effect is an error, exit code 2, before anything is rendered; " \
-        "without this, a note",                                                                \
-        0, 0, NULL                                                                             \
+#define STRICT_OPTIONS_OPTION                                                                      \
+  {                                                                                                \
+    RENDER_STRICT_OPTIONS,                                                                         \
+        .help =                                                                                    \
+            "an option that has no effect is an error, exit code 2, before anything is rendered; " \
+            "without this, a note"                                                                 \
   }
 
 /* A command with some of the options of `velo render`, and what it has made of them. */

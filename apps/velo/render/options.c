@@ -11,7 +11,7 @@ static const Choice tracers[] = {{"tracers", 0}, {"auto", TRACER_AUTO}, {NULL, 0
                     samplers[] = {{"samplers", 0}, {NULL, 0}},
                     filters[] = {{"filters", 0}, {NULL, 0}};
 
-const Option render_options[] = {
+Option render_options[] = {
     {RENDER_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "image file to write; may be given several times. The suffix chooses the format: .exr "
      ".hdr .pfm (linear), .png .jpg .tga (display); of several frames also a video by ffmpeg: "

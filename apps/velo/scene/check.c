@@ -204,7 +204,7 @@ static int run(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option options[] = {
+static Option options[] = {
     {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL,
      "print every finding; default: the first 10 of each kind"},

@@ -23,7 +23,7 @@ enum {
   CONVERT_SEARCH
 };
 
-static const Option convert_options[] = {
+static Option convert_options[] = {
     {CONVERT_STRICT, 0, "strict", OPTION_FLAG, NULL,
      "anything that B's format cannot hold is an error, and nothing is written"},
     {CONVERT_COMPLETE, 0, "complete", OPTION_FLAG, NULL,

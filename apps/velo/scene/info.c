@@ -401,7 +401,7 @@ static int run(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option options[] = {
+static Option options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "leave out parts of the scene that velo does not understand, instead of ending with an "

@@ -220,9 +220,9 @@ static int run(const Command *command, const Arguments *arguments) {
   return report_stdout(STATUS_OK);
 }
 
-static const Option options[] = {{KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG, NULL,
-                                  "print the names as a dictionary for a fuzzer, one per line"},
-                                 {0}};
+static Option options[] = {{KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG, NULL,
+                            "print the names as a dictionary for a fuzzer, one per line"},
+                           {0}};
 
 const Command scene_kinds_command = {
     .name = "scene kinds",

@@ -106,7 +106,7 @@ static int run(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option options[] = {
+static Option options[] = {
     {UPGRADE_STRICT, 0, "strict", OPTION_FLAG, NULL,
      "anything without a counterpart in pbrt-v4 is an error, and nothing is written"},
     {UPGRADE_ALL, 'a', "all", OPTION_FLAG, NULL,

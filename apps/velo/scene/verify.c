@@ -161,7 +161,7 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option options[] = {
+static Option options[] = {
     {VERIFY_RAYS, 0, "rays", OPTION_NUMBER, "M",
      "millions of rays of the first look; default 60", 0.001, 1e6, NULL},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers; default 0", 0,
@@ -170,28 +170,22 @@ static const Option options[] = {
      "the reference renderer; default: the environment variable VELO_REFERENCE, else "
      "velo-reference beside velo"},
     {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N",
-     "number of threads; default: one per processor core"},
+    {RENDER_THREADS, .help = "number of threads; default: one per processor core"},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
      "image size in pixels; default: that of the scene, reduced to 64 pixels on its longer "
      "side",
      1, 4096},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
-     "scene or camera file that gives the camera"},
-    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera to use, by name or number from 0, if the file of --camera has several"},
-    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N",
-     "largest number of bounces of a path"},
-    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME",
-     "representation of colours during light transport:", 0, 0, color_choices},
-    {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
-     "parts of the scene that velo does not understand are warnings, not errors"},
-    {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "DIR",
-     "a file that the scene names must be in DIR or below it; the reference renderer is not "
-     "started"},
-    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several "
-     "times"},
+    {RENDER_CAMERA, .help = "scene or camera file that gives the camera"},
+    {RENDER_FRAME},
+    {RENDER_MAX_DEPTH},
+    {RENDER_COLOR},
+    {RENDER_PERMISSIVE,
+     .help = "parts of the scene that velo does not understand are warnings, not errors"},
+    {RENDER_SANDBOX,
+     .help =
+         "a file that the scene names must be in DIR or below it; the reference renderer is not "
+         "started"},
+    {RENDER_SEARCH},
     STRICT_OPTIONS_OPTION,
     {0}};
 

@@ -357,7 +357,7 @@ static int run(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option options[] = {
+static Option options[] = {
     {EXPOSE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "file to write; may be given several times: .dng is a raw file with all metadata, .tif "
      "and .png have the numbers (16 bits), .exr the electrons"},

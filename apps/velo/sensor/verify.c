@@ -147,7 +147,7 @@ static int run(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option options[] = {
+static Option options[] = {
     {VERIFY_ISO, 0, "iso", OPTION_TEXT, "N", "ISO speed; default: the sensor's base_iso"},
     {VERIFY_TEMPERATURE, 0, "temperature", OPTION_TEXT, "C",
      "temperature of the sensor, degrees Celsius"},

@@ -184,16 +184,14 @@ static int run_trace(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Option trace_options[] = {
+static Option trace_options[] = {
     {TRACE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE",
      "file of the hits, .csv, .npy or .npz; default: .csv on stdout"},
     {TRACE_HITS, 0, "hits", OPTION_INTEGER, "K", "up to K hits along each ray; default 1", 1,
      VL_MAX_CAST_HITS, NULL},
     {TRACE_OCCLUDED, 0, "occluded", OPTION_FLAG, NULL,
      "say only whether something is on each ray"},
-    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several "
-     "times"},
+    {RENDER_SEARCH},
     STRICT_OPTIONS_OPTION,
     {0}};
 

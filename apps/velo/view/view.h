@@ -20,7 +20,7 @@ _Static_assert((int)VIEW_OPTIONS <= (int)MAX_OPTIONS,
 
 enum { LANGUAGE_ENGLISH, LANGUAGE_ITALIAN }; /* of --language */
 
-extern const Option view_options[];
+extern Option view_options[];
 
 /* Runs the command. Returns the exit code. */
 int view_run(const Arguments *arguments);

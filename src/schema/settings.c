@@ -146,8 +146,6 @@ static const vlKindRow render_row = {VL_ROW_PARAMETERS(render_parameters), .name
 static const vlParameter load_parameters[] = {
     LOAD(BOOL, permissive, "warn about what is not supported, and repair normals",
          .unit = NULL),
-    LOAD(BOOL, strict, "glTF, OBJ: a missing image is an error", .unit = NULL),
-    LOAD(STRING, search_path, "further folders of files, separated by colons", .text = NULL),
     LOAD(DOUBLE, time, "glTF: time of the animations", WITHIN(-1e6, 1e6), UNSET, .unit = "s"),
     LOAD(DOUBLE, time_close, "glTF: time when the shutter closes", WITHIN(-1e6, 1e6), UNSET,
          .unit = "s"),
@@ -155,6 +153,8 @@ static const vlParameter load_parameters[] = {
     LOAD(STRING, animation, "glTF: the animation, by name or number", .text = NULL),
     LOAD(STRING, variant, "glTF: the material variant", .text = NULL),
     LOAD(STRING, camera, "glTF: the camera, by name or number", .text = NULL),
+    LOAD(BOOL, strict, "glTF, OBJ: a missing image is an error", .unit = NULL),
+    LOAD(STRING, search_path, "further folders of files, separated by colons", .text = NULL),
     LOAD(DOUBLE, unit, "length of the file's unit, for candela and lumens", WITHIN(1e-9, 1e9),
          UNSET, .unit = "m", .keyword = "scene_unit"),
 };

@@ -128,6 +128,10 @@ VL_API vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *def, vlEr
  * the same camera, bit for bit. What was not added is not asked for. The path is the pointer
  * that was given. Before any vl_scene_complete it is the default def. */
 VL_API vlCompleteDef vl_scene_completed(const vlScene *scene);
+/** The box in world space of what the camera frames that vl_scene_complete has added last: the
+ * model without stray parts, without a wide ground and without a dome. False, and the box is
+ * left as it is: it has added no camera. Any thread that has the scene for itself. */
+VL_API bool vl_scene_framed(const vlScene *scene, double low[3], double high[3]);
 
 #ifdef __cplusplus
 }

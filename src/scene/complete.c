@@ -40,6 +40,19 @@ vlCompleteDef vl_scene_completed(const vlScene *scene) {
   return scene->completed.cookie ? scene->completed : vl_default_complete_def();
 }
 
+bool vl_scene_framed(const vlScene *scene, double low[3], double high[3]) {
+  if (!scene->completed.cookie || !(scene->framed[0][0] <= scene->framed[1][0]))
+    return false;
+  memcpy(low, scene->framed[0], sizeof scene->framed[0]);
+  memcpy(high, scene->framed[1], sizeof scene->framed[1]);
+  return true;
+}
+
+static void set_framed(vlScene *scene, const vlExtent *box) {
+  memcpy(scene->framed[0], box->low, sizeof box->low);
+  memcpy(scene->framed[1], box->high, sizeof box->high);
+}
+
 /* ---- the camera -------------------------------------------------------------------------- */
 
 /* The view frustum. sides: offset of each side plane, which is the maximum over all points of x
@@ -66,7 +79,7 @@ typedef struct View {
   double azimuth, elevation; /* radians: from the front to the right, above the horizon */
   bool front_unknown;        /* the file does not say which side is its front */
   bool on_plain;             /* the model stands on a plain */
-  vlExtent ground;           /* the part of it that the image shows */
+  vlExtent shown;            /* model and ground around it */
 } View;
 
 static double extent_along(const vlExtent *box, const double axis[3]) {
@@ -157,19 +170,10 @@ static void set_camera(vlScene *scene, const double up[3], double fov, const dou
   s->camera_missing = false;
 }
 
-/* The whole model, and the ground that is to be seen around it. */
-static void widen_by_all(const vlScene *scene, const View *v, const vlExtent *boxes,
-                         const bool *without, Frame *f) {
-  const vlMat4 identity = vl_mat4_identity();
-  vl_extent_visit(scene, boxes, without, widen, f);
-  if (v->on_plain)
-    vl_extent_visit_box(&identity, &v->ground, widen, f);
-}
-
 /* without: shapes that need not be in the image; may be null. */
 static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
                          const vlExtent *boxes, const bool *without) {
-  const double fov = 0.6, margin = 0.9;
+  const double fov = 0.6, margin = v->on_plain ? 0.7 : 0.9; /* some ground is seen around */
   const vlSceneDefs *s = &scene->defs;
   double half = vl_precise_tan(0.5 * fov), aspect = (double)s->film.width / s->film.height,
          lookat[3], eye[3];
@@ -185,7 +189,7 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
   vl_cross3(f.right, f.ahead, f.up);
   for (int i = 0; i < 4; i++)
     f.sides[i] = -INFINITY;
-  widen_by_all(scene, v, boxes, without, &f);
+  vl_extent_visit(scene, boxes, without, widen, &f);
   double x = 0, y = 0, d = 1;
   if (isfinite(f.sides[0])) {
     x = 0.5 * (f.sides[0] - f.sides[1]);
@@ -435,8 +439,8 @@ static bool find_own_view(const vlScene *scene, const vlExtent *box, View *v) {
   return !(inside > 0) && above > 0 && v->elevation >= 0;
 }
 
-/* Finds the plain on which a model stands. *box becomes that of the model, and the limits are
- * those of what an image of it shows. */
+/* Finds the plain on which a model stands. *box becomes that of the model, and so do the
+ * limits, down to the ground. */
 static void find_plain(const vlScene *scene, vlExtent *boxes, vlExtent *box, View *v) {
   vlPlain plain;
   int axis = 0;
@@ -445,9 +449,10 @@ static void find_plain(const vlScene *scene, vlExtent *boxes, vlExtent *box, Vie
   if (v->up[axis] != 1 || !vl_plain_find(scene, boxes, axis, &plain))
     return;
   v->on_plain = true;
-  v->ground = boxes[scene->groups.count] = plain.shown;
-  v->ground.high[axis] = v->ground.low[axis];
+  v->shown = plain.shown;
   *box = plain.model;
+  box->low[axis] = plain.shown.low[axis];
+  boxes[scene->groups.count] = *box;
   vl_log(scene->context, VL_LOG_DEBUG, NULL, "camera: the model stands on a wide flat ground");
 }
 
@@ -467,11 +472,14 @@ static bool complete_geometry(vlScene *scene, const View *axes, bool camera, vlE
     const char *from = choose_view(scene, done, &box, &view);
     tell_camera(scene, from, &box);
     frame_camera(scene, &view, &box, boxes, NULL);
+    set_framed(scene, &box);
     done->azimuth = view.azimuth;
     done->elevation = view.elevation;
   }
-  if (view.on_plain)
+  if (view.on_plain) {
+    boxes[scene->groups.count] = view.shown;
     vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &box); /* the ground is under both */
+  }
   bool stands = camera || (own && find_own_view(scene, &box, &view));
   if (studio && vl_is_unset(done->rotation) && (camera || own))
     done->rotation = view.azimuth - 0.45; /* the main light stays to its left */
@@ -479,6 +487,8 @@ static bool complete_geometry(vlScene *scene, const View *axes, bool camera, vlE
     ok = open_walls(scene, &view, camera, &box, boxes, &closed);
   else
     done->open_walls = false;
+  if (camera && closed.kind == VL_CLOSED_DOME)
+    set_framed(scene, &box);
   bool wanted =
       ground_is_given(done) || (stands && studio && !is_inside(&closed) && view.elevation >= 0);
   bool fades = done->backdrop && wanted && !done->ground;
@@ -558,6 +568,7 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   vlSceneDefs *s = &scene->defs;
   vlCompleteDef *done = &scene->completed;
   *done = def;
+  set_framed(scene, &vl_extent_nothing);
   bool camera = s->camera_missing || def.reframe;
   if (camera && def.width && def.height)
     choose_size(s, &def);

@@ -21,8 +21,10 @@ static double widest(const vlExtent *box, int axis) {
   return fmax(size(box, (axis + 1) % 3), size(box, (axis + 2) % 3));
 }
 
-static void visit(void *user, const vlExtent *box, double surface) {
+static void visit(void *user, const vlThing *thing) {
   Survey *s = user;
+  const vlExtent *box = &thing->box;
+  const double surface = thing->surface;
   if (!vl_extent_holds(&s->limits, box))
     return;
   const bool low = box->high[s->axis] <= s->top;

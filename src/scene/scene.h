@@ -82,6 +82,7 @@ struct vlScene {
   VL_ARRAY(uint32_t) removed_instances;
   vlSceneDefs defs;
   vlCompleteDef completed; /* what vl_scene_complete has added; cookie 0: it was not called */
+  double framed[2][3];     /* low and high of what the camera frames that it has added */
   bool camera_read;        /* defs.camera is that of the file that was read */
   bool camera_in_full; /* vl_scene_load has read a complete camera description from the extras
                           of a glTF file */

@@ -12,24 +12,29 @@ enum { BINS = 1024, MAX_ROUNDS = 8, MAX_PASSES = 16 };
 
 typedef struct Survey {
   vlExtent limits;                    /* things that are not inside do not count */
-  vlExtent box;                       /* of all that count */
+  vlExtent box;                       /* of all that count, needles without their tips */
+  vlExtent whole;                     /* with the tips that are inside of the limits */
   vlExtent core;                      /* grows */
   double reach;                       /* what is no further from the core belongs to it */
   double histogram[3][BINS], surface; /* along each axis of `box`; sum */
-  uint64_t outside;                   /* number of things outside of `limits` */
+  uint64_t outside;                   /* number of things that are not all inside of `limits` */
 } Survey;
 
-static void measure(void *user, const vlExtent *box, double surface) {
+static void measure(void *user, const vlThing *thing) {
   Survey *s = user;
-  (void)surface;
-  if (vl_extent_holds(&s->limits, box))
-    vl_extent_join(&s->box, box);
-  else
+  const bool all = vl_extent_holds(&s->limits, &thing->box);
+  if (!all)
     s->outside++;
+  if (!vl_extent_holds(&s->limits, &thing->body))
+    return;
+  vl_extent_join(&s->box, &thing->body);
+  vl_extent_join(&s->whole, all ? &thing->box : &thing->body);
 }
 
-static void weigh(void *user, const vlExtent *box, double surface) {
+static void weigh(void *user, const vlThing *thing) {
   Survey *s = user;
+  const vlExtent *box = &thing->body;
+  const double surface = thing->surface;
   if (!vl_extent_holds(&s->limits, box) || !(surface > 0) || !isfinite(surface))
     return;
   for (int i = 0; i < 3; i++) {
@@ -51,11 +56,13 @@ static bool is_near(const Survey *s, const vlExtent *box, bool all) {
   return near;
 }
 
-static void absorb(void *user, const vlExtent *box, double surface) {
+/* A needle whose tip is far away may be the trace of a lone corner there; one whose other end
+ * is far away is a part of something, such as a mast. */
+static void absorb(void *user, const vlThing *thing) {
   Survey *s = user;
-  (void)surface;
-  if (vl_extent_holds(&s->limits, box) && is_near(s, box, false))
-    vl_extent_join(&s->core, box);
+  if (!vl_extent_holds(&s->limits, &thing->body) || !is_near(s, &thing->box, false))
+    return;
+  vl_extent_join(&s->core, is_near(s, &thing->box, true) ? &thing->box : &thing->body);
 }
 
 /* The end of the core along an axis, from `bin` on in steps of `step`. */
@@ -87,7 +94,7 @@ static bool same(const vlExtent *a, const vlExtent *b) {
  * something that counted does not count any more. */
 static bool narrow(const vlScene *scene, const vlExtent *boxes, Survey *s) {
   const vlExtent limits = s->limits;
-  *s = (Survey){.limits = limits, .box = vl_extent_nothing};
+  *s = (Survey){.limits = limits, .box = vl_extent_nothing, .whole = vl_extent_nothing};
   vl_things_visit(scene, boxes, measure, s);
   if (!isfinite(vl_extent_diagonal(&s->box)))
     return false;
@@ -98,8 +105,8 @@ static bool narrow(const vlScene *scene, const vlExtent *boxes, Survey *s) {
   for (int pass = 0; pass < MAX_PASSES; pass++) {
     const vlExtent before = s->core;
     s->reach = vl_extent_diagonal(&s->core);
-    if (is_near(s, &s->box, true)) { /* all belongs to the core */
-      s->limits = s->box;
+    if (is_near(s, &s->whole, true)) { /* all belongs to the core */
+      s->limits = s->whole;
       return false;
     }
     vl_things_visit(scene, boxes, absorb, s);
@@ -107,10 +114,10 @@ static bool narrow(const vlScene *scene, const vlExtent *boxes, Survey *s) {
       break;
   }
   for (int i = 0; i < 3; i++) {
-    s->limits.low[i] = fmax(s->core.low[i], s->box.low[i]);
-    s->limits.high[i] = fmin(s->core.high[i], s->box.high[i]);
+    s->limits.low[i] = fmax(s->core.low[i], s->whole.low[i]);
+    s->limits.high[i] = fmin(s->core.high[i], s->whole.high[i]);
   }
-  return !same(&s->limits, &s->box);
+  return !same(&s->limits, &s->whole);
 }
 
 void vl_stray_limit(const vlScene *scene, vlExtent *boxes, uint64_t *count) {

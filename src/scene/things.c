@@ -15,23 +15,50 @@ static double surface_of(const vlExtent *box) {
   return 2 * (x * y + y * z + z * x);
 }
 
+static void visit_box(const vlExtent *box, vlThingVisit *visit, void *user) {
+  const vlThing thing = {.box = *box, .body = *box, .surface = surface_of(box)};
+  visit(user, &thing);
+}
+
+/* The box of a face without the tip of a needle. */
+static vlExtent body_of(const double p[3][3], const vlExtent *box) {
+  const double thin = 0.1;
+  double squared[3]; /* lengths of the edges that begin at each corner */
+  vlExtent body = vl_extent_nothing;
+  int least = 0;
+  for (int k = 0; k < 3; k++) {
+    squared[k] = 0;
+    for (int i = 0; i < 3; i++)
+      squared[k] += (p[(k + 1) % 3][i] - p[k][i]) * (p[(k + 1) % 3][i] - p[k][i]);
+    least = squared[k] < squared[least] ? k : least;
+  }
+  const double others = fmin(squared[(least + 1) % 3], squared[(least + 2) % 3]);
+  if (!(squared[least] < thin * thin * others))
+    return *box;
+  vl_extent_grow(&body, p[least]);
+  vl_extent_grow(&body, p[(least + 1) % 3]);
+  return body;
+}
+
 static void visit_faces(const vlShapeDef *shape, vlThingVisit *visit, void *user) {
   const vlMat4 m = vl_mat4_load(shape->group_from_shape);
   for (size_t i = 0; i < shape->faces; i++) {
     double p[3][3], b[3], c[3], n[3];
-    vlExtent box = vl_extent_nothing;
+    vlThing thing = {.box = vl_extent_nothing};
     for (size_t k = 0; k < 3; k++) {
       const float *v = shape->positions + 3 * (size_t)shape->indices[3 * i + k];
       const double q[3] = {v[0], v[1], v[2]};
       vl_mat4_point(&m, q, p[k]);
-      vl_extent_grow(&box, p[k]);
+      vl_extent_grow(&thing.box, p[k]);
     }
     for (int k = 0; k < 3; k++) {
       b[k] = p[1][k] - p[0][k];
       c[k] = p[2][k] - p[0][k];
     }
     vl_cross3(b, c, n);
-    visit(user, &box, 0.5 * vl_norm3(n));
+    thing.body = body_of((const double(*)[3])p, &thing.box);
+    thing.surface = 0.5 * vl_norm3(n);
+    visit(user, &thing);
   }
 }
 
@@ -43,7 +70,7 @@ static void visit_spheres(const vlShapeDef *shape, vlThingVisit *visit, void *us
     const vlExtent own = {{c[0] - r, c[1] - r, c[2] - r}, {c[0] + r, c[1] + r, c[2] + r}};
     vlExtent box = vl_extent_nothing;
     vl_extent_visit_box(&m, &own, vl_extent_grow, &box);
-    visit(user, &box, surface_of(&box));
+    visit_box(&box, visit, user);
   }
 }
 
@@ -64,7 +91,7 @@ void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *
     }
     vl_extent_visit_shape(shape, vl_extent_grow, &box);
     if (box.low[0] <= box.high[0])
-      visit(user, &box, surface_of(&box));
+      visit_box(&box, visit, user);
   }
   for (size_t i = 0; i < scene->instances.count; i++) {
     const vlSceneInstance *instance = &scene->instances.items[i];
@@ -74,7 +101,7 @@ void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *
     if (instance->hidden || !(own->low[0] <= own->high[0]))
       continue;
     vl_extent_visit_box(&m, own, vl_extent_grow, &box);
-    visit(user, &box, surface_of(&box));
+    visit_box(&box, visit, user);
   }
 }
 

@@ -5,9 +5,15 @@
 
 #include "scene/extent.h"
 
-/* Receives the box of a thing in world space, and its surface; of what is no face, that of its
- * box. */
-typedef void vlThingVisit(void *user, const vlExtent *box, double surface);
+/* A thing in world space. */
+typedef struct vlThing {
+  vlExtent box;
+  vlExtent body;  /* of a needle (a face with one edge below a tenth of the two others) the box
+                     of  this edge: where the face is, but for its tip; of all others `box` */
+  double surface; /* of what is no face, that of its box */
+} vlThing;
+
+typedef void vlThingVisit(void *user, const vlThing *thing);
 /* Calls `visit` with all things. boxes: those of the groups. */
 void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *visit,
                      void *user);

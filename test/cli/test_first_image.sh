@@ -144,6 +144,15 @@ done
 check dark "$VELO" render inside.glb $small --environment studio -o dark.png
 expect_absent dark_says 'lamps are added'
 # A turned camera stands as near as the model asks for, not as its ground does.
+# A stray part moves neither it nor what it turns about.
+printf 'o box\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 5\nf 3 4 5\nf 4 2 5\n' >alone.obj
+{ cat alone.obj; printf 'v 900 0 0\nv 900.01 0 0\nv 900 0.01 0\nf 6 7 8\n'; } >stray.obj
+for model in alone stray; do
+  check turned_$model "$VELO" render $model.obj --resolution 32x24 --turn 90 --dry-run
+  printf '%s' "$err" | grep -o 'eye ([^)]*), lookat ([^)]*)' >$model.eye
+done
+check turned_eye grep -q eye alone.eye
+check turned_stray_same cmp alone.eye stray.eye
 check turned "$VELO" render white.glb $small --turn 90 --transparent -o turned.png --quiet
 expect_code 2 bad_framing "$VELO" render sun.glb --framing above
 check jpeg_warns "$VELO" render plain.glb $small --transparent -o plain.jpg

@@ -86,6 +86,80 @@ static void stray_parts(void **state) {
       }
 }
 
+/* A box whose corners are a grid of its faces, one of which, on a side, is far away: the image
+ * is that of the rest, also if no corners are shared, and so is what a turntable goes around.
+ */
+static void lone_corner(void **state) {
+  (void)state;
+  enum { SIDE = 20, FACES = 6 * 2 * SIDE * SIDE };
+  static float p[9 * FACES];
+  static uint32_t indices[3 * FACES];
+  for (int far_away = 0; far_away < 2; far_away++) {
+    uint32_t n = 0;
+    for (int side = 0; side < 6; side++)
+      for (int k = 0; k < 6 * SIDE * SIDE; k++, n++) {
+        static const int corners[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
+        const int i = k / 6 % SIDE + corners[k % 6][0], j = k / 6 / SIDE + corners[k % 6][1];
+        const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        p[3 * n + (uint32_t)axis] = side & 1 ? high[axis] : low[axis];
+        p[3 * n + (uint32_t)u] = low[u] + (high[u] - low[u]) * (float)i / SIDE;
+        p[3 * n + (uint32_t)v] = low[v] + (high[v] - low[v]) * (float)j / SIDE;
+        if (far_away && side == 5 && i == 10 && j == 10)
+          memcpy(p + 3 * n, (float[3]){400, 300, 200}, 3 * sizeof *p);
+        indices[n] = n;
+      }
+    Model m = begin();
+    vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+    shape.vertices = n;
+    shape.faces = n / 3;
+    shape.positions = p;
+    shape.indices = indices;
+    assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    bool whole;
+    assert_true(size_in_image(&m, low, high, &whole) > 1 && whole);
+    double framed[2][3];
+    assert_true(vl_scene_framed(m.scene, framed[0], framed[1]));
+    for (int i = 0; i < 3; i++)
+      assert_true(fabs(framed[0][i] - (double)low[i]) < 1e-6 &&
+                  fabs(framed[1][i] - (double)high[i]) < 1e-6);
+    end(&m);
+  }
+}
+
+/* A spire that is not far higher than the rest is in the image up to its tip. */
+static void spire(void **state) {
+  (void)state;
+  enum { SIDES = 16 };
+  float p[3 * (SIDES + 1)] = {0, 3.4f, 0};
+  uint32_t indices[3 * SIDES];
+  for (uint32_t i = 0; i < SIDES; i++) {
+    const double turn = 2 * 3.14159265358979323846 * i / SIDES;
+    const float ring[3] = {(float)(0.2 * cos(turn)), 1.5f, (float)(0.2 * sin(turn))};
+    memcpy(p + 3 * (i + 1), ring, sizeof ring);
+    memcpy(indices + 3 * i, (uint32_t[3]){0, 1 + (i + 1) % SIDES, 1 + i}, 3 * sizeof *indices);
+  }
+  Model m = begin();
+  double framed[2][3];
+  assert_false(vl_scene_framed(m.scene, framed[0], framed[1]));
+  add_box(&m, low, high, false, false);
+  vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  shape.vertices = SIDES + 1;
+  shape.faces = SIDES;
+  shape.positions = p;
+  shape.indices = indices;
+  assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
+  vlCompleteDef def = first_image();
+  complete(&m, &def);
+  bool whole;
+  size_in_image(&m, low, (float[3]){high[0], 3.4f, high[2]}, &whole);
+  assert_true(whole);
+  assert_true(vl_scene_framed(m.scene, framed[0], framed[1]));
+  assert_true(fabs(framed[1][1] - 3.4) < 1e-5);
+  end(&m);
+}
+
 /* What belongs to the model stays in the image: a thin mast that is ten times as high; a chain
  * of small things, each near the next; a thing that is not small. */
 static void all_of_it(void **state) {
@@ -142,6 +216,9 @@ static void on_a_plain(void **state) {
         bool whole;
         const double size = size_in_image(&m, object[0], object[1], &whole);
         assert_true(whole && size > (wide ? 1 : 0.2));
+        double middle[2];
+        project(&m, (double[3]){0, z ? 0 : 0.75, z ? 0.75 : 0}, middle);
+        assert_true(!wide || fabs(middle[0]) + fabs(middle[1]) < 0.3);
         size_in_image(&m, ground[0], ground[1], &whole);
         assert_true(whole == !wide);
         assert_true(m.scene->defs.camera.up[z ? 2 : 1] == 1);
@@ -323,10 +400,15 @@ static void raised_parts(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stray_parts),        cmocka_unit_test(all_of_it),
-      cmocka_unit_test(on_a_plain),         cmocka_unit_test(cities),
-      cmocka_unit_test(figures_and_chairs), cmocka_unit_test(terrain),
+      cmocka_unit_test(stray_parts),
+      cmocka_unit_test(all_of_it),
+      cmocka_unit_test(on_a_plain),
+      cmocka_unit_test(cities),
+      cmocka_unit_test(figures_and_chairs),
+      cmocka_unit_test(terrain),
       cmocka_unit_test(raised_parts),
+      cmocka_unit_test(lone_corner),
+      cmocka_unit_test(spire),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

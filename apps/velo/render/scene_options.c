@@ -237,6 +237,7 @@ static int load_and_complete(vlContext *context, const char *path, const Argumen
   if (result != VL_OK)
     return report_error(&error, result, path);
   opening->complete = vl_scene_completed(*scene);
+  vl_scene_framed(*scene, opening->low, opening->high);
   opening->environment = opening->complete.environment;
   opening->lamps =
       opening->model && (info.lights > 0 || opening->environment == VL_ENVIRONMENT_NONE ||

@@ -25,8 +25,8 @@ typedef struct SceneOpening {
   vlCameraDef camera;            /* before it was turned */
   vlWorld *metered;              /* the world with which the model was found lit or dark, for
                                     vlBuildDef.previous; null: it was not looked at */
-  double low[3], high[3];        /* the bounds of the file's scene, without an added ground;
-        low > high: it is empty */
+  double low[3], high[3]; /* of what an added camera frames, else the bounds of the file's
+ scene, without an added ground; low > high: it is empty */
 } SceneOpening;
 
 /* Loads the scene, completes it and turns its camera. Returns -1, or the exit code after

@@ -6,7 +6,7 @@ set_target_properties(velo_python PROPERTIES PREFIX "" OUTPUT_NAME _velo SUFFIX 
                                              LIBRARY_OUTPUT_DIRECTORY ${VELO_PYTHON_DIR}/velo)
 target_include_directories(velo_python SYSTEM PRIVATE ${Python3_INCLUDE_DIRS})
 target_include_directories(velo_python PRIVATE ${CMAKE_SOURCE_DIR}/include)
-target_compile_definitions(velo_python PRIVATE _GNU_SOURCE Py_LIMITED_API=0x030B0000)
+target_compile_definitions(velo_python PRIVATE _GNU_SOURCE Py_LIMITED_API=0x030A0000)
 target_compile_options(velo_python PRIVATE -Wall -Wextra -Wshadow $<$<BOOL:${VELO_WERROR}>:-Werror>)
 # The library's code is inside the module, hidden: no installed libvelo of another version can replace it.
 target_link_libraries(velo_python PRIVATE velo)

@@ -19,8 +19,8 @@ def _find_velo():
     """Imports velo: where Blender's Python has it, else from this add-on's own folder (tools/bundle_addon)."""
     own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "modules")
     if importlib.util.find_spec("velo") is None and os.path.isdir(own):
-        if sys.version_info < (3, 11):
-            raise ImportError("velo in Blender needs Python 3.11 or later, and this Blender has %d.%d" % sys.version_info[:2])
+        if sys.version_info < (3, 10):
+            raise ImportError("velo in Blender needs Python 3.10 or later, and this Blender has %d.%d" % sys.version_info[:2])
         sys.path.append(own)
     try:
         import velo  # noqa: F401: the message is clearer than that of the first module which needs it

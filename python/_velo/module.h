@@ -1,18 +1,20 @@
 /* _velo/module.h: what the files of the extension module share. The module uses velo's public
- * headers and CPython's stable ABI only. Its classes are thin: python/velo adds the convenient
- * methods. */
+ * headers and CPython's stable ABI of 3.10 only, with the buffer protocol. Its classes are
+ * thin: python/velo adds the convenient methods. */
 #ifndef VELO_PYTHON_MODULE_H
 #define VELO_PYTHON_MODULE_H
 
 #ifndef Py_LIMITED_API
-#define Py_LIMITED_API 0x030B0000
+#define Py_LIMITED_API 0x030A0000
 #endif
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
+
 #include <locale.h>
 #include <velo/edit.h>
 #include <velo/setting.h>
 #include <velo/velo.h>
+#include "py_buffer.h"
 
 /* ---- objects ----------------------------------------------------------------------------- */
 

@@ -3,12 +3,15 @@ from __future__ import annotations
 
 import os
 import tempfile
-from typing import Any, Callable, NamedTuple, Optional, Sequence, Union, Unpack
+from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Optional, Sequence, Union
 
 from velo import _arrays, _check, _keywords, _velo
 from velo._context import context_or_default
 from velo.image import Path
 from velo.own import bare
+
+if TYPE_CHECKING:
+    from typing import Unpack  # since 3.11
 
 
 class Projection(NamedTuple):

@@ -3,11 +3,14 @@ from __future__ import annotations
 
 import os
 import tempfile
-from typing import Any, Optional, Sequence, Union, Unpack
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
 from velo import _arrays, _check, _keywords, _velo
 from velo._context import context_or_default
 from velo._errors import UsageError, shown, wrong_value
+
+if TYPE_CHECKING:
+    from typing import Unpack  # since 3.11
 
 Path = Union[str, "os.PathLike[str]"]
 _POLLED_ROWS = 32  # that are joined between two calls of poll

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union, Unpack
+from typing import TYPE_CHECKING, Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union
 
 from velo import _arrays, _check, _keywords, _solids, _velo, rays
 from velo._context import context_or_default
@@ -15,6 +15,9 @@ from velo.image import OTHER_NAMES, Image, Path, join
 from velo.own import OwnCamera, bare
 from velo.settings import Settings
 from velo.spectrum import Spectrum
+
+if TYPE_CHECKING:
+    from typing import Unpack  # since 3.11
 
 Handle = _velo.Handle
 Callback = Callable[[Progress], Optional[bool]]

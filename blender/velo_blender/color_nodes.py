@@ -1,4 +1,4 @@
-"""color_nodes.py: nodes of colours: mix, ramp, curves, invert, gamma, brightness, hue and saturation."""
+"""color_nodes.py: nodes of colours: mix, ramp, invert, gamma, brightness, hue and saturation."""
 import numpy
 
 from .math_nodes import column
@@ -94,19 +94,6 @@ def ramp(e, node, output, groups):
     return colors[:, 3] if output.name == "Alpha" else colors[:, :3]
 
 
-def curves(e, node, output, groups):
-    factor, color = e.named(node, "Fac", groups), e.named(node, "Color", groups)
-    node.mapping.initialize()
-    channels = list(node.mapping.curves)
-    places = numpy.linspace(0, 1, 256)
-    combined = numpy.array([node.mapping.evaluate(channels[3], float(x)) for x in places])
-    result = numpy.empty_like(color)
-    for i in range(3):
-        table = numpy.array([node.mapping.evaluate(channels[i], float(x)) for x in combined])
-        result[:, i] = numpy.interp(color[:, i], places, table)
-    return color + column(factor) * (result - color)
-
-
 def invert(e, node, output, groups):
     factor, color = e.named(node, "Fac", groups), e.named(node, "Color", groups)
     return color + column(factor) * (1 - 2 * color)
@@ -138,6 +125,22 @@ def from_hsv(hsv):
     return column(v) * ((sector - 1) * column(s) + 1)
 
 
+def to_hsl(color):
+    """n x 3: hue, saturation, lightness, 0 to 1."""
+    high, low = color.max(axis=1), color.min(axis=1)
+    size, lightness = high - low, (high + low) / 2
+    most = numpy.where(lightness > 0.5, 2 - high - low, high + low)
+    saturation = numpy.where(size == 0, 0, size / numpy.where(most == 0, 1, most))
+    return numpy.stack((to_hsv(color)[:, 0], saturation, lightness), axis=1)
+
+
+def from_hsl(hsl):
+    h, s, lightness = hsl.T
+    sector = numpy.stack([numpy.clip(numpy.abs((h * 6 - c) % 6 - 3) - 1, 0, 1) for c in (0, 2, 4)], axis=1)
+    chroma = (1 - numpy.abs(2 * lightness - 1)) * s
+    return column(chroma) * (sector - 0.5) + column(lightness)
+
+
 def hue_saturation(e, node, output, groups):
     hue, saturation, value, factor, color = (e.named(node, name, groups) for name in ("Hue", "Saturation", "Value", "Fac", "Color"))
     hsv = to_hsv(color)
@@ -152,6 +155,14 @@ def _bell(wavelength, middle, below, above):
     return numpy.exp(-0.5 * t * t)
 
 
+def _xyz(nm):
+    """The fits of Wyman, Sloan and Shirley 2013 to the CIE 1931 observer, ... x 3."""
+    x = 1.056 * _bell(nm, 599.8, 37.9, 31.0) + 0.362 * _bell(nm, 442.0, 16.0, 26.7) - 0.065 * _bell(nm, 501.1, 20.4, 26.2)
+    y = 0.821 * _bell(nm, 568.8, 46.9, 40.5) + 0.286 * _bell(nm, 530.9, 16.3, 31.1)
+    z = 1.217 * _bell(nm, 437.0, 11.8, 36.0) + 0.681 * _bell(nm, 459.0, 26.0, 13.8)
+    return numpy.stack((x, y, z), axis=-1)
+
+
 def black_body(e, node, output, groups):
     return black_body_color(e.input(node.inputs[0], groups))
 
@@ -163,37 +174,37 @@ def black_body_color(kelvin):
     nm = numpy.arange(380.0, 781.0, 5.0)[None, :]
     with numpy.errstate(all="ignore"):
         power = nm**-5.0 / numpy.expm1(1.4387769e7 / (nm * kelvin))
-    x = 1.056 * _bell(nm, 599.8, 37.9, 31.0) + 0.362 * _bell(nm, 442.0, 16.0, 26.7) - 0.065 * _bell(nm, 501.1, 20.4, 26.2)
-    y = 0.821 * _bell(nm, 568.8, 46.9, 40.5) + 0.286 * _bell(nm, 530.9, 16.3, 31.1)
-    z = 1.217 * _bell(nm, 437.0, 11.8, 36.0) + 0.681 * _bell(nm, 459.0, 26.0, 13.8)
-    xyz = numpy.stack([(power * part).sum(axis=1) for part in (x, y, z)], axis=1)
+    xyz = numpy.einsum("ij,ijk->ik", power, numpy.broadcast_to(_xyz(nm), power.shape + (3,)))
     xyz = xyz / numpy.maximum(xyz[:, 1:2], 1e-30)
     return numpy.maximum(xyz @ RGB_FROM_XYZ.T, 0)
+
+
+def wavelength(e, node, output, groups):
+    """The colour of light of a wavelength in nm, by the fits above, as Cycles scales it (svm/wavelength.h)."""
+    nm = e.input(node.inputs[0], groups)
+    return numpy.where(((nm >= 380) & (nm <= 780))[:, None], numpy.maximum(_xyz(nm) @ RGB_FROM_XYZ.T / 2.52, 0), 0.0)
 
 
 def separate_color(e, node, output, groups):
     index = [socket.identifier for socket in node.outputs].index(output.identifier)
     color = e.input(node.inputs[0], groups)
-    return (to_hsv(color) if _mode(node) == "HSV" else color)[:, index]
+    return {"RGB": lambda: color, "HSV": lambda: to_hsv(color), "HSL": lambda: to_hsl(color)}[_mode(node)]()[:, index]
 
 
 def combine_color(e, node, output, groups):
     parts = numpy.stack(numpy.broadcast_arrays(*(e.input(socket, groups) for socket in list(node.inputs)[:3])), axis=1)
-    return from_hsv(parts) if _mode(node) == "HSV" else parts
+    return {"RGB": lambda: parts, "HSV": lambda: from_hsv(parts), "HSL": lambda: from_hsl(parts)}[_mode(node)]()
 
 
 def _mode(node):
-    """RGB or HSV; the older nodes have it in their kind."""
-    mode = "HSV" if node.type in ("SEPHSV", "COMBHSV") else getattr(node, "mode", "RGB")
-    if mode not in ("RGB", "HSV"):
-        raise _unsupported(node, "colours as %s" % mode)
-    return mode
+    """RGB, HSV or HSL; the older nodes have it in their kind."""
+    return "HSV" if node.type in ("SEPHSV", "COMBHSV") else getattr(node, "mode", "RGB")
 
 
 def to_gray(e, node, output, groups):
     return e.input(node.inputs[0], groups) @ LUMINANCE
 
 
-NODES = {"RGB": rgb, "MIX_RGB": mix_rgb, "MIX": mix, "VALTORGB": ramp, "CURVE_RGB": curves, "INVERT": invert, "GAMMA": gamma,
-         "BRIGHTCONTRAST": bright_contrast, "HUE_SAT": hue_saturation, "RGBTOBW": to_gray, "BLACKBODY": black_body,
+NODES = {"RGB": rgb, "MIX_RGB": mix_rgb, "MIX": mix, "VALTORGB": ramp, "INVERT": invert, "GAMMA": gamma,
+         "BRIGHTCONTRAST": bright_contrast, "HUE_SAT": hue_saturation, "RGBTOBW": to_gray, "BLACKBODY": black_body, "WAVELENGTH": wavelength,
          "SEPARATE_COLOR": separate_color, "COMBINE_COLOR": combine_color, "SEPHSV": separate_color, "COMBHSV": combine_color}

@@ -86,17 +86,26 @@ def _cross(a, b):
     return numpy.cross(*numpy.broadcast_arrays(a, b))
 
 
-def _unit(a):
+def unit(a):
     length = numpy.linalg.norm(a, axis=1, keepdims=True)
     return numpy.where(length == 0, 0.0, a / numpy.maximum(length, 1e-300))
+
+
+def _refract(a, b, ratio):
+    """A direction a that enters a surface of the normal b; 0 where all is reflected. ratio: of the indices of refraction."""
+    n, eta = unit(b), column(ratio)
+    cosine = column(_dot(a, n))
+    k = 1 - eta * eta * (1 - cosine * cosine)
+    return numpy.where(k < 0, 0.0, eta * a - (eta * cosine + numpy.sqrt(numpy.maximum(k, 0))) * n)
 
 
 VECTOR_MATH = {
     "CROSS_PRODUCT": lambda a, b, c, s: _cross(a, b), "DOT_PRODUCT": lambda a, b, c, s: _dot(a, b),
     "PROJECT": lambda a, b, c, s: column(_divide(_dot(a, b), _dot(b, b))) * b,
-    "REFLECT": lambda a, b, c, s: a - 2 * column(_dot(a, _unit(b))) * _unit(b),
+    "REFLECT": lambda a, b, c, s: a - 2 * column(_dot(a, unit(b))) * unit(b),
     "DISTANCE": lambda a, b, c, s: numpy.linalg.norm(a - b, axis=1), "LENGTH": lambda a, b, c, s: numpy.linalg.norm(a, axis=1),
-    "SCALE": lambda a, b, c, s: a * column(s), "NORMALIZE": lambda a, b, c, s: _unit(a),
+    "SCALE": lambda a, b, c, s: a * column(s), "NORMALIZE": lambda a, b, c, s: unit(a),
+    "REFRACT": lambda a, b, c, s: _refract(a, b, s), "FACEFORWARD": lambda a, b, c, s: numpy.where(column(_dot(c, b)) < 0, a, -a),
 }
 SAME_AS_MATH = ("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "MINIMUM", "MAXIMUM", "FLOOR", "CEIL", "MODULO",
                 "WRAP", "SNAP", "SINE", "COSINE", "TANGENT")
@@ -105,7 +114,7 @@ SAME_AS_MATH = ("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLU
 def vector_math(e, node, output, groups):
     vectors = [e.input(socket, groups) for socket in node.inputs if socket.type == "VECTOR"]
     a, b, c = (vectors + [numpy.zeros((1, 3))] * 3)[:3]
-    scale = e.input(node.inputs["Scale"], groups) if node.inputs.get("Scale") is not None else numpy.ones(1)
+    scale = e.named(node, "Scale", groups)
     with numpy.errstate(all="ignore"):
         if node.operation == "FRACTION":
             return a - numpy.floor(a)
@@ -124,10 +133,9 @@ def clamp(e, node, output, groups):
 
 
 def map_range(e, node, output, groups):
-    if getattr(node, "data_type", "FLOAT") != "FLOAT":
-        raise _unsupported(node, "map range of vectors")
+    is_vector = getattr(node, "data_type", "FLOAT") != "FLOAT"
     value, from_low, from_high, to_low, to_high = (
-        e.named(node, name, groups) for name in ("Value", "From Min", "From Max", "To Min", "To Max"))
+        e.named(node, name, groups) for name in ("Vector" if is_vector else "Value", "From Min", "From Max", "To Min", "To Max"))
     t = _divide(value - from_low, from_high - from_low)
     kind = node.interpolation_type
     if kind == "STEPPED":

@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from . import box_projection, color_nodes, facing, images, math_nodes, procedural
+from . import box_projection, color_nodes, curve_nodes, facing, images, math_nodes, procedural, vector_nodes
 
 
 def _unsupported(node, text):
@@ -96,7 +96,7 @@ def mapping(e, node, output, groups):
     place, turn, scale = (e.named(node, name, groups) for name in ("Location", "Rotation", "Scale"))
     if any(len(part) != 1 for part in (turn,)):
         raise _unsupported(node, "a rotation that varies")
-    matrix = rotation_matrix(turn[0])
+    matrix = vector_nodes.euler_matrix(turn[0])
     if node.vector_type == "TEXTURE":
         return ((vector - place) @ matrix) / numpy.where(scale == 0, numpy.inf, scale)
     if node.vector_type == "NORMAL":
@@ -104,13 +104,6 @@ def mapping(e, node, output, groups):
         return result / numpy.maximum(numpy.linalg.norm(result, axis=1, keepdims=True), 1e-30)
     result = (vector * scale) @ matrix.T
     return result + place if node.vector_type == "POINT" else result
-
-
-def rotation_matrix(euler):
-    """Rotation about x, then y, then z, radians."""
-    (cx, cy, cz), (sx, sy, sz) = numpy.cos(euler), numpy.sin(euler)
-    return numpy.array([[cy * cz, sy * sx * cz - cx * sz, sy * cx * cz + sx * sz],
-                        [cy * sz, sy * sx * sz + cx * cz, sy * cx * sz - sx * cz], [-sy, cy * sx, cy * cx]])
 
 
 # ---- textures ------------------------------------------------------------------------------------------------------------
@@ -178,4 +171,4 @@ def ambient_occlusion(e, node, output, groups):
 NODES = {"TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
          "OBJECT_INFO": object_info, "VERTEX_COLOR": vertex_color, "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment,
          "TEX_CHECKER": checker, "TEX_GRADIENT": gradient, "AMBIENT_OCCLUSION": ambient_occlusion, **math_nodes.NODES, **color_nodes.NODES,
-         **facing.NODES, **procedural.NODES}
+         **curve_nodes.NODES, **vector_nodes.NODES, **facing.NODES, **procedural.NODES}

@@ -9,10 +9,10 @@ _OF_PLACE = {"Position", "Normal", "True Normal", "Incoming", "Tangent"}
 
 
 def fields(item, matrix, number):
-    """Fields for evaluate.Evaluator, 1 or 1 x 3. matrix: world from object. number: random_id()."""
+    """Fields for evaluate.Evaluator, 1 or 1 x 3, and the matrix. matrix: world from object. number: random_id()."""
     found = {"object info location": numpy.array([matrix[:3, 3]]), "object info color": numpy.array([list(item.color)[:3]]),
              "object info alpha": numpy.array([item.color[3]]), "object info object index": numpy.array([float(item.pass_index)]),
-             "object info random": numpy.array([number / 0xffffffff])}
+             "object info random": numpy.array([number / 0xffffffff]), "matrix": matrix}
     for name in item.keys():
         value = item[name]
         if isinstance(value, (int, float)):
@@ -45,7 +45,7 @@ def varies(material):
 def _tree_varies(tree, seen):
     for node in tree.nodes:
         linked = {socket.name for socket in node.outputs if socket.is_linked}
-        if node.type == "OBJECT_INFO" and linked:
+        if node.type in ("OBJECT_INFO", "VECT_TRANSFORM") and linked:
             return True
         if node.type == "TEX_COORD" and "Object" in linked and node.object is not None:
             return True

@@ -7,7 +7,7 @@ import math
 import numpy
 import velo
 
-from . import evaluate, links, square, versions
+from . import evaluate, lamp_nodes, square, versions
 
 SHARP_SUN = 1e-3  # radians from the middle to the rim; suns of a smaller disk are points
 SUN_PIXELS = 12  # of a sun's image from the middle to the rim, where MAX_SUN_SIDE allows it
@@ -17,24 +17,8 @@ FAR = 1e6  # where the camera would see a sun
 SPOT_POINTS = 16  # of a spot with a radius
 NARROWEST = math.radians(1)  # spread of an area light, as in Cycles
 SPOT_SIDE = 512  # of the image of a spot's intensity, pixels
-
-
-def _color_and_strength(light, inputs):
-    """The colour and a factor on the power, with the light's nodes where they are numbers."""
-    color, strength = numpy.array(light.color, dtype=float), 1.0
-    if not light.use_nodes or light.node_tree is None:
-        return color, strength
-    output = links.output_node(light.node_tree, "OUTPUT_LIGHT")
-    source = links.follow(output.inputs["Surface"])[0] if output is not None else None
-    if source is None or source.node.type != "EMISSION":
-        inputs.add(light.name, source.node.name if source else "", "the light's nodes are not an emission and are ignored")
-        return color, strength
-    tint = evaluate.constant(source.node.inputs["Color"], source.groups)
-    factor = evaluate.constant(source.node.inputs["Strength"], source.groups)
-    if tint is None or not isinstance(factor, float):
-        inputs.add(light.name, source.node.name, "nodes of a light that vary are ignored")
-        return color, strength
-    return color * numpy.array(tint), factor
+AREA_SIDE = 256  # of the image of an area light whose nodes vary, pixels
+ROUND_CORNERS = 128  # of the polygon that such a round light is
 
 
 def _finite_pose(matrix):
@@ -51,23 +35,39 @@ def add(scene, item, matrix, camera_sees, notes):
     if pose is None:
         notes.add(item.name, "", "its place is no number (NaN or infinite); it is left out")
         return
-    color, strength = _color_and_strength(light, notes)
-    color = color * (strength * light.energy)
+    tint = lamp_nodes.of(light, notes)
+    color = numpy.array(light.color, dtype=float) * light.energy
+    if tint.color is not None:
+        color = color * tint.color
     if not numpy.isfinite(color).all() or color.max() <= 0:
         if light.energy != 0:
             notes.add(item.name, "", "its colour or power is 0, negative or no number; it is left out")
         return
     power = float(color.max())
     words = {"color": tuple(float(max(0.0, x)) / power for x in color)}
-    if light.type == "SUN":
+    if tint.color is None:
+        _add_varying(scene, item, light, pose, words, power, tint, notes)
+    elif light.type == "SUN":
         _sun(scene, item, light, pose, words, power, camera_sees, notes)
     else:
-        {"POINT": _point, "SPOT": _spot, "AREA": _area}[light.type](scene, item, light, pose, words, power, notes)
+        {"POINT": _point, "SPOT": _directed, "AREA": _area}[light.type](scene, item, light, pose, words, power, notes)
 
 
-def _lamp_surface(scene, words, radiance, item, spread=math.pi, **shape):
-    """A shape that emits and that, as in Cycles, other light passes."""
-    emission = scene.add_emission(radiance=words["color"], scale=radiance, two_sided=False, spread=spread)
+def _add_varying(scene, item, light, pose, words, power, tint, notes):
+    """A lamp whose nodes differ between directions or places."""
+    try:
+        if light.type == "AREA":
+            _area(scene, item, light, pose, words, power, notes, tint)
+        else:
+            _directed(scene, item, light, pose, words, power, notes, tint)
+    except evaluate.Unsupported as error:
+        notes.add(item.name, error.node.name, "%s; the light is left out" % error.text)
+
+
+def _lamp_surface(scene, words, radiance, item, spread=math.pi, texture=None, **shape):
+    """A shape that emits and that, as in Cycles, other light passes. texture: its radiance is this times radiance; None: words' colour."""
+    known = {"radiance": words["color"]} if texture is None else {"texture": texture}
+    emission = scene.add_emission(scale=radiance, two_sided=False, spread=spread, **known)
     material = scene.add_material("interface", name=item.name)
     scene.add_shape(emission=emission, material=material, name=item.name, hidden_from_camera=not item.visible_camera, **shape)
 
@@ -127,27 +127,85 @@ def sun_disk(half):
     return values / (share.sum() * 4 * math.pi / side**2)
 
 
-def _spot(scene, item, light, pose, words, power, notes):
-    axis = pose[:3, 2]
-    length = numpy.linalg.norm(axis)
-    if length < 1e-12:
+def _directed(scene, item, light, pose, words, power, notes, tint=None):
+    """A spot, or a point light whose intensity differs between directions: points with an image of directions. tint: of nodes that vary."""
+    frame = _frame_of(pose)
+    if frame is None:
         notes.add(item.name, "", "its direction is not defined; it is left out")
         return
-    half = min(0.5 * light.spot_size, 0.5 * math.pi)
-    if not light.shadow_soft_size < MAX_SIZE:
+    places = _places(item, light, frame, notes)
+    if not places:
         notes.add(item.name, "", "its radius is huge or no number; it is left out")
         return
-    frame = _frame_along(-axis / length, pose[:3, 3])
-    places = [frame[:3, 3]]
-    if light.shadow_soft_size > 1e-6:
-        places = [frame[:3, 3] + frame[:3, :2] @ point * light.shadow_soft_size for point in disk_points(SPOT_POINTS)]
-        notes.add(item.name, "Radius", "its disk is %d points" % SPOT_POINTS)
-    color = numpy.array(words["color"]) * power / (4 * math.pi * len(places))
-    kind, image, turn = _spot_image(half, light.spot_blend, color)
-    for place in places:
-        frame[:3, 3] = place
-        size = {"fov": 2 * half} if kind == "projection" else {}
-        scene.add_light(kind, pose=frame @ turn, image=image, scale=1.0, **size)
+    half = min(0.5 * light.spot_size, 0.5 * math.pi) if light.type == "SPOT" else math.pi
+    kind, side, directions, turn = _diagram(half)
+    factor = numpy.ones(len(directions)) if light.type != "SPOT" else _spot_factor(-directions[:, 2], half, light.spot_blend)
+    values = factor[:, None] if tint is None else numpy.nan_to_num(factor[:, None] * tint.along(directions, frame[:3, :3]), posinf=0.0)
+    size = {"fov": 2 * half} if kind == "projection" else {}
+    for image, color in _images(kind, side, values, numpy.array(words["color"]) * power / (4 * math.pi * len(places))):
+        for place in places:
+            frame[:3, 3] = place
+            scene.add_light(kind, pose=frame @ turn, image=image, **color, **size)
+
+
+def _diagram(half):
+    """(velo's kind of light, its image's side, the directions of its pixels in the lamp's space, whose axis is -z, the lamp's space from
+    the light's), for what shines up to an angle of half from its axis."""
+    if half <= math.radians(60):
+        place = math.tan(half) * (2 * (numpy.arange(SPOT_SIDE) + 0.5) / SPOT_SIDE - 1)
+        y, x = numpy.meshgrid(-place, place, indexing="ij")
+        directions = numpy.stack((-x.ravel(), y.ravel(), -numpy.ones(x.size)), axis=1)
+        unit = directions / numpy.linalg.norm(directions, axis=1, keepdims=True)
+        return "projection", SPOT_SIDE, unit, numpy.diag((-1.0, 1.0, -1.0, 1.0))
+    # A goniometric light's axis is y, and it swaps y and z.
+    turn = numpy.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+    return "goniometric", 2 * SPOT_SIDE, square.directions(2 * SPOT_SIDE) * (1, -1, 1), turn
+
+
+def _images(kind, side, values, intensity):
+    """(image, keywords of its colour) for each light of a kind: factors, n x 1 or 3, on an intensity, three numbers. A goniometric light
+    has the means of its pixels: three of them have the colours of an image that has."""
+    colored = values * intensity
+    if kind == "projection":
+        return [(_image(side, colored), {"scale": 1.0})]
+    high = float(max(colored.max(), 1e-30))
+    sum_of_colors = colored.sum(axis=0)
+    tone = sum_of_colors / max(sum_of_colors.max(), 1e-30)
+    gray = colored.max(axis=1, keepdims=True)
+    if numpy.allclose(colored, gray * tone, atol=1e-4 * high):
+        return [(_image(side, gray), {"color": tuple(float(x) for x in tone), "scale": 1.0})]
+    axes = numpy.eye(3)
+    return [(_image(side, colored[:, i:i + 1]), {"color": tuple(axes[i]), "scale": 1.0}) for i in range(3) if sum_of_colors[i] > 0]
+
+
+def _image(side, values):
+    whole = numpy.repeat(values, 3, axis=1) if values.shape[1] == 1 else values
+    return velo.Image(numpy.ascontiguousarray(whole.reshape(side, side, 3), dtype=numpy.float32), encoding="linear")
+
+
+def _frame_of(pose):
+    """The place and the unit axes of a lamp, 4 x 4, mirrored where the pose is; None: it has no direction."""
+    axis, up = pose[:3, 2], pose[:3, 1]
+    if numpy.linalg.norm(axis) < 1e-12:
+        return None
+    frame = _frame_along(axis / numpy.linalg.norm(axis), pose[:3, 3])
+    side = numpy.cross(up, frame[:3, 2])
+    if numpy.linalg.norm(side) > 1e-12 * numpy.linalg.norm(up):
+        side = side / numpy.linalg.norm(side)
+        frame[:3, 1] = numpy.cross(frame[:3, 2], side)
+        frame[:3, 0] = side if numpy.linalg.det(pose[:3, :3]) >= 0 else -side
+    return frame
+
+
+def _places(item, light, frame, notes):
+    """The points of a directed light at a frame, one, or more of a disk across its axis; []: its radius is huge or no number."""
+    middle, axes = frame[:3, 3].copy(), frame[:3, :2].copy()
+    if not light.shadow_soft_size < MAX_SIZE:
+        return []
+    if light.shadow_soft_size <= 1e-6:
+        return [middle]
+    notes.add(item.name, "Radius", "its disk is %d points" % SPOT_POINTS)
+    return [middle + axes @ point * light.shadow_soft_size for point in disk_points(SPOT_POINTS)]
 
 
 def disk_points(count):
@@ -155,18 +213,6 @@ def disk_points(count):
     number = numpy.arange(count) + 0.5
     turn = number * math.pi * (3 - math.sqrt(5))
     return numpy.sqrt(number / count)[:, None] * numpy.stack((numpy.cos(turn), numpy.sin(turn)), axis=1)
-
-
-def _spot_image(half, blend, color):
-    """(velo's kind of light, its image, the turn of its axes) for a spot of half an angle."""
-    if half <= math.radians(60):
-        place = math.tan(half) * (2 * (numpy.arange(SPOT_SIDE) + 0.5) / SPOT_SIDE - 1)
-        cosines = 1 / numpy.sqrt(1 + place[:, None]**2 + place[None, :]**2)
-        return "projection", _intensity(cosines, half, blend, color), numpy.eye(4)
-    side = 2 * SPOT_SIDE
-    cosines = square.directions(side)[:, 2].reshape(side, side)
-    # A goniometric light's axis is y.
-    return "goniometric", _intensity(cosines, half, blend, color), numpy.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 
 
 def _frame_along(axis, place):
@@ -179,19 +225,43 @@ def _frame_along(axis, place):
     return frame
 
 
-def _intensity(cosines, half, blend, color):
-    """The image of a spot's intensity for the cosines of angles from its axis: a smooth step at the edge and, in this version of
-    Cycles, the cosine itself."""
+def _spot_factor(cosines, half, blend):
+    """A smooth step at the edge of a spot and, in this version of Cycles, the cosine itself."""
     edge = math.cos(half)
     width = max((1 - edge) * blend, 1e-6)
     t = numpy.clip((cosines - edge) / width, 0, 1)
     factor = t * t * (3 - 2 * t)
     if versions.spot_has_cosine():
         factor = factor * numpy.maximum(cosines, 0)
-    return velo.Image(numpy.ascontiguousarray(factor[..., None] * color, dtype=numpy.float32), encoding="linear")
+    return factor
 
 
-def _area(scene, item, light, pose, words, power, notes):
+def _tinted(scene, words, tint):
+    """velo's texture of an area light's tint over its square: (0, 0) at its corner of the least x and y."""
+    place = (numpy.arange(AREA_SIDE) + 0.5) / AREA_SIDE
+    v, u = numpy.meshgrid(place[::-1], place, indexing="ij")
+    values = tint.at({"world parametric": numpy.stack((u.ravel(), v.ravel(), numpy.zeros(u.size)), axis=1)}) * words["color"]
+    values = numpy.nan_to_num(numpy.broadcast_to(values, (u.size, 3)), nan=0.0, posinf=0.0, neginf=0.0)
+    image = velo.Image(numpy.ascontiguousarray(values.reshape(AREA_SIDE, AREA_SIDE, 3), dtype=numpy.float32), encoding="linear")
+    return scene.add_texture("image", spectrum=True, image=image, uv_set=0, st_from_uv=[1.0, 0, 0, 0, 1, 0], wrap="clamp", filter="bilinear")
+
+
+def _area_mesh(round_shape):
+    """A square of side 1 or a polygon of the area of the disk of diameter 1, in the plane z = 0, and its uvs."""
+    if not round_shape:
+        places, triangles = numpy.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]), numpy.array([[0, 1, 2], [0, 2, 3]])
+    else:
+        turn = 2 * math.pi * numpy.arange(ROUND_CORNERS) / ROUND_CORNERS
+        radius = 0.5 * math.sqrt(2 * math.pi / (ROUND_CORNERS * math.sin(2 * math.pi / ROUND_CORNERS)))
+        places = radius * numpy.stack((numpy.cos(turn), numpy.sin(turn)), axis=1)
+        first = numpy.arange(1, ROUND_CORNERS - 1)
+        triangles = numpy.stack((numpy.zeros_like(first), first, first + 1), axis=1)
+    positions = numpy.concatenate((places, numpy.zeros((len(places), 1))), axis=1)
+    return positions.astype(numpy.float32), triangles.astype(numpy.int32), (places + 0.5).astype(numpy.float32)
+
+
+def _area(scene, item, light, pose, words, power, notes, tint=None):
+    """tint: of nodes that vary, or None."""
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
     scales = numpy.linalg.norm(pose[:3, :2], axis=0)
@@ -207,6 +277,12 @@ def _area(scene, item, light, pose, words, power, notes):
     spread = min(max(light.spread, NARROWEST), math.pi) if math.isfinite(light.spread) else math.pi
     # The light leaves along -z.
     turned = pose @ numpy.diag((1.0, -1.0, -1.0, 1.0))
+    if tint is not None:
+        positions, triangles, uvs = _area_mesh(round_shape)
+        uvs[:, 1] = 1 - uvs[:, 1]  # the turned y is the lamp's -y
+        _lamp_surface(scene, words, radiance, item, kind="triangles", positions=positions, indices=triangles, uvs=uvs, spread=spread,
+                      pose=turned @ numpy.diag((width, height, 1.0, 1.0)), texture=_tinted(scene, words, tint))
+        return
     if round_shape:
         stretched = turned @ numpy.diag((0.5 * width, 0.5 * height, 1.0, 1.0))
         _lamp_surface(scene, words, radiance, item, kind="disk", radius=1.0, pose=stretched, spread=spread)

@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from . import box_projection, color_nodes, curve_nodes, facing, images, math_nodes, procedural, vector_nodes
+from . import box_projection, color_nodes, curve_nodes, facing, images, lamp_files, math_nodes, procedural, vector_nodes
 
 
 def _unsupported(node, text):
@@ -168,7 +168,15 @@ def ambient_occlusion(e, node, output, groups):
     return numpy.ones(1) if output.name == "AO" else e.named(node, "Color", groups)
 
 
-NODES = {"TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
+def light_falloff(e, node, output, groups):
+    if output.name != "Quadratic":
+        raise _unsupported(node, "a strength that does not fall with the square of the distance")
+    if (e.named(node, "Smooth", groups) > 0).any():
+        e.note(node, "the strength is not smoothed close to the lamp")
+    return e.named(node, "Strength", groups)
+
+
+NODES = {"LIGHT_FALLOFF": light_falloff, "TEX_COORD": tex_coord, "UVMAP": uv_map, "NEW_GEOMETRY": geometry, "ATTRIBUTE": attribute, "MAPPING": mapping,
          "OBJECT_INFO": object_info, "VERTEX_COLOR": vertex_color, "TEX_IMAGE": image, "TEX_ENVIRONMENT": environment,
          "TEX_CHECKER": checker, "TEX_GRADIENT": gradient, "AMBIENT_OCCLUSION": ambient_occlusion, **math_nodes.NODES, **color_nodes.NODES,
-         **curve_nodes.NODES, **vector_nodes.NODES, **facing.NODES, **procedural.NODES}
+         **curve_nodes.NODES, **lamp_files.NODES, **vector_nodes.NODES, **facing.NODES, **procedural.NODES}

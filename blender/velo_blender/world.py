@@ -5,6 +5,7 @@ import numpy
 import velo
 
 from . import evaluate, images, lights, links, sky, square
+from .look import Look
 
 MAX_SIDE = 2048  # of the octahedral image, pixels
 PLAIN_SIDE = 512  # where no image asks for more
@@ -19,25 +20,6 @@ def _image_size(tree, seen=()):
         if node.type == "GROUP" and node.node_tree is not None and node.node_tree not in seen:
             best = max(best, _image_size(node.node_tree, seen + (node.node_tree,)))
     return best
-
-
-class _Look:
-    """The image of a node, kept while the world is made."""
-
-    def __init__(self, notes):
-        self.notes = notes
-        self.known = {}
-
-    def __call__(self, node):
-        why = images.problem(node.image)
-        if why is not None:
-            raise evaluate.Unsupported(node, why, is_missing=True)
-        name = node.image.name_full
-        if node.image.source == "TILED":
-            raise evaluate.Unsupported(node, "a tiled image in a world")
-        if name not in self.known:
-            self.known[name] = images.pixels(node.image, self.notes)
-        return images.Texels(self.known[name], getattr(node, "extension", "REPEAT"), node.interpolation == "Closest")
 
 
 def _radiance(socket, groups, evaluator, notes, owner, depth=0):
@@ -71,7 +53,7 @@ def add(scene, world, notes, cancelled):
     output = links.output_node(world.node_tree, "OUTPUT_WORLD")
     if output is None:
         return
-    surface, look = output.inputs["Surface"], _Look(notes)
+    surface, look = output.inputs["Surface"], Look(notes, "world")
     try:
         try:
             values = _radiance(surface, (), _evaluator({}, look, notes, world), notes, world.name)
@@ -109,7 +91,7 @@ def seen_by_camera(world, directions, notes):
     if output is None:
         return numpy.zeros_like(directions)
     fields = {**_fields(directions), "is camera": numpy.ones(1)}
-    values = _radiance(output.inputs["Surface"], (), _evaluator(fields, _Look(notes), notes, world), notes, world.name)
+    values = _radiance(output.inputs["Surface"], (), _evaluator(fields, Look(notes, "world"), notes, world), notes, world.name)
     return numpy.broadcast_to(values, directions.shape)
 
 

@@ -7,7 +7,7 @@ import numpy
 
 #: Cycles' radiant flux of candelas: 4 pi steradians by the 177.83 lm/W of a spectrum of equal energy.
 WATTS = 0.0706650768394
-LARGEST = 1000000  # bytes, and angles
+MAX_SIZE = 1000000  # bytes, and angles
 
 
 class Wrong(Exception):
@@ -24,7 +24,7 @@ def text_of(node):
     if not path or not os.path.isfile(path):
         raise Wrong("the lamp file %s is missing" % path if path else "no lamp file is chosen")
     with open(path, encoding="latin-1") as file:
-        return file.read(LARGEST)
+        return file.read(MAX_SIZE)
 
 
 class Lamp:
@@ -41,7 +41,7 @@ class Lamp:
     def _read(self, words, factor, count_down, count_across, kind):
         if kind != 1:
             raise Wrong("its photometry is not of type C")
-        if not (2 <= count_down and 1 <= count_across and count_down * count_across <= LARGEST):
+        if not (2 <= count_down and 1 <= count_across and count_down * count_across <= MAX_SIZE):
             raise ValueError
         start, middle = 13 + count_down, 13 + count_down + count_across
         self.down, self.across = numpy.array(words[13:start]), numpy.array(words[start:middle])

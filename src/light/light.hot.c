@@ -57,13 +57,15 @@ typedef struct Sample {
   float weights[3]; /* barycentric coordinates in a triangle */
 } Sample;
 
-/* Whether a light is a whole sphere through which its far side is not visible: it is opaque, or
- * only its light is visible. As in pbrt-v4, the near side of such a sphere emits towards points
- * outside, and all of it towards points inside. A sphere with alpha holes does not count,
- * because its far side is visible through them. */
+/* Whether a light is a whole sphere whose far side sends no light through the near one: it is
+ * opaque, only its light is visible, or it is an interface and emits outwards only. As in
+ * pbrt-v4, the near side of such a sphere emits towards points outside, and all of it towards
+ * points inside. A sphere with alpha holes does not count, because its far side is visible
+ * through them. */
 static bool round_light(const vlWorldShape *s, const vlWorldLight *light, vlVec3 *center,
                         float *radius) {
-  return (s->alpha < 0 || light->invisible) && vl_whole_sphere(s, center, radius);
+  return (s->alpha < 0 || light->invisible) && !light->far_side_seen &&
+         vl_whole_sphere(s, center, radius);
 }
 
 typedef struct Near {

@@ -254,7 +254,8 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
       triangle_light(shape, i, light);
       light->plain_triangle = plain && light->one_sided_normals;
     }
-    light->plain_sphere = plain && sphere;
+    light->far_side_seen = sphere && shape->pass_shadow && (e->two_sided || shape->flip);
+    light->plain_sphere = plain && sphere && !light->far_side_seen;
     if (sphere)
       sphere_light(shape, center, radius, light);
     if (shape->kind == VL_SHAPE_DISK) {

@@ -252,6 +252,8 @@ typedef struct vlWorldLight {
   bool plain_triangle;    /* a triangle with one_sided_normals, opaque, with the same emission
                              everywhere */
   bool plain_sphere;      /* a whole sphere, opaque, with the same emission everywhere */
+  bool far_side_seen;     /* a whole sphere of an interface whose inside emits: points outside
+                             receive light of the far side through the near side */
 } vlWorldLight;
 
 /* What worlds share of a thing that may be read from a file. */

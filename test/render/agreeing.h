@@ -60,6 +60,7 @@
 {.name = "light with a spread", .world = WALLS "AreaLightSource \"diffuse\" \"rgb L\" [3 4 5] \"float spread\" 100 AttributeBegin Translate .2 .3 1.5 Rotate 200 1 0 0 Shape \"disk\" \"float radius\" .3 AttributeEnd "},
 {.name = "light that light passes", .passes = true, .world = ROOM "Material \"interface\" "
    "AttributeBegin Translate .2 .5 .5 Rotate 200 1 0 0 Shape \"disk\" \"float radius\" .5 AttributeEnd "},
+{.name = "light of the inside of a sphere that light passes", .passes = true, .world = ROOM "Material \"interface\" ReverseOrientation " BALL},
 {.name = "light through a hole", .weak = true, .world = WALLS PANEL "Material \"diffuse\" Shape \"disk\" \"float height\" 1.2 \"float radius\" .9 \"float innerradius\" .3"},
 {.name = "light on glass", .world = WALLS "AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] Material \"dielectric\" \"float roughness\" .4 " BALL},
 

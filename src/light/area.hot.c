@@ -1,6 +1,6 @@
 /* light/area.hot.c: samples plain triangles and spheres (vlWorldLight.plain_triangle and
  * plain_sphere), the most frequent lights, for many lanes at once. It does the same operations
- * as vl_light_sample_area. */
+ * as sample_face of light.hot.c. */
 #include "light/area.hot.h"
 
 #include "light/kinds.hot.h"

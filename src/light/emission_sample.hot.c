@@ -48,8 +48,8 @@ static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 
   return emits_outwards(world, light) && vl_dot(vl_sub(p, center), w) < 0.0f ? 1.0f : 0.0f;
 }
 
-float vl_light_emit_pdf_area(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
-                             float distance, const vlPoint *at) {
+static float face_density(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
+                          float distance, const vlPoint *at) {
   (void)distance;
   /* also outside of a spread, from where no light comes */
   float sin2 = world->emitted.items[light->emitted].spread_sin2;
@@ -70,7 +70,7 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t in
     VL_LIGHT_FUNCTIONS(DENSITY)
 #undef DENSITY
     case VL_LIGHT_AREA:
-      return vl_light_emit_pdf_area(world, light, p, w, distance, at);
+      return face_density(world, light, p, w, distance, at);
     default:
       return 0.0f;
   }
@@ -140,7 +140,7 @@ static vlVec3 narrow(const vlEmitted *e, vlVec3 local) {
   return vl_vec3(x, y, __builtin_sqrtf(vl_max(0.0f, 1.0f - x * x - y * y)));
 }
 
-void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
+static void emit_from_face(const vlEmissionQuery *q, vlEmission *out) {
   const vlWorld *world = q->world;
   const vlWorldLight *light = q->light;
   const vlEmitted *e = q->emitted;
@@ -216,7 +216,7 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
     VL_LIGHT_FUNCTIONS(EMIT)
 #undef EMIT
     case VL_LIGHT_AREA:
-      vl_light_emit_area(&q, &r);
+      emit_from_face(&q, &r);
       break;
     default:
       break;

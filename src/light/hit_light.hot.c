@@ -18,8 +18,9 @@ static vlHitLight hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t 
   return met;
 }
 
-void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, uint32_t count,
-                size_t k, vlSkyHits *out) {
+/* Evaluates infinite light k of the world; out: in the order of lanes. */
+static void hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes,
+                    uint32_t count, size_t k, vlSkyHits *out) {
   uint32_t index = world->infinite_lights.items[k];
   const vlWorldLight *light = &world->lights.items[index];
   if (vl_light_is_environment(world, light)) {
@@ -70,7 +71,7 @@ static void sky_hit(vlTracing *t, const vlPaths *rays, const vlVolumeRows *rows,
   for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
     vlSkyHits sky;
     vlHitLight met = {.light = t->world->infinite_lights.items[k]};
-    vl_hit_sky(t->world, rays, lanes, count, k, &sky);
+    hit_sky(t->world, rays, lanes, count, k, &sky);
     for (uint32_t j = 0; j < count; j++) {
       for (int c = 0; c < 4; c++)
         met.radiance[c] = sky.radiance[c][j];

@@ -50,10 +50,6 @@ typedef void vlSampleLight(const vlLightQuery *q, vlLightSample *out);
 typedef void vlEmitLight(const vlEmissionQuery *q, vlEmission *out);
 typedef float vlLightDensity(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
                              float distance, const vlPoint *at);
-/* Those of faces of emissive shapes. */
-vlSampleLight vl_light_sample_area;
-vlEmitLight vl_light_emit_area;
-vlLightDensity vl_light_emit_pdf_area;
 
 /* ---- many lanes at once ------------------------------------------------------------------ */
 
@@ -79,8 +75,8 @@ void vl_sample_triangles(const vlWorld *world, const vlPaths *paths, const vlSur
 void vl_sample_spheres(const vlWorld *world, const vlPaths *paths, const vlSurface *f,
                        const uint32_t *lanes, uint32_t count, const float *u, const float *v,
                        vlLightSamples *out);
-/* Radiance and density of an environment map for the given rays, as in vl_hit_sky, but without
- * the probability of choosing the light. */
+/* Radiance and density of an environment map for the given rays, without the probability of
+ * choosing the light. */
 void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const vlPaths *paths,
                         const uint32_t *lanes, uint32_t count, vlSkyHits *out);
 

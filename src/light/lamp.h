@@ -67,7 +67,4 @@ vlResult vl_lamp_read_eulumdat(vlLamp *lamp, const char *name, const char *text,
 vlResult vl_lamp_open(vlContext *context, const char *path, bool given, vlLamp **lamp,
                       vlError *error);
 
-/* The info's members that follow from the intensities. */
-void vl_lamp_measure(vlLamp *lamp);
-
 #endif

@@ -13,80 +13,6 @@
 #include "math/approx_double.h"
 #include "math/double3.h"
 
-/* EULUMDAT has no mark of its own: a file without a line that starts with TILT= is one. */
-static bool is_ies(const char *text, size_t size) {
-  for (const char *at = text, *end = text + size; at + 5 <= end; at++)
-    if (memcmp(at, "TILT=", 5) == 0)
-      return true;
-  return size >= 3 && memcmp(text, "IES", 3) == 0;
-}
-
-static vlResult read_text(vlLamp *lamp, const char *name, const char *text, size_t size,
-                          vlError *error) {
-  vlLampData data = {0};
-  vlResult r = is_ies(text, size) ? vl_lamp_read_ies(lamp, name, text, size, &data, error)
-                                  : vl_lamp_read_eulumdat(lamp, name, text, size, &data, error);
-  lamp->info.type = data.type;
-  lamp->info.planes = data.planes;
-  lamp->info.angles = data.angles;
-  if (r == VL_OK)
-    r = vl_lamp_table_make(lamp, &data, error);
-  if (r == VL_OK)
-    vl_lamp_measure(lamp);
-  vl_lamp_data_free(lamp->context, &data);
-  return r;
-}
-
-vlResult vl_lamp_read(vlContext *context, const char *name, const void *data, size_t size,
-                      vlLamp **result, vlError *error) {
-  vl_error_clear(error);
-  if (!context || !result || (!data && size))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
-  *result = NULL;
-  vlLamp *lamp = vl_alloc_zero(context, 1, sizeof *lamp);
-  if (!lamp)
-    return vl_fail_memory(error);
-  lamp->context = context;
-  lamp->info.lamps_flux = lamp->info.watts = VL_UNSET;
-  vlResult r = read_text(lamp, name ? name : "lamp", data, size, error);
-  if (r == VL_OK)
-    *result = lamp;
-  else
-    vl_lamp_destroy(lamp);
-  return r;
-}
-
-vlResult vl_lamp_open(vlContext *context, const char *path, bool given, vlLamp **result,
-                      vlError *error) {
-  char *data = NULL;
-  size_t size = 0;
-  vlResult r = given ? vl_file_read_given(context, path, true, &data, &size, error)
-                     : vl_file_read(context, path, true, &data, &size, error);
-  if (r == VL_OK)
-    r = vl_lamp_read(context, path, data, size, result, error);
-  vl_free(context, data);
-  return r;
-}
-
-vlResult vl_lamp_load(vlContext *context, const char *path, vlLamp **result, vlError *error) {
-  vl_error_clear(error);
-  if (!context || !path || !result)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
-  *result = NULL;
-  return vl_lamp_open(context, path, true, result, error);
-}
-
-void vl_lamp_destroy(vlLamp *lamp) {
-  if (!lamp)
-    return;
-  vl_lamp_table_free(lamp);
-  vl_free(lamp->context, lamp);
-}
-
-void vl_lamp_info(const vlLamp *lamp, vlLampInfo *info) {
-  *info = lamp->info;
-}
-
 /* ---- intensity --------------------------------------------------------------------------- */
 
 /* As vl_lamp_interval and vl_lamp_candela, in double. */
@@ -202,8 +128,85 @@ static void measure_section(vlLamp *lamp, int which) {
   }
 }
 
-void vl_lamp_measure(vlLamp *lamp) {
+/* The info's members that follow from the intensities. */
+static void measure(vlLamp *lamp) {
   find_maximum(lamp);
   measure_section(lamp, 0);
   measure_section(lamp, 1);
+}
+
+/* ---- reading ----------------------------------------------------------------------------- */
+
+/* EULUMDAT has no mark of its own: a file without a line that starts with TILT= is one. */
+static bool is_ies(const char *text, size_t size) {
+  for (const char *at = text, *end = text + size; at + 5 <= end; at++)
+    if (memcmp(at, "TILT=", 5) == 0)
+      return true;
+  return size >= 3 && memcmp(text, "IES", 3) == 0;
+}
+
+static vlResult read_text(vlLamp *lamp, const char *name, const char *text, size_t size,
+                          vlError *error) {
+  vlLampData data = {0};
+  vlResult r = is_ies(text, size) ? vl_lamp_read_ies(lamp, name, text, size, &data, error)
+                                  : vl_lamp_read_eulumdat(lamp, name, text, size, &data, error);
+  lamp->info.type = data.type;
+  lamp->info.planes = data.planes;
+  lamp->info.angles = data.angles;
+  if (r == VL_OK)
+    r = vl_lamp_table_make(lamp, &data, error);
+  if (r == VL_OK)
+    measure(lamp);
+  vl_lamp_data_free(lamp->context, &data);
+  return r;
+}
+
+vlResult vl_lamp_read(vlContext *context, const char *name, const void *data, size_t size,
+                      vlLamp **result, vlError *error) {
+  vl_error_clear(error);
+  if (!context || !result || (!data && size))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+  *result = NULL;
+  vlLamp *lamp = vl_alloc_zero(context, 1, sizeof *lamp);
+  if (!lamp)
+    return vl_fail_memory(error);
+  lamp->context = context;
+  lamp->info.lamps_flux = lamp->info.watts = VL_UNSET;
+  vlResult r = read_text(lamp, name ? name : "lamp", data, size, error);
+  if (r == VL_OK)
+    *result = lamp;
+  else
+    vl_lamp_destroy(lamp);
+  return r;
+}
+
+vlResult vl_lamp_open(vlContext *context, const char *path, bool given, vlLamp **result,
+                      vlError *error) {
+  char *data = NULL;
+  size_t size = 0;
+  vlResult r = given ? vl_file_read_given(context, path, true, &data, &size, error)
+                     : vl_file_read(context, path, true, &data, &size, error);
+  if (r == VL_OK)
+    r = vl_lamp_read(context, path, data, size, result, error);
+  vl_free(context, data);
+  return r;
+}
+
+vlResult vl_lamp_load(vlContext *context, const char *path, vlLamp **result, vlError *error) {
+  vl_error_clear(error);
+  if (!context || !path || !result)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+  *result = NULL;
+  return vl_lamp_open(context, path, true, result, error);
+}
+
+void vl_lamp_destroy(vlLamp *lamp) {
+  if (!lamp)
+    return;
+  vl_lamp_table_free(lamp);
+  vl_free(lamp->context, lamp);
+}
+
+void vl_lamp_info(const vlLamp *lamp, vlLampInfo *info) {
+  *info = lamp->info;
 }

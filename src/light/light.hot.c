@@ -217,7 +217,7 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from,
 
 /* ---- one sample per lane ----------------------------------------------------------------- */
 
-void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
+static void sample_face(const vlLightQuery *q, vlLightSample *out) {
   const vlWorldLight *light = q->light;
   Sample at = sample_area(q->world, light, q->p, q->u, q->v);
   vlVec3 w = vl_normalize(vl_sub(at.p, q->p));
@@ -250,7 +250,7 @@ static inline void sample_kind(const vlLightQuery *q, vlLightSample *out) {
     VL_LIGHT_FUNCTIONS(SAMPLE)
 #undef SAMPLE
     case VL_LIGHT_AREA:
-      vl_light_sample_area(q, out);
+      sample_face(q, out);
       break;
     default:
       break;

@@ -54,14 +54,12 @@ typedef struct vlHitLight {
   float radiance[4], pdf;
   vlPoint at; /* the point, for area lights */
 } vlHitLight;
-/* Evaluates infinite light k of the world for up to VL_SKY_BLOCK rays that hit nothing. out:
- * radiance and density as in vlHitLight, in the order of lanes. */
+/* Radiance and density, as in vlHitLight, of an infinite light for up to VL_SKY_BLOCK rays that
+ * hit nothing. */
 enum { VL_SKY_BLOCK = 64 };
 typedef struct vlSkyHits {
   float radiance[4][VL_SKY_BLOCK], pdf[VL_SKY_BLOCK];
 } vlSkyHits;
-void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, uint32_t count,
-                size_t k, vlSkyHits *out);
 void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded,
                       float (*rgb)[VL_SKY_BLOCK], float (*lambda)[VL_SKY_BLOCK],
                       float (*value)[VL_SKY_BLOCK]);

@@ -238,6 +238,29 @@ vlResult vl_compile_diffuse_material(const vlMaterialBuild *b) {
   return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
 }
 
+/* Compiles the inputs of a coat that random walks evaluate (layered.hot.c). metal: the base is
+ * a conductor. */
+static vlResult compile_layers(const vlMaterialBuild *b, bool metal) {
+  const vlMaterialDef *def = b->def;
+  vlWorldLayers *l = vl_world_block(b->world, 1, sizeof *l);
+  if (!l)
+    return vl_fail_memory(b->error);
+  b->m->bsdf = VL_BSDF_LAYERED;
+  b->m->own = l;
+  l->metal = metal;
+  l->coat_u = l->coat_v = -1;
+  /* Limits. No walk takes more steps, because Russian roulette ends it before. More walks per
+   * evaluation gain nothing over more samples per pixel. */
+  l->depth = def->max_depth < 1000 ? def->max_depth : 1000;
+  l->walks = def->samples < 256 ? def->samples : 256;
+  const vlMaterialFloat floats[] = {{def->thickness, &l->thickness},
+                                    {def->g, &l->g},
+                                    {def->coat_u_roughness, &l->coat_u},
+                                    {def->coat_v_roughness, &l->coat_v}};
+  vlResult r = vl_material_spectrum(b, &def->albedo, &l->albedo);
+  return r == VL_OK ? vl_material_floats(b, floats, metal ? 4 : 2) : r;
+}
+
 vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_COATED_DIFFUSE;
   vlResult r = vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
@@ -248,7 +271,7 @@ vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
   if (r != VL_OK)
     return r;
   return vl_coat_in_closed_form(b->def) ? coat_of(b->world, b->def, b->m, b->error)
-                                        : vl_material_layers(b, false);
+                                        : compile_layers(b, false);
 }
 
 vlResult vl_compile_conductor_material(const vlMaterialBuild *b) {
@@ -256,6 +279,15 @@ vlResult vl_compile_conductor_material(const vlMaterialBuild *b) {
   b->m->smooth = VL_SMOOTH_BY_ALPHA;
   vlResult r = vl_material_roughness(b);
   return r == VL_OK ? compile_metal(b) : r;
+}
+
+vlResult vl_compile_coated_conductor_material(const vlMaterialBuild *b) {
+  vlResult r = vl_material_roughness(b);
+  if (r == VL_OK)
+    r = compile_metal(b);
+  if (r == VL_OK)
+    r = compile_index(b, &b->def->coat_eta, false);
+  return r == VL_OK ? compile_layers(b, true) : r;
 }
 
 vlResult vl_compile_dielectric_material(const vlMaterialBuild *b) {
@@ -399,37 +431,4 @@ vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *e
         world->has_mixtures || world->materials.items[i].kind == VL_MATERIAL_MIX;
   }
   return r;
-}
-
-/* ---- materials whose layers are evaluated by random walks (layered.hot.c) -----------------
- */
-
-vlResult vl_material_layers(const vlMaterialBuild *b, bool metal) {
-  const vlMaterialDef *def = b->def;
-  vlWorldLayers *l = vl_world_block(b->world, 1, sizeof *l);
-  if (!l)
-    return vl_fail_memory(b->error);
-  b->m->bsdf = VL_BSDF_LAYERED;
-  b->m->own = l;
-  l->metal = metal;
-  l->coat_u = l->coat_v = -1;
-  /* Limits. No walk takes more steps, because Russian roulette ends it before. More walks per
-   * evaluation gain nothing over more samples per pixel. */
-  l->depth = def->max_depth < 1000 ? def->max_depth : 1000;
-  l->walks = def->samples < 256 ? def->samples : 256;
-  const vlMaterialFloat floats[] = {{def->thickness, &l->thickness},
-                                    {def->g, &l->g},
-                                    {def->coat_u_roughness, &l->coat_u},
-                                    {def->coat_v_roughness, &l->coat_v}};
-  vlResult r = vl_material_spectrum(b, &def->albedo, &l->albedo);
-  return r == VL_OK ? vl_material_floats(b, floats, metal ? 4 : 2) : r;
-}
-
-vlResult vl_compile_coated_conductor_material(const vlMaterialBuild *b) {
-  vlResult r = vl_material_roughness(b);
-  if (r == VL_OK)
-    r = compile_metal(b);
-  if (r == VL_OK)
-    r = compile_index(b, &b->def->coat_eta, false);
-  return r == VL_OK ? vl_material_layers(b, true) : r;
 }

@@ -43,7 +43,5 @@ vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *flo
  * reflectance, or eta and k. Dielectric: index of refraction, one number or, if it is
  * dispersive, a spectrum. */
 vlResult vl_material_roughness(const vlMaterialBuild *b);
-/* Compiles the inputs of a coat that random walks evaluate. metal: the base is a conductor. */
-vlResult vl_material_layers(const vlMaterialBuild *b, bool metal);
 
 #endif

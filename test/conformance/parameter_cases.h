@@ -147,6 +147,14 @@ static const ParameterCase parameter_cases[] = {
      .parameter = "density",
      .value = "\"float density\" "
               "[.1 .5 .9 .3 1 .6 .8 .2]"},
+    /* tracers */
+    {.family = "tracers", .parameter = "maxdepth", .value = "\"integer maxdepth\" 1"},
+    {.family = "tracers", .parameter = "radius", .value = "\"float radius\" .4"},
+    {.family = "tracers",
+     .kind = "path",
+     .parameter = "maxvolumedepth",
+     .no_effect = "it follows no light through media"},
+    {.family = "tracers", .parameter = "maxdistance", .value = "\"float maxdistance\" .4"},
     /* shapes */
     {.family = "shapes", .parameter = "alpha", .value = "\"float alpha\" .4"},
 };

@@ -98,12 +98,12 @@ def _glossy(inputs, node, groups):
 
 def glass(inputs, color, roughness, eta, words):
     """A solid of glass. color: factor on reflection and refraction, as in Cycles."""
-    if color == (1.0, 1.0, 1.0) and isinstance(roughness, float) and "normal" not in words:
+    if not inputs.is_open and color == (1.0, 1.0, 1.0) and isinstance(roughness, float) and "normal" not in words:
         alpha = roughness * roughness
         return inputs.scene.add_material("dielectric", eta=eta, u_roughness=alpha, v_roughness=alpha, remap_roughness=False,
                                          name=inputs.owner, **words)
-    return inputs.scene.add_material("principled", reflectance=color, specular_color=color, metallic=0.0, roughness=roughness, eta=eta,
-                                     transmission=1.0, thin_walled=False, name=inputs.owner, **words)
+    return principled.refracting(inputs, reflectance=color, specular_color=color, metallic=0.0, roughness=roughness, eta=eta,
+                                 transmission=1.0, **words)
 
 
 def _glass(inputs, node, groups):
@@ -118,9 +118,8 @@ def _refraction(inputs, node, groups):
     color = inputs.albedo(node.inputs["Color"], groups)
     roughness = 0.0 if node.distribution == "SHARP" else inputs.number(node.inputs["Roughness"], groups)
     words = bumps.words(inputs, node, groups)
-    handle = inputs.scene.add_material("principled", reflectance=color, specular=0.0, metallic=0.0, roughness=roughness,
-                                       eta=inputs.index(node.inputs["IOR"], groups), transmission=1.0, thin_walled=False, name=inputs.owner,
-                                       **words)
+    handle = principled.refracting(inputs, reflectance=color, specular=0.0, metallic=0.0, roughness=roughness,
+                                   eta=inputs.index(node.inputs["IOR"], groups), transmission=1.0, **words)
     return Closure(handle, lobe=Lobe("refraction", color, roughness, words))
 
 

@@ -83,7 +83,7 @@ class Evaluator:
         self._depth += 1
         if self._depth > MAX_DEPTH:
             self._depth = 0
-            raise links.Cyclic("its nodes feed themselves")
+            raise links.Cyclic(links.TOO_DEEP)
         try:
             array = function(self, source.node, source.socket, source.groups)
         except ArithmeticError:

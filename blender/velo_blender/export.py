@@ -5,8 +5,8 @@ import bpy
 import numpy
 import velo
 
-from . import (atlas, backdrop, camera, camera_files, displace, fog, geometry, hair, ignored, lights, materials, motion, object_info, points,
-               textures, visibility, volumes, world)
+from . import (atlas, backdrop, camera, camera_files, displace, fog, geometry, hair, ignored, lights, materials, motion, object_info, panes,
+               points, textures, visibility, volumes, world)
 from .report import Cancelled, Notes, Refused
 
 FARTHEST = 1e12  # coordinates, scene units
@@ -258,6 +258,8 @@ class Export:
         prepared = self._prepared(item, matrix, object_info.random_id(instance))
         if prepared is None:
             return None
+        if any("tangents" in part.words for part in prepared.parts) and not _is_similar(matrix):
+            self.notes.add(item.name, "Anisotropy", "its directions are scaled and sheared as the object is")
         handle = None
         if prepared.group is not None:
             if poses is None:
@@ -414,7 +416,8 @@ class Export:
             material = slots[slot] if 0 <= slot < len(slots) else slots[-1]
             corners = atlas.Corners(arrays, slot, place.matrix, maps.names[:4], arrays.texture_space)
             self._go_on()
-            surface = self._surface(material, maps, corners, place)
+            is_open = panes.refracts(material) and panes.is_open(arrays.positions, arrays.triangles, arrays.slots == slot)
+            surface = self._surface(material, maps, corners, place, is_open)
             if moving is not None and surface.emission is not None:
                 self.notes.add(item.name, "", "surfaces that emit are at rest")
             self._go_on()
@@ -438,14 +441,15 @@ class Export:
             self._cache[key] = volumes.medium(material, self._inputs(material, maps, None, place), box, place.matrix, self._fog)
         return self._cache[key]
 
-    def _inputs(self, material, maps, corners, place):
+    def _inputs(self, material, maps, corners, place, is_open=False):
         owner = "default" if material is None else material.name
-        return textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size, corners, place.known, self._cancelled)
+        return textures.Inputs(self.scene, self.notes, owner, maps, self._cache, self._settings.bake_size, corners, place.known,
+                               self._cancelled, is_open)
 
-    def _surface(self, material, maps, corners, place):
-        key = (None if material is None else material.name_full, maps.key(), place.owner if self._varies(material) else ())
+    def _surface(self, material, maps, corners, place, is_open=False):
+        key = (None if material is None else material.name_full, maps.key(), place.owner if self._varies(material) else (), is_open)
         if key not in self._surfaces:
-            inputs = self._inputs(material, maps, corners, place)
+            inputs = self._inputs(material, maps, corners, place, is_open)
             surface = materials.convert(material, inputs)
             self.material_indices[inputs.owner] = 0 if material is None else material.pass_index
             if material is not None and surface.alpha is not None:
@@ -482,6 +486,12 @@ class Export:
             if colors is not None:
                 words["colors"] = numpy.clip(numpy.nan_to_num(pick(colors)), 0, None)
         return words
+
+
+def _is_similar(matrix):
+    """Whether a transform, 4 x 4, keeps angles."""
+    product = matrix[:3, :3].T @ matrix[:3, :3]
+    return bool(abs(product - numpy.eye(3) * product[0, 0]).max() < 1e-3 * abs(product).max())
 
 
 def camera_of(depsgraph, size, eye=None):

@@ -7,6 +7,7 @@ import numpy
 from . import links
 
 STEPS = 64  # of the mean over directions
+MAX_CLEAR_ROUGHNESS = 0.05  # of a reflection that leaves what is behind a transparent shader sharp
 
 
 def index_of_factor(socket, groups, inputs):
@@ -31,6 +32,10 @@ def coated(under, over, eta, inputs):
     """The material of a lobe below a reflection that follows the Fresnel equations; None: velo has none for the two."""
     if under is None or over is None or over.kind != "glossy":
         return None
+    if under.kind == "clear":
+        if not isinstance(over.roughness, float) or over.roughness > MAX_CLEAR_ROUGHNESS:
+            inputs.notes.add(inputs.owner, "Fresnel", "a transparent shader below a rough reflection is as rough")
+        inputs.notes.add(inputs.owner, "Fresnel", "the inner sides of surfaces reflect as much as the outer ones")
     words = dict(over.words)
     if under.words.keys() != over.words.keys():
         inputs.notes.add(inputs.owner, "Normal", "both parts of the mix have the normal of the reflection")
@@ -38,7 +43,7 @@ def coated(under, over, eta, inputs):
     if under.kind == "diffuse":
         return inputs.scene.add_material("principled", reflectance=under.color, **common)
     if under.kind == "refraction":
-        return inputs.scene.add_material("principled", reflectance=under.color, transmission=1.0, thin_walled=False, **common)
+        return inputs.scene.add_material("principled", reflectance=under.color, transmission=1.0, thin_walled=inputs.is_open, **common)
     if under.kind == "clear":
         return inputs.scene.add_material("principled", reflectance=under.color, transmission=1.0, thin_walled=True, **common)
     return None

@@ -1,4 +1,8 @@
 """ignored.py: settings of Blender and Cycles that change an image and that velo does not have: each gets a line in the list."""
+import os
+
+import bpy
+
 from . import passes, settings
 
 #: Passes of a view layer that are no passes of their own, or that velo has.
@@ -9,6 +13,7 @@ _KNOWN_PASSES = {"use_pass_combined", "use_pass_cryptomatte_accurate", "use_pass
 def note_scene(depsgraph, notes):
     """The settings of the scene, its view layer and its world."""
     scene, layer = depsgraph.scene, depsgraph.view_layer
+    _note_libraries(notes)
     cycles = getattr(scene, "cycles", None)
     if scene.render.use_freestyle and layer.use_freestyle:
         notes.add(scene.name, "Freestyle", "no lines are drawn")
@@ -20,6 +25,14 @@ def note_scene(depsgraph, notes):
     _note_layer(layer, notes)
     if scene.world is not None and layer.use_sky:
         _note_world(scene, notes)
+
+
+def _note_libraries(notes):
+    """Files that the scene is linked to; what they had is not there."""
+    for library in bpy.data.libraries:
+        path = bpy.path.abspath(library.filepath, library=library.parent)
+        if library.packed_file is None and not os.path.exists(path):
+            notes.add(library.name, "", "the linked file %s is missing; what it had is left out" % path)
 
 
 def _note_light_paths(scene, cycles, notes):

@@ -1,6 +1,8 @@
 """links.py: which node feeds a socket, through reroutes, groups and muted nodes."""
 from typing import Any, NamedTuple
 
+MAX_SHADERS = 120  # that are mixed or added one in the other
+TOO_DEEP = "its nodes feed themselves, or too many nodes feed each other"
 MAX_STEPS = 500  # through reroutes and groups; a chain that is longer is a cycle
 
 
@@ -51,7 +53,7 @@ def follow(socket, groups=()):
             return Source(node, output, groups), socket
         if socket is None:
             return None, links[0].to_socket
-    raise Cyclic("its nodes feed themselves")
+    raise Cyclic(TOO_DEEP)
 
 
 def _links_of(socket):

@@ -23,6 +23,8 @@ def convert(material, inputs):
     if not material.use_nodes or material.node_tree is None:
         return _finish(_without_nodes(material, inputs), inputs)
     output = links.output_node(material.node_tree, "OUTPUT_MATERIAL")
+    if not all(link.is_valid for link in material.node_tree.links):
+        inputs.notes.add(inputs.owner, "", "a link closes a circle of nodes, or does not fit; it is ignored, as in Cycles")
     if output is None:
         inputs.notes.add(inputs.owner, "", "it has no output node and is black")
         return _finish(Closure(), inputs)
@@ -52,8 +54,8 @@ def _finish(closure, inputs):
 
 def _closure(socket, groups, inputs, depth):
     """The closure that feeds a shader socket; nothing: black."""
-    if depth > 50:
-        raise links.Cyclic("its nodes feed themselves")
+    if depth > links.MAX_SHADERS:
+        raise links.Cyclic(links.TOO_DEEP)
     source, _ = links.follow(socket, groups)
     if source is None:
         return Closure()

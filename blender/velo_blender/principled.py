@@ -84,9 +84,19 @@ def convert(inputs, node, groups, glossy, glass):
             base = _brightened(inputs, base, get("specular", 0.5), roughness)
         if not plain:
             words.update(_layers(get, generation, coat, base))
-        material = inputs.scene.add_material("principled", reflectance=base, metallic=metallic, roughness=roughness,
-                                             transmission=transmission, thin_walled=False, name=inputs.owner, **words)
+        words.update(reflectance=base, metallic=metallic, roughness=roughness)
+        if transmission == 0.0:
+            material = inputs.scene.add_material("principled", name=inputs.owner, **words)
+        else:
+            material = refracting(inputs, transmission=transmission, **words)
     return material, _emission(inputs, node, groups), _coverage(get)
+
+
+def refracting(inputs, **words):
+    """velo's principled material of what refracts: a solid or, on open surfaces, a thin pane."""
+    if inputs.is_open:
+        inputs.notes.add(inputs.owner, "Glass", "on surfaces that are open it is a thin pane, which light passes straight on")
+    return inputs.scene.add_material("principled", thin_walled=inputs.is_open, name=inputs.owner, **words)
 
 
 def _brightened(inputs, base, specular, roughness):

@@ -34,7 +34,8 @@ class Inputs:
     mesh's uvs. cache: {key: handle}, shared by all materials. bake_size: pixels of baked images. known: fields for evaluate.Evaluator
     that are the same on the whole object (object_info.fields)."""
 
-    def __init__(self, scene, notes, owner, maps, cache, bake_size, corners=None, known=None, cancelled=None):
+    def __init__(self, scene, notes, owner, maps, cache, bake_size, corners=None, known=None, cancelled=None, is_open=False):
+        self.is_open = is_open  # whether the surface is open: glass is a thin pane there
         self.known = known or {}
         self._cancelled = cancelled or (lambda: False)  # whether the user has ended the export
         self.tangent = None  # the axis about which tangents run, where the material has a direction; None: along u

@@ -203,8 +203,8 @@ def _volume(socket, groups, inputs, depth):
     source, _ = links.follow(socket, groups)
     if source is None:
         return None
-    if depth > 50:
-        raise links.Cyclic("its nodes feed themselves")
+    if depth > links.MAX_SHADERS:
+        raise links.Cyclic(links.TOO_DEEP)
     node = source.node
     if node.type == "ADD_SHADER":
         return _sum(*(_volume(node.inputs[i], source.groups, inputs, depth + 1) for i in (0, 1)), node)

@@ -1,8 +1,10 @@
 """Cases of test_hostile.py: each scene is rendered to finite numbers and says what it left out, or ends with one line."""
+import os
+
 import bpy
 import numpy
 
-from inside import add, add_object, ball, case, colors, lamp, material, new_scene, notes, plane, render
+from inside import FOLDER, add, add_object, ball, case, colors, lamp, material, new_scene, notes, plane, render
 
 NAN, HUGE = float("nan"), 1e30
 
@@ -171,3 +173,51 @@ def a_sky_whose_strength_is_no_number():
     tree.nodes["Background"].inputs["Strength"].default_value = NAN
     ball(material("ShaderNodeBsdfDiffuse")[0])
     said(scene, "Background: Strength is no finite number; the world is black")
+
+
+@case
+def missing_libraries_and_circles():
+    folder = os.path.join(FOLDER, "linked")
+    os.makedirs(folder, exist_ok=True)
+    scene = small()
+    item, kept = ball(material("ShaderNodeBsdfDiffuse")[0]), bpy.data.collections.new("kept")
+    kept.objects.link(item)
+    library, file = os.path.join(folder, "library.blend"), os.path.join(folder, "file.blend")
+    bpy.data.libraries.write(library, {kept})
+    scene = small()
+    with bpy.data.libraries.load(library, link=True) as (_, loaded):
+        loaded.collections = ["kept"]
+    scene.collection.children.link(loaded.collections[0])
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    os.remove(library)
+    bpy.ops.wm.open_mainfile(filepath=file)
+    said(bpy.context.scene, "library.blend is missing")
+    scene = small()
+    made, node = material("ShaderNodeBsdfPrincipled")
+    first = add(made.node_tree, "ShaderNodeMath", node.inputs["Roughness"])
+    second = add(made.node_tree, "ShaderNodeMath", first.inputs[0])
+    made.node_tree.links.new(first.outputs[0], second.inputs[0])
+    ball(made)
+    said(scene, "closes a circle of nodes")
+
+
+@case
+def a_hundred_groups_of_shaders():
+    """Each mixes the one in it with blue."""
+    scene = small()
+    inner = None
+    for number in range(100):
+        tree = bpy.data.node_groups.new("group", "ShaderNodeTree")
+        tree.outputs.new("NodeSocketShader", "Shader")
+        mixed = add(tree, "ShaderNodeMixShader", tree.nodes.new("NodeGroupOutput").inputs[0], Fac=0.02)
+        add(tree, "ShaderNodeBsdfDiffuse", mixed.inputs[2], Color=(0.1, 0.1, 0.8, 1))
+        if inner is None:
+            add(tree, "ShaderNodeBsdfDiffuse", mixed.inputs[1], Color=(0.8, 0.1, 0.1, 1))
+        else:
+            tree.links.new(add(tree, "ShaderNodeGroup", node_tree=inner).outputs[0], mixed.inputs[1])
+        inner = tree
+    made, node = material("ShaderNodeBsdfDiffuse")
+    made.node_tree.links.new(add(made.node_tree, "ShaderNodeGroup", node_tree=inner).outputs[0], output_of(made.node_tree, "Surface"))
+    ball(made)
+    said(scene)
+    assert not notes(scene), notes(scene)

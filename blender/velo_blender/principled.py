@@ -81,7 +81,7 @@ def convert(inputs, node, groups, glossy, glass):
     else:
         words.update(_dielectric(inputs, node, groups, get, generation, transmission, base))
         if generation == 1 and metallic == 0.0 and transmission == 0.0:
-            base = _brightened(inputs, base, get("specular", 0.5), roughness)
+            base = _brightened(inputs, base, get("specular", 0.5), roughness, _hue(inputs, node, groups, base))
         if not plain:
             words.update(_layers(get, generation, coat, base))
         words.update(reflectance=base, metallic=metallic, roughness=roughness)
@@ -99,17 +99,20 @@ def refracting(inputs, **words):
     return inputs.scene.add_material("principled", thin_walled=inputs.is_open, name=inputs.owner, **words)
 
 
-def _brightened(inputs, base, specular, roughness):
+def _brightened(inputs, base, specular, roughness, hue):
     """The base colour times what velo's reflection takes from the diffuse light, and what Burley's diffuse lobe adds to it: Blender's
-    Principled before 4.0 adds its lobes without reduction. A fit to balls in a white room, roughness 0.1 to 1: see docs/blender.md."""
+    Principled before 4.0 adds its lobes without reduction. A fit to balls in a white room, roughness 0.1 to 1: see docs/blender.md.
+    hue: the tint of the reflection, three numbers of which the greatest is 1 or above."""
     specular = specular if isinstance(specular, float) else 0.5
     rough = min(max(roughness, 0.0), 1.0) if isinstance(roughness, float) else 0.5
-    f0 = min(max(0.08 * specular, 0.0), 0.99)
-    taken = (f0 + (1 - f0) / 21) * (1.1 - 0.9 * rough) if specular > 0 else 0.0
-    factor = (0.955 + 0.11 * rough) / (1 - taken)
+    factors = []
+    for part in hue:
+        f0 = min(max(0.08 * specular * part, 0.0), 0.99)
+        taken = (f0 + (1 - f0) / 21) * (1.1 - 0.9 * rough) if specular > 0 else 0.0
+        factors.append((0.955 + 0.11 * rough) / (1 - taken))
     if isinstance(base, tuple):
-        return tuple(min(1.0, x * factor) for x in base)
-    return inputs.scene.add_texture("scale", spectrum=True, spectrum_a=base, amount=factor)
+        return tuple(min(1.0, x * factor) for x, factor in zip(base, factors))
+    return inputs.scene.add_texture("scale", spectrum=True, spectrum_a=base, amount=sum(factors) / 3)
 
 
 def _lossy_metal(inputs, base, roughness, words):
@@ -131,23 +134,29 @@ def _dielectric(inputs, node, groups, get, generation, transmission, base):
         color = inputs.color(tint, groups)
         level = 2 * specular if isinstance(specular, float) else 1.0
         return {"eta": eta_of_reflectance(f0 * level), "specular_color": color}
-    words = {}
+    hue = _hue(inputs, node, groups, base)
+    most = max(hue)
+    words = {} if hue == (1.0,) * 3 else {"specular_color": tuple(x / most for x in hue)}
     if isinstance(specular, float):
-        words["eta"] = eta_of_reflectance(0.08 * specular)
+        words["eta"] = eta_of_reflectance(0.08 * specular * most)
         words["specular"] = 0.0 if specular <= 0 else 1.0
     else:
-        words.update(eta=eta_of_reflectance(0.08), specular=specular)
-    amount = inputs.constant(tint, groups)
-    if isinstance(amount, float) and amount > 0 and isinstance(base, tuple):
-        words["specular_color"] = tinted(base, amount)
+        words.update(eta=eta_of_reflectance(0.08 * most), specular=specular)
     return words
 
 
+def _hue(inputs, node, groups, base):
+    """The tint of the reflection of a dielectric before 4.0, three numbers; their luminance is 1."""
+    amount = inputs.constant(versions.principled_socket(node, "specular_tint"), groups)
+    is_tinted = isinstance(amount, float) and amount > 0 and isinstance(base, tuple)
+    return tinted(base, amount) if is_tinted else (1.0,) * 3
+
+
 def tinted(base, amount):
-    """White mixed with the hue of a colour."""
+    """White mixed with the hue of a colour, of the luminance 1: a component may be above 1."""
     light = 0.2126 * base[0] + 0.7152 * base[1] + 0.0722 * base[2]
     hue = tuple(x / light for x in base) if light > 0 else (1.0,) * 3
-    return tuple(min(1.0, 1 + amount * (x - 1)) for x in hue)
+    return tuple(1 + amount * (x - 1) for x in hue)
 
 
 def _layers(get, generation, coat, base):

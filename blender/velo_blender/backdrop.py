@@ -11,7 +11,7 @@ class Backdrop:
 
     def __init__(self, known, hidden, notes):
         self._world, self._hidden, self._notes = known, hidden, notes
-        self._camera, self._key, self._image = None, None, None  # of the last call of behind
+        self._camera, self._images = None, {}  # of the last call of behind; by place and size
 
     def colors(self, directions):
         if self._hidden:
@@ -22,22 +22,26 @@ class Backdrop:
             self._notes.add(self._world.name, "Light Path", "%s; the camera sees black" % error)
             return numpy.zeros_like(directions)
 
-    def behind(self, image, camera, crop):
-        """An image, height x width x 4 with alpha multiplied in, laid over the backdrop. crop: its window in the camera's image, x0, y0,
-        x1, y1; None: all."""
-        height, width = image.shape[:2]
-        key = crop, height, width
-        if self._camera is not camera or self._key != key:
-            x0, y0 = (crop[0], crop[1]) if crop is not None else (0, 0)
-            y, x = numpy.meshgrid(y0 + numpy.arange(height) + 0.5, x0 + numpy.arange(width) + 0.5, indexing="ij")
-            rays = camera.unproject(numpy.stack((x.ravel(), y.ravel()), axis=1))
-            directions = numpy.nan_to_num(numpy.asarray(rays.directions, dtype=float).reshape(-1, 3))
-            lengths = numpy.maximum(numpy.linalg.norm(directions, axis=1, keepdims=True), 1e-30)
-            colors = numpy.where(numpy.asarray(rays.valid).reshape(-1, 1), self.colors(directions / lengths), 0)
-            self._camera, self._key, self._image = camera, key, colors.reshape(height, width, 3).astype(numpy.float32)
+    def behind(self, image, camera, corner):
+        """An image, height x width x 4 with alpha multiplied in, laid over the backdrop. corner: x, y of its first pixel in the camera's
+        image."""
+        if self._camera is not camera:
+            self._camera, self._images = camera, {}
+        key = corner, image.shape
+        if key not in self._images:
+            self._images[key] = self._image(camera, corner, image.shape)
         result = image.copy()
-        result[..., :3] += (1 - numpy.clip(image[..., 3:], 0, 1)) * self._image
+        result[..., :3] += (1 - numpy.clip(image[..., 3:], 0, 1)) * self._images[key]
         return result
+
+    def _image(self, camera, corner, shape):
+        height, width = shape[:2]
+        y, x = numpy.meshgrid(corner[1] + numpy.arange(height) + 0.5, corner[0] + numpy.arange(width) + 0.5, indexing="ij")
+        rays = camera.unproject(numpy.stack((x.ravel(), y.ravel()), axis=1))
+        directions = numpy.nan_to_num(numpy.asarray(rays.directions, dtype=float).reshape(-1, 3))
+        lengths = numpy.maximum(numpy.linalg.norm(directions, axis=1, keepdims=True), 1e-30)
+        colors = numpy.where(numpy.asarray(rays.valid).reshape(-1, 1), self.colors(directions / lengths), 0)
+        return colors.reshape(height, width, 3).astype(numpy.float32)
 
 
 def of(depsgraph, notes):

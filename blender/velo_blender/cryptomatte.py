@@ -11,7 +11,6 @@ KINDS = {"CryptoObject": "use_pass_cryptomatte_object", "CryptoMaterial": "use_p
 CHANNELS = {"CryptoObject": ["crypto.instance", "crypto.object"], "CryptoAsset": ["crypto.instance", "crypto.object"],
             "CryptoMaterial": ["crypto.material"]}
 RANKS = 6  # that velo's channels have
-ROWS = 32  # that are merged between two calls of `ask`
 
 
 def levels(view_layer):
@@ -83,28 +82,19 @@ def _manifest(image, channel):
     return {}
 
 
-def _ranks(image, channel, table, ask):
-    """[(numbers of names, coverages)] of all ranks that velo has, each height x width. ask: as of passes.Made."""
+def _ranks(rows, channel, table, ask):
+    """[(numbers of names, coverages)] of all ranks that velo has, each height x width, of passes.Rows. ask: as of passes.Made."""
     ranks = []
     for level in range(RANKS // 2):
-        values = numpy.asarray(image["%s%02d" % (channel, level)])
+        values = rows["%s%02d" % (channel, level)]
         for first in (0, 2):
             ask()
             ranks.append((table.numbers(values[..., first]), numpy.array(values[..., first + 1])))
     return ranks
 
 
-def _merge(ranks, count, ask):
-    """height x width x (2 count): hashes' numbers and coverages in turns, each name once, the largest coverage first."""
-    parts = []
-    for top in range(0, ranks[0][0].shape[0], ROWS):
-        ask()
-        parts.append(_merge_rows([(numbers[top:top + ROWS], covered[top:top + ROWS]) for numbers, covered in ranks], count))
-    return tuple(numpy.concatenate(part, axis=1) for part in zip(*parts))
-
-
-def _merge_rows(ranks, count):
-    """_merge of some rows."""
+def _merge(ranks, count):
+    """Two arrays of count x height x width: hashes' numbers and their coverages, each name once, the largest coverage first."""
     numbers = numpy.stack([rank[0] for rank in ranks])
     covered = numpy.where(numbers > 0, numpy.stack([rank[1] for rank in ranks]), 0)
     for later in range(1, len(ranks)):
@@ -117,14 +107,27 @@ def _merge_rows(ranks, count):
     return numpy.take_along_axis(numbers, order, axis=0), numpy.take_along_axis(covered, order, axis=0)
 
 
+class _Kind:
+    """A Cryptomatte. names: all that may be seen; values: their hashes as floats, behind a 0; channels: [(velo's channel, its table,
+    the place in values of each of the table's numbers)]."""
+
+    def __init__(self, tables):
+        self.names = sorted({name for _, table in tables for name in table.names})
+        number = {name: k for k, name in enumerate(self.names, 1)}
+        self.values = numpy.array([0] + [as_float(hash_of(name)) for name in self.names], dtype=numpy.float32)
+        self.channels = [(channel, table, numpy.array([0] + [number[name] for name in table.names])) for channel, table in tables]
+
+
 class Mattes:
     """The Cryptomattes of an image. export: export.Export; ask: as of passes.Made."""
 
     def __init__(self, export, image, ask):
-        self._export, self._image, self._ask, self._made = export, image, ask, {}
+        self._export, self._image, self._ask = export, image, ask
+        self._kinds = {}
+        self._merged = None, None  # of the last rows: (kind, rows), (hashes, coverages)
 
     def _tables(self, kind):
-        """[(channel, table)] of a kind, with the same list of names."""
+        """[(channel, table)] of a kind."""
         world, export = self._export.scene.world(), self._export
         if kind == "CryptoMaterial":
             ids = world.ids("material")
@@ -133,27 +136,28 @@ class Mattes:
         return [(channel, _Table(self._image, channel, world.ids(ids), [None if placed is None else pick(placed) for placed in owners]))
                 for channel, ids, owners in (("CryptoInstance", "instance", export.instances), ("CryptoObject", "object", export.shapes))]
 
-    def _make(self, kind):
-        tables = self._tables(kind)
-        names = sorted({name for _, table in tables for name in table.names})
-        number = {name: k for k, name in enumerate(names, 1)}
+    def _kind(self, kind):
+        if kind not in self._kinds:
+            self._kinds[kind] = _Kind(self._tables(kind))
+        return self._kinds[kind]
+
+    def _merge_rows(self, kind, rows):
+        """Hashes and coverages of all ranks, each ranks x height x width."""
+        known = self._kind(kind)
         ranks = []
-        for channel, table in tables:
-            renumber = numpy.array([0] + [number[name] for name in table.names])
-            ranks += [(renumber[numbers], covered) for numbers, covered in _ranks(self._image, channel, table, self._ask)]
-        numbers, covered = _merge(ranks, RANKS, self._ask)
-        values = numpy.array([0] + [as_float(hash_of(name)) for name in names], dtype=numpy.float32)
-        return names, values[numbers], covered.astype(numpy.float32)
+        for channel, table, places in known.channels:
+            ranks += [(places[numbers], covered) for numbers, covered in _ranks(rows, channel, table, self._ask)]
+        self._ask()
+        numbers, covered = _merge(ranks, RANKS)
+        self._ask()
+        return known.values[numbers], covered
 
-    def _of(self, kind):
-        if kind not in self._made:
-            self._made[kind] = self._make(kind)
-        return self._made[kind]
-
-    def layer(self, name):
-        """height x width x 4: the pass of a name such as CryptoObject01."""
+    def layer(self, name, rows):
+        """height x width x 4: the pass of a name such as CryptoObject01, of passes.Rows."""
         kind, level = name[:-2], int(name[-2:])
-        _, values, covered = self._of(kind)
+        if self._merged[0] != (kind, rows):
+            self._merged = (kind, rows), self._merge_rows(kind, rows)
+        values, covered = self._merged[1]
         result = numpy.zeros(values.shape[1:] + (4,), dtype=numpy.float32)
         for k in range(2):
             if 2 * level + k < len(values):
@@ -163,10 +167,10 @@ class Mattes:
     def fields(self, layer_name):
         """The fields of the file's header, as Blender names them: {field: value}."""
         result = {}
-        for kind in self._made:
+        for kind in self._kinds:
             name = "%s.%s" % (layer_name, kind)
             start = "cryptomatte/%s/" % ("%08x" % hash_of(name))[:7]
-            manifest = {known: "%08x" % hash_of(known) for known in self._made[kind][0]}
+            manifest = {known: "%08x" % hash_of(known) for known in self._kinds[kind].names}
             result.update({start + "name": name, start + "hash": "MurmurHash3_32", start + "conversion": "uint32_to_float32",
                            start + "manifest": json.dumps(manifest, separators=(",", ":"), ensure_ascii=False)})
         return result

@@ -9,7 +9,7 @@ from . import camera, draw_view, export, motion, passes, report, settings, vecto
 
 REFRESH = 1.0  # seconds between images of a render that goes on
 TELL = 0.2  # seconds between lines about it
-QUICK = 0.03  # seconds; where an image was shown in less, the last one of an ended render is shown, too
+QUICK = 0.05  # seconds; where an image was shown in less, the last one of an ended render is shown, too
 
 
 class Shown:
@@ -121,15 +121,9 @@ class VeloRenderEngine(bpy.types.RenderEngine):
             made.see(export.camera_of(depsgraph, size, eye), eye.name)
         if flow is not None:
             flow.view = eye.name
-        scene = depsgraph.scene
-        width, height = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
-        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name, view=eye.name)
-        fields, whole = {}, False
-        try:
-            fields = self._trace(scene, made, crop, result, flow)
-            whole = True
-        finally:
-            self.end_result(result, cancel=not whole)  # what was shown before stays
+        window = size if crop is None else (crop[2] - crop[0], crop[3] - crop[1])
+        target = passes.Target(self, depsgraph.view_layer.name, eye.name, window)
+        fields = self._trace(depsgraph, made, crop, target, flow)
         for field, value in fields.items():
             self.get_result().stamp_data_add_field(field, value)
 
@@ -148,22 +142,25 @@ class VeloRenderEngine(bpy.types.RenderEngine):
         self.kept = {**{known: value for known, value in kept.items() if known[1:] == key[1:]}, key: made}
         return made
 
-    def _trace(self, scene, made, crop, result, flow):
-        """Renders into the result. Returns the fields of the file's header."""
-        layer = result.layers[0]
+    def _trace(self, depsgraph, made, crop, target, flow):
+        """Renders into the result; what was shown stays where the user ends it. Returns the fields of the file's header."""
+        scene = depsgraph.scene
         film = passes.Film(scene, made, crop)
         shown = Shown()
-
-        def show():
-            begin = time.monotonic()
-            passes.fill(layer, made.scene.film.image(), film)
-            self.update_result(result)
-            shown.at, shown.samples = time.monotonic(), made.scene.film.spp
-            shown.cost = shown.at - begin
 
         def ask():
             if self.is_stopped():
                 raise export.Cancelled()
+
+        def show(ask=None):
+            begin, image = time.monotonic(), made.scene.film.image()
+            try:
+                target.put(image, film, ask=ask)
+            except export.Cancelled:
+                target.keep(image, film)
+                raise
+            shown.at, shown.samples = time.monotonic(), made.scene.film.spp
+            shown.cost = shown.at - begin
 
         def progress(state):
             ask()
@@ -172,20 +169,24 @@ class VeloRenderEngine(bpy.types.RenderEngine):
                 self._tell(state)
                 shown.told = now
             if state.pass_done and now - shown.at > REFRESH and not (bpy.app.background and shown.samples):
-                show()
+                show(ask)
 
         words = settings.tracing(scene, scene.velo.samples)
         if made.backdrop is not None:
             words["transparent"] = True
+        channels = passes.wanted(depsgraph.view_layer)
         try:
-            image = made.scene.render(channels=passes.wanted(layer), progress=progress, denoise=scene.velo.denoise, crop=crop, **words)
+            image = made.scene.render(channels=channels, progress=progress, denoise=scene.velo.denoise, crop=crop, **words)
         except export.Cancelled:
             if shown.samples and shown.cost < QUICK and made.scene.film.spp > shown.samples:
                 show()
             raise
+        target.put(image, film, ask=ask)
+        if not channels:
+            return {}
         more = passes.Made(made, image, flow, ask)
-        passes.fill(layer, image, film, more)
-        return more.mattes.fields(layer.name)
+        target.put(image, film, more, ask)
+        return more.mattes.fields(target.layer)
 
     def _tell(self, state):
         self.update_progress(min(max(state.fraction, 0.0), 1.0))

@@ -325,16 +325,6 @@ class Export:
         self.scene.add_shape("sphere", centers=centers, radii=radii, material=surface.material, pose=matrix, name=item.name, **words)
         self.shapes.append(placed)
 
-    def indices(self, name, image):
-        """The pass IndexOB or IndexMA, height x width, from the channels of ids."""
-        if name == "IndexMA":
-            known = {entry["id"]: self.material_indices.get(entry.get("name"), 0) for entry in self.scene.world().ids("material")}
-            return _look_up(known, numpy.asarray(image["id.material"]))
-        by_instance, by_shape = (_look_up({number: 0 if placed is None else placed.pass_index for number, placed in enumerate(owners, 1)},
-                                          numpy.asarray(image[channel]))
-                                 for owners, channel in ((self.instances, "id.instance"), (self.shapes, "id.object")))
-        return numpy.where(numpy.asarray(image["id.instance"]) > 0, by_instance, by_shape)
-
     def _add_shape(self, part, placed, **words):
         """placed: None in a group."""
         surface = part.surface
@@ -536,14 +526,6 @@ def _changed_objects(depsgraph):
         else:
             changed[item.name_full] = item.type
     return changed
-
-
-def _look_up(known, ids):
-    """The values of ids; 0 where there is none."""
-    table = numpy.zeros(int(max([0, *known])) + 1)
-    for number, value in known.items():
-        table[number] = value
-    return numpy.where(ids < len(table), table[numpy.minimum(ids, len(table) - 1).astype(int)], 0)
 
 
 __all__ = ["Cancelled", "Export", "Refused", "camera_of", "camera_or_none"]

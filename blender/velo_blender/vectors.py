@@ -16,13 +16,13 @@ class Vectors:
         self.steps = motion.read_steps(engine, depsgraph, FRAMES, views, size)
         self.view = views[0]  # that is being rendered
 
-    def layer(self, export, image, ask):
-        """height x width x 4 of the pass in one view. ask: as of passes.Made."""
-        points = numpy.asarray(image["P"], dtype=float)
+    def layer(self, export, rows, ask):
+        """height x width x 4 of the pass in one view, of passes.Rows. ask: as of passes.Made."""
+        points = rows["P"].astype(float)
         shape = points.shape[:2]
-        seen = numpy.isfinite(numpy.asarray(image["Z"])).ravel()
+        seen = numpy.isfinite(rows["Z"]).ravel()
         points = points.reshape(-1, 3)
-        instance, thing, face = (numpy.asarray(image["id." + name]).astype(numpy.int64).ravel() for name in ("instance", "object", "primitive"))
+        instance, thing, face = (rows["id." + name].astype(numpy.int64).ravel() for name in ("instance", "object", "primitive"))
         ask()
         now = export.camera.project(points)
         result = numpy.zeros((len(points), 4))

@@ -37,11 +37,12 @@ typedef struct vlImageDef {
   vlPixelType type;         /**< default VL_PIXEL_F32 */
   vlEncoding encoding;      /**< of integers */
   float gamma;              /**< used by VL_ENCODING_GAMMA */
+  bool unset; /**< its values are not set: the caller sets them all; default false */
 } vlImageDef;
 
 /** The default def for this size, in pixels, and number of channels. */
 VL_API vlImageDef vl_default_image_def(uint32_t width, uint32_t height, uint32_t channels);
-/** Creates an image whose values are 0. ARGUMENT, MEMORY. */
+/** Creates an image whose values are 0, but for def.unset. ARGUMENT, MEMORY. */
 VL_API vlResult vl_image_create(vlContext *context, const vlImageDef *def, vlImage **image);
 /** Null is allowed. */
 VL_API void vl_image_destroy(vlImage *image);

@@ -333,6 +333,27 @@ static PyObject *image_compare(Image *self, PyObject *arguments) {
                        (unsigned long long)d.not_finite, map);
 }
 
+/* _unset([names]): an image of this size of 32-bit floats, in the same context, whose values
+ * the caller sets. */
+static PyObject *image_unset(Image *self, PyObject *names) {
+  const char *texts[1024];
+  if (!open_image(self) || !context_check(self->context))
+    return NULL;
+  Py_ssize_t count = sequence_size(names, "names", 1, 1024);
+  PyObject *keep = PyList_New(0), *result = NULL;
+  if (keep && count > 0 && keep_texts(keep, names, count, "names", texts)) {
+    vlImageDef def = vl_default_image_def(vl_image_width(self->image),
+                                          vl_image_height(self->image), (uint32_t)count);
+    def.names = texts;
+    def.unset = true;
+    vlImage *image = NULL;
+    vlResult made = vl_image_create(self->context->context, &def, &image);
+    result = made == VL_OK ? image_object(self->context, image) : raise_result(made, NULL);
+  }
+  Py_XDECREF(keep);
+  return result;
+}
+
 typedef struct Denoising {
   const vlImage *image;
   vlDenoiseDef def;
@@ -502,6 +523,7 @@ static PyMethodDef image_methods[] = {
     {"_view", (PyCFunction)image_view, METH_VARARGS,
      "8-bit image for displays: view, exposure."},
     {"_compare", (PyCFunction)image_compare, METH_VARARGS, "Differences from a reference."},
+    {"_unset", (PyCFunction)image_unset, METH_O, "An image of the same size, not set."},
     {"_denoise", (PyCFunction)image_denoise, METH_VARARGS, "A denoised copy."},
     {"_close", (PyCFunction)image_close, METH_NOARGS, "Frees the pixels."},
     {"_attributes", (PyCFunction)image_pickled_attributes, METH_NOARGS,

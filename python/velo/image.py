@@ -124,7 +124,7 @@ class Image(_velo.Image):
         numpy = _arrays.numpy_or_none()
         if numpy is None:
             raise UsageError("numpy is needed to join the image's channels")
-        # Joined row by row, so that whoever waits can be asked in between.
+        # Joined row by row into the image's own memory, so that whoever waits can be asked in between.
         kept, names = [], []
         for part in self.parts:
             array = numpy.asarray(part)
@@ -132,12 +132,13 @@ class Image(_velo.Image):
             if array.dtype == numpy.float32 and used:
                 kept.append((array, used))
                 names += [part._names[i] for i in used]
-        joined = numpy.empty((self.height, self.width, len(names)), dtype=numpy.float32)
+        joined = self._unset(names)
+        rows = numpy.asarray(joined)
         for row in range(self.height):
             if poll is not None and row % _POLLED_ROWS == 0:
                 poll()
-            numpy.concatenate([array[row][:, used] for array, used in kept], axis=1, out=joined[row])
-        return Image(joined, names)._denoise(denoiser, poll)
+            numpy.concatenate([array[row][:, used] for array, used in kept], axis=1, out=rows[row])
+        return joined._denoise(denoiser, poll)
 
     def __copy__(self) -> "Image":
         return _of_parts(*(_part(part) for part in self.parts))

@@ -577,12 +577,15 @@ class Scene(_velo.Scene):
     def _develop(self, world: World, view: Camera, film: Film, settings: Any, channels: Sequence[str],
                  denoise: bool, poll: Optional[Callable[[], None]] = None) -> Image:
         image = film.image(exposure=settings.get("exposure"))
-        wanted = list(channels) + [name for name in ("error", "features") if denoise and name not in channels]
-        if wanted and film.spp:
-            join(image, _velo.channels(world, view, film, settings, wanted, {}, None, None, poll))
+        more: Any = ()
+        if channels and film.spp:
+            more = _velo.channels(world, view, film, settings, list(channels), {}, None, None, poll)
         if denoise:
-            more = _velo.channels(world, view, film, settings, list(channels), {}, None, None, poll) if channels else ()
-            image = join(image._denoised("velo", poll), more)
+            # What the denoiser reads, in an image of its own: it reads nothing else, and the image keeps only what is asked for.
+            if film.spp:
+                join(image, _velo.channels(world, view, film, settings, ["error", "features"], {}, None, None, poll))
+            image = image._denoised("velo", poll)
+        join(image, more)
         _velo.image_describe(list(image.parts), view, settings, self._file, film.spp, None, "centre" if channels else None,
                              "velo" if denoise else None)
         return image

@@ -89,9 +89,10 @@ static bool parts_are_apart(const vlFilm *film, uint32_t block) {
   return length && part && part % length == 0;
 }
 
-/* Fills the errors of the cell whose first pixel (x, y) of the film is. */
+/* Fills the errors of the cell of the film's pixels x0, y0 to x1, y1; `to` as of
+ * vl_film_window_errors. */
 static void fill_cell(const vlFilm *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1,
-                      float exposure, float *to) {
+                      float exposure, float *to, size_t step) {
   Pixel cell[CELL * CELL];
   uint32_t n = 0;
   for (uint32_t y = y0; y < y1; y++)
@@ -103,14 +104,44 @@ static void fill_cell(const vlFilm *film, uint32_t x0, uint32_t y0, uint32_t x1,
     size_t at = (size_t)(y0 + i / (x1 - x0)) * film->width + x0 + i % (x1 - x0);
     double factor = pixel_factor(&cell[i], cell, n, apart);
     for (int c = 0; c < 3; c++)
-      to[3 * at + (size_t)c] = (float)sqrt(factor * cell[i].independent[c]) * exposure;
+      to[step * at + (size_t)c] = (float)sqrt(factor * cell[i].independent[c]) * exposure;
   }
 }
 
-/* The end of the cell, along an axis, that a pixel of the film is in; first: the crop's. */
-static uint32_t cell_end(uint32_t pixel, uint32_t first, uint32_t size) {
-  uint32_t end = (first + pixel) / CELL * CELL + CELL - first;
-  return end < size ? end : size;
+/* The end of the cell, along an axis, that a pixel of the film is in; first: the crop's; end:
+ * the last. */
+static uint32_t cell_end(uint32_t pixel, uint32_t first, uint32_t end) {
+  uint32_t next = (first + pixel) / CELL * CELL + CELL - first;
+  return next < end ? next : end;
+}
+
+/* The errors of independent samples of the pixels x0, y0 to x1, y1 of the film. */
+static void fill_independent(const vlFilm *film, uint32_t x0, uint32_t y0, uint32_t x1,
+                             uint32_t y1, float exposure, float *to, size_t step) {
+  for (uint32_t y = y0; y < y1; y++)
+    for (uint32_t x = x0; x < x1; x++) {
+      size_t at = (size_t)y * film->width + x;
+      for (int c = 0; c < 3; c++)
+        to[step * at + (size_t)c] = (float)vl_film_independent_error(film, at, c) * exposure;
+    }
+}
+
+void vl_film_window_errors(const vlFilm *film, const uint32_t window[4],
+                           const vlDevelopDef *def, float *to, size_t step) {
+  const uint32_t *crop = film->def.crop;
+  uint32_t x0 = window[0] - crop[0], y0 = window[1] - crop[1];
+  uint32_t x1 = window[2] - crop[0], y1 = window[3] - crop[1];
+  if (def->independent) {
+    fill_independent(film, x0, y0, x1, y1, def->exposure, to, step);
+    return;
+  }
+  for (uint32_t y = y0, yn; y < y1; y = yn) {
+    yn = cell_end(y, crop[1], y1);
+    for (uint32_t x = x0, xn; x < x1; x = xn) {
+      xn = cell_end(x, crop[0], x1);
+      fill_cell(film, x, y, xn, yn, def->exposure, to, step);
+    }
+  }
 }
 
 vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image) {
@@ -128,19 +159,6 @@ vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **i
   vlResult result = vl_image_create(film->context, &image_def, image);
   if (result != VL_OK)
     return result;
-  float *to = vl_image_pixels(*image);
-  for (size_t i = 0; i < vl_film_pixels(film) && def->independent; i++)
-    for (int c = 0; c < 3; c++)
-      to[3 * i + (size_t)c] = (float)vl_film_independent_error(film, i, c) * def->exposure;
-  if (def->independent)
-    return VL_OK;
-  const uint32_t *crop = film->def.crop;
-  for (uint32_t y = 0, y1; y < film->height; y = y1) {
-    y1 = cell_end(y, crop[1], film->height);
-    for (uint32_t x = 0, x1; x < film->width; x = x1) {
-      x1 = cell_end(x, crop[0], film->width);
-      fill_cell(film, x, y, x1, y1, def->exposure, to);
-    }
-  }
+  vl_film_window_errors(film, film->def.crop, def, vl_image_pixels(*image), 3);
   return VL_OK;
 }

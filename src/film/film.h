@@ -103,6 +103,13 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
 void vl_film_compare_block(vlFilm *film, uint32_t block, vlView view, float exposure,
                            float scale, double correlation);
 
+/* The standard errors of vl_film_errors for the pixels of a window x0, y0, x1, y1 of the whole
+ * image inside of the crop, whose edges are multiples of 8 or the crop's. to: three floats for
+ * each pixel of the film, `step` floats from one pixel to the next, rows from the top. For
+ * films with errors. Different windows at the same time. */
+void vl_film_window_errors(const vlFilm *film, const uint32_t window[4],
+                           const vlDevelopDef *def, float *to, size_t step);
+
 /* The names of the code of one's own (velo/own.h) that made a film's samples, by vlOwnKind;
  * empty: velo's own. */
 typedef struct vlFilmOwn {

@@ -108,7 +108,8 @@ vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool p
   const char *const *names = def->names ? def->names : DEFAULT_NAMES[def->channels - 1];
   vlResult result = copy_names(context, names, def->channels, &made->names);
   if (result == VL_OK && pixels) {
-    made->pixels = vl_alloc_zero(context, row, def->height);
+    made->pixels = def->unset ? vl_alloc_array(context, row, def->height)
+                              : vl_alloc_zero(context, row, def->height);
     if (!made->pixels)
       result = VL_ERROR_MEMORY;
   }

@@ -187,6 +187,30 @@ uint32_t vl_channel_spp(const vlChannelPass *p, uint32_t tile) {
 }
 
 /* Clears the whole tile: pixels without a ray get the values of no hit, too. */
+/* The tile's pixels of the image inside of the crop: x0, y0, x1, y1. */
+static void tile_window(const vlChannelPass *p, uint32_t tile, uint32_t window[4]) {
+  const uint32_t *crop = p->def->crop;
+  uint32_t x, y;
+  vl_channel_corner(p, tile, &x, &y);
+  uint32_t right = x + VL_CHANNEL_TILE, below = y + VL_CHANNEL_TILE;
+  window[0] = x > crop[0] ? x : crop[0];
+  window[1] = y > crop[1] ? y : crop[1];
+  window[2] = right < crop[2] ? right : crop[2];
+  window[3] = below < crop[3] ? below : crop[3];
+}
+
+/* Sets all values of the tile's pixels to 0. */
+static void zero_tile(const vlChannelPass *p, uint32_t tile) {
+  uint32_t window[4];
+  tile_window(p, tile, window);
+  for (int id = 0; id < 2; id++) {
+    size_t pixel = p->step[id] * sizeof(uint32_t); /* as large as a float */
+    char *to = p->images[id] ? vl_image_pixels(p->images[id]) : NULL;
+    for (uint32_t y = window[1]; to && y < window[3]; y++)
+      memset(to + vl_channel_at(p, window[0], y) * pixel, 0, (window[2] - window[0]) * pixel);
+  }
+}
+
 static void clear_tile(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   uint32_t x, y, samples = vl_channel_spp(p, tile);
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
@@ -226,11 +250,31 @@ static bool wants_points(const vlChannelPass *p) {
   return vl_channel_wanted(p, ~others);
 }
 
+/* The film's errors at the tile's pixels, to three floats of each, from number `first` of the
+ * channel on. The film has the crop of the channels. */
+static void put_errors_of(const vlChannelPass *p, const uint32_t window[4], bool independent,
+                          uint32_t channel, uint32_t first) {
+  vlDevelopDef def = vl_default_develop_def();
+  def.independent = independent;
+  def.exposure = p->def->exposure;
+  float *to = vl_channel_floats(p, 0, channel) + first;
+  vl_film_window_errors(p->def->film, window, &def, to, p->step[0]);
+}
+
+static void put_errors(const vlChannelPass *p, uint32_t tile) {
+  uint32_t window[4];
+  tile_window(p, tile, window);
+  put_errors_of(p, window, false, VL_INDEX_ERROR, 0);
+  if (vl_channel_wanted(p, VL_CHANNEL_FEATURES))
+    put_errors_of(p, window, true, VL_INDEX_FEATURES, VL_FEATURES);
+}
+
 void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
   const vlChannelPass *p = pass;
   vlChannelWorker *w = &p->workers[worker];
   if (vl_stop_check(p->stop))
     return;
+  zero_tile(p, tile);
   clear_tile(p, w, tile);
   unsigned state = vl_accel_enter();
   if (w->tallies)
@@ -245,6 +289,8 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
     if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i))
       vl_channel_flow(p, w, i);
   vl_accel_leave(state);
+  if (vl_channel_wanted(p, VL_CHANNEL_ERROR))
+    put_errors(p, tile);
   if (vl_channel_wanted(p, VL_CHANNEL_FILM))
     put_film(p, w, tile);
   for (uint32_t i = 0; i < n; i++) {

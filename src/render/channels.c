@@ -55,7 +55,7 @@ static const uint32_t CRYPTO =
 static const char *const FEATURE_ERRORS[3] = {"feature.error.R", "feature.error.G",
                                               "feature.error.B"};
 static const uint32_t ERRORS_OF_FEATURES = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
-enum { FEATURES = 7, MAX_RANKS = 32, MAX_FLOATS = 48 + 3 * 2 * MAX_RANKS };
+enum { MAX_RANKS = 32, MAX_FLOATS = 48 + 3 * 2 * MAX_RANKS };
 
 const char *vl_channel_name(uint32_t index) {
   return index < VL_CHANNEL_COUNT ? channels[index].name : NULL;
@@ -189,6 +189,7 @@ static vlResult make_images(vlChannelPass *p, vlError *error) {
                                           p->def->crop[3] - p->def->crop[1], count);
     def.names = names;
     def.type = id ? VL_PIXEL_U32 : VL_PIXEL_F32;
+    def.unset = true; /* the tiles clear their pixels */
     vlResult r = vl_image_create(p->world->context, &def, &p->images[id]);
     if (r == VL_ERROR_MEMORY)
       return vl_fail_memory(error);
@@ -196,36 +197,6 @@ static vlResult make_images(vlChannelPass *p, vlError *error) {
       return vl_fail(error, r, "ground truth: the image cannot be made");
   }
   return VL_OK;
-}
-
-/* Copies the film's errors to three floats of each pixel, from number `first` of the channel
- * on. */
-static vlResult copy_errors_to(const vlChannelPass *p, bool independent, uint32_t channel,
-                               uint32_t first, vlError *error) {
-  vlDevelopDef def = vl_default_develop_def();
-  def.independent = independent;
-  def.exposure = p->def->exposure;
-  vlImage *image;
-  vlResult r = vl_film_errors(p->def->film, &def, &image);
-  if (r == VL_ERROR_MEMORY)
-    return vl_fail_memory(error);
-  if (r != VL_OK)
-    return vl_fail(error, r, "ground truth: the film does not tell standard errors");
-  size_t pixels = (size_t)vl_image_width(image) * vl_image_height(image);
-  const float *from = vl_image_const_pixels(image);
-  for (size_t i = 0; i < pixels; i++)
-    memcpy(vl_channel_floats(p, i, channel) + first, from + 3 * i, 3 * sizeof *from);
-  vl_image_destroy(image);
-  return VL_OK;
-}
-
-static vlResult copy_errors(const vlChannelPass *p, vlError *error) {
-  if (!vl_channel_wanted(p, VL_CHANNEL_ERROR))
-    return VL_OK;
-  vlResult r = copy_errors_to(p, false, VL_INDEX_ERROR, 0, error);
-  if (r != VL_OK || !vl_channel_wanted(p, VL_CHANNEL_FEATURES))
-    return r;
-  return copy_errors_to(p, true, VL_INDEX_FEATURES, FEATURES, error);
 }
 
 static vlResult copy_luminance(const vlChannelPass *p, vlError *error) {
@@ -412,12 +383,6 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
   vl_channel_prepare(p, camera);
   result = make_images(p, error);
   if (result == VL_OK)
-    result = copy_errors(p, error);
-  if (result == VL_OK)
-    result = copy_luminance(p, error);
-  if (result == VL_OK)
-    result = vl_channel_illuminance(p, camera, error);
-  if (result == VL_OK)
     result = make_workers(p, error);
   if (result == VL_OK)
     result = open_mattes(p, error);
@@ -427,6 +392,10 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
     result = atomic_load(&stop.stopped) ? vl_fail(error, VL_CANCELLED, "stopped")
                                         : describe_mattes(p, error);
   }
+  if (result == VL_OK)
+    result = copy_luminance(p, error);
+  if (result == VL_OK)
+    result = vl_channel_illuminance(p, camera, error);
   free_all(p);
   if (result != VL_OK) {
     vl_image_destroy(p->images[0]);

@@ -302,26 +302,26 @@ def an_exception_in_a_callback_ends_denoising():
 
 @case
 def a_callback_is_asked_while_channels_are_joined_for_denoising():
-    """It can end the render before the denoiser begins; channels that the denoiser does not read change nothing."""
-    from velo import _arrays
+    """It can end the render before the denoiser begins; channels that the denoiser does not read change nothing, and all are computed once."""
+    from velo import _velo
+    joins, asked, computed, unset, channels = [], [], [], velo.Image._unset, _velo.channels
 
-    class Watched:
-        """numpy, whose first array for joined channels is noticed."""
+    def watched(image, names):
+        joins.append(len(asked))
+        return unset(image, names)
 
-        def __getattr__(self, name):
-            return getattr(numpy, name)
+    def counted(*words):
+        computed.extend(words[4])
+        return channels(*words)
 
-        def empty(self, *words, **keywords):
-            joins.append(len(asked))
-            return numpy.empty(*words, **keywords)
-
-    joins, asked, kept = [], [], _arrays.numpy_or_none
-    _arrays.numpy_or_none = Watched
+    velo.Image._unset, _velo.channels = watched, counted
     try:
         image = scene.render(spp=2, resolution=(64, 320), denoise=True, channels=["Z", "crypto.object", "N"], progress=asked.append)
     finally:
-        _arrays.numpy_or_none = kept
+        _velo.channels = channels
+        del velo.Image._unset
     assert len(joins) == 1 and len(asked) - joins[0] >= 320 // 32, (joins, len(asked))
+    assert sorted(computed) == ["N", "Z", "crypto.object", "error", "features"], computed
     plain = scene.render(spp=2, resolution=(64, 320), denoise=True)
     assert numpy.asarray(image).tobytes() == numpy.asarray(plain).tobytes()
 

@@ -52,9 +52,9 @@ uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32
     p->color[1] += green;
     p->color[2] += blue;
     if (film->def.errors) {
-      vl_film_add_moments(film, at, (const float[3]){s->r[i], s->g[i], s->b[i]});
+      vlFilmMoments *m = &film->moments[1][at];
+      vl_film_add_moments(m, (const float[3]){s->r[i], s->g[i], s->b[i]});
       if (s->index && s->index[i] < film->part) {
-        vlFilmMoments *m = &film->moments[1][at];
         m->first[0] += red;
         m->first[1] += green;
         m->first[2] += blue;

@@ -8,26 +8,6 @@
 static const double SQUARE = 0x1p-80; /* 2^-VL_SQUARE_BITS: the unit of the sums of squares */
 _Static_assert((int)VL_SQUARE_BITS == 80, "SQUARE is its power of two");
 
-/* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their bits among
- * 192 bits. |value| < 2^40: with 2^31 samples the sum stays below 2^191. */
-static inline void add_square(uint64_t sum[3], float value) {
-  uint32_t bits = vl_float_bits(value);
-  int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
-  uint64_t mantissa = (uint64_t)(bits & 0x7fffffu) | (uint64_t)(field > 0) << 23;
-  uint64_t square = mantissa * mantissa;
-  int32_t shift =
-      2 * (exponent - 150) + VL_SQUARE_BITS; /* at most 2 * (166 - 150) + 80 = 112 */
-  if (shift < 0) {
-    square = shift > -63 ? square >> -shift : 0;
-    shift = 0;
-  }
-  __extension__ typedef unsigned __int128 Wide;
-  Wide low = (Wide)square << shift, old = (Wide)sum[1] << 64 | sum[0], now = old + low;
-  sum[0] = (uint64_t)now;
-  sum[1] = (uint64_t)(now >> 64);
-  sum[2] += (shift > 80 ? square >> (128 - shift) : 0) + (now < old);
-}
-
 void vl_film_join_parts(vlFilmMoments *moments, const vlFilmPixel *pixel) {
   for (int c = 0; c < 3; c++)
     moments->first[c] = pixel->color[c];
@@ -38,15 +18,6 @@ void vl_film_begin_moments(vlFilm *film, size_t at) {
   film->moments[1][at] = vl_film_front_moments(film, at);
   if (film->part_moves)
     vl_film_join_parts(&film->moments[1][at], &film->back[at]);
-}
-
-void vl_film_add_moments(vlFilm *film, size_t at, const float color[3]) {
-  vlFilmMoments *m = &film->moments[1][at];
-  for (int c = 0; c < 3; c++) {
-    m->plain[c] += vl_film_product(color[c], INT64_C(1) << VL_WEIGHT_BITS);
-    add_square(m->squares[c], color[c]);
-  }
-  m->samples++;
 }
 
 static void add_squares(uint64_t to[3], const uint64_t from[3]) {

@@ -92,7 +92,6 @@ static inline vlFilmMoments vl_film_front_moments(const vlFilm *film, size_t at)
 }
 /* In moments.c. begin: copies a pixel's moments from the front, when it is new in the pass. */
 void vl_film_begin_moments(vlFilm *film, size_t at);
-void vl_film_add_moments(vlFilm *film, size_t at, const float color[3]);
 /* Makes all samples of a pixel, whose sums are `pixel`, its first part. */
 void vl_film_join_parts(vlFilmMoments *moments, const vlFilmPixel *pixel);
 /* Adds moments; both have the same first part. */
@@ -133,6 +132,35 @@ static inline vlInt128 vl_film_product(float value, int64_t weight) {
   right = right < 62 ? right : 62;
   p = (p + ((INT64_C(1) << right) >> 1)) >> right;
   return (vlInt128)p * (INT64_C(1) << left);
+}
+
+/* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their bits among
+ * 192 bits. |value| < 2^40: with 2^31 samples the sum stays below 2^191. */
+static inline void vl_film_add_square(uint64_t sum[3], float value) {
+  uint32_t bits = vl_float_bits(value);
+  int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
+  uint64_t mantissa = (uint64_t)(bits & 0x7fffffu) | (uint64_t)(field > 0) << 23;
+  uint64_t square = mantissa * mantissa;
+  int32_t shift =
+      2 * (exponent - 150) + VL_SQUARE_BITS; /* at most 2 * (166 - 150) + 80 = 112 */
+  if (shift < 0) {
+    square = shift > -63 ? square >> -shift : 0;
+    shift = 0;
+  }
+  __extension__ typedef unsigned __int128 Wide;
+  Wide low = (Wide)square << shift, old = (Wide)sum[1] << 64 | sum[0], now = old + low;
+  sum[0] = (uint64_t)now;
+  sum[1] = (uint64_t)(now >> 64);
+  sum[2] += (shift > 80 ? square >> (128 - shift) : 0) + (now < old);
+}
+
+/* Adds a sample's colour to a pixel's moments. */
+static inline void vl_film_add_moments(vlFilmMoments *m, const float color[3]) {
+  for (int c = 0; c < 3; c++) {
+    m->plain[c] += vl_film_product(color[c], INT64_C(1) << VL_WEIGHT_BITS);
+    vl_film_add_square(m->squares[c], color[c]);
+  }
+  m->samples++;
 }
 
 static inline size_t vl_film_pixels(const vlFilm *film) {

@@ -21,16 +21,25 @@ static uint32_t least(uint32_t a, uint32_t b) {
   return a < b ? a : b;
 }
 
-/* False: the tile is empty. */
+/* Large regions trace fewer samples in their borders. But a worker has at least four of them,
+ * and with different numbers of samples a region is one tile. */
+void vl_channel_plan_features(vlChannelPass *p) {
+  enum { SIDE = VL_FEATURE_SIDE / VL_CHANNEL_TILE };
+  const uint32_t threads = vl_context_threads(p->world->context);
+  p->feature_tiles = !p->adaptive && p->tiles / (SIDE * SIDE * 4) >= threads ? SIDE : 1;
+}
+
+/* False: no region begins with the tile, or it is empty. */
 static bool make_region(const vlChannelPass *p, uint32_t tile, vlFeatureRegion *g) {
-  const uint32_t *crop = p->def->crop;
+  const uint32_t *crop = p->def->crop, side = p->feature_tiles * VL_CHANNEL_TILE;
   uint32_t x, y;
   vl_channel_corner(p, tile, &x, &y);
   *g = (vlFeatureRegion){.x0 = x > crop[0] ? x : crop[0], .y0 = y > crop[1] ? y : crop[1]};
-  if (g->x0 >= crop[2] || g->y0 >= crop[3])
+  if (tile % p->tiles_x % p->feature_tiles || tile / p->tiles_x % p->feature_tiles ||
+      g->x0 >= crop[2] || g->y0 >= crop[3])
     return false;
-  g->width = least(x + VL_CHANNEL_TILE, crop[2]) - g->x0;
-  g->height = least(y + VL_CHANNEL_TILE, crop[3]) - g->y0;
+  g->width = least(x + side, crop[2]) - g->x0;
+  g->height = least(y + side, crop[3]) - g->y0;
   for (int k = 0; k < 2 && p->shares; k++)
     g->border[k] = p->reconstruction.border[k];
   g->stride = g->width + 2 * g->border[0];
@@ -104,13 +113,13 @@ static uint32_t samples_of(uint32_t spp) {
 }
 
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
-  float sums[COUNT + 1][VL_FEATURE_PIXELS]; /* the last: sums of weights */
   const vlFeatureKernels *kernels = vl_feature_kernels(vl_context_isa(p->world->context));
   vlFilmRays rays = p->image;
   vlFeatureRegion g;
   if (!make_region(p, tile, &g))
     return;
-  memset(sums, 0, sizeof sums);
+  float(*sums)[VL_FEATURE_PIXELS] = w->features->sums;
+  memset(sums, 0, sizeof w->features->sums);
   uint32_t samples = samples_of(vl_channel_spp(p, tile));
   for (uint32_t s = 0; s < samples; s++) {
     rays.shared = instant(s);
@@ -123,11 +132,11 @@ void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t ti
       p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
       keep(p, w, n, done);
     }
-    kernels->add(w->features, &g, sums);
+    kernels->add(w->features, &g);
   }
   for (uint32_t y = 0; y < g.height; y++)
     for (uint32_t x = 0; x < g.width; x++) {
-      uint32_t k = y * VL_CHANNEL_TILE + x;
+      uint32_t k = y * VL_FEATURE_SIDE + x;
       float *to = vl_channel_floats(p, vl_channel_at(p, g.x0 + x, g.y0 + y), VL_INDEX_FEATURES);
       for (int i = 0; i < COUNT; i++)
         to[i] = sums[COUNT][k] > 0.0f ? sums[i][k] / sums[COUNT][k] : 0.0f;

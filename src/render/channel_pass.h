@@ -12,7 +12,6 @@
 
 enum { VL_CHANNEL_TILE = 32, VL_TILE_PIXELS = VL_CHANNEL_TILE * VL_CHANNEL_TILE };
 _Static_assert((int)VL_TILE_PIXELS <= (int)VL_BATCH, "a tile is a batch");
-_Static_assert((int)VL_FEATURE_SIDE == (int)VL_CHANNEL_TILE, "features are added by tiles");
 
 /* Bit numbers of the channels: indices into the tables below. */
 enum {
@@ -99,6 +98,7 @@ typedef struct vlChannelPass {
   const vlGroundTruthKernels *ground_truth_kernels;
   vlGroundTruthDef ground_truth, features;
   uint32_t tiles_x, tile_x0, tile_y0, tiles;
+  uint32_t feature_tiles; /* tiles along a side of a square whose features a worker makes */
   uint32_t first[2][VL_CHANNEL_COUNT]; /* index of each channel's first component among the
                                           floats and among the ids */
   vlImage *images[2];                  /* floats, ids */
@@ -168,7 +168,10 @@ void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile)
 /* In illuminance.c: renders the illuminance of the visible surfaces and writes its channel, if
  * it is wanted. MEMORY, CANCELLED. */
 vlResult vl_channel_illuminance(const vlChannelPass *p, const vlCamera *camera, vlError *error);
-/* In channel_features.c: means over the image's samples of one tile. */
+/* In channel_features.c. plan: how many tiles a worker takes at once, which changes no value. */
+void vl_channel_plan_features(vlChannelPass *p);
+/* Means over the image's samples of the square of tiles that begins with this one. Does nothing
+ * for the square's other tiles. */
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);
 /* In flow.c: optical flow of the n lanes of the batch towards camera `which`. */
 void vl_channel_flow(const vlChannelPass *p, vlChannelWorker *w, int which);

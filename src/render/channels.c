@@ -359,6 +359,7 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   p->tile_y0 = crop[1] / VL_CHANNEL_TILE;
   p->tiles_x = (crop[2] + VL_CHANNEL_TILE - 1) / VL_CHANNEL_TILE - p->tile_x0;
   p->tiles = p->tiles_x * ((crop[3] + VL_CHANNEL_TILE - 1) / VL_CHANNEL_TILE - p->tile_y0);
+  vl_channel_plan_features(p);
   prepare_counting(p, camera, isa);
 }
 

@@ -1,4 +1,4 @@
-/* render/feature_grid.h: the features of one sample of each pixel of a tile and its border, and
+/* render/feature_grid.h: the features of one sample of each pixel of a region and its border, and
  * the kernel that adds them to the tile's pixels. */
 #ifndef RENDER_FEATURE_GRID_H
 #define RENDER_FEATURE_GRID_H
@@ -8,8 +8,8 @@
 #include "base/isa.h"
 #include "render/reconstruct.h"
 
-/* Albedo, normal, disparity; pixels of a side of a tile. */
-enum { VL_FEATURES = 7, VL_FEATURE_SIDE = 32 };
+/* Albedo, normal, disparity; most pixels of a side of a region. */
+enum { VL_FEATURES = 7, VL_FEATURE_SIDE = 64 };
 enum { VL_FEATURE_PIXELS = VL_FEATURE_SIDE * VL_FEATURE_SIDE };
 enum {
   VL_FEATURE_GRID =
@@ -28,21 +28,21 @@ typedef struct vlFeatureGrid {
   float value[VL_FEATURES][VL_FEATURE_GRID];
   float x[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID],
       y[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID];
+  float sums[VL_FEATURES + 1][VL_FEATURE_PIXELS]; /* of all samples; the last: of weights */
 } vlFeatureGrid;
 
-/* A tile's pixels inside the crop window, from x0, y0 on, and the border of pixels around them
- * whose samples count, too (none if pixels have samples of their own). */
+/* Pixels inside the crop window, from x0, y0 on, and the border of pixels around them whose
+ * samples count, too (none if pixels have samples of their own). */
 typedef struct vlFeatureRegion {
   uint32_t x0, y0, width, height, border[2];
   uint32_t stride, count; /* pixels of a row and of all rows, with the border */
 } vlFeatureRegion;
 
 typedef struct vlFeatureKernels {
-  /* Adds the grid's features to those of the region's pixels that count them, each times its
-   * weight, and the weights to sums[VL_FEATURES]. Rows of sums are VL_FEATURE_SIDE apart; the
-   * pixels of a row behind the region's width, up to whole vectors, have no meaning. */
-  void (*add)(const vlFeatureGrid *grid, const vlFeatureRegion *region,
-              float sums[VL_FEATURES + 1][VL_FEATURE_PIXELS]);
+  /* Adds the grid's features to its sums of the region's pixels that count them, each times
+   * its weight, and the weights to sums[VL_FEATURES]. Rows of sums are VL_FEATURE_SIDE apart;
+   * the pixels of a row behind the region's width, up to whole vectors, have no meaning. */
+  void (*add)(vlFeatureGrid *grid, const vlFeatureRegion *region);
 } vlFeatureKernels;
 VL_KERNEL_TABLE(vlFeatureKernels, vl_feature)
 

@@ -25,22 +25,21 @@ static inline void add_hits(const vlFeatureGrid *g, size_t at, const float *x, c
   }
 }
 
-static void add(const vlFeatureGrid *g, const vlFeatureRegion *r,
-                float sums[COUNT][VL_FEATURE_PIXELS]) {
+static void add(vlFeatureGrid *g, const vlFeatureRegion *r) {
   const uint32_t bx = r->border[0], by = r->border[1];
   for (uint32_t y = 0; y < r->height; y++)
     for (uint32_t x = 0; x < r->width; x += N) {
       const size_t to = (size_t)y * VL_FEATURE_SIDE + x;
       Sums own;
       for (int k = 0; k < COUNT; k++)
-        memcpy(own.value[k], sums[k] + to, sizeof own.value[k]);
+        memcpy(own.value[k], g->sums[k] + to, sizeof own.value[k]);
       for (uint32_t v = 0; v <= 2 * by; v++)
         for (uint32_t u = 0; u <= 2 * bx; u++) {
           const size_t at = (size_t)(y + v) * r->stride + x + u;
           add_hits(g, at, g->x[2 * bx - u] + at, g->y[2 * by - v] + at, &own);
         }
       for (int k = 0; k < COUNT; k++)
-        memcpy(sums[k] + to, own.value[k], sizeof own.value[k]);
+        memcpy(g->sums[k] + to, own.value[k], sizeof own.value[k]);
     }
 }
 

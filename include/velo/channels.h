@@ -58,12 +58,12 @@ typedef enum vlChannel {
   VL_CHANNEL_CRYPTO_MATERIAL = 1 << 18, /**< CryptoMaterial00.R ... */
   VL_CHANNEL_CRYPTO_INSTANCE = 1 << 19, /**< CryptoInstance00.R ... */
   /** feature.albedo.R .G .B, feature.N.X .Y .Z, feature.disparity.Y: features for denoisers
-   * (vl_denoise). They are means over the first samples of each pixel (8 to VL_FEATURE_SAMPLES)
-   * and those it shares, through the lens; so they are blurred as the image is, at edges, by
-   * defocus and by motion. The albedo uses fewer wavelengths than the channel albedo. The
-   * disparity is 1 / distance, 0 for nothing. They need vlChannelsDef.film and .render, as
-   * Cryptomatte does. With VL_CHANNEL_ERROR there are also feature.error.R .G .B:
-   * vl_film_errors with vlDevelopDef.independent. */
+   * (vl_denoise). They are means over the first samples of each pixel (8 to VL_FEATURE_SAMPLES;
+   * 4 where these agree and nothing moves) and those it shares, through the lens; so they are
+   * blurred as the image is, at edges, by defocus and by motion. The albedo uses fewer
+   * wavelengths than the channel albedo. The disparity is 1 / distance, 0 for nothing. They
+   * need vlChannelsDef.film and .render, as Cryptomatte does. With VL_CHANNEL_ERROR there are
+   * also feature.error.R .G .B: vl_film_errors with vlDevelopDef.independent. */
   VL_CHANNEL_FEATURES = 1 << 20,
   /** luminance.Y: luminance of the image's pixel, cd/m^2 (docs/conventions.md, Light), by the
    * standard observer, before exposure. It needs vlChannelsDef.film of the same crop, with the

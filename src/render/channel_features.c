@@ -47,20 +47,16 @@ static bool make_region(const vlChannelPass *p, uint32_t tile, vlFeatureRegion *
   return true;
 }
 
-/* Makes the camera rays of sample s of n pixels of the region, from number `done` on, in
+/* Makes the camera rays of sample s of n of the grid's points, from number `done` on, in
  * w->rows and in the batch. */
 static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const vlFeatureRegion *g,
                       uint32_t done, uint32_t n, uint32_t s) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
-  uint32_t x = done % g->stride, y = done / g->stride;
+  const vlFeaturePoint *points = w->features->points + done;
   for (uint32_t i = 0; i < n; i++) {
-    r.px[i] = (int32_t)(g->x0 + x) - (int32_t)g->border[0];
-    r.py[i] = (int32_t)(g->y0 + y) - (int32_t)g->border[1];
+    r.px[i] = (int32_t)(g->x0 + points[i].x) - (int32_t)g->border[0];
+    r.py[i] = (int32_t)(g->y0 + points[i].y) - (int32_t)g->border[1];
     r.index[i] = s;
-    if (++x == g->stride) {
-      x = 0;
-      y++;
-    }
   }
   vl_film_rays_make(rays, n, &r);
   vlGroundTruthBatch *b = w->batch;
@@ -79,8 +75,8 @@ static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const vlFeatur
   memcpy(b->t_max, r.rays.t_max, n * sizeof(float));
 }
 
-/* Keeps the n hits of the batch at the grid points from `at` on, with their weights in the
- * pixels around. Negative weights count as 0. */
+/* Keeps the n hits of the batch in the grid's arrays from element `at` on, with their weights
+ * in the pixels around. Negative weights count as 0. */
 static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_t at) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
   const vlGroundTruthBatch *b = w->batch;
@@ -112,33 +108,119 @@ static uint32_t samples_of(uint32_t spp) {
   return spp <= FEW ? spp : spp <= 2 * FEW ? FEW : least(spp / 2, VL_FEATURE_SAMPLES);
 }
 
-void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
-  const vlFeatureKernels *kernels = vl_feature_kernels(vl_context_isa(p->world->context));
+/* ---- points ------------------------------------------------------------------------------ */
+
+/* Makes all pixels count samples, and lists all points. Returns their number. */
+static uint32_t choose_all(vlFeatureGrid *f, const vlFeatureRegion *g) {
+  for (uint32_t k = 0; k < VL_FEATURE_PIXELS; k++)
+    f->counts[k] = 1.0f;
+  memset(f->varies, 0, sizeof f->varies);
+  for (uint32_t k = 0; k < g->count; k++)
+    f->points[k] = (vlFeaturePoint){(uint8_t)(k % g->stride), (uint8_t)(k / g->stride)};
+  return g->count;
+}
+
+/* Whether a sample that pixel (x, y) may count lies at a point that varies. */
+static bool varies_around(const vlFeatureGrid *f, const vlFeatureRegion *g, uint32_t x,
+                          uint32_t y) {
+  for (uint32_t v = 0; v <= 2 * g->border[1]; v++)
+    for (uint32_t u = 0; u <= 2 * g->border[0]; u++)
+      if (f->varies[(y + v) * g->stride + x + u] != 0.0f)
+        return true;
+  return false;
+}
+
+/* Makes only the pixels around points that vary count samples, and lists the points that these
+ * pixels need. Returns their number. */
+static uint32_t choose_varying(vlFeatureGrid *f, const vlFeatureRegion *g) {
+  bool needed[VL_FEATURE_GRID] = {false};
+  for (uint32_t y = 0; y < g->height; y++)
+    for (uint32_t x = 0; x < g->width; x++) {
+      bool varies = varies_around(f, g, x, y);
+      f->counts[y * VL_FEATURE_SIDE + x] = varies ? 1.0f : 0.0f;
+      for (uint32_t v = 0; v <= 2 * g->border[1] && varies; v++)
+        memset(needed + (y + v) * g->stride + x, true, 2 * g->border[0] + 1);
+    }
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < g->count; k++)
+    if (needed[k])
+      f->points[n++] = (vlFeaturePoint){(uint8_t)(k % g->stride), (uint8_t)(k / g->stride)};
+  return n;
+}
+
+/* Moves the values of the n listed points from the beginning of a row of the grid to their
+ * places. The other elements have no meaning then. */
+static void place_row(const vlFeatureGrid *f, uint32_t stride, uint32_t n, float *row) {
+  for (uint32_t i = n; i-- > 0;)
+    row[f->points[i].y * stride + f->points[i].x] = row[i];
+}
+
+static void place(vlFeatureGrid *f, const vlFeatureRegion *g, uint32_t n) {
+  if (n == g->count)
+    return;
+  for (int k = 0; k < COUNT; k++)
+    place_row(f, g->stride, n, f->value[k]);
+  for (uint32_t k = 0; k <= 2 * g->border[0]; k++)
+    place_row(f, g->stride, n, f->x[k]);
+  for (uint32_t k = 0; k <= 2 * g->border[1]; k++)
+    place_row(f, g->stride, n, f->y[k]);
+}
+
+/* ---- a region ---------------------------------------------------------------------------- */
+
+/* Traces sample s of the n listed points. */
+static void trace_sample(const vlChannelPass *p, vlChannelWorker *w, const vlFeatureRegion *g,
+                         uint32_t points, uint32_t s) {
   vlFilmRays rays = p->image;
+  rays.shared = instant(s);
+  double seconds = p->open + (p->close - p->open) * (double)rays.shared;
+  for (uint32_t i = 0; i < VL_BATCH; i++)
+    w->batch->time[i] = vl_world_time(p->world, seconds);
+  for (uint32_t done = 0, n; done < points; done += n) {
+    n = least(points - done, VL_BATCH);
+    make_rays(w, &rays, g, done, n, s);
+    p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
+    keep(p, w, n, done);
+  }
+  place(w->features, g, points);
+}
+
+/* Writes the means to the channels. */
+static void write_means(const vlChannelPass *p, const vlFeatureGrid *f,
+                        const vlFeatureRegion *g) {
+  for (uint32_t y = 0; y < g->height; y++)
+    for (uint32_t x = 0; x < g->width; x++) {
+      uint32_t k = y * VL_FEATURE_SIDE + x;
+      float weight = f->sums[COUNT][k],
+            *to =
+                vl_channel_floats(p, vl_channel_at(p, g->x0 + x, g->y0 + y), VL_INDEX_FEATURES);
+      for (int i = 0; i < COUNT; i++)
+        to[i] = weight > 0.0f ? f->sums[i][k] / weight : 0.0f;
+    }
+}
+
+/* Where the first FIRST samples agree, the others would hardly change the mean. But what moves
+ * may pass at the time of a later one. */
+void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
+  enum { FIRST = 4 };
+  const vlFeatureKernels *kernels = vl_feature_kernels(vl_context_isa(p->world->context));
+  vlFeatureGrid *f = w->features;
   vlFeatureRegion g;
   if (!make_region(p, tile, &g))
     return;
-  float(*sums)[VL_FEATURE_PIXELS] = w->features->sums;
-  memset(sums, 0, sizeof w->features->sums);
-  uint32_t samples = samples_of(vl_channel_spp(p, tile));
-  for (uint32_t s = 0; s < samples; s++) {
-    rays.shared = instant(s);
-    double seconds = p->open + (p->close - p->open) * (double)rays.shared;
-    for (uint32_t i = 0; i < VL_BATCH; i++)
-      w->batch->time[i] = vl_world_time(p->world, seconds);
-    for (uint32_t done = 0, n; done < g.count; done += n) {
-      n = least(g.count - done, VL_BATCH);
-      make_rays(w, &rays, &g, done, n, s);
-      p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
-      keep(p, w, n, done);
-    }
-    kernels->add(w->features, &g);
+  memset(f->sums, 0, sizeof f->sums);
+  const uint32_t samples = samples_of(vl_channel_spp(p, tile));
+  const bool moves = p->world->moves || p->image.camera.when.moves;
+  uint32_t points = choose_all(f, &g);
+  for (uint32_t s = 0; s < samples && points > 0; s++) {
+    trace_sample(p, w, &g, points, s);
+    kernels->add(f, &g);
+    if (s == 0)
+      memcpy(f->first, f->value, sizeof f->first);
+    if (s > 0 && s < FIRST)
+      kernels->compare(f, g.count);
+    if (s + 1 == FIRST && samples > FIRST && !moves)
+      points = choose_varying(f, &g);
   }
-  for (uint32_t y = 0; y < g.height; y++)
-    for (uint32_t x = 0; x < g.width; x++) {
-      uint32_t k = y * VL_FEATURE_SIDE + x;
-      float *to = vl_channel_floats(p, vl_channel_at(p, g.x0 + x, g.y0 + y), VL_INDEX_FEATURES);
-      for (int i = 0; i < COUNT; i++)
-        to[i] = sums[COUNT][k] > 0.0f ? sums[i][k] / sums[COUNT][k] : 0.0f;
-    }
+  write_means(p, f, &g);
 }

@@ -168,7 +168,8 @@ void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile)
 /* In illuminance.c: renders the illuminance of the visible surfaces and writes its channel, if
  * it is wanted. MEMORY, CANCELLED. */
 vlResult vl_channel_illuminance(const vlChannelPass *p, const vlCamera *camera, vlError *error);
-/* In channel_features.c. plan: how many tiles a worker takes at once, which changes no value. */
+/* In channel_features.c. plan: how many tiles a worker takes at once, which changes no value.
+ */
 void vl_channel_plan_features(vlChannelPass *p);
 /* Means over the image's samples of the square of tiles that begins with this one. Does nothing
  * for the square's other tiles. */

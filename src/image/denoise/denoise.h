@@ -16,6 +16,7 @@ enum {
   VL_DENOISE_TILE = VL_DENOISE_TILE_X * VL_DENOISE_TILE_Y,
   VL_DENOISE_RADIUS = 6,
   VL_DENOISE_PATCH = 2,
+  VL_DENOISE_ROWS = VL_DENOISE_TILE_Y + VL_DENOISE_RADIUS,
   VL_DENOISE_BORDER = 32, /* width of the planes' border in pixels; at least radius + patch */
   VL_DENOISE_NEIGHBOURS = 81, /* pixels of a window that are used */
   VL_DENOISE_STEP = 4, /* distance of the points of the lattice for wide windows in pixels */
@@ -49,8 +50,11 @@ typedef struct vlDenoiseScratch {
   float weight[VL_DENOISE_NEIGHBOURS][VL_DENOISE_TILE];
   int8_t dx[VL_DENOISE_NEIGHBOURS], dy[VL_DENOISE_NEIGHBOURS]; /* their offsets */
   int neighbours;                                              /* their number */
-  float distance[VL_DENOISE_TILE_Y + 2 * VL_DENOISE_PATCH][VL_DENOISE_TILE_X + 16];
-  float sums[VL_DENOISE_TILE_Y + 2 * VL_DENOISE_PATCH][VL_DENOISE_TILE_X];
+  /* Of a pair of opposite offsets: distances of pixels, their sums along x, and weights of
+   * neighbours that are valid. */
+  float distance[VL_DENOISE_ROWS + 2 * VL_DENOISE_PATCH][VL_DENOISE_TILE_X + 2 * 16];
+  float sums[VL_DENOISE_ROWS + 2 * VL_DENOISE_PATCH][VL_DENOISE_TILE_X + 16];
+  float near[VL_DENOISE_ROWS][VL_DENOISE_TILE_X + 16];
 } vlDenoiseScratch;
 
 typedef struct vlDenoiseKernels {

@@ -45,21 +45,28 @@ static inline float distance(float a, float b, float va, float vb, float bandwid
   return (d * d - v) / (scale > TINY ? scale : TINY);
 }
 
-/* For each pixel of the tile and of a margin of P pixels, its distance from the pixel at the
+/* Pixels whose neighbours at one offset are compared: from (x, y) on, `width` in a row, a
+ * multiple of N. */
+typedef struct Area {
+  ptrdiff_t x, y;
+  int width, height;
+} Area;
+
+/* For each pixel of the area and of a margin of P pixels, its distance from the pixel at the
  * offset (dx, dy), summed over the channels. The margin on the right is rounded up to whole
  * vectors. */
-static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x,
-                            uint32_t y, int dx, int dy) {
+static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, const Area *area,
+                            int dx, int dy) {
   float bandwidth2 = p->bandwidth2;
-  for (int j = 0; j < Y + 2 * P; j++) {
-    ptrdiff_t at = ((ptrdiff_t)y + j - P) * p->stride + (ptrdiff_t)x - P,
-              to = at + dy * p->stride + dx;
+  const int width = area->width + N;
+  for (int j = 0; j < area->height + 2 * P; j++) {
+    ptrdiff_t at = (area->y + j - P) * p->stride + area->x - P, to = at + dy * p->stride + dx;
     const float *r = p->color[0] + at, *g = p->color[1] + at, *b = p->color[2] + at;
     const float *vr = p->variance[0] + at, *vg = p->variance[1] + at, *vb = p->variance[2] + at;
     ptrdiff_t off = to - at;
     float *restrict row = s->distance[j];
     /* must vectorise */
-    VL_SIMD for (int i = 0; i < X + N; i++) {
+    VL_SIMD for (int i = 0; i < width; i++) {
       row[i] = distance(r[i], r[i + off], vr[i], vr[i + off], bandwidth2) +
                distance(g[i], g[i + off], vg[i], vg[i + off], bandwidth2) +
                distance(b[i], b[i + off], vb[i], vb[i + off], bandwidth2);
@@ -67,36 +74,37 @@ static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint3
   }
 }
 
-/* For each pixel of the tile, the weight of its neighbour at the offset (dx, dy): (1 -
- * distance / FARTHEST)^8, which is nearly exp(-distance), and 0 from FARTHEST on, since
- * neighbours without weight cost nothing. The distance is the larger of the mean over the
- * patches and PIXEL_SHARE times the distance between the two single pixels. The latter excludes
- * a neighbour that clearly differs, as the test of Sakai et al. 2024 does, although the patches
- * are similar: a pixel at the edge of a lamp has so large a variance that the patches hardly
- * differ. */
-static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y,
-                    int dx, int dy, float *to) {
-  pixel_distances(p, s, x, y, dx, dy);
-  for (int j = 0; j < Y + 2 * P; j++) {
+/* For each pixel of the area, the weight of its neighbour at the offset (dx, dy) if that is
+ * valid, to s->near: (1 - distance / FARTHEST)^8, which is nearly exp(-distance), and 0 from
+ * FARTHEST on, since neighbours without weight cost nothing. The distance is the larger of the
+ * mean over the patches and PIXEL_SHARE times the distance between the two single pixels. The
+ * latter excludes a neighbour that clearly differs, as the test of Sakai et al. 2024 does,
+ * although the patches are similar: a pixel at the edge of a lamp has so large a variance that
+ * the patches hardly differ. */
+static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, const Area *area, int dx,
+                    int dy) {
+  enum { WIDTH = X + N };
+  const int width = area->width;
+  pixel_distances(p, s, area, dx, dy);
+  for (int j = 0; j < area->height + 2 * P; j++) {
     const float *row = s->distance[j];
     float *sum = s->sums[j];
     /* must vectorise (gcc) */
-    VL_SIMD for (int i = 0; i < X; i++) {
+    VL_SIMD for (int i = 0; i < width; i++) {
       float t = row[i];
       for (int k = 1; k < SIDE; k++)
         t += row[i + k];
       sum[i] = t;
     }
   }
-  for (int j = 0; j < Y; j++) {
+  for (int j = 0; j < area->height; j++) {
     const float *a = s->sums[j], *far = s->distance[j + P] + P;
-    const float *valid = p->valid + ((ptrdiff_t)y + j + dy) * p->stride + (ptrdiff_t)x + dx;
-    float *row = to + j * X;
+    float *row = s->near[j];
     /* must vectorise */
-    VL_SIMD for (int i = 0; i < X; i++) {
+    VL_SIMD for (int i = 0; i < width; i++) {
       float own = far[i] * PIXEL_SHARE, d = a[i];
       for (int k = 1; k < SIDE; k++)
-        d += a[i + k * X];
+        d += a[i + k * WIDTH];
       d *= 1.0f / (3 * SIDE * SIDE);
       d = d > own ? d : own;
       float t = 1.0f - d * (1.0f / FARTHEST);
@@ -104,9 +112,36 @@ static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, u
       t = t < 1.0f ? t : 1.0f;
       t *= t;
       t *= t;
-      row[i] = valid[i] * t * t;
+      row[i] = t * t;
     }
   }
+}
+
+/* Copies the weights of the tile's pixels, from element (i, j) of s->near on, where the
+ * neighbours at (x, y) and behind it are valid. */
+static void copy_weights(const vlDenoisePlanes *p, const vlDenoiseScratch *s, int i, int j,
+                         ptrdiff_t x, ptrdiff_t y, float *to) {
+  for (int row = 0; row < Y; row++) {
+    const float *valid = p->valid + (y + row) * p->stride + x, *from = s->near[j + row] + i;
+    float *restrict own = to + row * X;
+    /* must vectorise */
+    VL_SIMD for (int k = 0; k < X; k++) own[k] = valid[k] * from[k];
+  }
+}
+
+/* Weights of the tile's pixels for neighbour k of the list, at the offset (dx, dy), and for the
+ * one at the opposite offset, `opposite`: a pixel's weight for the one is the other's for the
+ * pixel, so both are those of the tile and of the pixels that are the opposite offset away. dy
+ * >= 0. */
+static void pair_weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y,
+                         int k, int opposite) {
+  const int dx = s->dx[k], dy = s->dy[k], left = dx > 0 ? dx : 0, right = dx < 0 ? -dx : 0;
+  const ptrdiff_t x0 = x, y0 = y;
+  const Area area = {x0 - left, y0 - dy, dx == 0 ? X : X + N, Y + dy};
+  weights(p, s, &area, dx, dy);
+  copy_weights(p, s, left, dy, x0 + dx, y0 + dy, s->weight[k]);
+  if (opposite != k)
+    copy_weights(p, s, right, 0, x0 - dx, y0 - dy, s->weight[opposite]);
 }
 
 /* ---- the fit ----------------------------------------------------------------------------- */
@@ -344,7 +379,7 @@ static void fit(const vlDenoisePlanes *p, const Used *used, const vlDenoiseScrat
 }
 
 /* Lists the neighbours: all up to a distance of 2 in x and y, beyond it every second one of a
- * round window. */
+ * round window. They are symmetric: the opposite of number k is the k-th from the end. */
 static void list_neighbours(vlDenoiseScratch *s) {
   enum { NEAR = 2 };
   s->neighbours = 0;
@@ -360,8 +395,8 @@ static void list_neighbours(vlDenoiseScratch *s) {
 
 static void tile(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y) {
   list_neighbours(s);
-  for (int k = 0; k < s->neighbours; k++)
-    weights(p, s, x, y, s->dx[k], s->dy[k], s->weight[k]);
+  for (int k = s->neighbours / 2; k < s->neighbours; k++)
+    pair_weights(p, s, x, y, k, s->neighbours - 1 - k);
   for (int i = 0; i < X && x + (uint32_t)i < p->width; i += N) {
     Used used = used_features(p, x + (uint32_t)i, y);
     for (int j = 0; j < Y && y + (uint32_t)j < p->height; j++)

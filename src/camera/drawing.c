@@ -287,9 +287,7 @@ static void draw_focus(Pen *p) {
     double x = k == 1 || k == 2 ? c->width : 0, y = k >= 2 ? c->height : 0, o[3], d[3], at[3];
     if (!vl_camera_unproject(c, x, y, o, d))
       return;
-    const double *m = c->camera_from_world;
-    for (int i = 0; i < 3; i++)
-      at[i] = m[4 * i] * d[0] + m[4 * i + 1] * d[1] + m[4 * i + 2] * d[2];
+    vl_map_vector(c->camera_from_world, d, at);
     /* the plane in focus: f . x = 1 in camera space (compile.c) */
     double inv = 1 / c->focus_distance;
     double per = at[2] * inv + at[0] * (c->lens.tilt[0] * inv + c->lens.hinge[0]) +

@@ -8,6 +8,7 @@
 #include "camera/moments.h"
 #include "camera/optics.h"
 #include "camera/points.h"
+#include "math/double3.h"
 #include "velo/jacobian.h"
 
 /* The derivatives of a film point: by its point in camera space, and by the camera's numbers
@@ -154,12 +155,6 @@ static FilmDerivatives film_derivatives(const vlCameraCompiled *c, double x, dou
   return d;
 }
 
-static void cross(const double a[3], const double b[3], double result[3]) {
-  result[0] = a[1] * b[2] - a[2] * b[1];
-  result[1] = a[2] * b[0] - a[0] * b[2];
-  result[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static bool all_finite(const double *numbers, int count) {
   bool finite = true;
   for (int i = 0; i < count; i++)
@@ -171,9 +166,7 @@ static bool all_finite(const double *numbers, int count) {
 static bool project_one(const vlCameraCompiled *c, const double point[3], double *rows) {
   const double *m = c->camera_from_world;
   double at[3];
-  for (int i = 0; i < 3; i++)
-    at[i] =
-        m[4 * i] * point[0] + m[4 * i + 1] * point[1] + m[4 * i + 2] * point[2] + m[4 * i + 3];
+  vl_map_point(m, point, at);
   if (!(vl_camera_film_point(c, at[0], at[1], at[2]).valid > 0.0))
     return false;
   FilmDerivatives d = film_derivatives(c, at[0], at[1], at[2]);
@@ -184,7 +177,7 @@ static bool project_one(const vlCameraCompiled *c, const double point[3], double
       row[VL_JACOBIAN_POINT + j] = g[0] * m[j] + g[1] * m[4 + j] + g[2] * m[8 + j];
       row[VL_JACOBIAN_POSE + j] = g[j];
     }
-    cross(at, g, row + VL_JACOBIAN_POSE + 3);
+    vl_cross3(at, g, row + VL_JACOBIAN_POSE + 3);
     memcpy(row + VL_JACOBIAN_INTRINSICS, d.numbers[i], sizeof d.numbers[i]);
   }
   return all_finite(rows, 2 * VL_JACOBIAN_COLUMNS);
@@ -199,8 +192,8 @@ static void store_ray(const vlCameraCompiled *c, const double ray[3], const doub
   for (int i = 0; i < 3; i++) {
     const double *r = m + 3 * (size_t)i;
     double *row = rows + (size_t)i * VL_JACOBIAN_COLUMNS + column;
-    row[0] = r[0] * origin[0] + r[1] * origin[1] + r[2] * origin[2];
-    d[i] = (r[0] * direction[0] + r[1] * direction[1] + r[2] * direction[2]) * inv;
+    row[0] = vl_dot3(r, origin);
+    d[i] = vl_dot3(r, direction) * inv;
     along += d[i] * ray[i] * inv;
   }
   for (int i = 0; i < 3; i++)
@@ -217,8 +210,8 @@ static bool solve_ray(const vlCameraCompiled *c, const double d[3], const FilmDe
     int least = fabs(d[0]) < fabs(d[1]) ? 0 : 1;
     double axis[3] = {0.0, 0.0, 0.0};
     axis[least] = 1.0;
-    cross(d, axis, tangent[0]);
-    cross(d, tangent[0], tangent[1]);
+    vl_cross3(d, axis, tangent[0]);
+    vl_cross3(d, tangent[0], tangent[1]);
   }
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++)
@@ -294,10 +287,9 @@ static bool unproject_one(const vlCameraCompiled *c, const double pixel[2], doub
                         : central_ray(c, pixel, &ray);
   if (!good)
     return false;
-  const double *m = c->rotation, *o = ray.o, *d = ray.d, none[3] = {0.0, 0.0, 0.0};
-  const double world[3] = {m[0] * d[0] + m[1] * d[1] + m[2] * d[2],
-                           m[3] * d[0] + m[4] * d[1] + m[5] * d[2],
-                           m[6] * d[0] + m[7] * d[1] + m[8] * d[2]};
+  const double *o = ray.o, *d = ray.d, none[3] = {0.0, 0.0, 0.0};
+  double world[3];
+  vl_mat3_vector(c->rotation, d, world);
   for (int j = 0; j < 2 + NUMBERS; j++) {
     double origin[3], direction[3];
     double x = j < 2 ? (j == 0) : -ray.numbers[0][j - 2];
@@ -314,8 +306,8 @@ static bool unproject_one(const vlCameraCompiled *c, const double pixel[2], doub
     double axis[3] = {0.0, 0.0, 0.0}, back[3] = {0.0, 0.0, 0.0}, of_origin[3], of_direction[3];
     axis[j] = 1.0;
     back[j] = -1.0;
-    cross(o, axis, of_origin);
-    cross(d, axis, of_direction);
+    vl_cross3(o, axis, of_origin);
+    vl_cross3(d, axis, of_direction);
     store_ray(c, world, back, none, rows, VL_JACOBIAN_POSE + j);
     store_ray(c, world, of_origin, of_direction, rows, VL_JACOBIAN_POSE + 3 + j);
   }
@@ -337,7 +329,7 @@ static void time_by_film(const vlCameraCompiled *c, const double film[2], double
 /* v' = a (3 x 3) v + p */
 static void apply(const double m[9], const double p[3], const double v[3], double result[3]) {
   for (int i = 0; i < 3; i++)
-    result[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2] + p[i];
+    result[i] = vl_dot3(m + 3 * (size_t)i, v) + p[i];
 }
 
 /* The 3 x 3 part of a 3 x 4 matrix, and its last column. */
@@ -365,7 +357,7 @@ static bool project_moving(const vlCameraCompiled *c, const double point[3], dou
   apply(back, none, moved, slip);  /* x moves by less this */
   for (int i = 0; i < 2; i++) {
     const double *g = rows + (size_t)i * VL_JACOBIAN_COLUMNS + VL_JACOBIAN_POSE;
-    speed[i] = -(g[0] * slip[0] + g[1] * slip[1] + g[2] * slip[2]);
+    speed[i] = -vl_dot3(g, slip);
   }
   double inv = 1.0 / (1.0 - by[0] * speed[0] - by[1] * speed[1]);
   for (int j = 0; j < VL_JACOBIAN_COLUMNS; j++) {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "camera/points.h"
+#include "math/double3.h"
 
 /* 0 where the readout begins, 1 where it ends; not clamped. */
 static double progress_at(const vlCameraTime *t, double x, double y) {
@@ -49,9 +50,7 @@ bool vl_camera_film_at(const vlCameraCompiled *c, double seconds, const double p
                        double film[2]) {
   double back[12], m[12], x[3];
   vl_camera_pose_at(c, seconds, back, m);
-  for (int i = 0; i < 3; i++)
-    x[i] =
-        m[4 * i] * point[0] + m[4 * i + 1] * point[1] + m[4 * i + 2] * point[2] + m[4 * i + 3];
+  vl_map_point(m, point, x);
   vlPlanePoint f = vl_camera_film_point(c, x[0], x[1], x[2]);
   film[0] = f.x;
   film[1] = f.y;

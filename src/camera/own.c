@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "math/double3.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
 
@@ -116,13 +117,13 @@ static void measure_pixel(const vlCamera *camera, vlOwnRows *rows, double pixel[
     o[i][2] = rows->oz[i];
   }
   for (int k = 0; k < 2; k++) {
-    double a[3], b[3];
+    double a[3], b[3], n[3];
     for (int i = 0; i < 3; i++) {
       a[i] = k ? o[1][i] - o[0][i] : d[1][i] - d[0][i];
       b[i] = k ? o[3][i] - o[2][i] : d[3][i] - d[2][i];
     }
-    double area = vl_length3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                             a[0] * b[1] - a[1] * b[0]);
+    vl_cross3(a, b, n);
+    double area = vl_norm3(n);
     double side = sqrt(area) / (2.0 * h);
     pixel[k] = isfinite(side) ? side : 0.0;
   }

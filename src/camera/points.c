@@ -6,6 +6,7 @@
 #include "camera/own.h"
 #include "camera/points.h"
 #include "camera/pose.h"
+#include "math/double3.h"
 
 vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
   if (c->own) {
@@ -103,9 +104,7 @@ double vl_camera_solid_angle(const vlCamera *camera, double x, double y) {
     if (!slope(&c, px, py, h * c.fx, 0.0, a) || !slope(&c, px, py, 0.0, h * c.fy, b))
       continue;
     double length = vl_length3(d.x, d.y, d.z);
-    return fabs(d.x * (a[1] * b[2] - a[2] * b[1]) + d.y * (a[2] * b[0] - a[0] * b[2]) +
-                d.z * (a[0] * b[1] - a[1] * b[0])) /
-           length;
+    return fabs(vl_triple3((const double[3]){d.x, d.y, d.z}, a, b)) / length;
   }
   return 0.0;
 }

@@ -8,6 +8,7 @@
 #include "camera/own.h"
 #include "camera/points.h"
 #include "camera/pose.h"
+#include "math/double3.h"
 #include "projection/orthographic.h"
 #include "projection/perspective.h"
 
@@ -92,17 +93,15 @@ bool vl_camera_unproject(const vlCamera *camera, double x, double y, double orig
 /* The film point of a camera at rest. */
 static bool project_one(const vlCameraCompiled *c, const double point[3], double pixel[2],
                         double *z) {
-  const double *m = c->camera_from_world;
-  double x = m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + m[3];
-  double y = m[4] * point[0] + m[5] * point[1] + m[6] * point[2] + m[7];
-  double depth = m[8] * point[0] + m[9] * point[1] + m[10] * point[2] + m[11];
-  vlPlanePoint f = vl_camera_film_point(c, x, y, depth);
+  double at[3];
+  vl_map_point(c->camera_from_world, point, at);
+  vlPlanePoint f = vl_camera_film_point(c, at[0], at[1], at[2]);
   if (!(f.valid > 0.0))
     return false;
   pixel[0] = f.x;
   pixel[1] = f.y;
   if (z)
-    *z = depth;
+    *z = at[2];
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "camera/parts.h"
 #include "camera/rays.h"
+#include "math/double3.h"
 
 static vlResult check_curve(const vlCameraDef *d, vlError *error) {
   if (d->shutter_points == 0)
@@ -218,15 +219,14 @@ vlResult vl_camera_at(const vlCamera *camera, double time, vlCamera *result) {
  * columns, over the determinant. */
 static void invert(const vlAffine *a, double inverse[12]) {
   const double *m = a->m;
-  double determinant = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
-                       m[2] * (m[3] * m[7] - m[4] * m[6]);
+  double determinant = vl_mat3_determinant(m);
   for (size_t i = 0; i < 3; i++) {
     size_t j = (i + 1) % 3, k = (i + 2) % 3;
     double *row = inverse + 4 * i;
     row[0] = (m[3 + j] * m[6 + k] - m[3 + k] * m[6 + j]) / determinant;
     row[1] = (m[6 + j] * m[k] - m[6 + k] * m[j]) / determinant;
     row[2] = (m[j] * m[3 + k] - m[k] * m[3 + j]) / determinant;
-    row[3] = -(row[0] * a->p[0] + row[1] * a->p[1] + row[2] * a->p[2]);
+    row[3] = -vl_dot3(row, a->p);
   }
 }
 

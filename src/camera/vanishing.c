@@ -17,11 +17,9 @@ static const double agreement = 1e-6; /* in focal lengths; values written with 7
 
 static bool direction_of(const vlCamera *c, const double d[3], double v[3]) {
   double length = 0.0;
-  for (int i = 0; i < 3; i++) {
-    v[i] = c->camera_from_world[4 * i] * d[0] + c->camera_from_world[4 * i + 1] * d[1] +
-           c->camera_from_world[4 * i + 2] * d[2];
+  vl_map_vector(c->camera_from_world, d, v);
+  for (int i = 0; i < 3; i++)
     length = fmax(length, fabs(v[i]));
-  }
   if (!(length > 0.0) || isinf(length))
     return false;
   for (int i = 0; i < 3; i++)

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "color/named.h"
 #include "color/tables.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 
 static vlResult unknown_name(const char *name, vlError *error) {
@@ -219,10 +220,7 @@ static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double
                                  0.0492912, -0.0085287, 0.0400428, 0.9684867};
   const vlSpaceTable *a = &vl_table_spaces[from], *b = &vl_table_spaces[to];
   double xyz[3], lms[3];
-  for (int i = 0; i < 3; i++) {
-    const double *m = a->xyz_from_rgb + 3 * i;
-    xyz[i] = m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2];
-  }
+  vl_mat3_vector(a->xyz_from_rgb, rgb, xyz);
   if (adapt && a->illuminant != b->illuminant) {
     for (int i = 0; i < 3; i++) {
       double old_white = 0, new_white = 0;
@@ -235,13 +233,9 @@ static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double
       }
       lms[i] *= new_white / old_white;
     }
-    for (int i = 0; i < 3; i++)
-      xyz[i] = back[3 * i] * lms[0] + back[3 * i + 1] * lms[1] + back[3 * i + 2] * lms[2];
+    vl_mat3_vector(back, lms, xyz);
   }
-  for (int i = 0; i < 3; i++) {
-    const double *m = b->rgb_from_xyz + 3 * i;
-    out[i] = m[0] * xyz[0] + m[1] * xyz[1] + m[2] * xyz[2];
-  }
+  vl_mat3_vector(b->rgb_from_xyz, xyz, out);
 }
 
 vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space,
@@ -266,10 +260,9 @@ vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlC
     double xyz[3];
     integrate(dense, role == VL_ROLE_ILLUMINANT ? NULL : vl_space_illuminant(space), xyz);
     double unit = role == VL_ROLE_ILLUMINANT ? xyz[1] : vl_table_y_integral;
-    for (int i = 0; i < 3; i++) {
-      const double *m = vl_table_spaces[space].rgb_from_xyz + 3 * i;
-      out[i] = unit != 0 ? (m[0] * xyz[0] + m[1] * xyz[1] + m[2] * xyz[2]) / unit : 0;
-    }
+    vl_mat3_vector(vl_table_spaces[space].rgb_from_xyz, xyz, out);
+    for (int i = 0; i < 3; i++)
+      out[i] = unit != 0 ? out[i] / unit : 0;
   }
   for (int i = 0; i < 3; i++) {
     double v = out[i] > 0 ? out[i] : 0; /* negative for colours outside of the gamut */

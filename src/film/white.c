@@ -2,6 +2,7 @@
 #include "film/white.h"
 
 #include "color/sensor.h"
+#include "math/double3.h"
 #include "math/transform.h"
 
 /* Lam, "Metamerism and colour constancy" (Bradford, 1985): XYZ to the responses of sharpened
@@ -28,8 +29,7 @@ static void chromaticity(double kelvin, double xy[2]) {
 
 static void response(double x, double y, double lms[3]) {
   double xyz[3] = {x / y, 1.0, (1.0 - x - y) / y};
-  for (int i = 0; i < 3; i++)
-    lms[i] = cones[3 * i] * xyz[0] + cones[3 * i + 1] * xyz[1] + cones[3 * i + 2] * xyz[2];
+  vl_mat3_vector(cones, xyz, lms);
 }
 
 void vl_white_balance(double kelvin, vlColorSpace space, float m[9]) {

@@ -52,6 +52,15 @@ static inline double vl_normalize3(double a[3]) {
       a[i] /= l;
   return l;
 }
+/* r = m v; r is not v. */
+static inline void vl_mat3_vector(const double m[9], const double v[3], double r[3]) {
+  for (int i = 0; i < 3; i++)
+    r[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
+}
+static inline double vl_mat3_determinant(const double m[9]) {
+  return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+         m[2] * (m[3] * m[7] - m[4] * m[6]);
+}
 /* Of the upper left 3x3. */
 static inline double vl_determinant3(const double m[12]) {
   return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +

@@ -5,20 +5,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/double3.h"
+
 typedef struct Mat3 {
   double m[9];
 } Mat3;
 
-static double determinant(const Mat3 *a) {
-  const double *m = a->m;
-  return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
-         m[2] * (m[3] * m[7] - m[4] * m[6]);
-}
-
 /* Transpose of the inverse: cofactors over the determinant. */
 static Mat3 inverse_transpose(const Mat3 *a) {
   const double *m = a->m;
-  double d = 1 / determinant(a);
+  double d = 1 / vl_mat3_determinant(a->m);
   return (Mat3){{(m[4] * m[8] - m[5] * m[7]) * d, (m[5] * m[6] - m[3] * m[8]) * d,
                  (m[3] * m[7] - m[4] * m[6]) * d, (m[2] * m[7] - m[1] * m[8]) * d,
                  (m[0] * m[8] - m[2] * m[6]) * d, (m[1] * m[6] - m[0] * m[7]) * d,
@@ -43,7 +39,7 @@ static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
   for (int i = 0; i < 9; i++)
     r->m[i] = a->m[i] / size;
   for (int step = 0; step < 100; step++) {
-    if (!(fabs(determinant(r)) > 1e-30))
+    if (!(fabs(vl_mat3_determinant(r->m)) > 1e-30))
       return false; /* singular: entries are 1 at most */
     Mat3 b = inverse_transpose(r);
     double scale = sqrt(largest(&b) / largest(r)), change = 0;
@@ -56,7 +52,7 @@ static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
     if (change < 1e-15)
       return true; /* a few roundings of 1.1e-16 */
   }
-  return fabs(fabs(determinant(r)) - 1) <
+  return fabs(fabs(vl_mat3_determinant(r->m)) - 1) <
          1e-9; /* a rotation, though the last digits do not settle */
 }
 
@@ -99,7 +95,7 @@ static bool split(const double m[16], double t[3], double q[4], double s[9], boo
   }
   if (!nearest_rotation(&a, &r))
     return false;
-  *mirrors = determinant(&r) < 0;
+  *mirrors = vl_mat3_determinant(r.m) < 0;
   for (int i = 0; i < 9 && *mirrors; i++)
     r.m[i] = -r.m[i];
   quaternion(&r, q);

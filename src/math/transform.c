@@ -115,10 +115,8 @@ void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]) {
 }
 
 void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]) {
-  const double *m = inverse->m;
   double r[3];
-  for (int i = 0; i < 3; i++)
-    r[i] = m[i] * n[0] + m[4 + i] * n[1] + m[8 + i] * n[2];
+  vl_map_normal(inverse->m, n, r);
   for (int i = 0; i < 3; i++)
     result[i] = r[i];
 }
@@ -147,8 +145,7 @@ void vl_mat3_multiply(const double a[9], const double b[9], double r[9]) {
 }
 
 void vl_mat3_inverse(const double a[9], double r[9]) {
-  double det = a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) +
-               a[2] * (a[3] * a[7] - a[4] * a[6]);
+  double det = vl_mat3_determinant(a);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       int i1 = (j + 1) % 3, i2 = (j + 2) % 3, j1 = (i + 1) % 3, j2 = (i + 2) % 3;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "schema/schema.h"
 #include "velo/shape_kinds.h"
@@ -87,7 +88,7 @@ bool vl_solid_holds(const vlSolid *s, const double p[3]) {
   if (s->sphere) {
     double q[3], r = s->shape->radius;
     vl_mat4_point(&s->shape_from_group, p, q);
-    return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] < r * r;
+    return vl_dot3(q, q) < r * r;
   }
   int winding = 0;
   for (uint32_t i = 0; i < s->meshes.part_count; i++) {

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "math/double3.h"
 #include "velo/shape.h"
 
 enum { MAX_TRIANGLES = 1 << 22 }; /* take about 600 MB with their BVH */
@@ -119,7 +120,7 @@ static double length2(const Cutter *c, uint32_t a, uint32_t b) {
   const float *p = c->p.items + 3 * (size_t)a, *q = c->p.items + 3 * (size_t)b;
   double d[3] = {(double)q[0] - p[0], (double)q[1] - p[1], (double)q[2] - p[2]}, r[3];
   vl_mat4_vector(c->m, d, r);
-  return r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+  return vl_dot3(r, r);
 }
 
 static bool push(Cutter *c, uint32_t a, uint32_t b, uint32_t d) {

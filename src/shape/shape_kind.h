@@ -35,7 +35,7 @@ typedef struct vlSurfacePoint {
 /* Derivative of the unit normal n = m / |m|. On entry d is the derivative of m, on return that
  * of n. length: |m|. The component of d along n is removed. */
 static inline void vl_normal_derivative(const double n[3], double length, double d[3]) {
-  double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
+  double along = vl_dot3(n, d);
   for (int i = 0; i < 3; i++)
     d[i] = length > 0 ? (d[i] - along * n[i]) / length : 0;
 }

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
+#include "math/double3.h"
 #include "velo/texture.h"
 
 /* ---- the statement ----------------------------------------------------------------------- */
@@ -142,7 +143,7 @@ static bool finish_direction_mix(const Reading *r, vlTextureDef *def) {
   for (int i = 0; p && i < 3; i++)
     d[i] = p->exact[i];
   vl_mat4_vector(r->world_from_texture, d, world);
-  double length = sqrt(world[0] * world[0] + world[1] * world[1] + world[2] * world[2]);
+  double length = vl_norm3(world);
   if (!(length > 0.0))
     return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
                           "%s: \"dir\" is zero", r->dict->what);

@@ -1,5 +1,6 @@
-/* view/camera_edit.c: see camera_edit.h. Each field has a row with a function that puts its
- * value into the def and removes the spellings that it replaces. */
+/* view/camera_edit.c: see camera_edit.h. Each field has a row. It names the setting whose
+ * member gets the field's number, or has a function that puts its value into the def, and says
+ * which spellings the value replaces. */
 #include "view/camera_edit.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
@@ -86,69 +87,21 @@ typedef struct Edit {
 
 /* Each of these functions takes a field; false: its value is not of the right form. */
 typedef bool Setter(Edit *edit, const MessageField *field);
+/* Each of these removes or computes the spellings that a field replaces or needs. */
+typedef void Before(const ViewCamera *now, vlCameraDef *def);
 
-static bool one(const MessageField *field, double *value) {
-  if (field->count == 1)
-    *value = field->numbers[0];
-  if (field->null)
-    *value = VL_UNSET;
-  return field->count == 1 || field->null;
+static void before_fov(const ViewCamera *now, vlCameraDef *def) {
+  (void)now;
+  drop_focal(def);
 }
-
-static bool set_d(Edit *e, const MessageField *f) {
-  spell_lecture(e->now, e->def);
-  return one(f, &e->def->view_distance);
-}
-static bool set_zoom(Edit *e, const MessageField *f) {
-  spell_lecture(e->now, e->def);
-  return one(f, &e->def->zoom);
-}
-static bool set_s(Edit *e, const MessageField *f) {
-  spell_lecture(e->now, e->def);
-  return one(f, &e->def->pixel_size);
-}
-static bool set_fov(Edit *e, const MessageField *f) {
-  drop_focal(e->def);
-  if (!one(f, &e->def->fov))
-    return false;
-  if (!f->null)
-    e->def->fov *= degree;
-  return true;
-}
-static bool set_fov_axis(Edit *e, const MessageField *f) {
-  e->def->fov_axis = (vlFovAxis)f->choice;
-  return true;
-}
-static bool set_focal_mm(Edit *e, const MessageField *f) {
-  spell_lens_mm(e->now, e->def);
-  return one(f, &e->def->focal_mm);
-}
-static bool set_sensor_mm(Edit *e, const MessageField *f) {
-  if (!isnan(e->def->focal_mm))
-    spell_lens_mm(e->now, e->def);
-  return one(f, &e->def->sensor_width_mm);
-}
-static bool set_fx(Edit *e, const MessageField *f) {
-  spell_matrix(e->now, e->def);
-  return one(f, &e->def->fx);
-}
-static bool set_fy(Edit *e, const MessageField *f) {
-  spell_matrix(e->now, e->def);
-  return one(f, &e->def->fy);
+static void before_sensor(const ViewCamera *now, vlCameraDef *def) {
+  if (!isnan(def->focal_mm))
+    spell_lens_mm(now, def);
 }
 /* A field of view describes a window centred on the axis, so the matrix replaces it. */
-static bool set_cx(Edit *e, const MessageField *f) {
-  if (!isnan(e->def->fov) || !isnan(e->def->screen_min_x))
-    spell_matrix(e->now, e->def);
-  return one(f, &e->def->cx);
-}
-static bool set_cy(Edit *e, const MessageField *f) {
-  if (!isnan(e->def->fov) || !isnan(e->def->screen_min_x))
-    spell_matrix(e->now, e->def);
-  return one(f, &e->def->cy);
-}
-static bool set_skew(Edit *e, const MessageField *f) {
-  return one(f, &e->def->skew);
+static void before_point(const ViewCamera *now, vlCameraDef *def) {
+  if (!isnan(def->fov) || !isnan(def->screen_min_x))
+    spell_matrix(now, def);
 }
 
 /* ---- projection and distortion ----------------------------------------------------------- */
@@ -205,18 +158,15 @@ static bool set_projection(Edit *e, const MessageField *f) {
   start_projection(e->now, e->def);
   return true;
 }
+static bool set_fov_axis(Edit *e, const MessageField *f) {
+  e->def->fov_axis = (vlFovAxis)f->choice;
+  return true;
+}
 static bool set_shape(Edit *e, const MessageField *f) {
   if (f->count > 2)
     return false;
   for (uint32_t i = 0; i < 2; i++)
     e->def->shape[i] = i < f->count ? f->numbers[i] : VL_UNSET;
-  return true;
-}
-static bool set_max_angle(Edit *e, const MessageField *f) {
-  if (!one(f, &e->def->max_angle))
-    return false;
-  if (!f->null)
-    e->def->max_angle *= degree;
   return true;
 }
 static bool set_distortion(Edit *e, const MessageField *f) {
@@ -263,22 +213,22 @@ static bool set_roll(Edit *e, const MessageField *f) {
 
 /* ---- lens -------------------------------------------------------------------------------- */
 
-static bool set_lens_radius(Edit *e, const MessageField *f) {
-  e->def->lens.f_number = VL_UNSET;
-  return f->count == 1 && one(f, &e->def->lens_radius);
+static void before_radius(const ViewCamera *now, vlCameraDef *def) {
+  (void)now;
+  def->lens.f_number = VL_UNSET;
 }
-static bool set_f_number(Edit *e, const MessageField *f) {
-  e->def->lens_radius = 0;
-  if (isnan(e->def->focal_mm) && isnan(e->def->sensor_width_mm))
-    e->def->sensor_width_mm = 36;
-  return one(f, &e->def->lens.f_number);
+static void before_f_number(const ViewCamera *now, vlCameraDef *def) {
+  (void)now;
+  def->lens_radius = 0;
+  if (isnan(def->focal_mm) && isnan(def->sensor_width_mm))
+    def->sensor_width_mm = 36;
 }
-static bool set_focus_distance(Edit *e, const MessageField *f) {
+static void before_focus(const ViewCamera *now, vlCameraDef *def) {
+  (void)now;
   for (int i = 0; i < 3; i++)
-    e->def->lens.focus_point[i] = VL_UNSET;
+    def->lens.focus_point[i] = VL_UNSET;
   for (int i = 0; i < 2; i++)
-    e->def->lens.focus_pixel[i] = VL_UNSET;
-  return one(f, &e->def->focus_distance);
+    def->lens.focus_pixel[i] = VL_UNSET;
 }
 static bool set_blades(Edit *e, const MessageField *f) {
   if (f->count != 1)
@@ -286,61 +236,22 @@ static bool set_blades(Edit *e, const MessageField *f) {
   e->def->lens.blades = (uint32_t)f->numbers[0];
   return true;
 }
-static bool set_ratio(Edit *e, const MessageField *f) {
-  return f->count == 1 && one(f, &e->def->lens.ratio);
-}
-
-/* An angle of the lens, given in degrees. */
-static bool set_angle(const MessageField *f, double *angle) {
-  if (f->count != 1)
-    return false;
-  *angle = f->numbers[0] * degree;
-  return true;
-}
-static bool set_rotation(Edit *e, const MessageField *f) {
-  return set_angle(f, &e->def->lens.rotation);
-}
-static bool set_tilt_x(Edit *e, const MessageField *f) {
-  return set_angle(f, &e->def->lens.tilt_x);
-}
-static bool set_tilt_y(Edit *e, const MessageField *f) {
-  return set_angle(f, &e->def->lens.tilt_y);
-}
-static bool set_lens_tilt_x(Edit *e, const MessageField *f) {
-  return set_angle(f, &e->def->lens.lens_tilt_x);
-}
-static bool set_lens_tilt_y(Edit *e, const MessageField *f) {
-  return set_angle(f, &e->def->lens.lens_tilt_y);
-}
 static bool set_near(Edit *e, const MessageField *f) {
-  if (f->null)
-    e->def->near_plane = 0;
-  return f->null || one(f, &e->def->near_plane);
+  e->def->near_plane = f->null ? 0 : f->numbers[0];
+  return f->null || f->count == 1;
 }
 static bool set_far(Edit *e, const MessageField *f) {
-  if (f->null)
-    e->def->far_plane = INFINITY;
-  return f->null || one(f, &e->def->far_plane);
+  e->def->far_plane = f->null ? (double)INFINITY : f->numbers[0];
+  return f->null || f->count == 1;
 }
 /* With another shutter, the poses of a moving camera keep their times, and the image its
  * brightness. */
-static void keep_motion(Edit *e) {
-  const vlCameraDef *before = &e->now->def;
-  for (int i = 0; i < 2 && e->now->made.moves; i++)
-    e->def->pose_times[i] = e->now->made.pose_times[i];
+static void keep_motion(const ViewCamera *now, vlCameraDef *def) {
+  const vlCameraDef *before = &now->def;
+  for (int i = 0; i < 2 && now->made.moves; i++)
+    def->pose_times[i] = now->made.pose_times[i];
   if (!isnan(before->lens.iso) && isnan(before->lens.seconds))
-    e->def->lens.seconds = before->shutter_close - before->shutter_open;
-}
-static bool set_shutter_open(Edit *e, const MessageField *f) {
-  keep_motion(e);
-  return f->count == 1 && one(f, &e->def->shutter_open);
-}
-static bool set_shutter_close(Edit *e, const MessageField *f) {
-  keep_motion(e);
-  return f->count == 1 && one(f, &e->def->shutter_close);
-}
-static bool set_exposure_time(Edit *e, const MessageField *f) {
-  return f->count == 1 && one(f, &e->def->exposure_time);
+    def->lens.seconds = before->shutter_close - before->shutter_open;
 }
 
 /* ---- all fields -------------------------------------------------------------------------- */
@@ -350,43 +261,45 @@ static const struct {
   const char *name;
   const char
       *setting; /* its numbers, in the row's unit, are values of this setting; null: of none */
-  Setter *set;
-} setters[] = {{"projection", "projection", set_projection},
-               {"fov_axis", "fov_axis", set_fov_axis},
-               {"fov", "fov", set_fov},
-               {"d", "view_distance", set_d},
-               {"zoom", "zoom", set_zoom},
-               {"s", "pixel_size", set_s},
-               {"sensor_width_mm", "sensor_width_mm", set_sensor_mm},
-               {"focal_mm", "focal_mm", set_focal_mm},
-               {"fx", "fx", set_fx},
-               {"fy", "fy", set_fy},
-               {"cx", "cx", set_cx},
-               {"cy", "cy", set_cy},
-               {"skew", "skew", set_skew},
-               {"shape", "shape[0]", set_shape},
-               {"max_angle", "max_angle", set_max_angle},
-               {"distortion", "distortion", set_distortion},
-               {"coefficients", NULL, set_coefficients},
-               {"eye", "eye", set_eye},
-               {"lookat", "lookat", set_lookat},
-               {"up", "up", set_up},
-               {"roll", "roll", set_roll},
-               {"lens_radius", "lens_radius", set_lens_radius},
-               {"f_number", "f_number", set_f_number},
-               {"focus_distance", "focus_distance", set_focus_distance},
-               {"blades", "blades", set_blades},
-               {"rotation", "rotation", set_rotation},
-               {"ratio", "ratio", set_ratio},
-               {"tilt_x", "tilt_x", set_tilt_x},
-               {"tilt_y", "tilt_y", set_tilt_y},
-               {"lens_tilt_x", "lens_tilt_x", set_lens_tilt_x},
-               {"lens_tilt_y", "lens_tilt_y", set_lens_tilt_y},
-               {"near", "near_plane", set_near},
-               {"far", "far_plane", set_far},
-               {"shutter_open", "shutter_open", set_shutter_open},
-               {"shutter_close", "shutter_close", set_shutter_close},
-               {"exposure_time", "exposure_time", set_exposure_time}};
+  Setter *set;  /* null: one number, into the setting's member */
+  Before *before; /* null: nothing is to be done before */
+  bool needed;    /* the number may not be null */
+} setters[] = {{"projection", "projection", .set = set_projection},
+               {"fov_axis", "fov_axis", .set = set_fov_axis},
+               {"fov", "fov", .before = before_fov},
+               {"d", "view_distance", .before = spell_lecture},
+               {"zoom", "zoom", .before = spell_lecture},
+               {"s", "pixel_size", .before = spell_lecture},
+               {"sensor_width_mm", "sensor_width_mm", .before = before_sensor},
+               {"focal_mm", "focal_mm", .before = spell_lens_mm},
+               {"fx", "fx", .before = spell_matrix},
+               {"fy", "fy", .before = spell_matrix},
+               {"cx", "cx", .before = before_point},
+               {"cy", "cy", .before = before_point},
+               {"skew", .setting = "skew"},
+               {"shape", "shape[0]", .set = set_shape},
+               {"max_angle", .setting = "max_angle"},
+               {"distortion", "distortion", .set = set_distortion},
+               {"coefficients", .set = set_coefficients},
+               {"eye", "eye", .set = set_eye},
+               {"lookat", "lookat", .set = set_lookat},
+               {"up", "up", .set = set_up},
+               {"roll", "roll", .set = set_roll},
+               {"lens_radius", "lens_radius", .before = before_radius, .needed = true},
+               {"f_number", "f_number", .before = before_f_number},
+               {"focus_distance", "focus_distance", .before = before_focus},
+               {"blades", "blades", .set = set_blades},
+               {"rotation", "rotation", .needed = true},
+               {"ratio", "ratio", .needed = true},
+               {"tilt_x", "tilt_x", .needed = true},
+               {"tilt_y", "tilt_y", .needed = true},
+               {"lens_tilt_x", "lens_tilt_x", .needed = true},
+               {"lens_tilt_y", "lens_tilt_y", .needed = true},
+               {"near", "near_plane", .set = set_near},
+               {"far", "far_plane", .set = set_far},
+               {"shutter_open", "shutter_open", .before = keep_motion, .needed = true},
+               {"shutter_close", "shutter_close", .before = keep_motion, .needed = true},
+               {"exposure_time", "exposure_time", .needed = true}};
 enum { SETTERS = sizeof setters / sizeof *setters };
 
 enum { PROJECTIONS = VL_PROJECTION_OPTICS + 1 };
@@ -446,6 +359,19 @@ static vlResult refuse_name(vlError *error, const char *name) {
   return refuse(error, message);
 }
 
+/* Applies a field by its setter. False: its value is not of the right form. */
+static bool set_field(Edit *edit, const MessageField *field, int s) {
+  if (setters[s].before)
+    setters[s].before(edit->now, edit->def);
+  if (setters[s].set)
+    return setters[s].set(edit, field);
+  const vlParameter *row = vl_setting(VL_SETTING_CAMERA, setters[s].setting);
+  const double factor = row->factor != 0 ? row->factor : 1;
+  const double value = field->null ? VL_UNSET : field->numbers[0] * factor;
+  memcpy((char *)edit->def + row->offset, &value, sizeof value);
+  return field->count == 1 || (field->null && !setters[s].needed);
+}
+
 static vlResult apply_fields(Edit *edit, vlError *error) {
   const ViewMessage *message = edit->message;
   uint32_t known = 0;
@@ -457,7 +383,7 @@ static vlResult apply_fields(Edit *edit, vlError *error) {
       known++;
       if (check_field(&field, setters[s].setting, error) != VL_OK)
         return VL_ERROR_ARGUMENT;
-      if (!setters[s].set(edit, &field))
+      if (!set_field(edit, &field, s))
         return refuse_count(error, &field);
     }
   if (known == message->field_count)

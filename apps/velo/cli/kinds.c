@@ -3,7 +3,17 @@
 
 #include <string.h>
 
+#include "velo/render.h"
+
 enum { MAX_FAMILIES = 16, MAX_CHOICES = 64 };
+
+static const Choice *fill_sensors(void) {
+  static Choice choices[MAX_CHOICES];
+  const char *name;
+  for (uint32_t i = 0; i + 1 < MAX_CHOICES && (name = vl_sensor_name(i)); i++)
+    choices[i] = (Choice){name, (int)i};
+  return choices;
+}
 
 static void fill(const vlKindFamily *family, const Choice *more, Choice *choices) {
   int n = 0;
@@ -22,6 +32,8 @@ const Choice *kind_choices(const Choice *list) {
    * further names; the last list stays empty, for unknown families. */
   static Choice choices[2 * MAX_FAMILIES + 1][MAX_CHOICES];
   const vlKindFamily *family;
+  if (strcmp(list->name, "sensors") == 0)
+    return fill_sensors();
   for (uint32_t i = 0; i < MAX_FAMILIES && (family = vl_kind_family(i)); i++) {
     if (strcmp(family->name, list->name) != 0)
       continue;

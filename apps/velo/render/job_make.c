@@ -16,28 +16,7 @@
 #include "velo/sampler.h"
 #include "velo/tracer.h"
 
-const Choice sensor_choices[] = {
-    /* the names of vl_sensor_name, with their indices */
-    {"cie1931", 0},
-    {"canon_eos_100d", 1},
-    {"canon_eos_1dx_mkii", 2},
-    {"canon_eos_200d", 3},
-    {"canon_eos_200d_mkii", 4},
-    {"canon_eos_5d", 5},
-    {"canon_eos_5d_mkii", 6},
-    {"canon_eos_5d_mkiii", 7},
-    {"canon_eos_5d_mkiv", 8},
-    {"canon_eos_5ds", 9},
-    {"canon_eos_m", 10},
-    {"hasselblad_l1d_20c", 11},
-    {"nikon_d810", 12},
-    {"nikon_d850", 13},
-    {"sony_ilce_6400", 14},
-    {"sony_ilce_7m3", 15},
-    {"sony_ilce_7rm3", 16},
-    {"sony_ilce_9", 17},
-    {NULL, 0},
-};
+const Choice sensor_choices[] = {{"sensors", 0}, {NULL, 0}};
 const Choice light_sampler_choices[] = {{"bvh", VL_LIGHT_SAMPLER_BVH},
                                         {"power", VL_LIGHT_SAMPLER_POWER},
                                         {"uniform", VL_LIGHT_SAMPLER_UNIFORM},

@@ -199,7 +199,7 @@ Option render_options[] = {
      0, 0, regularize_choices},
     {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME",
      "representation of colours during light transport:", 0, 0, color_choices},
-    {RENDER_SENSOR, 0, "sensor", OPTION_CHOICE, "NAME",
+    {RENDER_SENSOR, 0, "sensor", OPTION_KIND, "NAME",
      "camera whose spectral response the sensor has; daylight of 6500 K becomes white, "
      "unless the scene gives another white balance:",
      0, 0, sensor_choices},

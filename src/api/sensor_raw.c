@@ -2,7 +2,6 @@
 #include "velo/sensor_raw.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "sensor/sensor.h"
 

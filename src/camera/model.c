@@ -10,7 +10,6 @@
 #include "distortion/distortion.row.h"
 #include "distortion/kinds.row.h"
 #include "math/elementary.h"
-#include "math/transform.h"
 #include "projection/properties.row.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"

@@ -12,7 +12,6 @@
 #include "base/text.h"
 #include "camera_files/lines.h"
 #include "math/double3.h"
-#include "math/elementary.h"
 
 enum { MAX_NUMBERS = 16 };
 static const char separators[] = " \t,;[]";

@@ -1,7 +1,6 @@
 /* distortion/invert.c: the inverse of a distortion where the few Newton steps that suffice for
  * the image do not: far outside it and close to a fold. */
 #include "distortion/distortion.h"
-#include "math/elementary.h"
 
 enum { BISECTIONS = 100, NEWTON_STEPS = 60, HALVINGS = 40 };
 

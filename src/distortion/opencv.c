@@ -5,7 +5,6 @@
 
 #include "distortion/compile.h"
 #include "math/approx_double.h"
-#include "math/elementary.h"
 #include "math/transform.h"
 
 vlDistortionCompile vl_distortion_compile_opencv;

@@ -1,7 +1,6 @@
 /* light/lamp_eulumdat.c: reads EULUMDAT files (.ldt; Stockmar 1990): one value per line. The
  * intensities are candela per 1000 lumens of the lamps, of which the first set counts. */
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "base/text.h"

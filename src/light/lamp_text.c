@@ -4,7 +4,6 @@
 #include "light/lamp_text.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "base/text.h"

@@ -8,7 +8,6 @@
 #include "light/light_kind.h"
 #include "light/spread.h"
 #include "math/elementary.h"
-#include "math/transform.h"
 #include "scene/scene.h"
 #include "shape/surface_point.h"
 #include "texture/lookup.h"

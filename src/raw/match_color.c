@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/cookie.h"
 #include "base/error.h"
 #include "color/color.h"
 #include "color/sensor.h"

@@ -2,7 +2,6 @@
  * raw image and its neutral, as the DNG specification describes it (Adobe, DNG 1.4, chapter 6,
  * "Mapping camera color space to CIE XYZ space"). */
 #include <math.h>
-#include <string.h>
 
 #include "color/color.h"
 #include "math/transform.h"

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/context.h"
 #include "velo/filter_kinds.h"
 
 static uint32_t border_of(double radius) {

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "math/approx.h"
-#include "math/elementary.h"
 #include "math/vec.h"
 
 /* A direction as angles in degrees: from straight ahead to the right, above the horizon. */

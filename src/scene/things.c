@@ -1,8 +1,6 @@
 /* scene/things.c: see things.h. */
 #include "scene/things.h"
 
-#include <math.h>
-
 #include "math/double3.h"
 #include "math/transform.h"
 #include "velo/shape_kinds.h"

@@ -4,7 +4,6 @@
 #include "scene/upright.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "math/elementary.h"
 #include "scene/facing.h"

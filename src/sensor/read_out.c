@@ -4,7 +4,6 @@
 #include <stdatomic.h>
 #include <string.h>
 
-#include "math/elementary.h"
 #include "sensor/random.h"
 #include "sensor/sensor.h"
 

@@ -14,7 +14,6 @@
 #include "image/image.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
-#include "render/output_names.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
 enum {

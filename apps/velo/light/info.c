@@ -1,7 +1,6 @@
 /* light/info.c: `velo light info`: the flux, the angles and the intensities of a lamp file. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "cli/commands.h"
 #include "cli/context.h"

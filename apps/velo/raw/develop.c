@@ -2,7 +2,6 @@
 #include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
-#include "cli/text.h"
 #include "raw/raw.h"
 #include "render/output_names.h"
 #include "render/outputs.h"

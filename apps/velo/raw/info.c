@@ -5,7 +5,6 @@
 #include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
-#include "cli/text.h"
 #include "raw/raw.h"
 
 int raw_load(const char *path, vlContext **context, vlRaw **raw) {

@@ -2,7 +2,6 @@
 #include "render/denoised.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/report.h"

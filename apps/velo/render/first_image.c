@@ -2,7 +2,6 @@
 #include "render/first_image.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #include "render/added.h"
 #include "render/frames.h"

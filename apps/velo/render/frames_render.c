@@ -1,6 +1,5 @@
 /* render/frames_render.c: renders the frames one after the other. A failed frame does not stop
  * the rest; the exit code reports it. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -10,6 +9,7 @@
 #include "render/frame_writer.h"
 #include "render/lens_options.h"
 #include "render/progress.h"
+#include "render/run.h"
 
 typedef struct Run {
   Frames *frames;
@@ -223,11 +223,7 @@ static bool is_left_out(const Run *run, const Frame *frame) {
 static void report_end(const Run *run, uint32_t written, int status) {
   double seconds = monotonic_seconds() - run->shown.start;
   const vlRenderStats *t = &run->total;
-  if (t->not_finite)
-    report_warning(
-        "%llu samples were not finite or negative and were left out; the first one at pixel "
-        "%u, %u",
-        (unsigned long long)t->not_finite, t->worst_x, t->worst_y);
+  report_not_finite(t);
   if (report_is_json()) {
     Json json = report_json_begin("result");
     json_integer(&json, "status", status);
@@ -235,11 +231,7 @@ static void report_end(const Run *run, uint32_t written, int status) {
     json_integer(&json, "written", written);
     json_integer(&json, "spp", t->spp);
     json_number(&json, "seconds", seconds);
-    json_integer(&json, "paths", (int64_t)t->paths);
-    json_integer(&json, "camera_rays", (int64_t)t->camera_rays);
-    json_integer(&json, "bounce_rays", (int64_t)t->bounce_rays);
-    json_integer(&json, "shadow_rays", (int64_t)t->shadow_rays);
-    json_integer(&json, "not_finite", (int64_t)t->not_finite);
+    json_render_stats(&json, t);
     report_json_end(&json);
     return;
   }

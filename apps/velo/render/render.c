@@ -10,7 +10,6 @@
 #include "cli/confine.h"
 #include "cli/context.h"
 #include "cli/report.h"
-#include "cli/signals.h"
 #include "render/animate.h"
 #include "render/blend.h"
 #include "render/exposure.h"

@@ -173,7 +173,15 @@ static int render_channels(Render *render) {
 
 /* ---- the result -------------------------------------------------------------------------- */
 
-static void report_not_finite(const vlRenderStats *stats) {
+void json_render_stats(Json *json, const vlRenderStats *stats) {
+  json_integer(json, "paths", (int64_t)stats->paths);
+  json_integer(json, "camera_rays", (int64_t)stats->camera_rays);
+  json_integer(json, "bounce_rays", (int64_t)stats->bounce_rays);
+  json_integer(json, "shadow_rays", (int64_t)stats->shadow_rays);
+  json_integer(json, "not_finite", (int64_t)stats->not_finite);
+}
+
+void report_not_finite(const vlRenderStats *stats) {
   if (stats->not_finite)
     report_warning(
         "%llu samples were not finite or negative and were left out; the first one at pixel "
@@ -210,11 +218,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     if (first)
       json_text(&json, "plain", plain);
     json_number(&json, "seconds", stats->seconds);
-    json_integer(&json, "paths", (int64_t)stats->paths);
-    json_integer(&json, "camera_rays", (int64_t)stats->camera_rays);
-    json_integer(&json, "bounce_rays", (int64_t)stats->bounce_rays);
-    json_integer(&json, "shadow_rays", (int64_t)stats->shadow_rays);
-    json_integer(&json, "not_finite", (int64_t)stats->not_finite);
+    json_render_stats(&json, stats);
     json_integer(&json, "memory_needed", (int64_t)render->memory.total);
     json_integer(&json, "memory_peak", (int64_t)memory_peak());
     json_begin(&json, "files", '[');

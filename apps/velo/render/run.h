@@ -3,6 +3,7 @@
 #ifndef APP_RENDER_RUN_H
 #define APP_RENDER_RUN_H
 
+#include "cli/json.h"
 #include "render/again.h"
 #include "render/channels.h"
 #include "render/continue.h"
@@ -55,6 +56,10 @@ typedef struct Render {
 bool run_has_layers(const Render *render);
 /* The number of pixels that are rendered. */
 uint64_t run_pixels(const Render *render);
+/* Writes the numbers of paths, rays and samples that were left out into the open object. */
+void json_render_stats(Json *json, const vlRenderStats *stats);
+/* Warns of samples that were not finite or negative, if there were any. */
+void report_not_finite(const vlRenderStats *stats);
 /* Renders the image, writes its files and reports the result. Returns the exit code. */
 int run_image(Render *render);
 

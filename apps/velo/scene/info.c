@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "cli/commands.h"
 #include "cli/confine.h"
@@ -11,6 +10,7 @@
 #include "cli/kinds.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "render/progress.h"
 #include "scene/scene.h"
 #include "velo/check.h"
 
@@ -371,14 +371,11 @@ static int run(const Command *command, const Arguments *arguments) {
   load.permissive = arguments->values[INFO_PERMISSIVE].given;
   if (arguments->values[INFO_SEARCH].given)
     load.search_path = arguments->values[INFO_SEARCH].text;
-  struct timespec start, end;
-  clock_gettime(CLOCK_MONOTONIC, &start);
+  const double start = monotonic_seconds();
   vlResult r = vl_scene_create(context, &f.scene);
   if (r == VL_OK)
     r = vl_scene_load(f.scene, f.path, &load, &error);
-  clock_gettime(CLOCK_MONOTONIC, &end);
-  f.seconds =
-      (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+  f.seconds = monotonic_seconds() - start;
   if (r == VL_OK) {
     f.bytes = vl_context_memory(context, NULL);
     vl_scene_info(f.scene, &f.info);

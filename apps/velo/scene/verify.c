@@ -4,7 +4,6 @@
 #include "scene/verify.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "cli/commands.h"

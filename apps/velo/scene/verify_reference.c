@@ -16,6 +16,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/job.h"
+#include "render/progress.h"
 #include "scene/verify.h"
 
 enum { MAX_CHILDREN = 64 };
@@ -91,12 +92,6 @@ typedef struct Look {
   bool refused;
   vlError *error;
 } Look;
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void name_file(const Look *l, uint32_t replicate, const char *end, char path[64]) {
   snprintf(path, 64, "%s/%u.%s", l->folder, replicate, end);
@@ -250,7 +245,7 @@ static void remove_files(const Look *l) {
 static vlResult render_all(Look *l, double limit) {
   const uint32_t threads = vl_context_threads(l->v->context);
   const uint32_t most = threads < MAX_CHILDREN ? threads : MAX_CHILDREN;
-  const double end = now() + limit;
+  const double end = monotonic_seconds() + limit;
   vlResult result = VL_OK;
   while (result == VL_OK && !l->refused && (l->running || l->next < l->count)) {
     while (result == VL_OK && l->running < most && l->next < l->count)
@@ -259,7 +254,7 @@ static vlResult render_all(Look *l, double limit) {
       result = collect(l);
     if (result == VL_OK && signals_pending())
       result = VL_CANCELLED;
-    if (result == VL_OK && now() > end) {
+    if (result == VL_OK && monotonic_seconds() > end) {
       snprintf(l->v->unreferenced, sizeof l->v->unreferenced, "it takes longer than %.0f s",
                limit);
       l->refused = true;

@@ -5,7 +5,6 @@
 
 #include "cli/json.h"
 #include "cli/text.h"
-#include "scene/scene.h"
 #include "scene/verify.h"
 
 static const char *const families[] = {"image", "block", "material", "lights"};

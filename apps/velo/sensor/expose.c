@@ -1,7 +1,6 @@
 /* sensor/expose.c: `velo sensor expose`: exposes a sensor to a stored spectral image and writes
  * the numbers of its frames, or its electrons. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

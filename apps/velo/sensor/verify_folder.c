@@ -2,7 +2,6 @@
  * descriptor EMVA1288_Data.txt, and the images it names
  * (github.com/EMVA1288/emva1288, doc/datasets_image.rst). */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 

@@ -2,7 +2,6 @@
  * statistics: pairs of flat fields and dark frames at exposure times that grow in equal steps,
  * and stacks of both at half of the saturation. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/report.h"
 #include "sensor/verify.h"

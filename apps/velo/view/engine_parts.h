@@ -336,6 +336,9 @@ void engine_add_trace(Engine *engine, uint32_t client, const ViewMessage *messag
 void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
 /* Traces the paths of the first pixel. False: there is none. */
 bool engine_trace_next(Engine *engine);
+/* Posts an answer of this type, with the message's id and one text. */
+void engine_post_text(Engine *engine, const Task *task, const char *type, const char *key,
+                      const char *value);
 /* Posts why a message is not answered. */
 void engine_refuse(Engine *engine, const Task *task, const char *why);
 /* Writes the drawings over the image as curves in pixels, for every projection and distortion;

@@ -45,12 +45,7 @@ static void scene_stem(const Engine *e, char stem[NAME_SIZE]) {
 }
 
 static void post_saved(Engine *e, const Task *task, const char *name) {
-  JsonText text;
-  if (!json_text_begin(&text, "saved"))
-    return;
-  json_integer(&text.json, "id", task->message.id);
-  json_text(&text.json, "file", name);
-  json_text_post(&text, e->server, task->client);
+  engine_post_text(e, task, "saved", "file", name);
 }
 
 static int choice_value(const Choice *choices, const char *name, int otherwise) {

@@ -7,13 +7,18 @@
 #include "velo/focus.h"
 #include "view/engine_status.h"
 
-void engine_refuse(Engine *e, const Task *task, const char *why) {
+void engine_post_text(Engine *e, const Task *task, const char *type, const char *key,
+                      const char *value) {
   JsonText text;
-  if (!json_text_begin(&text, "refused"))
+  if (!json_text_begin(&text, type))
     return;
   json_integer(&text.json, "id", task->message.id);
-  json_text(&text.json, "message", why);
+  json_text(&text.json, key, value);
   json_text_post(&text, e->server, task->client);
+}
+
+void engine_refuse(Engine *e, const Task *task, const char *why) {
+  engine_post_text(e, task, "refused", "message", why);
 }
 
 static ViewCamera present_camera(Engine *e) {

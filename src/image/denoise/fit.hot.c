@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "image/denoise/denoise.h"
-#include "math/approx.h"
 
 enum {
   X = VL_DENOISE_TILE_X,

@@ -1,9 +1,7 @@
 /* import/gltf/light.c: KHR_lights_punctual and EXT_lights_ies. The units, candela and lux,
  * match velo's if radiance is in nits. */
 #include <math.h>
-#include <string.h>
 
-#include "base/file.h"
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "velo/light.h"

@@ -1,7 +1,6 @@
 /* import/gltf/texture.c: textureInfo objects become textures of the scene: image, sampler, uv
  * set, KHR_texture_transform. Images are not decoded here; the scene keeps their bytes or
  * paths. */
-#include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 

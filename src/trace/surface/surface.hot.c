@@ -1,7 +1,6 @@
 /* trace/surface/surface.hot.c: computes surface points from ids. It does not use Embree's t, u,
  * v, which differ between instruction sets. For triangles, it gathers the corners and then runs
  * one vector loop. Other shapes are computed one by one by shape/surface_point.c. */
-#include "math/transform.h"
 #include "shape/surface_point.h"
 #include "trace/stages.h"
 #include "velo/shape.h"

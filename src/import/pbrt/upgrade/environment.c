@@ -2,7 +2,6 @@
  * latitude, pbrt-v4 equal-area maps of the same directions (pbrt book 3.8.3). */
 #include <math.h>
 #include <stdio.h>
-#include <sys/stat.h>
 
 #include "base/context.h"
 #include "base/error.h"

@@ -26,30 +26,63 @@ def _overlay(a, b):
     return numpy.where(a < 0.5, 2 * a * b, 1 - 2 * (1 - a) * (1 - b))
 
 
-def _dodge(a, b):
-    return numpy.where(a == 0, 0.0, numpy.where(b >= 1, 1.0, numpy.minimum(a / numpy.maximum(1 - b, 1e-30), 1)))
-
-
-def _burn(a, b):
-    return numpy.where(b <= 0, 0.0, numpy.clip(1 - (1 - a) / numpy.maximum(b, 1e-30), 0, 1))
-
-
 #: The blended colour, which the factor mixes with the first one.
 BLEND = {
     "MIX": lambda a, b: b, "ADD": lambda a, b: a + b, "MULTIPLY": lambda a, b: a * b, "SUBTRACT": lambda a, b: a - b,
     "SCREEN": lambda a, b: 1 - (1 - a) * (1 - b), "OVERLAY": _overlay, "DIFFERENCE": lambda a, b: numpy.abs(a - b),
     "DIVIDE": lambda a, b: numpy.where(b == 0, a, a / numpy.where(b == 0, 1, b)), "SOFT_LIGHT": _soft_light,
     "LINEAR_LIGHT": lambda a, b: a + 2 * b - 1, "EXCLUSION": lambda a, b: numpy.maximum(a + b - 2 * a * b, 0),
-    "DODGE": _dodge, "BURN": _burn,
+    "DARKEN": numpy.minimum, "LIGHTEN": numpy.maximum,
 }
+
+
+def _dodge(t, a, b):
+    rest = 1 - t * b
+    return numpy.where(a == 0, 0.0, numpy.where(rest <= 0, 1.0, numpy.minimum(a / numpy.where(rest <= 0, 1.0, rest), 1)))
+
+
+def _burn(t, a, b):
+    part = 1 - t + t * b
+    return numpy.where(part <= 0, 0.0, numpy.clip(1 - (1 - a) / numpy.where(part <= 0, 1.0, part), 0, 1))
+
+
+def _hsv_of(t, a, b):
+    """a, and both as HSV, as many as there are factors or colours."""
+    _, a, b = numpy.broadcast_arrays(t, a, b)
+    return a, to_hsv(a), to_hsv(b)
+
+
+def _mix_hue(t, a, b):
+    a, own, other = _hsv_of(t, a, b)
+    mixed = a + t * (from_hsv(numpy.stack((other[:, 0], own[:, 1], own[:, 2]), axis=1)) - a)
+    return numpy.where(other[:, 1:2] == 0, a, mixed)
+
+
+def _mix_color(t, a, b):
+    a, own, other = _hsv_of(t, a, b)
+    mixed = a + t * (from_hsv(numpy.stack((other[:, 0], other[:, 1], own[:, 2]), axis=1)) - a)
+    return numpy.where(other[:, 1:2] == 0, a, mixed)
+
+
+def _mix_saturation(t, a, b):
+    a, own, other = _hsv_of(t, a, b)
+    saturation = own[:, 1] + t[:, 0] * (other[:, 1] - own[:, 1])
+    return numpy.where(own[:, 1:2] == 0, a, from_hsv(numpy.stack((own[:, 0], saturation, own[:, 2]), axis=1)))
+
+
+def _mix_value(t, a, b):
+    a, own, other = _hsv_of(t, a, b)
+    return from_hsv(numpy.stack((own[:, 0], own[:, 1], own[:, 2] + t[:, 0] * (other[:, 2] - own[:, 2])), axis=1))
+
+
+#: Blends with a factor of their own, n x 1.
+MIXED = {"DODGE": _dodge, "BURN": _burn, "HUE": _mix_hue, "COLOR": _mix_color, "SATURATION": _mix_saturation, "VALUE": _mix_value}
 
 
 def _blend(node, kind, factor, a, b, clamp_result):
     factor = column(factor)
-    if kind == "DARKEN":
-        result = a + factor * (numpy.minimum(a, b) - a)
-    elif kind == "LIGHTEN":
-        result = numpy.maximum(a, b * factor)
+    if kind in MIXED:
+        result = MIXED[kind](factor, a, b)
     elif kind in BLEND:
         result = a + factor * (BLEND[kind](a, b) - a)
     else:

@@ -189,6 +189,8 @@ class Inputs:
             words = {} if spectrum else {"channel": channel}
             wrap = "black" if node.image.source == "TILED" else WRAPS[node.extension]
             array = array if strength == 1.0 else weakened(array[..., :3], strength)
+            if channel == 3:  # alone: beyond a clipped image alpha is 0, too
+                array, words = array[..., 3:], {"channel": 0}
             self.cache[key] = self._add(array, spectrum, number, matrix, wrap=wrap,
                                         filter="point" if node.interpolation == "Closest" else "bilinear", **words)
         return self.cache[key]

@@ -1,4 +1,6 @@
 """Cases of test_procedural.py: a plane that emits a texture is the same image in Cycles and in velo."""
+import bpy
+
 from inside import case, colors, material, new_scene, notes, plane, render
 
 
@@ -152,3 +154,15 @@ def lightness_and_wavelengths():
     same("ShaderNodeCombineColor", mode="HSL", inputs={"Red": 0.6, "Green": 0.7, "Blue": 0.6}, coordinate=None)
     for length in (420.0, 480.0, 560.0, 650.0):
         same("ShaderNodeWavelength", 0.02, inputs={"Wavelength": length}, coordinate=None)
+
+
+@case
+def mixes_of_each_kind():
+    """Of coordinates from 0 to 1, which vary, and a colour, by a factor that is not 1; and of a colour by a factor that varies."""
+    kinds = bpy.types.ShaderNodeMixRGB.bl_rna.properties["blend_type"].enum_items.keys()
+    assert len(kinds) >= 18
+    for kind in kinds:
+        same("ShaderNodeMixRGB", scale=0.1, fed="Color1", blend_type=kind, inputs={"Fac": 0.7, "Color2": (0.7, 0.4, 0.2, 1)})
+    for kind in ("HUE", "SATURATION", "VALUE", "COLOR", "BURN", "DODGE"):
+        colors_of = {"Color1": (0.2, 0.5, 0.9, 1), "Color2": (0.7, 0.4, 0.2, 1)}
+        same("ShaderNodeMixRGB", scale=0.1, fed="Fac", blend_type=kind, inputs=colors_of)

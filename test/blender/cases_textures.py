@@ -148,3 +148,24 @@ def magnified_images_keep_their_mean():
         assert abs(colors(render(scene))[4:44, 4:44].mean() - 0.5) < 0.02
         if share is not None:
             agrees(scene, share)
+
+
+@case
+def clipped_images_are_not_there_beyond_their_edges():
+    """A decal: an image without alpha, smaller than its plane, whose output Alpha is the material's."""
+    scene = new_scene(world=(0.6, 0.6, 0.6))
+    image = bpy.data.images.new("decal", 8, 8)
+    image.pixels.foreach_set(numpy.tile(numpy.array((0.8, 0.2, 0.1, 1), dtype=numpy.float32), 64))
+    made, node = material("ShaderNodeBsdfPrincipled", Roughness=0.8)
+    tree = made.node_tree
+    picture = tree.nodes.new("ShaderNodeTexImage")
+    picture.image, picture.extension = image, "CLIP"
+    mapping = tree.nodes.new("ShaderNodeMapping")
+    mapping.inputs["Scale"].default_value = (2, 2, 1)
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], mapping.inputs[0])
+    tree.links.new(mapping.outputs[0], picture.inputs[0])
+    tree.links.new(picture.outputs["Color"], node.inputs["Base Color"])
+    tree.links.new(picture.outputs["Alpha"], node.inputs["Alpha"])
+    plane(made, 3.0, (0, 0, 0.5))
+    agrees(scene, 0.01)
+    assert not notes(scene), notes(scene)

@@ -4,51 +4,7 @@
 #include <math.h>
 
 #include "math/double3.h"
-#include "math/transform.h"
-#include "velo/shape_kinds.h"
-
-/* Half of the cross product of the edges, and the corners' mean. */
-typedef struct Face {
-  double area[3]; /* the outside's direction, length: the area */
-  double middle[3];
-} Face;
-
-typedef void Visit(void *user, const vlShapeDef *shape, const Face *face);
-
-/* sign: 1, or -1 where the outside is opposite to the side that the corners' order gives. */
-static Face face_of(const vlShapeDef *shape, const vlMat4 *m, double sign, size_t index) {
-  double p[3][3];
-  Face face;
-  for (int c = 0; c < 3; c++) {
-    const float *v = shape->positions + 3 * (size_t)shape->indices[3 * index + (size_t)c];
-    const double q[3] = {v[0], v[1], v[2]};
-    vl_mat4_point(m, q, p[c]);
-  }
-  for (int i = 0; i < 3; i++) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    face.area[i] =
-        0.5 * sign *
-        ((p[1][j] - p[0][j]) * (p[2][k] - p[0][k]) - (p[1][k] - p[0][k]) * (p[2][j] - p[0][j]));
-    face.middle[i] = (p[0][i] + p[1][i] + p[2][i]) / 3;
-  }
-  return face;
-}
-
-static void visit_faces(const vlScene *scene, Visit *visit, void *user) {
-  for (size_t k = 0; k < scene->shapes.count; k++) {
-    const vlShapeDef *shape = &scene->shapes.items[k];
-    if (shape->kind != VL_SHAPE_TRIANGLES || shape->group.index)
-      continue;
-    const vlMat4 m = vl_mat4_load(shape->group_from_shape);
-    const bool mirrored =
-        vl_mat4_determinant3(m) < 0; /* it reverses the corners' order alone */
-    const double sign = shape->reverse_orientation != mirrored ? -1 : 1;
-    for (size_t i = 0; i < shape->faces; i++) {
-      const Face face = face_of(shape, &m, sign, i);
-      visit(user, shape, &face);
-    }
-  }
-}
+#include "scene/faces.h"
 
 /* ---- the mean normal --------------------------------------------------------------------- */
 
@@ -58,7 +14,7 @@ typedef struct Mean {
   double area;
 } Mean;
 
-static void add_normal(void *user, const vlShapeDef *shape, const Face *face) {
+static void add_normal(void *user, const vlShapeDef *shape, const vlFace *face) {
   Mean *mean = user;
   const double counts = mean->one_sided && !shape->one_sided ? 0 : 1;
   for (int i = 0; i < 3; i++)
@@ -68,7 +24,7 @@ static void add_normal(void *user, const vlShapeDef *shape, const Face *face) {
 
 void vl_facing_mean_normal(const vlScene *scene, bool one_sided, double n[3]) {
   Mean mean = {.one_sided = one_sided};
-  visit_faces(scene, add_normal, &mean);
+  vl_faces_visit(scene, add_normal, &mean);
   for (int i = 0; i < 3; i++)
     n[i] = mean.area > 0 ? mean.sum[i] / mean.area : 0;
 }
@@ -82,7 +38,7 @@ typedef struct Detail {
   size_t faces;
 } Detail;
 
-static void add_detail(void *user, const vlShapeDef *shape, const Face *face) {
+static void add_detail(void *user, const vlShapeDef *shape, const vlFace *face) {
   Detail *d = user;
   (void)shape;
   const double area = vl_norm3(face->area);
@@ -105,7 +61,7 @@ bool vl_facing_is_behind(const vlScene *scene, const vlExtent *box, const double
     d.front[i] = front[i];
     d.center[i] = 0.5 * (box->low[i] + box->high[i]);
   }
-  visit_faces(scene, add_detail, &d);
+  vl_faces_visit(scene, add_detail, &d);
   if (d.faces < few || d.volume == 0 || !isfinite(d.volume))
     return false;
   return d.volume > 0 ? d.ahead < clearly * d.behind : d.behind < clearly * d.ahead;
@@ -121,7 +77,7 @@ typedef struct Blocks {
   double surface, flat, walls, layers[LAYERS];
 } Blocks;
 
-static void add_block(void *user, const vlShapeDef *shape, const Face *face) {
+static void add_block(void *user, const vlShapeDef *shape, const vlFace *face) {
   const double along = 0.996, across = 0.087; /* within 5 degrees */
   Blocks *b = user;
   (void)shape;
@@ -142,7 +98,7 @@ static void add_block(void *user, const vlShapeDef *shape, const Face *face) {
 vlBlocks vl_facing_blocks(const vlScene *scene, const vlExtent *box, int axis) {
   Blocks b = {.axis = axis, .low = box->low[axis], .size = box->high[axis] - box->low[axis]};
   vlBlocks blocks = {.levels = 0};
-  visit_faces(scene, add_block, &b);
+  vl_faces_visit(scene, add_block, &b);
   if (!(b.surface > 0))
     return blocks;
   blocks.flat = b.flat / b.surface;

@@ -8,6 +8,7 @@
 #include "math/elementary.h"
 #include "scene/facing.h"
 #include "scene/plain.h"
+#include "scene/posture.h"
 
 enum { DIRECTIONS = 24, LOW = 0, HIGH = 1, WHOLE = 2 };
 
@@ -171,13 +172,114 @@ static bool stands(const Ends *e, int now, int other) {
          (low - high >= larger || (low >= base && is_round(e, other)));
 }
 
+/* ---- the surface as a whole -------------------------------------------------------------- */
+
+/* How far the middle of the surface is inside of what the model stands on along the axis, as a
+ * share of its height; negative: it falls over. */
+static double stability(const Ends *e, const vlPosture *p, int axis) {
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  const double x = p->middle[i] * size_of(e, i), y = p->middle[j] * size_of(e, j);
+  double least = INFINITY;
+  for (int k = 0; k < DIRECTIONS; k++)
+    least = fmin(least, e->hulls[axis][LOW].most[k] - x * e->cosine[k] - y * e->sine[k]);
+  return least / size_of(e, axis);
+}
+
+/* Height as a share of the smaller of the other two sides. */
+static double flatness(const Ends *e, int axis) {
+  return size_of(e, axis) / fmin(size_of(e, (axis + 1) % 3), size_of(e, (axis + 2) % 3));
+}
+
+/* Things have a top and a bottom that differ, while sides resemble each other: cars, aircraft,
+ * trees, houses. Charts, which are the same above and below, lean on their back. Of 27 glTF
+ * files, charts left out, whose up is known, y has a symmetry of at most .05 above that of z.
+ */
+static bool is_symmetric_otherwise(const Ends *e, const vlPosture *p, int now, int other) {
+  const double chart = 0.15, flat = 0.4, least = now == 1 ? 0.2 : 0.35, more = 0.05, back = 0.5,
+               firm = 0.1, height = flatness(e, other);
+  if (height < chart || (height < flat && p->ends[other][LOW] >= back))
+    return false;
+  if (p->symmetry[now] - p->symmetry[other] < (height < flat ? least + more : least))
+    return false;
+  const double stands = stability(e, p, now);
+  return stands < firm || stability(e, p, other) > stands;
+}
+
+/* Whether the model is a height field over `axis`: terrain, open, or on a block with a flat
+ * underside. It has hills in both directions; curtains and flags have folds in one. */
+static bool is_terrain(const vlPosture *p, int axis) {
+  const double single = 0.97, slope = 0.05, whole = 0.95, level = 0.8, steep = 0.3, full = 0.8,
+               none = 0.1, both_sides = 2.2;
+  const bool open = fabs(p->normal[axis]) >= single * p->facing[axis] &&
+                    p->flat[axis] <= level * p->silhouette[axis] && p->facing[axis] >= steep;
+  const bool block = p->ends[axis][LOW] >= full && p->ends[axis][HIGH] <= none &&
+                     p->silhouette[axis] <= both_sides &&
+                     p->flat[axis] <= p->ends[axis][LOW] + none;
+  return (open || block) && p->covered[axis] >= whole && p->facing[(axis + 1) % 3] >= slope &&
+         p->facing[(axis + 2) % 3] >= slope;
+}
+
+/* Whether the model is a storey: hollow, with a floor and straight walls, and as high along
+ * `other` as rooms are, in metres, centimetres or millimetres. */
+static bool is_storey(const Ends *e, const vlPosture *p, int now, int other) {
+  const double low = 2, high = 4.5, floor_least = 0.8, wall_least = 0.5, hollow = 3,
+               most = 0.85;
+  const double height = size_of(e, other);
+  bool storey = false;
+  for (double unit = 1; unit <= 1000; unit *= unit > 1 ? 10 : 100)
+    storey = storey || (height >= low * unit && height <= high * unit);
+  for (int i = 0; i < 3; i++)
+    if (i != other)
+      storey = storey && p->ends[i][LOW] >= wall_least && p->ends[i][HIGH] >= wall_least &&
+               p->silhouette[i] >= hollow;
+  return storey && p->ends[other][LOW] >= floor_least &&
+         height <= most * fmin(size_of(e, now), size_of(e, 0));
+}
+
+/* Whether a cloud of points is wide along `other` and covers all, or has a ground: what
+ * scanners on tripods, cars and aircraft give. */
+static bool is_survey(const Ends *e, const vlPosture *p, int other) {
+  const double wide = 0.75, all = 0.9, ground = 0.2;
+  return p->points && flatness(e, other) <= wide &&
+         (p->covered[other] >= all || p->lowest[other] >= ground);
+}
+
+/* Whether the model is a flat chart that looks down: away from y, which z-up files have as
+ * their front. */
+static bool is_chart_below(const vlScene *scene, const Ends *e, const vlPosture *p) {
+  const double chart = 0.15, flat = 0.9, closed = 0.05;
+  const double up[3] = {0, 1, 0};
+  if (flatness(e, 1) > chart || p->flat[1] < flat * p->silhouette[1])
+    return false;
+  return p->normal[1] <= -flat * p->facing[1] ||
+         (fabs(p->normal[1]) < closed && vl_facing_raised_is_behind(scene, &e->box, up));
+}
+
+/* What the whole surface says. */
+typedef enum Guess { UNKNOWN, KEEP, CHANGE } Guess;
+static Guess guess_by_surface(const vlScene *scene, const Ends *e, int now, int other) {
+  vlPosture p;
+  if (!vl_posture_find(scene, &e->box, &p))
+    return UNKNOWN;
+  if (now == 1 && is_chart_below(scene, e, &p))
+    return CHANGE;
+  if (is_terrain(&p, now) || is_sheet(scene, now))
+    return KEEP;
+  const bool change = is_terrain(&p, other) || is_symmetric_otherwise(e, &p, now, other) ||
+                      is_storey(e, &p, now, other) || is_survey(e, &p, other);
+  return change ? CHANGE : UNKNOWN;
+}
+
 bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, double up[3],
                      double front[3]) {
   const int now = up[1] != 0 ? 1 : 2, other = 3 - now;
   Ends e;
-  if (!measure(scene, boxes, &e) || has_ground(scene, boxes, &e, now) || is_sheet(scene, now))
+  if (!measure(scene, boxes, &e) || has_ground(scene, boxes, &e, now))
     return false;
-  if (!has_ground(scene, boxes, &e, other) && !stands(&e, now, other))
+  const Guess guess = guess_by_surface(scene, &e, now, other);
+  if (guess == KEEP)
+    return false;
+  if (guess == UNKNOWN && !has_ground(scene, boxes, &e, other) && !stands(&e, now, other))
     return false;
   for (int i = 0; i < 3; i++) {
     up[i] = i == other;

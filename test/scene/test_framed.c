@@ -334,38 +334,110 @@ static void figures_and_chairs(void **state) {
     assert_stands(aircraft, 4, z, false);
 }
 
-/* Hills, an open sheet over y, lie, whatever the shapes of their edges are. */
-static void terrain(void **state) {
+/* What is the same in front and behind but not above and below stands so: a car; so does a
+ * storey of walls without a ceiling, 2.6 m high. */
+static void cars_and_storeys(void **state) {
   (void)state;
-  enum { SIDE = 30 };
-  float p[SIDE * SIDE * 3];
-  uint32_t indices[6 * (SIDE - 1) * (SIDE - 1)], n = 0;
-  for (uint32_t i = 0; i < SIDE * SIDE; i++) {
-    const double x = (double)(i % SIDE) / SIDE, z = (double)(i / SIDE) / SIDE;
-    p[3 * i] = (float)x;
-    p[3 * i + 1] =
-        (float)(0.08 * sin(7 * x - 2) * cos(6 * z - 3) + 0.05 * sin(19 * x * z + 3 * z));
-    p[3 * i + 2] = (float)z;
+  static const float car[6][2][3] = {
+      {{-0.8f, 0.3f, -2}, {0.8f, 0.8f, 2}},      {{-0.7f, 0.8f, -1.2f}, {0.7f, 1.3f, 0.9f}},
+      {{-0.8f, 0, -1.5f}, {-0.6f, 0.6f, -0.9f}}, {{0.6f, 0, -1.5f}, {0.8f, 0.6f, -0.9f}},
+      {{-0.8f, 0, 0.9f}, {-0.6f, 0.6f, 1.5f}},   {{0.6f, 0, 0.9f}, {0.8f, 0.6f, 1.5f}},
+  };
+  static const float storey[6][2][3] = {
+      {{-2.2f, -0.2f, -2.7f}, {2.2f, 0, 2.7f}}, {{-2.2f, 0, -2.7f}, {-2, 2.6f, 2.7f}},
+      {{2, 0, -2.7f}, {2.2f, 2.6f, 2.7f}},      {{-2, 0, -2.7f}, {2, 2.6f, -2.5f}},
+      {{-2, 0, 2.5f}, {-0.5f, 2.6f, 2.7f}},     {{0.5f, 0, 2.5f}, {2, 2.6f, 2.7f}},
+  };
+  for (int z = 0; z < 2; z++)
+    assert_stands(car, 6, z, true);
+  assert_stands(storey, 6, 1, true);
+}
+
+enum { HILLS = 30 };
+
+/* A point of hills over y, or over z. */
+static void hill_point(uint32_t i, bool z, double p[3]) {
+  const double x = (double)(i % HILLS) / HILLS, y = (double)(i / HILLS) / HILLS,
+               h = 0.08 * sin(7 * x - 2) * cos(6 * y - 3) + 0.05 * sin(19 * x * y + 3 * y);
+  p[0] = x;
+  p[1] = z ? -y : h;
+  p[2] = z ? h : y;
+}
+
+/* The up axis of hills, as a sheet, or as a cloud of points. */
+static void assert_lies(bool z, bool points, bool down) {
+  float p[HILLS * HILLS * 3], radii[HILLS * HILLS];
+  double centers[HILLS * HILLS * 3];
+  uint32_t indices[6 * (HILLS - 1) * (HILLS - 1)], n = 0;
+  for (uint32_t i = 0; i < HILLS * HILLS; i++) {
+    hill_point(i, z, centers + 3 * i);
+    for (int k = 0; k < 3; k++)
+      p[3 * i + (uint32_t)k] = (float)centers[3 * i + (uint32_t)k];
+    radii[i] = 0.002f;
   }
-  for (uint32_t i = 0; i < SIDE * (SIDE - 1); i++) {
-    const uint32_t quad[6] = {i, i + SIDE, i + 1, i + 1, i + SIDE, i + SIDE + 1};
-    if (i % SIDE == SIDE - 1)
+  for (uint32_t i = 0; i < HILLS * (HILLS - 1); i++) {
+    const uint32_t quad[6] = {i, i + HILLS, i + 1, i + 1, i + HILLS, i + HILLS + 1};
+    if (i % HILLS == HILLS - 1)
       continue;
-    memcpy(indices + n, quad, sizeof quad);
-    n += 6;
+    for (int k = 0; k < 6; k++)
+      indices[n++] = quad[down ? 5 - k : k];
   }
   Model m = begin();
-  vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  shape.vertices = SIDE * SIDE;
-  shape.faces = n / 3;
-  shape.positions = p;
-  shape.indices = indices;
+  vlShapeDef shape = vl_default_shape_def(points ? VL_SHAPE_SPHERE : VL_SHAPE_TRIANGLES);
+  shape.vertices = points ? 0 : HILLS * HILLS;
+  shape.faces = points ? HILLS * HILLS : n / 3;
+  shape.positions = points ? NULL : p;
+  shape.indices = points ? NULL : indices;
+  shape.centers = points ? centers : NULL;
+  shape.radii = points ? radii : NULL;
   assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
   vlCompleteDef def = first_image();
   def.find_up = true;
   complete(&m, &def);
-  assert_true(m.scene->defs.camera.up[1] == 1);
+  assert_true(m.scene->defs.camera.up[z ? 2 : 1] == 1);
+  double d[3];
+  toward_eye(&m, d);
+  assert_true(d[z ? 2 : 1] > 0.1);
   end(&m);
+}
+
+/* Hills lie, whatever the shapes of their edges and the sides of their faces are. */
+static void terrain(void **state) {
+  (void)state;
+  for (int z = 0; z < 2; z++)
+    for (int down = 0; down < 2; down++)
+      assert_lies(z, false, down);
+  assert_lies(false, true, false);
+  assert_lies(true, true, false);
+}
+
+/* A closed chart with bars on the side of -y is one of a file with z upwards; with bars on the
+ * side of y it lies. */
+static void charts_of_z(void **state) {
+  (void)state;
+  for (int below = 0; below < 2; below++) {
+    Model m = begin();
+    const float b[3][2][3] = {{{0, 0, 0}, {1, 0.01f, 0.8f}},
+                              {{0.1f, 0.01f, 0.1f}, {0.3f, 0.02f, 0.7f}},
+                              {{0.5f, 0.01f, 0.1f}, {0.9f, 0.02f, 0.4f}}};
+    for (int i = 0; i < 3; i++) {
+      float a[2][3];
+      memcpy(a, b[i], sizeof a);
+      if (below)
+        a[0][1] = -b[i][1][1];
+      if (below)
+        a[1][1] = -b[i][0][1];
+      add_box(&m, a[0], a[1], false, false);
+    }
+    vlCompleteDef def = first_image();
+    def.find_up = true;
+    complete(&m, &def);
+    assert_true(m.scene->defs.camera.up[below ? 2 : 1] == 1);
+    double d[3];
+    toward_eye(&m, d);
+    assert_true(below ? d[1] < -0.8 : d[1] > 0.5);
+    end(&m);
+  }
 }
 
 /* A plate with bars is seen from the side of the bars: along x always, along z if the file does
@@ -409,6 +481,8 @@ int main(void) {
       cmocka_unit_test(raised_parts),
       cmocka_unit_test(lone_corner),
       cmocka_unit_test(spire),
+      cmocka_unit_test(cars_and_storeys),
+      cmocka_unit_test(charts_of_z),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,39 @@
+/* scene/faces.c: see faces.h. */
+#include "scene/faces.h"
+
+#include "math/transform.h"
+
+/* sign: 1, or -1 where the outside is opposite to the side that the corners' order gives. */
+static vlFace face_of(const vlShapeDef *shape, const vlMat4 *m, double sign, size_t index) {
+  vlFace face;
+  for (int c = 0; c < 3; c++) {
+    const float *v = shape->positions + 3 * (size_t)shape->indices[3 * index + (size_t)c];
+    const double q[3] = {v[0], v[1], v[2]};
+    vl_mat4_point(m, q, face.corners[c]);
+  }
+  const double(*p)[3] = (const double(*)[3])face.corners;
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    face.area[i] =
+        0.5 * sign *
+        ((p[1][j] - p[0][j]) * (p[2][k] - p[0][k]) - (p[1][k] - p[0][k]) * (p[2][j] - p[0][j]));
+    face.middle[i] = (p[0][i] + p[1][i] + p[2][i]) / 3;
+  }
+  return face;
+}
+
+void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user) {
+  for (size_t k = 0; k < scene->shapes.count; k++) {
+    const vlShapeDef *shape = &scene->shapes.items[k];
+    if (shape->kind != VL_SHAPE_TRIANGLES || shape->group.index)
+      continue;
+    const vlMat4 m = vl_mat4_load(shape->group_from_shape);
+    const bool mirrored =
+        vl_mat4_determinant3(m) < 0; /* it reverses the corners' order alone */
+    const double sign = shape->reverse_orientation != mirrored ? -1 : 1;
+    for (size_t i = 0; i < shape->faces; i++) {
+      const vlFace face = face_of(shape, &m, sign, i);
+      visit(user, shape, &face);
+    }
+  }
+}

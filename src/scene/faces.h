@@ -1,0 +1,18 @@
+/* scene/faces.h: the triangles of a scene in world space, those in groups left out. */
+#ifndef SCENE_FACES_H
+#define SCENE_FACES_H
+
+#include "scene/scene.h"
+#include "velo/shape_kinds.h"
+
+typedef struct vlFace {
+  double corners[3][3];
+  double area[3];   /* half of the cross product of the edges: the outside's direction, and its
+                       length is the area */
+  double middle[3]; /* the corners' mean */
+} vlFace;
+
+typedef void vlFaceVisit(void *user, const vlShapeDef *shape, const vlFace *face);
+void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user);
+
+#endif

@@ -255,7 +255,7 @@ class Export:
     def _place(self, instance, placed, poses):
         """Adds an object; returns the handle of its instance if that is all that it is and it is at rest."""
         item, matrix = instance.object, placed.matrix
-        prepared = self._prepared(item, matrix, object_info.random_id(instance))
+        prepared = self._prepared(item, matrix, instance)
         if prepared is None:
             return None
         if any("tangents" in part.words for part in prepared.parts) and not _is_similar(matrix):
@@ -339,8 +339,9 @@ class Export:
 
     # ---- meshes
 
-    def _prepared(self, item, matrix, number):
-        """The mesh of an object in velo, made once for all objects that share it and its materials; None: it has no faces."""
+    def _prepared(self, item, matrix, instance):
+        """The mesh of an object in velo, made once for all objects that share it and its materials; None: it has no faces. instance: of the
+        depsgraph, for the object's random number, which takes longer than what all copies need."""
         slots = self._slots_of(item)
         data = item.data if item.type == "MESH" else item
         key = (data.as_pointer(), tuple(None if material is None else material.name_full for material in slots), tuple(self._seen))
@@ -348,11 +349,12 @@ class Export:
         if any(self._varies(material) for material in slots):
             self._copies[key] = self._copies.get(key, 0) + 1
             if self._copies[key] <= object_info.MAX_COPIES:
-                owner = (item.name_full, number, matrix.tobytes())
+                owner = (item.name_full, object_info.random_id(instance), matrix.tobytes())
             else:
                 self.notes.add(item.name, "", "of its copies the first %d have colours of their own" % object_info.MAX_COPIES)
         if key + owner not in self._meshes:
-            self._meshes[key + owner] = self._make(item, slots, Place(matrix, object_info.fields(item, matrix, number), owner, self._seen))
+            known = object_info.fields(item, matrix, object_info.random_id(instance))
+            self._meshes[key + owner] = self._make(item, slots, Place(matrix, known, owner, self._seen))
         return self._meshes[key + owner]
 
     def _varies(self, material):
@@ -368,7 +370,7 @@ class Export:
             arrays = geometry.read(mesh, self._go_on)
             if arrays is None:
                 return None
-            if not arrays.is_finite() or abs(arrays.positions).max() > FARTHEST:
+            if not numpy.abs(geometry.bounds(arrays.positions)).max() <= FARTHEST:  # also where a number is NaN
                 self.notes.add(item.name, "", "its vertices are no numbers (NaN or infinite) or too far away; it is left out")
                 return None
             self._go_on()
@@ -420,12 +422,14 @@ class Export:
             medium = self._medium(material, arrays, maps, place)
             if medium is not None:
                 words.update(inside=medium, outside=self._air)
-            whole = None if arrays.displaced else (arrays.positions, arrays.triangles[arrays.slots == slot])
+            whole = None
+            if self._keep_triangles and not arrays.displaced:
+                whole = arrays.positions, arrays.triangles[arrays.slots == slot]
             parts.append(Part(words, surface, material, whole, slot))
         return parts
 
     def _medium(self, material, arrays, maps, place):
-        box = arrays.positions.min(axis=0), arrays.positions.max(axis=0)
+        box = geometry.bounds(arrays.positions)
         key = ("medium", None if material is None else material.name_full, place.owner, box[0].tobytes(), box[1].tobytes())
         if key not in self._cache:
             self._cache[key] = volumes.medium(material, self._inputs(material, maps, None, place), box, place.matrix, self._fog)

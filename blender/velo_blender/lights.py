@@ -106,25 +106,24 @@ def _sun(scene, item, light, pose, words, power, camera_sees, notes):
 
 def add_disk(scene, axis, half, total):
     """A sun with a disk: half its angle, radians; total: its radiance summed over directions, a colour."""
-    image = velo.Image(numpy.ascontiguousarray(sun_disk(half)[..., None] * total, dtype=numpy.float32), encoding="linear")
-    scene.add_light("infinite", image=image, scale=1.0, pose=_frame_along(axis, numpy.zeros(3)))
+    side, middle, values = sun_disk(half)
+    pixels = numpy.zeros((side, side, 3), dtype=numpy.float32)  # the disk is a small part of it
+    pixels[middle, middle] = values[..., None] * total
+    scene.add_light("infinite", image=velo.Image(pixels, encoding="linear"), scale=1.0, pose=_frame_along(axis, numpy.zeros(3)))
 
 
 def sun_disk(half):
-    """The radiance of a sun about +z in an octahedral square, side x side: the same within an angle of half, with the shares of the
-    pixels at its rim. Its sum over directions is 1, as in Cycles."""
+    """The radiance of a sun about +z in an octahedral square: (the square's side, a slice of its rows and columns, the values there); 0
+    elsewhere. They are the same within an angle of half, with the shares of the pixels at its rim. Their sum over directions is 1, as in
+    Cycles."""
     side = int(min(MAX_SUN_SIDE, max(64, 2 * round(SUN_PIXELS * math.sqrt(math.pi) / half / 2))))
-    values = numpy.zeros((side, side))
     # The square's middle is +z; an angle of half reaches this far from it.
     reach = min(side // 2, int(math.ceil(side * math.sin(0.5 * half) / math.sqrt(2))) * 2 + 2)
     fine = 4
     local = (numpy.arange(2 * reach * fine) + 0.5) / fine - reach
     v, u = numpy.meshgrid(2 * local / side, 2 * local / side, indexing="ij")
-    cosines = square.cosines(u, v)
-    share = (cosines >= math.cos(half)).reshape(2 * reach, fine, 2 * reach, fine).mean(axis=(1, 3))
-    middle = slice(side // 2 - reach, side // 2 + reach)
-    values[middle, middle] = share
-    return values / (share.sum() * 4 * math.pi / side**2)
+    share = (square.cosines(u, v) >= math.cos(half)).reshape(2 * reach, fine, 2 * reach, fine).mean(axis=(1, 3))
+    return side, slice(side // 2 - reach, side // 2 + reach), share / (share.sum() * 4 * math.pi / side**2)
 
 
 def _directed(scene, item, light, pose, words, power, notes, tint=None):

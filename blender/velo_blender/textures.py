@@ -3,7 +3,7 @@ texture for is baked to an image over the uv map that it depends on."""
 import numpy
 import velo
 
-from . import atlas, evaluate, images, links, node_values, report, tiles
+from . import atlas, evaluate, geometry, images, links, node_values, report, tiles
 
 BAKED_AT_ONCE = 16384  # points, some milliseconds for each node
 LOWEST_INDEX, HIGHEST_INDEX = 1.0001, 5.0  # of refraction
@@ -363,9 +363,11 @@ class Maps:
 
 def _box(uvs):
     """The box of uvs, at least the unit square where they are inside it, else in whole numbers; at most 64 wide."""
-    finite = uvs[numpy.isfinite(uvs).all(axis=1)]
+    known = numpy.isfinite(uvs)
+    finite = uvs if known.all() else uvs[known.all(axis=1)]
     if len(finite) == 0:
         return numpy.zeros(2), numpy.ones(2)
-    low = numpy.clip(numpy.floor(finite.min(axis=0) + 1e-4), -32, 31).astype(float)
-    high = numpy.clip(numpy.ceil(finite.max(axis=0) - 1e-4), low + 1, low + 64).astype(float)
+    lowest, highest = geometry.bounds(finite)
+    low = numpy.clip(numpy.floor(lowest + 1e-4), -32, 31).astype(float)
+    high = numpy.clip(numpy.ceil(highest - 1e-4), low + 1, low + 64).astype(float)
     return low, high

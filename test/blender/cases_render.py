@@ -1,7 +1,7 @@
 """Cases of test_render.py: light, materials and passes agree with Cycles; bad input is reported."""
-import time
-
 import math
+import time
+import tracemalloc
 
 import bpy
 import numpy
@@ -369,3 +369,30 @@ def a_render_ends_while_passes_are_filled():
     finally:
         engine.VeloRenderEngine.is_stopped, passes.Made = kept, made
     assert counts[0] > 6 + 8 + 12 and counts[1:] == [1, 9, 20], counts
+
+
+@case
+def suns_and_copies_are_read_without_waste():
+    """A sun's image is filled where its disk is, and only materials that ask for it cost an object its random number."""
+    from velo_blender import lights, noise
+
+    class Lights:
+        """A scene that drops its lights."""
+
+        def add_light(self, kind, **words):
+            image = numpy.asarray(words["image"])
+            assert kind == "infinite" and image.shape == (2048, 2048, 3) and numpy.count_nonzero(image) < 3000
+    tracemalloc.start()
+    lights.add_disk(Lights(), numpy.array((0.0, 0, 1)), 0.0046, numpy.array((3.0, 2, 1)))
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 1.5 * 2048 * 2048 * 12, most
+    scene = room(samples=1, world=(1, 1, 1))
+    add_object(scene, "copy", bpy.data.objects["Sphere"].data, (1, 1, 1))
+    kept, hashed = noise.hash_words, []
+    noise.hash_words = lambda *words: (hashed.append(words), kept(*words))[1]
+    try:
+        render(scene)
+    finally:
+        noise.hash_words = kept
+    assert len(hashed) <= 2, len(hashed)  # one for each mesh

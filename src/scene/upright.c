@@ -191,9 +191,10 @@ static double flatness(const Ends *e, int axis) {
 }
 
 /* Things have a top and a bottom that differ, while sides resemble each other: cars, aircraft,
- * trees, houses. Charts, which are the same above and below, lean on their back. Of 27 glTF
- * files, charts left out, whose up is known, y has a symmetry of at most .05 above that of z.
- */
+ * trees, houses. Charts, which are the same above and below, lean on their back. Of 18 glTF
+ * files, whose up is known, 17 have along y at most .05 more symmetry than along z, one .31: it
+ * stands firmer as it is. (These numbers are of a prototype of the measure, with other
+ * samples.) */
 static bool is_symmetric_otherwise(const Ends *e, const vlPosture *p, int now, int other) {
   const double chart = 0.15, flat = 0.4, least = now == 1 ? 0.2 : 0.35, more = 0.05, back = 0.5,
                firm = 0.1, height = flatness(e, other);

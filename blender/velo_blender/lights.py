@@ -11,7 +11,7 @@ from . import evaluate, lamp_nodes, square, versions
 
 SHARP_SUN = 1e-3  # radians from the middle to the rim; suns of a smaller disk are points
 SUN_PIXELS = 12  # of a sun's image from the middle to the rim, where MAX_SUN_SIDE allows it
-MAX_SUN_SIDE = 2048
+MAX_SUN_SIDE = 2048  # of larger images velo samples blocks of pixels, and rims have noise
 MAX_SIZE = 1e12  # radius or side of a lamp, scene units
 FAR = 1e6  # where the camera would see a sun
 SPOT_POINTS = 16  # of a spot with a radius

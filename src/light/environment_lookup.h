@@ -13,8 +13,10 @@
 #include "math/octahedral.h"
 #include "math/warp.h"
 
-/* A power of two, so that u * VL_GUIDES is exact; at least VL_ENVIRONMENT_CELLS. */
-enum { VL_ENVIRONMENT_CELLS = 1024, VL_GUIDES = 1024 };
+/* VL_GUIDES is a power of two, so that u * VL_GUIDES is exact; at least VL_ENVIRONMENT_CELLS.
+ * Images of more texels than cells have noise where the texels of a cell differ, such as at the
+ * rim of a sun. 2048 x 2048 cells and their tables take 90 MB. */
+enum { VL_ENVIRONMENT_CELLS = 2048, VL_GUIDES = 2048 };
 
 /* 16 bytes, so that density and radiance are in one cache line. */
 typedef struct vlEnvironmentCell {

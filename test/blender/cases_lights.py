@@ -67,3 +67,15 @@ def lamps_that_the_camera_does_not_see_are_seen_in_mirrors():
     there = mine[8:20, 14:34], other[8:20, 14:34]
     assert there[0].max() > 10 and abs(there[0].mean() / there[1].mean() - 1) < 0.05
     assert not notes(scene), notes(scene)
+
+
+@case
+def suns_have_no_noise_of_their_disk():
+    """A sun with a disk gives an open floor the same light in each sample, and that of Cycles."""
+    for angle in (0.004, 0.01, 0.05):
+        scene = floor(samples=1, bounces=0)
+        scene.cycles.pixel_filter_type = "BOX"
+        lamp(scene, "SUN", 3, (2, -2, 4), angle=angle)
+        other, mine = (colors(render(scene, engine))[16:] for engine in ("CYCLES", "VELO"))
+        assert (mine.std(axis=(0, 1)) < 0.02 * mine.mean(axis=(0, 1))).all(), (angle, mine.std(axis=(0, 1)) / mine.mean(axis=(0, 1)))
+        assert (abs(mine.mean(axis=(0, 1)) / other.mean(axis=(0, 1)) - 1) < 0.005).all(), (angle, mine.mean(axis=(0, 1)), other.mean(axis=(0, 1)))

@@ -48,6 +48,23 @@ def lit_through(alphas, **keywords):
 
 
 @case
+def a_small_sun_in_a_large_sky_has_no_noise():
+    """Texels of an image of up to 2048 x 2048 are chosen exactly: the light of a disk of 12 texels is that of its middle, in each sample. Of larger
+    images blocks of texels are chosen, and the mean is the same."""
+    for side, noise in ((2048, 1e-3), (2050, 1.0)):
+        v, u = numpy.mgrid[0:side, 0:side] + 0.5 - side / 2
+        disk = (u**2 + v**2 < 6**2).astype(numpy.float32)
+        scene = velo.Scene()
+        scene.add_mesh(8 * QUAD, FACES, material=scene.add_material("diffuse", reflectance=0.5))
+        scene.add_light("infinite", image=velo.Image(disk[..., None].repeat(3, axis=2), encoding="linear"), scale=1e4)
+        scene.camera = camera()
+        image = numpy.asarray(scene.render(spp=1, color="rgb", max_depth=1))[..., :3].astype(float)
+        expected = 0.5 / math.pi * 1e4 * disk.sum() * 4 * math.pi / side**2
+        assert abs(image.mean() / expected - 1) < (1e-3 if noise < 1 else 0.02), (side, image.mean() / expected)
+        assert image.std() < noise * image.mean(), (side, image.std() / image.mean())
+
+
+@case
 def shadow_rays_carry_what_surfaces_with_an_alpha_let_pass():
     """Exactly, not as a mean over many rays, and in the same bits with both accelerators."""
     free = lit_through(())

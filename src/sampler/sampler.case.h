@@ -8,10 +8,11 @@
 #include "velo/sampler.h"
 
 typedef struct SamplerCase {
-  bool rows;   /* each of 64 intervals has one u of a pixel, and one v */
-  bool cells;  /* each of 8 x 8 cells has one pair of a pixel */
-  bool centre; /* numbers are the centres of cells: not even inside */
-  bool hash;   /* no better than independent numbers */
+  bool rows;      /* each of 64 intervals has one u of a pixel, and one v */
+  bool cells;     /* each of 8 x 8 cells has one pair of a pixel */
+  bool centre;    /* numbers are the centres of cells: not even inside */
+  bool any_count; /* rows and cells for any number of samples */
+  bool hash;      /* no better than independent numbers */
 } SamplerCase;
 
 /* Declares the case of each kind, which is in the file of the kind: sampler/NAME.case.c. */

@@ -9,6 +9,7 @@ const TextureCase fbm_texture = {
              .low = 0,
              .high = 1,
              .known = {{.5, .5, {0, 0, 0}}},
-             .known_count = 1},
+             .known_count = 1,
+             .of_space = true},
         },
 };

@@ -4,6 +4,9 @@
 const TextureCase marble_texture = {
     .variants =
         {
-            {.parameters = "\"float scale\" 3 \"float variation\" .4", .low = 0, .high = 1},
+            {.parameters = "\"float scale\" 3 \"float variation\" .4",
+             .low = 0,
+             .high = 1,
+             .of_space = true},
         },
 };

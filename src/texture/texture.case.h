@@ -19,6 +19,7 @@ typedef struct TextureVariant {
   const char *parameters; /* null ends the list */
   double low, high;       /* of all values */
   bool even;              /* the same value everywhere */
+  bool of_space;          /* varies along each axis of texture space */
   TextureKnown known[5];
   uint32_t known_count;
 } TextureVariant;

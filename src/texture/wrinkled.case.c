@@ -4,6 +4,9 @@
 const TextureCase wrinkled_texture = {
     .variants =
         {
-            {.parameters = "\"integer octaves\" 3 \"float roughness\" .3", .low = 0, .high = 1},
+            {.parameters = "\"integer octaves\" 3 \"float roughness\" .3",
+             .low = 0,
+             .high = 1,
+             .of_space = true},
         },
 };

@@ -21,6 +21,8 @@ static const SamplerCase *const sampler_cases[] = {VL_SAMPLER_KINDS(SAMPLER_CASE
 typedef struct Numbers2 {
   double u[SETS][SET], v[SETS][SET], other[SETS][SET];
   uint32_t count;
+  uint32_t width;   /* of the film; SETS / width pixels high */
+  uint32_t samples; /* of each pixel, up to SET */
 } Numbers2;
 
 static void take_numbers(void *user, vlTrace *trace, const vlOwnPaths *paths) {
@@ -31,9 +33,9 @@ static void take_numbers(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   vl_trace_numbers(trace, 0, u, v);
   vl_trace_numbers(trace, 1, other, NULL);
   for (uint32_t i = 0; i < paths->count; i++) {
-    uint32_t pixel = (uint32_t)(paths->y[i] * 8 + paths->x[i]);
+    uint32_t pixel = (uint32_t)paths->y[i] * n->width + (uint32_t)paths->x[i];
     uint32_t index = paths->index[i];
-    assert_true(pixel < SETS && index < SET);
+    assert_true(pixel < SETS && index < n->samples);
     n->u[pixel][index] = (double)u[i];
     n->v[pixel][index] = (double)v[i];
     n->other[pixel][index] = (double)other[i];
@@ -41,17 +43,21 @@ static void take_numbers(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   }
 }
 
-static void draw_numbers(vlSamplerKind kind, Numbers2 *n) {
+static Numbers2 *draw_numbers(vlSamplerKind kind, uint32_t width, uint32_t samples) {
+  Numbers2 *n = calloc(1, sizeof *n);
+  assert_non_null(n);
+  n->width = width;
+  n->samples = samples;
   vlError error = {0};
   vlScene *scene = load_text(context, HEAD "WorldBegin LightSource \"infinite\"", &error);
   assert_non_null(scene);
   vlSceneDefs *defs = vl_scene_defs(scene);
   const vlOwnTracer tracer = {.name = "numbers", .radiance = take_numbers, .user = n};
-  defs->camera = vl_default_camera_def(8, 8);
-  defs->film = vl_default_film_def(8, 8);
+  defs->camera = vl_default_camera_def(width, SETS / width);
+  defs->film = vl_default_film_def(width, SETS / width);
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
-  defs->render.spp = SET;
-  defs->render.sequence = SET;
+  defs->render.spp = samples;
+  defs->render.sequence = samples;
   defs->render.sampler = kind;
   defs->render.share_samples = false;
   defs->render.own_tracer = &tracer;
@@ -59,7 +65,8 @@ static void draw_numbers(vlSamplerKind kind, Numbers2 *n) {
   if (!image)
     fail_msg("%s", error.message);
   vl_image_destroy(image);
-  assert_int_equal(n->count, SETS * SET);
+  assert_int_equal(n->count, SETS * samples);
+  return n;
 }
 
 /* Chi-square over 256 intervals of all numbers, as standard deviations above what independent
@@ -129,8 +136,7 @@ static void laws_of_samplers(void **state) {
   for (uint32_t k = 0; k < family->kind_count; k++) {
     const SamplerCase *c = sampler_cases[k];
     const char *name = family->rows[k]->name;
-    Numbers2 *n = calloc(1, sizeof *n);
-    draw_numbers((vlSamplerKind)k, n);
+    Numbers2 *n = draw_numbers((vlSamplerKind)k, 8, SET);
     uint32_t outside = 0;
     for (int p = 0; p < SETS; p++)
       for (int i = 0; i < SET; i++)
@@ -160,6 +166,81 @@ static void laws_of_samplers(void **state) {
       broken("samplers", name, "a mean has %.3f of the variance of independent numbers", ratio);
     free(n);
   }
+  expect_no_failures();
+}
+
+/* ---- samplers with any number of samples ------------------------------------------------- */
+
+/* Numbers in floats may lie below the edge of an interval by this part of it. */
+#define ROUNDING 1e-5
+
+/* Whether each of the intervals of 1 / count holds one of the numbers. */
+static bool one_in_each(const double *numbers, uint32_t count) {
+  bool used[SET] = {false};
+  for (uint32_t i = 0; i < count; i++) {
+    uint32_t cell = (uint32_t)(numbers[i] * count + ROUNDING);
+    if (cell >= count || used[cell])
+      return false;
+    used[cell] = true;
+  }
+  return true;
+}
+
+/* Whether the pairs with v from `low` to `high`, in counts of pairs, are as many as these are,
+ * in columns of equal width. */
+static bool is_row(const double *u, const double *v, uint32_t count, uint32_t low,
+                   uint32_t high) {
+  double inside[SET];
+  uint32_t found = 0;
+  for (uint32_t i = 0; i < count; i++)
+    if (v[i] * count + ROUNDING >= low && v[i] * count + ROUNDING < high)
+      inside[found++] = u[i];
+  return found == high - low && one_in_each(inside, found);
+}
+
+/* Cells of equal area lie in rows, each as high as it has cells, and not more of them than the
+ * root of twice their number: rows from the lowest on, in all pixels the same. */
+static bool is_in_cells(const Numbers2 *n) {
+  uint32_t count = n->samples;
+  uint32_t widest = (uint32_t)sqrt(2.0 * count);
+  uint32_t low = 0;
+  while (low < count) {
+    uint32_t high = low;
+    bool row = false;
+    while (!row && high < count && high - low < widest) {
+      high++;
+      row = true;
+      for (int p = 0; p < SETS; p++)
+        row = row && is_row(n->u[p], n->v[p], count, low, high);
+    }
+    if (!row)
+      return false;
+    low = high;
+  }
+  return true;
+}
+
+static void check_count(const char *name, const SamplerCase *c, const Numbers2 *n) {
+  bool rows = true;
+  for (int p = 0; p < SETS; p++)
+    rows = rows && one_in_each(n->u[p], n->samples) && one_in_each(n->v[p], n->samples);
+  if (c->rows && !rows)
+    broken("samplers", name, "%u samples: a row or column is empty", n->samples);
+  if (c->cells && !is_in_cells(n))
+    broken("samplers", name, "%u samples: they do not lie in cells of equal area", n->samples);
+}
+
+/* Numbers of samples that are a square, primes, and products of which none is one. */
+static void samplers_of_any_count(void **state) {
+  (void)state;
+  static const uint32_t counts[] = {1, 2, 3, 7, 9, 12, 18, 23, 50};
+  const vlKindFamily *family = vl_kind_family_find("samplers");
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    for (size_t i = 0; sampler_cases[k]->any_count && i < sizeof counts / sizeof *counts; i++) {
+      Numbers2 *n = draw_numbers((vlSamplerKind)k, 8, counts[i]);
+      check_count(family->rows[k]->name, sampler_cases[k], n);
+      free(n);
+    }
   expect_no_failures();
 }
 
@@ -215,19 +296,24 @@ static void check_filter(vlPixelFilterKind kind, const char *name, bool share) {
   defs->render.share_samples = share;
   defs->render.own_tracer = &tracer;
   double radius = (double)defs->film.filter.radius_x;
+  double radius_y = 0.75 * radius;
+  defs->film.filter.radius_y = (float)radius_y;
   vlImage *image = render_scene(context, scene, &error);
   if (!image)
     fail_msg("%s", error.message);
   double sum = 0;
   double worst = 0;
-  double shares[2 * FILTERED];
-  for (int k = 0; k < 2 * FILTERED; k++)
-    shares[k] = filtered_share(filter_shapes[kind], radius, k - FILTERED / 2);
+  double across[2 * FILTERED];
+  double down[2 * FILTERED];
+  for (int k = 0; k < 2 * FILTERED; k++) {
+    across[k] = filtered_share(filter_shapes[kind], radius, k - FILTERED / 2);
+    down[k] = filtered_share(filter_shapes[kind], radius_y, k - FILTERED / 2);
+  }
   for (uint32_t y = 0; y <= FILTERED; y++)
     for (uint32_t x = 0; x <= FILTERED; x++) {
       double value = (double)vl_image_get(image, x, y, 1);
       sum += value;
-      worst = fmax(worst, fabs(value - shares[x] * shares[y]));
+      worst = fmax(worst, fabs(value - across[x] * down[y]));
     }
   vl_image_destroy(image);
   if (!(fabs(sum - 1) < 0.02))

@@ -1,6 +1,7 @@
 /* conformance/textures.h: the laws of textures, seen as the reflectance of a square with
  * texture coordinates 0 to 1: known values, values between those of the inputs, and a pattern
- * that is one. */
+ * that is one; and as that of a ball: textures of space vary along each axis, and each mapping
+ * gives the coordinates that its formula says. */
 #ifndef TEST_CONFORMANCE_TEXTURES_H
 #define TEST_CONFORMANCE_TEXTURES_H
 
@@ -13,6 +14,7 @@
 typedef struct TextureLaws {
   const char *kind;
   const TextureVariant *variant;
+  const struct Mapping *mapping;
   vlTraceRays *rays;
   vlTraceHits *hits;
 } TextureLaws;
@@ -60,6 +62,127 @@ static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   "tex1\" .1 "                                                                           \
   "\"float tex2\" .8\n"
 
+/* ---- on a ball --------------------------------------------------------------------------- */
+
+/* The colours of the unit sphere at `count` points. */
+static void look_at_ball(vlTrace *trace, TextureLaws *t, const double (*points)[3],
+                         uint32_t count) {
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const double *p = points[i % count];
+    const double origin[3] = {2 * p[0], 2 * p[1], 2 * p[2]};
+    const double inwards[3] = {-p[0], -p[1], -p[2]};
+    set_ray(t->rays, i, origin, inwards);
+  }
+  vl_world_trace(trace, t->rays, t->hits);
+}
+
+/* The second half of the points mirrors the first. */
+static void ask_along_axes(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  enum { HALF = VL_OWN_BATCH / 2 };
+  static double points[VL_OWN_BATCH][3];
+  TextureLaws *t = probe->user;
+  (void)paths;
+  for (int axis = 0; axis < 3; axis++) {
+    int differ = 0;
+    for (uint32_t i = 0; i < HALF; i++) {
+      even_direction(i, HALF, 0.3, points[i]);
+      memcpy(points[HALF + i], points[i], sizeof points[i]);
+      points[HALF + i][axis] *= -1;
+    }
+    look_at_ball(trace, t, points, VL_OWN_BATCH);
+    for (uint32_t i = 0; i < HALF; i++)
+      differ += fabsf(t->hits->reflectance[1][i] - t->hits->reflectance[1][HALF + i]) > 0.005f;
+    if (differ < HALF / 10)
+      broken("textures", t->kind, "%s: does not vary along %c", t->variant->parameters,
+             "xyz"[axis]);
+  }
+}
+
+/* A mapping with its formula. q: a point of texture space. */
+typedef struct Mapping {
+  const char *name, *parameters;
+  void (*st)(const double q[3], double st[2]);
+} Mapping;
+
+static void planar_st(const double q[3], double st[2]) {
+  st[0] = 0.5 + 0.4 * q[0] + 0.1 * q[2];
+  st[1] = 0.4 + 0.1 * q[0] + 0.3 * q[1] - 0.2 * q[2];
+}
+static void cylindrical_st(const double q[3], double st[2]) {
+  st[0] = (PI + atan2(q[1], q[0])) / (2 * PI);
+  st[1] = q[2];
+}
+static void spherical_st(const double q[3], double st[2]) {
+  double azimuth = atan2(q[1], q[0]);
+  st[0] = acos(q[2] / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2])) / PI;
+  st[1] = (azimuth < 0 ? azimuth + 2 * PI : azimuth) / (2 * PI);
+}
+
+static const Mapping mappings[] = {
+    {"planar",
+     "\"vector3 v1\" [.4 0 .1] \"vector3 v2\" [.1 .3 -.2] \"float udelta\" .5 \"float vdelta\" .4",
+     planar_st},
+    {"cylindrical", "", cylindrical_st},
+    {"spherical", "", spherical_st},
+};
+
+/* The texture is red = s and green = t; texture space is the world divided by (2, 1, .5). */
+static void ask_mapping(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  static double points[VL_OWN_BATCH][3];
+  TextureLaws *t = probe->user;
+  int compared = 0;
+  double worst = 0;
+  (void)paths;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    even_direction(i, VL_OWN_BATCH, 0.1, points[i]);
+  look_at_ball(trace, t, points, VL_OWN_BATCH);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const double q[3] = {points[i][0] / 2, points[i][1], points[i][2] * 2};
+    double st[2];
+    t->mapping->st(q, st);
+    if (!(fmin(st[0], st[1]) > 0.01 && fmax(st[0], st[1]) < 0.99))
+      continue;
+    compared++;
+    for (int c = 0; c < 2; c++)
+      worst = fmax(worst, fabs((double)t->hits->reflectance[c][i] - st[c]));
+  }
+  if (compared < VL_OWN_BATCH / 8 || !(worst < 2e-3))
+    broken("textures", t->mapping->name, "coordinates of %d points are off by %.4f", compared,
+           worst);
+}
+
+/* Looks at the ball of a scene. */
+static void ask_textured_ball(const char *text, TextureLaws *t,
+                              void (*ask)(Probe *, vlTrace *, const vlOwnPaths *)) {
+  Probe probe = {.ask = ask, .user = t};
+  t->rays = new_rays();
+  t->hits = calloc(1, sizeof *t->hits);
+  assert_non_null(t->hits);
+  probe_world(text, &probe, 1);
+  free(t->rays);
+  free(t->hits);
+}
+
+static void laws_of_mappings(void **state) {
+  (void)state;
+  char text[TEXT];
+  for (size_t i = 0; i < sizeof mappings / sizeof *mappings; i++) {
+    TextureLaws t = {.mapping = &mappings[i]};
+    snprintf(text, sizeof text,
+             HEAD
+             "WorldBegin LightSource \"infinite\" AttributeBegin Scale 2 1 .5\n"
+             "Texture \"t\" \"spectrum\" \"bilerp\" \"rgb v00\" [0 0 .5] \"rgb v10\" [1 0 .5] "
+             "\"rgb v01\" [0 1 .5] \"rgb v11\" [1 1 .5] \"string mapping\" \"%s\" %s\n"
+             "AttributeEnd Material \"diffuse\" \"texture reflectance\" \"t\" "
+             "Shape \"sphere\"",
+             mappings[i].name, mappings[i].parameters);
+    ask_textured_ball(text, &t, ask_mapping);
+  }
+  expect_no_failures();
+}
+
+/* ---- all --------------------------------------------------------------------------------- */
+
 static void laws_of_textures(void **state) {
   (void)state;
   static char text[TEXT];
@@ -72,19 +195,24 @@ static void laws_of_textures(void **state) {
         row->traits & VL_TEXTURE_FLOAT_ONLY ? HEAD
             "WorldBegin LightSource \"infinite\" Texture \"f\" \"float\" %s Texture \"t\" "
             "\"spectrum\" \"scale\" \"rgb tex\" [1 1 1] \"texture scale\" \"f\" "
-            "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP
+            "Material \"diffuse\" \"texture reflectance\" \"t\" "
                                             : HEAD
             "WorldBegin LightSource \"infinite\" " HALVES
             "Texture \"t\" \"spectrum\" %s "
-            "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP;
+            "Material \"diffuse\" \"texture reflectance\" \"t\" ";
     for (int i = 0; i < TEXTURE_VARIANTS && row->name && c->variants[i].parameters; i++) {
       TextureLaws t = {.kind = row->name, .variant = &c->variants[i], .rays = new_rays()};
       t.hits = calloc(1, sizeof *t.hits);
       Probe probe = {.ask = ask_texture, .user = &t};
       scene_text(text, form, row->name, c->variants[i].parameters);
+      size_t length = strlen(text);
+      strcat(text, SQUARE_UP);
       probe_world(text, &probe, 1);
       free(t.rays);
       free(t.hits);
+      strcpy(text + length, "Shape \"sphere\"");
+      if (c->variants[i].of_space)
+        ask_textured_ball(text, &t, ask_along_axes);
     }
   }
   expect_no_failures();

@@ -78,6 +78,28 @@ static Mean mean_medium(const char *kind, const MediumCase *c, const char *param
   return mean;
 }
 
+/* The same in wavelengths. Light and medium are grey. */
+static Mean mean_spectral(const char *kind, const MediumCase *c, const char *parameters) {
+  static char text[TEXT];
+  char all[2000];
+  vlError error = {0};
+  snprintf(all, sizeof all, "%s%s", c->shape, parameters);
+  scene_text(text, medium_form, kind, all);
+  vlScene *scene = load_text(context, text, &error);
+  if (!scene)
+    fail_msg("%s\n%s", error.message, text);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->build.color = VL_COLOR_SPECTRAL;
+  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->render.spp = MEDIUM_SPP;
+  vlImage *image = render_scene(context, scene, &error);
+  if (!image)
+    fail_msg("%s\n%s", error.message, text);
+  Mean mean = mean_of_image(image);
+  vl_image_destroy(image);
+  return mean;
+}
+
 /* The light that passes without being scattered, where the medium scatters what it absorbs by
  * `absorbs`: no bounce. */
 static vlImage *image_unscattered(const char *kind, const MediumCase *c) {
@@ -102,12 +124,19 @@ static void check_medium(const char *name, const MediumCase *c) {
     check_mean("media", name, "glow and surroundings", &balance,
                c->emission > 0 ? c->emission : 1, sight);
   }
+  if (c->glows) {
+    Mean glow = mean_medium(name, c, c->glows);
+    check_mean("media", name, "glow by a scale of each cell", &glow, c->glow, sight);
+  }
   vlImage *absorbing = image_of_medium(name, c, c->absorbs);
   vlImage *scattering = image_unscattered(name, c);
   Mean passes = mean_of_image(absorbing);
   Mean more = mean_difference(scattering, absorbing);
   vl_image_destroy(absorbing);
   vl_image_destroy(scattering);
+  Mean spectral = mean_spectral(name, c, c->absorbs);
+  check_same_mean("media", name, "light that passes, by wavelengths", &spectral, &passes,
+                  (Sight){.slack = 3e-3, .least = 0.1});
   if (c->transmittance > 0)
     check_mean("media", name, "light that passes", &passes, c->transmittance, sight);
   check_mean("media", name, "light that is not scattered, beyond what is not absorbed", &more,
@@ -286,6 +315,58 @@ static void filters_of_light_paths(void **state) {
   const vlKindFamily *family = vl_kind_family_find("filters");
   for (uint32_t k = 0; k < family->kind_count; k++)
     check_splats(family->rows[k]->name, (vlPixelFilterKind)k);
+  expect_no_failures();
+}
+
+/* ---- limits of a path's bounces of one kind ---------------------------------------------- */
+
+/* Worlds whose bounces are of one kind each: a bowl, or a cloud. */
+#define BOWL(material)                                                       \
+  "WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] Material " material \
+  " Shape \"sphere\" \"float zmax\" .3 Translate 0 0 -.3 Shape \"sphere\" \"float radius\" .4\n"
+static const struct {
+  const char *parameter, *world;
+} limits[] = {
+    {"maxdiffusedepth", BOWL("\"diffuse\" \"rgb reflectance\" [.8 .8 .8]")},
+    {"maxglossydepth", BOWL("\"conductor\" \"float roughness\" .4")},
+    {"maxtransmissiondepth", BOWL("\"diffusetransmission\" \"rgb reflectance\" [0 0 0] "
+                                  "\"rgb transmittance\" [.9 .9 .9]")},
+    {"maxvolumedepth",
+     "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.2 .2 .2] \"rgb "
+     "sigma_s\" [3 3 3] WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] "
+     "MediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"\n"},
+};
+enum { LIMITS = sizeof limits / sizeof *limits, LIMIT_SPP = 16 };
+
+/* The image of world `w` where bounces of kind `k` (-1: none) end after the first. */
+static vlImage *limited_image(int w, int k) {
+  char text[TEXT];
+  char limit[80] = "";
+  if (k >= 0)
+    snprintf(limit, sizeof limit, "\"integer %s\" 1", limits[k].parameter);
+  snprintf(text, sizeof text,
+           "LookAt 0 -3 1.5 0 0 0 0 0 1 Camera \"perspective\" \"float fov\" 45\n" VIEW(
+               "12") "Integrator \"volpath\" \"integer maxdepth\" 8 %s %s",
+           limit, limits[w].world);
+  return image_of(text, NULL, LIMIT_SPP);
+}
+
+/* The limit of a kind changes the world of that kind alone. */
+static void limits_of_kinds(void **state) {
+  (void)state;
+  for (int w = 0; w < LIMITS; w++) {
+    vlImage *whole = limited_image(w, -1);
+    for (int k = 0; k < LIMITS; k++) {
+      vlImage *image = limited_image(w, k);
+      Mean lost = mean_difference(whole, image);
+      bool changes = mean_of(&lost) != 0;
+      if (changes != (k == w))
+        broken("tracers", "volpath", "\"%s\" %s bounces of \"%s\"", limits[k].parameter,
+               changes ? "limits" : "does not limit", limits[w].parameter);
+      vl_image_destroy(image);
+    }
+    vl_image_destroy(whole);
+  }
   expect_no_failures();
 }
 

@@ -76,6 +76,16 @@ def every_kind_comes_back():
 
 
 @case
+def spectra_of_every_form_come_back():
+    scene = velo.Scene()
+    given = [velo.rgb(1, 0.5, 0.25, scale=2, space=space) for space in ("srgb", "dci_p3", "rec2020", "aces2065_1")]
+    given += [velo.blackbody(3000, scale=0.5), velo.named("stdillum-D65", scale=4)]
+    for spectrum in given:
+        got = scene.get(scene.add_light("point", color=spectrum))["color"]
+        assert got == spectrum, (got, spectrum)
+
+
+@case
 def values_are_those_that_were_given():
     scene = velo.Scene()
     texels = arrays(1, 4, 6, 3)

@@ -9,6 +9,7 @@ from cases import case, raises, work
 numpy = cases.need("numpy")
 import velo
 from velo import dataset
+from velo.dataset.random import Random
 
 CORNERS = numpy.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 FACES = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
@@ -66,6 +67,14 @@ def apart(a, b):
 
 def solid(low, high):
     return numpy.array([[(low, high)[(i >> 2) & 1][0], (low, high)[(i >> 1) & 1][1], (low, high)[i & 1][2]] for i in range(8)])
+
+
+@case
+def random_counts_reach_both_bounds():
+    draw = Random(1, 0, "count")
+    counts = [draw.count((2, 4)) for _ in range(600)]
+    assert set(counts) == {2, 3, 4} and min(map(counts.count, (2, 3, 4))) > 140, counts
+    assert {draw.count((3, 3)) for _ in range(20)} == {3} and draw.count(5) == 5
 
 
 @case

@@ -15,10 +15,10 @@ const MediumCase grid_medium = {
         "Lescale\" 2 \"float "
         "density\" [1 .5 .2 1 .7 .1 .4 .9]",
     /* the scale fades at the box's sides as rgb_grid.case.c's */
-    .glows =
+    .emits_by_cell =
         "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"rgb Le\" [.5 .5 .5] \"float "
         "Lescale\" [2 2 2 2 2 2 2 2] \"float density\" [1 1 1 1 1 1 1 1]",
-    .glow = 0.942249,
+    .emission_by_cell = 0.942249,
     .absorbs =
         "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [1 1 1 1 1 1 1 "
         "1]",

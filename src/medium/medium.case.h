@@ -14,10 +14,10 @@ typedef struct MediumCase {
   const char *absorbs;  /* absorbs alone */
   double transmittance; /* of that; 0: not known, but below 1 */
   double emission;      /* where the emission fades at the box's sides; 0: 1 */
-  const char *glows;    /* as emits, but by a scale of each cell; null: has none */
-  double glow;          /* of that */
-  const char *layers;   /* absorbs alone, most of it in one of eight layers; null: cannot */
-  double passes;        /* the transmittance of that */
+  const char *emits_by_cell; /* as emits, but by a scale of each cell; null: has none */
+  double emission_by_cell;   /* of that */
+  const char *layers; /* absorbs alone, most of it in one of eight layers; null: cannot */
+  double passes;      /* the transmittance of that */
   ParameterCase parameters[PARAMETER_CASES];
 } MediumCase;
 

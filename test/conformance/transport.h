@@ -124,9 +124,10 @@ static void check_medium(const char *name, const MediumCase *c) {
     check_mean("media", name, "glow and surroundings", &balance,
                c->emission > 0 ? c->emission : 1, sight);
   }
-  if (c->glows) {
-    Mean glow = mean_medium(name, c, c->glows);
-    check_mean("media", name, "glow by a scale of each cell", &glow, c->glow, sight);
+  if (c->emits_by_cell) {
+    Mean by_cell = mean_medium(name, c, c->emits_by_cell);
+    check_mean("media", name, "emission by a scale of each cell", &by_cell, c->emission_by_cell,
+               sight);
   }
   vlImage *absorbing = image_of_medium(name, c, c->absorbs);
   vlImage *scattering = image_unscattered(name, c);
@@ -336,7 +337,7 @@ static const struct {
      "sigma_s\" [3 3 3] WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] "
      "MediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"\n"},
 };
-enum { LIMITS = sizeof limits / sizeof *limits, LIMIT_SPP = 16 };
+enum { BOUNCE_KINDS = sizeof limits / sizeof *limits, SPP_OF_BOWL = 16 };
 
 /* The image of world `w` where bounces of kind `k` (-1: none) end after the first. */
 static vlImage *limited_image(int w, int k) {
@@ -348,15 +349,15 @@ static vlImage *limited_image(int w, int k) {
            "LookAt 0 -3 1.5 0 0 0 0 0 1 Camera \"perspective\" \"float fov\" 45\n" VIEW(
                "12") "Integrator \"volpath\" \"integer maxdepth\" 8 %s %s",
            limit, limits[w].world);
-  return image_of(text, NULL, LIMIT_SPP);
+  return image_of(text, NULL, SPP_OF_BOWL);
 }
 
 /* The limit of a kind changes the world of that kind alone. */
 static void limits_of_kinds(void **state) {
   (void)state;
-  for (int w = 0; w < LIMITS; w++) {
+  for (int w = 0; w < BOUNCE_KINDS; w++) {
     vlImage *whole = limited_image(w, -1);
-    for (int k = 0; k < LIMITS; k++) {
+    for (int k = 0; k < BOUNCE_KINDS; k++) {
       vlImage *image = limited_image(w, k);
       Mean lost = mean_difference(whole, image);
       bool changes = mean_of(&lost) != 0;

@@ -131,9 +131,11 @@ static const char *members_of(const char *object) {
 
 static bool has_word(const char *words, const char *word) {
   const size_t length = strlen(word);
+  if (length == 0)
+    return false; /* it is found everywhere, without an end */
   for (const char *at = words; (at = strstr(at, word)); at += length)
     if ((at == words || at[-1] == ' ') && (at[length] == ' ' || at[length] == 0))
-      return length > 0;
+      return true;
   return false;
 }
 

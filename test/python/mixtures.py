@@ -1,0 +1,224 @@
+"""Random scenes of what pbrt files cannot say, beside what they can: lamps of the material interface, shapes hidden from the camera, all
+materials with random parameters, alpha, media with temperatures, motion. Each follows from its number."""
+import math
+import random
+
+import numpy
+
+import velo
+
+WIDTH, HEIGHT = 32, 24
+TO_A_POINT = ("point", "spot", "distant")  # lights that no ray hits: behind smooth glass only light paths find them
+
+
+class Mixture:
+    """scene; depth: the greatest number of bounces; parts: what is in it, in words; smooth: a surface is a mirror or clear; pointed: a light is
+    one that no ray hits."""
+
+    def __init__(self, number):
+        self._random = random.Random(number)
+        self.scene, self.parts, self.smooth, self.pointed = velo.Scene(), [], False, False
+        self._may_be_smooth, self._foggy = self._chance(0.25), self._chance(0.5)
+        self.scene.add_mesh([[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]], [[0, 1, 2], [0, 2, 3]],
+                            uvs=[[0, 0], [1, 0], [1, 1], [0, 1]], material=self._material(), name="floor")
+        for _ in range(self._random.randint(1, 3)):
+            self._random.choice([self._light, self._lamp])()
+        for _ in range(self._random.randint(2, 4)):
+            (self._fog if self._foggy and self._chance(0.3) else self._thing)()
+        self._camera()
+        self.depth = self._random.choice([2, 5, 8])
+
+    # ---- numbers ----
+
+    def _chance(self, share):
+        return self._random.random() < share
+
+    def _between(self, low, high):
+        return self._random.uniform(low, high)
+
+    def _color(self, low=0.1, high=0.9):
+        return tuple(self._between(low, high) for _ in range(3))
+
+    def _texels(self, *shape):
+        return numpy.random.default_rng(self._random.getrandbits(30)).random(shape, dtype=numpy.float32)
+
+    def _pose(self):
+        q = numpy.array([self._random.gauss(0, 1) for _ in range(4)])
+        w, x, y, z = q / numpy.linalg.norm(q)
+        pose = numpy.eye(4)
+        pose[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
+        pose[:3, :3] *= [self._between(0.6, 1.5) * (-1 if self._chance(0.05) else 1) for _ in range(3)]
+        pose[:3, 3] = self._between(-0.9, 0.9), self._between(-0.9, 0.9), self._between(0.4, 1.1)
+        return pose
+
+    # ---- materials ----
+
+    def _roughness(self):
+        if self._may_be_smooth and self._chance(0.5):
+            self.smooth = True
+            return 0.0
+        return self._between(0.05, 0.6)
+
+    def _spectrum(self):
+        kind = self._random.choice(["plain", "plain", "image", "checkerboard", "dots"])
+        if kind == "plain":
+            return self._color()
+        if kind == "image":
+            return self.scene.add_texture("image", image=0.9 * self._texels(8, 8, 3))
+        colors = {"spectrum_a": self._color(), "spectrum_b": self._color()}
+        return self.scene.add_texture(kind, su=4, sv=4, **colors)
+
+    def _number(self):
+        if self._chance(0.5):
+            return self._between(0.1, 0.9)
+        return self.scene.add_texture("dots", su=5, sv=5, float_a=self._between(0, 1), float_b=self._between(0, 1), spectrum=False)
+
+    def _principled(self):
+        words = {"reflectance": self._spectrum(), "roughness": self._roughness()}
+        for name in ("metallic", "transmission", "clearcoat", "anisotropy", "diffuse_transmission", "iridescence"):
+            if self._chance(0.3):
+                words[name] = self._random.choice([1.0, self._between(0, 1)])
+        if self._chance(0.3):
+            words.update(sheen_color=self._color(0, 1), sheen_roughness=self._between(0.1, 1))
+        if self._chance(0.3):
+            words.update(specular=self._between(0, 2), specular_color=self._color(0, 1))
+        if "transmission" in words:
+            words.update(thin_walled=self._chance(0.4), dispersion=self._between(0, 1))
+        if "clearcoat" in words:
+            words["clearcoat_roughness"] = self._roughness()
+        return self.scene.add_material("principled", **words)
+
+    def _material(self, depth=0):
+        add = self.scene.add_material
+        kind = self._random.choice(["diffuse", "principled", "principled", "mix", "thindielectric", "dielectric", "coateddiffuse",
+                                    "coatedconductor", "conductor", "subsurface", "diffusetransmission"])
+        self.parts.append(kind)
+        if kind == "mix" and depth < 2:
+            return add("mix", materials=[self._material(depth + 1), self._material(depth + 1)], amount=self._number())
+        if kind == "principled":
+            return self._principled()
+        if kind == "thindielectric":
+            self.smooth = True
+            return add(kind, eta=self._between(1.2, 2))
+        if kind == "dielectric":
+            return add(kind, eta=self._random.choice([1.3, "glass-SF11"]), roughness=self._roughness())
+        if kind == "coateddiffuse":
+            return add(kind, reflectance=self._color(), roughness=self._roughness())
+        if kind == "coatedconductor":
+            return add(kind, coat_u_roughness=self._roughness(), coat_v_roughness=self._roughness(), u_roughness=self._roughness(),
+                       v_roughness=self._roughness())
+        if kind == "conductor":
+            return add(kind, eta="metal-Au-eta", k="metal-Au-k", u_roughness=self._roughness(), v_roughness=self._roughness())
+        if kind == "subsurface":
+            return add(kind, mfp=self._color(0.02, 0.2), reflectance=self._color(), roughness=self._roughness())
+        if kind == "diffusetransmission":
+            return add(kind, reflectance=self._color(0.1, 0.5), transmittance=self._color(0.1, 0.5))
+        return add("diffuse", reflectance=self._spectrum())
+
+    # ---- light ----
+
+    def _light(self):
+        kind = self._random.choice([*TO_A_POINT, "infinite", "sky"])
+        self.parts.append("light " + kind)
+        self.pointed = self.pointed or kind in TO_A_POINT
+        if kind == "point":
+            self.scene.add_light(kind, position=(self._between(-2, 2), self._between(-2, 2), 2.5), color=self._color(5, 9))
+        elif kind == "spot":
+            self.scene.add_light(kind, position=(1, -1.5, 3), to=(0, 0, 0.3), cone_angle=0.7, cone_delta=self._between(0.05, 0.35),
+                                 cone_squared=self._chance(0.5), color=self._color(9, 20))
+        elif kind == "distant":
+            self.scene.add_light(kind, position=(self._between(-1, 1), self._between(-1, 1), 1), to=(0, 0, 0), color=self._color(0.5, 2))
+        elif kind == "infinite":
+            self.scene.add_light(kind, color=self._color(0.2, 0.6))
+        else:
+            self.scene.add_light("infinite", image=3 * self._texels(16, 16, 3) ** 4)
+
+    def _lamp(self):
+        """A shape that emits: a body or, of the material interface, one that light passes."""
+        emission = {"radiance": self._color(2, 8), "two_sided": self._chance(0.4)}
+        if self._chance(0.4):
+            emission["spread"] = math.radians(self._random.choice([30, 60, 100, 170]))
+        if self._chance(0.25):
+            emission["texture"] = self.scene.add_texture("image", image=self._texels(4, 4, 3))
+        passed = self._chance(0.5)
+        words = {"emission": self.scene.add_emission(**emission), "hidden_from_camera": self._chance(0.4),
+                 "reverse_orientation": self._chance(0.2)}
+        if passed:
+            words["material"] = self.scene.add_material("interface")
+        at = self._between(-1, 1), self._between(-1, 1), self._between(0.7, 2.2) if passed else self._between(1.6, 2.6)
+        down = self._between(-0.4, 0.4), self._between(-0.4, 0.4), -1
+        shape = self._random.choice(["plane", "disk", "sphere", "box"])
+        self.parts.append("%s that emits%s%s" % (shape, ", passed" if passed else "", ", hidden" if words["hidden_from_camera"] else ""))
+        if shape == "plane":
+            self.scene.add_plane(at, down, 1, 1, **words)
+        elif shape == "disk":
+            self.scene.add_disk(at, 0.6, down, **words)
+        elif shape == "sphere":
+            self.scene.add_sphere(at, 0.3, **words)
+        else:
+            self.scene.add_box(at, [x + 0.4 for x in at], **words)
+
+    # ---- things ----
+
+    def _fog(self):
+        add, kind = self.scene.add_medium, self._random.choice(["homogeneous", "emissive", "grid", "hot grid", "cloud"])
+        self.parts.append("medium " + kind)
+        cells = 2 * self._texels(5, 5, 5)
+        grid = {"density": cells, "low": (-0.6, -0.6, -0.6), "high": (0.6, 0.6, 0.6), "sigma_a": self._color(0, 0.6),
+                "sigma_s": self._color(0.2, 2), "g": self._between(-0.3, 0.5)}
+        if kind == "homogeneous":
+            medium = add(kind, sigma_a=self._color(0, 0.6), sigma_s=self._color(0.2, 1.5), g=self._between(-0.5, 0.7))
+        elif kind == "emissive":
+            medium = add("homogeneous", sigma_a=self._color(0.1, 0.6), sigma_s=self._color(0.2, 1), emission=self._color(0.1, 1))
+        elif kind == "grid":
+            medium = add("grid", **grid)
+        elif kind == "hot grid":
+            medium = add("grid", temperature=1000 * cells + 500, emission_scale=0.02, **grid)
+        else:
+            medium = add("cloud", sigma_s=(5, 5, 5), sigma_a=(0.1, 0.1, 0.1), cloud_density=2, frequency=3)
+        glass = self._chance(0.3)
+        skin = self.scene.add_material("dielectric", eta=1.3, roughness=0.2) if glass else self.scene.add_material("interface")
+        self.scene.add_sphere((0, 0, 0), self._between(0.3, 0.6), pose=self._pose(), material=skin, inside=medium)
+
+    def _thing(self):
+        words = {"material": self._material(), "hidden_from_camera": self._chance(0.2), "reverse_orientation": self._chance(0.1)}
+        if self._chance(0.2):
+            words["alpha"] = self._number()
+        kind = self._random.choice(["sphere", "cylinder", "box", "leaf", "moving", "instances"])
+        if kind != "instances" and self._chance(0.1):
+            words["emission"] = self.scene.add_emission(radiance=self._color(0.2, 1), two_sided=self._chance(0.5))
+        self.parts.append("%s%s" % (kind, ", hidden" if words["hidden_from_camera"] else ""))
+        pose = self._pose()
+        if kind == "sphere":
+            self.scene.add_sphere((0, 0, 0), self._between(0.2, 0.45), pose=pose, **words)
+        elif kind == "cylinder":
+            self.scene.add_cylinder((0, 0, -0.4), (0, 0, 0.4), 0.25, pose=pose, **words)
+        elif kind == "box":
+            self.scene.add_box((-0.3, -0.25, -0.2), (0.3, 0.25, 0.2), pose=pose, **words)
+        elif kind == "leaf":
+            self.scene.add_plane((0, 0, 0), (0, 0, 1), 1, 1, pose=pose, **words)
+        elif kind == "moving":
+            corners = numpy.array([[0.4, 0, -0.3], [-0.2, 0.35, -0.3], [-0.2, -0.35, -0.3], [0, 0, 0.4]])
+            self.scene.add_mesh(corners, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], positions_close=corners + [0.2, 0, 0.1], pose=pose,
+                                **words)
+        else:
+            group = self.scene.add_group("ball")
+            self.scene.add_sphere((0, 0, 0), 0.3, group=group, **words)
+            for step in (0, 0.35):
+                moved = pose.copy()
+                moved[:3, 3] += step
+                self.scene.add_instance(group, moved)
+
+    def _camera(self):
+        words = {"shutter_open": 0.0, "shutter_close": 1.0}
+        if self._chance(0.3):
+            words.update(lens_radius=0.08, focus_distance=4.0)
+        if self._chance(0.3):
+            words.update(eye_close=(0.2, -4, 2.1), lookat_close=(0, 0, 0.4), up_close=(0, 0, 1))
+        self.scene.camera = velo.Camera(WIDTH, HEIGHT, eye=(0, -4, 2), lookat=(0, 0, 0.4), up=(0, 0, 1), fov=0.75, **words)
+        if self._foggy and self._chance(0.2):
+            self.parts.append("camera in fog")
+            self.scene.camera_medium = self.scene.add_medium("homogeneous", sigma_a=self._color(0, 0.05), sigma_s=self._color(0.02, 0.15),
+                                                             g=self._between(-0.3, 0.6))

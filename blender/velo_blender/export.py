@@ -56,9 +56,10 @@ class Export:
     """A velo scene made from a depsgraph. Members: scene (velo.Scene), notes, camera (velo.Camera), size; instances, shapes: a Placed for
     each of velo's ids 1, 2, ..., None for shapes of groups and lamps; prepared: a Prepared for each of the instances; triangles: {id of a shape: (positions and triangles of its whole
     mesh)}, where keep_triangles asks for them; material_indices: {name: pass index}. moves: motion.Motion, or None: everything is at
-    rest. view: the camera, in place of the scene's. backdrop: backdrop.Backdrop, or None."""
+    rest. view: the camera, in place of the scene's. meshes: geometry.Known, which keeps the meshes' arrays, or None. backdrop:
+    backdrop.Backdrop, or None."""
 
-    def __init__(self, depsgraph, size, cancelled=None, moves=None, view=None, keep_triangles=False):
+    def __init__(self, depsgraph, size, cancelled=None, moves=None, view=None, keep_triangles=False, meshes=None):
         self.depsgraph, self.size = depsgraph, size
         self.notes = Notes()
         self.scene = velo.Scene()
@@ -66,6 +67,7 @@ class Export:
         self.prepared = []
         self.triangles = {}
         self._moves, self._keep_triangles = moves, keep_triangles
+        self._known = meshes
         self._handles = {}  # {motion.key_of(instance): handle}
         self._keys = set()  # of all instances
         self._noted = set()  # names of objects
@@ -367,7 +369,7 @@ class Export:
         mesh = item.to_mesh()
         try:
             self._go_on()
-            arrays = geometry.read(mesh, self._go_on)
+            arrays = geometry.read(mesh, self._go_on) if self._known is None else self._known.read(item, mesh, self._go_on)
             if arrays is None:
                 return None
             if not numpy.abs(geometry.bounds(arrays.positions)).max() <= FARTHEST:  # also where a number is NaN

@@ -1,4 +1,7 @@
 """geometry.py: evaluated meshes as arrays, by buffers."""
+import copy
+
+import bpy
 import numpy
 
 from . import versions
@@ -55,7 +58,20 @@ class MeshArrays:
         low, size = numpy.array(mesh.texspace_location), numpy.array(mesh.texspace_size)
         self.texture_space = low - size, 2 * size  # corner and size of the box of generated coordinates
         self.displaced = False
-        self._mesh = mesh
+        self._mesh, self._has_faces = mesh, True
+
+    def of(self, mesh):
+        """The same arrays for a copy of the mesh, from which what else is asked for is read."""
+        other = copy.copy(self)
+        other._mesh, other._has_faces = mesh, False
+        return other
+
+    def _faces(self):
+        """Blender's triangles of the mesh."""
+        if not self._has_faces:
+            self._mesh.calc_loop_triangles()
+            self._has_faces = True
+        return self._mesh.loop_triangles
 
     def _normals(self, mesh, smooth, points):
         if not self.by_corner:
@@ -83,10 +99,10 @@ class MeshArrays:
         values = _read(attribute.data, member, width, numpy.float32 if width > 1 or attribute.data_type == "FLOAT" else numpy.int32)
         mine = self.slots == slot
         if attribute.domain == "FACE":
-            faces = _read(self._mesh.loop_triangles, "polygon_index", 1, numpy.int32)[mine]
+            faces = _read(self._faces(), "polygon_index", 1, numpy.int32)[mine]
             rows = numpy.repeat(faces[:, None], 3, axis=1)
         elif attribute.domain == "CORNER":
-            rows = _read(self._mesh.loop_triangles, "loops", 3, numpy.int32)[mine]
+            rows = _read(self._faces(), "loops", 3, numpy.int32)[mine]
         else:
             rows = self.vertex_of(self.triangles[mine])
         return values[rows].reshape(len(rows), 3, -1).astype(float)
@@ -124,7 +140,7 @@ class MeshArrays:
             numpy.add.at(total, self.vertex_of(self.triangles[:, k]), flat)
         normals = total[self.corners] if self.by_corner else total
         if self.by_corner:
-            sharp = ~_read(self._mesh.loop_triangles, "use_smooth", 1, bool)
+            sharp = ~_read(self._faces(), "use_smooth", 1, bool)
             normals[self.triangles[sharp].ravel()] = numpy.repeat(flat[sharp], 3, axis=0)
         lengths = numpy.linalg.norm(normals, axis=1, keepdims=True)
         self.normals = (normals / numpy.maximum(lengths, 1e-30)).astype(numpy.float32)
@@ -150,6 +166,36 @@ def read(mesh, go_on=lambda: None):
     if mesh is None or len(mesh.polygons) == 0:
         return None
     return MeshArrays(mesh, go_on)
+
+
+class Known:
+    """The arrays of the meshes that a view has read, for its next export. last: the Known of the export before, or None."""
+
+    def __init__(self, last=None):
+        self._last, self._arrays = {} if last is None else last._arrays, {}
+
+    def read(self, item, mesh, go_on):
+        """As read, of an evaluated object whose mesh this is."""
+        if mesh is None:
+            return None
+        data = item.data if item.type == "MESH" else item
+        key = item.name_full, data.as_pointer(), len(mesh.vertices), len(mesh.loops), len(mesh.polygons)
+        arrays = self._last.get(key)
+        arrays = read(mesh, go_on) if arrays is None else arrays.of(mesh)
+        if arrays is not None:
+            self._arrays[key] = arrays.of(None)
+        return arrays
+
+
+def has_changed(depsgraph):
+    """Whether the shape of something has changed since the last evaluation. Blender says so of lamps whose power changes, too."""
+    return any(update.is_updated_geometry and not _is_shapeless(update.id) for update in depsgraph.updates)
+
+
+def _is_shapeless(item):
+    if isinstance(item, bpy.types.Object):
+        return item.type in ("LIGHT", "CAMERA")
+    return isinstance(item, (bpy.types.Light, bpy.types.Camera))
 
 
 def of_object(item):

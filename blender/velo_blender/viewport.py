@@ -8,7 +8,7 @@ import bpy
 import numpy
 import velo
 
-from . import camera, export, settings
+from . import camera, export, geometry, settings
 from .report import Refused
 
 FIRST_FACTOR = 4  # the first image has pixels this many times as wide and high
@@ -55,16 +55,21 @@ class ViewRender:
         if not bpy.app.timers.is_registered(_poll):
             bpy.app.timers.register(_poll)
         self._made, self._camera, self._words = None, None, {}
+        self._meshes = None  # geometry.Known of the last export
         self._stop = threading.Event()  # of the last thread
         self._using = threading.Lock()  # held while a thread uses the scene
 
     def update(self, depsgraph, region, view):
-        """The scene has changed: moved instances alone are moved, everything else is made anew; worlds share what is the same."""
+        """The scene has changed: moved instances alone are moved, everything else is made anew; worlds share what is the same, and meshes are read
+        where the shape of something has changed."""
         self.stop()
         try:
             if self._made is None or not self._made.move(depsgraph):
                 previous = None if self._made is None else self._made.scene.world(**settings.world_words(depsgraph.scene))
-                self._made = export.Export(depsgraph, (max(1, region.width), max(1, region.height)), view=view_camera(region, view))
+                meshes = geometry.Known(None if geometry.has_changed(depsgraph) else self._meshes)
+                self._meshes = None  # an export that fails leaves nothing that could be old
+                self._made = export.Export(depsgraph, (max(1, region.width), max(1, region.height)), view=view_camera(region, view), meshes=meshes)
+                self._meshes = meshes
                 self._made.scene.world(previous=previous, **settings.world_words(depsgraph.scene))
             self._exposure = settings.exposure(depsgraph.scene)
             self._words = settings.tracing(depsgraph.scene, depsgraph.scene.velo.preview_samples)

@@ -183,3 +183,60 @@ def a_spot_with_a_radius_has_soft_shadows():
     lamp(scene, "SPOT", 800, spot_size=1.0, spot_blend=0.3, shadow_soft_size=0.25)
     agrees(scene, 0.01)
     assert differs(scene) < 0.05, differs(scene)
+
+
+def changed_by(change):
+    """What geometry.has_changed says after a change."""
+    from velo_blender import geometry
+    seen = []
+
+    def look(_scene, depsgraph):
+        seen.append(geometry.has_changed(depsgraph))
+
+    bpy.app.handlers.depsgraph_update_post.append(look)
+    try:
+        change()
+        bpy.context.view_layer.update()
+    finally:
+        bpy.app.handlers.depsgraph_update_post.remove(look)
+    return any(seen)
+
+
+@case
+def meshes_are_read_again_where_a_shape_has_changed():
+    from velo_blender import export, geometry
+
+    scene = new_scene(world=(0.3, 0.3, 0.3))
+    made, shader = material("ShaderNodeBsdfDiffuse", Color=GRAY)
+    height = add(made.node_tree, "ShaderNodeDisplacement", output_of(made).inputs["Displacement"], Scale=0.3)
+    add(made.node_tree, "ShaderNodeTexNoise", height.inputs["Height"], Scale=3.0, Detail=1.0)
+    made.cycles.displacement_method = "DISPLACEMENT"
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=4, location=(0, 0, 1))
+    bpy.ops.object.shade_smooth()
+    item = bpy.context.object
+    item.data.materials.append(made)
+    sun = lamp(scene, "SUN", 3, (0, -4, 4))
+    graph = bpy.context.evaluated_depsgraph_get()
+
+    def image(meshes):
+        exported = export.Export(graph, (24, 16), meshes=meshes)
+        return numpy.array(exported.scene.render(spp=2, resolution=(24, 16))).tobytes()
+
+    first = geometry.Known()
+    image(first)
+
+    def paint():
+        shader.inputs["Color"].default_value = (0.1, 0.7, 0.2, 1)
+
+    def reshape():
+        item.data.vertices[0].co.z += 0.5
+        item.data.update()
+
+    assert not changed_by(paint) and not changed_by(lambda: setattr(sun.data, "energy", 2))
+    read, geometry.read = geometry.read, None  # a mesh that is read again is an error
+    try:
+        again = image(geometry.Known(first))
+    finally:
+        geometry.read = read
+    assert again == image(None)
+    assert changed_by(reshape)

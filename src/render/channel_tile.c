@@ -186,7 +186,6 @@ uint32_t vl_channel_spp(const vlChannelPass *p, uint32_t tile) {
                                                           y > crop[1] ? y : crop[1]));
 }
 
-/* Clears the whole tile: pixels without a ray get the values of no hit, too. */
 /* The tile's pixels of the image inside of the crop: x0, y0, x1, y1. */
 static void tile_window(const vlChannelPass *p, uint32_t tile, uint32_t window[4]) {
   const uint32_t *crop = p->def->crop;
@@ -199,18 +198,28 @@ static void tile_window(const vlChannelPass *p, uint32_t tile, uint32_t window[4
   window[3] = below < crop[3] ? below : crop[3];
 }
 
-/* Sets all values of the tile's pixels to 0. */
+/* Sets all values of the tile's pixels to 0 but the features: those of a region of several
+ * tiles are written with its first one (channel_features.c), maybe before this tile. */
 static void zero_tile(const vlChannelPass *p, uint32_t tile) {
   uint32_t window[4];
   tile_window(p, tile, window);
   for (int id = 0; id < 2; id++) {
-    size_t pixel = p->step[id] * sizeof(uint32_t); /* as large as a float */
-    char *to = p->images[id] ? vl_image_pixels(p->images[id]) : NULL;
-    for (uint32_t y = window[1]; to && y < window[3]; y++)
-      memset(to + vl_channel_at(p, window[0], y) * pixel, 0, (window[2] - window[0]) * pixel);
+    if (!p->images[id])
+      continue;
+    uint32_t *values = vl_image_pixels(p->images[id]); /* as large as floats */
+    const bool features = id == 0 && vl_channel_wanted(p, VL_CHANNEL_FEATURES);
+    const size_t step = p->step[id], first = features ? p->first[0][VL_INDEX_FEATURES] : 0,
+                 behind = features ? first + VL_FEATURES : 0;
+    for (uint32_t y = window[1]; y < window[3]; y++)
+      for (uint32_t x = window[0]; x < window[2]; x++) {
+        uint32_t *pixel = values + vl_channel_at(p, x, y) * step;
+        memset(pixel, 0, first * sizeof *pixel);
+        memset(pixel + behind, 0, (step - behind) * sizeof *pixel);
+      }
   }
 }
 
+/* Pixels without a ray get the values of no hit, too. */
 static void clear_tile(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   uint32_t x, y, samples = vl_channel_spp(p, tile);
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {

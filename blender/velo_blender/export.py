@@ -345,8 +345,7 @@ class Export:
         """The mesh of an object in velo, made once for all objects that share it and its materials; None: it has no faces. instance: of the
         depsgraph, for the object's random number, which takes longer than what all copies need."""
         slots = self._slots_of(item)
-        data = item.data if item.type == "MESH" else item
-        key = (data.as_pointer(), tuple(None if material is None else material.name_full for material in slots), tuple(self._seen))
+        key = (geometry.data_of(item).as_pointer(), tuple(None if material is None else material.name_full for material in slots), tuple(self._seen))
         owner = ()
         if any(self._varies(material) for material in slots):
             self._copies[key] = self._copies.get(key, 0) + 1

@@ -168,6 +168,11 @@ def read(mesh, go_on=lambda: None):
     return MeshArrays(mesh, go_on)
 
 
+def data_of(item):
+    """What says of evaluated objects, by its pointer, that they share a mesh: that of a mesh object; else the object itself."""
+    return item.data if item.type == "MESH" else item
+
+
 class Known:
     """The arrays of the meshes that a view has read, for its next export. last: the Known of the export before, or None."""
 
@@ -178,8 +183,7 @@ class Known:
         """As read, of an evaluated object whose mesh this is."""
         if mesh is None:
             return None
-        data = item.data if item.type == "MESH" else item
-        key = item.name_full, data.as_pointer(), len(mesh.vertices), len(mesh.loops), len(mesh.polygons)
+        key = item.name_full, data_of(item).as_pointer(), len(mesh.vertices), len(mesh.loops), len(mesh.polygons)
         arrays = self._last.get(key)
         arrays = read(mesh, go_on) if arrays is None else arrays.of(mesh)
         if arrays is not None:

@@ -113,6 +113,22 @@ static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
   return image;
 }
 
+/* The scene of a text, and the image of a scene made from it, which must be. */
+static vlScene *need_scene(const char *text) {
+  vlError error = {0};
+  vlScene *scene = load_text(context, text, &error);
+  if (!scene)
+    fail_msg("%s\n%s", error.message, text);
+  return scene;
+}
+static vlImage *need_image(vlScene *scene, const char *text) {
+  vlError error = {0};
+  vlImage *image = render_scene(context, scene, &error);
+  if (!image)
+    fail_msg("%s\n%s", error.message, text);
+  return image;
+}
+
 /* Renders the text in a context. False, and the reason: it cannot be read. */
 static bool render_in(vlContext *in, const char *text, float pixels[PIXELS], vlError *error) {
   vlScene *scene = load_text(in, text, error);
@@ -198,10 +214,7 @@ static void probe_radiance(void *user, vlTrace *trace, const vlOwnPaths *paths) 
 
 /* Builds the world of a scene's text in RGB, and asks it `batches` times. */
 static void probe_world(const char *text, Probe *probe, uint32_t batches) {
-  vlError error = {0};
-  vlScene *scene = load_text(context, text, &error);
-  if (!scene)
-    fail_msg("%s\n%s", error.message, text);
+  vlScene *scene = need_scene(text);
   vlSceneDefs *defs = vl_scene_defs(scene);
   const vlOwnTracer tracer = {.name = "probe", .radiance = probe_radiance, .user = probe};
   defs->build.color = VL_COLOR_RGB;
@@ -214,9 +227,7 @@ static void probe_world(const char *text, Probe *probe, uint32_t batches) {
   defs->render.own_tracer = &tracer;
   probe->batch = 0;
   probe->batches = batches;
-  vlImage *image = render_scene(context, scene, &error);
-  if (!image)
-    fail_msg("%s\n%s", error.message, text);
+  vlImage *image = need_image(scene, text);
   vl_image_destroy(image);
   assert_int_equal(probe->batch, batches);
 }
@@ -268,10 +279,7 @@ static void look_down(vlCameraDef *def, double x, double z, double size) {
  * filter, by light that comes straight from the lights. */
 static vlImage *image_of_floor(const char *text, vlTracer tracer, uint32_t spp, double x,
                                double z, double size) {
-  vlError error = {0};
-  vlScene *scene = load_text(context, text, &error);
-  if (!scene)
-    fail_msg("%s\n%s", error.message, text);
+  vlScene *scene = need_scene(text);
   vlSceneDefs *defs = vl_scene_defs(scene);
   defs->build.color = VL_COLOR_RGB;
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
@@ -279,10 +287,7 @@ static vlImage *image_of_floor(const char *text, vlTracer tracer, uint32_t spp, 
   defs->render.max_depth = 1;
   defs->render.spp = spp;
   look_down(&defs->camera, x, z, size);
-  vlImage *image = render_scene(context, scene, &error);
-  if (!image)
-    fail_msg("%s\n%s", error.message, text);
-  return image;
+  return need_image(scene, text);
 }
 
 /* The mean of green over the image, each pixel a number of its own. */

@@ -53,9 +53,7 @@ static void check_chosen_power(const char *family, const char *kind, const char 
   char what[200];
   vlError error = {0};
   vlWorld *world;
-  vlScene *scene = load_text(context, text, &error);
-  if (!scene)
-    fail_msg("%s\n%s", error.message, text);
+  vlScene *scene = need_scene(text);
   vlBuildDef def = vl_default_build_def();
   def.color = VL_COLOR_RGB;
   assert_int_equal(vl_world_build(scene, &def, &world, &error), VL_OK);

@@ -14,10 +14,7 @@
 /* The image of the scene by a tracer (null: the scene's own) and with a pixel filter. */
 static vlImage *filtered_image(const char *text, const char *tracer, vlPixelFilterKind filter,
                                uint32_t spp) {
-  vlError error = {0};
-  vlScene *scene = load_text(context, text, &error);
-  if (!scene)
-    fail_msg("%s\n%s", error.message, text);
+  vlScene *scene = need_scene(text);
   vlSceneDefs *defs = vl_scene_defs(scene);
   defs->build.color = VL_COLOR_RGB;
   defs->film.filter = vl_default_pixel_filter(filter);
@@ -26,10 +23,7 @@ static vlImage *filtered_image(const char *text, const char *tracer, vlPixelFilt
   for (uint32_t k = 0; tracer && k < family->kind_count; k++)
     if (strcmp(family->rows[k]->name, tracer) == 0)
       defs->render.tracer = (vlTracer)k;
-  vlImage *image = render_scene(context, scene, &error);
-  if (!image)
-    fail_msg("%s\n%s", error.message, text);
-  return image;
+  return need_image(scene, text);
 }
 
 static vlImage *image_of(const char *text, const char *tracer, uint32_t spp) {
@@ -82,19 +76,14 @@ static Mean mean_medium(const char *kind, const MediumCase *c, const char *param
 static Mean mean_spectral(const char *kind, const MediumCase *c, const char *parameters) {
   static char text[TEXT];
   char all[2000];
-  vlError error = {0};
   snprintf(all, sizeof all, "%s%s", c->shape, parameters);
   scene_text(text, medium_form, kind, all);
-  vlScene *scene = load_text(context, text, &error);
-  if (!scene)
-    fail_msg("%s\n%s", error.message, text);
+  vlScene *scene = need_scene(text);
   vlSceneDefs *defs = vl_scene_defs(scene);
   defs->build.color = VL_COLOR_SPECTRAL;
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   defs->render.spp = MEDIUM_SPP;
-  vlImage *image = render_scene(context, scene, &error);
-  if (!image)
-    fail_msg("%s\n%s", error.message, text);
+  vlImage *image = need_image(scene, text);
   Mean mean = mean_of_image(image);
   vl_image_destroy(image);
   return mean;

@@ -26,6 +26,18 @@ static inline void end(Model *m) {
   vl_context_destroy(m->context);
 }
 
+/* Triangles that velo copies: positions of vertices, three indices for each face. */
+static inline void add_triangles(Model *m, uint32_t vertices, const float *positions,
+                                 uint32_t faces, const uint32_t *indices, bool one_sided) {
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = vertices;
+  def.faces = faces;
+  def.positions = positions;
+  def.indices = indices;
+  def.one_sided = one_sided;
+  assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
+}
+
 /* A box whose faces look outwards, or inwards. */
 static inline void add_box(Model *m, const float low[3], const float high[3], bool inward,
                            bool one_sided) {
@@ -38,13 +50,7 @@ static inline void add_box(Model *m, const float low[3], const float high[3], bo
       p[3 * i + k] = i >> k & 1 ? high[k] : low[k];
   for (int i = 0; i < 36; i++)
     indices[i] = faces[inward ? i / 3 * 3 + 2 - i % 3 : i];
-  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.vertices = 8;
-  def.faces = 12;
-  def.positions = p;
-  def.indices = indices;
-  def.one_sided = one_sided;
-  assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
+  add_triangles(m, 8, p, 12, indices, one_sided);
 }
 
 static inline void complete(Model *m, vlCompleteDef *def) {

@@ -109,12 +109,7 @@ static void lone_corner(void **state) {
         indices[n] = n;
       }
     Model m = begin();
-    vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-    shape.vertices = n;
-    shape.faces = n / 3;
-    shape.positions = p;
-    shape.indices = indices;
-    assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
+    add_triangles(&m, n, p, n / 3, indices, false);
     vlCompleteDef def = first_image();
     complete(&m, &def);
     bool whole;
@@ -144,12 +139,7 @@ static void spire(void **state) {
   double framed[2][3];
   assert_false(vl_scene_framed(m.scene, framed[0], framed[1]));
   add_box(&m, low, high, false, false);
-  vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  shape.vertices = SIDES + 1;
-  shape.faces = SIDES;
-  shape.positions = p;
-  shape.indices = indices;
-  assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
+  add_triangles(&m, SIDES + 1, p, SIDES, indices, false);
   vlCompleteDef def = first_image();
   complete(&m, &def);
   bool whole;

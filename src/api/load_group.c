@@ -62,10 +62,8 @@ static bool gather(vlScene *scene, const Before *before, vlGroupId group,
                    vlLoadedGroup *loaded) {
   size_t count = scene->shapes.count - before->shapes;
   Loaded *all = vl_alloc_array(scene->context, count + 1, sizeof *all);
-  if (!all) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-    return false;
-  }
+  if (!all)
+    return vl_scene_fail_memory(scene);
   for (size_t i = 0; i < count; i++) {
     vlShapeDef *d = &scene->shapes.items[before->shapes + i];
     all[i] = (Loaded){.group = d->group.index, .reversed = d->reverse_orientation};

@@ -36,8 +36,7 @@ bool vl_label_make_unique(vlScene *scene, vlNameTable *table, const char *name, 
     return false;
   if (vl_names_add(scene->context, table, *result, 0))
     return true;
-  vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-  return false;
+  return vl_scene_fail_memory(scene);
 }
 
 void vl_label_of_file(const char *path, char name[VL_LABEL_SIZE]) {

@@ -426,7 +426,7 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
   }
   free_survey(scene, s);
   if (!ok)
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    vl_scene_fail_memory(scene);
   if (found)
     classify(scene, box, boxes, closed);
   if (!found) {
@@ -452,7 +452,7 @@ bool vl_closed_reach(vlScene *scene, const double (*from)[3], const double (*tow
     }
   free_survey(scene, s);
   if (!s)
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    vl_scene_fail_memory(scene);
   return s != NULL;
 }
 
@@ -483,10 +483,8 @@ static bool open_shape(vlScene *scene, vlShapeDef *d, const vlClosed *closed,
                        const double eye[3], uint64_t *count) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   uint32_t *kept = vl_alloc_array(scene->context, 3 * (size_t)d->faces, sizeof *kept), n = 0;
-  if (!kept) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-    return false;
-  }
+  if (!kept)
+    return vl_scene_fail_memory(scene);
   for (size_t face = 0; face < d->faces; face++) {
     if (stands_between(d, &m, face, closed, eye))
       continue;

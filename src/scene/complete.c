@@ -314,10 +314,8 @@ static bool fade_texture(vlScene *scene, vlTextureId *id) {
   vlImageDef def = vl_default_image_def(1, ROWS, 1);
   def.type = VL_PIXEL_F32;
   vlImage *image = NULL;
-  if (vl_image_create(scene->context, &def, &image) != VL_OK) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-    return false;
-  }
+  if (vl_image_create(scene->context, &def, &image) != VL_OK)
+    return vl_scene_fail_memory(scene);
   float *pixels = vl_image_pixels(image);
   for (int y = 0; y < ROWS; y++) {
     float v = 1 - ((float)y + 0.5f) / ROWS, t = v / 0.7f; /* rows from the top, where v is 1 */

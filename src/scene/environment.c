@@ -126,15 +126,10 @@ static void from_latitudes(const vlImage *from, const float *pixels, uint32_t ch
   }
 }
 
-static bool out_of_memory(vlScene *scene) {
-  vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-  return false;
-}
-
 static bool new_image(vlScene *scene, uint32_t side, uint32_t channels, vlImage **image) {
   vlImageDef def = vl_default_image_def(side, side, channels);
   def.type = VL_PIXEL_F32;
-  return vl_image_create(scene->context, &def, image) == VL_OK || out_of_memory(scene);
+  return vl_image_create(scene->context, &def, image) == VL_OK || vl_scene_fail_memory(scene);
 }
 
 static bool read_environment(vlScene *scene, const char *path, vlImage **image) {
@@ -159,8 +154,8 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
                   "high, or square",
                   path, from->width, from->height);
   channels = channels > 2 ? 3 : 1;
-  ok = ok &&
-       (vl_image_to_float(from, channel, channels, &pixels) == VL_OK || out_of_memory(scene));
+  ok = ok && (vl_image_to_float(from, channel, channels, &pixels) == VL_OK ||
+              vl_scene_fail_memory(scene));
   uint32_t side =
       from->height + from->height / 4; /* pixels at the horizon keep about their solid angle */
   ok = ok && new_image(scene, side > MAX_SIDE ? MAX_SIDE : side < 16 ? 16 : side, 3, image);

@@ -117,10 +117,8 @@ void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *wi
 
 bool vl_extent_groups(vlScene *scene, vlExtent **boxes) {
   *boxes = vl_alloc_array(scene->context, scene->groups.count + 1, sizeof **boxes);
-  if (!*boxes) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-    return false;
-  }
+  if (!*boxes)
+    return vl_scene_fail_memory(scene);
   const vlExtent everything = {{-INFINITY, -INFINITY, -INFINITY},
                                {INFINITY, INFINITY, INFINITY}};
   vlMat4 identity = vl_mat4_identity();

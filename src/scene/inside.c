@@ -130,10 +130,8 @@ bool vl_scene_add_lamps(vlScene *scene, const vlExtent *boxes, const double up[3
   if (!(most > 0) || !isfinite(most))
     return true; /* there is nothing to light */
   Rays *r = vl_alloc(scene->context, sizeof *r);
-  if (!r) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-    return false;
-  }
+  if (!r)
+    return vl_scene_fail_memory(scene);
   bool ok = find_eye(scene, &box, center) || find_free_point(scene, &box, up, r, most, center);
   ok = ok && place_lamps(scene, center, up, most, r, lamps);
   r->count = 0;

@@ -143,7 +143,7 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
   vlMediumDef *slot =
       scene->media.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->media) : NULL;
   if (!slot) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    vl_scene_fail_memory(scene);
     return none;
   }
   *slot = d;

@@ -81,10 +81,8 @@ bool vl_scene_add_choice(vlScene *scene, vlChoiceKind kind, const char *name, do
   if (!vl_scene_copy_string(scene, &name))
     return false;
   vlSceneChoice *choice = VL_PUSH(scene->context, &scene->choices);
-  if (!choice) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-    return false;
-  }
+  if (!choice)
+    return vl_scene_fail_memory(scene);
   *choice = (vlSceneChoice){kind, {name, seconds}};
   return true;
 }

@@ -21,6 +21,11 @@ vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const cha
   return vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
 }
 
+bool vl_scene_fail_memory(vlScene *scene) {
+  vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  return false;
+}
+
 bool vl_scene_stopped(vlScene *scene, double fraction) {
   if (!vl_task_stopped(scene->task, "reading", fraction))
     return false;

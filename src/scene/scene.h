@@ -133,6 +133,8 @@ bool vl_principled_transmits(const vlMaterialDef *def);
 /* Stores the error in the scene if it is the first one. Returns the code. */
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* The same for memory that is exhausted. Returns false. */
+bool vl_scene_fail_memory(vlScene *scene);
 
 /* True: the load that is running must stop; the scene then has the error CANCELLED. fraction:
  * as in vlStep. */
@@ -174,6 +176,14 @@ void vl_scene_drop_meshes(vlScene *scene);
 /* Like vl_scene_add_texture, but the scene already owns the image (def->image, def->data), so
  * it is not copied. */
 vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);
+
+/* For functions that add an object (scene/add.c). Whether one more than `count` can be added:
+ * the scene has no error, the def is not null, and its cookie is right. Otherwise it reports
+ * the reason; `what` names the object in the message. */
+bool vl_scene_may_add(vlScene *scene, const void *def, bool cookie, size_t count,
+                      vlSource source, const char *what);
+/* Reports the error "what: why". Returns false. */
+bool vl_scene_reject(vlScene *scene, vlSource source, const char *what, const char *why);
 
 /* Checks the members that the row describes: ranges, finite numbers, choices, existence and
  * type of textures. Then replaces what they point at with copies owned by the scene, except for

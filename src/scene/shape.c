@@ -265,7 +265,7 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
   vlShapeDef *slot =
       scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
   if (!slot) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    vl_scene_fail_memory(scene);
     return (vlShapeId){0};
   }
   *slot = *d;
@@ -369,7 +369,7 @@ vlGroupId vl_scene_add_group(vlScene *scene, const char *name) {
   vlSceneGroup *slot =
       scene->groups.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->groups) : NULL;
   if (!slot) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    vl_scene_fail_memory(scene);
     return none;
   }
   slot->name = name;

@@ -165,8 +165,7 @@ bool vl_gltf_fail(vlGltf *g, const vlGltfLocation *location, const char *format,
 bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfLocation *location,
                        const char *format, ...) __attribute__((format(printf, 4, 5)));
 static inline bool vl_gltf_fail_memory(vlGltf *g) {
-  vl_scene_fail(g->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-  return false;
+  return vl_scene_fail_memory(g->scene);
 }
 /* Writes the location from its outermost part inwards, cut to the size; nothing if it is null.
  * Returns the length. */

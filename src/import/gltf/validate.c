@@ -14,7 +14,7 @@ static void flush(vlGltf *g, vlScene *kept, uint32_t *reported) {
   if (e->code != VL_OK && e->code != VL_ERROR_MEMORY && ++*reported <= MAX_MESSAGES)
     vl_log(g->context, VL_LOG_ERROR, e, "no scene uses it, but: %s", e->message);
   if (e->code == VL_ERROR_MEMORY)
-    vl_scene_fail(kept, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    vl_scene_fail_memory(kept);
   vl_error_clear(e);
 }
 

@@ -34,8 +34,7 @@ void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) {
 }
 
 bool vl_obj_fail_memory(vlObj *obj) {
-  vl_scene_fail(obj->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-  return false;
+  return vl_scene_fail_memory(obj->scene);
 }
 
 /* ---- statements -------------------------------------------------------------------------- */
@@ -494,7 +493,7 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
   vlObj *obj = vl_alloc_zero(scene->context, 1, sizeof *obj);
   if (!obj) {
     vl_free(scene->context, data);
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    vl_scene_fail_memory(scene);
     return vl_scene_result(scene, error);
   }
   obj->context = scene->context;

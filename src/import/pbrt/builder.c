@@ -1,11 +1,14 @@
 /* import/pbrt/builder.c: executes the statements of a pbrt file: where each statement may stand
- * and which function handles it. Also imports a whole file. */
+ * and which function handles it; textures and materials wait for the end of the file, where
+ * they are resolved and linked to shapes. Also imports a whole file. */
 #include "import/pbrt/builder.h"
 #include "base/error.h"
 #include "import/pbrt/upgrade/detect.h"
 
 #include "base/text.h"
 #include "import/import.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 
 /* The part of a file where a directive may stand: options precede WorldBegin, the world follows
  * it. */
@@ -42,6 +45,43 @@ static const Rule rules[VL_DIR_TEXTURE + 1] = {
     [VL_DIR_SHAPE] = {"Shape", WORLD},
     [VL_DIR_TEXTURE] = {"Texture", WORLD},
 };
+
+/* ---- parameters that outlive their directive --------------------------------------------- */
+
+bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to) {
+  vlParamList *own = s->params;
+  for (size_t i = 0; i < own->list.count; i++)
+    if (!vl_scene_copy_source(import->scene, &own->list.items[i]->source))
+      return false;
+  if (!VL_RESERVE(import->context, &to->list, own->list.count))
+    return vl_import_fail_memory(import);
+  for (size_t i = 0; i < own->list.count; i++)
+    to->list.items[to->list.count++] = own->list.items[i];
+  VL_ARRAY_FREE(import->context, &own->list);
+  return true;
+}
+
+/* The statement's parameters follow the attributes: the last one given counts. */
+vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTarget target,
+                          bool is_texture) {
+  vlPending *p = is_texture ? VL_PUSH(import->context, &import->textures)
+                            : VL_PUSH(import->context, &import->materials);
+  if (!p) {
+    vl_import_fail_memory(import);
+    return NULL;
+  }
+  p->source = s->source;
+  p->space = import->state.space;
+  p->ctm = import->state.ctm[0];
+  if (!vl_scene_copy_source(import->scene, &p->source) ||
+      !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
+      !vl_import_keep_params(import, s, &p->params))
+    return NULL;
+  return p;
+}
+
+/* ---- statements that need no file of their own --------------------------------------------
+ */
 
 /* Records a directive that precedes WorldBegin. The last directive of a kind counts. */
 static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
@@ -270,6 +310,98 @@ static bool go_on(void *user, double fraction) {
                            0.5 * fraction); /* then the meshes of other files are read */
 }
 
+/* ---- the end of the file ----------------------------------------------------------------- */
+
+static bool link_shape(vlImport *import, const vlShapeLink *link) {
+  vlShapeDef *shape = &import->scene->shapes.items[link->shape];
+  bool is_interface = false;
+  if (link->material_name) {
+    if (!vl_import_material_id(import, link->material_name, link->material_source,
+                               &shape->material, &is_interface))
+      return false;
+  } else if (link->material) {
+    const vlPending *p = &import->materials.items[link->material - 1];
+    shape->material.index = p->id;
+    is_interface = p->is_interface;
+  }
+  if (is_interface && shape->emission.index) {
+    vl_import_warn(
+        import, VL_LOG_WARNING, shape->source,
+        "a shape of material \"interface\" gives no light: its area light is ignored");
+    shape->emission.index = 0;
+  }
+  if (link->displacement &&
+      !vl_import_texture_id(import, link->displacement, false, link->displacement_source,
+                            &shape->displacement.texture))
+    return false;
+  return !link->alpha || vl_import_texture_id(import, link->alpha, false, link->alpha_source,
+                                              &shape->alpha.texture);
+}
+
+/* While diagnosing: unfinished textures are skipped and unfinished materials become the default
+ * one. */
+static bool give_up(vlImport *import) {
+  if (!vl_import_recover(import))
+    return false;
+  import->depth = 0;
+  for (size_t i = 0; i < import->textures.count; i++)
+    if (import->textures.items[i].state == VL_IN_PROGRESS)
+      import->textures.items[i].state = VL_DONE;
+  for (size_t i = 0; i < import->materials.count; i++) {
+    vlPending *p = &import->materials.items[i];
+    if (p->state != VL_IN_PROGRESS)
+      continue;
+    vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+    def.name = p->name;
+    p->state = VL_DONE;
+    p->id = vl_scene_add_material(import->scene, &def).index;
+    if (!p->id)
+      return false;
+  }
+  return true;
+}
+
+static bool finish(vlImport *import) {
+  vlScene *scene = import->scene;
+  if (scene->error.code != VL_OK)
+    return false;
+  if (!import->in_world)
+    return vl_import_fail(import, VL_ERROR_SCENE, (vlSource){import->first, 0, 0},
+                          "the file has no WorldBegin");
+  if (import->stack.count) {
+    const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
+    return vl_import_fail(import, VL_ERROR_SCENE, top->source, "%s is never closed",
+                          top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
+  }
+  if (!vl_import_flush_curves(import) || !vl_import_flush_meshes(import) ||
+      !vl_import_flush_spheres(import))
+    return false;
+  if (!vl_import_read_meshes(import))
+    return false;
+  for (uint32_t i = 0; i < import->textures.count; i++)
+    if (!vl_import_finish_texture(import, i) && !give_up(import))
+      return false;
+  for (uint32_t i = 0; i < import->materials.count; i++)
+    if (!vl_import_finish_material(import, i) && !give_up(import))
+      return false;
+  for (size_t i = 0; i < import->links.count; i++)
+    if (!link_shape(import, &import->links.items[i]) && !give_up(import))
+      return false;
+  if (!vl_import_finish_motion(import))
+    return false;
+  for (size_t i = 0; i < import->object_list.count; i++) {
+    const vlObject *object = &import->object_list.items[i];
+    if (object->defined)
+      continue;
+    vl_import_fail(import, VL_ERROR_SCENE, object->source, "there is no object \"%s\"",
+                   vl_short_text(object->name).text);
+    if (!vl_import_recover(import))
+      return false;
+  }
+  vl_import_note_rough_coats(import);
+  return vl_import_finish_media(import);
+}
+
 /* ---- a whole file ------------------------------------------------------------------------ */
 
 static void free_pending(vlContext *context, vlPending *items, size_t count) {
@@ -356,7 +488,7 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
               : data ? vl_parse_memory(import->context, data, size, path, &target)
                      : vl_parse_file(import->context, path, &target);
   if (fine)
-    vl_import_finish(import);
+    finish(import);
   vl_repairs_report(import->context, &import->repairs, path);
   if (!data && scene->error.code == VL_ERROR_SCENE)
     fail_old(import, path);

@@ -312,8 +312,8 @@ bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *abs
 bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
                            vlMaterialId *id, bool *is_interface);
 
-/* Takes over the parameters of a statement, so that they outlive it. The scene keeps the file
- * names of their sources. */
+/* Moves the parameters of a statement to the end of `to`, so that they outlive it. The scene
+ * keeps the file names of their sources. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
 /* Keeps a texture or a material, with the attributes of the target, until the end of the file.
  * Null after an error. */
@@ -327,7 +327,8 @@ bool vl_import_material(vlImport *import, const vlStatement *s);
 bool vl_import_make_named_material(vlImport *import, const vlStatement *s);
 bool vl_import_named_material(vlImport *import, const vlStatement *s);
 bool vl_import_texture(vlImport *import, const vlStatement *s);
-bool vl_import_finish(vlImport *import); /* resolves everything after the last statement */
+/* Notes that pbrt shows the rough coats of the scene brighter. */
+void vl_import_note_rough_coats(vlImport *import);
 
 bool vl_import_light(vlImport *import, const vlStatement *s);
 bool vl_import_area_light(vlImport *import, const vlStatement *s);

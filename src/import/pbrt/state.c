@@ -1,6 +1,6 @@
 /* import/pbrt/state.c: pbrt's graphics state: current transforms, named coordinate systems, the
- * stack. */
-
+ * stack, attributes, objects and their instances. */
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "math/double3.h"
 
@@ -142,4 +142,81 @@ bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource 
   }
   vl_import_restore(import);
   return true;
+}
+
+/* ---- attributes -------------------------------------------------------------------------- */
+
+bool vl_import_attribute(vlImport *import, const vlStatement *s) {
+  static const char *const targets[] = {"shape", "light", "material", "medium", "texture"};
+  int target = -1;
+  for (int i = 0; i < VL_ATTR_TARGETS; i++)
+    if (vl_text_is(s->names[0], targets[i]))
+      target = i;
+  if (target < 0)
+    return vl_import_fail(
+        import, VL_ERROR_SCENE, s->source,
+        "Attribute: unknown target \"%s\" (known: shape, light, material, medium, texture)",
+        vl_short_text(s->names[0]).text);
+  for (size_t i = 0; i < s->params->list.count; i++)
+    s->params->list.items[i]->optional = true;
+  if (!vl_import_keep_params(import, s, &import->attributes[target]))
+    return false;
+  import->state.attributes[target] = import->attributes[target].list.count;
+  return true;
+}
+
+/* ---- objects ----------------------------------------------------------------------------- */
+
+/* An object may be instanced before it is defined: its group is made at the first use. */
+static vlObject *find_object(vlImport *import, const char *name, vlSource source) {
+  uint32_t index;
+  if (vl_names_find(&import->objects, name, &index))
+    return &import->object_list.items[index];
+  const char *kept = vl_import_keep(import, name);
+  if (!kept || !vl_scene_copy_source(import->scene, &source))
+    return NULL;
+  vlGroupId group = vl_scene_add_group(import->scene, kept);
+  if (!group.index)
+    return NULL;
+  vlObject *object = VL_PUSH(import->context, &import->object_list);
+  if (!object || !vl_names_add(import->context, &import->objects, kept,
+                               (uint32_t)import->object_list.count - 1)) {
+    vl_import_fail_memory(import);
+    return NULL;
+  }
+  *object = (vlObject){.name = kept, .group = group, .source = source};
+  return object;
+}
+
+bool vl_import_object_begin(vlImport *import, const vlStatement *s) {
+  if (import->in_object)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "ObjectBegin inside of an object: objects do not nest");
+  vlObject *object = find_object(import, s->names[0], s->source);
+  if (!object)
+    return false;
+  if (object->defined)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "object \"%s\" is defined a second time",
+                          vl_short_text(s->names[0]).text);
+  object->defined = true;
+  import->in_object = true;
+  import->object = object->group;
+  return vl_import_push(import, 'o', s->source);
+}
+
+bool vl_import_object_end(vlImport *import, const vlStatement *s) {
+  if (!vl_import_pop(import, 'o', "ObjectEnd", s->source))
+    return false;
+  import->in_object = false;
+  import->object = (vlGroupId){0};
+  return true;
+}
+
+bool vl_import_object_instance(vlImport *import, const vlStatement *s) {
+  if (import->in_object)
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "ObjectInstance inside of an object: objects do not nest");
+  const vlObject *object = find_object(import, s->names[0], s->source);
+  return object && vl_import_add_instance(import, object->group, import->state.ctm, s->source);
 }

@@ -6,4 +6,5 @@ const ProjectionCase division_projection = {
     .focal = 20,
     .shape = {-0.2, VL_UNSET},
     .known = {{0.89605538457134396, 1}, {-0.89605538457134396, -1}},
+    .end = CASE_PI,
 };

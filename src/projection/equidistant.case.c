@@ -6,4 +6,5 @@ const ProjectionCase equidistant_projection = {
     .shape = NO_SHAPE,
     .solid_angle = 2 * CASE_PI,
     .known = {{CASE_PI / 3, CASE_PI / 3}, {-1.5, -1.5}},
+    .end = CASE_PI,
 };

@@ -5,4 +5,5 @@ const ProjectionCase equirectangular_projection = {
     .shape = NO_SHAPE,
     .solid_angle = 4 * CASE_PI,
     .known = {{CASE_PI / 3, CASE_PI / 3}, {-2.5, -2.5}},
+    .end = CASE_PI,
 };

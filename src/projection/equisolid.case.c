@@ -6,4 +6,5 @@ const ProjectionCase equisolid_projection = {
     .shape = NO_SHAPE,
     .solid_angle = 2 * CASE_PI,
     .known = {{CASE_PI / 3, 1}, {-CASE_PI / 3, -1}},
+    .end = CASE_PI,
 };

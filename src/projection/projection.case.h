@@ -20,6 +20,8 @@ typedef struct ProjectionCase {
   bool optics;
   double solid_angle; /* of the whole image, steradians; 0: not known */
   ProjectionKnown known[2];
+  double end; /* by fx: the angle to the axis, towards +x, up to which directions have film
+                 points, radians; 0: not known */
 } ProjectionCase;
 
 #define NO_SHAPE \

@@ -5,4 +5,5 @@ const ProjectionCase sine_projection = {
     .fov = 180,
     .shape = NO_SHAPE,
     .known = {{CASE_PI / 3, HALF_SQRT3}, {-CASE_PI / 6, -.5}},
+    .end = CASE_PI / 2,
 };

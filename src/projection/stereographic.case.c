@@ -6,4 +6,5 @@ const ProjectionCase stereographic_projection = {
     .shape = NO_SHAPE,
     .solid_angle = 2 * CASE_PI,
     .known = {{CASE_PI / 3, 1.1547005383792515}, {-CASE_PI / 3, -1.1547005383792515}},
+    .end = CASE_PI,
 };

@@ -1,13 +1,16 @@
 /* conformance/cameras.h: the laws of projections and distortions: a film point's ray leads back
  * to it; many points at once give the same bits as one; the solid angle is the derivative's;
- * known radii; velo's camera files hold the camera. */
+ * known radii; velo's camera files hold the camera. Those of the whole domain: camera_ways.h.
+ */
 #ifndef TEST_CONFORMANCE_CAMERAS_H
 #define TEST_CONFORMANCE_CAMERAS_H
 
+#include "camera_ways.h"
 #include "conformance.h"
 #include "distortion/distortion.case.h"
 #include "files.h"
 #include "projection/projection.case.h"
+#include "projection/properties.row.h"
 #include "unit.h"
 #include "velo/camera_file.h"
 #include "velo/distortion.h"
@@ -336,6 +339,38 @@ static bool make_camera(const char *family, const char *kind, vlCameraDef *def,
   return false;
 }
 
+/* The derivatives at some points of the film, 5 away. */
+static void check_derivatives_in_film(const char *family, const char *kind,
+                                      const vlCamera *camera) {
+  enum { EACH = 11 };
+  static double pixels[2 * FILM_POINTS];
+  static double points[3 * FILM_POINTS];
+  uint32_t count = 0;
+  film_points(pixels);
+  for (int i = 0; i < FILM_POINTS; i += EACH) {
+    double o[3];
+    double d[3];
+    if (!vl_camera_unproject(camera, pixels[2 * i], pixels[2 * i + 1], o, d))
+      continue;
+    for (int k = 0; k < 3; k++)
+      points[3 * count + (uint32_t)k] = o[k] + 5 * d[k];
+    count++;
+  }
+  check_derivatives(family, kind, camera, points, count);
+}
+
+/* The whole domain of a projection, to its end. */
+static void check_domain(const char *name, const vlCameraDef *def, const vlCamera *camera,
+                         const ProjectionCase *c) {
+  check_ways("projections", name, camera);
+  check_ray_width(name, camera);
+  /* without distortion a perspective camera sees all that lies ahead */
+  bool circles = vl_projection_row(def->projection)->traits & VL_PROJECTION_CIRCLE &&
+                 def->projection != VL_PROJECTION_PERSPECTIVE;
+  if (c->end > 0)
+    check_end(name, def, c->end, circles);
+}
+
 static void laws_of_projections(void **state) {
   (void)state;
   vlOptics *optics = NULL;
@@ -365,6 +400,9 @@ static void laws_of_projections(void **state) {
     if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
       check_solid_angle(name, &camera, c->solid_angle);
     check_known(name, &camera, c);
+    if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
+      check_domain(name, &def, &camera, c);
+    check_derivatives_in_film("projections", name, &camera);
     if (!c->optics)
       check_file("projections", name, &def, &camera);
     if (!c->optics)
@@ -386,6 +424,8 @@ static void check_distortion(const char *name, const DistortionCase *c, vlDistor
   if (!make_camera("distortions", name, &def, &camera))
     return;
   check_round_trip("distortions", name, &camera, 1e-8);
+  check_ways("distortions", name, &camera);
+  check_derivatives_in_film("distortions", name, &camera);
   check_file("distortions", name, &def, &camera);
   check_scene_file("distortions", name, &def, "pbrt");
   check_scene_file("distortions", name, &def, "gltf");

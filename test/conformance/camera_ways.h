@@ -1,0 +1,243 @@
+/* conformance/camera_ways.h: laws of projections and distortions over their whole domain: each
+ * direction that has a film point is found again from it, also close to where the camera's view
+ * ends; it ends where the model says; the derivatives are those of differences; the width of
+ * rays is that of the central pixel's solid angle. */
+#ifndef TEST_CONFORMANCE_CAMERA_WAYS_H
+#define TEST_CONFORMANCE_CAMERA_WAYS_H
+
+#include "camera/parts.h"
+#include "camera/rays.h"
+#include "conformance.h"
+#include "unit.h"
+#include "velo/camera.h"
+#include "velo/jacobian.h"
+#include "velo/projection.h"
+
+enum { WAYS = 4096, AZIMUTHS = 16, NEARNESSES = 7 };
+
+/* ---- there and back ---------------------------------------------------------------------- */
+
+/* Farther out than this, in focal lengths, cancellation leaves few digits. */
+#define FARTHEST 1e3
+
+/* How many directions were tried, and what became of them. */
+typedef struct Ways {
+  uint32_t seen, lost;
+  double worst; /* pixels, between film points, per pixel of their distance from the centre */
+} Ways;
+
+/* A direction that has a film point is found from it; false: it has none. */
+static bool go_and_return(const vlCamera *camera, const double direction[3], Ways *ways) {
+  double film[2];
+  double again[2] = {0, 0};
+  double o[3];
+  double d[3];
+  if (!vl_camera_project(camera, direction, film, NULL))
+    return false;
+  ways->seen++;
+  if (!vl_camera_unproject(camera, film[0], film[1], o, d) ||
+      !vl_camera_project(camera, d, again, NULL)) {
+    ways->lost++;
+    return true;
+  }
+  double size = camera->fx + fabs(film[0]) + fabs(film[1]);
+  for (int k = 0; k < 2 && size < FARTHEST * camera->fx; k++)
+    ways->worst = fmax(ways->worst, fabs(again[k] - film[k]) / size);
+  return true;
+}
+
+static void direction_at(double theta, double azimuth, double d[3]) {
+  d[0] = sin(theta) * cos(azimuth);
+  d[1] = sin(theta) * sin(azimuth);
+  d[2] = cos(theta);
+}
+
+/* The angle from the axis, radians, up to which all directions of an azimuth have film points:
+ * pi where all have. */
+static double end_of_view(const vlCamera *camera, double azimuth) {
+  enum { STEPS = 2000, HALVINGS = 50 };
+  double d[3];
+  double film[2];
+  double low = 0;
+  double high = 0;
+  for (int i = 0; i < STEPS; i++) {
+    high = PI * (i + 0.5) / STEPS;
+    direction_at(high, azimuth, d);
+    if (!vl_camera_project(camera, d, film, NULL))
+      break;
+    low = high;
+  }
+  if (low == high)
+    return PI;
+  for (int i = 0; i < HALVINGS; i++) {
+    double middle = 0.5 * (low + high);
+    direction_at(middle, azimuth, d);
+    bool seen = vl_camera_project(camera, d, film, NULL);
+    low = seen ? middle : low;
+    high = seen ? high : middle;
+  }
+  return low;
+}
+
+static void check_ways(const char *family, const char *kind, const vlCamera *camera) {
+  Ways ways = {0};
+  double d[3];
+  for (uint32_t i = 0; i < WAYS; i++) {
+    even_direction(i, WAYS, 0.2, d);
+    go_and_return(camera, d, &ways);
+  }
+  for (int a = 0; a < AZIMUTHS; a++) {
+    double azimuth = 2 * PI * (a + 0.3) / AZIMUTHS;
+    double end = end_of_view(camera, azimuth);
+    for (int k = 1; k < NEARNESSES; k++) {
+      direction_at(end * (1 - pow(10, -k)), azimuth, d);
+      go_and_return(camera, d, &ways);
+    }
+  }
+  if (ways.lost)
+    broken(family, kind, "%u of %u directions with a film point have no way back", ways.lost,
+           ways.seen);
+  if (!(ways.worst < 1e-9))
+    broken(family, kind, "a direction comes back %g off", ways.worst);
+}
+
+/* ---- the end of the view ----------------------------------------------------------------- */
+
+/* end: radians from the axis, towards +x; circles: a smaller view can be asked for. */
+static void check_end(const char *kind, const vlCameraDef *def, double end, bool circles) {
+  vlCameraDef narrow = *def;
+  vlCamera camera;
+  narrow.fov = VL_UNSET;
+  narrow.fx = narrow.fy = 20;
+  assert_int_equal(vl_camera_make(&narrow, &camera, NULL, NULL), VL_OK);
+  double seen = end_of_view(&camera, 0);
+  if (!(fabs(seen - end) < 1e-5))
+    broken("projections", kind, "its view ends at %.6f radians, not %.6f", seen, end);
+  if (!circles)
+    return;
+  narrow.max_angle = 0.7 * end;
+  assert_int_equal(vl_camera_make(&narrow, &camera, NULL, NULL), VL_OK);
+  for (int a = 0; a < AZIMUTHS; a++) {
+    seen = end_of_view(&camera, 2 * PI * a / AZIMUTHS);
+    if (fabs(seen - 0.7 * end) < 1e-9)
+      continue;
+    broken("projections", kind, "a view of %.6f radians ends at %.6f", 0.7 * end, seen);
+    return;
+  }
+}
+
+/* ---- the width of rays ------------------------------------------------------------------- */
+
+/* The angle that the central pixel subtends, which rays have as their width. The pixel is not
+ * quite straight ahead: there the equal-area panorama has an edge. */
+static void check_ray_width(const char *kind, const vlCamera *camera) {
+  static const double ahead[3] = {0.02, 0.013, 1};
+  double film[2];
+  vlCameraCompiled compiled;
+  vl_camera_compile(camera, &compiled);
+  if (!vl_camera_project(camera, ahead, film, NULL)) {
+    broken("projections", kind, "does not see ahead");
+    return;
+  }
+  double side = sqrt(vl_camera_solid_angle(camera, film[0], film[1]));
+  double width = (double)compiled.pixel_spread;
+  if (!(fabs(width - side) < 3e-3 * side))
+    broken("projections", kind, "rays widen by %.6f; the central pixel's side is %.6f", width,
+           side);
+}
+
+/* ---- derivatives ------------------------------------------------------------------------- */
+
+/* The film point with one number moved by h; column: of the Jacobian. */
+static bool film_of_moved(const vlCamera *camera, const double point[3], int column, double h,
+                          double film[2]) {
+  vlCamera c = *camera;
+  double p[3] = {point[0], point[1], point[2]};
+  double *const intrinsics[5] = {&c.fx, &c.fy, &c.skew, &c.cx, &c.cy};
+  vlDistortionMap *m = &c.distortion;
+  int bent = column - VL_JACOBIAN_DISTORTION;
+  if (column < VL_JACOBIAN_POSE)
+    p[column] += h;
+  else if (column < VL_JACOBIAN_SHAPE)
+    *intrinsics[column - VL_JACOBIAN_INTRINSICS] += h;
+  else if (column < VL_JACOBIAN_DISTORTION)
+    c.shape[column - VL_JACOBIAN_SHAPE] += h;
+  else if (bent < 6)
+    m->numerator[bent] += h;
+  else if (bent < 9)
+    m->denominator[bent - 6] += h;
+  else if (bent < 11)
+    m->tangential[bent - 9] += h;
+  else
+    m->prism[bent - 11] += h;
+  return vl_camera_project(&c, p, film, NULL);
+}
+
+/* Central differences of fourth order. False: a number leaves the domain, or the film is cut
+ * there. */
+static bool film_difference(const vlCamera *camera, const double point[3], int column,
+                            double by[2]) {
+  static const double weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+  static const double at[4] = {-2, -1, 1, 2};
+  double h = column < VL_JACOBIAN_POSE ? 1e-3 : 1e-4;
+  double here[2];
+  double film[2];
+  by[0] = by[1] = 0;
+  if (!vl_camera_project(camera, point, here, NULL))
+    return false;
+  for (int i = 0; i < 4; i++) {
+    if (!film_of_moved(camera, point, column, at[i] * h, film))
+      return false;
+    for (int k = 0; k < 2; k++) {
+      if (fabs(film[k] - here[k]) > 1)
+        return false;
+      by[k] += weight[i] * film[k] / h;
+    }
+  }
+  return true;
+}
+
+/* The last two columns are angles of the sensor's tilt, which the compiled camera has not. */
+static bool moves(const vlCamera *camera, int column) {
+  bool shape = column >= VL_JACOBIAN_SHAPE && column < VL_JACOBIAN_DISTORTION;
+  if (column >= VL_JACOBIAN_POSE && column < VL_JACOBIAN_INTRINSICS)
+    return false;
+  if (shape)
+    return camera->projection != VL_PROJECTION_CUBE;
+  return column < VL_JACOBIAN_DISTORTION ||
+         (camera->distortion.steps > 0 && column < VL_JACOBIAN_COLUMNS - 2);
+}
+
+/* points: 3 numbers each. */
+static void check_derivatives(const char *family, const char *kind, const vlCamera *camera,
+                              const double *points, uint32_t count) {
+  static double rows[2 * VL_JACOBIAN_COLUMNS];
+  uint32_t compared = 0;
+  uint32_t wrong = 0;
+  int column_of_wrong = 0;
+  for (uint32_t i = 0; i < count; i++) {
+    const double *point = points + 3 * i;
+    uint8_t valid;
+    vlError error = {0};
+    assert_int_equal(vl_camera_project_jacobian(camera, 1, point, rows, &valid, &error), VL_OK);
+    for (int column = 0; valid && column < VL_JACOBIAN_COLUMNS; column++) {
+      double by[2];
+      if (!moves(camera, column) || !film_difference(camera, point, column, by))
+        continue;
+      compared++;
+      for (int k = 0; k < 2; k++) {
+        double given = rows[k * VL_JACOBIAN_COLUMNS + column];
+        bool same = fabs(given - by[k]) <= 1e-5 * (camera->fx + fabs(by[k]));
+        wrong += !same;
+        column_of_wrong = same ? column_of_wrong : column;
+      }
+    }
+  }
+  if (compared < count)
+    broken(family, kind, "%u derivatives for %u points", compared, count);
+  if (wrong)
+    broken(family, kind, "%u of %u derivatives are not differences, the last by number %d",
+           wrong, compared, column_of_wrong);
+}
+
+#endif

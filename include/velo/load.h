@@ -116,6 +116,10 @@ typedef struct vlCompleteDef {
   /** The point, in world space, that stands for the camera when walls are left out. Unset: the
    * added camera's eye, or a point far away behind it. */
   double walls_from[3];
+  /** One-sided faces (vlShapeDef.one_sided) are seen from both sides. With open_walls it is
+   * chosen for an object that is wound the wrong way: its faces look inwards, and it is no
+   * room. Default false. */
+  bool both_sides;
 } vlCompleteDef;
 /** The default def. */
 VL_API vlCompleteDef vl_default_complete_def(void);

@@ -84,6 +84,7 @@ class Complete(TypedDict, total=False):
     """Of what completes a file: the members of vlCompleteDef."""
     azimuth: Any
     backdrop: Any
+    both_sides: Any
     elevation: Any
     environment: Any
     find_up: Any

@@ -656,7 +656,7 @@ def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = 
 
     Keywords: the members of vlLoadDef (permissive, strict, search_path, time, scene, animation, variant, camera, scene_unit) and of
     vlCompleteDef (environment: auto, none, studio, window, evening, sky, white, lamps or the path of an image; rotation in radians, strength, up,
-    front, ground, reframe, framing, azimuth, elevation, backdrop, ground_middle, ground_radius, open_walls, walls_from)."""
+    front, ground, reframe, framing, azimuth, elevation, backdrop, ground_middle, ground_radius, open_walls, walls_from, both_sides)."""
     scene = Scene(context=context)
     words: dict[str, Any] = {**keywords}
     loading = {name: words.pop(name) for name in _LOAD if name in words}

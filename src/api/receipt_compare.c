@@ -92,6 +92,8 @@ static void compare_objects(Comparison *c, const char *thing, const json_t *then
   json_t *value;
   json_object_foreach((json_t *)(uintptr_t)now, key, value) {
     const json_t *old = json_object_get(then, key);
+    if (!old && json_is_false(value))
+      continue; /* a switch that earlier versions do not have; it is off */
     if ((!extent || is_extent(key) == *extent) && (!old || !json_equal(old, value)))
       differ_value(c, thing, key, old, value);
   }

@@ -7,6 +7,7 @@
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
+#include "scene/turned.h"
 #include "velo/edit.h"
 #include "velo/shape_kinds.h"
 
@@ -334,25 +335,61 @@ static bool has_contents(const vlScene *scene, const vlExtent *boxes, const bool
   return inner.low[0] <= inner.high[0];
 }
 
-/* A shell whose faces look inwards: from outside one sees mostly backs, from the middle mostly
- * fronts. */
-static bool find_inward(const vlScene *scene, const vlExtent *boxes, const Survey *s,
-                        vlClosed *closed, double covered, double front) {
-  int met = 0, backs = 0, one_sided = 0, whole = 0;
+/* What rays from the eye say of the faces that show it their backs. */
+typedef struct Backs {
+  int met, count; /* rays that meet something; its back */
+  int one_sided;  /* of these, by surfaces that are seen from one side, or emit */
+  int against;    /* by meshes whose vertex normals look the other way */
+  int whole;      /* by these, or by instances */
+} Backs;
+
+static Backs count_backs(const Survey *s, vlClosed *closed) {
+  Backs backs = {.count = 0};
   for (int i = 0; i < OUTSIDE; i++) {
     const Seen *seen = &s->seen[i];
-    met += seen->placed != NULL;
+    backs.met += seen->placed != NULL;
     if (!seen->placed || !seen->back)
       continue;
-    backs++;
-    one_sided += seen->placed->def->one_sided || seen->placed->def->emission.index;
-    whole += normals_disagree(seen->placed) || !seen->placed->fixed;
+    const bool against = normals_disagree(seen->placed);
+    backs.count++;
+    backs.one_sided += seen->placed->def->one_sided || seen->placed->def->emission.index;
+    backs.against += against;
+    backs.whole += against || !seen->placed->fixed;
     closed->shell[seen->placed->shape] = true;
   }
-  if (!(backs * 10 > met * 6 && covered > 0.8 && front > 0.6) || 2 * whole > backs)
+  return backs;
+}
+
+/* Whether the shell is one convex shape: a dome, a panorama. */
+static bool is_convex_shell(const vlScene *scene, const bool *shell) {
+  size_t shapes = 0, convex = 0;
+  for (size_t i = 0; i < scene->shapes.count && shapes < 2; i++) {
+    shapes += shell[i];
+    convex += shell[i] && is_convex(&scene->shapes.items[i]);
+  }
+  return shapes == 1 && convex == 1;
+}
+
+/* A shell whose faces look inwards: from outside one sees mostly backs, and from the middle
+ * mostly fronts, of a room; or it is an object that is wound the wrong way. */
+static bool find_inward(const vlScene *scene, const vlExtent *box, const vlExtent *boxes,
+                        const Survey *s, bool objects, vlClosed *closed, double covered,
+                        double front) {
+  const Backs backs = count_backs(s, closed);
+  if (!(backs.count * 10 > backs.met * 6))
     return false;
-  return 2 * one_sided > backs ||
-         has_contents(scene, boxes, closed->shell); /* else its winding may be wrong */
+  const bool seen_through = 2 * backs.one_sided > backs.count,
+             whole = 2 * backs.whole > backs.count,
+             contents = has_contents(scene, boxes, closed->shell),
+             surrounds = covered > 0.8 && front > 0.6;
+  bool turned = objects && whole && 2 * backs.against > backs.count;
+  if (objects && !whole && !is_convex_shell(scene, closed->shell))
+    turned = vl_turned_is(scene, box, closed->shell, contents, surrounds);
+  if (turned && seen_through)
+    closed->kind = VL_CLOSED_TURNED;
+  if (turned || whole)
+    return turned && seen_through;
+  return surrounds && (seen_through || contents); /* else its winding may be wrong */
 }
 
 /* A convex shell of one shape that hides all others. */
@@ -405,7 +442,7 @@ static void free_survey(vlScene *scene, Survey *s) {
 }
 
 bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
-                    const double eye[3], vlClosed *closed) {
+                    const double eye[3], bool objects, vlClosed *closed) {
   *closed = (vlClosed){.kind = VL_CLOSED_NOT};
   for (int i = 0; i < 3; i++)
     closed->middle[i] = 0.5 * (box->low[i] + box->high[i]);
@@ -419,7 +456,7 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
     aim(s, box, eye);
     vl_parallel_for(scene->context, RAYS, cast, s);
     int best = best_point(s, &covered, &front);
-    found = closed->inward = find_inward(scene, boxes, s, closed, covered, front);
+    found = closed->inward = find_inward(scene, box, boxes, s, objects, closed, covered, front);
     found = found || find_outward(scene, boxes, s, closed, covered);
     if (found)
       memcpy(closed->middle, s->o[OUTSIDE + best * AROUND], sizeof closed->middle);
@@ -427,7 +464,7 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
   free_survey(scene, s);
   if (!ok)
     vl_scene_fail_memory(scene);
-  if (found)
+  if (found && closed->kind != VL_CLOSED_TURNED)
     classify(scene, box, boxes, closed);
   if (!found) {
     vl_free(scene->context, closed->shell);

@@ -6,10 +6,11 @@
 #include "scene/extent.h"
 
 typedef enum vlClosedKind {
-  VL_CLOSED_NOT,  /* the model is seen from outside */
-  VL_CLOSED_ROOM, /* its walls hide it */
-  VL_CLOSED_DOME, /* a shell eight times as large as what it contains, or larger */
-  VL_CLOSED_EMPTY /* a shell that contains nothing: a panorama */
+  VL_CLOSED_NOT,   /* the model is seen from outside */
+  VL_CLOSED_ROOM,  /* its walls hide it */
+  VL_CLOSED_DOME,  /* a shell eight times as large as what it contains, or larger */
+  VL_CLOSED_EMPTY, /* a shell that contains nothing: a panorama */
+  VL_CLOSED_TURNED /* an object seen from outside whose one-sided faces look into it */
 } vlClosedKind;
 
 /* What surrounds a model. */
@@ -23,9 +24,10 @@ typedef struct vlClosed {
 } vlClosed;
 
 /* Finds out by several hundred rays: from `eye` into the scene's box, and from its middle in
- * all directions. False: the scene holds the error. */
+ * all directions. objects: TURNED is told from the other kinds, which it else is one of. False:
+ * the scene holds the error. */
 bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
-                    const double eye[3], vlClosed *closed);
+                    const double eye[3], bool objects, vlClosed *closed);
 
 /* How far each of `count` rays gets until it meets a mesh, in lengths of its direction;
  * INFINITY where it meets none, or the scene has more than 8 million faces. False: the scene

@@ -235,7 +235,7 @@ static bool is_inside(const vlClosed *closed) {
 static bool choose_walls(vlScene *scene, const View *v, const vlExtent *whole,
                          const vlExtent *boxes, double from[3], vlClosed *closed) {
   double size = 0, far_away[3];
-  if (!vl_closed_find(scene, whole, boxes, from, closed))
+  if (!vl_closed_find(scene, whole, boxes, from, true, closed))
     return false;
   if (!is_inside(closed))
     return true;
@@ -252,7 +252,7 @@ static bool choose_walls(vlScene *scene, const View *v, const vlExtent *whole,
   }
   /* what is found must be found from that point alone */
   vlClosed again;
-  if (!vl_closed_find(scene, whole, boxes, far_away, &again))
+  if (!vl_closed_find(scene, whole, boxes, far_away, true, &again))
     return false;
   bool same = again.kind == closed->kind;
   if (same)
@@ -279,6 +279,12 @@ static bool open_model(vlScene *scene, const vlClosed *closed, const double from
   return true;
 }
 
+/* Lets one-sided faces be seen from both sides, also those in groups. */
+static void show_both_sides(vlScene *scene) {
+  for (size_t i = 0; i < scene->shapes.count; i++)
+    scene->shapes.items[i].one_sided = false;
+}
+
 /* Leaves out the walls of a closed model. *box: what the camera and the ground are for. */
 static bool open_walls(vlScene *scene, const View *v, bool camera, vlExtent *box,
                        const vlExtent *boxes, vlClosed *closed) {
@@ -287,9 +293,14 @@ static bool open_walls(vlScene *scene, const View *v, bool camera, vlExtent *box
   double from[3];
   bool given = !vl_is_unset(done->walls_from[0]);
   memcpy(from, given ? done->walls_from : scene->defs.camera.eye, sizeof from);
-  bool ok = given ? vl_closed_find(scene, &whole, boxes, from, closed)
+  bool ok = given ? vl_closed_find(scene, &whole, boxes, from, false, closed)
                   : choose_walls(scene, v, &whole, boxes, from, closed);
-  done->open_walls = ok && closed->kind != VL_CLOSED_NOT;
+  const bool turned = ok && closed->kind == VL_CLOSED_TURNED;
+  done->both_sides = done->both_sides || turned;
+  if (turned)
+    vl_log(scene->context, VL_LOG_INFO, NULL,
+           "the model's faces look inwards: they are seen from both sides");
+  done->open_walls = ok && closed->kind != VL_CLOSED_NOT && !turned;
   if (done->open_walls) {
     memcpy(done->walls_from, from, sizeof from);
     frame_closed(scene, v, camera, closed, box, boxes);
@@ -603,6 +614,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   if (ok && lamps)
     ok = vl_scene_add_lamps(scene, boxes, axes.up, done->strength);
   vl_free(scene->context, boxes);
+  if (done->both_sides)
+    show_both_sides(scene);
   if (vl_is_unset(done->rotation))
     done->rotation = 0;
   if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, done, kind))

@@ -206,6 +206,7 @@ static const vlParameter complete_parameters[] = {
              "the point that stands for the camera when walls are left out; unset: where the "
              "added camera stands",
              .flags = VL_PARAMETER_VECTOR | VL_PARAMETER_UNSET),
+    COMPLETE(BOOL, both_sides, "one-sided faces are seen from both sides", .unit = NULL),
 };
 static const vlKindRow complete_row = {
     VL_ROW_PARAMETERS(complete_parameters), .name = "complete",

@@ -197,6 +197,29 @@ static void numbers_are_exact(void **state) {
   }
 }
 
+/* A receipt that lacks a switch differs only where the switch is on. */
+static void switches_of_later_versions(Fixture *f, vlReceiptDef def) {
+  vlCompleteDef complete = *def.complete;
+  def.complete = &complete;
+  vlReceipt *off = make(f, &def);
+  char *text = strdup(vl_receipt_text(off)), *at = strstr(text, "\"both_sides\"");
+  assert_non_null(at);
+  const char *after = strstr(at, "false") + 5;
+  while (*at != ',')
+    at--;
+  memset(at, ' ', (size_t)(after - at));
+  vlReceipt *before = parse(f, text);
+  assert_string_equal(differences(before, off, VL_RECEIPT_ALL), "");
+  complete.both_sides = true;
+  vlReceipt *on = make(f, &def);
+  assert_string_equal(differences(before, on, VL_RECEIPT_ALL),
+                      "completed differs: both_sides is true, was not given\n");
+  free(text);
+  vl_receipt_destroy(off);
+  vl_receipt_destroy(before);
+  vl_receipt_destroy(on);
+}
+
 static void differences_are_named(void **state) {
   Fixture *f = *state;
   static const char *const words[] = {"render", "a.pbrt"};
@@ -241,6 +264,8 @@ static void differences_are_named(void **state) {
   assert_string_equal(differences(then, now, VL_RECEIPT_SAMPLES),
                       "spp is 64, was 16\nsamples is 64, was 16\n");
   assert_string_equal(differences(now, now, VL_RECEIPT_ALL), "");
+  complete.ground = false;
+  switches_of_later_versions(f, def);
   uint32_t planned;
   assert_int_equal(vl_receipt_samples(now, &planned), 64);
   assert_int_equal(planned, 64);

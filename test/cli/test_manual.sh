@@ -72,7 +72,7 @@ completes "no option as the value of an option" "" velo film merge -o --o
 completes "names of a tracer" "path" velo render --tracer pa
 completes "names after =" "zsobol" velo render --sampler = zs
 completes "all names after =" "fast portable" velo render --bits =
-completes "names that options.c lists" "hide keep" velo render --walls ""
+completes "names that options.c lists" "both-sides hide keep" velo render --walls ""
 completes "aliases" "bdpt bidirectional" velo render --tracer b
 completes "a number: nothing" "" velo render --spp ""
 completes "files of an option" "b.exr" velo render scene.pbrt -o b

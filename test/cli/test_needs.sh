@@ -92,6 +92,7 @@ with framing $O --framing front
 without walls $P --walls keep
 with walls $O --walls keep
 with walls $P --walls 3,2,4
+with walls $P --walls both-sides
 with ground-middle $P --ground-middle 0,-1,0
 with ground-radius $P --ground-radius 3
 without no-ground $P --no-ground

@@ -325,6 +325,43 @@ static void mirrored_walls(void **state) {
   }
 }
 
+/* An object whose one-sided faces look inwards is seen from both sides: alone; in two parts,
+ * one in the other; with vertex normals that say its outside. Its faces stay as they are where
+ * they are not one-sided, where what it contains looks outwards, and where the caller says what
+ * is to be done with walls. */
+static void turned(void **state) {
+  (void)state;
+  enum { ALONE, PARTS, TWO_SIDED, AROUND, KEPT, GIVEN, CASES };
+  static const float figure[8][2] = {{0, 0},        {0.5f, 0},     {0.5f, 0.3f}, {0.2f, 0.5f},
+                                     {0.15f, 0.9f}, {0.35f, 1.2f}, {0.3f, 1.6f}, {0, 1.8f}};
+  static const float low[3] = {-0.1f, 0.1f, -0.1f}, high[3] = {0.1f, 0.2f, 0.1f};
+  for (int k = 0; k < CASES; k++) {
+    Model m = begin();
+    add_turned(&m, figure, 8, false);
+    vlShapeDef *shape = &m.scene->shapes.items[0];
+    const size_t faces = shape->faces;
+    shape->reverse_orientation = true;
+    shape->one_sided = k != TWO_SIDED;
+    if (k == PARTS || k == AROUND)
+      add_box(&m, low, high, k == PARTS, true);
+    vlCompleteDef def = first_image();
+    def.open_walls = k != KEPT;
+    for (int i = 0; i < 3 && k == GIVEN; i++)
+      def.walls_from[i] = 3;
+    complete(&m, &def);
+    shape = &m.scene->shapes.items[0];
+    const vlCompleteDef done = vl_scene_completed(m.scene);
+    const bool found = k == ALONE || k == PARTS;
+    assert_int_equal(done.both_sides, found);
+    assert_int_equal(shape->one_sided, !found && k != TWO_SIDED);
+    assert_int_equal(done.open_walls, k == AROUND || k == GIVEN);
+    assert_int_equal(shape->faces < faces, k == AROUND || k == GIVEN);
+    if (k == PARTS)
+      assert_false(m.scene->shapes.items[1].one_sided);
+    end(&m);
+  }
+}
+
 /* The camera is in the dome and frames what the dome contains; the half on its side is
  * hidden. */
 static void dome(void **state) {
@@ -523,6 +560,7 @@ int main(void) {
       cmocka_unit_test(objects),
       cmocka_unit_test(mirrored_sheet),
       cmocka_unit_test(mirrored_walls),
+      cmocka_unit_test(turned),
       cmocka_unit_test(dome),
       cmocka_unit_test(ground),
       cmocka_unit_test(lamps),

@@ -102,6 +102,7 @@ def write_models(folder):
     write_gltf(here("variants.glb"), [chair], variants=True)
     write_gltf(here("room.glb"), [box((-2, 0, -2), (2, 2.5, 2), True), ball])
     write_gltf(here("dome.glb"), [box((-60, -60, -60), (60, 60, 60), True), ball])
+    write_gltf(here("turned.glb"), [(chair[0], [face[::-1] for face in chair[1]])])
     write_stl(here("sheet.stl"), *sheet)
     write_obj(here("behind.obj"), sheet[0], [face[::-1] for face in sheet[1]])
     write_obj(here("chair.obj"), *chair)
@@ -113,7 +114,7 @@ CASES = (("plain.glb",), ("plain.glb", "--framing", "front"), ("plain.glb", "--f
          ("plain.glb", "--environment", "sky", "--environment-rotation", "33"), ("plain.glb", "--ground"), ("plain.glb", "--no-ground"),
          ("plain.glb", "--environment-strength", "0.3"), ("lamp.glb",), ("own camera.glb",), ("own camera.glb", "--ground-radius", "2"),
          ("moves.glb", "--at", "1"), ("moves.glb", "--at", "0.5:1"), ("variants.glb", "--variant", "red"), ("room.glb",),
-         ("room.glb", "--walls", "keep"), ("dome.glb",), ("sheet.stl",), ("sheet.stl", "--up", "y"), ("behind.obj",), ("chair.obj",),
+         ("room.glb", "--walls", "keep"), ("dome.glb",), ("turned.glb",), ("sheet.stl",), ("sheet.stl", "--up", "y"), ("behind.obj",), ("chair.obj",),
          ("scene.pbrt",), ("scene.pbrt", "--crop", "4,4,20,20"), ("scene.pbrt", "--ground-middle", "0,-0.8,0"),
          ("scene.pbrt", "--focus-pixel", "24,18", "--turn", "30"))
 

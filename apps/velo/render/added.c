@@ -108,6 +108,8 @@ void added_options(const SceneOpening *opening, const Arguments *arguments, bool
   }
   if (d->open_walls)
     put_point(add(added, RENDER_WALLS), d->walls_from);
+  else if (d->both_sides)
+    strcpy(add(added, RENDER_WALLS), "both-sides");
   else if (camera)
     strcpy(add(added, RENDER_WALLS), "keep");
   const char *up = name_of_up(d);

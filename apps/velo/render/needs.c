@@ -117,7 +117,8 @@ static bool has_added_camera(const Facts *f) {
 }
 
 static bool has_added_camera_or_point(const Facts *f) {
-  return has_added_camera(f) || f->v[RENDER_WALLS].integer == OPTION_LIST_GIVEN;
+  const int64_t walls = f->v[RENDER_WALLS].integer;
+  return has_added_camera(f) || walls == OPTION_LIST_GIVEN || walls == WALLS_BOTH_SIDES;
 }
 
 static bool has_added_light(const Facts *f) {

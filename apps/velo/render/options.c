@@ -126,8 +126,9 @@ Option render_options[] = {
      0, 0, framing_choices, OPTION_LIST_ANGLES},
     {RENDER_WALLS, 0, "walls", OPTION_CHOICE, "NAME | X,Y,Z",
      "closed models, such as a room, without a camera of their own: hide the walls between "
-     "the added camera and the middle, or keep them; X,Y,Z: hide those between this point and "
-     "the middle, whatever the camera is:",
+     "the added camera and the middle, or keep them; both-sides: keep them, and show faces "
+     "that are seen from one side from both; X,Y,Z: hide those between this point and the "
+     "middle, whatever the camera is:",
      0, 0, walls_choices, OPTION_LIST_POINT},
     {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS",
      "axis of the model that points up, for the camera, light and ground that velo adds; "

@@ -44,7 +44,8 @@ const Choice framing_choices[] = {{"auto", VL_FRAMING_AUTO},
                                   {"corner", VL_FRAMING_CORNER},
                                   {"front", VL_FRAMING_FRONT},
                                   {NULL, 0}};
-const Choice walls_choices[] = {{"hide", 0}, {"keep", 1}, {NULL, 0}};
+const Choice walls_choices[] = {
+    {"hide", WALLS_HIDE}, {"keep", WALLS_KEEP}, {"both-sides", WALLS_BOTH_SIDES}, {NULL, 0}};
 const Choice up_choices[] = {{"x", 0}, {"y", 1}, {"z", 2}, {NULL, 0}};
 
 /* The front is +z, for z upwards -y, as modellers have it. */
@@ -109,7 +110,9 @@ static void choose_ground(const Arguments *arguments, bool model, vlCompleteDef 
 }
 
 static void choose_walls(const OptionValue *walls, vlCompleteDef *complete) {
-  complete->open_walls = !walls->given || walls->integer != 1;
+  const bool named = walls->given && walls->integer != OPTION_LIST_GIVEN;
+  complete->open_walls = !named || walls->integer == WALLS_HIDE;
+  complete->both_sides = named && walls->integer == WALLS_BOTH_SIDES;
   for (int i = 0; i < 3 && walls->given && walls->integer == OPTION_LIST_GIVEN; i++)
     complete->walls_from[i] = walls->numbers[i];
 }

@@ -7,6 +7,9 @@
 #include "velo/load.h"
 #include "velo/render.h"
 
+/* Values of --walls. */
+enum { WALLS_HIDE, WALLS_KEEP, WALLS_BOTH_SIDES };
+
 /* How a scene was loaded and completed. complete: what was added, with nothing left to
  * choose. */
 typedef struct SceneOpening {

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """How well images on surfaces are filtered: a checkerboard to the horizon, and seen in mirrors and through glass.
 
     bench/texture_filter.py VELO [FOLDER] [--image FILE]

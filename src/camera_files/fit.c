@@ -141,12 +141,15 @@ static vlResult hold(const vlCameraFile *file, const vlCameraDef *d, uint32_t ho
 }
 
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def) {
-  bool none = def->distortion == VL_DISTORTION_NONE;
+  const char *projection = vl_projection_name(def->projection);
+  if (def->distortion == VL_DISTORTION_NONE)
+    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+                      "%s cannot hold the %s projection with these parameters", file->dialect,
+                      projection);
   return vl_fail_at(
       file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
       "%s cannot hold the %s projection with %s distortion and these coefficients",
-      file->dialect, vl_projection_name(def->projection),
-      none ? "no" : vl_distortion_row(def->distortion)->title);
+      file->dialect, projection, vl_distortion_row(def->distortion)->title);
 }
 
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) {
@@ -191,9 +194,11 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
   fit->record = record;
   fit->family = vl_camera_lens_family(d, fit->k, &fit->count);
   const bool known = format->lenses >> fit->family & 1 && fit->count <= format->most;
-  if (format->plain ? d->projection > VL_PROJECTION_ORTHOGRAPHIC : format->lenses && !known)
+  if (!format->plain && format->lenses && !known)
     return vl_camera_no_model(file, d);
   if (format->plain)
+    result = vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC);
+  if (result == VL_OK && format->plain)
     result = vl_camera_refuse(file, "distortion", c->distortion.steps != 0);
   if (result == VL_OK && format->centred)
     result = vl_camera_refuse_off_centre(file, c);

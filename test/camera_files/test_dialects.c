@@ -623,7 +623,8 @@ static void test_refusals(void **state) {
                 {SKEW, "skew"},
                 {LENS, "lens_radius"},
                 {TIME, "shutter_close"},
-                {EXPOSURE, "exposure_time"}};
+                {EXPOSURE, "exposure_time"},
+                {0, "projection"}};
   for (int k = 1; k < DIALECTS; k++)
     for (size_t f = 0; f < sizeof fields / sizeof *fields; f++) {
       if (all[k].holds & fields[f].holds)
@@ -643,6 +644,10 @@ static void test_refusals(void **state) {
         r.camera.shutter_close = 0.5;
       if (fields[f].holds == EXPOSURE)
         r.camera.exposure_time = 2.0;
+      if (!fields[f].holds) {
+        r.camera.projection = VL_PROJECTION_PANINI;
+        r.camera.fx = r.camera.fy = 24.0; /* the default of perspective cameras of this size */
+      }
       assert_int_equal(vl_camera_write(context, path_of("r"), &def, &r, &error),
                        VL_ERROR_UNSUPPORTED);
       if (!strstr(error.message, fields[f].field))

@@ -66,6 +66,15 @@ scene 'LightSource "infinite"' 'Material "principled" "rgb basecolor" [.8 .2 .1]
 check metal "$VELO" scene convert metal.pbrt metal.out.pbrt
 check metal_rules "$rules" metal.out.pbrt
 
+# A camera that pbrt has not keeps its place.
+scene 'LightSource "infinite"' '' | sed 's/^Camera.*/Camera "panini" "float panini" 0.5 "point3 eye" [1 2 -3] "point3 lookat" [0 0 4]/' >wide.pbrt
+check wide "$VELO" scene convert wide.pbrt wide.out.pbrt
+expect_text wide_says 'pbrt cannot hold this camera'\''s "projection"'
+expect_text wide_says_no_more '"projection"; to leave it out, drop it by that name (1)'
+check wide_rules "$rules" wide.out.pbrt
+run "$VELO" scene info wide.out.pbrt
+expect_text wide_place 'camera      perspective at (1, 2, -3)'
+
 # Every scene of features/ and the lecture.
 for file in "$VELO_SOURCE_DIR"/scenes/features/*.pbrt "$VELO_SOURCE_DIR"/scenes/lecture/*.pbrt "$VELO_SOURCE_DIR"/scenes/gallery/*.pbrt; do
   name=$(basename "$file" .pbrt)

@@ -33,11 +33,12 @@ static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   return r == VL_OK;
 }
 
-/* Checks that the files exist which the parameters of a family's defs name. */
+/* Checks that the files exist which the parameters of a def name. kind: its row in the
+ * family. */
 static void look_for_files_of(vlCheck *c, const vlKindFamily *family, int kind, const void *def,
                               vlSource source) {
   const vlKindRow *row = vl_kind_row(family, kind);
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
+  for (uint32_t i = 0; row && i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (p->type != VL_PARAMETER_FILE)
       continue;
@@ -49,27 +50,32 @@ static void look_for_files_of(vlCheck *c, const vlKindFamily *family, int kind, 
 
 static void look_for_files(vlCheck *c) {
   const vlScene *s = c->scene;
-  for (size_t i = 0; i < s->textures.count; i++)
-    look_for_files_of(c, &vl_texture_family, (int)s->textures.items[i].kind,
-                      &s->textures.items[i], s->textures.items[i].source);
-  for (size_t i = 0; i < s->materials.count; i++)
-    look_for_files_of(c, &vl_material_family, (int)s->materials.items[i].kind,
-                      &s->materials.items[i], s->materials.items[i].source);
-  for (size_t i = 0; i < s->lights.count; i++)
-    if (s->lights.items[i].path)
-      file_is_there(c, s->lights.items[i].path, s->lights.items[i].source);
-  for (size_t i = 0; i < s->emissions.count; i++)
-    if (s->emissions.items[i].image)
-      file_is_there(c, s->emissions.items[i].image, s->emissions.items[i].source);
-  for (size_t i = 0; i < s->media.count; i++)
-    if (s->media.items[i].path)
-      file_is_there(c, s->media.items[i].path, s->media.items[i].source);
+  for (size_t i = 0; i < s->textures.count; i++) {
+    const vlTextureDef *d = &s->textures.items[i];
+    look_for_files_of(c, &vl_texture_family, (int)d->kind, d, d->source);
+  }
+  for (size_t i = 0; i < s->materials.count; i++) {
+    const vlMaterialDef *d = &s->materials.items[i];
+    look_for_files_of(c, &vl_material_family, (int)d->kind, d, d->source);
+  }
+  for (size_t i = 0; i < s->lights.count; i++) {
+    const vlLightDef *d = &s->lights.items[i];
+    look_for_files_of(c, &vl_light_family, (int)d->kind, d, d->source);
+  }
+  for (size_t i = 0; i < s->emissions.count; i++) {
+    const vlEmissionDef *d = &s->emissions.items[i];
+    look_for_files_of(c, &vl_emission_family, 0, d, d->source);
+  }
+  for (size_t i = 0; i < s->media.count; i++) {
+    const vlMediumDef *d = &s->media.items[i];
+    look_for_files_of(c, &vl_medium_family, (int)d->kind, d, d->source);
+  }
 }
 
 /* ---- greatest values --------------------------------------------------------------------- */
 
 /* The largest value of a spectrum as a reflectance: over the RGB channels, or over all
- * wavelengths. */
+ * wavelengths. 0: it cannot be computed, which the build of the world reports. */
 static float spectrum_max(const vlSpectrum *s) {
   if (s->kind == VL_SPECTRUM_RGB) {
     float m = s->rgb[0] > s->rgb[1] ? s->rgb[0] : s->rgb[1];
@@ -85,7 +91,8 @@ static float spectrum_max(const vlSpectrum *s) {
   return most;
 }
 
-/* Smallest and largest linear colour value of an image. */
+/* Smallest and largest linear colour value of an image. False: it has no colours, or memory is
+ * exhausted. */
 static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
   uint32_t channel[4], n = vl_image_color(image, channel);
   if (n == 2 || n == 4)
@@ -106,6 +113,8 @@ static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
   return true;
 }
 
+/* Upper bound of an image texture's values. An image that is not read, because it is missing or
+ * broken, counts as one of values from 0 to 1. */
 static float image_max(vlCheck *c, const vlTextureDef *t) {
   float tint = t->tint[0] > t->tint[1] ? t->tint[0] : t->tint[1], range[2] = {0, 1};
   tint = tint > t->tint[2] ? tint : t->tint[2];
@@ -178,14 +187,13 @@ static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) 
   return largest_input(t, in);
 }
 
-/* Gives the inputs of a material that are reflectances or transmittances: the parameters of its
- * row with the role of an albedo, if the def makes use of them. */
-enum { SHARES = 6 };
+/* A reflectance or transmittance of a material. */
 typedef struct Share {
-  const char *what;
+  const char *what; /* its name in files */
   const vlSpectrumInput *input;
-  float factor;
+  float factor; /* by which the material multiplies it */
 } Share;
+enum { MAX_SHARES = 6 }; /* of one material; no row has as many */
 
 /* Whether the material reads this input. Some kinds read their reflectance only if the def says
  * so. */
@@ -199,11 +207,14 @@ static bool is_read(const vlMaterialDef *m, uint32_t traits, const vlSpectrumInp
   return !(traits & VL_MATERIAL_METAL) || m->use_reflectance;
 }
 
-static uint32_t shares(const vlMaterialDef *m, Share list[SHARES]) {
+/* The material's reflectances and transmittances: the parameters of its row with the role of an
+ * albedo, as far as the def makes use of them. Returns their number. */
+static uint32_t shares_of(const vlMaterialDef *m, Share list[MAX_SHARES]) {
   const vlKindRow *row = vl_kind_row(&vl_material_family, (int)m->kind);
-  float factor = vl_row_find(row, "scale") ? m->scale : 1;
+  /* that of a subsurface material is a factor on lengths */
+  const float factor = m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION ? m->scale : 1;
   uint32_t n = 0;
-  for (uint32_t i = 0; i < row->parameter_count && n < SHARES; i++) {
+  for (uint32_t i = 0; i < row->parameter_count && n < MAX_SHARES; i++) {
     const vlParameter *p = &row->parameters[i];
     if (p->type != VL_PARAMETER_SPECTRUM_INPUT || p->role != VL_PARAMETER_ALBEDO)
       continue;
@@ -214,12 +225,14 @@ static uint32_t shares(const vlMaterialDef *m, Share list[SHARES]) {
   return n;
 }
 
-static void mark(vlCheck *c, uint8_t *needed) {
+/* Marks the textures that reflectances read, by themselves or through others. needed: one entry
+ * per texture, zero on entry. */
+static void mark_needed(vlCheck *c, uint8_t *needed) {
   const vlScene *s = c->scene;
-  Share list[SHARES];
+  Share list[MAX_SHARES];
   vlTextureId inputs[VL_CHECK_INPUTS];
   for (size_t i = 0; i < s->materials.count; i++) {
-    uint32_t n = shares(&s->materials.items[i], list);
+    uint32_t n = shares_of(&s->materials.items[i], list);
     for (uint32_t k = 0; k < n; k++)
       if (list[k].input->texture.index)
         needed[list[k].input->texture.index - 1] = 1;
@@ -240,15 +253,15 @@ static void check_albedo(vlCheck *c) {
   if (!needed || !known)
     c->no_memory = true;
   if (!c->no_memory)
-    mark(c, needed);
+    mark_needed(c, needed);
   for (size_t i = 0; i < s->textures.count && !c->no_memory; i++)
     if (needed[i])
       known[i] = texture_max(c, &s->textures.items[i], known);
   for (size_t i = 0; i < s->materials.count && !c->no_memory; i++) {
     const vlMaterialDef *m = &s->materials.items[i];
-    Share list[SHARES];
+    Share list[MAX_SHARES];
     float sum = 0;
-    uint32_t n = shares(m, list);
+    uint32_t n = shares_of(m, list);
     for (uint32_t k = 0; k < n; k++) {
       uint32_t id = list[k].input->texture.index;
       float value = list[k].factor * (id ? known[id - 1] : spectrum_max(&list[k].input->value));

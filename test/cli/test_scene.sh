@@ -164,6 +164,15 @@ finds 1 albedo_of_a_image ':4:1: warning: texture "t" reaches 2 ' image.pbrt
 clean images_are_not_read --no-images image.pbrt
 scene through.pbrt 'Material "diffusetransmission" "rgb reflectance" [0.7 0.7 0.7] "rgb transmittance" [0.7 0.7 0.7]' 'Shape "sphere"'
 finds 1 albedo_of_two ':4:1: warning: .*add up to 1.4' through.pbrt
+sed 's/"rgb transmittance"/"float scale" 2 &/' through.pbrt >scaled.pbrt
+finds 1 albedo_with_its_scale ':4:1: warning: .*reflectance is 1.4' scaled.pbrt
+scene milk.pbrt 'Material "subsurface" "rgb reflectance" [0.5 0.5 0.5] "rgb mfp" [1 1 1] "float scale" 10' 'Shape "sphere"'
+clean scale_of_lengths_is_no_albedo milk.pbrt
+scene files.pbrt 'LightSource "goniometric" "string filename" "none.ies"' 'AreaLightSource "diffuse" "string filename" "none.png"' 'Shape "sphere"' \
+  'MakeNamedMedium "m" "string type" "nanovdb" "string filename" "none.nvdb"'
+for name in ies png nvdb; do
+  finds 4 "missing_$name" "error: .*none\\.$name.*\\[missing-file\\]" files.pbrt
+done
 
 scene diver.pbrt "$glass" 'Shape "sphere" "float radius" 20'
 finds 1 camera_in_glass ':5:1: warning: the camera stands in the solid.*\[camera-inside\]' diver.pbrt

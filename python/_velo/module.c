@@ -88,6 +88,17 @@ static PyObject *described(const vlParameter *p) {
   return unit ? PyUnicode_FromFormat("%s (%s)", text, unit) : PyUnicode_FromString(text);
 }
 
+/* The keyword that sets a parameter: the last word of its member, as `interocular`; of a number
+ * of a projection, which is a member of no name of its own, its name in files. Null: none. */
+static const char *keyword_of(const vlParameter *p) {
+  if (p->flags & VL_PARAMETER_SHORTHAND || !p->member || !p->member[0])
+    return NULL;
+  if (strncmp(p->member, "shape[", 6) == 0)
+    return p->name;
+  const char *dot = strrchr(p->member, '.');
+  return dot ? dot + 1 : p->member;
+}
+
 /* kinds(family): {kind: {keyword: description}} of a family of velo/schema.h. */
 static PyObject *kinds(PyObject *module, PyObject *arguments) {
   (void)module;
@@ -107,11 +118,11 @@ static PyObject *kinds(PyObject *module, PyObject *arguments) {
     PyObject *words = PyDict_New();
     for (uint32_t i = 0; words && i < row->parameter_count; i++) {
       const vlParameter *p = &row->parameters[i];
-      if (p->flags & VL_PARAMETER_SHORTHAND || !p->member || !p->member[0])
+      const char *keyword = keyword_of(p);
+      if (!keyword)
         continue;
-      const char *dot = strrchr(p->member, '.');
       PyObject *text = described(p);
-      if (!text || PyDict_SetItemString(words, dot ? dot + 1 : p->member, text) < 0)
+      if (!text || PyDict_SetItemString(words, keyword, text) < 0)
         Py_CLEAR(words);
       Py_XDECREF(text);
     }

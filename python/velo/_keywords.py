@@ -1,9 +1,12 @@
 """The keywords of calls that take many, for completion and for checks of types. They are the rows of the library's tables; a test
-compares them. All are optional: what is not given has its default."""
+compares them, and tools/check_rows --fix adds what is missing. All are optional: what is not given has its default."""
 from __future__ import annotations
 
 import inspect
 from typing import Any, Callable, TypedDict
+
+# Members of the library's structs that other keywords set: a mesh's normals those of its parts, an array its size.
+APART = frozenset(("data_size", "lamp_size", "wrap_t_given", "encoding_given", "st_from_uv_given", "use_reflectance", "nx", "ny", "nz", "from", "more_uvs"))
 
 
 class Settings(TypedDict, total=False):
@@ -107,6 +110,7 @@ class Cameras(TypedDict, total=False):
     """Of cameras: the members of vlCameraDef, and further ones (velo.Camera)."""
     K: Any
     alpha: Any
+    aperture: Any
     beta: Any
     blades: Any
     camera_from_world: Any
@@ -137,8 +141,11 @@ class Cameras(TypedDict, total=False):
     lookat: Any
     lookat_close: Any
     max_angle: Any
+    mode: Any
     near_plane: Any
+    omega: Any
     own: Any
+    panini: Any
     pixel_size: Any
     pose_times: Any
     projection: Any
@@ -156,6 +163,7 @@ class Cameras(TypedDict, total=False):
     sensor_width_mm: Any
     shape: Any
     shutter: Any
+    shutter_at: Any
     shutter_close: Any
     shutter_open: Any
     skew: Any

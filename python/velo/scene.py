@@ -253,7 +253,7 @@ class Scene(_velo.Scene):
         return self._new("emission", "diffuse", words)
 
     def add_light(self, kind: str, **keywords: Unpack[_keywords.Lights]) -> Handle:
-        """Adds a light: point, spot, distant, infinite, goniometric, projection. Keywords: members of vlLightDef: color,
+        """Adds a light: point, spot, distant, infinite, goniometric, ... (velo.kinds("lights")). Keywords: members of vlLightDef: color,
         scale, power (lm), illuminance (lx), radiant_power (W), radiant_intensity (W/sr), irradiance (W/m2), position, to, image;
         path or lamp_data: a lamp file or its bytes; pose: 4 x 4, world from light. The member from, a word that Python reserves, is position or from_."""
         words: dict[str, Any] = {**keywords}

@@ -10,7 +10,8 @@
 #include "schema/parameter.case.h"
 #include "velo/light.h"
 
-/* Radiance times solid angle that arrives at a point of the floor y = 0. */
+/* Radiance times solid angle that arrives at a point of the floor y = 0, without the cosine at
+ * the floor: of a point light the intensity over the squared distance. */
 typedef struct LightKnown {
   double x, z;
   double rgb[3];

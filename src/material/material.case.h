@@ -10,13 +10,14 @@
 
 typedef struct MaterialVariant {
   const char *parameters; /* null ends the list */
-  double albedo[3];       /* known mean weight at the first angle; 0: not known */
-  double
-      reflected; /* known share of the weight that stays on the side of the eye; 0: not known */
-  bool refracts; /* radiance changes with the square of the index: no law of energy, none of
-                    reciprocity */
-  bool both_sides; /* light from below is scattered, too: reciprocity over the whole sphere */
-  bool one_way;    /* not reciprocal */
+  double albedo[3]; /* known mean weight, of R, G and B, if the eye is 0.2 radians from the
+                       normal; 0: not known */
+  double reflected; /* known share of the weight that stays on the side of the eye, there;
+                       0: not known */
+  bool refracts;    /* radiance changes with the square of the index: no law of energy, none of
+                       reciprocity */
+  bool both_sides;  /* light from below is scattered, too: reciprocity over the whole sphere */
+  bool one_way;     /* not reciprocal */
   bool
       walks; /* the BSDF is estimated by random walks: its means are compared, not its values */
 } MaterialVariant;

@@ -14,10 +14,10 @@ typedef struct ProjectionKnown {
 } ProjectionKnown;
 
 typedef struct ProjectionCase {
-  double fov;      /* degrees over the smaller side; 0: by fx */
-  double focal;    /* fx = fy, pixels; 0: by fov or by the projection itself */
-  double shape[2]; /* VL_UNSET in all kinds without */
-  bool optics;
+  double fov;         /* degrees over the smaller side; 0: by fx */
+  double focal;       /* fx = fy, pixels; 0: by fov or by the projection itself */
+  double shape[2];    /* the projection's numbers; VL_UNSET: it has none, or the default */
+  bool optics;        /* the camera gets a lens of many elements */
   double solid_angle; /* of the whole image, steradians; 0: not known */
   ProjectionKnown known[2];
   double end; /* by fx: the angle to the axis, towards +x, up to which directions have film

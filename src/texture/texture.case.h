@@ -10,6 +10,8 @@
 #include "schema/parameter.case.h"
 #include "velo/texture.h"
 
+/* The value at a point of the square: u, v from 0 to 1, before the mapping. Of a float texture
+ * all three are the value. */
 typedef struct TextureKnown {
   double u, v;
   double rgb[3];

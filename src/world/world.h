@@ -229,7 +229,9 @@ typedef struct vlWorldLight {
   bool far;             /* infinitely far away */
   uint32_t environment; /* of an infinite light with an image: index into environments; VL_NONE:
                            uniform radiance */
-  float power;          /* emitted flux in units of luminance, for light selection */
+  float power;          /* for light selection: emitted flux in units of luminance; of a light
+                           with a cone, that flux over the share of the sphere that the cone is, its
+                           edge by its mean falloff */
   /* the light is an invisible full sphere: light paths start only on its outside
    * (light.hot.c) */
   bool outer_side;

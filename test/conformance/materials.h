@@ -16,7 +16,8 @@ static const MaterialCase *const material_cases[] = {VL_MATERIAL_KINDS(MATERIAL_
 /* ---- asking ------------------------------------------------------------------------------ */
 
 /* Directions of the eye: angles from the normal; those above pi / 2 are below the square. */
-static const double material_angles[] = {0.2, 1.1, PI - 0.6};
+static const double material_angles[] = {0.2, 1.1,
+                                         PI - 0.6}; /* MaterialVariant.albedo: the first */
 enum { MATERIAL_ANGLES = 3, MATERIAL_BATCHES = 28, GLASS_BATCHES = 80 };
 
 typedef struct MaterialLaws {

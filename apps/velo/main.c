@@ -146,14 +146,11 @@ static int unknown_command(int argc, char **argv) {
 enum { HELP_ALL, HELP_MAN, HELP_COMPLETION, HELP_COMMANDS };
 
 static Option help_options[] = {
-    {HELP_ALL, 0, "all", OPTION_FLAG, NULL,
-     "print all options, where the page of COMMAND has the most used only"},
-    {HELP_MAN, 0, "man", OPTION_FLAG, NULL,
-     "print the manual page of COMMAND, or of velo, in the format of man(7)"},
-    {HELP_COMPLETION, 0, "completion", OPTION_CHOICE, "SHELL",
-     "print the completion script of a shell:", 0, 0, shell_choices},
-    {HELP_COMMANDS, 0, "commands", OPTION_FLAG, NULL,
-     "print the names of all commands, one per line"},
+    {HELP_ALL, "all", "print all options, where the page of COMMAND has the most used only"},
+    {HELP_MAN, "man", "print the manual page of COMMAND, or of velo, in the format of man(7)"},
+    {HELP_COMPLETION, "completion", "print the completion script of a shell:", OPTION_CHOICE,
+     "SHELL", .choices = shell_choices},
+    {HELP_COMMANDS, "commands", "print the names of all commands, one per line"},
     {0}};
 
 static const Command help_command = {

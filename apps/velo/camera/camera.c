@@ -220,17 +220,18 @@ static int run_convert(const Command *command, const Arguments *arguments) {
 }
 
 static Option convert_options[] = {
-    {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT",
-     "dialect of IN; default: recognised by its content:", 0, 0, dialect_choices},
-    {CONVERT_TO, 0, "to", OPTION_CHOICE, "DIALECT",
-     "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda "
-     "usd, .pbrt pbrt, transforms.json nerf, cameras.txt colmap:",
-     0, 0, dialect_choices},
-    {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera of IN to use, by name or number from 0, if it has several"},
-    {CONVERT_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
-    {CONVERT_DROP, 0, "drop", OPTION_TEXTS, "FIELD",
-     "leave out a field that OUT's dialect cannot hold; may be given several times"},
+    {CONVERT_FROM, "from", "dialect of IN; default: recognised by its content:", OPTION_CHOICE,
+     "DIALECT", .choices = dialect_choices},
+    {CONVERT_TO, "to",
+     "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda usd, "
+     ".pbrt pbrt, transforms.json nerf, cameras.txt colmap:",
+     OPTION_CHOICE, "DIALECT", .choices = dialect_choices},
+    {CONVERT_FRAME, "frame", "camera of IN to use, by name or number from 0, if it has several",
+     OPTION_TEXT, "NAME"},
+    {CONVERT_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},
+    {CONVERT_DROP, "drop",
+     "leave out a field that OUT's dialect cannot hold; may be given several times",
+     OPTION_TEXTS, "FIELD"},
     {0}};
 
 const Command camera_convert_command = {

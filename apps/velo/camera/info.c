@@ -150,10 +150,10 @@ static int run_info(const Command *command, const Arguments *arguments) {
 }
 
 static Option info_options[] = {
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera to use, by name or number from 0, if the file has several"},
-    {INFO_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
+    {INFO_JSON, "json", "print one JSON object to stdout"},
+    {INFO_FRAME, "frame", "camera to use, by name or number from 0, if the file has several",
+     OPTION_TEXT, "NAME"},
+    {INFO_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},
     {0}};
 
 const Command camera_info_command = {

@@ -177,16 +177,17 @@ static int run_unproject(const Command *command, const Arguments *arguments) {
 }
 
 static Option points_options[] = {
-    {POINTS_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
-     "camera file in any dialect of `velo camera convert`, or a scene file"},
-    {POINTS_ORIGIN, 0, "pixel-origin", OPTION_CHOICE, "WHERE",
+    {POINTS_CAMERA, "camera",
+     "camera file in any dialect of `velo camera convert`, or a scene file", OPTION_TEXT,
+     "FILE"},
+    {POINTS_ORIGIN, "pixel-origin",
      "position of (0, 0) in the image: its top left corner (default; the centre of the first "
      "pixel is (0.5, 0.5)), or the centre of the first pixel, as in OpenCV:",
-     0, 0, origin_choices},
-    {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera to use, by name or number from 0, if the file has several"},
-    {POINTS_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
-    {POINTS_STRICT, 0, "strict", OPTION_FLAG, NULL,
+     OPTION_CHOICE, "WHERE", .choices = origin_choices},
+    {POINTS_FRAME, "frame", "camera to use, by name or number from 0, if the file has several",
+     OPTION_TEXT, "NAME"},
+    {POINTS_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},
+    {POINTS_STRICT, "strict",
      "end at a line that is not numbers. Default: the line is reported and its result marked "
      "as not valid, the other lines are read, and the exit code is 3"},
     {0}};

@@ -40,15 +40,15 @@ enum { OPTION_LIST_GIVEN = -1 };
  * option of `velo render`: options_share fills in what is not given here. */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 typedef struct Option {
-  int id; /* index into Arguments.values */
-  char letter;
+  int id;           /* index into Arguments.values */
   const char *name; /* without dashes; null ends the list, where the id is 0 */
+  const char *help; /* the help page wraps it */
   OptionKind kind;
   const char *value; /* placeholder in the help page; null for flags */
-  const char *help;  /* the help page wraps it */
   double min, max;   /* both 0: the range of the setting of that name (velo/setting.h) */
   const Choice *choices;
   OptionList list; /* of OPTION_CHOICE: what may stand in place of a name */
+  char letter;     /* 0: none */
 } Option;
 
 enum { MAX_OPTIONS = 113, MAX_TEXTS = 32, MAX_OPERANDS = 4 };

@@ -141,16 +141,17 @@ static int run_develop(const Command *command, const Arguments *arguments) {
 }
 
 static Option develop_options[] = {
-    {DEVELOP_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
+    {DEVELOP_OUTPUT, "output",
      "image file to write; may be given several times. The suffix chooses the format, as for "
-     "velo render"},
-    {DEVELOP_VIEW, 0, "view", OPTION_CHOICE, "NAME",
-     "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
-    {DEVELOP_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
+     "velo render",
+     OPTION_TEXTS, "FILE", .letter = 'o'},
+    {DEVELOP_VIEW, "view", "view transform from radiance to display values (.png .jpg .tga):",
+     OPTION_CHOICE, "NAME", .choices = view_choices},
+    {DEVELOP_EXPOSURE, "exposure",
      "exposure of .png .jpg .tga: a number multiplies the image by 2^EV; auto chooses it so "
-     "that the geometric mean of the luminance becomes 18 % grey"},
-    {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL,
-     "write .exr with 16-bit instead of 32-bit floats"},
+     "that the geometric mean of the luminance becomes 18 % grey",
+     OPTION_TEXT, "EV"},
+    {DEVELOP_HALF, "half", "write .exr with 16-bit instead of 32-bit floats"},
     {0}};
 
 const Command film_develop_command = {

@@ -162,12 +162,12 @@ static int run_info(const Command *command, const Arguments *arguments) {
   return image_finish_output(status);
 }
 
-static Option info_options[] = {{INFO_MISSING, 0, "missing", OPTION_FLAG, NULL,
-                                 "print, as shell commands, the renders of the missing "
-                                 "samples or pixels, and the merge of the results"},
-                                {INFO_CHECK, 0, "check", OPTION_FLAG, NULL,
-                                 "also read all sums, which detects any damage of the file"},
-                                {0}};
+static Option info_options[] = {
+    {INFO_MISSING, "missing",
+     "print, as shell commands, the renders of the missing samples or pixels, and the merge "
+     "of the results"},
+    {INFO_CHECK, "check", "also read all sums, which detects any damage of the file"},
+    {0}};
 
 const Command film_info_command = {
     .name = "film info",

@@ -32,12 +32,13 @@ static int run_merge(const Command *command, const Arguments *arguments) {
   return result == VL_OK ? STATUS_OK : report_error(&error, result, NULL);
 }
 
-static Option merge_options[] = {{MERGE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE",
-                                  "film file to write; may be one of the parts"},
-                                 {MERGE_OVERWRITE, 0, "overwrite", OPTION_FLAG, NULL,
-                                  "replace an earlier film even if it is of another render "
-                                  "or has samples that the result lacks"},
-                                 {0}};
+static Option merge_options[] = {
+    {MERGE_OUTPUT, "output", "film file to write; may be one of the parts", OPTION_TEXT, "FILE",
+     .letter = 'o'},
+    {MERGE_OVERWRITE, "overwrite",
+     "replace an earlier film even if it is of another render or has samples that the result "
+     "lacks"},
+    {0}};
 
 const Command film_merge_command = {
     .name = "film merge",

@@ -349,14 +349,16 @@ static int run_check(const Command *command, const Arguments *arguments) {
 }
 
 static Option check_options[] = {
-    {CHECK_THRESHOLD, 0, "threshold", OPTION_NUMBER, "ERROR",
-     "largest relative error that is accepted; default 1e-6", 0, 1, NULL},
-    {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE",
-     "the next image: check that forward.U and forward.V lead to the matching pixels of it"},
-    {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE",
+    {CHECK_THRESHOLD, "threshold", "largest relative error that is accepted; default 1e-6",
+     OPTION_NUMBER, "ERROR", 0, 1},
+    {CHECK_FLOW, "flow",
+     "the next image: check that forward.U and forward.V lead to the matching pixels of it",
+     OPTION_TEXT, "FILE"},
+    {CHECK_FLOW_BEFORE, "flow-before",
      "the previous image: check that backward.U and backward.V lead to the matching pixels of "
-     "it"},
-    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+     "it",
+     OPTION_TEXT, "FILE"},
+    {CHECK_JSON, "json", "print one JSON object to stdout"},
     {0}};
 
 const Command image_check_command = {

@@ -238,19 +238,18 @@ static int run_convert(const Command *command, const Arguments *arguments) {
 }
 
 static Option convert_options[] = {
-    {CONVERT_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1",
-     "write only these pixels; x1 and y1 are exclusive"},
-    {CONVERT_VIEW, 0, "view", OPTION_CHOICE, "NAME",
-     "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
-    {CONVERT_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV",
-     "exposure of .png .jpg .tga: multiply the image by 2^EV"},
-    {CONVERT_HALF, 0, "half", OPTION_FLAG, NULL,
-     "write .exr with 16-bit instead of 32-bit floats"},
-    {CONVERT_CHANNEL, 0, "channel", OPTION_TEXT, "NAME", "write one channel only, such as Z"},
-    {CONVERT_SCALE, 0, "scale", OPTION_NUMBER, "FACTOR",
+    {CONVERT_CROP, "crop", "write only these pixels; x1 and y1 are exclusive", OPTION_CROP,
+     "x0,y0,x1,y1"},
+    {CONVERT_VIEW, "view", "view transform from radiance to display values (.png .jpg .tga):",
+     OPTION_CHOICE, "NAME", .choices = view_choices},
+    {CONVERT_EXPOSURE, "exposure", "exposure of .png .jpg .tga: multiply the image by 2^EV",
+     OPTION_NUMBER, "EV"},
+    {CONVERT_HALF, "half", "write .exr with 16-bit instead of 32-bit floats"},
+    {CONVERT_CHANNEL, "channel", "write one channel only, such as Z", OPTION_TEXT, "NAME"},
+    {CONVERT_SCALE, "scale",
      "with --channel and .png: multiply by FACTOR and round to 16-bit integers; depth in "
      "RGB-D data sets has 5000 or 1000 per metre",
-     1e-9, 1e9, NULL},
+     OPTION_NUMBER, "FACTOR", 1e-9, 1e9},
     {0}};
 
 const Command image_convert_command = {

@@ -98,23 +98,24 @@ vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {
 }
 
 static Option denoise_options[] = {
-    {DENOISE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "denoised image to write: .exr .hdr .pfm (linear), .png .jpg .tga (display)"},
-    {DENOISE_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",
-     "velo: the built-in denoiser; oidn: Intel Open Image Denoise, if it is installed:", 0, 0,
-     denoiser_choices},
-    {DENOISE_LIBRARY, 0, "denoiser-library", OPTION_TEXT, "FILE",
-     "path of the library of Open Image Denoise; default: the system's"},
-    {DENOISE_VIEW, 0, "view", OPTION_CHOICE, "NAME",
-     "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
-    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV",
-     "exposure of .png .jpg .tga: multiply the image by 2^EV"},
-    {DENOISE_HALF, 0, "half", OPTION_FLAG, NULL,
-     "write .exr with 16-bit instead of 32-bit floats"},
-    {DENOISE_THREADS, 't', "threads", OPTION_INTEGER, "N",
+    {DENOISE_OUTPUT, "output",
+     "denoised image to write: .exr .hdr .pfm (linear), .png .jpg .tga (display)", OPTION_TEXTS,
+     "FILE", .letter = 'o'},
+    {DENOISE_DENOISER, "denoiser",
+     "velo: the built-in denoiser; oidn: Intel Open Image Denoise, if it is installed:",
+     OPTION_CHOICE, "NAME", .choices = denoiser_choices},
+    {DENOISE_LIBRARY, "denoiser-library",
+     "path of the library of Open Image Denoise; default: the system's", OPTION_TEXT, "FILE"},
+    {DENOISE_VIEW, "view", "view transform from radiance to display values (.png .jpg .tga):",
+     OPTION_CHOICE, "NAME", .choices = view_choices},
+    {DENOISE_EXPOSURE, "exposure", "exposure of .png .jpg .tga: multiply the image by 2^EV",
+     OPTION_NUMBER, "EV"},
+    {DENOISE_HALF, "half", "write .exr with 16-bit instead of 32-bit floats"},
+    {DENOISE_THREADS, "threads",
      "number of worker threads; default: one for each processor. The image does not depend on "
-     "it"},
-    {DENOISE_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "print the time that denoising took"},
+     "it",
+     OPTION_INTEGER, "N", .letter = 't'},
+    {DENOISE_VERBOSE, "verbose", "print the time that denoising took", .letter = 'v'},
     {0}};
 
 const Command image_denoise_command = {

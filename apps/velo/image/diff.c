@@ -164,12 +164,13 @@ static int run_diff(const Command *command, const Arguments *arguments) {
 }
 
 static Option diff_options[] = {
-    {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE",
-     "write an image of the FLIP differences in false colours"},
-    {DIFF_THRESHOLD, 0, "threshold", OPTION_TEXTS, "NAME=VALUE",
+    {DIFF_OUTPUT, "output", "write an image of the FLIP differences in false colours",
+     OPTION_TEXT, "FILE", .letter = 'o'},
+    {DIFF_THRESHOLD, "threshold",
      "exit with code 1 if this measure is above VALUE (psnr: below VALUE; meanratio: farther "
-     "than VALUE from 1); may be given several times"},
-    {DIFF_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+     "than VALUE from 1); may be given several times",
+     OPTION_TEXTS, "NAME=VALUE"},
+    {DIFF_JSON, "json", "print one JSON object to stdout"},
     {0}};
 
 const Command image_diff_command = {

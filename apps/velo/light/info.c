@@ -136,10 +136,10 @@ static int run_info(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static Option info_options[] = {
-    {INFO_OUT, 'o', "output", OPTION_TEXT, "FILE.svg", "write the polar diagram to this file"},
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {0}};
+static Option info_options[] = {{INFO_OUT, "output", "write the polar diagram to this file",
+                                 OPTION_TEXT, "FILE.svg", .letter = 'o'},
+                                {INFO_JSON, "json", "print one JSON object to stdout"},
+                                {0}};
 
 const Command light_info_command = {
     .name = "light info",

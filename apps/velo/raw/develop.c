@@ -66,13 +66,14 @@ static int run_develop(const Command *command, const Arguments *arguments) {
 }
 
 static Option develop_options[] = {
-    {DEVELOP_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
+    {DEVELOP_OUTPUT, "output",
      "image file to write; may be given several times. .exr has the step's numbers (after "
-     "tone: linear light); .png has 16 bits after tone, else 8"},
-    {DEVELOP_STOP_AT, 0, "stop-at", OPTION_CHOICE, "STEP",
-     "the last step that is done; default tone:", 0, 0, step_choices},
-    {DEVELOP_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV",
-     "exposure that the step tone adds to the file's own", -100, 100},
+     "tone: linear light); .png has 16 bits after tone, else 8",
+     OPTION_TEXTS, "FILE", .letter = 'o'},
+    {DEVELOP_STOP_AT, "stop-at", "the last step that is done; default tone:", OPTION_CHOICE,
+     "STEP", .choices = step_choices},
+    {DEVELOP_EXPOSURE, "exposure", "exposure that the step tone adds to the file's own",
+     OPTION_NUMBER, "EV", -100, 100},
     {0}};
 
 const Command raw_develop_command = {

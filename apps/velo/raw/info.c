@@ -175,8 +175,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static Option info_options[] = {
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"}, {0}};
+static Option info_options[] = {{INFO_JSON, "json", "print one JSON object to stdout"}, {0}};
 
 const Command raw_info_command = {
     .name = "raw info",

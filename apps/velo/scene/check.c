@@ -205,12 +205,12 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static Option options[] = {
-    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL,
-     "print every finding; default: the first 10 of each kind"},
-    {CHECK_NO_IMAGES, 0, "no-images", OPTION_FLAG, NULL,
+    {CHECK_JSON, "json", "print one JSON object to stdout"},
+    {CHECK_ALL, "all", "print every finding; default: the first 10 of each kind",
+     .letter = 'a'},
+    {CHECK_NO_IMAGES, "no-images",
      "do not read texture images; missing ones are still reported"},
-    {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
+    {CHECK_PERMISSIVE, "permissive",
      "parts of the scene that velo does not understand are notes, not errors"},
     SCENE_SEARCH_OPTION(CHECK_SEARCH),
     SCENE_SANDBOX_OPTION(CHECK_SANDBOX),

@@ -399,8 +399,8 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static Option options[] = {
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
-    {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
+    {INFO_JSON, "json", "print one JSON object to stdout"},
+    {INFO_PERMISSIVE, "permissive",
      "leave out parts of the scene that velo does not understand, instead of ending with an "
      "error"},
     SCENE_SEARCH_OPTION(INFO_SEARCH),

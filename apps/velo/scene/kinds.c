@@ -220,7 +220,7 @@ static int run(const Command *command, const Arguments *arguments) {
   return report_stdout(STATUS_OK);
 }
 
-static Option options[] = {{KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG, NULL,
+static Option options[] = {{KINDS_DICTIONARY, "dictionary",
                             "print the names as a dictionary for a fuzzer, one per line"},
                            {0}};
 

@@ -9,22 +9,19 @@
 /* The option of all scene commands that restricts the location of a scene's files. */
 #define SCENE_SANDBOX_OPTION(id)                                                             \
   {                                                                                          \
-    (id), 0, "sandbox", OPTION_FOLDERS, "DIR",                                               \
+    (id), "sandbox",                                                                         \
         "a file that the scene names must be in DIR or below it, after links are resolved; " \
-        "may "                                                                               \
-        "be given several "                                                                  \
-        "times",                                                                             \
-        0, 0, NULL                                                                           \
+        "may be given several times",                                                        \
+        OPTION_FOLDERS, "DIR"                                                                \
   }
 
 /* The option of all scene commands that adds folders to look in. */
 #define SCENE_SEARCH_OPTION(id)                                                         \
   {                                                                                     \
-    (id), 0, "search-path", OPTION_SEARCH, "DIR",                                       \
+    (id), "search-path",                                                                \
         "folder in which files that the scene names are also looked for; may be given " \
-        "several "                                                                      \
-        "times",                                                                        \
-        0, 0, NULL                                                                      \
+        "several times",                                                                \
+        OPTION_SEARCH, "DIR"                                                            \
   }
 
 /* Creates a context with the options' --sandbox folder and a log callback, and confines the

@@ -107,12 +107,11 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static Option options[] = {
-    {UPGRADE_STRICT, 0, "strict", OPTION_FLAG, NULL,
+    {UPGRADE_STRICT, "strict",
      "anything without a counterpart in pbrt-v4 is an error, and nothing is written"},
-    {UPGRADE_ALL, 'a', "all", OPTION_FLAG, NULL,
-     "print every change; default: the first 5 with the same text"},
-    {UPGRADE_QUIET, 0, "quiet", OPTION_FLAG, NULL,
-     "print only what has no counterpart in pbrt-v4"},
+    {UPGRADE_ALL, "all", "print every change; default: the first 5 with the same text",
+     .letter = 'a'},
+    {UPGRADE_QUIET, "quiet", "print only what has no counterpart in pbrt-v4"},
     SCENE_SEARCH_OPTION(UPGRADE_SEARCH),
     SCENE_SANDBOX_OPTION(UPGRADE_SANDBOX),
     {0}};

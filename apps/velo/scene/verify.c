@@ -161,19 +161,20 @@ static int run_verify(const Command *command, const Arguments *arguments) {
 }
 
 static Option options[] = {
-    {VERIFY_RAYS, 0, "rays", OPTION_NUMBER, "M",
-     "millions of rays of the first look; default 60", 0.001, 1e6, NULL},
-    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers; default 0", 0,
-     1048575, NULL},
-    {VERIFY_REFERENCE, 0, "reference", OPTION_TEXT, "PROGRAM",
+    {VERIFY_RAYS, "rays", "millions of rays of the first look; default 60", OPTION_NUMBER, "M",
+     0.001, 1e6},
+    {RENDER_SEED, "seed", "seed of the random numbers; default 0", OPTION_INTEGER, "N", 0,
+     1048575},
+    {VERIFY_REFERENCE, "reference",
      "the reference renderer; default: the environment variable VELO_REFERENCE, else "
-     "velo-reference beside velo"},
-    {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+     "velo-reference beside velo",
+     OPTION_TEXT, "PROGRAM"},
+    {VERIFY_JSON, "json", "print one JSON object to stdout"},
     {RENDER_THREADS, .help = "number of threads; default: one per processor core"},
-    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
+    {RENDER_RESOLUTION, "resolution",
      "image size in pixels; default: that of the scene, reduced to 64 pixels on its longer "
      "side",
-     1, 4096},
+     OPTION_SIZE, "WxH", 1, 4096},
     {RENDER_CAMERA, .help = "scene or camera file that gives the camera"},
     {RENDER_FRAME},
     {RENDER_MAX_DEPTH},

@@ -357,35 +357,42 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static Option options[] = {
-    {EXPOSE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
+    {EXPOSE_OUTPUT, "output",
      "file to write; may be given several times: .dng is a raw file with all metadata, .tif "
-     "and .png have the numbers (16 bits), .exr the electrons"},
-    {EXPOSE_SENSOR, 0, "sensor", OPTION_TEXT, "NAME|FILE",
+     "and .png have the numbers (16 bits), .exr the electrons",
+     OPTION_TEXTS, "FILE", .letter = 'o'},
+    {EXPOSE_SENSOR, "sensor",
      "a sensor file (.yaml), or ideal, ideal_rggb, generic_mono, generic_rggb, generic_quad, "
-     "raspberry_pi_hq, or generic_rggb with the sensitivities of a measured camera (canon_eos_5d, ...). "
-     "Default: ideal"},
-    {EXPOSE_TIME, 0, "exposure-time", OPTION_TEXT, "S", "exposure time in seconds"},
-    {EXPOSE_F_NUMBER, 0, "f-number", OPTION_TEXT, "N",
-     "focal length divided by the pupil's diameter"},
-    {EXPOSE_ISO, 0, "iso", OPTION_TEXT, "N", "ISO speed; default: the sensor's base_iso"},
-    {EXPOSE_GAIN, 0, "gain", OPTION_TEXT, "FACTOR", "a further factor of the amplifier"},
-    {EXPOSE_TEMPERATURE, 0, "temperature", OPTION_TEXT, "C",
-     "temperature of the sensor, degrees Celsius"},
-    {EXPOSE_FOCAL_LENGTH, 0, "focal-length", OPTION_TEXT, "MM",
+     "raspberry_pi_hq, or generic_rggb with the sensitivities of a measured camera "
+     "(canon_eos_5d, ...). Default: ideal",
+     OPTION_TEXT, "NAME|FILE"},
+    {EXPOSE_TIME, "exposure-time", "exposure time in seconds", OPTION_TEXT, "S"},
+    {EXPOSE_F_NUMBER, "f-number", "focal length divided by the pupil's diameter", OPTION_TEXT,
+     "N"},
+    {EXPOSE_ISO, "iso", "ISO speed; default: the sensor's base_iso", OPTION_TEXT, "N"},
+    {EXPOSE_GAIN, "gain", "a further factor of the amplifier", OPTION_TEXT, "FACTOR"},
+    {EXPOSE_TEMPERATURE, "temperature", "temperature of the sensor, degrees Celsius",
+     OPTION_TEXT, "C"},
+    {EXPOSE_FOCAL_LENGTH, "focal-length",
      "darken the image with cos^4 of the angle from the axis, as a lens of this focal length; "
-     "not for cameras that have done so"},
-    {EXPOSE_RADIANCE, 0, "radiance", OPTION_TEXT, "L",
-     "radiance of the image's value 1, W/(m^2 sr nm); default 1/72983: 1 is 1 cd/m^2"},
-    {EXPOSE_SEED, 0, "seed", OPTION_TEXT, "N", "seed of the noise"},
-    {EXPOSE_FRAME, 0, "frame", OPTION_TEXT, "N",
-     "number of the first frame: other noise with the same seed"},
-    {EXPOSE_BRACKET, 0, "bracket", OPTION_TEXT, "EV,EV,...",
-     "a frame for each number: the exposure time times 2^EV. The names need %d: raw_%d.png"},
-    {EXPOSE_WHITE, 0, "white", OPTION_TEXT, "SPECTRUM",
+     "not for cameras that have done so",
+     OPTION_TEXT, "MM"},
+    {EXPOSE_RADIANCE, "radiance",
+     "radiance of the image's value 1, W/(m^2 sr nm); default 1/72983: 1 is 1 cd/m^2",
+     OPTION_TEXT, "L"},
+    {EXPOSE_SEED, "seed", "seed of the noise", OPTION_TEXT, "N"},
+    {EXPOSE_FRAME, "frame", "number of the first frame: other noise with the same seed",
+     OPTION_TEXT, "N"},
+    {EXPOSE_BRACKET, "bracket",
+     "a frame for each number: the exposure time times 2^EV. The names need %d: raw_%d.png",
+     OPTION_TEXT, "EV,EV,..."},
+    {EXPOSE_WHITE, "white",
      "what raw files (.dng) call the white of the scene's light: stdillum-A, stdillum-D50, "
-     "...; default: stdillum-D65"},
-    {EXPOSE_THREADS, 't', "threads", OPTION_INTEGER, "N",
-     "number of worker threads; default: all processors. The result is the same"},
+     "...; default: stdillum-D65",
+     OPTION_TEXT, "SPECTRUM"},
+    {EXPOSE_THREADS, "threads",
+     "number of worker threads; default: all processors. The result is the same",
+     OPTION_INTEGER, "N", .letter = 't'},
     {0}};
 
 const Command sensor_expose_command = {

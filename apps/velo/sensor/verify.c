@@ -148,21 +148,23 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static Option options[] = {
-    {VERIFY_ISO, 0, "iso", OPTION_TEXT, "N", "ISO speed; default: the sensor's base_iso"},
-    {VERIFY_TEMPERATURE, 0, "temperature", OPTION_TEXT, "C",
-     "temperature of the sensor, degrees Celsius"},
-    {VERIFY_SEED, 0, "seed", OPTION_TEXT, "N", "seed of the noise"},
-    {VERIFY_SIZE, 0, "size", OPTION_INTEGER, "N", "side of the frames in pixels; default 512",
-     16, 4096},
-    {VERIFY_STACK, 0, "stack", OPTION_INTEGER, "N",
-     "frames of the stacks for DSNU and PRNU; default: 16 to 400, by the sensor's noise", 3,
-     1000},
-    {VERIFY_FRAMES, 0, "frames", OPTION_TEXT, "DIR",
+    {VERIFY_ISO, "iso", "ISO speed; default: the sensor's base_iso", OPTION_TEXT, "N"},
+    {VERIFY_TEMPERATURE, "temperature", "temperature of the sensor, degrees Celsius",
+     OPTION_TEXT, "C"},
+    {VERIFY_SEED, "seed", "seed of the noise", OPTION_TEXT, "N"},
+    {VERIFY_SIZE, "size", "side of the frames in pixels; default 512", OPTION_INTEGER, "N", 16,
+     4096},
+    {VERIFY_STACK, "stack",
+     "frames of the stacks for DSNU and PRNU; default: 16 to 400, by the sensor's noise",
+     OPTION_INTEGER, "N", 3, 1000},
+    {VERIFY_FRAMES, "frames",
      "write the frames (.png, 16 bits) and the descriptor EMVA1288_Data.txt, which EMVA's own "
-     "program reads, to a new folder"},
-    {VERIFY_PLOT, 0, "plot", OPTION_TEXT, "FILE.svg", "write the photon transfer curve"},
-    {VERIFY_THREADS, 't', "threads", OPTION_INTEGER, "N",
-     "number of worker threads; default: all processors. The result is the same"},
+     "program reads, to a new folder",
+     OPTION_TEXT, "DIR"},
+    {VERIFY_PLOT, "plot", "write the photon transfer curve", OPTION_TEXT, "FILE.svg"},
+    {VERIFY_THREADS, "threads",
+     "number of worker threads; default: all processors. The result is the same",
+     OPTION_INTEGER, "N", .letter = 't'},
     {0}};
 
 const Command sensor_verify_command = {

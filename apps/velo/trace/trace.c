@@ -185,12 +185,11 @@ static int run_trace(const Command *command, const Arguments *arguments) {
 }
 
 static Option trace_options[] = {
-    {TRACE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE",
-     "file of the hits, .csv, .npy or .npz; default: .csv on stdout"},
-    {TRACE_HITS, 0, "hits", OPTION_INTEGER, "K", "up to K hits along each ray; default 1", 1,
-     VL_MAX_CAST_HITS, NULL},
-    {TRACE_OCCLUDED, 0, "occluded", OPTION_FLAG, NULL,
-     "say only whether something is on each ray"},
+    {TRACE_OUTPUT, "output", "file of the hits, .csv, .npy or .npz; default: .csv on stdout",
+     OPTION_TEXT, "FILE", .letter = 'o'},
+    {TRACE_HITS, "hits", "up to K hits along each ray; default 1", OPTION_INTEGER, "K", 1,
+     VL_MAX_CAST_HITS},
+    {TRACE_OCCLUDED, "occluded", "say only whether something is on each ray"},
     {RENDER_SEARCH},
     STRICT_OPTIONS_OPTION,
     {0}};

@@ -78,16 +78,16 @@ static const Choice languages[] = {
     {"en", LANGUAGE_ENGLISH}, {"it", LANGUAGE_ITALIAN}, {NULL, 0}};
 
 Option view_options[] = {
-    {VIEW_PORT, 0, "port", OPTION_INTEGER, "N", "port to listen on; default: a free one", 1,
-     65535, NULL},
-    {VIEW_LISTEN, 0, "listen", OPTION_TEXT, "ADDRESS",
-     "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no other "
-     "machine can reach"},
-    {VIEW_NO_OPEN, 0, "no-open", OPTION_FLAG, NULL, "do not open a browser"},
-    {VIEW_LECTURE, 0, "lecture", OPTION_FLAG, NULL,
-     "show the lecture with live scenes, in place of FILE"},
-    {VIEW_LANGUAGE, 0, "language", OPTION_CHOICE, "NAME",
-     "language of the lecture; default: that of LANG, else en:", 0, 0, languages},
+    {VIEW_PORT, "port", "port to listen on; default: a free one", OPTION_INTEGER, "N", 1,
+     65535},
+    {VIEW_LISTEN, "listen",
+     "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no "
+     "other machine can reach",
+     OPTION_TEXT, "ADDRESS"},
+    {VIEW_NO_OPEN, "no-open", "do not open a browser"},
+    {VIEW_LECTURE, "lecture", "show the lecture with live scenes, in place of FILE"},
+    {VIEW_LANGUAGE, "language", "language of the lecture; default: that of LANG, else en:",
+     OPTION_CHOICE, "NAME", .choices = languages},
     {RENDER_SPP, .help = "samples per pixel at which the image is done"},
     {RENDER_FILM, .help = "write the film of the last image to this file at the end"},
     {RENDER_OVERWRITE, .help = "replace a film that is there already"},
@@ -148,9 +148,10 @@ Option view_options[] = {
     {RENDER_EXPOSURE, .help = "exposure of the first view: a number, or auto for models"},
     {RENDER_ISO, .help = "sensitivity for a physical exposure"},
     {RENDER_SECONDS, .help = "exposure time for --iso, in seconds"},
-    {VIEW_EXPOSE, 0, "expose", OPTION_TEXT, "NAME|FILE",
-     "begin as the camera sees it, with this sensor: a name of velo sensor expose, or a sensor "
-     "file (.yaml). --iso and --seconds are those of its exposure"},
+    {VIEW_EXPOSE, "expose",
+     "begin as the camera sees it, with this sensor: a name of velo sensor expose, or a "
+     "sensor file (.yaml). --iso and --seconds are those of its exposure",
+     OPTION_TEXT, "NAME|FILE"},
     {RENDER_FOCUS_PIXEL, .help = "focus on the surface that is seen at this point"},
     {RENDER_FOCUS_DISTANCE},
     {RENDER_LENS_RADIUS, .help = "radius of the thin lens, in scene units"},
@@ -159,16 +160,16 @@ Option view_options[] = {
     {RENDER_BITS, .help = "the same image on every machine, or less time:"},
     {RENDER_ACCELERATOR, .help = "what finds the surfaces that rays meet:"},
     {RENDER_MAX_MEMORY, .help = "limit of the memory, such as 2G"},
-    {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "FOLDER",
-     "files that the scene names must be in this folder, and the system confines velo where it "
-     "can"},
+    {RENDER_SANDBOX, "sandbox",
+     "files that the scene names must be in this folder, and the system confines velo where "
+     "it can",
+     OPTION_FOLDERS, "FOLDER"},
     {RENDER_PERMISSIVE, .help = "warn of unsupported features instead of refusing them"},
     {RENDER_STRICT, .help = "glTF, OBJ: a missing image is an error"},
     STRICT_OPTIONS_OPTION,
     {RENDER_SEARCH, .help = "further folder in which files of the scene are looked for"},
     {RENDER_IMITATE_PBRT, .help = "reproduce a known error of pbrt-v4"},
-    {RENDER_QUIET, 'q', "quiet", OPTION_FLAG, NULL,
-     "print only the address, warnings and errors"},
+    {RENDER_QUIET, "quiet", "print only the address, warnings and errors", .letter = 'q'},
     {0}};
 
 static const Section view_sections[] = {

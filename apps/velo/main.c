@@ -278,7 +278,13 @@ static int run(int argc, char **argv) {
     return unknown_command(argc - 1, argv + 1);
   static Arguments arguments;
   int status = options_parse(command, argc - 1 - words, argv + 1 + words, &arguments);
-  return status >= 0 ? status : command->run(command, &arguments);
+  vlContext *context = NULL;
+  if (status < 0 && command->context != CONTEXT_OWN)
+    status = context_open_for(&arguments, report_log, NULL, &context);
+  if (status < 0)
+    status = command->run(&arguments, context);
+  context_close(context);
+  return status;
 }
 
 /* std::set_terminate of the C++ library that Embree loads; null without one. Embree's scheduler
@@ -311,5 +317,5 @@ int main(int argc, char **argv) {
     json |= strcmp(argv[i], "--log-json") == 0;
   report_setup(json, REPORT_NORMAL);
   int status = run(argc, argv);
-  return status == STATUS_OK ? report_stdout(status) : status;
+  return report_stdout(status);
 }

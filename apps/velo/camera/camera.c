@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/header.h"
@@ -181,20 +180,14 @@ int camera_load_made(vlContext *context, const char *path, const Arguments *argu
 
 enum { CONVERT_FROM, CONVERT_TO, CONVERT_FRAME, CONVERT_DROP, CONVERT_SIZE };
 
-static int run_convert(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_convert(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   const char *in = arguments->operands[0], *out = arguments->operands[1];
-  vlContext *context = NULL;
   vlCameraRecord record;
-  int status = image_context(&context);
-  if (status < 0)
-    status = camera_load(context, in, v[CONVERT_FROM].given ? (int)v[CONVERT_FROM].integer : 0,
-                         v[CONVERT_FRAME].given ? v[CONVERT_FRAME].text : NULL,
-                         &v[CONVERT_SIZE], NULL, &record);
+  int status = camera_load(context, in, (int)v[CONVERT_FROM].integer, v[CONVERT_FRAME].text,
+                           &v[CONVERT_SIZE], NULL, &record);
   vlCameraFileDef def = vl_default_camera_file_def();
-  def.dialect =
-      v[CONVERT_TO].given ? (vlCameraDialect)v[CONVERT_TO].integer : VL_CAMERA_DIALECT_AUTO;
+  def.dialect = (vlCameraDialect)option_count(&v[CONVERT_TO], VL_CAMERA_DIALECT_AUTO);
   /* each file of a folder is checked when it is written */
   if (status < 0 && !vl_camera_writes_folder(out, def.dialect))
     status = output_check(context, out, VL_OUTPUT_PLAIN);
@@ -215,7 +208,6 @@ static int run_convert(const Command *command, const Arguments *arguments) {
     else
       status = report_error(&error, result, out);
   }
-  context_close(context);
   return status;
 }
 
@@ -248,5 +240,6 @@ const Command camera_convert_command = {
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,
+    .context = CONTEXT_ONE,
     .run = run_convert,
 };

@@ -11,7 +11,6 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/text.h"
-#include "image/image.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
 
@@ -128,11 +127,11 @@ static int read_options(State *s, const Arguments *arguments) {
 
 /* ---- the cameras ------------------------------------------------------------------------- */
 
-static int load(State *s, const Command *command, const Arguments *arguments) {
+static int load(State *s, vlContext *context, const Arguments *arguments) {
   const char *path = arguments->operands[0];
   const OptionValue *v = arguments->values;
   vlError error = {0};
-  int status = scene_world_open(&s->in, command, arguments);
+  int status = scene_world_open(&s->in, context, arguments);
   if (status >= 0)
     return status;
   if (v[RENDER_TRAJECTORY].given) {
@@ -226,12 +225,12 @@ static int draw(State *s, const OptionValue *v) {
   return result == VL_OK ? STATUS_OK : report_error(&error, result, v[DRAW_OUT].text);
 }
 
-static int run_draw(const Command *command, const Arguments *arguments) {
+static int run_draw(const Arguments *arguments, vlContext *context) {
   State s;
   memset(&s, 0, sizeof s);
   int status = read_options(&s, arguments);
   if (status < 0)
-    status = load(&s, command, arguments);
+    status = load(&s, context, arguments);
   if (status < 0)
     status = output_check(s.in.context, arguments->values[DRAW_OUT].text, VL_OUTPUT_PLAIN);
   if (status < 0)
@@ -317,5 +316,6 @@ const Command camera_draw_command = {
     .sections = draw_sections,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ALL,
     .run = run_draw,
 };

@@ -4,10 +4,8 @@
 
 #include "camera/camera.h"
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/vector.h"
-#include "image/image.h"
 
 enum { INFO_JSON, INFO_FRAME, INFO_SIZE };
 
@@ -127,25 +125,20 @@ static void print_text(const char *path, const vlCameraRecord *record, const vlC
          m[10], 0.0 - m[1], 0.0 - m[5], 0.0 - m[9]);
 }
 
-static int run_info(const Command *command, const Arguments *arguments) {
-  (void)command;
-  vlContext *context = NULL;
+static int run_info(const Arguments *arguments, vlContext *context) {
   vlCameraRecord record;
   vlCamera camera;
   const char *path = arguments->operands[0];
-  int status = image_context(&context);
-  if (status < 0)
-    status =
-        camera_load_made(context, path, arguments, INFO_FRAME, INFO_SIZE, &record, &camera);
+  int status =
+      camera_load_made(context, path, arguments, INFO_FRAME, INFO_SIZE, &record, &camera);
   if (status < 0) {
     Info info = measure(&camera);
     if (arguments->values[INFO_JSON].given)
       print_json(path, &record, &camera, &info);
     else
       print_text(path, &record, &camera, &info);
-    status = image_finish_output(STATUS_OK);
+    status = STATUS_OK;
   }
-  context_close(context);
   return status;
 }
 
@@ -170,5 +163,6 @@ const Command camera_info_command = {
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ONE,
     .run = run_info,
 };

@@ -8,7 +8,6 @@
 #include "camera/scene_world.h"
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "image/image.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
 #include "velo/tracer.h"
@@ -47,8 +46,8 @@ static bool parse_pixel(const char *text, uint32_t pixel[2]) {
 static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
   vlSceneDefs *defs = s->in.job.defs;
   vlError error = {0};
-  uint32_t first = v[PATHS_FIRST].given ? (uint32_t)v[PATHS_FIRST].integer : 0;
-  uint32_t count = v[PATHS_SAMPLES].given ? (uint32_t)v[PATHS_SAMPLES].integer : 16;
+  uint32_t first = option_count(&v[PATHS_FIRST], 0);
+  uint32_t count = option_count(&v[PATHS_SAMPLES], 16);
   vlTracer tracer = defs->render.tracer;
   if (tracer != VL_TRACER_PATH && tracer != VL_TRACER_VOLPATH)
     return report_usage(
@@ -69,8 +68,7 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
 }
 
 static int print(State *s, const OptionValue *v) {
-  uint32_t count = s->traced.paths->count,
-           most = v[PATHS_SHOW].given ? (uint32_t)v[PATHS_SHOW].integer : 16;
+  uint32_t count = s->traced.paths->count, most = option_count(&v[PATHS_SHOW], 16);
   const PathsReport report = {.file = s->in.job.path,
                               .world = s->in.world,
                               .traced = &s->traced,
@@ -84,10 +82,10 @@ static int print(State *s, const OptionValue *v) {
   } else {
     paths_print_text(&report);
   }
-  return image_finish_output(STATUS_OK);
+  return STATUS_OK;
 }
 
-static int run_paths(const Command *command, const Arguments *arguments) {
+static int run_paths(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   uint32_t pixel[2];
   if (!v[PATHS_PIXEL].given)
@@ -97,7 +95,7 @@ static int run_paths(const Command *command, const Arguments *arguments) {
                         v[PATHS_PIXEL].text);
   State s;
   memset(&s, 0, sizeof s);
-  int status = scene_world_open(&s.in, command, arguments);
+  int status = scene_world_open(&s.in, context, arguments);
   if (status < 0)
     status = trace(&s, pixel, v);
   if (status < 0)
@@ -166,5 +164,6 @@ const Command camera_paths_command = {
     .sections = paths_sections,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ALL,
     .run = run_paths,
 };

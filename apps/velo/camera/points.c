@@ -9,9 +9,7 @@
 
 #include "camera/camera.h"
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
-#include "image/image.h"
 
 enum { POINTS_CAMERA, POINTS_ORIGIN, POINTS_FRAME, POINTS_SIZE, POINTS_STRICT };
 enum { BATCH = 4096 };
@@ -130,19 +128,16 @@ static int unproject_all(const vlCamera *camera, double shift, Lines *lines) {
   return STATUS_OK;
 }
 
-static int run_points(const Arguments *arguments,
+static int run_points(const Arguments *arguments, vlContext *context,
                       int (*all)(const vlCamera *, double, Lines *)) {
   const OptionValue *v = arguments->values;
   if (!v[POINTS_CAMERA].given)
     return report_usage("--camera FILE is needed");
   double shift = v[POINTS_ORIGIN].given && v[POINTS_ORIGIN].integer ? 0.5 : 0.0;
-  vlContext *context = NULL;
   vlCameraRecord record;
   vlCamera camera;
-  int status = image_context(&context);
-  if (status < 0)
-    status = camera_load_made(context, v[POINTS_CAMERA].text, arguments, POINTS_FRAME,
-                              POINTS_SIZE, &record, &camera);
+  int status = camera_load_made(context, v[POINTS_CAMERA].text, arguments, POINTS_FRAME,
+                                POINTS_SIZE, &record, &camera);
   Lines lines = {.path = arguments->operands[0], .strict = v[POINTS_STRICT].given};
   bool from_stdin = strcmp(lines.path, "-") == 0;
   if (status < 0) {
@@ -154,7 +149,7 @@ static int run_points(const Arguments *arguments,
                               lines.path, strerror(errno));
   }
   if (status < 0)
-    status = image_finish_output(all(&camera, shift, &lines));
+    status = all(&camera, shift, &lines);
   if (lines.bad > 1)
     report_warning("%s: %lu lines are not numbers", lines.path, lines.bad);
   if (lines.bad && status == STATUS_OK)
@@ -162,18 +157,15 @@ static int run_points(const Arguments *arguments,
   if (lines.file && !from_stdin)
     fclose(lines.file);
   free(lines.line);
-  context_close(context);
   return status;
 }
 
-static int run_project(const Command *command, const Arguments *arguments) {
-  (void)command;
-  return run_points(arguments, project_all);
+static int run_project(const Arguments *arguments, vlContext *context) {
+  return run_points(arguments, context, project_all);
 }
 
-static int run_unproject(const Command *command, const Arguments *arguments) {
-  (void)command;
-  return run_points(arguments, unproject_all);
+static int run_unproject(const Arguments *arguments, vlContext *context) {
+  return run_points(arguments, context, unproject_all);
 }
 
 static Option points_options[] = {
@@ -208,6 +200,7 @@ const Command camera_project_command = {
     .options = points_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ONE,
     .run = run_project,
 };
 
@@ -225,5 +218,6 @@ const Command camera_unproject_command = {
     .options = points_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ONE,
     .run = run_unproject,
 };

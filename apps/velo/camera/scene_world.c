@@ -1,22 +1,18 @@
 /* camera/scene_world.c: a scene's world and camera, made as `velo render` makes them. */
 #include "camera/scene_world.h"
 
-#include "cli/context.h"
 #include "cli/report.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
 
-int scene_world_open(SceneWorld *s, const Command *command, const Arguments *arguments) {
+int scene_world_open(SceneWorld *s, vlContext *context, const Arguments *arguments) {
   const char *path = arguments->operands[0];
-  vlContextDef def = vl_default_context_def();
   vlError error = {0};
-  def.log = report_log;
-  int status = context_open(&def, &s->context);
+  s->context = context;
+  int status = scene_open(context, path, arguments, &s->scene, &s->opening);
   if (status < 0)
-    status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
-  if (status < 0)
-    status = job_make(&s->job, s->context, s->scene, path, arguments);
-  const Needs needs = {.options = command->options,
+    status = job_make(&s->job, context, s->scene, path, arguments);
+  const Needs needs = {.options = arguments->command->options,
                        .values = arguments->values,
                        .arguments = arguments,
                        .scene = s->scene,
@@ -41,5 +37,4 @@ void scene_world_close(SceneWorld *s) {
   scene_opening_close(&s->opening);
   vl_world_destroy(s->world);
   vl_scene_destroy(s->scene);
-  context_close(s->context);
 }

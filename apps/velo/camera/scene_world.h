@@ -16,8 +16,8 @@ typedef struct SceneWorld {
 
 /* Loads the scene of the first operand and builds its world. Options that have no effect on
  * them are reported (render/needs.h). Returns -1, or the exit code after a report. */
-int scene_world_open(SceneWorld *s, const Command *command, const Arguments *arguments);
-/* Frees all, also what a failed scene_world_open has left. */
+int scene_world_open(SceneWorld *s, vlContext *context, const Arguments *arguments);
+/* Frees all but the context, also what a failed scene_world_open has left. */
 void scene_world_close(SceneWorld *s);
 
 #endif

@@ -6,7 +6,6 @@
 
 #include "camera/camera.h"
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/json.h"
 #include "cli/report.h"
 #include "cli/text.h"
@@ -299,7 +298,7 @@ static void say_camera(const vlCameraDef *d, bool as_json) {
   printf("forward       %.17g %.17g %.17g\n", m[2], m[6], m[10]);
 }
 
-static int run_inverse(const Arguments *arguments) {
+static int run_inverse(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   if (!v[V_SIZE].given)
     return report_usage("--from needs --size WxH, the image's");
@@ -330,32 +329,24 @@ static int run_inverse(const Arguments *arguments) {
   if (result != VL_OK)
     return report_failure(STATUS_SCENE, "%s", error.message);
   if (v[V_OUT].given) {
-    vlContext *context = NULL;
-    int status = image_context(&context);
-    if (status < 0) {
-      vlCameraFileDef file = vl_default_camera_file_def();
-      file.dialect = v[V_TO].given ? (vlCameraDialect)v[V_TO].integer : VL_CAMERA_DIALECT_AUTO;
-      result = vl_camera_write(context, v[V_OUT].text, &file, &record, &error);
-      if (result != VL_OK)
-        status = report_error(&error, result, v[V_OUT].text);
-    }
-    context_close(context);
-    if (status >= 0)
-      return status;
+    vlCameraFileDef file = vl_default_camera_file_def();
+    file.dialect = (vlCameraDialect)option_count(&v[V_TO], VL_CAMERA_DIALECT_AUTO);
+    result = vl_camera_write(context, v[V_OUT].text, &file, &record, &error);
+    if (result != VL_OK)
+      return report_error(&error, result, v[V_OUT].text);
   }
   say_camera(&record.camera, v[V_JSON].given);
-  return image_finish_output(STATUS_OK);
+  return STATUS_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------
  */
 
-static int run_vanishing(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_vanishing(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   double up[3] = {0, 1, 0}, grid[2] = {0, 0};
   if (v[V_FROM].given)
-    return run_inverse(arguments);
+    return run_inverse(arguments, context);
   if (arguments->operand_count != 1)
     return report_usage("camera vanishing takes one FILE, or --from and points");
   if (v[V_UP].given && (!parse_numbers(v[V_UP].text, 3, up) || !(vector_dot(up, up) > 0.0)))
@@ -368,15 +359,12 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
   if (v[V_GRID].given && !(grid[0] > 0.0))
     return report_usage("--grid: the spacing must be above zero");
   vector_normalize(up);
-  vlContext *context = NULL;
   vlCameraRecord record;
   vlCamera camera;
   const char *path = arguments->operands[0];
-  int status = image_context(&context);
-  if (status < 0)
-    status = camera_load_made(context, path, arguments, V_FRAME, V_SIZE, &record, &camera);
+  int status = camera_load_made(context, path, arguments, V_FRAME, V_SIZE, &record, &camera);
   if (status < 0 && v[V_OVERLAY].given) {
-    Drawing drawing = {up, v[V_LINES].given ? (int)v[V_LINES].integer : 24, grid[0], grid[1]};
+    Drawing drawing = {up, (int)option_count(&v[V_LINES], 24), grid[0], grid[1]};
     status = draw_overlay(context, arguments, &camera, &drawing);
   }
   if (status < 0) {
@@ -386,9 +374,8 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
       say_json(path, &camera, &points);
     else
       say_text(&camera, &points);
-    status = image_finish_output(STATUS_OK);
+    status = STATUS_OK;
   }
-  context_close(context);
   return status;
 }
 
@@ -445,5 +432,6 @@ const Command camera_vanishing_command = {
     .options = vanishing_options,
     .min_operands = 0,
     .max_operands = 2,
+    .context = CONTEXT_ONE,
     .run = run_vanishing,
 };

@@ -8,9 +8,7 @@
 #include "camera/camera.h"
 #include "camera/verify.h"
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
-#include "image/image.h"
 
 enum {
   VERIFY_CAMERA,
@@ -202,30 +200,22 @@ static int load_model(vlContext *context, const Arguments *arguments, const vlCa
   return -1;
 }
 
-static int run_verify(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_verify(const Arguments *arguments, vlContext *context) {
   static Verification v;
   const OptionValue *o = arguments->values;
-  const char *path = o[VERIFY_CAMERA].text,
-             *against = o[VERIFY_AGAINST].given ? o[VERIFY_AGAINST].text : NULL;
+  const char *path = o[VERIFY_CAMERA].text, *against = o[VERIFY_AGAINST].text;
   if (!o[VERIFY_CAMERA].given)
     return report_usage("which camera? --camera FILE");
   if (!against && (o[VERIFY_AGAINST_FRAME].given || o[VERIFY_IGNORE_POSE].given))
     return report_usage("--%s goes with --against FILE",
                         o[VERIFY_IGNORE_POSE].given ? "ignore-pose" : "against-frame");
-  vlContext *context = NULL;
-  vlContextDef context_def = vl_default_context_def();
-  context_def.log = report_log;
-  int opened = context_open(&context_def, &context);
-  if (opened >= 0)
-    return opened;
   vlCameraRecord record;
   double threshold = o[VERIFY_THRESHOLD].given ? o[VERIFY_THRESHOLD].number : 0.05;
   v.target.charuco = o[VERIFY_TARGET].given && o[VERIFY_TARGET].integer == 1;
-  v.poses = o[VERIFY_POSE_COUNT].given ? (uint32_t)o[VERIFY_POSE_COUNT].integer : 16;
-  v.spp = o[VERIFY_SPP].given ? (uint32_t)o[VERIFY_SPP].integer : 144;
+  v.poses = option_count(&o[VERIFY_POSE_COUNT], 16);
+  v.spp = option_count(&o[VERIFY_SPP], 144);
   v.seed = o[VERIFY_SEED].given ? (uint64_t)o[VERIFY_SEED].integer : 1;
-  v.keep = o[VERIFY_KEEP].given ? o[VERIFY_KEEP].text : NULL;
+  v.keep = o[VERIFY_KEEP].text;
   int status =
       camera_load_made(context, path, arguments, VERIFY_FRAME, VERIFY_SIZE, &record, &v.camera);
   if (status < 0)
@@ -240,9 +230,8 @@ static int run_verify(const Command *command, const Arguments *arguments) {
     char text[200];
     const char *failure = verdict(&v, threshold, text, sizeof text);
     (o[VERIFY_JSON].given ? print_json : print_text)(&v, path, against, threshold, failure);
-    status = image_finish_output(failure ? STATUS_OTHER : STATUS_OK);
+    status = failure ? STATUS_OTHER : STATUS_OK;
   }
-  context_close(context);
   return status;
 }
 
@@ -296,5 +285,6 @@ const Command camera_verify_command = {
     .options = verify_options,
     .min_operands = 0,
     .max_operands = 0,
+    .context = CONTEXT_ALL,
     .run = run_verify,
 };

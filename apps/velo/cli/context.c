@@ -1,6 +1,7 @@
 /* cli/context.c: see context.h. */
 #include "cli/context.h"
 
+#include "cli/confine.h"
 #include "cli/signals.h"
 
 enum {
@@ -44,6 +45,36 @@ int context_open(const vlContextDef *def, vlContext **context) {
   return report_failure(STATUS_OTHER,
                         "no memory, or the system refuses to start %u threads: --threads N",
                         ours.threads);
+}
+
+vlContextDef context_def(const Arguments *arguments) {
+  vlContextDef def = vl_default_context_def();
+  def.log = report_log;
+  def.sandbox = arguments->folders;
+  def.sandbox_count = (uint32_t)arguments->folder_count;
+  options_put(arguments->command->options, arguments->values, VL_SETTING_CONTEXT, &def);
+  return def;
+}
+
+int context_open_one(vlContext **context) {
+  vlContextDef def = vl_default_context_def();
+  def.log = report_log;
+  def.threads = 1;
+  return context_open(&def, context);
+}
+
+int context_open_for(const Arguments *arguments, vlLogFn *log, void *log_user,
+                     vlContext **context) {
+  vlContextDef def = context_def(arguments);
+  Confine confine = {.read_count = 0};
+  def.log = log;
+  def.log_user = log_user;
+  if (arguments->command->context == CONTEXT_ONE)
+    def.threads = 1;
+  confine_read(&confine, arguments->operands[0]);
+  confine_write(&confine, arguments->operands[1]);
+  confine_apply(&confine, arguments);
+  return context_open(&def, context);
 }
 
 void context_close(vlContext *context) {

@@ -327,6 +327,36 @@ static int read_angle_row(const Option *option, const char *text, OptionValue *v
   return vl_given_check(&row, name, &given, NULL, message) ? -1 : report_usage("%s", message);
 }
 
+/* Puts the value of an option into the member of a def that a row describes. */
+static void put_value(const Option *option, const OptionValue *value, const vlParameter *row,
+                      void *def) {
+  const bool is_text = option->kind == OPTION_TEXT || option->kind == OPTION_SEARCH;
+  const bool is_name = option->kind == OPTION_CHOICE || option->kind == OPTION_KIND;
+  if (is_text && row->type == VL_PARAMETER_STRING)
+    memcpy((char *)def + row->offset, &value->text, sizeof value->text);
+  else if (is_name && value->integer != OPTION_LIST_GIVEN)
+    vl_given_put(row, (double)value->integer, def);
+  else if (option->kind == OPTION_INTEGER || option->kind == OPTION_NUMBER)
+    vl_given_put(row, value->number, def);
+  else if (option->kind == OPTION_ANGLE)
+    vl_given_put(row, value->numbers[0], def);
+  else if (option->kind == OPTION_FLAG)
+    vl_given_put(row, 1, def);
+}
+
+void options_put(const Option *options, const OptionValue *values, vlSettingGroup group,
+                 void *def) {
+  for (const Option *o = options; !is_end(o); o++) {
+    const vlParameter *row = values[o->id].given ? vl_setting(group, o->name) : NULL;
+    if (row)
+      put_value(o, &values[o->id], row, def);
+  }
+}
+
+uint32_t option_count(const OptionValue *value, uint32_t otherwise) {
+  return value->given ? (uint32_t)value->integer : otherwise;
+}
+
 static int read_value(const Option *option, const char *text, Arguments *arguments) {
   OptionValue *value = &arguments->values[option->id];
   value->text = text;
@@ -462,8 +492,14 @@ static int parse_option(const Command *command, char ***rest, char **end,
   return read_value(option, value, arguments);
 }
 
+int options_too_few(const Command *command) {
+  return report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name,
+                      command->usage);
+}
+
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments) {
   memset(arguments, 0, sizeof *arguments);
+  arguments->command = command;
   char **end = argv + argc;
   bool only_operands = false;
   for (char **rest = argv; rest < end; rest++) {
@@ -484,7 +520,6 @@ int options_parse(const Command *command, int argc, char **argv, Arguments *argu
   }
   arguments->all_operands = (const char *const *)argv;
   if (arguments->operand_count < command->min_operands)
-    return report_usage("%s: too few arguments; usage: velo %s %s", command->name,
-                        command->name, command->usage);
+    return options_too_few(command);
   return -1;
 }

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "cli/choice.h"
+#include "velo/base.h"
 #include "velo/setting.h"
 
 typedef enum OptionKind {
@@ -59,10 +60,11 @@ typedef struct OptionValue {
   double number;   /* number; time in seconds */
   int64_t integers[4];
   double numbers[4];
-  const char *text; /* the text as given */
+  const char *text; /* the text as given; null: not given */
 } OptionValue;
 
 typedef struct Arguments {
+  const struct Command *command; /* whose line it is */
   OptionValue values[MAX_OPTIONS];
   const char *texts[MAX_TEXTS];
   int text_count;
@@ -81,6 +83,13 @@ typedef struct Section {
   const char *title; /* null ends the list */
 } Section;
 
+/* The context that a command gets. CONTEXT_OWN: none, it opens its own if it needs one. */
+typedef enum ContextUse {
+  CONTEXT_OWN,
+  CONTEXT_ONE, /* of one thread */
+  CONTEXT_ALL  /* of all threads, or of --threads */
+} ContextUse;
+
 typedef struct Command {
   const char *name;     /* "image diff"; null ends a list */
   const char *usage;    /* text after the name: "FILE [options]" */
@@ -93,7 +102,9 @@ typedef struct Command {
                         hint, lines of at most 80 columns with examples and the most used
                         options; null: the page is printed whole */
   int min_operands, max_operands;
-  int (*run)(const struct Command *command, const Arguments *arguments);
+  ContextUse context;
+  /* Returns the exit code. What it prints to stdout is flushed and checked afterwards. */
+  int (*run)(const Arguments *arguments, vlContext *context);
 } Command;
 
 /* Gives each row without a name the members of the row of `from` with the same id, and its help
@@ -102,6 +113,8 @@ void options_share(Option *options, const Option *from);
 /* Parses argv without the names of program and command. Returns -1 to continue, otherwise the
  * exit code after reporting (0 after --help). */
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);
+/* Reports that the command needs more operands. Returns the exit code. */
+int options_too_few(const Command *command);
 /* all: the whole page, also of a command that has a brief one. */
 void options_print_help(const Command *command, bool all);
 
@@ -118,6 +131,13 @@ void options_print_exit_statuses(void);
  * call. */
 const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names,
                          int count);
+/* Puts the given values of options whose names are settings of a group into its def: numbers,
+ * flags, names of choices, texts. Other kinds of values are left to the caller. values: of all
+ * options. */
+void options_put(const Option *options, const OptionValue *values, vlSettingGroup group,
+                 void *def);
+/* The whole number that was given, else another. */
+uint32_t option_count(const OptionValue *value, uint32_t otherwise);
 /* Reads a number by a row, in the row's unit. -1: it is read; else the exit code, after a
  * report. name: of the value in the message. number may be null. */
 int option_number(const char *name, const char *text, const vlParameter *row, double *number);

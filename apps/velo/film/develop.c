@@ -2,9 +2,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
-#include "image/image.h"
 #include "render/attributes.h"
 #include "render/exposure.h"
 #include "render/job.h"
@@ -104,18 +102,18 @@ static int develop(Develop *d, const char *path) {
   return result == VL_OK ? -1 : report_reason(result, path, "the film cannot be developed");
 }
 
-static int run_develop(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_develop(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   Develop d;
   memset(&d, 0, sizeof d);
+  d.context = context;
   Outputs *outputs = &d.outputs;
   for (int i = 0; i < arguments->text_count; i++)
     outputs->paths[i] = arguments->texts[i];
   outputs->count = arguments->text_count;
   outputs->half = v[DEVELOP_HALF].given;
   outputs->to_stdout = true;
-  outputs->view = v[DEVELOP_VIEW].given ? (vlView)v[DEVELOP_VIEW].integer : VL_VIEW_STANDARD;
+  outputs->view = (vlView)option_count(&v[DEVELOP_VIEW], VL_VIEW_STANDARD);
   if (!outputs->count)
     return report_usage("film develop: give the name of the image with -o");
   int status = exposure_parse(&v[DEVELOP_EXPOSURE], &outputs->exposure, &outputs->meter);
@@ -123,8 +121,6 @@ static int run_develop(const Command *command, const Arguments *arguments) {
     status = outputs_check_names(outputs);
   if (status < 0)
     status = outputs_check_folders(outputs);
-  if (status < 0)
-    status = image_context(&d.context);
   if (status < 0)
     status = develop(&d, arguments->operands[0]);
   if (status < 0)
@@ -136,7 +132,6 @@ static int run_develop(const Command *command, const Arguments *arguments) {
   vl_image_destroy(d.spectrum);
   vl_film_destroy(d.film);
   vl_film_file_close(d.file);
-  context_close(d.context);
   return status;
 }
 
@@ -169,5 +164,6 @@ const Command film_develop_command = {
     .options = develop_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ONE,
     .run = run_develop,
 };

@@ -4,11 +4,9 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "film/blocks.h"
-#include "image/image.h"
 
 enum { INFO_MISSING, INFO_CHECK };
 
@@ -133,20 +131,16 @@ static int print_missing(const char *path, const vlFilmFile *file, const FilmPar
   return STATUS_OK;
 }
 
-static int run_info(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_info(const Arguments *arguments, vlContext *context) {
   const char *path = arguments->operands[0];
   bool missing = arguments->values[INFO_MISSING].given;
-  vlContext *context = NULL;
   vlFilmFile *file = NULL;
   vlError error = {0};
   FilmParts parts = {.count = 0};
-  int status = image_context(&context);
-  if (status < 0) {
-    vlResult result = vl_film_file_open(context, path, &file, &error);
-    if (result != VL_OK)
-      status = report_error(&error, result, NULL);
-  }
+  int status = -1;
+  vlResult result = vl_film_file_open(context, path, &file, &error);
+  if (result != VL_OK)
+    status = report_error(&error, result, NULL);
   if (status < 0)
     status = film_parts_read(file, arguments->values[INFO_CHECK].given,
                              missing ? planned_of(file) : 0, &parts);
@@ -158,8 +152,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
   }
   film_parts_free(&parts);
   vl_film_file_close(file);
-  context_close(context);
-  return image_finish_output(status);
+  return status;
 }
 
 static Option info_options[] = {
@@ -178,5 +171,6 @@ const Command film_info_command = {
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ONE,
     .run = run_info,
 };

@@ -2,24 +2,18 @@
 #include <limits.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
-#include "image/image.h"
 #include "render/output_names.h"
 #include "velo/film.h"
 
 enum { MERGE_OUTPUT, MERGE_OVERWRITE };
 
-static int run_merge(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_merge(const Arguments *arguments, vlContext *context) {
   const OptionValue *output = &arguments->values[MERGE_OUTPUT];
   if (!output->given)
     return report_usage("film merge: give the name of the result with -o");
-  vlContext *context = NULL;
   vlError error = {0};
   int status = output_check(NULL, output->text, VL_OUTPUT_FILM);
-  if (status < 0)
-    status = image_context(&context);
   if (status >= 0)
     return status;
   vl_remove_leftovers(output_opened(output->text));
@@ -28,7 +22,6 @@ static int run_merge(const Command *command, const Arguments *arguments) {
   vlResult result =
       vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, &def,
                     output_opened(output->text), &error);
-  context_close(context);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, NULL);
 }
 
@@ -55,5 +48,6 @@ const Command film_merge_command = {
     .options = merge_options,
     .min_operands = 1,
     .max_operands = INT_MAX,
+    .context = CONTEXT_ONE,
     .run = run_merge,
 };

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/vector.h"
 #include "image/check.h"
@@ -302,8 +301,7 @@ static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlI
   return load_other(c, context, arguments, other);
 }
 
-static int run_check(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_check(const Arguments *arguments, vlContext *context) {
   const OptionValue *limit = &arguments->values[CHECK_THRESHOLD];
   double threshold = limit->given ? limit->number : 1e-6;
   static const Rule rules[RULES] = {
@@ -327,15 +325,12 @@ static int run_check(const Command *command, const Arguments *arguments) {
       {"rows", "the camera sees P there when it exposes the pixel's row"}};
   Check check = {.path = arguments->operands[0]}, *c = &check;
   memcpy(c->rules, rules, sizeof rules);
-  vlContext *context = NULL;
   vlImage *image = NULL, *other = NULL;
-  int status = image_context(&context);
-  if (status < 0)
-    status = prepare(c, context, arguments, &image, &other);
+  int status = prepare(c, context, arguments, &image, &other);
   if (status < 0) {
     check_all(c);
     print_result(c, arguments, threshold);
-    status = image_finish_output(judge(c, c->path, threshold));
+    status = judge(c, c->path, threshold);
     check_explain_flow(c, threshold);
   }
   free(c->material_of);
@@ -344,7 +339,6 @@ static int run_check(const Command *command, const Arguments *arguments) {
   vl_image_destroy(other);
   vl_optics_destroy(c->optics);
   vl_optics_destroy(c->other_optics);
-  context_close(context);
   return status;
 }
 
@@ -381,5 +375,6 @@ const Command image_check_command = {
     .options = check_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ONE,
     .run = run_check,
 };

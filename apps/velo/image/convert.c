@@ -6,7 +6,6 @@
 #include <strings.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/job.h"
@@ -191,16 +190,14 @@ static int check_channel(const Arguments *arguments) {
   return -1;
 }
 
-static int run_convert(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_convert(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
-  Outputs outputs = {
-      .paths = {arguments->operands[1]},
-      .count = 1,
-      .to_stdout = true,
-      .half = v[CONVERT_HALF].given,
-      .view = v[CONVERT_VIEW].given ? (vlView)v[CONVERT_VIEW].integer : VL_VIEW_STANDARD,
-      .exposure = (float)v[CONVERT_EXPOSURE].number};
+  Outputs outputs = {.paths = {arguments->operands[1]},
+                     .count = 1,
+                     .to_stdout = true,
+                     .half = v[CONVERT_HALF].given,
+                     .view = (vlView)option_count(&v[CONVERT_VIEW], VL_VIEW_STANDARD),
+                     .exposure = (float)v[CONVERT_EXPOSURE].number};
   int status = outputs_check_names(&outputs);
   if (status < 0)
     status = check_channel(arguments);
@@ -209,13 +206,10 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   if (status >= 0)
     return status;
 
-  vlContext *context = NULL;
   vlImage *image = NULL;
   bool eight_bit = false, viewed = v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given;
   output_suffix(outputs.paths[0], &eight_bit);
-  status = image_context(&context);
-  if (status < 0)
-    status = image_load(context, arguments->operands[0], &image);
+  status = image_load(context, arguments->operands[0], &image);
   if (status < 0)
     status = outputs_check_inputs(context, &outputs);
   if (status < 0)
@@ -233,7 +227,6 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   if (status < 0)
     status = outputs_write(context, &outputs, image, 0, OUTPUT_FINISHED);
   vl_image_destroy(image);
-  context_close(context);
   return status;
 }
 
@@ -266,5 +259,6 @@ const Command image_convert_command = {
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,
+    .context = CONTEXT_ONE,
     .run = run_convert,
 };

@@ -2,7 +2,6 @@
 
 #include "image/denoise.h"
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/job.h"
@@ -23,19 +22,17 @@ enum {
 const Choice denoiser_choices[] = {
     {"velo", VL_DENOISER_VELO}, {"oidn", VL_DENOISER_OIDN}, {NULL, 0}};
 
-static int run_denoise(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_denoise(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   const char *path = arguments->operands[0];
   report_setup(false, v[DENOISE_VERBOSE].given ? REPORT_VERBOSE : REPORT_NORMAL);
   if (!arguments->text_count)
     return report_usage("where to? -o FILE");
-  Outputs outputs = {
-      .count = arguments->text_count,
-      .to_stdout = true,
-      .half = v[DENOISE_HALF].given,
-      .view = v[DENOISE_VIEW].given ? (vlView)v[DENOISE_VIEW].integer : VL_VIEW_STANDARD,
-      .exposure = (float)v[DENOISE_EXPOSURE].number};
+  Outputs outputs = {.count = arguments->text_count,
+                     .to_stdout = true,
+                     .half = v[DENOISE_HALF].given,
+                     .view = (vlView)option_count(&v[DENOISE_VIEW], VL_VIEW_STANDARD),
+                     .exposure = (float)v[DENOISE_EXPOSURE].number};
   for (int i = 0; i < arguments->text_count; i++)
     outputs.paths[i] = arguments->texts[i];
   int status = outputs_check_names(&outputs);
@@ -43,22 +40,14 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
     status = outputs_check_folders(&outputs);
   if (status >= 0)
     return status;
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  if (v[DENOISE_THREADS].given)
-    def.threads = (uint32_t)v[DENOISE_THREADS].integer;
-  vlContext *context = NULL;
   vlImage *image = NULL, *clean = NULL;
   vlError error = {0};
-  if ((status = context_open(&def, &context)) >= 0)
-    return status;
   status = image_load(context, path, &image);
   if (status < 0)
     status = outputs_check_inputs(context, &outputs);
   vlDenoiseDef how = vl_default_denoise_def();
   vlDenoiseStats stats;
-  if (v[DENOISE_DENOISER].given)
-    how.denoiser = (vlDenoiser)v[DENOISE_DENOISER].integer;
+  how.denoiser = (vlDenoiser)option_count(&v[DENOISE_DENOISER], how.denoiser);
   how.library = v[DENOISE_LIBRARY].text;
   if (status < 0) {
     vlResult result = vl_denoise(image, &how, &clean, &stats, &error);
@@ -73,7 +62,6 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
     status = outputs_write(context, &outputs, clean, 0, OUTPUT_FINISHED);
   vl_image_destroy(clean);
   vl_image_destroy(image);
-  context_close(context);
   return status;
 }
 
@@ -133,5 +121,6 @@ const Command image_denoise_command = {
     .options = denoise_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ALL,
     .run = run_denoise,
 };

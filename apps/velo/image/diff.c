@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/output_names.h"
@@ -116,8 +115,7 @@ static int write_heat(const vlImage *heat, const char *path) {
   return result == VL_OK ? STATUS_OK : report_error(&error, result, path);
 }
 
-static int run_diff(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_diff(const Arguments *arguments, vlContext *context) {
   Outputs heat_file = {.paths = {arguments->values[DIFF_OUTPUT].text},
                        .count = arguments->values[DIFF_OUTPUT].given};
   vlImageDiff diff = {0};
@@ -134,11 +132,8 @@ static int run_diff(const Command *command, const Arguments *arguments) {
   if (status >= 0)
     return status;
 
-  vlContext *context = NULL;
   vlImage *a = NULL, *b = NULL, *heat = NULL;
-  status = image_context(&context);
-  if (status < 0)
-    status = image_load(context, arguments->operands[0], &a);
+  status = image_load(context, arguments->operands[0], &a);
   if (status < 0)
     status = image_load(context, arguments->operands[1], &b);
   if (status < 0)
@@ -154,12 +149,11 @@ static int run_diff(const Command *command, const Arguments *arguments) {
     print_metrics(arguments, metrics);
     status = heat ? write_heat(heat, heat_file.paths[0]) : STATUS_OK;
     if (status == STATUS_OK)
-      status = image_finish_output(check_thresholds(arguments, metrics));
+      status = check_thresholds(arguments, metrics);
   }
   vl_image_destroy(heat);
   vl_image_destroy(b);
   vl_image_destroy(a);
-  context_close(context);
   return status;
 }
 
@@ -193,5 +187,6 @@ const Command image_diff_command = {
     .options = diff_options,
     .min_operands = 2,
     .max_operands = 2,
+    .context = CONTEXT_ONE,
     .run = run_diff,
 };

@@ -4,11 +4,7 @@
 
 #include "velo/image.h"
 
-/* Makes a context and reads an image. Returns -1, or the exit code after reporting the
- * error. */
-int image_context(vlContext **context);
+/* Reads an image. Returns -1, or the exit code after reporting the error. */
 int image_load(vlContext *context, const char *path, vlImage **image);
-/* Checks that stdout was written completely. */
-int image_finish_output(int status);
 
 #endif

@@ -4,27 +4,15 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/image.h"
 #include "render/receipt.h"
 
-int image_context(vlContext **context) {
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  def.threads = 1;
-  return context_open(&def, context);
-}
-
 int image_load(vlContext *context, const char *path, vlImage **image) {
   vlError error = {0};
   vlResult result = vl_image_read(context, path, image, &error);
   return result == VL_OK ? -1 : report_error(&error, result, path);
-}
-
-int image_finish_output(int status) {
-  return report_stdout(status);
 }
 
 /* The format by the first bytes, as the library chooses its reader. */
@@ -254,34 +242,25 @@ static void print_json(const char *path, const vlImage *image) {
 
 enum { INFO_JSON };
 
-static int run_info(const Command *command, const Arguments *arguments) {
-  (void)command;
-  vlContext *context = NULL;
+static int run_info(const Arguments *arguments, vlContext *context) {
   vlImage *image = NULL;
-  int status = image_context(&context);
   vlError error = {0};
-  vlResult result = status < 0
-                        ? vl_image_read_header(context, arguments->operands[0], &image, &error)
-                        : VL_OK;
+  vlResult result = vl_image_read_header(context, arguments->operands[0], &image, &error);
   if (result != VL_OK)
-    status = report_error(&error, result, arguments->operands[0]);
+    return report_error(&error, result, arguments->operands[0]);
   vlReceipt *receipt = NULL;
   vlAttribute attribute;
-  if (status < 0 && vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) == VL_OK &&
+  if (vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) == VL_OK &&
       attribute.string)
     vl_receipt_parse(context, attribute.string, strlen(attribute.string), &receipt,
                      NULL); /* without a valid receipt the attribute is printed unchanged */
-  if (status < 0) {
-    if (arguments->values[INFO_JSON].given)
-      print_json(arguments->operands[0], image);
-    else
-      print_text(arguments->operands[0], image, receipt);
-    status = image_finish_output(STATUS_OK);
-  }
+  if (arguments->values[INFO_JSON].given)
+    print_json(arguments->operands[0], image);
+  else
+    print_text(arguments->operands[0], image, receipt);
   vl_receipt_destroy(receipt);
   vl_image_destroy(image);
-  context_close(context);
-  return status;
+  return STATUS_OK;
 }
 
 static Option info_options[] = {{INFO_JSON, "json", "print one JSON object to stdout"}, {0}};
@@ -299,5 +278,6 @@ const Command image_info_command = {
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ONE,
     .run = run_info,
 };

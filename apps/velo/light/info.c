@@ -3,8 +3,7 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
-#include "cli/json.h"
+#include "cli/report.h"
 #include "light/polar.h"
 #include "velo/lamp.h"
 
@@ -110,29 +109,19 @@ static int show(vlContext *context, const char *path, const vlLamp *lamp,
     print_json(path, &info);
   else
     print_text(path, lamp, &info);
-  status = report_stdout(STATUS_OK);
-  if (status != STATUS_OK || !v[INFO_OUT].given)
-    return status;
+  if (!v[INFO_OUT].given)
+    return STATUS_OK;
   return polar_write(context, v[INFO_OUT].text, lamp, &info, info.name[0] ? info.name : path);
 }
 
-static int run_info(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_info(const Arguments *arguments, vlContext *context) {
   const char *path = arguments->operands[0];
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  def.threads = 1;
-  vlContext *context = NULL;
-  int status = context_open(&def, &context);
-  if (status >= 0)
-    return status;
   vlLamp *lamp = NULL;
   vlError error = {0};
   vlResult r = vl_lamp_load(context, path, &lamp, &error);
-  status =
+  const int status =
       r == VL_OK ? show(context, path, lamp, arguments->values) : report_error(&error, r, path);
   vl_lamp_destroy(lamp);
-  context_close(context);
   return status;
 }
 
@@ -156,5 +145,6 @@ const Command light_info_command = {
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ONE,
     .run = run_info,
 };

@@ -1,6 +1,5 @@
 /* raw/develop.c: `velo raw develop`: develops a raw file into an image, step by step. */
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "raw/raw.h"
 #include "render/output_names.h"
@@ -37,21 +36,18 @@ static int check_names(const Arguments *arguments, Outputs *outputs) {
   return status < 0 ? outputs_check_folders(outputs) : status;
 }
 
-static int run_develop(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_develop(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   Outputs outputs = {0};
-  vlContext *context = NULL;
   vlRaw *raw = NULL;
   vlImage *image = NULL;
   vlError error = {0};
   vlRawDevelopDef def = vl_default_raw_develop_def();
-  if (v[DEVELOP_STOP_AT].given)
-    def.stop_at = (vlRawStep)v[DEVELOP_STOP_AT].integer;
+  def.stop_at = (vlRawStep)option_count(&v[DEVELOP_STOP_AT], def.stop_at);
   def.exposure = (float)v[DEVELOP_EXPOSURE].number;
   int status = check_names(arguments, &outputs);
   if (status < 0)
-    status = raw_load(arguments->operands[0], &context, &raw);
+    status = raw_load(context, arguments->operands[0], &raw);
   if (status < 0)
     status = outputs_check_inputs(context, &outputs);
   if (status < 0) {
@@ -61,7 +57,6 @@ static int run_develop(const Command *command, const Arguments *arguments) {
   }
   vl_image_destroy(image);
   vl_raw_destroy(raw);
-  context_close(context);
   return status;
 }
 
@@ -93,5 +88,6 @@ const Command raw_develop_command = {
     .options = develop_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ALL,
     .run = run_develop,
 };

@@ -3,18 +3,12 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "raw/raw.h"
 
-int raw_load(const char *path, vlContext **context, vlRaw **raw) {
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  int status = context_open(&def, context);
-  if (status >= 0)
-    return status;
+int raw_load(vlContext *context, const char *path, vlRaw **raw) {
   vlError error = {0};
-  vlResult result = vl_raw_read(*context, path, raw, &error);
+  vlResult result = vl_raw_read(context, path, raw, &error);
   return result == VL_OK ? -1 : report_error(&error, result, path);
 }
 
@@ -157,21 +151,18 @@ static void print_json(const char *path, const vlRaw *raw) {
   putchar('\n');
 }
 
-static int run_info(const Command *command, const Arguments *arguments) {
-  (void)command;
-  vlContext *context = NULL;
+static int run_info(const Arguments *arguments, vlContext *context) {
   vlRaw *raw = NULL;
   const char *path = arguments->operands[0];
-  int status = raw_load(path, &context, &raw);
+  int status = raw_load(context, path, &raw);
   if (status < 0) {
     if (arguments->values[INFO_JSON].given)
       print_json(path, raw);
     else
       print_text(path, raw);
-    status = report_stdout(STATUS_OK);
+    status = STATUS_OK;
   }
   vl_raw_destroy(raw);
-  context_close(context);
   return status;
 }
 
@@ -189,5 +180,6 @@ const Command raw_info_command = {
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ALL,
     .run = run_info,
 };

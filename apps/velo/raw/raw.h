@@ -4,8 +4,7 @@
 
 #include "velo/raw.h"
 
-/* Makes a context and reads a raw image. Returns -1, or the exit code after reporting the
- * error. */
-int raw_load(const char *path, vlContext **context, vlRaw **raw);
+/* Reads a raw image. Returns -1, or the exit code after reporting the error. */
+int raw_load(vlContext *context, const char *path, vlRaw **raw);
 
 #endif

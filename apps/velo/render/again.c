@@ -100,13 +100,10 @@ int again_open(Again *again, const Arguments **arguments) {
     return -1;
   if (!given->text_count && !given->values[RENDER_DRY_RUN].given)
     return report_usage("--again: give the name of the new image with -o");
-  vlContextDef def = vl_default_context_def();
   vlImage *image = NULL;
   vlError error = {0};
-  def.threads = 1;
-  def.log = report_log;
   again->path = given->values[RENDER_AGAIN].text;
-  int status = context_open(&def, &again->context);
+  int status = context_open_one(&again->context);
   if (status >= 0)
     return status;
   vlResult result = vl_image_read_header(again->context, again->path, &image, &error);

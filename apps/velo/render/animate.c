@@ -119,7 +119,6 @@ static bool all_exist(const Arguments *arguments) {
 
 /* What all frames of a run have in common. */
 typedef struct Animator {
-  const Command *command;
   const Arguments *arguments; /* the command line */
   Animation animation;
   Videos *videos;
@@ -160,7 +159,7 @@ static int render_frame(Animator *x, uint32_t frame) {
   if (status < 0 && denoises && !shared->preparing && !shared->steady.only_kept)
     status = render_before(x, frame);
   if (status < 0)
-    status = x->render(x->command, &one, shared, x->videos);
+    status = x->render(&one, shared, x->videos);
   free(paths);
   return status;
 }
@@ -235,10 +234,8 @@ static int prepare(Animator *x) {
   return status;
 }
 
-int animate_run(const Command *command, const Arguments *arguments, Videos *videos,
-                AnimateRender *render) {
-  Animator x = {.command = command,
-                .arguments = arguments,
+int animate_run(const Arguments *arguments, Videos *videos, AnimateRender *render) {
+  Animator x = {.arguments = arguments,
                 .videos = videos,
                 .render = render,
                 .shared = {.exposure = NAN, .whole = arguments}};

@@ -33,12 +33,10 @@ typedef struct AnimateShared {
 } AnimateShared;
 
 /* Renders one image. videos: what becomes of it; null: it stays an image. */
-typedef int AnimateRender(const Command *command, const Arguments *arguments,
-                          AnimateShared *shared, Videos *videos);
+typedef int AnimateRender(const Arguments *arguments, AnimateShared *shared, Videos *videos);
 
 bool animate_wanted(const Arguments *arguments);
 /* Renders the frames one after the other. Returns the exit code; the first failure ends it. */
-int animate_run(const Command *command, const Arguments *arguments, Videos *videos,
-                AnimateRender *render);
+int animate_run(const Arguments *arguments, Videos *videos, AnimateRender *render);
 
 #endif

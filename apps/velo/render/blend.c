@@ -128,16 +128,13 @@ static int take_frames(Blend *blend) {
 }
 
 static int prepare(Blend *blend) {
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  def.threads = 1;
   int status = check_options(blend->arguments);
   if (status < 0 && blend->own.text_count == 0)
     choose_output(blend);
   if (status < 0)
     status = take_frames(blend);
   if (status < 0)
-    status = context_open(&def, &blend->context);
+    status = context_open_one(&blend->context);
   if (status >= 0)
     return status;
   const char *scene = blend->arguments->operands[0];

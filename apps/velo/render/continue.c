@@ -45,17 +45,14 @@ int continue_open(Continue *c, const Arguments **arguments) {
     return -1;
   if (given->values[RENDER_AGAIN].given)
     return report_usage("--continue and --again exclude each other");
-  vlContextDef def = vl_default_context_def();
   vlError error = {0};
-  def.threads = 1;
-  def.log = report_log;
   c->path = given->values[RENDER_CONTINUE].text;
   char first[4096];
   const PatternValues left = {0, "", "", "left"};
   bool eyes = pattern_has(c->path, 'v');
   if (eyes && !pattern_expand(c->path, &left, first, sizeof first))
     return report_usage("--continue: the name is too long");
-  int status = context_open(&def, &c->context);
+  int status = context_open_one(&c->context);
   if (status >= 0)
     return status;
   vlResult result = vl_film_file_open(c->context, eyes ? first : c->path, &c->file, &error);

@@ -65,9 +65,8 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, con
                             const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlCameraRecord record;
-  const char *frame = v[RENDER_FRAME].given ? v[RENDER_FRAME].text : NULL;
-  int status =
-      camera_load(context, path, 0, frame, &v[RENDER_SIZE], &v[RENDER_RESOLUTION], &record);
+  int status = camera_load(context, path, 0, v[RENDER_FRAME].text, &v[RENDER_SIZE],
+                           &v[RENDER_RESOLUTION], &record);
   if (status >= 0)
     return status;
   defs->camera = record.camera;
@@ -99,8 +98,7 @@ static int take_camera(Job *job, vlContext *context, vlScene *scene, const char 
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[RENDER_PERMISSIVE].given;
   load.strict = arguments->values[RENDER_STRICT].given;
-  if (arguments->values[RENDER_SEARCH].given)
-    load.search_path = arguments->values[RENDER_SEARCH].text;
+  load.search_path = arguments->values[RENDER_SEARCH].text;
   if (result == VL_OK)
     result = vl_scene_load(other, path, &load, &error);
   if (result == VL_OK) {
@@ -178,37 +176,17 @@ static vlTracer before_race(vlTracer tracer) {
 
 static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  if (v[RENDER_TRACER].given)
-    defs->render.tracer = v[RENDER_TRACER].integer == TRACER_AUTO
-                              ? before_race(defs->render.tracer)
-                              : (vlTracer)v[RENDER_TRACER].integer;
-  if (v[RENDER_MERGE_RADIUS].given)
-    defs->render.merge_radius = v[RENDER_MERGE_RADIUS].number;
-  if (v[RENDER_LIGHT_PATHS].given)
-    defs->render.light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
-  if (v[RENDER_SAMPLER].given)
-    defs->render.sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
+  const vlTracer own = defs->render.tracer;
+  options_put(render_options, v, VL_SETTING_RENDER, defs);
+  if (v[RENDER_TRACER].integer == TRACER_AUTO)
+    defs->render.tracer = before_race(own);
   if (v[RENDER_FILTER].given)
-    defs->film.filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
-  if (v[RENDER_LIGHT_SAMPLER].given)
-    defs->build.light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
+    defs->film.filter = vl_default_pixel_filter(defs->film.filter.kind);
   if (v[RENDER_FILTER_SAMPLES].given)
     defs->render.share_samples = v[RENDER_FILTER_SAMPLES].integer == 1;
-  if (v[RENDER_REGULARIZE].given)
-    defs->build.regularize = v[RENDER_REGULARIZE].integer == 1;
   if (v[RENDER_SENSOR].given)
     defs->film.sensor = vl_sensor_name((uint32_t)v[RENDER_SENSOR].integer);
-  if (v[RENDER_COLOR].given)
-    defs->build.color = (vlColorMode)v[RENDER_COLOR].integer;
-  if (v[RENDER_MAX_DEPTH].given)
-    defs->render.max_depth = (uint32_t)v[RENDER_MAX_DEPTH].integer;
-  if (v[RENDER_SEED].given)
-    defs->render.seed = (uint32_t)v[RENDER_SEED].integer;
-  if (v[RENDER_SEQUENCE].given)
-    defs->render.sequence = (uint32_t)v[RENDER_SEQUENCE].integer;
-  if (v[RENDER_SPP].given) {
-    defs->render.spp = (uint32_t)v[RENDER_SPP].integer;
-  } else if (v[RENDER_TIME].given) {
+  if (v[RENDER_TIME].given && !v[RENDER_SPP].given) {
     if (sampler_is_open(defs->render.sampler))
       defs->render.spp = 65536;
     else
@@ -402,11 +380,5 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,
   fix_sequence(&defs->render);
   if (v[RENDER_TIME].given)
     defs->render.time_limit = v[RENDER_TIME].number;
-  if (v[RENDER_BITS].given)
-    defs->build.bits = (vlBits)v[RENDER_BITS].integer;
-  if (v[RENDER_ACCELERATOR].given)
-    defs->build.accelerator = (vlAccelerator)v[RENDER_ACCELERATOR].integer;
-  if (v[RENDER_IMITATE_PBRT].given)
-    defs->build.imitate_pbrt = true;
   return override_spectrum(defs, arguments);
 }

@@ -124,9 +124,7 @@ static void start_receipt(Render *render, const Arguments *arguments) {
 /* Tells the context of files that others read: no output may replace them. */
 static int note_inputs(const Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  const char *const plain[] = {render->again.path, v[RENDER_DENOISER_LIBRARY].given
-                                                       ? v[RENDER_DENOISER_LIBRARY].text
-                                                       : NULL};
+  const char *const plain[] = {render->again.path, v[RENDER_DENOISER_LIBRARY].text};
   vlResult result = VL_OK;
   for (size_t i = 0; i < sizeof plain / sizeof *plain && result != VL_ERROR_MEMORY; i++)
     if (plain[i])
@@ -145,11 +143,9 @@ static void confine(const Render *render, const Arguments *arguments) {
   Confine c = {.sockets = v[RENDER_SERVE].given};
   confine_read(&c, arguments->operands[0]);
   confine_read(&c, render->again.path);
-  if (v[RENDER_ENVIRONMENT].given)
-    confine_read(&c, v[RENDER_ENVIRONMENT].text);
+  confine_read(&c, v[RENDER_ENVIRONMENT].text);
   for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
-    if (v[inputs[i]].given)
-      confine_read_folder(&c, v[inputs[i]].text);
+    confine_read_folder(&c, v[inputs[i]].text);
   for (int i = 0; i < render->outputs.count; i++)
     confine_write(&c, render->outputs.paths[i]);
   if (!render->outputs.count)
@@ -162,20 +158,8 @@ static void confine(const Render *render, const Arguments *arguments) {
 }
 
 static int make_context(Render *render, const Arguments *arguments) {
-  const OptionValue *v = arguments->values;
   int status = -1;
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  if (v[RENDER_THREADS].given)
-    def.threads = (uint32_t)v[RENDER_THREADS].integer;
-  if (v[RENDER_ISA].given)
-    def.isa = (vlIsa)v[RENDER_ISA].integer;
-  if (v[RENDER_MAX_MEMORY].given)
-    def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
-  if (v[RENDER_MAX_TEXTURE].given)
-    def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
-  def.sandbox = arguments->folders;
-  def.sandbox_count = (uint32_t)arguments->folder_count;
+  vlContextDef def = scene_context_def(arguments);
   if (!render->context) {
     confine(render, arguments);
     status = context_open(&def, &render->context);
@@ -195,20 +179,19 @@ static int prepare(Render *render, const Arguments *arguments) {
   for (int i = 0; i < arguments->text_count; i++)
     outputs->paths[i] = arguments->texts[i];
   outputs->count = arguments->text_count;
-  render->film_plan = (FilmPlan){.path = v[RENDER_FILM].given       ? v[RENDER_FILM].text
-                                         : v[RENDER_CONTINUE].given ? v[RENDER_CONTINUE].text
-                                                                    : NULL,
-                                 .from = render->resumed.path,
-                                 .overwrite = v[RENDER_OVERWRITE].given,
-                                 .receipt = &render->receipt,
-                                 .outputs = &render->outputs,
-                                 .channels = &render->channels};
+  render->film_plan =
+      (FilmPlan){.path = v[v[RENDER_FILM].given ? RENDER_FILM : RENDER_CONTINUE].text,
+                 .from = render->resumed.path,
+                 .overwrite = v[RENDER_OVERWRITE].given,
+                 .receipt = &render->receipt,
+                 .outputs = &render->outputs,
+                 .channels = &render->channels};
   if (render->film_plan.path)
     render->film_plan.path = output_opened(render->film_plan.path);
   outputs->to_stdout = true;
   outputs->half = v[RENDER_HALF].given;
   outputs->transparent = v[RENDER_TRANSPARENT].given;
-  outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
+  outputs->view = (vlView)option_count(&v[RENDER_VIEW], VL_VIEW_STANDARD);
   int status = exposure_parse(&v[RENDER_EXPOSURE], &outputs->exposure, &outputs->meter);
   if (status < 0)
     status = channels_choose(&render->channels, arguments);
@@ -526,7 +509,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
 /* Checked before the render, so that it does not run out of memory after hours. */
 static int reckon_memory(Render *render, const Arguments *arguments) {
   const OptionValue *limit = &arguments->values[RENDER_MAX_MEMORY];
-  uint64_t most = limit->given ? (uint64_t)limit->integer : 0;
+  uint64_t most = (uint64_t)limit->integer;
   memory_plan(&render->memory, render->context, render->world, &render->job, &render->outputs,
               &render->channels, render->many ? &render->frames : NULL);
   if (render->denoised.outputs.count)
@@ -589,8 +572,7 @@ static void free_render(Render *render) {
 
 /* shared: what the frames of an animation have in common; null: this is one image. videos: what
  * becomes of the frames; may be null. */
-static int render_once(const Command *command, const Arguments *arguments,
-                       AnimateShared *shared, Videos *videos) {
+static int render_once(const Arguments *arguments, AnimateShared *shared, Videos *videos) {
   Render render;
   memset(&render, 0, sizeof render);
   render.start = monotonic_seconds();
@@ -603,8 +585,7 @@ static int render_once(const Command *command, const Arguments *arguments,
   if (status < 0)
     status = continue_open(&render.resumed, &arguments);
   if (status < 0 && arguments->operand_count == 0)
-    status = report_usage("%s: too few arguments; usage: velo %s %s", command->name,
-                          command->name, command->usage);
+    status = options_too_few(arguments->command);
   if (status < 0)
     status = prepare(&render, arguments);
   if (status < 0)
@@ -645,26 +626,27 @@ static int render_once(const Command *command, const Arguments *arguments,
   return status;
 }
 
-static int render_all(const Command *command, const Arguments *arguments, Videos *videos) {
+static int render_all(const Arguments *arguments, Videos *videos) {
   if (arguments->operand_count && animate_wanted(arguments))
-    return animate_run(command, arguments, videos, render_once);
-  return render_once(command, arguments, NULL, videos);
+    return animate_run(arguments, videos, render_once);
+  return render_once(arguments, NULL, videos);
 }
 
-static int run_render(const Command *command, const Arguments *arguments) {
+static int run_render(const Arguments *arguments, vlContext *unused) {
+  (void)unused;
   if (blend_wanted(arguments)) {
     set_up_reports(arguments);
     return blend_run(arguments);
   }
   if (!videos_wanted(arguments))
-    return render_all(command, arguments, NULL);
+    return render_all(arguments, NULL);
   Videos videos;
   Arguments frames;
   set_up_reports(arguments);
   const int status = videos_plan(&videos, arguments, &frames);
   if (status >= 0)
     return status;
-  return videos_finish(&videos, arguments, render_all(command, &frames, &videos));
+  return videos_finish(&videos, arguments, render_all(&frames, &videos));
 }
 
 const Command render_command = {

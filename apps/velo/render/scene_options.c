@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/exposure.h"
@@ -17,6 +18,18 @@
 /* Whether the file holds a model: a format other than pbrt. */
 static bool is_model(const char *path) {
   return !text_ends_with(path, ".pbrt") && !text_ends_with(path, ".pbrt.gz");
+}
+
+vlContextDef scene_context_def(const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  vlContextDef def = context_def(arguments);
+  if (v[RENDER_ISA].given)
+    def.isa = (vlIsa)v[RENDER_ISA].integer;
+  if (v[RENDER_MAX_MEMORY].given)
+    def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
+  if (v[RENDER_MAX_TEXTURE].given)
+    def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
+  return def;
 }
 
 bool scene_is_gltf(const char *path) {
@@ -101,12 +114,9 @@ static void choose_ground(const Arguments *arguments, bool model, vlCompleteDef 
   const OptionValue *v = arguments->values;
   const bool channels = v[RENDER_CHANNELS].given && !arguments->channels_later;
   const bool placed = v[RENDER_GROUND_MIDDLE].given || v[RENDER_GROUND_RADIUS].given;
-  complete->ground = v[RENDER_GROUND].given;
   complete->backdrop = placed || (model && !v[RENDER_NO_GROUND].given && !channels);
   for (int i = 0; i < 3 && v[RENDER_GROUND_MIDDLE].given; i++)
     complete->ground_middle[i] = v[RENDER_GROUND_MIDDLE].numbers[i];
-  if (v[RENDER_GROUND_RADIUS].given)
-    complete->ground_radius = v[RENDER_GROUND_RADIUS].number;
 }
 
 static void choose_walls(const OptionValue *walls, vlCompleteDef *complete) {
@@ -139,18 +149,13 @@ static void choose_completion(const char *path, const Arguments *arguments, bool
   }
   if (v[RENDER_ENVIRONMENT].given)
     choose_environment(v[RENDER_ENVIRONMENT].text, complete);
-  if (v[RENDER_ENVIRONMENT_ROTATION].given)
-    complete->rotation = v[RENDER_ENVIRONMENT_ROTATION].numbers[0];
-  if (v[RENDER_ENVIRONMENT_STRENGTH].given)
-    complete->strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
+  options_put(render_options, v, VL_SETTING_COMPLETE, complete);
   choose_ground(arguments, model, complete);
   choose_walls(&v[RENDER_WALLS], complete);
   const OptionValue *framing = &v[RENDER_FRAMING];
   if (framing->given && framing->integer == OPTION_LIST_GIVEN) {
     complete->azimuth = framing->numbers[0];
     complete->elevation = framing->numbers[1];
-  } else if (framing->given) {
-    complete->framing = (vlFraming)framing->integer;
   }
   if (v[RENDER_UP].given)
     scene_choose_up((int)v[RENDER_UP].integer, complete);
@@ -186,26 +191,14 @@ static int choose_load(const char *path, const Arguments *arguments,
                        const SceneOpening *opening, vlLoadDef *load) {
   const OptionValue *v = arguments->values;
   load->cancel = opening->cancel;
-  load->permissive = v[RENDER_PERMISSIVE].given;
-  load->strict = v[RENDER_STRICT].given;
-  if (v[RENDER_SEARCH].given)
-    load->search_path = v[RENDER_SEARCH].text;
+  options_put(render_options, v, VL_SETTING_LOAD, load);
+  load->camera = scene_camera_is_own(path, arguments) ? v[RENDER_CAMERA].text : NULL;
   int status = choose_times(v, load);
   if (status < 0)
     status = check_completion(v);
   if (status < 0 && v[RENDER_SCENE_UNIT].given)
     status = choose_unit(&v[RENDER_SCENE_UNIT], &load->unit);
-  if (status >= 0)
-    return status;
-  if (v[RENDER_SCENE].given)
-    load->scene = v[RENDER_SCENE].text;
-  if (v[RENDER_ANIMATION].given)
-    load->animation = v[RENDER_ANIMATION].text;
-  if (v[RENDER_VARIANT].given)
-    load->variant = v[RENDER_VARIANT].text;
-  if (scene_camera_is_own(path, arguments))
-    load->camera = v[RENDER_CAMERA].text;
-  return -1;
+  return status;
 }
 
 /* Loads the scene and adds what it lacks. lit_inside: with lamps. */

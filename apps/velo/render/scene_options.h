@@ -32,6 +32,9 @@ typedef struct SceneOpening {
  scene, without an added ground; low > high: it is empty */
 } SceneOpening;
 
+/* The def of a render's context: that of context_def, with the instruction set and limits of
+ * the options. */
+vlContextDef scene_context_def(const Arguments *arguments);
 /* Loads the scene, completes it and turns its camera. Returns -1, or the exit code after
  * reporting the error. */
 int scene_open(vlContext *context, const char *path, const Arguments *arguments,

@@ -233,15 +233,12 @@ int videos_finish(Videos *videos, const Arguments *arguments, int status) {
   if (arguments->values[RENDER_DRY_RUN].given)
     return status;
   vlContext *context = NULL;
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  def.threads = 1;
   signals_remember(); /* where all frames were there, nothing was rendered */
   if (status == STATUS_OK && signals_pending())
     status = 128 + signals_pending();
   const bool rendered = status == STATUS_OK;
   if (rendered && (!child_find(videos->programs, "ffmpeg", program, sizeof program) ||
-                   context_open(&def, &context) >= 0))
+                   context_open_one(&context) >= 0))
     status = report_failure(STATUS_IO,
                             "%s is not written: ffmpeg cannot be started; the "
                             "frames are in %s",

@@ -69,9 +69,7 @@ static int look(vlContext *context, const Arguments *arguments, List *list) {
   vlCheck *check = NULL;
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
-  load.permissive = arguments->values[CHECK_PERMISSIVE].given;
-  if (arguments->values[CHECK_SEARCH].given)
-    load.search_path = arguments->values[CHECK_SEARCH].text;
+  options_put(arguments->command->options, arguments->values, VL_SETTING_LOAD, &load);
   vlResult r = vl_scene_create(context, &scene);
   if (r == VL_OK)
     r = vl_scene_diagnose(scene, arguments->operands[0], &load, report_message, list, &error);
@@ -184,11 +182,11 @@ static int status_of(const List *list) {
   return status;
 }
 
-static int run(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run(const Arguments *arguments, vlContext *unused) {
+  (void)unused;
   vlContext *context = NULL;
   List list = {0};
-  int status = scene_context(&context, arguments, logged, &list);
+  int status = context_open_for(arguments, logged, &list, &context);
   if (status < 0)
     status = look(context, arguments, &list);
   if (status < 0) {
@@ -197,7 +195,6 @@ static int run(const Command *command, const Arguments *arguments) {
       print_json(&list, arguments->operands[0], status);
     else
       print_text(&list, arguments->operands[0], arguments->values[CHECK_ALL].given);
-    status = report_stdout(status);
   }
   free(list.items);
   context_close(context);

@@ -2,7 +2,6 @@
  * losses. */
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/output_names.h"
@@ -52,29 +51,18 @@ static void tell(void *user, const char *what, uint64_t count) {
   report_note("not held: %s (%llu)", what, (unsigned long long)count);
 }
 
-static int run_convert(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run_convert(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   const char *from = arguments->operands[0], *to = arguments->operands[1];
-  vlContext *context = NULL;
   vlScene *scene = NULL;
   vlError error = {0};
   bool pbrt = text_ends_with(to, ".pbrt");
   if (!pbrt && !text_ends_with(to, ".gltf") && !text_ends_with(to, ".glb"))
     return report_usage("%s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", to);
-  int status = scene_context(&context, arguments, report_log, NULL);
-  if (status >= 0)
-    return status;
+  int status = -1;
   vlLoadDef load = vl_default_load_def();
-  load.permissive = v[CONVERT_PERMISSIVE].given;
-  if (v[CONVERT_SEARCH].given)
-    load.search_path = v[CONVERT_SEARCH].text;
-  if (v[CONVERT_CAMERA].given)
-    load.camera = v[CONVERT_CAMERA].text;
-  if (v[CONVERT_VARIANT].given)
-    load.variant = v[CONVERT_VARIANT].text;
-  if (v[CONVERT_ANIMATION].given)
-    load.animation = v[CONVERT_ANIMATION].text;
+  options_put(arguments->command->options, v, VL_SETTING_LOAD, &load);
+  load.strict = false; /* --strict is of what is written */
   if (v[CONVERT_AT].given)
     load.time = v[CONVERT_AT].number;
   vlSaveDef save = vl_default_save_def();
@@ -102,7 +90,6 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   vl_scene_destroy(scene);
   if (status == STATUS_OK && v[CONVERT_PROVE].given)
     status = convert_prove(context, &load, from, to);
-  context_close(context);
   return status;
 }
 
@@ -121,5 +108,6 @@ const Command scene_convert_command = {
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,
+    .context = CONTEXT_ALL,
     .run = run_convert,
 };

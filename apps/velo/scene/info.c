@@ -1,33 +1,16 @@
 /* scene/info.c: `velo scene info`: the content of a scene: counts, extent, memory, camera,
- * film, lights, unused definitions. Also functions shared by the scene commands. */
+ * film, lights, unused definitions. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "cli/commands.h"
-#include "cli/confine.h"
-#include "cli/context.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/progress.h"
 #include "scene/scene.h"
 #include "velo/check.h"
-
-int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
-                  void *log_user) {
-  vlContextDef def = vl_default_context_def();
-  def.log = log;
-  def.log_user = log_user;
-  def.sandbox = arguments->folders;
-  def.sandbox_count = (uint32_t)arguments->folder_count;
-  Confine confine = {.read_count = 0};
-  confine_read(&confine, arguments->operands[0]);
-  if (arguments->operand_count > 1)
-    confine_write(&confine, arguments->operands[1]);
-  confine_apply(&confine, arguments);
-  return context_open(&def, context);
-}
 
 enum { INFO_JSON, INFO_PERMISSIVE, INFO_SEARCH, INFO_SANDBOX };
 enum { LIGHTS = 20, LIGHTS_JSON = 1000 }; /* most lights listed */
@@ -359,18 +342,11 @@ static void print_json(const Facts *f) {
   putchar('\n');
 }
 
-static int run(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run(const Arguments *arguments, vlContext *context) {
   Facts f = {.path = arguments->operands[0]};
-  vlContext *context = NULL;
   vlError error = {0};
-  int status = scene_context(&context, arguments, report_log, NULL);
-  if (status >= 0)
-    return status;
   vlLoadDef load = vl_default_load_def();
-  load.permissive = arguments->values[INFO_PERMISSIVE].given;
-  if (arguments->values[INFO_SEARCH].given)
-    load.search_path = arguments->values[INFO_SEARCH].text;
+  options_put(arguments->command->options, arguments->values, VL_SETTING_LOAD, &load);
   const double start = monotonic_seconds();
   vlResult r = vl_scene_create(context, &f.scene);
   if (r == VL_OK)
@@ -384,17 +360,15 @@ static int run(const Command *command, const Arguments *arguments) {
     def.names_only = true;
     r = vl_scene_check(f.scene, &def, &f.check, &error);
   }
+  int status = STATUS_OK;
   if (r != VL_OK)
     status = report_error(&error, r, f.path);
   else if (arguments->values[INFO_JSON].given)
     print_json(&f);
   else
     print_text(&f);
-  if (r == VL_OK)
-    status = report_stdout(STATUS_OK);
   vl_check_destroy(f.check);
   vl_scene_destroy(f.scene);
-  context_close(context);
   return status;
 }
 
@@ -423,5 +397,6 @@ const Command scene_info_command = {
     .options = options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ALL,
     .run = run,
 };

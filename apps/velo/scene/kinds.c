@@ -198,8 +198,8 @@ static void print_words(const vlKindFamily *family) {
   }
 }
 
-static int run(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run(const Arguments *arguments, vlContext *context) {
+  (void)context;
   const char *wanted = arguments->operand_count ? arguments->operands[0] : NULL;
   bool dictionary = arguments->values[KINDS_DICTIONARY].given, found = false;
   const vlKindFamily *family;
@@ -217,7 +217,7 @@ static int run(const Command *command, const Arguments *arguments) {
   if (!found)
     return report_usage("there is no family of kinds \"%s\" (velo scene kinds lists them)",
                         wanted);
-  return report_stdout(STATUS_OK);
+  return STATUS_OK;
 }
 
 static Option options[] = {{KINDS_DICTIONARY, "dictionary",

@@ -24,12 +24,6 @@
         OPTION_SEARCH, "DIR"                                                            \
   }
 
-/* Creates a context with the options' --sandbox folder and a log callback, and confines the
- * program to that folder, the first operand (read) and the folder of the second (written).
- * Returns -1, or the exit code after reporting the error. */
-int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
-                  void *log_user);
-
 /* prove.c: renders both files and prints the ratio of their radiance per material. Returns the
  * exit code. */
 int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, const char *to);

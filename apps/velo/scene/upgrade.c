@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "scene/scene.h"
@@ -74,35 +73,27 @@ static void print_more(const List *list) {
              list->kinds[i].text);
 }
 
-static int run(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
-  vlContext *context = NULL;
   vlError error = {0};
   List list = {.all = v[UPGRADE_ALL].given, .quiet = v[UPGRADE_QUIET].given};
-  int status = scene_context(&context, arguments, report_log, NULL);
-  if (status >= 0)
-    return status;
   vlUpgradeDef def = vl_default_upgrade_def();
   def.strict = v[UPGRADE_STRICT].given;
   def.report = take_note;
   def.report_user = &list;
-  if (v[UPGRADE_SEARCH].given)
-    def.search_path = v[UPGRADE_SEARCH].text;
+  def.search_path = v[UPGRADE_SEARCH].text;
   vlResult r =
       vl_scene_upgrade(context, arguments->operands[0], arguments->operands[1], &def, &error);
   print_more(&list);
   if (r == VL_OK && !list.quiet)
     printf("%u statement%s changed, %u without counterpart\n", list.changes,
            list.changes == 1 ? "" : "s", list.lost);
-  status = r == VL_OK               ? STATUS_OK
-           : r == VL_ERROR_ARGUMENT ? report_usage("%s", error.message)
-                                    : report_error(&error, r, arguments->operands[0]);
-  status = report_stdout(status);
+  int status = r == VL_OK               ? STATUS_OK
+               : r == VL_ERROR_ARGUMENT ? report_usage("%s", error.message)
+                                        : report_error(&error, r, arguments->operands[0]);
   for (size_t i = 0; i < list.count; i++)
     free(list.kinds[i].text);
   free(list.kinds);
-  context_close(context);
   return status;
 }
 
@@ -135,5 +126,6 @@ const Command scene_upgrade_command = {
     .options = options,
     .min_operands = 2,
     .max_operands = 2,
+    .context = CONTEXT_ALL,
     .run = run,
 };

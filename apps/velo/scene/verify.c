@@ -11,7 +11,6 @@
 #include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
-#include "image/image.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
 #include "velo/edit.h"
@@ -32,17 +31,13 @@ static void logged(void *user, vlLogLevel level, const vlError *where, const cha
     report_log(NULL, level, where, message);
 }
 
-static int open_scene(Verify *v, const Command *command, const Arguments *arguments) {
+static int open_scene(Verify *v, const Arguments *arguments) {
   const OptionValue *o = arguments->values;
-  vlContextDef def = vl_default_context_def();
+  vlContextDef def = context_def(arguments);
   vlError error = {0};
   vlWorld *world = NULL;
   def.log = logged;
   def.log_user = v;
-  if (o[RENDER_THREADS].given)
-    def.threads = (uint32_t)o[RENDER_THREADS].integer;
-  def.sandbox = arguments->folders;
-  def.sandbox_count = (uint32_t)arguments->folder_count;
   Confine confine = {.read_count = 0};
   confine_read(&confine, v->path);
   if (o[RENDER_CAMERA].given)
@@ -55,7 +50,7 @@ static int open_scene(Verify *v, const Command *command, const Arguments *argume
     status = job_make(&v->job, v->context, v->scene, v->path, arguments);
   if (status >= 0)
     return status;
-  const Needs needs = {.options = command->options,
+  const Needs needs = {.options = arguments->command->options,
                        .values = o,
                        .arguments = arguments,
                        .scene = v->scene,
@@ -138,15 +133,16 @@ static void close_all(Verify *v) {
   context_close(v->context);
 }
 
-static int run_verify(const Command *command, const Arguments *arguments) {
+static int run_verify(const Arguments *arguments, vlContext *unused) {
+  (void)unused;
   static Verify v;
   const OptionValue *o = arguments->values;
   v.path = arguments->operands[0];
   v.budget = 1e6 * (o[VERIFY_RAYS].given ? o[VERIFY_RAYS].number : DEFAULT_RAYS);
-  v.seed = o[RENDER_SEED].given ? (uint32_t)o[RENDER_SEED].integer : 0;
+  v.seed = option_count(&o[RENDER_SEED], 0);
   int status = verify_reference_find(&v, arguments, &o[VERIFY_REFERENCE]);
   if (status < 0)
-    status = open_scene(&v, command, arguments);
+    status = open_scene(&v, arguments);
   if (status < 0)
     status = verify(&v, arguments);
   if (status < 0) {
@@ -154,7 +150,7 @@ static int run_verify(const Command *command, const Arguments *arguments) {
       verify_print_json(&v);
     else
       verify_print(&v);
-    status = image_finish_output(verify_count(&v) ? STATUS_OTHER : STATUS_OK);
+    status = verify_count(&v) ? STATUS_OTHER : STATUS_OK;
   }
   close_all(&v);
   return status;

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/image.h"
@@ -312,10 +311,10 @@ static int make_frames(Expose *e) {
   return result == VL_OK ? -1 : report_reason(result, e->path, "the frame cannot be made");
 }
 
-static int run(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   Expose e = {.path = arguments->operands[0],
+              .context = context,
               .exposure = vl_default_exposure_def(),
               .paths = arguments->texts,
               .count = arguments->text_count};
@@ -329,14 +328,8 @@ static int run(const Command *command, const Arguments *arguments) {
     status = check_outputs(&e);
   if (status >= 0)
     return status;
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  if (v[EXPOSE_THREADS].given)
-    def.threads = (uint32_t)v[EXPOSE_THREADS].integer;
-  status = context_open(&def, &e.context);
-  if (status < 0)
-    status = sensor_open(e.context, "--sensor",
-                         v[EXPOSE_SENSOR].given ? v[EXPOSE_SENSOR].text : "ideal", &e.sensor);
+  status = sensor_open(e.context, "--sensor",
+                       v[EXPOSE_SENSOR].given ? v[EXPOSE_SENSOR].text : "ideal", &e.sensor);
   if (status < 0)
     status = image_load(e.context, e.path, &e.image);
   if (status < 0)
@@ -352,7 +345,6 @@ static int run(const Command *command, const Arguments *arguments) {
   vl_image_destroy(e.electrons);
   vl_image_destroy(e.image);
   vl_sensor_destroy(e.sensor);
-  context_close(e.context);
   return status;
 }
 
@@ -409,5 +401,6 @@ const Command sensor_expose_command = {
     .options = options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ALL,
     .run = run,
 };

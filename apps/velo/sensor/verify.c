@@ -8,7 +8,6 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "sensor/sensor.h"
 
@@ -112,30 +111,20 @@ static int verify(Verify *v, const OptionValue *plot) {
   for (int i = 0; i < v->count; i++)
     if (!verify_passes(&v->rows[i]))
       status = STATUS_OTHER;
-  return report_stdout(status);
+  return status;
 }
 
-static int run(const Command *command, const Arguments *arguments) {
-  (void)command;
+static int run(const Arguments *arguments, vlContext *context) {
   const OptionValue *values = arguments->values;
-  Verify v = {.exposure = vl_default_exposure_def(), .size = 512};
+  Verify v = {.context = context, .exposure = vl_default_exposure_def(), .size = 512};
   int status = exposure_options(arguments, exposure_rows,
                                 sizeof exposure_rows / sizeof *exposure_rows, &v.exposure);
   if (status >= 0)
     return status;
-  if (values[VERIFY_SIZE].given)
-    v.size = (uint32_t)values[VERIFY_SIZE].integer;
-  if (values[VERIFY_STACK].given)
-    v.stack = (uint32_t)values[VERIFY_STACK].integer;
-  if (values[VERIFY_FRAMES].given)
-    v.folder = values[VERIFY_FRAMES].text;
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  if (values[VERIFY_THREADS].given)
-    def.threads = (uint32_t)values[VERIFY_THREADS].integer;
-  status = context_open(&def, &v.context);
-  if (status < 0)
-    status = sensor_open(v.context, "sensor verify", arguments->operands[0], &v.sensor);
+  v.size = option_count(&values[VERIFY_SIZE], v.size);
+  v.stack = option_count(&values[VERIFY_STACK], v.stack);
+  v.folder = values[VERIFY_FRAMES].text;
+  status = sensor_open(v.context, "sensor verify", arguments->operands[0], &v.sensor);
   if (status < 0)
     status = verify(&v, &values[VERIFY_PLOT]);
   verify_folder_close(&v);
@@ -143,7 +132,6 @@ static int run(const Command *command, const Arguments *arguments) {
   free(v.frames[0]);
   free(v.frames[1]);
   vl_sensor_destroy(v.sensor);
-  context_close(v.context);
   return status;
 }
 
@@ -182,5 +170,6 @@ const Command sensor_verify_command = {
     .options = options,
     .min_operands = 1,
     .max_operands = 1,
+    .context = CONTEXT_ALL,
     .run = run,
 };

@@ -7,7 +7,6 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/text.h"
-#include "image/image.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
 #include "trace/hits_file.h"
@@ -149,12 +148,12 @@ static int write_results(const State *s) {
   if (s->output)
     return write_file(s);
   put(s, stdout);
-  return image_finish_output(STATUS_OK);
+  return STATUS_OK;
 }
 
 /* ---- the command ------------------------------------------------------------------------- */
 
-static int run_trace(const Command *command, const Arguments *arguments) {
+static int run_trace(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   const char *path = arguments->operands[1];
   State s;
@@ -162,14 +161,14 @@ static int run_trace(const Command *command, const Arguments *arguments) {
   s.output = v[TRACE_OUTPUT].given && strcmp(v[TRACE_OUTPUT].text, "-") != 0
                  ? v[TRACE_OUTPUT].text
                  : NULL;
-  s.results.hits = v[TRACE_HITS].given ? (uint32_t)v[TRACE_HITS].integer : 1;
+  s.results.hits = option_count(&v[TRACE_HITS], 1);
   if (s.output && !ends_with(&s, ".npy") && !ends_with(&s, ".npz") && !ends_with(&s, ".csv"))
     return report_usage("-o %s: hits are written as .csv, .npy or .npz", s.output);
   if (v[TRACE_HITS].given && v[TRACE_OCCLUDED].given)
     return report_usage("--hits and --occluded exclude each other");
   int status = rays_file_read(path, &s.rays);
   if (status < 0)
-    status = scene_world_open(&s.in, command, arguments);
+    status = scene_world_open(&s.in, context, arguments);
   if (status < 0 && strcmp(path, "-") != 0)
     vl_note_input(s.in.context, path, VL_OUTPUT_PLAIN);
   if (status < 0)
@@ -215,5 +214,6 @@ const Command trace_command = {
     .options = trace_options,
     .min_operands = 2,
     .max_operands = 2,
+    .context = CONTEXT_ALL,
     .run = run_trace,
 };

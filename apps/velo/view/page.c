@@ -120,7 +120,7 @@ char *lecture_text(const char *scene) {
 int view_run(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   const bool lecture = v[VIEW_LECTURE].given;
-  vlContextDef context = vl_default_context_def();
+  const vlContextDef context = scene_context_def(arguments);
   EngineDef def = {.path = lecture ? lecture_first_scene : arguments->operands[0],
                    .lecture = lecture,
                    .stepwise = true,
@@ -130,9 +130,6 @@ int view_run(const Arguments *arguments) {
         STATUS_OTHER,
         "velo view: this program renders for the page that holds it, and there is none");
   report_setup(false, v[RENDER_QUIET].given ? REPORT_QUIET : REPORT_NORMAL);
-  context.log = report_log;
-  if (v[RENDER_MAX_MEMORY].given)
-    context.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
   int status = context_open(&context, &def.context);
   if (status < 0)
     status = engine_create(&def, &engine);

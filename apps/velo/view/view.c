@@ -19,7 +19,7 @@ static bool goes_with_lecture(int option) {
 }
 
 /* Returns -1, or the exit code after reporting the error. */
-static int check_usage(const Command *command, const Arguments *arguments) {
+static int check_usage(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   int status = race_check_options(arguments);
   if (status >= 0)
@@ -29,7 +29,7 @@ static int check_usage(const Command *command, const Arguments *arguments) {
       return report_usage("--language goes with --lecture");
     if (arguments->operand_count)
       return -1;
-    return report_usage("view: too few arguments; usage: velo view %s", command->usage);
+    return options_too_few(arguments->command);
   }
   if (arguments->operand_count)
     return report_usage("--lecture takes no FILE, but \"%s\" is given", arguments->operands[0]);
@@ -39,8 +39,9 @@ static int check_usage(const Command *command, const Arguments *arguments) {
   return -1;
 }
 
-static int run_view(const Command *command, const Arguments *arguments) {
-  int status = check_usage(command, arguments);
+static int run_view(const Arguments *arguments, vlContext *unused) {
+  (void)unused;
+  int status = check_usage(arguments);
   if (status >= 0)
     return status;
 #if defined VELO_HAS_VIEW || defined __EMSCRIPTEN__

@@ -30,15 +30,7 @@ static void tell_tunnel(const Server *server) {
 }
 
 static int open_context(const Arguments *arguments, vlContext **context) {
-  const OptionValue *v = arguments->values;
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  if (v[RENDER_THREADS].given)
-    def.threads = (uint32_t)v[RENDER_THREADS].integer;
-  if (v[RENDER_MAX_MEMORY].given)
-    def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
-  def.sandbox = arguments->folders;
-  def.sandbox_count = (uint32_t)arguments->folder_count;
+  vlContextDef def = scene_context_def(arguments);
   int status = context_open(&def, context);
   if (status < 0)
     report_memory_of(*context, def.max_memory);
@@ -56,8 +48,8 @@ static void wait_for_end(Browser *browser) {
 static int open_server(const Arguments *arguments, Server **server) {
   const OptionValue *v = arguments->values;
   const bool lecture = v[VIEW_LECTURE].given;
-  const ServerDef def = {.address = v[VIEW_LISTEN].given ? v[VIEW_LISTEN].text : NULL,
-                         .port = v[VIEW_PORT].given ? (int)v[VIEW_PORT].integer : 0,
+  const ServerDef def = {.address = v[VIEW_LISTEN].text,
+                         .port = (int)v[VIEW_PORT].integer,
                          .home = lecture ? "lecture.html" : "index.html",
                          .query = lecture ? lecture_query(arguments) : "",
                          .steering = true};
@@ -125,7 +117,7 @@ int view_run(const Arguments *arguments) {
   const EngineDef def = {.path = lecture ? lecture_first_scene : arguments->operands[0],
                          .lecture = lecture,
                          .arguments = arguments,
-                         .film_path = v[RENDER_FILM].given ? v[RENDER_FILM].text : NULL};
+                         .film_path = v[RENDER_FILM].text};
   if (!v[VIEW_NO_OPEN].given)
     browser_prepare(&browser);
   int status = open_server(arguments, &server);

@@ -1,72 +1,21 @@
 /* camera/camera.c: see camera.h. Also `velo camera convert`. */
 #include "camera/camera.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "cli/vector.h"
 #include "image/header.h"
 #include "image/image.h"
 #include "render/output_names.h"
 #include "velo/load.h"
 #include "velo/render.h"
 
-const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
-                                  {"opencv", VL_CAMERA_DIALECT_OPENCV},
-                                  {"ros", VL_CAMERA_DIALECT_ROS},
-                                  {"colmap", VL_CAMERA_DIALECT_COLMAP},
-                                  {"nerf", VL_CAMERA_DIALECT_NERF},
-                                  {"kalibr", VL_CAMERA_DIALECT_KALIBR},
-                                  {"blender", VL_CAMERA_DIALECT_BLENDER},
-                                  {"gltf", VL_CAMERA_DIALECT_GLTF},
-                                  {"mitsuba", VL_CAMERA_DIALECT_MITSUBA},
-                                  {"opengl", VL_CAMERA_DIALECT_OPENGL},
-                                  {"vulkan", VL_CAMERA_DIALECT_VULKAN},
-                                  {"d3d", VL_CAMERA_DIALECT_D3D},
-                                  {"usd", VL_CAMERA_DIALECT_USD},
-                                  {"pbrt", VL_CAMERA_DIALECT_PBRT},
-                                  {"exr", VL_CAMERA_DIALECT_EXR},
-                                  {"euroc", VL_CAMERA_DIALECT_EUROC},
-                                  {"camodocal", VL_CAMERA_DIALECT_CAMODOCAL},
-                                  {"basalt", VL_CAMERA_DIALECT_BASALT},
-                                  {"orbslam", VL_CAMERA_DIALECT_ORBSLAM},
-                                  {"okvis", VL_CAMERA_DIALECT_OKVIS},
-                                  {"svo", VL_CAMERA_DIALECT_SVO},
-                                  {"kitti", VL_CAMERA_DIALECT_KITTI},
-                                  {"bop", VL_CAMERA_DIALECT_BOP},
-                                  {"gaussians", VL_CAMERA_DIALECT_GAUSSIANS},
-                                  {"metashape", VL_CAMERA_DIALECT_METASHAPE},
-                                  {"meshroom", VL_CAMERA_DIALECT_MESHROOM},
-                                  {"opensfm", VL_CAMERA_DIALECT_OPENSFM},
-                                  {"open3d", VL_CAMERA_DIALECT_OPEN3D},
-                                  {"visp", VL_CAMERA_DIALECT_VISP},
-                                  {"middlebury", VL_CAMERA_DIALECT_MIDDLEBURY},
-                                  {"mvsnet", VL_CAMERA_DIALECT_MVSNET},
-                                  {"bundler", VL_CAMERA_DIALECT_BUNDLER},
-                                  {"openmvg", VL_CAMERA_DIALECT_OPENMVG},
-                                  {"realitycapture", VL_CAMERA_DIALECT_REALITYCAPTURE},
-                                  {"nerfstudio", VL_CAMERA_DIALECT_NERFSTUDIO},
-                                  {"visualsfm", VL_CAMERA_DIALECT_VISUALSFM},
-                                  {"zed", VL_CAMERA_DIALECT_ZED},
-                                  {"collada", VL_CAMERA_DIALECT_COLLADA},
-                                  {"dso", VL_CAMERA_DIALECT_DSO},
-                                  {"llff", VL_CAMERA_DIALECT_LLFF},
-                                  {"record3d", VL_CAMERA_DIALECT_RECORD3D},
-                                  {"polycam", VL_CAMERA_DIALECT_POLYCAM},
-                                  {"scanner3d", VL_CAMERA_DIALECT_SCANNER3D},
-                                  {"depthai", VL_CAMERA_DIALECT_DEPTHAI},
-                                  {"kinect", VL_CAMERA_DIALECT_KINECT},
-                                  {"realsense", VL_CAMERA_DIALECT_REALSENSE},
-                                  {"calibio", VL_CAMERA_DIALECT_CALIBIO},
-                                  {"nuscenes", VL_CAMERA_DIALECT_NUSCENES},
-                                  {"panoptic", VL_CAMERA_DIALECT_PANOPTIC},
-                                  {"nerfies", VL_CAMERA_DIALECT_NERFIES},
-                                  {"threejs", VL_CAMERA_DIALECT_THREEJS},
-                                  {"matrix", VL_CAMERA_DIALECT_MATRIX},
-                                  {"aria", VL_CAMERA_DIALECT_ARIA},
-                                  {NULL, 0}};
+const Choice dialects[] = {{"dialects", 0}, {NULL, 0}};
 
 bool camera_is_scene(const char *path) {
   return text_ends_with(path, ".pbrt") || text_ends_with(path, ".pbrt.gz");
@@ -84,7 +33,7 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
     *record = (vlCameraRecord){
         .camera = from->camera, .dialect = VL_CAMERA_DIALECT_PBRT, .frames = 1};
   }
-  int status = result == VL_OK ? -1 : report_error(&error, result, path);
+  int status = report_error(&error, result, path);
   /* the camera points to objects of its scene, which are freed with the scene */
   if (status < 0 && record->camera.lens.optics)
     status = report_failure(STATUS_SCENE,
@@ -180,6 +129,13 @@ int camera_load_made(vlContext *context, const char *path, const Arguments *argu
 
 enum { CONVERT_FROM, CONVERT_TO, CONVERT_FRAME, CONVERT_DROP, CONVERT_SIZE };
 
+double camera_angle(const vlCamera *c, double x0, double y0, double x1, double y1) {
+  double o[3], a[3], b[3];
+  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b))
+    return NAN;
+  return vector_angle(a, b);
+}
+
 static int run_convert(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   const char *in = arguments->operands[0], *out = arguments->operands[1];
@@ -212,12 +168,12 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
 }
 
 static Option convert_options[] = {
-    {CONVERT_FROM, "from", "dialect of IN; default: recognised by its content:", OPTION_CHOICE,
-     "DIALECT", .choices = dialect_choices},
+    {CONVERT_FROM, "from", "dialect of IN; default: recognised by its content:", OPTION_KIND,
+     "DIALECT", .choices = dialects},
     {CONVERT_TO, "to",
      "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda usd, "
      ".pbrt pbrt, transforms.json nerf, cameras.txt colmap:",
-     OPTION_CHOICE, "DIALECT", .choices = dialect_choices},
+     OPTION_KIND, "DIALECT", .choices = dialects},
     {CONVERT_FRAME, "frame", "camera of IN to use, by name or number from 0, if it has several",
      OPTION_TEXT, "NAME"},
     {CONVERT_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},

@@ -5,7 +5,8 @@
 #include "cli/options.h"
 #include "velo/camera_file.h"
 
-extern const Choice dialect_choices[];
+/* The dialects of camera files: the list of an OPTION_KIND. */
+extern const Choice dialects[];
 #define CAMERA_SIZE_HELP "image size for a file that does not give one"
 
 /* Returns whether the file's name is that of a scene, whose camera is then read. */
@@ -25,5 +26,7 @@ void camera_note_unread(const char *path, const vlCameraRecord *record);
 int camera_load_made(vlContext *context, const char *path, const Arguments *arguments,
                      int frame_option, int size_option, vlCameraRecord *record,
                      vlCamera *camera);
+/* The angle between the rays of two points of the film, radians; NaN: one has none. */
+double camera_angle(const vlCamera *c, double x0, double y0, double x1, double y1);
 
 #endif

@@ -137,7 +137,7 @@ static int load(State *s, vlContext *context, const Arguments *arguments) {
   if (v[RENDER_TRAJECTORY].given) {
     vlResult result = poses_load(s->in.context, v[RENDER_TRAJECTORY].text, &s->in.job.camera,
                                  &s->cameras, &s->count, &error);
-    return result == VL_OK ? -1 : report_error(&error, result, v[RENDER_TRAJECTORY].text);
+    return report_error(&error, result, v[RENDER_TRAJECTORY].text);
   }
   if (v[DRAW_NEAR].given)
     s->in.job.camera.near_plane = v[DRAW_NEAR].number;

@@ -61,13 +61,12 @@ static void draw_line(const Canvas *c, const vlDrawingLine *l, Pieces pieces, do
     return;
   double length = hypot(b[0] - a[0], b[1] - a[1]), dash = 5 * c->pen;
   int steps = (int)fmin(MAX_STEPS, ceil(length / 1.5)) + 1;
-  double last[2] = {a[0], a[1]};
+  double last[2] = {a[0], a[1]}, way[3];
+  vector_subtract(l->to, l->from, way);
   for (int i = 1; i <= steps; i++) {
     double point[3], middle[3], p[2], q[2], z;
-    for (int k = 0; k < 3; k++) {
-      point[k] = l->from[k] + (double)i / steps * (l->to[k] - l->from[k]);
-      middle[k] = l->from[k] + (i - 0.5) / steps * (l->to[k] - l->from[k]);
-    }
+    vector_along(l->from, (double)i / steps, way, point);
+    vector_along(l->from, (i - 0.5) / steps, way, middle);
     if (!vl_camera_project(camera, point, p, NULL) || !vl_camera_project(camera, middle, q, &z))
       return;
     bool seen = in_front(c->outside, q, z);
@@ -116,22 +115,17 @@ static void draw_dots(const Canvas *c, const vlDrawing *d, vlDrawingPart part) {
 /* The point of the face's plane that is seen at a pixel of the drawing. */
 static bool face_point(const Canvas *c, double x, double y, double point[3]) {
   const double *q = c->plane;
-  double o[3], d[3], n[3], u[3], v[3], along = 0, height = 0;
-  for (int i = 0; i < 3; i++) {
-    u[i] = q[6 + i] - q[i];
-    v[i] = q[9 + i] - q[3 + i];
-  }
+  double o[3], d[3], n[3], u[3], v[3];
+  vector_subtract(q + 6, q, u);
+  vector_subtract(q + 9, q + 3, v);
   vector_cross(u, v, n);
   if (!vl_camera_unproject(&c->outside->camera, x, y, o, d))
     return false;
-  for (int i = 0; i < 3; i++) {
-    along += n[i] * d[i];
-    height += n[i] * (q[i] - o[i]);
-  }
+  const double along = vector_dot(n, d);
   if (along == 0)
     return false;
-  for (int i = 0; i < 3; i++)
-    point[i] = o[i] + height / along * d[i];
+  vector_subtract(q, o, u);
+  vector_along(o, vector_dot(n, u) / along, d, point);
   return true;
 }
 

@@ -101,9 +101,7 @@ static void choose_direction(const vlCamera *of, const double up[3], const Outsi
                                    the level direction */
     for (int i = 0; i < 3; i++)
       level[i] = k ? -m[4 * i + 1] : m[4 * i + 2];
-    double along = vector_dot(level, up);
-    for (int i = 0; i < 3; i++)
-      level[i] -= along * up[i];
+    vector_along(level, -vector_dot(level, up), up, level);
     if (vector_dot(level, level) > 1e-4 * (m[2] * m[2] + m[6] * m[6] + m[10] * m[10]))
       break;
   }
@@ -162,8 +160,7 @@ vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Se
   for (int step = 0; step < 8; step++) { /* moves and scales until the bounds fill the image */
     memcpy(camera.lookat, middle, sizeof middle);
     memcpy(camera.up, up, sizeof up);
-    for (int i = 0; i < 3; i++)
-      camera.eye[i] = middle[i] + distance * d[i];
+    vector_along(middle, distance, d, camera.eye);
     vlResult result = vl_camera_make(&camera, &outside->camera, NULL, error);
     if (result != VL_OK)
       return result;
@@ -182,8 +179,7 @@ vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Se
   }
   distance /= def->zoom;
   memcpy(camera.lookat, middle, sizeof middle);
-  for (int i = 0; i < 3; i++)
-    camera.eye[i] = middle[i] + distance * d[i];
+  vector_along(middle, distance, d, camera.eye);
   return vl_camera_make(&camera, &outside->camera, NULL, error);
 }
 

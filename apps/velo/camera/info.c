@@ -5,24 +5,15 @@
 #include "camera/camera.h"
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "cli/vector.h"
 
 enum { INFO_JSON, INFO_FRAME, INFO_SIZE };
 
 static const double degrees = 180.0 / 3.14159265358979323846;
 
-/* Angle between the rays of two film points, radians; NaN when one has no ray. */
-static double angle_between(const vlCamera *c, double x0, double y0, double x1, double y1) {
-  double o[3], a[3], b[3];
-  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b))
-    return NAN;
-  return vector_angle(a, b);
-}
-
 /* Angle between two opposite edges of the image. It is the sum of the angles between each edge
  * and the principal point, so it can exceed 180 degrees. NaN: an edge has no ray. */
 static double field(const vlCamera *c, double x0, double y0, double x1, double y1) {
-  return angle_between(c, x0, y0, c->cx, c->cy) + angle_between(c, c->cx, c->cy, x1, y1);
+  return camera_angle(c, x0, y0, c->cx, c->cy) + camera_angle(c, c->cx, c->cy, x1, y1);
 }
 
 typedef struct Info {
@@ -35,7 +26,7 @@ static Info measure(const vlCamera *c) {
   double w = c->width, h = c->height, sum = 0.0;
   Info info = {.horizontal = field(c, 0, c->cy, w, c->cy),
                .vertical = field(c, c->cx, 0, c->cx, h),
-               .diagonal = angle_between(c, 0, 0, w, h)};
+               .diagonal = camera_angle(c, 0, 0, w, h)};
   if (c->projection != VL_PROJECTION_PERSPECTIVE)
     info.diagonal = field(c, 0, 0, w, h);
   for (int j = 0; j < GRID; j++)
@@ -50,40 +41,38 @@ static Info measure(const vlCamera *c) {
 
 static void print_json(const char *path, const vlCameraRecord *record, const vlCamera *c,
                        const Info *info) {
-  Json json = {.out = stdout};
+  Json *json = json_open();
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double sensor = record->camera.sensor_width_mm > 0 ? record->camera.sensor_width_mm : 36.0;
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", path);
-  json_text(&json, "dialect", vl_camera_dialect_name(record->dialect));
+  json_text(json, "file", path);
+  json_text(json, "dialect", vl_camera_dialect_name(record->dialect));
   if (record->name[0])
-    json_text(&json, "name", record->name);
-  json_text(&json, "projection", vl_projection_name(c->projection));
-  json_text(&json, "pixel_origin", "corner");
-  json_text(&json, "axes", "x right, y down, z forward");
-  json_integer(&json, "width", c->width);
-  json_integer(&json, "height", c->height);
-  json_number(&json, "fx", c->fx);
-  json_number(&json, "fy", c->fy);
-  json_number(&json, "skew", c->skew);
-  json_number(&json, "cx", c->cx);
-  json_number(&json, "cy", c->cy);
+    json_text(json, "name", record->name);
+  json_text(json, "projection", vl_projection_name(c->projection));
+  json_text(json, "pixel_origin", "corner");
+  json_text(json, "axes", "x right, y down, z forward");
+  json_integer(json, "width", c->width);
+  json_integer(json, "height", c->height);
+  json_number(json, "fx", c->fx);
+  json_number(json, "fy", c->fy);
+  json_number(json, "skew", c->skew);
+  json_number(json, "cx", c->cx);
+  json_number(json, "cy", c->cy);
   if (!flat) {
-    json_number(&json, "fov_horizontal", info->horizontal * degrees);
-    json_number(&json, "fov_vertical", info->vertical * degrees);
-    json_number(&json, "fov_diagonal", info->diagonal * degrees);
-    json_number(&json, "view_distance", c->fx);
-    json_number(&json, "pixel_size", 1.0);
-    json_number(&json, "zoom", 1.0);
-    json_number(&json, "focal_mm", c->fx * sensor / c->width);
-    json_number(&json, "sensor_width_mm", sensor);
-    json_number(&json, "solid_angle", info->solid_angle);
+    json_number(json, "fov_horizontal", info->horizontal * degrees);
+    json_number(json, "fov_vertical", info->vertical * degrees);
+    json_number(json, "fov_diagonal", info->diagonal * degrees);
+    json_number(json, "view_distance", c->fx);
+    json_number(json, "pixel_size", 1.0);
+    json_number(json, "zoom", 1.0);
+    json_number(json, "focal_mm", c->fx * sensor / c->width);
+    json_number(json, "sensor_width_mm", sensor);
+    json_number(json, "solid_angle", info->solid_angle);
   }
-  json_number(&json, "pixel_footprint", info->footprint);
-  json_number(&json, "outside", c->outside);
-  json_numbers(&json, "world_from_camera", c->world_from_camera, 16);
-  json_end(&json, '}');
-  putchar('\n');
+  json_number(json, "pixel_footprint", info->footprint);
+  json_number(json, "outside", c->outside);
+  json_numbers(json, "world_from_camera", c->world_from_camera, 16);
+  json_close(json);
 }
 
 static void print_fov(const char *name, double radians) {

@@ -64,7 +64,7 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
                                 .count = count,
                                 .by_sample = v[PATHS_SORT].given && v[PATHS_SORT].integer == 1};
   vlResult result = paths_trace(&request, &s->traced, &error);
-  return result == VL_OK ? -1 : report_error(&error, result, s->in.job.path);
+  return report_error(&error, result, s->in.job.path);
 }
 
 static int print(State *s, const OptionValue *v) {
@@ -74,11 +74,9 @@ static int print(State *s, const OptionValue *v) {
                               .traced = &s->traced,
                               .shown = count < most ? count : most};
   if (v[PATHS_JSON].given) {
-    Json json = {.out = stdout};
-    json_begin(&json, NULL, '{');
-    paths_put_json(&json, &report);
-    json_end(&json, '}');
-    putchar('\n');
+    Json *json = json_open();
+    paths_put_json(json, &report);
+    json_close(json);
   } else {
     paths_print_text(&report);
   }

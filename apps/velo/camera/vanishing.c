@@ -45,41 +45,39 @@ static const char *kind_of(const vlCamera *c, const vlVanishingPoints *v) {
 }
 
 static void say_json(const char *path, const vlCamera *c, const vlVanishingPoints *v) {
-  Json json = {.out = stdout};
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", path);
-  json_text(&json, "projection", vl_projection_name(c->projection));
-  json_text(&json, "pixel_origin", "corner");
-  json_integer(&json, "width", c->width);
-  json_integer(&json, "height", c->height);
-  json_text(&json, "kind", kind_of(c, v));
-  json_integer(&json, "finite", v->finite);
-  json_begin(&json, "vanishing_points", '{');
+  Json *json = json_open();
+  json_text(json, "file", path);
+  json_text(json, "projection", vl_projection_name(c->projection));
+  json_text(json, "pixel_origin", "corner");
+  json_integer(json, "width", c->width);
+  json_integer(json, "height", c->height);
+  json_text(json, "kind", kind_of(c, v));
+  json_integer(json, "finite", v->finite);
+  json_begin(json, "vanishing_points", '{');
   for (int i = 0; i < 3; i++) {
     const vlVanishingPoint *p = &v->axes[i];
-    json_begin(&json, axis_names[i], '{');
-    json_text(&json, "kind",
+    json_begin(json, axis_names[i], '{');
+    json_text(json, "kind",
               p->kind == VL_VANISHING_FINITE     ? "finite"
               : p->kind == VL_VANISHING_INFINITE ? "infinite"
                                                  : "none");
     if (p->kind != VL_VANISHING_NONE) {
       bool finite = p->kind == VL_VANISHING_FINITE;
       const double *xy = finite ? p->pixel : p->direction;
-      json_begin(&json, finite ? "pixel" : "direction", '[');
-      json_number(&json, NULL, xy[0]);
-      json_number(&json, NULL, xy[1]);
-      json_end(&json, ']');
+      json_begin(json, finite ? "pixel" : "direction", '[');
+      json_number(json, NULL, xy[0]);
+      json_number(json, NULL, xy[1]);
+      json_end(json, ']');
       if (finite)
-        json_text(&json, "end", p->behind ? "negative" : "positive");
+        json_text(json, "end", p->behind ? "negative" : "positive");
     }
-    json_end(&json, '}');
+    json_end(json, '}');
   }
-  json_end(&json, '}');
+  json_end(json, '}');
   if (v->has_horizon) {
-    json_numbers(&json, "horizon", v->horizon, 3);
+    json_numbers(json, "horizon", v->horizon, 3);
   }
-  json_end(&json, '}');
-  putchar('\n');
+  json_close(json);
 }
 
 static void say_text(const vlCamera *c, const vlVanishingPoints *v) {
@@ -137,24 +135,18 @@ static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3]
                          c->world_from_camera[11]};
   if (c->projection ==
       VL_PROJECTION_ORTHOGRAPHIC) { /* projects to a straight line, whatever its depth */
-    for (int i = 0; i < 3; i++) {
-      ends[0][i] = point[i] + s0 * d[i];
-      ends[1][i] = point[i] + s1 * d[i];
-    }
+    vector_along(point, s0, d, ends[0]);
+    vector_along(point, s1, d, ends[1]);
     if (vl_camera_project(c, ends[0], p, NULL) && vl_camera_project(c, ends[1], q, NULL))
       overlay_line(o, p[0], p[1], q[0], q[1], width);
     return;
   }
-  for (int i = 0; i < 3; i++)
-    n[i] = point[i] - eye[i];
+  vector_subtract(point, eye, n);
   double along = vector_dot(n, d);
-  for (int i = 0; i < 3; i++)
-    n[i] -= along * d[i];
+  vector_along(n, -along, d, n);
   double height = vector_length(n);
-  if (!(height > 0.0))
+  if (!vector_normalize(n))
     return; /* the line passes through the camera centre and projects to a point */
-  for (int i = 0; i < 3; i++)
-    n[i] /= height;
   overlay_arc(o, c, d, n, atan2(s0 + along, height), atan2(s1 + along, height), width);
 }
 
@@ -254,7 +246,7 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
       result = overlay_write(&overlay, context, v[V_OUT].text, &error);
     }
     overlay_end(&overlay);
-    status = result == VL_OK ? -1 : report_error(&error, result, v[V_OUT].text);
+    status = report_error(&error, result, v[V_OUT].text);
   }
   vl_image_destroy(image);
   return status;
@@ -277,18 +269,16 @@ static bool parse_axes(const char *text, vlVanishingDef *def) {
 
 static void say_camera(const vlCameraDef *d, bool as_json) {
   if (as_json) {
-    Json json = {.out = stdout};
-    json_begin(&json, NULL, '{');
-    json_text(&json, "pixel_origin", "corner");
-    json_text(&json, "axes", "x right, y down, z forward");
-    json_integer(&json, "width", d->width);
-    json_integer(&json, "height", d->height);
-    json_number(&json, "focal", d->fx);
-    json_number(&json, "cx", d->cx);
-    json_number(&json, "cy", d->cy);
-    json_numbers(&json, "world_from_camera", d->world_from_camera, 16);
-    json_end(&json, '}');
-    putchar('\n');
+    Json *json = json_open();
+    json_text(json, "pixel_origin", "corner");
+    json_text(json, "axes", "x right, y down, z forward");
+    json_integer(json, "width", d->width);
+    json_integer(json, "height", d->height);
+    json_number(json, "focal", d->fx);
+    json_number(json, "cx", d->cx);
+    json_number(json, "cy", d->cy);
+    json_numbers(json, "world_from_camera", d->world_from_camera, 16);
+    json_close(json);
     return;
   }
   const double *m = d->world_from_camera;
@@ -409,8 +399,8 @@ static Option vanishing_options[] = {
      "with --from: the axes to which the points belong, with - before an axis for its "
      "negative end: xz (default of two points), xyz (of three), -zx, ...",
      OPTION_TEXT, "AXES"},
-    {V_TO, "to", "with --from: dialect of RESULT; default: by its name:", OPTION_CHOICE,
-     "DIALECT", .choices = dialect_choices},
+    {V_TO, "to", "with --from: dialect of RESULT; default: by its name:", OPTION_KIND,
+     "DIALECT", .choices = dialects},
     {0}};
 
 const Command camera_vanishing_command = {

@@ -140,34 +140,32 @@ static void print_measure(Json *json, const Measure *m) {
 
 static void print_json(const Verification *v, const char *path, const char *against,
                        double threshold, const char *failure) {
-  Json json = {.out = stdout};
+  Json *json = json_open();
   uint32_t covered, seeing = parts(v, &covered);
-  json_begin(&json, NULL, '{');
-  json_text(&json, "camera", path);
+  json_text(json, "camera", path);
   if (against)
-    json_text(&json, "against", against);
-  json_text(&json, "projection", vl_projection_name(v->camera.projection));
-  json_text(&json, "target", v->target.charuco ? "charuco" : "chessboard");
-  json_integer(&json, "spp", v->spp);
-  json_integer(&json, "seed", (int64_t)v->seed);
-  json_number(&json, "threshold", threshold);
-  json_bool(&json, "passed", !failure);
+    json_text(json, "against", against);
+  json_text(json, "projection", vl_projection_name(v->camera.projection));
+  json_text(json, "target", v->target.charuco ? "charuco" : "chessboard");
+  json_integer(json, "spp", v->spp);
+  json_integer(json, "seed", (int64_t)v->seed);
+  json_number(json, "threshold", threshold);
+  json_bool(json, "passed", !failure);
   if (failure)
-    json_text(&json, "failure", failure);
-  print_measure(&json, &v->all);
-  json_integer(&json, "markers", v->all.markers);
-  json_integer(&json, "markers_wrong", v->all.misread);
-  json_integer(&json, "parts_covered", covered);
-  json_integer(&json, "parts_seeing", seeing);
-  json_begin(&json, "poses", '[');
+    json_text(json, "failure", failure);
+  print_measure(json, &v->all);
+  json_integer(json, "markers", v->all.markers);
+  json_integer(json, "markers_wrong", v->all.misread);
+  json_integer(json, "parts_covered", covered);
+  json_integer(json, "parts_seeing", seeing);
+  json_begin(json, "poses", '[');
   for (uint32_t i = 0; i < v->placed; i++) {
-    json_begin(&json, NULL, '{');
-    print_measure(&json, &v->each[i]);
-    json_end(&json, '}');
+    json_begin(json, NULL, '{');
+    print_measure(json, &v->each[i]);
+    json_end(json, '}');
   }
-  json_end(&json, ']');
-  json_end(&json, '}');
-  putchar('\n');
+  json_end(json, ']');
+  json_close(json);
 }
 
 /* Makes the camera with which the images are compared. It is the same camera, or that of

@@ -300,7 +300,7 @@ static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *
   }
   free(red);
   vl_image_destroy(image);
-  return result == VL_OK ? -1 : report_error(&error, result, v->keep);
+  return report_error(&error, result, v->keep);
 }
 
 /* Checks the names of all files that are kept. Returns -1 or the exit code. */
@@ -323,7 +323,7 @@ static int keep_table(vlContext *context, const char *folder, const char *text, 
   vlError error = {0};
   snprintf(path, sizeof path, "%s/corners.csv", folder);
   vlResult result = text ? vl_write_file(context, path, text, size, &error) : VL_ERROR_MEMORY;
-  return result == VL_OK ? -1 : report_error(&error, result, path);
+  return report_error(&error, result, path);
 }
 
 int verify_run(Verification *v, vlContext *context) {

@@ -142,8 +142,7 @@ static bool point_at(const vlCamera *c, double x, double y, double distance, dou
   double origin[3];
   if (!vl_camera_unproject(c, x, y, origin, direction))
     return false;
-  for (int a = 0; a < 3; a++)
-    p[a] = origin[a] + distance * direction[a];
+  vector_along(origin, distance, direction, p);
   return true;
 }
 
@@ -158,26 +157,15 @@ static bool pixel_axes(const vlCamera *camera, double x, double y, double distan
       !point_at(camera, x, y - 0.5, distance, above, other) ||
       !point_at(camera, x, y + 0.5, distance, below, other))
     return false;
-  for (int a = 0; a < 3; a++) {
-    u[a] = right[a] - left[a];
-    v[a] = below[a] - above[a];
-  }
+  vector_subtract(right, left, u);
+  vector_subtract(below, above, v);
   return true;
 }
 
 /* Makes u orthogonal to the direction (unit) and of length 1. False: it is parallel to it. */
 static bool make_orthogonal(const double direction[3], double u[3]) {
-  double along = 0.0;
-  for (int a = 0; a < 3; a++)
-    along += u[a] * direction[a];
-  for (int a = 0; a < 3; a++)
-    u[a] -= along * direction[a];
-  const double length = vector_length(u);
-  if (!(length > 0.0))
-    return false;
-  for (int a = 0; a < 3; a++)
-    u[a] /= length;
-  return true;
+  vector_along(u, -vector_dot(u, direction), direction, u);
+  return vector_normalize(u);
 }
 
 bool target_place(const Target *target, const vlCamera *camera, double x, double y, double side,

@@ -66,6 +66,18 @@ void json_end(Json *json, char bracket) {
   json->comma = true;
 }
 
+Json *json_open(void) {
+  static Json json;
+  json = (Json){.out = stdout};
+  json_begin(&json, NULL, '{');
+  return &json;
+}
+
+void json_close(Json *json) {
+  json_end(json, '}');
+  fputc('\n', json->out);
+}
+
 void json_text(Json *json, const char *key, const char *text) {
   put_key(json, key);
   put_string(json->out, text);

@@ -21,6 +21,9 @@ void json_number(Json *json, const char *key, double number);
 /* avoids a clash with jansson's json_integer, which the library links */
 #define json_integer json_put_integer
 void json_integer(Json *json, const char *key, int64_t number);
+/* Begins the one object that a command prints to stdout; json_close ends it and the line. */
+Json *json_open(void);
+void json_close(Json *json);
 /* Arrays. */
 void json_numbers(Json *json, const char *key, const double *numbers, uint32_t count);
 void json_integers(Json *json, const char *key, const uint32_t *numbers, uint32_t count);

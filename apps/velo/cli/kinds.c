@@ -3,16 +3,37 @@
 
 #include <string.h>
 
+#include "velo/camera_file.h"
 #include "velo/render.h"
 
 enum { MAX_FAMILIES = 16, MAX_CHOICES = 64 };
 
-static const Choice *fill_sensors(void) {
-  static Choice choices[MAX_CHOICES];
+static const char *dialect_name(uint32_t index) {
+  return vl_camera_dialect_name((vlCameraDialect)index);
+}
+
+/* Lists that are no families: each has a function from its numbers to its names. */
+static const struct {
   const char *name;
-  for (uint32_t i = 0; i + 1 < MAX_CHOICES && (name = vl_sensor_name(i)); i++)
-    choices[i] = (Choice){name, (int)i};
-  return choices;
+  const char *(*of)(uint32_t index); /* null: there are no more */
+  uint32_t first;
+} name_lists[] = {{"sensors", vl_sensor_name, 0},
+                  {"dialects", dialect_name, VL_CAMERA_DIALECT_AUTO + 1}};
+enum { NAME_LISTS = sizeof name_lists / sizeof *name_lists };
+
+/* Null: it is a family. */
+static const Choice *listed_names(const char *list) {
+  static Choice choices[NAME_LISTS][MAX_CHOICES];
+  const char *name;
+  for (int k = 0; k < NAME_LISTS; k++) {
+    const uint32_t first = name_lists[k].first;
+    if (strcmp(name_lists[k].name, list) != 0)
+      continue;
+    for (uint32_t i = 0; i + 1 < MAX_CHOICES && (name = name_lists[k].of(first + i)); i++)
+      choices[k][i] = (Choice){name, (int)(first + i)};
+    return choices[k];
+  }
+  return NULL;
 }
 
 static void fill(const vlKindFamily *family, const Choice *more, Choice *choices) {
@@ -32,8 +53,9 @@ const Choice *kind_choices(const Choice *list) {
    * further names; the last list stays empty, for unknown families. */
   static Choice choices[2 * MAX_FAMILIES + 1][MAX_CHOICES];
   const vlKindFamily *family;
-  if (strcmp(list->name, "sensors") == 0)
-    return fill_sensors();
+  const Choice *names = listed_names(list->name);
+  if (names)
+    return names;
   for (uint32_t i = 0; i < MAX_FAMILIES && (family = vl_kind_family(i)); i++) {
     if (strcmp(family->name, list->name) != 0)
       continue;

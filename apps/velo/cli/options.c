@@ -357,95 +357,99 @@ uint32_t option_count(const OptionValue *value, uint32_t otherwise) {
   return value->given ? (uint32_t)value->integer : otherwise;
 }
 
+/* Reads x0,y0,x1,y1. */
+static int read_crop(const Option *option, const char *text, int64_t *crop) {
+  if (read_list(text, 4, crop, NULL, false) && crop[0] >= 0 && crop[1] >= 0 &&
+      crop[0] < crop[2] && crop[1] < crop[3])
+    return -1;
+  return bad_value(option, text, "must be x0,y0,x1,y1 in pixels with x0 < x1 and y0 < y1");
+}
+
+/* Reads x0,x1,y0,y1. */
+static int read_fractions(const Option *option, const char *text, double *window) {
+  if (read_list(text, 4, NULL, window, false) && window[0] >= 0 && window[0] < window[1] &&
+      window[1] <= 1 && window[2] >= 0 && window[2] < window[3] && window[3] <= 1)
+    return -1;
+  return bad_value(option, text,
+                   "must be x0,x1,y0,y1, fractions from 0 to 1 with x0 < x1 and y0 < y1");
+}
+
+/* Adds a text to a list. */
+static int add_text(const Option *option, const char *text, const char **list, int *count) {
+  if (*count == MAX_TEXTS)
+    return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
+  list[(*count)++] = text;
+  return -1;
+}
+
+static int add_search(const Option *option, const char *text, Arguments *arguments) {
+  size_t n = strlen(arguments->search);
+  if (n + strlen(text) + 2 > sizeof arguments->search)
+    return report_usage("--%s: too long", option->name);
+  snprintf(arguments->search + n, sizeof arguments->search - n, "%s%s", n ? ":" : "", text);
+  arguments->values[option->id].text = arguments->search;
+  return -1;
+}
+
+/* Reads a value that is any text. */
+static int read_text(const Option *option, const char *text, Arguments *arguments) {
+  if (!*text)
+    return bad_value(option, text, "must not be empty");
+  if (option->kind == OPTION_TEXTS)
+    return add_text(option, text, arguments->texts, &arguments->text_count);
+  if (option->kind == OPTION_FOLDERS)
+    return add_text(option, text, arguments->folders, &arguments->folder_count);
+  return option->kind == OPTION_SEARCH ? add_search(option, text, arguments) : -1;
+}
+
+/* Returns -1, or the exit code after a report. */
+static int read_kind(const Option *option, const char *text, Arguments *arguments) {
+  OptionValue *value = &arguments->values[option->id];
+  switch (option->kind) {
+    case OPTION_FLAG:
+      return -1;
+    case OPTION_INTEGER:
+    case OPTION_NUMBER:
+      return read_row(option, text, value);
+    case OPTION_ANGLE:
+      return read_angle_row(option, text, value);
+    case OPTION_POINT:
+      return read_list(text, 3, NULL, value->numbers, false)
+                 ? -1
+                 : bad_value(option, text, "must be X,Y,Z");
+    case OPTION_TIME:
+      return read_time(text, &value->number)
+                 ? -1
+                 : bad_value(option, text,
+                             "must be a time above 0 such as 30, 30s, 5m or 1h30m");
+    case OPTION_BYTES:
+      return read_bytes(text, &value->integer)
+                 ? -1
+                 : bad_value(option, text, "must be a size such as 500M, 2G or 1.5GiB");
+    case OPTION_SIZE:
+      return read_size(option, text, value->integers);
+    case OPTION_CROP:
+      return read_crop(option, text, value->integers);
+    case OPTION_FRACTIONS:
+      return read_fractions(option, text, value->numbers);
+    case OPTION_KIND:
+    case OPTION_CHOICE:
+      return read_choice(option, text, value);
+    case OPTION_TEXT:
+    case OPTION_TEXTS:
+    case OPTION_FOLDERS:
+    case OPTION_SEARCH:
+      break;
+  }
+  return read_text(option, text, arguments);
+}
+
 static int read_value(const Option *option, const char *text, Arguments *arguments) {
   OptionValue *value = &arguments->values[option->id];
   value->text = text;
-  switch (option->kind) {
-    case OPTION_FLAG:
-      break;
-    case OPTION_INTEGER:
-    case OPTION_NUMBER: {
-      int status = read_row(option, text, value);
-      if (status >= 0)
-        return status;
-      break;
-    }
-    case OPTION_ANGLE: {
-      int status = read_angle_row(option, text, value);
-      if (status >= 0)
-        return status;
-      break;
-    }
-    case OPTION_POINT:
-      if (read_list(text, 3, NULL, value->numbers, false))
-        break;
-      return bad_value(option, text, "must be X,Y,Z");
-    case OPTION_TIME:
-      if (read_time(text, &value->number))
-        break;
-      return bad_value(option, text, "must be a time above 0 such as 30, 30s, 5m or 1h30m");
-    case OPTION_BYTES:
-      if (read_bytes(text, &value->integer))
-        break;
-      return bad_value(option, text, "must be a size such as 500M, 2G or 1.5GiB");
-    case OPTION_SIZE: {
-      int status = read_size(option, text, value->integers);
-      if (status >= 0)
-        return status;
-      break;
-    }
-    case OPTION_CROP:
-      if (read_list(text, 4, value->integers, NULL, false) && value->integers[0] >= 0 &&
-          value->integers[1] >= 0 && value->integers[0] < value->integers[2] &&
-          value->integers[1] < value->integers[3])
-        break;
-      return bad_value(option, text, "must be x0,y0,x1,y1 in pixels with x0 < x1 and y0 < y1");
-    case OPTION_FRACTIONS:
-      if (read_list(text, 4, NULL, value->numbers, false) && value->numbers[0] >= 0 &&
-          value->numbers[0] < value->numbers[1] && value->numbers[1] <= 1 &&
-          value->numbers[2] >= 0 && value->numbers[2] < value->numbers[3] &&
-          value->numbers[3] <= 1)
-        break;
-      return bad_value(option, text,
-                       "must be x0,x1,y0,y1, fractions from 0 to 1 with x0 < x1 and y0 < y1");
-    case OPTION_KIND:
-    case OPTION_CHOICE: {
-      int status = read_choice(option, text, value);
-      if (status >= 0)
-        return status;
-      break;
-    }
-    case OPTION_TEXT:
-      if (!*text)
-        return bad_value(option, text, "must not be empty");
-      break;
-    case OPTION_TEXTS:
-      if (!*text)
-        return bad_value(option, text, "must not be empty");
-      if (arguments->text_count == MAX_TEXTS)
-        return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
-      arguments->texts[arguments->text_count++] = text;
-      break;
-    case OPTION_FOLDERS:
-      if (!*text)
-        return bad_value(option, text, "must not be empty");
-      if (arguments->folder_count == MAX_TEXTS)
-        return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
-      arguments->folders[arguments->folder_count++] = text;
-      break;
-    case OPTION_SEARCH: {
-      size_t n = strlen(arguments->search);
-      if (!*text)
-        return bad_value(option, text, "must not be empty");
-      if (n + strlen(text) + 2 > sizeof arguments->search)
-        return report_usage("--%s: too long", option->name);
-      snprintf(arguments->search + n, sizeof arguments->search - n, "%s%s", n ? ":" : "", text);
-      value->text = arguments->search;
-      break;
-    }
-  }
-  value->given = true;
-  return -1;
+  const int status = read_kind(option, text, arguments);
+  value->given = status < 0;
+  return status;
 }
 
 /* ---- the line ---------------------------------------------------------------------------- */

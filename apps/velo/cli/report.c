@@ -21,6 +21,7 @@ static struct {
   size_t memory_limit;
   const char *usage_file; /* the file that holds the command line; null: the command line is the
                              user's own */
+  Json line;              /* of --log-json, that is begun */
   char *json_text;
   size_t json_size;
   ReportFn *listener;
@@ -111,18 +112,16 @@ void report_status_line(const char *text) {
   state.line_shown = text != NULL;
 }
 
-Json report_json_begin(const char *event) {
-  Json json = {.out = open_memstream(&state.json_text, &state.json_size)};
-  if (!json.out)
-    json.out = stderr;
-  json_begin(&json, NULL, '{');
-  json_text(&json, "event", event);
-  return json;
+Json *report_json_begin(const char *event) {
+  FILE *out = open_memstream(&state.json_text, &state.json_size);
+  state.line = (Json){.out = out ? out : stderr};
+  json_begin(&state.line, NULL, '{');
+  json_text(&state.line, "event", event);
+  return &state.line;
 }
 
 void report_json_end(Json *json) {
-  json_end(json, '}');
-  fputc('\n', json->out);
+  json_close(json);
   if (json->out == stderr)
     return;
   if (fclose(json->out) == 0)
@@ -144,17 +143,17 @@ static void say(const char *kind, int status, const vlError *where, const char *
     state.listener(state.listener_user, kind, &what);
   }
   if (state.json) {
-    Json json = report_json_begin(kind ? kind : "error");
+    Json *json = report_json_begin(kind ? kind : "error");
     if (!kind)
-      json_integer(&json, "status", status);
+      json_integer(json, "status", status);
     if (file)
-      json_text(&json, "file", file);
+      json_text(json, "file", file);
     if (line)
-      json_integer(&json, "line", line);
+      json_integer(json, "line", line);
     if (column)
-      json_integer(&json, "column", column);
-    json_text(&json, "message", message);
-    report_json_end(&json);
+      json_integer(json, "column", column);
+    json_text(json, "message", message);
+    report_json_end(json);
     return;
   }
   char location[700] = "", text[4096];
@@ -237,9 +236,11 @@ static const char *bytes_text(char text[32], size_t bytes) {
 }
 
 int report_error(const vlError *error, vlResult result, const char *file) {
-  int status = status_of(result);
+  const int status = status_of(result);
   const char *message = error && error->message[0] ? error->message : vl_result_name(result);
   char longer[700];
+  if (result == VL_OK)
+    return -1;
   if (result == VL_ERROR_MEMORY && state.context) {
     size_t peak;
     vl_context_memory(state.context, &peak);

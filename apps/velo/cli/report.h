@@ -39,14 +39,15 @@ int report_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void report_usage_of(const char *file);
 int report_failure(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Reports "velo: file:line:column: message". `file` is used when the library's error has no
- * location; may be null. */
+ * location; may be null. VL_OK: nothing is reported, and -1 returned. */
 int report_error(const vlError *error, vlResult result, const char *file);
 /* Flushes stdout at the end of a command that prints text. Returns `status`, or STATUS_IO after
  * reporting that it cannot be written. A reader that has seen enough (velo help render | head)
  * is no error. */
 int report_stdout(int status);
 void report_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* Reports a result that has no vlError: "FILE: WHAT: out of memory". Returns the exit code. */
+/* Reports a result that has no vlError: "FILE: WHAT: out of memory". Returns the exit code; -1
+ * for VL_OK. */
 int report_reason(vlResult result, const char *file, const char *what);
 /* Reports a note. Prints nothing with --quiet or in JSON mode. */
 void report_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -61,7 +62,7 @@ void report_log(void *user, vlLogLevel level, const vlError *where, const char *
 void report_status_line(const char *text);
 
 /* A JSON line on stderr: begin, json_*(...) calls, end. Only when report_is_json(). */
-Json report_json_begin(const char *event);
+Json *report_json_begin(const char *event);
 void report_json_end(Json *json);
 
 #endif

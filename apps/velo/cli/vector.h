@@ -15,6 +15,19 @@ static inline void vector_cross(const double a[3], const double b[3], double r[3
     r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
+/* r = a - b; it may be one of them. */
+static inline void vector_subtract(const double a[3], const double b[3], double r[3]) {
+  for (int i = 0; i < 3; i++)
+    r[i] = a[i] - b[i];
+}
+
+/* r = point + t direction; it may be one of them. */
+static inline void vector_along(const double point[3], double t, const double direction[3],
+                                double r[3]) {
+  for (int i = 0; i < 3; i++)
+    r[i] = point[i] + t * direction[i];
+}
+
 static inline double vector_length(const double v[3]) {
   return sqrt(vector_dot(v, v));
 }

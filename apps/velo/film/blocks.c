@@ -61,8 +61,7 @@ static int read_blocks(vlFilmFile *file, bool check, uint32_t planned, FilmParts
   int status = -1;
   for (uint32_t i = 0; status < 0; i++) {
     vlResult result = vl_film_file_next(file, check, &block, &error);
-    if (result != VL_OK)
-      status = report_error(&error, result, NULL);
+    status = report_error(&error, result, NULL);
     if (status >= 0 || block.x1 == 0)
       break;
     const vlSampleRange *ranges = block.ranges;

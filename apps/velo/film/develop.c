@@ -99,7 +99,7 @@ static int develop(Develop *d, const char *path) {
     return report_error(&error, result, path);
   d->outputs.layers[0] = d->errors;
   d->outputs.layers[1] = d->spectrum;
-  return result == VL_OK ? -1 : report_reason(result, path, "the film cannot be developed");
+  return report_reason(result, path, "the film cannot be developed");
 }
 
 static int run_develop(const Arguments *arguments, vlContext *context) {

@@ -137,10 +137,8 @@ static int run_info(const Arguments *arguments, vlContext *context) {
   vlFilmFile *file = NULL;
   vlError error = {0};
   FilmParts parts = {.count = 0};
-  int status = -1;
-  vlResult result = vl_film_file_open(context, path, &file, &error);
-  if (result != VL_OK)
-    status = report_error(&error, result, NULL);
+  const vlResult result = vl_film_file_open(context, path, &file, &error);
+  int status = report_error(&error, result, NULL);
   if (status < 0)
     status = film_parts_read(file, arguments->values[INFO_CHECK].given,
                              missing ? planned_of(file) : 0, &parts);

@@ -205,20 +205,18 @@ static void print_result(const Check *c, const Arguments *arguments, double thre
              c->pixel_error);
     return;
   }
-  Json json = {.out = stdout};
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", arguments->operands[0]);
-  json_integer(&json, "hits", (int64_t)c->hits);
-  json_integer(&json, "misses", (int64_t)c->misses);
-  json_begin(&json, "errors", '{');
+  Json *json = json_open();
+  json_text(json, "file", arguments->operands[0]);
+  json_integer(json, "hits", (int64_t)c->hits);
+  json_integer(json, "misses", (int64_t)c->misses);
+  json_begin(json, "errors", '{');
   for (int i = 0; i < RULES; i++)
     if (c->rules[i].checked)
-      json_number(&json, c->rules[i].name, c->rules[i].worst);
-  json_end(&json, '}');
+      json_number(json, c->rules[i].name, c->rules[i].worst);
+  json_end(json, '}');
   if (c->rules[RULE_PIXEL].checked)
-    json_number(&json, "pixels", c->pixel_error);
-  json_end(&json, '}');
-  putchar('\n');
+    json_number(json, "pixels", c->pixel_error);
+  json_close(json);
 }
 
 static int judge(const Check *c, const char *path, double threshold) {

@@ -14,13 +14,11 @@ static bool find_point(const Check *c, bool hit, double p[3]) {
     return false;
   if (!hit) {
     const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
-    for (int k = 0; k < 3; k++)
-      p[k] = eye[k] + 1e6 * (1 + vector_length(eye)) * direction[k];
+    vector_along(eye, 1e6 * (1 + vector_length(eye)), direction, p);
     return c->other_camera.projection != VL_PROJECTION_ORTHOGRAPHIC;
   }
   if (c->distance >= 0) {
-    for (int k = 0; k < 3; k++)
-      p[k] = origin[k] + (double)c->pixel[c->distance] * direction[k];
+    vector_along(origin, (double)c->pixel[c->distance], direction, p);
     return true;
   }
   if (c->p < 0)
@@ -62,8 +60,7 @@ static void compare_distances(Check *c, int hidden, const double at[2], bool hit
     return;
   if (!vl_camera_unproject(&c->other_camera, at[0], at[1], origin, direction))
     return;
-  for (int k = 0; k < 3; k++)
-    away[k] = p[k] - origin[k];
+  vector_subtract(p, origin, away);
   double distance = hit ? vector_length(away) : (double)INFINITY;
   c->flow_seen++;
   c->flow_wrong +=

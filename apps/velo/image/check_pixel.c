@@ -27,8 +27,8 @@ static void check_miss(Check *c, bool in_domain, const double direction[3]) {
   if (c->ray < 0)
     return;
   check_load3(c, c->ray, v);
-  for (int k = 0; k < 3 && in_domain; k++)
-    v[k] -= direction[k];
+  if (in_domain)
+    vector_subtract(v, direction, v);
   check_note(c, RULE_RAY, vector_length(v));
 }
 
@@ -52,16 +52,16 @@ static void check_point(Check *c, const double origin[3], const double direction
   if (c->p >= 0)
     check_load3(c, c->p, p);
   else
-    for (int k = 0; k < 3; k++)
-      p[k] = origin[k] + t * ray[k];
+    vector_along(origin, t, ray, p);
   if (c->p < 0 && c->distance < 0)
     return;
-  double away[3] = {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
+  double away[3];
+  vector_subtract(p, origin, away);
   double size = fmax(fmax(vector_length(p), vector_length(origin)), vector_length(away));
   if (c->p >= 0 && c->distance >= 0) {
     double off[3];
-    for (int k = 0; k < 3; k++)
-      off[k] = p[k] - (origin[k] + t * ray[k]);
+    vector_along(origin, t, ray, off);
+    vector_subtract(p, off, off);
     check_note(c, RULE_POINT, vector_length(off) / size);
   }
   double pixel[2], z;
@@ -133,8 +133,7 @@ void check_pixel(Check *c) {
   c->hits++;
   if (c->ray >= 0) {
     check_load3(c, c->ray, v);
-    for (int k = 0; k < 3; k++)
-      v[k] -= direction[k];
+    vector_subtract(v, direction, v);
     check_note(c, RULE_RAY, in_domain ? vector_length(v) : INFINITY);
   }
   check_material_of(c);

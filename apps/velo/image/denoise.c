@@ -53,8 +53,7 @@ static int run_denoise(const Arguments *arguments, vlContext *context) {
     vlResult result = vl_denoise(image, &how, &clean, &stats, &error);
     if (result == VL_OK)
       result = denoise_name(clean, how.denoiser);
-    if (result != VL_OK)
-      status = report_error(&error, result, path);
+    status = report_error(&error, result, path);
   }
   if (status < 0)
     denoise_report(&stats);

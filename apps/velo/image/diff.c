@@ -99,14 +99,12 @@ static void print_metrics(const Arguments *arguments, const Metric metrics[METRI
       printf("%-10s %.9g\n", metrics[i].name, metrics[i].value);
     return;
   }
-  Json json = {.out = stdout};
-  json_begin(&json, NULL, '{');
-  json_text(&json, "reference", arguments->operands[0]);
-  json_text(&json, "image", arguments->operands[1]);
+  Json *json = json_open();
+  json_text(json, "reference", arguments->operands[0]);
+  json_text(json, "image", arguments->operands[1]);
   for (int i = 0; i < METRICS; i++)
-    json_number(&json, metrics[i].name, metrics[i].value);
-  json_end(&json, '}');
-  putchar('\n');
+    json_number(json, metrics[i].name, metrics[i].value);
+  json_close(json);
 }
 
 static int write_heat(const vlImage *heat, const char *path) {
@@ -141,8 +139,7 @@ static int run_diff(const Arguments *arguments, vlContext *context) {
   if (status < 0) {
     vlError error = {0};
     vlResult result = vl_image_compare(a, b, &diff, heat_file.count ? &heat : NULL, &error);
-    if (result != VL_OK)
-      status = report_error(&error, result, arguments->operands[1]);
+    status = report_error(&error, result, arguments->operands[1]);
   }
   if (status < 0) {
     list_metrics(&diff, metrics);

@@ -12,7 +12,7 @@
 int image_load(vlContext *context, const char *path, vlImage **image) {
   vlError error = {0};
   vlResult result = vl_image_read(context, path, image, &error);
-  return result == VL_OK ? -1 : report_error(&error, result, path);
+  return report_error(&error, result, path);
 }
 
 /* The format by the first bytes, as the library chooses its reader. */
@@ -200,44 +200,42 @@ static void print_text(const char *path, const vlImage *image, const vlReceipt *
 }
 
 static void print_json(const char *path, const vlImage *image) {
-  Json json = {.out = stdout};
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", path);
-  json_text(&json, "format", format_of(path));
-  json_integer(&json, "width", vl_image_width(image));
-  json_integer(&json, "height", vl_image_height(image));
-  json_begin(&json, "channels", '[');
+  Json *json = json_open();
+  json_text(json, "file", path);
+  json_text(json, "format", format_of(path));
+  json_integer(json, "width", vl_image_width(image));
+  json_integer(json, "height", vl_image_height(image));
+  json_begin(json, "channels", '[');
   for (uint32_t i = 0; i < vl_image_channels(image); i++)
-    json_text(&json, NULL, vl_image_channel_name(image, i));
-  json_end(&json, ']');
-  json_text(&json, "type", type_name(vl_image_type(image)));
+    json_text(json, NULL, vl_image_channel_name(image, i));
+  json_end(json, ']');
+  json_text(json, "type", type_name(vl_image_type(image)));
   if (is_mixed(image)) {
-    json_begin(&json, "types", '[');
+    json_begin(json, "types", '[');
     for (uint32_t i = 0; i < vl_image_channels(image); i++)
-      json_text(&json, NULL, type_name(vl_image_stored_type(image, i)));
-    json_end(&json, ']');
+      json_text(json, NULL, type_name(vl_image_stored_type(image, i)));
+    json_end(json, ']');
   }
-  json_text(&json, "encoding", encoding_name(vl_image_encoding(image)));
-  json_begin(&json, "attributes", '{');
+  json_text(json, "encoding", encoding_name(vl_image_encoding(image)));
+  json_begin(json, "attributes", '{');
   for (uint32_t i = 0; i < vl_image_attribute_count(image); i++) {
     vlAttribute a;
     if (vl_image_attribute(image, i, &a) != VL_OK)
       continue;
     int n = number_count(a.type);
     if (n == 0)
-      json_text(&json, a.name, a.string ? a.string : "");
+      json_text(json, a.name, a.string ? a.string : "");
     if (n == 1)
-      json_number(&json, a.name, shown(&a, 0));
+      json_number(json, a.name, shown(&a, 0));
     if (n < 2)
       continue;
-    json_begin(&json, a.name, '[');
+    json_begin(json, a.name, '[');
     for (int k = 0; k < n; k++)
-      json_number(&json, NULL, shown(&a, k));
-    json_end(&json, ']');
+      json_number(json, NULL, shown(&a, k));
+    json_end(json, ']');
   }
-  json_end(&json, '}');
-  json_end(&json, '}');
-  putchar('\n');
+  json_end(json, '}');
+  json_close(json);
 }
 
 enum { INFO_JSON };

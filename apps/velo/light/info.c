@@ -66,25 +66,23 @@ static void put_degrees(Json *json, const char *key, const double radians[2]) {
 }
 
 static void print_json(const char *path, const vlLampInfo *info) {
-  Json json = {.out = stdout};
+  Json *json = json_open();
   const char type[2] = {info->type, 0};
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", path);
-  json_text(&json, "format", info->format);
-  json_text(&json, "luminaire", info->name);
-  json_text(&json, "photometry", type);
-  json_integer(&json, "planes", info->planes);
-  json_integer(&json, "angles", info->angles);
-  json_number(&json, "flux_lm", info->flux);
-  json_number(&json, "lamps_flux_lm", info->lamps_flux);
-  json_number(&json, "ratio", info->lamps_flux > 0 ? info->flux / info->lamps_flux : NAN);
-  json_number(&json, "watts", info->watts);
-  put_degrees(&json, "beam_angle_degrees", info->beam);
-  put_degrees(&json, "field_angle_degrees", info->field);
-  json_number(&json, "max_candela", info->max_intensity);
-  json_numbers(&json, "max_direction", info->max_direction, 3);
-  json_end(&json, '}');
-  putchar('\n');
+  json_text(json, "file", path);
+  json_text(json, "format", info->format);
+  json_text(json, "luminaire", info->name);
+  json_text(json, "photometry", type);
+  json_integer(json, "planes", info->planes);
+  json_integer(json, "angles", info->angles);
+  json_number(json, "flux_lm", info->flux);
+  json_number(json, "lamps_flux_lm", info->lamps_flux);
+  json_number(json, "ratio", info->lamps_flux > 0 ? info->flux / info->lamps_flux : NAN);
+  json_number(json, "watts", info->watts);
+  put_degrees(json, "beam_angle_degrees", info->beam);
+  put_degrees(json, "field_angle_degrees", info->field);
+  json_number(json, "max_candela", info->max_intensity);
+  json_numbers(json, "max_direction", info->max_direction, 3);
+  json_close(json);
 }
 
 /* -1: the diagram can be written. */
@@ -94,7 +92,7 @@ static int check_output(vlContext *context, const OptionValue *output) {
       output->given ? vl_check_output(context, output->text, VL_OUTPUT_PLAIN, &error) : VL_OK;
   if (r == VL_ERROR_ARGUMENT)
     return report_usage("light info: %s", error.message);
-  return r == VL_OK ? -1 : report_error(&error, r, output->text);
+  return report_error(&error, r, output->text);
 }
 
 /* Prints the lamp and writes its diagram. */

@@ -9,7 +9,7 @@
 int raw_load(vlContext *context, const char *path, vlRaw **raw) {
   vlError error = {0};
   vlResult result = vl_raw_read(context, path, raw, &error);
-  return result == VL_OK ? -1 : report_error(&error, result, path);
+  return report_error(&error, result, path);
 }
 
 enum { INFO_JSON };
@@ -120,35 +120,33 @@ static void print_json(const char *path, const vlRaw *raw) {
   uint8_t colors[VL_RAW_MAX_COLORS];
   uint32_t count = vl_raw_colors(def, colors);
   char pattern[80];
-  Json json = {.out = stdout};
+  Json *json = json_open();
   vl_raw_pattern_text(def, pattern);
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", path);
-  json_integer(&json, "width", def->width);
-  json_integer(&json, "height", def->height);
-  json_integer(&json, "bits", def->bits);
-  json_text(&json, "pattern", pattern);
-  json_begin(&json, "black", '[');
+  json_text(json, "file", path);
+  json_integer(json, "width", def->width);
+  json_integer(json, "height", def->height);
+  json_integer(json, "bits", def->bits);
+  json_text(json, "pattern", pattern);
+  json_begin(json, "black", '[');
   for (uint32_t i = 0; i < def->pattern_rows * def->pattern_columns; i++)
-    json_integer(&json, NULL, def->black[i]);
-  json_end(&json, ']');
-  json_integer(&json, "white", def->white);
-  json_integer(&json, "least", range.least);
-  json_integer(&json, "greatest", range.greatest);
-  json_integer(&json, "saturated", (int64_t)range.saturated);
-  json_text(&json, "camera", def->camera);
-  put_number(&json, "exposure_time", def->exposure_time);
-  put_number(&json, "f_number", def->f_number);
-  put_number(&json, "focal_length", def->focal_length);
-  put_number(&json, "iso", (float)def->iso);
-  put_number(&json, "gain", def->gain);
-  put_number(&json, "read_noise", def->read_noise);
-  put_number(&json, "baseline_exposure", def->baseline_exposure);
-  put_numbers(&json, "neutral", def->neutral, count);
-  put_numbers(&json, "matrix_a", def->matrices[0], 3 * count);
-  put_numbers(&json, "matrix_d65", def->matrices[1], 3 * count);
-  json_end(&json, '}');
-  putchar('\n');
+    json_integer(json, NULL, def->black[i]);
+  json_end(json, ']');
+  json_integer(json, "white", def->white);
+  json_integer(json, "least", range.least);
+  json_integer(json, "greatest", range.greatest);
+  json_integer(json, "saturated", (int64_t)range.saturated);
+  json_text(json, "camera", def->camera);
+  put_number(json, "exposure_time", def->exposure_time);
+  put_number(json, "f_number", def->f_number);
+  put_number(json, "focal_length", def->focal_length);
+  put_number(json, "iso", (float)def->iso);
+  put_number(json, "gain", def->gain);
+  put_number(json, "read_noise", def->read_noise);
+  put_number(json, "baseline_exposure", def->baseline_exposure);
+  put_numbers(json, "neutral", def->neutral, count);
+  put_numbers(json, "matrix_a", def->matrices[0], 3 * count);
+  put_numbers(json, "matrix_d65", def->matrices[1], 3 * count);
+  json_close(json);
 }
 
 static int run_info(const Arguments *arguments, vlContext *context) {

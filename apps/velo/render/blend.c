@@ -240,13 +240,13 @@ static void report_made(const Blend *blend) {
   const char *name = blend->own.texts[0];
   char time[32];
   if (report_is_json()) {
-    Json json = report_json_begin("result");
-    json_integer(&json, "status", STATUS_OK);
-    json_integer(&json, "frames", blend->shown.count);
-    json_integer(&json, "written", blend->written);
-    json_integer(&json, "spp", b->spp);
-    json_number(&json, "seconds", seconds);
-    report_json_end(&json);
+    Json *json = report_json_begin("result");
+    json_integer(json, "status", STATUS_OK);
+    json_integer(json, "frames", blend->shown.count);
+    json_integer(json, "written", blend->written);
+    json_integer(json, "spp", b->spp);
+    json_number(json, "seconds", seconds);
+    report_json_end(json);
     return;
   }
   format_seconds(time, sizeof time, seconds);

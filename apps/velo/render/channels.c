@@ -74,9 +74,8 @@ static int read_list(const char *list, uint32_t *channels) {
 int channels_choose(Channels *c, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   memset(c, 0, sizeof *c);
-  c->mode = v[RENDER_CHANNELS_MODE].given ? (vlChannelMode)v[RENDER_CHANNELS_MODE].integer
-                                          : VL_CHANNEL_MODE_CENTRE;
-  c->ranks = v[RENDER_CRYPTO_RANKS].given ? (uint32_t)v[RENDER_CRYPTO_RANKS].integer : 6;
+  c->mode = (vlChannelMode)option_count(&v[RENDER_CHANNELS_MODE], VL_CHANNEL_MODE_CENTRE);
+  c->ranks = option_count(&v[RENDER_CRYPTO_RANKS], 6);
   if (c->ranks % 2)
     return report_usage(
         "--crypto-ranks %u: two ranks share a layer, so that their number is even", c->ranks);
@@ -132,6 +131,19 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
 /* Returns whether a signal arrived after the pass began. */
 static bool stop_asked(void *user) {
   return signals_count() > *(const int *)user;
+}
+
+vlChannelsDef channels_def(const Job *job, const vlFilm *film, int *signals) {
+  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  def.space = job->defs->film.space;
+  def.film = film;
+  def.render = film ? &job->defs->render : NULL;
+  def.exposure = job->defs->develop.exposure;
+  def.time = job_channels_time(job);
+  def.stop = stop_asked;
+  def.stop_user = signals;
+  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
+  return def;
 }
 
 static int fail_pass(const vlError *error, vlResult result, const Job *job) {
@@ -245,25 +257,17 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
   if (!c->bits)
     return STATUS_OK;
   shutter_ends(c, job);
-  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  int signals = signals_count();
+  vlChannelsDef def = channels_def(job, film, &signals);
   def.channels = c->bits;
-  def.space = job->defs->film.space;
   def.samples = vl_film_spp(film);
   def.mode = c->mode;
   def.ranks = c->ranks;
-  def.film = film;
-  def.render = &job->defs->render;
-  def.exposure = job->defs->develop.exposure;
-  def.time = job_channels_time(job);
   if (c->bits & VL_CHANNEL_FORWARD)
     def.forward = &c->others[0];
   if (c->bits & VL_CHANNEL_BACKWARD)
     def.backward = &c->others[1];
-  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   vlError error = {0};
-  int signals = signals_count();
-  def.stop = stop_asked;
-  def.stop_user = &signals;
   vlResult result =
       vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
   if (result == VL_OK)

@@ -201,7 +201,7 @@ static int take_film(Source *source, const Arguments *arguments, const vlReceipt
   result = vl_film_read(context, source->path, false, film, &error);
   if (result == VL_ERROR_SCENE)
     return refuse(source, STATUS_SCENE, "%s", error.message);
-  return result == VL_OK ? -1 : report_error(&error, result, NULL);
+  return report_error(&error, result, NULL);
 }
 
 int continue_film(const FilmClaim *claim, const Arguments *arguments, const vlReceipt *now,

@@ -8,17 +8,17 @@
 #include "cli/signals.h"
 #include "image/denoise.h"
 #include "render/attributes.h"
+#include "render/channels.h"
 #include "render/pattern.h"
 
-enum { MAX_CHANNELS = 24 };
+enum { MAX_CHANNELS = 1010 }; /* a spectrum of 1000 buckets, colours and errors */
 
 int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *image) {
   const OptionValue *v = arguments->values;
   const char *path = v[RENDER_DENOISE].text;
   memset(d, 0, sizeof *d);
   d->def = vl_default_denoise_def();
-  if (v[RENDER_DENOISER].given)
-    d->def.denoiser = (vlDenoiser)v[RENDER_DENOISER].integer;
+  d->def.denoiser = (vlDenoiser)option_count(&v[RENDER_DENOISER], d->def.denoiser);
   d->def.library = v[RENDER_DENOISER_LIBRARY].text;
   if (!v[RENDER_DENOISE].given) {
     if (v[RENDER_DENOISER].given || v[RENDER_DENOISER_LIBRARY].given)
@@ -64,7 +64,7 @@ int denoised_check(const Denoised *d, vlContext *context) {
     result = vl_denoise(pixel, &d->def, &clean, NULL, &error);
   vl_image_destroy(pixel);
   vl_image_destroy(clean);
-  return result == VL_OK ? -1 : report_error(&error, result, NULL);
+  return report_error(&error, result, NULL);
 }
 
 uint64_t denoised_memory(uint64_t pixels) {
@@ -104,10 +104,6 @@ vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,
   return VL_OK;
 }
 
-static bool stop_asked(void *user) {
-  return signals_count() > *(const int *)user;
-}
-
 /* Denoises the image. A frame of several is kept, and blended with those before it. *clean is
  * null for a frame that is only kept. */
 static vlResult clean_frame(Denoised *d, vlContext *context, const vlWorld *world,
@@ -119,11 +115,10 @@ static vlResult clean_frame(Denoised *d, vlContext *context, const vlWorld *worl
   if (result != VL_OK || !d->steady)
     return result;
   int signals = signals_count();
-  result =
-      steady_keep(d->steady, context, world, job, image, *clean, stop_asked, &signals, error);
+  result = steady_keep(d->steady, context, world, job, image, *clean, &signals, error);
   *clean = NULL;
   if (result == VL_OK && !d->steady->only_kept)
-    result = steady_blend(d->steady, context, world, job, stop_asked, &signals, clean, error);
+    result = steady_blend(d->steady, context, world, job, &signals, clean, error);
   return result;
 }
 
@@ -134,15 +129,10 @@ static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = job->defs->develop.exposure;
   develop.independent = true; /* does not matter to the colours */
-  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
-  def.channels = VL_CHANNEL_FEATURES;
-  def.space = job->defs->film.space;
-  def.film = film;
-  def.render = &job->defs->render;
-  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   int signals = signals_count();
-  def.stop = stop_asked;
-  def.stop_user = &signals;
+  vlChannelsDef def = channels_def(job, film, &signals);
+  def.channels = VL_CHANNEL_FEATURES;
+  def.time = VL_UNSET; /* features are means over the exposure */
   vlImage *color = NULL, *errors = NULL, *features = NULL;
   vlResult result = vl_film_develop(film, &develop, &color);
   if (result == VL_OK)

@@ -72,7 +72,7 @@ int film_claim(FilmClaim *claim, vlContext *context, const char *path, const cha
   result = vl_film_file_open(context, path, &claim->earlier, &error);
   if (result == VL_ERROR_SCENE || result == VL_ERROR_UNSUPPORTED)
     return film_claim_refuse("%s", error.message);
-  return result == VL_OK ? -1 : report_error(&error, result, NULL);
+  return report_error(&error, result, NULL);
 }
 
 void film_claim_release(FilmClaim *claim) {

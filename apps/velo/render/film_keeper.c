@@ -33,8 +33,7 @@ int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context
     result = attributes_make(context, &whole, eye, &k->attributes);
   if (result == VL_OK && !plan->receipt->arguments->channels_later)
     result = channels_describe_mode(plan->channels, k->attributes);
-  return result == VL_OK ? -1
-                         : report_reason(result, k->path, "the film's receipt cannot be made");
+  return report_reason(result, k->path, "the film's receipt cannot be made");
 }
 
 int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, vlContext *context,

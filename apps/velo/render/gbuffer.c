@@ -8,6 +8,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "cli/vector.h"
+#include "render/channels.h"
 #include "velo/channels.h"
 
 static const char *const names[] = {"Albedo.R",
@@ -153,24 +154,12 @@ static void fill_all(Source *s, const uint32_t crop[4], float *out) {
     }
 }
 
-static bool stop_asked(void *user) {
-  return signals_count() > *(const int *)user;
-}
-
 static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFilm *film,
                                 vlImage **geometry, vlError *error) {
   int signals = signals_count();
-  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  vlChannelsDef def = channels_def(job, film, &signals);
   def.channels = VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV |
                  VL_CHANNEL_ALBEDO | VL_CHANNEL_RAY | VL_CHANNEL_DISTANCE;
-  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
-  def.space = job->defs->film.space;
-  def.film = film;
-  def.render = &job->defs->render;
-  def.exposure = job->defs->develop.exposure;
-  def.time = job_channels_time(job);
-  def.stop = stop_asked;
-  def.stop_user = &signals;
   return vl_render_channels(world, &job->camera, &def, geometry, NULL, error);
 }
 

@@ -105,7 +105,7 @@ static int take_camera(Job *job, vlContext *context, vlScene *scene, const char 
     job->camera_location = camera_location(vl_scene_defs(other), path);
     result = vl_scene_take_camera(scene, other, &error);
   }
-  int status = result == VL_OK ? -1 : report_error(&error, result, path);
+  int status = report_error(&error, result, path);
   vl_scene_destroy(other);
   return status;
 }

@@ -143,13 +143,13 @@ int memory_check(const MemoryPlan *plan, uint64_t limit) {
 }
 
 void memory_report_json(const MemoryPlan *plan, uint64_t limit) {
-  Json json = report_json_begin("memory");
+  Json *json = report_json_begin("memory");
   for (int i = 0; i < plan->count; i++)
-    json_integer(&json, plan->needs[i].what, (int64_t)plan->needs[i].bytes);
-  json_integer(&json, "total", (int64_t)plan->total);
+    json_integer(json, plan->needs[i].what, (int64_t)plan->needs[i].bytes);
+  json_integer(json, "total", (int64_t)plan->total);
   if (limit)
-    json_integer(&json, "limit", (int64_t)limit);
-  report_json_end(&json);
+    json_integer(json, "limit", (int64_t)limit);
+  report_json_end(json);
 }
 
 uint64_t memory_peak(void) {

@@ -128,15 +128,15 @@ void progress_show(Progress *progress, const vlProgress *now) {
   if (now->pass_done)
     progress->last_spp = now->spp_done;
   if (report_is_json()) {
-    Json json = report_json_begin("progress");
-    json_integer(&json, "spp", now->spp_done);
-    json_integer(&json, "spp_total", now->spp_total);
-    json_number(&json, "fraction", fraction);
-    json_number(&json, "elapsed", now->elapsed);
-    json_number(&json, "remaining", remaining);
-    json_integer(&json, "paths", (int64_t)now->paths);
-    json_integer(&json, "rays", (int64_t)now->rays);
-    report_json_end(&json);
+    Json *json = report_json_begin("progress");
+    json_integer(json, "spp", now->spp_done);
+    json_integer(json, "spp_total", now->spp_total);
+    json_number(json, "fraction", fraction);
+    json_number(json, "elapsed", now->elapsed);
+    json_number(json, "remaining", remaining);
+    json_integer(json, "paths", (int64_t)now->paths);
+    json_integer(json, "rays", (int64_t)now->rays);
+    report_json_end(json);
     return;
   }
   enum { PERCENT = 8 };
@@ -163,13 +163,13 @@ void progress_show_frames(FrameProgress *progress, uint32_t number, double part)
   progress->last_shown = now;
   const double remaining = done > 0 ? elapsed / done * (progress->count - done) : INFINITY;
   if (report_is_json()) {
-    Json json = report_json_begin("progress");
-    json_integer(&json, "frame", number);
-    json_integer(&json, "frames_done", progress->done);
-    json_integer(&json, "frames", progress->count);
-    json_number(&json, "elapsed", elapsed);
-    json_number(&json, "remaining", remaining);
-    report_json_end(&json);
+    Json *json = report_json_begin("progress");
+    json_integer(json, "frame", number);
+    json_integer(json, "frames_done", progress->done);
+    json_integer(json, "frames", progress->count);
+    json_number(json, "elapsed", elapsed);
+    json_number(json, "remaining", remaining);
+    report_json_end(json);
     return;
   }
   char text[200], time[32], left[32];

@@ -52,26 +52,26 @@ static bool on_progress(void *user, const vlProgress *now) {
 }
 
 static void report_json(const vlTracerChoice *choice) {
-  Json json = report_json_begin("tracer");
-  json_text(&json, "tracer", kind_name("tracers", (int)choice->tracer));
+  Json *json = report_json_begin("tracer");
+  json_text(json, "tracer", kind_name("tracers", (int)choice->tracer));
   if (choice->light_paths != VL_AS_MANY_AS_PIXELS)
-    json_integer(&json, "light_paths", choice->light_paths);
-  json_begin(&json, "trials", '[');
+    json_integer(json, "light_paths", choice->light_paths);
+  json_begin(json, "trials", '[');
   for (uint32_t i = 0; i < choice->count; i++) {
     const vlTracerTrial *trial = &choice->trials[i];
-    json_begin(&json, NULL, '{');
-    json_text(&json, "tracer", kind_name("tracers", (int)trial->tracer));
+    json_begin(json, NULL, '{');
+    json_text(json, "tracer", kind_name("tracers", (int)trial->tracer));
     if (trial->light_paths != VL_AS_MANY_AS_PIXELS)
-      json_integer(&json, "light_paths", trial->light_paths);
-    json_number(&json, "error", trial->error);
-    json_number(&json, "tail", trial->tail);
-    json_number(&json, "missing", trial->missing);
-    json_number(&json, "cost", trial->cost);
-    json_number(&json, "work", trial->work);
-    json_end(&json, '}');
+      json_integer(json, "light_paths", trial->light_paths);
+    json_number(json, "error", trial->error);
+    json_number(json, "tail", trial->tail);
+    json_number(json, "missing", trial->missing);
+    json_number(json, "cost", trial->cost);
+    json_number(json, "work", trial->work);
+    json_end(json, '}');
   }
-  json_end(&json, ']');
-  report_json_end(&json);
+  json_end(json, ']');
+  report_json_end(json);
 }
 
 static void report(const Job *job, const vlTracerChoice *choice) {

@@ -208,29 +208,29 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     snprintf(plain, sizeof plain, "--plain");
   if (report_is_json()) {
     char part[5000];
-    Json json = report_json_begin("result");
-    json_integer(&json, "status", status);
-    json_bool(&json, "finished", stage == OUTPUT_FINISHED);
-    json_integer(&json, "spp", spp);
-    json_number(&json, "mean_spp", stats->mean_spp);
-    json_integer(&json, "noisy_blocks", stats->noisy_blocks);
-    json_bool(&json, "denoised", first);
+    Json *json = report_json_begin("result");
+    json_integer(json, "status", status);
+    json_bool(json, "finished", stage == OUTPUT_FINISHED);
+    json_integer(json, "spp", spp);
+    json_number(json, "mean_spp", stats->mean_spp);
+    json_integer(json, "noisy_blocks", stats->noisy_blocks);
+    json_bool(json, "denoised", first);
     if (first)
-      json_text(&json, "plain", plain);
-    json_number(&json, "seconds", stats->seconds);
-    json_render_stats(&json, stats);
-    json_integer(&json, "memory_needed", (int64_t)render->memory.total);
-    json_integer(&json, "memory_peak", (int64_t)memory_peak());
-    json_begin(&json, "files", '[');
+      json_text(json, "plain", plain);
+    json_number(json, "seconds", stats->seconds);
+    json_render_stats(json, stats);
+    json_integer(json, "memory_needed", (int64_t)render->memory.total);
+    json_integer(json, "memory_peak", (int64_t)memory_peak());
+    json_begin(json, "files", '[');
     for (int i = 0; i < outputs->count && spp; i++)
-      json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
+      json_text(json, NULL, output_written(outputs, i, stage, part, sizeof part));
     if (render->denoised.written && denoised_is_copy(&render->denoised))
-      json_text(&json, NULL,
+      json_text(json, NULL,
                 output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
     if (render->film_plan.path && spp)
-      json_text(&json, NULL, render->film_plan.path);
-    json_end(&json, ']');
-    report_json_end(&json);
+      json_text(json, NULL, render->film_plan.path);
+    json_end(json, ']');
+    report_json_end(json);
     return;
   }
   if (render->videos)

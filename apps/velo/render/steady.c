@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "render/channels.h"
 
 /* Features: albedo, normal, disparity. */
 enum { TAPS = 4, NORMAL = 3, DISPARITY = 6, FEATURES = 7 };
@@ -63,18 +64,6 @@ static bool needed(const Steady *s, const SteadyFrame *frame) {
   return false;
 }
 
-static vlChannelsDef channels_def(const Job *job, uint32_t channels, vlStopFn *stop,
-                                  void *stop_user) {
-  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
-  def.channels = channels;
-  def.space = job->defs->film.space;
-  def.time = job_channels_time(job);
-  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
-  def.stop = stop;
-  def.stop_user = stop_user;
-  return def;
-}
-
 static vlResult copy_features(vlContext *context, const vlImage *from, vlImage **to) {
   const vlImageDef def =
       vl_default_image_def(vl_image_width(from), vl_image_height(from), FEATURES);
@@ -98,16 +87,15 @@ static vlResult copy_features(vlContext *context, const vlImage *from, vlImage *
 }
 
 vlResult steady_keep(Steady *s, vlContext *context, const vlWorld *world, const Job *job,
-                     const vlImage *image, vlImage *clean, vlStopFn *stop, void *stop_user,
-                     vlError *error) {
+                     const vlImage *image, vlImage *clean, int *signals, vlError *error) {
   SteadyFrame *to = NULL; /* one is free: a frame uses STEADY_BEFORE others */
   for (int i = 0; i <= STEADY_BEFORE; i++)
     if (!s->frames[i].used || !needed(s, &s->frames[i]))
       to = &s->frames[i];
   forget(to);
   *to = (SteadyFrame){.used = true, .number = s->number, .camera = job->camera, .clean = clean};
-  const vlChannelsDef def =
-      channels_def(job, VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE, stop, stop_user);
+  vlChannelsDef def = channels_def(job, NULL, signals);
+  def.channels = VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
   vlResult result = copy_features(context, image, &to->features);
   if (result == VL_OK)
     result = vl_render_channels(world, &job->camera, &def, NULL, &to->ids, error);
@@ -256,9 +244,10 @@ static vlCamera camera_at(const vlCamera *camera, double time) {
 
 /* Computes the flow to an earlier frame, with the points of this one. */
 static vlResult find_flow(const Steady *s, vlContext *context, const SteadyFrame *before,
-                          const vlWorld *world, const Job *job, vlStopFn *stop, void *stop_user,
-                          vlImage **floats, vlImage **ids, vlError *error) {
-  vlChannelsDef def = channels_def(job, VL_CHANNEL_BACKWARD | VL_CHANNEL_P, stop, stop_user);
+                          const vlWorld *world, const Job *job, int *signals, vlImage **floats,
+                          vlImage **ids, vlError *error) {
+  vlChannelsDef def = channels_def(job, NULL, signals);
+  def.channels = VL_CHANNEL_BACKWARD | VL_CHANNEL_P;
   def.backward = &before->camera;
   if (!s->between)
     return vl_render_channels(world, &job->camera, &def, floats, ids, error);
@@ -306,10 +295,9 @@ static void warp_frame(const SteadyFrame *now, const SteadyFrame *before, const 
 /* Adds an earlier frame to the pixels' sums of weighted colours and weights. */
 static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame *now,
                           const SteadyFrame *before, const vlWorld *world, const Job *job,
-                          vlStopFn *stop, void *stop_user, float *sums, vlError *error) {
+                          int *signals, float *sums, vlError *error) {
   vlImage *floats = NULL, *ids = NULL, *warped = NULL;
-  vlResult result =
-      find_flow(s, context, before, world, job, stop, stop_user, &floats, &ids, error);
+  vlResult result = find_flow(s, context, before, world, job, signals, &floats, &ids, error);
   if (result != VL_OK)
     return result;
   const uint32_t size[2] = {vl_image_width(floats), vl_image_height(floats)};
@@ -328,7 +316,7 @@ static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame
 /* ---- the result -------------------------------------------------------------------------- */
 
 vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world, const Job *job,
-                      vlStopFn *stop, void *stop_user, vlImage **result, vlError *error) {
+                      int *signals, vlImage **result, vlError *error) {
   const SteadyFrame *now = find_frame(s, s->number);
   const uint32_t width = vl_image_width(now->clean), height = vl_image_height(now->clean);
   const size_t stride = vl_image_channels(now->clean), pixels = (size_t)width * height;
@@ -342,7 +330,7 @@ vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world,
   if (code == VL_OK)
     code = vl_image_create(context, &def, result);
   for (uint32_t k = 0; k < s->count && code == VL_OK; k++)
-    code = add_frame(s, context, now, find_frame(s, s->before[k]), world, job, stop, stop_user,
+    code = add_frame(s, context, now, find_frame(s, s->before[k]), world, job, signals,
                      vl_image_pixels(sums), error);
   if (code == VL_OK)
     code = vl_image_add_attributes(*result, now->clean);

@@ -48,12 +48,11 @@ int steady_prepare(Steady *s, uint32_t number, SteadyRender *render, void *user)
 /* Keeps the frame s->number, and forgets one that is not used any more. image: of the samples,
  * with the denoiser's features. Takes ownership of `clean`, also after an error. */
 vlResult steady_keep(Steady *s, vlContext *context, const vlWorld *world, const Job *job,
-                     const vlImage *image, vlImage *clean, vlStopFn *stop, void *stop_user,
-                     vlError *error);
+                     const vlImage *image, vlImage *clean, int *signals, vlError *error);
 /* Makes the image of the frame s->number of itself and of those that it uses, which are kept.
  */
 vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world, const Job *job,
-                      vlStopFn *stop, void *stop_user, vlImage **result, vlError *error);
+                      int *signals, vlImage **result, vlError *error);
 void steady_free(Steady *s);
 
 #endif

@@ -165,13 +165,13 @@ static void report_made(const Videos *videos, const char *path, uint32_t width,
                         uint32_t height) {
   const uint32_t count = videos->shown.count;
   if (report_is_json()) {
-    Json json = report_json_begin("video");
-    json_text(&json, "file", path);
-    json_integer(&json, "frames", count);
-    json_number(&json, "fps", videos->fps);
-    json_integer(&json, "width", width);
-    json_integer(&json, "height", height);
-    report_json_end(&json);
+    Json *json = report_json_begin("video");
+    json_text(json, "file", path);
+    json_integer(json, "frames", count);
+    json_number(json, "fps", videos->fps);
+    json_integer(json, "width", width);
+    json_integer(json, "height", height);
+    report_json_end(json);
     return;
   }
   char time[32];

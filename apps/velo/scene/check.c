@@ -130,37 +130,35 @@ static void print_text(const List *list, const char *path, bool all) {
 }
 
 static void print_json(const List *list, const char *path, int status) {
-  Json json = {.out = stdout};
+  Json *json = json_open();
   size_t total[3] = {0};
   for (size_t i = 0; i < list->count; i++)
     total[list->items[i].severity]++;
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", path);
-  json_integer(&json, "status", status);
-  json_integer(&json, "errors", (int64_t)total[0]);
-  json_integer(&json, "warnings", (int64_t)total[1]);
-  json_integer(&json, "notes", (int64_t)total[2]);
-  json_begin(&json, "findings", '[');
+  json_text(json, "file", path);
+  json_integer(json, "status", status);
+  json_integer(json, "errors", (int64_t)total[0]);
+  json_integer(json, "warnings", (int64_t)total[1]);
+  json_integer(json, "notes", (int64_t)total[2]);
+  json_begin(json, "findings", '[');
   for (int severity = 0; severity < 3; severity++)
     for (size_t i = 0; i < list->count; i++) {
       const Entry *e = &list->items[i];
       if ((int)e->severity != severity)
         continue;
-      json_begin(&json, NULL, '{');
-      json_text(&json, "kind", vl_finding_kind_name(e->kind));
-      json_text(&json, "severity", severities[severity]);
+      json_begin(json, NULL, '{');
+      json_text(json, "kind", vl_finding_kind_name(e->kind));
+      json_text(json, "severity", severities[severity]);
       if (e->file[0])
-        json_text(&json, "file", e->file);
+        json_text(json, "file", e->file);
       if (e->line)
-        json_integer(&json, "line", e->line);
+        json_integer(json, "line", e->line);
       if (e->line && e->column)
-        json_integer(&json, "column", e->column);
-      json_text(&json, "message", e->message);
-      json_end(&json, '}');
+        json_integer(json, "column", e->column);
+      json_text(json, "message", e->message);
+      json_end(json, '}');
     }
-  json_end(&json, ']');
-  json_end(&json, '}');
-  putchar('\n');
+  json_end(json, ']');
+  json_close(json);
 }
 
 /* The exit code of `velo render` for this scene; 1 when it would render, but probably not as

@@ -79,8 +79,7 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
       report_note("%s lacks a camera or light: those that velo render would make are written",
                   from);
   }
-  if (result != VL_OK)
-    status = report_error(&error, result, from);
+  status = report_error(&error, result, from);
   if (status < 0)
     status = output_check(context, to, VL_OUTPUT_PLAIN);
   if (status < 0) {

@@ -306,10 +306,9 @@ static void json_unused(Json *json, const Facts *f) {
 }
 
 static void print_json(const Facts *f) {
-  Json json = {.out = stdout};
+  Json *json = json_open();
   const vlSceneDefs *defs = vl_scene_defs(f->scene);
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", f->path);
+  json_text(json, "file", f->path);
   const struct {
     const char *name;
     uint64_t n;
@@ -323,23 +322,22 @@ static void print_json(const Facts *f) {
                 {"media", f->info.media},
                 {"bytes", f->bytes}};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
-    json_integer(&json, counts[i].name, (int64_t)counts[i].n);
-  json_number(&json, "seconds", f->seconds);
-  json_begin(&json, "bounds", '[');
+    json_integer(json, counts[i].name, (int64_t)counts[i].n);
+  json_number(json, "seconds", f->seconds);
+  json_begin(json, "bounds", '[');
   if (f->low[0] <= f->high[0]) {
-    json_numbers(&json, NULL, f->low, 3);
-    json_numbers(&json, NULL, f->high, 3);
+    json_numbers(json, NULL, f->low, 3);
+    json_numbers(json, NULL, f->high, 3);
   }
-  json_end(&json, ']');
-  json_defs(&json, defs);
-  json_chosen(&json, defs);
-  json_kinds(&json, f);
-  info_json_choices(&json, f->scene);
-  info_json_names(&json, f->scene);
-  json_lights(&json, f);
-  json_unused(&json, f);
-  json_end(&json, '}');
-  putchar('\n');
+  json_end(json, ']');
+  json_defs(json, defs);
+  json_chosen(json, defs);
+  json_kinds(json, f);
+  info_json_choices(json, f->scene);
+  info_json_names(json, f->scene);
+  json_lights(json, f);
+  json_unused(json, f);
+  json_close(json);
 }
 
 static int run(const Arguments *arguments, vlContext *context) {

@@ -116,7 +116,7 @@ static int verify(Verify *v, const Arguments *arguments) {
     verify_second(v);
   if (result == VL_CANCELLED && signals_pending())
     return report_failure(128 + signals_pending(), "interrupted");
-  return result == VL_OK ? -1 : report_error(&error, result, v->path);
+  return report_error(&error, result, v->path);
 }
 
 static void close_all(Verify *v) {

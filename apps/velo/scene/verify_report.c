@@ -184,24 +184,22 @@ static void put_run(Json *json, const Verify *v, int index) {
 }
 
 void verify_print_json(const Verify *v) {
-  Json json = {.out = stdout};
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", v->path);
-  json_integer(&json, "width", v->width);
-  json_integer(&json, "height", v->height);
-  json_integer(&json, "replicates", VERIFY_REPLICATES);
-  json_integer(&json, "values", v->compared);
-  json_integer(&json, "differ", verify_count(v));
-  json_begin(&json, "runs", '[');
+  Json *json = json_open();
+  json_text(json, "file", v->path);
+  json_integer(json, "width", v->width);
+  json_integer(json, "height", v->height);
+  json_integer(json, "replicates", VERIFY_REPLICATES);
+  json_integer(json, "values", v->compared);
+  json_integer(json, "differ", verify_count(v));
+  json_begin(json, "runs", '[');
   for (int i = 0; i < v->run_count; i++)
     if (is_shown(&v->runs[i]))
-      put_run(&json, v, i);
-  json_end(&json, ']');
-  json_text(&json, "reference_not_compared", v->unreferenced); /* empty: it is */
-  json_begin(&json, "notes", '[');
+      put_run(json, v, i);
+  json_end(json, ']');
+  json_text(json, "reference_not_compared", v->unreferenced); /* empty: it is */
+  json_begin(json, "notes", '[');
   for (int i = 0; i < v->note_count; i++)
-    json_text(&json, NULL, v->notes[i]);
-  json_end(&json, ']');
-  json_end(&json, '}');
-  putchar('\n');
+    json_text(json, NULL, v->notes[i]);
+  json_end(json, ']');
+  json_close(json);
 }

@@ -308,7 +308,7 @@ static int make_frames(Expose *e) {
   e->means = malloc(sizeof *e->means * width * height);
   if (result == VL_OK && !e->means)
     result = VL_ERROR_MEMORY;
-  return result == VL_OK ? -1 : report_reason(result, e->path, "the frame cannot be made");
+  return report_reason(result, e->path, "the frame cannot be made");
 }
 
 static int run(const Arguments *arguments, vlContext *context) {

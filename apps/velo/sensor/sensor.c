@@ -22,7 +22,7 @@ int sensor_open(vlContext *context, const char *option, const char *name, vlSens
     return report_usage("%s: %s (a sensor file has the suffix .yaml)", option, error.message);
   if (result == VL_OK)
     result = vl_sensor_create(context, &def, sensor, &error);
-  return result == VL_OK ? -1 : report_error(&error, result, file ? name : NULL);
+  return report_error(&error, result, file ? name : NULL);
 }
 
 int exposure_options(const Arguments *arguments, const ExposureOption *options, size_t count,

@@ -57,7 +57,7 @@ int verify_folder_frame(Verify *v, int which) {
   }
   vl_image_destroy(image);
   fprintf(v->descriptor, "i %s\n", name);
-  return result == VL_OK ? -1 : report_error(&error, result, path);
+  return report_error(&error, result, path);
 }
 
 int verify_folder_close(Verify *v) {

@@ -2,6 +2,7 @@
  * member gets the field's number, or has a function that puts its value into the def, and says
  * which spellings the value replaces. */
 #include "view/camera_edit.h"
+#include "cli/vector.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
 
@@ -121,12 +122,17 @@ static const struct {
               {VL_PROJECTION_EUCM, 0, {0.6, 1.1}},
               {VL_PROJECTION_DOUBLE_SPHERE, 0, {-0.2, 0.6}}};
 
+/* From the eye to the point that it looks at. */
+static double arm_of(const CameraPose *pose) {
+  double arm[3];
+  vector_subtract(pose->lookat, pose->eye, arm);
+  return vector_length(arm);
+}
+
 static void start_projection(const ViewCamera *now, vlCameraDef *def) {
-  double field = 2.0 * atan(0.5 * now->made.height / now->made.fy), distance = 1.0;
+  const double field = 2.0 * atan(0.5 * now->made.height / now->made.fy);
   const CameraPose pose = camera_pose(now);
-  for (int i = 0; i < 3; i++)
-    distance += (pose.lookat[i] - pose.eye[i]) * (pose.lookat[i] - pose.eye[i]);
-  distance = sqrt(distance - 1.0);
+  const double distance = arm_of(&pose);
   drop_focal(def);
   def->screen_min_x = def->screen_max_x = def->screen_min_y = def->screen_max_y = VL_UNSET;
   def->cx = def->cy = def->skew = def->shape[0] = def->shape[1] = def->max_angle = VL_UNSET;
@@ -485,12 +491,9 @@ vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCame
   if (status == VL_OK && edit.pose.given)
     camera_place(now, &edit.pose.pose, &next.def);
   note_units(&next.def, &next.units);
-  const CameraPose *pose = &edit.pose.pose;
-  double arm = 0;
-  for (int i = 0; i < 3; i++)
-    arm += (pose->lookat[i] - pose->eye[i]) * (pose->lookat[i] - pose->eye[i]);
+  const double arm = arm_of(&edit.pose.pose);
   if (arm > 0)
-    next.units.lookat = sqrt(arm);
+    next.units.lookat = arm;
   tidy_sensor(&next.units, &next.def);
   if (status == VL_OK)
     status = vl_camera_make(&next.def, &next.made, warning, error);

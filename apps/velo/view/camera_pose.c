@@ -32,17 +32,16 @@ CameraPose camera_pose(const ViewCamera *camera) {
   rotation_of(def->world_from_camera, r);
   for (int i = 0; i < 3; i++) {
     pose.eye[i] = def->world_from_camera[4 * i + 3];
-    pose.lookat[i] = pose.eye[i] + camera->units.lookat * r[2][i];
     pose.up[i] = -r[1][i];
   }
+  vector_along(pose.eye, camera->units.lookat, r[2], pose.lookat);
   return pose;
 }
 
 /* Camera axes that look from eye to lookat; columns x right, y down, z forward. False: there
  * are none. */
 static bool look(const CameraPose *pose, double r[3][3]) {
-  for (int i = 0; i < 3; i++)
-    r[2][i] = pose->lookat[i] - pose->eye[i];
+  vector_subtract(pose->lookat, pose->eye, r[2]);
   if (!vector_normalize(r[2]))
     return false;
   const double down[3] = {-pose->up[0], -pose->up[1], -pose->up[2]};

@@ -1,7 +1,7 @@
 /* view/camera_spellings.c: all equivalent spellings of a camera, as JSON for the page. */
 #include <math.h>
 
-#include "cli/vector.h"
+#include "camera/camera.h"
 #include "velo/projection.h"
 #include "view/camera_edit.h"
 
@@ -17,12 +17,8 @@ static void put_pose(Json *json, const ViewCamera *camera) {
   json_numbers(json, "camera_from_world", camera->made.camera_from_world, 16);
 }
 
-/* The angle between the rays of two points of the film, degrees; NaN: one has none. */
 static double angle(const vlCamera *c, double x0, double y0, double x1, double y1) {
-  double o[3], a[3], b[3];
-  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b))
-    return NAN;
-  return degrees * vector_angle(a, b);
+  return degrees * camera_angle(c, x0, y0, x1, y1);
 }
 
 static void put_focal(Json *json, const ViewCamera *camera) {

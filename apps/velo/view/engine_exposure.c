@@ -111,22 +111,22 @@ static void put_exposure(Json *json, const Engine *e, const Behind *behind, doub
 }
 
 void engine_tell_exposure(Engine *e, double seconds) {
-  JsonText text;
   Behind *behind = calloc(VL_SENSOR_FILTERS, sizeof *behind);
-  if (!behind || !json_text_begin(&text, "exposed")) {
+  Json *json = behind ? json_text_begin("exposed") : NULL;
+  if (!json) {
     free(behind);
     return;
   }
   count(&e->shot, behind);
-  put_exposure(&text.json, e, behind, seconds);
+  put_exposure(json, e, behind, seconds);
   free(behind);
-  char *whole = json_text_end(&text);
+  char *whole = json_text_end(json);
   if (!whole)
     return;
   server_post(e->server, 0, whole);
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   char *before = e->last_exposure;
   e->last_exposure = whole;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   free(before);
 }

@@ -104,9 +104,7 @@ static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt,
   const Channels channels = {.bits = VL_CHANNEL_ERROR};
   if (result == VL_OK)
     result = channels_describe_mode(&channels, *attributes);
-  return result == VL_OK
-             ? -1
-             : report_reason(result, e->def.film_path, "the film's receipt cannot be made");
+  return report_reason(result, e->def.film_path, "the film's receipt cannot be made");
 }
 
 int engine_write_film(Engine *e) {

@@ -46,38 +46,38 @@ void engine_greet(void *user, uint32_t client) {
   if (lists)
     server_post(e->server, client, lists);
   free(lists);
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   engine_post_state(e, client);
   if (e->last_status)
     server_post(e->server, client, e->last_status);
   if (e->last_exposure)
     server_post(e->server, client, e->last_exposure);
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
 }
 
 void engine_clients(void *user, uint32_t count) {
   Engine *e = user;
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   e->clients = count;
   if (!count) {
     engine_interrupt(e);
     engine_drop_traces(e, 0, "the page is closed");
   }
   pthread_cond_broadcast(&e->wake);
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
 }
 
 /* ---- the camera -------------------------------------------------------------------------- */
 
 static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const char *why) {
-  JsonText text;
-  if (!json_text_begin(&text, "refused"))
+  Json *json = json_text_begin("refused");
+  if (!json)
     return;
-  json_integer(&text.json, "change", m->change);
-  json_integer(&text.json, "id", m->id);
-  json_text(&text.json, "field", m->field_count ? m->fields[0].name : "");
-  json_text(&text.json, "message", why);
-  json_text_post(&text, e->server, client);
+  json_integer(json, "change", m->change);
+  json_integer(json, "id", m->id);
+  json_text(json, "field", m->field_count ? m->fields[0].name : "");
+  json_text(json, "message", why);
+  json_text_post(json, e->server, client);
 }
 
 static void show_camera(Engine *e, const ViewCamera *camera) {
@@ -120,11 +120,11 @@ static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
   }
   take_camera(e, m, &next);
   if (warning) {
-    JsonText text;
-    if (!json_text_begin(&text, "warning"))
+    Json *json = json_text_begin("warning");
+    if (!json)
       return;
-    json_text(&text.json, "message", warning);
-    json_text_post(&text, e->server, client);
+    json_text(json, "message", warning);
+    json_text_post(json, e->server, client);
   }
 }
 
@@ -310,7 +310,7 @@ static bool is_harmless(MessageKind kind) {
 
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *m) {
   Engine *e = user;
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   if (!steers && !is_harmless(m->kind)) {
     post_refusal(e, client, m, "another page steers");
   } else {
@@ -362,5 +362,5 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
     }
   }
   pthread_cond_broadcast(&e->wake);
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
 }

@@ -66,28 +66,27 @@ static double plane_distance(const ViewCamera *camera, const MessageField *given
 }
 
 void engine_outline(Engine *e, const Task *task) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   const ViewCamera camera = e->wanted.camera;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   const MessageField *point = find_field(&task->message, "point", 3);
   vlDrawingDef def = vl_default_drawing_def();
   vlDrawing *drawing = NULL;
   vlError error = {0};
-  JsonText text;
   def.plane = plane_distance(&camera, find_field(&task->message, "plane", 1));
   def.reach = fmax(1.3 * camera.units.lookat, 1.05 * def.plane);
   def.points = point ? point->numbers : NULL;
   def.point_count = point ? 1 : 0;
   vlResult result = vl_camera_outline(e->def.context, &camera.made, 1, &def, &drawing, &error);
-  if (json_text_begin(&text, result == VL_OK ? "outline" : "refused")) {
-    json_integer(&text.json, "id", task->message.id);
+  Json *json = engine_reply_begin(task, result == VL_OK ? "outline" : "refused");
+  if (json) {
     if (result == VL_OK) {
-      json_number(&text.json, "plane", def.plane);
-      put_drawing(&text.json, drawing);
+      json_number(json, "plane", def.plane);
+      put_drawing(json, drawing);
     } else {
-      json_text(&text.json, "message", error.message);
+      json_text(json, "message", error.message);
     }
-    json_text_post(&text, e->server, task->client);
+    json_text_post(json, e->server, task->client);
   }
   vl_drawing_destroy(drawing);
 }
@@ -98,27 +97,26 @@ void engine_cameras(Engine *e, const Task *task) {
   vlDrawing *drawing = NULL;
   vlError error = {0};
   vlResult result = VL_OK;
-  JsonText text;
   double plane = poses_plane(model->cameras, model->camera_count);
   def.plane = plane > 0 ? plane : 0.1 * model->lookat;
   def.parts &= ~(1u << VL_DRAWING_GRID);
   if (model->camera_count)
     result = vl_camera_outline(e->def.context, model->cameras, model->camera_count, &def,
                                &drawing, &error);
-  if (json_text_begin(&text, result == VL_OK ? "cameras" : "refused")) {
-    json_integer(&text.json, "id", task->message.id);
+  Json *json = engine_reply_begin(task, result == VL_OK ? "cameras" : "refused");
+  if (json) {
     if (result != VL_OK)
-      json_text(&text.json, "message", error.message);
+      json_text(json, "message", error.message);
     if (drawing)
-      put_drawing(&text.json, drawing);
-    json_begin(&text.json, "poses", '[');
+      put_drawing(json, drawing);
+    json_begin(json, "poses", '[');
     for (uint32_t i = 0; i < model->camera_count; i++) {
-      json_begin(&text.json, NULL, '[');
-      put_numbers(&text.json, model->cameras[i].world_from_camera, 16);
-      json_end(&text.json, ']');
+      json_begin(json, NULL, '[');
+      put_numbers(json, model->cameras[i].world_from_camera, 16);
+      json_end(json, ']');
     }
-    json_end(&text.json, ']');
-    json_text_post(&text, e->server, task->client);
+    json_end(json, ']');
+    json_text_post(json, e->server, task->client);
   }
   vl_drawing_destroy(drawing);
 }
@@ -189,7 +187,6 @@ void engine_outside(Engine *e, const Task *task) {
   void *data = NULL;
   size_t size = 0;
   vlError error = {0};
-  JsonText text;
   vlWriteDef write = vl_default_write_def();
   write.quality = 85;
   vlResult result = make_camera(&task->message, &camera, &error);
@@ -201,10 +198,11 @@ void engine_outside(Engine *e, const Task *task) {
   if (result == VL_OK)
     result = vl_image_write_memory(shown, ".jpg", &write, &data, &size, &error);
   char *bytes = result == VL_OK ? to_base64(data, size) : NULL;
-  if (result != VL_CANCELLED && json_text_begin(&text, bytes ? "outside" : "refused")) {
-    json_integer(&text.json, "id", task->message.id);
-    json_text(&text.json, bytes ? "data" : "message", bytes ? bytes : error.message);
-    json_text_post(&text, e->server, task->client);
+  Json *json =
+      result != VL_CANCELLED ? engine_reply_begin(task, bytes ? "outside" : "refused") : NULL;
+  if (json) {
+    json_text(json, bytes ? "data" : "message", bytes ? bytes : error.message);
+    json_text_post(json, e->server, task->client);
   }
   free(bytes);
   vl_release(e->def.context, data);

@@ -60,20 +60,19 @@ static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
 }
 
 void engine_overlay(Engine *e, const Task *task) {
-  JsonText text;
-  if (!json_text_begin(&text, "overlay"))
+  Json *json = engine_reply_begin(task, "overlay");
+  if (!json)
     return;
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   const ViewCamera camera = e->wanted.camera;
   uint32_t change = e->wanted.change;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   const CameraPose pose = camera_pose(&camera);
-  json_integer(&text.json, "id", task->message.id);
-  json_integer(&text.json, "change", change);
-  put_vanishing(&text.json, &camera.made, pose.up);
+  json_integer(json, "change", change);
+  put_vanishing(json, &camera.made, pose.up);
   if (task->message.curves || task->message.field)
-    engine_put_curves(&text.json, &camera, &e->model.info, task->message.field);
+    engine_put_curves(json, &camera, &e->model.info, task->message.field);
   if (task->message.boxes)
-    put_boxes(&text.json, e, &camera.made);
-  json_text_post(&text, e->server, task->client);
+    put_boxes(json, e, &camera.made);
+  json_text_post(json, e->server, task->client);
 }

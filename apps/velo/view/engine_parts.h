@@ -337,6 +337,11 @@ void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
 /* Traces the paths of the first pixel. False: there is none. */
 bool engine_trace_next(Engine *engine);
 /* Posts an answer of this type, with the message's id and one text. */
+/* Takes and gives back the engine's lock. */
+void engine_lock(Engine *engine);
+void engine_unlock(Engine *engine);
+/* Begins the answer to a task, as json_text_begin. */
+Json *engine_reply_begin(const Task *task, const char *type);
 void engine_post_text(Engine *engine, const Task *task, const char *type, const char *key,
                       const char *value);
 /* Posts why a message is not answered. */

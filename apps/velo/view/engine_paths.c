@@ -39,12 +39,11 @@ static void post_paths(Engine *e, const Task *task, const TracedPaths *traced) {
                               .world = e->model.world,
                               .traced = traced,
                               .shown = count < most ? count : most};
-  JsonText text;
-  if (!json_text_begin(&text, "paths"))
+  Json *json = engine_reply_begin(task, "paths");
+  if (!json)
     return;
-  json_integer(&text.json, "id", task->message.id);
-  paths_put_json(&text.json, &report);
-  json_text_post(&text, e->server, task->client);
+  paths_put_json(json, &report);
+  json_text_post(json, e->server, task->client);
 }
 
 /* Traces the pixel's paths: the samples of the image. */
@@ -88,7 +87,7 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
 bool engine_trace_next(Engine *e) {
   static Task task; /* the thread that traces alone uses them */
   static ViewCamera camera;
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   bool any = !e->quit && e->trace_count > 0;
   if (any) {
     task = e->traces[0];
@@ -97,14 +96,14 @@ bool engine_trace_next(Engine *e) {
     e->trace_client = task.client;
     vl_cancel_clear(e->trace_stop);
   }
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   if (!any)
     return false;
   pthread_rwlock_rdlock(&e->model_lock);
   answer(e, &task, &camera);
   pthread_rwlock_unlock(&e->model_lock);
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   e->trace_client = 0;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return true;
 }

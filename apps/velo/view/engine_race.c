@@ -19,9 +19,9 @@ void engine_set_tracer(vlRenderDef *render, ViewTracer tracer) {
 }
 
 ViewTracer engine_shown(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   ViewTracer shown = e->shown;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return shown;
 }
 
@@ -99,9 +99,9 @@ static bool is_same(ViewTracer a, ViewTracer b) {
 static void show(Engine *e, vlFilm *film) {
   vl_film_destroy(e->film);
   e->film = film;
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   e->shown = e->best;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   e->noise = NAN;
   e->looked = 0;
 }
@@ -133,11 +133,11 @@ bool engine_succeed(Engine *e) {
 /* ---- the race ---------------------------------------------------------------------------- */
 
 static void post_note(Engine *e, const char *line) {
-  JsonText text;
-  if (!json_text_begin(&text, "note"))
+  Json *json = json_text_begin("note");
+  if (!json)
     return;
-  json_text(&text.json, "message", line);
-  json_text_post(&text, e->server, 0);
+  json_text(json, "message", line);
+  json_text_post(json, e->server, 0);
 }
 
 /* In the log; a page shows the tracer beside the samples, and the line if the image changes. */

@@ -10,23 +10,23 @@
 
 void engine_report(void *user, const char *kind, const vlError *what) {
   Engine *e = user;
-  JsonText text;
   if (kind && strcmp(kind, "warning") != 0)
     return;
-  if (!json_text_begin(&text, kind ? "warning" : "error"))
+  Json *json = json_text_begin(kind ? "warning" : "error");
+  if (!json)
     return;
   if (what->file[0])
-    json_text(&text.json, "file", what->file);
+    json_text(json, "file", what->file);
   if (what->line)
-    json_integer(&text.json, "line", what->line);
+    json_integer(json, "line", what->line);
   if (what->column)
-    json_integer(&text.json, "column", what->column);
-  json_text(&text.json, "message", what->message);
-  json_text_post(&text, e->server, 0);
+    json_integer(json, "column", what->column);
+  json_text(json, "message", what->message);
+  json_text_post(json, e->server, 0);
 }
 
 void engine_offer(Engine *e, Model *model, const char *path, uint32_t change) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   Model *unused = e->next;
   e->next = model;
   if (path)
@@ -36,7 +36,7 @@ void engine_offer(Engine *e, Model *model, const char *path, uint32_t change) {
   if (!path)
     engine_drop_traces(e, 0, "the scene changed");
   pthread_cond_broadcast(&e->wake);
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   if (unused)
     model_free(unused);
   free(unused);
@@ -45,11 +45,11 @@ void engine_offer(Engine *e, Model *model, const char *path, uint32_t change) {
 /* ---- the lecture's scenes ---------------------------------------------------------------- */
 
 bool engine_load_choice(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   const char *path = e->quit ? NULL : e->chosen;
   uint32_t change = e->chosen_change;
   e->chosen = NULL;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   if (!path)
     return false;
   Model *model = calloc(1, sizeof *model);
@@ -110,13 +110,13 @@ static void follow_cameras(Engine *e, const ViewCamera *before, const ViewCamera
 
 bool engine_swap_model(Engine *e) {
   static History history; /* the render thread alone uses it */
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   Model *next = e->next;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   if (!next)
     return false;
   pthread_rwlock_wrlock(&e->model_lock);
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   next = e->next; /* another load may have replaced it */
   e->next = NULL;
   Model old = e->model;
@@ -144,7 +144,7 @@ bool engine_swap_model(Engine *e) {
   if ((spp != old_spp || timed) && !other)
     e->wanted.spp = spp;
   engine_post_state(e, 0);
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   pthread_rwlock_unlock(&e->model_lock);
   vl_film_destroy(e->film);
   e->film = NULL;

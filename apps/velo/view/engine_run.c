@@ -39,6 +39,14 @@ double engine_program_seconds(void) {
   return read_clock(CLOCK_PROCESS_CPUTIME_ID);
 }
 
+void engine_lock(Engine *engine) {
+  pthread_mutex_lock(&engine->lock);
+}
+
+void engine_unlock(Engine *engine) {
+  pthread_mutex_unlock(&engine->lock);
+}
+
 static bool must_stop(const Engine *e) {
   return e->quit || e->next || e->task_count || e->wanted.generation != e->now.generation;
 }
@@ -60,9 +68,9 @@ void engine_interrupt(Engine *engine) {
 
 /* Whether the render thread must stop what it does. Takes the lock. */
 static bool is_interrupted(Engine *engine) {
-  pthread_mutex_lock(&engine->lock);
+  engine_lock(engine);
   bool stop = must_stop(engine) || engine->wanted.paused || !engine->clients;
-  pthread_mutex_unlock(&engine->lock);
+  engine_unlock(engine);
   return stop;
 }
 
@@ -83,9 +91,9 @@ vlFilm *engine_make_film(Engine *e) {
 
 static void begin_film(Engine *e) {
   e->film = engine_make_film(e);
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   e->shown = e->best;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
 }
 
 /* The number of samples of the next pass of a film that shall have `most`. */
@@ -154,9 +162,9 @@ static void tell_if_due(Engine *e, bool always) {
 
 /* After the work: a change does not wait for an estimate of the error. */
 static void tell_end(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   bool changed = must_stop(e) || shows_other(e);
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   tell_if_due(e, !changed);
 }
 
@@ -236,7 +244,7 @@ static bool render_film(Engine *e) {
 
 /* Takes over what is wanted. Returns whether the image begins anew. */
 static bool take_wanted(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   bool anew = e->wanted.generation != e->now.generation;
   bool channel = e->wanted.channel != e->now.channel,
        denoise = e->wanted.denoise != e->now.denoise,
@@ -246,7 +254,7 @@ static bool take_wanted(Engine *e) {
     vl_cancel_clear(e->stop);
   e->interrupted = 0;
   e->first_runs = anew || channel;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   if (denoise)
     e->preview.spp = 0;
   if (!anew)
@@ -277,27 +285,27 @@ static bool has_work(const Engine *e) {
 
 /* Waits until there is something to do. False: the end. */
 static bool wait_for_work(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   if (e->interrupted > 0)
     e->stop_seconds = fmax(e->stop_seconds, engine_clock() - e->interrupted);
   e->interrupted = 0;
   while (!has_work(e))
     pthread_cond_wait(&e->wake, &e->lock);
   bool quit = e->quit;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return !quit;
 }
 
 static void answer_tasks(Engine *e) {
   static Task task; /* the render thread alone uses it */
   for (;;) {
-    pthread_mutex_lock(&e->lock);
+    engine_lock(e);
     bool any = e->task_count > 0 && !e->quit;
     if (any) {
       task = e->tasks[0];
       memmove(e->tasks, e->tasks + 1, --e->task_count * sizeof *e->tasks);
     }
-    pthread_mutex_unlock(&e->lock);
+    engine_unlock(e);
     if (!any)
       return;
     engine_answer(e, &task);
@@ -307,10 +315,10 @@ static void answer_tasks(Engine *e) {
 /* After the first image: from now on, changes stop what is rendered. Returns whether there was
  * one meanwhile. */
 static bool end_first(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   e->first_runs = false;
   bool changed = must_stop(e);
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return changed;
 }
 

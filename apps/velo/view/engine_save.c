@@ -62,7 +62,7 @@ static void save_camera(Engine *e, const Task *task, const char *wanted, const c
   vlError error = {0};
   vlCameraFileDef def = vl_default_camera_file_def();
   vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
-  int found = choice_value(dialect_choices, dialect, -1);
+  int found = choice_value(kind_choices(dialects), dialect, -1);
   if (found < 0 || found == VL_CAMERA_DIALECT_EXR)
     return engine_refuse(e, task, "there is no such dialect");
   if (!free_name(wanted, name))
@@ -179,6 +179,18 @@ static void put_word(FILE *out, const char *format, ...) {
   fputc(0, out);
 }
 
+/* Writes an option and its value. */
+static void put_option(FILE *out, const char *option, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void put_option(FILE *out, const char *option, const char *format, ...) {
+  va_list list;
+  put_word(out, "%s", option);
+  va_start(list, format);
+  vfprintf(out, format, list);
+  va_end(list);
+  fputc(0, out);
+}
+
 /* Options that the camera file and the following words of the command replace, or that do not
  * matter. */
 static bool option_is_replaced(int id) {
@@ -267,41 +279,31 @@ static void put_render(FILE *out, const Engine *e, const char *camera, uint32_t 
   put_word(out, "velo");
   put_word(out, "render");
   put_word(out, "%s", e->def.path);
-  put_word(out, "--camera");
-  put_word(out, "%s", camera);
+  put_option(out, "--camera", "%s", camera);
   if (e->now.camera.def.width != made->width || e->now.camera.def.height != made->height) {
-    put_word(out, "--resolution");
-    put_word(out, "%ux%u", made->width, made->height);
+    put_option(out, "--resolution", "%ux%u", made->width, made->height);
   }
   if (c[0] || c[1] || c[2] < made->width || c[3] < made->height) {
-    put_word(out, "--crop");
-    put_word(out, "%u,%u,%u,%u", c[0], c[1], c[2], c[3]);
+    put_option(out, "--crop", "%u,%u,%u,%u", c[0], c[1], c[2], c[3]);
   }
   put_options(out, e);
   put_time(out, &e->model.opening.load);
   /* the tracer of the image, so that there is no race */
-  put_word(out, "--tracer");
-  put_word(out, "%s", kind_name("tracers", (int)e->shown.tracer));
+  put_option(out, "--tracer", "%s", kind_name("tracers", (int)e->shown.tracer));
   if (e->shown.light_paths != VL_AS_MANY_AS_PIXELS) {
-    put_word(out, "--light-paths");
-    put_word(out, "%u", e->shown.light_paths);
+    put_option(out, "--light-paths", "%u", e->shown.light_paths);
   }
-  put_word(out, "--spp");
-  put_word(out, "%u", spp);
-  put_word(out, "--sequence");
-  put_word(out, "%u", render->sequence ? render->sequence : 65536);
+  put_option(out, "--spp", "%u", spp);
+  put_option(out, "--sequence", "%u", render->sequence ? render->sequence : 65536);
 }
 
 static void put_command(FILE *out, const Engine *e, const Copied *copied, const char *camera) {
   char number[40];
   put_render(out, e, camera, copied->spp);
   format_number(number, sizeof number, copied->exposure);
-  put_word(out, "--view");
-  put_word(out, "%s", choice_name(view_choices, (int)copied->view));
-  put_word(out, "--exposure");
-  put_word(out, "%s", number);
-  put_word(out, "--no-receipt");
-  put_word(out, "-o");
+  put_option(out, "--view", "%s", choice_name(view_choices, (int)copied->view));
+  put_option(out, "--exposure", "%s", number);
+  put_option(out, "--no-receipt", "-o");
   put_word(out, "%s", copied->file);
 }
 
@@ -367,11 +369,26 @@ static char *command_text(const Copied *copied) {
 
 /* The command is the one to verify from now on. */
 static void keep_command(Engine *e, Copied *copied) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   Copied *before = e->copied;
   e->copied = copied;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   copied_free(before);
+}
+
+/* Posts a command, the camera's file, the image and its samples; frees the command. Null:
+ * memory is exhausted. */
+static void post_command(Engine *e, const Task *task, char *command, const char *camera,
+                         const char *image, uint32_t spp) {
+  Json *json = command ? engine_reply_begin(task, "command") : NULL;
+  if (json) {
+    json_text(json, "command", command);
+    json_text(json, "file", camera);
+    json_text(json, "image", image);
+    json_integer(json, "spp", spp);
+    json_text_post(json, e->server, task->client);
+  }
+  free(command);
 }
 
 /* ---- the commands of an exposure --------------------------------------------------------- */
@@ -379,23 +396,18 @@ static void keep_command(Engine *e, Copied *copied) {
 static void put_number(FILE *out, const char *option, double value) {
   char number[40];
   format_number(number, sizeof number, value);
-  put_word(out, "%s", option);
-  put_word(out, "%s", number);
+  put_option(out, option, "%s", number);
 }
 
 /* The film of the mode "camera". */
 static void put_light(FILE *out, const Engine *e, const char *camera, const char *image) {
   put_render(out, e, camera, e->shot.spp);
   if (e->model.job.defs->film.buckets != e->shot.buckets) {
-    put_word(out, "--spectrum");
-    put_word(out, "%u", e->shot.buckets);
+    put_option(out, "--spectrum", "%u", e->shot.buckets);
   }
-  put_word(out, "--filter");
-  put_word(out, "box");
-  put_word(out, "--channels");
-  put_word(out, "error");
-  put_word(out, "--no-receipt");
-  put_word(out, "-o");
+  put_option(out, "--filter", "box");
+  put_option(out, "--channels", "error");
+  put_option(out, "--no-receipt", "-o");
   put_word(out, "%s", image);
 }
 
@@ -406,8 +418,8 @@ static void put_sensor(FILE *out, const Engine *e, const char *image, const char
   put_word(out, "sensor");
   put_word(out, "expose");
   put_word(out, "%s", image);
-  put_word(out, "--sensor");
-  put_word(out, "%s", own ? e->def.arguments->values[VIEW_EXPOSE].text : e->shot.preset);
+  put_option(out, "--sensor", "%s",
+             own ? e->def.arguments->values[VIEW_EXPOSE].text : e->shot.preset);
   put_number(out, "--exposure-time", exposure->time);
   put_number(out, "--f-number", exposure->f_number);
   put_number(out, "--iso", exposure->iso);
@@ -416,11 +428,9 @@ static void put_sensor(FILE *out, const Engine *e, const char *image, const char
   put_number(out, "--seed", exposure->seed);
   put_number(out, "--frame", exposure->frame);
   if (e->now.sensor.white == VIEW_WHITE_A) {
-    put_word(out, "--white");
-    put_word(out, "stdillum-A");
+    put_option(out, "--white", "stdillum-A");
   }
-  put_word(out, "-o");
-  put_word(out, "%s", raw);
+  put_option(out, "-o", "%s", raw);
 }
 
 /* Both commands as a shell reads them; null: memory is exhausted. The caller frees it. */
@@ -453,7 +463,6 @@ static char *exposure_text(const Engine *e, const char *camera, const char *imag
 static void exposure_command(Engine *e, const Task *task) {
   char stem[NAME_SIZE - 60], whole[NAME_SIZE], camera[NAME_SIZE], image[NAME_SIZE],
       raw[NAME_SIZE];
-  JsonText text;
   if (!e->shot.raw || e->shot.scale != 1)
     return engine_refuse(e, task, "the image has no samples yet");
   if (e->now.sensor.white == VIEW_WHITE_AUTO)
@@ -466,17 +475,8 @@ static void exposure_command(Engine *e, const Task *task) {
   strcpy(image + strlen(image) - 4, ".exr");
   if (!write_camera(e, task, camera))
     return;
-  char *command = exposure_text(e, camera, image, raw);
   keep_command(e, NULL); /* what is verified is one command */
-  if (command && json_text_begin(&text, "command")) {
-    json_integer(&text.json, "id", task->message.id);
-    json_text(&text.json, "command", command);
-    json_text(&text.json, "file", camera);
-    json_text(&text.json, "image", raw);
-    json_integer(&text.json, "spp", e->shot.spp);
-    json_text_post(&text, e->server, task->client);
-  }
-  free(command);
+  post_command(e, task, exposure_text(e, camera, image, raw), camera, raw, e->shot.spp);
 }
 
 void engine_command(Engine *e, const Task *task) {
@@ -486,19 +486,8 @@ void engine_command(Engine *e, const Task *task) {
   if (e->now.channel == CHANNEL_CAMERA)
     return exposure_command(e, task);
   Copied *copied = make_command(e, task, camera);
-  char *command = copied ? command_text(copied) : NULL;
-  JsonText text;
-  const bool begun = command && json_text_begin(&text, "command");
-  if (begun) {
-    json_integer(&text.json, "id", task->message.id);
-    json_text(&text.json, "command", command);
-    json_text(&text.json, "file", camera);
-    json_text(&text.json, "image", copied->file);
-    json_integer(&text.json, "spp", copied->spp);
-  }
-  if (copied)
-    keep_command(e, copied);
-  if (begun)
-    json_text_post(&text, e->server, task->client);
-  free(command);
+  if (!copied)
+    return;
+  keep_command(e, copied);
+  post_command(e, task, command_text(copied), camera, copied->file, copied->spp);
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "render/denoised.h"
 #include "sensor/sensor.h"
 #include "velo/filter_kinds.h"
 #include "velo/setting.h"
@@ -111,33 +112,12 @@ static vlResult take_sensor(Engine *e, vlError *error) {
   return result == VL_OK ? vl_sensor_create(e->def.context, &def, &s->sensor, error) : result;
 }
 
-/* The channels of some images of the same size in one image, with the first one's attributes.
- */
-static vlResult join(vlContext *context, vlImage *const *parts, uint32_t count,
-                     vlImage **joined) {
-  const char *names[MAX_CHANNELS];
-  uint32_t channels = 0;
-  for (uint32_t i = 0; i < count; i++)
-    for (uint32_t c = 0; c < vl_image_channels(parts[i]) && channels < MAX_CHANNELS; c++)
-      names[channels++] = vl_image_channel_name(parts[i], c);
-  const uint32_t width = vl_image_width(parts[0]), height = vl_image_height(parts[0]);
-  vlImageDef def = vl_default_image_def(width, height, channels);
-  def.names = names;
-  def.type = VL_PIXEL_F32;
-  vlResult result = vl_image_create(context, &def, joined);
-  if (result == VL_OK)
-    result = vl_image_add_attributes(*joined, parts[0]); /* which part of the whole it is */
-  if (result != VL_OK)
-    return result;
-  float *to = vl_image_pixels(*joined);
-  for (size_t pixel = 0; pixel < (size_t)width * height; pixel++)
-    for (uint32_t i = 0; i < count; i++) {
-      const uint32_t n = vl_image_channels(parts[i]);
-      const float *from = vl_image_const_pixels(parts[i]);
-      memcpy(to, from + pixel * n, n * sizeof *to);
-      to += n;
-    }
-  return VL_OK;
+/* The channels of two images of the same size in one image, with the first one's attributes:
+ * they say which part of the whole it is. */
+static vlResult join(Engine *e, vlImage *const parts[2], vlImage **joined) {
+  const vlImage *const both[2] = {parts[0], parts[1]};
+  vlResult result = denoised_join(e->def.context, both, 2, joined);
+  return result == VL_OK ? vl_image_add_attributes(*joined, parts[0]) : result;
 }
 
 /* The film's colours and their standard errors, by which the render's own noise is compared
@@ -156,7 +136,7 @@ static vlResult take_errors(Engine *e, const vlFilm *film) {
   if (result == VL_OK)
     result = vl_film_errors(film, develop, &parts[1]);
   if (result == VL_OK)
-    result = join(e->def.context, parts, 2, &s->errors);
+    result = join(e, parts, &s->errors);
   s->error_spp = spp;
   vl_image_destroy(parts[0]);
   vl_image_destroy(parts[1]);
@@ -176,7 +156,7 @@ static vlResult read_light(Engine *e, const vlFilm *film, uint32_t scale) {
     result = take_errors(e, film);
   vlImage *parts[2] = {spectrum, s->errors};
   if (result == VL_OK)
-    result = join(e->def.context, parts, 2, &s->light);
+    result = join(e, parts, &s->light);
   vl_image_destroy(spectrum);
   return result;
 }

@@ -8,7 +8,7 @@
 #include "render/job.h"
 #include "view/engine_parts.h"
 
-void json_text_post(JsonText *json, Server *server, uint32_t client) {
+void json_text_post(Json *json, Server *server, uint32_t client) {
   char *text = json_text_end(json);
   if (text)
     server_post(server, client, text);
@@ -62,55 +62,54 @@ void status_tell(Engine *e, bool estimate) {
     e->noise_spp = spp;
     e->looked = engine_clock();
   }
-  JsonText json;
-  if (!json_text_begin(&json, "status"))
+  Json *json = json_text_begin("status");
+  if (!json)
     return;
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   bool paused = e->wanted.paused;
   double stop = e->stop_seconds;
   e->stop_seconds = 0;
-  pthread_mutex_unlock(&e->lock);
-  json_integer(&json.json, "change", e->now.change);
-  json_integer(&json.json, "spp", spp);
-  json_integer(&json.json, "target", e->now.spp);
-  json_number(&json.json, "paths_per_second",
-              e->rendered > 0 ? (double)e->paths / e->rendered : NAN);
-  json_number(&json.json, "seconds", e->rendered);
-  json_number(&json.json, "error", e->noise);
-  json_number(&json.json, "program_seconds", engine_program_seconds());
-  json_number(&json.json, "frame_seconds", e->frame_seconds + server_seconds(e->server));
-  json_number(&json.json, "denoise_seconds", e->preview.seconds);
+  engine_unlock(e);
+  json_integer(json, "change", e->now.change);
+  json_integer(json, "spp", spp);
+  json_integer(json, "target", e->now.spp);
+  json_number(json, "paths_per_second", e->rendered > 0 ? (double)e->paths / e->rendered : NAN);
+  json_number(json, "seconds", e->rendered);
+  json_number(json, "error", e->noise);
+  json_number(json, "program_seconds", engine_program_seconds());
+  json_number(json, "frame_seconds", e->frame_seconds + server_seconds(e->server));
+  json_number(json, "denoise_seconds", e->preview.seconds);
   if (stop > 0)
-    json_number(&json.json, "stop_seconds", stop);
-  json_bool(&json.json, "paused", paused);
-  json_text(&json.json, "tracer", kind_name("tracers", (int)engine_shown(e).tracer));
-  json_bool(&json.json, "racing", e->racing || engine_race_due(e, e->now.spp));
-  json_bool(&json.json, "raced", e->by_race);
+    json_number(json, "stop_seconds", stop);
+  json_bool(json, "paused", paused);
+  json_text(json, "tracer", kind_name("tracers", (int)engine_shown(e).tracer));
+  json_bool(json, "racing", e->racing || engine_race_due(e, e->now.spp));
+  json_bool(json, "raced", e->by_race);
   if (e->successor)
-    json_text(&json.json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
-  char *text = json_text_end(&json);
+    json_text(json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
+  char *text = json_text_end(json);
   if (!text)
     return;
   server_post(e->server, 0, text);
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   char *before = e->last_status;
   e->last_status = text;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   free(before);
 }
 
 void status_error(Engine *e, const vlError *error, vlResult result) {
-  JsonText json;
-  if (!json_text_begin(&json, "error"))
+  Json *json = json_text_begin("error");
+  if (!json)
     return;
   if (error->file[0])
-    json_text(&json.json, "file", error->file);
+    json_text(json, "file", error->file);
   if (error->file[0] && error->line)
-    json_integer(&json.json, "line", error->line);
+    json_integer(json, "line", error->line);
   if (error->file[0] && error->line && error->column)
-    json_integer(&json.json, "column", error->column);
-  json_text(&json.json, "message", error->message[0] ? error->message : vl_result_name(result));
-  json_text_post(&json, e->server, 0);
+    json_integer(json, "column", error->column);
+  json_text(json, "message", error->message[0] ? error->message : vl_result_name(result));
+  json_text_post(json, e->server, 0);
 }
 
 /* ---- the timeline of the page ------------------------------------------------------------ */

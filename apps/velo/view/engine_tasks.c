@@ -7,14 +7,20 @@
 #include "velo/focus.h"
 #include "view/engine_status.h"
 
+Json *engine_reply_begin(const Task *task, const char *type) {
+  Json *json = json_text_begin(type);
+  if (json)
+    json_integer(json, "id", task->message.id);
+  return json;
+}
+
 void engine_post_text(Engine *e, const Task *task, const char *type, const char *key,
                       const char *value) {
-  JsonText text;
-  if (!json_text_begin(&text, type))
+  Json *json = engine_reply_begin(task, type);
+  if (!json)
     return;
-  json_integer(&text.json, "id", task->message.id);
-  json_text(&text.json, key, value);
-  json_text_post(&text, e->server, task->client);
+  json_text(json, key, value);
+  json_text_post(json, e->server, task->client);
 }
 
 void engine_refuse(Engine *e, const Task *task, const char *why) {
@@ -22,9 +28,9 @@ void engine_refuse(Engine *e, const Task *task, const char *why) {
 }
 
 static ViewCamera present_camera(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   ViewCamera camera = e->wanted.camera;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return camera;
 }
 
@@ -79,10 +85,10 @@ static void pick(Engine *e, const Task *task) {
   vlImage *floats = NULL, *ids = NULL;
   vlError error = {0};
   vlResult result = vl_render_channels(e->model.world, c, &def, &floats, &ids, &error);
-  JsonText text;
-  if (result != VL_OK) {
+  Json *json = result == VL_OK ? engine_reply_begin(task, "picked") : NULL;
+  if (result != VL_OK)
     engine_refuse(e, task, error.message);
-  } else if (json_text_begin(&text, "picked")) {
+  if (json) {
     static const char *const vectors[][4] = {{"P", "P.X", "P.Y", "P.Z"},
                                              {"N", "N.X", "N.Y", "N.Z"},
                                              {"Ng", "Ng.X", "Ng.Y", "Ng.Z"},
@@ -90,18 +96,17 @@ static void pick(Engine *e, const Task *task) {
                                              {"ray", "ray.X", "ray.Y", "ray.Z"}};
     static const char *const uv[] = {"uv.U", "uv.V"}, *const z[] = {"Z"},
                              *const distance[] = {"distance.Y"};
-    json_integer(&text.json, "id", m->id);
-    json_integer(&text.json, "x", x);
-    json_integer(&text.json, "y", y);
-    put_values(&text.json, "Z", floats, z, 1);
-    put_values(&text.json, "distance", floats, distance, 1);
-    put_values(&text.json, "uv", floats, uv, 2);
+    json_integer(json, "x", x);
+    json_integer(json, "y", y);
+    put_values(json, "Z", floats, z, 1);
+    put_values(json, "distance", floats, distance, 1);
+    put_values(json, "uv", floats, uv, 2);
     for (int i = 0; i < 5; i++)
-      put_values(&text.json, vectors[i][0], floats, vectors[i] + 1, 3);
-    put_id(&text.json, e, ids, "id.object", VL_ID_OBJECT, "object");
-    put_id(&text.json, e, ids, "id.material", VL_ID_MATERIAL, "material");
-    put_id(&text.json, e, ids, "id.instance", VL_ID_INSTANCE, "instance");
-    json_text_post(&text, e->server, task->client);
+      put_values(json, vectors[i][0], floats, vectors[i] + 1, 3);
+    put_id(json, e, ids, "id.object", VL_ID_OBJECT, "object");
+    put_id(json, e, ids, "id.material", VL_ID_MATERIAL, "material");
+    put_id(json, e, ids, "id.instance", VL_ID_INSTANCE, "instance");
+    json_text_post(json, e->server, task->client);
   }
   vl_image_destroy(floats);
   vl_image_destroy(ids);
@@ -120,7 +125,7 @@ static void focus(Engine *e, const Task *task) {
     engine_refuse(e, task, error.message);
     return;
   }
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   e->wanted.change = m->change;
   engine_remember(e, &next, 0);
   e->wanted.camera = next;
@@ -129,7 +134,7 @@ static void focus(Engine *e, const Task *task) {
   engine_drop_traces(e, 0, "the camera moved");
   pthread_cond_broadcast(&e->wake);
   engine_post_state(e, 0);
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
 }
 
 void engine_answer(Engine *e, const Task *task) {
@@ -176,13 +181,13 @@ void engine_answer(Engine *e, const Task *task) {
 
 bool engine_answer_question(Engine *e) {
   static Task task; /* the thread that answers alone uses it */
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   bool any = !e->quit && e->question_count > 0;
   if (any) {
     task = e->questions[0];
     memmove(e->questions, e->questions + 1, --e->question_count * sizeof *e->questions);
   }
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   if (!any)
     return false;
   pthread_rwlock_rdlock(&e->model_lock);

@@ -8,11 +8,11 @@
 /* Does one kind of work whenever some waits, until the engine ends. */
 static void *serve(Engine *e, bool (*waits)(const Engine *), bool (*work)(Engine *)) {
   for (;;) {
-    pthread_mutex_lock(&e->lock);
+    engine_lock(e);
     while (!e->quit && !waits(e))
       pthread_cond_wait(&e->wake, &e->lock);
     bool quit = e->quit;
-    pthread_mutex_unlock(&e->lock);
+    engine_unlock(e);
     if (quit)
       return NULL;
     work(e);
@@ -58,13 +58,13 @@ int engine_start(Engine *engine, Server *server) {
 int engine_stop(Engine *engine) {
   if (!engine->started)
     return STATUS_OK;
-  pthread_mutex_lock(&engine->lock);
+  engine_lock(engine);
   engine->quit = true;
   engine_interrupt(engine);
   vl_cancel_request(engine->end);
   vl_cancel_request(engine->trace_stop);
   pthread_cond_broadcast(&engine->wake);
-  pthread_mutex_unlock(&engine->lock);
+  engine_unlock(engine);
   pthread_join(engine->thread, NULL);
   if (engine->watching)
     pthread_join(engine->watcher, NULL);

@@ -125,9 +125,9 @@ static bool start(Verification *v, pid_t *child) {
 }
 
 static bool is_ended(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   bool ended = e->quit || e->verify_end;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return ended;
 }
 
@@ -220,19 +220,18 @@ static bool compare(Verification *v) {
 /* ---- the thread -------------------------------------------------------------------------- */
 
 static void post_verified(const Verification *v, const Task *task, bool same) {
-  JsonText text;
-  if (!json_text_begin(&text, "verified"))
+  Json *json = engine_reply_begin(task, "verified");
+  if (!json)
     return;
-  json_integer(&text.json, "id", task->message.id);
-  json_bool(&text.json, "same", same);
-  json_text(&text.json, "file", v->copied->file);
+  json_bool(json, "same", same);
+  json_text(json, "file", v->copied->file);
   if (same) {
-    json_text(&text.json, "sha256", v->sha256[0]);
-    json_text(&text.json, "sha256_exr", v->sha256[1]);
+    json_text(json, "sha256", v->sha256[0]);
+    json_text(json, "sha256_exr", v->sha256[1]);
   } else {
-    json_text(&text.json, "message", v->message);
+    json_text(json, "message", v->message);
   }
-  json_text_post(&text, v->engine->server, task->client);
+  json_text_post(json, v->engine->server, task->client);
 }
 
 static bool verify(Verification *v) {
@@ -247,17 +246,17 @@ void *engine_verify_commands(void *user) {
   Engine *e = user;
   static Task task; /* this thread alone uses it */
   for (;;) {
-    pthread_mutex_lock(&e->lock);
+    engine_lock(e);
     while (!e->quit && !e->verifying)
       pthread_cond_wait(&e->wake, &e->lock);
     const bool quit = e->quit;
     Copied *copied = e->copied;
     e->copied = NULL;
     task = e->verification;
-    pthread_mutex_unlock(&e->lock);
+    engine_unlock(e);
     Verification v = {.engine = e, .copied = copied};
     const bool same = !quit && verify(&v);
-    pthread_mutex_lock(&e->lock);
+    engine_lock(e);
     if (!quit)
       post_verified(&v, &task, same);
     e->verifying = false;
@@ -265,7 +264,7 @@ void *engine_verify_commands(void *user) {
       e->copied = copied;
       copied = NULL;
     }
-    pthread_mutex_unlock(&e->lock);
+    engine_unlock(e);
     copied_free(copied);
     if (quit)
       return NULL;

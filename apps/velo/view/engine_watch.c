@@ -8,9 +8,9 @@
 #include "view/watch.h"
 
 static void post(Engine *e, const char *type) {
-  JsonText text;
-  if (json_text_begin(&text, type))
-    json_text_post(&text, e->server, 0);
+  Json *json = json_text_begin(type);
+  if (json)
+    json_text_post(json, e->server, 0);
 }
 
 /* Loads the scene again, because a file changed or, `timed`, because a page asks for another
@@ -21,13 +21,13 @@ static bool load_again(Engine *e, Watch *watch, bool timed) {
     return false;
   if (!timed)
     post(e, "loading");
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   uint32_t load = ++e->loads;
   ModelTime time = {e->at, e->shutter, e->model.exposure};
   const bool at = e->has_time;
   const uint32_t change = e->time_change;
   e->time_due = false;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   report_listen(engine_report, e);
   pthread_rwlock_rdlock(&e->model_lock); /* the previous world stays */
   int status = model_load(e->def.context, e->def.path, e->def.arguments, at ? &time : NULL,
@@ -48,23 +48,23 @@ static bool load_again(Engine *e, Watch *watch, bool timed) {
 }
 
 static bool ends(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   bool quit = e->quit;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return quit;
 }
 
 static double model_seconds(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   double seconds = e->model.seconds;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return seconds;
 }
 
 static bool time_is_due(Engine *e) {
-  pthread_mutex_lock(&e->lock);
+  engine_lock(e);
   bool due = e->time_due;
-  pthread_mutex_unlock(&e->lock);
+  engine_unlock(e);
   return due;
 }
 

@@ -59,7 +59,7 @@ static int load_poses(vlContext *context, const Arguments *arguments, Model *mod
   file_list_add(files, value->text);
   vlResult result = poses_load(context, value->text, &model->job.camera, &model->cameras,
                                &model->camera_count, &error);
-  return result == VL_OK ? -1 : report_error(&error, result, value->text);
+  return report_error(&error, result, value->text);
 }
 
 /* Gives the arguments the time. text: of --at; it must live as long as the arguments. */
@@ -120,8 +120,7 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
     build.previous = previous ? previous : model->opening.metered;
     build.cancel = cancel;
     vlResult result = vl_world_build_last(model->scene, &build, &model->world, &error);
-    if (result != VL_OK)
-      status = report_error(&error, result, path);
+    status = report_error(&error, result, path);
   }
   scene_opening_close(&model->opening);
   file_list_add(files, path);

@@ -47,14 +47,14 @@ static void greet(void *user, uint32_t client) {
 
 static void refuse(void *user, uint32_t client, bool steers, const ViewMessage *message) {
   Serve *s = user;
-  JsonText text;
   (void)steers;
-  if (!json_text_begin(&text, "refused"))
+  Json *json = json_text_begin("refused");
+  if (!json)
     return;
-  json_integer(&text.json, "id", message->id);
-  json_integer(&text.json, "change", message->change);
-  json_text(&text.json, "message", "this page looks on: velo render --serve");
-  post_and_free(s->server, client, json_text_end(&text));
+  json_integer(json, "id", message->id);
+  json_integer(json, "change", message->change);
+  json_text(json, "message", "this page looks on: velo render --serve");
+  post_and_free(s->server, client, json_text_end(json));
 }
 
 static void count(void *user, uint32_t clients) {
@@ -84,17 +84,16 @@ int serve_start(const Job *job, const vlWorld *world, vlView view, float exposur
 }
 
 static void post_status(Serve *s, const vlFilm *film, const vlProgress *p) {
-  JsonText text;
-  if (!json_text_begin(&text, "status"))
+  Json *json = json_text_begin("status");
+  if (!json)
     return;
-  json_integer(&text.json, "spp", vl_film_spp(film));
-  json_integer(&text.json, "target", p->spp_total);
-  json_number(&text.json, "paths_per_second",
-              p->elapsed > 0 ? (double)p->paths / p->elapsed : NAN);
-  json_number(&text.json, "seconds", p->elapsed);
-  json_number(&text.json, "error", NAN);
-  json_bool(&text.json, "paused", false);
-  post_and_free(s->server, 0, json_text_end(&text));
+  json_integer(json, "spp", vl_film_spp(film));
+  json_integer(json, "target", p->spp_total);
+  json_number(json, "paths_per_second", p->elapsed > 0 ? (double)p->paths / p->elapsed : NAN);
+  json_number(json, "seconds", p->elapsed);
+  json_number(json, "error", NAN);
+  json_bool(json, "paused", false);
+  post_and_free(s->server, 0, json_text_end(json));
 }
 
 void serve_film(Serve *s, const vlFilm *film, const vlProgress *progress) {

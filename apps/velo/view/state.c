@@ -2,6 +2,7 @@
 #include "view/state.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "velo/camera_file.h"
 #include "velo/channels.h"
@@ -15,19 +16,34 @@ bool state_shows_channel(uint32_t index) {
   return index < VL_CHANNEL_COUNT && (shown_channels >> index & 1);
 }
 
-bool json_text_begin(JsonText *json, const char *type) {
-  *json = (JsonText){.text = NULL};
-  json->json.out = open_memstream(&json->text, &json->size);
-  if (!json->json.out)
-    return false;
-  json_begin(&json->json, NULL, '{');
-  json_text(&json->json, "type", type);
-  return true;
+/* The object and its text, as long as it is written. */
+typedef struct JsonText {
+  Json json;
+  char *text;
+  size_t size;
+} JsonText;
+
+Json *json_text_begin(const char *type) {
+  JsonText *text = calloc(1, sizeof *text);
+  if (!text)
+    return NULL;
+  Json *json = &text->json;
+  json->out = open_memstream(&text->text, &text->size);
+  if (!json->out) {
+    free(text);
+    return NULL;
+  }
+  json_begin(json, NULL, '{');
+  json_text(json, "type", type);
+  return json;
 }
 
-char *json_text_end(JsonText *json) {
-  json_end(&json->json, '}');
-  return fclose(json->json.out) == 0 ? json->text : NULL;
+char *json_text_end(Json *json) {
+  JsonText *text = (JsonText *)json;
+  json_end(json, '}');
+  char *written = fclose(json->out) == 0 ? text->text : NULL;
+  free(text);
+  return written;
 }
 
 static void put_sensor(Json *json, const ViewSensor *sensor) {
@@ -58,10 +74,9 @@ static void put_sensor_lists(Json *json, const ViewSensors *sensors) {
 }
 
 char *state_text(const ViewState *s) {
-  JsonText text;
-  if (!json_text_begin(&text, "state"))
+  Json *json = json_text_begin("state");
+  if (!json)
     return NULL;
-  Json *json = &text.json;
   json_text(json, "scene", s->scene);
   json_integer(json, "change", s->change);
   json_integer(json, "spp", s->spp);
@@ -93,14 +108,13 @@ char *state_text(const ViewState *s) {
     put_sensor(json, s->sensor);
     json_end(json, '}');
   }
-  return json_text_end(&text);
+  return json_text_end(json);
 }
 
 char *state_lists(const ViewSensors *sensors) {
-  JsonText text;
-  if (!json_text_begin(&text, "lists"))
+  Json *json = json_text_begin("lists");
+  if (!json)
     return NULL;
-  Json *json = &text.json;
   json_begin(json, "dialects", '[');
   for (int i = VL_CAMERA_DIALECT_AUTO + 1; i < VL_CAMERA_DIALECT_COUNT; i++)
     if (i != VL_CAMERA_DIALECT_EXR)
@@ -116,5 +130,5 @@ char *state_lists(const ViewSensors *sensors) {
   json_end(json, ']');
   if (sensors)
     put_sensor_lists(json, sensors);
-  return json_text_end(&text);
+  return json_text_end(json);
 }

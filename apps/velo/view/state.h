@@ -28,15 +28,10 @@ typedef struct ViewState {
   uint32_t poses; /* cameras of --trajectory */
 } ViewState;
 
-/* A JSON text in memory: begin, json_*(...), end, which returns the text for the caller to
- * free; null: no memory. */
-typedef struct JsonText {
-  Json json;
-  char *text;
-  size_t size;
-} JsonText;
-bool json_text_begin(JsonText *json, const char *type);
-char *json_text_end(JsonText *json);
+/* A JSON object in memory: begin (null: no memory), json_*(...), end, which frees it and
+ * returns the text for the caller to free; null: no memory. */
+Json *json_text_begin(const char *type);
+char *json_text_end(Json *json);
 
 /* Whether pages show this channel of ground truth; index: its bit in vlChannel. */
 bool state_shows_channel(uint32_t index);

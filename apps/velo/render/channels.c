@@ -128,24 +128,6 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
   return -1;
 }
 
-/* Returns whether a signal arrived after the pass began. */
-static bool stop_asked(void *user) {
-  return signals_count() > *(const int *)user;
-}
-
-vlChannelsDef channels_def(const Job *job, const vlFilm *film, int *signals) {
-  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
-  def.space = job->defs->film.space;
-  def.film = film;
-  def.render = film ? &job->defs->render : NULL;
-  def.exposure = job->defs->develop.exposure;
-  def.time = job_channels_time(job);
-  def.stop = stop_asked;
-  def.stop_user = signals;
-  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
-  return def;
-}
-
 static int fail_pass(const vlError *error, vlResult result, const Job *job) {
   if (result == VL_OK)
     return STATUS_OK;
@@ -163,7 +145,7 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   vlBoxesDef def = vl_default_boxes_def(job->camera.width, job->camera.height);
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   int signals = signals_count();
-  def.stop = stop_asked;
+  def.stop = job_stop_asked;
   def.stop_user = &signals;
   vlError error = {0};
   vlResult result =
@@ -258,7 +240,7 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
     return STATUS_OK;
   shutter_ends(c, job);
   int signals = signals_count();
-  vlChannelsDef def = channels_def(job, film, &signals);
+  vlChannelsDef def = job_channels_def(job, film, &signals);
   def.channels = c->bits;
   def.samples = vl_film_spp(film);
   def.mode = c->mode;

@@ -41,10 +41,6 @@ uint64_t channels_values(const Channels *c, uint32_t buckets);
  * pixel, from those that one sample per pixel and the writing of the image alone took. */
 double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, double sample,
                         double writing);
-/* The def of a pass over the job's image, without channels: its pixels, space, exposure and
- * time. film: whose samples the pass is about; null: none. signals: signals_count() at the
- * start; one more stops the pass. It must live as long as the def. */
-vlChannelsDef channels_def(const Job *job, const vlFilm *film, int *signals);
 /* Renders the channels, after the image. Returns STATUS_OK or the exit code; 128 + signal when
  * another signal interrupts it. */
 int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job,

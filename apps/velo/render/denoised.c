@@ -8,7 +8,6 @@
 #include "cli/signals.h"
 #include "image/denoise.h"
 #include "render/attributes.h"
-#include "render/channels.h"
 #include "render/pattern.h"
 
 enum { MAX_CHANNELS = 1010 }; /* a spectrum of 1000 buckets, colours and errors */
@@ -130,7 +129,7 @@ static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
   develop.exposure = job->defs->develop.exposure;
   develop.independent = true; /* does not matter to the colours */
   int signals = signals_count();
-  vlChannelsDef def = channels_def(job, film, &signals);
+  vlChannelsDef def = job_channels_def(job, film, &signals);
   def.channels = VL_CHANNEL_FEATURES;
   def.time = VL_UNSET; /* features are means over the exposure */
   vlImage *color = NULL, *errors = NULL, *features = NULL;

@@ -8,7 +8,6 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "cli/vector.h"
-#include "render/channels.h"
 #include "velo/channels.h"
 
 static const char *const names[] = {"Albedo.R",
@@ -157,7 +156,7 @@ static void fill_all(Source *s, const uint32_t crop[4], float *out) {
 static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFilm *film,
                                 vlImage **geometry, vlError *error) {
   int signals = signals_count();
-  vlChannelsDef def = channels_def(job, film, &signals);
+  vlChannelsDef def = job_channels_def(job, film, &signals);
   def.channels = VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV |
                  VL_CHANNEL_ALBEDO | VL_CHANNEL_RAY | VL_CHANNEL_DISTANCE;
   return vl_render_channels(world, &job->camera, &def, geometry, NULL, error);

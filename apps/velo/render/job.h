@@ -3,6 +3,7 @@
 #define APP_RENDER_JOB_H
 
 #include "cli/options.h"
+#include "velo/channels.h"
 #include "velo/render.h"
 
 /* Options of `velo render`, indices into Arguments.values. */
@@ -156,6 +157,14 @@ bool job_sequence_is_planned(const Job *job, const Arguments *arguments);
 /* The time of the ground truth and of the camera in the header, in seconds. VL_UNSET: when each
  * row is exposed; the header's camera then has the middle of the image's exposure. */
 double job_channels_time(const Job *job);
+
+/* A vlStopFn of passes over an image. user: an int, signals_count() at the start; one more
+ * stops the pass. */
+bool job_stop_asked(void *user);
+/* The def of a pass over the job's image, without channels: its pixels, space, exposure and
+ * time. film: whose samples the pass is about; null: none. signals: see job_stop_asked; it must
+ * live as long as the def. */
+vlChannelsDef job_channels_def(const Job *job, const vlFilm *film, int *signals);
 
 /* Replaces the job's camera by one of a file. *defs becomes the job's defs and must outlive
  * it. */

@@ -10,6 +10,7 @@
 #include "camera/camera.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
+#include "cli/signals.h"
 #include "render/lens_options.h"
 #include "render/scene_options.h"
 #include "velo/filter_kinds.h"
@@ -346,6 +347,23 @@ double job_channels_time(const Job *job) {
   if (isnan(job->channels_share))
     return VL_UNSET;
   return vl_camera_time(c, 0.5 * c->width, 0.5 * c->height, job->channels_share);
+}
+
+bool job_stop_asked(void *user) {
+  return signals_count() > *(const int *)user;
+}
+
+vlChannelsDef job_channels_def(const Job *job, const vlFilm *film, int *signals) {
+  vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
+  def.space = job->defs->film.space;
+  def.film = film;
+  def.render = film ? &job->defs->render : NULL;
+  def.exposure = job->defs->develop.exposure;
+  def.time = job_channels_time(job);
+  def.stop = job_stop_asked;
+  def.stop_user = signals;
+  memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
+  return def;
 }
 
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,

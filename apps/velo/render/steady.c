@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cli/report.h"
-#include "render/channels.h"
 
 /* Features: albedo, normal, disparity. */
 enum { TAPS = 4, NORMAL = 3, DISPARITY = 6, FEATURES = 7 };
@@ -94,7 +93,7 @@ vlResult steady_keep(Steady *s, vlContext *context, const vlWorld *world, const 
       to = &s->frames[i];
   forget(to);
   *to = (SteadyFrame){.used = true, .number = s->number, .camera = job->camera, .clean = clean};
-  vlChannelsDef def = channels_def(job, NULL, signals);
+  vlChannelsDef def = job_channels_def(job, NULL, signals);
   def.channels = VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
   vlResult result = copy_features(context, image, &to->features);
   if (result == VL_OK)
@@ -246,7 +245,7 @@ static vlCamera camera_at(const vlCamera *camera, double time) {
 static vlResult find_flow(const Steady *s, vlContext *context, const SteadyFrame *before,
                           const vlWorld *world, const Job *job, int *signals, vlImage **floats,
                           vlImage **ids, vlError *error) {
-  vlChannelsDef def = channels_def(job, NULL, signals);
+  vlChannelsDef def = job_channels_def(job, NULL, signals);
   def.channels = VL_CHANNEL_BACKWARD | VL_CHANNEL_P;
   def.backward = &before->camera;
   if (!s->between)

@@ -14,6 +14,7 @@
 #include "schema/schema.h"
 #include "texture/lookup.h"
 #include "velo/light.h"
+#include "velo/shape.h"
 
 vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e,
                         vlError *error) {

@@ -4,7 +4,7 @@
 #define LIGHT_COVERAGE_HOT_H
 
 #include "math/vec.h"
-#include "texture/lookup.h"
+#include "world/world.h"
 
 /* The light's alpha at p, in [0, 1]. It is the share of the radiance that leaves the shape at
  * p, and the probability that a ray hits the shape at p. n: geometric normal; u, v: surface

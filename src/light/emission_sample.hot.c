@@ -8,7 +8,6 @@
 #include "light/spread.h"
 #include "math/warp.h"
 #include "shape/surface_point.h"
-#include "texture/lookup.h"
 #include "velo/shape.h"
 
 #define DECLARE(kind, row, power, compile, sample, emit, density) \

@@ -4,7 +4,6 @@
 #include "light/portal.h"
 #include "math/octahedral.h"
 #include "math/warp.h"
-#include "texture/lookup.h"
 
 vlSampleLight vl_light_sample_infinite;
 vlEmitLight vl_light_emit_infinite;

@@ -1,5 +1,5 @@
 /* material/hair_inputs.hot.c: the hair material's parameters over a run of lanes. */
-#include "material/rows.hot.h"
+#include "material/inputs.hot.h"
 
 /* Lower bound of the reflectance: black would need infinite absorption. No display shows the
  * difference. */
@@ -34,18 +34,18 @@ void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m) {
     shade->eta_s[i] = vl_clamp(shade->eta_s[i], 1.0001f, 10.0f);
   }
   if (h->sigma_a >= 0)
-    vl_rows_spectrum(r, h->sigma_a, rows + VL_H_SIGMA_A);
+    vl_texture_spectrum(r, h->sigma_a, rows + VL_H_SIGMA_A);
   if (m->reflectance >= 0)
     from_reflectance(r, rows);
   if (h->eumelanin >= 0) {
     float(*extra)[VL_ROW_SIZE] = rows + VL_H_ROWS;
     float *share = vl_texture_row(r);
-    vl_rows_spectrum(r, h->eumelanin, rows + VL_H_SIGMA_A);
+    vl_texture_spectrum(r, h->eumelanin, rows + VL_H_SIGMA_A);
     vl_texture_float(r, h->eumelanin_share, share);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++)
         rows[VL_H_SIGMA_A + c][i] *= vl_max(share[i], 0.0f);
-    vl_rows_spectrum(r, h->pheomelanin, extra);
+    vl_texture_spectrum(r, h->pheomelanin, extra);
     vl_texture_float(r, h->pheomelanin_share, share);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++)

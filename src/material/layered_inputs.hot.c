@@ -1,6 +1,6 @@
 /* material/layered_inputs.hot.c: parameters, over a run of lanes, of the layered materials
  * (random walks) and of diffuse transmission. */
-#include "material/rows.hot.h"
+#include "material/inputs.hot.h"
 #include "math/hash.h"
 
 /* A seed for each hit, from the pixel, its sample and the ray. */
@@ -18,7 +18,7 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldLayers *l = m->own;
   vlShade *shade = &r->at->shade;
   float(*rows)[VL_ROW_SIZE] = shade->own;
-  vl_rows_albedo(r, l->albedo, 1.0f, rows + VL_L_ALBEDO);
+  vl_texture_albedo(r, l->albedo, 1.0f, rows + VL_L_ALBEDO);
   vl_texture_float(r, l->thickness, rows[VL_L_THICKNESS]);
   vl_texture_float(r, l->g, rows[VL_L_G]);
   for (uint32_t i = r->first; i < r->last; i++) {
@@ -34,8 +34,8 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
       rows[VL_L_BASE_X][i] = shade->alpha_x[i];
       rows[VL_L_BASE_Y][i] = shade->alpha_y[i];
     }
-    vl_row_alpha(r, m, l->coat_u, shade->alpha_x);
-    vl_row_alpha(r, m, l->coat_v, shade->alpha_y);
+    vl_stage_roughness(r, m, l->coat_u, shade->alpha_x);
+    vl_stage_roughness(r, m, l->coat_v, shade->alpha_y);
     float inverse = 1.0f / m->eta_s; /* the metal's outside is the coat's medium */
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) {
@@ -48,7 +48,7 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
 
 void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->at->shade;
-  vl_rows_albedo(r, m->transmittance, m->scale, shade->own + VL_T_TRANSMITTANCE);
+  vl_texture_albedo(r, m->transmittance, m->scale, shade->own + VL_T_TRANSMITTANCE);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++)
       shade->reflectance[c][i] = vl_clamp(m->scale * shade->reflectance[c][i], 0.0f, 1.0f);

@@ -1,7 +1,7 @@
 /* material/material.hot.c: shading of a run of lanes with one material: bump and normal
  * maps, BSDF parameters from textures; then shading frames for all lanes. */
+#include "material/inputs.hot.h"
 #include "material/kinds.row.h"
-#include "material/rows.hot.h"
 #include "velo/schema.h"
 #include "velo/shape.h"
 
@@ -123,14 +123,14 @@ static void reflectance(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->at->shade;
   if (m->reflectance < 0)
     return;
-  vl_rows_albedo(r, m->reflectance, 1.0f, shade->reflectance);
+  vl_texture_albedo(r, m->reflectance, 1.0f, shade->reflectance);
 }
 
 static void metal(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->at->shade;
   if (!m->use_reflectance) {
-    vl_rows_spectrum(r, m->eta, shade->eta);
-    vl_rows_spectrum(r, m->k, shade->k);
+    vl_texture_spectrum(r, m->eta, shade->eta);
+    vl_texture_spectrum(r, m->k, shade->k);
     return;
   }
   /* eta = 1, k = 2 sqrt(R / (1 - R)) gives reflectance R at normal incidence (pbrt book 9.3.6's
@@ -143,15 +143,23 @@ static void metal(vlTextureRun *r, const vlWorldMaterial *m) {
     }
 }
 
+void vl_stage_roughness(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *alpha) {
+  vl_texture_float(r, node, alpha);
+  for (uint32_t i = r->first; i < r->last; i++) {
+    float x = alpha[i] > 0.0f ? alpha[i] : 0.0f;
+    alpha[i] = m->remap ? __builtin_sqrtf(x) : x;
+  }
+}
+
 static void alphas(vlTextureRun *r, const vlWorldMaterial *m) {
-  vl_row_alpha(r, m, m->u_roughness, r->at->shade.alpha_x);
-  vl_row_alpha(r, m, m->v_roughness, r->at->shade.alpha_y);
+  vl_stage_roughness(r, m, m->u_roughness, r->at->shade.alpha_x);
+  vl_stage_roughness(r, m, m->v_roughness, r->at->shade.alpha_y);
 }
 
 static void index_of_refraction(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->at->shade;
   if (m->dispersive)
-    vl_rows_spectrum(r, m->eta, shade->eta);
+    vl_texture_spectrum(r, m->eta, shade->eta);
   for (uint32_t i = r->first; i < r->last; i++)
     shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
 }
@@ -233,7 +241,7 @@ static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
     return;
   }
   r->rgb = true;
-  vl_rows_albedo(r, m->reflectance, 1.0f, shade->tint->rgb);
+  vl_texture_albedo(r, m->reflectance, 1.0f, shade->tint->rgb);
   r->rgb = false;
   for (uint32_t i = r->first; i < r->last; i++) {
     float before[3], after[3];

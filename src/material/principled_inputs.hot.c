@@ -1,7 +1,7 @@
 /* material/principled_inputs.hot.c: the principled material's parameters over a run of lanes:
  * textures, normal maps, tangent. */
+#include "material/inputs.hot.h"
 #include "material/principled.h"
-#include "material/rows.hot.h"
 
 static void fill(float *row, uint32_t first, uint32_t last, float x) {
   for (uint32_t i = first; i < last; i++)
@@ -21,8 +21,7 @@ static void share(vlTextureRun *r, int32_t node, float *row) {
 static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float scale,
                      uint32_t i) {
   const vlSurface *f = &r->at->surface;
-  vlTexel t = vl_texture_image(node, r->world->images.items[node->image].mipmap,
-                               vl_texture_point_of(r, node, i));
+  vlTexel t = vl_texture_texel(r, node, i);
   vlVec3 local =
       vl_normalize(vl_vec3(scale * (2 * t.c[0] - 1), scale * (2 * t.c[1] - 1), 2 * t.c[2] - 1));
   vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i), u = vl_lane3(f->ux, f->uy, f->uz, i),
@@ -93,7 +92,7 @@ static void layers(vlTextureRun *r, const vlWorldPrincipled *p, float (*rows)[VL
     }
   }
   if (p->has_sheen) {
-    vl_rows_albedo(r, p->sheen, 1.0f, rows + VL_P_SHEEN);
+    vl_texture_albedo(r, p->sheen, 1.0f, rows + VL_P_SHEEN);
     share(r, p->sheen_roughness, rows[VL_P_SHEEN_ALPHA]);
     for (uint32_t i = first; i < last; i++) {
       float x = rows[VL_P_SHEEN_ALPHA][i];
@@ -122,12 +121,12 @@ void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   fill(rows[VL_P_DIFFUSE_TRANSMISSION], first, last, 0.0f);
   if (p->has_transmission) {
     share(r, p->diffuse_transmission, rows[VL_P_DIFFUSE_TRANSMISSION]);
-    vl_rows_albedo(r, p->through, 1.0f, rows + VL_P_THROUGH);
+    vl_texture_albedo(r, p->through, 1.0f, rows + VL_P_THROUGH);
   } else {
     for (int c = 0; c < 4; c++)
       fill(rows[VL_P_THROUGH + c], first, last, 0.0f);
   }
-  float *const f0[4] = {rows[VL_P_F0], rows[VL_P_F0 + 1], rows[VL_P_F0 + 2], rows[VL_P_F0 + 3]};
+  float(*f0)[VL_ROW_SIZE] = rows + VL_P_F0;
   vl_texture_spectrum(r, p->specular_color, f0);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = first; i < last; i++)

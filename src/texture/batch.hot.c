@@ -5,6 +5,80 @@
 #include "texture/kinds.h"
 #include "texture/run.hot.h"
 
+/* ---- the point of a lane ------------------------------------------------------------------
+ */
+
+/* Interpolates the vertex attributes (uv sets, colours) of lane i's triangle at the point. */
+static inline void lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
+                               vlTexturePoint *at) {
+  const vlCorners *c = &r->s->corners;
+  const vlHits *h = &r->at->hits;
+  vlTextureCorner where = {&r->world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
+  vlVec3 k[3];
+  for (int j = 0; j < 3; j++)
+    k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
+  vlVec3 e1 = vl_sub(k[1], k[0]), e2 = vl_sub(k[2], k[0]), g = vl_cross(e1, e2),
+         way = vl_sub(at->p, k[0]);
+  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
+  where.weights[1] = vl_dot(vl_cross(way, e2), g) * inv;
+  where.weights[2] = vl_dot(vl_cross(e1, way), g) * inv;
+  where.weights[0] = 1.0f - where.weights[1] - where.weights[2];
+  vl_texture_at_corner(node, &where, at);
+}
+
+/* Computes the footprint's axes in texture coordinates (s, t). For the first uv set they are
+ * the surface's axes; for other mappings they are finite differences along each axis. */
+static inline void lane_axes(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
+                             vlTexturePoint *at) {
+  const vlSurface *f = &r->at->surface;
+  if (node->uv_set == 0 && (node->st_given || node->mapping == VL_MAPPING_UV)) {
+    const float uv[4] = {f->across_u[i], f->across_v[i], f->along_u[i], f->along_v[i]};
+    vl_texture_axes_of_uv(node, uv, at);
+    return;
+  }
+  const vlPaths *p = &r->at->paths;
+  vlFootprint print = vl_footprint_of(vl_lane3(p->dx, p->dy, p->dz, i), at->n, at->width);
+  vlVec2 here = vl_texture_st(node, *at);
+  vlTexturePoint step = *at;
+  for (int k = 0; k < 2; k++) {
+    step.p = vl_add(at->p, k ? print.along : print.across);
+    if (vl_texture_needs_corner(node))
+      lane_corner(r, node, i, &step);
+    vlVec2 there = vl_texture_st(node, step);
+    float s = there.x - here.x, t = there.y - here.y;
+    if (node->mapping == VL_MAPPING_SPHERICAL ||
+        node->mapping == VL_MAPPING_CYLINDRICAL) /* the shorter way across the mapping's seam */
+    {
+      s -= __builtin_rintf(s);
+      t -= node->mapping == VL_MAPPING_SPHERICAL ? __builtin_rintf(t) : 0.0f;
+    }
+    at->axes[2 * k] = s;
+    at->axes[2 * k + 1] = t;
+  }
+}
+
+/* Where lane i is. */
+static inline vlTexturePoint point_of(const vlTextureRun *r, const vlTextureNode *node,
+                                      uint32_t i) {
+  const vlSurface *f = &r->at->surface;
+  vlTexturePoint at = {.color = {1, 1, 1, 1}};
+  at.u = f->u[i];
+  at.v = f->v[i];
+  at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
+  at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* geometric normal, as in pbrt */
+  at.width = f->width[i];
+  if (r->shift_u) {
+    at.u += r->shift_u[i];
+    at.v += r->shift_v[i];
+    at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));
+  }
+  if (vl_texture_needs_corner(node))
+    lane_corner(r, node, i, &at);
+  if (node->image >= 0)
+    lane_axes(r, node, i, &at);
+  return at;
+}
+
 /* ---- point functions over a run ---------------------------------------------------------- */
 
 typedef float PointFloat(const vlTextureNode *node, vlTexturePoint at);
@@ -14,7 +88,7 @@ static inline __attribute__((always_inline)) void each_lane(const vlTextureRun *
                                                             const vlTextureNode *node,
                                                             PointFloat *f, float *out) {
   for (uint32_t i = r->first; i < r->last; i++)
-    out[i] = f(node, vl_texture_point_of(r, node, i));
+    out[i] = f(node, point_of(r, node, i));
 }
 
 static void fill(const vlTextureRun *r, float value, float *out) {
@@ -26,7 +100,7 @@ static void fill(const vlTextureRun *r, float value, float *out) {
 static void bilerp_weights(const vlTextureRun *r, const vlTextureNode *node,
                            float *const w[4]) {
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlBilerpWeights k = vl_node_bilerp(node, vl_texture_point_of(r, node, i));
+    vlBilerpWeights k = vl_node_bilerp(node, point_of(r, node, i));
     for (int j = 0; j < 4; j++)
       w[j][i] = k.w[j];
   }
@@ -54,7 +128,7 @@ static void plan_lookups(const vlTextureRun *r, const vlTextureNode *node, const
       dt[VL_LANES];
   VL_ROW uint32_t taps[VL_LANES];
   for (uint32_t k = 0; k < l->count; k++) {
-    vlTexturePoint at = vl_texture_point_of(r, node, first + k);
+    vlTexturePoint at = point_of(r, node, first + k);
     vlVec2 st = vl_texture_st(node, at);
     s[k] = st.x;
     t[k] = st.y;
@@ -162,7 +236,7 @@ static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float
   const vlMipmap *mip = r->world->images.items[node->image].mipmap;
   if (!node->plain) {
     for (uint32_t i = r->first; i < r->last; i++)
-      out[i] = vl_node_image_float(node, mip, vl_texture_point_of(r, node, i));
+      out[i] = vl_node_image_float(node, mip, point_of(r, node, i));
     return;
   }
   Lookups l;
@@ -310,7 +384,7 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node,
   Upsampling up = upsampling_of(r, node);
   if (!node->plain) {
     for (uint32_t i = r->first; i < r->last; i++)
-      upsample(r, &up, vl_node_image_rgb(node, mip, vl_texture_point_of(r, node, i)), i, out);
+      upsample(r, &up, vl_node_image_rgb(node, mip, point_of(r, node, i)), i, out);
     return;
   }
   Lookups l;
@@ -331,7 +405,7 @@ static void vertex_color_spectrum(const vlTextureRun *r, const vlTextureNode *no
                                   float *const out[4]) {
   Upsampling up = upsampling_of(r, node);
   for (uint32_t i = r->first; i < r->last; i++)
-    upsample(r, &up, vl_node_vertex_color_rgb(node, vl_texture_point_of(r, node, i)), i, out);
+    upsample(r, &up, vl_node_vertex_color_rgb(node, point_of(r, node, i)), i, out);
 }
 
 typedef vlVec3 PointColor(const vlTextureNode *node, vlTexturePoint at);
@@ -341,15 +415,17 @@ static inline __attribute__((always_inline)) void each_color(const vlTextureRun 
                                                              float *const out[4]) {
   Upsampling up = upsampling_of(r, node);
   for (uint32_t i = r->first; i < r->last; i++)
-    upsample(r, &up, f(node, vl_texture_point_of(r, node, i)), i, out);
+    upsample(r, &up, f(node, point_of(r, node, i)), i, out);
 }
+
+static void lane_spectra(vlTextureRun *r, int32_t index, float *const out[4]);
 
 /* As mix_floats, scale_floats and bilerp_floats. */
 static void mix_spectra(vlTextureRun *r, const vlTextureNode *node, const float *share,
                         float *const out[4]) {
   float *b[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)};
-  vl_texture_spectrum(r, node->a, out);
-  vl_texture_spectrum(r, node->b, b);
+  lane_spectra(r, node->a, out);
+  lane_spectra(r, node->b, b);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++)
       out[c][i] = vl_node_mix(out[c][i], b[c][i], share[i]);
@@ -357,7 +433,7 @@ static void mix_spectra(vlTextureRun *r, const vlTextureNode *node, const float 
 
 static void scale_spectra(vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
   float *w = vl_texture_row(r);
-  vl_texture_spectrum(r, node->a, out);
+  lane_spectra(r, node->a, out);
   vl_texture_float(r, node->amount, w);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++)
@@ -370,7 +446,7 @@ static void bilerp_spectra(vlTextureRun *r, const vlTextureNode *node, float *co
   bilerp_weights(r, node, w);
   const int32_t inputs[4] = {node->a, node->b, node->c, node->d};
   for (int k = 0; k < 4; k++) {
-    vl_texture_spectrum(r, inputs[k], x);
+    lane_spectra(r, inputs[k], x);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++)
         out[c][i] = vl_node_bilerp_add(k ? out[c][i] : 0.0f, w[k][i], x[c][i]);
@@ -383,7 +459,7 @@ static void no_color(const vlTextureRun *r, float *const out[4]) {
     fill(r, __builtin_nanf(""), out[c]);
 }
 
-void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
+static void lane_spectra(vlTextureRun *r, int32_t index, float *const out[4]) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
   switch ((vlTextureKind)node->kind) {
@@ -415,4 +491,21 @@ void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
       break;
   }
   r->top = top;
+}
+
+void vl_texture_spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
+  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
+  lane_spectra(r, node, out);
+}
+
+void vl_texture_albedo(vlTextureRun *r, int32_t node, float scale, float rows[][VL_ROW_SIZE]) {
+  vl_texture_spectrum(r, node, rows);
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = r->first; i < r->last; i++)
+      rows[c][i] = vl_clamp(scale * rows[c][i], 0.0f, 1.0f);
+}
+
+vlTexel vl_texture_texel(const vlTextureRun *r, const vlTextureNode *node, uint32_t i) {
+  return vl_texture_image(node, r->world->images.items[node->image].mipmap,
+                          point_of(r, node, i));
 }

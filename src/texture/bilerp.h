@@ -2,7 +2,7 @@
 #ifndef TEXTURE_BILERP_H
 #define TEXTURE_BILERP_H
 
-#include "texture/lookup.h"
+#include "texture/node.h"
 
 /* Weights of the four inputs a, b, c, d. The weighted inputs are added in this order, starting
  * from 0. */

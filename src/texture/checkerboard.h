@@ -3,7 +3,7 @@
 #ifndef TEXTURE_CHECKERBOARD_H
 #define TEXTURE_CHECKERBOARD_H
 
-#include "texture/lookup.h"
+#include "texture/node.h"
 #include "velo/texture.h"
 
 /* Weight of the second input, 0 or 1. The pattern is not filtered; the samples of a pixel

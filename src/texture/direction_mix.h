@@ -2,7 +2,7 @@
 #ifndef TEXTURE_DIRECTION_MIX_H
 #define TEXTURE_DIRECTION_MIX_H
 
-#include "texture/lookup.h"
+#include "texture/node.h"
 #include "velo/texture.h"
 
 /* Weight of the second input. The weight of the first is the cosine between the normal and the

@@ -3,7 +3,7 @@
 #define TEXTURE_DOTS_H
 
 #include "math/noise.h"
-#include "texture/lookup.h"
+#include "texture/node.h"
 
 /* 1 inside a dot, 0 outside. Texture space is divided into unit cells. About half of them
  * contain a dot of radius 0.35 at a random place. */

@@ -17,6 +17,7 @@
 #include "texture/windy.h"
 #include "texture/wrinkled.h"
 #include "velo/texture.h"
+#include "world/world.h"
 
 /* X(kind, value, set) for each kind of texture whose value is one function of the point, by the
  * type of the value. value(node, at): the function. set(node, def): stores the numbers of the
@@ -38,6 +39,39 @@
 static inline void vl_node_set_nothing(vlTextureNode *node, const vlTextureDef *def) {
   (void)node;
   (void)def;
+}
+
+/* ---- what both evaluators do for each kind ----------------------------------------------- */
+
+/* Whether the node reads more than the first uv set. */
+static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
+  return node->uv_set != 0 || node->colors;
+}
+
+/* Sets the uv and vertex colour of a texture point on a triangle, as far as the node reads
+ * them. */
+static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where,
+                                        vlTexturePoint *at) {
+  for (int c = 0; c < 4; c++)
+    at->color[c] = 1.0f;
+  if (!where || !where->shape->triangles)
+    return;
+  const vlWorldShape *s = where->shape;
+  const uint32_t *f = s->indices + 3 * (size_t)where->prim;
+  const float *uvs = node->uv_set ? s->more_uvs[node->uv_set - 1] : NULL;
+  if (uvs) {
+    at->u = at->v = 0;
+    for (int k = 0; k < 3; k++) {
+      at->u += where->weights[k] * uvs[2 * (size_t)f[k]];
+      at->v += where->weights[k] * uvs[2 * (size_t)f[k] + 1];
+    }
+  }
+  for (int c = 0; node->colors && s->colors && c < 4; c++) {
+    float sum = 0;
+    for (int k = 0; k < 3; k++)
+      sum += where->weights[k] * s->colors[4 * (size_t)f[k] + (size_t)c];
+    at->color[c] = sum > 0.0f ? sum : 0.0f;
+  }
 }
 
 #endif

@@ -1,92 +1,9 @@
-/* texture/lookup.h: texture coordinates and filtered image lookup at one point. The functions
- * are inline and take values. Both evaluators use them through kinds.h. pbrt book 10.2-10.4. */
+/* texture/lookup.h: filtered image lookup at one point, of textures and lights. The functions
+ * are inline and take values. pbrt book 10.4. */
 #ifndef TEXTURE_LOOKUP_H
 #define TEXTURE_LOOKUP_H
 
-#include "velo/lookup.h"
-#include "velo/shape.h"
-#include "world/world.h"
-
-/* A point at which a texture is evaluated: uv, position and normal in world space, and the
- * footprint. The footprint has a width in world units and, for image lookups, the two axes of
- * an ellipse in (s, t). color: interpolated vertex colour, read only by nodes that use it. */
-typedef struct vlTexturePoint {
-  float u, v;
-  vlVec3 p, n;
-  float width;
-  float axes[4]; /* (s, t) of the first axis, then of the second axis; full lengths */
-  float color[4];
-} vlTexturePoint;
-
-/* Whether the node reads more than the first uv set. */
-static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
-  return node->uv_set != 0 || node->colors;
-}
-
-/* Sets the uv and vertex colour of a texture point on a triangle, as far as the node reads
- * them. */
-static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where,
-                                        vlTexturePoint *at) {
-  for (int c = 0; c < 4; c++)
-    at->color[c] = 1.0f;
-  if (!where || !where->shape->triangles)
-    return;
-  const vlWorldShape *s = where->shape;
-  const uint32_t *f = s->indices + 3 * (size_t)where->prim;
-  const float *uvs = node->uv_set ? s->more_uvs[node->uv_set - 1] : NULL;
-  if (uvs) {
-    at->u = at->v = 0;
-    for (int k = 0; k < 3; k++) {
-      at->u += where->weights[k] * uvs[2 * (size_t)f[k]];
-      at->v += where->weights[k] * uvs[2 * (size_t)f[k] + 1];
-    }
-  }
-  for (int c = 0; node->colors && s->colors && c < 4; c++) {
-    float sum = 0;
-    for (int k = 0; k < 3; k++)
-      sum += where->weights[k] * s->colors[4 * (size_t)f[k] + (size_t)c];
-    at->color[c] = sum > 0.0f ? sum : 0.0f;
-  }
-}
-
-static inline vlVec3 vl_texture_space(const vlTextureNode *node, vlVec3 p) {
-  return vl_affine_point(node->texture_from_world, p);
-}
-
-static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at) {
-  if (node->st_given)
-    return (vlVec2){node->st[0] * at.u + node->st[1] * at.v + node->st[2],
-                    node->st[3] * at.u + node->st[4] * at.v + node->st[5]};
-  if (node->mapping == VL_MAPPING_UV)
-    return (vlVec2){node->su * at.u + node->du, node->sv * at.v + node->dv};
-  vlVec3 q = vl_texture_space(node, at.p);
-  if (node->mapping == VL_MAPPING_PLANAR)
-    return (vlVec2){node->du + q.x * node->v1[0] + q.y * node->v1[1] + q.z * node->v1[2],
-                    node->dv + q.x * node->v2[0] + q.y * node->v2[1] + q.z * node->v2[2]};
-  float phi = vl_atan2(q.y, q.x);
-  if (node->mapping == VL_MAPPING_CYLINDRICAL)
-    return (vlVec2){(VL_PI + phi) * (0.5f * VL_INV_PI), q.z};
-  phi = phi < 0 ? phi + 2 * VL_PI : phi;
-  vlVec3 d = vl_normalize(q);
-  return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
-}
-
-/* Whether (s, t) is an affine function of the first uv set. */
-static inline bool vl_texture_over_uv(const vlTextureNode *node) {
-  return node->uv_set == 0 && (node->st_given || node->mapping == VL_MAPPING_UV);
-}
-/* Converts axes in uv to axes in (s, t). */
-static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float uv[4],
-                                         vlTexturePoint *at) {
-  for (int k = 0; k < 4; k += 2) {
-    at->axes[k] =
-        node->st_given ? node->st[0] * uv[k] + node->st[1] * uv[k + 1] : node->su * uv[k];
-    at->axes[k + 1] =
-        node->st_given ? node->st[3] * uv[k] + node->st[4] * uv[k + 1] : node->sv * uv[k + 1];
-  }
-}
-
-/* ---- images ------------------------------------------------------------------------------ */
+#include "texture/node.h"
 
 /* Maps an integer texel coordinate into the image by the wrap mode. -1: outside the image
  * (black). */
@@ -302,6 +219,18 @@ static inline vlFilterPlan vl_filter_plan_of(const vlMipmap *mip, const float ax
   return vl_filter_plan((float)mip->levels[0].width, (float)mip->levels[0].height,
                         (float)(mip->level_count - 1), (vlVec2){axes[0], axes[1]},
                         (vlVec2){axes[2], axes[3]});
+}
+
+/* Converts a footprint's axes in uv to axes in (s, t), for nodes whose (s, t) is an affine
+ * function of uv. */
+static inline void vl_texture_axes_of_uv(const vlTextureNode *node, const float uv[4],
+                                         vlTexturePoint *at) {
+  for (int k = 0; k < 4; k += 2) {
+    at->axes[k] =
+        node->st_given ? node->st[0] * uv[k] + node->st[1] * uv[k + 1] : node->su * uv[k];
+    at->axes[k + 1] =
+        node->st_given ? node->st[3] * uv[k] + node->st[4] * uv[k + 1] : node->sv * uv[k + 1];
+  }
 }
 
 /* A lookup in an image texture: where the image is read (t is measured from the top) and how it

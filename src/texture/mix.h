@@ -2,7 +2,7 @@
 #ifndef TEXTURE_MIX_H
 #define TEXTURE_MIX_H
 
-#include "texture/lookup.h"
+#include "texture/node.h"
 
 /* share: weight of the second input. Also of the other kinds that mix two inputs
  * (VL_SHARE_NODES). */

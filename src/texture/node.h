@@ -1,5 +1,6 @@
-/* texture/node.h: compiled textures: a flat list of nodes. A node refers to its inputs by
- * index, and these indices are always lower than its own. Spectra are compiled for their role:
+/* texture/node.h: compiled textures: a flat list of nodes, and the points at which they are
+ * evaluated. A node refers to its inputs by index, and these indices are always lower than its
+ * own. Spectra are compiled for their role:
  * an RGB colour gives different spectra as an albedo and as an illuminant. */
 #ifndef TEXTURE_NODE_H
 #define TEXTURE_NODE_H
@@ -7,6 +8,9 @@
 #include "base/file_stamp.h"
 #include "color/color.h"
 #include "image/mipmap.h"
+#include "math/approx.h"
+#include "math/vec.h"
+#include "velo/lookup.h"
 #include "velo/world.h"
 
 /* A constant spectrum, ready for 4 channels. In RGB mode kind is always VL_SPECTRAL_RGB. */
@@ -80,6 +84,45 @@ typedef struct vlTextureNode {
   float texture_from_world[12];
 } vlTextureNode;
 
+/* ---- where a node is evaluated (pbrt book 10.2) -------------------------------------------
+ */
+
+/* A point at which a texture is evaluated: uv, position and normal in world space, and the
+ * footprint. The footprint has a width in world units and, for image lookups, the two axes of
+ * an ellipse in (s, t). color: interpolated vertex colour, read only by nodes that use it. */
+typedef struct vlTexturePoint {
+  float u, v;
+  vlVec3 p, n;
+  float width;
+  float axes[4]; /* (s, t) of the first axis, then of the second axis; full lengths */
+  float color[4];
+} vlTexturePoint;
+
+static inline vlVec3 vl_texture_space(const vlTextureNode *node, vlVec3 p) {
+  return vl_affine_point(node->texture_from_world, p);
+}
+
+/* Texture coordinates of the point. */
+static inline vlVec2 vl_texture_st(const vlTextureNode *node, vlTexturePoint at) {
+  if (node->st_given)
+    return (vlVec2){node->st[0] * at.u + node->st[1] * at.v + node->st[2],
+                    node->st[3] * at.u + node->st[4] * at.v + node->st[5]};
+  if (node->mapping == VL_MAPPING_UV)
+    return (vlVec2){node->su * at.u + node->du, node->sv * at.v + node->dv};
+  vlVec3 q = vl_texture_space(node, at.p);
+  if (node->mapping == VL_MAPPING_PLANAR)
+    return (vlVec2){node->du + q.x * node->v1[0] + q.y * node->v1[1] + q.z * node->v1[2],
+                    node->dv + q.x * node->v2[0] + q.y * node->v2[1] + q.z * node->v2[2]};
+  float phi = vl_atan2(q.y, q.x);
+  if (node->mapping == VL_MAPPING_CYLINDRICAL)
+    return (vlVec2){(VL_PI + phi) * (0.5f * VL_INV_PI), q.z};
+  phi = phi < 0 ? phi + 2 * VL_PI : phi;
+  vlVec3 d = vl_normalize(q);
+  return (vlVec2){vl_acos(vl_clamp(d.z, -1, 1)) * VL_INV_PI, phi * (0.5f * VL_INV_PI)};
+}
+
+/* ---- the images of a world --------------------------------------------------------------- */
+
 /* What tells whether an image is that of an earlier build: from which bytes it was made, and
  * how. */
 typedef struct vlImageKey {
@@ -104,6 +147,8 @@ typedef struct vlWorldImage {
   bool encoding_given;
   float gamma;
 } vlWorldImage;
+
+/* ---- compiling, and evaluation at one point ---------------------------------------------- */
 
 struct vlWorld;
 /* What functions that add a node return when memory is exhausted. */

@@ -4,7 +4,7 @@
 #define TEXTURE_NOISE_H
 
 #include "math/noise.h"
-#include "texture/lookup.h"
+#include "texture/node.h"
 #include "velo/texture.h"
 
 /* Width of the footprint in texture space: its width in world units times the largest factor by

@@ -2,7 +2,7 @@
 #ifndef TEXTURE_SCALE_H
 #define TEXTURE_SCALE_H
 
-#include "texture/lookup.h"
+#include "texture/node.h"
 
 static inline float vl_node_scale(float a, float amount) {
   return a * amount;

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "material/rows.hot.h"
+#include "material/inputs.hot.h"
 
 /* ---- sorting ----------------------------------------------------------------------------- */
 

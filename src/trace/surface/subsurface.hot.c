@@ -12,7 +12,7 @@
  * density of an exit point is the sum over all three directions, and is computed for each
  * wavelength. */
 #include "material/bssrdf.h"
-#include "material/rows.hot.h"
+#include "material/inputs.hot.h"
 #include "math/fresnel.h"
 #include "math/warp.h"
 #include "trace/medium/volume.h"
@@ -442,7 +442,7 @@ void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m) {
   (*albedo)[VL_ROW_SIZE] = sh->own + VL_S_ALBEDO;
   const float most = 1e15f; /* per unit of length: its square is finite */
   if (b->mfp >= 0) {
-    vl_rows_spectrum(r, b->mfp, sigma);
+    vl_texture_spectrum(r, b->mfp, sigma);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) {
         float length = vl_max(m->scale * sigma[c][i], 1.0f / most);
@@ -451,8 +451,8 @@ void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m) {
       }
     return;
   }
-  vl_rows_spectrum(r, b->sigma_a, sigma);
-  vl_rows_spectrum(r, b->sigma_s, albedo);
+  vl_texture_spectrum(r, b->sigma_a, sigma);
+  vl_texture_spectrum(r, b->sigma_s, albedo);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) {
       float a = vl_clamp(m->scale * sigma[c][i], 0.0f, most),

@@ -1,8 +1,8 @@
-/* material/rows.hot.h: evaluation of material parameters over a run of lanes; private to the
+/* material/inputs.hot.h: evaluation of material parameters over a run of lanes; private to the
  * hot files of material and to subsurface.hot.c. Results go to lanes [r->first, r->last)
  * of the rows. */
-#ifndef MATERIAL_ROWS_HOT_H
-#define MATERIAL_ROWS_HOT_H
+#ifndef MATERIAL_INPUTS_HOT_H
+#define MATERIAL_INPUTS_HOT_H
 
 #include "texture/run.hot.h"
 
@@ -20,30 +20,8 @@ vlParametersFn vl_stage_layers, vl_stage_translucent, vl_stage_subsurface_inputs
 void vl_stage_coat_frames(const vlSurface *surface, vlShade *shade, uint32_t first,
                           uint32_t last);
 
-/* Evaluates a spectrum texture at the four wavelengths. */
-static inline void vl_rows_spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
-  float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  vl_texture_spectrum(r, node, out);
-}
-
-/* Evaluates a spectrum texture times scale, clamped to [0, 1]. */
-static inline void vl_rows_albedo(vlTextureRun *r, int32_t node, float scale,
-                                  float rows[][VL_ROW_SIZE]) {
-  vl_rows_spectrum(r, node, rows);
-  for (int c = 0; c < 4; c++)
-    for (uint32_t i = r->first; i < r->last; i++)
-      rows[c][i] = vl_clamp(scale * rows[c][i], 0.0f, 1.0f);
-}
-
 /* Evaluates a roughness texture to the microfacets' alpha. If the material has pbrt's
  * remaproughness, alpha is the square root of the roughness. */
-static inline void vl_row_alpha(vlTextureRun *r, const vlWorldMaterial *m, int32_t node,
-                                float *alpha) {
-  vl_texture_float(r, node, alpha);
-  for (uint32_t i = r->first; i < r->last; i++) {
-    float x = alpha[i] > 0.0f ? alpha[i] : 0.0f;
-    alpha[i] = m->remap ? __builtin_sqrtf(x) : x;
-  }
-}
+void vl_stage_roughness(vlTextureRun *r, const vlWorldMaterial *m, int32_t node, float *alpha);
 
 #endif

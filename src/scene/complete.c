@@ -17,6 +17,7 @@
 #include "scene/plain.h"
 #include "scene/stray.h"
 #include "scene/studio.h"
+#include "scene/tilt.h"
 #include "scene/upright.h"
 #include "schema/schema.h"
 #include "velo/material.h"
@@ -94,6 +95,39 @@ static bool is_closed(const double mean_normal[3]) {
   return vl_norm3(mean_normal) < 0.05;
 }
 
+/* Turns a view that shows a tilted plane edge-on by the least angle at which it lies open, and
+ * upwards rather than downwards: a plane that faces up is seen from above. */
+static bool open_plane(const vlScene *scene, const vlExtent *box, View *v) {
+  const double open = 0.6, steepest = 1.2; /* sine of the least angle to the plane; radians */
+  double n[3], ahead[3], level = 0;
+  if (v->on_plain || !vl_tilt_find(scene, box, n))
+    return false;
+  for (int i = 0; i < 3; i++)
+    ahead[i] = vl_precise_cos(v->elevation) * (vl_precise_cos(v->azimuth) * v->front[i] +
+                                               vl_precise_sin(v->azimuth) * v->right[i]) +
+               vl_precise_sin(v->elevation) * v->up[i];
+  double along = vl_dot3(n, ahead);
+  const double rise = vl_dot3(n, v->up), upwards = 0.1;
+  if (fabs(along) >= open)
+    return false;
+  const double sign = (fabs(rise) > upwards ? rise : along) < 0 ? -1 : 1;
+  along *= sign;
+  for (int i = 0; i < 3; i++) {
+    n[i] *= sign;
+    ahead[i] -= along * n[i]; /* in the plane */
+  }
+  level = vl_norm3(ahead);
+  if (!(level > 0))
+    return false;
+  for (int i = 0; i < 3; i++)
+    ahead[i] = sqrt(1 - open * open) * ahead[i] / level + open * n[i];
+  const double x = vl_dot3(ahead, v->right), z = vl_dot3(ahead, v->front);
+  v->azimuth = vl_atan2_double(x, z);
+  v->elevation =
+      fmin(fmax(vl_atan2_double(vl_dot3(ahead, v->up), sqrt(x * x + z * z)), 0), steepest);
+  return true;
+}
+
 /* Flat models are seen nearly along their normal, from the side of their faces' fronts (flat
  * ground from below only if it cannot be seen from above); charts that are less flat, from the
  * front. */
@@ -133,11 +167,12 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
     v->elevation = 0.15;
     return left ? "flat: from the left" : "flat: from the right";
   }
-  if (v->front_unknown && vl_facing_is_behind(scene, box, v->front)) {
-    v->azimuth += half_turn;
-    return "from behind, where the model has more detail";
-  }
-  return "from the front, a little from the right and above";
+  const bool behind = v->front_unknown && vl_facing_is_behind(scene, box, v->front);
+  v->azimuth += behind ? half_turn : 0;
+  if (open_plane(scene, box, v))
+    return "flat and tilted: from the side on which it lies open";
+  return behind ? "from behind, where the model has more detail"
+                : "from the front, a little from the right and above";
 }
 
 static const char *choose_view(const vlScene *scene, const vlCompleteDef *def,

@@ -145,15 +145,28 @@ static void finish(Survey *s) {
   }
 }
 
-/* Whether all faces are those of octahedra along the axes: the balls that importers make of the
- * points of a file. */
-static bool is_octahedra(const vlPosture *posture) {
-  const double third = 0.5773502691896258;
+/* Whether the mesh consists of octahedra of their own six corners: the balls that importers
+ * make of the points of a file. */
+static bool is_octahedra(const vlShapeDef *shape) {
+  enum { FACES = 8, CORNERS = 6 };
+  if (shape->faces == 0 || shape->faces % FACES ||
+      shape->vertices != shape->faces / FACES * CORNERS)
+    return false;
   bool same = true;
-  for (int i = 0; i < 3; i++)
-    same = same && fabs(posture->facing[i] - third) < 1e-3 && fabs(posture->normal[i]) < 1e-3 &&
-           posture->flat[i] == 0;
+  for (size_t i = 0; i < 3 * (size_t)shape->faces && same; i++)
+    same = shape->indices[i] / CORNERS == i / (3 * FACES);
   return same;
+}
+
+/* Whether all meshes are such balls. */
+static bool has_only_balls(const vlScene *scene) {
+  bool only = true;
+  for (size_t k = 0; k < scene->shapes.count && only; k++) {
+    const vlShapeDef *shape = &scene->shapes.items[k];
+    if (shape->kind == VL_SHAPE_TRIANGLES && !shape->group.index)
+      only = is_octahedra(shape);
+  }
+  return only;
 }
 
 bool vl_posture_find(const vlScene *scene, const vlExtent *box, vlPosture *posture) {
@@ -179,7 +192,7 @@ bool vl_posture_find(const vlScene *scene, const vlExtent *box, vlPosture *postu
   const bool some = s->sum > 0 && isfinite(s->sum);
   if (some)
     finish(s);
-  posture->points = posture->points || is_octahedra(posture);
+  posture->points = posture->points || has_only_balls(scene);
   vl_free(scene->context, s);
   return some;
 }

@@ -5,7 +5,9 @@
 
 #include <math.h>
 
+#include "math/double3.h"
 #include "math/elementary.h"
+#include "scene/faces.h"
 #include "scene/facing.h"
 #include "scene/plain.h"
 #include "scene/posture.h"
@@ -210,12 +212,12 @@ static bool is_symmetric_otherwise(const Ends *e, const vlPosture *p, int now, i
  * underside. It has hills in both directions; curtains and flags have folds in one. */
 static bool is_terrain(const vlPosture *p, int axis) {
   const double single = 0.97, slope = 0.05, whole = 0.95, level = 0.8, steep = 0.3, full = 0.8,
-               none = 0.1, both_sides = 2.2;
+               none = 0.1, both_sides = 2.2, even = 0.5;
   const bool open = fabs(p->normal[axis]) >= single * p->facing[axis] &&
                     p->flat[axis] <= level * p->silhouette[axis] && p->facing[axis] >= steep;
   const bool block = p->ends[axis][LOW] >= full && p->ends[axis][HIGH] <= none &&
                      p->silhouette[axis] <= both_sides &&
-                     p->flat[axis] <= p->ends[axis][LOW] + none;
+                     p->flat[axis] <= p->ends[axis][LOW] + even;
   return (open || block) && p->covered[axis] >= whole && p->facing[(axis + 1) % 3] >= slope &&
          p->facing[(axis + 2) % 3] >= slope;
 }
@@ -235,6 +237,60 @@ static bool is_storey(const Ends *e, const vlPosture *p, int now, int other) {
                p->silhouette[i] >= hollow;
   return storey && p->ends[other][LOW] >= floor_least &&
          height <= most * fmin(size_of(e, now), size_of(e, 0));
+}
+
+/* How the parts of a model, its shapes, stand along two axes. */
+typedef struct Standing {
+  const Ends *e;
+  int now, other;
+  const vlShapeDef *shape; /* whose faces are added */
+  vlExtent box;            /* of it */
+  double area, moment;     /* sums: of its faces; of them times their place along `other` */
+  uint32_t parts, low_now; /* all; at the low end of the model along `now` */
+  uint32_t low_other;      /* at the low end along `other`, and tapering away from it */
+} Standing;
+
+static void end_part(Standing *s) {
+  const double near = 0.06, tall = 0.3, heavy = 0.45;
+  if (!s->shape || !(s->area > 0))
+    return;
+  const double from_now = s->box.low[s->now] - s->e->box.low[s->now],
+               from_other = s->box.low[s->other] - s->e->box.low[s->other],
+               height = s->box.high[s->other] - s->box.low[s->other],
+               middle = s->moment / s->area - s->box.low[s->other];
+  s->parts++;
+  s->low_now += from_now <= near * size_of(s->e, s->now);
+  s->low_other += from_other <= near * size_of(s->e, s->other) &&
+                  height >= tall * size_of(s->e, s->other) && middle <= heavy * height;
+}
+
+static void add_part_face(void *user, const vlShapeDef *shape, const vlFace *face) {
+  Standing *s = user;
+  if (shape != s->shape) {
+    end_part(s);
+    s->shape = shape;
+    s->box = vl_extent_nothing;
+    s->area = s->moment = 0;
+  }
+  const double area = vl_norm3(face->area);
+  for (int k = 0; k < 3; k++)
+    vl_extent_grow(&s->box, face->corners[k]);
+  if (!(area > 0) || !isfinite(area))
+    return;
+  s->area += area;
+  s->moment += area * face->middle[s->other];
+}
+
+/* Whether the model consists of many parts that stand side by side along `other`, each heavier
+ * below than above, and not along `now`: trees, chessmen. */
+static bool parts_stand(const vlScene *scene, const Ends *e, int now, int other) {
+  const uint32_t many = 8;
+  Standing s = {.e = e, .now = now, .other = other};
+  if (scene->shapes.count < many)
+    return false;
+  vl_faces_visit(scene, add_part_face, &s);
+  end_part(&s);
+  return s.parts >= many && 5 * s.low_other >= 4 * s.parts && 2 * s.low_now <= s.parts;
 }
 
 /* Whether a cloud of points is wide along `other` and covers all, or has a ground: what
@@ -267,7 +323,8 @@ static Guess guess_by_surface(const vlScene *scene, const Ends *e, int now, int 
   if (is_terrain(&p, now) || is_sheet(scene, now))
     return KEEP;
   const bool change = is_terrain(&p, other) || is_symmetric_otherwise(e, &p, now, other) ||
-                      is_storey(e, &p, now, other) || is_survey(e, &p, other);
+                      is_storey(e, &p, now, other) || is_survey(e, &p, other) ||
+                      parts_stand(scene, e, now, other);
   return change ? CHANGE : UNKNOWN;
 }
 

@@ -58,6 +58,9 @@ navy = [0.01, 0.015, 0.08]
 sofa = [(box((-1, 0.2, -0.4), (1, 0.5, 0.4)), navy, True), (box((-1, 0.5, -0.4), (1, 1, -0.2)), navy, True)]
 white = [(box((-1, 0, -1), (1, 2, 1)), [0.8, 0.8, 0.8], True)]
 write("plain.glb", sofa)
+chalk = [0.95, 0.95, 0.95]
+write("snow.glb", [(box((-40, -1, -40), (40, 0, 40)), chalk, True), (box((-1, 0, -1), (1, 1, 1)), chalk, True)])
+write("slope.glb", [(box((-40, -1, -40), (40, 0, 40)), navy, True), (box((-1, 0, -1), (1, 1, 1)), chalk, True)])
 write("white.glb", white)
 for name, kind, strength in (("sun", "directional", 6830), ("noon", "directional", 100000), ("dim", "point", 0.1)):
     write(name + ".glb", sofa, {"type": kind, "intensity": strength})
@@ -102,6 +105,11 @@ expect_text decisions_exposure 'exposure: white has'
 check switched "$VELO" render sun.glb $small -v --no-ground --framing front --exposure -10 --environment none -o switched.png
 expect_text switched_camera 'from the front, as asked'
 for word in 'ground:' 'light:' 'exposure:'; do expect_absent "switched_${word%:}" "$word"; done
+# A white thing on a white plain is made darker; on a dark one it stays as it is.
+check snow "$VELO" render snow.glb $small -o snow.png
+expect_text snow_is_darker 'exposed by -'
+check slope "$VELO" render slope.glb $small -o slope.png
+expect_absent slope_stays 'exposed by'
 # What one sees through does not set the exposure, unless there is nothing else and the file has lamps.
 check glass "$VELO" render glass.glb $small -o glass.png
 expect_absent glass_as_it_is 'exposed by'

@@ -130,6 +130,11 @@ static double most_stops(ModelLight *light, double white) {
   return most > 0 ? most : 0;
 }
 
+/* The luminance that half of the pixels exceed. Call after most_stops. */
+static double median_of(const ModelLight *light) {
+  return light->all[light->all_count / 2];
+}
+
 /* Whether one sees through the material: what it shows is the light behind it. id: of the
  * channel id.material. */
 static bool is_clear(const vlScene *scene, uint32_t id) {
@@ -227,6 +232,7 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
  * share of the model's pixels that get less than a quarter of it. */
 typedef struct Metered {
   double white, unlit, most_stops;
+  double median; /* of the luminance of all pixels; 0 of surfaces that only emit */
   size_t pixels, all;
   size_t seen; /* pixels that show any of the model */
 } Metered;
@@ -267,13 +273,23 @@ static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld 
     for (size_t i = 0; i < light->count; i++)
       unlit += light->ratio[i] <= 0.25 * metered->white;
     metered->unlit = light->count ? (double)unlit / (double)light->count : 0;
-    metered->most_stops = light->count && !emits ? most_stops(light, WHITE) : 0;
+    const bool reflects = light->count && !emits;
+    metered->most_stops = reflects ? most_stops(light, WHITE) : 0;
+    metered->median = reflects ? median_of(light) : 0;
   }
   free(light);
   vl_image_destroy(small.color);
   vl_image_destroy(small.albedos);
   vl_image_destroy(small.ids);
   return result;
+}
+
+/* An image of which more than half is nearly white, a white thing on a white plain, is made
+ * darker: white becomes light grey, on which white edges and shadows are seen. */
+static double without_glare(double stops, double median) {
+  const double glare = 0.75, paper = 0.55;
+  const double shown = median * exp2(stops);
+  return shown > glare ? stops + log2(paper / shown) : stops;
 }
 
 int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld *world,
@@ -289,7 +305,8 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
     return report_error(&error, result, "metering");
   double stops = m.white > 0 ? log2(WHITE / m.white) : 0;
   stops = stops > 0 && stops > m.most_stops ? m.most_stops : stops;
-  stops = round(10 * (fabs(stops) <= leave ? 0 : stops)) / 10;
+  stops = without_glare(fabs(stops) <= leave ? 0 : stops, m.median);
+  stops = round(10 * stops) / 10;
   *ev = (float)(stops < -64 ? -64 : stops > 64 ? 64 : stops);
   if (m.all && !m.seen)
     report_note(

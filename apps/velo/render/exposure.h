@@ -16,7 +16,8 @@ float exposure_meter(const vlImage *image);
  * compares the radiance of the model's pixels (alpha > 0) with their albedo. *ev: the exposure
  * in stops, rounded to a tenth, that makes a white surface in this light bright; within `leave`
  * of 0 it becomes 0. What one sees through (glass) does not count, and a tenth of all pixels at
- * most becomes brighter than a white model. A model of which only surfaces are seen that emit
+ * most becomes brighter than a white model. An image of which more than half would be nearly
+ * white is made darker, whatever `leave` is. A model of which only surfaces are seen that emit
  * light and reflect none is made darker where they are brighter than a white model, never
  * brighter. A note says where nothing of the model is seen. scene: that of the world. Returns
  * -1, or the exit code after reporting the error. */

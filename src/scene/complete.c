@@ -18,6 +18,7 @@
 #include "scene/stray.h"
 #include "scene/studio.h"
 #include "scene/tilt.h"
+#include "scene/tray.h"
 #include "scene/upright.h"
 #include "schema/schema.h"
 #include "velo/material.h"
@@ -128,6 +129,23 @@ static bool open_plane(const vlScene *scene, const vlExtent *box, View *v) {
   return true;
 }
 
+/* The axis that points up; 3: none does. */
+static int upward_axis(const View *v) {
+  int axis = 0;
+  while (axis < 3 && v->up[axis] != 1)
+    axis++;
+  return axis;
+}
+
+/* Whether the view is one into a room without a ceiling; then it is from higher above. */
+static bool look_into(const vlScene *scene, const vlExtent *box, View *v) {
+  const int axis = upward_axis(v);
+  if (axis == 3 || v->on_plain || !vl_tray_is(scene, box, axis))
+    return false;
+  v->elevation = 0.9;
+  return true;
+}
+
 /* Flat models are seen nearly along their normal, from the side of their faces' fronts (flat
  * ground from below only if it cannot be seen from above); charts that are less flat, from the
  * front. */
@@ -169,6 +187,8 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
   }
   const bool behind = v->front_unknown && vl_facing_is_behind(scene, box, v->front);
   v->azimuth += behind ? half_turn : 0;
+  if (look_into(scene, box, v))
+    return "open above: from above";
   if (open_plane(scene, box, v))
     return "flat and tilted: from the side on which it lies open";
   return behind ? "from behind, where the model has more detail"
@@ -487,10 +507,8 @@ static bool find_own_view(const vlScene *scene, const vlExtent *box, View *v) {
  * limits, down to the ground. */
 static void find_plain(const vlScene *scene, vlExtent *boxes, vlExtent *box, View *v) {
   vlPlain plain;
-  int axis = 0;
-  while (axis < 2 && v->up[axis] != 1)
-    axis++;
-  if (v->up[axis] != 1 || !vl_plain_find(scene, boxes, axis, &plain))
+  const int axis = upward_axis(v);
+  if (axis == 3 || !vl_plain_find(scene, boxes, axis, &plain))
     return;
   v->on_plain = true;
   v->shown = plain.shown;

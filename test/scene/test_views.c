@@ -5,6 +5,7 @@
 
 #include "model.h"
 #include "scene/tilt.h"
+#include "scene/tray.h"
 #include "unit.h"
 
 /* The y-axis files' up and front, the other axis being tried. */
@@ -77,6 +78,60 @@ static void a_block_is_no_plane(void **state) {
   assert_true(fabs(vl_scene_completed(m.scene).azimuth - 0.45) < 1e-9);
   assert_true(fabs(vl_scene_completed(m.scene).elevation - 0.3) < 1e-9);
   end(&m);
+}
+
+/* ---- rooms without a ceiling ------------------------------------------------------------- */
+
+/* Floor and four walls of boxes, with a ceiling or without, along the axis; or the sheet of a
+ * box without its top. */
+static void add_room(Model *m, int up, bool ceiling) {
+  static const float parts[6][2][3] = {
+      {{-2.2f, -0.2f, -2.7f}, {2.2f, 0, 2.7f}}, {{-2.2f, 0, -2.7f}, {-2, 2.5f, 2.7f}},
+      {{2, 0, -2.7f}, {2.2f, 2.5f, 2.7f}},      {{-2, 0, -2.7f}, {2, 2.5f, -2.5f}},
+      {{-2, 0, 2.5f}, {2, 2.5f, 2.7f}},         {{-2.2f, 2.5f, -2.7f}, {2.2f, 2.7f, 2.7f}}};
+  for (int k = 0; k < (ceiling ? 6 : 5); k++) {
+    float low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+      low[(i + up + 2) % 3] = parts[k][0][i];
+      high[(i + up + 2) % 3] = parts[k][1][i];
+    }
+    add_box(m, low, high, false, false);
+  }
+}
+
+static void rooms_without_ceiling(void **state) {
+  (void)state;
+  for (int up = 1; up < 3; up++)
+    for (int ceiling = 0; ceiling < 2; ceiling++) {
+      Model m = begin();
+      add_room(&m, up, ceiling);
+      vlCompleteDef def = first_image();
+      if (up == 2) {
+        def.up[1] = def.front[2] = 0;
+        def.up[2] = 1;
+        def.front[1] = -1;
+      }
+      complete(&m, &def);
+      assert_true((vl_scene_completed(m.scene).elevation > 0.8) == !ceiling);
+      end(&m);
+    }
+  for (int k = 0; k < 3; k++) { /* a sheet; seen from one side; with its top */
+    static const float low[3] = {-2, 0, -2}, high[3] = {2, 2, 2};
+    static const uint32_t top[2] = {8, 9}; /* faces of the box at the high end of y */
+    Model m = begin();
+    add_box(&m, low, high, k == 1, k == 1);
+    vlShapeDef *shape = &m.scene->shapes.items[0];
+    uint32_t kept[36], n = 0;
+    for (uint32_t face = 0; face < 12; face++)
+      if (k == 2 || (face != top[0] && face != top[1]))
+        for (uint32_t c = 0; c < 3; c++)
+          kept[n++] = shape->indices[3 * face + c];
+    shape->indices = kept;
+    shape->faces = n / 3;
+    const vlExtent box = {{-2, 0, -2}, {2, 2, 2}};
+    assert_int_equal(vl_tray_is(m.scene, &box, 1), k == 0);
+    end(&m);
+  }
 }
 
 /* ---- what stands ------------------------------------------------------------------------- */
@@ -215,9 +270,9 @@ static void points_far_away(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(leaning_discs),   cmocka_unit_test(a_block_is_no_plane),
-      cmocka_unit_test(trees_stand),     cmocka_unit_test(blocks_of_terrain),
-      cmocka_unit_test(points_far_away),
+      cmocka_unit_test(leaning_discs),         cmocka_unit_test(a_block_is_no_plane),
+      cmocka_unit_test(rooms_without_ceiling), cmocka_unit_test(trees_stand),
+      cmocka_unit_test(blocks_of_terrain),     cmocka_unit_test(points_far_away),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

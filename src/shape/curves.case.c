@@ -6,6 +6,8 @@
  * by the cosine between their normal and the ray, and so is their normal: the mean product is
  * 4 / (3 pi). */
 #define STRAIGHT "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width\" .1 "
+#define TAPERED \
+  "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width0\" .05 \"float width1\" .15 "
 #define BENT "\"point3 P\" [-1 0 0 -.3 1 .2 .3 -1 -.2 1 0 0]"
 
 const ShapeCase curves_shape = {
@@ -31,6 +33,14 @@ const ShapeCase curves_shape = {
              /* the normal turns by 90 degrees from the middle to an edge */
              .known = {{{.3, .025, 1}, {0, 0, -1}, 1, .75, NAN, .70710678}},
              .known_count = 1},
+            /* it widens from .05 to .15 */
+            {.parameters = TAPERED "\"string type\" \"flat\"",
+             .area = 0.12 * HALF_TURN / 2,
+             .reach = 0.61,
+             .faces_rays = true,
+             .known = {{{.3, .06, 1}, {0, 0, -1}, 1, .75, NAN},
+                       {{-.3, .04, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
+             .known_count = 2},
         },
     .parameters =
         {

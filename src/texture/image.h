@@ -7,7 +7,7 @@
 /* The value of a plain image node (vlTextureNode.plain) whose texel is t. */
 static inline float vl_plain_float(const vlMipmap *mip, vlTexel t) {
   uint32_t channels = mip->channels;
-  return channels == 1   ? t.c[0]
+  return channels < 3    ? t.c[0]
          : channels == 4 ? t.c[3]
                          : (t.c[0] + t.c[1] + t.c[2]) * (1.0f / 3.0f);
 }

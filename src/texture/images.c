@@ -41,20 +41,20 @@ static bool is_covered(const vlImage *image, uint32_t alpha) {
 
 /* Selects the colour channels (one for a grey image) and alpha, unless alpha is 1 everywhere.
  * Channels are selected by name, because EXR sorts them. */
-static void choose_channels(const vlImage *image, bool keep_coverage, vlMipmapDef *mip) {
+static void choose_channels(const vlImage *image, vlMipmapDef *mip) {
   int r = vl_image_find_channel(image, "R"), g = vl_image_find_channel(image, "G"),
       b = vl_image_find_channel(image, "B");
   int a = vl_image_find_channel(image, "A");
+  bool covered = a < 0 || is_covered(image, (uint32_t)a);
   if (r < 0 || g < 0 || b < 0) {
     int y = vl_image_find_channel(image, "Y");
     mip->channel[0] = y < 0 ? 0 : (uint32_t)y;
     mip->channel[1] = a < 0 ? 0 : (uint32_t)a;
-    mip->count = a >= 0 && keep_coverage ? 2 : 1;
+    mip->count = covered ? 1 : 2;
     return;
   }
-  bool covered = a < 0 || is_covered(image, (uint32_t)a);
   uint32_t channels[4] = {(uint32_t)r, (uint32_t)g, (uint32_t)b, (uint32_t)(a < 0 ? 0 : a)};
-  mip->count = a >= 0 && !covered ? 4 : 3;
+  mip->count = covered ? 3 : 4;
   memcpy(mip->channel, channels, sizeof channels);
 }
 
@@ -67,7 +67,7 @@ typedef struct Image {
   const vlImage *given;
   const vlEncoding *encoding; /* null: the image's own */
   float gamma;
-  bool pyramid, keep_coverage;
+  bool pyramid;
   uint64_t owner; /* vlImageKey.owner */
 } Image;
 
@@ -87,7 +87,7 @@ static vlResult load_image(const vlWorld *world, const Image *p, vlMipmap **mipm
   given = image ? image : given;
   vlMipmapDef mip;
   memset(&mip, 0, sizeof mip);
-  choose_channels(given, p->keep_coverage, &mip);
+  choose_channels(given, &mip);
   mip.only_finest = !p->pyramid;
   mip.own_encoding = p->encoding != NULL;
   mip.encoding = p->encoding ? *p->encoding : VL_ENCODING_LINEAR;
@@ -108,7 +108,6 @@ static vlImageKey key_of(const Image *p) {
   vlImageKey key;
   memset(&key, 0, sizeof key);
   key.pyramid = p->pyramid;
-  key.keep_coverage = p->keep_coverage;
   key.owner = p->owner;
   key.encoding_given = p->encoding != NULL;
   if (p->encoding) {
@@ -129,8 +128,8 @@ static void add_digest(const Image *p, vlImageKey *key) {
 
 static bool made_alike(const vlImageKey *a, const vlImageKey *b) {
   return a->stamp.there == b->stamp.there && a->pyramid == b->pyramid &&
-         a->keep_coverage == b->keep_coverage && a->encoding_given == b->encoding_given &&
-         a->encoding == b->encoding && a->gamma == b->gamma;
+         a->encoding_given == b->encoding_given && a->encoding == b->encoding &&
+         a->gamma == b->gamma;
 }
 
 /* The image of the previous world with these bytes, or null. The key gets its digest if that is
@@ -214,8 +213,12 @@ static int32_t obtain_image(vlWorld *world, const Image *p, vlError *error) {
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given,
                            const vlEncoding *encoding, float gamma, bool pyramid,
                            vlError *error) {
-  Image p = {NULL,     path,  NULL,    0,     given,
-             encoding, gamma, pyramid, false, given ? given->number : 0};
+  Image p = {.path = path,
+             .given = given,
+             .encoding = encoding,
+             .gamma = gamma,
+             .pyramid = pyramid,
+             .owner = given ? given->number : 0};
   return obtain_image(world, &p, error);
 }
 
@@ -230,10 +233,15 @@ static uint64_t owner_of(const vlScene *scene, const vlTextureDef *def) {
 }
 
 static Image open_image(const vlScene *scene, const vlTextureDef *def) {
-  return (Image){def->name,           def->path,  def->data,
-                 def->data_size,      def->image, def->encoding_given ? &def->encoding : NULL,
-                 def->gamma,          true,       def->data != NULL,
-                 owner_of(scene, def)};
+  return (Image){.name = def->name,
+                 .path = def->path,
+                 .data = def->data,
+                 .size = def->data_size,
+                 .given = def->image,
+                 .encoding = def->encoding_given ? &def->encoding : NULL,
+                 .gamma = def->gamma,
+                 .pyramid = true,
+                 .owner = owner_of(scene, def)};
 }
 
 /* Stores the path (or memory address) and the encoding in an entry. Later requests find the

@@ -130,7 +130,7 @@ typedef struct vlImageKey {
   uint64_t size;      /* number of bytes in memory */
   uint64_t owner;     /* of bytes in memory: their number in the scene; 0: not known */
   uint8_t digest[16]; /* of bytes in memory */
-  bool pyramid, keep_coverage, encoding_given;
+  bool pyramid, encoding_given;
   vlEncoding encoding;
   float gamma;
 } vlImageKey;

@@ -212,9 +212,9 @@ static void probe_radiance(void *user, vlTrace *trace, const vlOwnPaths *paths) 
   probe->batch++;
 }
 
-/* Builds the world of a scene's text in RGB, and asks it `batches` times. */
-static void probe_world(const char *text, Probe *probe, uint32_t batches) {
-  vlScene *scene = need_scene(text);
+/* Builds the world of a scene in RGB, asks it `batches` times, and destroys the scene. text:
+ * for messages. */
+static void probe_scene(vlScene *scene, const char *text, Probe *probe, uint32_t batches) {
   vlSceneDefs *defs = vl_scene_defs(scene);
   const vlOwnTracer tracer = {.name = "probe", .radiance = probe_radiance, .user = probe};
   defs->build.color = VL_COLOR_RGB;
@@ -230,6 +230,10 @@ static void probe_world(const char *text, Probe *probe, uint32_t batches) {
   vlImage *image = need_image(scene, text);
   vl_image_destroy(image);
   assert_int_equal(probe->batch, batches);
+}
+
+static void probe_world(const char *text, Probe *probe, uint32_t batches) {
+  probe_scene(need_scene(text), text, probe, batches);
 }
 
 static vlTraceRays *new_rays(void) {

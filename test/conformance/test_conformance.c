@@ -11,6 +11,8 @@
 #include "radiometry.h"
 #include "sampling.h"
 #include "shapes.h"
+#include "surfaces.h"
+#include "texels.h"
 #include "textures.h"
 #include "transport.h"
 
@@ -48,8 +50,10 @@ int main(int argc, char **argv) {
       cmocka_unit_test(light_paths),
       cmocka_unit_test(laws_of_emission),
       cmocka_unit_test(laws_of_shapes),
+      cmocka_unit_test(laws_of_surfaces),
       cmocka_unit_test(laws_of_textures),
       cmocka_unit_test(laws_of_mappings),
+      cmocka_unit_test(laws_of_texels),
       cmocka_unit_test(laws_of_projections),
       cmocka_unit_test(laws_of_distortions),
       cmocka_unit_test(settings_of_cameras),

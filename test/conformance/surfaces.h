@@ -1,0 +1,253 @@
+/* conformance/surfaces.h: laws of the surfaces of stretched shapes, asked of the functions of
+ * their kinds: the area by which points are sampled is that by which lines cross; a sampled
+ * point is the one that a ray finds, with the same density; derivatives by u and v, of points
+ * and of normals, are differences; and a displaced mesh lies where its heights are. */
+#ifndef TEST_CONFORMANCE_SURFACES_H
+#define TEST_CONFORMANCE_SURFACES_H
+
+#include "conformance.h"
+#include "parameter_cases.h"
+#include "shape/surface_point.h"
+#include "shapes.h"
+#include "unit.h"
+#include "world/world.h"
+
+/* No similarity, and no axis keeps its direction. */
+#define STRETCHED "Scale 1.2 .6 .9 Rotate 35 1 2 3 Scale 1 1.3 .8 "
+
+enum { SURFACE_POINTS = 256, AREA_STEPS = 64, SURFACE_BATCHES = 192 };
+
+typedef struct SurfaceLaws {
+  const char *kind;
+  const vlWorldShape *shape;
+  uint32_t compared, other_density, other_point, by_u, by_v, bent_u, bent_v;
+} SurfaceLaws;
+
+/* ---- one surface ------------------------------------------------------------------------- */
+
+/* Where a ray along -n from above p meets the surface. */
+static bool point_below(const vlWorldShape *s, uint32_t prim, const double p[3],
+                        const double n[3], vlSurfacePoint *found) {
+  const double height = 0.05;
+  vlShapeHit hit;
+  double o[3];
+  double d[3];
+  for (int k = 0; k < 3; k++) {
+    o[k] = p[k] + height * n[k];
+    d[k] = -n[k];
+  }
+  if (!vl_shape_intersect(s, prim, o, d, 0, 2 * height, &hit))
+    return false;
+  vl_shape_point(s, prim, &hit, found);
+  return true;
+}
+
+static double far_from(const double a[3], const double b[3]) {
+  return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+              (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+/* Whether the surface goes on from `at` as its derivatives by one coordinate say. False in
+ * `known`: there is no surface on one of its sides. */
+static void check_along(SurfaceLaws *l, uint32_t prim, const vlSurfacePoint *at, int axis,
+                        uint32_t *moves, uint32_t *turns) {
+  const double step = 5e-3;
+  const double *dp = axis ? at->dpdv : at->dpdu;
+  const double *dn = axis ? at->dndv : at->dndu;
+  vlSurfacePoint side[2];
+  for (int i = 0; i < 2; i++) {
+    double p[3];
+    for (int k = 0; k < 3; k++)
+      p[k] = at->p[k] + (i ? step : -step) * dp[k];
+    if (!point_below(l->shape, prim, p, at->n, &side[i]))
+      return;
+  }
+  double by[2];
+  double turned[3];
+  for (int c = 0; c < 2; c++)
+    by[c] = ((double)side[1].uv[c] - (double)side[0].uv[c]) / (2 * step);
+  for (int k = 0; k < 3; k++)
+    turned[k] = (side[1].ns[k] - side[0].ns[k]) / (2 * step);
+  static const double still[3] = {0, 0, 0};
+  l->compared++;
+  *moves += !(fabs(by[axis] - 1) < 0.02 && fabs(by[!axis]) < 0.02);
+  *turns += !(far_from(turned, dn) < 0.02 * (0.5 + far_from(dn, still)));
+}
+
+/* A point that was sampled, and the same as a ray finds it. Points near the edges, and where
+ * the coordinates degenerate, are left out. */
+static void check_sampled(SurfaceLaws *l, uint32_t prim, float u, float v) {
+  static const double origin[3] = {0, 0, 0};
+  vlSurfacePoint at;
+  vlSurfacePoint found;
+  double density;
+  vl_shape_sample(l->shape, prim, u, v, &at, &density);
+  double again = vl_shape_pdf(l->shape, prim, &at);
+  l->other_density += !(density > 0 && fabs(again - density) < 1e-3 * density);
+  bool inside = at.uv[0] > 0.03f && at.uv[0] < 0.97f && at.uv[1] > 0.03f && at.uv[1] < 0.97f;
+  if (!inside || far_from(at.dpdu, origin) < 0.2 || far_from(at.dpdv, origin) < 0.2)
+    return;
+  if (!point_below(l->shape, prim, at.p, at.n, &found)) {
+    l->other_point++;
+    return;
+  }
+  l->other_point += far_from(at.p, found.p) > 1e-5 || far_from(at.n, found.n) > 1e-4 ||
+                    fabsf(at.uv[0] - found.uv[0]) > 1e-4f ||
+                    fabsf(at.uv[1] - found.uv[1]) > 1e-4f;
+  check_along(l, prim, &at, 0, &l->by_u, &l->bent_u);
+  check_along(l, prim, &at, 1, &l->by_v, &l->bent_v);
+}
+
+/* ---- its area ---------------------------------------------------------------------------- */
+
+/* The mean of the reciprocal of the density over its points, all of whose numbers are as
+ * likely.
+ */
+static double area_by_samples(const vlWorldShape *s) {
+  double sum = 0;
+  for (uint32_t prim = 0; prim < s->faces; prim++)
+    for (int i = 0; i < AREA_STEPS * AREA_STEPS; i++) {
+      vlSurfacePoint point;
+      double density;
+      vl_shape_sample(s, prim, (float)((i % AREA_STEPS + 0.5) / AREA_STEPS),
+                      (float)((i / AREA_STEPS + 0.5) / AREA_STEPS), &point, &density);
+      sum += 1 / density;
+    }
+  return sum / (AREA_STEPS * AREA_STEPS);
+}
+
+/* Lines through a ball of radius `reach`: the mean number of crossings (shapes.h). */
+static uint32_t crossings_of_line(const vlWorldShape *s, const double o[3], const double d[3]) {
+  uint32_t count = 0;
+  for (uint32_t prim = 0; prim < s->faces; prim++) {
+    double from = 0;
+    vlShapeHit hit;
+    while (vl_shape_intersect(s, prim, o, d, from, 100, &hit)) {
+      from = hit.t + 1e-6;
+      count++;
+    }
+  }
+  return count;
+}
+
+static Mean area_by_crossings(const vlWorldShape *s, double reach) {
+  Mean area = {0};
+  for (uint32_t batch = 0; batch < SURFACE_BATCHES; batch++) {
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+      double d[3];
+      double a[3];
+      double b[3];
+      double at[2];
+      double o[3];
+      even_direction(i, VL_OWN_BATCH, 0.7548776662 * batch, d);
+      across(d, a, b);
+      even_disk(i, 0.618034 * batch, at);
+      for (int k = 0; k < 3; k++)
+        o[k] = reach * (at[0] * a[k] + at[1] * b[k]) - 2 * reach * d[k];
+      found += crossings_of_line(s, o, d);
+    }
+    mean_add(&area, 2 * PI * reach * reach * found / VL_OWN_BATCH);
+  }
+  return area;
+}
+
+/* ---- all --------------------------------------------------------------------------------- */
+
+static void judge_surface(const SurfaceLaws *l, const char *parameters, double reach) {
+  const char *kind = l->kind;
+  double area = area_by_samples(l->shape);
+  Mean crossed = area_by_crossings(l->shape, reach);
+  char what[400];
+  snprintf(what, sizeof what, "%s: stretched: area by crossings, and by samples", parameters);
+  check_mean("shapes", kind, what, &crossed, area, (Sight){0.004 * area, 0.07 * area});
+  if (l->compared < SURFACE_POINTS / 4)
+    broken("shapes", kind, "%s: stretched: %u points compared", parameters, l->compared);
+  if (l->other_density)
+    broken("shapes", kind, "%s: stretched: %u samples have another density", parameters,
+           l->other_density);
+  if (l->other_point)
+    broken("shapes", kind, "%s: stretched: rays find %u samples elsewhere", parameters,
+           l->other_point);
+  if (l->by_u || l->by_v)
+    broken("shapes", kind, "%s: stretched: derivatives of %u points by u, of %u by v",
+           parameters, l->by_u, l->by_v);
+  if (l->bent_u || l->bent_v)
+    broken("shapes", kind, "%s: stretched: derivatives of %u normals by u, of %u by v",
+           parameters, l->bent_u, l->bent_v);
+}
+
+static void check_surface(const vlKindRow *row, const ShapeVariant *v) {
+  static char text[TEXT];
+  vlError error = {0};
+  vlWorld *world;
+  scene_text(text,
+             HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" " STRETCHED
+                  "Shape %s",
+             row->name, v->parameters);
+  vlScene *scene = need_scene(text);
+  assert_int_equal(vl_world_build(scene, NULL, &world, &error), VL_OK);
+  assert_true(world->shapes.count > 0);
+  SurfaceLaws laws = {.kind = row->name, .shape = &world->shapes.items[0]};
+  if (!laws.shape->triangles) {
+    for (uint32_t i = 0; i < SURFACE_POINTS; i++)
+      check_sampled(&laws, i % laws.shape->faces,
+                    (float)fmod(0.5 + i * 0.7548776662466927, 1.0),
+                    (float)fmod(0.5 + i * 0.5698402909980532, 1.0));
+    judge_surface(&laws, v->parameters, 1.6 * (v->reach > 0 ? v->reach : 1.12));
+  }
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+}
+
+/* A displaced mesh lies where its heights are, a linear function of u and v. */
+static void ask_displaced(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)paths;
+  ShapeLaws *s = probe->user;
+  static const double down[3] = {0, 0, -1};
+  uint32_t wrong = 0;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const double origin[3] = {2 * fmod(0.5 + i * 0.7548776662466927, 1.0) - 1,
+                              2 * fmod(0.5 + i * 0.5698402909980532, 1.0) - 1, 1};
+    set_ray(s->rays, i, origin, down);
+  }
+  vl_world_trace(trace, s->rays, s->hits);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double u = 0.5 * ((double)s->rays->origin[0][i] + 1);
+    double v = 0.5 * ((double)s->rays->origin[1][i] + 1);
+    wrong += !(fabs((double)s->hits->uv[0][i] - u) < 1e-4 &&
+               fabs((double)s->hits->uv[1][i] - v) < 1e-4 &&
+               fabs((double)s->hits->t[i] - (1 - 0.2 * u - 0.1 * v)) < 1e-4);
+  }
+  if (wrong)
+    broken("shapes", s->kind, "displaced: %u of %u points are elsewhere", wrong, VL_OWN_BATCH);
+}
+
+static void displaced_meshes(void) {
+  static const char text[] = HEAD
+      "WorldBegin LightSource \"infinite\" Texture \"h\" \"float\" \"bilerp\" "
+      "\"float v00\" 0 \"float v10\" .2 \"float v01\" .1 \"float v11\" .3 "
+      "Material \"diffuse\" Shape \"plymesh\" \"string filename\" \"a.ply\" "
+      "\"texture displacement\" \"h\" \"float edgelength\" .3";
+  ShapeLaws s = {.kind = "trianglemesh", .rays = new_rays()};
+  Probe probe = {.ask = ask_displaced, .user = &s};
+  s.hits = calloc(1, sizeof *s.hits);
+  probe_world(text, &probe, 1);
+  free(s.rays);
+  free(s.hits);
+}
+
+static void laws_of_surfaces(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("shapes");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const ShapeCase *c = shape_cases[k];
+    bool sampled = family->rows[k]->traits & VL_SHAPE_TRAIT_EMITS;
+    for (int i = 0; sampled && i < SHAPE_VARIANTS && c->variants[i].parameters; i++)
+      check_surface(family->rows[k], &c->variants[i]);
+  }
+  displaced_meshes();
+  expect_no_failures();
+}
+
+#endif

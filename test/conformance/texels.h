@@ -1,0 +1,236 @@
+/* conformance/texels.h: the values of images at points of their own: each way in which an image
+ * goes on outside of itself, one texel or an interpolation between four, and what the numbers
+ * of the texture (scale, inversion, tint, channel, bias, cutoff) make of them, for images of
+ * one to four channels, as colours and as numbers. */
+#ifndef TEST_CONFORMANCE_TEXELS_H
+#define TEST_CONFORMANCE_TEXELS_H
+
+#include "conformance.h"
+#include "unit.h"
+#include "velo/material.h"
+#include "velo/shape_kinds.h"
+#include "velo/texture.h"
+
+enum { TEXELS_WIDE = 5, TEXELS_HIGH = 3, TEXEL_WORLDS = 96 };
+/* The square's texture coordinates go from -TEXELS_OUT to 1 + TEXELS_OUT. */
+#define TEXELS_OUT 2.3
+
+/* One texture and the numbers of its texels. */
+typedef struct TexelCase {
+  vlTextureDef def;
+  uint32_t channels;
+  bool number; /* a float texture */
+  float texels[TEXELS_HIGH][TEXELS_WIDE][4];
+  vlTraceRays *rays;
+  vlTraceHits *hits;
+  uint32_t index;
+} TexelCase;
+
+/* ---- by definition ----------------------------------------------------------------------- */
+
+/* The index of a texel of the image; -1: black. */
+static int32_t index_inside(int32_t i, int32_t size, vlWrap wrap) {
+  if (wrap == VL_WRAP_BLACK)
+    return i < 0 || i >= size ? -1 : i;
+  if (wrap == VL_WRAP_CLAMP)
+    return i < 0 ? 0 : i >= size ? size - 1 : i;
+  while (i < 0 || i >= size) {
+    if (wrap == VL_WRAP_MIRROR)
+      i = i < 0 ? -1 - i : 2 * size - 1 - i;
+    else
+      i += i < 0 ? size : -size;
+  }
+  return i;
+}
+
+static double texel_at(const TexelCase *t, int32_t x, int32_t y, uint32_t channel) {
+  int32_t column = index_inside(x, TEXELS_WIDE, t->def.wrap);
+  int32_t row = index_inside(y, TEXELS_HIGH, t->def.wrap_t_given ? t->def.wrap_t : t->def.wrap);
+  return column < 0 || row < 0 ? 0 : (double)t->texels[row][column][channel];
+}
+
+/* x, y: texels from the image's top left corner. */
+static double image_at(const TexelCase *t, double x, double y, uint32_t channel) {
+  if (t->def.filter == VL_FILTER_POINT)
+    return texel_at(t, (int32_t)floor(x), (int32_t)floor(y), channel);
+  int32_t column = (int32_t)floor(x - 0.5);
+  int32_t row = (int32_t)floor(y - 0.5);
+  double right = x - 0.5 - column;
+  double below = y - 0.5 - row;
+  return (1 - below) * ((1 - right) * texel_at(t, column, row, channel) +
+                        right * texel_at(t, column + 1, row, channel)) +
+         below * ((1 - right) * texel_at(t, column, row + 1, channel) +
+                  right * texel_at(t, column + 1, row + 1, channel));
+}
+
+/* Red, green, blue and coverage. Of grey images all colours are the grey; without coverage it
+ * is 1. */
+static void rgba_at(const TexelCase *t, double x, double y, double rgba[4]) {
+  bool grey = t->channels < 3;
+  bool covers = t->channels % 2 == 0;
+  for (uint32_t c = 0; c < 4; c++) {
+    rgba[c] = (double)t->def.tint[c];
+    if (c == 3 && !covers)
+      continue;
+    uint32_t channel = c == 3 ? t->channels - 1 : grey ? 0 : c;
+    double value = image_at(t, x, y, channel) * (double)t->def.scale;
+    rgba[c] *= t->def.invert ? 1 - value : value;
+  }
+}
+
+static double number_before_cutoff(const TexelCase *t, const double rgba[4]) {
+  double value = (rgba[0] + rgba[1] + rgba[2]) / 3;
+  if (t->def.channel >= 0)
+    value = rgba[t->def.channel];
+  else if (t->channels == 4)
+    value = rgba[3];
+  return value + (double)t->def.bias;
+}
+
+static double number_of(const TexelCase *t, const double rgba[4]) {
+  double value = number_before_cutoff(t, rgba);
+  return isnan(t->def.cutoff) ? value : value >= t->def.cutoff ? 1 : 0;
+}
+
+/* ---- asking ------------------------------------------------------------------------------ */
+
+/* Near the edge of a texel, or of a cutoff, rounding decides. */
+static bool is_decided(const TexelCase *t, double x, double y, double number) {
+  double cutoff = t->def.cutoff;
+  if (!isnan(cutoff) && fabs(number - cutoff) < 1e-4)
+    return false;
+  return fabs(x - rint(x)) > 1e-3 && fabs(y - rint(y)) > 1e-3;
+}
+
+static void ask_texels(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)paths;
+  TexelCase *t = probe->user;
+  static const double down[3] = {0, 0, -1};
+  double worst = 0;
+  uint32_t compared = 0;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const double origin[3] = {2 * fmod(0.5 + i * 0.7548776662466927, 1.0) - 1,
+                              2 * fmod(0.5 + i * 0.5698402909980532, 1.0) - 1, 1};
+    set_ray(t->rays, i, origin, down);
+  }
+  vl_world_trace(trace, t->rays, t->hits);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double s = (1 + 2 * TEXELS_OUT) * 0.5 * ((double)t->rays->origin[0][i] + 1) - TEXELS_OUT;
+    double up = (1 + 2 * TEXELS_OUT) * 0.5 * ((double)t->rays->origin[1][i] + 1) - TEXELS_OUT;
+    double x = TEXELS_WIDE * s;
+    double y = TEXELS_HIGH * (1 - up);
+    double rgba[4];
+    rgba_at(t, x, y, rgba);
+    if (!is_decided(t, x, y, number_before_cutoff(t, rgba)))
+      continue;
+    compared++;
+    for (int c = 0; c < 3; c++) {
+      double known = t->number ? number_of(t, rgba) : rgba[c];
+      known = fmin(fmax(known, 0), 1); /* what a reflectance can be */
+      worst = fmax(worst, fabs((double)t->hits->reflectance[c][i] - known));
+    }
+  }
+  if (compared < VL_OWN_BATCH / 2)
+    broken("textures", "imagemap", "texels, world %u: %u points compared", t->index, compared);
+  if (!(worst < 2e-3))
+    broken("textures", "imagemap",
+           "texels, world %u (%u channels, wrap %d, filter %d, %s): off by %.4f", t->index,
+           t->channels, (int)t->def.wrap, (int)t->def.filter,
+           t->number ? "a number" : "a colour", worst);
+}
+
+/* ---- worlds ------------------------------------------------------------------------------ */
+
+/* The image of world `index`, and what its texture makes of it: all ways to go on outside, both
+ * filters, all numbers of channels, with each change of the values. */
+static void choose_texture(TexelCase *t, uint32_t index) {
+  static const vlWrap wraps[] = {VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_MIRROR};
+  t->index = index;
+  t->number = index / 4 % 2 == 1;
+  t->channels = 1 + index / 8 % 4;
+  t->def = vl_default_texture_def(VL_TEXTURE_IMAGE, !t->number);
+  t->def.wrap = wraps[index % 4];
+  t->def.wrap_t_given = index % 3 == 1;
+  t->def.wrap_t = wraps[index / 3 % 4];
+  t->def.filter = index / 32 == 1 ? VL_FILTER_POINT : VL_FILTER_BILINEAR;
+  t->def.su = t->def.sv = (float)(1 + 2 * TEXELS_OUT);
+  t->def.du = t->def.dv = (float)-TEXELS_OUT;
+  uint32_t change = (index + index / 8) % 5;
+  if (change == 1) {
+    t->def.scale = 0.6f;
+    t->def.invert = true;
+  }
+  for (int c = 0; change == 2 && c < 4; c++)
+    t->def.tint[c] = 0.9f - 0.15f * (float)c;
+  if (change == 3) {
+    t->def.channel = (int)(index % 4);
+    t->def.bias = -0.05f;
+  }
+  if (change == 4)
+    t->def.cutoff = 0.45;
+  for (int y = 0; y < TEXELS_HIGH; y++)
+    for (int x = 0; x < TEXELS_WIDE; x++)
+      for (int c = 0; c < 4; c++)
+        t->texels[y][x][c] =
+            0.1f + 0.8f * (float)((7 * x + 11 * y + 5 * c + x * y * 3) % 16) / 16;
+}
+
+/* Adds the square with the texture as its reflectance to a scene. */
+static void add_textured_square(vlScene *scene, const TexelCase *t, const vlImage *image) {
+  static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+  static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+  vlTextureDef def = t->def;
+  def.image = image;
+  vlTextureId texture = vl_scene_add_texture(scene, &def);
+  if (t->number) {
+    vlTextureDef scale = vl_default_texture_def(VL_TEXTURE_SCALE, true);
+    scale.spectrum_a.value = vl_spectrum_rgb(1, 1, 1);
+    scale.amount.texture = texture;
+    texture = vl_scene_add_texture(scene, &scale);
+  }
+  vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  material.reflectance.texture = texture;
+  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  square.vertices = 4;
+  square.faces = 2;
+  square.positions = corners;
+  square.uvs = uvs;
+  square.indices = indices;
+  square.material = vl_scene_add_material(scene, &material);
+  vl_scene_add_shape(scene, &square);
+}
+
+static void check_texels(TexelCase *t) {
+  vlImage *image;
+  vlImageDef def = vl_default_image_def(TEXELS_WIDE, TEXELS_HIGH, t->channels);
+  assert_int_equal(vl_image_create(context, &def, &image), VL_OK);
+  float *pixels = vl_image_pixels(image);
+  for (uint32_t y = 0; y < TEXELS_HIGH; y++)
+    for (uint32_t x = 0; x < TEXELS_WIDE; x++)
+      for (uint32_t c = 0; c < t->channels; c++)
+        pixels[(y * TEXELS_WIDE + x) * t->channels + c] = t->texels[y][x][c];
+  vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
+  add_textured_square(scene, t, image);
+  vl_image_destroy(image);
+  Probe probe = {.ask = ask_texels, .user = t};
+  probe_scene(scene, "texels", &probe, 1);
+}
+
+static void laws_of_texels(void **state) {
+  (void)state;
+  TexelCase *t = calloc(1, sizeof *t);
+  assert_non_null(t);
+  t->rays = new_rays();
+  t->hits = calloc(1, sizeof *t->hits);
+  for (uint32_t i = 0; i < TEXEL_WORLDS; i++) {
+    choose_texture(t, i);
+    check_texels(t);
+  }
+  free(t->rays);
+  free(t->hits);
+  free(t);
+  expect_no_failures();
+}
+
+#endif

@@ -1,9 +1,15 @@
 /* medium/grid.case.c: what tests know of media on grids. */
+#include <math.h>
+
 #include "medium/medium.case.h"
 
 /* Eight layers of thickness .25, sigma_a .5 times .1, but 3 in the third from the back. The
  * last half of a layer at the box's side fades to half, so the layers at the sides count 7/8:
  * exp(-.5 * .25 * (3 + 5 * .1 + 2 * 7/8 * .1)). Of an even density: exp(-.5 * 1.75). */
+static double density(const double p[3]) {
+  return 0.5 * fmin(1, 1.5 - fabs(p[2]));
+}
+
 const MediumCase grid_medium = {
     .shape = BLOCKS,
     .scatters =
@@ -27,6 +33,10 @@ const MediumCase grid_medium = {
     "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [" FOUR_THIN FOUR_THIN
     "3 3 3 3 " FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN "]",
     .passes = 0.631678,
+    .density = density,
+    .alike = {"\"rgb sigma_a\" [.2 .5 .9] \"rgb sigma_s\" [.1 .3 .2] \"float density\" " EIGHT,
+              "\"rgb sigma_a\" [.1 .25 .45] \"rgb sigma_s\" [.05 .15 .1] \"float scale\" 2 "
+              "\"float density\" " EIGHT},
     .parameters =
         {
             {.parameter = "Lescale",

@@ -18,6 +18,9 @@ typedef struct MediumCase {
   double emission_by_cell;   /* of that */
   const char *layers; /* absorbs alone, most of it in one of eight layers; null: cannot */
   double passes;      /* the transmittance of that */
+  double (*density)(const double p[3]); /* the extinction of `absorbs` at a point of the box;
+                                           null: not known */
+  const char *alike[2]; /* two ways to describe one coloured medium; null: has one */
   ParameterCase parameters[PARAMETER_CASES];
 } MediumCase;
 

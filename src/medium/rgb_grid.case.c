@@ -1,9 +1,15 @@
 /* medium/rgb_grid.case.c: what tests know of media on grids of colours. */
+#include <math.h>
+
 #include "medium/medium.case.h"
 
 /* Le of these grids, as in pbrt, is in units of a constant spectrum's luminance, 106.857. It is
  * interpolated, too: both fade to half at the box's sides, w(z) = 1.5 - |z| from |z| = .5 on.
  * The numbers are integrals of that. */
+static double density(const double p[3]) {
+  return 0.5 * fmin(1, 1.5 - fabs(p[2]));
+}
+
 const MediumCase rgb_grid_medium = {
     .shape = BLOCKS,
     .scatters = "\"rgb sigma_a\" " NONE " \"rgb sigma_s\" " EIGHT_COLORS " \"float g\" .4",
@@ -19,6 +25,7 @@ const MediumCase rgb_grid_medium = {
     "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
     "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]",
     .passes = 0.631678,
+    .density = density,
     .parameters =
         {
             {.parameter = "Lescale",

@@ -3,5 +3,7 @@
 
 const ProjectionCase cube_projection = {
     .shape = {0, VL_UNSET},
+    .has_other = true,
+    .other = {1, VL_UNSET},
     .solid_angle = 4 * CASE_PI,
 };

@@ -5,6 +5,8 @@
 const ProjectionCase division_projection = {
     .focal = 20,
     .shape = {-0.2, VL_UNSET},
+    .has_other = true,
+    .other = {0.1, VL_UNSET},
     .known = {{0.89605538457134396, 1}, {-0.89605538457134396, -1}},
     .end = CASE_PI,
 };

@@ -7,6 +7,8 @@
 const ProjectionCase double_sphere_projection = {
     .focal = 20,
     .shape = {-0.2, 0.6},
+    .has_other = true,
+    .other = {0.3, 0.4},
     .known = {{CASE_PI / 2, 1.880115058780}, {-CASE_PI / 2, -1.880115058780}},
     .end = 2.150895,
 };

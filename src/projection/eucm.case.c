@@ -6,6 +6,8 @@
 const ProjectionCase eucm_projection = {
     .focal = 20,
     .shape = {0.6, 1.1},
+    .has_other = true,
+    .other = {0.4, 0.8},
     .known = {{CASE_PI / 3, 1.053439392292}, {-CASE_PI / 2, -1.589104315409}},
     .end = 2.324258,
 };

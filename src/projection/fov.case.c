@@ -5,6 +5,8 @@
 const ProjectionCase fov_projection = {
     .focal = 20,
     .shape = {0.9, VL_UNSET},
+    .has_other = true,
+    .other = {0.4, VL_UNSET},
     .known = {{CASE_PI / 4, 0.853514284171}, {-CASE_PI / 4, -0.853514284171}},
     .end = CASE_PI / 2,
 };

@@ -5,6 +5,8 @@
 const ProjectionCase panini_projection = {
     .fov = 120,
     .shape = {0.5, VL_UNSET},
+    .has_other = true,
+    .other = {1.5, VL_UNSET},
     .known = {{CASE_PI / 3, 1.5 * HALF_SQRT3}, {-CASE_PI / 6, -0.75 / (0.5 + HALF_SQRT3)}},
     .end = 2 * CASE_PI / 3,
 };

@@ -17,6 +17,8 @@ typedef struct ProjectionCase {
   double fov;         /* degrees over the smaller side; 0: by fx */
   double focal;       /* fx = fy, pixels; 0: by fov or by the projection itself */
   double shape[2];    /* the projection's numbers; VL_UNSET: it has none, or the default */
+  bool has_other;     /* `other`: another shape, of the other branches of the model */
+  double other[2];    /* unused without has_other */
   bool optics;        /* the camera gets a lens of many elements */
   double solid_angle; /* of the whole image, steradians; 0: not known */
   ProjectionKnown known[2];

@@ -5,6 +5,8 @@
 const ProjectionCase unified_projection = {
     .focal = 20,
     .shape = {0.8, VL_UNSET},
+    .has_other = true,
+    .other = {1.1, VL_UNSET},
     .known = {{CASE_PI / 3, HALF_SQRT3 / 1.3}, {-CASE_PI / 2, -1.25}},
     .end = 2.498092,
 };

@@ -12,6 +12,7 @@ typedef struct SamplerCase {
   bool cells;     /* each of 8 x 8 cells has one pair of a pixel */
   bool centre;    /* numbers are the centres of cells: not even inside */
   bool any_count; /* rows and cells for any number of samples */
+  bool curve;     /* the samples of 2 x 2 pixels are points of one set, too */
   bool hash;      /* no better than independent numbers */
 } SamplerCase;
 

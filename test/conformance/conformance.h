@@ -16,9 +16,11 @@
 #include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/load.h"
+#include "velo/material.h"
 #include "velo/render.h"
 #include "velo/sampler.h"
 #include "velo/schema.h"
+#include "velo/shape_kinds.h"
 #include "velo/trace.h"
 #include "velo/tracer.h"
 
@@ -234,6 +236,21 @@ static void probe_scene(vlScene *scene, const char *text, Probe *probe, uint32_t
 
 static void probe_world(const char *text, Probe *probe, uint32_t batches) {
   probe_scene(need_scene(text), text, probe, batches);
+}
+
+/* Adds the square from -1 to 1 with this material; its texture coordinates are 0 to 1. */
+static void add_square(vlScene *scene, const vlMaterialDef *material) {
+  static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+  static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  square.vertices = 4;
+  square.faces = 2;
+  square.positions = corners;
+  square.uvs = uvs;
+  square.indices = indices;
+  square.material = vl_scene_add_material(scene, material);
+  vl_scene_add_shape(scene, &square);
 }
 
 static vlTraceRays *new_rays(void) {

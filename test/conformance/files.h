@@ -55,6 +55,23 @@ static bool write_quarters(const char *name) {
   return done;
 }
 
+/* A map whose normals all are (.4, -.2, .8) but for their length. */
+static bool write_tilted(const char *name) {
+  static const float texel[3] = {0.7f, 0.4f, 0.9f};
+  vlImageDef def = vl_default_image_def(2, 2, 3);
+  vlImage *image;
+  char path[100];
+  path_of(path, name);
+  if (vl_image_create(context, &def, &image) != VL_OK)
+    return false;
+  float *pixels = vl_image_pixels(image);
+  for (int i = 0; i < 12; i++)
+    pixels[i] = texel[i % 3];
+  bool done = vl_image_write(image, path, NULL, NULL) == VL_OK;
+  vl_image_destroy(image);
+  return done;
+}
+
 /* A lamp of 2 cd towards the half plane C 0, falling to 1 cd towards C 180, and none upwards.
  */
 static bool write_lamp(const char *name) {
@@ -104,7 +121,7 @@ static bool write_files(void) {
   bool done = write_image("a.pfm", 0) && write_image("b.pfm", 1) && write_image("sky.pfm", 2) &&
               write_image("other.pfm", 3) && write_image("normals.pfm", 4) &&
               write_image("a.tga", 5) && write_quarters("quarters.pfm") &&
-              write_lamp("lamp.ies");
+              write_tilted("tilted.pfm") && write_lamp("lamp.ies");
   done = done && write_bytes("a.ply", ply, sizeof ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&
          write_nanovdb("a.nvdb", 0) && write_nanovdb("b.nvdb", 1);

@@ -43,28 +43,34 @@ static void take_numbers(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   }
 }
 
-static Numbers2 *draw_numbers(vlSamplerKind kind, uint32_t width, uint32_t samples) {
-  Numbers2 *n = calloc(1, sizeof *n);
-  assert_non_null(n);
-  n->width = width;
-  n->samples = samples;
+/* Renders with a tracer that takes numbers. */
+static void draw_by(const vlOwnTracer *tracer, vlSamplerKind kind, uint32_t width,
+                    uint32_t height, uint32_t samples) {
   vlError error = {0};
   vlScene *scene = load_text(context, HEAD "WorldBegin LightSource \"infinite\"", &error);
   assert_non_null(scene);
   vlSceneDefs *defs = vl_scene_defs(scene);
-  const vlOwnTracer tracer = {.name = "numbers", .radiance = take_numbers, .user = n};
-  defs->camera = vl_default_camera_def(width, SETS / width);
-  defs->film = vl_default_film_def(width, SETS / width);
+  defs->camera = vl_default_camera_def(width, height);
+  defs->film = vl_default_film_def(width, height);
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   defs->render.spp = samples;
   defs->render.sequence = samples;
   defs->render.sampler = kind;
   defs->render.share_samples = false;
-  defs->render.own_tracer = &tracer;
+  defs->render.own_tracer = tracer;
   vlImage *image = render_scene(context, scene, &error);
   if (!image)
     fail_msg("%s", error.message);
   vl_image_destroy(image);
+}
+
+static Numbers2 *draw_numbers(vlSamplerKind kind, uint32_t width, uint32_t samples) {
+  Numbers2 *n = calloc(1, sizeof *n);
+  assert_non_null(n);
+  n->width = width;
+  n->samples = samples;
+  const vlOwnTracer tracer = {.name = "numbers", .radiance = take_numbers, .user = n};
+  draw_by(&tracer, kind, width, SETS / width, samples);
   assert_int_equal(n->count, SETS * samples);
   return n;
 }
@@ -83,6 +89,14 @@ static double unevenness(double numbers[SETS][SET]) {
     sum += (bins[k] - expected) * (bins[k] - expected) / expected;
   }
   return (sum - (BINS - 1)) / sqrt(2.0 * (BINS - 1));
+}
+
+static double mean_number(double numbers[SETS][SET]) {
+  double sum = 0;
+  for (int p = 0; p < SETS; p++)
+    for (int i = 0; i < SET; i++)
+      sum += numbers[p][i];
+  return sum / (SETS * SET);
 }
 
 static double correlation(double a[SETS][SET], double b[SETS][SET]) {
@@ -149,6 +163,9 @@ static void laws_of_samplers(void **state) {
     double uneven = fmax(unevenness(n->u), unevenness(n->v));
     if (!c->centre && !(uneven < 5))
       broken("samplers", name, "uneven by %.1f standard deviations", uneven);
+    double middle = fmax(fabs(mean_number(n->u) - 0.5), fabs(mean_number(n->v) - 0.5));
+    if (!(middle < 5 * 0.2887 / 64))
+      broken("samplers", name, "the mean of the numbers is off by %.4f", middle);
     double pairs = fmax(fabs(correlation(n->u, n->v)), fabs(correlation(n->u, n->other)));
     if (!(pairs < 5.0 / 64))
       broken("samplers", name, "numbers correlate by %.3f", pairs);
@@ -241,6 +258,105 @@ static void samplers_of_any_count(void **state) {
       check_count(family->rows[k]->name, sampler_cases[k], n);
       free(n);
     }
+  expect_no_failures();
+}
+
+/* ---- neighbours -------------------------------------------------------------------------- */
+
+enum { FEW = 16 }; /* samples of a pixel; four pixels have SET of them */
+
+/* How many pairs of pixels have the same numbers. */
+static uint32_t equal_pixels(const Numbers2 *n) {
+  uint32_t equal = 0;
+  for (int p = 0; p < SETS; p++)
+    for (int q = 0; q < p; q++)
+      equal += memcmp(n->u[p], n->u[q], n->samples * sizeof **n->u) == 0;
+  return equal;
+}
+
+/* How many squares of 2 x 2 pixels leave one of SET intervals without a number. */
+static uint32_t squares_with_gaps(const Numbers2 *n) {
+  uint32_t gaps = 0;
+  for (uint32_t p = 0; p < SETS; p++) {
+    uint32_t x = p % n->width;
+    uint32_t y = p / n->width;
+    double u[SET];
+    double v[SET];
+    if (x % 2 || y % 2)
+      continue;
+    for (uint32_t k = 0; k < 4; k++) {
+      uint32_t q = (y + k / 2) * n->width + x + k % 2;
+      memcpy(u + k * FEW, n->u[q], FEW * sizeof *u);
+      memcpy(v + k * FEW, n->v[q], FEW * sizeof *v);
+    }
+    gaps += !one_in_each(u, SET) || !one_in_each(v, SET);
+  }
+  return gaps;
+}
+
+enum { FAR_AWAY = 16384, NEAR = 8 };
+
+/* The numbers of the first pixels of a row or column, and of those that are FAR_AWAY. */
+typedef struct FarNumbers {
+  float u[2][NEAR][FEW];
+  uint32_t count;
+} FarNumbers;
+
+static void take_far_numbers(void *user, vlTrace *trace, const vlOwnPaths *paths) {
+  static float u[VL_OWN_BATCH];
+  FarNumbers *n = user;
+  vl_trace_numbers(trace, 0, u, NULL);
+  for (uint32_t i = 0; i < paths->count; i++) {
+    uint32_t along = (uint32_t)(paths->x[i] + paths->y[i]);
+    if (along % FAR_AWAY >= NEAR)
+      continue;
+    n->u[along / FAR_AWAY][along % FAR_AWAY][paths->index[i]] = u[i];
+    n->count++;
+  }
+}
+
+/* Pixels of very long images have numbers of their own, too: their indices exceed 32 bits. */
+static void check_far_pixels(vlSamplerKind kind, const char *name, bool tall) {
+  static FarNumbers n;
+  const vlOwnTracer tracer = {.name = "numbers", .radiance = take_far_numbers, .user = &n};
+  uint32_t width = tall ? 1 : FAR_AWAY + NEAR;
+  uint32_t height = tall ? FAR_AWAY + NEAR : 1;
+  uint32_t equal = 0;
+  n.count = 0;
+  draw_by(&tracer, kind, width, height, FEW);
+  assert_int_equal(n.count, 2 * NEAR * FEW);
+  for (int p = 0; p < NEAR; p++)
+    equal += memcmp(n.u[0][p], n.u[1][p], sizeof n.u[0][p]) == 0;
+  if (equal)
+    broken("samplers", name, "%u x %u pixels: %u of %d far pixels have the same numbers", width,
+           height, equal, NEAR);
+}
+
+/* In images of any form, pixels have numbers of their own, and neighbours share a set where the
+ * kind promises it. */
+static void samplers_of_neighbours(void **state) {
+  (void)state;
+  static const uint32_t widths[] = {8, 2, 32, 1, 64};
+  const vlKindFamily *family = vl_kind_family_find("samplers");
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
+      const char *name = family->rows[k]->name;
+      const SamplerCase *c = sampler_cases[k];
+      uint32_t width = widths[i];
+      bool squares = width > 1 && width < SETS;
+      Numbers2 *n = draw_numbers((vlSamplerKind)k, width, FEW);
+      if (!c->centre && equal_pixels(n))
+        broken("samplers", name, "%u x %d pixels: %u pairs have the same numbers", width,
+               SETS / (int)width, equal_pixels(n));
+      if (c->curve && squares && squares_with_gaps(n))
+        broken("samplers", name, "%u x %d pixels: %u squares have gaps", width,
+               SETS / (int)width, squares_with_gaps(n));
+      free(n);
+    }
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    for (int tall = 0; tall < 2; tall++)
+      if (!sampler_cases[k]->centre)
+        check_far_pixels((vlSamplerKind)k, family->rows[k]->name, tall == 1);
   expect_no_failures();
 }
 

@@ -4,12 +4,14 @@
 #include "conformance.h"
 #include "files.h"
 #include "hostile.h"
+#include "lamps.h"
 #include "light_power.h"
 #include "lights.h"
 #include "materials.h"
 #include "parameters.h"
 #include "radiometry.h"
 #include "sampling.h"
+#include "shading.h"
 #include "shapes.h"
 #include "surfaces.h"
 #include "texels.h"
@@ -43,7 +45,9 @@ int main(int argc, char **argv) {
       cmocka_unit_test(parameters_of_all_families),
       cmocka_unit_test(textures_of_parameters),
       cmocka_unit_test(laws_of_materials),
+      cmocka_unit_test(laws_of_shading),
       cmocka_unit_test(laws_of_lights),
+      cmocka_unit_test(laws_of_lamps),
       cmocka_unit_test(powers),
       cmocka_unit_test(chosen_powers),
       cmocka_unit_test(illuminances),
@@ -59,6 +63,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(settings_of_cameras),
       cmocka_unit_test(laws_of_samplers),
       cmocka_unit_test(samplers_of_any_count),
+      cmocka_unit_test(samplers_of_neighbours),
       cmocka_unit_test(laws_of_filters),
       cmocka_unit_test(filters_of_light_paths),
       cmocka_unit_test(laws_of_media),

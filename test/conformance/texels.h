@@ -8,7 +8,6 @@
 #include "conformance.h"
 #include "unit.h"
 #include "velo/material.h"
-#include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
 enum { TEXELS_WIDE = 5, TEXELS_HIGH = 3, TEXEL_WORLDS = 96 };
@@ -177,9 +176,6 @@ static void choose_texture(TexelCase *t, uint32_t index) {
 
 /* Adds the square with the texture as its reflectance to a scene. */
 static void add_textured_square(vlScene *scene, const TexelCase *t, const vlImage *image) {
-  static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-  static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
-  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
   vlTextureDef def = t->def;
   def.image = image;
   vlTextureId texture = vl_scene_add_texture(scene, &def);
@@ -191,14 +187,7 @@ static void add_textured_square(vlScene *scene, const TexelCase *t, const vlImag
   }
   vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   material.reflectance.texture = texture;
-  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  square.vertices = 4;
-  square.faces = 2;
-  square.positions = corners;
-  square.uvs = uvs;
-  square.indices = indices;
-  square.material = vl_scene_add_material(scene, &material);
-  vl_scene_add_shape(scene, &square);
+  add_square(scene, &material);
 }
 
 static void check_texels(TexelCase *t) {

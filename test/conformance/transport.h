@@ -104,6 +104,58 @@ static vlImage *image_unscattered(const char *kind, const MediumCase *c) {
   return image_of(text, NULL, MEDIUM_SPP);
 }
 
+/* The transmittance of a way through the box along z. */
+static double passes_along_z(const MediumCase *c, double x, double y) {
+  enum { STEPS = 64 };
+  double sum = 0;
+  for (int i = 0; i < STEPS; i++) {
+    const double p[3] = {x, y, 2 * (i + 0.5) / STEPS - 1};
+    sum += c->density(p) * 2 / STEPS;
+  }
+  return exp(-sum);
+}
+
+/* The light that passes, in each quarter of the image: x grows to the left, y upwards. */
+static void check_quarters(const char *name, const MediumCase *c, const vlImage *image) {
+  enum { STEPS = 8 };
+  uint32_t half = vl_image_width(image) / 2;
+  for (uint32_t k = 0; k < 4; k++) {
+    char what[80];
+    Mean found = {0};
+    double known = 0;
+    for (uint32_t i = 0; i < half * half; i++)
+      mean_add(&found, (double)vl_image_get(image, k % 2 * half + i % half,
+                                            k / 2 * half + i / half, 1));
+    for (int i = 0; i < STEPS * STEPS; i++) {
+      double right = 0.5 * (k % 2 + (i % STEPS + 0.5) / STEPS) - 0.5;
+      double down = 0.5 * (k / 2 + (i / STEPS + 0.5) / STEPS) - 0.5;
+      known += passes_along_z(c, -right, -down) / (STEPS * STEPS);
+    }
+    snprintf(what, sizeof what, "light that passes in quarter %u", k);
+    check_mean("media", name, what, &found, known, (Sight){.slack = 2e-3, .least = 0.035});
+  }
+}
+
+/* Two descriptions of one medium give the same colours. */
+static void check_alike(const char *name, const MediumCase *c) {
+  vlImage *images[2];
+  double worst = 0;
+  for (int i = 0; i < 2; i++)
+    images[i] = image_of_medium(name, c, c->alike[i]);
+  for (uint32_t channel = 0; channel < 3; channel++) {
+    double sums[2] = {0, 0};
+    for (int i = 0; i < 2; i++)
+      for (uint32_t y = 0; y < vl_image_height(images[i]); y++)
+        for (uint32_t x = 0; x < vl_image_width(images[i]); x++)
+          sums[i] += (double)vl_image_get(images[i], x, y, channel);
+    worst = fmax(worst, fabs(sums[1] / sums[0] - 1));
+  }
+  vl_image_destroy(images[0]);
+  vl_image_destroy(images[1]);
+  if (!(worst < 2e-3))
+    broken("media", name, "the same by another scale: colours differ by %.4f", worst);
+}
+
 static void check_medium(const char *name, const MediumCase *c) {
   const Sight sight = {.slack = 2e-3, .least = 0.02};
   Mean kept = mean_medium(name, c, c->scatters);
@@ -112,6 +164,9 @@ static void check_medium(const char *name, const MediumCase *c) {
     Mean balance = mean_medium(name, c, c->emits);
     check_mean("media", name, "glow and surroundings", &balance,
                c->emission > 0 ? c->emission : 1, sight);
+    Mean glow = mean_spectral(name, c, c->emits);
+    check_same_mean("media", name, "glow and surroundings, by wavelengths", &glow, &balance,
+                    (Sight){.slack = 3e-3, .least = 0.1});
   }
   if (c->emits_by_cell) {
     Mean by_cell = mean_medium(name, c, c->emits_by_cell);
@@ -122,6 +177,10 @@ static void check_medium(const char *name, const MediumCase *c) {
   vlImage *scattering = image_unscattered(name, c);
   Mean passes = mean_of_image(absorbing);
   Mean more = mean_difference(scattering, absorbing);
+  if (c->density)
+    check_quarters(name, c, absorbing);
+  if (c->alike[0])
+    check_alike(name, c);
   vl_image_destroy(absorbing);
   vl_image_destroy(scattering);
   Mean spectral = mean_spectral(name, c, c->absorbs);

@@ -1,0 +1,223 @@
+/* conformance/shading.h: laws of what stands between a material's parameters and its BSDF:
+ * normal maps turn the normal as their texels say; a factor on a map is a factor on its texels,
+ * of each layer's own map; kinds that describe the same microfacets agree. */
+#ifndef TEST_CONFORMANCE_SHADING_H
+#define TEST_CONFORMANCE_SHADING_H
+
+#include "conformance.h"
+#include "materials.h"
+#include "unit.h"
+#include "velo/material.h"
+#include "velo/texture.h"
+
+/* How a square scatters, seen from one direction. */
+typedef struct Scattering {
+  double shading[3];
+  float value[4][VL_OWN_BATCH], pdf[VL_OWN_BATCH];
+  vlTraceRays *rays;
+  vlTraceHits *hits;
+} Scattering;
+
+static void ask_scattering(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)paths;
+  static float directions[3][VL_OWN_BATCH];
+  Scattering *s = probe->user;
+  double eye[3];
+  eye_direction(0.6, eye);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double w[3];
+    even_direction(i, VL_OWN_BATCH, 0.1, w);
+    for (int k = 0; k < 3; k++)
+      directions[k][i] = (float)w[k];
+    rays_towards(s->rays, i, eye);
+  }
+  vl_world_trace(trace, s->rays, s->hits);
+  for (int k = 0; k < 3; k++)
+    s->shading[k] = (double)s->hits->shading[k][0];
+  vl_trace_bsdf(trace, directions, s->value, s->pdf);
+}
+
+/* Takes the scene, which it destroys. */
+static Scattering *scattering_of(vlScene *scene, const char *text) {
+  Scattering *s = calloc(1, sizeof *s);
+  assert_non_null(s);
+  s->rays = new_rays();
+  s->hits = calloc(1, sizeof *s->hits);
+  Probe probe = {.ask = ask_scattering, .user = s};
+  probe_scene(scene, text, &probe, 1);
+  return s;
+}
+
+static void free_scattering(Scattering *s) {
+  free(s->rays);
+  free(s->hits);
+  free(s);
+}
+
+/* The square with a material of the caller's. */
+static Scattering *scattering_of_def(vlScene *scene, const vlMaterialDef *material) {
+  add_square(scene, material);
+  return scattering_of(scene, "a material of one's own");
+}
+
+/* ---- normal maps ------------------------------------------------------------------------- */
+
+/* The texel .7 .4 .9, whose normal is (.4, -.2, .8) before it gets its length, and its x and y
+ * times a factor. */
+static void known_normal(double factor, double n[3]) {
+  n[0] = 0.4 * factor;
+  n[1] = -0.2 * factor;
+  n[2] = 0.8;
+  double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (int k = 0; k < 3; k++)
+    n[k] /= length;
+}
+
+static void check_normal(const char *kind, const Scattering *s, double factor) {
+  double known[3];
+  double off = 0;
+  known_normal(factor, known);
+  for (int k = 0; k < 3; k++)
+    off = fmax(off, fabs(s->shading[k] - known[k]));
+  if (!(off < 1e-3))
+    broken("materials", kind,
+           "normal map, factor %g: (%.3f, %.3f, %.3f), not (%.3f, %.3f, %.3f)", factor,
+           s->shading[0], s->shading[1], s->shading[2], known[0], known[1], known[2]);
+}
+
+/* Each kind whose row has a normal map. */
+static void check_normal_maps(void) {
+  static char text[TEXT];
+  char parameters[400];
+  const vlKindFamily *family = vl_kind_family_find("materials");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const vlKindRow *row = family->rows[k];
+    bool mapped = false;
+    for (uint32_t i = 0; i < row->parameter_count; i++)
+      mapped = mapped ||
+               (row->parameters[i].name && strcmp(row->parameters[i].name, "normalmap") == 0);
+    if (!mapped || row->traits & VL_MATERIAL_ABSENT)
+      continue;
+    snprintf(parameters, sizeof parameters, "%s \"string normalmap\" \"tilted.pfm\"",
+             material_cases[k]->variants[0].parameters);
+    scene_text(text, material_form, row->name, parameters);
+    Scattering *s = scattering_of(need_scene(text), text);
+    check_normal(row->name, s, 1);
+    free_scattering(s);
+  }
+}
+
+/* A texture whose texels all are the map's, with x and y times a factor. */
+static vlTextureId add_map(vlScene *scene, vlImage **image, float factor) {
+  vlImageDef def = vl_default_image_def(2, 2, 3);
+  assert_int_equal(vl_image_create(context, &def, image), VL_OK);
+  float *pixels = vl_image_pixels(*image);
+  for (int i = 0; i < 4; i++) {
+    pixels[3 * i] = 0.5f + 0.2f * factor;
+    pixels[3 * i + 1] = 0.5f - 0.1f * factor;
+    pixels[3 * i + 2] = 0.9f;
+  }
+  vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  texture.image = *image;
+  return vl_scene_add_texture(scene, &texture);
+}
+
+/* A coated surface; factors: on the texels of the two maps, and by the material. */
+static Scattering *coated(const float texels[2], const float factors[2]) {
+  vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
+  vlImage *images[2];
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
+  def.principled.metallic.value = 0;
+  def.principled.roughness.value = 0.5f;
+  def.principled.clearcoat.value = 1;
+  def.principled.clearcoat_roughness.value = 0.4f;
+  def.principled.normal = add_map(scene, &images[0], texels[0]);
+  def.principled.normal_scale = factors[0];
+  def.principled.clearcoat_normal = add_map(scene, &images[1], texels[1]);
+  def.principled.clearcoat_normal_scale = factors[1];
+  Scattering *s = scattering_of_def(scene, &def);
+  vl_image_destroy(images[0]);
+  vl_image_destroy(images[1]);
+  return s;
+}
+
+static void check_factors_of_maps(void) {
+  static const float ones[2] = {1, 1};
+  static const float factors[2] = {0.5f, -0.7f};
+  Scattering *by_factors = coated(ones, factors);
+  Scattering *by_texels = coated(factors, ones);
+  uint32_t differ = 0;
+  check_normal("principled", by_factors, 0.5);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    differ +=
+        !close_to((double)by_factors->value[1][i], (double)by_texels->value[1][i], 1e-3) ||
+        !close_to((double)by_factors->pdf[i], (double)by_texels->pdf[i], 1e-3);
+  if (differ)
+    broken("materials", "principled", "factors on normal maps: %u of %u values differ", differ,
+           VL_OWN_BATCH);
+  free_scattering(by_factors);
+  free_scattering(by_texels);
+}
+
+/* ---- anisotropy -------------------------------------------------------------------------- */
+
+/* The share of an even density (that of the cosine) which, mixed with `narrow`, comes nearest
+ * to the density `mixed`, over the upper half; and the largest difference that is left. */
+static double share_of_cosine(const float *mixed, const float *narrow, double *left) {
+  double above = 0;
+  double below = 0;
+  double share = 0;
+  for (int pass = 0; pass < 2; pass++) {
+    *left = 0;
+    for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+      double w[3];
+      even_direction(i, VL_OWN_BATCH, 0.1, w);
+      double even = w[2] > 0 ? w[2] / PI - (double)narrow[i] : 0;
+      double given = w[2] > 0 ? (double)mixed[i] - (double)narrow[i] : 0;
+      above += even * given;
+      below += even * even;
+      *left = fmax(*left, fabs(given - share * even));
+    }
+    share = pass ? share : above / below;
+  }
+  return share;
+}
+
+/* glTF's KHR_materials_anisotropy: of the roughness alpha = r^2, (1 - a^2) alpha + a^2 along
+ * the tangent, alpha across. A metal with these has the same density of samples, but for those
+ * that stand for light between its microfacets, which are even. */
+static void check_anisotropy(double roughness, double anisotropy) {
+  double alpha = roughness * roughness;
+  double along = alpha + (1 - alpha) * anisotropy * anisotropy;
+  vlMaterialDef metals[2] = {vl_default_material_def(VL_MATERIAL_PRINCIPLED),
+                             vl_default_material_def(VL_MATERIAL_CONDUCTOR)};
+  metals[0].principled.metallic.value = 1;
+  metals[0].principled.roughness.value = (float)roughness;
+  metals[0].principled.anisotropy.value = (float)anisotropy;
+  metals[1].remap_roughness = false;
+  metals[1].u_roughness.value = (float)along;
+  metals[1].v_roughness.value = (float)alpha;
+  Scattering *s[2];
+  double left;
+  for (int i = 0; i < 2; i++)
+    s[i] =
+        scattering_of_def(need_scene(HEAD "WorldBegin LightSource \"infinite\""), &metals[i]);
+  double share = share_of_cosine(s[0]->pdf, s[1]->pdf, &left);
+  if (!(left < 0.01 && share > -0.01 && share < 0.5))
+    broken("materials", "principled",
+           "anisotropy %g: its density is off by %.3f from %.3f even and else the metal's",
+           anisotropy, left, share);
+  free_scattering(s[0]);
+  free_scattering(s[1]);
+}
+
+static void laws_of_shading(void **state) {
+  (void)state;
+  check_normal_maps();
+  check_factors_of_maps();
+  check_anisotropy(0.6, 0);
+  check_anisotropy(0.6, 0.7);
+  expect_no_failures();
+}
+
+#endif

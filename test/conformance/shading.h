@@ -161,26 +161,31 @@ static void check_factors_of_maps(void) {
 
 /* ---- anisotropy -------------------------------------------------------------------------- */
 
-/* The share of an even density (that of the cosine) which, mixed with `narrow`, comes nearest
- * to the density `mixed`, over the upper half; and the largest difference that is left. */
-static double share_of_cosine(const float *mixed, const float *narrow, double *left) {
+/* A density that is a mixture of `narrow` and of an even one (that of the cosine): the share of
+ * the latter that comes nearest to it over the upper half. */
+static double share_of_cosine(const float *mixed, const float *narrow) {
   double above = 0;
   double below = 0;
-  double share = 0;
-  for (int pass = 0; pass < 2; pass++) {
-    *left = 0;
-    for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-      double w[3];
-      even_direction(i, VL_OWN_BATCH, 0.1, w);
-      double even = w[2] > 0 ? w[2] / PI - (double)narrow[i] : 0;
-      double given = w[2] > 0 ? (double)mixed[i] - (double)narrow[i] : 0;
-      above += even * given;
-      below += even * even;
-      *left = fmax(*left, fabs(given - share * even));
-    }
-    share = pass ? share : above / below;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double w[3];
+    even_direction(i, VL_OWN_BATCH, 0.1, w);
+    double even = w[2] > 0 ? w[2] / PI - (double)narrow[i] : 0;
+    above += even * (w[2] > 0 ? (double)mixed[i] - (double)narrow[i] : 0);
+    below += even * even;
   }
-  return share;
+  return above / below;
+}
+
+/* The largest difference from the mixture with that share. */
+static double left_over(const float *mixed, const float *narrow, double share) {
+  double left = 0;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double w[3];
+    even_direction(i, VL_OWN_BATCH, 0.1, w);
+    double mixture = (1 - share) * (double)narrow[i] + share * w[2] / PI;
+    left = w[2] > 0 ? fmax(left, fabs((double)mixed[i] - mixture)) : left;
+  }
+  return left;
 }
 
 /* glTF's KHR_materials_anisotropy: of the roughness alpha = r^2, (1 - a^2) alpha + a^2 along
@@ -198,11 +203,11 @@ static void check_anisotropy(double roughness, double anisotropy) {
   metals[1].u_roughness.value = (float)along;
   metals[1].v_roughness.value = (float)alpha;
   Scattering *s[2];
-  double left;
   for (int i = 0; i < 2; i++)
     s[i] =
         scattering_of_def(need_scene(HEAD "WorldBegin LightSource \"infinite\""), &metals[i]);
-  double share = share_of_cosine(s[0]->pdf, s[1]->pdf, &left);
+  double share = share_of_cosine(s[0]->pdf, s[1]->pdf);
+  double left = left_over(s[0]->pdf, s[1]->pdf, share);
   if (!(left < 0.01 && share > -0.01 && share < 0.5))
     broken("materials", "principled",
            "anisotropy %g: its density is off by %.3f from %.3f even and else the metal's",

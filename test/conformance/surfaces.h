@@ -47,8 +47,9 @@ static double far_from(const double a[3], const double b[3]) {
               (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-/* Whether the surface goes on from `at` as its derivatives by one coordinate say. False in
- * `known`: there is no surface on one of its sides. */
+/* Counts in *moves and *turns whether points and normals beside `at`, along u (axis 0) or v,
+ * are elsewhere than its derivatives say. Where one of them is beyond the edge nothing is
+ * counted. */
 static void check_along(SurfaceLaws *l, uint32_t prim, const vlSurfacePoint *at, int axis,
                         uint32_t *moves, uint32_t *turns) {
   const double step = 5e-3;

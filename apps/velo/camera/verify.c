@@ -272,14 +272,12 @@ const Command camera_verify_command = {
     .usage = "--camera FILE [options]",
     .summary = "render a chessboard through a camera and measure its corners",
     .text =
-        "Renders a board in many poses through the camera, finds the corners in the images "
-        "to a hundredth of a\n"
-        "pixel, and compares them with an independent implementation of the camera's "
-        "equations. Exit code 1 if\n"
-        "the error of a corner is above the threshold, or corners are missing.",
+        "Renders a board in many poses through the camera, finds the corners in the images to "
+        "a hundredth of a\npixel, and compares them with an independent implementation of the "
+        "camera's equations. Exit code 1 if\nthe error of a corner is above the threshold, or "
+        "corners are missing.",
     .examples =
-        "velo camera verify --camera camera.yaml\n"
-        "velo camera verify --camera room.pbrt",
+        "velo camera verify --camera camera.yaml\nvelo camera verify --camera room.pbrt",
     .options = verify_options,
     .min_operands = 0,
     .max_operands = 0,

@@ -216,16 +216,14 @@ static bool bend(const vlCameraDef *def, double plane[2]) {
 /* Solves world_from_camera (p, 1) = (point, 1) for p by Cramer's rule. */
 static void to_camera(const double m[16], const double point[3], double p[3]) {
   double a[3] = {m[0], m[4], m[8]}, b[3] = {m[1], m[5], m[9]}, c[3] = {m[2], m[6], m[10]};
-  double d[3] = {point[0] - m[3], point[1] - m[7], point[2] - m[11]};
-#define CROSS_DOT(a, b, c)                        \
-  ((a)[0] * ((b)[1] * (c)[2] - (b)[2] * (c)[1]) + \
-   (a)[1] * ((b)[2] * (c)[0] - (b)[0] * (c)[2]) + \
-   (a)[2] * ((b)[0] * (c)[1] - (b)[1] * (c)[0]))
-  double det = CROSS_DOT(a, b, c);
-  p[0] = CROSS_DOT(d, b, c) / det;
-  p[1] = CROSS_DOT(a, d, c) / det;
-  p[2] = CROSS_DOT(a, b, d) / det;
-#undef CROSS_DOT
+  double d[3] = {point[0] - m[3], point[1] - m[7], point[2] - m[11]}, n[3];
+  vector_cross(b, c, n);
+  const double det = vector_dot(a, n);
+  p[0] = vector_dot(d, n) / det;
+  vector_cross(d, c, n);
+  p[1] = vector_dot(a, n) / det;
+  vector_cross(b, d, n);
+  p[2] = vector_dot(a, n) / det;
 }
 
 bool verify_knows(const VerifyModel *m) {

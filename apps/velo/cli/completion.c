@@ -50,6 +50,16 @@ static void put_names(const Option *o) {
     printf("%s%s", c == option_choices(o) ? "" : " ", c->name);
 }
 
+/* Prints what a shell completes a value with. words: by Values; end: behind the names. */
+static void put_values(const Option *o, const char *const words[], char end) {
+  const Values values = option_values(o);
+  fputs(words[values], stdout);
+  if (values == VALUES_NAMES) {
+    put_names(o);
+    putchar(end);
+  }
+}
+
 /* Whether the operand of a command is a family of velo/schema.h. */
 static bool takes_family(const Command *command) {
   return strstr(command->usage, "FAMILY") != NULL;
@@ -72,19 +82,22 @@ static bool has_two_words(const Command *command) {
   return command->name[first_length(command)] != '\0';
 }
 
+static bool same_first(const Command *a, const Command *b) {
+  return first_length(a) == first_length(b) &&
+         strncmp(a->name, b->name, (size_t)first_length(a)) == 0;
+}
+
 /* Whether commands[i] is the first with its first word. */
 static bool is_first(const Command *const *commands, int i) {
-  int n = first_length(commands[i]);
   for (int j = 0; j < i; j++)
-    if (first_length(commands[j]) == n &&
-        strncmp(commands[j]->name, commands[i]->name, (size_t)n) == 0)
+    if (same_first(commands[j], commands[i]))
       return false;
   return true;
 }
 
-static bool same_first(const Command *a, const Command *b) {
-  return first_length(a) == first_length(b) &&
-         strncmp(a->name, b->name, (size_t)first_length(a)) == 0;
+/* Whether commands[i] is the first of several with its first word. */
+static bool is_group(const Command *const *commands, int i) {
+  return is_first(commands, i) && has_two_words(commands[i]);
 }
 
 /* Prints the first words of all commands. */
@@ -137,62 +150,33 @@ static void put_clause(const char *text, const char *escaped, bool fish) {
 /* ---- bash -------------------------------------------------------------------------------- */
 
 static const char bash_head[] =
-    "# bash completion of velo; written by `velo help --completion bash`\n"
-    "_velo() {\n"
-    "  local cur=${COMP_WORDS[COMP_CWORD]} option= command= at=2 kind=files names= options=\n"
-    "  ((COMP_CWORD > 1)) && option=${COMP_WORDS[COMP_CWORD - 1]}\n"
-    "  # --option=value is three words\n"
-    "  if [[ $cur == = ]]; then\n"
-    "    cur=\n"
-    "  elif [[ $option == = ]]; then\n"
-    "    option=${COMP_WORDS[COMP_CWORD - 2]}\n"
-    "  fi\n"
-    "  command=${COMP_WORDS[1]}\n"
-    "  case $command in\n";
+    "# bash completion of velo; written by `velo help --completion bash`\n_velo() {\n  local "
+    "cur=${COMP_WORDS[COMP_CWORD]} option= command= at=2 kind=files names= options=\n  "
+    "((COMP_CWORD > 1)) && option=${COMP_WORDS[COMP_CWORD - 1]}\n  # --option=value is three "
+    "words\n  if [[ $cur == = ]]; then\n    cur=\n  elif [[ $option == = ]]; then\n    "
+    "option=${COMP_WORDS[COMP_CWORD - 2]}\n  fi\n  command=${COMP_WORDS[1]}\n  case $command "
+    "in\n";
 
 static const char bash_tail[] =
-    "  esac\n"
-    "  if [[ $kind != value* && $kind != names && $cur == -* ]]; then\n"
-    "    kind=names names=$options\n"
-    "  fi\n"
-    "  COMPREPLY=()\n"
-    "  case ${kind#value} in\n"
-    "    names | operand) mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$cur\") ;;\n"
-    "    files)\n"
-    "      compopt -o filenames 2>/dev/null\n"
-    "      mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n"
-    "      ;;\n"
-    "    folders)\n"
-    "      compopt -o filenames 2>/dev/null\n"
-    "      mapfile -t COMPREPLY < <(compgen -d -- \"$cur\")\n"
-    "      ;;\n"
-    "  esac\n"
-    "}\n"
-    "complete -F _velo velo\n";
+    "  esac\n  if [[ $kind != value* && $kind != names && $cur == -* ]]; then\n    kind=names "
+    "names=$options\n  fi\n  COMPREPLY=()\n  case ${kind#value} in\n    names | operand) "
+    "mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$cur\") ;;\n    files)\n      compopt "
+    "-o filenames 2>/dev/null\n      mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n      "
+    ";;\n    folders)\n      compopt -o filenames 2>/dev/null\n      mapfile -t COMPREPLY < "
+    "<(compgen -d -- \"$cur\")\n      ;;\n  esac\n}\ncomplete -F _velo velo\n";
 
 static void bash_option(const Option *o) {
+  static const char *const words[] = {[VALUES_UNKNOWN] = "value",
+                                      [VALUES_NAMES] = "names names='",
+                                      [VALUES_FILES] = "valuefiles",
+                                      [VALUES_FOLDERS] = "valuefolders"};
   if (o->kind == OPTION_FLAG)
     return;
   printf("        ");
   if (o->letter)
     printf("-%c | ", o->letter);
   printf("--%s) kind=", o->name);
-  switch (option_values(o)) {
-    case VALUES_UNKNOWN:
-      printf("value");
-      break;
-    case VALUES_FILES:
-      printf("valuefiles");
-      break;
-    case VALUES_FOLDERS:
-      printf("valuefolders");
-      break;
-    case VALUES_NAMES:
-      printf("names names='");
-      put_names(o);
-      putchar('\'');
-      break;
-  }
+  put_values(o, words, '\'');
   printf(" ;;\n");
 }
 
@@ -217,7 +201,7 @@ static void bash_command(const Command *const *commands, int count, const Comman
     put_first_words(commands, count);
     printf("' ;;\n");
     for (int i = 0; i < count; i++) {
-      if (!is_first(commands, i) || !has_two_words(commands[i]))
+      if (!is_group(commands, i))
         continue;
       printf("        %.*s) names='", first_length(commands[i]), commands[i]->name);
       put_second_words(commands, count, commands[i]);
@@ -237,7 +221,7 @@ static void bash_command(const Command *const *commands, int count, const Comman
 static void print_bash(const Command *const *commands, int count, const Command *help) {
   fputs(bash_head, stdout);
   for (int i = 0; i < count; i++) {
-    if (!is_first(commands, i) || !has_two_words(commands[i]))
+    if (!is_group(commands, i))
       continue;
     printf("    %.*s)\n      command+=\" ${COMP_WORDS[2]}\" at=3 names='",
            first_length(commands[i]), commands[i]->name);
@@ -257,6 +241,10 @@ static void print_bash(const Command *const *commands, int count, const Command 
 /* ---- zsh --------------------------------------------------------------------------------- */
 
 static void zsh_option(const Option *o) {
+  static const char *const words[] = {[VALUES_UNKNOWN] = " ",
+                                      [VALUES_NAMES] = "(",
+                                      [VALUES_FILES] = "_files",
+                                      [VALUES_FOLDERS] = "_files -/"};
   bool repeated =
       o->kind == OPTION_TEXTS || o->kind == OPTION_FOLDERS || o->kind == OPTION_SEARCH;
   const char *end = o->kind == OPTION_FLAG ? "" : "=";
@@ -278,22 +266,7 @@ static void zsh_option(const Option *o) {
     for (const char *c = o->value; *c; c++)
       printf("%s%c", *c == ':' ? "\\" : "", *c);
     putchar(':');
-    switch (option_values(o)) {
-      case VALUES_UNKNOWN:
-        putchar(' ');
-        break;
-      case VALUES_FILES:
-        printf("_files");
-        break;
-      case VALUES_FOLDERS:
-        printf("_files -/");
-        break;
-      case VALUES_NAMES:
-        putchar('(');
-        put_names(o);
-        putchar(')');
-        break;
-    }
+    put_values(o, words, ')');
   }
   printf("' \\\n");
 }
@@ -347,7 +320,7 @@ static void print_zsh(const Command *const *commands, int count, const Command *
   zsh_describe(commands, count, NULL);
   printf("  fi\n");
   for (int i = 0; i < count; i++) {
-    if (!is_first(commands, i) || !has_two_words(commands[i]))
+    if (!is_group(commands, i))
       continue;
     printf("  if [[ $command == %.*s ]] && ((CURRENT == 3)); then\n", first_length(commands[i]),
            commands[i]->name);
@@ -357,16 +330,15 @@ static void print_zsh(const Command *const *commands, int count, const Command *
   printf("  case $command in\n    ");
   const char *gap = "";
   for (int i = 0; i < count; i++) {
-    if (!is_first(commands, i) || !has_two_words(commands[i]))
+    if (!is_group(commands, i))
       continue;
     printf("%s%.*s", gap, first_length(commands[i]), commands[i]->name);
     gap = " | ";
   }
   printf(
       ")\n      command+=\" $words[3]\"\n      shift 2 words\n      ((CURRENT -= 2))\n      "
-      ";;\n"
-      "    *)\n      shift words\n      ((CURRENT -= 1))\n      ;;\n  esac\n  case $command "
-      "in\n");
+      ";;\n    *)\n      shift words\n      ((CURRENT -= 1))\n      ;;\n  esac\n  case "
+      "$command in\n");
   for (int i = 0; i < count; i++)
     zsh_command(commands, count, commands[i], help);
   printf("  esac\n}\n_velo \"$@\"\n");
@@ -375,43 +347,24 @@ static void print_zsh(const Command *const *commands, int count, const Command *
 /* ---- fish -------------------------------------------------------------------------------- */
 
 static const char fish_head[] =
-    "# fish completion of velo; written by `velo help --completion fish`\n"
-    "function __velo_words_are --description 'whether the words before the cursor are exactly "
-    "these'\n"
-    "  set -l words (commandline -opc)\n"
-    "  set -e words[1]\n"
-    "  test \"$words\" = \"$argv\"\n"
-    "end\n"
+    "# fish completion of velo; written by `velo help --completion fish`\nfunction "
+    "__velo_words_are --description 'whether the words before the cursor are exactly these'\n  "
+    "set -l words (commandline -opc)\n  set -e words[1]\n  test \"$words\" = \"$argv\"\nend\n"
     "function __velo_command_is --description 'whether the words before the cursor begin with "
-    "these'\n"
-    "  set -l words (commandline -opc)\n"
-    "  set -e words[1]\n"
-    "  set -l n (count $argv)\n"
-    "  test (count $words) -ge $n; and test \"$words[1..$n]\" = \"$argv\"\n"
-    "end\n";
+    "these'\n  set -l words (commandline -opc)\n  set -e words[1]\n  set -l n (count $argv)\n  "
+    "test (count $words) -ge $n; and test \"$words[1..$n]\" = \"$argv\"\nend\n";
 
 static void fish_option(const Command *command, const Option *o) {
+  static const char *const words[] = {
+      [VALUES_UNKNOWN] = " -x",
+      [VALUES_NAMES] = " -x -a '",
+      [VALUES_FILES] = " -r -F",
+      [VALUES_FOLDERS] = " -x -a '(__fish_complete_directories)'"};
   printf("complete -c velo -n '__velo_command_is %s' -l %s", command->name, o->name);
   if (o->letter)
     printf(" -s %c", o->letter);
-  if (o->kind != OPTION_FLAG) {
-    switch (option_values(o)) {
-      case VALUES_UNKNOWN:
-        printf(" -x");
-        break;
-      case VALUES_FILES:
-        printf(" -r -F");
-        break;
-      case VALUES_FOLDERS:
-        printf(" -x -a '(__fish_complete_directories)'");
-        break;
-      case VALUES_NAMES:
-        printf(" -x -a '");
-        put_names(o);
-        putchar('\'');
-        break;
-    }
-  }
+  if (o->kind != OPTION_FLAG)
+    put_values(o, words, '\'');
   printf(" -d '");
   put_clause(o->help, "\\", true);
   printf("'\n");

@@ -106,6 +106,15 @@ void json_integer(Json *json, const char *key, int64_t number) {
   fprintf(json->out, "%lld", (long long)number);
 }
 
+void json_location(Json *json, const char *file, uint32_t line, uint32_t column) {
+  if (file)
+    json_text(json, "file", file);
+  if (line)
+    json_integer(json, "line", line);
+  if (column)
+    json_integer(json, "column", column);
+}
+
 void json_numbers(Json *json, const char *key, const double *numbers, uint32_t count) {
   json_begin(json, key, '[');
   for (uint32_t i = 0; i < count; i++)

@@ -24,6 +24,8 @@ void json_integer(Json *json, const char *key, int64_t number);
 /* Begins the one object that a command prints to stdout; json_close ends it and the line. */
 Json *json_open(void);
 void json_close(Json *json);
+/* File, line and column of the object, each where it is known: null, or 0. */
+void json_location(Json *json, const char *file, uint32_t line, uint32_t column);
 /* Arrays. */
 void json_numbers(Json *json, const char *key, const double *numbers, uint32_t count);
 void json_integers(Json *json, const char *key, const uint32_t *numbers, uint32_t count);

@@ -146,12 +146,7 @@ static void say(const char *kind, int status, const vlError *where, const char *
     Json *json = report_json_begin(kind ? kind : "error");
     if (!kind)
       json_integer(json, "status", status);
-    if (file)
-      json_text(json, "file", file);
-    if (line)
-      json_integer(json, "line", line);
-    if (column)
-      json_integer(json, "column", column);
+    json_location(json, file, line, column);
     json_text(json, "message", message);
     report_json_end(json);
     return;
@@ -235,9 +230,13 @@ static const char *bytes_text(char text[32], size_t bytes) {
   return text;
 }
 
+const char *error_text(const vlError *error, vlResult result) {
+  return error->message[0] ? error->message : vl_result_name(result);
+}
+
 int report_error(const vlError *error, vlResult result, const char *file) {
   const int status = status_of(result);
-  const char *message = error && error->message[0] ? error->message : vl_result_name(result);
+  const char *message = error ? error_text(error, result) : vl_result_name(result);
   char longer[700];
   if (result == VL_OK)
     return -1;

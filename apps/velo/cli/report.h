@@ -38,6 +38,8 @@ int report_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
  * STATUS_SCENE. Null: the user's command line. */
 void report_usage_of(const char *file);
 int report_failure(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The message of an error; where it has none, the name of the result. */
+const char *error_text(const vlError *error, vlResult result);
 /* Reports "velo: file:line:column: message". `file` is used when the library's error has no
  * location; may be null. VL_OK: nothing is reported, and -1 returned. */
 int report_error(const vlError *error, vlResult result, const char *file);

@@ -25,6 +25,10 @@ void check_note(Check *c, int rule, double error) {
   r->y = c->y;
 }
 
+void check_that(Check *c, int rule, bool good) {
+  check_note(c, rule, good ? 0 : (double)INFINITY);
+}
+
 void check_load3(const Check *c, int channel, double v[3]) {
   for (int k = 0; k < 3; k++)
     v[k] = c->pixel[channel + k];
@@ -138,15 +142,12 @@ static void check_whole_type(Check *c, int channel) {
   if (channel < 0)
     return;
   vlPixelType type = vl_image_stored_type(c->image, (uint32_t)channel);
-  check_note(c, RULE_TYPES,
-             type == VL_PIXEL_F32 || type == VL_PIXEL_U32 ? 0 : (double)INFINITY);
+  check_that(c, RULE_TYPES, type == VL_PIXEL_F32 || type == VL_PIXEL_U32);
 }
 
 static void check_type(Check *c, int channel, int parts, vlPixelType type) {
   for (int k = 0; k < parts && channel >= 0; k++)
-    check_note(
-        c, RULE_TYPES,
-        vl_image_stored_type(c->image, (uint32_t)(channel + k)) == type ? 0 : (double)INFINITY);
+    check_that(c, RULE_TYPES, vl_image_stored_type(c->image, (uint32_t)(channel + k)) == type);
 }
 
 /* Depths and positions must be 32-bit floats; ids may be floats or integers. */
@@ -358,18 +359,13 @@ const Command image_check_command = {
     .usage = "FILE.exr [options]",
     .summary = "check ground truth channels against the camera in the header",
     .text =
-        "Computes depths, positions, rays and pixels of FILE's ground truth channels from "
-        "each other and from\n"
-        "the camera in its header, in double precision, and prints the largest relative "
-        "errors. Errors of\n"
-        "positions and depths are relative to the largest of |P|, |origin| and distance, "
-        "those of pixels to the\n"
-        "larger side of the image. Cryptomatte ids are compared with the manifest, and "
-        "coverages with alpha.\n"
-        "Exit code 1 if an error is above the threshold.",
-    .examples =
-        "velo image check channels.exr\n"
-        "velo image check --json channels.exr",
+        "Computes depths, positions, rays and pixels of FILE's ground truth channels from each "
+        "other and from\nthe camera in its header, in double precision, and prints the largest "
+        "relative errors. Errors of\npositions and depths are relative to the largest of |P|, "
+        "|origin| and distance, those of pixels to the\nlarger side of the image. Cryptomatte "
+        "ids are compared with the manifest, and coverages with alpha.\nExit code 1 if an "
+        "error is above the threshold.",
+    .examples = "velo image check channels.exr\nvelo image check --json channels.exr",
     .options = check_options,
     .min_operands = 1,
     .max_operands = 1,

@@ -92,6 +92,8 @@ typedef struct Check {
 enum { CHECK_OBJECTS = 1 << 20 }; /* larger object ids are not recorded */
 
 void check_note(Check *c, int rule, double error);
+/* Notes no error, or an infinite one. */
+void check_that(Check *c, int rule, bool good);
 void check_load3(const Check *c, int channel, double v[3]);
 /* Returns whether the pixel shows a surface, according to any channel that tells. Returns true
  * if no channel tells. */

@@ -122,9 +122,7 @@ void check_flow(Check *c) {
   if (!find_point(c, hit, p))
     return;
   if (!vl_camera_project(&c->other_camera, p, at, &z)) {
-    check_note(
-        c, RULE_HIDDEN,
-        hidden == VL_HIDDEN_NOWHERE && flow[0] == 0 && flow[1] == 0 ? 0 : (double)INFINITY);
+    check_that(c, RULE_HIDDEN, hidden == VL_HIDDEN_NOWHERE && flow[0] == 0 && flow[1] == 0);
     return;
   }
   double larger =

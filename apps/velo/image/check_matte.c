@@ -141,7 +141,7 @@ static double check_matte(Check *c, const Matte *m) {
     sum += (double)coverage;
     last = coverage;
   }
-  check_note(c, RULE_MATTE_IDS, good ? 0 : (double)INFINITY);
+  check_that(c, RULE_MATTE_IDS, good);
   check_note(c, RULE_MATTE_SUM,
              sum <= 1          ? 0
              : sum - 1 <= 1e-6 ? 1e-9

@@ -86,9 +86,9 @@ static void check_plain(Check *c) {
   const int channels[] = {c->uv, c->albedo}, counts[] = {2, 3};
   for (int i = 0; i < 2; i++)
     for (int k = 0; k < counts[i] && channels[i] >= 0; k++)
-      check_note(c, RULE_FINITE, isfinite(c->pixel[channels[i] + k]) ? 0 : (double)INFINITY);
+      check_that(c, RULE_FINITE, isfinite(c->pixel[channels[i] + k]));
   for (int k = 0; k < 3 && c->error >= 0; k++) /* infinity: too few samples */
-    check_note(c, RULE_FINITE, c->pixel[c->error + k] >= 0 ? 0 : (double)INFINITY);
+    check_that(c, RULE_FINITE, c->pixel[c->error + k] >= 0);
   if (c->samples >= 0 && c->spp > 0) {
     double more = (double)c->pixel[c->samples] - c->spp;
     check_note(c, RULE_SAMPLES, (c->adaptive ? fmax(more, 0) : fabs(more)) / c->spp);
@@ -111,7 +111,11 @@ static void check_material_of(Check *c) {
   uint32_t *known = &c->material_of[(uint32_t)object];
   if (!*known)
     *known = (uint32_t)material;
-  check_note(c, RULE_IDS, (double)*known == (double)material ? 0 : (double)INFINITY);
+  check_that(c, RULE_IDS, (double)*known == (double)material);
+}
+
+static void check_id(Check *c, float id, float least) {
+  check_that(c, RULE_IDS, id >= least && floorf(id) == id);
 }
 
 void check_pixel(Check *c) {
@@ -146,16 +150,8 @@ void check_pixel(Check *c) {
     check_load3(c, c->ng, v);
     check_note(c, RULE_UNIT_NG, fabs(vector_length(v) - 1));
   }
-  const int ids[] = {c->object, c->material, c->primitive};
+  const int ids[] = {c->object, c->material, c->primitive, c->instance};
   for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
     if (ids[i] >= 0)
-      check_note(
-          c, RULE_IDS,
-          c->pixel[ids[i]] >= 1 && floorf(c->pixel[ids[i]]) == c->pixel[ids[i]] ? 0 : INFINITY);
-  if (c->instance >= 0)
-    check_note(
-        c, RULE_IDS,
-        c->pixel[c->instance] >= 0 && floorf(c->pixel[c->instance]) == c->pixel[c->instance]
-            ? 0
-            : INFINITY);
+      check_id(c, c->pixel[ids[i]], ids[i] == c->instance ? 0 : 1);
 }

@@ -270,9 +270,7 @@ const Command image_info_command = {
     .text =
         "Prints the format, size, channels and header attributes of FILE. Matrices are in "
         "OpenEXR's order (row vectors).",
-    .examples =
-        "velo image info room.exr\n"
-        "velo image info --json room.exr",
+    .examples = "velo image info room.exr\nvelo image info --json room.exr",
     .options = info_options,
     .min_operands = 1,
     .max_operands = 1,

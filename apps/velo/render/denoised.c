@@ -125,8 +125,7 @@ static vlResult clean_frame(Denoised *d, vlContext *context, const vlWorld *worl
  * independent samples, which the denoiser prefers; the others need not be estimated. */
 static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
                        const vlFilm *film, vlImage **joined, vlError *error) {
-  vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = job->defs->develop.exposure;
+  vlDevelopDef develop = job->defs->develop;
   develop.independent = true; /* does not matter to the colours */
   int signals = signals_count();
   vlChannelsDef def = job_channels_def(job, film, &signals);

@@ -65,14 +65,8 @@ static void describe_json(const Job *job, const Facts *f, bool denoised,
   json_text(json, "light_sampler", f->light_sampler);
   json_text(json, "color", f->color);
   json_text(json, "projection", f->projection);
-  json_begin(json, "focal", '[');
-  json_number(json, NULL, c->fx);
-  json_number(json, NULL, c->fy);
-  json_end(json, ']');
-  json_begin(json, "principal", '[');
-  json_number(json, NULL, c->cx);
-  json_number(json, NULL, c->cy);
-  json_end(json, ']');
+  json_numbers(json, "focal", (const double[]){c->fx, c->fy}, 2);
+  json_numbers(json, "principal", (const double[]){c->cx, c->cy}, 2);
   json_numbers(json, "world_from_camera", c->world_from_camera, 16);
   json_integer(json, "triangles", (int64_t)f->world.triangles);
   json_integer(json, "primitives", (int64_t)f->world.primitives);

@@ -210,8 +210,6 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
   render.max_depth =
       defs->render.max_depth < METER_DEPTH ? defs->render.max_depth : METER_DEPTH;
   render.spp = METER_SPP;
-  vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = defs->develop.exposure;
   vlChannelsDef channels = vl_default_channels_def(camera->width, camera->height);
   channels.channels = VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_MATERIAL;
   vlFilm *film = NULL;
@@ -221,7 +219,7 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
     result = vl_render(world, camera, film, &render, &stats, error);
   tell_rays(what, camera, &stats);
   if (result == VL_OK)
-    result = vl_film_develop(film, &develop, &small->color);
+    result = vl_film_develop(film, &defs->develop, &small->color);
   if (result == VL_OK)
     result = vl_render_channels(world, camera, &channels, &small->albedos, &small->ids, error);
   vl_film_destroy(film);

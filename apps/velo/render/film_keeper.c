@@ -82,8 +82,7 @@ static vlResult begin_write(FilmKeeper *k, const vlFilm *film) {
 static void report_checkpoint(FilmKeeper *k, vlResult result) {
   bool failing = result != VL_OK;
   if (failing && !k->failing)
-    report_warning("checkpoint: %s; tried again later",
-                   k->error.message[0] ? k->error.message : vl_result_name(result));
+    report_warning("checkpoint: %s; tried again later", error_text(&k->error, result));
   if (!failing && k->failing)
     report_note("the film %s is written again", k->path);
   k->failing = failing;

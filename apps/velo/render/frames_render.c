@@ -61,9 +61,7 @@ static void add_stats(vlRenderStats *total, const vlRenderStats *more) {
 }
 
 static int develop(const Job *job, const vlFilm *film, vlImage **image) {
-  vlDevelopDef def = vl_default_develop_def();
-  def.exposure = job->defs->develop.exposure;
-  vlResult result = vl_film_develop(film, &def, image);
+  vlResult result = vl_film_develop(film, &job->defs->develop, image);
   return result == VL_OK
              ? STATUS_OK
              : report_reason(result, job->path, "the image cannot be made of the film");

@@ -166,8 +166,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
                    vlImage **image) {
   vlImage *geometry = NULL, *rendered = NULL, *errors = NULL;
   vlError error = {0};
-  vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = job->defs->develop.exposure;
+  vlDevelopDef develop = job->defs->develop;
   develop.independent = true;
   vlResult result = ground_truth_of(world, job, film, &geometry, &error);
   if (result == VL_OK)

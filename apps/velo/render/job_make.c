@@ -246,7 +246,7 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
       &def, &camera, NULL, &error); /* its warnings were reported when the camera was read */
   if (result != VL_OK) {
     snprintf(job->camera_location.message, sizeof job->camera_location.message, "%s",
-             error.message[0] ? error.message : vl_result_name(result));
+             error_text(&error, result));
     return report_error(error.file[0] ? &error : &job->camera_location, result, NULL);
   }
   if (camera.width == width && camera.height == height) {

@@ -185,8 +185,7 @@ static void report_progress_failure(Outputs *outputs, int i, vlResult result,
                                     const vlError *error) {
   bool failing = result != VL_OK;
   if (failing && !outputs->files[i].failing)
-    report_warning("progress image: %s; tried again later",
-                   error->message[0] ? error->message : vl_result_name(result));
+    report_warning("progress image: %s; tried again later", error_text(error, result));
   if (!failing && outputs->files[i].failing)
     report_note("the progress image of %s is written again", outputs->paths[i]);
   outputs->files[i].failing = failing;

@@ -18,11 +18,9 @@ enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
 /* ---- files ------------------------------------------------------------------------------- */
 
 static int write_image(Render *render, OutputStage stage) {
-  vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = render->job.defs->develop.exposure;
   vlImage *image = NULL;
   uint32_t spp = vl_film_spp(render->film);
-  vlResult result = vl_film_develop(render->film, &develop, &image);
+  vlResult result = vl_film_develop(render->film, &render->job.defs->develop, &image);
   if (result == VL_OK)
     result = attributes_set(image, &render->job, spp);
   if (result == VL_OK)

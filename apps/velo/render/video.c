@@ -240,8 +240,7 @@ int videos_finish(Videos *videos, const Arguments *arguments, int status) {
   if (rendered && (!child_find(videos->programs, "ffmpeg", program, sizeof program) ||
                    context_open_one(&context) >= 0))
     status = report_failure(STATUS_IO,
-                            "%s is not written: ffmpeg cannot be started; the "
-                            "frames are in %s",
+                            "%s is not written: ffmpeg cannot be started; the frames are in %s",
                             videos->paths[0], videos->frames);
   for (int i = 0; i < videos->count && status == STATUS_OK; i++)
     status = make_one(videos, context, program, videos->paths[i]);

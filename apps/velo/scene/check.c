@@ -148,12 +148,7 @@ static void print_json(const List *list, const char *path, int status) {
       json_begin(json, NULL, '{');
       json_text(json, "kind", vl_finding_kind_name(e->kind));
       json_text(json, "severity", severities[severity]);
-      if (e->file[0])
-        json_text(json, "file", e->file);
-      if (e->line)
-        json_integer(json, "line", e->line);
-      if (e->line && e->column)
-        json_integer(json, "column", e->column);
+      json_location(json, e->file[0] ? e->file : NULL, e->line, e->line ? e->column : 0);
       json_text(json, "message", e->message);
       json_end(json, '}');
     }
@@ -217,20 +212,13 @@ const Command scene_check_command = {
     .summary = "find errors and likely mistakes in a scene",
     .text =
         "Reads a scene, continues after errors, and prints all findings, each with its kind "
-        "and its location\n"
-        "in the file: missing, damaged and invalid files; unused and overwritten names; "
-        "solids of glass\n"
-        "that are open or inside out; media that overlap; faces without area; textures over "
-        "uv on a mesh\n"
-        "without uv; surfaces that reflect more light than they receive; a camera inside a "
-        "solid; lights\n"
-        "of power 0. Renders nothing.\n"
-        "\n"
-        "exit codes: 0 only notes or no findings; 1 warnings; 3, 4, 5 an error that would "
-        "end velo render",
-    .examples =
-        "velo scene check room.pbrt\n"
-        "velo scene check --json --no-images model.glb",
+        "and its location\nin the file: missing, damaged and invalid files; unused and "
+        "overwritten names; solids of glass\nthat are open or inside out; media that overlap; "
+        "faces without area; textures over uv on a mesh\nwithout uv; surfaces that reflect "
+        "more light than they receive; a camera inside a solid; lights\nof power 0. Renders "
+        "nothing.\n\nexit codes: 0 only notes or no findings; 1 warnings; 3, 4, 5 an error "
+        "that would end velo render",
+    .examples = "velo scene check room.pbrt\nvelo scene check --json --no-images model.glb",
     .options = options,
     .min_operands = 1,
     .max_operands = 1,

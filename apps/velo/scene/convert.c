@@ -98,12 +98,10 @@ const Command scene_convert_command = {
     .summary = "write a scene in another format: .gltf, .glb, .pbrt",
     .text =
         "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of B's "
-        "suffix. What that\n"
-        "format cannot hold exactly is reported: one line per kind, with the number of "
-        "occurrences.",
+        "suffix. What that\nformat cannot hold exactly is reported: one line per kind, with "
+        "the number of occurrences.",
     .examples =
-        "velo scene convert room.pbrt room.glb\n"
-        "velo scene convert model.gltf model.pbrt",
+        "velo scene convert room.pbrt room.glb\nvelo scene convert model.gltf model.pbrt",
     .options = convert_options,
     .min_operands = 2,
     .max_operands = 2,

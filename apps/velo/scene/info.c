@@ -204,13 +204,8 @@ static void print_text(const Facts *f) {
   }
 }
 
-static void json_location(Json *json, const vlSource *source) {
-  if (source->file)
-    json_text(json, "file", source->file);
-  if (source->line)
-    json_integer(json, "line", source->line);
-  if (source->line && source->column)
-    json_integer(json, "column", source->column);
+static void put_source(Json *json, const vlSource *source) {
+  json_location(json, source->file, source->line, source->line ? source->column : 0);
 }
 
 /* Things of each kind: {"materials": {"diffuse": 5}, ...}. */
@@ -285,7 +280,7 @@ static void json_lights(Json *json, const Facts *f) {
     json_bool(json, "image", l.image);
     if (l.faces)
       json_integer(json, "faces", (int64_t)l.faces);
-    json_location(json, &l.source);
+    put_source(json, &l.source);
     json_end(json, '}');
   }
   json_end(json, ']');
@@ -299,7 +294,7 @@ static void json_unused(Json *json, const Facts *f) {
       continue;
     json_begin(json, NULL, '{');
     json_text(json, "message", u->message);
-    json_location(json, &u->source);
+    put_source(json, &u->source);
     json_end(json, '}');
   }
   json_end(json, ']');
@@ -384,14 +379,10 @@ const Command scene_info_command = {
     .usage = "FILE [options]",
     .summary = "print what a scene contains: counts, bounds, camera, lights",
     .text =
-        "Reads a scene and prints its contents, without building or rendering it. The power "
-        "of a light is the\n"
-        "luminance that it emits, integrated over area and solid angle; of distant and "
-        "infinite lights, the\n"
-        "part that enters a sphere around the scene.",
-    .examples =
-        "velo scene info room.pbrt\n"
-        "velo scene info --json model.glb",
+        "Reads a scene and prints its contents, without building or rendering it. The power of "
+        "a light is the\nluminance that it emits, integrated over area and solid angle; of "
+        "distant and infinite lights, the\npart that enters a sphere around the scene.",
+    .examples = "velo scene info room.pbrt\nvelo scene info --json model.glb",
     .options = options,
     .min_operands = 1,
     .max_operands = 1,

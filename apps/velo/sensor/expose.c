@@ -29,16 +29,6 @@ enum {
   EXPOSE_WHITE,
   EXPOSE_THREADS
 };
-static const ExposureOption exposure_rows[] = {{EXPOSE_TIME, "exposure_time"},
-                                               {EXPOSE_F_NUMBER, "f_number"},
-                                               {EXPOSE_ISO, "iso"},
-                                               {EXPOSE_GAIN, "gain"},
-                                               {EXPOSE_TEMPERATURE, "temperature"},
-                                               {EXPOSE_FOCAL_LENGTH, "focal_length"},
-                                               {EXPOSE_RADIANCE, "radiance"},
-                                               {EXPOSE_SEED, "seed"},
-                                               {EXPOSE_FRAME, "frame"}};
-
 enum { MAX_FRAMES = 64 };
 
 typedef struct Expose {
@@ -318,8 +308,7 @@ static int run(const Arguments *arguments, vlContext *context) {
               .exposure = vl_default_exposure_def(),
               .paths = arguments->texts,
               .count = arguments->text_count};
-  int status = exposure_options(arguments, exposure_rows,
-                                sizeof exposure_rows / sizeof *exposure_rows, &e.exposure);
+  int status = exposure_options(arguments, &e.exposure);
   if (status < 0)
     status = parse_bracket(&e, &v[EXPOSE_BRACKET]);
   if (status < 0)

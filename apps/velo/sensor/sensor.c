@@ -25,18 +25,15 @@ int sensor_open(vlContext *context, const char *option, const char *name, vlSens
   return report_error(&error, result, file ? name : NULL);
 }
 
-int exposure_options(const Arguments *arguments, const ExposureOption *options, size_t count,
-                     vlExposureDef *exposure) {
-  for (size_t i = 0; i < count; i++) {
-    const OptionValue *value = &arguments->values[options[i].id];
-    const vlParameter *row = vl_setting(VL_SETTING_EXPOSURE, options[i].keyword);
-    char name[64] = "--";
+int exposure_options(const Arguments *arguments, vlExposureDef *exposure) {
+  for (const Option *o = arguments->command->options; o->name; o++) {
+    const OptionValue *value = &arguments->values[o->id];
+    const vlParameter *row = value->given ? vl_setting(VL_SETTING_EXPOSURE, o->name) : NULL;
+    char name[64];
     double number;
-    if (!value->given)
+    if (!row)
       continue;
-    snprintf(name + 2, sizeof name - 2, "%s", options[i].keyword);
-    for (char *at = name; *at; at++)
-      *at = *at == '_' ? '-' : *at;
+    snprintf(name, sizeof name, "--%s", o->name);
     int status = option_number(name, value->text, row, &number);
     if (status >= 0)
       return status;

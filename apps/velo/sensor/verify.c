@@ -21,9 +21,6 @@ enum {
   VERIFY_PLOT,
   VERIFY_THREADS
 };
-static const ExposureOption exposure_rows[] = {
-    {VERIFY_ISO, "iso"}, {VERIFY_TEMPERATURE, "temperature"}, {VERIFY_SEED, "seed"}};
-
 /* Light and times of the steps: the last one is 8 % above the saturation, and long enough for
  * five dark electrons. */
 static void plan(Verify *v) {
@@ -117,8 +114,7 @@ static int verify(Verify *v, const OptionValue *plot) {
 static int run(const Arguments *arguments, vlContext *context) {
   const OptionValue *values = arguments->values;
   Verify v = {.context = context, .exposure = vl_default_exposure_def(), .size = 512};
-  int status = exposure_options(arguments, exposure_rows,
-                                sizeof exposure_rows / sizeof *exposure_rows, &v.exposure);
+  int status = exposure_options(arguments, &v.exposure);
   if (status >= 0)
     return status;
   v.size = option_count(&values[VERIFY_SIZE], v.size);

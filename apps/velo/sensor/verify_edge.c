@@ -196,10 +196,7 @@ int verify_edge(Verify *v) {
       double error = fabs(ratio - 1.0);
       worst = error <= worst ? worst : error; /* NaN stays */
     }
-    verify_add(v, (VerifyRow){.name = "MTF error to 0.5/pixel",
-                              .unit = "%",
-                              .expected = (double)NAN,
-                              .measured = 100.0 * worst,
+    verify_add(v, (VerifyRow){"MTF error to 0.5/pixel", "%", (double)NAN, 100.0 * worst,
                               .allowed = 2.0});
   }
   vl_image_destroy(image);

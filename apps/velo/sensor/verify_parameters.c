@@ -194,23 +194,15 @@ static void add_dark(Verify *v, double gain) {
   double dark = dark_electrons(v, first->time);
   double half = v->full_time * 0.5 * v->saturation / v->full_electrons;
   double pattern = dark_electrons(v, half) * def->dark_nonuniformity;
-  verify_add(v, (VerifyRow){.name = "dark noise",
-                            .unit = "e-",
-                            .expected = sqrt(readout_variance(v) / (v->gain * v->gain) + dark),
-                            .measured = sqrt(fmax(first->dark_variance - ROUNDING, 0.0)) / gain,
-                            .allowed = 0.01,
-                            .skip = problem});
-  verify_add(v, (VerifyRow){.name = "dark current",
-                            .unit = "e-/s",
-                            .expected = dark_electrons(v, 1.0),
-                            .measured = dark_slope(v) / gain,
-                            .allowed = 0.01,
+  verify_add(
+      v, (VerifyRow){"dark noise", "e-", sqrt(readout_variance(v) / (v->gain * v->gain) + dark),
+                     sqrt(fmax(first->dark_variance - ROUNDING, 0.0)) / gain, .allowed = 0.01,
+                     .skip = problem});
+  verify_add(v, (VerifyRow){"dark current", "e-/s", dark_electrons(v, 1.0),
+                            dark_slope(v) / gain, .allowed = 0.01,
                             .skip = def->dark_current > 0.0 ? problem : "there is none"});
-  verify_add(v, (VerifyRow){.name = "DSNU",
-                            .unit = "e-",
-                            .expected = hypot(def->dsnu, pattern),
-                            .measured = sqrt(fmax(v->dark.spatial, 0.0)) / gain,
-                            .allowed = 0.01,
+  verify_add(v, (VerifyRow){"DSNU", "e-", hypot(def->dsnu, pattern),
+                            sqrt(fmax(v->dark.spatial, 0.0)) / gain, .allowed = 0.01,
                             .skip = def->dsnu > 0.0 ? problem : "there is none"});
 }
 
@@ -221,31 +213,13 @@ void verify_parameters(Verify *v) {
   double responsivity = slope(v, photons, light_mean, saturation);
   double signal = v->bright.mean - v->dark.mean;
   double pattern = sqrt(fmax(v->bright.spatial - v->dark.spatial, 0.0));
-  verify_add(v, (VerifyRow){.name = "gain",
-                            .unit = "DN/e-",
-                            .expected = v->gain,
-                            .measured = gain,
+  verify_add(v, (VerifyRow){"gain", "DN/e-", v->gain, gain, .allowed = 0.01});
+  verify_add(v, (VerifyRow){"efficiency", "e-/photon", v->efficiency, responsivity / gain,
                             .allowed = 0.01});
-  verify_add(v, (VerifyRow){.name = "efficiency",
-                            .unit = "e-/photon",
-                            .expected = v->efficiency,
-                            .measured = responsivity / gain,
-                            .allowed = 0.01});
-  verify_add(v, (VerifyRow){.name = "saturation",
-                            .unit = "e-",
-                            .expected = peak(v, true),
-                            .measured = saturation,
-                            .allowed = 0.01});
+  verify_add(v, (VerifyRow){"saturation", "e-", peak(v, true), saturation, .allowed = 0.01});
   add_dark(v, gain);
-  verify_add(v, (VerifyRow){.name = "PRNU",
-                            .unit = "%",
-                            .expected = 100.0 * def->prnu,
-                            .measured = 100.0 * pattern / signal,
-                            .allowed = 0.01,
-                            .skip = def->prnu > 0.0 ? NULL : "there is none"});
-  verify_add(v, (VerifyRow){.name = "linearity error",
-                            .unit = "%",
-                            .expected = (double)NAN,
-                            .measured = 100.0 * linearity_error(v, saturation),
-                            .allowed = 0.1});
+  verify_add(v, (VerifyRow){"PRNU", "%", 100.0 * def->prnu, 100.0 * pattern / signal,
+                            .allowed = 0.01, .skip = def->prnu > 0.0 ? NULL : "there is none"});
+  verify_add(v, (VerifyRow){"linearity error", "%", (double)NAN,
+                            100.0 * linearity_error(v, saturation), .allowed = 0.1});
 }

@@ -111,27 +111,22 @@ static void put_directory(Archive *a, const Member *members, uint32_t count) {
 static uint32_t list_members(const HitsFile *h, Member members[FIELDS]) {
   const vlCastHits *r = &h->rows;
   if (h->occluded) {
-    members[0] =
-        (Member){.name = "occluded.npy", .type = "'|b1'", .rows = h->occluded, .size = 1};
+    members[0] = (Member){"occluded.npy", "'|b1'", h->occluded, .size = 1};
     return 1;
   }
   const Member all[FIELDS] = {
-      {.name = "valid.npy", .type = "'|b1'", .rows = r->valid, .size = 1},
-      {.name = "t.npy", .type = "'<f8'", .rows = r->t, .size = 8},
-      {.name = "distance.npy", .type = "'<f8'", .rows = r->distance, .size = 8},
-      {.name = "position.npy", .type = "'<f8'", .rows = r->position, .size = 24, .columns = 3},
-      {.name = "normal.npy", .type = "'<f4'", .rows = r->normal, .size = 12, .columns = 3},
-      {.name = "shading_normal.npy",
-       .type = "'<f4'",
-       .rows = r->shading_normal,
-       .size = 12,
-       .columns = 3},
-      {.name = "uv.npy", .type = "'<f4'", .rows = r->uv, .size = 8, .columns = 2},
-      {.name = "velocity.npy", .type = "'<f8'", .rows = r->velocity, .size = 24, .columns = 3},
-      {.name = "object_id.npy", .type = "'<u4'", .rows = r->object, .size = 4},
-      {.name = "instance_id.npy", .type = "'<u4'", .rows = r->instance, .size = 4},
-      {.name = "primitive_id.npy", .type = "'<u4'", .rows = r->primitive, .size = 4},
-      {.name = "material_id.npy", .type = "'<u4'", .rows = r->material, .size = 4}};
+      {"valid.npy", "'|b1'", r->valid, .size = 1},
+      {"t.npy", "'<f8'", r->t, .size = 8},
+      {"distance.npy", "'<f8'", r->distance, .size = 8},
+      {"position.npy", "'<f8'", r->position, .size = 24, .columns = 3},
+      {"normal.npy", "'<f4'", r->normal, .size = 12, .columns = 3},
+      {"shading_normal.npy", "'<f4'", r->shading_normal, .size = 12, .columns = 3},
+      {"uv.npy", "'<f4'", r->uv, .size = 8, .columns = 2},
+      {"velocity.npy", "'<f8'", r->velocity, .size = 24, .columns = 3},
+      {"object_id.npy", "'<u4'", r->object, .size = 4},
+      {"instance_id.npy", "'<u4'", r->instance, .size = 4},
+      {"primitive_id.npy", "'<u4'", r->primitive, .size = 4},
+      {"material_id.npy", "'<u4'", r->material, .size = 4}};
   memcpy(members, all, sizeof all);
   return FIELDS;
 }

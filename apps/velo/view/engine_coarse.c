@@ -60,7 +60,7 @@ static void publish_moved(Engine *e, const vlFilm *film, uint32_t scale) {
 static bool render_colours(Engine *e, uint32_t scale) {
   vlCamera camera;
   vlFilmDef whole = e->model.job.defs->film;
-  vlRenderDef render = e->model.job.defs->render;
+  vlRenderDef render = engine_render_def(e, 1);
   vlFilm *film = NULL;
   vlError error = {0};
   vlRenderStats stats = {0};
@@ -68,11 +68,6 @@ static bool render_colours(Engine *e, uint32_t scale) {
   vlFilmDef def = vl_coarse_film_def(&whole, scale);
   if (e->now.channel == CHANNEL_CAMERA)
     engine_sensor_film(&def);
-  render.spp = 1;
-  render.first_sample = 0;
-  render.time_limit = 0;
-  render.noise = 0;
-  render.cancel = e->stop;
   render.priority = 1;
   vlResult result = vl_camera_coarse(&e->now.camera.made, scale, &camera);
   if (result == VL_OK)
@@ -125,12 +120,8 @@ static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage
 /* The illuminance takes as many samples as a film has: this one, whose light nobody sees. */
 static vlResult make_film(Engine *e, const vlCamera *camera, const vlFilmDef *def,
                           vlRenderDef *render, vlFilm **film, vlError *error) {
+  *render = engine_render_def(e, e->light_spp);
   render->tracer = VL_TRACER_RAYCAST;
-  render->spp = e->light_spp;
-  render->first_sample = 0;
-  render->time_limit = 0;
-  render->noise = 0;
-  render->cancel = e->stop;
   const vlResult result = vl_film_create(e->def.context, def, film);
   return result == VL_OK ? vl_render(e->model.world, camera, *film, render, NULL, error)
                          : result;

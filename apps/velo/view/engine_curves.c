@@ -58,10 +58,10 @@ static void curve_to(Curve *c, const double point[3]) {
 static void segment(Json *json, const vlCamera *camera, const char *name, const double a[3],
                     const double b[3], int steps) {
   Curve curve = {.json = json, .camera = camera, .name = name};
+  double p[3], way[3];
+  vector_subtract(b, a, way);
   for (int i = 0; i <= steps; i++) {
-    double p[3], t = (double)i / steps;
-    for (int k = 0; k < 3; k++)
-      p[k] = a[k] + t * (b[k] - a[k]);
+    vector_along(a, (double)i / steps, way, p);
     curve_to(&curve, p);
   }
   curve_break(&curve);
@@ -124,8 +124,7 @@ static void across(const double v[3], double a[3], double b[3]) {
 }
 
 static void far_point(const double eye[3], const double direction[3], double point[3]) {
-  for (int i = 0; i < 3; i++)
-    point[i] = eye[i] + 1e6 * direction[i];
+  vector_along(eye, 1e6, direction, point);
 }
 
 /* The images of all directions across up. */

@@ -159,15 +159,11 @@ static vlResult make_camera(const ViewMessage *m, vlCamera *camera, vlError *err
 
 static vlResult render_outside(const Engine *e, const vlCamera *camera, vlImage **image,
                                vlError *error) {
-  vlRenderDef render = e->model.job.defs->render;
+  vlRenderDef render = engine_render_def(e, OUTSIDE_SPP);
   vlFilmDef def = vl_default_film_def(camera->width, camera->height);
   vlFilm *film = NULL;
   def.max_component = 10;
-  render.spp = OUTSIDE_SPP;
   render.sequence = 0;
-  render.first_sample = 0;
-  render.time_limit = 0;
-  render.noise = 0;
   if (render.max_depth > 3)
     render.max_depth = 3;
   render.cancel = e->end;

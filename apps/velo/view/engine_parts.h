@@ -337,6 +337,9 @@ void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
 /* Traces the paths of the first pixel. False: there is none. */
 bool engine_trace_next(Engine *engine);
 /* Posts an answer of this type, with the message's id and one text. */
+/* The def of a render of so many samples from the first one on, which a change stops; without
+ * limits of time and noise. */
+vlRenderDef engine_render_def(const Engine *engine, uint32_t spp);
 /* Takes and gives back the engine's lock. */
 void engine_lock(Engine *engine);
 void engine_unlock(Engine *engine);

@@ -5,6 +5,7 @@
 
 #include "camera/paths.h"
 #include "cli/kinds.h"
+#include "cli/report.h"
 #include "velo/tracer.h"
 #include "view/engine_status.h"
 
@@ -80,7 +81,7 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
   if (result == VL_OK)
     post_paths(e, task, &traced);
   else
-    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
+    engine_refuse(e, task, error_text(&error, result));
   paths_free(&traced);
 }
 

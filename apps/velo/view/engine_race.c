@@ -171,8 +171,7 @@ bool engine_race(Engine *e) {
   e->raced_for = result != VL_OK || choice.count ? UINT32_MAX
                                                  : def.spp; /* more samples may allow a race */
   if (result != VL_OK) {
-    report_warning("no race of the tracers: %s",
-                   error.message[0] ? error.message : vl_result_name(result));
+    report_warning("no race of the tracers: %s", error_text(&error, result));
     return true;
   }
   bool taken = choice.count || kind == RACE_TRACERS;

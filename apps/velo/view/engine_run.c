@@ -74,6 +74,16 @@ static bool is_interrupted(Engine *engine) {
   return stop;
 }
 
+vlRenderDef engine_render_def(const Engine *e, uint32_t spp) {
+  vlRenderDef def = e->model.job.defs->render;
+  def.spp = spp;
+  def.first_sample = 0;
+  def.time_limit = 0;
+  def.noise = 0;
+  def.cancel = e->stop;
+  return def;
+}
+
 /* ---- the whole image --------------------------------------------------------------------- */
 
 vlFilm *engine_make_film(Engine *e) {

@@ -20,6 +20,8 @@
 
 enum { NAME_SIZE = 300 };
 
+static const char too_many[] = "there are too many files of this name";
+
 /* A page may name files of this folder only, and none that is hidden. */
 static bool name_is_plain(const char *name) {
   return name[0] && name[0] != '.' && name[0] != '-' && !strchr(name, '/') &&
@@ -57,22 +59,28 @@ static int choice_value(const Choice *choices, const char *name, int otherwise) 
 
 /* ---- files ------------------------------------------------------------------------------- */
 
-static void save_camera(Engine *e, const Task *task, const char *wanted, const char *dialect) {
-  char name[NAME_SIZE];
+/* False after posting why not. */
+static bool write_camera(Engine *e, const Task *task, const char *path,
+                         vlCameraDialect dialect) {
   vlError error = {0};
   vlCameraFileDef def = vl_default_camera_file_def();
-  vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
+  const vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
+  def.dialect = dialect;
+  vlResult result = vl_camera_write(e->def.context, path, &def, &record, &error);
+  if (result != VL_OK)
+    engine_refuse(e, task, error_text(&error, result));
+  return result == VL_OK;
+}
+
+static void save_camera(Engine *e, const Task *task, const char *wanted, const char *dialect) {
+  char name[NAME_SIZE];
   int found = choice_value(kind_choices(dialects), dialect, -1);
   if (found < 0 || found == VL_CAMERA_DIALECT_EXR)
     return engine_refuse(e, task, "there is no such dialect");
   if (!free_name(wanted, name))
-    return engine_refuse(e, task, "there are too many files of this name");
-  def.dialect = (vlCameraDialect)found;
-  vlResult result = vl_camera_write(e->def.context, name, &def, &record, &error);
-  if (result == VL_OK)
+    return engine_refuse(e, task, too_many);
+  if (write_camera(e, task, name, (vlCameraDialect)found))
     post_saved(e, task, name);
-  else
-    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
 }
 
 vlSceneDefs engine_present_defs(const Engine *e) {
@@ -116,7 +124,7 @@ static void save_exposure(Engine *e, const Task *task, const char *wanted) {
       !text_ends_with(wanted, ".exr"))
     return engine_refuse(e, task, "formats of an exposure are .dng .png .jpg .exr");
   if (!free_name(wanted, name))
-    return engine_refuse(e, task, "there are too many files of this name");
+    return engine_refuse(e, task, too_many);
   vlResult result = raw ? vl_raw_write(e->shot.raw, name, &error)
                         : vl_raw_develop(e->shot.raw, NULL, &image, &error);
   if (result == VL_OK && !raw)
@@ -125,7 +133,7 @@ static void save_exposure(Engine *e, const Task *task, const char *wanted) {
   if (result == VL_OK)
     post_saved(e, task, name);
   else
-    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
+    engine_refuse(e, task, error_text(&error, result));
 }
 
 static void save_image(Engine *e, const Task *task, const char *wanted) {
@@ -139,7 +147,7 @@ static void save_image(Engine *e, const Task *task, const char *wanted) {
   if (!output_suffix(wanted, &eight_bit))
     return engine_refuse(e, task, "formats are .exr .png .jpg .hdr .pfm .tga");
   if (!free_name(wanted, name))
-    return engine_refuse(e, task, "there are too many files of this name");
+    return engine_refuse(e, task, too_many);
   Outputs outputs = {.paths = {name},
                      .count = 1,
                      .view = (vlView)choice_value(view_choices, m->view, VL_VIEW_STANDARD),
@@ -245,17 +253,6 @@ static bool free_pair(const char *stem, char camera[NAME_SIZE], char image[NAME_
   return false;
 }
 
-static bool write_camera(Engine *e, const Task *task, const char *path) {
-  vlError error = {0};
-  vlCameraFileDef def = vl_default_camera_file_def();
-  const vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
-  def.dialect = VL_CAMERA_DIALECT_VELO;
-  vlResult result = vl_camera_write(e->def.context, path, &def, &record, &error);
-  if (result != VL_OK)
-    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
-  return result == VL_OK;
-}
-
 /* The time at which the model is shown, and how long the shutter is open. */
 static void put_time(FILE *out, const vlLoadDef *load) {
   char open[40], close[40];
@@ -325,8 +322,8 @@ static Copied *make_command(Engine *e, const Task *task, char camera[NAME_SIZE])
   copied->spp = vl_film_spp(e->film);
   bool ok = free_pair(stem, camera, copied->file);
   if (!ok)
-    engine_refuse(e, task, "there are too many files of this name");
-  ok = ok && write_camera(e, task, camera);
+    engine_refuse(e, task, too_many);
+  ok = ok && write_camera(e, task, camera, VL_CAMERA_DIALECT_VELO);
   if (ok)
     put_command(out, e, copied, camera);
   bool whole_text = fclose(out) == 0;
@@ -470,10 +467,10 @@ static void exposure_command(Engine *e, const Task *task) {
   scene_stem(e, whole);
   snprintf(stem, sizeof stem, "%.190s-sensor", whole);
   if (!free_pair(stem, camera, image))
-    return engine_refuse(e, task, "there are too many files of this name");
+    return engine_refuse(e, task, too_many);
   snprintf(raw, sizeof raw, "%.*s.dng", (int)strlen(image) - 4, image);
   strcpy(image + strlen(image) - 4, ".exr");
-  if (!write_camera(e, task, camera))
+  if (!write_camera(e, task, camera, VL_CAMERA_DIALECT_VELO))
     return;
   keep_command(e, NULL); /* what is verified is one command */
   post_command(e, task, exposure_text(e, camera, image, raw), camera, raw, e->shot.spp);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "cli/kinds.h"
+#include "cli/report.h"
 #include "render/job.h"
 #include "view/engine_parts.h"
 
@@ -103,12 +104,8 @@ void status_error(Engine *e, const vlError *error, vlResult result) {
   if (!json)
     return;
   if (error->file[0])
-    json_text(json, "file", error->file);
-  if (error->file[0] && error->line)
-    json_integer(json, "line", error->line);
-  if (error->file[0] && error->line && error->column)
-    json_integer(json, "column", error->column);
-  json_text(json, "message", error->message[0] ? error->message : vl_result_name(result));
+    json_location(json, error->file, error->line, error->line ? error->column : 0);
+  json_text(json, "message", error_text(error, result));
   json_text_post(json, e->server, 0);
 }
 

@@ -76,12 +76,11 @@ static int parse_parts(const char *text, uint32_t *parts) {
 
 static int read_options(State *s, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  bool eight_bit = false;
   if (!v[DRAW_OUT].given)
     return report_usage("-o FILE is needed");
-  if (!output_suffix(v[DRAW_OUT].text, &eight_bit) || !eight_bit)
-    return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga",
-                        v[DRAW_OUT].text);
+  const int written = output_check_drawing(v[DRAW_OUT].text);
+  if (written >= 0)
+    return written;
   s->view = (OutsideDef){
       .azimuth = 130, .elevation = 20, .zoom = 1, .width = 960, .height = 640, .spp = 32};
   s->view.exposure = VL_UNSET;

@@ -326,10 +326,7 @@ static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v)
 
 static void json_path(Json *json, const PathsReport *r, const vlPath *p, double sum) {
   json_begin(json, NULL, '{');
-  json_begin(json, "pixel", '[');
-  json_integer(json, NULL, p->x);
-  json_integer(json, NULL, p->y);
-  json_end(json, ']');
+  json_numbers(json, "pixel", (const double[]){p->x, p->y}, 2);
   json_integer(json, "sample", p->sample);
   json_floats(json, "film", p->film, 2);
   json_floats(json, "origin", p->origin, 3);
@@ -359,10 +356,7 @@ void paths_put_json(Json *json, const PathsReport *r) {
   const vlPixelPaths *all = r->traced->paths;
   double sum = all_shares(all);
   json_text(json, "file", r->file);
-  json_begin(json, "pixel", '[');
-  json_integer(json, NULL, all->x);
-  json_integer(json, NULL, all->y);
-  json_end(json, ']');
+  json_numbers(json, "pixel", (const double[]){all->x, all->y}, 2);
   json_text(json, "tracer", all->tracer == VL_TRACER_PATH ? "path" : "volpath");
   json_integer(json, "samples", all->samples);
   json_integer(json, "counted", all->count);

@@ -64,10 +64,7 @@ static void say_json(const char *path, const vlCamera *c, const vlVanishingPoint
     if (p->kind != VL_VANISHING_NONE) {
       bool finite = p->kind == VL_VANISHING_FINITE;
       const double *xy = finite ? p->pixel : p->direction;
-      json_begin(json, finite ? "pixel" : "direction", '[');
-      json_number(json, NULL, xy[0]);
-      json_number(json, NULL, xy[1]);
-      json_end(json, ']');
+      json_numbers(json, finite ? "pixel" : "direction", xy, 2);
       if (finite)
         json_text(json, "end", p->behind ? "negative" : "positive");
     }
@@ -229,11 +226,9 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
   vlImage *image = NULL;
   vlCamera camera = *of;
   vlError error = {0};
-  bool eight_bit = false;
-  if (!output_suffix(v[V_OUT].text, &eight_bit) || !eight_bit)
-    return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga",
-                        v[V_OUT].text);
-  int status = image_load(context, v[V_OVERLAY].text, &image);
+  int status = output_check_drawing(v[V_OUT].text);
+  if (status < 0)
+    status = image_load(context, v[V_OVERLAY].text, &image);
   if (status < 0)
     status = output_check(context, v[V_OUT].text, VL_OUTPUT_PLAIN);
   if (status < 0)

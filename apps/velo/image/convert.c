@@ -207,8 +207,8 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
     return status;
 
   vlImage *image = NULL;
-  bool eight_bit = false, viewed = v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given;
-  output_suffix(outputs.paths[0], &eight_bit);
+  const bool eight_bit = output_is_display(outputs.paths[0]),
+             viewed = v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given;
   status = image_load(context, arguments->operands[0], &image);
   if (status < 0)
     status = outputs_check_inputs(context, &outputs);

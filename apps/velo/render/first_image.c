@@ -34,11 +34,9 @@ static bool is_wanted(const Render *render, const Arguments *arguments) {
     return false;
   if (render->again.path || render->resumed.path || render->shared || !outputs->count)
     return false;
-  for (int i = 0; i < outputs->count; i++) {
-    bool eight_bit = false;
-    if (!output_suffix(outputs->paths[i], &eight_bit) || !eight_bit)
+  for (int i = 0; i < outputs->count; i++)
+    if (!output_is_display(outputs->paths[i]))
       return false;
-  }
   for (const Option *option = render_options; option->name; option++)
     if (arguments->values[option->id].given && !is_harmless(option->id))
       return false;

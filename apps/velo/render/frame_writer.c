@@ -150,11 +150,9 @@ static float exposure_of(FrameWriter *w, const vlImage *image) {
 
 static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *path,
                           const vlWriteDef *def, vlError *error) {
-  bool eight_bit = false;
-  output_suffix(path, &eight_bit);
   const vlImage *layers[1 + CHANNEL_LAYERS] = {p->images[view]};
   uint32_t count = 1;
-  if (eight_bit) {
+  if (output_is_display(path)) {
     vlImage *display = NULL;
     vlResult result = display_image(
         w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]),
@@ -209,7 +207,6 @@ static int write_clean(FrameWriter *w, FrameImage *p) {
   const Outputs *outputs = w->denoised;
   const char *pattern = outputs->paths[0];
   char path[4096];
-  bool eight_bit = false;
   vlWriteDef def = vl_default_write_def();
   def.half = outputs->half;
   def.alone = true;
@@ -217,7 +214,7 @@ static int write_clean(FrameWriter *w, FrameImage *p) {
   vlImage *display = NULL;
   vlResult result = attributes_set_frame(p->clean, p->frame.number, pose->name, pose->time);
   frames_path(w->frames, &p->frame, pattern, 0, path, sizeof path);
-  output_suffix(path, &eight_bit);
+  const bool eight_bit = output_is_display(path);
   if (result == VL_OK && eight_bit)
     result = display_image(w->context, p->clean, outputs->view, exposure_of(w, p->images[0]),
                            outputs->transparent && output_holds_alpha(path), &display);

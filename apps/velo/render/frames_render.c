@@ -258,9 +258,8 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
              .outputs = outputs,
              .channels = channels,
              .denoised = denoised,
+             .layers = outputs_any(outputs, output_holds_layers),
              .shown = progress_frames(frames_count(frames))};
-  for (int i = 0; i < outputs->count; i++)
-    run.layers = run.layers || output_holds_layers(outputs->paths[i]);
   int checked = check_films(&run);
   if (checked >= 0)
     return checked;

@@ -92,13 +92,8 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
   if (frames)
     copies = (frames_count(frames) < WAITING ? frames_count(frames) : WAITING) *
              (uint64_t)frames->views;
-  bool eight_bit = false, layers = false;
-  for (int i = 0; i < outputs->count; i++) {
-    bool display = false;
-    output_suffix(outputs->paths[i], &display);
-    eight_bit |= display;
-    layers |= output_holds_layers(outputs->paths[i]);
-  }
+  const bool eight_bit = outputs_any(outputs, output_is_display),
+             layers = outputs_any(outputs, output_holds_layers);
   uint64_t values = layers ? channels_values(channels, job->defs->film.buckets) : 0;
   uint64_t held = vl_context_memory(context, NULL), resident = process_resident();
   memory_add(plan, "program", resident > held ? resident - held : 0);

@@ -162,25 +162,17 @@ static bool has_film(const Facts *f) {
   return !f->render || f->render->film_plan.path != NULL;
 }
 
-static bool is_display(const char *path) {
-  bool eight_bit = false;
-  return output_suffix(path, &eight_bit) && eight_bit;
-}
-
 /* Whether a film, or an image for which the test is true, is written. */
 static bool has_output(const Facts *f, bool (*test)(const char *path)) {
   if (!f->render)
     return true;
-  const Outputs *all[] = {&f->render->outputs, &f->render->denoised.outputs};
-  for (int k = 0; k < 2; k++)
-    for (int i = 0; i < all[k]->count; i++)
-      if (test(all[k]->paths[i]))
-        return true;
-  return has_film(f);
+  return outputs_any(&f->render->outputs, test) ||
+         outputs_any(&f->render->denoised.outputs, test) || has_film(f);
 }
 
 static bool has_display(const Facts *f) {
-  return has_output(f, is_display) || f->v[RENDER_NOISE].given || f->v[RENDER_SERVE].given;
+  return has_output(f, output_is_display) || f->v[RENDER_NOISE].given ||
+         f->v[RENDER_SERVE].given;
 }
 
 static bool has_exr(const Facts *f) {

@@ -49,11 +49,26 @@ static const struct Suffix *find_suffix(const char *path) {
   return NULL;
 }
 
-bool output_suffix(const char *path, bool *eight_bit) {
+bool output_is_known(const char *path) {
+  return find_suffix(path) != NULL;
+}
+
+bool output_is_display(const char *path) {
   const struct Suffix *suffix = find_suffix(path);
-  if (suffix)
-    *eight_bit = suffix->eight_bit;
-  return suffix != NULL;
+  return suffix && suffix->eight_bit;
+}
+
+int output_check_drawing(const char *path) {
+  return output_is_display(path)
+             ? -1
+             : report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga", path);
+}
+
+bool outputs_any(const Outputs *outputs, bool (*test)(const char *path)) {
+  for (int i = 0; i < outputs->count; i++)
+    if (test(outputs->paths[i]))
+      return true;
+  return false;
 }
 
 uint32_t output_largest_side(const char *path) {
@@ -83,9 +98,8 @@ static int fail_suffix(const char *path) {
 }
 
 int outputs_check_names(const Outputs *outputs) {
-  bool eight_bit;
   for (int i = 0; i < outputs->count; i++) {
-    if (!output_suffix(outputs->paths[i], &eight_bit))
+    if (!output_is_known(outputs->paths[i]))
       return fail_suffix(outputs->paths[i]);
     if (output_is_stdout(outputs->paths[i]) && !outputs->to_stdout)
       return report_usage(
@@ -242,8 +256,8 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
   for (int i = 0; i < outputs->count; i++) {
     const char *path = outputs->paths[i];
     char part[PATH_MAX + 64];
-    bool eight_bit = false, has_part = output_part_path(path, part, sizeof part);
-    output_suffix(path, &eight_bit);
+    const bool eight_bit = output_is_display(path),
+               has_part = output_part_path(path, part, sizeof part);
     if (stage == OUTPUT_PROGRESS && !has_part)
       continue;
     vlError error = {0};

@@ -49,9 +49,14 @@ bool output_holds_layers(const char *path);
 bool output_holds_alpha(const char *path);
 /* The suffix of the name, from its dot on; null: it has none. */
 const char *output_dot(const char *path);
-/* Whether velo writes files with this suffix. *eight_bit: whether the format holds display
- * values. */
-bool output_suffix(const char *path, bool *eight_bit);
+/* Whether velo writes files with this suffix; and whether the format holds display values. */
+bool output_is_known(const char *path);
+bool output_is_display(const char *path);
+/* Reports that a drawing needs a format of display values, unless the path has one. Returns -1,
+ * or the exit code. */
+int output_check_drawing(const char *path);
+/* Whether the test is true for some path. */
+bool outputs_any(const Outputs *outputs, bool (*test)(const char *path));
 /* The largest width and height of the format. */
 uint32_t output_largest_side(const char *path);
 /* Checks that every name has a suffix that velo writes and is given once. Does not access the

@@ -37,11 +37,10 @@ static const char *default_suffix(const Render *render, const Arguments *argumen
  * untrusted. */
 static void choose_output(Render *render, const char *scene_path, const char *asked,
                           const char *suffix) {
-  bool eight_bit;
   const char *slash = strrchr(asked, '/');
   if (slash)
     asked = slash + 1;
-  if (output_suffix(asked, &eight_bit)) {
+  if (output_is_known(asked)) {
     snprintf(render->default_output, sizeof render->default_output, "%s", asked);
   } else {
     slash = strrchr(scene_path, '/');
@@ -95,10 +94,7 @@ static bool writes_receipt(const Render *render, const Arguments *arguments) {
     return true;
   if (arguments->values[RENDER_NO_RECEIPT].given)
     return false;
-  for (int i = 0; i < outputs->count; i++)
-    if (output_holds_layers(outputs->paths[i]))
-      return true;
-  return outputs->count == 0;
+  return outputs->count == 0 || outputs_any(outputs, output_holds_layers);
 }
 
 /* Records files, which costs a digest of each, where a receipt is written or compared. */
@@ -285,12 +281,12 @@ static int check_sizes(const Render *render) {
  * metered. */
 static int check_metering(const Outputs *outputs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  bool shard = v[RENDER_SHARD].given, eight_bit;
+  const bool shard = v[RENDER_SHARD].given;
   if (!outputs->meter || !v[RENDER_TRAJECTORY].given ||
       !(shard || v[RENDER_SKIP_EXISTING].given))
     return -1;
   for (int i = 0; i < outputs->count; i++)
-    if (output_suffix(outputs->paths[i], &eight_bit) && eight_bit)
+    if (output_is_display(outputs->paths[i]))
       return report_usage(
           "output \"%s\": the first frame would set the exposure: with %s give --exposure EV",
           outputs->paths[i], shard ? "--shard" : "--skip-existing");
@@ -302,13 +298,9 @@ static int check_metering(const Outputs *outputs, const Arguments *arguments) {
 static int meter_model(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   Outputs *outputs = &render->outputs;
-  bool eight_bit = false;
-  for (int i = 0; i < outputs->count && !eight_bit; i++)
-    output_suffix(outputs->paths[i], &eight_bit);
-  bool wanted = outputs->meter || !v[RENDER_EXPOSURE].given;
-  eight_bit |=
-      v[RENDER_NOISE]
-          .given; /* its threshold is of display values, also in parts without an image */
+  const bool wanted = outputs->meter || !v[RENDER_EXPOSURE].given;
+  /* the threshold of --noise is of display values, also in parts without an image */
+  const bool eight_bit = outputs_any(outputs, output_is_display) || v[RENDER_NOISE].given;
   if (!render->opening.model || !eight_bit || !wanted || v[RENDER_DRY_RUN].given)
     return -1;
   const vlCamera *camera = &render->job.camera;

@@ -1,15 +1,60 @@
 /* render/run.c: see run.h. The first pass is written at once and later ones at intervals, so
  * that there is a progress image. A signal stops the render and keeps its whole passes. */
-#include "render/run.h"
-
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/options.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "cli/text.h"
 #include "render/attributes.h"
+#include "render/job.h"
 #include "render/noise.h"
-#include "render/plain_command.h"
+#include "render/run.h"
+
+static void add_option(FILE *out, const Option *option, const char *value) {
+  char name[40];
+  snprintf(name, sizeof name, "--%s", option->name);
+  if (option->letter)
+    snprintf(name, sizeof name, "-%c", option->letter);
+  text_shell_word(out, name);
+  if (option->kind != OPTION_FLAG)
+    text_shell_word(out, value);
+}
+
+/* The command line that renders the same image with the usual samples and without denoising,
+ * quoted for a shell. False: it does not fit. */
+static bool plain_command(const Arguments *arguments, char *text, size_t size) {
+  const char *path = arguments->operands[0];
+  FILE *out = fmemopen(text, size, "w");
+  *text = 0;
+  if (!out)
+    return false;
+  fputs("velo render", out);
+  if (path[0] == '-') {
+    char file[4200];
+    snprintf(file, sizeof file, "./%s", path);
+    text_shell_word(out, file);
+  } else {
+    text_shell_word(out, path);
+  }
+  for (const Option *option = render_options; option->name; option++) {
+    const OptionValue *value = &arguments->values[option->id];
+    if (!value->given)
+      continue;
+    if (option->kind == OPTION_TEXTS || option->kind == OPTION_FOLDERS) {
+      const bool texts = option->kind == OPTION_TEXTS;
+      const char *const *all = texts ? arguments->texts : arguments->folders;
+      int count = texts ? arguments->text_count : arguments->folder_count;
+      for (int i = 0; i < count; i++)
+        add_option(out, option, all[i]);
+    } else {
+      add_option(out, option, value->text);
+    }
+  }
+  fputs(" --plain", out);
+  return fclose(out) == 0 && strlen(text) + 1 < size;
+}
 
 /* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the
  * time. */
@@ -41,10 +86,7 @@ static int write_image(Render *render, OutputStage stage) {
 }
 
 bool run_has_layers(const Render *render) {
-  for (int i = 0; i < render->outputs.count && channels_any(&render->channels); i++)
-    if (output_holds_layers(render->outputs.paths[i]))
-      return true;
-  return false;
+  return channels_any(&render->channels) && outputs_any(&render->outputs, output_holds_layers);
 }
 
 /* Formats the list of files: "a.exr, b.png". */

@@ -120,13 +120,5 @@ void engine_tell_exposure(Engine *e, double seconds) {
   count(&e->shot, behind);
   put_exposure(json, e, behind, seconds);
   free(behind);
-  char *whole = json_text_end(json);
-  if (!whole)
-    return;
-  server_post(e->server, 0, whole);
-  engine_lock(e);
-  char *before = e->last_exposure;
-  e->last_exposure = whole;
-  engine_unlock(e);
-  free(before);
+  json_text_keep(json, e, &e->last_exposure);
 }

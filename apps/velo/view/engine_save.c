@@ -138,13 +138,12 @@ static void save_exposure(Engine *e, const Task *task, const char *wanted) {
 
 static void save_image(Engine *e, const Task *task, const char *wanted) {
   char name[NAME_SIZE];
-  bool eight_bit;
   const ViewMessage *m = &task->message;
   if (!e->film || !vl_film_spp(e->film))
     return engine_refuse(e, task, "the image has no samples yet");
   if (e->now.channel == CHANNEL_CAMERA || text_ends_with(wanted, ".dng"))
     return save_exposure(e, task, wanted);
-  if (!output_suffix(wanted, &eight_bit))
+  if (!output_is_known(wanted))
     return engine_refuse(e, task, "formats are .exr .png .jpg .hdr .pfm .tga");
   if (!free_name(wanted, name))
     return engine_refuse(e, task, too_many);

@@ -16,6 +16,18 @@ void json_text_post(Json *json, Server *server, uint32_t client) {
   free(text);
 }
 
+void json_text_keep(Json *json, Engine *e, char **last) {
+  char *text = json_text_end(json);
+  if (!text)
+    return;
+  server_post(e->server, 0, text);
+  engine_lock(e);
+  char *before = *last;
+  *last = text;
+  engine_unlock(e);
+  free(before);
+}
+
 /* ---- the error of the image -------------------------------------------------------------- */
 
 static double display_value(double linear) {
@@ -88,15 +100,7 @@ void status_tell(Engine *e, bool estimate) {
   json_bool(json, "raced", e->by_race);
   if (e->successor)
     json_text(json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
-  char *text = json_text_end(json);
-  if (!text)
-    return;
-  server_post(e->server, 0, text);
-  engine_lock(e);
-  char *before = e->last_status;
-  e->last_status = text;
-  engine_unlock(e);
-  free(before);
+  json_text_keep(json, e, &e->last_status);
 }
 
 void status_error(Engine *e, const vlError *error, vlResult result) {

@@ -58,13 +58,14 @@ static void pass(const vlBsdfKernels *k, vlBsdfKind kind, int what, Arrays *a, u
     p.own[j] = a->own[j] + first;
   vlBsdfDirections wo = {IN(15), IN(16), IN(17)}, wi = {IN(18), IN(19), IN(20)},
                    out = {OUT(0), OUT(1), OUT(2)};
-  float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)},
-        *weight[4] = {OUT(8), OUT(9), OUT(10), OUT(11)};
+  float *value[4] = {OUT(3), OUT(4), OUT(5), OUT(6)};
+  vlBsdfRandom random = {IN(21), IN(22), IN(23)};
+  vlBsdfSampled sampled = {
+      out, {OUT(8), OUT(9), OUT(10), OUT(11)}, OUT(12), a->flags + first, OUT(13)};
   if (what & 1)
-    k->eval(kind, n, &p, wo, wi, value, OUT(7));
+    k->eval[kind](n, &p, wo, wi, value, OUT(7));
   if (what & 2)
-    k->sample(kind, n, &p, wo, IN(21), IN(22), IN(23), out, weight, OUT(12), a->flags + first,
-              OUT(13));
+    k->sample[kind](n, &p, wo, random, sampled);
 }
 
 /* Nanoseconds per lane, best of several rounds. */

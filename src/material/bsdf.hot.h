@@ -104,14 +104,30 @@ typedef struct vlBsdfDirections {
   float *x, *y, *z;
 } vlBsdfDirections;
 
+/* Uniform numbers in [0, 1): one chooses a lobe, two its direction. */
+typedef struct vlBsdfRandom {
+  const float *lobe, *u, *v;
+} vlBsdfRandom;
+
+/* What sampling writes. eta_scale, for Russian roulette: the squared relative index of a
+ * transmission, else 1. */
+typedef struct vlBsdfSampled {
+  vlBsdfDirections wi;
+  float *weight[4], *pdf;
+  uint32_t *flags; /* VL_SAMPLED_* */
+  float *eta_scale;
+} vlBsdfSampled;
+
+/* n lanes of one kind. All arrays have VL_PAD(n) lanes. */
+typedef void vlBsdfEval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                        vlBsdfDirections wi, float *const value[4], float *pdf);
+typedef void vlBsdfSample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
+                          vlBsdfRandom random, vlBsdfSampled out);
+
+/* By vlBsdfKind. */
 typedef struct vlBsdfKernels {
-  /* Each function calls the implementation for `kind`. */
-  void (*eval)(vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-               vlBsdfDirections wi, float *const value[4], float *pdf);
-  void (*sample)(
-      vlBsdfKind kind, uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-      const float *u_lobe, const float *u, const float *v,
-      vlBsdfDirections wi, float *const weight[4], float *pdf, uint32_t *flags, float *eta_scale /* for Russian roulette: the squared relative eta of a transmission, else 1 */);
+  vlBsdfEval *const *eval;
+  vlBsdfSample *const *sample;
 } vlBsdfKernels;
 VL_KERNEL_TABLE(vlBsdfKernels, vl_bsdf)
 

@@ -31,7 +31,7 @@ typedef struct {
 
 /* One chunk's slice of the parameters. */
 typedef struct {
-  const float *r0, *r1, *r2, *r3, *ax, *ay, *eta;
+  const float *reflectance[4], *ax, *ay, *eta;
   const vlCoatTable *const *coat;
   uint32_t count, live; /* number of lanes with padding (a multiple of VL_LANES), and without
                            (padding has no table) */
@@ -39,16 +39,15 @@ typedef struct {
 
 static Slice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t first) {
   uint32_t left = VL_PAD(n) - first, count = left < CHUNK ? left : CHUNK;
-  return (Slice){p->reflectance[0] + first,
-                 p->reflectance[1] + first,
-                 p->reflectance[2] + first,
-                 p->reflectance[3] + first,
-                 p->alpha_x + first,
-                 p->alpha_y + first,
-                 p->eta_s + first,
-                 (const vlCoatTable *const *)p->coat + first,
-                 count,
-                 n - first < count ? n - first : count};
+  Slice s = {.ax = p->alpha_x + first,
+             .ay = p->alpha_y + first,
+             .eta = p->eta_s + first,
+             .coat = (const vlCoatTable *const *)p->coat + first,
+             .count = count,
+             .live = n - first < count ? n - first : count};
+  for (int c = 0; c < 4; c++)
+    s.reflectance[c] = p->reflectance[c] + first;
+  return s;
 }
 
 enum { OF_WO, OF_WI, OF_LIGHT }; /* OF_LIGHT: a wi from a light sample */
@@ -111,11 +110,10 @@ static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, No
 
 /* Each lane has its own table, or interpolates between two rows. Without interpolation, results
  * are the same as fetch_row's, bit for bit. */
-static void fetch_each(const Slice *s, const float *x, const float *y, Lanes *lanes,
-                       Nodes *nodes, int of) {
+static void fetch_each(const Slice *s, vlBsdfDirections w, Lanes *lanes, Nodes *nodes, int of) {
   for (uint32_t i = 0; i < s->count; i++) {
     const vlCoatTable *table = s->coat[i < s->live ? i : 0];
-    Row r = row_of(table, s->ax[i], s->ay[i], x[i], y[i]);
+    Row r = row_of(table, s->ax[i], s->ay[i], w.x[i], w.y[i]);
     uint32_t low = r.low, high = r.high;
     float t = r.t;
     const float(*rows)[VL_COAT_COS] = rows_of(table, of);
@@ -130,15 +128,13 @@ static void fetch_each(const Slice *s, const float *x, const float *y, Lanes *la
   }
 }
 
-/* Looks up T at directions from `at` on, and for wo also the constants of the tables. */
-PASS look_up(const Slice *s, vlBsdfDirections w, uint32_t at, Lanes *lanes, float *through,
-             int of) {
+/* Looks up T at directions, and for wo also the constants of the tables. */
+PASS look_up(const Slice *s, vlBsdfDirections w, Lanes *lanes, float *through, int of) {
   Nodes nodes;
-  const float *x = w.x + at, *y = w.y + at, *z = w.z + at;
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    vlCoatCell p = vl_coat_cell(vl_abs(z[i]));
+    vlCoatCell p = vl_coat_cell(vl_abs(w.z[i]));
     nodes.first[i] = p.first;
     nodes.at[i] = p.t;
   }
@@ -149,7 +145,7 @@ PASS look_up(const Slice *s, vlBsdfDirections w, uint32_t at, Lanes *lanes, floa
   if (differ == 0 && table->rows == 1)
     fetch_row(table, count, lanes, &nodes, of);
   else
-    fetch_each(s, x, y, lanes, &nodes, of);
+    fetch_each(s, w, lanes, &nodes, of);
   const float(*value)[4] = (const float(*)[4])nodes.value;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -173,44 +169,41 @@ static inline float series(float x, int32_t k, const int bits) {
 /* Computes from T(wo) the base's f in each channel and the probabilities of the lobes, which
  * are proportional to the energy that each lobe reflects. The energy of a rough coat is
  * approximated by that of a smooth coat. */
-static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, const float *oz,
-                                                             Lanes *lanes, const int bits) {
-  const float *r0 = s->r0, *r1 = s->r1, *r2 = s->r2, *r3 = s->r3, *eta = s->eta;
-  const float *through = lanes->transmittance_o, *back = lanes->back, *escape = lanes->escape;
-  const int32_t *bounces = lanes->bounces;
-  float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2], *b3 = lanes->base[3];
-  float *share = lanes->coat_share, *fresnel = lanes->fresnel;
+static inline __attribute__((always_inline)) void weigh_loop(const Slice *s,
+                                                             vlBsdfDirections wo, Lanes *lanes,
+                                                             const int bits) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float t = through[i], r = back[i], e = eta[i];
-    int32_t k = bounces[i];
-    float s0 = r0[i] * series(r0[i] * r, k, bits), s1 = r1[i] * series(r1[i] * r, k, bits);
-    float s2 = r2[i] * series(r2[i] * r, k, bits), s3 = r3[i] * series(r3[i] * r, k, bits);
-    float f = vl_fresnel_dielectric(vl_abs(oz[i]), e).reflected;
+    float t = lanes->transmittance_o[i], r = lanes->back[i], e = s->eta[i];
+    int32_t k = lanes->bounces[i];
+    float r0 = s->reflectance[0][i], r1 = s->reflectance[1][i];
+    float r2 = s->reflectance[2][i], r3 = s->reflectance[3][i];
+    float s0 = r0 * series(r0 * r, k, bits), s1 = r1 * series(r1 * r, k, bits);
+    float s2 = r2 * series(r2 * r, k, bits), s3 = r3 * series(r3 * r, k, bits);
+    float f = vl_fresnel_dielectric(vl_abs(wo.z[i]), e).reflected;
     f = e == 1.0f ? 0.0f : f;
-    float albedo = t * escape[i] * (0.25f * ((s0 + s1) + (s2 + s3)));
+    float albedo = t * lanes->escape[i] * (0.25f * ((s0 + s1) + (s2 + s3)));
     float sum = f + albedo;
     float scale = t * VL_INV_PI / (e * e);
-    fresnel[i] = f;
-    share[i] = f / (sum > 0.0f ? sum : 1.0f);
-    b0[i] = s0 * scale;
-    b1[i] = s1 * scale;
-    b2[i] = s2 * scale;
-    b3[i] = s3 * scale;
+    lanes->fresnel[i] = f;
+    lanes->coat_share[i] = f / (sum > 0.0f ? sum : 1.0f);
+    lanes->base[0][i] = s0 * scale;
+    lanes->base[1][i] = s1 * scale;
+    lanes->base[2][i] = s2 * scale;
+    lanes->base[3][i] = s3 * scale;
   }
 }
 
-PASS weigh(const Slice *s, vlBsdfDirections wo, uint32_t first, Lanes *lanes) {
-  const float *oz = wo.z + first;
-  look_up(s, wo, first, lanes, lanes->transmittance_o, OF_WO);
+PASS weigh(const Slice *s, vlBsdfDirections wo, Lanes *lanes) {
+  look_up(s, wo, lanes, lanes->transmittance_o, OF_WO);
   int32_t all = 0;
   for (uint32_t i = 0; i < s->live; i++)
     all |= lanes->bounces[i];
   if (all < 8)
-    weigh_loop(s, oz, lanes, 3);
+    weigh_loop(s, wo, lanes, 3);
   else
-    weigh_loop(s, oz, lanes, 8);
+    weigh_loop(s, wo, lanes, 8);
 }
 
 /* The coat's lobe between o and w, both above the surface. */
@@ -232,39 +225,22 @@ static inline __attribute__((always_inline)) CoatLobe coat_lobe(vlVec3 o, vlVec3
 }
 
 PASS combine(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfDirections wi,
-             float *const value[4], float *density, uint32_t first) {
-  const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first;
-  const float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
-  const float *ax = s->ax, *ay = s->ay, *eta = s->eta,
-              *transmittance_i = lanes->transmittance_i, *share = lanes->coat_share;
-  const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2],
-              *b3 = lanes->base[3];
-  float *v0 = value[0] + first, *v1 = value[1] + first, *v2 = value[2] + first,
-        *v3 = value[3] + first;
-  float *pdf = density + first;
+             float *const value[4], float *pdf) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    int valid = ((oz[i] > 0.0f) & (iz[i] > 0.0f)) | ((oz[i] < 0.0f) & (iz[i] < 0.0f));
+    int valid = ((wo.z[i] > 0.0f) & (wi.z[i] > 0.0f)) | ((wo.z[i] < 0.0f) & (wi.z[i] < 0.0f));
     /* Products with 0 or 1 instead of selects: compilers would put the loads into branches. The
      * factor of 0 must be finite, so pairs that are not valid are replaced by directions along
      * the normal. */
     float on = valid ? 1.0f : 0.0f, off = 1.0f - on;
-    float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i],
-          zi = vl_abs(iz[i]);
-    vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off),
-           w = vl_vec3(xi * on, yi * on, zi * on + off);
-    CoatLobe c = coat_lobe(o, w, ax[i], ay[i], eta[i]);
-    float t = transmittance_i[i] * w.z;
-    float p = share[i];
-    float f0 = c.coat + b0[i] * t, f1 = c.coat + b1[i] * t, f2 = c.coat + b2[i] * t,
-          f3 = c.coat + b3[i] * t;
-    float d = p * c.coat_pdf + (1.0f - p) * (w.z * VL_INV_PI);
-    v0[i] = f0 * on;
-    v1[i] = f1 * on;
-    v2[i] = f2 * on;
-    v3[i] = f3 * on;
-    pdf[i] = d * on;
+    vlVec3 o = vl_vec3(wo.x[i] * on, wo.y[i] * on, vl_abs(wo.z[i]) * on + off),
+           w = vl_vec3(wi.x[i] * on, wi.y[i] * on, vl_abs(wi.z[i]) * on + off);
+    CoatLobe lobe = coat_lobe(o, w, s->ax[i], s->ay[i], s->eta[i]);
+    float t = lanes->transmittance_i[i] * w.z, p = lanes->coat_share[i];
+    for (int c = 0; c < 4; c++)
+      value[c][i] = (lobe.coat + lanes->base[c][i] * t) * on;
+    pdf[i] = (p * lobe.coat_pdf + (1.0f - p) * (w.z * VL_INV_PI)) * on;
   }
 }
 
@@ -273,98 +249,79 @@ void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections 
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
-    weigh(&s, wo, first, &lanes);
-    look_up(&s, wi, first, &lanes, lanes.transmittance_i, OF_LIGHT);
-    combine(&s, &lanes, wo, wi, value, pdf, first);
+    vlBsdfDirections o = vl_directions_from(wo, first), in = vl_directions_from(wi, first);
+    float *const chunk[4] = {value[0] + first, value[1] + first, value[2] + first,
+                             value[3] + first};
+    weigh(&s, o, &lanes);
+    look_up(&s, in, &lanes, lanes.transmittance_i, OF_LIGHT);
+    combine(&s, &lanes, o, in, chunk, pdf + first);
   }
 }
 
 /* First half of sampling: chooses the lobe and samples the direction. wi.z is positive on the
  * side of wo. */
-PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe,
-            const float *u, const float *v, vlBsdfDirections wi, uint32_t first) {
-  const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first;
-  const float *lobe = u_lobe + first, *uu = u + first, *vv = v + first;
-  float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
-  const float *ax = s->ax, *ay = s->ay, *eta = s->eta, *share = lanes->coat_share;
+PASS choose(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, vlBsdfRandom random,
+            vlBsdfDirections wi) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i]));
-    int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (eta[i] == 1.0f);
-    vlVec3 h = vl_ggx_sample(o, vl_ggx_alpha(ax[i]), vl_ggx_alpha(ay[i]), uu[i], vv[i]);
-    h.x = smooth ? 0.0f : h.x;
-    h.y = smooth ? 0.0f : h.y;
-    h.z = smooth ? 1.0f : h.z;
-    vlVec3 mirror = vl_reflect(o, h, vl_dot(o, h)), base = vl_cosine_direction(uu[i], vv[i]);
-    int coat = lobe[i] < share[i];
-    ix[i] = coat ? mirror.x : base.x;
-    iy[i] = coat ? mirror.y : base.y;
-    iz[i] = coat ? mirror.z : base.z;
+    vlVec3 o = vl_vec3(wo.x[i], wo.y[i], vl_abs(wo.z[i]));
+    int smooth = vl_ggx_is_smooth(s->ax[i], s->ay[i]) | (s->eta[i] == 1.0f);
+    vlVec3 h = vl_microfacet(o, vl_ggx_alpha(s->ax[i]), vl_ggx_alpha(s->ay[i]), smooth,
+                             random.u[i], random.v[i]);
+    vlVec3 mirror = vl_reflect(o, h, vl_dot(o, h)),
+           base = vl_cosine_direction(random.u[i], random.v[i]);
+    int coat = random.lobe[i] < lanes->coat_share[i];
+    wi.x[i] = coat ? mirror.x : base.x;
+    wi.y[i] = coat ? mirror.y : base.y;
+    wi.z[i] = coat ? mirror.z : base.z;
   }
 }
 
 /* Second half of sampling: computes the weight of the direction, with the density of both
  * lobes. */
-PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *u_lobe,
-            vlBsdfDirections wi, float *const weight[4], float *density, uint32_t *flags,
-            uint32_t first) {
-  const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first,
-              *lobe = u_lobe + first;
-  float *ix = wi.x + first, *iy = wi.y + first, *iz = wi.z + first;
-  const float *ax = s->ax, *ay = s->ay, *eta = s->eta,
-              *transmittance_i = lanes->transmittance_i;
-  const float *share = lanes->coat_share, *fresnel = lanes->fresnel;
-  const float *b0 = lanes->base[0], *b1 = lanes->base[1], *b2 = lanes->base[2],
-              *b3 = lanes->base[3];
-  float *w0 = weight[0] + first, *w1 = weight[1] + first, *w2 = weight[2] + first,
-        *w3 = weight[3] + first;
-  float *pdf = density + first;
-  uint32_t *flag = flags + first;
+PASS settle(const Slice *s, const Lanes *lanes, vlBsdfDirections wo, const float *lobe,
+            vlBsdfSampled out) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float xo = ox[i], yo = oy[i], zo = vl_abs(oz[i]), xi = ix[i], yi = iy[i], zi = iz[i];
+    float zo = vl_abs(wo.z[i]), zi = out.wi.z[i];
     int valid = (zo > 0.0f) & (zi > 0.0f);
     float on = valid ? 1.0f : 0.0f, off = 1.0f - on; /* products instead of selects, as above */
-    vlVec3 o = vl_vec3(xo * on, yo * on, zo * on + off),
-           w = vl_vec3(xi * on, yi * on, zi * on + off);
-    float p = share[i];
-    int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (eta[i] == 1.0f),
+    vlVec3 o = vl_vec3(wo.x[i] * on, wo.y[i] * on, zo * on + off),
+           w = vl_vec3(out.wi.x[i] * on, out.wi.y[i] * on, zi * on + off);
+    float p = lanes->coat_share[i];
+    int smooth = vl_ggx_is_smooth(s->ax[i], s->ay[i]) | (s->eta[i] == 1.0f),
         mirror = (lobe[i] < p) & smooth;
-    CoatLobe c = coat_lobe(o, w, ax[i], ay[i], eta[i]);
-    float t = transmittance_i[i] * w.z;
-    float m = mirror ? 1.0f : 0.0f, k = 1.0f - m; /* c is 0 for a smooth coat */
-    float d = p * (c.coat_pdf + m) + (1.0f - p) * (w.z * VL_INV_PI) * k;
+    CoatLobe above = coat_lobe(o, w, s->ax[i], s->ay[i], s->eta[i]);
+    float m = mirror ? 1.0f : 0.0f, k = 1.0f - m; /* `above` is 0 for a smooth coat */
+    float d = p * (above.coat_pdf + m) + (1.0f - p) * (w.z * VL_INV_PI) * k;
     float inverse = 1.0f / (d > VL_MIN_POSITIVE ? d : VL_MIN_POSITIVE);
-    float top = c.coat + fresnel[i] * m, through = t * k;
-    float f0 = (top + b0[i] * through) * inverse, f1 = (top + b1[i] * through) * inverse;
-    float f2 = (top + b2[i] * through) * inverse, f3 = (top + b3[i] * through) * inverse;
-    w0[i] = f0 * on;
-    w1[i] = f1 * on;
-    w2[i] = f2 * on;
-    w3[i] = f3 * on;
-    pdf[i] = d * on;
-    iz[i] = __builtin_copysignf(zi, oz[i]);
+    float top = above.coat + lanes->fresnel[i] * m,
+          through = lanes->transmittance_i[i] * w.z * k;
+    for (int c = 0; c < 4; c++)
+      out.weight[c][i] = (top + lanes->base[c][i] * through) * inverse * on;
+    out.pdf[i] = d * on;
+    out.wi.z[i] = __builtin_copysignf(zi, wo.z[i]);
     int alive = valid & (d > 0.0f);
     uint32_t chosen = lobe[i] < p ? 0u : (uint32_t)VL_SAMPLED_DIFFUSE;
-    flag[i] =
+    out.flags[i] =
         alive ? (mirror ? (uint32_t)VL_SAMPLED_SPECULAR : chosen) : (uint32_t)VL_SAMPLED_NONE;
+    out.eta_scale[i] = 1.0f;
   }
 }
 
 void vl_bsdf_coat_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                         const float *u_lobe, const float *u, const float *v,
-                         vlBsdfDirections wi, float *const weight[4], float *pdf,
-                         uint32_t *flags, float *eta_scale) {
+                         vlBsdfRandom random, vlBsdfSampled out) {
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
-    weigh(&s, wo, first, &lanes);
-    choose(&s, &lanes, wo, u_lobe, u, v, wi, first);
-    look_up(&s, wi, first, &lanes, lanes.transmittance_i, OF_WI);
-    settle(&s, &lanes, wo, u_lobe, wi, weight, pdf, flags, first);
-    for (uint32_t i = 0; i < s.count; i++)
-      eta_scale[first + i] = 1.0f;
+    vlBsdfDirections o = vl_directions_from(wo, first);
+    vlBsdfRandom numbers = vl_random_from(random, first);
+    vlBsdfSampled to = vl_sampled_from(out, first);
+    weigh(&s, o, &lanes);
+    choose(&s, &lanes, o, numbers, to.wi);
+    look_up(&s, to.wi, &lanes, lanes.transmittance_i, OF_WI);
+    settle(&s, &lanes, o, numbers.lobe, to);
   }
 }

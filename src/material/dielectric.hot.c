@@ -10,20 +10,18 @@ vlBsdfSample vl_bsdf_dielectric_sample;
 
 void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
                              vlBsdfDirections wi, float *const value[4], float *pdf) {
-  const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *ix = wi.x, *iy = wi.y, *iz = wi.z;
-  const float *ax = params->alpha_x, *ay = params->alpha_y, *index = params->eta_s;
-  float *v0 = value[0], *v1 = value[1], *v2 = value[2], *v3 = value[3];
   uint32_t count = VL_PAD(n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float rx = vl_ggx_alpha(ax[i]), ry = vl_ggx_alpha(ay[i]);
-    int below = oz[i] < 0.0f;
-    float forth = index[i], back = 1.0f / forth;
+    float rx = vl_ggx_alpha(params->alpha_x[i]), ry = vl_ggx_alpha(params->alpha_y[i]);
+    int below = wo.z[i] < 0.0f;
+    float forth = params->eta_s[i], back = 1.0f / forth;
     float eta = below ? back : forth, inverse = below ? forth : back;
-    vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i])),
-           w = vl_vec3(ix[i], iy[i], below ? -iz[i] : iz[i]);
+    vlVec3 o = vl_vec3(wo.x[i], wo.y[i], vl_abs(wo.z[i])),
+           w = vl_vec3(wi.x[i], wi.y[i], below ? -wi.z[i] : wi.z[i]);
     int reflect = w.z > 0.0f;
-    int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (index[i] == 1.0f);
+    int smooth =
+        vl_ggx_is_smooth(params->alpha_x[i], params->alpha_y[i]) | (params->eta_s[i] == 1.0f);
     int valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f) & (smooth == 0);
     /* h: the half vector of wo and wi, generalised for transmission, on the upper side. */
     float s = reflect ? 1.0f : eta;
@@ -45,33 +43,28 @@ void vl_bsdf_dielectric_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     float g = vl_ggx_shadowing(o.z, lo, vl_abs(w.z), li);
     g = p * g * (reflect ? 1.0f : inverse * inverse);
     g = valid ? g : 0.0f;
-    v0[i] = v1[i] = v2[i] = v3[i] = g;
+    value[0][i] = value[1][i] = value[2][i] = value[3][i] = g;
     pdf[i] = valid ? p : 0.0f;
   }
 }
 
 void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                               const float *u_lobe, const float *u, const float *v,
-                               vlBsdfDirections wi, float *const weight[4], float *pdf,
-                               uint32_t *flags, float *eta_scale) {
-  const float *ox = wo.x, *oy = wo.y, *oz = wo.z;
-  const float *ax = params->alpha_x, *ay = params->alpha_y, *index = params->eta_s;
-  float *ix = wi.x, *iy = wi.y, *iz = wi.z;
-  float *w0 = weight[0], *w1 = weight[1], *w2 = weight[2], *w3 = weight[3];
+                               vlBsdfRandom random, vlBsdfSampled out) {
   uint32_t count = VL_PAD(n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float rx = vl_ggx_alpha(ax[i]), ry = vl_ggx_alpha(ay[i]);
-    int smooth = vl_ggx_is_smooth(ax[i], ay[i]) | (index[i] == 1.0f);
-    int below = oz[i] < 0.0f;
-    float forth = index[i], back = 1.0f / forth;
+    float rx = vl_ggx_alpha(params->alpha_x[i]), ry = vl_ggx_alpha(params->alpha_y[i]);
+    int smooth =
+        vl_ggx_is_smooth(params->alpha_x[i], params->alpha_y[i]) | (params->eta_s[i] == 1.0f);
+    int below = wo.z[i] < 0.0f;
+    float forth = params->eta_s[i], back = 1.0f / forth;
     float eta = below ? back : forth, inverse = below ? forth : back;
-    vlVec3 o = vl_vec3(ox[i], oy[i], vl_abs(oz[i]));
-    vlVec3 h = vl_microfacet(o, rx, ry, smooth, u[i], v[i]);
+    vlVec3 o = vl_vec3(wo.x[i], wo.y[i], vl_abs(wo.z[i]));
+    vlVec3 h = vl_microfacet(o, rx, ry, smooth, random.u[i], random.v[i]);
     float oh = vl_dot(o, h);
     vlFresnel f = vl_fresnel_dielectric(oh, eta);
-    float fr = index[i] == 1.0f ? 0.0f : f.reflected;
-    int reflect = u_lobe[i] < fr;
+    float fr = params->eta_s[i] == 1.0f ? 0.0f : f.reflected;
+    int reflect = random.lobe[i] < fr;
     /* wi = a h - b wo for both: reflection, or refraction by Snell's law */
     float b = reflect ? 1.0f : inverse;
     float cos_t = f.root * inverse, t = oh * inverse - cos_t;
@@ -90,12 +83,12 @@ void vl_bsdf_dielectric_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDir
     g = valid ? g : 0.0f;
     uint32_t flag = (smooth ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) |
                     (reflect ? 0u : (uint32_t)VL_SAMPLED_TRANSMISSION);
-    ix[i] = w.x;
-    iy[i] = w.y;
-    iz[i] = below ? -w.z : w.z;
-    w0[i] = w1[i] = w2[i] = w3[i] = g;
-    pdf[i] = valid ? p : 0.0f;
-    flags[i] = valid ? flag : (uint32_t)VL_SAMPLED_NONE;
-    eta_scale[i] = reflect ? 1.0f : eta * eta;
+    out.wi.x[i] = w.x;
+    out.wi.y[i] = w.y;
+    out.wi.z[i] = below ? -w.z : w.z;
+    out.weight[0][i] = out.weight[1][i] = out.weight[2][i] = out.weight[3][i] = g;
+    out.pdf[i] = valid ? p : 0.0f;
+    out.flags[i] = valid ? flag : (uint32_t)VL_SAMPLED_NONE;
+    out.eta_scale[i] = reflect ? 1.0f : eta * eta;
   }
 }

@@ -170,13 +170,11 @@ void vl_bsdf_hair_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections 
 }
 
 void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                         const float *u_lobe, const float *u, const float *v,
-                         vlBsdfDirections wi, float *const weight[4], float *pdf,
-                         uint32_t *flags, float *eta_scale) {
+                         vlBsdfRandom random, vlBsdfSampled out) {
   for (uint32_t i = 0; i < n; i++) {
     Hair h = hair_of(params, i, vl_lane3(wo.x, wo.y, wo.z, i));
     int p = 0;
-    float lobe = u_lobe[i];
+    float lobe = random.lobe[i];
     for (; p < LOBES - 1 && !(lobe < h.share[p]); p++)
       lobe -= h.share[p];
     lobe = vl_clamp(
@@ -184,9 +182,10 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
         VL_ONE_MINUS_EPSILON); /* the rest of the random number, uniform in [0, 1) again */
     float e = vl_exp(-2.0f / h.v[p]);
     float cosine = vl_clamp(
-        1.0f + h.v[p] * vl_ln(vl_max(u[i] + (1.0f - u[i]) * e, VL_MIN_POSITIVE)), -1.0f, 1.0f);
+        1.0f + h.v[p] * vl_ln(vl_max(random.u[i] + (1.0f - random.u[i]) * e, VL_MIN_POSITIVE)),
+        -1.0f, 1.0f);
     float sine = __builtin_sqrtf((1.0f - cosine) * (1.0f + cosine));
-    float sin_i = -cosine * h.sin_p[p] + sine * vl_sincos_turn(v[i]).cos * h.cos_p[p];
+    float sin_i = -cosine * h.sin_p[p] + sine * vl_sincos_turn(random.v[i]).cos * h.cos_p[p];
     sin_i = vl_clamp(sin_i, -1.0f, 1.0f);
     float cos_i = __builtin_sqrtf((1.0f - sin_i) * (1.0f + sin_i));
     float x =
@@ -197,13 +196,13 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     vlVec3 w = vl_normalize(vl_vec3(sin_i, cos_i * at.cos, cos_i * at.sin));
     float f[4], d = hair_value(&h, w, f);
     bool valid = wo.z[i] != 0.0f && w.z != 0.0f && d > VL_MIN_POSITIVE;
-    vl_set_lane3(wi.x, wi.y, wi.z, i, w);
+    vl_set_lane3(out.wi.x, out.wi.y, out.wi.z, i, w);
     for (int c = 0; c < 4; c++)
-      weight[c][i] = valid ? f[c] / d : 0.0f;
-    pdf[i] = valid ? d : 0.0f;
-    flags[i] = !valid                 ? (uint32_t)VL_SAMPLED_NONE
-               : w.z * wo.z[i] < 0.0f ? (uint32_t)VL_SAMPLED_TRANSMISSION
-                                      : 0u;
-    eta_scale[i] = 1.0f;
+      out.weight[c][i] = valid ? f[c] / d : 0.0f;
+    out.pdf[i] = valid ? d : 0.0f;
+    out.flags[i] = !valid                 ? (uint32_t)VL_SAMPLED_NONE
+                   : w.z * wo.z[i] < 0.0f ? (uint32_t)VL_SAMPLED_TRANSMISSION
+                                          : 0u;
+    out.eta_scale[i] = 1.0f;
   }
 }

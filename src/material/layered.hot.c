@@ -19,7 +19,7 @@ static inline float next(uint32_t *state) {
   return vl_unit_float(vl_hash(*state));
 }
 static inline float largest(const float x[4]) {
-  return vl_max(vl_max(x[0], x[1]), vl_max(x[2], x[3]));
+  return vl_largest4(x[0], x[1], x[2], x[3]);
 }
 static inline float power(float a, float b) {
   float a2 = a * a, b2 = b * b;
@@ -291,15 +291,13 @@ void vl_bsdf_layered_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirectio
 }
 
 void vl_bsdf_layered_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                            const float *u_lobe, const float *u, const float *v,
-                            vlBsdfDirections wi, float *const weight[4], float *pdf,
-                            uint32_t *flags, float *eta_scale) {
+                            vlBsdfRandom random, vlBsdfSampled out) {
   for (uint32_t i = 0; i < n; i++) {
     Layers l = layers_of(params, i);
     vlVec3 o = vl_vec3(wo.x[i], wo.y[i], vl_abs(wo.z[i]));
     Lobes lobes = lobes_of(&l, o);
     bool mirror, valid = o.z > 0.0f;
-    vlVec3 w = draw(&l, &lobes, o, u_lobe[i], u[i], v[i], &mirror);
+    vlVec3 w = draw(&l, &lobes, o, random.lobe[i], random.u[i], random.v[i], &mirror);
     valid = valid && w.z > 0.0f;
     if (!valid)
       w = vl_vec3(0, 0, 1);
@@ -314,14 +312,15 @@ void vl_bsdf_layered_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     }
     valid = p > 0.0f;
     for (int c = 0; c < 4; c++)
-      weight[c][i] = valid ? f[c] / p : 0.0f;
-    wi.x[i] = w.x;
-    wi.y[i] = w.y;
-    wi.z[i] = __builtin_copysignf(w.z, wo.z[i]);
-    pdf[i] = valid ? p : 0.0f;
-    uint32_t chosen = u_lobe[i] < lobes.coat + lobes.base ? 0u : (uint32_t)VL_SAMPLED_DIFFUSE;
-    flags[i] =
+      out.weight[c][i] = valid ? f[c] / p : 0.0f;
+    out.wi.x[i] = w.x;
+    out.wi.y[i] = w.y;
+    out.wi.z[i] = __builtin_copysignf(w.z, wo.z[i]);
+    out.pdf[i] = valid ? p : 0.0f;
+    uint32_t chosen =
+        random.lobe[i] < lobes.coat + lobes.base ? 0u : (uint32_t)VL_SAMPLED_DIFFUSE;
+    out.flags[i] =
         valid ? (mirror ? (uint32_t)VL_SAMPLED_SPECULAR : chosen) : (uint32_t)VL_SAMPLED_NONE;
-    eta_scale[i] = 1.0f;
+    out.eta_scale[i] = 1.0f;
   }
 }

@@ -2,10 +2,11 @@
  * Each kind has one pair of entry points per instruction set; table.hot.c collects them.
  *
  * Every kernel is one loop over the padded batch. To vectorise, it computes both outcomes of
- * each choice and selects one. Array pointers are copied to local variables, so that the
- * compiler does not reload them. Padding lanes may hold any values. If wo lies in the surface
- * (z = 0), the value is 0 and there is no sample. For a wo from below, wo and wi are mirrored
- * at the surface, z -> -z: each BSDF here is symmetric in z, dielectrics with eta -> 1/eta. */
+ * each choice and selects one. It reads and writes arrays in the loop itself, not in a
+ * called function, or clang would not vectorise it. Padding lanes may hold any values. If wo
+ * lies in the surface (z = 0), the value is 0 and there is no sample. For a wo from below, wo
+ * and wi are mirrored at the surface, z -> -z: each BSDF here is symmetric in z, dielectrics
+ * with eta -> 1/eta. */
 #ifndef MATERIAL_LOCAL_HOT_H
 #define MATERIAL_LOCAL_HOT_H
 
@@ -22,12 +23,23 @@
 #define VL_WHOLE(count) (count)
 #endif
 
-typedef void vlBsdfEval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                        vlBsdfDirections wi, float *const value[4], float *pdf);
-typedef void vlBsdfSample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                          const float *u_lobe, const float *u, const float *v,
-                          vlBsdfDirections wi, float *const weight[4], float *pdf,
-                          uint32_t *flags, float *eta_scale);
+/* The arrays from lane `first` on. */
+static inline vlBsdfDirections vl_directions_from(vlBsdfDirections d, uint32_t first) {
+  return (vlBsdfDirections){d.x + first, d.y + first, d.z + first};
+}
+static inline vlBsdfRandom vl_random_from(vlBsdfRandom r, uint32_t first) {
+  return (vlBsdfRandom){r.lobe + first, r.u + first, r.v + first};
+}
+static inline vlBsdfSampled vl_sampled_from(vlBsdfSampled s, uint32_t first) {
+  s.wi = vl_directions_from(s.wi, first);
+  for (int c = 0; c < 4; c++)
+    s.weight[c] += first;
+  s.pdf += first;
+  s.flags += first;
+  s.eta_scale += first;
+  return s;
+}
+
 /* Samples a cosine-weighted direction around +z. u, v: uniform in [0, 1). z is always above 0,
  * so that no sample is lost. */
 static inline vlVec3 vl_cosine_direction(float u, float v) {

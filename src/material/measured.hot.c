@@ -122,22 +122,19 @@ void vl_bsdf_measured_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirecti
 }
 
 void vl_bsdf_measured_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                             const float *u_lobe, const float *u, const float *v,
-                             vlBsdfDirections wi, float *const weight[4], float *pdf,
-                             uint32_t *flags, float *eta_scale) {
-  (void)u_lobe;
+                             vlBsdfRandom random, vlBsdfSampled out) {
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++)
-      weight[c][i] = 0.0f;
-    wi.x[i] = wi.y[i] = pdf[i] = 0.0f;
-    wi.z[i] = 1.0f;
-    flags[i] = (uint32_t)VL_SAMPLED_NONE;
-    eta_scale[i] = 1.0f;
+      out.weight[c][i] = 0.0f;
+    out.wi.x[i] = out.wi.y[i] = out.pdf[i] = 0.0f;
+    out.wi.z[i] = 1.0f;
+    out.flags[i] = (uint32_t)VL_SAMPLED_NONE;
+    out.eta_scale[i] = 1.0f;
     if (wo.z[i] == 0.0f)
       continue;
     const vlMeasured *m = params->measured[i];
     Seen s = seen_from(m, vl_lane3(wo.x, wo.y, wo.z, i));
-    vlMeasuredPoint at = vl_measured_sample(&m->luminance, s.slices, u[i], v[i]);
+    vlMeasuredPoint at = vl_measured_sample(&m->luminance, s.slices, random.u[i], random.v[i]);
     vlMeasuredPoint normal = vl_measured_sample(&m->vndf, s.slices, at.x, at.y);
     vlSinCos theta = vl_sincos(normal.x * normal.x * (0.5f * VL_PI));
     vlSinCos phi = vl_sincos((2.0f * normal.y - 1.0f) * VL_PI + s.phi);
@@ -151,10 +148,10 @@ void vl_bsdf_measured_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     lambdas_of(params, i, lambda);
     value_at(m, &s, at, normal.x, normal.y, lambda, f);
     for (int c = 0; c < 4; c++)
-      weight[c][i] = vl_min(f[c] / p, 1e30f);
+      out.weight[c][i] = vl_min(f[c] / p, 1e30f);
     w = turned(&s, w);
-    vl_set_lane3(wi.x, wi.y, wi.z, i, w);
-    pdf[i] = p;
-    flags[i] = 0;
+    vl_set_lane3(out.wi.x, out.wi.y, out.wi.z, i, w);
+    out.pdf[i] = p;
+    out.flags[i] = 0;
   }
 }

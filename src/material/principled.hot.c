@@ -117,34 +117,28 @@ typedef struct Pair {
 
 /* Computes the values of the pair and the density of sampling wi. has_coat is a compile-time
  * constant, so that each of its two values gets a loop without branches. */
-static inline __attribute__((always_inline)) void pair_loop(
-    const vlPrincipledSlice *s, const vlPrincipledLanes *l, vlBsdfDirections wo,
-    vlBsdfDirections wi, Pair *out, float *pdf, uint32_t first, bool has_coat) {
-  const float *ox = wo.x + first, *oy = wo.y + first, *ix = wi.x + first, *iy = wi.y + first,
-              *iz = wi.z + first;
-  const float *ax = s->alpha_x, *ay = s->alpha_y, *index = s->eta;
-  const float *metallic = s->row[VL_P_METALLIC], *f90s = s->row[VL_P_F90],
-              *clears = s->row[VL_P_TRANSMISSION];
-  const float *thins = s->row[VL_P_THIN], *coats = s->row[VL_P_COAT],
-              *coat_alpha = s->row[VL_P_COAT_ALPHA];
-  const float *cx = s->row[VL_P_COAT_X], *cy = s->row[VL_P_COAT_Y], *cz = s->row[VL_P_COAT_Z];
-  const float *f0s = s->row[VL_P_F0], *b0 = s->base[0], *b1 = s->base[1], *b2 = s->base[2],
-              *b3 = s->base[3];
-  float *density = pdf + first;
+static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSlice *s,
+                                                            const vlPrincipledLanes *l,
+                                                            vlBsdfDirections wo,
+                                                            vlBsdfDirections wi, Pair *out,
+                                                            float *pdf, bool has_coat) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float side = l->side[i], inside = l->inside[i], thin = thins[i];
-    vlVec3 o = vl_vec3(ox[i], oy[i], l->z[i]), w = vl_vec3(ix[i], iy[i], iz[i] * side);
+    float side = l->side[i], inside = l->inside[i], thin = s->row[VL_P_THIN][i];
+    vlVec3 o = vl_vec3(wo.x[i], wo.y[i], l->z[i]),
+           w = vl_vec3(wi.x[i], wi.y[i], wi.z[i] * side);
     int reflect = w.z > 0.0f, valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f);
-    Facet facet =
-        base_facet(o, w, vl_ggx_alpha(ax[i]), vl_ggx_alpha(ay[i]), index[i], inside, thin);
+    Facet facet = base_facet(o, w, vl_ggx_alpha(s->alpha_x[i]), vl_ggx_alpha(s->alpha_y[i]),
+                             s->eta[i], inside, thin);
     float bare = 1.0f - inside, coat_value = 0.0f,
           coat_pdf = 0.0f; /* coat and sheen are only on the outside of a solid */
     if (has_coat) {
-      float on = coats[i] * bare;
-      Facet coat = coat_facet(o, w, vl_vec3(cx[i] * side, cy[i] * side, cz[i]),
-                              vl_ggx_alpha(coat_alpha[i]));
+      float on = s->row[VL_P_COAT][i] * bare;
+      Facet coat = coat_facet(o, w,
+                              vl_vec3(s->row[VL_P_COAT_X][i] * side,
+                                      s->row[VL_P_COAT_Y][i] * side, s->row[VL_P_COAT_Z][i]),
+                              vl_ggx_alpha(s->row[VL_P_COAT_ALPHA][i]));
       coat_value = on > 0.0f ? coat.value * on
                              : 0.0f; /* rows of materials without a coat may be stale */
       coat_pdf = on > 0.0f ? coat.pdf : 0.0f;
@@ -166,10 +160,11 @@ static inline __attribute__((always_inline)) void pair_loop(
     /* multiple scattering between microfacets (Kulla and Conty 2017) */
     out->again[i] =
         (1.0f - l->one_o[i]) * (1.0f - l->one_i[i]) / (1.0f - l->one_mean[i]) * cosine;
-    float base = 0.25f * ((b0[i] + b1[i]) + (b2[i] + b3[i])),
+    float base = vl_mean4(s->base[0][i], s->base[1][i], s->base[2][i], s->base[3][i]),
           both = l->specular[i] + l->refract[i];
-    float mirrors = vl_principled_mirrors(facet.outer, facet.total > 0.0f, f0s[i], f90s[i],
-                                          metallic[i], clears[i], base);
+    float mirrors = vl_principled_mirrors(facet.outer, facet.total > 0.0f, s->row[VL_P_F0][i],
+                                          s->row[VL_P_F90][i], s->row[VL_P_METALLIC][i],
+                                          s->row[VL_P_TRANSMISSION][i], base);
     float forth = inside > 0.0f ? both * mirrors : l->specular[i];
     float through = inside > 0.0f ? both * (1.0f - mirrors) : l->refract[i];
     float above = forth * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat_pdf;
@@ -178,27 +173,21 @@ static inline __attribute__((always_inline)) void pair_loop(
           up = reflect ? on : 0.0f; /* products, because gcc would turn selects into branches */
     out->upper[i] = up;
     out->lower[i] = on - up;
-    density[i] = above * up + below * (on - up);
+    pdf[i] = above * up + below * (on - up);
   }
 }
 
 /* Computes one channel of f cos_i from the pair. */
 static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
                                 const Pair *p, int c, float *result) {
-  const float *metallic = s->row[VL_P_METALLIC], *f90s = s->row[VL_P_F90],
-              *clears = s->row[VL_P_TRANSMISSION];
-  const float *thins = s->row[VL_P_THIN], *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION],
-              *films = s->row[VL_P_FILM];
   uint32_t count = VL_WHOLE(s->count);
-  const float *bases = s->base[c], *tints = s->tint[c], *normals = s->row[VL_P_F0 + c],
-              *transmissions = s->row[VL_P_THROUGH + c];
-  const float *sheens = s->row[VL_P_SHEEN + c];
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i],
-          shares = shares_row[i];
-    float f90 = f90s[i], film = films[i], base = bases[i], tint = tints[i], f0 = normals[i],
-          again = p->again[i], facet = p->facet[i];
+    float metal = s->row[VL_P_METALLIC][i], dielectric = 1.0f - metal,
+          clear = s->row[VL_P_TRANSMISSION][i], shares = s->row[VL_P_DIFFUSE_TRANSMISSION][i];
+    float f90 = s->row[VL_P_F90][i], film = s->row[VL_P_FILM][i], base = s->base[c][i],
+          tint = s->tint[c][i], f0 = s->row[VL_P_F0 + c][i], again = p->again[i],
+          facet = p->facet[i];
     float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
     float f = m0 + (m90 - m0) * p->opaque[i];
     f = f + film * (l->film[c][i] - f);
@@ -216,14 +205,14 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
           sheet_mean = f0 + (f90 - f0) * (1.0f / 21.0f);
     float metal_again = metal_mean * metal_mean * l->one_mean[i] /
                         (1.0f - metal_mean * (1.0f - l->one_mean[i]));
-    float sheet_again = dielectric * clear * thins[i] * again;
+    float sheet_again = dielectric * clear * s->row[VL_P_THIN][i] * again;
     float body = dielectric * clear,
           body_pass =
               1.0f - sheet_mean; /* multiple scattering between microfacets, to both sides */
     float body_up = body * l->again_up[i] * (1.0f - l->again_pass[i] * body_pass);
     float body_down = body * l->again_down[i] * body_pass * tint;
     float bare = 1.0f - l->inside[i];
-    float fuzz = sheens[i] * l->sheen_value[i] * bare *
+    float fuzz = s->row[VL_P_SHEEN + c][i] * l->sheen_value[i] * bare *
                  over_matt(l->coat_o[i], l->coat_i[i], l->coat_mean[i]);
     float upper =
         p->hide_mirror[i] * f * facet +
@@ -231,7 +220,7 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
                            sheet_again * sheet_mean + body_up) +
         p->coat[i] + fuzz;
     float lower = p->hide_through[i] * (dielectric * clear * tint * (1.0f - fd) * facet +
-                                        matt * shares * transmissions[i] +
+                                        matt * shares * s->row[VL_P_THROUGH + c][i] +
                                         sheet_again * (1.0f - sheet_mean) * tint + body_down);
     result[i] = upper * p->upper[i] + lower * p->lower[i];
   }
@@ -241,14 +230,14 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
 static __attribute__((noinline)) void combine(const vlPrincipledSlice *s,
                                               const vlPrincipledLanes *l, vlBsdfDirections wo,
                                               vlBsdfDirections wi, float *const value[4],
-                                              float *pdf, uint32_t first) {
+                                              float *pdf) {
   Pair pair;
   if (s->coat)
-    pair_loop(s, l, wo, wi, &pair, pdf, first, true);
+    pair_loop(s, l, wo, wi, &pair, pdf, true);
   else
-    pair_loop(s, l, wo, wi, &pair, pdf, first, false);
+    pair_loop(s, l, wo, wi, &pair, pdf, false);
   for (int c = 0; c < 4; c++)
-    channel_loop(s, l, &pair, c, value[c] + first);
+    channel_loop(s, l, &pair, c, value[c]);
 }
 
 void vl_bsdf_principled_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
@@ -256,9 +245,12 @@ void vl_bsdf_principled_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
   vlPrincipledLanes lanes;
   for (uint32_t first = 0; first < n; first += VL_PRINCIPLED_CHUNK) {
     vlPrincipledSlice s = slice_of(params, n, first);
-    vl_principled_view(&s, wo, first, &lanes);
-    vl_principled_light(&s, wo, wi, first, &lanes);
-    combine(&s, &lanes, wo, wi, value, pdf, first);
+    vlBsdfDirections o = vl_directions_from(wo, first), in = vl_directions_from(wi, first);
+    float *const chunk[4] = {value[0] + first, value[1] + first, value[2] + first,
+                             value[3] + first};
+    vl_principled_view(&s, o, &lanes);
+    vl_principled_light(&s, o, in, &lanes);
+    combine(&s, &lanes, o, in, chunk, pdf + first);
   }
 }
 
@@ -274,24 +266,21 @@ static inline bool is_diffuse(const vlPrincipledLanes *l, uint32_t i, float u) {
  * of the surface than wo. */
 static __attribute__((noinline)) void choose(const vlPrincipledSlice *s,
                                              const vlPrincipledLanes *l, vlBsdfDirections wo,
-                                             const float *u_lobe, const float *u,
-                                             const float *v, vlBsdfDirections wi,
-                                             float *eta_scale, uint32_t first) {
+                                             vlBsdfRandom random, vlBsdfSampled out) {
   for (uint32_t i = 0; i < s->count; i++) {
-    uint32_t k = first + i;
-    float side = l->side[i], inside = l->inside[i], thin = s->row[VL_P_THIN][i], x = u_lobe[k];
-    vlVec3 o = vl_vec3(wo.x[k], wo.y[k], l->z[i]), w;
+    float side = l->side[i], inside = l->inside[i], thin = s->row[VL_P_THIN][i];
+    float x = random.lobe[i], u = random.u[i], v = random.v[i];
+    vlVec3 o = vl_vec3(wo.x[i], wo.y[i], l->z[i]), w;
     float to_diffuse = l->specular[i] + l->diffuse[i], to_coat = to_diffuse + l->coat[i];
     float to_refract = to_coat + l->refract[i], scale = 1.0f;
     if (x < l->specular[i] || (x >= to_coat && x < to_refract)) {
-      vlVec3 h = vl_ggx_sample(o, vl_ggx_alpha(s->alpha_x[i]), vl_ggx_alpha(s->alpha_y[i]),
-                               u[k], v[k]);
+      vlVec3 h =
+          vl_ggx_sample(o, vl_ggx_alpha(s->alpha_x[i]), vl_ggx_alpha(s->alpha_y[i]), u, v);
       float oh = vl_dot(o, h);
       bool mirrors = x < l->specular[i];
       if (inside > 0.0f) {
         vlOuterCosine outer = vl_outer_cosine(oh, s->eta[i]);
-        float base =
-            0.25f * ((s->base[0][i] + s->base[1][i]) + (s->base[2][i] + s->base[3][i]));
+        float base = vl_mean4(s->base[0][i], s->base[1][i], s->base[2][i], s->base[3][i]);
         float part = mirrors ? x : l->specular[i] + (x - to_coat);
         mirrors =
             part < (l->specular[i] + l->refract[i]) *
@@ -318,46 +307,46 @@ static __attribute__((noinline)) void choose(const vlPrincipledSlice *s,
       vlFrame frame = vl_frame_from_z(n);
       float alpha = s->row[VL_P_COAT_ALPHA][i];
       vlVec3 local = vl_vec3(vl_dot(o, frame.x), vl_dot(o, frame.y), vl_dot(o, n));
-      vlVec3 h = vl_from_local(frame, vl_ggx_sample(local, alpha, alpha, u[k], v[k]));
+      vlVec3 h = vl_from_local(frame, vl_ggx_sample(local, alpha, alpha, u, v));
       w = vl_reflect(o, h, vl_dot(o, h));
       if (!(w.z > 0.0f))
         w = vl_vec3(0.0f, 0.0f, 0.0f);
     } else {
-      w = vl_cosine_direction(u[k], v[k]);
+      w = vl_cosine_direction(u, v);
       if (x >= to_refract) {
         float eta = inside > 0.0f ? 1.0f / s->eta[i] : s->eta[i];
         scale = thin > 0.0f ? 1.0f : eta * eta;
         w.z = -w.z;
       }
     }
-    wi.x[k] = w.x;
-    wi.y[k] = w.y;
-    wi.z[k] = w.z * side;
-    eta_scale[k] = scale;
+    w.z *= side;
+    vl_set_lane3(out.wi.x, out.wi.y, out.wi.z, i, w);
+    out.eta_scale[i] = scale;
   }
 }
 
 void vl_bsdf_principled_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                               const float *u_lobe, const float *u, const float *v,
-                               vlBsdfDirections wi, float *const weight[4], float *pdf,
-                               uint32_t *flags, float *eta_scale) {
+                               vlBsdfRandom random, vlBsdfSampled out) {
   vlPrincipledLanes lanes;
   for (uint32_t first = 0; first < n; first += VL_PRINCIPLED_CHUNK) {
     vlPrincipledSlice s = slice_of(params, n, first);
-    vl_principled_view(&s, wo, first, &lanes);
-    choose(&s, &lanes, wo, u_lobe, u, v, wi, eta_scale, first);
-    vl_principled_light(&s, wo, wi, first, &lanes);
-    combine(&s, &lanes, wo, wi, weight, pdf, first);
+    vlBsdfDirections o = vl_directions_from(wo, first);
+    vlBsdfRandom numbers = vl_random_from(random, first);
+    vlBsdfSampled to = vl_sampled_from(out, first);
+    vl_principled_view(&s, o, &lanes);
+    choose(&s, &lanes, o, numbers, to);
+    vl_principled_light(&s, o, to.wi, &lanes);
+    combine(&s, &lanes, o, to.wi, to.weight, to.pdf);
     for (uint32_t i = 0; i < s.count; i++) {
-      uint32_t k = first + i;
-      pdf[k] = pdf[k] > VL_MIN_POSITIVE ? pdf[k] : 0.0f;
-      float inverse = pdf[k] > 0.0f ? 1.0f / pdf[k] : 0.0f;
+      to.pdf[i] = to.pdf[i] > VL_MIN_POSITIVE ? to.pdf[i] : 0.0f;
+      float inverse = to.pdf[i] > 0.0f ? 1.0f / to.pdf[i] : 0.0f;
       for (int c = 0; c < 4; c++)
-        weight[c][k] *= inverse;
-      int below = (wi.z[k] > 0.0f) != (wo.z[k] > 0.0f);
-      uint32_t chosen = (below ? (uint32_t)VL_SAMPLED_TRANSMISSION : 0u) |
-                        (is_diffuse(&lanes, i, u_lobe[k]) ? (uint32_t)VL_SAMPLED_DIFFUSE : 0u);
-      flags[k] = pdf[k] > 0.0f ? chosen : (uint32_t)VL_SAMPLED_NONE;
+        to.weight[c][i] *= inverse;
+      int below = (to.wi.z[i] > 0.0f) != (o.z[i] > 0.0f);
+      uint32_t chosen =
+          (below ? (uint32_t)VL_SAMPLED_TRANSMISSION : 0u) |
+          (is_diffuse(&lanes, i, numbers.lobe[i]) ? (uint32_t)VL_SAMPLED_DIFFUSE : 0u);
+      to.flags[i] = to.pdf[i] > 0.0f ? chosen : (uint32_t)VL_SAMPLED_NONE;
     }
   }
 }

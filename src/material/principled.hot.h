@@ -50,12 +50,11 @@ typedef struct vlPrincipledLanes {
 
 /* vl_principled_view computes the table values at wo and the lobes' probabilities.
  * vl_principled_light computes the table values at wi, and the values of film and sheen for wo
- * and wi. wi.z is relative to the surface. Directions are arrays of the whole batch; `first` is
- * the chunk's first lane. */
-void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_t first,
+ * and wi. wi.z is relative to the surface. Directions are arrays of the chunk. */
+void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo,
                         vlPrincipledLanes *lanes);
 void vl_principled_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdfDirections wi,
-                         uint32_t first, vlPrincipledLanes *lanes);
+                         vlPrincipledLanes *lanes);
 
 /* The coat's normal on the side of wo. side: sign of wo.z. */
 static inline vlVec3 vl_principled_coat(const vlPrincipledSlice *s, uint32_t i, float side) {
@@ -80,6 +79,10 @@ static inline vlOuterCosine vl_outer_cosine(float inner, float eta) {
 /* The coat's normal may differ from the surface's. A direction whose cosine to the coat's
  * normal is at most this value (0.06 degrees above the horizon) misses the coat. */
 #define VL_P_COAT_HORIZON 1e-3f
+
+static inline float vl_mean4(float a, float b, float c, float d) {
+  return 0.25f * ((a + b) + (c + d));
+}
 
 /* Probability of sampling reflection inside a solid after a microfacet is sampled: the share
  * that the microfacet reflects. c: cosine outside; base: mean of the base colour's channels. */

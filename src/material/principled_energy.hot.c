@@ -70,11 +70,10 @@ typedef struct Cells {
 
 static __attribute__((noinline)) void find_cells(const vlPrincipledSlice *s, const float *z,
                                                  Cells *p) {
-  const float *ax = s->alpha_x, *ay = s->alpha_y;
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float a = base_alpha(ax[i], ay[i]), c = vl_abs(z[i]);
+    float a = base_alpha(s->alpha_x[i], s->alpha_y[i]), c = vl_abs(z[i]);
     a = __builtin_sqrtf(a < 1.0f ? a : 1.0f) * (float)(VL_ALBEDO_ALPHA - 1);
     c = __builtin_sqrtf(c < 1.0f ? c : 1.0f) * (float)(VL_ALBEDO_COS - 1);
     int32_t ia = (int32_t)a, ic = (int32_t)c;
@@ -114,15 +113,12 @@ static __attribute__((noinline)) void energies(const vlPrincipledSlice *s, const
                                                const float *b,
                                                float energy[4][VL_PRINCIPLED_CHUNK],
                                                float *one) {
-  const float *f90 = s->row[VL_P_F90];
   uint32_t count = VL_WHOLE(s->count);
   for (int c = 0; c < 4; c++) {
-    const float *f0 = s->row[VL_P_F0 + c];
-    float *out = energy[c];
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
-      float e = f0[i] * a[i] + f90[i] * b[i];
-      out[i] = e < 0.9999f ? e : 0.9999f;
+      float e = s->row[VL_P_F0 + c][i] * a[i] + s->row[VL_P_F90][i] * b[i];
+      energy[c][i] = e < 0.9999f ? e : 0.9999f;
     }
   }
   /* must vectorise */
@@ -154,8 +150,8 @@ static void film_energies(const vlPrincipledSlice *s, const float *z, const floa
 }
 
 static float brightest(const vlPrincipledSlice *s, uint32_t row, uint32_t i) {
-  return vl_max(vl_max(s->row[row][i], s->row[row + 1][i]),
-                vl_max(s->row[row + 2][i], s->row[row + 3][i]));
+  return vl_largest4(s->row[row][i], s->row[row + 1][i], s->row[row + 2][i],
+                     s->row[row + 3][i]);
 }
 
 /* Computes the coat's albedo for directions with cosine z to the coat's normal; z null: the
@@ -193,9 +189,8 @@ static void sheen_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
   }
 }
 
-static void sheen_at_light(const vlPrincipledSlice *s, const float *ox, const float *oy,
-                           const float *ix, const float *iy, const float *z,
-                           vlPrincipledLanes *l) {
+static void sheen_at_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdfDirections wi,
+                           const float *z, vlPrincipledLanes *l) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < s->count; i++) {
     float fuzz = brightest(s, VL_P_SHEEN, i), c = vl_abs(z[i]);
@@ -205,7 +200,7 @@ static void sheen_at_light(const vlPrincipledSlice *s, const float *ox, const fl
     float raw = vl_albedo_at(t->sheen, vl_albedo_cell(alpha, VL_ALBEDO_ALPHA),
                              vl_albedo_cell(c, VL_ALBEDO_COS));
     float most = vl_max(vl_max(raw, l->sheen_raw[i]), 1.0f);
-    vlVec3 h = vl_normalize(vl_vec3(ox[i] + ix[i], oy[i] + iy[i], l->z[i] + c));
+    vlVec3 h = vl_normalize(vl_vec3(wo.x[i] + wi.x[i], wo.y[i] + wi.y[i], l->z[i] + c));
     l->sheen_i[i] = fuzz * vl_min(raw, 1.0f);
     l->sheen_value[i] =
         l->z[i] > 0.0f && z[i] > 0.0f ? vl_sheen(l->z[i], z[i], h.z, alpha) / most : 0.0f;
@@ -268,30 +263,24 @@ static void losses_at_light(const vlPrincipledSlice *s, const float *z, vlPrinci
  * whose value can be above 0 has a probability above 0. */
 static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const float *coat_cos,
                                             vlPrincipledLanes *l) {
-  const float *b0 = s->base[0], *b1 = s->base[1], *b2 = s->base[2], *b3 = s->base[3];
-  const float *t0 = s->row[VL_P_THROUGH], *t1 = s->row[VL_P_THROUGH + 1],
-              *t2 = s->row[VL_P_THROUGH + 2], *t3 = s->row[VL_P_THROUGH + 3];
-  const float *metallic = s->row[VL_P_METALLIC], *clears = s->row[VL_P_TRANSMISSION],
-              *index = s->eta;
-  const float *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION], *f90s = s->row[VL_P_F90],
-              *f0s = s->row[VL_P_F0];
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float b0 = s->base[0][i], b1 = s->base[1][i], b2 = s->base[2][i], b3 = s->base[3][i];
     float e0 = l->energy_o[0][i], e1 = l->energy_o[1][i], e2 = l->energy_o[2][i],
           e3 = l->energy_o[3][i];
-    float base = 0.25f * ((b0[i] + b1[i]) + (b2[i] + b3[i])),
-          energy = 0.25f * ((e0 + e1) + (e2 + e3));
-    float seen = 0.25f * ((b0[i] * (1.0f - e0) + b1[i] * (1.0f - e1)) +
-                          (b2[i] * (1.0f - e2) + b3[i] * (1.0f - e3)));
-    float through = 0.25f * ((t0[i] + t1[i]) + (t2[i] + t3[i]));
-    float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i],
-          shares = shares_row[i];
-    float inside = l->inside[i], f0 = f0s[i];
+    float base = vl_mean4(b0, b1, b2, b3), energy = vl_mean4(e0, e1, e2, e3);
+    float seen =
+        vl_mean4(b0 * (1.0f - e0), b1 * (1.0f - e1), b2 * (1.0f - e2), b3 * (1.0f - e3));
+    float through = vl_mean4(s->row[VL_P_THROUGH][i], s->row[VL_P_THROUGH + 1][i],
+                             s->row[VL_P_THROUGH + 2][i], s->row[VL_P_THROUGH + 3][i]);
+    float metal = s->row[VL_P_METALLIC][i], dielectric = 1.0f - metal,
+          clear = s->row[VL_P_TRANSMISSION][i], shares = s->row[VL_P_DIFFUSE_TRANSMISSION][i];
+    float inside = l->inside[i], f0 = s->row[VL_P_F0][i];
     float cover = (1.0f - l->coat_o[i]) * (1.0f - l->sheen_o[i]);
     cover = inside > 0.0f ? 1.0f : cover;
-    vlOuterCosine outer = vl_outer_cosine(l->z[i], index[i]);
-    float inner = f0 + (f90s[i] - f0) * vl_schlick_weight(outer.cosine);
+    vlOuterCosine outer = vl_outer_cosine(l->z[i], s->eta[i]);
+    float inner = f0 + (s->row[VL_P_F90][i] - f0) * vl_schlick_weight(outer.cosine);
     inner = outer.total ? 1.0f : inner;
     float reflected = inside > 0.0f ? inner : energy;
     float mirror = cover * (metal * (base > 0.02f ? base : 0.02f) + dielectric * reflected) +
@@ -315,17 +304,14 @@ static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const fl
   }
 }
 
-void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_t first,
-                        vlPrincipledLanes *l) {
-  const float *ox = wo.x + first, *oy = wo.y + first, *oz = wo.z + first,
-              *thin = s->row[VL_P_THIN];
+void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, vlPrincipledLanes *l) {
   float a[VL_PRINCIPLED_CHUNK], b[VL_PRINCIPLED_CHUNK], coat_cos[VL_PRINCIPLED_CHUNK];
   uint32_t count = VL_WHOLE(s->count);
   for (uint32_t i = 0; i < count; i++) {
-    float z = oz[i];
+    float z = wo.z[i];
     l->z[i] = vl_abs(z);
     l->side[i] = z < 0.0f ? -1.0f : 1.0f;
-    l->inside[i] = z < 0.0f ? 1.0f - thin[i] : 0.0f;
+    l->inside[i] = z < 0.0f ? 1.0f - s->row[VL_P_THIN][i] : 0.0f;
     l->coat_o[i] = l->coat_mean[i] = l->sheen_o[i] = l->sheen_mean[i] = l->sheen_raw[i] =
         coat_cos[i] = 0.0f;
     l->loss_mean[0][i] = l->again_up[i] = l->again_down[i] = l->again_pass[i] = 0.0f;
@@ -345,10 +331,10 @@ void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_
   if (s->film)
     film_energies(s, l->z, l->one_o, l->energy_o);
   if (s->coat) {
-    coat_energies(s, l, ox, oy, l->z, l->coat_o);
+    coat_energies(s, l, wo.x, wo.y, l->z, l->coat_o);
     coat_energies(s, l, NULL, NULL, NULL, l->coat_mean);
     for (uint32_t i = 0; i < count; i++)
-      coat_cos[i] = vl_dot(vl_lane3(ox, oy, l->z, i), vl_principled_coat(s, i, l->side[i]));
+      coat_cos[i] = vl_dot(vl_lane3(wo.x, wo.y, l->z, i), vl_principled_coat(s, i, l->side[i]));
   }
   if (s->sheen)
     sheen_at_view(s, l);
@@ -358,21 +344,19 @@ void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_
 }
 
 void vl_principled_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdfDirections wi,
-                         uint32_t first, vlPrincipledLanes *l) {
-  const float *ox = wo.x + first, *oy = wo.y + first, *ix = wi.x + first, *iy = wi.y + first,
-              *iz = wi.z + first;
+                         vlPrincipledLanes *l) {
   float a[VL_PRINCIPLED_CHUNK], b[VL_PRINCIPLED_CHUNK], z[VL_PRINCIPLED_CHUNK];
   uint32_t count = VL_WHOLE(s->count);
   for (uint32_t i = 0; i < count; i++)
-    z[i] = iz[i] * l->side[i];
+    z[i] = wi.z[i] * l->side[i];
   Cells cells;
   find_cells(s, z, &cells);
   look_up(&cells, count, a, b);
   energies(s, a, b, l->energy_i, l->one_i);
   if (s->coat)
-    coat_energies(s, l, ix, iy, z, l->coat_i);
+    coat_energies(s, l, wi.x, wi.y, z, l->coat_i);
   if (s->sheen)
-    sheen_at_light(s, ox, oy, ix, iy, z, l);
+    sheen_at_light(s, wo, wi, z, l);
   if (s->solid)
     losses_at_light(s, z, l);
   if (!s->film)
@@ -381,8 +365,8 @@ void vl_principled_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdf
   for (uint32_t i = 0; i < count; i++) {
     if (!(s->row[VL_P_FILM][i] > 0.0f))
       continue;
-    vlVec3 o = vl_lane3(ox, oy, l->z, i),
-           h = vl_normalize(vl_vec3(o.x + ix[i], o.y + iy[i], o.z + vl_abs(z[i])));
+    vlVec3 o = vl_lane3(wo.x, wo.y, l->z, i),
+           h = vl_normalize(vl_vec3(o.x + wi.x[i], o.y + wi.y[i], o.z + vl_abs(z[i])));
     for (int c = 0; c < 4; c++) {
       float f0 = s->row[VL_P_F0 + c][i];
       f0 = f0 + s->row[VL_P_METALLIC][i] * (s->base[c][i] - f0);

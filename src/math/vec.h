@@ -38,8 +38,8 @@ static inline vlVec3 vl_normalize(vlVec3 a) {
   float s = l > 0.0f ? 1.0f / __builtin_sqrtf(l) : 0.0f;
   return vl_mul(a, s);
 }
-/* Element i of three arrays. Loops that must vectorise index the arrays themselves: gcc does
- * not vectorise through this. */
+/* Element i of three arrays. Loops that must vectorise index the arrays themselves: clang takes
+ * no access to memory in a called function for independent of the other lanes. */
 static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
   return vl_vec3(x[i], y[i], z[i]);
 }
@@ -68,6 +68,9 @@ static inline float vl_min(float a, float b) {
 }
 static inline float vl_max(float a, float b) {
   return a > b ? a : b;
+}
+static inline float vl_largest4(float a, float b, float c, float d) {
+  return vl_max(vl_max(a, b), vl_max(c, d));
 }
 static inline float vl_clamp(float x, float low, float high) {
   return x < low ? low : x > high ? high : x;

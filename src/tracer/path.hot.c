@@ -73,9 +73,9 @@ void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
     vlBsdfParams params = params_of(t->world, at, first);
     float *const value[4] = {to->value[0] + first, to->value[1] + first, to->value[2] + first,
                              to->value[3] + first};
-    t->bsdf->eval(r.kind, r.last - first, &params, directions(wo, first),
-                  directions((const float(*)[VL_ROW_SIZE])to->wi, first), value,
-                  to->pdf + first);
+    t->bsdf->eval[r.kind](r.last - first, &params, directions(wo, first),
+                          directions((const float(*)[VL_ROW_SIZE])to->wi, first), value,
+                          to->pdf + first);
     first = r.last;
   }
 }
@@ -231,12 +231,15 @@ static void sample_bsdfs(const vlTracing *t, uint32_t n, uint32_t dimension,
   for (uint32_t first = 0; first < n;) {
     Run r = next_kind(t->world, &at->hits, first, n);
     vlBsdfParams params = params_of(t->world, at, first);
-    vlBsdfDirections wi = {to->wi[0] + first, to->wi[1] + first, to->wi[2] + first};
-    float *const weight[4] = {to->weight[0] + first, to->weight[1] + first,
-                              to->weight[2] + first, to->weight[3] + first};
-    t->bsdf->sample(r.kind, r.last - first, &params, directions(at->shade.wo, first),
-                    u.u0 + first, u.u1 + first, u.u2 + first, wi, weight, to->pdf + first,
-                    to->flags + first, to->eta_scale + first);
+    vlBsdfRandom random = {u.u0 + first, u.u1 + first, u.u2 + first};
+    vlBsdfSampled out = {.wi = {to->wi[0] + first, to->wi[1] + first, to->wi[2] + first},
+                         .pdf = to->pdf + first,
+                         .flags = to->flags + first,
+                         .eta_scale = to->eta_scale + first};
+    for (int c = 0; c < 4; c++)
+      out.weight[c] = to->weight[c] + first;
+    t->bsdf->sample[r.kind](r.last - first, &params, directions(at->shade.wo, first), random,
+                            out);
     first = r.last;
   }
 }
@@ -265,7 +268,7 @@ static void make_rays(const vlTracing *t, uint32_t n, uint32_t depth, const vlVe
     float b0 = p->beta[0][i] * s->weight[0][i], b1 = p->beta[1][i] * s->weight[1][i];
     float b2 = p->beta[2][i] * s->weight[2][i], b3 = p->beta[3][i] * s->weight[3][i];
     float eta = p->eta_scale[i] * s->eta_scale[i];
-    float most = vl_max(vl_max(b0, b1), vl_max(b2, b3));
+    float most = vl_largest4(b0, b1, b2, b3);
     float survive = vl_roulette_survival(most * eta, depth);
     uint32_t lives = most > 0.0f && !(s->flags[i] & VL_SAMPLED_NONE) && u[i] < survive ? 1 : 0;
     float inv = survive > 0.0f ? 1.0f / survive : 0.0f;

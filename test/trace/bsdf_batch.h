@@ -87,14 +87,16 @@ static inline void batch_eval(const vlBsdfKernels *k, vlBsdfKind kind, uint32_t 
   vlBsdfParams p = batch_params(b);
   vlBsdfDirections wo = {b->ox, b->oy, b->oz}, wi = {b->ix, b->iy, b->iz};
   float *value[4] = {b->value[0], b->value[1], b->value[2], b->value[3]};
-  k->eval(kind, n, &p, wo, wi, value, b->pdf);
+  k->eval[kind](n, &p, wo, wi, value, b->pdf);
 }
 /* the pdf is also written to b->pdf */
 static inline void batch_sample(const vlBsdfKernels *k, vlBsdfKind kind, uint32_t n, Batch *b) {
   vlBsdfParams p = batch_params(b);
   vlBsdfDirections wo = {b->ox, b->oy, b->oz}, wi = {b->ix, b->iy, b->iz};
-  float *weight[4] = {b->weight[0], b->weight[1], b->weight[2], b->weight[3]};
-  k->sample(kind, n, &p, wo, b->lobe, b->u, b->v, wi, weight, b->pdf, b->flags, b->scale);
+  vlBsdfRandom random = {b->lobe, b->u, b->v};
+  vlBsdfSampled out = {
+      wi, {b->weight[0], b->weight[1], b->weight[2], b->weight[3]}, b->pdf, b->flags, b->scale};
+  k->sample[kind](n, &p, wo, random, out);
 }
 
 #endif

@@ -20,7 +20,7 @@ static inline void shift(const float sigma[4], int hero, float length, float fac
 }
 
 static inline float largest(const float v[4]) {
-  return vl_max(vl_max(v[0], v[1]), vl_max(v[2], v[3]));
+  return vl_largest4(v[0], v[1], v[2], v[3]);
 }
 
 /* The state of tracking along the majorants. */

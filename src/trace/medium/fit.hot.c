@@ -48,8 +48,7 @@ static uint32_t before_light(const vlTracing *t, const vlShadowRays *q, uint32_t
 void vl_fit_shadows(const vlTracing *t, uint32_t count, const vlLightSamples *samples,
                     const vlShadowRays *q, const vlShadowFlights *f) {
   for (uint32_t k = 0; k < count; k++) {
-    float passes =
-        vl_max(vl_max(f->beta[0][k], f->beta[1][k]), vl_max(f->beta[2][k], f->beta[3][k]));
+    float passes = vl_largest4(f->beta[0][k], f->beta[1][k], f->beta[2][k], f->beta[3][k]);
     if (q->occluded[k] || !(passes > 0.0f))
       continue; /* without transmittance, it ended on the way */
     uint32_t number = samples->light[f->from[k]], medium = f->medium[k];

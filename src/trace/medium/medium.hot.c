@@ -215,8 +215,7 @@ static void fly_uniform(const vlTracing *t, uint32_t medium, vlFlights *f, bool 
   for (uint32_t i = 0; i < f->n; i++) {
     if (!k.flies[i])
       continue;
-    float most =
-        vl_max(vl_max(f->beta[0][i], f->beta[1][i]), vl_max(f->beta[2][i], f->beta[3][i]));
+    float most = vl_largest4(f->beta[0][i], f->beta[1][i], f->beta[2][i], f->beta[3][i]);
     uint32_t ends = m->scatters && k.scatters[i] ? VL_FLIGHT_SCATTERED : VL_FLIGHT_PASSED;
     f->end[i] = (ends == VL_FLIGHT_SCATTERED || !m->scatters) && !(most > 0.0f)
                     ? VL_FLIGHT_ENDED

@@ -116,8 +116,7 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
                      u.u1, u.u2);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    float most =
-        vl_max(vl_max(p->beta[0][i], p->beta[1][i]), vl_max(p->beta[2][i], p->beta[3][i]));
+    float most = vl_largest4(p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]);
     float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
     if (sum != sum)
       t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */

@@ -299,8 +299,7 @@ static const vlBssrdfTable *table_at(const vlWorld *world, const vlHits *hits, u
 }
 
 static bool carries(const vlPaths *p, uint32_t i) {
-  return vl_max(vl_max(p->beta[0][i], p->beta[1][i]), vl_max(p->beta[2][i], p->beta[3][i])) >
-         0.0f;
+  return vl_largest4(p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]) > 0.0f;
 }
 
 /* Takes light samples at n exits, and adds the radiance of those that arrive. light, q,

@@ -27,7 +27,7 @@ typedef struct Crossing {
 /* a, b, c, e: the sides on which the ray passes the edges. */
 static inline Crossing cross(float a, float b, float c, float e, vlVec3 normal, vlVec3 corner,
                              float tolerance, vlVec3 o, vlVec3 d) {
-  float least = vl_min(vl_min(a, b), vl_min(c, e)), most = vl_max(vl_max(a, b), vl_max(c, e));
+  float least = vl_min(vl_min(a, b), vl_min(c, e)), most = vl_largest4(a, b, c, e);
   float speed = vl_dot(normal, d), height = vl_dot(normal, vl_sub(corner, o));
   float wide = tolerance * vl_abs(speed);
   int inside = (least >= -wide) | (most <= wide);

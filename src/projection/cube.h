@@ -25,8 +25,8 @@ static inline double vl_cube_cell(double x, double y) {
   return (column >= 0.0 && column < 7.0 ? column : 7.0) + 8.0 * __builtin_floor(y);
 }
 
-static inline vlDirection vl_cube_unproject(double cross, double over, double cell, double x,
-                                            double y) {
+VL_CAMERA_INLINE vlDirection vl_unproject_cube(VL_UNPROJECT_INPUT) {
+  double cross = c->shape[0], over = c->over_y;
   double row = __builtin_floor(0.125 * cell), column = cell - 8.0 * row;
   double middle = column < 0.5 ? 1.0 : column < 1.5 ? 4.0 : column < 2.5 ? 0.0 : 5.0;
   middle = column <= 3.0 ? middle : -1.0;
@@ -45,7 +45,8 @@ static inline vlDirection vl_cube_unproject(double cross, double over, double ce
   double inside = b >= -1.0 - 2.0 * over && b <= 1.0 + 2.0 * over ? 1.0 : 0.0;
   return (vlDirection){dx, dy, dz, face >= 0.0 && face <= 5.0 ? inside : 0.0};
 }
-static inline vlPlanePoint vl_cube_project(double cross, double x, double y, double z) {
+VL_CAMERA_INLINE vlPlanePoint vl_project_cube(VL_PROJECT_INPUT) {
+  double cross = c->shape[0];
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
   int side = ax >= ay && ax > az, pole = !side && ay > az;
   double major = side ? ax : pole ? ay : az, k = 1.0 / vl_not_tiny(major);
@@ -63,16 +64,8 @@ static inline vlPlanePoint vl_cube_project(double cross, double x, double y, dou
                         major > 0.0 ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlDirection vl_unproject_cube(VL_UNPROJECT_INPUT) {
-  return vl_cube_unproject(c->shape[0], c->over_y, face, x, y);
-}
-VL_CAMERA_INLINE vlPlanePoint vl_project_cube(VL_PROJECT_INPUT) {
-  return vl_cube_project(c->shape[0], x, y, z);
-}
-
 /* On its face a point is (a, b) / (2 major), each a coordinate but for its sign. */
 VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_cube(VL_PROJECT_INPUT) {
-  (void)c;
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
   int side = ax >= ay && ax > az, pole = !side && ay > az;
   double sx = x > 0.0 ? 1.0 : -1.0, sy = y < 0.0 ? -1.0 : 1.0, sz = z > 0.0 ? 1.0 : -1.0;

@@ -7,11 +7,13 @@
 
 /* Undistorted = distorted / (1 + lambda r^2). Domain: barrel (lambda < 0) all directions but
  * straight back; pincushion up to r = 1/sqrt(lambda), where it folds. */
-static inline vlDirection vl_division_unproject(double lambda, double x, double y) {
+VL_CAMERA_INLINE vlDirection vl_unproject_division(VL_UNPROJECT_INPUT) {
+  double lambda = c->shape[0];
   double r2 = x * x + y * y;
   return (vlDirection){x, y, 1.0 + lambda * r2, lambda * r2 <= 1.0 && r2 < 1e30 ? 1.0 : 0.0};
 }
-static inline vlPlanePoint vl_division_project(double lambda, double x, double y, double z) {
+VL_CAMERA_INLINE vlPlanePoint vl_project_division(VL_PROJECT_INPUT) {
+  double lambda = c->shape[0];
   double across2 = x * x + y * y, root = z * z - 4.0 * lambda * across2, s = vl_root(root);
   /* 2/(z + s) for z >= 0; an equal expression without cancellation for z < 0 (then lambda < 0,
    * s > |z|) */
@@ -20,14 +22,6 @@ static inline vlPlanePoint vl_division_project(double lambda, double x, double y
   double k = z < 0.0 ? behind : ahead;
   int valid = root >= 0.0 && (z > 0.0 || (lambda < 0.0 && across2 > 0.0));
   return (vlPlanePoint){x * k, y * k, valid ? 1.0 : 0.0};
-}
-
-VL_CAMERA_INLINE vlDirection vl_unproject_division(VL_UNPROJECT_INPUT) {
-  (void)face;
-  return vl_division_unproject(c->shape[0], x, y);
-}
-VL_CAMERA_INLINE vlPlanePoint vl_project_division(VL_PROJECT_INPUT) {
-  return vl_division_project(c->shape[0], x, y, z);
 }
 
 /* The divisor is (z + s) / 2, s = sqrt(z^2 - 4 lambda R^2). */

@@ -7,30 +7,19 @@
 #include "projection/fisheye.h"
 #include "projection/functions.h"
 
-static inline vlDirection vl_equisolid_unproject(double x, double y) {
+VL_CAMERA_INLINE vlDirection vl_unproject_equisolid(VL_UNPROJECT_INPUT) {
   double r2 = x * x + y * y, k = vl_root(1.0 - 0.25 * r2);
   return (vlDirection){x * k, y * k, 1.0 - 0.5 * r2, r2 < 4.0 ? 1.0 : 0.0};
 }
-static inline vlPlanePoint vl_equisolid_project(double x, double y, double z) {
+VL_CAMERA_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
   double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = scale * __builtin_sqrt(2.0 / vl_not_tiny(q));
   return (vlPlanePoint){x * k, y * k, q > 0.0 ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlDirection vl_unproject_equisolid(VL_UNPROJECT_INPUT) {
-  (void)c;
-  (void)face;
-  return vl_equisolid_unproject(x, y);
-}
-VL_CAMERA_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
-  (void)c;
-  return vl_equisolid_project(x, y, z);
-}
-
 /* k = sqrt(2 / D), D = L (L + z), L the length. */
 VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equisolid(VL_PROJECT_INPUT) {
-  (void)c;
   double length = vl_length3(x, y, z), scale = 1.0 / length;
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = scale * __builtin_sqrt(2.0 / q), g = -0.5 * k / (length * length * q);

@@ -7,24 +7,18 @@
 #include "projection/functions.h"
 
 /* m = X / (a d + (1 - a) Z), d = sqrt(b R^2 + Z^2). */
-static inline vlDirection vl_eucm_unproject(double a, double b, double x, double y) {
+VL_CAMERA_INLINE vlDirection vl_unproject_eucm(VL_UNPROJECT_INPUT) {
+  double a = c->shape[0], b = c->shape[1];
   double r2 = x * x + y * y, root = 1.0 - (2.0 * a - 1.0) * b * r2;
   double z = (1.0 - b * a * a * r2) / (a * vl_root(root) + (1.0 - a));
   return (vlDirection){x, y, z, root >= 0.0 && r2 < 1e24 ? 1.0 : 0.0};
 }
-static inline vlPlanePoint vl_eucm_project(double a, double b, double x, double y, double z) {
+VL_CAMERA_INLINE vlPlanePoint vl_project_eucm(VL_PROJECT_INPUT) {
+  double a = c->shape[0], b = c->shape[1];
   double d = __builtin_sqrt(b * (x * x + y * y) + z * z), under = a * d + (1.0 - a) * z,
          k = 1.0 / vl_not_tiny(under);
   double edge = a > 0.5 ? (1.0 - a) / a : a / (1.0 - a);
   return (vlPlanePoint){x * k, y * k, z >= -edge * d && under > VL_HORIZON * d ? 1.0 : 0.0};
-}
-
-VL_CAMERA_INLINE vlDirection vl_unproject_eucm(VL_UNPROJECT_INPUT) {
-  (void)face;
-  return vl_eucm_unproject(c->shape[0], c->shape[1], x, y);
-}
-VL_CAMERA_INLINE vlPlanePoint vl_project_eucm(VL_PROJECT_INPUT) {
-  return vl_eucm_project(c->shape[0], c->shape[1], x, y, z);
 }
 
 VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_eucm(VL_PROJECT_INPUT) {

@@ -7,23 +7,17 @@
 #include "projection/functions.h"
 
 /* r = atan(2 tan(theta) tan(w/2)) / w; t = 2 tan(w/2). Domain: the half-space z > 0. */
-static inline vlDirection vl_fov_unproject(double w, double t, double x, double y) {
+VL_CAMERA_INLINE vlDirection vl_unproject_fov(VL_UNPROJECT_INPUT) {
+  double w = c->shape[0], t = c->shape[1];
   double r = vl_not_tiny(vl_length2(x, y)), angle = r * w;
   vlSinCosDouble a = vl_sincos_double(angle < 4.0 ? angle : 4.0);
   double k = a.sin / r;
   return (vlDirection){x * k, y * k, a.cos * t, angle < 1.57079632679489655 ? 1.0 : 0.0};
 }
-static inline vlPlanePoint vl_fov_project(double w, double t, double x, double y, double z) {
+VL_CAMERA_INLINE vlPlanePoint vl_project_fov(VL_PROJECT_INPUT) {
+  double w = c->shape[0], t = c->shape[1];
   double r = vl_not_tiny(vl_length2(x, y)), k = vl_atan2_double(t * r, z) / (w * r);
   return (vlPlanePoint){x * k, y * k, z > 0.0 ? 1.0 : 0.0};
-}
-
-VL_CAMERA_INLINE vlDirection vl_unproject_fov(VL_UNPROJECT_INPUT) {
-  (void)face;
-  return vl_fov_unproject(c->shape[0], c->shape[1], x, y);
-}
-VL_CAMERA_INLINE vlPlanePoint vl_project_fov(VL_PROJECT_INPUT) {
-  return vl_fov_project(c->shape[0], c->shape[1], x, y, z);
 }
 
 /* t = 2 tan(w/2) depends on w: its derivative is 1 + t^2/4. */

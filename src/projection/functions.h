@@ -7,11 +7,17 @@
 #include "velo/projection.h"
 
 #define VL_CAMERA_INLINE static inline __attribute__((always_inline))
+/* A projection need not use all of its arguments. */
+#define VL_UNUSED __attribute__((unused))
 /* The arguments of vl_unproject_NAME: the compiled camera, whose member `shape` holds the
- * numbers of the projection; for VL_PROJECTION_CUBE the cell `face`; a point of the plane. */
-#define VL_UNPROJECT_INPUT const vlCameraCompiled *c, double face, double x, double y
+ * numbers of the projection; for VL_PROJECTION_CUBE the `cell`; a point of the plane. */
+#define VL_UNPROJECT_INPUT                                                        \
+  VL_UNUSED const vlCameraCompiled *c, VL_UNUSED double cell, VL_UNUSED double x, \
+      VL_UNUSED double y
 /* The arguments of vl_project_NAME: the compiled camera, a point in camera space. */
-#define VL_PROJECT_INPUT const vlCameraCompiled *c, double x, double y, double z
+#define VL_PROJECT_INPUT                                                       \
+  VL_UNUSED const vlCameraCompiled *c, VL_UNUSED double x, VL_UNUSED double y, \
+      VL_UNUSED double z
 
 /* Derivatives of a plane point: by x, y, z of the point in camera space, then by the two
  * numbers of vlCamera.shape. */

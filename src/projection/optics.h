@@ -6,21 +6,13 @@
 #include "projection/functions.h"
 
 VL_CAMERA_INLINE vlDirection vl_unproject_optics(VL_UNPROJECT_INPUT) {
-  (void)c;
-  (void)face;
   return (vlDirection){x, y, 1.0, 0.0};
 }
 VL_CAMERA_INLINE vlPlanePoint vl_project_optics(VL_PROJECT_INPUT) {
-  (void)c;
-  (void)z;
   return (vlPlanePoint){x, y, 0.0};
 }
 
 VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_optics(VL_PROJECT_INPUT) {
-  (void)c;
-  (void)x;
-  (void)y;
-  (void)z;
   return (vlPlaneDerivatives){{0.0}, {0.0}};
 }
 

@@ -20,18 +20,13 @@ static inline vlCameraLocal vl_orthographic_unproject(const vlCameraCompiled *c,
 }
 
 VL_CAMERA_INLINE vlDirection vl_unproject_orthographic(VL_UNPROJECT_INPUT) {
-  (void)c;
-  (void)face;
   return (vlDirection){x, y, 1.0, 1.0};
 }
 VL_CAMERA_INLINE vlPlanePoint vl_project_orthographic(VL_PROJECT_INPUT) {
-  (void)c;
   return (vlPlanePoint){x, y, z >= 0.0 ? 1.0 : 0.0};
 }
 
 VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_orthographic(VL_PROJECT_INPUT) {
-  (void)c;
-  (void)z;
   const double by[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
   return vl_derive_factor(x, y, 1.0, by);
 }

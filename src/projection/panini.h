@@ -15,27 +15,21 @@ static inline double vl_panini_edge(double d) {
   return d <= 1.0 ? -d : -1.0 / d;
 }
 
-static inline vlDirection vl_panini_unproject(double d, double x, double y) {
+VL_CAMERA_INLINE vlDirection vl_unproject_panini(VL_UNPROJECT_INPUT) {
+  double d = c->shape[0];
   double k = x * x / ((d + 1.0) * (d + 1.0)), root = 1.0 + k * (1.0 - d * d);
   double cosine = (vl_root(root) - k * d) / (k + 1.0);
   double over = d + cosine, s = (d + 1.0) / vl_not_tiny(over);
   return (vlDirection){x / s, y / s, cosine,
                        root >= 0.0 && over > VL_HORIZON && k < 1e24 ? 1.0 : 0.0};
 }
-static inline vlPlanePoint vl_panini_project(double d, double x, double y, double z) {
+VL_CAMERA_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
+  double d = c->shape[0];
   double across = vl_length2(x, z), scale = 1.0 / vl_not_tiny(across), cosine = z * scale;
   double over = d + cosine, s = (d + 1.0) / vl_not_tiny(over) * scale;
   return (vlPlanePoint){
       x * s, y * s,
       across > 0.0 && over > VL_HORIZON && cosine >= vl_panini_edge(d) ? 1.0 : 0.0};
-}
-
-VL_CAMERA_INLINE vlDirection vl_unproject_panini(VL_UNPROJECT_INPUT) {
-  (void)face;
-  return vl_panini_unproject(c->shape[0], x, y);
-}
-VL_CAMERA_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
-  return vl_panini_project(c->shape[0], x, y, z);
 }
 
 /* The divisor is (d |xz| + z) / (d + 1). */

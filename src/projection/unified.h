@@ -6,24 +6,18 @@
 #include "projection/functions.h"
 
 /* m = X / (Z + xi |P|). */
-static inline vlDirection vl_unified_unproject(double xi, double x, double y) {
+VL_CAMERA_INLINE vlDirection vl_unproject_unified(VL_UNPROJECT_INPUT) {
+  double xi = c->shape[0];
   double r2 = x * x + y * y, root = 1.0 + (1.0 - xi * xi) * r2;
   double k = (xi + vl_root(root)) / (r2 + 1.0);
   return (vlDirection){x * k, y * k, k - xi, root >= 0.0 && r2 < 1e24 ? 1.0 : 0.0};
 }
-static inline vlPlanePoint vl_unified_project(double xi, double x, double y, double z) {
+VL_CAMERA_INLINE vlPlanePoint vl_project_unified(VL_PROJECT_INPUT) {
+  double xi = c->shape[0];
   double length = vl_length3(x, y, z), under = z + xi * length, k = 1.0 / vl_not_tiny(under);
   double edge = xi > 1.0 ? 1.0 / xi : xi;
   return (vlPlanePoint){x * k, y * k,
                         z >= -edge * length && under > VL_HORIZON * length ? 1.0 : 0.0};
-}
-
-VL_CAMERA_INLINE vlDirection vl_unproject_unified(VL_UNPROJECT_INPUT) {
-  (void)face;
-  return vl_unified_unproject(c->shape[0], x, y);
-}
-VL_CAMERA_INLINE vlPlanePoint vl_project_unified(VL_PROJECT_INPUT) {
-  return vl_unified_project(c->shape[0], x, y, z);
 }
 
 VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_unified(VL_PROJECT_INPUT) {

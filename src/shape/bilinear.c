@@ -249,11 +249,6 @@ static double patch_pdf(const vlWorldShape *shape, uint32_t prim, const double a
   return density(&q, u, v);
 }
 
-static vlResult patch_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
-                              const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
-  return vl_mesh_compile(world, def, to_group, from_group, shape, error);
-}
-
 static void patch_bounds(const vlWorldShape *shape, uint32_t prim, double low[3],
                          double high[3]) {
   vl_mesh_bounds(shape, 4, prim, low, high);
@@ -265,7 +260,7 @@ static void patch_point(const vlWorldShape *shape, uint32_t prim, const vlShapeH
 }
 
 const vlShapeFunctions vl_bilinear_functions = {
-    .compile = patch_compile,
+    .compile = vl_mesh_compile,
     .bounds = patch_bounds,
     .intersect = patch_intersect,
     .point = patch_point,

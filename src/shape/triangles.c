@@ -3,12 +3,6 @@
 #include "shape/mesh.h"
 #include "velo/shape.h"
 
-static vlResult triangles_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
-                                  const vlMat4 *from_group, vlWorldShape *shape,
-                                  vlError *error) {
-  return vl_mesh_compile(world, def, to_group, from_group, shape, error);
-}
-
 static void triangles_bounds(const vlWorldShape *shape, uint32_t prim, double low[3],
                              double high[3]) {
   vl_mesh_bounds(shape, 3, prim, low, high);
@@ -53,7 +47,7 @@ static double triangles_pdf(const vlWorldShape *shape, uint32_t prim, const doub
 }
 
 const vlShapeFunctions vl_triangles_functions = {
-    .compile = triangles_compile,
+    .compile = vl_mesh_compile,
     .bounds = triangles_bounds,
     .intersect = triangles_intersect,
     .point = triangles_point,

@@ -19,35 +19,30 @@ static inline __attribute__((always_inline)) void ray_loop(
     const int orthographic, const int lens, const vlCameraCompiled *camera, uint32_t count,
     const vlCameraSamples *s, const vlCameraRays *r) {
   const vlCameraCompiled copy = *camera, *c = &copy;
-  const float *film_x = s->film_x, *film_y = s->film_y, *lens_u = s->lens_u,
-              *lens_v = s->lens_v, *time = s->time;
-  const int32_t *pixel_x = s->pixel_x, *pixel_y = s->pixel_y;
-  float *ox = r->ox, *oy = r->oy, *oz = r->oz, *dx = r->dx, *dy = r->dy, *dz = r->dz;
-  float *t_min = r->t_min, *t_max = r->t_max, *seconds = r->time;
   /* the planes z = near, far as multiples of the unnormalised direction, whose depth is the
    * same for all rays */
   double depth = orthographic ? 1.0 : c->focal, near_t = c->near_plane / depth,
          far_t = c->far_plane / depth;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    double x = (double)pixel_x[i] - c->cx + (double)film_x[i];
-    double y = (double)pixel_y[i] - c->cy + (double)film_y[i];
+    double x = (double)s->pixel_x[i] - c->cx + (double)s->film_x[i];
+    double y = (double)s->pixel_y[i] - c->cy + (double)s->film_y[i];
     vlCameraLocal local =
         orthographic ? vl_orthographic_unproject(c, x, y) : vl_perspective_unproject(c, x, y);
     if (lens == DISC)
-      local = vl_lens_apply(c, local, vl_lens_disk(lens_u[i], lens_v[i]));
+      local = vl_lens_apply(c, local, vl_lens_disk(s->lens_u[i], s->lens_v[i]));
     if (lens == POINTS)
-      local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
+      local = vl_lens_refract(c, local, (vlLensPoint){s->lens_u[i], s->lens_v[i]});
     vlWorldRay w = vl_camera_to_world(c, local);
-    ox[i] = (float)w.ox;
-    oy[i] = (float)w.oy;
-    oz[i] = (float)w.oz;
-    dx[i] = (float)(w.dx * w.inv_length);
-    dy[i] = (float)(w.dy * w.inv_length);
-    dz[i] = (float)(w.dz * w.inv_length);
-    t_min[i] = (float)(near_t * w.length);
-    t_max[i] = (float)(far_t * w.length);
-    seconds[i] = (float)(c->shutter_open + c->shutter_time * (double)time[i]);
+    r->ox[i] = (float)w.ox;
+    r->oy[i] = (float)w.oy;
+    r->oz[i] = (float)w.oz;
+    r->dx[i] = (float)(w.dx * w.inv_length);
+    r->dy[i] = (float)(w.dy * w.inv_length);
+    r->dz[i] = (float)(w.dz * w.inv_length);
+    r->t_min[i] = (float)(near_t * w.length);
+    r->t_max[i] = (float)(far_t * w.length);
+    r->time[i] = (float)(c->shutter_open + c->shutter_time * (double)s->time[i]);
   }
 }
 

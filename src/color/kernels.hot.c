@@ -13,9 +13,9 @@ static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[
                                 float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
-    float *l = lambda[c], *p = inv_pdf[c];
+    float *p = inv_pdf[c];
     /* must vectorise */
-    VL_SIMD for (uint32_t i = 0; i < count; i++) l[i] =
+    VL_SIMD for (uint32_t i = 0; i < count; i++) lambda[c][i] =
         vl_visible_lambda(turned(u[i], c), &p[i]);
   }
 }
@@ -24,12 +24,11 @@ static void uniform_wavelengths(float low, float span, uint32_t n, const float *
                                 float *const lambda[4], float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
-    float *l = lambda[c], *p = inv_pdf[c];
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
       float v = turned(u[i], c);
-      l[i] = low + span * v;
-      p[i] = span;
+      lambda[c][i] = low + span * v;
+      inv_pdf[c][i] = span;
     }
   }
 }
@@ -60,16 +59,11 @@ static void rgb_from_radiance(const float *cmf, const float m[9], uint32_t n,
   float q[9];
   for (int i = 0; i < 9; i++)
     q[i] = 0.25f * m[i];
-  const float *l0 = radiance[0], *l1 = radiance[1], *l2 = radiance[2], *l3 = radiance[3];
-  const float *w0 = lambda[0], *w1 = lambda[1], *w2 = lambda[2], *w3 = lambda[3];
-  const float *p0 = inv_pdf[0], *p1 = inv_pdf[1], *p2 = inv_pdf[2], *p3 = inv_pdf[3];
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     xyz s = {0.0f, 0.0f, 0.0f};
-    s = add_wavelength(cmf, s, l0[i], w0[i], p0[i]);
-    s = add_wavelength(cmf, s, l1[i], w1[i], p1[i]);
-    s = add_wavelength(cmf, s, l2[i], w2[i], p2[i]);
-    s = add_wavelength(cmf, s, l3[i], w3[i], p3[i]);
+    for (int c = 0; c < 4; c++)
+      s = add_wavelength(cmf, s, radiance[c][i], lambda[c][i], inv_pdf[c][i]);
     r[i] = q[0] * s.x + q[1] * s.y + q[2] * s.z;
     g[i] = q[3] * s.x + q[4] * s.y + q[5] * s.z;
     b[i] = q[6] * s.x + q[7] * s.y + q[8] * s.z;
@@ -113,10 +107,8 @@ static void dense_eval(uint32_t n, const float *dense, const float *const lambda
                        float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
-    const float *l = lambda[c];
-    float *o = out[c];
     /* must vectorise */
-    VL_SIMD for (uint32_t i = 0; i < count; i++) o[i] = vl_dense_at(dense, l[i]);
+    VL_SIMD for (uint32_t i = 0; i < count; i++) out[c][i] = vl_dense_at(dense, lambda[c][i]);
   }
 }
 
@@ -124,11 +116,9 @@ static void dense_gather(uint32_t n, const float *dense, const uint32_t *offset,
                          const float *const lambda[4], float *const out[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
-    const float *l = lambda[c];
-    float *o = out[c];
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
-      float x = l[i] - 360.0f;
+      float x = lambda[c][i] - 360.0f;
       int j = (int)x;
       j = j < VL_LAMBDA_COUNT - 2 ? j : VL_LAMBDA_COUNT - 2;
       j = j > 0 ? j : 0;
@@ -136,7 +126,7 @@ static void dense_gather(uint32_t n, const float *dense, const uint32_t *offset,
       j = j + (int)offset[i];
       float a = dense[j], b = dense[j + 1], value = a + t * (b - a);
       value = x >= 0.0f ? value : 0.0f;
-      o[i] = x <= 470.0f ? value : 0.0f;
+      out[c][i] = x <= 470.0f ? value : 0.0f;
     }
   }
 }
@@ -144,13 +134,12 @@ static void dense_gather(uint32_t n, const float *dense, const uint32_t *offset,
 static void sigmoid_from_rgb(const vlRgbTable *table, uint32_t n, const float *r,
                              const float *g, const float *b, float *c0, float *c1, float *c2) {
   uint32_t count = VL_PAD(n);
-  const float *p = table->coefficients;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlRgbPoint at = vl_rgb_point(r[i], g[i], b[i]);
-    c0[i] = vl_rgb_coefficient(p, 0, at);
-    c1[i] = vl_rgb_coefficient(p, 1, at);
-    c2[i] = vl_rgb_coefficient(p, 2, at);
+    c0[i] = vl_rgb_coefficient(table->coefficients, 0, at);
+    c1[i] = vl_rgb_coefficient(table->coefficients, 1, at);
+    c2[i] = vl_rgb_coefficient(table->coefficients, 2, at);
   }
 }
 
@@ -158,7 +147,6 @@ static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float 
                                const float *g, const float *b, float *scale, float *c0,
                                float *c1, float *c2) {
   uint32_t count = VL_PAD(n);
-  const float *p = table->coefficients;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float high = r[i] > g[i] ? r[i] : g[i];
@@ -167,9 +155,9 @@ static void sigmoid_from_light(const vlRgbTable *table, uint32_t n, const float 
     float inv = high > 0.0f ? 1.0f / m : 0.0f;
     vlRgbPoint at = vl_rgb_point(r[i] * inv, g[i] * inv, b[i] * inv);
     scale[i] = m;
-    c0[i] = vl_rgb_coefficient(p, 0, at);
-    c1[i] = vl_rgb_coefficient(p, 1, at);
-    c2[i] = vl_rgb_coefficient(p, 2, at);
+    c0[i] = vl_rgb_coefficient(table->coefficients, 0, at);
+    c1[i] = vl_rgb_coefficient(table->coefficients, 1, at);
+    c2[i] = vl_rgb_coefficient(table->coefficients, 2, at);
   }
 }
 

@@ -74,10 +74,8 @@ static void illuminate(const vlSpectral *illuminant, uint32_t padded, Block *res
   /* must vectorise */
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
-    b->radiance[0][k] *= factor * vl_dense_at(dense, b->lambda[0][k]);
-    b->radiance[1][k] *= factor * vl_dense_at(dense, b->lambda[1][k]);
-    b->radiance[2][k] *= factor * vl_dense_at(dense, b->lambda[2][k]);
-    b->radiance[3][k] *= factor * vl_dense_at(dense, b->lambda[3][k]);
+    for (int c = 0; c < 4; c++)
+      b->radiance[c][k] *= factor * vl_dense_at(dense, b->lambda[c][k]);
   }
 }
 

@@ -59,9 +59,8 @@ static inline vlAffine vl_motion_between(const vlMotion *a, double f) {
   out.m[6] = r6 * s0 + r7 * s3 + r8 * s6;
   out.m[7] = r6 * s1 + r7 * s4 + r8 * s7;
   out.m[8] = r6 * s2 + r7 * s5 + r8 * s8;
-  out.p[0] = g * a->t0[0] + f * a->t1[0];
-  out.p[1] = g * a->t0[1] + f * a->t1[1];
-  out.p[2] = g * a->t0[2] + f * a->t1[2];
+  for (int c = 0; c < 3; c++)
+    out.p[c] = g * a->t0[c] + f * a->t1[c];
   return out;
 }
 

@@ -323,7 +323,6 @@ static Upsampling upsampling_of(const vlTextureRun *r, const vlTextureNode *node
 void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded,
                       float (*const rgb)[VL_SKY_BLOCK], float (*const lambda)[VL_SKY_BLOCK],
                       float (*const value)[VL_SKY_BLOCK]) {
-  const float *p = table->coefficients;
   float most = albedo ? 1.0f : VL_INFINITY;
   /* must vectorise */
   VL_SIMD
@@ -335,12 +334,11 @@ void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded,
     float m = vl_max(red, vl_max(green, blue));
     float scale = albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
     vlRgbPoint at = vl_rgb_point(red * inv, green * inv, blue * inv);
-    vlSigmoid s = {vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at),
-                   vl_rgb_coefficient(p, 2, at)};
-    value[0][k] = scale * vl_sigmoid(s, lambda[0][k]);
-    value[1][k] = scale * vl_sigmoid(s, lambda[1][k]);
-    value[2][k] = scale * vl_sigmoid(s, lambda[2][k]);
-    value[3][k] = scale * vl_sigmoid(s, lambda[3][k]);
+    vlSigmoid s = {vl_rgb_coefficient(table->coefficients, 0, at),
+                   vl_rgb_coefficient(table->coefficients, 1, at),
+                   vl_rgb_coefficient(table->coefficients, 2, at)};
+    for (int c = 0; c < 4; c++)
+      value[c][k] = scale * vl_sigmoid(s, lambda[c][k]);
   }
 }
 

@@ -113,8 +113,7 @@ static uint32_t make_shadow_rays(uint32_t n, const vlVertices *at, const vlLight
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    float v0 = bsdf->value[0][i], v1 = bsdf->value[1][i], v2 = bsdf->value[2][i],
-          v3 = bsdf->value[3][i], sum = v0 + v1 + v2 + v3;
+    float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i];
     vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
     vlVec3 o = vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
                                 vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
@@ -127,10 +126,8 @@ static uint32_t make_shadow_rays(uint32_t n, const vlVertices *at, const vlLight
     q->dy[i] = distant ? w.y : y;
     q->dz[i] = distant ? w.z : z;
     q->t_max[i] = distant ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
-    q->radiance[0][i] = p->beta[0][i] * v0 * l->radiance[0][i] * weight;
-    q->radiance[1][i] = p->beta[1][i] * v1 * l->radiance[1][i] * weight;
-    q->radiance[2][i] = p->beta[2][i] * v2 * l->radiance[2][i] * weight;
-    q->radiance[3][i] = p->beta[3][i] * v3 * l->radiance[3][i] * weight;
+    for (int c = 0; c < 4; c++)
+      q->radiance[c][i] = p->beta[c][i] * bsdf->value[c][i] * l->radiance[c][i] * weight;
   }
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {

@@ -87,18 +87,16 @@ static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, const Area *a
   pixel_distances(p, s, area, dx, dy);
   for (int j = 0; j < area->height + 2 * P; j++) {
     const float *row = s->distance[j];
-    float *sum = s->sums[j];
     /* must vectorise (gcc) */
     VL_SIMD for (int i = 0; i < width; i++) {
       float t = row[i];
       for (int k = 1; k < SIDE; k++)
         t += row[i + k];
-      sum[i] = t;
+      s->sums[j][i] = t;
     }
   }
   for (int j = 0; j < area->height; j++) {
     const float *a = s->sums[j], *far = s->distance[j + P] + P;
-    float *row = s->near[j];
     /* must vectorise */
     VL_SIMD for (int i = 0; i < width; i++) {
       float own = far[i] * PIXEL_SHARE, d = a[i];
@@ -111,7 +109,7 @@ static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, const Area *a
       t = t < 1.0f ? t : 1.0f;
       t *= t;
       t *= t;
-      row[i] = t * t;
+      s->near[j][i] = t * t;
     }
   }
 }
@@ -304,9 +302,7 @@ static void solve(const vlDenoisePlanes *p, const Used *used, Equations *e, ptrd
         VL_SIMD for (int i = 0; i < N; i++) a[i] -= factor[i] * b[i];
       }
       for (int c = 0; c < 3; c++) {
-        float *a = e->b[c][m];
-        const float *b = e->b[c][k];
-        VL_SIMD for (int i = 0; i < N; i++) a[i] -= factor[i] * b[i];
+        VL_SIMD for (int i = 0; i < N; i++) e->b[c][m][i] -= factor[i] * e->b[c][k][i];
       }
     }
   }

@@ -56,14 +56,14 @@ static void add_prediction(const vlDenoisePlanes *lattice, ptrdiff_t at, const P
   float difference[3][N];
   for (int c = 0; c < 3; c++) {
     const float *a = lattice->result[c] + at, *bx = lattice->slope[c][F] + at,
-                *by = lattice->slope[c][F + 1] + at, *own = pixels->result[c][phase];
+                *by = lattice->slope[c][F + 1] + at;
     float *restrict to = difference[c];
     const float *slope[F];
     for (int k = 0; k < F; k++)
       slope[k] = lattice->slope[c][k] + at;
     /* must vectorise (gcc) */
     VL_SIMD for (int i = 0; i < N; i++) {
-      float d = a[i] + bx[i] * dx + by[i] * dy - own[i];
+      float d = a[i] + bx[i] * dx + by[i] * dy - pixels->result[c][phase][i];
       for (int k = 0; k < F; k++)
         d += slope[k][i] * pixels->feature[k][phase][i];
       to[i] = d;
@@ -78,9 +78,8 @@ static void add_prediction(const vlDenoisePlanes *lattice, ptrdiff_t at, const P
     float t = 1.0f - d * (1.0f / (3.0f * FARTHEST));
     t = t > 0.0f ? t : 0.0f;
     float w = share * gain[i] * t * t;
-    sum[0][phase][i] += w * difference[0][i];
-    sum[1][phase][i] += w * difference[1][i];
-    sum[2][phase][i] += w * difference[2][i];
+    for (int c = 0; c < 3; c++)
+      sum[c][phase][i] += w * difference[c][i];
   }
 }
 

@@ -134,6 +134,17 @@ static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most,
          vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, least);
 }
 
+bool vl_obj_push(vlObj *obj, vlObjRows *rows, uint32_t size, const double *row,
+                 const char *what) {
+  if (rows->count / size >= 0x7ffffff0u)
+    return vl_obj_fail(obj, "too many %s", what);
+  if (!VL_RESERVE(obj->context, rows, size))
+    return vl_obj_fail_memory(obj);
+  for (uint32_t i = 0; i < size; i++)
+    rows->items[rows->count++] = (float)row[i];
+  return true;
+}
+
 /* ---- vertices ---------------------------------------------------------------------------- */
 
 static float linear_from_srgb(double v) {
@@ -147,13 +158,10 @@ static bool read_vertex(vlObj *obj) {
   uint32_t count;
   if (!numbers(obj, "v", 3, 7, v, &count))
     return false;
-  if (obj->positions.count / 3 >= 0x7ffffff0u)
-    return vl_obj_fail(obj, "too many vertices");
-  if (!VL_RESERVE(obj->context, &obj->positions, 3))
-    return vl_obj_fail_memory(obj);
   size_t before = obj->positions.count;
+  if (!vl_obj_push(obj, &obj->positions, 3, v, "vertices"))
+    return false;
   for (int i = 0; i < 3; i++) {
-    obj->positions.items[obj->positions.count++] = (float)v[i];
     obj->low[i] = fmin(obj->low[i], v[i]);
     obj->high[i] = fmax(obj->high[i], v[i]);
   }
@@ -192,13 +200,7 @@ static bool read_uv(vlObj *obj) {
   uint32_t count;
   if (!is_broken(obj, v) && !numbers(obj, "vt", 1, 3, v, &count))
     return false;
-  if (obj->uvs.count / 2 >= 0x7ffffff0u)
-    return vl_obj_fail(obj, "too many uvs");
-  if (!VL_RESERVE(obj->context, &obj->uvs, 2))
-    return vl_obj_fail_memory(obj);
-  for (int i = 0; i < 2; i++)
-    obj->uvs.items[obj->uvs.count++] = (float)v[i];
-  return true;
+  return vl_obj_push(obj, &obj->uvs, 2, v, "uvs");
 }
 
 static bool read_normal(vlObj *obj) {
@@ -206,13 +208,7 @@ static bool read_normal(vlObj *obj) {
   uint32_t count;
   if (!is_broken(obj, v) && !numbers(obj, "vn", 3, 3, v, &count))
     return false;
-  if (obj->normals.count / 3 >= 0x7ffffff0u)
-    return vl_obj_fail(obj, "too many normals");
-  if (!VL_RESERVE(obj->context, &obj->normals, 3))
-    return vl_obj_fail_memory(obj);
-  for (int i = 0; i < 3; i++)
-    obj->normals.items[obj->normals.count++] = (float)v[i];
-  return true;
+  return vl_obj_push(obj, &obj->normals, 3, v, "normals");
 }
 
 /* ---- faces ------------------------------------------------------------------------------- */

@@ -78,6 +78,9 @@ typedef struct vlObjMark {
   uint32_t material, line;
 } vlObjMark;
 
+/* Numbers of rows of equal size, one after the other. */
+typedef VL_ARRAY(float) vlObjRows;
+
 typedef struct vlObj {
   vlContext *context;
   vlScene *scene;
@@ -89,10 +92,10 @@ typedef struct vlObj {
   char nothing[1];           /* target of the pointers of an empty statement */
   char *line_start, *at,
       *end; /* start of the line, reading position and end of the current statement */
-  VL_ARRAY(float) positions;     /* 3 per vertex */
+  vlObjRows positions;           /* 3 per vertex */
   VL_ARRAY(float) colors;        /* 3 per vertex, linear; empty when no vertex has a colour */
-  VL_ARRAY(float) uvs;           /* 2 each */
-  VL_ARRAY(float) normals;       /* 3 each */
+  vlObjRows uvs;                 /* 2 each */
+  vlObjRows normals;             /* 3 each */
   VL_ARRAY(vlObjCorner) corners; /* 3 per triangle */
   VL_ARRAY(uint32_t) triangle_part;
   VL_ARRAY(uint32_t) triangle_smooth; /* smoothing group; 0: none */
@@ -110,6 +113,10 @@ typedef struct vlObj {
   double low[3], high[3];
 } vlObj;
 
+/* Appends a row of `size` numbers. what: the rows' name in messages. Returns false after an
+ * error. */
+bool vl_obj_push(vlObj *obj, vlObjRows *rows, uint32_t size, const double *row,
+                 const char *what);
 /* Report an error or a warning at the current statement. vl_obj_fail always returns false. */
 bool vl_obj_fail(vlObj *obj, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...)

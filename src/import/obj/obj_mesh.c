@@ -42,12 +42,8 @@ static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
 }
 
 static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {
-  if (obj->normals.count / 3 >= 0x7ffffff0u)
-    return vl_obj_fail(obj, "too many normals");
-  if (!VL_RESERVE(obj->context, &obj->normals, 3))
-    return vl_obj_fail_memory(obj);
-  for (int i = 0; i < 3; i++)
-    obj->normals.items[obj->normals.count++] = (float)n[i];
+  if (!vl_obj_push(obj, &obj->normals, 3, n, "normals"))
+    return false;
   *number = (uint32_t)(obj->normals.count / 3);
   return true;
 }

@@ -61,10 +61,8 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
     v->u[1][i] = u1 * inv;
     v->u[2][i] = u2 * inv;
     v->u[3][i] = u3 * inv;
-    p->beta[0][i] *= inv;
-    p->beta[1][i] *= inv;
-    p->beta[2][i] *= inv;
-    p->beta[3][i] *= inv;
+    for (int c = 0; c < 4; c++)
+      p->beta[c][i] *= inv;
   }
 }
 
@@ -206,9 +204,8 @@ static void make_shadows(uint32_t n, const vlVertices *at, const vlLightSamples 
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    float v0 = bsdf->value[0][i], v1 = bsdf->value[1][i], v2 = bsdf->value[2][i],
-          v3 = bsdf->value[3][i];
-    float sum = v0 + v1 + v2 + v3, pdf = l->pdf[i];
+    float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i],
+          pdf = l->pdf[i];
     vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
     vlVec3 o = vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
                                 vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
@@ -221,10 +218,8 @@ static void make_shadows(uint32_t n, const vlVertices *at, const vlLightSamples 
     q->dy[i] = distant ? w.y : d.y;
     q->dz[i] = distant ? w.z : d.z;
     q->t_max[i] = length * VL_SHADOW_END;
-    q->radiance[0][i] = p->beta[0][i] * v0 * l->radiance[0][i] * pdf;
-    q->radiance[1][i] = p->beta[1][i] * v1 * l->radiance[1][i] * pdf;
-    q->radiance[2][i] = p->beta[2][i] * v2 * l->radiance[2][i] * pdf;
-    q->radiance[3][i] = p->beta[3][i] * v3 * l->radiance[3][i] * pdf;
+    for (int c = 0; c < 4; c++)
+      q->radiance[c][i] = p->beta[c][i] * bsdf->value[c][i] * l->radiance[c][i] * pdf;
     flights->light_pdf[i] = pdf;
     flights->pdf[i] = delta ? 0.0f : own;
   }

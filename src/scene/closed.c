@@ -360,14 +360,20 @@ static Backs count_backs(const Survey *s, vlClosed *closed) {
   return backs;
 }
 
-/* Whether the shell is one convex shape: a dome, a panorama. */
-static bool is_convex_shell(const vlScene *scene, const bool *shell) {
-  size_t shapes = 0, convex = 0;
+/* The shell if it is one convex shape: a dome, a panorama; else null. */
+static const vlShapeDef *convex_shell(const vlScene *scene, const bool *shell) {
+  const vlShapeDef *found = NULL;
+  size_t shapes = 0;
   for (size_t i = 0; i < scene->shapes.count && shapes < 2; i++) {
     shapes += shell[i];
-    convex += shell[i] && is_convex(&scene->shapes.items[i]);
+    found = shell[i] ? &scene->shapes.items[i] : found;
   }
-  return shapes == 1 && convex == 1;
+  return shapes == 1 && is_convex(found) ? found : NULL;
+}
+
+/* Whether there is something to see on a shape: a texture, colours, light. */
+static bool shows_something(const vlShapeDef *shape) {
+  return shape->uvs || shape->colors || shape->emission.index;
 }
 
 /* A shell whose faces look inwards: from outside one sees mostly backs, and from the middle
@@ -383,8 +389,10 @@ static bool find_inward(const vlScene *scene, const vlExtent *box, const vlExten
              contents = has_contents(scene, boxes, closed->shell),
              surrounds = covered > 0.8 && front > 0.6;
   bool turned = objects && whole && 2 * backs.against > backs.count;
-  if (objects && !whole && !is_convex_shell(scene, closed->shell))
-    turned = vl_turned_is(scene, box, closed->shell, contents, surrounds);
+  const vlShapeDef *convex = convex_shell(scene, closed->shell);
+  if (objects && !whole)
+    turned = convex ? !contents && !shows_something(convex)
+                    : vl_turned_is(scene, box, closed->shell, contents, surrounds);
   if (turned && seen_through)
     closed->kind = VL_CLOSED_TURNED;
   if (turned || whole)

@@ -362,6 +362,24 @@ static void turned(void **state) {
   }
 }
 
+/* A convex shell that contains nothing is a panorama if there is something to see on it, else
+ * an object that is wound the wrong way. */
+static void bare_shells(void **state) {
+  (void)state;
+  static const float colors[32] = {1, 0, 0, 1, 0, 1, 0, 1};
+  for (int coloured = 0; coloured < 2; coloured++) {
+    Model m = begin();
+    add_box(&m, wall_low, wall_high, true, true);
+    m.scene->shapes.items[0].colors = coloured ? colors : NULL;
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    const vlCameraDef *c = &m.scene->defs.camera;
+    assert_int_equal(vl_scene_completed(m.scene).both_sides, !coloured);
+    assert_int_equal(fabs(c->eye[0]) < 2 && fabs(c->eye[2]) < 2, coloured);
+    end(&m);
+  }
+}
+
 /* The camera is in the dome and frames what the dome contains; the half on its side is
  * hidden. */
 static void dome(void **state) {
@@ -561,6 +579,7 @@ int main(void) {
       cmocka_unit_test(mirrored_sheet),
       cmocka_unit_test(mirrored_walls),
       cmocka_unit_test(turned),
+      cmocka_unit_test(bare_shells),
       cmocka_unit_test(dome),
       cmocka_unit_test(ground),
       cmocka_unit_test(lamps),

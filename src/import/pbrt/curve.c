@@ -2,13 +2,10 @@
  * Successive curves that differ only in their points become one shape, since hair is described
  * by millions of directives. */
 
-#include "base/text.h"
+#include <string.h>
+
 #include "import/pbrt/builder.h"
 #include "velo/shape_kinds.h"
-
-static bool same_text(const char *a, const char *b) {
-  return a == b || vl_text_is(a ? a : "", b ? b : "");
-}
 
 /* Whether the curve can join the shape being gathered. */
 static bool continues(const vlCurveRun *run, const vlShapeDef *def, const vlShapeLink *link,
@@ -19,10 +16,9 @@ static bool continues(const vlCurveRun *run, const vlShapeDef *def, const vlShap
          d->reverse_orientation == def->reverse_orientation &&
          d->alpha.value == def->alpha.value &&
          memcmp(d->group_from_shape, def->group_from_shape, sizeof d->group_from_shape) == 0 &&
-         run->link.material == link->material &&
-         same_text(run->link.material_name, link->material_name) &&
-         same_text(run->link.alpha, link->alpha) && same_text(run->inside, state->inside) &&
-         same_text(run->outside, state->outside);
+         vl_import_same_link(&run->link, link) &&
+         vl_import_same_text(run->inside, state->inside) &&
+         vl_import_same_text(run->outside, state->outside);
 }
 
 bool vl_import_flush_curves(vlImport *import) {

@@ -26,6 +26,14 @@ enum {
   VERIFY_JSON
 };
 
+enum {
+  DEFAULT_POSES = 16,
+  DEFAULT_SPP = 144,
+  LEAST_CORNERS = 12 /* fewer do not cover an image: nothing is verified */
+};
+static const double default_threshold = 0.05; /* pixels */
+static const double least_found = 0.9;        /* share of the corners that should be found */
+
 static const Choice target_choices[] = {{"chessboard", 0}, {"charuco", 1}, {NULL, 0}};
 
 /* Only projection is verified: lens, focus, motion and clipping planes are removed. */
@@ -37,17 +45,19 @@ static void make_pinhole(vlCamera *c) {
   c->far_plane = INFINITY;
 }
 
+/* The mean over the corners that both cameras see; NaN: there are none. */
 static double mean_of(double sum, const Measure *m) {
   uint32_t n = m->found - m->unseen;
   return n ? sum / n : NAN;
 }
 
-/* Returns the reason why verification fails, or null if it succeeds. */
+/* Returns the reason why verification fails, in `text`, or null if it succeeds. threshold:
+ * pixels. */
 static const char *verdict(const Verification *v, double threshold, char *text, size_t size) {
   const Measure *m = &v->all;
   if (v->placed == 0)
     snprintf(text, size, "the camera sees nothing, or too little for a board anywhere");
-  else if (m->found < 12 || m->found < 0.9 * m->expected)
+  else if (m->found < LEAST_CORNERS || m->found < least_found * m->expected)
     snprintf(text, size,
              "only %u of %u corners are in the images where the camera should show them",
              m->found, m->expected);
@@ -66,7 +76,7 @@ static const char *verdict(const Verification *v, double threshold, char *text, 
 
 /* Counts the cells of the image's 8 x 8 grid with a ray at their centre, and those in which
  * corners were found. */
-static uint32_t parts(const Verification *v, uint32_t *covered) {
+static uint32_t count_cells(const Verification *v, uint32_t *covered) {
   uint32_t seeing = 0;
   double o[3], d[3];
   *covered = 0;
@@ -80,11 +90,13 @@ static uint32_t parts(const Verification *v, uint32_t *covered) {
   return seeing;
 }
 
-/* Recognises an offset of half a pixel in x, y or both, the most common mistake. */
+/* Recognises an offset of half a pixel in x, y or both, the most common mistake. Each is known
+ * to within what a right camera may be off. */
 static bool half_pixel(const Measure *m) {
+  const double off = default_threshold;
   double x = fabs(mean_of(m->sum_x, m)), y = fabs(mean_of(m->sum_y, m));
-  bool half_x = fabs(x - 0.5) < 0.05, half_y = fabs(y - 0.5) < 0.05;
-  return (half_x && half_y) || (half_x && y < 0.05) || (half_y && x < 0.05);
+  bool half_x = fabs(x - 0.5) < off, half_y = fabs(y - 0.5) < off;
+  return (half_x && half_y) || (half_x && y < off) || (half_y && x < off);
 }
 
 static void print_text(const Verification *v, const char *path, const char *against,
@@ -104,8 +116,8 @@ static void print_text(const Verification *v, const char *path, const char *agai
     printf("%4u  %3u/%-3u  %10.5f %10.5f  %.1f, %.1f\n", i, p->found, p->expected,
            mean_of(p->sum, p), p->most, p->at_x, p->at_y);
   }
-  if (m->found) {
-    uint32_t covered, seeing = parts(v, &covered);
+  if (m->found > m->unseen) {
+    uint32_t covered, seeing = count_cells(v, &covered);
     printf(
         "\nall   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels "
         "(pose %u, at %.1f, %.1f)\n",
@@ -141,7 +153,7 @@ static void print_measure(Json *json, const Measure *m) {
 static void print_json(const Verification *v, const char *path, const char *against,
                        double threshold, const char *failure) {
   Json *json = json_open();
-  uint32_t covered, seeing = parts(v, &covered);
+  uint32_t covered, seeing = count_cells(v, &covered);
   json_text(json, "camera", path);
   if (against)
     json_text(json, "against", against);
@@ -169,7 +181,7 @@ static void print_json(const Verification *v, const char *path, const char *agai
 }
 
 /* Makes the camera with which the images are compared. It is the same camera, or that of
- * another file. */
+ * another file. Returns an exit status, or -1: go on. */
 static int load_model(vlContext *context, const Arguments *arguments, const vlCameraRecord *own,
                       Verification *v) {
   const OptionValue *o = arguments->values;
@@ -208,7 +220,7 @@ static int run_verify(const Arguments *arguments, vlContext *context) {
     return report_usage("--%s goes with --against FILE",
                         o[VERIFY_IGNORE_POSE].given ? "ignore-pose" : "against-frame");
   vlCameraRecord record;
-  double threshold = o[VERIFY_THRESHOLD].given ? o[VERIFY_THRESHOLD].number : 0.05;
+  double threshold = o[VERIFY_THRESHOLD].given ? o[VERIFY_THRESHOLD].number : default_threshold;
   v.target.charuco = o[VERIFY_TARGET].given && o[VERIFY_TARGET].integer == 1;
   v.poses = option_count(&o[VERIFY_POSE_COUNT], 16);
   v.spp = option_count(&o[VERIFY_SPP], 144);

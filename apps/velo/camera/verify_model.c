@@ -70,11 +70,13 @@ static void cube(bool as_cross, const double p[3], double plane[2]) {
 }
 
 /* Projects a point in camera space to the image plane before distortion, in focal lengths from
- * the principal point. False: outside of the projection's domain. */
-static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
+ * the principal point. False: outside of the projection's domain, or there is no formula here
+ * for this projection (*known is then false). */
+static bool to_plane(const vlCamera *c, const double p[3], double plane[2], bool *known) {
   double x = p[0], y = p[1], z = p[2], across = sqrt(x * x + y * y),
          length = sqrt(across * across + z * z);
   double a = c->shape[0], b = c->shape[1], k, r;
+  *known = true;
   switch (c->projection) {
     case VL_PROJECTION_PERSPECTIVE:
       plane[0] = x / z;
@@ -142,6 +144,7 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
       break;
     }
     default:
+      *known = false;
       return false;
   }
   plane[0] = k * x;
@@ -227,16 +230,19 @@ static void to_camera(const double m[16], const double point[3], double p[3]) {
 }
 
 bool verify_knows(const VerifyModel *m) {
-  return m->camera.eye_circle == 0.0 &&
-         (unsigned)m->camera.projection <= VL_PROJECTION_DOUBLE_SPHERE &&
-         (unsigned)m->def.distortion <= VL_DISTORTION_RAD_TAN_THIN_PRISM;
+  const double ahead[3] = {0, 0, 1};
+  double plane[2] = {0, 0};
+  bool known;
+  to_plane(&m->camera, ahead, plane, &known);
+  return m->camera.eye_circle == 0.0 && known && bend(&m->def, (double[2]){0, 0});
 }
 
 bool verify_project(const VerifyModel *m, const double point[3], double pixel[2]) {
   const vlCamera *c = &m->camera;
   double p[3], plane[2] = {0, 0};
+  bool known;
   to_camera(c->world_from_camera, point, p);
-  if (!to_plane(c, p, plane) || !bend(&m->def, plane))
+  if (!to_plane(c, p, plane, &known) || !bend(&m->def, plane))
     return false;
   pixel[0] = c->cx + c->fx * plane[0] + c->skew * plane[1];
   pixel[1] = c->cy + c->fy * plane[1];

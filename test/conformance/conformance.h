@@ -223,7 +223,9 @@ static void probe_scene(vlScene *scene, const char *text, Probe *probe, uint32_t
   defs->camera = vl_default_camera_def(32, 32);
   defs->film = vl_default_film_def(32, 32);
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
-  defs->render.spp = batches + 4; /* some batches are not full */
+  /* batches of the first passes are not full, and others are not where a slow machine makes
+   * passes of few samples */
+  defs->render.spp = 3 * batches + 4;
   defs->render.sampler = VL_SAMPLER_INDEPENDENT;
   defs->render.share_samples = false;
   defs->render.own_tracer = &tracer;

@@ -67,10 +67,12 @@ typedef struct vlTraceLights {
   vlTraceRays rays;            /**< the way to the light, for vl_world_occluded */
 } vlTraceLights;
 
-/** Directions in which paths go on from the hits: one each, sampled by the material. */
+/** Directions in which paths go on from the hits: one each, sampled by the material. Lanes
+ * without a hit have weight and pdf 0. */
 typedef struct vlTraceBounce {
-  float weight[4][VL_OWN_BATCH];  /**< BSDF times cosine, divided by pdf; 0: the path ends */
-  float pdf[VL_OWN_BATCH];        /**< density of the direction, per steradian */
+  float weight[4][VL_OWN_BATCH]; /**< BSDF times cosine, divided by pdf; 0: the path ends */
+  float pdf[VL_OWN_BATCH];       /**< density of the direction, per steradian; of specular ones:
+                                    the probability of the choice */
   uint8_t specular[VL_OWN_BATCH]; /**< 1: a mirror or smooth glass; samples of lights do not see
                                      it */
   vlTraceRays rays;               /**< for vl_world_trace; no ray where the weight is 0 */
@@ -79,26 +81,27 @@ typedef struct vlTraceBounce {
 /** Finds the nearest hits of rays, through surfaces that have no material (interfaces). The
  * functions below then ask about these hits. */
 VL_API void vl_world_trace(vlTrace *trace, const vlTraceRays *rays, vlTraceHits *hits);
-/** occluded[i] is 1 if a surface lies on ray i, between t_min and t_max; else 0. The last hits
- * stay. */
+/** occluded[i] is 1 if a surface lies on ray i, between t_min and t_max; else, and in lanes
+ * without a ray, 0. Interfaces do not count. The last hits stay. */
 VL_API void vl_world_occluded(vlTrace *trace, const vlTraceRays *rays,
                               uint8_t occluded[VL_OWN_BATCH]);
-/** Makes rays that leave the last hits in these directions (unit), without hitting the surface
- * that they leave; t_max is infinite. Lanes without a hit get no ray. */
+/** Makes rays that leave the last hits in these directions (3 rows: x, y, z; unit), without
+ * hitting the surface that they leave; t_max is infinite. Lanes without a hit get no ray. */
 VL_API void vl_trace_leave(vlTrace *trace, float (*direction)[VL_OWN_BATCH], vlTraceRays *rays);
 /** Samples a light for each of the last hits. bounce: 0 for hits of the camera's rays; selects
  * the numbers. */
 VL_API void vl_trace_lights(vlTrace *trace, uint32_t bounce, vlTraceLights *lights);
-/** The last hits' BSDF for light that arrives from these directions (unit), times the cosine;
- * and the density with which vl_trace_bounce samples them (pdf may be null). Both are 0 for
- * mirrors and where nothing was hit. */
+/** value (4 rows): the last hits' BSDF for light that arrives from these directions (3 rows;
+ * unit), times the cosine. pdf (VL_OWN_BATCH numbers; may be null): the density with which
+ * vl_trace_bounce samples them, per steradian. Both are 0 for mirrors and where nothing was
+ * hit. */
 VL_API void vl_trace_bsdf(vlTrace *trace, float (*direction)[VL_OWN_BATCH],
                           float (*value)[VL_OWN_BATCH], float *pdf);
 /** Samples the last hits' BSDF. bounce: as for vl_trace_lights. */
 VL_API void vl_trace_bounce(vlTrace *trace, uint32_t bounce, vlTraceBounce *next);
 /** Numbers in [0, 1) of the render's sampler, a pair for each lane, for the tracer's own use.
- * Pairs of different `purpose`, from 0 on, are independent, also of those that the other
- * functions use. v may be null. */
+ * u, v: VL_OWN_BATCH numbers each; v may be null. Pairs of different `purpose`, from 0 to 2^19
+ * - 1, are independent, also of those that the other functions use. */
 VL_API void vl_trace_numbers(vlTrace *trace, uint32_t purpose, float *u, float *v);
 
 /** The paths that a tracer computes. */

@@ -1,6 +1,8 @@
 /** @file
  * velo/vanishing.h: vanishing points and horizon of a camera, and a camera from its vanishing
- * points. */
+ * points (Caprile and Torre, "Using Vanishing Points for Camera Calibration", 1990). Pixels are
+ * those of the whole image; the first one's centre is at (0.5, 0.5), y is down. The functions
+ * change nothing but their results: any thread may call them. */
 #ifndef VELO_VANISHING_H
 #define VELO_VANISHING_H
 
@@ -13,7 +15,7 @@ extern "C" {
 /** Whether a vanishing point exists. */
 typedef enum vlVanishing {
   VL_VANISHING_NONE,   /**< no point: an orthographic camera looks along the lines, or the point
-                          is   outside the    projection's domain */
+                          is outside the projection's domain */
   VL_VANISHING_FINITE, /**< at `pixel` */
   VL_VANISHING_INFINITE /**< the lines stay parallel in the image */
 } vlVanishing;
@@ -63,11 +65,12 @@ typedef struct vlVanishingDef {
   uint32_t count; /**< number of points: 2 if the principal point is known; 3 also determine the
                      principal point */
   double points[3][2]; /**< pixels, finite */
-  /** axes: the world axis of each point: 0 x, 1 y, 2 z, all different. away: whether the
-   * positive end of the axis is in front of the camera; not read for a third axis, where it
-   * follows from the right-handed world. Default: x, z, y, and away true. */
-  uint32_t axes[3];
-  bool away[3];  /**< see axes */
+  uint32_t
+      axes[3];   /**< the world axis of each point: 0 x, 1 y, 2 z, all different; default x, z,
+                    y */
+  bool away[3];  /**< whether the positive end of the axis is in front of the camera; not read
+                    for a third axis, where it follows from the right-handed world; default
+                    true */
   double cx, cy; /**< principal point, pixels; unset: the image's centre (2 points), or computed
                     (3 points). With 3 points given values must agree with the computed ones */
 } vlVanishingDef;

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 
+/* Sets the distortion: 4 or 5 coefficients, by the name of their model. */
 static vlResult read_lens(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
   double k[5];
   uint32_t n = 0;
@@ -31,7 +32,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, vlCamera
 static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
                            vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  double k[4], m[16];
+  double intrinsics[4], pose[16];
   const char *model = vl_camera_text(tree, "camera_model"),
              *sensor = vl_camera_text(tree, "sensor_type");
   if (sensor && !vl_text_is(sensor, "camera"))
@@ -40,8 +41,8 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
                               vl_short_text(sensor).text);
   if (model && !vl_text_is(model, "pinhole"))
     return vl_camera_unknown(file, tree, "camera_model", model, "there is pinhole");
-  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", k, 4),
-                                   VL_FIELD_LIST("T_BS", m, 16));
+  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", intrinsics, 4),
+                                   VL_FIELD_LIST("T_BS", pose, 16));
   if (result == VL_OK)
     result = vl_camera_has(tree, "resolution")
                  ? vl_camera_side_pair(file, tree, "resolution", record)
@@ -50,8 +51,8 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
     result = read_lens(file, tree, d);
   if (result != VL_OK)
     return result;
-  vl_camera_set_centred(d, k[0], k[1], k[2], k[3]);
-  vl_camera_set_matrix(d, m, false);
+  vl_camera_set_centred(d, intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]);
+  vl_camera_set_matrix(d, pose, false);
   vl_camera_name(record, vl_camera_text(tree, "comment"));
   return VL_OK;
 }

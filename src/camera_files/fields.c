@@ -1,6 +1,7 @@
 /* camera_files/fields.c: see fields.h. */
 #include "camera_files/fields.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 
 const char *const vl_camera_matrix_names[4] = {"fx", "fy", "cx", "cy"};
 
+/* Reads one row: a side of the image, a number, or a list. */
 static vlResult read_field(const vlCameraFile *file, const json_t *object,
                            const vlCameraField *row) {
   if (row->side)
@@ -103,7 +105,8 @@ void vl_camera_set_flipped(vlCameraDef *def, const double m[16]) {
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
-/* The values that every form can name, computed from the camera. */
+/* The values that every form can name, computed from the camera; fields.h says what they are.
+ */
 typedef struct {
   double sides[2], k[9], r[9], t[3], v[3], flipped[16], flipped_columns[16], view_columns[16],
       axes[9], centre[3];
@@ -133,6 +136,7 @@ static Values values_of(const vlCamera *c) {
   return v;
 }
 
+/* layout: the letter of vl_camera_put_form (fields.h); 0: separated by commas. */
 static void put_list(vlCameraText *text, const double *values, uint32_t count, char layout) {
   const bool bracketed = layout >= '1' && layout <= '9';
   const uint32_t step = bracketed ? (uint32_t)(layout - '0') : 1;
@@ -151,8 +155,8 @@ static void put_list(vlCameraText *text, const double *values, uint32_t count, c
 typedef struct {
   const char *name;
   size_t length;
-  int index; /* -1: the whole list */
-  char layout;
+  int index;   /* -1: the whole list */
+  char layout; /* 0: without */
 } Key;
 
 /* Returns the end of the key whose name begins at `at`. */
@@ -233,6 +237,7 @@ vlResult vl_camera_put_form(vlCameraText *text, const vlFittedCamera *fit,
     const vlCameraValue *value = find_value(own, &key);
     if (!value)
       value = find_value(all, &key);
+    assert(value); /* the form names what no list has */
     if (value)
       put_value(text, fit->record, value, &key);
   }

@@ -57,6 +57,7 @@ vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool pres
       file->dialect, field);
 }
 
+/* m: 4 x 4, row-major. */
 static bool is_identity(const double m[16]) {
   for (int i = 0; i < 16; i++)
     if (m[i] != (i % 5 == 0 ? 1.0 : 0.0))
@@ -64,7 +65,9 @@ static bool is_identity(const double m[16]) {
   return true;
 }
 
-/* Returns whether the matrix consists of a rotation and a translation only, up to rounding. */
+/* Returns whether the matrix consists of a rotation and a translation only: the products of its
+ * columns differ from those of a rotation's by less than 1e-9, what numbers of ten digits
+ * give. */
 static bool is_rigid(const double m[16]) {
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
@@ -84,6 +87,22 @@ static void unmirror(vlCamera *c) {
   }
   c->cx = c->width - c->cx;
   c->skew = 0.0 - c->skew;
+}
+
+/* For dialects whose poses are rotations and translations: a mirrored camera becomes one that
+ * is not, with the same view in the mirror, if "mirror" is dropped. Other poses are errors. */
+static vlResult make_rigid(const vlCameraFile *file, vlCamera *camera) {
+  const bool mirrors = vl_mat4_determinant3(vl_mat4_load(camera->world_from_camera)) < 0.0;
+  if (mirrors && camera->distortion.steps == 0) {
+    vlResult result = vl_camera_refuse(file, "mirror", true);
+    if (result != VL_OK)
+      return result;
+    unmirror(camera);
+  }
+  if (is_rigid(camera->world_from_camera))
+    return VL_OK;
+  return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
+                    "%s cannot hold a pose that scales or mirrors", file->dialect);
 }
 
 /* Makes the camera. Refuses any property that `holds` does not include. */
@@ -122,22 +141,11 @@ static vlResult hold(const vlCameraFile *file, const vlCameraDef *d, uint32_t ho
   };
   for (size_t i = 0; i < VL_LENGTH(fields) && result == VL_OK; i++)
     result = vl_camera_refuse(file, fields[i].field, fields[i].present);
-  if (result != VL_OK)
-    return result;
-  bool strict = posed && !(holds & VL_HOLDS_SCALE);
-  if (strict && vl_mat4_determinant3(vl_mat4_load(camera->world_from_camera)) < 0.0 &&
-      camera->distortion.steps == 0) {
-    result = vl_camera_refuse(file, "mirror", true);
-    if (result != VL_OK)
-      return result;
-    unmirror(camera);
-  }
-  if (strict && !is_rigid(camera->world_from_camera))
-    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
-                      "%s cannot hold a pose that scales or mirrors", file->dialect);
-  if (vl_camera_drops(file, "skew"))
+  if (result == VL_OK && posed && !(holds & VL_HOLDS_SCALE))
+    result = make_rigid(file, camera);
+  if (result == VL_OK && vl_camera_drops(file, "skew"))
     camera->skew = 0.0;
-  return VL_OK;
+  return result;
 }
 
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def) {

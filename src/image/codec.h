@@ -27,7 +27,10 @@ typedef struct vlImageFile {
 
 /* Whether the bytes are a file of the format. */
 typedef bool vlCodecProbe(const uint8_t *data, size_t size);
+/* Reads the file into *image, which the caller destroys. Errors: SCENE for broken files,
+ * UNSUPPORTED, MEMORY, CANCELLED. */
 typedef vlResult vlCodecRead(const vlImageFile *file, vlImage **image);
+/* Appends the image as a file of the format; vl_file_commit is the caller's. */
 typedef vlResult vlCodecWrite(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
                               vlError *error);
 
@@ -78,6 +81,7 @@ vlCodecRead vl_exr_read, vl_png_read, vl_jpeg_read, vl_hdr_read, vl_pfm_read, vl
     vl_bmp_read, vl_gif_read, vl_pnm_read, vl_qoi_read, vl_webp_read;
 vlCodecWrite vl_exr_write, vl_png_write, vl_jpeg_write, vl_hdr_write, vl_pfm_write,
     vl_tga_write;
+/* Writes `count` images of one size as the parts of one OpenEXR file. */
 vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count,
                              const vlWriteDef *def, vlFileWriter *writer, vlError *error);
 

@@ -15,9 +15,12 @@
 
 #include "sampler/chunk.hot.h"
 
+/* Seeds of the scrambles of the index and of both numbers. */
 typedef struct vlSobolSeeds {
   uint32_t shuffle, x, y;
 } vlSobolSeeds;
+/* Arbitrary numbers, which make seeds of the two numbers out of the key of the index. */
+static const uint32_t vl_sobol_x_step = 0x68e31da4u, vl_sobol_y_step = 0xb5297a4du;
 
 VL_SAMPLER_INLINE uint32_t vl_sobol_shuffled(uint32_t index, uint32_t seed) {
   return vl_reverse_bits(vl_owen_reversed(vl_reverse_bits(index), seed));
@@ -37,13 +40,16 @@ VL_SAMPLER_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
     uint32_t key = vl_pixel_key(px[i], py[i], seed);
-    uint32_t j = vl_sobol_shuffled(index[i], key), key_x = vl_hash(key + 0x68e31da4u);
+    uint32_t j = vl_sobol_shuffled(index[i], key), key_x = vl_hash(key + vl_sobol_x_step);
     u[i] = vl_sobol_x(j, key_x);
     if (pair)
-      v[i] = vl_sobol_y(j, vl_hash(key_x + 0xb5297a4du));
+      v[i] = vl_sobol_y(j, vl_hash(key_x + vl_sobol_y_step));
   }
 }
 
+/* A hash of what of the global index (below) is beyond 32 bits, and of the set that the sample
+ * index belongs to; 0 if both are 0. Two shifts, because shift may be 0: a shift by 32 is
+ * undefined. */
 VL_SAMPLER_INLINE uint32_t vl_zsobol_other(uint32_t morton, uint32_t index, uint32_t shift) {
   return vl_hash(((morton >> 1) >> (31 - shift)) ^ vl_hash(index >> shift));
 }
@@ -109,10 +115,10 @@ VL_SAMPLER_INLINE void vl_sobol_chunk(const vlSampler *s, uint32_t n, const int3
   uint32_t seed = vl_dimension_seed(s, dimension, 0), seed_with = vl_dimension_seed(s, with, 0);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
-    uint32_t key_x = vl_hash(vl_pixel_key(px[i], py[i], seed) + 0x68e31da4u);
+    uint32_t key_x = vl_hash(vl_pixel_key(px[i], py[i], seed) + vl_sobol_x_step);
     c->j[i] = vl_sobol_shuffled(index[i], vl_pixel_key(px[i], py[i], seed_with));
     c->x[i] = key_x;
-    c->y[i] = vl_hash(key_x + 0xb5297a4du);
+    c->y[i] = vl_hash(key_x + vl_sobol_y_step);
   }
 }
 

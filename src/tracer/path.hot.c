@@ -6,14 +6,14 @@
 
 /* ---- runs of one BSDF -------------------------------------------------------------------- */
 
-/* A run of lanes that share a BSDF kind, with parameter rows shifted to the run's start. A run
- * may start at any lane, because a lane's result does not depend on its place in the vector
- * loop. */
+/* Lanes [first, last) that share a BSDF kind. A run may start at any lane, because a lane's
+ * result does not depend on its place in the vector loop. */
 typedef struct Run {
   vlBsdfKind kind;
   uint32_t first, last;
 } Run;
 
+/* The run that begins at lane `first` of n. */
 static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint32_t n) {
   Run r = {world->materials.items[h->material[first]].bsdf, first, first + 1};
   while (r.last < n && world->materials.items[h->material[r.last]].bsdf == r.kind)
@@ -21,7 +21,8 @@ static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint
   return r;
 }
 
-/* The BSDFs' kernels only read them. */
+/* The row from lane `first` on. Without const, because vlBsdfParams has the rows that kernels
+ * write in the same types; evaluation and sampling only read these. */
 static float *from(const float *row, uint32_t first) {
   return (float *)(uintptr_t)row + first;
 }
@@ -143,7 +144,7 @@ static uint32_t make_shadow_rays(uint32_t n, const vlVertices *at, const vlLight
   return count;
 }
 
-/* Weakens the light of shadow rays by what they have crossed. */
+/* Weakens the light of shadow rays by the surfaces of partial alpha that they have crossed. */
 static void weaken(uint32_t count, vlShadowRays *q) {
   for (uint32_t k = 0; k < count; k++) {
     if (q->crossed[k] == 0)

@@ -12,15 +12,18 @@ typedef struct Sha256 {
   uint64_t bytes;
 } Sha256;
 
+/* The word with its bits turned to the right by 1 to 31 places. */
 static uint32_t turn(uint32_t x, int bits) {
   return x >> bits | x << (32 - bits);
 }
 
+/* A word of the file's bytes, the highest first. */
 static uint32_t read_word(const uint8_t *p) {
   return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
-/* FIPS 180-4, section 6.2.2. */
+/* FIPS 180-4, section 6.2.2. v[0] to v[7] are its a to h; k: its constants, section 4.2.2, the
+ * fractions of the cube roots of the first 64 primes. */
 static void take_block(Sha256 *s, const uint8_t block[BLOCK]) {
   static const uint32_t k[64] = {
       0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4,
@@ -44,13 +47,13 @@ static void take_block(Sha256 *s, const uint8_t block[BLOCK]) {
   }
   for (int i = 0; i < 64; i++) {
     uint32_t e = v[4], a = v[0];
-    uint32_t one = v[7] + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) +
-                   ((e & v[5]) ^ (~e & v[6])) + k[i] + w[i];
-    uint32_t two =
+    uint32_t t1 = v[7] + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) + ((e & v[5]) ^ (~e & v[6])) +
+                  k[i] + w[i];
+    uint32_t t2 =
         (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
-    memmove(v + 1, v, 7 * sizeof *v);
-    v[4] += one;
-    v[0] = one + two;
+    memmove(v + 1, v, 7 * sizeof *v); /* h = g, g = f, ... b = a */
+    v[4] += t1;
+    v[0] = t1 + t2;
   }
   for (int i = 0; i < 8; i++)
     s->state[i] += v[i];

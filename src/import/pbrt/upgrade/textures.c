@@ -12,6 +12,7 @@ static vlOldTexture *find_texture(vlUpgrade *u, const char *name) {
   return NULL;
 }
 
+/* Whether the colour texture of this name is a mix that noise_rule has written. */
 static bool is_noise(vlUpgrade *u, const char *name) {
   const vlOldTexture *t = find_texture(u, name);
   return t && t->grey;
@@ -43,12 +44,13 @@ static bool is_spectrum(const vlOldStatement *s) {
 
 /* ---- scale ------------------------------------------------------------------------------- */
 
-/* Whether the input is a constant of one number; an input that is not given is 1. */
+/* Whether the input is a constant of one number, *value; an input that is not given is 1. */
 static bool one_number(const vlOldParam *p, double *value) {
   *value = 1;
   return !p || vl_old_is_grey(p, value);
 }
 
+/* Makes the parameter the float `scale`; of a grey colour the first of its three numbers. */
 static void set_scale(vlOldFile *file, vlOldParam *p) {
   p->new_name = "scale";
   p->new_type = "float";
@@ -120,19 +122,24 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
 
 /* ---- others ------------------------------------------------------------------------------ */
 
+/* The value of a bool, which old files have as a word or in quotation marks. */
+static bool is_true(const vlOldFile *file, const vlOldParam *p) {
+  return p->text[0] ? vl_text_is(p->text[0], "true") : file->text[p->span[0].start] == 't';
+}
+
+/* A flag of the filter becomes the filter's name; gamma, a number or a flag for sRGB, an
+ * encoding. */
 static bool image_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *trilinear = vl_old_find(s, "trilinear"), *gamma = vl_old_find(s, "gamma"),
              *name = vl_old_find(s, "filename");
   if (trilinear) {
-    bool on = trilinear->text[0] ? vl_text_is(trilinear->text[0], "true")
-                                 : file->text[trilinear->span[0].start] == 't';
+    bool on = is_true(file, trilinear);
     vl_old_drop(s, trilinear);
     if (on && !vl_old_add(file, s, "\"string filter\" \"trilinear\""))
       return false;
   }
   if (gamma && vl_text_is(gamma->type, "bool")) {
-    bool on = gamma->text[0] ? vl_text_is(gamma->text[0], "true")
-                             : file->text[gamma->span[0].start] == 't';
+    bool on = is_true(file, gamma);
     vl_old_drop(s, gamma);
     if (!vl_old_add(file, s, "\"string encoding\" \"%s\"", on ? "sRGB" : "linear"))
       return false;
@@ -154,7 +161,7 @@ static bool uv_rule(vlOldFile *file, vlOldStatement *s) {
                     "v11\" [ 1 1 0 ]");
 }
 
-/* A noise of colours is one of numbers already. */
+/* Notes that the colour texture `name` is a mix by the float texture `copy`. */
 static bool keep_noise(vlUpgrade *u, const char *name, const char *copy) {
   vlOldTexture *t = VL_PUSH(u->context, &u->textures);
   if (!t)

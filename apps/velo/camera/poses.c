@@ -42,5 +42,5 @@ double poses_plane(const vlCamera *cameras, uint32_t count) {
     }
   for (int k = 0; k < 3 && count; k++)
     size = hypot(size, high[k] - low[k]);
-  return 0.07 * size;
+  return 0.07 * size; /* they look like cameras along a way, and do not cover each other */
 }

@@ -12,7 +12,17 @@
 #include "velo/render.h"
 #include "velo/sampler.h"
 
-enum { TRIES = 400, ROOM = 4096, MARGIN = 3 };
+enum {
+  TRIES = 400, /* places of the board per pose */
+  ROOM = 4096, /* corners found in one image */
+  MARGIN = 3   /* pixels around a window that must be visible, too */
+};
+/* Windows for the refinement of a corner, pixels: at most so wide, and as much of the distance
+ * to the next lines as has no other edge (of a charuco board the markers are nearer). */
+static const double most_reach = 8.0, least_reach = 4.5, blurred = 1.5;
+static const double free_share = 0.8, free_share_of_charuco = 0.27;
+/* How far a straight line through the window may bend, as a share of its radius. */
+static const double most_bend = 0.04;
 
 typedef struct Expected {
   int i, j;
@@ -49,7 +59,7 @@ static bool in_one_piece(const vlCamera *c, double x, double y, double radius) {
     if (!vl_camera_project(c, middle, pixel, &z))
       return false;
     double off = (pixel[1] - y) * cos(M_PI * k / 8.0) - (pixel[0] - x) * sin(M_PI * k / 8.0);
-    if (!(fabs(off) < 0.04 * radius))
+    if (!(fabs(off) < most_bend * radius))
       return false;
   }
   return true;
@@ -62,8 +72,8 @@ static bool project_corner(const Pose *pose, double i, double j, double point[3]
   return vl_camera_project(&pose->v->camera, point, pixel, &z);
 }
 
-/* Lists the corners that the image should show completely, with the radius of their windows. */
-/* The crop around the corners that are expected. */
+/* Sets the crop: what the corners that are expected and their surroundings need; all of the
+ * image if it is kept. */
 static void crop_around(Pose *pose) {
   const Verification *v = pose->v;
   double box[4] = {v->camera.width, v->camera.height, 0, 0};
@@ -86,6 +96,7 @@ static void crop_around(Pose *pose) {
   }
 }
 
+/* Lists the corners that the image should show completely, with the radius of their windows. */
 static void expect_corners(Pose *pose) {
   const Verification *v = pose->v;
   pose->count = 0;
@@ -108,8 +119,9 @@ static void expect_corners(Pose *pose) {
       e.x = at[0];
       e.y = at[1];
       e.apart = apart;
-      e.reach = fmin(8.0, (v->target.charuco ? 0.27 : 0.8) * apart - 1.5);
-      if (e.reach < 4.5 || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN))
+      double share = v->target.charuco ? free_share_of_charuco : free_share;
+      e.reach = fmin(most_reach, share * apart - blurred);
+      if (e.reach < least_reach || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN))
         continue;
       pose->expected[pose->count++] = e;
     }
@@ -182,6 +194,7 @@ static const Expected *corner_at(const Pose *pose, int i, int j) {
   return NULL;
 }
 
+/* Counts the markers whose four corners were found, and those of them that are wrong. */
 static void read_markers(const Pose *pose, const Image *rendered, Measure *m) {
   for (int j = 1; j < pose->v->target.corners; j++)
     for (int i = 1; i < pose->v->target.corners; i++) {
@@ -201,6 +214,8 @@ static void read_markers(const Pose *pose, const Image *rendered, Measure *m) {
     }
 }
 
+/* Adds up how far the corners that were found are from where the model's formula has them. csv:
+ * gets a line for each; may be null. */
 static void compare(const Pose *pose, uint32_t index, Verification *v, FILE *csv) {
   Measure *m = &v->each[index];
   m->pose = index;
@@ -271,6 +286,7 @@ static vlResult keep_image(vlContext *context, const char *folder, uint32_t inde
   return result;
 }
 
+/* Renders one pose, finds its corners and compares them. Returns -1 or the exit code. */
 static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *context,
                         FILE *csv) {
   static Corner corners[ROOM];

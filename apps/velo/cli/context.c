@@ -4,9 +4,8 @@
 #include "cli/confine.h"
 #include "cli/signals.h"
 
-enum {
-  MAX_PER_PROCESSOR = 4
-}; /* more threads wait for each other: 1000 on two processors take seconds */
+/* More threads wait for each other: 1000 on two processors take seconds. */
+enum { MAX_PER_PROCESSOR = 4 };
 
 static bool interrupted(void *user) {
   (void)user;
@@ -25,7 +24,6 @@ int context_open(const vlContextDef *def, vlContext **context) {
   }
   switch (vl_context_create(&ours, context)) {
     case VL_OK:
-    case VL_CANCELLED:
       signals_watch(*context);
       return -1;
     case VL_ERROR_MISSING:
@@ -40,6 +38,7 @@ int context_open(const vlContextDef *def, vlContext **context) {
     case VL_ERROR_SCENE:
     case VL_ERROR_IO:
     case VL_ERROR_MEMORY:
+    case VL_CANCELLED:
       break;
   }
   return report_failure(STATUS_OTHER,

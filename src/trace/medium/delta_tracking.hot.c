@@ -8,7 +8,11 @@
 /* The largest number of collisions of a flight; a bound for media whose majorants are far too
  * large. */
 enum { MAX_COLLISIONS = 1 << 16 };
+/* Russian roulette of flights that what they meet weakens and does not end: one that carries
+ * less than this ends with three of four chances, or carries four times as much. */
+static const float roulette_below = 0.05f, roulette_ends = 0.75f, roulette_factor = 4.0f;
 
+/* An exponentially distributed number of mean 1. u: uniform in [0, 1). */
 static inline float exponential(float u) {
   return -vl_ln(1.0f - u);
 }
@@ -23,7 +27,7 @@ static inline float largest(const float v[4]) {
   return vl_largest4(v[0], v[1], v[2], v[3]);
 }
 
-/* The state of tracking along the majorants. */
+/* The state of tracking along the majorants. Distances are in the unit of the ray. */
 typedef struct Tracking {
   vlMajorantWalk walk;
   float unit[4];       /* majorant coefficients for a majorant of 1 */
@@ -33,6 +37,8 @@ typedef struct Tracking {
   uint32_t collisions;
 } Tracking;
 
+/* Passes `length` without a collision: changes what the flight carries in the channels other
+ * than the hero. */
 static void pass(const vlWorldMedium *m, const float majorant[4], float length, vlFlight *f) {
   if (m->grey)
     return;
@@ -51,6 +57,7 @@ static inline float null_odds(const vlWorldMedium *m, float none, float majorant
   return m->own_sigma ? 1.0f : none / majorant;
 }
 
+/* Begins tracking the part of the ray from t0 to t1. False: the medium is not there. */
 static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, vlVec3 o,
                            vlVec3 d, float t0, float t1, vlFlight *f, Tracking *k) {
   if (!vl_majorant_start(m, o, d, t0, t1, &k->walk))
@@ -119,11 +126,11 @@ vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float
       float carried = largest(f->beta) / vl_flight_mean(f->u, f->channels);
       if (!(carried > 0.0f))
         return VL_FLIGHT_ENDED;
-      if (carried < 0.05f) {
-        if (vl_flight_random(f) < 0.75f)
+      if (carried < roulette_below) {
+        if (vl_flight_random(f) < roulette_ends)
           return VL_FLIGHT_ENDED;
         for (int c = 0; c < 4; c++)
-          f->beta[c] *= 4.0f;
+          f->beta[c] *= roulette_factor;
       }
       k.depth = exponential(vl_flight_random(f));
       continue;
@@ -171,11 +178,11 @@ void vl_track_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, floa
       both[c] = f->u[c] + f->l[c];
     }
     float carried = largest(f->beta) / vl_flight_mean(both, f->channels);
-    if (carried < 0.05f) {
-      bool ends =
-          !(carried > 0.0f) || k.collisions > MAX_COLLISIONS || vl_flight_random(f) < 0.75f;
+    if (carried < roulette_below) {
+      bool ends = !(carried > 0.0f) || k.collisions > MAX_COLLISIONS ||
+                  vl_flight_random(f) < roulette_ends;
       for (int c = 0; c < 4; c++)
-        f->beta[c] *= ends ? 0.0f : 4.0f;
+        f->beta[c] *= ends ? 0.0f : roulette_factor;
       if (ends)
         return;
     }

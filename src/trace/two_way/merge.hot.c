@@ -18,7 +18,7 @@ typedef struct Near {
   uint32_t medium, most; /* most: largest number of bounces of a photon */
   int32_t corner[3], cell[3];
   uint32_t next, end, seen; /* seen: photons of the visited cells */
-  int k;
+  int visited;              /* of the 8 cells that the ball can meet */
 } Near;
 
 static Near near_start(const vlPhotonMap *map, vlVec3 p, uint32_t medium, uint32_t most) {
@@ -31,6 +31,7 @@ static Near near_start(const vlPhotonMap *map, vlVec3 p, uint32_t medium, uint32
                            vl_photon_cell(p.z - radius, map->inv_cell)}};
 }
 
+/* Whether the photon is in the ball, in the medium, and not of too long a path. */
 static bool near_fits(const vlPhotonMap *map, const Near *near, const vlPhoton *x) {
   vlVec3 to = vl_vec3(x->p[0] - near->p.x, x->p[1] - near->p.y, x->p[2] - near->p.z);
   if (!(vl_length2(to) < map->radius2) || x->bounce > near->most || x->medium != near->medium)
@@ -49,16 +50,16 @@ static uint32_t near_next(const vlPhotonMap *map, Near *near) {
       if (near_fits(map, near, &map->photons[j]))
         return j;
     }
-    if (near->k == 8)
+    if (near->visited == 8)
       return VL_NONE;
     for (int i = 0; i < 3; i++)
-      near->cell[i] = near->corner[i] + (near->k >> i & 1);
+      near->cell[i] = near->corner[i] + (near->visited >> i & 1);
     uint32_t bucket =
         vl_photon_bucket(near->cell[0], near->cell[1], near->cell[2], map->buckets);
     near->next = map->start[bucket];
     near->end = map->start[bucket + 1];
     near->seen += near->end - near->next;
-    near->k++;
+    near->visited++;
   }
 }
 
@@ -92,6 +93,8 @@ static void joined_power(const vlTracing *t, const vlTwoWayVertices *v, uint32_t
     power[c] *= vl_joined_factor(light, eye, p->lambda[c][i]);
 }
 
+/* Adds the light of a photon that the diffuse surface at vertex i sends back, without the
+ * camera path's throughput. */
 static void add_diffuse(const vlTracing *t, const vlTwoWayVertices *v, uint32_t i,
                         const vlPhoton *x, float sum[4]) {
   const vlShade *sh = &v->at->shade;
@@ -143,6 +146,8 @@ static void add_listed(vlTracing *t, uint32_t n, const vlTwoWayVertices *v, vlMe
     list->count[i] = 0;
 }
 
+/* How many bounces a photon may have so that the whole path has at most max_depth. depth:
+ * bounces of the camera path. */
 static uint32_t most_bounces(const vlTracing *t, uint32_t lane, uint32_t depth) {
   bool apart = t->def->two_way->apart;
   return t->def->max_depth - (depth - (apart ? t->lanes->smooth[lane] : 0));

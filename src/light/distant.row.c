@@ -13,5 +13,7 @@ const vlKindRow vl_light_row_distant = {
 vlLightPower vl_light_power_distant;
 
 double vl_light_power_distant(const vlLightDef *def, double luminance, double radius) {
-  return PI * radius * radius * (def->illuminance > 0 ? def->illuminance : luminance);
+  const double illuminance =
+      def->illuminance > 0 ? def->illuminance * (double)def->scale : luminance;
+  return PI * radius * radius * illuminance;
 }

@@ -22,6 +22,7 @@ vlLightPower vl_light_power_infinite;
 double vl_light_power_infinite(const vlLightDef *def, double luminance, double radius) {
   if (def->path || def->image)
     return NAN;
-  return 4 * PI * PI * radius * radius *
-         (def->illuminance > 0 ? def->illuminance / PI : luminance);
+  const double radiance =
+      def->illuminance > 0 ? def->illuminance * (double)def->scale / PI : luminance;
+  return 4 * PI * PI * radius * radius * radiance;
 }

@@ -33,7 +33,7 @@ double vl_light_power_unknown(const vlLightDef *def, double luminance, double ra
 
 double vl_light_power(const vlLightDef *def, double luminance, double radius) {
   if (def->power > 0)
-    return def->power;
+    return def->power * (double)def->scale;
   switch (def->kind) {
 #define POWER_OF(kind, row, power, compile, sample, emit, density) \
   case kind:                                                       \

@@ -1,13 +1,15 @@
 /* conformance/light_power.h: the law of the power by which lights are chosen: it is the
  * integral of the radiance that the light emits, over its area and all directions, computed
  * from the light's own emission of light paths. No image shows a wrong one: it only makes
- * noise. */
+ * noise. The power that a light's row states, for velo scene info, is the same integral. */
 #ifndef TEST_CONFORMANCE_LIGHT_POWER_H
 #define TEST_CONFORMANCE_LIGHT_POWER_H
 
 #include "conformance.h"
 #include "lights.h"
 #include "radiometry.h"
+#include "scene/lamps.h"
+#include "schema/schema.h"
 #include "trace/two_way/stages.h"
 #include "world/world.h"
 
@@ -48,6 +50,21 @@ static double share_of_sphere(const vlWorldLight *light) {
   return 0.5 * (1 - (double)light->cos_start + edge / (light->cone_squared ? 3 : 2));
 }
 
+/* Of the scene's only light; NaN: the row does not know it. */
+static void check_stated_power(const char *kind, const char *parameters, const vlScene *scene,
+                               const vlWorld *world) {
+  char what[200];
+  const vlLightDef *def = vl_scene_light(scene, (vlLightId){1});
+  assert_non_null(def);
+  const double luminance = vl_light_def_luminance(&def->color) * (double)def->scale;
+  const double stated = vl_light_power(def, luminance, (double)world->radius);
+  if (isnan(stated))
+    return;
+  const Mean mean = emitted_power(world, 0);
+  snprintf(what, sizeof what, "%.140s: power that its row states", parameters);
+  check_mean("lights", kind, what, &mean, stated, (Sight){0.01 * stated, 0.05 * stated});
+}
+
 static void check_chosen_power(const char *family, const char *kind, const char *parameters,
                                const char *text) {
   char what[200];
@@ -69,6 +86,8 @@ static void check_chosen_power(const char *family, const char *kind, const char 
     const Sight sight = {(image ? 0.25 : 0.01) * power, (image ? 0.5 : 0.05) * power};
     check_mean(family, kind, what, &mean, power, sight);
   }
+  if (strcmp(family, "lights") == 0)
+    check_stated_power(kind, parameters, scene, world);
   vl_world_destroy(world);
   vl_scene_destroy(scene);
 }

@@ -75,6 +75,11 @@ static const vlPortal *portal_of(const vlWorld *world, const vlWorldLight *light
                                        : world->environments.items[light->environment].portal;
 }
 
+bool vl_is_outside_portal(const vlWorld *world, const vlWorldLight *light, vlVec3 p) {
+  const vlPortal *portal = portal_of(world, light);
+  return portal && !(vl_portal_corner_from(portal, p).z > 0.0f);
+}
+
 /* Density of light paths through a portal, whose directions are sampled in proportion to
  * radiance. The density is per area perpendicular to w and per solid angle. */
 static float portal_density(const vlPortal *portal, vlVec3 w) {

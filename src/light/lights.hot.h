@@ -82,6 +82,8 @@ vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlP
 void vl_infinite_at(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d,
                     const float lambda[4], float out[4]);
 float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o, vlVec3 d);
+/* Whether p lies outside of the light's portal, where the light is not seen. */
+bool vl_is_outside_portal(const vlWorld *world, const vlWorldLight *light, vlVec3 p);
 /* Density per solid angle, seen from `from`, of sampling this point of an area light. It
  * excludes the probability of choosing the light. */
 float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from,

@@ -117,8 +117,12 @@ static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
 }
 
 static bool check_curves(vlScene *scene, const vlShapeDef *d) {
-  if (d->faces == 0 || !d->positions || !d->widths) {
+  if (d->faces == 0 || !d->positions) {
     bad(scene, d, "curves have no segments");
+    return false;
+  }
+  if (!d->widths) {
+    bad(scene, d, "curves need widths, two for each segment");
     return false;
   }
   if (d->faces > 0x1fffffff || d->vertices != 4 * d->faces) {

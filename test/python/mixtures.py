@@ -8,7 +8,16 @@ import numpy
 import velo
 
 WIDTH, HEIGHT = 32, 24
-TO_A_POINT = ("point", "spot", "distant")  # lights that no ray hits: behind smooth glass only light paths find them
+TO_A_POINT = ("point", "spot", "distant", "goniometric", "projection")  # lights that no ray hits: behind smooth glass only light paths find them
+CORNERS = numpy.array([[0.4, 0, -0.3], [-0.2, 0.35, -0.3], [-0.2, -0.35, -0.3], [0, 0, 0.4]])  # of a tetrahedron
+FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+CLOSE = {"eye": (0, -1.2, 1.2), "lookat": (0, 0, 0.5)}
+CAMERAS = (("orthographic", {"fx": 11.0, "fy": 11.0}), ("equidistant", {"fov": 3.0, **CLOSE}), ("equirectangular", CLOSE),
+           ("panini", {"fov": 2.4, **CLOSE}), ("double_sphere", {"xi": -0.2, "alpha": 0.6, "fx": 14.0, "fy": 14.0, **CLOSE}),
+           ("cylindrical", {"fov": 2.0, **CLOSE}), ("equal_area", CLOSE),
+           ("perspective", {"fov": 0.8, "distortion": "opencv", "distortion_coefficients": [-0.2, 0.05, 0.01, -0.01]}),
+           ("perspective", {"fov": 0.75, "lens_radius": 0.2, "blades": 5, "ratio": 1.8, "focus_distance": 4.0}),
+           ("perspective", {"fov": 1.2, "vignetting": True, **CLOSE}))
 
 
 class Mixture:
@@ -53,6 +62,11 @@ class Mixture:
         pose[:3, 3] = self._between(-0.9, 0.9), self._between(-0.9, 0.9), self._between(0.4, 1.1)
         return pose
 
+    def _pose_at(self, position):
+        pose = self._pose()
+        pose[:3, 3] = position
+        return pose
+
     # ---- materials ----
 
     def _roughness(self):
@@ -93,7 +107,7 @@ class Mixture:
     def _material(self, depth=0):
         add = self.scene.add_material
         kind = self._random.choice(["diffuse", "principled", "principled", "mix", "thindielectric", "dielectric", "coateddiffuse",
-                                    "coatedconductor", "conductor", "subsurface", "diffusetransmission"])
+                                    "coatedconductor", "conductor", "subsurface", "diffusetransmission", "layers", "hair", "bumps"])
         self.parts.append(kind)
         if kind == "mix" and depth < 2:
             return add("mix", materials=[self._material(depth + 1), self._material(depth + 1)], amount=self._number())
@@ -115,12 +129,20 @@ class Mixture:
             return add(kind, mfp=self._color(0.02, 0.2), reflectance=self._color(), roughness=self._roughness())
         if kind == "diffusetransmission":
             return add(kind, reflectance=self._color(0.1, 0.5), transmittance=self._color(0.1, 0.5))
+        if kind == "layers":
+            return add("coateddiffuse", reflectance=self._spectrum(), roughness=self._roughness(), thickness=self._between(0.01, 1),
+                       g=self._between(-0.5, 0.8), albedo=self._color())
+        if kind == "hair":
+            return add("hair", sigma_a=self._color(0.1, 3), beta_m=self._between(0.2, 0.9), beta_n=self._between(0.2, 0.9))
+        if kind == "bumps":
+            height = self.scene.add_texture("image", image=0.05 * self._texels(8, 8), spectrum=False)
+            return add(*self._random.choice([("diffuse",), ("conductor",)]), displacement=height)
         return add("diffuse", reflectance=self._spectrum())
 
     # ---- light ----
 
     def _light(self):
-        kind = self._random.choice([*TO_A_POINT, "infinite", "sky"])
+        kind = self._random.choice([*TO_A_POINT, "infinite", "sky", "portal"])
         self.parts.append("light " + kind)
         self.pointed = self.pointed or kind in TO_A_POINT
         if kind == "point":
@@ -130,8 +152,18 @@ class Mixture:
                                  cone_squared=self._chance(0.5), color=self._color(9, 20))
         elif kind == "distant":
             self.scene.add_light(kind, position=(self._between(-1, 1), self._between(-1, 1), 1), to=(0, 0, 0), color=self._color(0.5, 2))
+        elif kind == "goniometric":
+            self.scene.add_light(kind, position=(self._between(-1, 1), self._between(-1, 1), 2.5), image=self._texels(16, 16),
+                                 color=self._color(5, 20))
+        elif kind == "projection":
+            down = [[1, 0, 0, self._between(-0.5, 0.5)], [0, -1, 0, self._between(-0.5, 0.5)], [0, 0, -1, 3], [0, 0, 0, 1]]
+            self.scene.add_light(kind, pose=down, image=self._texels(6, 9, 3), fov=self._between(0.5, 1.2), scale=self._between(10, 30))
         elif kind == "infinite":
             self.scene.add_light(kind, color=self._color(0.2, 0.6))
+        elif kind == "portal":  # things may stand on both sides of it
+            half, height = self._between(0.5, 1.5), self._between(0.8, 3)
+            corners = [[-half, 1, height], [half, 1, height], [half, -1, height], [-half, -1, height]]
+            self.scene.add_light("infinite", image=3 * self._texels(16, 16, 3) ** 2, portal=corners)
         else:
             self.scene.add_light("infinite", image=3 * self._texels(16, 16, 3) ** 4)
 
@@ -149,7 +181,7 @@ class Mixture:
             words["material"] = self.scene.add_material("interface")
         at = self._between(-1, 1), self._between(-1, 1), self._between(0.7, 2.2) if passed else self._between(1.6, 2.6)
         down = self._between(-0.4, 0.4), self._between(-0.4, 0.4), -1
-        shape = self._random.choice(["plane", "disk", "sphere", "box"])
+        shape = self._random.choice(["plane", "disk", "sphere", "box", "bilinear", "part of a sphere", "ring"])
         self.parts.append("%s that emits%s%s" % (shape, ", passed" if passed else "", ", hidden" if words["hidden_from_camera"] else ""))
         if shape == "plane":
             self.scene.add_plane(at, down, 1, 1, **words)
@@ -157,6 +189,13 @@ class Mixture:
             self.scene.add_disk(at, 0.6, down, **words)
         elif shape == "sphere":
             self.scene.add_sphere(at, 0.3, **words)
+        elif shape == "bilinear":
+            corners = numpy.add(at, [[-0.5, -0.4, 0], [0.5, -0.5, 0.2], [-0.4, 0.5, 0], [0.6, 0.4, -0.3]])
+            self.scene.add_shape(shape, positions=corners, indices=[[0, 1, 2, 3]], **words)
+        elif shape == "part of a sphere":
+            self.scene.add_shape("sphere", radius=0.4, z_min=-0.3, z_max=0.2, phi_max=4.0, pose=self._pose_at(at), **words)
+        elif shape == "ring":
+            self.scene.add_shape("disk", radius=0.5, inner_radius=0.2, phi_max=5.0, pose=self._pose_at(at), **words)
         else:
             self.scene.add_box(at, [x + 0.4 for x in at], **words)
 
@@ -186,8 +225,8 @@ class Mixture:
         words = {"material": self._material(), "hidden_from_camera": self._chance(0.2), "reverse_orientation": self._chance(0.1)}
         if self._chance(0.2):
             words["alpha"] = self._number()
-        kind = self._random.choice(["sphere", "cylinder", "box", "leaf", "moving", "instances"])
-        if kind != "instances" and self._chance(0.1):
+        kind = self._random.choice(["sphere", "cylinder", "box", "leaf", "moving", "instances", "hairs", "smooth", "displaced", "one in another"])
+        if kind not in ("instances", "hairs") and self._chance(0.1):
             words["emission"] = self.scene.add_emission(radiance=self._color(0.2, 1), two_sided=self._chance(0.5))
         self.parts.append("%s%s" % (kind, ", hidden" if words["hidden_from_camera"] else ""))
         pose = self._pose()
@@ -200,9 +239,22 @@ class Mixture:
         elif kind == "leaf":
             self.scene.add_plane((0, 0, 0), (0, 0, 1), 1, 1, pose=pose, **words)
         elif kind == "moving":
-            corners = numpy.array([[0.4, 0, -0.3], [-0.2, 0.35, -0.3], [-0.2, -0.35, -0.3], [0, 0, 0.4]])
-            self.scene.add_mesh(corners, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], positions_close=corners + [0.2, 0, 0.1], pose=pose,
-                                **words)
+            self.scene.add_mesh(CORNERS, FACES, positions_close=CORNERS + [0.2, 0, 0.1], pose=pose, **words)
+        elif kind == "smooth":
+            self.scene.add_mesh(CORNERS, FACES, normals=CORNERS / numpy.linalg.norm(CORNERS, axis=1)[:, None], pose=pose, **words)
+        elif kind == "displaced":
+            height = self.scene.add_texture("image", image=0.2 * self._texels(5, 5), spectrum=False)
+            self.scene.add_mesh([[-0.4, -0.4, 0], [0.4, -0.4, 0], [0.4, 0.4, 0], [-0.4, 0.4, 0]], [[0, 1, 2], [0, 2, 3]],
+                                uvs=[[0, 0], [1, 0], [1, 1], [0, 1]], displacement=height, edge_length=0.1, pose=pose, **words)
+        elif kind == "hairs":
+            steps = numpy.cumsum(0.4 * (self._texels(12, 4, 3) - [0.5, 0.5, 0]), axis=1)
+            for points in steps:
+                self.scene.add_shape("curves", positions=points, widths=[[0.05, 0.03]], pose=pose, **words)
+        elif kind == "one in another":
+            fog = self.scene.add_medium("homogeneous", sigma_a=self._color(0, 0.5), sigma_s=self._color(0.1, 1.5), g=self._between(-0.3, 0.6))
+            glass = self.scene.add_material("dielectric", eta=1.3, roughness=0.25)
+            self.scene.add_sphere((0, 0, 0), 0.45, pose=pose, material=glass, inside=fog)
+            self.scene.add_sphere((0, 0, 0), 0.2, pose=pose, **words)
         else:
             group = self.scene.add_group("ball")
             self.scene.add_sphere((0, 0, 0), 0.3, group=group, **words)
@@ -212,12 +264,18 @@ class Mixture:
                 self.scene.add_instance(group, moved)
 
     def _camera(self):
-        words = {"shutter_open": 0.0, "shutter_close": 1.0}
-        if self._chance(0.3):
-            words.update(lens_radius=0.08, focus_distance=4.0)
-        if self._chance(0.3):
-            words.update(eye_close=(0.2, -4, 2.1), lookat_close=(0, 0, 0.4), up_close=(0, 0, 1))
-        self.scene.camera = velo.Camera(WIDTH, HEIGHT, eye=(0, -4, 2), lookat=(0, 0, 0.4), up=(0, 0, 1), fov=0.75, **words)
+        words = {"eye": (0, -4, 2), "lookat": (0, 0, 0.4), "up": (0, 0, 1), "shutter_open": 0.0, "shutter_close": 1.0}
+        if self._chance(0.4):
+            words["projection"], more = self._random.choice(CAMERAS)
+            words.update(more)
+        else:
+            words["fov"] = 0.75
+            if self._chance(0.3):
+                words.update(lens_radius=0.08, focus_distance=4.0)
+            if self._chance(0.3):
+                words.update(eye_close=(0.2, -4, 2.1), lookat_close=(0, 0, 0.4), up_close=(0, 0, 1), readout=self._random.choice([0, 0.7]))
+        self.parts.append("camera " + words.get("projection", "perspective"))
+        self.scene.camera = velo.Camera(WIDTH, HEIGHT, **words)
         if self._foggy and self._chance(0.2):
             self.parts.append("camera in fog")
             self.scene.camera_medium = self.scene.add_medium("homogeneous", sigma_a=self._color(0, 0.05), sigma_s=self._color(0.02, 0.15),

@@ -205,11 +205,40 @@ static void floor_under_a_portal(void **state) {
   image_free(&p);
 }
 
+/* A sheet between the sky and the portal shades what is inside, and is black: no point out
+ * there sees the light. */
+static void sheet_outside_a_portal(void **state) {
+  (void)state;
+  const vlTracer tracers[] = {VL_TRACER_PATH, VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL,
+                              VL_TRACER_LIGHT_PATH, VL_TRACER_MERGING};
+  for (size_t i = 0; i < sizeof tracers / sizeof *tracers; i++) {
+    Stage s = stage_open(SIZE, SIZE);
+    s.camera.eye[1] = 4;
+    s.camera.lookat[1] = 0;
+    s.camera.lookat[2] = 0;
+    s.camera.up[1] = 0;
+    s.camera.up[2] = 1;
+    s.camera.fov = 1;
+    s.render.tracer = tracers[i];
+    s.render.max_depth = 3;
+    s.render.spp = 16;
+    Quad sheet = quad_at(0, 1.5f, 0, 1, 0, 0, 0, 0, 1);
+    sheet.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
+    add_quad(&s, &sheet);
+    add_imaged_sky(&s, true);
+    Image p = stage_finish(&s);
+    if (image_mean(&p, 1) != 0)
+      fail_msg("tracer %d lights the outside: %g", (int)tracers[i], image_mean(&p, 1));
+    image_free(&p);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(room_with_and_without),
       cmocka_unit_test(seen_from_both_sides),
       cmocka_unit_test(floor_under_a_portal),
+      cmocka_unit_test(sheet_outside_a_portal),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

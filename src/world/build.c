@@ -49,8 +49,14 @@ bool vl_part_share(vlWorld *world, vlPart *part) {
   return true;
 }
 
-void vl_part_drop_last(vlWorld *world) {
-  release_part(world->parts.items[--world->parts.count]);
+void vl_part_drop(vlWorld *world, vlPart *part) {
+  size_t i = world->parts.count;
+  while (i > 0 && world->parts.items[i - 1] != part)
+    i--;
+  if (i == 0)
+    return;
+  world->parts.items[i - 1] = world->parts.items[--world->parts.count];
+  release_part(part);
 }
 
 /* ---- memory of a world ------------------------------------------------------------------- */

@@ -24,7 +24,7 @@ struct vlWorld;
 vlPart *vl_part_add(struct vlWorld *world);
 /* Shares a part of another world. False: out of memory. */
 bool vl_part_share(struct vlWorld *world, vlPart *part);
-/* Takes the part that was added last back. */
-void vl_part_drop_last(struct vlWorld *world);
+/* Takes back a part that vl_part_add or vl_part_share gave the world. */
+void vl_part_drop(struct vlWorld *world, vlPart *part);
 
 #endif

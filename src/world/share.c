@@ -196,7 +196,7 @@ bool vl_shape_match(vlWorld *world, size_t index, vlWorldShape *s) {
     const vlWorldShape *old = &previous->shapes.items[i - 1];
     if (!same_numbers(old, s) || !same_arrays(old, s))
       continue;
-    vl_part_drop_last(world);
+    vl_part_drop(world, world->shape_parts[index]);
     take_geometry(old, s);
     world->shape_parts[index] = previous->shape_parts[i - 1];
     world->shape_from[index] = i - 1;

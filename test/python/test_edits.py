@@ -72,6 +72,20 @@ def reshaped_meshes_have_the_bits_of_new_ones():
 
 
 @case
+def displaced_meshes_live_through_builds():
+    """The same world is built again and again, with a material edited between: the image that displaces the mesh is kept."""
+    scene = begin()
+    points, _, uvs, faces = sheet(2, 0)
+    heights = 0.1 * numpy.random.default_rng(1).random((5, 5), dtype=numpy.float32)
+    scene.add_mesh(points, faces, uvs=uvs, displacement=scene.add_texture("image", image=heights, spectrum=False), edge_length=0.2,
+                   material=scene.find("materials", "metal"))
+    first = bits(scene)
+    for number in range(4):
+        scene.set(scene.find("materials", "checks"), reflectance=(0.1 * number, 0.2, 0.3))
+        assert bits(scene) == first, number
+
+
+@case
 def positions_alone_keep_the_rest():
     scene, points = build(0), sheet(12, 3)[0]
     scene.set(scene.find("shapes", "sheet"), positions=points)

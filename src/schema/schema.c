@@ -227,7 +227,7 @@ vlDevelopDef vl_default_develop_def(void) {
 
 vlRenderDef vl_default_render_def(void) {
   return (vlRenderDef){.cookie = VL_COOKIE_RENDER,
-                       .tracer = VL_TRACER_PATH,
+                       .tracer = VL_TRACER_VOLPATH,
                        .sampler = VL_SAMPLER_ZSOBOL,
                        .spp = 16,
                        .max_depth = 5,

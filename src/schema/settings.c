@@ -43,7 +43,7 @@ static const char *const accelerators[] = {"auto", "embree", "bvh", NULL};
 #define RENDER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, NULL, __VA_ARGS__)
 static const vlParameter render_parameters[] = {
     RENDER(CHOICE, render.tracer, "light transport algorithm", .choices = tracers,
-           VL_DEFAULT(VL_TRACER_PATH)),
+           VL_DEFAULT(VL_TRACER_VOLPATH)),
     RENDER(CHOICE, render.sampler, "generator of the sample points", .choices = samplers,
            VL_DEFAULT(VL_SAMPLER_ZSOBOL)),
     RENDER(COUNT, render.spp, "samples per pixel", WITHIN(1, MAX_SPP), VL_DEFAULT(16)),

@@ -259,7 +259,7 @@ static void differences_are_named(void **state) {
       "velo's commit is ba9876543210, was 0123456789ab\ncamera differs: fov is 0.5, was 0.6\n"
       "load differs: variant is red, was not given\ncompleted differs: ground is true, was "
       "false\n"
-      "build differs: color is rgb, was spectral\nrender differs: tracer is sppm, was path\n"
+      "build differs: color is rgb, was spectral\nrender differs: tracer is sppm, was volpath\n"
       "spp is 64, was 16\nsamples is 64, was 16\ndevelop differs: exposure is 2.0, was 1.0\n");
   assert_string_equal(differences(then, now, VL_RECEIPT_SAMPLES),
                       "spp is 64, was 16\nsamples is 64, was 16\n");

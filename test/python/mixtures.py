@@ -136,7 +136,9 @@ class Mixture:
             return add("hair", sigma_a=self._color(0.1, 3), beta_m=self._between(0.2, 0.9), beta_n=self._between(0.2, 0.9))
         if kind == "bumps":
             height = self.scene.add_texture("image", image=0.05 * self._texels(8, 8), spectrum=False)
-            return add(*self._random.choice([("diffuse",), ("conductor",)]), displacement=height)
+            if self._chance(0.5):
+                return add("conductor", u_roughness=0.2, v_roughness=0.3, displacement=height)
+            return add("diffuse", displacement=height)
         return add("diffuse", reflectance=self._spectrum())
 
     # ---- light ----

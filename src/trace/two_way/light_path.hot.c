@@ -146,7 +146,7 @@ static void arrive(const vlTracing *t, uint32_t n, uint32_t depth, const vlVerti
     if (depth == 0) {
       float density = vl_light_density(t, lane, f->t[i]);
       inv = density > 0.0f ? inv / density : 0.0f;
-      vl_light_meets(t, lane, vl_lane3(f->px, f->py, f->pz, i));
+      vl_shade_outside_portal(t, lane, vl_lane3(f->px, f->py, f->pz, i));
       to->b[i] =
           inv / vl_last_odds(ends, lane) * vl_light_sample_pdf(t, lane, vl_receiver(f, i), w);
     }

@@ -139,9 +139,9 @@ void vl_two_way_splats(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t 
 /* Density with which next-event estimation would have sampled the light that this lane's path
  * came from. */
 float vl_light_sample_pdf(const vlTracing *t, uint32_t lane, vlReceiver to, vlVec3 w);
-/* Takes the light of a path whose first vertex, p, lies outside of its light's portal: a path
- * through a portal starts beyond all shapes, but no point out there sees the light. */
-static inline void vl_light_meets(const vlTracing *t, uint32_t lane, vlVec3 p) {
+/* Takes away the light of a path whose first vertex, p, lies outside of its light's portal: a
+ * path through a portal starts beyond all shapes, but no point out there sees the light. */
+static inline void vl_shade_outside_portal(const vlTracing *t, uint32_t lane, vlVec3 p) {
   if (!vl_is_outside_portal(t->world, &t->world->lights.items[t->lanes->light[lane]], p))
     return;
   for (int c = 0; c < 4; c++)

@@ -137,7 +137,7 @@ static void arrive_from_light(const vlTracing *t, uint32_t n, uint32_t depth,
     to->b[i] = depth > 0 ? vl_linked(t, ends, lane, distance, inv) : 0.0f;
     if (depth == 0) {
       float density = vl_light_density(t, lane, distance);
-      vl_light_meets(t, lane, vl_lane3(p->ox, p->oy, p->oz, i));
+      vl_shade_outside_portal(t, lane, vl_lane3(p->ox, p->oy, p->oz, i));
       vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
       inv = density > 0.0f ? inv / density : 0.0f;
       to->b[i] = inv / ends->odds[lane] *

@@ -384,10 +384,10 @@ static bool find_inward(const vlScene *scene, const vlExtent *box, const vlExten
   const Backs backs = count_backs(s, closed);
   if (!(backs.count * 10 > backs.met * 6))
     return false;
-  const bool seen_through = 2 * backs.one_sided > backs.count,
-             whole = 2 * backs.whole > backs.count,
-             contents = has_contents(scene, boxes, closed->shell),
-             surrounds = covered > 0.8 && front > 0.6;
+  const bool seen_through = 2 * backs.one_sided > backs.count;
+  const bool whole = 2 * backs.whole > backs.count;
+  const bool contents = has_contents(scene, boxes, closed->shell);
+  const bool surrounds = covered > 0.8 && front > 0.6;
   bool turned = objects && whole && 2 * backs.against > backs.count;
   const vlShapeDef *convex = convex_shell(scene, closed->shell);
   if (objects && !whole)

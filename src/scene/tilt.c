@@ -42,9 +42,10 @@ static void add_face(void *user, const vlShapeDef *shape, const vlFace *face) {
 static void rotate(double a[3][3], double v[3][3], int i, int j) {
   if (a[i][j] == 0)
     return;
-  const double theta = (a[j][j] - a[i][i]) / (2 * a[i][j]),
-               t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)),
-               c = 1 / sqrt(t * t + 1), s = t * c;
+  const double theta = (a[j][j] - a[i][i]) / (2 * a[i][j]);
+  const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+  const double c = 1 / sqrt(t * t + 1);
+  const double s = t * c;
   for (int k = 0; k < 3; k++) {
     const double x = a[k][i], y = a[k][j];
     a[k][i] = c * x - s * y;
@@ -80,10 +81,10 @@ bool vl_tilt_find(const vlScene *scene, const vlExtent *box, double n[3]) {
   int least = 0;
   for (int i = 1; i < 3; i++)
     least = a[i][i] < a[least][least] ? i : least;
-  const double next = fmin(a[(least + 1) % 3][(least + 1) % 3],
-                           a[(least + 2) % 3][(least + 2) % 3]),
-               most = fmax(a[(least + 1) % 3][(least + 1) % 3],
-                           a[(least + 2) % 3][(least + 2) % 3]);
+  const int one = (least + 1) % 3;
+  const int two = (least + 2) % 3;
+  const double next = fmin(a[one][one], a[two][two]);
+  const double most = fmax(a[one][one], a[two][two]);
   for (int i = 0; i < 3; i++)
     n[i] = v[i][least];
   return isfinite(most) && a[least][least] < thin * next && next > thin * most;

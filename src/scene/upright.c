@@ -254,10 +254,10 @@ static void end_part(Standing *s) {
   const double near = 0.06, tall = 0.3, heavy = 0.45;
   if (!s->shape || !(s->area > 0))
     return;
-  const double from_now = s->box.low[s->now] - s->e->box.low[s->now],
-               from_other = s->box.low[s->other] - s->e->box.low[s->other],
-               height = s->box.high[s->other] - s->box.low[s->other],
-               middle = s->moment / s->area - s->box.low[s->other];
+  const double from_now = s->box.low[s->now] - s->e->box.low[s->now];
+  const double from_other = s->box.low[s->other] - s->e->box.low[s->other];
+  const double height = s->box.high[s->other] - s->box.low[s->other];
+  const double middle = s->moment / s->area - s->box.low[s->other];
   s->parts++;
   s->low_now += from_now <= near * size_of(s->e, s->now);
   s->low_other += from_other <= near * size_of(s->e, s->other) &&

@@ -273,6 +273,16 @@ static void set_ray(vlTraceRays *rays, uint32_t i, const double origin[3],
   rays->t_max[i] = INFINITY;
   rays->width[i] = 0;
 }
+/* Rays straight down from points at the height 1, evenly over the square from -1 to 1
+ * (Roberts's sequence R2). */
+static void set_rays_down(vlTraceRays *rays) {
+  static const double down[3] = {0, 0, -1};
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const double origin[3] = {2 * fmod(0.5 + i * 0.7548776662466927, 1.0) - 1,
+                              2 * fmod(0.5 + i * 0.5698402909980532, 1.0) - 1, 1};
+    set_ray(rays, i, origin, down);
+  }
+}
 /* A direction of a set of `count` that fills the sphere evenly (Fibonacci's spiral, turned by
  * `turn`). */
 static void even_direction(uint32_t i, uint32_t count, double turn, double d[3]) {

@@ -21,55 +21,45 @@ static bool write_bytes(const char *name, const void *bytes, size_t size) {
   return file && fclose(file) == 0 && done;
 }
 
-/* An image of 8 x 8 pixels in the format that the name says. */
-static bool write_image(const char *name, float phase) {
-  vlImageDef def = vl_default_image_def(8, 8, 3);
+/* An image of size x size pixels of three floats, in the format that the name says. */
+static bool write_square(const char *name, uint32_t size, const float *pixels) {
+  vlImageDef def = vl_default_image_def(size, size, 3);
   vlImage *image;
   char path[100];
   path_of(path, name);
   if (vl_image_create(context, &def, &image) != VL_OK)
     return false;
-  float *pixels = vl_image_pixels(image);
-  for (int i = 0; i < 3 * 64; i++)
-    pixels[i] = 0.5f + 0.4f * (float)((i * 37 + (int)phase * 11) % 64 - 32) / 32;
+  memcpy(vl_image_pixels(image), pixels, 3 * (size_t)size * size * sizeof *pixels);
   bool done = vl_image_write(image, path, NULL, NULL) == VL_OK;
   vl_image_destroy(image);
   return done;
+}
+
+/* An image of 8 x 8 pixels of many values. */
+static bool write_image(const char *name, float phase) {
+  float pixels[3 * 64];
+  for (int i = 0; i < 3 * 64; i++)
+    pixels[i] = 0.5f + 0.4f * (float)((i * 37 + (int)phase * 11) % 64 - 32) / 32;
+  return write_square(name, 8, pixels);
 }
 
 /* An image of 8 x 8 pixels with .2 and .4 in the left and right half of its upper rows, .6 and
  * .8 of the lower. */
 static bool write_quarters(const char *name) {
-  vlImageDef def = vl_default_image_def(8, 8, 3);
-  vlImage *image;
-  char path[100];
-  path_of(path, name);
-  if (vl_image_create(context, &def, &image) != VL_OK)
-    return false;
-  float *pixels = vl_image_pixels(image);
+  float pixels[3 * 64];
   for (int y = 0; y < 8; y++)
     for (int x = 0; x < 24; x++)
       pixels[24 * y + x] = (x < 12 ? 0.2f : 0.4f) + (y < 4 ? 0.0f : 0.4f);
-  bool done = vl_image_write(image, path, NULL, NULL) == VL_OK;
-  vl_image_destroy(image);
-  return done;
+  return write_square(name, 8, pixels);
 }
 
 /* A map whose normals all are (.4, -.2, .8) but for their length. */
 static bool write_tilted(const char *name) {
   static const float texel[3] = {0.7f, 0.4f, 0.9f};
-  vlImageDef def = vl_default_image_def(2, 2, 3);
-  vlImage *image;
-  char path[100];
-  path_of(path, name);
-  if (vl_image_create(context, &def, &image) != VL_OK)
-    return false;
-  float *pixels = vl_image_pixels(image);
+  float pixels[12];
   for (int i = 0; i < 12; i++)
     pixels[i] = texel[i % 3];
-  bool done = vl_image_write(image, path, NULL, NULL) == VL_OK;
-  vl_image_destroy(image);
-  return done;
+  return write_square(name, 2, pixels);
 }
 
 /* A lamp of 2 cd towards the half plane C 0, falling to 1 cd towards C 180, and none upwards.

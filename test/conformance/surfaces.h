@@ -205,13 +205,8 @@ static void check_surface(const vlKindRow *row, const ShapeVariant *v) {
 static void ask_displaced(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   (void)paths;
   ShapeLaws *s = probe->user;
-  static const double down[3] = {0, 0, -1};
   uint32_t wrong = 0;
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-    const double origin[3] = {2 * fmod(0.5 + i * 0.7548776662466927, 1.0) - 1,
-                              2 * fmod(0.5 + i * 0.5698402909980532, 1.0) - 1, 1};
-    set_ray(s->rays, i, origin, down);
-  }
+  set_rays_down(s->rays);
   vl_world_trace(trace, s->rays, s->hits);
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     double u = 0.5 * ((double)s->rays->origin[0][i] + 1);

@@ -104,14 +104,9 @@ static bool is_decided(const TexelCase *t, double x, double y, double number) {
 static void ask_texels(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   (void)paths;
   TexelCase *t = probe->user;
-  static const double down[3] = {0, 0, -1};
   double worst = 0;
   uint32_t compared = 0;
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-    const double origin[3] = {2 * fmod(0.5 + i * 0.7548776662466927, 1.0) - 1,
-                              2 * fmod(0.5 + i * 0.5698402909980532, 1.0) - 1, 1};
-    set_ray(t->rays, i, origin, down);
-  }
+  set_rays_down(t->rays);
   vl_world_trace(trace, t->rays, t->hits);
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     double s = (1 + 2 * TEXELS_OUT) * 0.5 * ((double)t->rays->origin[0][i] + 1) - TEXELS_OUT;

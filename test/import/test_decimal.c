@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "import/pbrt/token.h"
+#include "import/pbrt/decimal.h"
 #include "statistics.h"
 #include "unit.h"
 

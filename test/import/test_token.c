@@ -1,5 +1,6 @@
 /* test/import/test_token.c: tokens with their places; numbers correct to the last bit. */
 #include "import/load.h"
+#include "import/pbrt/decimal.h"
 #include "import/pbrt/token.h"
 
 static vlTokenizer tokens;

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "image/pixel.h"
 #include "import/import.h"
-#include "import/pbrt/token.h"
+#include "import/pbrt/decimal.h"
 #include "import/plain.h"
 
 enum { MAX_PARTS = 4096, MAX_MATERIALS = 1 << 20 };

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "image/pixel.h"
 #include "import/import.h"
-#include "import/pbrt/token.h"
+#include "import/pbrt/decimal.h"
 #include "import/plain.h"
 
 typedef struct Off {

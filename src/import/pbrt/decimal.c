@@ -193,3 +193,90 @@ double vl_decimal_digits(const char *text, const char *end, int exponent) {
     return HUGE_VAL;
   return by_whole_numbers(&digits, exponent);
 }
+
+/* ---- numbers in text --------------------------------------------------------------------- */
+
+static bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+static bool scan_hex(const char **text, const char *p, const char *end, bool negative,
+                     double *value) {
+  double v = 0;
+  const char *start = p;
+  for (; p < end; p++) {
+    int d = is_digit(*p)             ? *p - '0'
+            : *p >= 'a' && *p <= 'f' ? *p - 'a' + 10
+            : *p >= 'A' && *p <= 'F' ? *p - 'A' + 10
+                                     : -1;
+    if (d < 0)
+      break;
+    v = v * 16 + d;
+  }
+  *text = p;
+  *value = negative ? -v : v;
+  return p > start && isfinite(v);
+}
+
+bool vl_number_scan(const char **text, const char *end, double *value) {
+  const char *start = *text, *p = start;
+  bool negative = p < end && *p == '-';
+  if (p < end && (*p == '-' || *p == '+'))
+    p++;
+  if (end - p > 2 && p[0] == '0' && (p[1] == 'x' || p[1] == 'X'))
+    return scan_hex(text, p + 2, end, negative, value);
+  const char *digits_start = p;
+  uint64_t mantissa = 0;
+  int digits = 0, exponent = 0,
+      written = 0; /* 10^exponent times the mantissa; the exponent that is written */
+  bool exact = true, any = false;
+  for (; p < end && is_digit(*p); p++) {
+    any = true;
+    if (digits < 18) {
+      mantissa = mantissa * 10 + (uint64_t)(*p - '0');
+      digits += mantissa != 0;
+    } else {
+      exact = exact && *p == '0';
+      exponent += exponent < 100000;
+    }
+  }
+  if (p < end && *p == '.') {
+    for (p++; p < end && is_digit(*p); p++) {
+      any = true;
+      if (digits < 18) {
+        mantissa = mantissa * 10 + (uint64_t)(*p - '0');
+        digits += mantissa != 0;
+        exponent -= exponent > -100000;
+      } else {
+        exact = exact && *p == '0';
+      }
+    }
+  }
+  if (!any)
+    return false;
+  const char *digits_end = p;
+  if (p < end && (*p == 'e' || *p == 'E')) {
+    const char *q = p + 1;
+    bool minus = q < end && *q == '-';
+    if (q < end && (*q == '-' || *q == '+'))
+      q++;
+    if (q < end && is_digit(*q)) {
+      int e = 0;
+      for (; q < end && is_digit(*q); q++)
+        if (e < 100000)
+          e = e * 10 + (*q - '0');
+      written = minus ? -e : e;
+      p = q;
+    }
+  }
+  *text = p;
+  double v = exact ? vl_decimal(mantissa, exponent + written)
+                   : vl_decimal_digits(digits_start, digits_end, written);
+  *value = negative ? -v : v;
+  return isfinite(v);
+}
+
+bool vl_number_parse(const char *text, size_t length, double *value) {
+  const char *p = text;
+  return length > 0 && vl_number_scan(&p, text + length, value) && p == text + length;
+}

@@ -1,8 +1,11 @@
-/* import/pbrt/decimal.h: converts decimal numbers to the nearest double, ties to even. The
- * result equals strtod's but depends neither on the locale nor on the machine. */
+/* import/pbrt/decimal.h: converts numbers in text to the nearest double, ties to even. The
+ * result equals strtod's but depends neither on the locale nor on the machine. The readers of
+ * meshes use these functions, too. */
 #ifndef IMPORT_PBRT_DECIMAL_H
 #define IMPORT_PBRT_DECIMAL_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* mantissa * 10^exponent; HUGE_VAL if that is too large for a double. */
@@ -11,5 +14,11 @@ double vl_decimal(uint64_t mantissa, int exponent);
 /* Like vl_decimal for any number of digits. The mantissa is the text from `text` to `end`,
  * which holds decimal digits and at most one decimal point. */
 double vl_decimal_digits(const char *text, const char *end, int exponent);
+
+/* Converts text[0, length) to a number: integers, decimals, exponents, hexadecimal. Returns
+ * false for other text, infinities and values too large for a double. */
+bool vl_number_parse(const char *text, size_t length, double *value);
+/* Reads the number at the start of [*text, end) and moves *text past it. */
+bool vl_number_scan(const char **text, const char *end, double *value);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
-#include "import/pbrt/token.h"
+#include "import/pbrt/decimal.h"
 #include "velo/render.h"
 
 static double clamped(double value, double high) {

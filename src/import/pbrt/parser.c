@@ -1,8 +1,135 @@
-/* import/pbrt/parser.c: reads directives and their parameters (parse.h). */
+/* import/pbrt/parser.c: splits text into tokens (token.h); reads directives and their
+ * parameters (parse.h). */
 #include "import/pbrt/parser.h"
 
 #include "base/context.h"
 #include "base/text.h"
+#include "import/pbrt/decimal.h"
+
+/* ---- tokens ------------------------------------------------------------------------------ */
+
+void vl_tokenizer_start(vlTokenizer *t, char *data, size_t size) {
+  if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) {
+    data += 3;
+    size -= 3;
+  }
+  *t = (vlTokenizer){.at = data, .end = data + size, .line_start = data, .line = 1};
+}
+
+static bool is_space(char c) {
+  return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+static bool ends_word(char c) {
+  return is_space(c) || c == '"' || c == '[' || c == ']' || c == '#';
+}
+
+static void skip_blank(vlTokenizer *t) {
+  while (t->at < t->end) {
+    char c = *t->at;
+    if (c == '\n') {
+      t->at++;
+      t->line++;
+      t->line_start = t->at;
+    } else if (is_space(c)) {
+      t->at++;
+    } else if (c == '#') {
+      char *newline = memchr(t->at, '\n', (size_t)(t->end - t->at));
+      t->at = newline ? newline : t->end;
+    } else {
+      return;
+    }
+  }
+}
+
+static char unescape(char c) {
+  switch (c) {
+    case 'b':
+      return '\b';
+    case 'f':
+      return '\f';
+    case 'n':
+      return '\n';
+    case 'r':
+      return '\r';
+    case 't':
+      return '\t';
+    case '\\':
+    case '\'':
+    case '"':
+      return c;
+    default:
+      return 0;
+  }
+}
+
+static vlToken read_string(vlTokenizer *t, vlToken token) {
+  char *out = ++t->at;
+  token.text = out;
+  for (;;) {
+    if (t->at >= t->end || *t->at == '\n') {
+      token.kind = VL_TOKEN_BAD;
+      token.message = t->at >= t->end ? "unclosed string: the file ends before the closing \""
+                                      : "unclosed string: the line ends before the closing \"";
+      return token;
+    }
+    char c = *t->at++;
+    if (c == '"')
+      break;
+    if (c == 0) {
+      token.kind = VL_TOKEN_BAD;
+      token.message = "zero byte in a string: this is not a text file";
+      return token;
+    }
+    if (c == '\\') {
+      c = t->at < t->end ? unescape(*t->at) : 0;
+      if (!c) {
+        token.kind = VL_TOKEN_BAD;
+        token.message = "unknown escape in a string (known: \\b \\f \\n \\r \\t \\\\ \\' \\\")";
+        return token;
+      }
+      t->at++;
+    }
+    *out++ = c;
+  }
+  *out = 0; /* at the latest this overwrites the closing quote, which has been read */
+  token.kind = VL_TOKEN_STRING;
+  token.length = (size_t)(out - token.text);
+  return token;
+}
+
+vlToken vl_token_next(vlTokenizer *t) {
+  skip_blank(t);
+  vlToken token = {.kind = VL_TOKEN_END,
+                   .line = t->line,
+                   .column = (uint32_t)(t->at - t->line_start) + 1,
+                   .text = t->at};
+  if (t->at >= t->end)
+    return token;
+  char c = *t->at;
+  if (c == '"')
+    return read_string(t, token);
+  if (c == '[' || c == ']') {
+    t->at++;
+    token.kind = c == '[' ? VL_TOKEN_OPEN : VL_TOKEN_CLOSE;
+    token.length = 1;
+    return token;
+  }
+  while (t->at < t->end && !ends_word(*t->at))
+    t->at++;
+  token.kind = VL_TOKEN_WORD;
+  token.length = (size_t)(t->at - token.text);
+  return token;
+}
+
+bool vl_token_number(vlTokenizer *t, double *value) {
+  skip_blank(t);
+  const char *p = t->at;
+  if (p >= t->end || !vl_number_scan(&p, t->end, value) || (p < t->end && !ends_word(*p)))
+    return false;
+  t->at += p - t->at;
+  return true;
+}
 
 /* ---- errors ------------------------------------------------------------------------------ */
 
@@ -44,7 +171,7 @@ static ShownToken shown(const vlToken *token) {
   return s;
 }
 
-/* ---- tokens ------------------------------------------------------------------------------ */
+/* ---- the next token ---------------------------------------------------------------------- */
 
 static vlToken peek_token(vlParserFile *file) {
   if (!file->has_token) {

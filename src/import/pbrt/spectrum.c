@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "color/named.h"
 #include "import/pbrt/builder.h"
+#include "import/pbrt/decimal.h"
 #include "import/pbrt/token.h"
 
 /* The block lives until the end of the import, like the strings. */

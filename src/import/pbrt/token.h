@@ -1,6 +1,5 @@
 /* import/pbrt/token.h: splits text of the pbrt language into tokens. The text is modified:
- * strings are unescaped and terminated in place. The file also converts text to numbers,
- * independently of the locale; the PLY reader uses these functions, too. */
+ * strings are unescaped and terminated in place. The functions are in parser.c. */
 #ifndef IMPORT_PBRT_TOKEN_H
 #define IMPORT_PBRT_TOKEN_H
 
@@ -35,11 +34,5 @@ vlToken vl_token_next(vlTokenizer *tokenizer);
 /* Takes the next token if it is a number; otherwise changes nothing. This is the fast path for
  * long lists. */
 bool vl_token_number(vlTokenizer *tokenizer, double *value);
-
-/* Converts text[0, length) to a number: integers, decimals, exponents, hexadecimal. Returns
- * false for other text, infinities and values too large for a double. */
-bool vl_number_parse(const char *text, size_t length, double *value);
-/* Reads the number at the start of [*text, end) and moves *text past it. */
-bool vl_number_scan(const char **text, const char *end, double *value);
 
 #endif

@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "base/free.h"
 #include "base/text.h"
-#include "import/pbrt/token.h"
+#include "import/pbrt/decimal.h"
 #include "import/ply/ply_reader.h"
 
 /* ---- data -------------------------------------------------------------------------------- */

@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "import/import.h"
-#include "import/pbrt/token.h"
+#include "import/pbrt/decimal.h"
 #include "import/plain.h"
 
 enum { HEADER = 84, FACET = 50 };

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "import/pbrt/decimal.h"
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/upgrade.h"
 

@@ -4,7 +4,7 @@
 #include "base/context.h"
 #include "base/text.h"
 #include "color/color.h"
-#include "import/pbrt/token.h"
+#include "import/pbrt/decimal.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 #define POSE  \

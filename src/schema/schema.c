@@ -107,7 +107,8 @@ static vlSpectrum default_spectrum(const vlParameter *p) {
   return vl_spectrum_constant((float)p->value[0]);
 }
 
-void vl_parameter_put(const vlParameter *p, double number, void *at) {
+/* Sets a member that is a number, a bool or a choice. Members of other types are unchanged. */
+static void put(const vlParameter *p, double number, void *at) {
   if (p->type == VL_PARAMETER_BOOL)
     *(bool *)at = number != 0;
   else if (p->type == VL_PARAMETER_COUNT)
@@ -130,7 +131,7 @@ static void set_default(const vlParameter *p, void *at) {
     case VL_PARAMETER_DOUBLE:
       if (p->type == VL_PARAMETER_DOUBLE && p->flags & VL_PARAMETER_UNSET)
         number = VL_UNSET;
-      vl_parameter_put(p, number, at);
+      put(p, number, at);
       break;
     case VL_PARAMETER_FLOAT3:
       for (int i = 0; i < 3; i++)
@@ -645,9 +646,9 @@ bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *giv
 }
 
 void vl_given_put(const vlParameter *row, double number, void *def) {
-  vl_parameter_put(row, number, (char *)def + row->offset);
+  put(row, number, (char *)def + row->offset);
   if (row->second)
-    vl_parameter_put(row, number, (char *)def + row->second);
+    put(row, number, (char *)def + row->second);
 }
 
 const char *vl_near_name(const char *name, const char *const *names, size_t count) {

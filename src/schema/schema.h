@@ -127,8 +127,6 @@ const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
 /* ---- defs -------------------------------------------------------------------------------- */
 
-/* Sets a member that is a number, a bool or a choice. Members of other types are unchanged. */
-void vl_parameter_put(const vlParameter *parameter, double number, void *at);
 /* Sets the members that the row describes to their defaults. Other members are unchanged. */
 void vl_row_set_defaults(const vlKindRow *row, void *def);
 /* The same with the row of a kind; an unknown kind has none. */

@@ -148,7 +148,8 @@ static double by_whole_numbers(Whole *digits, int exponent) {
   return round_to_double(q | (digits->count > 0), exponent - shift - 55);
 }
 
-double vl_decimal(uint64_t mantissa, int exponent) {
+/* mantissa * 10^exponent; HUGE_VAL if that is too large for a double. */
+static double nearest(uint64_t mantissa, int exponent) {
   double v;
   if (mantissa == 0 || exponent < -400)
     return 0.0;
@@ -164,7 +165,9 @@ double vl_decimal(uint64_t mantissa, int exponent) {
   return by_whole_numbers(&digits, exponent);
 }
 
-double vl_decimal_digits(const char *text, const char *end, int exponent) {
+/* Like nearest for any number of digits. The mantissa is the text from `text` to `end`, which
+ * holds decimal digits and at most one decimal point. */
+static double nearest_of_digits(const char *text, const char *end, int exponent) {
   Whole digits = {0, {0}};
   int count = 0;
   bool fraction = false, more = false;
@@ -270,8 +273,8 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
     }
   }
   *text = p;
-  double v = exact ? vl_decimal(mantissa, exponent + written)
-                   : vl_decimal_digits(digits_start, digits_end, written);
+  double v = exact ? nearest(mantissa, exponent + written)
+                   : nearest_of_digits(digits_start, digits_end, written);
   *value = negative ? -v : v;
   return isfinite(v);
 }

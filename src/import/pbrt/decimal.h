@@ -8,13 +8,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* mantissa * 10^exponent; HUGE_VAL if that is too large for a double. */
-double vl_decimal(uint64_t mantissa, int exponent);
-
-/* Like vl_decimal for any number of digits. The mantissa is the text from `text` to `end`,
- * which holds decimal digits and at most one decimal point. */
-double vl_decimal_digits(const char *text, const char *end, int exponent);
-
 /* Converts text[0, length) to a number: integers, decimals, exponents, hexadecimal. Returns
  * false for other text, infinities and values too large for a double. */
 bool vl_number_parse(const char *text, size_t length, double *value);

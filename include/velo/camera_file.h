@@ -86,13 +86,13 @@ typedef struct vlCameraFileDef {
   vlCameraDialect dialect; /**< default VL_CAMERA_DIALECT_AUTO */
   const char *frame; /**< the camera or pose to read from a file with several: its name, or its
                         number from 0; null: the first */
-  const char *const *
-      drop; /**< names of fields that writing may drop if the dialect cannot hold them, as the
-               errors name them (docs/camera-files.md has the list); another name is an error */
-  uint32_t drop_count;    /**< length of drop */
-  uint32_t width, height; /**< image size, pixels, for files that have none; 0: the size of the
-                             images that the file names, if they exist; else 720 rows for files
-                             with an aspect ratio (glTF, USD), an error for others */
+  const char *const *drop; /**< names of fields that writing may drop if the dialect cannot hold
+                              them, as the errors name them (docs/camera-files.md has the list),
+                              or "all"; another name is an error */
+  uint32_t drop_count;     /**< length of drop */
+  uint32_t width, height;  /**< image size, pixels, for files that have none; 0: the size of the
+                              images that the file names, if they exist; else 720 rows for files
+                              with an aspect ratio (glTF, USD), an error for others */
 } vlCameraFileDef;
 
 /** The default def. */

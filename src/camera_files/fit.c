@@ -16,6 +16,9 @@ static const char *const refusable[] = {
     "readout",       "shutter_close",  "shutter_curve",  "shutter_open", "skew", "stereo",
     "tilt",          "vignetting"};
 
+/* The word for all of them in a list of fields to drop. */
+static const char all_fields[] = "all";
+
 static bool is_refusable(const char *field) {
   for (size_t i = 0; i < VL_LENGTH(refusable); i++)
     if (vl_text_is(field, refusable[i]))
@@ -28,7 +31,7 @@ vlResult vl_camera_check_drop(const vlCameraFileDef *def, vlError *error) {
     const char *name = def->drop ? def->drop[i] : NULL;
     if (!name)
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: drop[%u] is null", i);
-    if (is_refusable(name))
+    if (is_refusable(name) || vl_text_is(name, all_fields))
       continue;
     char known[600];
     vl_tell_names(known, sizeof known, name, refusable, VL_LENGTH(refusable));
@@ -42,7 +45,7 @@ vlResult vl_camera_check_drop(const vlCameraFileDef *def, vlError *error) {
 bool vl_camera_drops(const vlCameraFile *file, const char *field) {
   assert(is_refusable(field));
   for (uint32_t i = 0; i < file->def->drop_count; i++)
-    if (vl_text_is(file->def->drop[i], field))
+    if (vl_text_is(file->def->drop[i], field) || vl_text_is(file->def->drop[i], all_fields))
       return true;
   return false;
 }

@@ -8,6 +8,8 @@
 #include "base/machine.h"
 #include "base/text.h"
 #include "image/image.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 #include "velo/texture.h"
 
 vlSaveDef vl_default_save_def(void) {
@@ -67,6 +69,11 @@ bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) {
 }
 
 /* ---- bytes ------------------------------------------------------------------------------- */
+
+bool vl_export_parts_media(const vlExport *x, const vlShapeDef *d) {
+  return d->material.index &&
+         x->scene->materials.items[d->material.index - 1].kind == VL_MATERIAL_INTERFACE;
+}
 
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size) {
   if (bytes->full || !VL_RESERVE(context, &bytes->data, size + 1)) {

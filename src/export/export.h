@@ -71,6 +71,9 @@ void vl_export_lose(vlExport *x, const char *format, ...) __attribute__((format(
 /* Stores the error if it is the first one. Always returns false. */
 bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* Whether the shape's material is "interface": light passes it as if it were not there. In glTF
+ * and pbrt such a shape gives no light. */
+bool vl_export_parts_media(const vlExport *x, const vlShapeDef *d);
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size);
 void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -148,7 +151,6 @@ void vl_gltf_use(vlExport *x, const char *extension);
 json_t *vl_gltf_array_of(const float *values, size_t count);
 /* Index of the shape's material in the glTF file; -1: none. */
 json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, bool *tangents);
-bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d);
 /* A textureInfo object for an image; null: none. */
 json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear);
 /* Writes an image file, of which these are the bytes. Returns its index in "images"; -1 after

@@ -282,3 +282,62 @@ class Mixture:
             self.parts.append("camera in fog")
             self.scene.camera_medium = self.scene.add_medium("homogeneous", sigma_a=self._color(0, 0.05), sigma_s=self._color(0.02, 0.15),
                                                              g=self._between(-0.3, 0.6))
+
+    # ---- edits ----
+
+    def edit(self):
+        """A random change of the scene. Of what the scene refuses nothing is changed."""
+        change = self._random.choice([self._add, self._camera, self._place, self._show, self._remove, self._change_shape, self._change_number])
+        try:
+            change()
+        except velo.Error:
+            pass
+
+    def _one(self, *families):
+        handles = self.scene.handles(self._random.choice(families))
+        return self._random.choice(handles) if handles else None
+
+    def _add(self):
+        self._random.choice([self._thing, self._lamp, self._light, self._fog])()
+
+    def _place(self):
+        instance, group = self._one("instances"), self._one("groups")
+        if instance and self._chance(0.5):
+            self.scene.set(instance, pose=self._pose())
+        elif group:
+            self.scene.add_instance(group, self._pose())
+
+    def _show(self):
+        handle = self._one("lights", "shapes", "instances")
+        if handle:
+            self.scene.show(handle, self._chance(0.4))
+
+    def _remove(self):
+        handle = self._one("lights", "shapes", "instances", "materials", "textures", "media", "emission", "groups")
+        if handle:
+            self.scene.remove(handle)
+
+    def _change_shape(self):
+        shape, choice = self._one("shapes"), self._random.randrange(5)
+        if shape is None:
+            return
+        words = [{"material": self._one("materials")}, {"emission": self._one("emission")}, {"pose": self._pose()},
+                 {"hidden_from_camera": self._chance(0.5)}][choice % 4]
+        if choice == 4 and shape.kind == "triangles":
+            words = {"positions": self.scene.mesh(shape).positions * numpy.float32(self._between(0.7, 1.3))}
+        self.scene.set(shape, **words)
+
+    def _change_number(self):
+        handle = self._one("materials", "materials", "lights", "textures", "emission", "media")
+        if handle is None:
+            return
+        if handle.family == "materials" and self._chance(0.4):
+            self.scene.set(handle, self._random.choice(["diffuse", "conductor", "principled", "dielectric", "interface", "coateddiffuse"]))
+            return
+        if handle.kind == "image":
+            self.scene.set(handle, image=0.5 * (self._texels(6, 6, 3) if self.scene.get(handle, "spectrum") else self._texels(6, 6)))
+            return
+        numbers = {name: value for name, value in self.scene.get(handle).items() if isinstance(value, float) and math.isfinite(value)}
+        if numbers:
+            name = self._random.choice(list(numbers))
+            self.scene.set(handle, **{name: numbers[name] * self._between(0.8, 1.1)})

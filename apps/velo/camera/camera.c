@@ -178,7 +178,7 @@ static Option convert_options[] = {
      OPTION_TEXT, "NAME"},
     {CONVERT_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},
     {CONVERT_DROP, "drop",
-     "leave out a field that OUT's dialect cannot hold; may be given several times",
+     "leave out a field that OUT's dialect cannot hold, or all of them; may be given several times",
      OPTION_TEXTS, "FIELD"},
     {0}};
 

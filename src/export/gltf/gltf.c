@@ -208,7 +208,7 @@ static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
   vlExportMesh mesh;
   bool colors, tangents, turned = is_turned(d);
   *index = -1;
-  if (vl_gltf_is_hidden(x, d)) {
+  if (vl_export_parts_media(x, d)) {
     vl_export_lose(x, "surfaces that only part media (material interface): left out");
     return true;
   }

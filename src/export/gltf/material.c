@@ -416,11 +416,6 @@ static const vlMaterialDef *material_of(const vlExport *x, const vlShapeDef *d) 
   return m;
 }
 
-bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d) {
-  const vlMaterialDef *m = material_of(x, d);
-  return m && m->kind == VL_MATERIAL_INTERFACE;
-}
-
 static bool wants_colors(const vlExport *x, const vlMaterialDef *m) {
   const vlTextureDef *t = m && m->reflectance.texture.index
                               ? &x->scene->textures.items[m->reflectance.texture.index - 1]

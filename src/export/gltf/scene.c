@@ -12,17 +12,9 @@
 #include "velo/camera_file.h"
 #include "velo/light.h"
 
-/* Camera fields that glTF cannot represent. Velo's own description in the extras keeps them. */
-static const char *const beyond[] = {"projection",
-                                     "distortion",
-                                     "cx",
-                                     "cy",
-                                     "skew",
-                                     "lens_radius",
-                                     "focus_distance",
-                                     "shutter_open",
-                                     "shutter_close",
-                                     "exposure_time"};
+/* What of a camera glTF cannot hold is dropped. Velo's own description in the extras keeps
+ * it. */
+static const char *const beyond[] = {"all"};
 
 static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const char *path,
                              bool drop) {

@@ -87,10 +87,7 @@ static void put_head(vlExport *x, const char *text, size_t size) {
 }
 
 static bool put_camera(vlExport *x) {
-  static const char *const beyond[] = {"near_plane",   "far_plane",     "cx",
-                                       "cy",           "skew",          "distortion",
-                                       "projection",   "lens_radius",   "focus_distance",
-                                       "shutter_open", "shutter_close", "exposure_time"};
+  static const char *const beyond[] = {"all"};
   const vlSceneDefs *defs = &x->scene->defs;
   vlCameraRecord record = {.camera = defs->camera};
   record.camera.exposure_time = 1; /* the film's iso holds it */

@@ -186,7 +186,11 @@ static bool put_shape(vlExport *x, const vlShapeDef *d, size_t index) {
   vl_pbrt_matrix(x, d->group_from_shape);
   if (d->material.index)
     PUT("  NamedMaterial \"material%u\"\n", d->material.index);
-  if (d->emission.index && !put_emission(x, &x->scene->emissions.items[d->emission.index - 1]))
+  const bool dark = d->emission.index && vl_export_parts_media(x, d);
+  if (dark)
+    vl_export_lose(x, "light of surfaces that only part media (material interface): left out");
+  if (d->emission.index && !dark &&
+      !put_emission(x, &x->scene->emissions.items[d->emission.index - 1]))
     return false;
   if (d->inside.index != d->outside.index) {
     char in[32] = "", out[32] = "";

@@ -11,7 +11,7 @@
 #include "base/machine.h"
 #include "image/image.h"
 #include "math/transform.h"
-#include "schema/camera_parameters.h"
+#include "projection/projection.row.h"
 #include "velo/distortion.h"
 #include "velo/setting.h"
 

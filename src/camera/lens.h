@@ -4,7 +4,6 @@
 #ifndef CAMERA_LENS_H
 #define CAMERA_LENS_H
 
-#include "camera/local.h"
 #include "camera/rays.h"
 
 typedef struct vlLensPoint {

@@ -5,7 +5,6 @@
 #define CAMERA_OPTICS_H
 
 #include "camera/aperture.h"
-#include "camera/local.h"
 
 enum { VL_MAX_SURFACES = 64, VL_PUPILS = 64, VL_CHIEFS = 68 };
 
@@ -114,7 +113,8 @@ void vl_optics_find_chiefs(vlOptics *optics);
  * Returns false if there is none. x, y: the film point in scene units from the centre, right
  * and down as in the image (the physical film is rotated by 180 degrees). Defined in
  * optics_points.c. */
-bool vl_optics_unproject(const vlOptics *optics, double x, double y, vlCameraLocal *ray);
+struct vlCameraLocal; /* rays.h */
+bool vl_optics_unproject(const vlOptics *optics, double x, double y, struct vlCameraLocal *ray);
 /* The inverse of vl_optics_unproject: maps a point in camera space to the film point. */
 bool vl_optics_project(const vlOptics *optics, double x, double y, double z, double film[2]);
 /* Finds the chief ray of a film radius. guess: start value of x in the pupil's plane. Returns

@@ -4,7 +4,6 @@
 #define CAMERA_POSE_H
 
 #include "camera/eyes.h"
-#include "camera/local.h"
 #include "camera/rays.h"
 
 /* A world-space ray in double, its direction not yet normalised. */

@@ -20,6 +20,14 @@
 /* Number of points in each chunk of the double arrays below. */
 enum { VL_CAMERA_CHUNK = 256 };
 
+/* A ray in camera space. Every projection returns one; the lens and the pose then transform it.
+ * Origin (ox, oy, 0), direction (dx, dy, dz) of any length; dz > 0 for perspective and
+ * orthographic cameras. */
+typedef struct vlCameraLocal {
+  double ox, oy;
+  double dx, dy, dz;
+} vlCameraLocal;
+
 /* A camera ready for batches. Camera space: x right, y down, z forward. Plain data, made by
  * vl_camera_compile. */
 typedef struct vlCameraCompiled {

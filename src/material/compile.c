@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "material/bsdf_names.h"
 #include "material/compile.h"
 #include "math/ggx.h"
 #include "schema/schema.h"
@@ -25,10 +24,6 @@ vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *flo
     r = vl_material_float(b, floats[i].input, floats[i].node);
   return r;
 }
-
-#define NAME(kind, name, parameters, eval, sample) name,
-const char *const vl_bsdf_names[] = {VL_BSDF_KINDS(NAME)};
-#undef NAME
 
 /* ---- coats ------------------------------------------------------------------------------- */
 

@@ -3,7 +3,6 @@
 #ifndef PROJECTION_ORTHOGRAPHIC_H
 #define PROJECTION_ORTHOGRAPHIC_H
 
-#include "camera/local.h"
 #include "camera/rays.h"
 #include "projection/functions.h"
 

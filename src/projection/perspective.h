@@ -4,7 +4,6 @@
 #ifndef PROJECTION_PERSPECTIVE_H
 #define PROJECTION_PERSPECTIVE_H
 
-#include "camera/local.h"
 #include "camera/rays.h"
 #include "projection/functions.h"
 

@@ -223,16 +223,6 @@ bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamil
 const char *vl_import_keep(vlImport *import,
                            const char *text); /* copy that lives until the end of the import;
                                                  null when out of memory */
-vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
-                      const vlParamList *own, const vlParamList *attributes);
-/* vl_import_dict for a directive that names a kind. */
-vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
-                           const char *kind, vlSource source, vlColorSpace space,
-                           const vlParamList *own, const vlParamList *attributes);
-/* The same for a directive that a file has once; standard: its kind where the file lacks it. */
-vlDict vl_import_choice_dict(vlImport *import, const char *directive,
-                             const vlKindFamily *family, const vlChoice *choice,
-                             const char *standard);
 /* Reports a name that is not in the table. Returns false. */
 bool vl_import_missing_name(vlImport *import, vlSource source, const char *thing,
                             const char *name, const vlNameTable *table);
@@ -290,7 +280,18 @@ bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, 
 bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input,
                               bool albedo, bool *given);
 
-/* Reads the parameters of the row into the members of def (parameters.c). A member whose
+/* The parameters of a directive, and what messages call it (parameters.c). */
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
+                      const vlParamList *own, const vlParamList *attributes);
+/* vl_import_dict for a directive that names a kind. */
+vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
+                           const char *kind, vlSource source, vlColorSpace space,
+                           const vlParamList *own, const vlParamList *attributes);
+/* The same for a directive that a file has once; standard: its kind where the file lacks it. */
+vlDict vl_import_choice_dict(vlImport *import, const char *directive,
+                             const vlKindFamily *family, const vlChoice *choice,
+                             const char *standard);
+/* Reads the parameters of the row into the members of def. A member whose
  * parameter is not given is unchanged. spectrum selects the spectrum or the float input of
  * EITHER_INPUT. given receives, for each parameter of the row, whether the file gives it; it
  * may be null. Parameters with VL_PARAMETER_RULE and BLOCKs are left to the caller. False after

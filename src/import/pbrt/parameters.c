@@ -70,6 +70,32 @@ size_t vl_param_count(const vlParam *param) {
          param->bools.count;
 }
 
+/* ---- the parameters of a directive --------------------------------------------------------
+ */
+
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
+                      const vlParamList *own, const vlParamList *attributes) {
+  vlDict dict = {
+      .import = import, .source = source, .space = space, .own = own, .attributes = attributes};
+  snprintf(dict.what, sizeof dict.what, "%s", what);
+  return dict;
+}
+
+vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
+                           const char *kind, vlSource source, vlColorSpace space,
+                           const vlParamList *own, const vlParamList *attributes) {
+  char what[160];
+  snprintf(what, sizeof what, "%s \"%s\"", directive, vl_import_kind_text(family, kind).text);
+  return vl_import_dict(import, what, source, space, own, attributes);
+}
+
+vlDict vl_import_choice_dict(vlImport *import, const char *directive,
+                             const vlKindFamily *family, const vlChoice *choice,
+                             const char *standard) {
+  return vl_import_kind_dict(import, directive, family, choice->given ? choice->kind : standard,
+                             choice->source, choice->space, &choice->params, NULL);
+}
+
 /* ---- questions --------------------------------------------------------------------------- */
 
 /* Accepted types as text: "float" or "float, texture". */

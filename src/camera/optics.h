@@ -6,6 +6,7 @@
 
 #include "camera/aperture.h"
 
+struct vlCameraLocal; /* rays.h */
 enum { VL_MAX_SURFACES = 64, VL_PUPILS = 64, VL_CHIEFS = 68 };
 
 typedef struct vlOpticsSurface {
@@ -113,7 +114,6 @@ void vl_optics_find_chiefs(vlOptics *optics);
  * Returns false if there is none. x, y: the film point in scene units from the centre, right
  * and down as in the image (the physical film is rotated by 180 degrees). Defined in
  * optics_points.c. */
-struct vlCameraLocal; /* rays.h */
 bool vl_optics_unproject(const vlOptics *optics, double x, double y, struct vlCameraLocal *ray);
 /* The inverse of vl_optics_unproject: maps a point in camera space to the film point. */
 bool vl_optics_project(const vlOptics *optics, double x, double y, double z, double film[2]);

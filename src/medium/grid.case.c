@@ -6,7 +6,8 @@
 /* Eight layers of thickness .25, sigma_a .5 times .1, but 3 in the third from the back. The
  * last half of a layer at the box's side fades to half, so the layers at the sides count 7/8:
  * exp(-.5 * .25 * (3 + 5 * .1 + 2 * 7/8 * .1)). Of an even density: exp(-.5 * 1.75). */
-static double density(const double p[3]) {
+static double density(const double p[3], PlainNoise *noise) {
+  (void)noise;
   return 0.5 * fmin(1, 1.5 - fabs(p[2]));
 }
 

@@ -1,7 +1,8 @@
 /* medium/homogeneous.case.c: what tests know of homogeneous media. */
 #include "medium/medium.case.h"
 
-static double density(const double p[3]) {
+static double density(const double p[3], PlainNoise *noise) {
+  (void)noise;
   (void)p;
   return 0.4;
 }

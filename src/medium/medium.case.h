@@ -3,6 +3,7 @@
 #ifndef MEDIUM_MEDIUM_CASE_H
 #define MEDIUM_MEDIUM_CASE_H
 
+#include "math/noise.case.h"
 #include "schema/parameter.case.h"
 #include "velo/medium.h"
 
@@ -18,8 +19,12 @@ typedef struct MediumCase {
   double emission_by_cell;   /* of that */
   const char *layers; /* absorbs alone, most of it in one of eight layers; null: cannot */
   double passes;      /* the transmittance of that */
-  double (*density)(const double p[3]); /* the extinction of `absorbs` at a point of the box;
-                                           null: not known */
+  double (*density)(const double p[3], PlainNoise *noise); /* the extinction of `absorbs` at a
+                                           point of the box; null: not known */
+  /* All parameters of a medium that reaches beyond one block of the kind's grid, and its
+   * extinction; null: the kind has no blocks. */
+  const char *blocks;
+  double (*density_of_blocks)(const double p[3], PlainNoise *noise);
   const char *alike[2]; /* two ways to describe one coloured medium; null: has one */
   ParameterCase parameters[PARAMETER_CASES];
 } MediumCase;

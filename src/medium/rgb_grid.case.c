@@ -6,7 +6,8 @@
 /* Le of these grids, as in pbrt, is in units of a constant spectrum's luminance, 106.857. It is
  * interpolated, too: both fade to half at the box's sides, w(z) = 1.5 - |z| from |z| = .5 on.
  * The numbers are integrals of that. */
-static double density(const double p[3]) {
+static double density(const double p[3], PlainNoise *noise) {
+  (void)noise;
   return 0.5 * fmin(1, 1.5 - fabs(p[2]));
 }
 

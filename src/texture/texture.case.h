@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "math/noise.case.h"
 #include "schema/parameter.case.h"
 #include "velo/texture.h"
 
@@ -17,11 +18,20 @@ typedef struct TextureKnown {
   double rgb[3];
 } TextureKnown;
 
+/* A point at which a texture is asked: uv, and its place in texture space. */
+typedef struct TextureAt {
+  double u, v, p[3];
+  PlainNoise *noise;
+} TextureAt;
+typedef void TextureFormula(const TextureAt *at, double rgb[3]);
+
 typedef struct TextureVariant {
-  const char *parameters; /* null ends the list */
-  double low, high;       /* of all values */
-  bool even;              /* the same value everywhere */
-  bool of_space;          /* varies along each axis of texture space */
+  const char *parameters;  /* null ends the list */
+  double low, high;        /* of all values */
+  bool even;               /* the same value everywhere */
+  bool of_space;           /* varies along each axis of texture space */
+  TextureFormula *formula; /* its value everywhere, but on 2 % of the points (edges); null: not
+                              known */
   TextureKnown known[5];
   uint32_t known_count;
 } TextureVariant;

@@ -221,6 +221,7 @@ static void probe_scene(vlScene *scene, const char *text, Probe *probe, uint32_t
   const vlOwnTracer tracer = {.name = "probe", .radiance = probe_radiance, .user = probe};
   defs->build.color = VL_COLOR_RGB;
   defs->camera = vl_default_camera_def(32, 32);
+  defs->camera.fx = defs->camera.fy = 1e6; /* rays as narrow as can be: textures are sharp */
   defs->film = vl_default_film_def(32, 32);
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   /* batches of the first passes are not full, and others are not where a slow machine makes

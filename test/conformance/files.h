@@ -99,6 +99,32 @@ static bool write_nanovdb(const char *name, float last) {
   return done;
 }
 
+/* A file of eight blocks of 128 voxels in each direction, of the densities 1 to 8: the number
+ * grows along x, then y, then z. They are tiles of the upper node, whose table has x first. */
+static bool write_blocks(const char *name) {
+  unsigned char *grid = make_grid();
+  unsigned char *upper = grid + UPPER_AT;
+  upper[32 + 4096] = 0; /* the first tile is no lower node */
+  for (uint32_t i = 0; i < 8; i++) {
+    const size_t at = (size_t)(i & 1) << 10 | (i >> 1 & 1) << 5 | i >> 2;
+    put_u64(upper + UPPER_TABLE + 8 * at, 0);
+    put_f(upper + UPPER_TABLE + 8 * at, (float)(i + 1));
+  }
+  for (size_t i = 0; i < 3; i++) {
+    put_d(grid + 296 + 88 + 8 * (4 * i), 1.0 / 128); /* the map, its inverse */
+    put_d(grid + 296 + 160 + 8 * (4 * i), 128);
+    put_d(grid + 296 + 232 + 8 * i, -1);
+    put_d(grid + 560 + 8 * i, -1);
+    put_d(grid + 584 + 8 * i, 1);
+  }
+  size_t size;
+  unsigned char *file = make_file(grid, 0, &size);
+  bool done = write_bytes(name, file, size);
+  free(file);
+  free(grid);
+  return done;
+}
+
 static const char ply[] =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
     "float "
@@ -114,7 +140,8 @@ static bool write_files(void) {
               write_tilted("tilted.pfm") && write_lamp("lamp.ies");
   done = done && write_bytes("a.ply", ply, sizeof ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&
-         write_nanovdb("a.nvdb", 0) && write_nanovdb("b.nvdb", 1);
+         write_nanovdb("a.nvdb", 0) && write_nanovdb("b.nvdb", 1) &&
+         write_blocks("blocks.nvdb");
   return done;
 }
 

@@ -2,6 +2,7 @@
  * the rows; what they need beyond a row is the kind's case. */
 #include "cameras.h"
 #include "conformance.h"
+#include "densities.h"
 #include "files.h"
 #include "hostile.h"
 #include "lamps.h"
@@ -67,6 +68,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_filters),
       cmocka_unit_test(filters_of_light_paths),
       cmocka_unit_test(laws_of_media),
+      cmocka_unit_test(laws_of_densities),
       cmocka_unit_test(laws_of_tracers),
       cmocka_unit_test(limits_of_kinds),
       cmocka_unit_test(hostile_defs),

@@ -5,6 +5,7 @@
 #ifndef TEST_CONFORMANCE_TEXTURES_H
 #define TEST_CONFORMANCE_TEXTURES_H
 
+#include "../world/plain_noise.h"
 #include "conformance.h"
 #include "parameter_cases.h"
 #include "unit.h"
@@ -18,6 +19,36 @@ typedef struct TextureLaws {
   vlTraceRays *rays;
   vlTraceHits *hits;
 } TextureLaws;
+
+/* What the formula of a kind says. */
+typedef struct Formulas {
+  uint32_t points, wrong;
+  double is, not ; /* of one of the wrong values */
+} Formulas;
+
+/* Compares the value at hit i with the formula at a point. */
+static void compare_formula(const TextureLaws *t, uint32_t i, const TextureAt *at,
+                            Formulas *f) {
+  double rgb[3];
+  t->variant->formula(at, rgb);
+  bool wrong = false;
+  for (int c = 0; c < 3; c++) {
+    double known = fmin(fmax(rgb[c], 0), 1); /* a reflectance */
+    double value = (double)t->hits->reflectance[c][i];
+    if (fabs(value - known) <= 3e-3)
+      continue;
+    wrong = true;
+    f->is = value;
+    f->not = known;
+  }
+  f->points++;
+  f->wrong += wrong;
+}
+static void judge_formula(const TextureLaws *t, const Formulas *f) {
+  if (f->wrong > f->points / 50)
+    broken("textures", t->kind, "%s: %u of %u values, such as %.4f, not %.4f",
+           t->variant->parameters, f->wrong, f->points, f->is, f->not );
+}
 
 /* The square spans -1 to 1; its texture coordinates are 0 to 1. */
 static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
@@ -52,6 +83,14 @@ static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
         broken("textures", t->kind, "%s: value %.4f at uv (%g, %g), not %.4f", v->parameters,
                (double)value, v->known[i].u, v->known[i].v, v->known[i].rgb[c]);
     }
+  Formulas formulas = {0};
+  for (uint32_t i = 0; v->formula && i < VL_OWN_BATCH; i++) {
+    double x = (double)t->rays->origin[0][i];
+    double y = (double)t->rays->origin[1][i];
+    const TextureAt at = {0.5 * (x + 1), 0.5 * (y + 1), {x, y, 0}, plain_noise};
+    compare_formula(t, i, &at, &formulas);
+  }
+  judge_formula(t, &formulas);
   if (!v->even && !((double)(high - low) > 0.02))
     broken("textures", t->kind, "%s: no pattern", v->parameters);
 }
@@ -76,6 +115,17 @@ static void look_at_ball(vlTrace *trace, TextureLaws *t, const double (*points)[
   vl_world_trace(trace, t->rays, t->hits);
 }
 
+/* Compares those of a kind of texture space, where it has a formula. */
+static void check_ball_formula(const TextureLaws *t, const double (*points)[3]) {
+  Formulas formulas = {0};
+  for (uint32_t i = 0; t->variant->formula && i < VL_OWN_BATCH; i++) {
+    TextureAt at = {.noise = plain_noise};
+    memcpy(at.p, points[i], sizeof at.p);
+    compare_formula(t, i, &at, &formulas);
+  }
+  judge_formula(t, &formulas);
+}
+
 /* The second half of the points mirrors the first. */
 static void ask_along_axes(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   enum { HALF = VL_OWN_BATCH / 2 };
@@ -92,6 +142,7 @@ static void ask_along_axes(Probe *probe, vlTrace *trace, const vlOwnPaths *paths
     look_at_ball(trace, t, points, VL_OWN_BATCH);
     for (uint32_t i = 0; i < HALF; i++)
       differ += fabsf(t->hits->reflectance[1][i] - t->hits->reflectance[1][HALF + i]) > 0.005f;
+    check_ball_formula(t, points);
     if (differ < HALF / 10)
       broken("textures", t->kind, "%s: does not vary along %c", t->variant->parameters,
              "xyz"[axis]);

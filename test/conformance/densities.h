@@ -1,0 +1,102 @@
+/* conformance/densities.h: the extinction of media at points: that of the kind's formula, and
+ * nowhere above its majorant. */
+#ifndef TEST_CONFORMANCE_DENSITIES_H
+#define TEST_CONFORMANCE_DENSITIES_H
+
+#include "../world/plain_noise.h"
+#include "conformance.h"
+#include "medium/lookup.h"
+#include "parameter_cases.h"
+#include "transport.h"
+#include "unit.h"
+
+/* Points of the box whose x and y are inside of what the formulas describe (Roberts's sequence
+ * R3). */
+static void point_in_box(uint32_t i, double p[3]) {
+  p[0] = 0.49 * (2 * fmod(0.5 + i * 0.8191725133961645, 1.0) - 1);
+  p[1] = 0.49 * (2 * fmod(0.5 + i * 0.6710436067037893, 1.0) - 1);
+  p[2] = 2 * fmod(0.5 + i * 0.5497004779019703, 1.0) - 1;
+}
+
+static double extinction_at(const vlWorldMedium *m, const double p[3]) {
+  const float lambda[4] = {0, 0, 0, 0};
+  const vlMediumLight whole = vl_medium_coefficients(m, lambda);
+  const vlVec3 at = vl_vec3((float)p[0], (float)p[1], (float)p[2]);
+  const vlMediumLight here = m->uniform ? whole : vl_medium_at(m, &whole, lambda, at, false);
+  return (double)here.a[1] + (double)here.s[1];
+}
+
+/* The majorant of the cell around a point of a medium whose space is the world's. */
+static double majorant_at(const vlWorldMedium *m, const double p[3]) {
+  const float lambda[4] = {0, 0, 0, 0};
+  const vlMediumLight whole = vl_medium_coefficients(m, lambda);
+  size_t at = 0;
+  for (int k = 2; k >= 0; k--) {
+    const double low = (double)m->low[k];
+    const double q = (p[k] - low) / ((double)m->high[k] - low) * m->cells[k];
+    const uint32_t cell = q > 0 ? (uint32_t)q : 0;
+    at = at * m->cells[k] + (cell < m->cells[k] ? cell : m->cells[k] - 1);
+  }
+  const double factor = m->own_sigma ? 1 : (double)whole.a[1] + (double)whole.s[1];
+  return factor * (double)m->majorants[at];
+}
+
+/* Of the medium that a scene describes; density: null: not known. */
+static void check_densities(const char *kind, const char *parameters,
+                            double (*density)(const double p[3], PlainNoise *noise)) {
+  enum { POINTS = 2000 };
+  static char text[TEXT];
+  vlError error = {0};
+  vlWorld *world;
+  uint32_t wrong = 0;
+  uint32_t above = 0;
+  double is = 0;
+  double known = 0;
+  scene_text(text, medium_form, kind, parameters);
+  vlScene *scene = need_scene(text);
+  vlBuildDef def = vl_default_build_def();
+  def.color = VL_COLOR_RGB;
+  assert_int_equal(vl_world_build(scene, &def, &world, &error), VL_OK);
+  assert_int_equal(world->media.count, 1);
+  const vlWorldMedium *m = &world->media.items[0];
+  for (uint32_t i = 0; i < POINTS; i++) {
+    double p[3];
+    point_in_box(i, p);
+    const double here = extinction_at(m, p);
+    above += !m->uniform && here > majorant_at(m, p) * (1 + 1e-5);
+    if (!density || fabs(density(p, plain_noise) - here) <= 0.01 * here + 2e-3)
+      continue;
+    wrong++;
+    is = here;
+    known = density(p, plain_noise);
+  }
+  if (wrong > POINTS / 25)
+    broken("media", kind, "%s: the extinction of %u of %u points, such as %.4f, not %.4f",
+           parameters, wrong, POINTS, is, known);
+  if (above)
+    broken("media", kind, "%s: above its majorant at %u of %u points", parameters, above,
+           POINTS);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+}
+
+static void laws_of_densities(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("media");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const MediumCase *c = medium_cases[k];
+    const char *const forms[] = {c->absorbs, c->scatters, c->layers};
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+      char all[2000];
+      if (!forms[i])
+        continue;
+      snprintf(all, sizeof all, "%s%s", forms[i] == c->layers ? "" : c->shape, forms[i]);
+      check_densities(family->rows[k]->name, all, i == 0 ? c->density : NULL);
+    }
+    if (c->blocks)
+      check_densities(family->rows[k]->name, c->blocks, c->density_of_blocks);
+  }
+  expect_no_failures();
+}
+
+#endif

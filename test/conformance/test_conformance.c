@@ -6,6 +6,7 @@
 #include "files.h"
 #include "hostile.h"
 #include "lamps.h"
+#include "layers.h"
 #include "light_power.h"
 #include "lights.h"
 #include "materials.h"
@@ -47,6 +48,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(textures_of_parameters),
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(laws_of_shading),
+      cmocka_unit_test(laws_of_layers),
       cmocka_unit_test(laws_of_lights),
       cmocka_unit_test(laws_of_lamps),
       cmocka_unit_test(powers),

@@ -1,0 +1,198 @@
+/* conformance/layers.h: laws of materials that are made of others: mixtures with holes, coats
+ * over a base, glass whose index depends on the wavelength. */
+#ifndef TEST_CONFORMANCE_LAYERS_H
+#define TEST_CONFORMANCE_LAYERS_H
+
+#include "conformance.h"
+#include "materials.h"
+#include "shading.h"
+#include "unit.h"
+
+/* ---- mixtures with holes ----------------------------------------------------------------- */
+
+/* What rays find of a square: holes let them pass. */
+typedef struct Found {
+  Mean hit, red, hidden;
+  vlTraceRays *rays;
+  vlTraceHits *hits;
+} Found;
+
+static void ask_holes(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  static uint8_t hidden[VL_OWN_BATCH];
+  Found *f = probe->user;
+  (void)paths;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const uint32_t n = i + probe->batch * VL_OWN_BATCH;
+    const double from[3] = {1.9 * fmod(0.5 + n * 0.7548776662466927, 1.0) - 0.95,
+                            1.9 * fmod(0.5 + n * 0.5698402909980532, 1.0) - 0.95, 1};
+    const double down[3] = {0.01, 0.02, -1};
+    set_ray(f->rays, i, from, down);
+  }
+  vl_world_trace(trace, f->rays, f->hits);
+  vl_world_occluded(trace, f->rays, hidden);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const bool hit = isfinite(f->hits->t[i]);
+    const bool red = f->hits->reflectance[0][i] > 2 * f->hits->reflectance[1][i];
+    mean_add(&f->hit, hit);
+    mean_add(&f->red, hit && red);
+    mean_add(&f->hidden, hidden[i]);
+  }
+}
+
+/* A mixture of grey and of a mixture of nothing and red. Of the surface the share of grey is
+ * there, and of the rest the share of red. */
+static void check_holes(const char *materials, double amount, double grey) {
+  const double red = 0.3;
+  const Sight sight = {.slack = 1e-3, .least = 0.04};
+  char text[TEXT];
+  Found f = {.rays = new_rays(), .hits = calloc(1, sizeof(vlTraceHits))};
+  assert_non_null(f.hits);
+  snprintf(text, sizeof text,
+           HEAD "WorldBegin LightSource \"infinite\" " NAMED
+                "MakeNamedMaterial \"air\" \"string type\" \"interface\"\n"
+                "MakeNamedMaterial \"holes\" \"string type\" \"mix\" \"string materials\" "
+                "[\"air\" \"red\"] \"float amount\" %g\n"
+                "Material \"mix\" \"string materials\" [%s] \"float amount\" %g " SQUARE_UP,
+           red, materials, amount);
+  Probe probe = {.ask = ask_holes, .user = &f};
+  probe_world(text, &probe, 16);
+  check_mean("materials", "mix", "holes: rays that hit", &f.hit, grey + (1 - grey) * red,
+             sight);
+  check_mean("materials", "mix", "holes: rays that hit red", &f.red, (1 - grey) * red, sight);
+  check_mean("materials", "mix", "holes: rays that are stopped", &f.hidden,
+             grey + (1 - grey) * red, sight);
+  free(f.rays);
+  free(f.hits);
+}
+
+/* ---- coats ------------------------------------------------------------------------------- */
+
+/* The mean weight of a material's samples, of green, from four directions around the normal. */
+typedef struct Sent {
+  Mean light[4];
+  vlTraceRays *rays;
+  vlTraceHits *hits;
+  vlTraceBounce *next;
+} Sent;
+
+static void ask_sent(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  Sent *s = probe->user;
+  const uint32_t side = probe->batch % 4;
+  const double azimuth = 0.3 + 0.5 * PI * side;
+  const double eye[3] = {sin(0.9) * cos(azimuth), sin(0.9) * sin(azimuth), cos(0.9)};
+  (void)paths;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    rays_towards(s->rays, i, eye);
+  vl_world_trace(trace, s->rays, s->hits);
+  vl_trace_bounce(trace, 0, s->next);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    mean_add(&s->light[side], (double)s->next->weight[1][i]);
+}
+
+/* Of the last material of a text, on the square. */
+static Sent *light_sent(const char *materials, uint32_t batches) {
+  char text[TEXT];
+  Sent *s = calloc(1, sizeof *s);
+  assert_non_null(s);
+  s->rays = new_rays();
+  s->hits = calloc(1, sizeof *s->hits);
+  s->next = calloc(1, sizeof *s->next);
+  snprintf(text, sizeof text, HEAD "WorldBegin LightSource \"infinite\" %s " SQUARE_UP,
+           materials);
+  Probe probe = {.ask = ask_sent, .user = s};
+  probe_world(text, &probe, batches);
+  return s;
+}
+
+static void free_sent(Sent *s) {
+  free(s->rays);
+  free(s->hits);
+  free(s->next);
+  free(s);
+}
+
+/* A coat over a diffuse base, with further parameters. */
+#define COATED "Material \"coateddiffuse\" \"rgb reflectance\" [.9 .9 .9] "
+/* What scatters so little that its light does not count, but is followed step by step (pbrt
+ * book 14.3), not looked up in the table of a coat. */
+#define WALKS " \"rgb albedo\" [1e-6 1e-6 1e-6]"
+
+/* Another square with the material so far, which no ray meets. */
+#define ELSEWHERE "Translate 0 0 -9 " SQUARE_UP "Translate 0 0 9 "
+
+/* Two descriptions of one coat. */
+static const struct {
+  const char *name, *looked_up, *other;
+} coats[] = {
+    {"smooth, by walks", COATED "\"float roughness\" 0", COATED "\"float roughness\" 0" WALKS},
+    {"rough, by walks", COATED "\"float roughness\" .2", COATED "\"float roughness\" .2" WALKS},
+    {"few bounces, by walks", COATED "\"float roughness\" .2 \"integer maxdepth\" 3",
+     COATED "\"float roughness\" .2 \"integer maxdepth\" 3" WALKS},
+    {"rough along u, by walks", COATED "\"float uroughness\" .6 \"float vroughness\" .01",
+     COATED "\"float uroughness\" .6 \"float vroughness\" .01" WALKS},
+    {"rough along v, by walks", COATED "\"float uroughness\" .01 \"float vroughness\" .6",
+     COATED "\"float uroughness\" .01 \"float vroughness\" .6" WALKS},
+    /* coats of one world share tables, but not with those that differ */
+    {"beside one of other axes",
+     COATED "\"float uroughness\" .6 \"float vroughness\" .01 " ELSEWHERE COATED
+            "\"float uroughness\" .01 \"float vroughness\" .6",
+     COATED "\"float uroughness\" .01 \"float vroughness\" .6"},
+    {"beside one of more bounces",
+     COATED "\"float roughness\" .2 " ELSEWHERE COATED
+            "\"float roughness\" .2 \"integer maxdepth\" 1",
+     COATED "\"float roughness\" .2 \"integer maxdepth\" 1"},
+};
+
+static void check_coats(void) {
+  for (size_t i = 0; i < sizeof coats / sizeof *coats; i++) {
+    Sent *a = light_sent(coats[i].looked_up, 96);
+    Sent *b = light_sent(coats[i].other, 96);
+    for (int side = 0; side < 4; side++) {
+      char what[100];
+      snprintf(what, sizeof what, "a coat %s: light that is sent to side %d", coats[i].name,
+               side);
+      check_same_mean("materials", "coateddiffuse", what, &a->light[side], &b->light[side],
+                      (Sight){.slack = 4e-3, .least = 0.03});
+    }
+    free_sent(a);
+    free_sent(b);
+  }
+}
+
+/* The integral of green over all directions. */
+static double integral_of(const char *material) {
+  char text[TEXT];
+  double sum = 0;
+  snprintf(
+      text, sizeof text,
+      HEAD
+      "WorldBegin LightSource \"infinite\" Texture \"rising\" \"float\" \"bilerp\" "
+      "\"float v00\" .05 \"float v10\" .05 \"float v01\" .3 \"float v11\" .3\n%s " SQUARE_UP,
+      material);
+  Scattering *s = scattering_of(need_scene(text), text);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    sum += (double)s->value[1][i] * 4 * PI / VL_OWN_BATCH;
+  free_scattering(s);
+  return sum;
+}
+
+/* A textured roughness is that number: the square is hit where v is .6 and the texture .2. The
+ * table of coats of any roughness is interpolated, which adds .2 %. */
+static void check_textured_coat(void) {
+  double textured = integral_of(COATED "\"texture roughness\" \"rising\"");
+  double plain = integral_of(COATED "\"float roughness\" .2");
+  if (!(fabs(textured / plain - 1) < 3e-3))
+    broken("materials", "coateddiffuse",
+           "a textured roughness sends %.4f of the light, not %.4f", textured, plain);
+}
+
+static void laws_of_layers(void **state) {
+  (void)state;
+  check_holes("\"grey\" \"holes\"", 0.6, 0.4);
+  check_holes("\"holes\" \"grey\"", 0.4, 0.4);
+  check_coats();
+  check_textured_coat();
+  expect_no_failures();
+}
+
+#endif

@@ -21,6 +21,8 @@ typedef struct LightVariant {
   const char *parameters; /* null ends the list */
   LightKnown known[4];    /* of delta lights; rgb[1] = 0 ends the list unless x is set */
   uint32_t known_count;
+  double rim[4][2]; /* x and z of points of the floor at the end of what the light reaches; all
+                       0: none are known */
   bool compensated; /* directions darker than the mean are not sampled: BSDF samples find their
                        light */
 } LightVariant;

@@ -10,7 +10,8 @@ const LightCase projection_light = {
                        {-.5, .5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}},
                        {.5, -.5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
                        {1.2, 0, {0, 0, 0}}},
-             .known_count = 4},
+             .known_count = 4,
+             .rim = {{.97, .97}, {-.97, .97}, {.97, -.97}, {-.97, -.97}}},
         },
     .parameters = {{.base = "\"string filename\" \"sky.pfm\""}},
 };

@@ -17,11 +17,22 @@ static double fraction(double x) {
   return x - floor(x);
 }
 
+enum { EMITTED = 1 << 15 };
+
+/* Ray i of those that leave a light, whose choice is `way`. */
+static vlEmission emitted_ray(const vlWorld *world, const vlTwoWay *way, uint32_t i) {
+  const float lambda[4] = {0, 0, 0, 0};
+  /* Roberts' sequence in four dimensions */
+  const float u = (float)fraction(0.5 + i * 0.8566748838545029);
+  const float v = (float)fraction(0.5 + i * 0.7338918566271260);
+  const float s = (float)fraction(0.5 + i * 0.6287067210378087);
+  const float t = (float)fraction(0.5 + i * 0.5385972572236101);
+  return vl_emission_sample(world, way, lambda, 0.5f, u, v, s, t);
+}
+
 /* Luminance of what a light emits in all. The mean of samples: flux is radiance times the
  * cosine over the density of point and direction. */
 static Mean emitted_power(const vlWorld *world, uint32_t light) {
-  enum { EMITTED = 1 << 15 };
-  const float lambda[4] = {0, 0, 0, 0};
   float *choice = calloc(world->lights.count + 1, sizeof *choice);
   assert_non_null(choice);
   for (size_t k = light + 1; k <= world->lights.count; k++)
@@ -29,12 +40,7 @@ static Mean emitted_power(const vlWorld *world, uint32_t light) {
   const vlTwoWay way = {.choice = choice};
   Mean mean = {0};
   for (uint32_t i = 0; i < EMITTED; i++) {
-    /* Roberts' sequence in four dimensions */
-    const float u = (float)fraction(0.5 + i * 0.8566748838545029);
-    const float v = (float)fraction(0.5 + i * 0.7338918566271260);
-    const float s = (float)fraction(0.5 + i * 0.6287067210378087);
-    const float t = (float)fraction(0.5 + i * 0.5385972572236101);
-    const vlEmission e = vl_emission_sample(world, &way, lambda, 0.5f, u, v, s, t);
+    const vlEmission e = emitted_ray(world, &way, i);
     mean_add(&mean, e.valid ? luminance_of(e.flux) : 0);
   }
   free(choice);
@@ -106,9 +112,51 @@ static void check_scaled_power(const char *family, const char *kind, const char 
   check_chosen_power(family, kind, scaled, text);
 }
 
+/* The distance from a point of the floor to where the next of the light's rays meets it. */
+static double distance_to_rays(const vlWorld *world, const double at[2]) {
+  const float choice[2] = {0, 1};
+  vlTwoWay way = {0};
+  double nearest = INFINITY;
+  way.choice = (float *)(uintptr_t)choice;
+  for (uint32_t i = 0; i < EMITTED; i++) {
+    const vlEmission e = emitted_ray(world, &way, i);
+    if (!e.valid || !(luminance_of(e.flux) > 0) || !(e.d.y < 0))
+      continue;
+    const double t = (double)(-e.o.y / e.d.y);
+    const double x = (double)e.o.x + t * (double)e.d.x - at[0];
+    const double z = (double)e.o.z + t * (double)e.d.z - at[1];
+    nearest = fmin(nearest, hypot(x, z));
+  }
+  return nearest;
+}
+
+/* Where light arrives, light paths do, too. */
+static void check_rim(const char *kind, const LightVariant *v, const char *text) {
+  vlError error = {0};
+  vlWorld *world;
+  vlScene *scene = need_scene(text);
+  vlBuildDef def = vl_default_build_def();
+  def.color = VL_COLOR_RGB;
+  assert_int_equal(vl_world_build(scene, &def, &world, &error), VL_OK);
+  for (int i = 0; i < 4 && (v->rim[i][0] != 0 || v->rim[i][1] != 0); i++) {
+    const LightLaws l = ask_floor(text, v->rim[i][0], v->rim[i][1], 1);
+    const double far = distance_to_rays(world, v->rim[i]);
+    if (!(mean_of(&l.sampled[1]) > 0))
+      broken("lights", kind, "%s: no light at its rim", v->parameters);
+    if (!(far < 0.05))
+      broken("lights", kind, "%s: light paths end %.3f before (%g, %g)", v->parameters, far,
+             v->rim[i][0], v->rim[i][1]);
+  }
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+}
+
 static void check_power_of_light(const vlKindRow *row, const LightVariant *v,
                                  const char *form) {
+  static char text[TEXT];
   check_scaled_power("lights", row->name, form, v->parameters);
+  scene_text(text, form, row->name, v->parameters);
+  check_rim(row->name, v, text);
 }
 
 static void chosen_powers(void **state) {

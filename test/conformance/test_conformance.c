@@ -13,6 +13,7 @@
 #include "parameters.h"
 #include "radiometry.h"
 #include "sampling.h"
+#include "scrambles.h"
 #include "shading.h"
 #include "shapes.h"
 #include "surfaces.h"
@@ -67,6 +68,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_samplers),
       cmocka_unit_test(samplers_of_any_count),
       cmocka_unit_test(samplers_of_neighbours),
+      cmocka_unit_test(scrambles_of_samplers),
       cmocka_unit_test(laws_of_filters),
       cmocka_unit_test(filters_of_light_paths),
       cmocka_unit_test(laws_of_media),

@@ -342,6 +342,59 @@ static void check_merging(const char *name) {
   check_mean("tracers", name, "pane", &off, 0.5, (Sight){0.002 * 0.5, 0.08 * 0.5});
 }
 
+/* The floor y = 0 below a pane, which lies below the camera; the sun stands above, where a
+ * plate hides it from all points with x < 0. Merging alone finds its light. */
+static const char *const below_edge = HEAD
+    "WorldBegin LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb "
+    "L\" [3.1415927 3.1415927 3.1415927]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5] Shape \"bilinearmesh\" \"point3 P\" "
+    "[-1.4 0 1.4 1.4 0 1.4 -1.4 0 -1.4 1.4 0 -1.4]\n"
+    "Material \"thindielectric\" \"float eta\" 1 Shape \"bilinearmesh\" \"point3 P\" "
+    "[-1.5 .1 1.5 1.5 .1 1.5 -1.5 .1 -1.5 1.5 .1 -1.5]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"bilinearmesh\" \"point3 P\" "
+    "[-1.5 .5 1.5 0 .5 1.5 -1.5 .5 -1.5 0 .5 -1.5]\n";
+
+/* The mean radiance of the half of the view that lies in the shadow. */
+static double light_in_shadow(vlTracer tracer, double radius, uint32_t passes, uint32_t seed) {
+  enum { SIDE_OF_EDGE = 24 };
+  double sum = 0;
+  vlScene *scene = need_scene(below_edge);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->build.color = VL_COLOR_RGB;
+  look_down(&defs->camera, 0, 0, 2);
+  defs->camera.width = defs->camera.height = SIDE_OF_EDGE;
+  defs->camera.fx = defs->camera.fy = defs->camera.fx * SIDE_OF_EDGE / WIDTH;
+  defs->film = vl_default_film_def(SIDE_OF_EDGE, SIDE_OF_EDGE);
+  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->render.tracer = tracer;
+  defs->render.merge_radius = radius;
+  defs->render.spp = passes;
+  defs->render.seed = seed;
+  vlImage *image = need_image(scene, below_edge);
+  for (uint32_t y = 0; y < SIDE_OF_EDGE; y++)
+    for (uint32_t x = 0; x < SIDE_OF_EDGE / 2; x++)
+      sum += (double)vl_image_get(image, x, y, 1);
+  vl_image_destroy(image);
+  return sum / (SIDE_OF_EDGE * SIDE_OF_EDGE / 2);
+}
+
+/* Merging blurs the edge by a disk of the radius that is given: of a disk of radius r, 2 r / (3
+ * pi) is the mean depth of what reaches beyond a line through its middle. The radius of pass i
+ * is r i^(-1/6) (Knaus and Zwicker 2011, with alpha = 2/3). */
+static void check_radius(vlTracer tracer, const char *name) {
+  enum { PASSES = 64, SEEDS = 12 };
+  const double radius = 0.3;
+  double mean_radius = 0;
+  Mean found = {0};
+  for (int i = 1; i <= PASSES; i++)
+    mean_radius += radius * pow(i, -1.0 / 6) / PASSES;
+  for (uint32_t seed = 0; seed < SEEDS; seed++)
+    mean_add(&found, light_in_shadow(tracer, radius, PASSES, seed));
+  const double known = 0.5 * 2 * mean_radius / (3 * PI);
+  check_mean("tracers", name, "radius: light in the shadow", &found, known,
+             (Sight){0.02 * known, 0.2 * known});
+}
+
 /* Light paths add their light to the pixels around the point where the camera sees their end,
  * by the filter: the image of an even plate stays as bright, where no light comes from beyond
  * the image's edge. A pixel's filter takes light from its neighbours, so pixels are not
@@ -441,8 +494,10 @@ static void laws_of_tracers(void **state) {
       check_room(name, paths, c);
     check_tracer(name, "sky", below_sky, c->sky, c);
     check_tracer(name, "lamp", below_lamp, c->lamp, c);
-    if (c->blurs)
+    if (c->blurs) {
       check_merging(name);
+      check_radius((vlTracer)k, name);
+    }
     if (k != VL_TRACER_AMBIENT_OCCLUSION)
       continue;
     const char *rest = strstr(below_lamp, "WorldBegin");

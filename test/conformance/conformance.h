@@ -204,6 +204,7 @@ typedef struct Probe {
   void (*ask)(struct Probe *probe, vlTrace *trace, const vlOwnPaths *paths);
   void *user;
   uint32_t batch, batches;
+  bool spectral; /* in wavelengths, not in RGB */
 } Probe;
 
 static void probe_radiance(void *user, vlTrace *trace, const vlOwnPaths *paths) {
@@ -214,12 +215,12 @@ static void probe_radiance(void *user, vlTrace *trace, const vlOwnPaths *paths) 
   probe->batch++;
 }
 
-/* Builds the world of a scene in RGB, asks it `batches` times, and destroys the scene. text:
+/* Builds the world of a scene, asks it `batches` times, and destroys the scene. text:
  * for messages. */
 static void probe_scene(vlScene *scene, const char *text, Probe *probe, uint32_t batches) {
   vlSceneDefs *defs = vl_scene_defs(scene);
   const vlOwnTracer tracer = {.name = "probe", .radiance = probe_radiance, .user = probe};
-  defs->build.color = VL_COLOR_RGB;
+  defs->build.color = probe->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
   defs->camera = vl_default_camera_def(32, 32);
   defs->camera.fx = defs->camera.fy = 1e6; /* rays as narrow as can be: textures are sharp */
   defs->film = vl_default_film_def(32, 32);

@@ -186,12 +186,180 @@ static void check_textured_coat(void) {
            "a textured roughness sends %.4f of the light, not %.4f", textured, plain);
 }
 
+/* ---- by wavelengths ---------------------------------------------------------------------- */
+
+typedef struct Wavelengths {
+  Mean off[8];          /* of bands of wavelengths: what is reflected beyond the known */
+  double x[2][2], y[2]; /* sums of the regression of the index on 1 / lambda^2 */
+  vlTraceRays *rays;
+  vlTraceHits *hits;
+  vlTraceBounce *next;
+} Wavelengths;
+
+enum { BANDS = 8 };
+#define FILM_ANGLE 0.6
+#define GLASS_ANGLE 1.1
+#define FILM_INDEX 1.9
+#define FILM_NM 320.0
+#define BASE_INDEX 1.5
+
+static void bounce_from(Wavelengths *w, vlTrace *trace, double angle) {
+  double eye[3];
+  eye_direction(angle, eye);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    rays_towards(w->rays, i, eye);
+  vl_world_trace(trace, w->rays, w->hits);
+  vl_trace_bounce(trace, 0, w->next);
+}
+
+/* Fresnel's amplitude of reflection at an interface, of one polarisation; c: cosines. */
+static double amplitude(bool s, double n1, double c1, double n2, double c2) {
+  return s ? (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2)
+           : (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2);
+}
+
+/* The reflectance of a film in air on glass (Born and Wolf, "Principles of Optics", 7.6): of
+ * the amplitudes a and b of its two sides and the phase p between them it is |a + b e^ip|^2 /
+ * |1 + a b e^ip|^2. */
+static double film_reflectance(double lambda) {
+  const double c1 = cos(FILM_ANGLE);
+  const double c2 = sqrt(1 - pow(sin(FILM_ANGLE) / FILM_INDEX, 2));
+  const double c3 = sqrt(1 - pow(sin(FILM_ANGLE) / BASE_INDEX, 2));
+  const double phase = 4 * PI * FILM_INDEX * FILM_NM * c2 / lambda;
+  double sum = 0;
+  for (int s = 0; s < 2; s++) {
+    const double a = amplitude(s, 1, c1, FILM_INDEX, c2);
+    const double b = amplitude(s, FILM_INDEX, c2, BASE_INDEX, c3);
+    const double up = pow(a + b * cos(phase), 2) + pow(b * sin(phase), 2);
+    const double down = pow(1 + a * b * cos(phase), 2) + pow(a * b * sin(phase), 2);
+    sum += 0.5 * up / down;
+  }
+  return sum;
+}
+
+static void ask_film(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  Wavelengths *w = probe->user;
+  bounce_from(w, trace, FILM_ANGLE);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    for (int c = 0; c < 4; c++) {
+      const double lambda = (double)paths->lambda[c][i];
+      const int band = (int)((lambda - 400) / 40);
+      if (lambda >= 400 && band < BANDS)
+        mean_add(&w->off[band], (double)w->next->weight[c][i] - film_reflectance(lambda));
+    }
+}
+
+/* The index by which the ray was refracted, against 1 / lambda^2 (Cauchy's law). */
+static void ask_glass(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  Wavelengths *w = probe->user;
+  bounce_from(w, trace, GLASS_ANGLE);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const double across =
+        hypot((double)w->next->rays.direction[0][i], (double)w->next->rays.direction[1][i]);
+    if (!(w->next->weight[0][i] > 0 && w->next->rays.direction[2][i] < 0))
+      continue;
+    const double index = sin(GLASS_ANGLE) / across;
+    const double row[2] = {1, 1e5 / pow((double)paths->lambda[0][i], 2)};
+    for (int k = 0; k < 2; k++) {
+      w->y[k] += row[k] * index;
+      for (int j = 0; j < 2; j++)
+        w->x[k][j] += row[k] * row[j];
+    }
+  }
+}
+
+/* The square with a principled material, in wavelengths. */
+static Wavelengths ask_wavelengths(const vlMaterialDef *def,
+                                   void (*ask)(Probe *, vlTrace *, const vlOwnPaths *)) {
+  Wavelengths w = {.rays = new_rays(),
+                   .hits = calloc(1, sizeof(vlTraceHits)),
+                   .next = calloc(1, sizeof(vlTraceBounce))};
+  Probe probe = {.ask = ask, .user = &w, .spectral = true};
+  vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
+  add_square(scene, def);
+  probe_scene(scene, "a material of one's own", &probe, 32);
+  free(w.rays);
+  free(w.hits);
+  free(w.next);
+  return w;
+}
+
+static void check_film(void) {
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
+  def.reflectance = vl_spectrum_input(vl_spectrum_constant(0.0f));
+  def.principled.metallic.value = 0;
+  def.principled.roughness.value = 0;
+  def.principled.iridescence.value = 1;
+  def.principled.iridescence_ior = (float)FILM_INDEX;
+  def.principled.iridescence_thickness.value = (float)FILM_NM;
+  const Wavelengths w = ask_wavelengths(&def, ask_film);
+  for (int k = 0; k < BANDS; k++) {
+    char what[80];
+    snprintf(what, sizeof what, "a thin film at %d nm, beyond its reflectance", 420 + 40 * k);
+    check_mean("materials", "principled", what, &w.off[k], 0,
+               (Sight){.slack = 3e-3, .least = 0.02});
+  }
+}
+
+/* glTF's KHR_materials_dispersion: 20 over the Abbe number, (n_d - 1) / (n_F - n_C), at the
+ * lines d, F and C of helium and hydrogen. */
+static void check_dispersion(double dispersion) {
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
+  def.principled.metallic.value = 0;
+  def.principled.roughness.value = 0;
+  def.principled.transmission.value = 1;
+  def.principled.thin_walled = false;
+  def.principled.dispersion = (float)dispersion;
+  const Wavelengths w = ask_wavelengths(&def, ask_glass);
+  const double det = w.x[0][0] * w.x[1][1] - w.x[0][1] * w.x[1][0];
+  const double a = (w.y[0] * w.x[1][1] - w.y[1] * w.x[0][1]) / det;
+  const double b = 1e5 * (w.y[1] * w.x[0][0] - w.y[0] * w.x[1][0]) / det;
+  const double d = a + b / pow(587.56, 2);
+  const double abbe = (d - 1) / (b / pow(486.13, 2) - b / pow(656.27, 2));
+  if (!(fabs(d - BASE_INDEX) < 2e-3 && fabs(abbe * dispersion / 20 - 1) < 0.05))
+    broken("materials", "principled",
+           "dispersion %g: index %.4f and Abbe number %.3f, not %.1f and %.3f", dispersion, d,
+           abbe, BASE_INDEX, 20 / dispersion);
+}
+
+/* ---- white ------------------------------------------------------------------------------- */
+
+/* Layers that absorb nothing over what absorbs nothing send all light back. */
+static const char *const whites[] = {
+    "\"float metallic\" 0 \"float roughness\" .5",
+    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"float clearcoat\" 1 \"float "
+    "clearcoatroughness\" .5",
+    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"float clearcoat\" 1",
+    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"rgb sheencolor\" [1 1 1] "
+    "\"float sheenroughness\" .5",
+    "\"float metallic\" 1 \"float roughness\" .6",
+};
+
+static void check_whites(void) {
+  for (size_t i = 0; i < sizeof whites / sizeof *whites; i++) {
+    char material[400];
+    snprintf(material, sizeof material, "Material \"principled\" \"rgb basecolor\" [1 1 1] %s",
+             whites[i]);
+    Sent *s = light_sent(material, 64);
+    char what[300];
+    snprintf(what, sizeof what, "white, %s: light that is sent", whites[i]);
+    for (int side = 0; side < 4; side++)
+      check_mean("materials", "principled", what, &s->light[side], 1,
+                 (Sight){.slack = 5e-3, .least = 0.03});
+    free_sent(s);
+  }
+}
+
 static void laws_of_layers(void **state) {
   (void)state;
   check_holes("\"grey\" \"holes\"", 0.6, 0.4);
   check_holes("\"holes\" \"grey\"", 0.4, 0.4);
   check_coats();
   check_textured_coat();
+  check_film();
+  check_dispersion(1);
+  check_dispersion(2);
+  check_whites();
   expect_no_failures();
 }
 

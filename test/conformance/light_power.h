@@ -115,9 +115,8 @@ static void check_scaled_power(const char *family, const char *kind, const char 
 /* The distance from a point of the floor to where the next of the light's rays meets it. */
 static double distance_to_rays(const vlWorld *world, const double at[2]) {
   const float choice[2] = {0, 1};
-  vlTwoWay way = {0};
+  const vlTwoWay way = {.choice = choice};
   double nearest = INFINITY;
-  way.choice = (float *)(uintptr_t)choice;
   for (uint32_t i = 0; i < EMITTED; i++) {
     const vlEmission e = emitted_ray(world, &way, i);
     if (!e.valid || !(luminance_of(e.flux) > 0) || !(e.d.y < 0))

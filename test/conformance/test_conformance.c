@@ -60,6 +60,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_shapes),
       cmocka_unit_test(laws_of_surfaces),
       cmocka_unit_test(laws_of_textures),
+      cmocka_unit_test(laws_of_footprints),
       cmocka_unit_test(laws_of_mappings),
       cmocka_unit_test(laws_of_texels),
       cmocka_unit_test(laws_of_projections),

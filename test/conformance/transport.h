@@ -9,6 +9,7 @@
 #include "medium/medium.case.h"
 #include "tracer/tracer.case.h"
 #include "unit.h"
+#include "velo/edit.h"
 #include "velo/filter_kinds.h"
 #include "velo/tracer.h"
 
@@ -166,6 +167,39 @@ static void check_alike(const char *name, const MediumCase *c) {
     broken("media", name, "the same by another scale: colours differ by %.4f", worst);
 }
 
+/* Absorption by channel, as glTF has it (KHR_materials_volume): in wavelengths, too, exp(-scale
+ * sigma x) of each channel of linear sRGB remains behind the box. */
+static void check_channels(void) {
+  static char text[TEXT];
+  static const float sigma[3] = {0.1f, 0.3f, 0.6f};
+  const double scale = 1.7;
+  vlError error = {0};
+  scene_text(text, medium_form, "homogeneous", "\"rgb sigma_s\" [0 0 0]");
+  vlScene *scene = need_scene(text);
+  const vlMediumId id = {1};
+  vlMediumDef medium = *vl_scene_medium(scene, id);
+  medium.rgb_absorption = true;
+  medium.sigma_a = vl_spectrum_rgb(sigma[0], sigma[1], sigma[2]);
+  medium.scale = (float)scale;
+  assert_int_equal(vl_scene_set_medium(scene, id, &medium, &error), VL_OK);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->build.color = VL_COLOR_SPECTRAL;
+  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->render.spp = MEDIUM_SPP;
+  vlImage *image = need_image(scene, text);
+  for (uint32_t channel = 0; channel < 3; channel++) {
+    char what[60];
+    Mean passes = {0};
+    for (uint32_t i = 0; i < vl_image_width(image) * vl_image_height(image); i++)
+      mean_add(&passes, (double)vl_image_get(image, i % vl_image_width(image),
+                                             i / vl_image_width(image), channel));
+    snprintf(what, sizeof what, "absorption by channel: channel %u behind the box", channel);
+    check_mean("media", "homogeneous", what, &passes, exp(-2 * scale * (double)sigma[channel]),
+               (Sight){.slack = 3e-3, .least = 0.03});
+  }
+  vl_image_destroy(image);
+}
+
 static void check_medium(const char *name, const MediumCase *c) {
   const Sight sight = {.slack = 2e-3, .least = 0.02};
   Mean kept = mean_medium(name, c, c->scatters);
@@ -219,6 +253,7 @@ static void laws_of_media(void **state) {
     assert_non_null(medium_cases[k]->scatters);
     check_medium(family->rows[k]->name, medium_cases[k]);
   }
+  check_channels();
   expect_no_failures();
 }
 

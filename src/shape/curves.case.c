@@ -8,6 +8,9 @@
 #define STRAIGHT "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width\" .1 "
 #define TAPERED \
   "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width0\" .05 \"float width1\" .15 "
+#define TWISTED                                                                                 \
+  "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width\" .3 \"string type\" \"ribbon\" " \
+  "\"normal N\" [0 0 1 0 1 0]"
 #define BENT "\"point3 P\" [-1 0 0 -.3 1 .2 .3 -1 -.2 1 0 0]"
 
 const ShapeCase curves_shape = {
@@ -26,6 +29,15 @@ const ShapeCase curves_shape = {
              .faces_rays = true, /* its points lie across the ray, as in pbrt */
              .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, NAN}},
              .known_count = 1},
+            /* its normal turns evenly from z to y: by 67.5 degrees at u = .75, where it is seen
+             * .114805 wide */
+            {.parameters = TWISTED,
+             .area = 0.36 * 8 / (3 * HALF_TURN),
+             .reach = 0.63,
+             .faces_rays = true,
+             .known = {{{.3, .05, 1}, {0, 0, -1}, 1, .75, NAN, .38268343},
+                       {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
+             .known_count = 2},
             {.parameters = STRAIGHT "\"string type\" \"cylinder\"",
              .area = 0.12 * HALF_TURN / 2,
              .reach = 0.61,

@@ -28,7 +28,7 @@ typedef struct ShapeVariant {
   uint32_t known_count;
 } ShapeVariant;
 
-enum { SHAPE_VARIANTS = 4 };
+enum { SHAPE_VARIANTS = 5 };
 typedef struct ShapeCase {
   ShapeVariant variants[SHAPE_VARIANTS];
   ParameterCase parameters[PARAMETER_CASES];

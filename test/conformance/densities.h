@@ -18,11 +18,14 @@ static void point_in_box(uint32_t i, double p[3]) {
   p[2] = 2 * fmod(0.5 + i * 0.5497004779019703, 1.0) - 1;
 }
 
-static double extinction_at(const vlWorldMedium *m, const double p[3]) {
+static vlMediumLight medium_at(const vlWorldMedium *m, const double p[3]) {
   const float lambda[4] = {0, 0, 0, 0};
   const vlMediumLight whole = vl_medium_coefficients(m, lambda);
   const vlVec3 at = vl_vec3((float)p[0], (float)p[1], (float)p[2]);
-  const vlMediumLight here = m->uniform ? whole : vl_medium_at(m, &whole, lambda, at, false);
+  return m->uniform ? whole : vl_medium_at(m, &whole, lambda, at, true);
+}
+static double extinction_at(const vlWorldMedium *m, const double p[3]) {
+  const vlMediumLight here = medium_at(m, p);
   return (double)here.a[1] + (double)here.s[1];
 }
 
@@ -41,23 +44,52 @@ static double majorant_at(const vlWorldMedium *m, const double p[3]) {
   return factor * (double)m->majorants[at];
 }
 
-/* Of the medium that a scene describes; density: null: not known. */
-static void check_densities(const char *kind, const char *parameters,
-                            double (*density)(const double p[3], PlainNoise *noise)) {
-  enum { POINTS = 2000 };
+/* The world of a box of the medium. */
+static vlWorld *world_of_medium(const char *kind, const char *parameters) {
   static char text[TEXT];
   vlError error = {0};
   vlWorld *world;
-  uint32_t wrong = 0;
-  uint32_t above = 0;
-  double is = 0;
-  double known = 0;
   scene_text(text, medium_form, kind, parameters);
   vlScene *scene = need_scene(text);
   vlBuildDef def = vl_default_build_def();
   def.color = VL_COLOR_RGB;
   assert_int_equal(vl_world_build(scene, &def, &world, &error), VL_OK);
   assert_int_equal(world->media.count, 1);
+  vl_scene_destroy(scene);
+  return world;
+}
+
+/* Two descriptions of one glow, in the middle of the box, where no grid fades. */
+static void check_glows(const char *kind, const MediumCase *c) {
+  enum { POINTS = 500 };
+  vlWorld *worlds[2] = {world_of_medium(kind, c->glows[0]), world_of_medium(kind, c->glows[1])};
+  uint32_t wrong = 0;
+  double sum = 0;
+  for (uint32_t i = 0; i < POINTS; i++) {
+    double p[3];
+    point_in_box(i, p);
+    p[2] *= 0.49;
+    const double a = (double)medium_at(&worlds[0]->media.items[0], p).le[0];
+    const double b = (double)medium_at(&worlds[1]->media.items[0], p).le[0];
+    sum += a;
+    wrong += fabs(a - b) > 1e-3 * b;
+  }
+  if (wrong || !(sum > 0))
+    broken("media", kind, "%s: the glow of %u of %u points is not that of %s", c->glows[0],
+           wrong, POINTS, c->glows[1]);
+  vl_world_destroy(worlds[0]);
+  vl_world_destroy(worlds[1]);
+}
+
+/* Of the medium that a scene describes; density: null: not known. */
+static void check_densities(const char *kind, const char *parameters,
+                            double (*density)(const double p[3], PlainNoise *noise)) {
+  enum { POINTS = 2000 };
+  uint32_t wrong = 0;
+  uint32_t above = 0;
+  double is = 0;
+  double known = 0;
+  vlWorld *world = world_of_medium(kind, parameters);
   const vlWorldMedium *m = &world->media.items[0];
   for (uint32_t i = 0; i < POINTS; i++) {
     double p[3];
@@ -77,7 +109,6 @@ static void check_densities(const char *kind, const char *parameters,
     broken("media", kind, "%s: above its majorant at %u of %u points", parameters, above,
            POINTS);
   vl_world_destroy(world);
-  vl_scene_destroy(scene);
 }
 
 static void laws_of_densities(void **state) {
@@ -93,6 +124,8 @@ static void laws_of_densities(void **state) {
       snprintf(all, sizeof all, "%s%s", forms[i] == c->layers ? "" : c->shape, forms[i]);
       check_densities(family->rows[k]->name, all, i == 0 ? c->density : NULL);
     }
+    if (c->glows[0])
+      check_glows(family->rows[k]->name, c);
     if (c->blocks)
       check_densities(family->rows[k]->name, c->blocks, c->density_of_blocks);
   }

@@ -333,8 +333,10 @@ static const char *const whites[] = {
     "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"rgb sheencolor\" [1 1 1] "
     "\"float sheenroughness\" .5",
     /* the strongest channel alone */
-    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"rgb sheencolor\" [.2 1 "
-    ".5] \"float sheenroughness\" .5",
+    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"rgb sheencolor\" [0 1 "
+    "0] \"float sheenroughness\" .5",
+    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"rgb sheencolor\" [0 1 "
+    "0] \"float sheenroughness\" 1",
     "\"float metallic\" 1 \"float roughness\" .6",
 };
 

@@ -202,6 +202,69 @@ static void check_shape(const vlKindRow *row, const char *directive, const Shape
   free(s.hits);
 }
 
+/* The shading normals that rays through the middle find, or 0. */
+typedef struct Sides {
+  float shading[3][VL_OWN_BATCH];
+  vlTraceRays *rays;
+  vlTraceHits *hits;
+} Sides;
+
+static void ask_sides(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  Sides *s = probe->user;
+  (void)paths;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double d[3];
+    even_direction(i, VL_OWN_BATCH, 0.2, d);
+    const double origin[3] = {0.05 - 2 * d[0], 0.02 - 2 * d[1], 0.03 - 2 * d[2]};
+    set_ray(s->rays, i, origin, d);
+  }
+  vl_world_trace(trace, s->rays, s->hits);
+  memcpy(s->shading, s->hits->shading, sizeof s->shading);
+}
+
+static Sides *sides_of(const char *before, const char *directive, const char *parameters) {
+  char form[400];
+  static char text[TEXT];
+  Sides *s = calloc(1, sizeof *s);
+  assert_non_null(s);
+  s->rays = new_rays();
+  s->hits = calloc(1, sizeof *s->hits);
+  snprintf(form, sizeof form,
+           HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" %s Shape %%s",
+           before);
+  scene_text(text, form, directive, parameters);
+  Probe probe = {.ask = ask_sides, .user = s};
+  probe_world(text, &probe, 1);
+  return s;
+}
+
+/* A surface that is turned inside out has its outside on the other side: its normals are the
+ * opposite ones. */
+static void check_sides(const vlKindRow *row, const ShapeVariant *v) {
+  Sides *s = sides_of("", row->name, v->parameters);
+  Sides *reversed = sides_of("ReverseOrientation", row->name, v->parameters);
+  uint32_t hit = 0;
+  uint32_t wrong = 0;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double left = 0;
+    if (!isfinite(s->hits->t[i]))
+      continue;
+    for (int k = 0; k < 3; k++)
+      left = fmax(left, fabs((double)s->shading[k][i] + (double)reversed->shading[k][i]));
+    hit++;
+    wrong += left > 1e-3;
+  }
+  if (hit < 10 || wrong)
+    broken("shapes", row->name, "%s, inside out: %u of %u normals are not the opposite",
+           v->parameters, wrong, hit);
+  free(s->rays);
+  free(s->hits);
+  free(s);
+  free(reversed->rays);
+  free(reversed->hits);
+  free(reversed);
+}
+
 static void laws_of_shapes(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("shapes");
@@ -210,6 +273,7 @@ static void laws_of_shapes(void **state) {
     assert_non_null(c->variants[0].parameters);
     for (int i = 0; i < SHAPE_VARIANTS && c->variants[i].parameters; i++)
       check_shape(family->rows[k], family->rows[k]->name, &c->variants[i]);
+    check_sides(family->rows[k], &c->variants[0]);
   }
   expect_no_failures();
 }

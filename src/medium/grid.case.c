@@ -36,12 +36,11 @@ const MediumCase grid_medium = {
     .passes = 0.631678,
     .density = density,
     /* (temperature - 300) 1.4 */
-    .glows = {BLOCKS
-              "\"float density\" " EIGHT " \"float temperature\" [900 1500 2000 2500 900 "
-              "1500 1200 3000] \"float temperatureoffset\" 300 \"float temperaturescale\" 1.4",
-              BLOCKS "\"float density\" " EIGHT
-                     " \"float temperature\" [840 1680 2380 3080 840 "
-                     "1680 1260 3780]"},
+    .hot = {BLOCKS
+            "\"float density\" " EIGHT " \"float temperature\" [900 1500 2000 2500 900 "
+            "1500 1200 3000] \"float temperatureoffset\" 300 \"float temperaturescale\" 1.4",
+            BLOCKS "\"float density\" " EIGHT " \"float temperature\" [840 1680 2380 3080 840 "
+                   "1680 1260 3780]"},
     .alike = {"\"rgb sigma_a\" [.2 .5 .9] \"rgb sigma_s\" [.1 .3 .2] \"float density\" " EIGHT,
               "\"rgb sigma_a\" [.1 .25 .45] \"rgb sigma_s\" [.05 .15 .1] \"float scale\" 2 "
               "\"float density\" " EIGHT},

@@ -59,10 +59,10 @@ static vlWorld *world_of_medium(const char *kind, const char *parameters) {
   return world;
 }
 
-/* Two descriptions of one glow, in the middle of the box, where no grid fades. */
-static void check_glows(const char *kind, const MediumCase *c) {
+/* Two descriptions of one emission, in the middle of the box, where no grid fades. */
+static void check_emission_of_heat(const char *kind, const MediumCase *c) {
   enum { POINTS = 500 };
-  vlWorld *worlds[2] = {world_of_medium(kind, c->glows[0]), world_of_medium(kind, c->glows[1])};
+  vlWorld *worlds[2] = {world_of_medium(kind, c->hot[0]), world_of_medium(kind, c->hot[1])};
   uint32_t wrong = 0;
   double sum = 0;
   for (uint32_t i = 0; i < POINTS; i++) {
@@ -75,8 +75,8 @@ static void check_glows(const char *kind, const MediumCase *c) {
     wrong += fabs(a - b) > 1e-3 * b;
   }
   if (wrong || !(sum > 0))
-    broken("media", kind, "%s: the glow of %u of %u points is not that of %s", c->glows[0],
-           wrong, POINTS, c->glows[1]);
+    broken("media", kind, "%s: the emission of %u of %u points is not that of %s", c->hot[0],
+           wrong, POINTS, c->hot[1]);
   vl_world_destroy(worlds[0]);
   vl_world_destroy(worlds[1]);
 }
@@ -124,8 +124,8 @@ static void laws_of_densities(void **state) {
       snprintf(all, sizeof all, "%s%s", forms[i] == c->layers ? "" : c->shape, forms[i]);
       check_densities(family->rows[k]->name, all, i == 0 ? c->density : NULL);
     }
-    if (c->glows[0])
-      check_glows(family->rows[k]->name, c);
+    if (c->hot[0])
+      check_emission_of_heat(family->rows[k]->name, c);
     if (c->blocks)
       check_densities(family->rows[k]->name, c->blocks, c->density_of_blocks);
   }

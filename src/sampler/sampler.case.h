@@ -13,6 +13,7 @@ typedef struct SamplerCase {
   bool centre;    /* numbers are the centres of cells: not even inside */
   bool any_count; /* rows and cells for any number of samples */
   bool curve;     /* the samples of 2 x 2 pixels are points of one set, too */
+  bool scattered; /* numbers that have an interval each stand in it by chance of their own */
   bool hash;      /* no better than independent numbers */
 } SamplerCase;
 

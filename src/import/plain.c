@@ -2,6 +2,8 @@
  * material. */
 #include "import/plain.h"
 
+#include "import/far.h"
+
 #include <string.h>
 
 #include "base/file.h"
@@ -149,6 +151,7 @@ vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef 
   def.uvs = m->uvs;
   def.colors = m->colors;
   def.indices = m->indices;
+  vl_far_place(m->origin, &def);
   def.material = add_material(scene, m->colors != NULL);
   vlRepairs repairs = {0};
   if (load && load->permissive)
@@ -180,5 +183,6 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load,
   vl_free(context, mesh.quad_indices);
   vlPlainMesh plain = {mesh.vertices, mesh.triangles, mesh.positions,   mesh.normals,
                        mesh.uvs,      mesh.colors,    mesh.face_colors, mesh.triangle_indices};
+  memcpy(plain.origin, mesh.origin, sizeof plain.origin);
   return vl_import_plain_mesh(scene, path, load, &plain, error);
 }

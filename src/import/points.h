@@ -12,6 +12,7 @@ typedef struct vlPlainMesh {
   float *colors;                    /* 4 per vertex, linear, or null */
   float *face_colors;               /* 3 per triangle, linear, or null; colors go before */
   uint32_t *indices;                /* 3 per triangle */
+  double origin[3];                 /* of the positions (far.h) */
 } vlPlainMesh;
 
 /* Replaces the vertices of a mesh without triangles by discs or balls. path: for the note.

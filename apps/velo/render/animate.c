@@ -11,6 +11,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/job.h"
+#include "render/near.h"
 #include "render/pattern.h"
 
 enum { PATH_SIZE = 4096, MAX_FRAMES = 1000000 };
@@ -181,7 +182,7 @@ static vlResult between(void *user, vlContext *context, uint32_t before, uint32_
   v[RENDER_SHUTTER].given = false;
   v[RENDER_ANIMATE].given = false;
   v[RENDER_ENVIRONMENT] = (OptionValue){.given = true, .text = "none"}; /* light has no flow */
-  SceneOpening opening = {.silent = true};
+  SceneOpening opening = {.silent = true, .pictures = near_is_allowed(x->arguments)};
   vlScene *scene = NULL;
   *result = NULL;
   *span = to - from;

@@ -15,6 +15,7 @@
 #include "render/exposure.h"
 #include "render/first_image.h"
 #include "render/lens_options.h"
+#include "render/near.h"
 #include "render/needs.h"
 #include "render/noise.h"
 #include "render/output_names.h"
@@ -341,6 +342,7 @@ static int open_scene(Render *render, const char *path, const Arguments *argumen
     return -1;
   }
   render->opening.silent = silent;
+  render->opening.pictures = near_is_allowed(arguments);
   int status = scene_open(render->context, path, arguments, &render->scene, &render->opening);
   if (status < 0 && shared && shared->still) {
     shared->scene = render->scene;

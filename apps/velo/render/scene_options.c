@@ -10,6 +10,7 @@
 #include "cli/vector.h"
 #include "render/exposure.h"
 #include "render/job.h"
+#include "render/near.h"
 #include "render/scene_options.h"
 #include "velo/camera.h"
 #include "velo/check.h"
@@ -159,17 +160,17 @@ void scene_choose_up(int axis, vlCompleteDef *def) {
   }
 }
 
-/* Reports the lecture's parameters of the added camera. d: distance of the view plane in
- * pixels. */
-static void tell_camera(const vlSceneDefs *s) {
+/* Reports the lecture's parameters of the added camera, where the file has its model. d:
+ * distance of the view plane in pixels. */
+static void tell_camera(const vlSceneDefs *s, const double moved[3]) {
   const vlCameraDef *c = &s->camera;
   double d = 0.5 * (s->film.width < s->film.height ? s->film.width : s->film.height) /
              tan(0.5 * c->fov);
   report_note(
       "no camera in the file: eye (%.5g, %.5g, %.5g), lookat (%.5g, %.5g, %.5g), up (%.3g, "
       "%.3g, %.3g), d %.5g pixels",
-      c->eye[0], c->eye[1], c->eye[2], c->lookat[0], c->lookat[1], c->lookat[2], c->up[0],
-      c->up[1], c->up[2], d);
+      c->eye[0] + moved[0], c->eye[1] + moved[1], c->eye[2] + moved[2], c->lookat[0] + moved[0],
+      c->lookat[1] + moved[1], c->lookat[2] + moved[2], c->up[0], c->up[1], c->up[2], d);
 }
 
 /* Reads --at T, --at T0:T1 and --shutter S. */
@@ -291,6 +292,18 @@ static int choose_load(const char *path, const Arguments *arguments,
   return status;
 }
 
+/* Moves a model far from the origin, where its pictures gain by that. */
+static int bring_near(vlScene *scene, const char *path, SceneOpening *opening) {
+  Near near = {.path = path, .pictures = opening->pictures, .silent = opening->silent};
+  memcpy(near.low, opening->low, sizeof near.low);
+  memcpy(near.high, opening->high, sizeof near.high);
+  const int status = near_move(scene, &near);
+  memcpy(opening->low, near.low, sizeof near.low);
+  memcpy(opening->high, near.high, sizeof near.high);
+  memcpy(opening->moved, near.moved, sizeof near.moved);
+  return status;
+}
+
 /* Loads the scene and adds what it lacks. lit_inside: with lamps. */
 static int load_and_complete(vlContext *context, const char *path, const Arguments *arguments,
                              bool lit_inside, vlScene **scene, SceneOpening *opening) {
@@ -331,8 +344,9 @@ static int load_and_complete(vlContext *context, const char *path, const Argumen
                       complete.environment == VL_ENVIRONMENT_AUTO &&
                       opening->environment == VL_ENVIRONMENT_NONE;
   opening->camera_added = camera;
+  const int status = camera && opening->model ? bring_near(*scene, path, opening) : -1;
   opening->camera = defs->camera;
-  return -1;
+  return status;
 }
 
 /* Whether the model's own camera may be inside it, where the studio's light does not come: a
@@ -414,5 +428,5 @@ void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlScene
     turn_camera(&defs->camera, opening->low, opening->high, opening->camera_added,
                 opening->complete.up, turned->number);
   if (opening->camera_added && !opening->silent)
-    tell_camera(defs);
+    tell_camera(defs, opening->moved);
 }

@@ -19,11 +19,13 @@ typedef struct SceneOpening {
                                     surfaces light */
   bool self_lit;          /* surfaces of a model's file light it, and nothing is added */
   bool silent;            /* input: the camera that is added is not reported */
+  bool pictures;          /* input: pictures alone are written (near.h) */
   const vlCancel *cancel; /* input: stops the load; null: nothing does */
   const char *text; /* input: a pbrt scene in memory, in place of the file; null: the file */
   bool model; /* a file of a model: its exposure is metered, its default output is a .png */
   vlEnvironmentKind environment; /* what is added: VL_ENVIRONMENT_NONE or a kind other than
                                     VL_ENVIRONMENT_AUTO */
+  double moved[3];               /* what was subtracted from all positions (near.h) */
   bool camera_added;             /* the file has no camera: one was made for the scene */
   vlCameraDef camera;            /* before it was turned */
   vlWorld *metered;              /* the world with which the model was found lit or dark, for

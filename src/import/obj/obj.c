@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "image/pixel.h"
+#include "import/far.h"
 #include "import/import.h"
 #include "import/pbrt/decimal.h"
 #include "import/plain.h"
@@ -159,6 +160,10 @@ static bool read_vertex(vlObj *obj) {
   if (!numbers(obj, "v", 3, 7, v, &count))
     return false;
   size_t before = obj->positions.count;
+  if (!before && fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))) >= VL_FAR_LEAST)
+    vl_obj_find_origin(obj);
+  for (int i = 0; i < 3; i++)
+    v[i] -= obj->origin[i];
   if (!vl_obj_push(obj, &obj->positions, 3, v, "vertices"))
     return false;
   for (int i = 0; i < 3; i++) {
@@ -500,6 +505,7 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
     obj->strict = def->strict;
     obj->search_path = def->search_path;
   }
+  obj->data_end = data + size;
   for (int i = 0; i < 3; i++) {
     obj->low[i] = INFINITY;
     obj->high[i] = -INFINITY;

@@ -90,9 +90,11 @@ typedef struct vlObj {
   vlRepairs repairs;
   uint32_t line, more_lines; /* first line of the statement, and number of continued lines */
   char nothing[1];           /* target of the pointers of an empty statement */
+  const char *data_end;      /* of the file */
   char *line_start, *at,
       *end; /* start of the line, reading position and end of the current statement */
-  vlObjRows positions;           /* 3 per vertex */
+  vlObjRows positions;           /* 3 per vertex, about `origin` */
+  double origin[3];              /* 0, or the middle of vertices far away (far.h) */
   VL_ARRAY(float) colors;        /* 3 per vertex, linear; empty when no vertex has a colour */
   vlObjRows uvs;                 /* 2 each */
   vlObjRows normals;             /* 3 each */
@@ -113,6 +115,8 @@ typedef struct vlObj {
   double low[3], high[3];
 } vlObj;
 
+/* Finds `origin` from all vertices. Call at the first one. */
+void vl_obj_find_origin(vlObj *obj);
 /* Appends a row of `size` numbers. what: the rows' name in messages. Returns false after an
  * error. */
 bool vl_obj_push(vlObj *obj, vlObjRows *rows, uint32_t size, const double *row,

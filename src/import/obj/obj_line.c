@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/text.h"
+#include "import/far.h"
 #include "import/obj/obj.h"
 #include "velo/shape_kinds.h"
 
@@ -65,6 +66,7 @@ static bool add_points(vlObj *obj, const vlObjMark *marks, size_t count, float r
       centers[3 * i + k] = (double)obj->positions.items[3 * (size_t)(marks[i].v - 1) + k];
     radii[i] = radius;
   }
+  vl_far_place(obj->origin, def);
   def->kind = VL_SHAPE_SPHERE;
   def->centers = centers;
   def->radii = radii;
@@ -86,6 +88,7 @@ static bool add_lines(vlObj *obj, const vlObjMark *marks, size_t count, float ra
       points[12 * i + k] = a[k % 3] + (b[k % 3] - a[k % 3]) * (float)(k / 3) / 3;
     widths[2 * i] = widths[2 * i + 1] = 2 * radius;
   }
+  vl_far_place(obj->origin, def);
   def->kind = VL_SHAPE_CURVES;
   def->curve = VL_CURVE_CYLINDER;
   def->vertices = (uint32_t)(4 * count);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "import/far.h"
 #include "import/obj/obj.h"
 #include "math/approx_double.h"
 #include "math/double3.h"
@@ -233,6 +234,7 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order,
   def.uvs = arrays[2];
   def.colors = arrays[3];
   def.indices = indices;
+  vl_far_place(obj->origin, &def);
   if (obj->permissive)
     vl_repair_mesh(obj->context, &obj->repairs, &def); /* out of memory: the scene checks it */
   return vl_scene_adopt_shape(obj->scene, &def).index != 0;

@@ -8,6 +8,7 @@
 #include "base/free.h"
 #include "base/text.h"
 #include "image/pixel.h"
+#include "import/far.h"
 #include "import/import.h"
 #include "import/pbrt/decimal.h"
 #include "import/plain.h"
@@ -139,7 +140,7 @@ static bool read_header(Off *s) {
   return true;
 }
 
-static bool read_vertices(Off *s) {
+static bool make_arrays(Off *s) {
   vlPlainMesh *m = &s->mesh;
   vlContext *context = s->scene->context;
   m->positions = vl_alloc_array(context, m->vertices + 1u, 3 * sizeof(float));
@@ -152,13 +153,19 @@ static bool read_vertices(Off *s) {
   if (!m->positions || (s->normals && !m->normals) || (s->uvs && !m->uvs) ||
       (s->colors && !m->colors))
     return fail_memory(s);
+  return true;
+}
+
+/* Reads all rows of vertices, about the mesh's origin. */
+static bool read_rows(Off *s) {
+  vlPlainMesh *m = &s->mesh;
   for (size_t i = 0; i < m->vertices; i++) {
     double v[3], rest[8] = {0}, color[4] = {0, 0, 0, 0};
     int n;
     for (int k = 0; k < 3; k++) {
       if (!number(s, &v[k]))
         return false;
-      m->positions[3 * i + (size_t)k] = (float)v[k];
+      m->positions[3 * i + (size_t)k] = (float)(v[k] - m->origin[k]);
     }
     for (int k = 0; s->normals && k < 3; k++) {
       if (!number(s, &v[k]))
@@ -196,6 +203,18 @@ static bool add_triangle(Off *s, uint32_t a, uint32_t b, uint32_t c, const float
   s->indices.count += 3;
   s->face_colors.count += 3;
   return true;
+}
+
+static bool read_vertices(Off *s) {
+  const char *start = s->at;
+  const uint32_t line = s->line;
+  if (!make_arrays(s) || !read_rows(s))
+    return false;
+  if (!vl_far_vertices(s->mesh.positions, s->mesh.vertices, s->mesh.origin))
+    return true;
+  s->at = start; /* once more, about the origin */
+  s->line = line;
+  return read_rows(s);
 }
 
 /* Polygons become fans. *colored: the face has a colour. */

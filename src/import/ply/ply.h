@@ -11,7 +11,8 @@
 
 typedef struct vlPlyMesh {
   uint32_t vertices, triangles, quads;
-  float *positions;     /* 3 per vertex */
+  float *positions;     /* 3 per vertex, about `origin` */
+  double origin[3];     /* 0, but of files that the caller names (import/far.h) */
   float *normals, *uvs; /* 3, 2 per vertex, or null */
   float *colors;        /* 4 per vertex, linear (converted from the file's sRGB), or null */
   float *face_colors; /* 3 per triangle, linear, or null; only of files that the caller names */

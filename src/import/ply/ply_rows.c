@@ -7,6 +7,7 @@
 #include "import/ply/ply_reader.h"
 
 #include "image/pixel.h"
+#include "import/far.h"
 
 static bool has_roles(const vlPlyElement *e, vlPlyRole first, int count) {
   for (int i = 0; i < count; i++) {
@@ -86,6 +87,53 @@ static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
   return true;
 }
 
+/* Whether the file has coordinates that are finer than single precision. */
+static bool has_finer_rows(const vlPlyReader *r, const vlPlyElement *e) {
+  bool finer = r->format == VL_PLY_ASCII;
+  for (uint32_t j = 0; j < e->property_count; j++) {
+    const vlPlyProperty *p = &e->properties[j];
+    finer = finer || (p->role >= VL_PLY_X && p->role <= VL_PLY_Z && p->type != VL_PLY_F32);
+  }
+  return finer;
+}
+
+/* Reads all rows of vertices, about the mesh's origin. */
+static bool read_vertex_rows(vlPlyReader *r, const vlPlyElement *e) {
+  vlPlyMesh *m = r->mesh;
+  for (uint64_t i = 0; i < e->count; i++) {
+    if (!vl_ply_goes_on(r, i))
+      return false;
+    for (uint32_t j = 0; j < e->property_count; j++) {
+      const vlPlyProperty *p = &e->properties[j];
+      double value = 0;
+      uint64_t n = 1;
+      if (p->is_list && !vl_ply_read_length(r, p, &n))
+        return false;
+      for (uint64_t k = 0; k < n; k++)
+        if (!vl_ply_read_value(r, p->type, &value))
+          return false;
+      if (p->role == VL_PLY_NOTHING)
+        continue;
+      float *to = p->role <= VL_PLY_Z ? &m->positions[3 * i + (p->role - VL_PLY_X)]
+                  : p->role <= VL_PLY_NZ
+                      ? (m->normals ? &m->normals[3 * i + (p->role - VL_PLY_NX)] : NULL)
+                  : p->role <= VL_PLY_V
+                      ? (m->uvs ? &m->uvs[2 * i + (p->role - VL_PLY_U)] : NULL)
+                      : (m->colors ? &m->colors[4 * i + (p->role - VL_PLY_RED)] : NULL);
+      if (!to)
+        continue;
+      if (p->role <= VL_PLY_Z)
+        value -= m->origin[p->role - VL_PLY_X];
+      *to = p->role >= VL_PLY_RED ? color_value(p->type, p->role == VL_PLY_ALPHA, value)
+                                  : (float)value;
+      bool may_break = r->broken && p->role >= VL_PLY_NX && p->role <= VL_PLY_V;
+      if (!isfinite(*to) && !may_break)
+        return not_finite(r, i, p->role, value);
+    }
+  }
+  return true;
+}
+
 bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
   vlPlyMesh *m = r->mesh;
   if (!has_roles(e, VL_PLY_X, 3))
@@ -109,35 +157,16 @@ bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
   r->has_vertices = true;
   if (copy_float_rows(r, e))
     return true;
-  for (uint64_t i = 0; i < e->count; i++) {
-    if (!vl_ply_goes_on(r, i))
-      return false;
-    for (uint32_t j = 0; j < e->property_count; j++) {
-      const vlPlyProperty *p = &e->properties[j];
-      double value = 0;
-      uint64_t n = 1;
-      if (p->is_list && !vl_ply_read_length(r, p, &n))
-        return false;
-      for (uint64_t k = 0; k < n; k++)
-        if (!vl_ply_read_value(r, p->type, &value))
-          return false;
-      if (p->role == VL_PLY_NOTHING)
-        continue;
-      float *to =
-          p->role <= VL_PLY_Z    ? &m->positions[3 * i + (p->role - VL_PLY_X)]
-          : p->role <= VL_PLY_NZ ? (normals ? &m->normals[3 * i + (p->role - VL_PLY_NX)] : NULL)
-          : p->role <= VL_PLY_V  ? (uvs ? &m->uvs[2 * i + (p->role - VL_PLY_U)] : NULL)
-                                 : (colors ? &m->colors[4 * i + (p->role - VL_PLY_RED)] : NULL);
-      if (!to)
-        continue;
-      *to = p->role >= VL_PLY_RED ? color_value(p->type, p->role == VL_PLY_ALPHA, value)
-                                  : (float)value;
-      bool may_break = r->broken && p->role >= VL_PLY_NX && p->role <= VL_PLY_V;
-      if (!isfinite(*to) && !may_break)
-        return not_finite(r, i, p->role, value);
-    }
-  }
-  return true;
+  const char *start = r->at;
+  const uint32_t line = r->line;
+  if (!read_vertex_rows(r, e))
+    return false;
+  if (!r->alone || !has_finer_rows(r, e) ||
+      !vl_far_vertices(m->positions, m->vertices, m->origin))
+    return true;
+  r->at = start; /* once more, about the origin */
+  r->line = line;
+  return read_vertex_rows(r, e);
 }
 
 static bool grow(vlPlyReader *r, uint32_t **items, size_t *capacity, size_t count) {

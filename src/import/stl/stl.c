@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "import/far.h"
 #include "import/import.h"
 #include "import/pbrt/decimal.h"
 #include "import/plain.h"
@@ -17,7 +18,8 @@ typedef struct Stl {
   vlScene *scene;
   const char *path, *at, *end;
   uint32_t line;
-  VL_ARRAY(float) positions;
+  VL_ARRAY(float) positions; /* about `origin` */
+  double origin[3];
 } Stl;
 
 static bool fail(Stl *s, vlResult code, const char *what, const char *word) {
@@ -87,7 +89,7 @@ static bool read_vertex(Stl *s) {
     if (!vl_number_scan(&p, s->end, &value) || p != s->at || !isfinite((float)value))
       return fail(s, VL_ERROR_SCENE, "expected a coordinate, found",
                   vl_short_text_of(word, length).text);
-    s->positions.items[s->positions.count++] = (float)value;
+    s->positions.items[s->positions.count++] = (float)(value - s->origin[k]);
   }
   return true;
 }
@@ -116,6 +118,18 @@ static bool read_text(Stl *s) {
          fail(s, VL_ERROR_SCENE, "too many facets", NULL);
 }
 
+/* Reads the text, and once more about the origin if it lies far from that. */
+static bool read_near_text(Stl *s) {
+  const char *start = s->at;
+  if (!read_text(s))
+    return false;
+  if (!vl_far_vertices(s->positions.items, s->positions.count / 3, s->origin))
+    return true;
+  s->at = start;
+  s->positions.count = 0;
+  return read_text(s);
+}
+
 /* Binary files may begin with "solid", too: their length tells. */
 static bool read(Stl *s) {
   size_t size = (size_t)(s->end - s->at);
@@ -126,7 +140,7 @@ static bool read(Stl *s) {
   while (p < s->end && is_space(*p))
     p++;
   if (s->end - p >= 5 && is(p, 5, "solid"))
-    return read_text(s);
+    return read_near_text(s);
   if (size < HEADER)
     return fail(s, VL_ERROR_SCENE,
                 "neither a text that begins with \"solid\" nor a binary file", NULL);
@@ -155,5 +169,6 @@ vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load,
                       .triangles = (uint32_t)(vertices / 3),
                       .positions = s.positions.items,
                       .indices = indices};
+  memcpy(mesh.origin, s.origin, sizeof mesh.origin);
   return vl_import_plain_mesh(scene, path, load, &mesh, error);
 }

@@ -1,0 +1,75 @@
+/* render/near.c: see near.h. */
+#include "render/near.h"
+
+#include <math.h>
+
+#include "cli/report.h"
+#include "render/job.h"
+#include "render/outputs.h"
+#include "velo/edit.h"
+
+bool near_is_allowed(const Arguments *arguments) {
+  static const int data[] = {RENDER_CHANNELS, RENDER_SPECTRUM, RENDER_HALF,  RENDER_STEREO,
+                             RENDER_FILM,     RENDER_CONTINUE, RENDER_AGAIN, RENDER_SHARD};
+  const OptionValue *v = arguments->values;
+  bool pictures = true;
+  for (size_t i = 0; i < sizeof data / sizeof *data; i++)
+    pictures = pictures && !v[data[i]].given;
+  for (int i = 0; i < arguments->text_count; i++)
+    pictures = pictures && output_is_display(arguments->texts[i]);
+  if (v[RENDER_DENOISE].given)
+    pictures = pictures && output_is_display(v[RENDER_DENOISE].text);
+  return pictures;
+}
+
+/* The middle of the box in whole numbers. Returns how many of its sizes it is away. */
+static double find_middle(const double low[3], const double high[3], double middle[3]) {
+  double size = 0, most = 0;
+  for (int i = 0; i < 3; i++) {
+    middle[i] = floor(0.5 * (low[i] + high[i]) + 0.5);
+    size = fmax(size, high[i] - low[i]);
+    most = fmax(most, fabs(middle[i]));
+  }
+  return size > 0 && isfinite(most) ? most / size : 0;
+}
+
+static void move_camera(vlCameraDef *camera, const double middle[3]) {
+  for (int i = 0; i < 3; i++) {
+    camera->eye[i] -= middle[i];
+    camera->lookat[i] -= middle[i];
+  }
+}
+
+int near_move(vlScene *scene, Near *near) {
+  const double far = 100, single = 1.0 / 16777216; /* of a number, which a float loses */
+  double middle[3];
+  const double away = find_middle(near->low, near->high, middle);
+  if (!(away > far))
+    return -1;
+  if (!near->pictures) {
+    const double most = fmax(fabs(middle[0]), fmax(fabs(middle[1]), fabs(middle[2])));
+    report_note(
+        "the model lies %.3g times its size from the origin: its positions are rounded to "
+        "about %.2g; .png, .jpg and .tga alone are rendered about its middle, without this",
+        away, most * single);
+    return -1;
+  }
+  const double world_from_scene[16] = {1, 0, 0, -middle[0], 0, 1, 0, -middle[1],
+                                       0, 0, 1, -middle[2], 0, 0, 0, 1};
+  vlError error = {0};
+  const vlResult result = vl_scene_transform(scene, world_from_scene, &error);
+  if (result != VL_OK)
+    return report_error(&error, result, near->path);
+  move_camera(&vl_scene_defs(scene)->camera, middle);
+  for (int i = 0; i < 3; i++) {
+    near->low[i] -= middle[i];
+    near->high[i] -= middle[i];
+    near->moved[i] = middle[i];
+  }
+  if (!near->silent)
+    report_note(
+        "the model lies %.3g times its size from the origin: it is rendered about "
+        "(%.12g, %.12g, %.12g)",
+        away, middle[0], middle[1], middle[2]);
+  return -1;
+}

@@ -7,6 +7,7 @@
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
+#include "scene/faces.h"
 #include "scene/turned.h"
 #include "velo/edit.h"
 #include "velo/shape_kinds.h"
@@ -420,6 +421,33 @@ static bool find_outward(const vlScene *scene, const vlExtent *boxes, const Surv
   return has_contents(scene, boxes, closed->shell);
 }
 
+/* How much of a shape's surface is at right angles to an axis. */
+typedef struct Flatness {
+  const vlShapeDef *shape;
+  double area, flat;
+} Flatness;
+
+static void add_flatness(void *user, const vlShapeDef *shape, const vlFace *face) {
+  const double along = 0.99;
+  Flatness *f = user;
+  const double area = vl_norm3(face->area);
+  if (shape != f->shape || !(area > 0) || !isfinite(area))
+    return;
+  const double most = fmax(fabs(face->area[0]), fmax(fabs(face->area[1]), fabs(face->area[2])));
+  f->area += area;
+  f->flat += most > along * area ? area : 0;
+}
+
+/* Whether the shell is one convex shape without flat walls: a sphere, a dome on a disk. */
+static bool is_round(const vlScene *scene, const bool *shell) {
+  const double flat = 0.4;
+  Flatness f = {.shape = convex_shell(scene, shell)};
+  if (!f.shape)
+    return false;
+  vl_faces_visit(scene, add_flatness, &f);
+  return f.flat < flat * f.area;
+}
+
 static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *boxes,
                      vlClosed *closed) {
   vlExtent inner = vl_extent_nothing;
@@ -431,6 +459,8 @@ static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *
         closed->emits || (closed->shell[i] && scene->shapes.items[i].emission.index);
   }
   double share = vl_extent_diagonal(&inner) / vl_extent_diagonal(box);
+  if (share > 0 && is_round(scene, closed->shell))
+    share = fmin(share, 0.12); /* the sky around a landscape */
   closed->kind = share > 0.12 ? VL_CLOSED_ROOM : share > 0 ? VL_CLOSED_DOME : VL_CLOSED_EMPTY;
   /* A room in one mesh: its furniture is a part of the shell. Panoramas have few corners or are
    * convex. */

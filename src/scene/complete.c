@@ -14,6 +14,7 @@
 #include "scene/facing.h"
 #include "scene/inside.h"
 #include "scene/lamps.h"
+#include "scene/mend.h"
 #include "scene/plain.h"
 #include "scene/stray.h"
 #include "scene/studio.h"
@@ -632,6 +633,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   *done = def;
   set_framed(scene, &vl_extent_nothing);
   bool camera = s->camera_missing || def.reframe;
+  if ((s->camera_missing || s->light_missing) && !vl_mend_model(scene))
+    return vl_scene_result(scene, error);
   if (camera && def.width && def.height)
     choose_size(s, &def);
   if (def.environment == VL_ENVIRONMENT_AUTO)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Models in the coordinates of a survey: their pictures are those of the same models at the origin.
+# Models in the coordinates of a survey: their images are those of the same models at the origin.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
 cd "$work" || exit 1

@@ -182,7 +182,7 @@ static vlResult between(void *user, vlContext *context, uint32_t before, uint32_
   v[RENDER_SHUTTER].given = false;
   v[RENDER_ANIMATE].given = false;
   v[RENDER_ENVIRONMENT] = (OptionValue){.given = true, .text = "none"}; /* light has no flow */
-  SceneOpening opening = {.silent = true, .pictures = near_is_allowed(x->arguments)};
+  SceneOpening opening = {.silent = true, .images_only = near_is_allowed(x->arguments)};
   vlScene *scene = NULL;
   *result = NULL;
   *span = to - from;

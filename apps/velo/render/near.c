@@ -12,14 +12,14 @@ bool near_is_allowed(const Arguments *arguments) {
   static const int data[] = {RENDER_CHANNELS, RENDER_SPECTRUM, RENDER_HALF,  RENDER_STEREO,
                              RENDER_FILM,     RENDER_CONTINUE, RENDER_AGAIN, RENDER_SHARD};
   const OptionValue *v = arguments->values;
-  bool pictures = true;
+  bool images_only = true;
   for (size_t i = 0; i < sizeof data / sizeof *data; i++)
-    pictures = pictures && !v[data[i]].given;
+    images_only = images_only && !v[data[i]].given;
   for (int i = 0; i < arguments->text_count; i++)
-    pictures = pictures && output_is_display(arguments->texts[i]);
+    images_only = images_only && output_is_display(arguments->texts[i]);
   if (v[RENDER_DENOISE].given)
-    pictures = pictures && output_is_display(v[RENDER_DENOISE].text);
-  return pictures;
+    images_only = images_only && output_is_display(v[RENDER_DENOISE].text);
+  return images_only;
 }
 
 /* The middle of the box in whole numbers. Returns how many of its sizes it is away. */
@@ -46,7 +46,7 @@ int near_move(vlScene *scene, Near *near) {
   const double away = find_middle(near->low, near->high, middle);
   if (!(away > far))
     return -1;
-  if (!near->pictures) {
+  if (!near->images_only) {
     const double most = fmax(fabs(middle[0]), fmax(fabs(middle[1]), fabs(middle[2])));
     report_note(
         "the model lies %.3g times its size from the origin: its positions are rounded to "

@@ -1,5 +1,5 @@
 /* render/near.h: models that lie far from the origin, as those in the coordinates of a survey
- * do. Single precision loses their detail there, so they are moved for a picture that velo's
+ * do. Single precision loses their detail there, so they are moved for an image that velo's
  * own camera takes. */
 #ifndef APP_RENDER_NEAR_H
 #define APP_RENDER_NEAR_H
@@ -7,13 +7,13 @@
 #include "cli/options.h"
 #include "velo/scene_base.h"
 
-/* Whether the command writes pictures alone: files of display values, without data that have
+/* Whether the command writes images alone: files of display values, without data that have
  * positions in the scene. */
 bool near_is_allowed(const Arguments *arguments);
 /* A model that an added camera shows. */
 typedef struct Near {
   const char *path;       /* of its file */
-  bool pictures;          /* near_is_allowed */
+  bool images_only;       /* near_is_allowed */
   bool silent;            /* a move is not reported */
   double low[3], high[3]; /* what the camera frames; it moves along */
   double moved[3];        /* output: what was subtracted from all positions */

@@ -342,7 +342,7 @@ static int open_scene(Render *render, const char *path, const Arguments *argumen
     return -1;
   }
   render->opening.silent = silent;
-  render->opening.pictures = near_is_allowed(arguments);
+  render->opening.images_only = near_is_allowed(arguments);
   int status = scene_open(render->context, path, arguments, &render->scene, &render->opening);
   if (status < 0 && shared && shared->still) {
     shared->scene = render->scene;

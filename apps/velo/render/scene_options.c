@@ -292,9 +292,9 @@ static int choose_load(const char *path, const Arguments *arguments,
   return status;
 }
 
-/* Moves a model far from the origin, where its pictures gain by that. */
+/* Moves a model far from the origin, where its images gain by that. */
 static int bring_near(vlScene *scene, const char *path, SceneOpening *opening) {
-  Near near = {.path = path, .pictures = opening->pictures, .silent = opening->silent};
+  Near near = {.path = path, .images_only = opening->images_only, .silent = opening->silent};
   memcpy(near.low, opening->low, sizeof near.low);
   memcpy(near.high, opening->high, sizeof near.high);
   const int status = near_move(scene, &near);

@@ -19,7 +19,7 @@ typedef struct SceneOpening {
                                     surfaces light */
   bool self_lit;          /* surfaces of a model's file light it, and nothing is added */
   bool silent;            /* input: the camera that is added is not reported */
-  bool pictures;          /* input: pictures alone are written (near.h) */
+  bool images_only;       /* input: images alone are written (near.h) */
   const vlCancel *cancel; /* input: stops the load; null: nothing does */
   const char *text; /* input: a pbrt scene in memory, in place of the file; null: the file */
   bool model; /* a file of a model: its exposure is metered, its default output is a .png */

@@ -5,7 +5,7 @@
 
 #include "import/far.h"
 #include "import/obj/obj.h"
-#include "import/pbrt/token.h"
+#include "import/pbrt/decimal.h"
 
 static bool is_blank(char c) {
   return c == ' ' || c == '\t';

@@ -44,33 +44,23 @@ static void print_json(const char *path, const vlCameraRecord *record, const vlC
   Json *json = json_open();
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double sensor = record->camera.sensor_width_mm > 0 ? record->camera.sensor_width_mm : 36.0;
-  json_text(json, "file", path);
-  json_text(json, "dialect", vl_camera_dialect_name(record->dialect));
+  json_put(json, "file %s, dialect %s", path, vl_camera_dialect_name(record->dialect));
   if (record->name[0])
     json_text(json, "name", record->name);
-  json_text(json, "projection", vl_projection_name(c->projection));
-  json_text(json, "pixel_origin", "corner");
-  json_text(json, "axes", "x right, y down, z forward");
-  json_integer(json, "width", c->width);
-  json_integer(json, "height", c->height);
-  json_number(json, "fx", c->fx);
-  json_number(json, "fy", c->fy);
-  json_number(json, "skew", c->skew);
-  json_number(json, "cx", c->cx);
-  json_number(json, "cy", c->cy);
+  json_put(json, "projection %s, pixel_origin %s, axes %s, width %u, height %u",
+           vl_projection_name(c->projection), "corner", "x right, y down, z forward", c->width,
+           c->height);
+  json_put(json, "fx %g, fy %g, skew %g, cx %g, cy %g", c->fx, c->fy, c->skew, c->cx, c->cy);
   if (!flat) {
-    json_number(json, "fov_horizontal", info->horizontal * degrees);
-    json_number(json, "fov_vertical", info->vertical * degrees);
-    json_number(json, "fov_diagonal", info->diagonal * degrees);
-    json_number(json, "view_distance", c->fx);
-    json_number(json, "pixel_size", 1.0);
-    json_number(json, "zoom", 1.0);
-    json_number(json, "focal_mm", c->fx * sensor / c->width);
-    json_number(json, "sensor_width_mm", sensor);
-    json_number(json, "solid_angle", info->solid_angle);
+    json_put(
+        json,
+        "fov_horizontal %g, fov_vertical %g, fov_diagonal %g, view_distance %g, pixel_size %g",
+        info->horizontal * degrees, info->vertical * degrees, info->diagonal * degrees, c->fx,
+        1.0);
+    json_put(json, "zoom %g, focal_mm %g, sensor_width_mm %g, solid_angle %g", 1.0,
+             c->fx * sensor / c->width, sensor, info->solid_angle);
   }
-  json_number(json, "pixel_footprint", info->footprint);
-  json_number(json, "outside", c->outside);
+  json_put(json, "pixel_footprint %g, outside %g", info->footprint, c->outside);
   json_numbers(json, "world_from_camera", c->world_from_camera, 16);
   json_close(json);
 }

@@ -225,8 +225,7 @@ static void json_what(Json *json, const PathsReport *r, const char *key, vlIdKin
   if (info.type)
     json_text(json, "type", info.type);
   if (info.source.file) {
-    json_text(json, "file", info.source.file);
-    json_integer(json, "line", info.source.line);
+    json_put(json, "file %s, line %u", info.source.file, info.source.line);
   }
   json_end(json, '}');
 }
@@ -261,16 +260,14 @@ static void json_seen(Json *json, const PathsReport *r) {
 
 static void json_contribution(Json *json, const PathsReport *r, const vlPathContribution *c) {
   json_begin(json, NULL, '{');
-  json_integer(json, "vertex", c->vertex);
-  json_text(json, "event", light_events[c->event]);
-  json_text(json, "light_type", c->type);
+  json_put(json, "vertex %u, event %s, light_type %s", c->vertex, light_events[c->event],
+           c->type);
   if (c->event != VL_PATH_LIGHT_MEDIUM) {
     json_integer(json, "light", c->light);
     json_what(json, r, "object", VL_ID_OBJECT, c->object);
     json_floats(json, c->distant ? "direction" : "point", c->target, 3);
-    json_number(json, "light_pdf", (double)c->light_pdf);
-    json_number(json, "bsdf_pdf", (double)c->bsdf_pdf);
-    json_bool(json, "occluded", c->occluded);
+    json_put(json, "light_pdf %g, bsdf_pdf %g, occluded %i", (double)c->light_pdf,
+             (double)c->bsdf_pdf, c->occluded);
   }
   json_number(json, "weight", (double)c->weight);
   json_floats(json, "radiance", c->radiance, 4);
@@ -282,9 +279,7 @@ static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v)
   const bool in_scene = v->event != VL_PATH_NOTHING;
   const bool on_surface = v->event == VL_PATH_SURFACE || v->event == VL_PATH_EXIT;
   json_begin(json, NULL, '{');
-  json_text(json, "event", events[v->event]);
-  json_text(json, "fate", fates[v->fate]);
-  json_integer(json, "bounce", v->bounce);
+  json_put(json, "event %s, fate %s, bounce %u", events[v->event], fates[v->fate], v->bounce);
   json_floats(json, "arrival", v->arrival, 3);
   json_floats(json, "throughput", v->throughput, 4);
   if (in_scene) {
@@ -312,9 +307,8 @@ static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v)
   if (v->bsdf) {
     json_text(json, "bsdf", v->bsdf);
     if (v->fate != VL_PATH_DEPTH) {
-      json_bool(json, "specular", v->lobe & VL_PATH_SPECULAR);
-      json_bool(json, "transmission", v->lobe & VL_PATH_TRANSMISSION);
-      json_number(json, "pdf", (double)v->pdf);
+      json_put(json, "specular %i, transmission %i, pdf %g", (v->lobe & VL_PATH_SPECULAR) != 0,
+               (v->lobe & VL_PATH_TRANSMISSION) != 0, (double)v->pdf);
       json_floats(json, "factor", v->factor, 4);
       json_number(json, "survival", (double)v->survival);
     }
@@ -331,9 +325,8 @@ static void json_path(Json *json, const PathsReport *r, const vlPath *p, double 
   json_floats(json, "film", p->film, 2);
   json_floats(json, "origin", p->origin, 3);
   json_floats(json, "direction", p->direction, 3);
-  json_number(json, "time", (double)p->time);
-  json_number(json, "filter_weight", (double)p->filter_weight);
-  json_number(json, "camera_weight", (double)p->camera_weight);
+  json_put(json, "time %g, filter_weight %g, camera_weight %g", (double)p->time,
+           (double)p->filter_weight, (double)p->camera_weight);
   if (p->lambda[0] > 0.0f) {
     json_floats(json, "lambda", p->lambda, 4);
     json_floats(json, "inv_pdf", p->inv_pdf, 4);
@@ -357,10 +350,9 @@ void paths_put_json(Json *json, const PathsReport *r) {
   double sum = all_shares(all);
   json_text(json, "file", r->file);
   json_numbers(json, "pixel", (const double[]){all->x, all->y}, 2);
-  json_text(json, "tracer", all->tracer == VL_TRACER_PATH ? "path" : "volpath");
-  json_integer(json, "samples", all->samples);
-  json_integer(json, "counted", all->count);
-  json_integer(json, "dropped", all->dropped);
+  json_put(json, "tracer %s, samples %u, counted %u, dropped %u",
+           all->tracer == VL_TRACER_PATH ? "path" : "volpath", all->samples, all->count,
+           all->dropped);
   json_numbers(json, "mean", all->mean, 3);
   json_seen(json, r);
   json_begin(json, "paths", '[');

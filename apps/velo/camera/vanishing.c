@@ -46,13 +46,9 @@ static const char *kind_of(const vlCamera *c, const vlVanishingPoints *v) {
 
 static void say_json(const char *path, const vlCamera *c, const vlVanishingPoints *v) {
   Json *json = json_open();
-  json_text(json, "file", path);
-  json_text(json, "projection", vl_projection_name(c->projection));
-  json_text(json, "pixel_origin", "corner");
-  json_integer(json, "width", c->width);
-  json_integer(json, "height", c->height);
-  json_text(json, "kind", kind_of(c, v));
-  json_integer(json, "finite", v->finite);
+  json_put(json, "file %s, projection %s, pixel_origin %s, width %u", path,
+           vl_projection_name(c->projection), "corner", c->width);
+  json_put(json, "height %u, kind %s, finite %u", c->height, kind_of(c, v), v->finite);
   json_begin(json, "vanishing_points", '{');
   for (int i = 0; i < 3; i++) {
     const vlVanishingPoint *p = &v->axes[i];
@@ -265,13 +261,9 @@ static bool parse_axes(const char *text, vlVanishingDef *def) {
 static void say_camera(const vlCameraDef *d, bool as_json) {
   if (as_json) {
     Json *json = json_open();
-    json_text(json, "pixel_origin", "corner");
-    json_text(json, "axes", "x right, y down, z forward");
-    json_integer(json, "width", d->width);
-    json_integer(json, "height", d->height);
-    json_number(json, "focal", d->fx);
-    json_number(json, "cx", d->cx);
-    json_number(json, "cy", d->cy);
+    json_put(json, "pixel_origin %s, axes %s, width %u, height %u", "corner",
+             "x right, y down, z forward", d->width, d->height);
+    json_put(json, "focal %g, cx %g, cy %g", d->fx, d->cx, d->cy);
     json_numbers(json, "world_from_camera", d->world_from_camera, 16);
     json_close(json);
     return;

@@ -138,16 +138,10 @@ static void print_text(const Verification *v, const char *path, const char *agai
 }
 
 static void print_measure(Json *json, const Measure *m) {
-  json_integer(json, "expected", m->expected);
-  json_integer(json, "found", m->found);
-  json_integer(json, "unseen", m->unseen);
-  json_number(json, "mean", mean_of(m->sum, m));
-  json_number(json, "rms", sqrt(mean_of(m->sum2, m)));
-  json_number(json, "max", m->most);
-  json_number(json, "max_x", m->at_x);
-  json_number(json, "max_y", m->at_y);
-  json_number(json, "shift_x", mean_of(m->sum_x, m));
-  json_number(json, "shift_y", mean_of(m->sum_y, m));
+  json_put(json, "expected %u, found %u, unseen %u, mean %g, rms %g", m->expected, m->found,
+           m->unseen, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)));
+  json_put(json, "max %g, max_x %g, max_y %g, shift_x %g, shift_y %g", m->most, m->at_x,
+           m->at_y, mean_of(m->sum_x, m), mean_of(m->sum_y, m));
 }
 
 static void print_json(const Verification *v, const char *path, const char *against,
@@ -157,19 +151,15 @@ static void print_json(const Verification *v, const char *path, const char *agai
   json_text(json, "camera", path);
   if (against)
     json_text(json, "against", against);
-  json_text(json, "projection", vl_projection_name(v->camera.projection));
-  json_text(json, "target", v->target.charuco ? "charuco" : "chessboard");
-  json_integer(json, "spp", v->spp);
-  json_integer(json, "seed", (int64_t)v->seed);
-  json_number(json, "threshold", threshold);
-  json_bool(json, "passed", !failure);
+  json_put(json, "projection %s, target %s, spp %u, seed %lld, threshold %g, passed %i",
+           vl_projection_name(v->camera.projection),
+           v->target.charuco ? "charuco" : "chessboard", v->spp, (long long)v->seed, threshold,
+           !failure);
   if (failure)
     json_text(json, "failure", failure);
   print_measure(json, &v->all);
-  json_integer(json, "markers", v->all.markers);
-  json_integer(json, "markers_wrong", v->all.misread);
-  json_integer(json, "parts_covered", covered);
-  json_integer(json, "parts_seeing", seeing);
+  json_put(json, "markers %u, markers_wrong %u, parts_covered %u, parts_seeing %u",
+           v->all.markers, v->all.misread, covered, seeing);
   json_begin(json, "poses", '[');
   for (uint32_t i = 0; i < v->placed; i++) {
     json_begin(json, NULL, '{');

@@ -2,7 +2,9 @@
 #include "cli/json.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Length of the UTF-8 sequence at s; 0 when invalid (overlong forms and surrogates
  * included). */
@@ -132,4 +134,41 @@ void json_integers(Json *json, const char *key, const uint32_t *numbers, uint32_
 void json_bool(Json *json, const char *key, bool value) {
   put_key(json, key);
   fputs(value ? "true" : "false", json->out);
+}
+
+/* Writes the member whose value is next. format: of the value, behind the %. */
+static void put_member(Json *json, const char *key, char format, va_list values) {
+  switch (format) {
+    case 's':
+      json_text(json, key, va_arg(values, const char *));
+      break;
+    case 'g':
+      json_number(json, key, va_arg(values, double));
+      break;
+    case 'u':
+      json_integer(json, key, va_arg(values, unsigned));
+      break;
+    case 'd':
+      json_integer(json, key, va_arg(values, int));
+      break;
+    case 'l':
+      json_integer(json, key, va_arg(values, long long));
+      break;
+    default:
+      json_bool(json, key, va_arg(values, int));
+  }
+}
+
+void json_put(Json *json, const char *members, ...) {
+  va_list values;
+  va_start(values, members);
+  for (const char *key = members; *key;) {
+    char name[40];
+    const char *format = strchr(key, '%');
+    snprintf(name, sizeof name, "%.*s", (int)(format - key - 1), key);
+    put_member(json, name, format[1], values);
+    key = format + strcspn(format, ",");
+    key += strspn(key, ", ");
+  }
+  va_end(values);
 }

@@ -207,9 +207,8 @@ static void print_result(const Check *c, const Arguments *arguments, double thre
     return;
   }
   Json *json = json_open();
-  json_text(json, "file", arguments->operands[0]);
-  json_integer(json, "hits", (int64_t)c->hits);
-  json_integer(json, "misses", (int64_t)c->misses);
+  json_put(json, "file %s, hits %lld, misses %lld", arguments->operands[0], (long long)c->hits,
+           (long long)c->misses);
   json_begin(json, "errors", '{');
   for (int i = 0; i < RULES; i++)
     if (c->rules[i].checked)

@@ -100,8 +100,7 @@ static void print_metrics(const Arguments *arguments, const Metric metrics[METRI
     return;
   }
   Json *json = json_open();
-  json_text(json, "reference", arguments->operands[0]);
-  json_text(json, "image", arguments->operands[1]);
+  json_put(json, "reference %s, image %s", arguments->operands[0], arguments->operands[1]);
   for (int i = 0; i < METRICS; i++)
     json_number(json, metrics[i].name, metrics[i].value);
   json_close(json);

@@ -201,10 +201,8 @@ static void print_text(const char *path, const vlImage *image, const vlReceipt *
 
 static void print_json(const char *path, const vlImage *image) {
   Json *json = json_open();
-  json_text(json, "file", path);
-  json_text(json, "format", format_of(path));
-  json_integer(json, "width", vl_image_width(image));
-  json_integer(json, "height", vl_image_height(image));
+  json_put(json, "file %s, format %s, width %u, height %u", path, format_of(path),
+           vl_image_width(image), vl_image_height(image));
   json_begin(json, "channels", '[');
   for (uint32_t i = 0; i < vl_image_channels(image); i++)
     json_text(json, NULL, vl_image_channel_name(image, i));

@@ -173,16 +173,11 @@ static void put_degrees(Json *json, const char *key, const double radians[2]) {
 static void print_json(const char *path, const vlLampInfo *info) {
   Json *json = json_open();
   const char type[2] = {info->type, 0};
-  json_text(json, "file", path);
-  json_text(json, "format", info->format);
-  json_text(json, "luminaire", info->name);
-  json_text(json, "photometry", type);
-  json_integer(json, "planes", info->planes);
-  json_integer(json, "angles", info->angles);
-  json_number(json, "flux_lm", info->flux);
-  json_number(json, "lamps_flux_lm", info->lamps_flux);
-  json_number(json, "ratio", info->lamps_flux > 0 ? info->flux / info->lamps_flux : NAN);
-  json_number(json, "watts", info->watts);
+  json_put(json, "file %s, format %s, luminaire %s, photometry %s, planes %u", path,
+           info->format, info->name, type, info->planes);
+  json_put(json, "angles %u, flux_lm %g, lamps_flux_lm %g, ratio %g, watts %g", info->angles,
+           info->flux, info->lamps_flux,
+           info->lamps_flux > 0 ? info->flux / info->lamps_flux : NAN, info->watts);
   put_degrees(json, "beam_angle_degrees", info->beam);
   put_degrees(json, "field_angle_degrees", info->field);
   json_number(json, "max_candela", info->max_intensity);

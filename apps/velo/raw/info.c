@@ -122,20 +122,14 @@ static void print_json(const char *path, const vlRaw *raw) {
   char pattern[80];
   Json *json = json_open();
   vl_raw_pattern_text(def, pattern);
-  json_text(json, "file", path);
-  json_integer(json, "width", def->width);
-  json_integer(json, "height", def->height);
-  json_integer(json, "bits", def->bits);
-  json_text(json, "pattern", pattern);
+  json_put(json, "file %s, width %u, height %u, bits %u, pattern %s", path, def->width,
+           def->height, def->bits, pattern);
   json_begin(json, "black", '[');
   for (uint32_t i = 0; i < def->pattern_rows * def->pattern_columns; i++)
     json_integer(json, NULL, def->black[i]);
   json_end(json, ']');
-  json_integer(json, "white", def->white);
-  json_integer(json, "least", range.least);
-  json_integer(json, "greatest", range.greatest);
-  json_integer(json, "saturated", (int64_t)range.saturated);
-  json_text(json, "camera", def->camera);
+  json_put(json, "white %u, least %u, greatest %u, saturated %lld, camera %s", def->white,
+           range.least, range.greatest, (long long)range.saturated, def->camera);
   put_number(json, "exposure_time", def->exposure_time);
   put_number(json, "f_number", def->f_number);
   put_number(json, "focal_length", def->focal_length);

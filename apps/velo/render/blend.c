@@ -241,11 +241,8 @@ static void report_made(const Blend *blend) {
   char time[32];
   if (report_is_json()) {
     Json *json = report_json_begin("result");
-    json_integer(json, "status", STATUS_OK);
-    json_integer(json, "frames", blend->shown.count);
-    json_integer(json, "written", blend->written);
-    json_integer(json, "spp", b->spp);
-    json_number(json, "seconds", seconds);
+    json_put(json, "status %d, frames %u, written %u, spp %lld, seconds %g", STATUS_OK,
+             blend->shown.count, blend->written, (long long)b->spp, seconds);
     report_json_end(json);
     return;
   }

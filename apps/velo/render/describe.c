@@ -50,30 +50,22 @@ static void describe_json(const Job *job, const Facts *f, bool denoised,
   const vlCamera *c = &job->camera;
   const vlRenderDef *render = &job->defs->render;
   Json *json = report_json_begin("plan");
-  json_text(json, "scene", job->path);
-  json_integer(json, "width", c->width);
-  json_integer(json, "height", c->height);
+  json_put(json, "scene %s, width %u, height %u", job->path, c->width, c->height);
   json_integers(json, "crop", job->defs->film.crop, 4);
-  json_integer(json, "spp", render->spp);
-  json_bool(json, "denoised", denoised);
-  json_number(json, "time_limit", render->time_limit);
-  json_integer(json, "seed", render->seed);
-  json_integer(json, "max_depth", render->max_depth);
-  json_text(json, "tracer", f->tracer);
-  json_text(json, "sampler", f->sampler);
-  json_text(json, "filter", f->filter);
-  json_text(json, "light_sampler", f->light_sampler);
-  json_text(json, "color", f->color);
-  json_text(json, "projection", f->projection);
+  json_put(json, "spp %u, denoised %i, time_limit %g, seed %u, max_depth %u, tracer %s",
+           render->spp, denoised, render->time_limit, render->seed, render->max_depth,
+           f->tracer);
+  json_put(json, "sampler %s, filter %s, light_sampler %s, color %s, projection %s", f->sampler,
+           f->filter, f->light_sampler, f->color, f->projection);
   json_numbers(json, "focal", (const double[]){c->fx, c->fy}, 2);
   json_numbers(json, "principal", (const double[]){c->cx, c->cy}, 2);
   json_numbers(json, "world_from_camera", c->world_from_camera, 16);
-  json_integer(json, "triangles", (int64_t)f->world.triangles);
-  json_integer(json, "primitives", (int64_t)f->world.primitives);
-  json_integer(json, "instances", (int64_t)f->world.instances);
-  json_integer(json, "lights", (int64_t)f->world.lights);
-  json_integer(json, "bytes", (int64_t)f->world.bytes);
-  json_number(json, "build_seconds", f->world.build_seconds);
+  json_put(
+      json,
+      "triangles %lld, primitives %lld, instances %lld, lights %lld, bytes %lld, build_seconds %g",
+      (long long)f->world.triangles, (long long)f->world.primitives,
+      (long long)f->world.instances, (long long)f->world.lights, (long long)f->world.bytes,
+      f->world.build_seconds);
   json_begin(json, "outputs", '[');
   for (int i = 0; i < output_count; i++)
     json_text(json, NULL, outputs[i]);

@@ -224,11 +224,8 @@ static void report_end(const Run *run, uint32_t written, int status) {
   report_not_finite(t);
   if (report_is_json()) {
     Json *json = report_json_begin("result");
-    json_integer(json, "status", status);
-    json_integer(json, "frames", run->shown.count);
-    json_integer(json, "written", written);
-    json_integer(json, "spp", t->spp);
-    json_number(json, "seconds", seconds);
+    json_put(json, "status %d, frames %u, written %u, spp %u, seconds %g", status,
+             run->shown.count, written, t->spp, seconds);
     json_render_stats(json, t);
     report_json_end(json);
     return;

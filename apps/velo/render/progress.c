@@ -129,13 +129,10 @@ void progress_show(Progress *progress, const vlProgress *now) {
     progress->last_spp = now->spp_done;
   if (report_is_json()) {
     Json *json = report_json_begin("progress");
-    json_integer(json, "spp", now->spp_done);
-    json_integer(json, "spp_total", now->spp_total);
-    json_number(json, "fraction", fraction);
-    json_number(json, "elapsed", now->elapsed);
-    json_number(json, "remaining", remaining);
-    json_integer(json, "paths", (int64_t)now->paths);
-    json_integer(json, "rays", (int64_t)now->rays);
+    json_put(json, "spp %u, spp_total %u, fraction %g, elapsed %g", now->spp_done,
+             now->spp_total, fraction, now->elapsed);
+    json_put(json, "remaining %g, paths %lld, rays %lld", remaining, (long long)now->paths,
+             (long long)now->rays);
     report_json_end(json);
     return;
   }
@@ -164,11 +161,8 @@ void progress_show_frames(FrameProgress *progress, uint32_t number, double part)
   const double remaining = done > 0 ? elapsed / done * (progress->count - done) : INFINITY;
   if (report_is_json()) {
     Json *json = report_json_begin("progress");
-    json_integer(json, "frame", number);
-    json_integer(json, "frames_done", progress->done);
-    json_integer(json, "frames", progress->count);
-    json_number(json, "elapsed", elapsed);
-    json_number(json, "remaining", remaining);
+    json_put(json, "frame %u, frames_done %u, frames %u, elapsed %g, remaining %g", number,
+             progress->done, progress->count, elapsed, remaining);
     report_json_end(json);
     return;
   }

@@ -63,11 +63,8 @@ static void report_json(const vlTracerChoice *choice) {
     json_text(json, "tracer", kind_name("tracers", (int)trial->tracer));
     if (trial->light_paths != VL_AS_MANY_AS_PIXELS)
       json_integer(json, "light_paths", trial->light_paths);
-    json_number(json, "error", trial->error);
-    json_number(json, "tail", trial->tail);
-    json_number(json, "missing", trial->missing);
-    json_number(json, "cost", trial->cost);
-    json_number(json, "work", trial->work);
+    json_put(json, "error %g, tail %g, missing %g, cost %g, work %g", trial->error, trial->tail,
+             trial->missing, trial->cost, trial->work);
     json_end(json, '}');
   }
   json_end(json, ']');

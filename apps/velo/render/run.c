@@ -214,11 +214,10 @@ static int render_channels(Render *render) {
 /* ---- the result -------------------------------------------------------------------------- */
 
 void json_render_stats(Json *json, const vlRenderStats *stats) {
-  json_integer(json, "paths", (int64_t)stats->paths);
-  json_integer(json, "camera_rays", (int64_t)stats->camera_rays);
-  json_integer(json, "bounce_rays", (int64_t)stats->bounce_rays);
-  json_integer(json, "shadow_rays", (int64_t)stats->shadow_rays);
-  json_integer(json, "not_finite", (int64_t)stats->not_finite);
+  json_put(
+      json, "paths %lld, camera_rays %lld, bounce_rays %lld, shadow_rays %lld, not_finite %lld",
+      (long long)stats->paths, (long long)stats->camera_rays, (long long)stats->bounce_rays,
+      (long long)stats->shadow_rays, (long long)stats->not_finite);
 }
 
 void report_not_finite(const vlRenderStats *stats) {
@@ -249,18 +248,15 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
   if (report_is_json()) {
     char part[5000];
     Json *json = report_json_begin("result");
-    json_integer(json, "status", status);
-    json_bool(json, "finished", stage == OUTPUT_FINISHED);
-    json_integer(json, "spp", spp);
-    json_number(json, "mean_spp", stats->mean_spp);
-    json_integer(json, "noisy_blocks", stats->noisy_blocks);
-    json_bool(json, "denoised", first);
+    json_put(json, "status %d, finished %i, spp %u, mean_spp %g, noisy_blocks %u, denoised %i",
+             status, stage == OUTPUT_FINISHED, spp, stats->mean_spp, stats->noisy_blocks,
+             first);
     if (first)
       json_text(json, "plain", plain);
     json_number(json, "seconds", stats->seconds);
     json_render_stats(json, stats);
-    json_integer(json, "memory_needed", (int64_t)render->memory.total);
-    json_integer(json, "memory_peak", (int64_t)memory_peak());
+    json_put(json, "memory_needed %lld, memory_peak %lld", (long long)render->memory.total,
+             (long long)memory_peak());
     json_begin(json, "files", '[');
     for (int i = 0; i < outputs->count && spp; i++)
       json_text(json, NULL, output_written(outputs, i, stage, part, sizeof part));

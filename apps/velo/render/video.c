@@ -166,11 +166,8 @@ static void report_made(const Videos *videos, const char *path, uint32_t width,
   const uint32_t count = videos->shown.count;
   if (report_is_json()) {
     Json *json = report_json_begin("video");
-    json_text(json, "file", path);
-    json_integer(json, "frames", count);
-    json_number(json, "fps", videos->fps);
-    json_integer(json, "width", width);
-    json_integer(json, "height", height);
+    json_put(json, "file %s, frames %u, fps %g, width %u, height %u", path, count, videos->fps,
+             width, height);
     report_json_end(json);
     return;
   }

@@ -134,11 +134,8 @@ static void print_json(const List *list, const char *path, int status) {
   size_t total[3] = {0};
   for (size_t i = 0; i < list->count; i++)
     total[list->items[i].severity]++;
-  json_text(json, "file", path);
-  json_integer(json, "status", status);
-  json_integer(json, "errors", (int64_t)total[0]);
-  json_integer(json, "warnings", (int64_t)total[1]);
-  json_integer(json, "notes", (int64_t)total[2]);
+  json_put(json, "file %s, status %d, errors %lld, warnings %lld, notes %lld", path, status,
+           (long long)total[0], (long long)total[1], (long long)total[2]);
   json_begin(json, "findings", '[');
   for (int severity = 0; severity < 3; severity++)
     for (size_t i = 0; i < list->count; i++) {
@@ -146,8 +143,8 @@ static void print_json(const List *list, const char *path, int status) {
       if ((int)e->severity != severity)
         continue;
       json_begin(json, NULL, '{');
-      json_text(json, "kind", vl_finding_kind_name(e->kind));
-      json_text(json, "severity", severities[severity]);
+      json_put(json, "kind %s, severity %s", vl_finding_kind_name(e->kind),
+               severities[severity]);
       json_location(json, e->file[0] ? e->file : NULL, e->line, e->line ? e->column : 0);
       json_text(json, "message", e->message);
       json_end(json, '}');

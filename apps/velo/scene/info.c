@@ -251,18 +251,16 @@ static void json_chosen(Json *json, const vlSceneDefs *defs) {
 static void json_defs(Json *json, const vlSceneDefs *defs) {
   double eye[3];
   json_begin(json, "camera", '{');
-  json_bool(json, "missing", defs->camera_missing);
-  json_text(json, "projection", vl_projection_name(defs->camera.projection));
+  json_put(json, "missing %i, projection %s", defs->camera_missing,
+           vl_projection_name(defs->camera.projection));
   eye_of(&defs->camera, eye);
   json_numbers(json, "eye", eye, 3);
   json_end(json, '}');
   json_begin(json, "film", '{');
-  json_integer(json, "width", defs->film.width);
-  json_integer(json, "height", defs->film.height);
+  json_put(json, "width %u, height %u", defs->film.width, defs->film.height);
   json_integers(json, "crop", defs->film.crop, 4);
-  json_integer(json, "spp", defs->render.spp);
-  json_text(json, "tracer", kind_name("tracers", (int)defs->render.tracer));
-  json_integer(json, "max_depth", defs->render.max_depth);
+  json_put(json, "spp %u, tracer %s, max_depth %u", defs->render.spp,
+           kind_name("tracers", (int)defs->render.tracer), defs->render.max_depth);
   json_end(json, '}');
 }
 
@@ -275,9 +273,7 @@ static void json_lights(Json *json, const Facts *f) {
     if (vl_scene_light_info(f->scene, i, &l) != VL_OK)
       continue;
     json_begin(json, NULL, '{');
-    json_text(json, "kind", l.kind);
-    json_number(json, "power", l.power);
-    json_bool(json, "image", l.image);
+    json_put(json, "kind %s, power %g, image %i", l.kind, l.power, l.image);
     if (l.faces)
       json_integer(json, "faces", (int64_t)l.faces);
     put_source(json, &l.source);

@@ -81,8 +81,7 @@ void info_json_names(Json *json, const vlScene *scene) {
       if (vl_scene_id_info(scene, id_kinds[k].kind, id, &info) != VL_OK || !info.name)
         continue;
       json_begin(json, NULL, '{');
-      json_integer(json, "id", id);
-      json_text(json, "name", info.name);
+      json_put(json, "id %u, name %s", id, info.name);
       if (info.path)
         json_text(json, "path", info.path);
       if (info.place)

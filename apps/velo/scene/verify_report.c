@@ -134,11 +134,7 @@ void verify_print(const Verify *v) {
 
 static void put_difference(Json *json, const char *key, const VerifyDifference *d) {
   json_begin(json, key, '{');
-  json_number(json, "mean", d->a);
-  json_number(json, "against", d->b);
-  json_number(json, "error", d->error);
-  json_number(json, "z", d->z);
-  json_number(json, "p", d->p);
+  json_put(json, "mean %g, against %g, error %g, z %g, p %g", d->a, d->b, d->error, d->z, d->p);
   json_end(json, '}');
 }
 
@@ -146,13 +142,10 @@ static void put_run(Json *json, const Verify *v, int index) {
   const VerifyRun *run = &v->runs[index];
   double z[VERIFY_FAMILIES];
   json_begin(json, NULL, '{');
-  json_text(json, "run", run->name);
-  json_text(json, "against", v->runs[run->against].name);
-  json_integer(json, "spp", run->spp[0]);
-  json_bool(json, "judged", !run->apart);
-  json_integer(json, "first", run->marked);
-  json_integer(json, "differs", run->differs);
-  json_integer(json, "not_finite", (int64_t)run->dropped);
+  json_put(json, "run %s, against %s, spp %u, judged %i", run->name, v->runs[run->against].name,
+           run->spp[0], !run->apart);
+  json_put(json, "first %u, differs %u, not_finite %lld", run->marked, run->differs,
+           (long long)run->dropped);
   json_begin(json, "image", '[');
   for (uint32_t c = 0; c < VERIFY_CHANNELS; c++) {
     const VerifyDifference d = verify_difference(v, run, 0, c);
@@ -172,9 +165,8 @@ static void put_run(Json *json, const Verify *v, int index) {
       continue;
     name_cell(v, run, mark->value / VERIFY_CHANNELS, name, sizeof name);
     json_begin(json, NULL, '{');
-    json_text(json, "cell", name);
-    json_text(json, "channel", channels[mark->value % VERIFY_CHANNELS]);
-    json_bool(json, "differs", mark->differs);
+    json_put(json, "cell %s, channel %s, differs %i", name,
+             channels[mark->value % VERIFY_CHANNELS], mark->differs);
     put_difference(json, "first", &mark->first);
     put_difference(json, "second", &mark->second);
     json_end(json, '}');
@@ -185,12 +177,8 @@ static void put_run(Json *json, const Verify *v, int index) {
 
 void verify_print_json(const Verify *v) {
   Json *json = json_open();
-  json_text(json, "file", v->path);
-  json_integer(json, "width", v->width);
-  json_integer(json, "height", v->height);
-  json_integer(json, "replicates", VERIFY_REPLICATES);
-  json_integer(json, "values", v->compared);
-  json_integer(json, "differ", verify_count(v));
+  json_put(json, "file %s, width %u, height %u, replicates %d, values %u, differ %d", v->path,
+           v->width, v->height, VERIFY_REPLICATES, v->compared, verify_count(v));
   json_begin(json, "runs", '[');
   for (int i = 0; i < v->run_count; i++)
     if (is_shown(&v->runs[i]))

@@ -38,31 +38,24 @@ static void put_focal(Json *json, const ViewCamera *camera) {
                         : flat && !isnan(def->pixel_size)  ? "lecture"
                         : !isnan(def->focal_mm)            ? "focal"
                                                            : "fov";
-  json_text(json, "spelled", spelled);
-  json_text(json, "fov_axis", axes[def->fov_axis]);
-  json_number(json, "fov",
-              flat              ? NAN
-              : isnan(def->fov) ? fields[def->fov_axis]
-                                : def->fov * degrees);
-  json_number(json, "fov_horizontal", flat ? NAN : horizontal);
-  json_number(json, "fov_vertical", flat ? NAN : vertical);
-  json_number(json, "fov_diagonal", flat ? NAN : diagonal);
-  json_number(json, "d",
-              flat                         ? NAN
-              : !isnan(def->view_distance) ? def->view_distance
-                                           : c->fx * u.pixel_size / u.zoom);
-  json_number(json, "zoom", u.zoom);
-  json_number(json, "s", flat && isnan(def->pixel_size) ? u.zoom / c->fx : u.pixel_size);
-  json_number(json, "sensor_width_mm", u.sensor_mm);
-  json_number(json, "focal_mm",
-              flat                    ? NAN
-              : !isnan(def->focal_mm) ? def->focal_mm
-                                      : c->fx * u.sensor_mm / w);
-  json_number(json, "fx", c->fx);
-  json_number(json, "fy", c->fy);
-  json_number(json, "cx", c->cx);
-  json_number(json, "cy", c->cy);
-  json_number(json, "skew", c->skew);
+  json_put(
+      json,
+      "spelled %s, fov_axis %s, fov %g, fov_horizontal %g, fov_vertical %g, fov_diagonal %g",
+      spelled, axes[def->fov_axis],
+      flat              ? NAN
+      : isnan(def->fov) ? fields[def->fov_axis]
+                        : def->fov * degrees,
+      flat ? NAN : horizontal, flat ? NAN : vertical, flat ? NAN : diagonal);
+  json_put(json, "d %g, zoom %g, s %g, sensor_width_mm %g, focal_mm %g, fx %g",
+           flat                         ? NAN
+           : !isnan(def->view_distance) ? def->view_distance
+                                        : c->fx * u.pixel_size / u.zoom,
+           u.zoom, flat && isnan(def->pixel_size) ? u.zoom / c->fx : u.pixel_size, u.sensor_mm,
+           flat                    ? NAN
+           : !isnan(def->focal_mm) ? def->focal_mm
+                                   : c->fx * u.sensor_mm / w,
+           c->fx);
+  json_put(json, "fy %g, cx %g, cy %g, skew %g", c->fy, c->cx, c->cy, c->skew);
 }
 
 static void put_projection(Json *json, const ViewCamera *camera) {
@@ -78,8 +71,8 @@ static void put_projection(Json *json, const ViewCamera *camera) {
   if (def->projection != VL_PROJECTION_OWN)
     json_text(json, "kind", kinds[def->projection]);
   json_numbers(json, "shape", camera->made.shape, 2);
-  json_number(json, "max_angle", def->max_angle * degrees);
-  json_text(json, "distortion", distortions[def->distortion]);
+  json_put(json, "max_angle %g, distortion %s", def->max_angle * degrees,
+           distortions[def->distortion]);
   json_numbers(json, "coefficients", def->distortion_coefficients, def->distortion_count);
   json_number(json, "outside", camera->made.outside);
 }
@@ -98,27 +91,19 @@ static void put_lens(Json *json, const ViewCamera *camera) {
   const vlCameraDef *def = &camera->def;
   const vlCamera *c = &camera->made;
   const vlLensDef *lens = &def->lens;
-  json_number(json, "lens_radius", c->lens_radius);
-  json_number(json, "f_number", camera_f_number(camera));
-  json_number(json, "focus_distance", c->focus_distance);
-  json_integer(json, "blades", lens->blades);
-  json_number(json, "rotation", lens->rotation * degrees);
-  json_number(json, "ratio", lens->ratio);
-  json_number(json, "tilt_x", lens->tilt_x * degrees);
-  json_number(json, "tilt_y", lens->tilt_y * degrees);
-  json_number(json, "lens_tilt_x", lens->lens_tilt_x * degrees);
-  json_number(json, "lens_tilt_y", lens->lens_tilt_y * degrees);
-  json_number(json, "near", c->near_plane);
-  json_number(json, "far", c->far_plane);
-  json_number(json, "shutter_open", c->shutter_open);
-  json_number(json, "shutter_close", c->shutter_close);
-  json_number(json, "exposure_time", c->exposure_time);
-  json_bool(json, "optics", lens->optics != NULL);
+  json_put(json,
+           "lens_radius %g, f_number %g, focus_distance %g, blades %u, rotation %g, ratio %g",
+           c->lens_radius, camera_f_number(camera), c->focus_distance, lens->blades,
+           lens->rotation * degrees, lens->ratio);
+  json_put(json, "tilt_x %g, tilt_y %g, lens_tilt_x %g, lens_tilt_y %g, near %g, far %g",
+           lens->tilt_x * degrees, lens->tilt_y * degrees, lens->lens_tilt_x * degrees,
+           lens->lens_tilt_y * degrees, c->near_plane, c->far_plane);
+  json_put(json, "shutter_open %g, shutter_close %g, exposure_time %g, optics %i",
+           c->shutter_open, c->shutter_close, c->exposure_time, lens->optics != NULL);
 }
 
 void camera_spellings(Json *json, const ViewCamera *camera) {
-  json_integer(json, "width", camera->made.width);
-  json_integer(json, "height", camera->made.height);
+  json_put(json, "width %u, height %u", camera->made.width, camera->made.height);
   put_pose(json, camera);
   put_focal(json, camera);
   put_projection(json, camera);

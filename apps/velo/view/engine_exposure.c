@@ -52,9 +52,8 @@ static void put_filters(Json *json, const Shot *s, const Behind behind[VL_SENSOR
     if (!b->count) /* the pattern has none of it */
       continue;
     json_begin(json, NULL, '{');
-    json_text(json, "name", name);
-    json_number(json, "mean", b->sum / (double)b->count);
-    json_number(json, "clipped", (double)b->clipped / (double)b->count);
+    json_put(json, "name %s, mean %g, clipped %g", name, b->sum / (double)b->count,
+             (double)b->clipped / (double)b->count);
     json_integers(json, "bins", b->bins, BINS);
     json_end(json, '}');
   }
@@ -79,33 +78,24 @@ static void put_metering(Json *json, const Shot *s) {
   const double n = exposure->f_number;
   const double iso = iso_speed(s, exposure);
   const double time = engine_metered_time(s, exposure);
-  json_number(json, "iso", iso);
-  json_number(json, "ev", log2(n * n / exposure->time) - log2(iso / 100));
-  json_number(json, "luminance", s->luminance);
-  json_number(json, "metered_ev",
-              s->luminance > 0 ? log2(s->luminance * 100 / meter_constant) : (double)NAN);
-  json_number(json, "suggested_iso", iso * time / exposure->time);
-  json_number(json, "suggested_time", time);
+  json_put(json,
+           "iso %g, ev %g, luminance %g, metered_ev %g, suggested_iso %g, suggested_time %g",
+           iso, log2(n * n / exposure->time) - log2(iso / 100), s->luminance,
+           s->luminance > 0 ? log2(s->luminance * 100 / meter_constant) : (double)NAN,
+           iso * time / exposure->time, time);
 }
 
 static void put_exposure(Json *json, const Engine *e, const Behind *behind, double seconds) {
   const Shot *s = &e->shot;
   const vlRawDef *raw = vl_raw_def(s->raw);
   const double pixels = (double)raw->width * raw->height;
-  json_integer(json, "change", e->now.change);
-  json_text(json, "preset", s->preset);
-  json_bool(json, "metered", e->now.sensor.metered);
-  json_integer(json, "spp", s->scale > 1 ? 0 : s->spp);
-  json_integer(json, "bits", raw->bits);
-  json_integer(json, "black", raw->black[0]);
-  json_integer(json, "white", raw->white);
-  json_number(json, "exposure_time", s->exposure.time);
-  json_number(json, "f_number", s->exposure.f_number);
-  json_number(json, "lens_f_number", camera_f_number(&e->now.camera));
-  json_number(json, "full", (double)s->out.full / pixels);
-  json_number(json, "film_noise", s->out.film_noise);
-  json_integer(json, "buckets", s->buckets);
-  json_number(json, "seconds", seconds);
+  json_put(json, "change %u, preset %s, metered %i, spp %u, bits %u", e->now.change, s->preset,
+           e->now.sensor.metered, s->scale > 1 ? 0 : s->spp, raw->bits);
+  json_put(json, "black %u, white %u, exposure_time %g, f_number %g, lens_f_number %g",
+           raw->black[0], raw->white, s->exposure.time, s->exposure.f_number,
+           camera_f_number(&e->now.camera));
+  json_put(json, "full %g, film_noise %g, buckets %u, seconds %g", (double)s->out.full / pixels,
+           s->out.film_noise, s->buckets, seconds);
   put_metering(json, s);
   put_filters(json, s, behind);
 }

@@ -73,10 +73,8 @@ static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const
   Json *json = json_text_begin("refused");
   if (!json)
     return;
-  json_integer(json, "change", m->change);
-  json_integer(json, "id", m->id);
-  json_text(json, "field", m->field_count ? m->fields[0].name : "");
-  json_text(json, "message", why);
+  json_put(json, "change %u, id %u, field %s, message %s", m->change, m->id,
+           m->field_count ? m->fields[0].name : "", why);
   json_text_post(json, e->server, client);
 }
 

@@ -46,8 +46,7 @@ static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
     if (!boxes[i].seen || vl_world_id_info(e->model.world, VL_ID_OBJECT, i + 1, &info) != VL_OK)
       continue;
     json_begin(json, NULL, '{');
-    json_integer(json, "id", i + 1);
-    json_text(json, "name", info.name ? info.name : "");
+    json_put(json, "id %u, name %s", i + 1, info.name ? info.name : "");
     json_begin(json, "box", '[');
     for (int k = 0; k < 4; k++)
       json_integer(json, NULL, boxes[i].seen_box[k]);

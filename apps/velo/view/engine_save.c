@@ -378,10 +378,7 @@ static void post_command(Engine *e, const Task *task, char *command, const char 
                          const char *image, uint32_t spp) {
   Json *json = command ? engine_reply_begin(task, "command") : NULL;
   if (json) {
-    json_text(json, "command", command);
-    json_text(json, "file", camera);
-    json_text(json, "image", image);
-    json_integer(json, "spp", spp);
+    json_put(json, "command %s, file %s, image %s, spp %u", command, camera, image, spp);
     json_text_post(json, e->server, task->client);
   }
   free(command);

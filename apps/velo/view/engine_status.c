@@ -83,21 +83,17 @@ void status_tell(Engine *e, bool estimate) {
   double stop = e->stop_seconds;
   e->stop_seconds = 0;
   engine_unlock(e);
-  json_integer(json, "change", e->now.change);
-  json_integer(json, "spp", spp);
-  json_integer(json, "target", e->now.spp);
-  json_number(json, "paths_per_second", e->rendered > 0 ? (double)e->paths / e->rendered : NAN);
-  json_number(json, "seconds", e->rendered);
-  json_number(json, "error", e->noise);
-  json_number(json, "program_seconds", engine_program_seconds());
-  json_number(json, "frame_seconds", e->frame_seconds + server_seconds(e->server));
-  json_number(json, "denoise_seconds", e->preview.seconds);
+  json_put(json, "change %u, spp %u, target %u, paths_per_second %g, seconds %g", e->now.change,
+           spp, e->now.spp, e->rendered > 0 ? (double)e->paths / e->rendered : NAN,
+           e->rendered);
+  json_put(json, "error %g, program_seconds %g, frame_seconds %g, denoise_seconds %g", e->noise,
+           engine_program_seconds(), e->frame_seconds + server_seconds(e->server),
+           e->preview.seconds);
   if (stop > 0)
     json_number(json, "stop_seconds", stop);
-  json_bool(json, "paused", paused);
-  json_text(json, "tracer", kind_name("tracers", (int)engine_shown(e).tracer));
-  json_bool(json, "racing", e->racing || engine_race_due(e, e->now.spp));
-  json_bool(json, "raced", e->by_race);
+  json_put(json, "paused %i, tracer %s, racing %i, raced %i", paused,
+           kind_name("tracers", (int)engine_shown(e).tracer),
+           e->racing || engine_race_due(e, e->now.spp), e->by_race);
   if (e->successor)
     json_text(json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
   json_text_keep(json, e, &e->last_status);

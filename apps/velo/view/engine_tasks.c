@@ -96,8 +96,7 @@ static void pick(Engine *e, const Task *task) {
                                              {"ray", "ray.X", "ray.Y", "ray.Z"}};
     static const char *const uv[] = {"uv.U", "uv.V"}, *const z[] = {"Z"},
                              *const distance[] = {"distance.Y"};
-    json_integer(json, "x", x);
-    json_integer(json, "y", y);
+    json_put(json, "x %u, y %u", x, y);
     put_values(json, "Z", floats, z, 1);
     put_values(json, "distance", floats, distance, 1);
     put_values(json, "uv", floats, uv, 2);

@@ -223,11 +223,9 @@ static void post_verified(const Verification *v, const Task *task, bool same) {
   Json *json = engine_reply_begin(task, "verified");
   if (!json)
     return;
-  json_bool(json, "same", same);
-  json_text(json, "file", v->copied->file);
+  json_put(json, "same %i, file %s", same, v->copied->file);
   if (same) {
-    json_text(json, "sha256", v->sha256[0]);
-    json_text(json, "sha256_exr", v->sha256[1]);
+    json_put(json, "sha256 %s, sha256_exr %s", v->sha256[0], v->sha256[1]);
   } else {
     json_text(json, "message", v->message);
   }

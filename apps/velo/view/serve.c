@@ -51,9 +51,8 @@ static void refuse(void *user, uint32_t client, bool steers, const ViewMessage *
   Json *json = json_text_begin("refused");
   if (!json)
     return;
-  json_integer(json, "id", message->id);
-  json_integer(json, "change", message->change);
-  json_text(json, "message", "this page looks on: velo render --serve");
+  json_put(json, "id %u, change %u, message %s", message->id, message->change,
+           "this page looks on: velo render --serve");
   post_and_free(s->server, client, json_text_end(json));
 }
 
@@ -87,12 +86,9 @@ static void post_status(Serve *s, const vlFilm *film, const vlProgress *p) {
   Json *json = json_text_begin("status");
   if (!json)
     return;
-  json_integer(json, "spp", vl_film_spp(film));
-  json_integer(json, "target", p->spp_total);
-  json_number(json, "paths_per_second", p->elapsed > 0 ? (double)p->paths / p->elapsed : NAN);
-  json_number(json, "seconds", p->elapsed);
-  json_number(json, "error", NAN);
-  json_bool(json, "paused", false);
+  json_put(json, "spp %u, target %u, paths_per_second %g, seconds %g, error %g, paused %i",
+           vl_film_spp(film), p->spp_total,
+           p->elapsed > 0 ? (double)p->paths / p->elapsed : NAN, p->elapsed, NAN, false);
   post_and_free(s->server, 0, json_text_end(json));
 }
 

@@ -48,15 +48,11 @@ char *json_text_end(Json *json) {
 
 static void put_sensor(Json *json, const ViewSensor *sensor) {
   const vlExposureDef *exposure = &sensor->exposure;
-  json_text(json, "preset", sensor->preset);
-  json_text(json, "white", sensor_white_name(sensor->white));
-  json_number(json, "exposure_time", sensor->metered ? (double)NAN : exposure->time);
-  json_number(json, "f_number", exposure->f_number);
-  json_number(json, "iso", exposure->iso);
-  json_number(json, "gain", exposure->gain);
-  json_number(json, "temperature", exposure->temperature);
-  json_integer(json, "seed", exposure->seed);
-  json_integer(json, "frame", exposure->frame);
+  json_put(json, "preset %s, white %s, exposure_time %g, f_number %g, iso %g", sensor->preset,
+           sensor_white_name(sensor->white), sensor->metered ? (double)NAN : exposure->time,
+           exposure->f_number, exposure->iso);
+  json_put(json, "gain %g, temperature %g, seed %u, frame %u", exposure->gain,
+           exposure->temperature, exposure->seed, exposure->frame);
 }
 
 static void put_sensor_lists(Json *json, const ViewSensors *sensors) {
@@ -77,27 +73,20 @@ char *state_text(const ViewState *s) {
   Json *json = json_text_begin("state");
   if (!json)
     return NULL;
-  json_text(json, "scene", s->scene);
-  json_integer(json, "change", s->change);
-  json_integer(json, "spp", s->spp);
-  json_bool(json, "paused", s->paused);
-  json_bool(json, "denoise", s->denoise);
-  json_integer(json, "channel", s->channel);
-  json_bool(json, "can_undo", s->can_undo);
-  json_bool(json, "can_redo", s->can_redo);
+  json_put(json, "scene %s, change %u, spp %u, paused %i", s->scene, s->change, s->spp,
+           s->paused);
+  json_put(json, "denoise %i, channel %u, can_undo %i, can_redo %i", s->denoise, s->channel,
+           s->can_undo, s->can_redo);
   json_integers(json, "crop", s->crop, 4);
-  json_number(json, "exposure", s->exposure);
-  json_integer(json, "view", s->view);
+  json_put(json, "exposure %g, view %d", s->exposure, s->view);
   json_begin(json, "bounds", '[');
   for (int i = 0; i < 6; i++)
     json_number(json, NULL,
                 (double)(i < 3 ? s->info->bounds_min[i] : s->info->bounds_max[i - 3]));
   json_end(json, ']');
   json_begin(json, "time", '{');
-  json_number(json, "from", s->time.from);
-  json_number(json, "seconds", s->time.duration);
-  json_number(json, "at", s->time.at);
-  json_number(json, "shutter", s->time.shutter);
+  json_put(json, "from %g, seconds %g, at %g, shutter %g", s->time.from, s->time.duration,
+           s->time.at, s->time.shutter);
   json_end(json, '}');
   json_integer(json, "poses", s->poses);
   json_begin(json, "camera", '{');

@@ -3,9 +3,6 @@
 #ifndef APP_CLI_OPTIONS_H
 #define APP_CLI_OPTIONS_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "cli/choice.h"
 #include "velo/base.h"
 #include "velo/setting.h"

@@ -8,8 +8,6 @@
 #ifndef APP_CLI_SIGNALS_H
 #define APP_CLI_SIGNALS_H
 
-#include <stdbool.h>
-
 #include "velo/base.h"
 
 void signals_install(void);

@@ -9,7 +9,6 @@
 
 #include "cli/kinds.h"
 #include "cli/report.h"
-#include "render/job.h"
 #include "velo/tracer.h"
 
 int film_claim_refuse(const char *format, ...) {

@@ -1,5 +1,4 @@
 /* render/options.c: the options of `velo render`, in the order of its help page. */
-#include <stddef.h>
 
 #include "image/denoise.h"
 #include "render/channels.h"

@@ -3,8 +3,6 @@
 #ifndef APP_RENDER_RACE_RULES_H
 #define APP_RENDER_RACE_RULES_H
 
-#include <stddef.h>
-
 #include "render/job.h"
 #include "velo/choose.h"
 

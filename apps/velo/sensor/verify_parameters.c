@@ -1,7 +1,6 @@
 /* sensor/verify_parameters.c: the parameters of EMVA 1288 (release 3.1) from the statistics of
  * the frames, and what the sensor's own numbers let one expect. */
 #include <math.h>
-#include <stddef.h>
 
 #include "sensor/verify.h"
 

@@ -2,9 +2,6 @@
 #ifndef APP_TRACE_HITS_FILE_H
 #define APP_TRACE_HITS_FILE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
 #include "velo/rays.h"

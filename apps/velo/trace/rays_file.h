@@ -2,7 +2,6 @@
 #ifndef APP_TRACE_RAYS_FILE_H
 #define APP_TRACE_RAYS_FILE_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Numbers of a ray in a file, in the order of a file without a header. */

@@ -2,7 +2,6 @@
  * float32 or float64, little-endian, one row of 6 to 9 numbers for each ray. */
 #include <errno.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 #define APP_VIEW_ACCESS_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
 enum { TOKEN_SIZE = 33 }; /* 128 random bits as text, with the zero */
 

@@ -6,7 +6,6 @@
 
 #include "cli/kinds.h"
 #include "cli/report.h"
-#include "render/job.h"
 #include "view/engine_parts.h"
 
 void json_text_post(Json *json, Server *server, uint32_t client) {

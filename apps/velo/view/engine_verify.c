@@ -19,7 +19,6 @@
 #include "render/outputs.h"
 #include "view/engine_copied.h"
 #include "view/engine_status.h"
-#include "view/view.h"
 
 enum { KINDS = 2, MAX_WORDS = 2 * MAX_OPTIONS + 40 };
 /* The command yields to the page, which goes on. */

@@ -2,7 +2,6 @@
  * background, and the render thread goes on with the new world; when it cannot be loaded, the
  * old image stays and the error is shown. */
 #include <poll.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/inotify.h>

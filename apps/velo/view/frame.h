@@ -5,9 +5,6 @@
 #define APP_VIEW_FRAME_H
 
 #include <stdatomic.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include "velo/image.h"
 #include "velo/spectrum.h"

@@ -3,10 +3,6 @@
 #ifndef APP_VIEW_MESSAGE_H
 #define APP_VIEW_MESSAGE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "velo/setting.h"
 
 enum {

@@ -3,8 +3,6 @@
 #ifndef APP_VIEW_MODEL_H
 #define APP_VIEW_MODEL_H
 
-#include <stdint.h>
-
 #include "render/job.h"
 #include "render/scene_options.h"
 

@@ -2,8 +2,6 @@
  * it. */
 #include "view/view.h"
 
-#include <stddef.h>
-
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "render/needs.h"

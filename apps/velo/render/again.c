@@ -129,12 +129,12 @@ int again_open(Again *again, const Arguments **arguments) {
   return status;
 }
 
-int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context, const Job *job,
+int again_check(const Again *again, const ReceiptPlan *plan, const Job *job,
                 const ReceiptImage *which, bool with_camera) {
   if (!again->path)
     return -1;
   vlReceipt *now = NULL;
-  vlResult result = receipt_make(plan, context, job, which, &now);
+  vlResult result = receipt_make(plan, job, which, &now);
   if (result != VL_OK)
     return report_reason(result, again->path, "its receipt cannot be compared");
   uint32_t parts = VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS |

@@ -21,7 +21,7 @@ typedef struct Again {
 int again_open(Again *again, const Arguments **arguments);
 /* Checks that the planned render is the one that the receipt describes. with_camera: also
  * compares the camera. Returns -1, or the exit code after naming the differences. */
-int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context, const Job *job,
+int again_check(const Again *again, const ReceiptPlan *plan, const Job *job,
                 const ReceiptImage *which, bool with_camera);
 void again_close(Again *again);
 

@@ -167,9 +167,8 @@ static int render_frame(Animator *x, uint32_t frame) {
 
 /* A SteadyBetween: loads the model for the moments of both frames, in the middle of their
  * exposures. */
-static vlResult between(void *user, vlContext *context, uint32_t before, uint32_t now,
-                        const Job *job, const vlWorld *world, vlWorld **result, double *span,
-                        vlError *error) {
+static vlResult between(void *user, uint32_t before, uint32_t now, const Job *job,
+                        vlWorld **result, double *span, vlError *error) {
   const Animator *x = user;
   const Animation *a = &x->animation;
   Arguments both = *x->arguments;
@@ -187,9 +186,9 @@ static vlResult between(void *user, vlContext *context, uint32_t before, uint32_
   *result = NULL;
   *span = to - from;
   vlResult code = VL_ERROR_SCENE;
-  if (scene_open(context, both.operands[0], &both, &scene, &opening) < 0) {
+  if (scene_open(job->context, both.operands[0], &both, &scene, &opening) < 0) {
     vlBuildDef build = job->defs->build;
-    build.previous = world;
+    build.previous = job->world;
     code = vl_world_build_last(scene, &build, result, error);
   } else {
     snprintf(error->message, sizeof error->message,

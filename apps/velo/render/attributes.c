@@ -52,9 +52,9 @@ vlResult attributes_add_layer(vlImage *image, const vlImage *layer) {
   return layer ? vl_image_add_attributes(image, layer) : VL_OK;
 }
 
-vlResult attributes_make(vlContext *context, const Job *job, const char *eye, vlImage **image) {
+vlResult attributes_make(const Job *job, const char *eye, vlImage **image) {
   vlImageDef def = vl_default_image_def(1, 1, 1);
-  vlResult result = vl_image_create(context, &def, image);
+  vlResult result = vl_image_create(job->context, &def, image);
   if (result == VL_OK)
     result = attributes_set(*image, job, job->defs->render.spp);
   return result == VL_OK && eye ? attributes_set_eye(*image, eye) : result;

@@ -17,7 +17,7 @@ vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name,
 vlResult attributes_set_eye(vlImage *image, const char *view);
 /* Makes an image that has only attributes, those that a film keeps: of the image of the whole
  * render, or of an eye. *image is destroyed by the caller, also after an error. */
-vlResult attributes_make(vlContext *context, const Job *job, const char *eye, vlImage **image);
+vlResult attributes_make(const Job *job, const char *eye, vlImage **image);
 /* Copies the attributes of a further layer, or of null, to the first image of a file, whose
  * header describes all. */
 vlResult attributes_add_layer(vlImage *image, const vlImage *layer);

@@ -135,10 +135,11 @@ static int fail_pass(const vlError *error, vlResult result, const Job *job) {
                                 : report_error(error, result, job->path);
 }
 
-static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
+static int find_boxes(Channels *c, const Job *job) {
   static const vlIdKind kinds[2] = {VL_ID_OBJECT, VL_ID_INSTANCE};
   for (int k = 0; k < 2; k++) {
-    c->box_list[k] = calloc((size_t)vl_world_id_count(world, kinds[k]) + 1, sizeof(vlIdBox));
+    c->box_list[k] =
+        calloc((size_t)vl_world_id_count(job->world, kinds[k]) + 1, sizeof(vlIdBox));
     if (!c->box_list[k])
       return report_error(NULL, VL_ERROR_MEMORY, NULL);
   }
@@ -149,7 +150,7 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   def.stop_user = &signals;
   vlError error = {0};
   vlResult result =
-      vl_world_boxes(world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
+      vl_world_boxes(job->world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
   return fail_pass(&error, result, job);
 }
 
@@ -229,13 +230,12 @@ double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, doubl
          compressed * writing * (double)channels_values(c, buckets) / 3;
 }
 
-int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job,
-                    const vlFilm *film) {
+int channels_render(Channels *c, const Job *job, const vlFilm *film) {
   vlResult spectrum = c->spectrum ? vl_film_spectrum(film, &c->layers[2]) : VL_OK;
   if (spectrum != VL_OK)
     return report_reason(spectrum, job->path, "the image's spectrum cannot be made");
   if (c->gbuffer)
-    return gbuffer_render(context, world, job, film, &c->layers[3]);
+    return gbuffer_render(job, film, &c->layers[3]);
   if (!c->bits)
     return STATUS_OK;
   shutter_ends(c, job);
@@ -251,12 +251,12 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
     def.backward = &c->others[1];
   vlError error = {0};
   vlResult result =
-      vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
+      vl_render_channels(job->world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
   if (result == VL_OK)
     result = channels_make_visible(&c->layers[1]);
   if (result != VL_OK)
     return fail_pass(&error, result, job);
-  return c->boxes ? find_boxes(c, world, job) : STATUS_OK;
+  return c->boxes ? find_boxes(c, job) : STATUS_OK;
 }
 
 vlResult channels_describe(const Channels *c, vlImage *image) {

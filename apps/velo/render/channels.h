@@ -43,8 +43,7 @@ double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, doubl
                         double writing);
 /* Renders the channels, after the image. Returns STATUS_OK or the exit code; 128 + signal when
  * another signal interrupts it. */
-int channels_render(Channels *c, vlContext *context, const vlWorld *world, const Job *job,
-                    const vlFilm *film);
+int channels_render(Channels *c, const Job *job, const vlFilm *film);
 /* Converts names and types of the ids (vl_render_channels' second image) to their form in
  * files. VL_ERROR_MEMORY or VL_OK. */
 vlResult channels_make_visible(vlImage **ids);
@@ -56,8 +55,8 @@ vlResult channels_describe_mode(const Channels *c, vlImage *image);
 /* Writes PATH.ids.json: type, name, material, location in its file and, if wanted, the box of
  * each id in the image. `right` (may be null): the other view of the same file, whose ids are
  * included. Nothing for the standard output. Returns STATUS_OK or the exit code. */
-int channels_write_ids(const Channels *c, const Channels *right, vlContext *context,
-                       const vlWorld *world, const char *path);
+int channels_write_ids(const Channels *c, const Channels *right, const Job *job,
+                       const char *path);
 void channels_free(Channels *c);
 
 #endif

@@ -134,8 +134,8 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
 }
 
 /* Composes the file in memory, then writes it as a whole. */
-int channels_write_ids(const Channels *c, const Channels *right, vlContext *context,
-                       const vlWorld *world, const char *path) {
+int channels_write_ids(const Channels *c, const Channels *right, const Job *job,
+                       const char *path) {
   char target[4200];
   const vlImage *ids = c->layers[1];
   if (!ids)
@@ -151,11 +151,12 @@ int channels_write_ids(const Channels *c, const Channels *right, vlContext *cont
   char *text = NULL;
   size_t size = 0;
   FILE *file = open_memstream(&text, &size);
-  bool good = file && put_all(file, world, c, right, path);
+  bool good = file && put_all(file, job->world, c, right, path);
   if (file && fclose(file) != 0)
     good = false;
   vlError error = {0};
-  vlResult result = good ? vl_write_file(context, target, text, size, &error) : VL_ERROR_MEMORY;
+  vlResult result =
+      good ? vl_write_file(job->context, target, text, size, &error) : VL_ERROR_MEMORY;
   free(text);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, target);
 }

@@ -105,8 +105,7 @@ vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,
 
 /* Denoises the image. A frame of several is kept, and blended with those before it. *clean is
  * null for a frame that is only kept. */
-static vlResult clean_frame(Denoised *d, vlContext *context, const vlWorld *world,
-                            const Job *job, const vlImage *image, vlImage **clean,
+static vlResult clean_frame(Denoised *d, const Job *job, const vlImage *image, vlImage **clean,
                             vlDenoiseStats *stats, vlError *error) {
   vlDenoiseDef def = d->def;
   def.errors = d->steady != NULL;
@@ -114,17 +113,16 @@ static vlResult clean_frame(Denoised *d, vlContext *context, const vlWorld *worl
   if (result != VL_OK || !d->steady)
     return result;
   int signals = signals_count();
-  result = steady_keep(d->steady, context, world, job, image, *clean, &signals, error);
+  result = steady_keep(d->steady, job, image, *clean, &signals, error);
   *clean = NULL;
   if (result == VL_OK && !d->steady->only_kept)
-    result = steady_blend(d->steady, context, world, job, &signals, clean, error);
+    result = steady_blend(d->steady, job, &signals, clean, error);
   return result;
 }
 
 /* Makes the image with its standard errors and the denoiser's features. The errors are those of
  * independent samples, which the denoiser prefers; the others need not be estimated. */
-static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
-                       const vlFilm *film, vlImage **joined, vlError *error) {
+static vlResult gather(const Job *job, const vlFilm *film, vlImage **joined, vlError *error) {
   vlDevelopDef develop = job->defs->develop;
   develop.independent = true; /* does not matter to the colours */
   int signals = signals_count();
@@ -136,10 +134,10 @@ static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
   if (result == VL_OK)
     result = vl_film_errors(film, &develop, &errors);
   if (result == VL_OK)
-    result = vl_render_channels(world, &job->camera, &def, &features, NULL, error);
+    result = vl_render_channels(job->world, &job->camera, &def, &features, NULL, error);
   if (result == VL_OK)
-    result =
-        denoised_join(context, (const vlImage *const[]){color, errors, features}, 3, joined);
+    result = denoised_join(job->context, (const vlImage *const[]){color, errors, features}, 3,
+                           joined);
   if (result == VL_OK)
     result = attributes_set(*joined, job, vl_film_spp(film));
   vl_image_destroy(color);
@@ -159,15 +157,14 @@ void denoised_share_exposure(Denoised *d, Outputs *image) {
   d->outputs.shared = image->shared;
 }
 
-int denoised_make(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
-                  const vlFilm *film, vlImage **clean) {
+int denoised_make(Denoised *d, const Job *job, const vlFilm *film, vlImage **clean) {
   vlImage *image = NULL;
   vlError error = {0};
   vlDenoiseStats stats;
   *clean = NULL;
-  vlResult result = gather(context, world, job, film, &image, &error);
+  vlResult result = gather(job, film, &image, &error);
   if (result == VL_OK)
-    result = clean_frame(d, context, world, job, image, clean, &stats, &error);
+    result = clean_frame(d, job, image, clean, &stats, &error);
   vl_image_destroy(image);
   if (result == VL_OK && *clean)
     result = denoise_name(*clean, d->def.denoiser);
@@ -184,14 +181,13 @@ int denoised_make(Denoised *d, vlContext *context, const vlWorld *world, const J
   return 128 + signals_pending();
 }
 
-int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
-                   const vlFilm *film, OutputStage stage) {
+int denoised_write(Denoised *d, const Job *job, const vlFilm *film, OutputStage stage) {
   if (!d->outputs.count)
     return STATUS_OK;
   vlImage *clean = NULL;
-  int status = denoised_make(d, context, world, job, film, &clean);
+  int status = denoised_make(d, job, film, &clean);
   if (clean) {
-    status = outputs_write(context, &d->outputs, clean, vl_film_spp(film), stage);
+    status = outputs_write(job->context, &d->outputs, clean, vl_film_spp(film), stage);
     d->written = status == STATUS_OK;
   }
   vl_image_destroy(clean);

@@ -41,12 +41,10 @@ void denoised_share_exposure(Denoised *d, Outputs *image);
 /* Renders the features and denoises the film's image. *clean, owned by the caller: the result,
  * with the image's header; null for a frame that is only kept for those after it, and after an
  * error. Returns STATUS_OK, or the exit code after reporting the error. */
-int denoised_make(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
-                  const vlFilm *film, vlImage **clean);
+int denoised_make(Denoised *d, const Job *job, const vlFilm *film, vlImage **clean);
 /* denoised_make, and writes the result; d->written tells
  * whether it is there. Returns STATUS_OK, or the exit code after reporting the error. */
-int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job,
-                   const vlFilm *film, OutputStage stage);
+int denoised_write(Denoised *d, const Job *job, const vlFilm *film, OutputStage stage);
 
 /* Makes one image with the channels of n float images, which have the same size. */
 vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,

@@ -15,7 +15,7 @@ typedef struct Facts {
   vlWorldInfo world;
 } Facts;
 
-static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) {
+static Facts gather(const Job *job, const vlScene *scene) {
   const double degrees = 57.295779513082320877;
   const vlCamera *c = &job->camera;
   const vlSceneDefs *defs = job->defs;
@@ -41,7 +41,7 @@ static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) 
   for (int i = 0; i < 3; i++)
     f.forward[i] = f.forward[i] / sqrt(length) + 0.0;
   vl_scene_info(scene, &f.scene);
-  vl_world_info(world, &f.world);
+  vl_world_info(job->world, &f.world);
   return f;
 }
 
@@ -73,10 +73,9 @@ static void describe_json(const Job *job, const Facts *f, bool denoised,
   report_json_end(json);
 }
 
-void job_describe(const Job *job, vlContext *context, const vlScene *scene,
-                  const vlWorld *world, bool denoised, const char *const *outputs,
-                  int output_count) {
-  Facts f = gather(job, scene, world);
+void job_describe(const Job *job, const vlScene *scene, bool denoised,
+                  const char *const *outputs, int output_count) {
+  Facts f = gather(job, scene);
   if (report_is_json()) {
     describe_json(job, &f, denoised, outputs, output_count);
     return;
@@ -91,7 +90,7 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene,
   printf("scene     %s: %llu shapes, %llu materials, %llu textures, %llu instances\n",
          job->path, (unsigned long long)f.scene.shapes, (unsigned long long)f.scene.materials,
          (unsigned long long)f.scene.textures, (unsigned long long)f.scene.instances);
-  printf("world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n",
+  printf("job->world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n",
          triangles,
          (unsigned long long)(f.world.primitives > f.world.triangles
                                   ? f.world.primitives - f.world.triangles
@@ -113,7 +112,8 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene,
     printf(", at most %g s", render->time_limit);
   printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, render->max_depth,
          f.light_sampler, job->defs->build.regularize ? ", regularised" : "");
-  printf("machine   %u threads, %s\n", vl_context_threads(context), context_isa_name(context));
+  printf("machine   %u threads, %s\n", vl_context_threads(job->context),
+         context_isa_name(job->context));
   for (int i = 0; i < output_count; i++)
     printf("%s %s\n", i ? "         " : "output   ", outputs[i]);
 }

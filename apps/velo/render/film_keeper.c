@@ -13,8 +13,7 @@
 enum { EVERY = 30 };
 static const double SHARE = 0.005, SHARE_WITH_ERRORS = 0.015;
 
-int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context,
-                         const Job *job, const char *eye) {
+int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, const Job *job, const char *eye) {
   if (!k->path[0])
     return -1;
   Job whole = *job;
@@ -28,16 +27,16 @@ int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context
   vl_image_destroy(k->attributes);
   k->receipt = NULL;
   k->attributes = NULL;
-  vlResult result = receipt_make(plan->receipt, context, &whole, &which, &k->receipt);
+  vlResult result = receipt_make(plan->receipt, &whole, &which, &k->receipt);
   if (result == VL_OK)
-    result = attributes_make(context, &whole, eye, &k->attributes);
+    result = attributes_make(&whole, eye, &k->attributes);
   if (result == VL_OK && !plan->receipt->arguments->channels_later)
     result = channels_describe_mode(plan->channels, k->attributes);
   return report_reason(result, k->path, "the film's receipt cannot be made");
 }
 
-int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, vlContext *context,
-                      const Job *job, const char *eye) {
+int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, const Job *job,
+                      const char *eye) {
   const FilmClaim *claim = &plan->claims[view];
   memset(k, 0, sizeof *k);
   if (!claim->path[0])
@@ -51,7 +50,7 @@ int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, vlContext *
   k->share = every->given ? 0 : film->errors || film->buckets ? SHARE_WITH_ERRORS : SHARE;
   memcpy(k->window, film->crop, sizeof k->window);
   k->last = monotonic_seconds();
-  return film_keeper_describe(k, plan, context, job, eye);
+  return film_keeper_describe(k, plan, job, eye);
 }
 
 static void *end_write(void *user) {

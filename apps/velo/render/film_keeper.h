@@ -43,11 +43,11 @@ typedef struct FilmKeeper {
 
 /* view: of the plan's claims; if it has no path, no film is written. eye: the eye that the film
  * belongs to, or null for the camera. Returns -1 or the exit code. */
-int film_keeper_start(FilmKeeper *keeper, const FilmPlan *plan, int view, vlContext *context,
-                      const Job *job, const char *eye);
+int film_keeper_start(FilmKeeper *keeper, const FilmPlan *plan, int view, const Job *job,
+                      const char *eye);
 /* Makes the receipt again for another range of samples. Returns -1 or the exit code. */
-int film_keeper_describe(FilmKeeper *keeper, const FilmPlan *plan, vlContext *context,
-                         const Job *job, const char *eye);
+int film_keeper_describe(FilmKeeper *keeper, const FilmPlan *plan, const Job *job,
+                         const char *eye);
 /* Called after a pass. Writes a checkpoint when it is due. A failure is reported as a
  * warning. */
 void film_keeper_checkpoint(FilmKeeper *keeper, const vlFilm *film);

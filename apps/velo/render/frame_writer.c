@@ -120,7 +120,7 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path,
     result = attributes_set_view(both, &p->jobs[1], names[1]);
   const ReceiptImage which = receipt_image(w, p, NULL);
   if (result == VL_OK)
-    result = receipt_set(w->context, &p->jobs[0], &which, both);
+    result = receipt_set(&p->jobs[0], &which, both);
   for (int v = 0; v < 2; v++)
     for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) {
       vlImage *layer = p->channels[v].layers[k];
@@ -186,7 +186,7 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
     int code = STATUS_OK;
     if (output_holds_layers(path))
       code = channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL,
-                                w->context, w->world, path);
+                                &p->jobs[view], path);
     vlResult result = two && !by_view ? write_both(w, p, path, &def, &error)
                                       : write_one(w, p, view, path, &def, &error);
     if (result != VL_OK)
@@ -239,7 +239,7 @@ static int write_image(FrameWriter *w, FrameImage *p) {
     const ReceiptImage which =
         receipt_image(w, p, *w->frames->view_names[v] ? w->frames->view_names[v] : NULL);
     if (result == VL_OK)
-      result = receipt_set(w->context, &p->jobs[v], &which, p->images[v]);
+      result = receipt_set(&p->jobs[v], &which, p->images[v]);
     if (result != VL_OK)
       status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");
   }

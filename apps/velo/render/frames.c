@@ -80,9 +80,8 @@ static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
 }
 
 /* Adds a camera. If record is null, adds the job's own camera. */
-static int add_camera(Frames *frames, vlContext *context, const Job *job,
-                      const Arguments *arguments, const vlCameraRecord *record,
-                      const char *path) {
+static int add_camera(Frames *frames, const Job *job, const Arguments *arguments,
+                      const vlCameraRecord *record, const char *path) {
   FrameCamera *camera = &frames->cameras[frames->camera_count++];
   camera->job = *job;
   if (record) {
@@ -109,7 +108,7 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job,
     result = vl_camera_eye(&base, &camera->job.defs->camera.stereo, frames->eyes[i],
                            &camera->eyes[i], &error);
   if (result == VL_OK)
-    return make_film(frames, context, camera);
+    return make_film(frames, job->context, camera);
   vlError location = camera->job.camera_location;
   snprintf(location.message, sizeof location.message, "%s", error.message);
   return report_error(&location, result, path);
@@ -134,8 +133,8 @@ static int load_file(vlContext *context, const char *path, const Arguments *argu
 }
 
 /* Adds the rig's cameras with their poses in the rig. */
-static int add_rig(Frames *frames, vlContext *context, const Job *job,
-                   const Arguments *arguments, const char *path) {
+static int add_rig(Frames *frames, const Job *job, const Arguments *arguments,
+                   const char *path) {
   for (uint32_t i = 0; i < vl_trajectory_frames(frames->rig); i++) {
     vlTrajectoryFrame frame;
     vl_trajectory_frame(frames->rig, i, &frame);
@@ -147,7 +146,7 @@ static int add_rig(Frames *frames, vlContext *context, const Job *job,
       snprintf(record.name, sizeof record.name, "%s", frame.name);
     if (!record.name[0])
       snprintf(record.name, sizeof record.name, "%u", i);
-    int status = add_camera(frames, context, job, arguments, &record, path);
+    int status = add_camera(frames, job, arguments, &record, path);
     if (status >= 0)
       return status;
     memcpy(frames->cameras[i].mount, frame.world_from_camera, sizeof frame.world_from_camera);
@@ -184,8 +183,7 @@ static int choose_frames(Frames *frames, const Arguments *arguments) {
   return choose_shard(frames, arguments);
 }
 
-int frames_load(Frames *frames, vlContext *context, const Job *job,
-                const Arguments *arguments) {
+int frames_load(Frames *frames, const Job *job, const Arguments *arguments) {
   static const char *const names[2] = {"left", "right"};
   const OptionValue *v = arguments->values;
   const vlCameraDef *def = &job->defs->camera;
@@ -204,9 +202,9 @@ int frames_load(Frames *frames, vlContext *context, const Job *job,
   int status = -1;
   const char *path = v[RENDER_TRAJECTORY].text, *rig = v[RENDER_RIG].text;
   if (v[RENDER_TRAJECTORY].given)
-    status = load_file(context, path, arguments, &frames->trajectory);
+    status = load_file(job->context, path, arguments, &frames->trajectory);
   if (status < 0 && v[RENDER_RIG].given)
-    status = load_file(context, rig, arguments, &frames->rig);
+    status = load_file(job->context, rig, arguments, &frames->rig);
   if (status < 0 && frames->trajectory)
     status = choose_frames(frames, arguments);
   if (status >= 0)
@@ -217,12 +215,12 @@ int frames_load(Frames *frames, vlContext *context, const Job *job,
   if (!frames->cameras)
     return report_error(NULL, VL_ERROR_MEMORY, NULL);
   if (frames->rig)
-    return add_rig(frames, context, job, arguments, rig);
+    return add_rig(frames, job, arguments, rig);
   if (count == 0)
-    return add_camera(frames, context, job, arguments, NULL, NULL);
+    return add_camera(frames, job, arguments, NULL, NULL);
   for (uint32_t i = 0; i < count && status < 0; i++)
-    status = add_camera(frames, context, job, arguments,
-                        vl_trajectory_camera(frames->trajectory, i), path);
+    status =
+        add_camera(frames, job, arguments, vl_trajectory_camera(frames->trajectory, i), path);
   return status;
 }
 

@@ -51,7 +51,7 @@ bool frames_wanted(const Arguments *arguments, const Job *job);
 int frames_check(const Arguments *arguments, Outputs *outputs);
 /* Reads trajectory and rig and makes all cameras. Returns -1, or the exit code after reporting
  * the error. */
-int frames_load(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments);
+int frames_load(Frames *frames, const Job *job, const Arguments *arguments);
 /* Checks names and directories of all files before rendering; two frames must not have the same
  * name. Returns -1 or the exit code. */
 int frames_check_names(const Frames *frames, const Outputs *outputs);

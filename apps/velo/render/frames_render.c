@@ -77,8 +77,7 @@ static int open_film(Run *run, const Frame *frame, int view, Job *job, vlFilm **
   run->film = frame->camera->film;
   if (!plan)
     return -1;
-  int status =
-      film_keeper_start(&run->keeper, plan, view, run->context, job, *name ? name : NULL);
+  int status = film_keeper_start(&run->keeper, plan, view, job, *name ? name : NULL);
   if (status < 0)
     status = continue_film(&plan->claims[view], plan->receipt->arguments, run->keeper.receipt,
                            run->context, job->defs, own);
@@ -105,11 +104,10 @@ static int render_film(Run *run, const char *name, int view, Job *job, FrameImag
   if (result == VL_CANCELLED)
     return 128 + signals_pending();
   if (run->denoised->outputs.count)
-    status =
-        denoised_make(run->denoised, run->context, run->world, job, run->film, &image->clean);
+    status = denoised_make(run->denoised, job, run->film, &image->clean);
   image->channels[view] = *run->channels;
   return status == STATUS_OK && run->layers && !run->frames->steady.only_kept
-             ? channels_render(&image->channels[view], run->context, run->world, job, run->film)
+             ? channels_render(&image->channels[view], job, run->film)
              : status;
 }
 
@@ -118,6 +116,7 @@ static int make_view(Run *run, const Frame *frame, int view, Job *job) {
   char name[200];
   vlError error = {0};
   *job = frame->camera->job;
+  job->world = run->world;
   frame_name(run, frame, name, sizeof name);
   vlResult result = frames_camera(run->frames, frame, view, &job->camera, &error);
   if (result != VL_OK)

@@ -153,22 +153,21 @@ static void fill_all(Source *s, const uint32_t crop[4], float *out) {
     }
 }
 
-static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFilm *film,
-                                vlImage **geometry, vlError *error) {
+static vlResult ground_truth_of(const Job *job, const vlFilm *film, vlImage **geometry,
+                                vlError *error) {
   int signals = signals_count();
   vlChannelsDef def = job_channels_def(job, film, &signals);
   def.channels = VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV |
                  VL_CHANNEL_ALBEDO | VL_CHANNEL_RAY | VL_CHANNEL_DISTANCE;
-  return vl_render_channels(world, &job->camera, &def, geometry, NULL, error);
+  return vl_render_channels(job->world, &job->camera, &def, geometry, NULL, error);
 }
 
-int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
-                   vlImage **image) {
+int gbuffer_render(const Job *job, const vlFilm *film, vlImage **image) {
   vlImage *geometry = NULL, *rendered = NULL, *errors = NULL;
   vlError error = {0};
   vlDevelopDef develop = job->defs->develop;
   develop.independent = true;
-  vlResult result = ground_truth_of(world, job, film, &geometry, &error);
+  vlResult result = ground_truth_of(job, film, &geometry, &error);
   if (result == VL_OK)
     result = vl_film_develop(film, &develop, &rendered);
   if (result == VL_OK)
@@ -179,7 +178,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
     def.names = names;
     def.type = VL_PIXEL_F32;
     def.encoding = VL_ENCODING_LINEAR;
-    result = vl_image_create(context, &def, image);
+    result = vl_image_create(job->context, &def, image);
   }
   if (result == VL_OK) {
     double spp = vl_film_spp(film);

@@ -8,7 +8,6 @@
 /* Makes the image after the render into `film`, whose def had `errors` set. Positions and
  * normals are in the coordinate system that the scene's gbuffer film names. Returns STATUS_OK
  * or the exit code. */
-int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
-                   vlImage **image);
+int gbuffer_render(const Job *job, const vlFilm *film, vlImage **image);
 
 #endif

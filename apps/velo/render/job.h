@@ -128,7 +128,9 @@ typedef struct ReceiptCamera {
 } ReceiptCamera;
 
 typedef struct Job {
-  const char *path; /* path of the scene file */
+  vlContext *context;
+  const vlWorld *world; /* null until it is built */
+  const char *path;     /* path of the scene file */
   /* the scene's defs with overrides; a copy for each camera of a rig. defs->camera keeps the
    * size of its description */
   vlSceneDefs *defs;
@@ -176,8 +178,7 @@ int job_no_film(const Job *job, vlResult result);
 
 /* Prints what would be rendered to stdout (or as a JSON line). denoised: the outputs hold the
  * denoised image alone. */
-void job_describe(const Job *job, vlContext *context, const vlScene *scene,
-                  const vlWorld *world, bool denoised, const char *const *outputs,
-                  int output_count);
+void job_describe(const Job *job, const vlScene *scene, bool denoised,
+                  const char *const *outputs, int output_count);
 
 #endif

@@ -370,6 +370,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,
              const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlSceneDefs *defs = vl_scene_defs(scene);
+  job->context = context;
   job->path = path;
   job->defs = defs;
   job->camera_location = camera_location(defs, path);

@@ -60,19 +60,19 @@ static uint64_t film_bytes(const Job *job, const Frames *frames) {
 }
 
 /* The second render of --channels illuminance: its film, its workers, two images. */
-static uint64_t illuminance_bytes(const vlWorld *world, const Job *job) {
+static uint64_t illuminance_bytes(const Job *job) {
   const vlFilmDef *film = &job->defs->film;
   vlFilmDef own = vl_default_film_def(film->width, film->height);
   memcpy(own.crop, film->crop, sizeof own.crop);
   vlRenderDef render = job->defs->render;
   render.tracer = VL_TRACER_VOLPATH;
   uint64_t pixels = (uint64_t)(own.crop[2] - own.crop[0]) * (own.crop[3] - own.crop[1]);
-  return vl_film_memory(&own) + vl_render_memory(world, &own, &render) +
+  return vl_film_memory(&own) + vl_render_memory(job->world, &own, &render) +
          pixels * 5 * sizeof(float);
 }
 
-void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job,
-                 const Outputs *outputs, const Channels *channels, const Frames *frames) {
+void memory_plan(MemoryPlan *plan, const Job *job, const Outputs *outputs,
+                 const Channels *channels, const Frames *frames) {
   enum {
     WAITING = 6
   }; /* images of a trajectory that are rendered, queued or written at the same time */
@@ -95,17 +95,18 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
   const bool eight_bit = outputs_any(outputs, output_is_display),
              layers = outputs_any(outputs, output_holds_layers);
   uint64_t values = layers ? channels_values(channels, job->defs->film.buckets) : 0;
-  uint64_t held = vl_context_memory(context, NULL), resident = process_resident();
+  uint64_t held = vl_context_memory(job->context, NULL), resident = process_resident();
   memory_add(plan, "program", resident > held ? resident - held : 0);
   memory_add(plan, "scene", held);
   memory_add(plan, "film", film_bytes(job, frames));
-  memory_add(plan, "rendering", vl_render_memory(world, &job->defs->film, &job->defs->render));
+  memory_add(plan, "rendering",
+             vl_render_memory(job->world, &job->defs->film, &job->defs->render));
   memory_add(plan, "image", copies * pixels * (eight_bit ? 20 : 16));
   uint64_t ground_truth = copies * pixels * values * 4;
   if (layers && (channels->bits & VL_CHANNEL_ILLUMINANCE))
-    ground_truth += illuminance_bytes(world, job);
+    ground_truth += illuminance_bytes(job);
   memory_add(plan, "ground truth", ground_truth);
-  memory_add(plan, "writing", writing(context, outputs, width, height, values));
+  memory_add(plan, "writing", writing(job->context, outputs, width, height, values));
 }
 
 /* ---- does it fit ------------------------------------------------------------------------- */

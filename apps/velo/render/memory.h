@@ -21,8 +21,8 @@ typedef struct MemoryPlan {
 
 /* Estimates the memory held by the scene and needed by the render, its ground truth and the
  * writing of its files. `frames`: null, or the images of a trajectory. */
-void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job,
-                 const Outputs *outputs, const Channels *channels, const Frames *frames);
+void memory_plan(MemoryPlan *plan, const Job *job, const Outputs *outputs,
+                 const Channels *channels, const Frames *frames);
 /* Adds an optional item to the plan. Does nothing for 0 bytes. */
 void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes);
 /* Returns -1 if the plan fits within --max-memory (`limit`; 0: none), the process's limits and

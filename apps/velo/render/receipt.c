@@ -128,8 +128,8 @@ static bool is_autofocused(const Job *job, const Arguments *arguments) {
   return wanted && !job->camera.lens.optics && isnan(job->camera.lens.focus_pixel[0]);
 }
 
-vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *job,
-                      const ReceiptImage *which, vlReceipt **receipt) {
+vlResult receipt_make(const ReceiptPlan *plan, const Job *job, const ReceiptImage *which,
+                      vlReceipt **receipt) {
   Words words;
   find_words(&words, plan, job, which);
   vlSceneDefs defs = defs_of(job, which);
@@ -146,11 +146,10 @@ vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *jo
   def.output_count = which->output_count;
   if (is_autofocused(job, plan->arguments))
     def.focus_distance = job->camera.focus_distance;
-  return vl_receipt_make(context, &def, receipt, NULL);
+  return vl_receipt_make(job->context, &def, receipt, NULL);
 }
 
-vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *which,
-                     vlImage *image) {
+vlResult receipt_set(const Job *job, const ReceiptImage *which, vlImage *image) {
   const ReceiptPlan *plan = job->receipt;
   if (!plan)
     return VL_OK;
@@ -160,7 +159,7 @@ vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *whi
   /* the receipt does not describe a part of the image or an image of another version */
   bool same =
       receipt && plan->again_is_ours && vl_receipt_samples(receipt, &planned) == which->samples;
-  vlResult result = same ? VL_OK : receipt_make(plan, context, job, which, &made);
+  vlResult result = same ? VL_OK : receipt_make(plan, job, which, &made);
   if (result == VL_OK) {
     const vlAttribute attribute = {.name = RECEIPT_ATTRIBUTE,
                                    .type = VL_ATTRIBUTE_STRING,

@@ -32,11 +32,10 @@ typedef struct ReceiptImage {
 /* Returns whether the option changes the content of an image. Other options choose output
  * paths, speed or messages. */
 bool receipt_option_counts(const Arguments *arguments, int option);
-vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *job,
-                      const ReceiptImage *which, vlReceipt **receipt);
+vlResult receipt_make(const ReceiptPlan *plan, const Job *job, const ReceiptImage *which,
+                      vlReceipt **receipt);
 /* Sets the attribute. Does nothing with --no-receipt. */
-vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *which,
-                     vlImage *image);
+vlResult receipt_set(const Job *job, const ReceiptImage *which, vlImage *image);
 /* Finds the receipt in a header. Returns -1, or the exit code after reporting that there is
  * none or that it is wrong. */
 int receipt_of_image(vlContext *context, const vlImage *image, const char *path,

@@ -359,6 +359,7 @@ static int build_world(Render *render, const char *path) {
   vlError error = {0};
   if (shared && shared->still && shared->world) {
     render->world = shared->world;
+    render->job.world = shared->world;
     return -1;
   }
   vlBuildDef *build = &render->job.defs->build;
@@ -368,6 +369,7 @@ static int build_world(Render *render, const char *path) {
   scene_opening_close(&render->opening);
   if (result != VL_OK)
     return report_error(&error, result, path);
+  render->job.world = render->world;
   if (shared) {
     vl_world_destroy(shared->world);
     shared->world = render->world;
@@ -407,7 +409,7 @@ static int claim_films(Render *render, const Arguments *arguments) {
 
 static int load_frames(Render *render, const Arguments *arguments) {
   render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
-  int status = frames_load(&render->frames, render->context, &render->job, arguments);
+  int status = frames_load(&render->frames, &render->job, arguments);
   const Frames *frames = &render->frames;
   if (status < 0 && render->videos)
     videos_range(render->videos, frames->first, frames_count(frames), frames->step);
@@ -504,8 +506,8 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
 static int reckon_memory(Render *render, const Arguments *arguments) {
   const OptionValue *limit = &arguments->values[RENDER_MAX_MEMORY];
   uint64_t most = (uint64_t)limit->integer;
-  memory_plan(&render->memory, render->context, render->world, &render->job, &render->outputs,
-              &render->channels, render->many ? &render->frames : NULL);
+  memory_plan(&render->memory, &render->job, &render->outputs, &render->channels,
+              render->many ? &render->frames : NULL);
   if (render->denoised.outputs.count)
     memory_add(&render->memory, "denoising", denoised_memory(run_pixels(render)));
   if (render->denoised.steady && render->denoised.outputs.count)
@@ -536,8 +538,7 @@ static int check_again(const Render *render) {
           "--again: the images of a rig are made again by the command in the receipt");
   }
   /* several images have different cameras; the files and the command determine them */
-  return again_check(&render->again, &render->receipt, render->context, job, &which,
-                     !render->many);
+  return again_check(&render->again, &render->receipt, job, &which, !render->many);
 }
 
 /* Frees what a frame does not leave to the next one. */
@@ -604,8 +605,8 @@ static int render_once(const Arguments *arguments, AnimateShared *shared, Videos
   if (status < 0 && render.again.receipt)
     status = check_again(&render);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
-    job_describe(&render.job, render.context, render.scene, render.world,
-                 render.denoised.replaces, render.outputs.paths, render.outputs.count);
+    job_describe(&render.job, render.scene, render.denoised.replaces, render.outputs.paths,
+                 render.outputs.count);
     if (render.many && frames_count(&render.frames) > 1)
       report_note("%u frames%s", frames_count(&render.frames),
                   render.frames.views == 2 ? ", two eyes each" : "");

@@ -72,7 +72,7 @@ static int write_image(Render *render, OutputStage stage) {
     result = channels_describe(&render->channels, image);
   const ReceiptImage which = {.samples = spp};
   if (result == VL_OK)
-    result = receipt_set(render->context, &render->job, &which, image);
+    result = receipt_set(&render->job, &which, image);
   int status = STATUS_OK;
   if (result == VL_OK)
     status = outputs_write(render->context, &render->outputs, image, spp, stage);
@@ -204,8 +204,7 @@ static int render_channels(Render *render) {
   if (!run_has_layers(render))
     return STATUS_OK;
   Channels *channels = &render->channels;
-  int status =
-      channels_render(channels, render->context, render->world, &render->job, render->film);
+  int status = channels_render(channels, &render->job, render->film);
   for (int k = 0; k < CHANNEL_LAYERS; k++)
     render->outputs.layers[k] = channels->layers[k];
   return status;
@@ -304,8 +303,7 @@ static int write_first_image(Render *render, OutputStage *stage) {
   int status = STATUS_OK;
   if (*stage == OUTPUT_FINISHED) {
     d->outputs = render->outputs; /* with their exposure, and what is known of their parts */
-    status =
-        denoised_write(d, render->context, render->world, &render->job, render->film, *stage);
+    status = denoised_write(d, &render->job, render->film, *stage);
   }
   if (*stage == OUTPUT_FINISHED && status <= 128)
     return status;
@@ -334,7 +332,7 @@ static int write_last(Render *render, OutputStage *stage) {
     char part[5000];
     if (render->channels.bits && output_holds_layers(render->outputs.paths[i]))
       written =
-          channels_write_ids(&render->channels, NULL, render->context, render->world,
+          channels_write_ids(&render->channels, NULL, &render->job,
                              output_written(&render->outputs, i, *stage, part, sizeof part));
   }
   if (render->denoised.replaces)
@@ -342,16 +340,14 @@ static int write_last(Render *render, OutputStage *stage) {
   denoised_share_exposure(&render->denoised, &render->outputs);
   int code = write_image(render, *stage);
   if (code == STATUS_OK && status == STATUS_OK)
-    code = denoised_write(&render->denoised, render->context, render->world, &render->job,
-                          render->film, *stage);
+    code = denoised_write(&render->denoised, &render->job, render->film, *stage);
   return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
 }
 
 /* Makes the film, or reads the film to continue. */
 static int open_film(Render *render) {
   const FilmClaim *claim = &render->film_plan.claims[0];
-  int status = film_keeper_start(&render->keeper, &render->film_plan, 0, render->context,
-                                 &render->job, NULL);
+  int status = film_keeper_start(&render->keeper, &render->film_plan, 0, &render->job, NULL);
   if (status < 0)
     status = continue_film(claim, render->receipt.arguments, render->keeper.receipt,
                            render->context, render->job.defs, &render->film);
@@ -366,8 +362,7 @@ static int plan_reached(Render *render, uint32_t end) {
   if (!(render->time_limit > 0) || end >= render->job.defs->render.spp)
     return -1;
   render->job.defs->render.spp = render->film_plan.whole.render.spp = end;
-  return film_keeper_describe(&render->keeper, &render->film_plan, render->context,
-                              &render->job, NULL);
+  return film_keeper_describe(&render->keeper, &render->film_plan, &render->job, NULL);
 }
 
 int run_image(Render *render) {
@@ -378,8 +373,7 @@ int run_image(Render *render) {
   if (opened >= 0)
     return opened;
   if (render->receipt.arguments->values[RENDER_SERVE].given)
-    opened = serve_start(job, render->world, render->outputs.view, render->outputs.exposure,
-                         &render->serve);
+    opened = serve_start(job, render->outputs.view, render->outputs.exposure, &render->serve);
   if (opened >= 0)
     return opened;
   render->time_limit = job->defs->render.time_limit;
@@ -420,8 +414,7 @@ int run_image(Render *render) {
     job->defs->render.spp = spp;
   if (is_only_kept(render)) {
     int done = stage == OUTPUT_FINISHED
-                   ? denoised_write(&render->denoised, render->context, render->world, job,
-                                    render->film, stage)
+                   ? denoised_write(&render->denoised, job, render->film, stage)
                    : STATUS_OK;
     return done == STATUS_OK && signals_pending() ? 128 + signals_pending() : done;
   }

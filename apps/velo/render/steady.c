@@ -85,8 +85,8 @@ static vlResult copy_features(vlContext *context, const vlImage *from, vlImage *
   return VL_OK;
 }
 
-vlResult steady_keep(Steady *s, vlContext *context, const vlWorld *world, const Job *job,
-                     const vlImage *image, vlImage *clean, int *signals, vlError *error) {
+vlResult steady_keep(Steady *s, const Job *job, const vlImage *image, vlImage *clean,
+                     int *signals, vlError *error) {
   SteadyFrame *to = NULL; /* one is free: a frame uses STEADY_BEFORE others */
   for (int i = 0; i <= STEADY_BEFORE; i++)
     if (!s->frames[i].used || !needed(s, &s->frames[i]))
@@ -95,9 +95,9 @@ vlResult steady_keep(Steady *s, vlContext *context, const vlWorld *world, const 
   *to = (SteadyFrame){.used = true, .number = s->number, .camera = job->camera, .clean = clean};
   vlChannelsDef def = job_channels_def(job, NULL, signals);
   def.channels = VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
-  vlResult result = copy_features(context, image, &to->features);
+  vlResult result = copy_features(job->context, image, &to->features);
   if (result == VL_OK)
-    result = vl_render_channels(world, &job->camera, &def, NULL, &to->ids, error);
+    result = vl_render_channels(job->world, &job->camera, &def, NULL, &to->ids, error);
   if (result != VL_OK)
     forget(to);
   return result;
@@ -242,17 +242,16 @@ static vlCamera camera_at(const vlCamera *camera, double time) {
 }
 
 /* Computes the flow to an earlier frame, with the points of this one. */
-static vlResult find_flow(const Steady *s, vlContext *context, const SteadyFrame *before,
-                          const vlWorld *world, const Job *job, int *signals, vlImage **floats,
-                          vlImage **ids, vlError *error) {
+static vlResult find_flow(const Steady *s, const SteadyFrame *before, const Job *job,
+                          int *signals, vlImage **floats, vlImage **ids, vlError *error) {
   vlChannelsDef def = job_channels_def(job, NULL, signals);
   def.channels = VL_CHANNEL_BACKWARD | VL_CHANNEL_P;
   def.backward = &before->camera;
   if (!s->between)
-    return vl_render_channels(world, &job->camera, &def, floats, ids, error);
+    return vl_render_channels(job->world, &job->camera, &def, floats, ids, error);
   vlWorld *between = NULL;
-  vlResult result = s->between(s->between_user, context, before->number, s->number, job, world,
-                               &between, &def.time, error);
+  vlResult result =
+      s->between(s->between_user, before->number, s->number, job, &between, &def.time, error);
   if (result != VL_OK)
     return result;
   const vlCamera now = camera_at(&job->camera, def.time), then = camera_at(&before->camera, 0);
@@ -292,16 +291,15 @@ static void warp_frame(const SteadyFrame *now, const SteadyFrame *before, const 
 }
 
 /* Adds an earlier frame to the pixels' sums of weighted colours and weights. */
-static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame *now,
-                          const SteadyFrame *before, const vlWorld *world, const Job *job,
-                          int *signals, float *sums, vlError *error) {
+static vlResult add_frame(const Steady *s, const SteadyFrame *now, const SteadyFrame *before,
+                          const Job *job, int *signals, float *sums, vlError *error) {
   vlImage *floats = NULL, *ids = NULL, *warped = NULL;
-  vlResult result = find_flow(s, context, before, world, job, signals, &floats, &ids, error);
+  vlResult result = find_flow(s, before, job, signals, &floats, &ids, error);
   if (result != VL_OK)
     return result;
   const uint32_t size[2] = {vl_image_width(floats), vl_image_height(floats)};
   const vlImageDef def = vl_default_image_def(size[0], size[1], 4);
-  result = vl_image_create(context, &def, &warped);
+  result = vl_image_create(job->context, &def, &warped);
   if (result == VL_OK) {
     warp_frame(now, before, floats, ids, vl_image_pixels(warped));
     add_warped(vl_image_const_pixels(warped), size, sums);
@@ -314,8 +312,8 @@ static vlResult add_frame(const Steady *s, vlContext *context, const SteadyFrame
 
 /* ---- the result -------------------------------------------------------------------------- */
 
-vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world, const Job *job,
-                      int *signals, vlImage **result, vlError *error) {
+vlResult steady_blend(const Steady *s, const Job *job, int *signals, vlImage **result,
+                      vlError *error) {
   const SteadyFrame *now = find_frame(s, s->number);
   const uint32_t width = vl_image_width(now->clean), height = vl_image_height(now->clean);
   const size_t stride = vl_image_channels(now->clean), pixels = (size_t)width * height;
@@ -325,12 +323,12 @@ vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world,
   const vlImageDef def = vl_default_image_def(width, height, alpha >= 0 ? 4 : 3);
   vlImage *sums = NULL;
   *result = NULL;
-  vlResult code = vl_image_create(context, &sums_def, &sums);
+  vlResult code = vl_image_create(job->context, &sums_def, &sums);
   if (code == VL_OK)
-    code = vl_image_create(context, &def, result);
+    code = vl_image_create(job->context, &def, result);
   for (uint32_t k = 0; k < s->count && code == VL_OK; k++)
-    code = add_frame(s, context, now, find_frame(s, s->before[k]), world, job, signals,
-                     vl_image_pixels(sums), error);
+    code = add_frame(s, now, find_frame(s, s->before[k]), job, signals, vl_image_pixels(sums),
+                     error);
   if (code == VL_OK)
     code = vl_image_add_attributes(*result, now->clean);
   const float *sum = code == VL_OK ? vl_image_const_pixels(sums) : NULL;

@@ -23,11 +23,9 @@ typedef struct SteadyFrame {
 } SteadyFrame;
 
 /* Makes a world that shows the moments of an earlier frame and of the job's. *between is the
- * caller's; in it the earlier frame's moment is at time 0, the job's at *span, in seconds.
- * world: the job's own. */
-typedef vlResult SteadyBetween(void *user, vlContext *context, uint32_t before, uint32_t now,
-                               const Job *job, const vlWorld *world, vlWorld **between,
-                               double *span, vlError *error);
+ * caller's; in it the earlier frame's moment is at time 0, the job's at *span, in seconds. */
+typedef vlResult SteadyBetween(void *user, uint32_t before, uint32_t now, const Job *job,
+                               vlWorld **between, double *span, vlError *error);
 
 typedef struct Steady {
   SteadyFrame frames[STEADY_BEFORE + 1]; /* in any order */
@@ -47,12 +45,12 @@ typedef int SteadyRender(void *user, uint32_t k);
 int steady_prepare(Steady *s, uint32_t number, SteadyRender *render, void *user);
 /* Keeps the frame s->number, and forgets one that is not used any more. image: of the samples,
  * with the denoiser's features. Takes ownership of `clean`, also after an error. */
-vlResult steady_keep(Steady *s, vlContext *context, const vlWorld *world, const Job *job,
-                     const vlImage *image, vlImage *clean, int *signals, vlError *error);
+vlResult steady_keep(Steady *s, const Job *job, const vlImage *image, vlImage *clean,
+                     int *signals, vlError *error);
 /* Makes the image of the frame s->number of itself and of those that it uses, which are kept.
  */
-vlResult steady_blend(const Steady *s, vlContext *context, const vlWorld *world, const Job *job,
-                      int *signals, vlImage **result, vlError *error);
+vlResult steady_blend(const Steady *s, const Job *job, int *signals, vlImage **result,
+                      vlError *error);
 void steady_free(Steady *s);
 
 #endif

@@ -98,9 +98,9 @@ static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt,
   job.camera = e->now.camera.made;
   job.raced = true; /* the command names the tracer */
   const ReceiptImage which = {.samples = defs.render.spp};
-  vlResult result = receipt_make(&plan, e->def.context, &job, &which, receipt);
+  vlResult result = receipt_make(&plan, &job, &which, receipt);
   if (result == VL_OK)
-    result = attributes_make(e->def.context, &job, NULL, attributes);
+    result = attributes_make(&job, NULL, attributes);
   const Channels channels = {.bits = VL_CHANNEL_ERROR};
   if (result == VL_OK)
     result = channels_describe_mode(&channels, *attributes);

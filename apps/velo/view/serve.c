@@ -60,8 +60,7 @@ static void count(void *user, uint32_t clients) {
   ((Serve *)user)->clients = clients;
 }
 
-int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure,
-                Serve **result) {
+int serve_start(const Job *job, vlView view, float exposure, Serve **result) {
   Serve *s = calloc(1, sizeof *s);
   *result = s;
   if (!s)
@@ -71,7 +70,7 @@ int serve_start(const Job *job, const vlWorld *world, vlView view, float exposur
   s->exposure = exposure;
   s->camera =
       (ViewCamera){.def = job->defs->camera, .made = job->camera, .units = {1, 1, 36, 1}};
-  vl_world_info(world, &s->info);
+  vl_world_info(job->world, &s->info);
   const ServerDef def = {.home = "index.html", .query = ""};
   const ServerCalls calls = {.user = s, .greet = greet, .message = refuse, .clients = count};
   int status = server_open(&def, &s->server);

@@ -8,8 +8,7 @@ typedef struct Serve Serve;
 
 /* Starts the server and prints the address. view, exposure: of the first view. Returns -1 with
  * *serve, or the exit code after reporting the error. */
-int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure,
-                Serve **serve);
+int serve_start(const Job *job, vlView view, float exposure, Serve **serve);
 /* Shows the film to the pages, if there are any and the last time is long enough ago; after a
  * pass of the render. */
 void serve_film(Serve *serve, const vlFilm *film, const vlProgress *progress);

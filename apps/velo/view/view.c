@@ -52,10 +52,8 @@ static int run_view(const Arguments *arguments, vlContext *unused) {
 }
 
 #ifndef VELO_HAS_VIEW
-int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure,
-                Serve **serve) {
+int serve_start(const Job *job, vlView view, float exposure, Serve **serve) {
   (void)job;
-  (void)world;
   (void)view;
   (void)exposure;
   (void)serve;

@@ -39,6 +39,14 @@ static vlIdInfo info_of(const vlWorld *world, vlIdKind kind, uint32_t id) {
 enum { C_Z, C_DISTANCE, C_P, C_N = 5, C_NG = 8, C_UV = 11, C_ALBEDO = 13, C_COUNT = 16 };
 enum { ID_OBJECT, ID_MATERIAL, ID_INSTANCE, ID_PRIMITIVE };
 
+/* What is told of the surface that the pixel's centre sees. */
+static const struct {
+  const char *name;
+  uint32_t first, count;
+} shown_channels[] = {{"depth", C_Z, 1},      {"distance", C_DISTANCE, 1}, {"position", C_P, 3},
+                      {"normal", C_NG, 3},    {"shading", C_N, 3},         {"uv", C_UV, 2},
+                      {"albedo", C_ALBEDO, 3}};
+enum { SHOWN_CHANNELS = sizeof shown_channels / sizeof *shown_channels };
 static double channel_at(const PathsReport *r, uint32_t channel) {
   return (double)vl_image_get(r->traced->channels, 0, 0, channel);
 }
@@ -61,14 +69,6 @@ static void print_id(const PathsReport *r, vlIdKind kind, const char *word, uint
     printf(" (%s)", info.type);
 }
 
-static void print_numbers(const char *word, const PathsReport *r, uint32_t first,
-                          uint32_t count) {
-  printf("  %-9s", word);
-  for (uint32_t i = 0; i < count; i++)
-    printf(" %.6g", channel_at(r, first + i));
-  putchar('\n');
-}
-
 static void print_seen(const PathsReport *r) {
   uint32_t object = id_of(r, ID_OBJECT);
   printf("the centre of the pixel sees ");
@@ -86,13 +86,12 @@ static void print_seen(const PathsReport *r) {
   vlIdInfo info = info_of(r->world, VL_ID_OBJECT, object);
   if (info.source.file)
     printf("  in        %s:%u\n", info.source.file, info.source.line);
-  print_numbers("depth", r, C_Z, 1);
-  print_numbers("distance", r, C_DISTANCE, 1);
-  print_numbers("position", r, C_P, 3);
-  print_numbers("normal", r, C_NG, 3);
-  print_numbers("shading", r, C_N, 3);
-  print_numbers("uv", r, C_UV, 2);
-  print_numbers("albedo", r, C_ALBEDO, 3);
+  for (int k = 0; k < SHOWN_CHANNELS; k++) {
+    printf("  %-9s", shown_channels[k].name);
+    for (uint32_t i = 0; i < shown_channels[k].count; i++)
+      printf(" %.6g", channel_at(r, shown_channels[k].first + i));
+    putchar('\n');
+  }
 }
 
 static void print_rgb(const float rgb[3]) {
@@ -222,22 +221,22 @@ static void json_what(Json *json, const PathsReport *r, const char *key, vlIdKin
   json_integer(json, "id", id);
   if (info.name && info.name[0])
     json_text(json, "name", info.name);
-  if (info.type)
-    json_text(json, "type", info.type);
-  if (info.source.file) {
+  json_text(json, "type", info.type);
+  if (info.source.file)
     json_put(json, "file %s, line %u", info.source.file, info.source.line);
-  }
   json_end(json, '}');
 }
 
-static void json_channel(Json *json, const PathsReport *r, const char *key, uint32_t first,
-                         uint32_t count) {
-  if (count > 1)
-    json_begin(json, key, '[');
+/* One number, or an array. */
+static void json_channel(Json *json, const PathsReport *r, int k) {
+  const uint32_t count = shown_channels[k].count;
+  double values[3];
   for (uint32_t i = 0; i < count; i++)
-    json_number(json, count > 1 ? NULL : key, channel_at(r, first + i));
+    values[i] = channel_at(r, shown_channels[k].first + i);
   if (count > 1)
-    json_end(json, ']');
+    json_numbers(json, shown_channels[k].name, values, count);
+  else
+    json_number(json, shown_channels[k].name, values[0]);
 }
 
 static void json_seen(Json *json, const PathsReport *r) {
@@ -248,13 +247,8 @@ static void json_seen(Json *json, const PathsReport *r) {
   json_what(json, r, "material", VL_ID_MATERIAL, id_of(r, ID_MATERIAL));
   json_what(json, r, "instance", VL_ID_INSTANCE, id_of(r, ID_INSTANCE));
   json_integer(json, "primitive", id_of(r, ID_PRIMITIVE));
-  json_channel(json, r, "depth", C_Z, 1);
-  json_channel(json, r, "distance", C_DISTANCE, 1);
-  json_channel(json, r, "position", C_P, 3);
-  json_channel(json, r, "normal", C_NG, 3);
-  json_channel(json, r, "shading", C_N, 3);
-  json_channel(json, r, "uv", C_UV, 2);
-  json_channel(json, r, "albedo", C_ALBEDO, 3);
+  for (int k = 0; k < SHOWN_CHANNELS; k++)
+    json_channel(json, r, k);
   json_end(json, '}');
 }
 
@@ -300,18 +294,12 @@ static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v)
     json_floats(json, "shading", v->shading, 3);
     json_floats(json, "reflectance", v->reflectance, 4);
   }
-  if (v->texture)
-    json_text(json, "texture", v->texture);
-  if (v->image)
-    json_text(json, "image", v->image);
-  if (v->bsdf) {
-    json_text(json, "bsdf", v->bsdf);
-    if (v->fate != VL_PATH_DEPTH) {
-      json_put(json, "specular %i, transmission %i, pdf %g", (v->lobe & VL_PATH_SPECULAR) != 0,
-               (v->lobe & VL_PATH_TRANSMISSION) != 0, (double)v->pdf);
-      json_floats(json, "factor", v->factor, 4);
-      json_number(json, "survival", (double)v->survival);
-    }
+  json_put(json, "texture %s, image %s, bsdf %s", v->texture, v->image, v->bsdf);
+  if (v->bsdf && v->fate != VL_PATH_DEPTH) {
+    json_put(json, "specular %i, transmission %i, pdf %g", (v->lobe & VL_PATH_SPECULAR) != 0,
+             (v->lobe & VL_PATH_TRANSMISSION) != 0, (double)v->pdf);
+    json_floats(json, "factor", v->factor, 4);
+    json_number(json, "survival", (double)v->survival);
   }
   if (v->fate == VL_PATH_ON)
     json_floats(json, "direction", v->direction, 3);

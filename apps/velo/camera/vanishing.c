@@ -66,9 +66,8 @@ static void say_json(const char *path, const vlCamera *c, const vlVanishingPoint
     json_end(json, '}');
   }
   json_end(json, '}');
-  if (v->has_horizon) {
+  if (v->has_horizon)
     json_numbers(json, "horizon", v->horizon, 3);
-  }
   json_close(json);
 }
 

@@ -148,15 +148,12 @@ static void print_json(const Verification *v, const char *path, const char *agai
                        double threshold, const char *failure) {
   Json *json = json_open();
   uint32_t covered, seeing = count_cells(v, &covered);
-  json_text(json, "camera", path);
-  if (against)
-    json_text(json, "against", against);
+  json_put(json, "camera %s, against %s", path, against);
   json_put(json, "projection %s, target %s, spp %u, seed %lld, threshold %g, passed %i",
            vl_projection_name(v->camera.projection),
            v->target.charuco ? "charuco" : "chessboard", v->spp, (long long)v->seed, threshold,
            !failure);
-  if (failure)
-    json_text(json, "failure", failure);
+  json_text(json, "failure", failure);
   print_measure(json, &v->all);
   json_put(json, "markers %u, markers_wrong %u, parts_covered %u, parts_seeing %u",
            v->all.markers, v->all.misread, covered, seeing);

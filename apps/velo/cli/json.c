@@ -81,6 +81,8 @@ void json_close(Json *json) {
 }
 
 void json_text(Json *json, const char *key, const char *text) {
+  if (!text)
+    return;
   put_key(json, key);
   put_string(json->out, text);
 }
@@ -109,8 +111,7 @@ void json_integer(Json *json, const char *key, int64_t number) {
 }
 
 void json_location(Json *json, const char *file, uint32_t line, uint32_t column) {
-  if (file)
-    json_text(json, "file", file);
+  json_text(json, "file", file);
   if (line)
     json_integer(json, "line", line);
   if (column)
@@ -136,39 +137,38 @@ void json_bool(Json *json, const char *key, bool value) {
   fputs(value ? "true" : "false", json->out);
 }
 
-/* Writes the member whose value is next. format: of the value, behind the %. */
-static void put_member(Json *json, const char *key, char format, va_list values) {
-  switch (format) {
-    case 's':
-      json_text(json, key, va_arg(values, const char *));
-      break;
-    case 'g':
-      json_number(json, key, va_arg(values, double));
-      break;
-    case 'u':
-      json_integer(json, key, va_arg(values, unsigned));
-      break;
-    case 'd':
-      json_integer(json, key, va_arg(values, int));
-      break;
-    case 'l':
-      json_integer(json, key, va_arg(values, long long));
-      break;
-    default:
-      json_bool(json, key, va_arg(values, int));
+void json_put_list(Json *json, const char *members, va_list values) {
+  for (const char *at = members; *at;) {
+    char key[40];
+    const char *format = strchr(at, '%');
+    snprintf(key, sizeof key, "%.*s", (int)(format - at - 1), at);
+    switch (format[1]) {
+      case 's':
+        json_text(json, key, va_arg(values, const char *));
+        break;
+      case 'g':
+        json_number(json, key, va_arg(values, double));
+        break;
+      case 'u':
+        json_integer(json, key, va_arg(values, unsigned));
+        break;
+      case 'd':
+        json_integer(json, key, va_arg(values, int));
+        break;
+      case 'l':
+        json_integer(json, key, va_arg(values, long long));
+        break;
+      default: /* i */
+        json_bool(json, key, va_arg(values, int));
+    }
+    at = format + strcspn(format, ",");
+    at += strspn(at, ", ");
   }
 }
 
 void json_put(Json *json, const char *members, ...) {
   va_list values;
   va_start(values, members);
-  for (const char *key = members; *key;) {
-    char name[40];
-    const char *format = strchr(key, '%');
-    snprintf(name, sizeof name, "%.*s", (int)(format - key - 1), key);
-    put_member(json, name, format[1], values);
-    key = format + strcspn(format, ",");
-    key += strspn(key, ", ");
-  }
+  json_put_list(json, members, values);
   va_end(values);
 }

@@ -3,6 +3,7 @@
 #ifndef APP_CLI_JSON_H
 #define APP_CLI_JSON_H
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,14 +17,17 @@ typedef struct Json {
  * ']' to end. */
 void json_begin(Json *json, const char *key, char bracket);
 void json_end(Json *json, char bracket);
+/* A null text is left out, with its key. */
 void json_text(Json *json, const char *key, const char *text);
 void json_number(Json *json, const char *key, double number);
 /* avoids a clash with jansson's json_integer, which the library links */
 #define json_integer json_put_integer
 void json_integer(Json *json, const char *key, int64_t number);
-/* Several members: "name %s, size %u, mean %g", with their values. %s: text; %g: a number; %u,
+/* Several members: "name %s, size %u, mean %g", with their values. %s: as of
+ * json_text; %g: a number; %u,
  * %d, %lld: whole numbers; %i: whether something is so. */
 void json_put(Json *json, const char *members, ...) __attribute__((format(printf, 2, 3)));
+void json_put_list(Json *json, const char *members, va_list values);
 /* Begins the one object that a command prints to stdout; json_close ends it and the line. */
 Json *json_open(void);
 void json_close(Json *json);

@@ -15,50 +15,42 @@ int image_load(vlContext *context, const char *path, vlImage **image) {
   return report_error(&error, result, path);
 }
 
+/* The first bytes of formats. */
+static const struct {
+  const char *bytes, *name;
+} formats[] = {{"\x76\x2f\x31\x01", "OpenEXR"},
+               {"\x89PNG\r\n\x1a\n", "PNG"},
+               {"\xff\xd8\xff", "JPEG"},
+               {"#?RADI", "Radiance HDR"},
+               {"#?RGBE", "Radiance HDR"},
+               {"GIF8", "GIF"},
+               {"qoif", "QOI"},
+               {"BM", "BMP"},
+               {"PF", "PFM"},
+               {"Pf", "PFM"}};
+
 /* The format by the first bytes, as the library chooses its reader. */
 static const char *format_of(const char *path) {
-  unsigned char b[12] = {0};
+  char b[13] = {0};
   FILE *file = fopen(path, "rb");
-  size_t n = file ? fread(b, 1, sizeof b, file) : 0;
+  size_t n = file ? fread(b, 1, sizeof b - 1, file) : 0;
   if (file)
     fclose(file);
-  if (n >= 4 && memcmp(b, "\x76\x2f\x31\x01", 4) == 0)
-    return "OpenEXR";
-  if (n >= 8 && memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0)
-    return "PNG";
-  if (n >= 3 && memcmp(b, "\xff\xd8\xff", 3) == 0)
-    return "JPEG";
-  if (n >= 6 && (memcmp(b, "#?RADI", 6) == 0 || memcmp(b, "#?RGBE", 6) == 0))
-    return "Radiance HDR";
-  if (n >= 4 && memcmp(b, "GIF8", 4) == 0)
-    return "GIF";
-  if (n >= 4 && memcmp(b, "qoif", 4) == 0)
-    return "QOI";
+  for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+    if (strncmp(b, formats[i].bytes, strlen(formats[i].bytes)) == 0)
+      return formats[i].name;
   if (n >= 12 && memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0)
     return "WebP";
-  if (n >= 2 && memcmp(b, "BM", 2) == 0)
-    return "BMP";
-  if (n >= 2 && b[0] == 'P' && (b[1] == 'F' || b[1] == 'f'))
-    return "PFM";
-  if (n >= 2 && b[0] == 'P' && b[1] >= '1' && b[1] <= '6')
-    return "PNM";
-  return "TGA";
+  return n >= 2 && b[0] == 'P' && b[1] >= '1' && b[1] <= '6' ? "PNM" : "TGA";
 }
 
 static const char *type_name(vlPixelType type) {
-  switch (type) {
-    case VL_PIXEL_U8:
-      return "8-bit integer";
-    case VL_PIXEL_U16:
-      return "16-bit integer";
-    case VL_PIXEL_F16:
-      return "16-bit float";
-    case VL_PIXEL_F32:
-      return "32-bit float";
-    case VL_PIXEL_U32:
-      return "32-bit integer";
-  }
-  return "?";
+  static const char *const names[] = {[VL_PIXEL_U8] = "8-bit integer",
+                                      [VL_PIXEL_U16] = "16-bit integer",
+                                      [VL_PIXEL_F16] = "16-bit float",
+                                      [VL_PIXEL_F32] = "32-bit float",
+                                      [VL_PIXEL_U32] = "32-bit integer"};
+  return names[type];
 }
 
 /* Whether the file's channels have different types. */

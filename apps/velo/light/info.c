@@ -112,8 +112,6 @@ static int polar_write(vlContext *context, const char *path, const vlLamp *lamp,
   return r == VL_OK ? STATUS_OK : report_error(&error, r, path);
 }
 
-#define PI 3.14159265358979323846
-
 enum { INFO_OUT, INFO_JSON };
 enum { TABLE_PLANES = 4, TABLE_STEP = 10 };
 

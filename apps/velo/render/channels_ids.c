@@ -64,13 +64,8 @@ static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind
   fputs(json->comma ? ",\n    " : "\n    ", json->out);
   json->comma = false;
   json_begin(json, key, '{');
-  json_text(json, "type", info.type);
-  if (info.name)
-    json_text(json, "name", info.name);
-  if (info.path)
-    json_text(json, "path", info.path);
-  if (info.place)
-    json_text(json, "place", info.place);
+  json_put(json, "type %s, name %s, path %s, place %s", info.type, info.name, info.path,
+           info.place);
   if (info.material)
     json_integer(json, "material", info.material);
   if (info.source.file) {

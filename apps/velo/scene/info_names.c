@@ -81,11 +81,7 @@ void info_json_names(Json *json, const vlScene *scene) {
       if (vl_scene_id_info(scene, id_kinds[k].kind, id, &info) != VL_OK || !info.name)
         continue;
       json_begin(json, NULL, '{');
-      json_put(json, "id %u, name %s", id, info.name);
-      if (info.path)
-        json_text(json, "path", info.path);
-      if (info.place)
-        json_text(json, "place", info.place);
+      json_put(json, "id %u, name %s, path %s, place %s", id, info.name, info.path, info.place);
       json_end(json, '}');
     }
     json_end(json, ']');
@@ -102,9 +98,7 @@ void info_json_choices(Json *json, const vlScene *scene) {
       if (vl_scene_choice_info(scene, choice_kinds[k].kind, i, &info) != VL_OK)
         continue;
       json_begin(json, NULL, '{');
-      json_integer(json, "number", i);
-      if (info.name)
-        json_text(json, "name", info.name);
+      json_put(json, "number %u, name %s", i, info.name);
       if (choice_kinds[k].kind == VL_CHOICE_ANIMATION)
         json_number(json, "seconds", info.seconds);
       json_end(json, '}');

@@ -70,12 +70,8 @@ void engine_clients(void *user, uint32_t count) {
 /* ---- the camera -------------------------------------------------------------------------- */
 
 static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const char *why) {
-  Json *json = json_text_begin("refused");
-  if (!json)
-    return;
-  json_put(json, "change %u, id %u, field %s, message %s", m->change, m->id,
-           m->field_count ? m->fields[0].name : "", why);
-  json_text_post(json, e->server, client);
+  engine_post(e, client, "refused", "change %u, id %u, field %s, message %s", m->change, m->id,
+              m->field_count ? m->fields[0].name : "", why);
 }
 
 static void show_camera(Engine *e, const ViewCamera *camera) {
@@ -117,13 +113,8 @@ static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
     return;
   }
   take_camera(e, m, &next);
-  if (warning) {
-    Json *json = json_text_begin("warning");
-    if (!json)
-      return;
-    json_text(json, "message", warning);
-    json_text_post(json, e->server, client);
-  }
+  if (warning)
+    engine_post(e, client, "warning", "message %s", warning);
 }
 
 static void step_history(Engine *e, const ViewMessage *m) {

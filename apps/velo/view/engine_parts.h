@@ -307,6 +307,9 @@ bool engine_load_choice(Engine *engine);
 bool engine_swap_model(Engine *engine);
 /* Answers a task; on the render thread, without the lock. */
 void engine_answer(Engine *engine, const Task *task);
+/* Takes the first of a list of tasks; the caller holds the lock. False: there is none, or the
+ * engine ends. */
+bool engine_take_task(const Engine *engine, Task *tasks, uint32_t *count, Task *first);
 /* Answers the first question. False: there is none. */
 bool engine_answer_question(Engine *engine);
 /* Writes a camera or an image; posts its name. */
@@ -336,7 +339,6 @@ void engine_add_trace(Engine *engine, uint32_t client, const ViewMessage *messag
 void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
 /* Traces the paths of the first pixel. False: there is none. */
 bool engine_trace_next(Engine *engine);
-/* Posts an answer of this type, with the message's id and one text. */
 /* The def of a render of so many samples from the first one on, which a change stops; without
  * limits of time and noise. */
 vlRenderDef engine_render_def(const Engine *engine, uint32_t spp);
@@ -345,8 +347,9 @@ void engine_lock(Engine *engine);
 void engine_unlock(Engine *engine);
 /* Begins the answer to a task, as json_text_begin. */
 Json *engine_reply_begin(const Task *task, const char *type);
-void engine_post_text(Engine *engine, const Task *task, const char *type, const char *key,
-                      const char *value);
+/* Posts a message of this type with these members (json_put) to a page, or to all (0). */
+void engine_post(Engine *engine, uint32_t client, const char *type, const char *members, ...)
+    __attribute__((format(printf, 4, 5)));
 /* Posts why a message is not answered. */
 void engine_refuse(Engine *engine, const Task *task, const char *why);
 /* Writes the drawings over the image as curves in pixels, for every projection and distortion;

@@ -89,10 +89,8 @@ bool engine_trace_next(Engine *e) {
   static Task task; /* the thread that traces alone uses them */
   static ViewCamera camera;
   engine_lock(e);
-  bool any = !e->quit && e->trace_count > 0;
+  bool any = engine_take_task(e, e->traces, &e->trace_count, &task);
   if (any) {
-    task = e->traces[0];
-    memmove(e->traces, e->traces + 1, --e->trace_count * sizeof *e->traces);
     camera = e->wanted.camera;
     e->trace_client = task.client;
     vl_cancel_clear(e->trace_stop);

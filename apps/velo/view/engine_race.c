@@ -132,14 +132,6 @@ bool engine_succeed(Engine *e) {
 
 /* ---- the race ---------------------------------------------------------------------------- */
 
-static void post_note(Engine *e, const char *line) {
-  Json *json = json_text_begin("note");
-  if (!json)
-    return;
-  json_text(json, "message", line);
-  json_text_post(json, e->server, 0);
-}
-
 /* In the log; a page shows the tracer beside the samples, and the line if the image changes. */
 static void tell(Engine *e, RaceKind kind, const vlTracerChoice *choice) {
   char line[600];
@@ -148,7 +140,7 @@ static void tell(Engine *e, RaceKind kind, const vlTracerChoice *choice) {
   race_line(kind, choice, line, sizeof line);
   report_note("%s", line);
   if (!is_same(e->best, e->shown))
-    post_note(e, line);
+    engine_post(e, 0, "note", "message %s", line);
 }
 
 bool engine_race(Engine *e) {

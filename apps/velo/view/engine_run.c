@@ -310,11 +310,7 @@ static void answer_tasks(Engine *e) {
   static Task task; /* the render thread alone uses it */
   for (;;) {
     engine_lock(e);
-    bool any = e->task_count > 0 && !e->quit;
-    if (any) {
-      task = e->tasks[0];
-      memmove(e->tasks, e->tasks + 1, --e->task_count * sizeof *e->tasks);
-    }
+    bool any = engine_take_task(e, e->tasks, &e->task_count, &task);
     engine_unlock(e);
     if (!any)
       return;

@@ -47,7 +47,7 @@ static void scene_stem(const Engine *e, char stem[NAME_SIZE]) {
 }
 
 static void post_saved(Engine *e, const Task *task, const char *name) {
-  engine_post_text(e, task, "saved", "file", name);
+  engine_post(e, task->client, "saved", "id %u, file %s", task->message.id, name);
 }
 
 static int choice_value(const Choice *choices, const char *name, int otherwise) {

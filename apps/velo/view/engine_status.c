@@ -2,6 +2,7 @@
 #include "view/engine_status.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 
 #include "cli/kinds.h"
@@ -13,6 +14,17 @@ void json_text_post(Json *json, Server *server, uint32_t client) {
   if (text)
     server_post(server, client, text);
   free(text);
+}
+
+void engine_post(Engine *e, uint32_t client, const char *type, const char *members, ...) {
+  va_list values;
+  Json *json = json_text_begin(type);
+  if (!json)
+    return;
+  va_start(values, members);
+  json_put_list(json, members, values);
+  va_end(values);
+  json_text_post(json, e->server, client);
 }
 
 void json_text_keep(Json *json, Engine *e, char **last) {

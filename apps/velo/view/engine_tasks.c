@@ -14,17 +14,8 @@ Json *engine_reply_begin(const Task *task, const char *type) {
   return json;
 }
 
-void engine_post_text(Engine *e, const Task *task, const char *type, const char *key,
-                      const char *value) {
-  Json *json = engine_reply_begin(task, type);
-  if (!json)
-    return;
-  json_text(json, key, value);
-  json_text_post(json, e->server, task->client);
-}
-
 void engine_refuse(Engine *e, const Task *task, const char *why) {
-  engine_post_text(e, task, "refused", "message", why);
+  engine_post(e, task->client, "refused", "id %u, message %s", task->message.id, why);
 }
 
 static ViewCamera present_camera(Engine *e) {
@@ -55,12 +46,7 @@ static void put_id(Json *json, const Engine *e, const vlImage *ids, const char *
   json_begin(json, key, '{');
   json_integer(json, "id", id);
   if (id && vl_world_id_info(e->model.world, kind, id, &info) == VL_OK) {
-    if (info.name)
-      json_text(json, "name", info.name);
-    if (info.type)
-      json_text(json, "type", info.type);
-    if (info.source.file)
-      json_text(json, "file", info.source.file);
+    json_put(json, "name %s, type %s, file %s", info.name, info.type, info.source.file);
     if (info.source.file)
       json_integer(json, "line", info.source.line);
   }
@@ -136,56 +122,32 @@ static void focus(Engine *e, const Task *task) {
   engine_unlock(e);
 }
 
+/* Of the messages that become tasks and questions. */
+static void (*const answers[])(Engine *, const Task *) = {[MESSAGE_PICK] = pick,
+                                                          [MESSAGE_FOCUS] = focus,
+                                                          [MESSAGE_SAVE] = engine_save,
+                                                          [MESSAGE_COMMAND] = engine_command,
+                                                          [MESSAGE_OVERLAY] = engine_overlay,
+                                                          [MESSAGE_OUTLINE] = engine_outline,
+                                                          [MESSAGE_OUTSIDE] = engine_outside,
+                                                          [MESSAGE_CAMERAS] = engine_cameras};
+
 void engine_answer(Engine *e, const Task *task) {
-  switch (task->message.kind) {
-    case MESSAGE_PICK:
-      pick(e, task);
-      break;
-    case MESSAGE_FOCUS:
-      focus(e, task);
-      break;
-    case MESSAGE_SAVE:
-      engine_save(e, task);
-      break;
-    case MESSAGE_COMMAND:
-      engine_command(e, task);
-      break;
-    case MESSAGE_OVERLAY:
-      engine_overlay(e, task);
-      break;
-    case MESSAGE_OUTLINE:
-      engine_outline(e, task);
-      break;
-    case MESSAGE_OUTSIDE:
-      engine_outside(e, task);
-      break;
-    case MESSAGE_CAMERAS:
-      engine_cameras(e, task);
-      break;
-    case MESSAGE_PATHS:  /* engine_trace_next answers it */
-    case MESSAGE_VERIFY: /* engine_verify_commands answers it */
-    case MESSAGE_SEEN:   /* these need no world */
-    case MESSAGE_CAMERA:
-    case MESSAGE_UNDO:
-    case MESSAGE_REDO:
-    case MESSAGE_RESET:
-    case MESSAGE_SETTINGS:
-    case MESSAGE_SENSOR:
-    case MESSAGE_STEER:
-    case MESSAGE_SCENE:
-    case MESSAGE_TIME: /* engine_watch loads for it */
-      break;
-  }
+  answers[task->message.kind](e, task);
+}
+
+bool engine_take_task(const Engine *e, Task *tasks, uint32_t *count, Task *first) {
+  if (e->quit || *count == 0)
+    return false;
+  *first = tasks[0];
+  memmove(tasks, tasks + 1, --*count * sizeof *tasks);
+  return true;
 }
 
 bool engine_answer_question(Engine *e) {
   static Task task; /* the thread that answers alone uses it */
   engine_lock(e);
-  bool any = !e->quit && e->question_count > 0;
-  if (any) {
-    task = e->questions[0];
-    memmove(e->questions, e->questions + 1, --e->question_count * sizeof *e->questions);
-  }
+  bool any = engine_take_task(e, e->questions, &e->question_count, &task);
   engine_unlock(e);
   if (!any)
     return false;

@@ -11,6 +11,7 @@
 #include "cli/vector.h"
 #include "image/header.h"
 #include "image/image.h"
+#include "render/output_names.h"
 #include "velo/load.h"
 #include "velo/render.h"
 

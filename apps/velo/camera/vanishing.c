@@ -12,6 +12,7 @@
 #include "cli/vector.h"
 #include "image/image.h"
 #include "image/overlay.h"
+#include "render/output_names.h"
 #include "velo/vanishing.h"
 
 enum {

@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "render/output_names.h"
 #include "velo/film.h"
 
 enum { MERGE_OUTPUT, MERGE_OVERWRITE };

@@ -90,7 +90,7 @@ void job_describe(const Job *job, const vlScene *scene, bool denoised,
   printf("scene     %s: %llu shapes, %llu materials, %llu textures, %llu instances\n",
          job->path, (unsigned long long)f.scene.shapes, (unsigned long long)f.scene.materials,
          (unsigned long long)f.scene.textures, (unsigned long long)f.scene.instances);
-  printf("job->world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n",
+  printf("world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n",
          triangles,
          (unsigned long long)(f.world.primitives > f.world.triangles
                                   ? f.world.primitives - f.world.triangles

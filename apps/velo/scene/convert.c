@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "render/output_names.h"
 #include "scene/scene.h"
 #include "velo/export.h"
 #include "velo/render.h"

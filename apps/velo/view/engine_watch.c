@@ -114,6 +114,12 @@ static bool watch_wait(Watch *watch, double seconds, bool any) {
   return true;
 }
 
+static void post(Engine *e, const char *type) {
+  Json *json = json_text_begin(type);
+  if (json)
+    json_text_post(json, e->server, 0);
+}
+
 /* Loads the scene again, because a file changed or, `timed`, because a page asks for another
  * time of the animation. Returns whether it could be loaded. */
 static bool load_again(Engine *e, Watch *watch, bool timed) {
@@ -121,7 +127,7 @@ static bool load_again(Engine *e, Watch *watch, bool timed) {
   if (!model)
     return false;
   if (!timed)
-    engine_post(e, 0, "loading", "");
+    post(e, "loading");
   engine_lock(e);
   uint32_t load = ++e->loads;
   ModelTime time = {e->at, e->shutter, e->model.exposure};
@@ -143,7 +149,7 @@ static bool load_again(Engine *e, Watch *watch, bool timed) {
   model->load = load;
   model->timed = timed;
   if (!timed)
-    engine_post(e, 0, "loaded", "");
+    post(e, "loaded");
   engine_offer(e, model, NULL, change);
   return true;
 }

@@ -19,4 +19,13 @@ vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t li
 vlResult vl_fail_memory(vlError *error);
 void vl_error_clear(vlError *error);
 
+/* Makes a call that returns a vlResult. After an error the function that holds the line returns
+ * this result at once; so it must have nothing to free. */
+#define VL_TRY(...)                        \
+  do {                                     \
+    const vlResult vl_tried = __VA_ARGS__; \
+    if (vl_tried != VL_OK)                 \
+      return vl_tried;                     \
+  } while (0)
+
 #endif

@@ -30,13 +30,9 @@ static vlResult read_projection(const vlCameraFile *file, const json_t *camera,
   const json_t *projection, *name;
   double p[16];
   uint32_t count = 0;
-  vlResult result = vl_camera_field(file, camera, "Projection", &projection);
-  if (result == VL_OK)
-    result = vl_camera_field(file, projection, "Name", &name);
-  if (result == VL_OK)
-    result = vl_camera_numbers(file, projection, "Params", p, 0, VL_LENGTH(p), &count);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, camera, "Projection", &projection));
+  VL_TRY(vl_camera_field(file, projection, "Name", &name));
+  VL_TRY(vl_camera_numbers(file, projection, "Params", p, 0, VL_LENGTH(p), &count));
   const Model *model = NULL;
   for (size_t i = 0; i < VL_LENGTH(models); i++)
     if (vl_text_is(json_string_value(name), models[i].name))
@@ -62,13 +58,9 @@ static vlResult read_projection(const vlCameraFile *file, const json_t *camera,
 static vlResult read_pose(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
   const json_t *pose;
   double t[3], q[4], r[9];
-  vlResult result = vl_camera_field(file, camera, "T_Device_Camera", &pose);
-  if (result == VL_OK)
-    result = vl_camera_numbers(file, pose, "Translation", t, 3, 3, NULL);
-  if (result == VL_OK)
-    result = vl_camera_numbers(file, pose, "UnitQuaternion", q, 4, 4, NULL);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, camera, "T_Device_Camera", &pose));
+  VL_TRY(vl_camera_numbers(file, pose, "Translation", t, 3, 3, NULL));
+  VL_TRY(vl_camera_numbers(file, pose, "UnitQuaternion", q, 4, 4, NULL));
   if (!vl_rotation_from_quaternion(q, r))
     return vl_camera_wrong_in(file, pose, "UnitQuaternion",
                               "aria: the quaternion \"UnitQuaternion\" is zero");
@@ -84,9 +76,7 @@ static vlResult read_size(const vlCameraFile *file, const json_t *tree, uint32_t
   const json_t *sizes = json_object_get(tree, "ImageSizes"), *pair;
   double size[2] = {0.0, 0.0};
   if (!sizes) {
-    vlResult result = vl_camera_size_beside(file, NULL, record);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_size_beside(file, NULL, record));
   } else {
     pair = json_array_get(sizes, index);
     for (size_t i = 0; i < 2; i++)
@@ -115,10 +105,9 @@ static vlResult read_aria(const vlCameraFile *file, const json_t *tree,
     index++;
   if (json_is_false(json_object_get(camera, "Calibrated")))
     return vl_camera_wrong_in(file, camera, "Calibrated", "aria: the camera is not calibrated");
-  vlResult result = read_projection(file, camera, &record->camera);
-  if (result == VL_OK)
-    result = read_pose(file, camera, &record->camera);
-  return result == VL_OK ? read_size(file, tree, index, record) : result;
+  VL_TRY(read_projection(file, camera, &record->camera));
+  VL_TRY(read_pose(file, camera, &record->camera));
+  return read_size(file, tree, index, record);
 }
 
 const vlCameraFormat vl_format_aria = {

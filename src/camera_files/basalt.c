@@ -70,11 +70,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
 static vlResult read_pose(const vlCameraFile *file, const json_t *pose, vlCameraDef *d) {
   static const char *const names[] = {"px", "py", "pz", "qw", "qx", "qy", "qz"};
   double v[7], r[9];
-  vlResult result = VL_OK;
-  if (result == VL_OK)
-    result = vl_camera_read_named(file, pose, names, 7, false, v);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_read_named(file, pose, names, 7, false, v));
   if (!vl_rotation_from_quaternion(v + 3, r))
     return vl_camera_wrong_in(file, pose, "qw", "basalt: the quaternion of T_imu_cam is zero");
   vl_camera_set_rigid(d, r, v);

@@ -22,23 +22,19 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
       !vl_text_is(fit, "VERTICAL"))
     return vl_camera_unknown(file, tree, "sensor_fit", fit,
                              "there are AUTO, HORIZONTAL, VERTICAL");
-  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("resolution_x", &d->width),
-                                   VL_FIELD_SIDE("resolution_y", &d->height));
-  if (result == VL_OK)
-    result = flat ? vl_camera_number(file, tree, "ortho_scale", &ortho)
-                  : vl_camera_number(file, tree, "lens", &lens);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(
-        file, tree, VL_FIELD_OPTIONAL("sensor_width", &sensor_width),
-        VL_FIELD_OPTIONAL("sensor_height", &sensor_height),
-        VL_FIELD_OPTIONAL("resolution_percentage", &percentage),
-        VL_FIELD_OPTIONAL("shift_x", &shift_x), VL_FIELD_OPTIONAL("shift_y", &shift_y),
-        VL_FIELD_OPTIONAL("pixel_aspect_x", &aspect_x),
-        VL_FIELD_OPTIONAL("pixel_aspect_y", &aspect_y),
-        VL_FIELD_OPTIONAL("clip_start", &d->near_plane),
-        VL_FIELD_OPTIONAL("clip_end", &d->far_plane), VL_FIELD_LIST("matrix_world", m, 16));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("resolution_x", &d->width),
+                        VL_FIELD_SIDE("resolution_y", &d->height)));
+  VL_TRY(flat ? vl_camera_number(file, tree, "ortho_scale", &ortho)
+              : vl_camera_number(file, tree, "lens", &lens));
+  VL_TRY(VL_READ_FIELDS(
+      file, tree, VL_FIELD_OPTIONAL("sensor_width", &sensor_width),
+      VL_FIELD_OPTIONAL("sensor_height", &sensor_height),
+      VL_FIELD_OPTIONAL("resolution_percentage", &percentage),
+      VL_FIELD_OPTIONAL("shift_x", &shift_x), VL_FIELD_OPTIONAL("shift_y", &shift_y),
+      VL_FIELD_OPTIONAL("pixel_aspect_x", &aspect_x),
+      VL_FIELD_OPTIONAL("pixel_aspect_y", &aspect_y),
+      VL_FIELD_OPTIONAL("clip_start", &d->near_plane),
+      VL_FIELD_OPTIONAL("clip_end", &d->far_plane), VL_FIELD_LIST("matrix_world", m, 16)));
   if (!(lens > 0.0 && sensor_width > 0.0 && sensor_height > 0.0 && ortho > 0.0 &&
         aspect_x > 0.0 && aspect_y > 0.0))
     return vl_camera_wrong(file,

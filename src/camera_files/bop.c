@@ -12,18 +12,14 @@ static vlResult read_image(const vlCameraFile *file, const json_t *image, const 
   vlCameraDef *d = &record->camera;
   double k[9], r[9], t[3];
   char files[3][64];
-  vlResult result = vl_camera_numbers(file, image, "cam_K", k, 9, 9, NULL);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, image, "cam_K", k, 9, 9, NULL));
   if (!vl_camera_set_intrinsics(d, k, false))
     return vl_camera_wrong_in(file, image, "cam_K",
                               "bop: \"cam_K\" must be [fx 0 cx; 0 fy cy; 0 0 1]");
   vl_camera_set_origin(d);
   if (vl_camera_has(image, "cam_R_w2c") || vl_camera_has(image, "cam_t_w2c")) {
-    result = VL_READ_FIELDS(file, image, VL_FIELD_LIST("cam_R_w2c", r, 9),
-                            VL_FIELD_LIST("cam_t_w2c", t, 3));
-    if (result != VL_OK)
-      return result;
+    VL_TRY(VL_READ_FIELDS(file, image, VL_FIELD_LIST("cam_R_w2c", r, 9),
+                          VL_FIELD_LIST("cam_t_w2c", t, 3)));
     vl_camera_set_pose(d, r, t);
   }
   if (vl_camera_has(image, "width"))
@@ -39,13 +35,8 @@ static vlResult read_image(const vlCameraFile *file, const json_t *image, const 
 
 static vlResult read_one(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   double f[4];
-  vlResult result = VL_OK;
-  if (result == VL_OK)
-    result = vl_camera_read_named(file, tree, vl_camera_matrix_names, 4, false, f);
-  if (result == VL_OK)
-    result = vl_camera_sides(file, tree, "width", "height", record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_read_named(file, tree, vl_camera_matrix_names, 4, false, f));
+  VL_TRY(vl_camera_sides(file, tree, "width", "height", record));
   vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
   vl_camera_set_origin(&record->camera);
   return VL_OK;

@@ -65,11 +65,8 @@ static vlResult write_bundler(const vlFittedCamera *fit, vlCameraText *text) {
     radial = fit->k[i] == 0.0;
   if (!radial)
     return vl_camera_no_model(fit->file, &fit->record->camera);
-  vlResult result = vl_camera_refuse_off_centre(fit->file, c);
-  if (result == VL_OK)
-    result = vl_camera_refuse(fit->file, "fy", c->fx != c->fy);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_refuse_off_centre(fit->file, c));
+  VL_TRY(vl_camera_refuse(fit->file, "fy", c->fx != c->fy));
   vl_camera_get_pose(c, r, t);
   vl_camera_put(text, "# Bundle file v0.3\n1 0\n%.17g %.17g %.17g\n", c->fx, fit->k[0],
                 fit->k[1]);

@@ -62,9 +62,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *tree, const M
 static vlResult read_camera(const vlCameraFile *file, const json_t *tree,
                             vlCameraRecord *record) {
   const char *name;
-  vlResult result = vl_camera_word(file, tree, "model_type", &name);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_word(file, tree, "model_type", &name));
   if (name && (vl_text_is(name, "SCARAMUZZA") || vl_text_is(name, "scaramuzza")))
     return vl_camera_wrong_in(
         file, tree, "model_type",
@@ -73,12 +71,11 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *tree,
   for (int i = 0; i < MODELS; i++) {
     if (!vl_text_is(name, models[i].name))
       continue;
-    result = vl_camera_sides(file, tree, "image_width", "image_height", record);
-    if (result == VL_OK)
-      result = read_model(file, tree, &models[i], &record->camera);
+    VL_TRY(vl_camera_sides(file, tree, "image_width", "image_height", record));
+    VL_TRY(read_model(file, tree, &models[i], &record->camera));
     vl_camera_set_origin(&record->camera);
     vl_camera_name(record, vl_camera_text(tree, "camera_name"));
-    return result;
+    return VL_OK;
   }
   return vl_camera_unknown(file, tree, "model_type", name,
                            "there are PINHOLE, PINHOLE_FULL, MEI, KANNALA_BRANDT");
@@ -114,20 +111,18 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, uint32_t
   char key[32];
   double m[16] = {[15] = 1.0}, r[9], t[3];
   snprintf(key, sizeof key, "body_T_cam%u", index);
-  vlResult result = VL_OK;
   if (vl_camera_has(tree, key)) {
-    result = vl_camera_numbers(file, tree, key, m, 16, 16, NULL);
+    VL_TRY(vl_camera_numbers(file, tree, key, m, 16, 16, NULL));
   } else if (index == 0 && vl_camera_has(tree, "extrinsicRotation")) {
-    result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("extrinsicRotation", r, 9),
-                            VL_FIELD_LIST("extrinsicTranslation", t, 3));
-    for (int i = 0; i < 12 && result == VL_OK; i++)
+    VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_LIST("extrinsicRotation", r, 9),
+                          VL_FIELD_LIST("extrinsicTranslation", t, 3)));
+    for (int i = 0; i < 12; i++)
       m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : t[i / 4];
   } else {
     return VL_OK;
   }
-  if (result == VL_OK)
-    vl_camera_set_matrix(d, m, false);
-  return result;
+  vl_camera_set_matrix(d, m, false);
+  return VL_OK;
 }
 
 static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
@@ -141,8 +136,8 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
     return vl_camera_wrong_in(file, tree, "rolling_shutter",
                               "camodocal: rows of an image at different times are not taken");
   if (vl_camera_has(tree, "model_type")) {
-    vlResult result = read_camera(file, tree, record);
-    return result == VL_OK ? read_pose(file, tree, 0, &record->camera) : result;
+    VL_TRY(read_camera(file, tree, record));
+    return read_pose(file, tree, 0, &record->camera);
   }
   record->frames = 0;
   uint32_t found = UINT32_MAX;
@@ -160,11 +155,10 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
     return vl_camera_no_frame(file, "camera", record->frames);
   snprintf(key, sizeof key, "cam%u_calib", found);
   uint32_t frames = record->frames;
-  vlResult result = read_named(file, tree, key, record);
-  if (result == VL_OK)
-    result = read_pose(file, tree, found, &record->camera);
+  VL_TRY(read_named(file, tree, key, record));
+  VL_TRY(read_pose(file, tree, found, &record->camera));
   record->frames = frames;
-  return result;
+  return VL_OK;
 }
 
 static vlResult write_camodocal(const vlFittedCamera *fit, vlCameraText *text) {

@@ -49,32 +49,27 @@ static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlM
   json_array_foreach(json_object_get(node, "/"), i, child) {
     vlMat4 step = vl_mat4_identity();
     double v[9];
-    vlResult result = VL_OK;
     if (has_tag(child, "matrix")) {
-      result = vl_camera_element_numbers(file, child, step.m, 16);
+      VL_TRY(vl_camera_element_numbers(file, child, step.m, 16));
     } else if (has_tag(child, "translate")) {
-      result = vl_camera_element_numbers(file, child, v, 3);
-      if (result == VL_OK)
-        step = vl_mat4_translate(v[0], v[1], v[2]);
+      VL_TRY(vl_camera_element_numbers(file, child, v, 3));
+      step = vl_mat4_translate(v[0], v[1], v[2]);
     } else if (has_tag(child, "scale")) {
-      result = vl_camera_element_numbers(file, child, v, 3);
-      if (result == VL_OK)
-        step = vl_mat4_scale(v[0], v[1], v[2]);
+      VL_TRY(vl_camera_element_numbers(file, child, v, 3));
+      step = vl_mat4_scale(v[0], v[1], v[2]);
     } else if (has_tag(child, "rotate")) {
-      result = vl_camera_element_numbers(file, child, v, 4);
-      if (result == VL_OK && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0))
+      VL_TRY(vl_camera_element_numbers(file, child, v, 4));
+      if ((v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0))
         step = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
     } else if (has_tag(child, "lookat")) {
-      result = vl_camera_element_numbers(file, child, v, 9);
-      if (result == VL_OK && !look_at(v, &step))
+      VL_TRY(vl_camera_element_numbers(file, child, v, 9));
+      if (!look_at(v, &step))
         return vl_camera_wrong_element(file, child, "<lookat> gives no direction");
     } else if (has_tag(child, "skew")) {
       return vl_camera_wrong_element(file, child, "<skew> is not read");
     } else {
       continue;
     }
-    if (result != VL_OK)
-      return result;
     *world = vl_mat4_multiply(*world, step);
   }
   return VL_OK;
@@ -109,9 +104,7 @@ static vlResult search(const vlCameraFile *file, const json_t *node, const json_
     s->count += has_tag(child, "instance_camera");
     if (!has_tag(child, "node"))
       continue;
-    vlResult result = search(file, child, stops, depth + 1, s);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(search(file, child, stops, depth + 1, s));
   }
   return VL_OK;
 }
@@ -170,18 +163,15 @@ enum { MAX_EXTRA = 8 };
 static vlResult refuse_shift(const vlCameraFile *file, const json_t *element, int depth) {
   const json_t *child;
   size_t i;
-  vlResult result = VL_OK;
   json_array_foreach(json_object_get(element, "/"), i, child) {
     const char *tag = vl_camera_text(child, "<");
     double shift = 0.0;
     if (vl_text_is(tag, "shiftx") || vl_text_is(tag, "shifty"))
-      result = vl_camera_element_numbers(file, child, &shift, 1);
+      VL_TRY(vl_camera_element_numbers(file, child, &shift, 1));
     else if (depth > 0)
-      result = refuse_shift(file, child, depth - 1);
-    if (result == VL_OK && shift != 0.0)
-      result = vl_camera_wrong_element(file, child, "a lens shift, <%s>, is not taken", tag);
-    if (result != VL_OK)
-      return result;
+      VL_TRY(refuse_shift(file, child, depth - 1));
+    if (shift != 0.0)
+      VL_TRY(vl_camera_wrong_element(file, child, "a lens shift, <%s>, is not taken", tag));
   }
   return VL_OK;
 }
@@ -191,14 +181,13 @@ static vlResult search_scenes(const vlCameraFile *file, const json_t *tree, Sear
   const json_t *scenes = vl_camera_child(tree, "library_visual_scenes"), *scene, *node,
                *stops[MAX_DEPTH] = {NULL};
   size_t i, k;
-  vlResult result = VL_OK;
   json_array_foreach(json_object_get(scenes, "/"), i, scene) {
     json_array_foreach(json_object_get(scene, "/"), k, node) {
-      if (result == VL_OK && has_tag(node, "node"))
-        result = search(file, node, stops, 0, s);
+      if (has_tag(node, "node"))
+        VL_TRY(search(file, node, stops, 0, s));
     }
   }
-  return result;
+  return VL_OK;
 }
 
 static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
@@ -211,9 +200,7 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
   Search s = {.camera = NULL};
   vlMat4 world = vl_mat4_identity();
   double half[2];
-  vlResult result = search_scenes(file, tree, &s);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(search_scenes(file, tree, &s));
   record->frames = s.count;
   if (!s.camera)
     return vl_camera_no_frame(file, "camera", s.count);
@@ -221,7 +208,7 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
   if (!camera)
     return vl_camera_wrong_element(file, s.camera,
                                    "the node names a camera that does not exist");
-  result = refuse_shift(file, camera, MAX_EXTRA);
+  VL_TRY(refuse_shift(file, camera, MAX_EXTRA));
   const json_t *common = vl_camera_child(vl_camera_child(camera, "optics"), "technique_common");
   const json_t *lens = vl_camera_child(common, "perspective");
   bool flat = !lens;
@@ -230,17 +217,12 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
   if (!lens)
     return vl_camera_wrong_element(file, camera,
                                    "the camera is neither perspective nor orthographic");
-  for (int depth = 0; depth < s.depth && result == VL_OK; depth++)
-    result = add_transforms(file, s.stops[depth], &world);
-  if (result == VL_OK)
-    result = read_sides(file, lens, flat, half);
-  if (result == VL_OK)
-    result = VL_READ_CHILDREN(file, lens, VL_FIELD_OPTIONAL("znear", &d->near_plane),
-                              VL_FIELD_OPTIONAL("zfar", &d->far_plane));
-  if (result == VL_OK)
-    result = vl_camera_size(file, half[0] / half[1], record);
-  if (result != VL_OK)
-    return result;
+  for (int depth = 0; depth < s.depth; depth++)
+    VL_TRY(add_transforms(file, s.stops[depth], &world));
+  VL_TRY(read_sides(file, lens, flat, half));
+  VL_TRY(VL_READ_CHILDREN(file, lens, VL_FIELD_OPTIONAL("znear", &d->near_plane),
+                          VL_FIELD_OPTIONAL("zfar", &d->far_plane)));
+  VL_TRY(vl_camera_size(file, half[0] / half[1], record));
   if (flat)
     d->projection = VL_PROJECTION_ORTHOGRAPHIC;
   d->fx = 0.5 * d->width / half[0];
@@ -260,9 +242,7 @@ static vlResult write_collada(const vlFittedCamera *fit, vlCameraText *text) {
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   if (!flat && fit->family != VL_LENS_PINHOLE)
     return vl_camera_no_model(fit->file, &fit->record->camera);
-  vlResult result = vl_camera_refuse_off_centre(fit->file, c);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_refuse_off_centre(fit->file, c));
   double x = 0.5 * c->width / c->fx, y = 0.5 * c->height / c->fy;
   const char *kind = flat ? "orthographic" : "perspective", *side = flat ? "mag" : "fov";
   if (!flat) {

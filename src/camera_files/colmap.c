@@ -88,9 +88,8 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   d->width = (uint32_t)size[0];
   d->height = (uint32_t)size[1];
   vlError error = {0};
-  vlResult result = vl_camera_def_colmap(d, model, parameters, count, &error);
-  if (result == VL_OK)
-    return VL_OK;
+  VL_TRY(vl_camera_def_colmap(d, model, parameters, count, &error));
+  return VL_OK;
   vl_shorten_quoted(&error, model);
   return wrong_line(file, path, lines->line, error.message);
 }
@@ -99,10 +98,9 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
 static vlResult open_lines(const vlCameraFile *file, const char *path, char **text,
                            Lines *lines) {
   size_t size;
-  vlResult result = vl_colmap_load(file, path, text, &size);
-  if (result == VL_OK)
-    *lines = (Lines){*text, *text + size, 0};
-  return result;
+  VL_TRY(vl_colmap_load(file, path, text, &size));
+  *lines = (Lines){*text, *text + size, 0};
+  return VL_OK;
 }
 
 /* Reads the camera with this id, or the first camera if id is null. */
@@ -191,12 +189,9 @@ static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, cons
     record.dialect = VL_CAMERA_DIALECT_COLMAP;
     if (!next_number(&line, &id.id))
       return wrong_line(file, path, lines.line, "a line begins with the camera's number");
-    vlResult result = read_camera_line(file, path, &lines, line, &record.camera);
+    VL_TRY(read_camera_line(file, path, &lines, line, &record.camera));
     snprintf(record.name, sizeof record.name, "%.0f", id.id);
-    if (result == VL_OK)
-      result = vl_trajectory_add_camera(t, file, &record, &id.index);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_trajectory_add_camera(t, file, &record, &id.index));
     CameraId *added = VL_PUSH(file->context, ids);
     if (!added)
       return vl_fail_memory(file->error);
@@ -218,20 +213,15 @@ static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const
     vlCameraRecord record = {.frames = 0};
     CameraId wanted = {0, 0};
     bool found = false;
-    vlResult result =
-        read_image_line(&copy, path, lines.line, line, &found, 0, &wanted.id, &record);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(read_image_line(&copy, path, lines.line, line, &found, 0, &wanted.id, &record));
     const CameraId *id =
         ids->count ? bsearch(&wanted, ids->items, ids->count, sizeof *ids->items, by_id) : NULL;
     vlFrameLocation location = {path, lines.line, (uint32_t)t->frames.count, record.name};
     if (!id)
       return vl_frame_wrong(file, &location, "there is no camera %.0f in cameras.txt",
                             wanted.id);
-    result = vl_trajectory_add(t, file, &location, id->index, record.camera.world_from_camera,
-                               VL_UNSET);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_trajectory_add(t, file, &location, id->index, record.camera.world_from_camera,
+                             VL_UNSET));
     next_line(&lines); /* skip the line of points */
   }
   return VL_OK;
@@ -319,8 +309,8 @@ vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record)
   /* cameras.txt alone: the camera is at the origin, unless an image's pose was requested */
   if (stat(images, &status) == 0 || file->def->frame ||
       vl_ends_with(file->path, "images.txt") || vl_ends_with(file->path, "images.bin")) {
-    vlResult result = read_images(file, images, &id, record);
-    return result == VL_OK ? read_cameras(file, cameras, &id, record) : result;
+    VL_TRY(read_images(file, images, &id, record));
+    return read_cameras(file, cameras, &id, record);
   }
   const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, none[3] = {0, 0, 0};
   vl_camera_set_pose(&record->camera, identity, none);
@@ -371,10 +361,7 @@ static vlResult write_text(const vlCameraFile *file, const char *path,
   vlFileWriter writer;
   if (text->failed)
     return vl_fail_memory(file->error);
-  vlResult result =
-      vl_file_open_write(&writer, file->context, path, VL_OUTPUT_PLAIN, file->error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_file_open_write(&writer, file->context, path, VL_OUTPUT_PLAIN, file->error));
   vl_file_write(&writer, text->text.items, text->text.count);
   return vl_file_commit(&writer, file->error);
 }

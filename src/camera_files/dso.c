@@ -40,19 +40,15 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
   vl_camera_next_line(&lines);
   int model = model_of(lines.text, &numbers);
   most = 4 + models[model].count;
-  vlResult result = vl_camera_line_numbers(file, &lines, numbers, v,
-                                           model == PINHOLE ? 4 : most, most, &count);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_line_numbers(file, &lines, numbers, v, model == PINHOLE ? 4 : most, most,
+                                &count));
   const double *k = v + 4;
   if (!vl_camera_next_line(&lines))
     return vl_camera_wrong(file, "dso: the image's size is missing");
-  result = vl_camera_line_numbers(file, &lines, lines.text, sides, 2, 2, &count);
-  if (result == VL_OK && !vl_camera_set_sides(d, sides))
-    result = vl_camera_wrong_line(file, &lines, lines.text,
-                                  "the image's size must be two whole numbers of pixels");
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_line_numbers(file, &lines, lines.text, sides, 2, 2, &count));
+  if (!vl_camera_set_sides(d, sides))
+    VL_TRY(vl_camera_wrong_line(file, &lines, lines.text,
+                                "the image's size must be two whole numbers of pixels"));
   bool shares = v[2] < 1.0 && v[3] < 1.0;
   if (shares) {
     d->fx = v[0] * sides[0];

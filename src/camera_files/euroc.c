@@ -12,9 +12,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, vlCamera
   const char *model = vl_camera_text(tree, "distortion_model");
   if (!vl_camera_has(tree, "distortion_model") || vl_text_is(model, "none"))
     return VL_OK;
-  vlResult result = vl_camera_numbers(file, tree, "distortion_coefficients", k, 4, 5, &n);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, tree, "distortion_coefficients", k, 4, 5, &n));
   if (model && (vl_text_is(model, "radial-tangential") || vl_text_is(model, "radtan"))) {
     vl_camera_set_opencv(d, k, n);
   } else if (vl_text_is(model, "equidistant") && n == 4) {
@@ -41,16 +39,12 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
                               vl_short_text(sensor).text);
   if (model && !vl_text_is(model, "pinhole"))
     return vl_camera_unknown(file, tree, "camera_model", model, "there is pinhole");
-  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", intrinsics, 4),
-                                   VL_FIELD_LIST("T_BS", pose, 16));
-  if (result == VL_OK)
-    result = vl_camera_has(tree, "resolution")
-                 ? vl_camera_side_pair(file, tree, "resolution", record)
-                 : vl_camera_size_beside(file, NULL, record);
-  if (result == VL_OK)
-    result = read_lens(file, tree, d);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", intrinsics, 4),
+                        VL_FIELD_LIST("T_BS", pose, 16)));
+  VL_TRY(vl_camera_has(tree, "resolution")
+             ? vl_camera_side_pair(file, tree, "resolution", record)
+             : vl_camera_size_beside(file, NULL, record));
+  VL_TRY(read_lens(file, tree, d));
   vl_camera_set_centred(d, intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]);
   vl_camera_set_matrix(d, pose, false);
   vl_camera_name(record, vl_camera_text(tree, "comment"));

@@ -28,29 +28,26 @@ static vlResult read_field(const vlCameraFile *file, const json_t *object,
 
 vlResult vl_camera_read_fields(const vlCameraFile *file, const json_t *object,
                                const vlCameraField *rows) {
-  vlResult result = VL_OK;
-  for (; rows->key && result == VL_OK; rows++)
-    result = read_field(file, object, rows);
-  return result;
+  for (; rows->key; rows++)
+    VL_TRY(read_field(file, object, rows));
+  return VL_OK;
 }
 
 vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element,
                                  const vlCameraField *rows) {
-  vlResult result = VL_OK;
-  for (; rows->key && result == VL_OK; rows++)
-    result = vl_camera_child_number(file, element, rows->key, !rows->optional, rows->values);
-  return result;
+  for (; rows->key; rows++)
+    VL_TRY(vl_camera_child_number(file, element, rows->key, !rows->optional, rows->values));
+  return VL_OK;
 }
 
 vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object,
                               const char *const *names, uint32_t count, bool optional,
                               double *values) {
-  vlResult result = VL_OK;
-  for (uint32_t i = 0; i < count && result == VL_OK; i++)
-    result = read_field(
+  for (uint32_t i = 0; i < count; i++)
+    VL_TRY(read_field(
         file, object,
-        &(vlCameraField){.key = names[i], .values = &values[i], .optional = optional});
-  return result;
+        &(vlCameraField){.key = names[i], .values = &values[i], .optional = optional}));
+  return VL_OK;
 }
 
 const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,

@@ -222,9 +222,7 @@ static vlResult begin(vlContext *context, const char *path, const vlCameraRecord
 static vlResult read_plainly(vlContext *context, const char *path, const vlCameraFileDef *def,
                              vlCameraRecord *record, vlError *error) {
   vlCameraFileDef standard;
-  vlResult result = begin(context, path, record, &def, &standard, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(begin(context, path, record, &def, &standard, error));
   if (def->dialect == VL_CAMERA_DIALECT_EXR)
     return vl_fail(error, VL_ERROR_UNSUPPORTED,
                    "camera file: this is an image; it is read as one");
@@ -240,13 +238,12 @@ static vlResult read_plainly(vlContext *context, const char *path, const vlCamer
       (!def->dialect && (is_folder(path) || vl_colmap_is_name(path)))) {
     file.dialect = "colmap";
     read.dialect = VL_CAMERA_DIALECT_COLMAP;
-    result = vl_camera_read_colmap(&file, &read);
+    VL_TRY(vl_camera_read_colmap(&file, &read));
   } else {
-    result = read_file(&file, NULL, &read);
+    VL_TRY(read_file(&file, NULL, &read));
   }
-  if (result == VL_OK)
-    *record = read;
-  return result;
+  *record = read;
+  return VL_OK;
 }
 
 vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def,

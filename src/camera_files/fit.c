@@ -97,9 +97,7 @@ static void unmirror(vlCamera *c) {
 static vlResult make_rigid(const vlCameraFile *file, vlCamera *camera) {
   const bool mirrors = vl_mat4_determinant3(vl_mat4_load(camera->world_from_camera)) < 0.0;
   if (mirrors && camera->distortion.steps == 0) {
-    vlResult result = vl_camera_refuse(file, "mirror", true);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_refuse(file, "mirror", true));
     unmirror(camera);
   }
   if (is_rigid(camera->world_from_camera))
@@ -111,9 +109,9 @@ static vlResult make_rigid(const vlCameraFile *file, vlCamera *camera) {
 /* Makes the camera. Refuses any property that `holds` does not include. */
 static vlResult hold(const vlCameraFile *file, const vlCameraDef *d, uint32_t holds,
                      vlCamera *camera) {
-  vlResult result = vl_camera_make(d, camera, NULL, file->error);
-  if (result != VL_OK || holds & VL_HOLDS_ALL)
-    return result;
+  VL_TRY(vl_camera_make(d, camera, NULL, file->error));
+  if (holds & VL_HOLDS_ALL)
+    return VL_OK;
   bool posed = holds & VL_HOLDS_POSE;
   const vlLens *lens = &camera->lens;
   const struct {
@@ -142,13 +140,13 @@ static vlResult hold(const vlCameraFile *file, const vlCameraDef *d, uint32_t ho
       {"motion", camera->moves},
       {"stereo", d->stereo.mode != VL_STEREO_NONE && d->stereo_eye == VL_EYE_BOTH},
   };
-  for (size_t i = 0; i < VL_LENGTH(fields) && result == VL_OK; i++)
-    result = vl_camera_refuse(file, fields[i].field, fields[i].present);
-  if (result == VL_OK && posed && !(holds & VL_HOLDS_SCALE))
-    result = make_rigid(file, camera);
-  if (result == VL_OK && vl_camera_drops(file, "skew"))
+  for (size_t i = 0; i < VL_LENGTH(fields); i++)
+    VL_TRY(vl_camera_refuse(file, fields[i].field, fields[i].present));
+  if (posed && !(holds & VL_HOLDS_SCALE))
+    VL_TRY(make_rigid(file, camera));
+  if (vl_camera_drops(file, "skew"))
     camera->skew = 0.0;
-  return result;
+  return VL_OK;
 }
 
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def) {
@@ -189,18 +187,15 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) 
 }
 
 vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *camera) {
-  vlResult result = vl_camera_refuse(file, "cx", camera->cx != 0.5 * camera->width);
-  return result == VL_OK ? vl_camera_refuse(file, "cy", camera->cy != 0.5 * camera->height)
-                         : result;
+  VL_TRY(vl_camera_refuse(file, "cx", camera->cx != 0.5 * camera->width));
+  return vl_camera_refuse(file, "cy", camera->cy != 0.5 * camera->height);
 }
 
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
                        const vlCameraFormat *format, vlFittedCamera *fit) {
   const vlCameraDef *d = &record->camera;
   vlCamera *c = &fit->camera;
-  vlResult result = hold(file, d, format->holds, c);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(hold(file, d, format->holds, c));
   fit->file = file;
   fit->record = record;
   fit->family = vl_camera_lens_family(d, fit->k, &fit->count);
@@ -208,12 +203,12 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
   if (!format->plain && format->lenses && !known)
     return vl_camera_no_model(file, d);
   if (format->plain)
-    result = vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC);
-  if (result == VL_OK && format->plain)
-    result = vl_camera_refuse(file, "distortion", c->distortion.steps != 0);
-  if (result == VL_OK && format->centred)
-    result = vl_camera_refuse_off_centre(file, c);
-  if (result == VL_OK && format->square)
-    result = vl_camera_refuse(file, "fy", c->fx != c->fy);
-  return result;
+    VL_TRY(vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC));
+  if (format->plain)
+    VL_TRY(vl_camera_refuse(file, "distortion", c->distortion.steps != 0));
+  if (format->centred)
+    VL_TRY(vl_camera_refuse_off_centre(file, c));
+  if (format->square)
+    VL_TRY(vl_camera_refuse(file, "fy", c->fx != c->fy));
+  return VL_OK;
 }

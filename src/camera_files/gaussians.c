@@ -12,12 +12,10 @@ static vlResult read_gaussians(const vlCameraFile *file, const json_t *tree,
   double p[3], r[9];
   if (!camera)
     return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
-                                   VL_FIELD_SIDE("height", &d->height), VL_FIELD("fx", &d->fx),
-                                   VL_FIELD("fy", &d->fy), VL_FIELD_LIST("position", p, 3),
-                                   VL_FIELD_LIST("rotation", r, 9));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
+                        VL_FIELD_SIDE("height", &d->height), VL_FIELD("fx", &d->fx),
+                        VL_FIELD("fy", &d->fy), VL_FIELD_LIST("position", p, 3),
+                        VL_FIELD_LIST("rotation", r, 9)));
   vl_camera_set_rigid(d, r, p);
   return VL_OK;
 }

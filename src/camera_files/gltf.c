@@ -30,29 +30,28 @@ static Numbers numbers_of(const vlCamera *c) {
 /* A node's own transform: matrix, or translation, rotation (x y z w), scale. */
 static vlResult local_matrix(const vlCameraFile *file, const json_t *node, vlMat4 *result) {
   double m[16], t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1}, r[9];
-  vlResult status = VL_OK;
   *result = vl_mat4_identity();
   if (json_object_get(node, "matrix")) {
-    status = vl_camera_numbers(file, node, "matrix", m, 16, 16, NULL);
-    for (int i = 0; i < 16 && status == VL_OK; i++)
+    VL_TRY(vl_camera_numbers(file, node, "matrix", m, 16, 16, NULL));
+    for (int i = 0; i < 16; i++)
       result->m[i] = m[4 * (i % 4) + i / 4];
-    return status;
+    return VL_OK;
   }
   if (json_object_get(node, "translation"))
-    status = vl_camera_numbers(file, node, "translation", t, 3, 3, NULL);
-  if (status == VL_OK && json_object_get(node, "rotation"))
-    status = vl_camera_numbers(file, node, "rotation", q, 4, 4, NULL);
-  if (status == VL_OK && json_object_get(node, "scale"))
-    status = vl_camera_numbers(file, node, "scale", s, 3, 3, NULL);
+    VL_TRY(vl_camera_numbers(file, node, "translation", t, 3, 3, NULL));
+  if (json_object_get(node, "rotation"))
+    VL_TRY(vl_camera_numbers(file, node, "rotation", q, 4, 4, NULL));
+  if (json_object_get(node, "scale"))
+    VL_TRY(vl_camera_numbers(file, node, "scale", s, 3, 3, NULL));
   const double wxyz[4] = {q[3], q[0], q[1], q[2]};
-  if (status == VL_OK && !vl_rotation_from_quaternion(wxyz, r))
-    status = vl_camera_wrong(file, "gltf: a node's \"rotation\" is no rotation");
-  for (int i = 0; i < 3 && status == VL_OK; i++) {
+  if (!vl_rotation_from_quaternion(wxyz, r))
+    VL_TRY(vl_camera_wrong(file, "gltf: a node's \"rotation\" is no rotation"));
+  for (int i = 0; i < 3; i++) {
     for (int j = 0; j < 3; j++)
       result->m[4 * i + j] = r[3 * i + j] * s[j];
     result->m[4 * i + 3] = t[i];
   }
-  return status;
+  return VL_OK;
 }
 
 /* World matrix of a node. *parents[i] is the parent of node i, -1 for none. */
@@ -65,9 +64,7 @@ static vlResult world_matrix(const vlCameraFile *file, const json_t *nodes,
     if (++steps > count)
       return vl_camera_wrong(file, "gltf: node %lld is among its own children",
                              (long long)index);
-    vlResult status = local_matrix(file, json_array_get(nodes, (size_t)i), &local);
-    if (status != VL_OK)
-      return status;
+    VL_TRY(local_matrix(file, json_array_get(nodes, (size_t)i), &local));
     *result = vl_mat4_multiply(local, *result);
   }
   return VL_OK;
@@ -92,20 +89,17 @@ static vlResult read_perspective(const vlCameraFile *file, const json_t *lens,
                                  vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double yfov = 0.0, aspect = VL_UNSET;
-  vlResult result = VL_READ_FIELDS(
+  VL_TRY(VL_READ_FIELDS(
       file, lens, VL_FIELD("yfov", &yfov), VL_FIELD_OPTIONAL("aspectRatio", &aspect),
-      VL_FIELD("znear", &d->near_plane), VL_FIELD_OPTIONAL("zfar", &d->far_plane));
-  if (result == VL_OK && !(yfov > 0.0 && yfov < 3.14159265358979))
+      VL_FIELD("znear", &d->near_plane), VL_FIELD_OPTIONAL("zfar", &d->far_plane)));
+  if (!(yfov > 0.0 && yfov < 3.14159265358979))
     return vl_camera_wrong(file, "gltf: \"yfov\" is %g radians; it must lie between 0 and pi",
                            yfov);
   if (aspect == 0.0)
     aspect = VL_UNSET; /* not valid, but Assimp writes it where it knows none */
-  if (result == VL_OK && aspect < 0.0)
+  if (aspect < 0.0)
     return vl_camera_wrong(file, "gltf: \"aspectRatio\" is %g; it must be above zero", aspect);
-  if (result == VL_OK)
-    result = vl_camera_size(file, vl_is_unset(aspect) ? 16.0 / 9.0 : aspect, record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_size(file, vl_is_unset(aspect) ? 16.0 / 9.0 : aspect, record));
   double half = vl_precise_tan(0.5 * yfov);
   d->fy = 0.5 * d->height / half;
   d->fx = vl_is_unset(aspect) ? d->fy : 0.5 * d->width / (half * aspect);
@@ -116,18 +110,14 @@ static vlResult read_orthographic(const vlCameraFile *file, const json_t *lens,
                                   vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double x = 0.0, y = 0.0;
-  vlResult result =
-      VL_READ_FIELDS(file, lens, VL_FIELD("xmag", &x), VL_FIELD("ymag", &y),
-                     VL_FIELD("znear", &d->near_plane), VL_FIELD("zfar", &d->far_plane));
+  VL_TRY(VL_READ_FIELDS(file, lens, VL_FIELD("xmag", &x), VL_FIELD("ymag", &y),
+                        VL_FIELD("znear", &d->near_plane), VL_FIELD("zfar", &d->far_plane)));
   /* some exporters write negative values; the extent is the same */
   x = fabs(x);
   y = fabs(y);
-  if (result == VL_OK && !(x > 0.0 && y > 0.0))
+  if (!(x > 0.0 && y > 0.0))
     return vl_camera_wrong(file, "gltf: \"xmag\" and \"ymag\" must not be zero");
-  if (result == VL_OK)
-    result = vl_camera_size(file, x / y, record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_size(file, x / y, record));
   d->projection = VL_PROJECTION_ORTHOGRAPHIC;
   d->fx = 0.5 * d->width / x;
   d->fy = 0.5 * d->height / y;
@@ -143,11 +133,8 @@ static bool agree(double a, double b) {
 static vlResult read_extras(const vlCameraFile *file, const json_t *extras, const vlMat4 *pose,
                             const json_t *lens, vlCameraRecord *record) {
   vlCamera camera;
-  vlResult result = vl_camera_read_velo(file, extras, record);
-  if (result == VL_OK)
-    result = vl_camera_make(&record->camera, &camera, NULL, file->error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_read_velo(file, extras, record));
+  VL_TRY(vl_camera_make(&record->camera, &camera, NULL, file->error));
   Numbers n = numbers_of(&camera);
   const struct {
     const char *key;
@@ -180,15 +167,13 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
         file, "gltf: unknown camera type \"%s\"; there are perspective, orthographic",
         vl_short_text(type).text);
   const json_t *lens, *extras = json_object_get(json_object_get(camera, "extras"), "velo");
-  vlResult result = vl_camera_field(file, camera, type, &lens);
-  if (result == VL_OK && extras)
+  VL_TRY(vl_camera_field(file, camera, type, &lens));
+  if (extras)
     return read_extras(file, extras, pose, lens, record);
-  if (result == VL_OK)
-    result =
-        flat ? read_orthographic(file, lens, record) : read_perspective(file, lens, record);
+  VL_TRY(flat ? read_orthographic(file, lens, record) : read_perspective(file, lens, record));
   d->has_matrix = true;
   vl_camera_flip_axes(pose->m, d->world_from_camera);
-  return result;
+  return VL_OK;
 }
 
 /* Members that the format does not have, of the camera and of its node. */
@@ -200,8 +185,8 @@ static vlResult check_members(const vlCameraFile *file, const json_t *node,
                     of_camera[] =
                         "aspectRatio extensions extras! name orthographic "
                         "perspective type xmag yfov ymag zfar znear";
-  vlResult result = vl_camera_check_part(file, of_camera, camera, record);
-  return result == VL_OK ? vl_camera_check_part(file, of_node, node, record) : result;
+  VL_TRY(vl_camera_check_part(file, of_camera, camera, record));
+  return vl_camera_check_part(file, of_node, node, record);
 }
 
 static vlResult camera_of(const vlCameraFile *file, const json_t *cameras, const json_t *index,

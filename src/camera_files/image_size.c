@@ -91,17 +91,14 @@ vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const c
                          const char *height, vlCameraRecord *record) {
   if (!json_object_get(object, width) && !json_object_get(object, height))
     return vl_camera_size_beside(file, NULL, record);
-  vlResult result = vl_camera_side(file, object, width, &record->camera.width);
-  return result == VL_OK ? vl_camera_side(file, object, height, &record->camera.height)
-                         : result;
+  VL_TRY(vl_camera_side(file, object, width, &record->camera.width));
+  return vl_camera_side(file, object, height, &record->camera.height);
 }
 
 vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key,
                              vlCameraRecord *record) {
   double size[2] = {0};
-  vlResult result = vl_camera_numbers(file, object, key, size, 2, 2, NULL);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, object, key, size, 2, 2, NULL));
   for (int i = 0; i < 2; i++)
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != (double)(uint32_t)size[i])
       return vl_camera_wrong_in(file, object, key,

@@ -25,13 +25,11 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraD
   const char *lens;
   double k[4] = {0};
   uint32_t n = 0;
-  vlResult result = vl_camera_word(file, cam, "distortion_model", &lens);
+  VL_TRY(vl_camera_word(file, cam, "distortion_model", &lens));
   bool plain = d->projection == VL_PROJECTION_PERSPECTIVE;
-  if (result != VL_OK || vl_text_is(lens, "none"))
-    return result;
-  result = vl_camera_numbers(file, cam, "distortion_coeffs", k, 0, 4, &n);
-  if (result != VL_OK)
-    return result;
+  if (vl_text_is(lens, "none"))
+    return VL_OK;
+  VL_TRY(vl_camera_numbers(file, cam, "distortion_coeffs", k, 0, 4, &n));
   bool radtan = vl_text_is(lens, "radtan"), equi = vl_text_is(lens, "equidistant");
   bool fov = vl_text_is(lens, "fov");
   if (!radtan && !equi && !fov)
@@ -62,9 +60,7 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
   vlCameraDef *d = &record->camera;
   const char *name;
   double k[6] = {0};
-  vlResult result = vl_camera_word(file, cam, "camera_model", &name);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_word(file, cam, "camera_model", &name));
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
     if (vl_text_is(name, models[i].name))
@@ -73,14 +69,11 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
     return vl_camera_unknown(file, cam, "camera_model", name,
                              "there are pinhole, omni, eucm, ds");
   d->projection = model->projection;
-  result =
-      vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4, NULL);
+  VL_TRY(vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4,
+                           NULL));
   bool sized = vl_camera_has(cam, "resolution");
-  if (result == VL_OK)
-    result = sized ? vl_camera_side_pair(file, cam, "resolution", record)
-                   : vl_camera_size_beside(file, NULL, record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(sized ? vl_camera_side_pair(file, cam, "resolution", record)
+               : vl_camera_size_beside(file, NULL, record));
   for (uint32_t i = 0; i < model->shapes; i++)
     d->shape[i] = k[i];
   const double *f = k + model->shapes;
@@ -133,10 +126,7 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree,
       vlMat4 step = vl_mat4_identity();
       bool inverse;
       const char *name = imu_key(cam, &inverse);
-      vlResult result =
-          vl_camera_numbers(file, cam, by_imu ? name : "T_cn_cnm1", step.m, 16, 16, NULL);
-      if (result != VL_OK)
-        return result;
+      VL_TRY(vl_camera_numbers(file, cam, by_imu ? name : "T_cn_cnm1", step.m, 16, 16, NULL));
       if (by_imu && inverse && !vl_mat4_inverse(step, &step))
         return vl_camera_wrong_in(file, cam, name, "kalibr: \"%s\" is singular", name);
       from_world = by_imu ? step : vl_mat4_multiply(step, from_world);

@@ -67,9 +67,7 @@ static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size
   for (int i = 0; i < 5; i++) {
     bool found;
     snprintf(rows[i].key, sizeof rows[i].key, "%c_%02u", wanted[i].letter, camera);
-    vlResult result = find_row(file, text, size, &rows[i], wanted[i].count, &found);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(find_row(file, text, size, &rows[i], wanted[i].count, &found));
     if (!found)
       return missing(file, rows[i].key);
   }
@@ -95,12 +93,10 @@ static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t si
     Row row = {.count = 0};
     bool found = false, unrectified = false;
     snprintf(row.key, sizeof row.key, "K_%02u", i);
-    vlResult result = find_row(file, text, size, &row, 9, &unrectified);
+    VL_TRY(find_row(file, text, size, &row, 9, &unrectified));
     snprintf(row.key, sizeof row.key, "P%u", i);
-    if (result == VL_OK && !unrectified)
-      result = find_row(file, text, size, &row, 12, &found);
-    if (result != VL_OK)
-      return result;
+    if (!unrectified)
+      VL_TRY(find_row(file, text, size, &row, 12, &found));
     if (!found && !unrectified)
       continue;
     char name[16];

@@ -29,9 +29,7 @@ enum { API_COUNT = VL_LENGTH(apis) };
 static vlResult choice(const vlCameraFile *file, const json_t *tree, const char *key,
                        const char *yes, const char *no, bool *value) {
   const char *word;
-  vlResult result = vl_camera_word(file, tree, key, &word);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_word(file, tree, key, &word));
   *value = vl_text_is(word, yes);
   if (*value || vl_text_is(word, no))
     return VL_OK;
@@ -57,9 +55,7 @@ static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const 
     if (count != 16 || text[strspn(text, " \t\r\n,;")] != 0)
       return vl_camera_wrong(file, "%s: \"%s\" must hold 16 numbers", file->dialect, key);
   } else {
-    vlResult result = vl_camera_numbers(file, tree, key, m, 16, 16, NULL);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_numbers(file, tree, key, m, 16, 16, NULL));
   }
   for (int i = 0; i < 16; i++) {
     matrix->m[i] = m[transposed ? 4 * (i % 4) + i / 4 : i];
@@ -133,14 +129,12 @@ static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vl
   if (flat && (p[2] != 0.0 || p[6] != 0.0))
     return vl_camera_wrong(file, "%s: an oblique \"projection_matrix\" is not taken",
                            file->dialect);
-  vlResult result = planes(file, flat, p[10] * forward, p[11], z_near, d);
+  VL_TRY(planes(file, flat, p[10] * forward, p[11], z_near, d));
   vlMat4 inverse;
-  if (result == VL_OK && (view.m[12] != 0.0 || view.m[13] != 0.0 || view.m[14] != 0.0 ||
-                          view.m[15] != 1.0 || !vl_mat4_inverse(view, &inverse)))
+  if ((view.m[12] != 0.0 || view.m[13] != 0.0 || view.m[14] != 0.0 || view.m[15] != 1.0 ||
+       !vl_mat4_inverse(view, &inverse)))
     return vl_camera_wrong(file, "%s: \"view_matrix\" is no pose: are order and vectors right?",
                            file->dialect);
-  if (result != VL_OK)
-    return result;
   d->has_matrix = true;
   vl_camera_flip_columns(inverse.m, x, y, forward, d->world_from_camera);
   d->world_from_camera[15] = 1.0;
@@ -152,9 +146,7 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
   static const char *const names[] = {"opengl", "vulkan", "d3d"};
   vlCameraDef *d = &record->camera;
   const char *word;
-  vlResult result = vl_camera_word(file, tree, "graphics_api", &word);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_word(file, tree, "graphics_api", &word));
   const Api *api = NULL;
   for (int i = 0; i < API_COUNT && word; i++)
     if (vl_text_is(apis[i].name, word))
@@ -172,38 +164,31 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
        zero_to_one = api->z_near == 0.0;
   double z[2];
   vlMat4 projection, view;
-  result = vl_camera_side(&own, tree, "width", &d->width);
-  if (result == VL_OK)
-    result = vl_camera_side(&own, tree, "height", &d->height);
-  if (result == VL_OK)
-    result = choice(&own, tree, "order", "row-major", "column-major", &rows_first);
-  if (result == VL_OK)
-    result = choice(&own, tree, "vectors", "row", "column", &row_vectors);
-  if (result == VL_OK && json_object_get(tree, "clip_y"))
-    result = choice(&own, tree, "clip_y", "down", "up", &down);
-  if (result == VL_OK && json_object_get(tree, "clip_z")) {
-    result = vl_camera_numbers(&own, tree, "clip_z", z, 2, 2, NULL);
+  VL_TRY(vl_camera_side(&own, tree, "width", &d->width));
+  VL_TRY(vl_camera_side(&own, tree, "height", &d->height));
+  VL_TRY(choice(&own, tree, "order", "row-major", "column-major", &rows_first));
+  VL_TRY(choice(&own, tree, "vectors", "row", "column", &row_vectors));
+  if (json_object_get(tree, "clip_y"))
+    VL_TRY(choice(&own, tree, "clip_y", "down", "up", &down));
+  if (json_object_get(tree, "clip_z")) {
+    VL_TRY(vl_camera_numbers(&own, tree, "clip_z", z, 2, 2, NULL));
     zero_to_one = z[0] == 0.0;
-    if (result == VL_OK && !(z[1] == 1.0 && (z[0] == 0.0 || z[0] == -1.0)))
-      result = vl_camera_wrong(&own, "%s: \"clip_z\" must be [0, 1] or [-1, 1]", own.dialect);
+    if (!(z[1] == 1.0 && (z[0] == 0.0 || z[0] == -1.0)))
+      VL_TRY(vl_camera_wrong(&own, "%s: \"clip_z\" must be [0, 1] or [-1, 1]", own.dialect));
   }
   bool transposed = rows_first == row_vectors;
-  if (result == VL_OK)
-    result = read_matrix(&own, tree, "projection_matrix", transposed, &projection);
-  if (result == VL_OK)
-    result = read_matrix(&own, tree, "view_matrix", transposed, &view);
-  if (result == VL_OK)
-    result = decompose(&own, &projection, view, down, zero_to_one ? 0.0 : -1.0, d);
+  VL_TRY(read_matrix(&own, tree, "projection_matrix", transposed, &projection));
+  VL_TRY(read_matrix(&own, tree, "view_matrix", transposed, &view));
+  VL_TRY(decompose(&own, &projection, view, down, zero_to_one ? 0.0 : -1.0, d));
   /* these fields give the camera's planes: a matrix must have planes even if the camera has
    * none */
-  if (result == VL_OK)
-    result = vl_camera_optional(&own, tree, "near_plane", &d->near_plane);
-  if (result == VL_OK && json_is_null(json_object_get(tree, "far_plane")))
+  VL_TRY(vl_camera_optional(&own, tree, "near_plane", &d->near_plane));
+  if (json_is_null(json_object_get(tree, "far_plane")))
     d->far_plane = INFINITY;
-  else if (result == VL_OK)
-    result = vl_camera_optional(&own, tree, "far_plane", &d->far_plane);
+  else
+    VL_TRY(vl_camera_optional(&own, tree, "far_plane", &d->far_plane));
   vl_camera_name(record, vl_camera_text(tree, "name"));
-  return result;
+  return VL_OK;
 }
 
 /* ---- writing ----------------------------------------------------------------------------- */

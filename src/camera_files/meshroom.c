@@ -21,9 +21,7 @@ static bool number_of(const json_t *value, double *number) {
 static vlResult numbers(const vlCameraFile *file, const json_t *object, const char *key,
                         double *values, uint32_t count) {
   const json_t *field;
-  vlResult result = vl_camera_field(file, object, key, &field);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, object, key, &field));
   bool one = count == 1 && !json_is_array(field), good = one || json_array_size(field) == count;
   for (uint32_t i = 0; i < count && good; i++)
     good = number_of(one ? field : json_array_get(field, i), &values[i]);
@@ -42,21 +40,17 @@ static bool is_before(const double version[3], double minor, double revision) {
 static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic,
                            const double version[3], vlCameraDef *d) {
   double f[2], mm, sensor, ratio = 1.0;
-  vlResult result;
   if (vl_camera_has(intrinsic, "pxFocalLength")) {
     bool pair = json_is_array(json_object_get(intrinsic, "pxFocalLength"));
-    result = numbers(file, intrinsic, "pxFocalLength", f, pair ? 2 : 1);
+    VL_TRY(numbers(file, intrinsic, "pxFocalLength", f, pair ? 2 : 1));
     d->fx = f[0];
     d->fy = pair ? f[1] : f[0];
-    return result;
+    return VL_OK;
   }
-  result = numbers(file, intrinsic, "focalLength", &mm, 1);
-  if (result == VL_OK)
-    result = numbers(file, intrinsic, "sensorWidth", &sensor, 1);
-  if (result == VL_OK && vl_camera_has(intrinsic, "pixelRatio"))
-    result = numbers(file, intrinsic, "pixelRatio", &ratio, 1);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(numbers(file, intrinsic, "focalLength", &mm, 1));
+  VL_TRY(numbers(file, intrinsic, "sensorWidth", &sensor, 1));
+  if (vl_camera_has(intrinsic, "pixelRatio"))
+    VL_TRY(numbers(file, intrinsic, "pixelRatio", &ratio, 1));
   if (!(sensor > 0.0 && ratio > 0.0))
     return vl_camera_wrong_in(file, intrinsic, "sensorWidth",
                               "meshroom: the sensor's sides must be above zero");
@@ -97,9 +91,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlC
         key, vl_short_text(name).text);
   uint32_t count = json_array_size(list) ? models[model].count : 0;
   if (count) {
-    vlResult result = numbers(file, intrinsic, "distortionParams", k, count);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(numbers(file, intrinsic, "distortionParams", k, count));
   }
   const double radial[5] = {k[0], k[1], 0.0, 0.0, k[2]},
                brown[5] = {k[0], k[1], k[3], k[4], k[2]};
@@ -124,17 +116,11 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree,
                                const json_t *intrinsic, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double version[3] = {1.0, 0.0, 0.0}, size[2] = {0.0, 0.0}, c[2] = {0.0, 0.0};
-  vlResult result = VL_OK;
   if (vl_camera_has(tree, "version"))
-    result = numbers(file, tree, "version", version, 3);
-  if (result == VL_OK)
-    result = numbers(file, intrinsic, "width", &size[0], 1);
-  if (result == VL_OK)
-    result = numbers(file, intrinsic, "height", &size[1], 1);
-  if (result == VL_OK)
-    result = numbers(file, intrinsic, "principalPoint", c, 2);
-  if (result != VL_OK)
-    return result;
+    VL_TRY(numbers(file, tree, "version", version, 3));
+  VL_TRY(numbers(file, intrinsic, "width", &size[0], 1));
+  VL_TRY(numbers(file, intrinsic, "height", &size[1], 1));
+  VL_TRY(numbers(file, intrinsic, "principalPoint", c, 2));
   for (int i = 0; i < 2; i++)
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
       return vl_camera_wrong_in(file, intrinsic, i ? "height" : "width",
@@ -145,8 +131,8 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree,
   double middle = is_before(version, 2, 1) ? 0.0 : 0.5;
   d->cx = c[0] + middle * d->width;
   d->cy = c[1] + middle * d->height;
-  result = read_focal(file, intrinsic, version, d);
-  return result == VL_OK ? read_lens(file, intrinsic, d) : result;
+  VL_TRY(read_focal(file, intrinsic, version, d));
+  return read_lens(file, intrinsic, d);
 }
 
 /* Returns the item of a list with this id. Ids are text or numbers. */
@@ -172,18 +158,14 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
     return vl_camera_wrong_in(
         file, view, "intrinsicId",
         "meshroom: the view's \"intrinsicId\" is not among the intrinsics");
-  vlResult result = read_intrinsic(file, tree, intrinsic, record);
+  VL_TRY(read_intrinsic(file, tree, intrinsic, record));
   vl_camera_set_origin(&record->camera);
   vl_camera_name(record, vl_camera_text(view, "path"));
-  if (result != VL_OK || !pose)
-    return result;
-  result = vl_camera_field(file, json_object_get(pose, "pose"), "transform", &transform);
-  if (result == VL_OK)
-    result = numbers(file, transform, "rotation", r, 9);
-  if (result == VL_OK)
-    result = numbers(file, transform, "center", center, 3);
-  if (result != VL_OK)
-    return result;
+  if (!pose)
+    return VL_OK;
+  VL_TRY(vl_camera_field(file, json_object_get(pose, "pose"), "transform", &transform));
+  VL_TRY(numbers(file, transform, "rotation", r, 9));
+  VL_TRY(numbers(file, transform, "center", center, 3));
   /* the column-major matrix camera from world equals the row-major matrix world from camera */
   vl_camera_set_rigid(&record->camera, r, center);
   return VL_OK;

@@ -20,20 +20,16 @@ static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration
   double f = 0.0, c[2] = {VL_UNSET, VL_UNSET}, b[2] = {0.0, 0.0}, k[8] = {0.0},
          more[2] = {0.0, 0.0};
   bool old = vl_camera_child(calibration, "fx") != NULL;
-  vlResult result = vl_camera_child_number(file, calibration, old ? "fy" : "f", true, &f);
-  if (result == VL_OK && old)
-    result = vl_camera_child_number(file, calibration, "fx", true, &d->fx);
-  if (result == VL_OK)
-    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("cx", &c[0]),
-                              VL_FIELD_OPTIONAL("cy", &c[1]), VL_FIELD_OPTIONAL("b1", &b[0]),
-                              VL_FIELD_OPTIONAL(old ? "skew" : "b2", &b[1]));
-  for (int i = 0; i < 6 && result == VL_OK; i++)
-    result = vl_camera_child_number(file, calibration, names[i], false, &k[i]);
-  if (result == VL_OK)
-    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("p3", &more[0]),
-                              VL_FIELD_OPTIONAL("p4", &more[1]));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_child_number(file, calibration, old ? "fy" : "f", true, &f));
+  if (old)
+    VL_TRY(vl_camera_child_number(file, calibration, "fx", true, &d->fx));
+  VL_TRY(VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("cx", &c[0]),
+                          VL_FIELD_OPTIONAL("cy", &c[1]), VL_FIELD_OPTIONAL("b1", &b[0]),
+                          VL_FIELD_OPTIONAL(old ? "skew" : "b2", &b[1])));
+  for (int i = 0; i < 6; i++)
+    VL_TRY(vl_camera_child_number(file, calibration, names[i], false, &k[i]));
+  VL_TRY(VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("p3", &more[0]),
+                          VL_FIELD_OPTIONAL("p4", &more[1])));
   if (more[0] != 0.0 || more[1] != 0.0)
     return vl_camera_wrong_element(file, calibration,
                                    "p3 and p4 are no terms of velo's distortion");
@@ -110,13 +106,11 @@ static vlResult read_sensor(const vlCameraFile *file, const json_t *sensor,
   const char *type = vl_camera_text(calibration, "type");
   if (!size)
     return vl_camera_wrong_element(file, sensor, "the sensor has no <resolution>");
-  vlResult result = read_attribute(file, size, "width", &d->width);
-  if (result == VL_OK)
-    result = read_attribute(file, size, "height", &d->height);
-  if (result == VL_OK)
-    result = set_type(file, sensor, type ? type : vl_camera_text(sensor, "type"), d);
-  if (result != VL_OK || d->projection == VL_PROJECTION_EQUIRECTANGULAR)
-    return result;
+  VL_TRY(read_attribute(file, size, "width", &d->width));
+  VL_TRY(read_attribute(file, size, "height", &d->height));
+  VL_TRY(set_type(file, sensor, type ? type : vl_camera_text(sensor, "type"), d));
+  if (d->projection == VL_PROJECTION_EQUIRECTANGULAR)
+    return VL_OK;
   if (!calibration)
     return vl_camera_wrong_element(file, sensor, "the sensor has no <calibration>");
   return read_numbers(file, calibration, d);
@@ -128,10 +122,7 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *chunk, const
   const json_t *sensor;
   double m[16];
   size_t i;
-  vlResult result =
-      vl_camera_element_numbers(file, vl_camera_child(camera, "transform"), m, 16);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_element_numbers(file, vl_camera_child(camera, "transform"), m, 16));
   if (!vl_camera_set_matrix(&record->camera, m, false))
     return vl_camera_wrong_element(file, camera, "no pose");
   vl_camera_name(record, vl_camera_text(camera, "label"));
@@ -171,12 +162,9 @@ static vlResult read_calibration(const vlCameraFile *file, const json_t *root,
   vlCameraDef *d = &record->camera;
   double size[2] = {0.0, 0.0};
   const char *text = vl_camera_text(vl_camera_child(root, "projection"), "$");
-  vlResult result =
-      VL_READ_CHILDREN(file, root, VL_FIELD("width", &size[0]), VL_FIELD("height", &size[1]));
-  if (result == VL_OK)
-    result = set_type(file, root, text, d);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(
+      VL_READ_CHILDREN(file, root, VL_FIELD("width", &size[0]), VL_FIELD("height", &size[1])));
+  VL_TRY(set_type(file, root, text, d));
   if (!vl_camera_set_sides(d, size))
     return vl_camera_wrong_element(file, root, "the image is %g x %g; it must be whole pixels",
                                    size[0], size[1]);

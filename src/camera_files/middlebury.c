@@ -35,11 +35,8 @@ static vlResult read_size(const vlCameraFile *file, const char *text, size_t siz
                           vlCameraRecord *record) {
   double sides[2];
   bool found[2];
-  vlResult result = read_number(file, text, size, "width", &sides[0], &found[0]);
-  if (result == VL_OK)
-    result = read_number(file, text, size, "height", &sides[1], &found[1]);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_number(file, text, size, "width", &sides[0], &found[0]));
+  VL_TRY(read_number(file, text, size, "height", &sides[1], &found[1]));
   if (!found[0] && !found[1])
     return vl_camera_size_beside(
         file, (const char *const[]){number ? "im1.png" : "im0.png", NULL}, record);
@@ -82,9 +79,7 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
   const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   double t[3] = {0, 0, 0};
   if (chosen == 1) {
-    vlResult result = read_number(file, text, size, "baseline", &t[0], NULL);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(read_number(file, text, size, "baseline", &t[0], NULL));
     t[0] = -t[0];
   }
   vl_camera_set_pose(&record->camera, r, t);

@@ -72,11 +72,11 @@ static vlResult attribute(const Scene *scene, const json_t *element, const char 
 static vlResult numbers(const Scene *scene, const json_t *element, const char *key,
                         uint32_t count, double *values, bool *found) {
   const char *text;
-  vlResult result = attribute(scene, element, key, &text);
+  VL_TRY(attribute(scene, element, key, &text));
   if (found)
     *found = text != NULL;
-  if (result != VL_OK || (!text && found))
-    return result;
+  if ((!text && found))
+    return VL_OK;
   uint32_t n = 0;
   char *end = (char *)text;
   for (const char *at = text; at && n < count; at = end, n++) {
@@ -121,11 +121,11 @@ static vlResult word(const Scene *scene, const json_t *parent, const char *name,
   const json_t *item = parameter(parent, name);
   if (!item)
     return VL_OK;
-  vlResult result = attribute(scene, item, "value", text);
-  if (result == VL_OK && !*text)
+  VL_TRY(attribute(scene, item, "value", text));
+  if (!*text)
     return vl_camera_wrong_at(scene->file, line_of(item), 0, "mitsuba: \"%s\" has no value",
                               name);
-  return result;
+  return VL_OK;
 }
 
 /* Reads attributes x, y, z, or one `value` of three numbers (or one for all). */
@@ -133,22 +133,18 @@ static vlResult triple(const Scene *scene, const json_t *op, double standard, do
   static const char *const keys[3] = {"x", "y", "z"};
   bool found = false;
   v[0] = v[1] = v[2] = standard;
-  vlResult result = numbers(scene, op, "value", 3, v, &found);
-  for (int i = 0; i < 3 && result == VL_OK; i++)
-    result = numbers(scene, op, keys[i], 1, &v[i], &found);
-  return result;
+  VL_TRY(numbers(scene, op, "value", 3, v, &found));
+  for (int i = 0; i < 3; i++)
+    VL_TRY(numbers(scene, op, keys[i], 1, &v[i], &found));
+  return VL_OK;
 }
 
 static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
   double o[3], t[3], up[3] = {0, 1, 0}, z[3], x[3], y[3];
   bool found;
-  vlResult result = numbers(scene, op, "origin", 3, o, NULL);
-  if (result == VL_OK)
-    result = numbers(scene, op, "target", 3, t, NULL);
-  if (result == VL_OK)
-    result = numbers(scene, op, "up", 3, up, &found);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(numbers(scene, op, "origin", 3, o, NULL));
+  VL_TRY(numbers(scene, op, "target", 3, t, NULL));
+  VL_TRY(numbers(scene, op, "up", 3, up, &found));
   for (int i = 0; i < 3; i++)
     z[i] = t[i] - o[i];
   double length = vl_norm3(z);
@@ -176,37 +172,31 @@ static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
 static vlResult operation(const Scene *scene, const json_t *op, vlMat4 *m) {
   const char *tag = tag_of(op);
   double v[16];
-  vlResult result = VL_OK;
   *m = vl_mat4_identity();
   if (same(tag, "lookat"))
     return look_at(scene, op, m);
   if (vl_text_is(tag, "translate")) {
-    result = triple(scene, op, 0.0, v);
-    if (result == VL_OK)
-      *m = vl_mat4_translate(v[0], v[1], v[2]);
+    VL_TRY(triple(scene, op, 0.0, v));
+    *m = vl_mat4_translate(v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "scale")) {
-    result = triple(scene, op, 1.0, v);
-    if (result == VL_OK)
-      *m = vl_mat4_scale(v[0], v[1], v[2]);
+    VL_TRY(triple(scene, op, 1.0, v));
+    *m = vl_mat4_scale(v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "rotate")) {
-    result = triple(scene, op, 0.0, v);
-    if (result == VL_OK)
-      result = numbers(scene, op, "angle", 1, &v[3], NULL);
-    if (result == VL_OK && v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0)
+    VL_TRY(triple(scene, op, 0.0, v));
+    VL_TRY(numbers(scene, op, "angle", 1, &v[3], NULL));
+    if (v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0)
       return vl_camera_wrong_at(scene->file, line_of(op), 0, "mitsuba: <rotate> has no axis");
-    if (result == VL_OK)
-      *m = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
+    *m = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "matrix")) {
-    result = numbers(scene, op, "value", 16, v, NULL);
-    if (result == VL_OK)
-      *m = vl_mat4_load(v);
+    VL_TRY(numbers(scene, op, "value", 16, v, NULL));
+    *m = vl_mat4_load(v);
   } else {
     return vl_camera_wrong_at(
         scene->file, line_of(op), 0,
         "mitsuba: unknown transform <%s>; there are translate, rotate, scale, lookat, matrix",
         vl_short_text(tag).text);
   }
-  return result;
+  return VL_OK;
 }
 
 static vlResult to_world(const Scene *scene, const json_t *sensor, vlMat4 *matrix) {
@@ -215,9 +205,7 @@ static vlResult to_world(const Scene *scene, const json_t *sensor, vlMat4 *matri
   *matrix = vl_mat4_identity();
   json_array_foreach(json_object_get(transform, "/"), i, op) {
     vlMat4 m;
-    vlResult result = operation(scene, op, &m);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(operation(scene, op, &m));
     *matrix = vl_mat4_multiply(m, *matrix);
   }
   return VL_OK;
@@ -234,16 +222,13 @@ static vlResult read_film(const Scene *scene, const json_t *sensor, double size[
   size[1] = 576.0; /* Mitsuba's default */
   json_array_foreach(json_object_get(sensor, "/"), i,
                      item) if (vl_text_is(tag_of(item), "film")) film = item;
-  vlResult result = number(scene, film, "width", &size[0]);
-  if (result == VL_OK)
-    result = number(scene, film, "height", &size[1]);
+  VL_TRY(number(scene, film, "width", &size[0]));
+  VL_TRY(number(scene, film, "height", &size[1]));
   crop[0] = crop[1] = 0.0;
   crop[2] = size[0];
   crop[3] = size[1];
-  for (int k = 0; k < 4 && result == VL_OK; k++)
-    result = number(scene, film, names[k], &crop[k]);
-  if (result != VL_OK)
-    return result;
+  for (int k = 0; k < 4; k++)
+    VL_TRY(number(scene, film, names[k], &crop[k]));
   for (int k = 0; k < 2; k++)
     if (!(size[k] >= 1.0 && size[k] <= 1 << 24 && crop[k] >= 0.0 && crop[2 + k] >= 1.0 &&
           crop[k] + crop[2 + k] <= size[k]) ||
@@ -262,13 +247,9 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
   double fov = VL_UNSET, w = size[0], h = size[1], diagonal = sqrt(w * w + h * h);
   const double sides[5] = {w, h, diagonal, fmin(w, h), fmax(w, h)};
   const char *axis = "x", *focal = NULL;
-  vlResult result = number(scene, sensor, "fov", &fov);
-  if (result == VL_OK)
-    result = word(scene, sensor, "fov_axis", &axis);
-  if (result == VL_OK)
-    result = word(scene, sensor, "focal_length", &focal);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(number(scene, sensor, "fov", &fov));
+  VL_TRY(word(scene, sensor, "fov_axis", &axis));
+  VL_TRY(word(scene, sensor, "focal_length", &focal));
   uint32_t line = line_of(sensor);
   if (!vl_is_unset(fov) && focal)
     return vl_camera_wrong_at(scene->file, line, 0,
@@ -301,10 +282,9 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
 /* The numbers of a sensor, each optional. */
 static vlResult read_numbers(const Scene *scene, const json_t *sensor,
                              const vlCameraField *rows) {
-  vlResult result = VL_OK;
-  for (; rows->key && result == VL_OK; rows++)
-    result = number(scene, sensor, rows->key, rows->values);
-  return result;
+  for (; rows->key; rows++)
+    VL_TRY(number(scene, sensor, rows->key, rows->values));
+  return VL_OK;
 }
 
 /* The image is 2 units wide in camera space, scaled by the matrix, which loses its scale. */
@@ -359,15 +339,15 @@ static vlResult check_sensor(const Scene *scene, const json_t *sensor, int kind,
   size_t i;
   char known[512];
   snprintf(known, sizeof known, "%s %s %s", common, kind < 2 ? fov : "", more[kind]);
-  vlResult result = check_parameters(scene, sensor, known, record);
+  VL_TRY(check_parameters(scene, sensor, known, record));
   json_array_foreach(json_object_get(sensor, "/"), i, item) {
-    if (result == VL_OK && vl_text_is(tag_of(item), "film"))
-      result = check_parameters(scene, item, film, record);
+    if (vl_text_is(tag_of(item), "film"))
+      VL_TRY(check_parameters(scene, item, film, record));
     if (vl_text_is(tag_of(item), "ref") && vl_text_is(vl_camera_text(item, "name"), "film"))
-      result = vl_camera_wrong_at(scene->file, line_of(item), 0,
-                                  "mitsuba: the film is a reference; write it into the sensor");
+      VL_TRY(vl_camera_wrong_at(scene->file, line_of(item), 0,
+                                "mitsuba: the film is a reference; write it into the sensor"));
   }
-  return result;
+  return VL_OK;
 }
 
 static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRecord *record) {
@@ -375,9 +355,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRe
   const vlCameraFile *file = scene->file;
   vlCameraDef *d = &record->camera;
   const char *type = NULL;
-  vlResult result = attribute(scene, sensor, "type", &type);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(attribute(scene, sensor, "type", &type));
   int kind = 0;
   while (kind < 3 && !vl_text_is(type, types[kind]))
     kind++;
@@ -389,27 +367,23 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRe
   }
   double size[2], crop[4], offset[2] = {0, 0}, f = 1.0;
   vlMat4 m;
-  result = read_film(scene, sensor, size, crop);
-  if (result == VL_OK && kind < 2)
-    result = read_fov(scene, sensor, size, &f);
-  if (result == VL_OK)
-    result = to_world(scene, sensor, &m);
+  VL_TRY(read_film(scene, sensor, size, crop));
+  if (kind < 2)
+    VL_TRY(read_fov(scene, sensor, size, &f));
+  VL_TRY(to_world(scene, sensor, &m));
   const vlCameraField fields[] = {VL_FIELD("near_clip", &d->near_plane),
                                   VL_FIELD("far_clip", &d->far_plane),
                                   VL_FIELD("focus_distance", &d->focus_distance),
                                   VL_FIELD("shutter_open", &d->shutter_open),
                                   VL_FIELD("shutter_close", &d->shutter_close),
                                   {.key = NULL}};
-  if (result == VL_OK)
-    result = read_numbers(scene, sensor, fields);
-  if (result == VL_OK && kind == 0)
-    result = number(scene, sensor, "principal_point_offset_x", &offset[0]);
-  if (result == VL_OK && kind == 0)
-    result = number(scene, sensor, "principal_point_offset_y", &offset[1]);
-  if (result == VL_OK && kind == 1)
-    result = number(scene, sensor, "aperture_radius", &d->lens_radius);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_numbers(scene, sensor, fields));
+  if (kind == 0)
+    VL_TRY(number(scene, sensor, "principal_point_offset_x", &offset[0]));
+  if (kind == 0)
+    VL_TRY(number(scene, sensor, "principal_point_offset_y", &offset[1]));
+  if (kind == 1)
+    VL_TRY(number(scene, sensor, "aperture_radius", &d->lens_radius));
   if (kind == 1 && !parameter(sensor, "aperture_radius"))
     return vl_camera_wrong_at(file, line_of(sensor), 0,
                               "mitsuba: a thinlens needs its aperture_radius");
@@ -483,18 +457,11 @@ static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC, lens = c->lens_radius > 0.0 && !flat;
   bool centred = flat || lens; /* these have no principal point */
-  vlResult result =
-      vl_camera_refuse(fit->file, "fy", !flat && fabs(c->fy - c->fx) > 1e-12 * c->fx);
-  if (result == VL_OK)
-    result = vl_camera_refuse(fit->file, "cx", centred && c->cx != 0.5 * c->width);
-  if (result == VL_OK)
-    result = vl_camera_refuse(fit->file, "cy", centred && c->cy != 0.5 * c->height);
-  if (result == VL_OK)
-    result = vl_camera_refuse(fit->file, "lens_radius", flat && c->lens_radius > 0.0);
-  if (result == VL_OK)
-    result = vl_camera_refuse(fit->file, "focus_distance", lens && isinf(c->focus_distance));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_refuse(fit->file, "fy", !flat && fabs(c->fy - c->fx) > 1e-12 * c->fx));
+  VL_TRY(vl_camera_refuse(fit->file, "cx", centred && c->cx != 0.5 * c->width));
+  VL_TRY(vl_camera_refuse(fit->file, "cy", centred && c->cy != 0.5 * c->height));
+  VL_TRY(vl_camera_refuse(fit->file, "lens_radius", flat && c->lens_radius > 0.0));
+  VL_TRY(vl_camera_refuse(fit->file, "focus_distance", lens && isinf(c->focus_distance)));
   double m[16];
   vl_camera_flip_columns(c->world_from_camera, -1.0, -1.0, 1.0, m);
   for (int i = 0; i < 12 && flat; i += 4) {

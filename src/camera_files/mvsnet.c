@@ -14,10 +14,7 @@ static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, cons
     uint32_t count;
     if (!vl_camera_next_line(lines))
       return vl_camera_wrong(file, "mvsnet: \"%s\" must have %u rows", word, n);
-    vlResult result =
-        vl_camera_line_numbers(file, lines, lines->text, m + (size_t)n * i, n, n, &count);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_line_numbers(file, lines, lines->text, m + (size_t)n * i, n, n, &count));
   }
   return VL_OK;
 }
@@ -27,12 +24,9 @@ static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t s
   vlCameraLines lines = {.at = text, .end = text + size};
   double m[16], k[9] = {0.0};
   char images[4][300];
-  vlResult result = read_matrix(file, &lines, "extrinsic", 4, m);
+  VL_TRY(read_matrix(file, &lines, "extrinsic", 4, m));
   const vlCameraLines last = lines; /* of extrinsic */
-  if (result == VL_OK)
-    result = read_matrix(file, &lines, "intrinsic", 3, k);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_matrix(file, &lines, "intrinsic", 3, k));
   if (!vl_camera_set_intrinsics(&record->camera, k, true))
     return vl_camera_wrong_line(file, &lines, lines.text,
                                 "\"intrinsic\" must be fx skew cx, 0 fy cy, 0 0 1");

@@ -30,11 +30,8 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
                           vlCameraDef *d) {
   static const char *const names[] = {"k1", "k2", "p1", "p2", "k3", "k4"};
   double k[6] = {0};
-  vlResult result = VL_OK;
-  for (int i = 0; i < 6 && result == VL_OK; i++)
-    result = vl_camera_optional(file, holder(frame, tree, names[i]), names[i], &k[i]);
-  if (result != VL_OK)
-    return result;
+  for (int i = 0; i < 6; i++)
+    VL_TRY(vl_camera_optional(file, holder(frame, tree, names[i]), names[i], &k[i]));
   const char *model = vl_camera_text(holder(frame, tree, "camera_model"), "camera_model");
   if (model && vl_text_is(model, "FISHEYE624")) {
     for (int i = 0; i < 6; i++)
@@ -114,8 +111,8 @@ static vlResult read_size(const vlCameraFile *file, const json_t *frame, const j
     const char *image = vl_camera_text(frame, "file_path");
     return vl_camera_size_beside(file, (const char *const[]){image ? image : "", NULL}, record);
   }
-  vlResult result = vl_camera_side(file, w, "w", &record->camera.width);
-  return result == VL_OK ? vl_camera_side(file, h, "h", &record->camera.height) : result;
+  VL_TRY(vl_camera_side(file, w, "w", &record->camera.width));
+  return vl_camera_side(file, h, "h", &record->camera.height);
 }
 
 /* Where one object has a focal length and the angle of the same axis, both must agree. */
@@ -124,11 +121,10 @@ static vlResult check_angle(const vlCameraFile *file, const json_t *object, cons
   double pixels = 0.0, radians = 0.0;
   if (!vl_camera_has(object, focal) || !vl_camera_has(object, angle))
     return VL_OK;
-  vlResult result = vl_camera_number(file, object, focal, &pixels);
-  if (result == VL_OK)
-    result = vl_camera_number(file, object, angle, &radians);
-  if (result != VL_OK || !(radians > 0.0 && radians < 3.14159))
-    return result;
+  VL_TRY(vl_camera_number(file, object, focal, &pixels));
+  VL_TRY(vl_camera_number(file, object, angle, &radians));
+  if (!(radians > 0.0 && radians < 3.14159))
+    return VL_OK;
   const double other = 0.5 * side / vl_precise_tan(0.5 * radians);
   if (fabs(other - pixels) <= 0.02 * fabs(pixels)) /* rounding */
     return VL_OK;
@@ -143,7 +139,7 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
   vlCameraDef *d = &record->camera;
   double m[16] = {0}, angle_x = VL_UNSET, angle_y = VL_UNSET;
   uint32_t count;
-  vlResult result = read_size(file, frame, tree, record);
+  VL_TRY(read_size(file, frame, tree, record));
   const struct {
     const char *key;
     double *value;
@@ -153,22 +149,14 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
                 {"cy", &d->cy},
                 {"camera_angle_x", &angle_x},
                 {"camera_angle_y", &angle_y}};
-  for (size_t i = 0; i < 6 && result == VL_OK; i++)
-    result = vl_camera_optional(file, holder(frame, tree, fields[i].key), fields[i].key,
-                                fields[i].value);
-  if (result == VL_OK)
-    result = check_angle(file, holder(frame, tree, "fl_x"), "fl_x", "camera_angle_x", d->width);
-  if (result == VL_OK)
-    result =
-        check_angle(file, holder(frame, tree, "fl_y"), "fl_y", "camera_angle_y", d->height);
-  if (result == VL_OK)
-    result = refuse_others(file, frame, tree);
-  if (result == VL_OK)
-    result = read_lens(file, frame, tree, d);
-  if (result == VL_OK)
-    result = vl_camera_numbers(file, frame, "transform_matrix", m, 12, 16, &count);
-  if (result != VL_OK)
-    return result;
+  for (size_t i = 0; i < 6; i++)
+    VL_TRY(vl_camera_optional(file, holder(frame, tree, fields[i].key), fields[i].key,
+                              fields[i].value));
+  VL_TRY(check_angle(file, holder(frame, tree, "fl_x"), "fl_x", "camera_angle_x", d->width));
+  VL_TRY(check_angle(file, holder(frame, tree, "fl_y"), "fl_y", "camera_angle_y", d->height));
+  VL_TRY(refuse_others(file, frame, tree));
+  VL_TRY(read_lens(file, frame, tree, d));
+  VL_TRY(vl_camera_numbers(file, frame, "transform_matrix", m, 12, 16, &count));
   /* the angles give the focal length without distortion; fl_x overrides them */
   if (vl_is_unset(d->fx) && !vl_is_unset(angle_x))
     d->fx = 0.5 * d->width / vl_precise_tan(0.5 * angle_x);
@@ -187,9 +175,7 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
 static vlResult read_nerf(const vlCameraFile *file, const json_t *tree,
                           vlCameraRecord *record) {
   const json_t *frames;
-  vlResult result = vl_camera_field(file, tree, "frames", &frames);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, tree, "frames", &frames));
   if (!json_is_array(frames))
     return vl_camera_wrong_in(file, tree, "frames", "nerf: \"frames\" must be a list");
   record->frames = (uint32_t)json_array_size(frames);

@@ -34,15 +34,11 @@ static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree,
   double m[16], fov = 0.0;
   if (!camera)
     return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = vl_camera_sides(file, tree, "render_width", "render_height", record);
-  if (result == VL_OK)
-    result = read_type(file, tree, d);
-  if (result == VL_OK)
-    result = vl_camera_numbers(file, camera, "camera_to_world", m, 16, 16, NULL);
-  if (result == VL_OK && d->projection != VL_PROJECTION_EQUIRECTANGULAR)
-    result = vl_camera_number(file, camera, "fov", &fov);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_sides(file, tree, "render_width", "render_height", record));
+  VL_TRY(read_type(file, tree, d));
+  VL_TRY(vl_camera_numbers(file, camera, "camera_to_world", m, 16, 16, NULL));
+  if (d->projection != VL_PROJECTION_EQUIRECTANGULAR)
+    VL_TRY(vl_camera_number(file, camera, "fov", &fov));
   vl_camera_set_flipped(d, m);
   if (d->projection == VL_PROJECTION_EQUIRECTANGULAR)
     return VL_OK;

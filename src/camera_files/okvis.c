@@ -9,12 +9,10 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCame
   const char *name;
   double k[8] = {0};
   uint32_t n = 0;
-  vlResult result = vl_camera_word(file, camera, "distortion_type", &name);
-  if (result != VL_OK || vl_text_is(name, "none"))
-    return result;
-  result = vl_camera_numbers(file, camera, "distortion_coefficients", k, 4, 8, &n);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_word(file, camera, "distortion_type", &name));
+  if (vl_text_is(name, "none"))
+    return VL_OK;
+  VL_TRY(vl_camera_numbers(file, camera, "distortion_coefficients", k, 4, 8, &n));
   bool plain = vl_text_is(name, "radialtangential"),
        full = vl_text_is(name, "radialtangential8");
   bool fisheye = vl_text_is(name, "equidistant");
@@ -41,17 +39,13 @@ static vlResult read_okvis(const vlCameraFile *file, const json_t *tree,
     return vl_camera_wrong_in(file, tree, "cameras",
                               "okvis: there is no camera \"%s\" among the %u",
                               vl_camera_asked(file, "0").text, record->frames);
-  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_LIST("T_SC", m, 16),
-                                   VL_FIELD_LIST("focal_length", f, 2),
-                                   VL_FIELD_LIST("principal_point", c, 2));
-  if (result == VL_OK)
-    result = vl_camera_has(camera, "image_dimension")
-                 ? vl_camera_side_pair(file, camera, "image_dimension", record)
-                 : vl_camera_size_beside(file, NULL, record);
-  if (result == VL_OK)
-    result = read_lens(file, camera, d);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_LIST("T_SC", m, 16),
+                        VL_FIELD_LIST("focal_length", f, 2),
+                        VL_FIELD_LIST("principal_point", c, 2)));
+  VL_TRY(vl_camera_has(camera, "image_dimension")
+             ? vl_camera_side_pair(file, camera, "image_dimension", record)
+             : vl_camera_size_beside(file, NULL, record));
+  VL_TRY(read_lens(file, camera, d));
   vl_camera_set_centred(d, f[0], f[1], c[0], c[1]);
   vl_camera_set_matrix(d, m, false);
   return VL_OK;

@@ -8,11 +8,8 @@
 static vlResult read_intrinsic(const vlCameraFile *file, const json_t *intrinsic,
                                vlCameraRecord *record) {
   double k[9];
-  vlResult result = vl_camera_sides(file, intrinsic, "width", "height", record);
-  if (result == VL_OK)
-    result = vl_camera_numbers(file, intrinsic, "intrinsic_matrix", k, 9, 9, NULL);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_sides(file, intrinsic, "width", "height", record));
+  VL_TRY(vl_camera_numbers(file, intrinsic, "intrinsic_matrix", k, 9, 9, NULL));
   if (k[1] != 0.0 || k[2] != 0.0 || k[5] != 0.0 || k[8] != 1.0)
     return vl_camera_wrong_in(
         file, intrinsic, "intrinsic_matrix",
@@ -27,13 +24,9 @@ static vlResult read_parameters(const vlCameraFile *file, const json_t *paramete
                                 vlCameraRecord *record) {
   const json_t *intrinsic;
   double by_columns[16], m[16];
-  vlResult result = vl_camera_field(file, parameters, "intrinsic", &intrinsic);
-  if (result == VL_OK)
-    result = read_intrinsic(file, intrinsic, record);
-  if (result == VL_OK)
-    result = vl_camera_numbers(file, parameters, "extrinsic", by_columns, 16, 16, NULL);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, parameters, "intrinsic", &intrinsic));
+  VL_TRY(read_intrinsic(file, intrinsic, record));
+  VL_TRY(vl_camera_numbers(file, parameters, "extrinsic", by_columns, 16, 16, NULL));
   for (int i = 0; i < 16; i++)
     m[i] = by_columns[4 * (i % 4) + i / 4];
   if (!vl_camera_set_matrix(&record->camera, m, true))

@@ -34,9 +34,7 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree,
       fisheye || (model && (vl_text_is(model, "fisheye") || vl_text_is(model, "equidistant")));
   double *k = d->distortion_coefficients;
   uint32_t n = 0;
-  vlResult result = vl_camera_numbers(file, tree, coefficients, k, 0, 14, &n);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, tree, coefficients, k, 0, 14, &n));
   bool zero = true;
   for (uint32_t i = 0; i < n; i++)
     zero = zero && k[i] == 0.0;
@@ -65,9 +63,7 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree,
 vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, const char *key,
                                vlCameraDef *d) {
   double k[9];
-  vlResult result = vl_camera_numbers(file, tree, key, k, 9, 9, NULL);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, tree, key, k, 9, 9, NULL));
   if (!vl_camera_set_intrinsics(d, k, true))
     return vl_camera_wrong_in(file, tree, key, "%s: \"%s\" must be [fx 0 cx; 0 fy cy; 0 0 1]",
                               file->dialect, key);
@@ -83,22 +79,22 @@ vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree,
                                const vlCameraDef *d) {
   const json_t *roi = json_object_get(tree, "roi");
   double binning[2] = {0, 0}, x = 0, y = 0, width = 0, height = 0;
-  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("binning_x", &binning[0]),
-                                   VL_FIELD_OPTIONAL("binning_y", &binning[1]));
-  if (result == VL_OK && (binning[0] > 1.0 || binning[1] > 1.0))
+  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("binning_x", &binning[0]),
+                        VL_FIELD_OPTIONAL("binning_y", &binning[1])));
+  if ((binning[0] > 1.0 || binning[1] > 1.0))
     return vl_camera_wrong_in(
         file, tree, "binning_x",
         "%s: binning of %g x %g pixels is not taken; give the full image's camera",
         file->dialect, binning[0], binning[1]);
-  if (result != VL_OK || !json_is_object(roi))
-    return result;
-  result = VL_READ_FIELDS(file, roi, VL_FIELD_OPTIONAL("x_offset", &x),
-                          VL_FIELD_OPTIONAL("y_offset", &y), VL_FIELD_OPTIONAL("width", &width),
-                          VL_FIELD_OPTIONAL("height", &height));
+  if (!json_is_object(roi))
+    return VL_OK;
+  VL_TRY(VL_READ_FIELDS(file, roi, VL_FIELD_OPTIONAL("x_offset", &x),
+                        VL_FIELD_OPTIONAL("y_offset", &y), VL_FIELD_OPTIONAL("width", &width),
+                        VL_FIELD_OPTIONAL("height", &height)));
   bool whole = width == 0.0 && height == 0.0; /* as ROS defines it */
   whole = whole || (x == 0.0 && y == 0.0 && width == d->width && height == d->height);
-  if (result != VL_OK || whole)
-    return result;
+  if (whole)
+    return VL_OK;
   return vl_camera_wrong_in(
       file, tree, "roi",
       "%s: a region of interest, %g x %g pixels at %g,%g, is not taken; give the full image's "
@@ -237,17 +233,16 @@ static vlResult read_stereo(const vlCameraFile *file, const json_t *tree,
         vl_camera_asked(file, "").text);
   second = second && !first;
   const char *matrix = names[second ? 2 : 0], *lens = names[second ? 3 : 1];
-  vlResult result = vl_opencv_read_matrix(file, tree, matrix, d);
-  if (result == VL_OK && vl_camera_has(tree, lens))
-    result = vl_opencv_read_lens(file, tree, lens, d);
+  VL_TRY(vl_opencv_read_matrix(file, tree, matrix, d));
+  if (vl_camera_has(tree, lens))
+    VL_TRY(vl_opencv_read_lens(file, tree, lens, d));
   vl_camera_set_origin(d);
-  if (result == VL_OK && second) {
-    result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("R", r, 9), VL_FIELD_LIST("T", t, 3));
-    if (result == VL_OK)
-      vl_camera_set_pose(d, r, t);
+  if (second) {
+    VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_LIST("R", r, 9), VL_FIELD_LIST("T", t, 3)));
+    vl_camera_set_pose(d, r, t);
   }
   vl_camera_name(record, second ? "right" : "left");
-  return result == VL_OK ? read_size(file, tree, record) : result;
+  return read_size(file, tree, record);
 }
 
 vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree,
@@ -256,27 +251,22 @@ vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree,
   const char *const *stereo = stereo_of(tree);
   if (stereo)
     return read_stereo(file, tree, stereo, record);
-  vlResult result = read_size(file, tree, record);
-  if (result == VL_OK)
-    result = vl_opencv_read_matrix(file, tree, NAME_IN(tree, matrix_names), d);
-  if (result == VL_OK)
-    result = vl_opencv_read_lens(file, tree, NAME_IN(tree, lens_names), d);
-  if (result == VL_OK)
-    result = vl_opencv_refuse_part(file, tree, d);
-  if (result == VL_OK && vl_camera_has(tree, "xi")) { /* xi marks the omnidirectional model */
+  VL_TRY(read_size(file, tree, record));
+  VL_TRY(vl_opencv_read_matrix(file, tree, NAME_IN(tree, matrix_names), d));
+  VL_TRY(vl_opencv_read_lens(file, tree, NAME_IN(tree, lens_names), d));
+  VL_TRY(vl_opencv_refuse_part(file, tree, d));
+  if (vl_camera_has(tree, "xi")) { /* xi marks the omnidirectional model */
     double xi = 0.0;
     bool list = !json_is_number(json_object_get(tree, "xi"));
-    result = list ? vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL)
-                  : vl_camera_number(file, tree, "xi", &xi);
+    VL_TRY(list ? vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL)
+                : vl_camera_number(file, tree, "xi", &xi));
     d->projection = VL_PROJECTION_UNIFIED;
     d->shape[0] = xi;
   }
-  if (result == VL_OK)
-    result = read_pose(file, tree, d);
-  if (result == VL_OK)
-    result = turn_y(file, d);
+  VL_TRY(read_pose(file, tree, d));
+  VL_TRY(turn_y(file, d));
   vl_camera_name(record, vl_camera_text(tree, "camera_name"));
-  return result;
+  return VL_OK;
 }
 
 static bool is_opencv(const json_t *tree) {
@@ -351,9 +341,7 @@ static vlResult write_opencv(const vlFittedCamera *fit, vlCameraText *text) {
   double k[14], r[9], v[3], t[3];
   uint32_t n = 0;
   bool fisheye = false;
-  vlResult result = vl_opencv_lens_of(fit->file, &fit->record->camera, k, &n, &fisheye);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_opencv_lens_of(fit->file, &fit->record->camera, k, &n, &fisheye));
   vl_camera_get_pose(c, r, t);
   vl_rotation_to_vector(r, v);
   const double m[9] = {c->fx, 0, c->cx - 0.5, 0, c->fy, c->cy - 0.5, 0, 0, 1};

@@ -70,10 +70,8 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *item, const ch
       continue;
     if (!models[i].field)
       return VL_OK;
-    vlResult result = vl_camera_numbers(file, data_of(item, models[i].field), models[i].field,
-                                        k, models[i].count, models[i].count, NULL);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_numbers(file, data_of(item, models[i].field), models[i].field, k,
+                             models[i].count, models[i].count, NULL));
     if (i == 4) {
       vl_camera_set_fisheye(d, k);
       return VL_OK;
@@ -96,18 +94,14 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, con
   if (!name)
     return vl_camera_wrong_in(file, item, NULL,
                               "openmvg: an intrinsic without \"polymorphic_name\"");
-  vlResult result = vl_camera_sides(file, data_of(item, "width"), "width", "height", record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_sides(file, data_of(item, "width"), "width", "height", record));
   if (vl_text_is(name, "spherical")) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
     return VL_OK;
   }
   const json_t *data = data_of(item, "focal_length");
-  result = VL_READ_FIELDS(file, data, VL_FIELD("focal_length", &f),
-                          VL_FIELD_LIST("principal_point", c, 2));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, data, VL_FIELD("focal_length", &f),
+                        VL_FIELD_LIST("principal_point", c, 2)));
   d->fx = d->fy = f;
   d->cx = c[0];
   d->cy = c[1];
@@ -123,12 +117,9 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
   if (!item)
     return vl_camera_wrong_in(file, view, "id_intrinsic",
                               "openmvg: the view's intrinsic is missing");
-  vlResult result = read_intrinsic(file, intrinsics, item, record);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(file, pose, VL_FIELD_LIST("rotation", r, 9),
-                            VL_FIELD_LIST("center", center, 3));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_intrinsic(file, intrinsics, item, record));
+  VL_TRY(VL_READ_FIELDS(file, pose, VL_FIELD_LIST("rotation", r, 9),
+                        VL_FIELD_LIST("center", center, 3)));
   vl_camera_set_centre(&record->camera, r, center);
   const char *name = vl_camera_text(view, "filename");
   if (name)

@@ -12,12 +12,11 @@
 
 static vlResult coefficients(const vlCameraFile *file, const json_t *camera,
                              const char *const *names, double *k, uint32_t count) {
-  vlResult result = VL_OK;
-  for (uint32_t i = 0; i < count && result == VL_OK; i++) {
+  for (uint32_t i = 0; i < count; i++) {
     k[i] = 0.0;
-    result = vl_camera_optional(file, camera, names[i], &k[i]);
+    VL_TRY(vl_camera_optional(file, camera, names[i], &k[i]));
   }
-  return result;
+  return VL_OK;
 }
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const char *type,
@@ -26,17 +25,16 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const 
                                                                          "k1", "k2", "k3",
                                                                          "k4"};
   double k[5];
-  vlResult result = VL_OK;
   if (vl_text_is(type, "brown")) {
-    result = coefficients(file, camera, brown, k, 5);
+    VL_TRY(coefficients(file, camera, brown, k, 5));
     vl_camera_set_opencv(d, k, 5);
   } else if (vl_text_is(type, "perspective") || vl_text_is(type, "radial") ||
              vl_text_is(type, "simple_radial")) {
-    result = coefficients(file, camera, brown, k, 2);
+    VL_TRY(coefficients(file, camera, brown, k, 2));
     k[2] = k[3] = 0.0;
     vl_camera_set_opencv(d, k, 4);
   } else if (vl_text_is(type, "fisheye") || vl_text_is(type, "fisheye_opencv")) {
-    result = coefficients(file, camera, fisheye, k, 4);
+    VL_TRY(coefficients(file, camera, fisheye, k, 4));
     if (type[7] == 0)
       k[2] = k[3] = 0.0;
     vl_camera_set_fisheye(d, k);
@@ -49,7 +47,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const 
         "radial, simple_radial, fisheye, fisheye_opencv, spherical",
         vl_short_text(type).text);
   }
-  return result;
+  return VL_OK;
 }
 
 static vlResult read_camera(const vlCameraFile *file, const json_t *camera,
@@ -59,41 +57,38 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera,
   double f[2], c[2] = {0.0, 0.0};
   if (!type)
     type = "perspective";
-  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
-                                   VL_FIELD_SIDE("height", &d->height));
-  if (result == VL_OK)
-    result = read_lens(file, camera, type, d);
-  if (result != VL_OK || d->projection == VL_PROJECTION_EQUIRECTANGULAR)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
+                        VL_FIELD_SIDE("height", &d->height)));
+  VL_TRY(read_lens(file, camera, type, d));
+  if (d->projection == VL_PROJECTION_EQUIRECTANGULAR)
+    return VL_OK;
   bool one = vl_camera_has(camera, "focal");
-  result = VL_READ_FIELDS(file, camera, VL_FIELD(one ? "focal" : "focal_x", &f[0]),
-                          VL_FIELD(one ? "focal" : "focal_y", &f[1]),
-                          VL_FIELD_OPTIONAL("c_x", &c[0]), VL_FIELD_OPTIONAL("c_y", &c[1]));
+  VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD(one ? "focal" : "focal_x", &f[0]),
+                        VL_FIELD(one ? "focal" : "focal_y", &f[1]),
+                        VL_FIELD_OPTIONAL("c_x", &c[0]), VL_FIELD_OPTIONAL("c_y", &c[1])));
   double side = d->width > d->height ? d->width : d->height;
   d->fx = f[0] * side;
   d->fy = f[1] * side;
   d->cx = 0.5 * d->width + c[0] * side;
   d->cy = 0.5 * d->height + c[1] * side;
-  return result;
+  return VL_OK;
 }
 
 static vlResult read_shot(const vlCameraFile *file, const json_t *shot, const json_t *cameras,
                           const char *name, vlCameraRecord *record) {
   double v[3], t[3], r[9];
   const char *camera = vl_camera_text(shot, "camera");
-  vlResult result = VL_READ_FIELDS(file, shot, VL_FIELD_LIST("rotation", v, 3),
-                                   VL_FIELD_LIST("translation", t, 3));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, shot, VL_FIELD_LIST("rotation", v, 3),
+                        VL_FIELD_LIST("translation", t, 3)));
   if (!camera || !vl_camera_has(cameras, camera))
     return vl_camera_wrong_in(file, shot, "camera",
                               "opensfm: the shot's camera \"%.60s\" is not there",
                               camera ? camera : "");
-  result = read_camera(file, json_object_get(cameras, camera), record);
+  VL_TRY(read_camera(file, json_object_get(cameras, camera), record));
   vl_rotation_from_vector(v, r);
   vl_camera_set_pose(&record->camera, r, t);
   vl_camera_name(record, name);
-  return result;
+  return VL_OK;
 }
 
 /* Reads camera_models.json, which holds cameras without shots. */

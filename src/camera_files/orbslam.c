@@ -19,16 +19,13 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const ch
   double k[8] = {0};
   char key[64];
   uint32_t count = 0;
-  vlResult result = VL_OK;
-  for (uint32_t i = 0; i < (fisheye ? 4u : 8u) && result == VL_OK; i++) {
+  for (uint32_t i = 0; i < (fisheye ? 4u : 8u); i++) {
     key_of(key, prefix, fisheye ? radial[i] : pinhole[i]);
     if (!vl_camera_has(tree, key) && !fisheye)
       continue;
-    result = vl_camera_number(file, tree, key, &k[i]);
+    VL_TRY(vl_camera_number(file, tree, key, &k[i]));
     count = i + 1;
   }
-  if (result != VL_OK)
-    return result;
   if (fisheye)
     vl_camera_set_fisheye(d, k);
   else
@@ -42,20 +39,16 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, const cha
   const char *type = vl_camera_text(tree, "Camera.type");
   char key[64];
   double f[4];
-  vlResult result = VL_OK;
   bool fisheye = vl_text_is(type, "KannalaBrandt8");
   if (type && !fisheye && !vl_text_is(type, "PinHole") && !vl_text_is(type, "Rectified"))
     return vl_camera_unknown(file, tree, "Camera.type", type,
                              "there are PinHole, Rectified, KannalaBrandt8");
-  for (int i = 0; i < 4 && result == VL_OK; i++)
-    result = vl_camera_number(file, tree, key_of(key, prefix, names[i]), &f[i]);
-  if (result == VL_OK)
-    result = read_lens(file, tree, prefix, fisheye, &record->camera);
-  if (result == VL_OK)
-    result = vl_camera_sides(file, tree, "Camera.width", "Camera.height", record);
-  if (result == VL_OK)
-    vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
-  return result;
+  for (int i = 0; i < 4; i++)
+    VL_TRY(vl_camera_number(file, tree, key_of(key, prefix, names[i]), &f[i]));
+  VL_TRY(read_lens(file, tree, prefix, fisheye, &record->camera));
+  VL_TRY(vl_camera_sides(file, tree, "Camera.width", "Camera.height", record));
+  vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
+  return VL_OK;
 }
 
 static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree,
@@ -68,17 +61,16 @@ static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree,
     return vl_camera_no_frame(file, "camera", record->frames);
   if (numbered || index == 1)
     snprintf(prefix, sizeof prefix, "Camera%u", index + 1);
-  vlResult result = read_one(file, tree, prefix, record);
+  VL_TRY(read_one(file, tree, prefix, record));
   vl_camera_set_origin(&record->camera);
-  if (result == VL_OK && index == 1) {
+  if (index == 1) {
     double m[16] = {[15] = 1.0};
     const char *pose = vl_camera_has(tree, "Tlr") ? "Tlr" : "Stereo.T_c1_c2";
-    result = vl_camera_numbers(file, tree, pose, m, 12, 16, NULL);
-    if (result == VL_OK)
-      vl_camera_set_matrix(&record->camera, m, false);
+    VL_TRY(vl_camera_numbers(file, tree, pose, m, 12, 16, NULL));
+    vl_camera_set_matrix(&record->camera, m, false);
   }
   vl_camera_name(record, vl_camera_text(tree, key_of(key, "Camera", "name")));
-  return result;
+  return VL_OK;
 }
 
 static vlResult write_orbslam(const vlFittedCamera *fit, vlCameraText *text) {

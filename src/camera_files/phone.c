@@ -78,17 +78,16 @@ static vlResult read_polycam(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double m[16] = {[15] = 1.0};
-  vlResult result =
-      VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width),
-                     VL_FIELD_SIDE("height", &d->height), VL_FIELD("fx", &d->fx),
-                     VL_FIELD("fy", &d->fy), VL_FIELD("cx", &d->cx), VL_FIELD("cy", &d->cy));
-  for (int i = 0; i < 12 && result == VL_OK; i++) {
+  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width),
+                        VL_FIELD_SIDE("height", &d->height), VL_FIELD("fx", &d->fx),
+                        VL_FIELD("fy", &d->fy), VL_FIELD("cx", &d->cx),
+                        VL_FIELD("cy", &d->cy)));
+  for (int i = 0; i < 12; i++) {
     const char key[] = {'t', '_', (char)('0' + i / 4), (char)('0' + i % 4), 0};
-    result = vl_camera_number(file, tree, key, &m[i]);
+    VL_TRY(vl_camera_number(file, tree, key, &m[i]));
   }
-  if (result == VL_OK)
-    set_arkit_pose(m, d);
-  return result;
+  set_arkit_pose(m, d);
+  return VL_OK;
 }
 
 const vlCameraFormat vl_format_polycam = {
@@ -119,10 +118,8 @@ static vlResult read_scanner(const vlCameraFile *file, const json_t *tree,
   char image[300];
   const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
              *dot = strrchr(name, '.');
-  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("cameraPoseARFrame", m, 16),
-                                   VL_FIELD_LIST("intrinsics", k, 9));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_LIST("cameraPoseARFrame", m, 16),
+                        VL_FIELD_LIST("intrinsics", k, 9)));
   snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
   set_arkit_pose(m, d);
   d->fx = k[0];

@@ -91,23 +91,14 @@ static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraR
         "xcr:DistortionModel \"%s\" is no model of velo; there are perspective, brown3, "
         "brown4, brown3t2, brown4t2",
         vl_short_text(model).text);
-  vlResult result = read_property(file, description, "xcr:FocalLength35mm", 1, true, &lens.f35);
-  if (result == VL_OK)
-    result = read_property(file, description, "xcr:PrincipalPointU", 1, false, &lens.center[0]);
-  if (result == VL_OK)
-    result = read_property(file, description, "xcr:PrincipalPointV", 1, false, &lens.center[1]);
-  if (result == VL_OK)
-    result = read_property(file, description, "xcr:AspectRatio", 1, false, &aspect);
-  if (result == VL_OK)
-    result = read_property(file, description, "xcr:Skew", 1, false, &skew);
-  if (result == VL_OK)
-    result = read_property(file, description, "xcr:DistortionCoeficients", 6, false, lens.k);
-  if (result == VL_OK)
-    result = read_property(file, description, "xcr:Rotation", 9, true, r);
-  if (result == VL_OK)
-    result = read_property(file, description, "xcr:Position", 3, true, c);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_property(file, description, "xcr:FocalLength35mm", 1, true, &lens.f35));
+  VL_TRY(read_property(file, description, "xcr:PrincipalPointU", 1, false, &lens.center[0]));
+  VL_TRY(read_property(file, description, "xcr:PrincipalPointV", 1, false, &lens.center[1]));
+  VL_TRY(read_property(file, description, "xcr:AspectRatio", 1, false, &aspect));
+  VL_TRY(read_property(file, description, "xcr:Skew", 1, false, &skew));
+  VL_TRY(read_property(file, description, "xcr:DistortionCoeficients", 6, false, lens.k));
+  VL_TRY(read_property(file, description, "xcr:Rotation", 9, true, r));
+  VL_TRY(read_property(file, description, "xcr:Position", 3, true, c));
   if (aspect != 1.0 || skew != 0.0)
     return vl_camera_wrong_element(file, description,
                                    "xcr:AspectRatio must be 1 and xcr:Skew 0");
@@ -118,10 +109,9 @@ static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraR
   const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
              *dot = strrchr(name, '.');
   snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
-  result = vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
-  if (result == VL_OK)
-    set_lens(&lens, &record->camera);
-  return result;
+  VL_TRY(vl_camera_size_beside(file, (const char *const[]){image, NULL}, record));
+  set_lens(&lens, &record->camera);
+  return VL_OK;
 }
 
 static bool is_xmp(const json_t *tree) {
@@ -263,11 +253,9 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
   char folder[300];
   const char *name = record->name;
   snprintf(folder, sizeof folder, "images/%s", name);
-  vlResult result =
-      vl_camera_size_beside(file, (const char *const[]){name, folder, NULL}, record);
-  if (result == VL_OK)
-    set_lens(&lens, &record->camera);
-  return result;
+  VL_TRY(vl_camera_size_beside(file, (const char *const[]){name, folder, NULL}, record));
+  set_lens(&lens, &record->camera);
+  return VL_OK;
 }
 
 /* The fields of a row point into its own text. */
@@ -280,13 +268,12 @@ static void copy_row(Row *to, const Row *row) {
 /* Counts the columns of the header that velo does not know, with the values of a row. */
 static vlResult check_columns(const vlCameraFile *file, const Row *header, const Row *row,
                               vlCameraRecord *record) {
-  vlResult result = VL_OK;
-  for (int i = 0; i < header->count && result == VL_OK; i++) {
+  for (int i = 0; i < header->count; i++) {
     const vlCameraName name = {header->fields[i], i < row->count ? row->fields[i] : "",
                                header->number};
-    result = vl_camera_check_name(file, known_columns, &name, record);
+    VL_TRY(vl_camera_check_name(file, known_columns, &name, record));
   }
-  return result;
+  return VL_OK;
 }
 
 static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size,
@@ -314,8 +301,8 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
   }
   if (!chosen.count)
     return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = check_columns(file, &header, &chosen, record);
-  return result == VL_OK ? read_row(file, &chosen, of, record) : result;
+  VL_TRY(check_columns(file, &header, &chosen, record));
+  return read_row(file, &chosen, of, record);
 }
 
 static bool is_csv(const char *text, size_t size) {

@@ -33,14 +33,10 @@ static vlResult read_transform(const vlCameraFile *file, const json_t *transform
   const json_t *rotation = json_object_get(transform, "rotation");
   const json_t *translation = json_object_get(transform, "translation");
   double v[3] = {0.0}, t[3] = {0.0}, r[9];
-  vlResult result = VL_OK;
-  for (int i = 0; i < 3 && transform && result == VL_OK; i++) {
-    result = vl_camera_number(file, rotation, turns[i], &v[i]);
-    if (result == VL_OK)
-      result = vl_camera_number(file, translation, shifts[i], &t[i]);
+  for (int i = 0; i < 3 && transform; i++) {
+    VL_TRY(vl_camera_number(file, rotation, turns[i], &v[i]));
+    VL_TRY(vl_camera_number(file, translation, shifts[i], &t[i]));
   }
-  if (result != VL_OK)
-    return result;
   vl_rotation_from_vector(v, r);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
@@ -57,9 +53,7 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree,
   if (!camera)
     return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *model, *parameters;
-  vlResult result = vl_camera_field(file, camera, "model", &model);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, camera, "model", &model));
   const char *name = vl_camera_text(model, "polymorphic_name");
   if (name && !vl_text_is(name, "libCalib::CameraModelOpenCV"))
     return vl_camera_unknown(file, model, "polymorphic_name", name,
@@ -69,23 +63,15 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree,
   if (!base)
     base = json_object_get(data, "CameraModelCRTP");
   const json_t *size = json_object_get(json_object_get(base, "CameraModelBase"), "imageSize");
-  result = vl_camera_sides(file, size, "width", "height", record);
-  if (result == VL_OK)
-    result = vl_camera_field(file, data, "parameters", &parameters);
-  if (result == VL_OK)
-    result = read_value(file, parameters, "f", true, &f);
-  if (result == VL_OK)
-    result = read_value(file, parameters, "ar", false, &aspect);
-  if (result == VL_OK)
-    result = read_value(file, parameters, "cx", true, &cx);
-  if (result == VL_OK)
-    result = read_value(file, parameters, "cy", true, &cy);
-  for (int i = 0; i < 14 && result == VL_OK; i++)
-    result = read_value(file, parameters, lens[i], false, &k[i]);
-  if (result == VL_OK)
-    result = read_transform(file, json_object_get(camera, "transform"), d);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_sides(file, size, "width", "height", record));
+  VL_TRY(vl_camera_field(file, data, "parameters", &parameters));
+  VL_TRY(read_value(file, parameters, "f", true, &f));
+  VL_TRY(read_value(file, parameters, "ar", false, &aspect));
+  VL_TRY(read_value(file, parameters, "cx", true, &cx));
+  VL_TRY(read_value(file, parameters, "cy", true, &cy));
+  for (int i = 0; i < 14; i++)
+    VL_TRY(read_value(file, parameters, lens[i], false, &k[i]));
+  VL_TRY(read_transform(file, json_object_get(camera, "transform"), d));
   vl_camera_set_centred(d, f, f * aspect, cx, cy);
   set_lens(k, 14, d);
   return VL_OK;
@@ -129,13 +115,9 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree,
   }
   if (!chosen)
     return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result =
-      VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("camera_intrinsic", k, 9),
-                     VL_FIELD_LIST("rotation", q, 4), VL_FIELD_LIST("translation", t, 3));
-  if (result == VL_OK)
-    result = vl_camera_set_k(file, chosen, "camera_intrinsic", k, d);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("camera_intrinsic", k, 9),
+                        VL_FIELD_LIST("rotation", q, 4), VL_FIELD_LIST("translation", t, 3)));
+  VL_TRY(vl_camera_set_k(file, chosen, "camera_intrinsic", k, d));
   if (!vl_rotation_from_quaternion(q, r))
     return vl_camera_wrong_in(file, chosen, "rotation",
                               "nuscenes: the quaternion \"rotation\" is no rotation");
@@ -163,15 +145,11 @@ static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree,
   double k[9], lens[5], r[9], t[3];
   if (!chosen)
     return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = vl_camera_side_pair(file, chosen, "resolution", record);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("K", k, 9),
-                            VL_FIELD_LIST("distCoef", lens, 5), VL_FIELD_LIST("R", r, 9),
-                            VL_FIELD_LIST("t", t, 3));
-  if (result == VL_OK)
-    result = vl_camera_set_k(file, chosen, "K", k, d);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_side_pair(file, chosen, "resolution", record));
+  VL_TRY(VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("K", k, 9),
+                        VL_FIELD_LIST("distCoef", lens, 5), VL_FIELD_LIST("R", r, 9),
+                        VL_FIELD_LIST("t", t, 3)));
+  VL_TRY(vl_camera_set_k(file, chosen, "K", k, d));
   set_lens(lens, 5, d);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
@@ -204,16 +182,13 @@ static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double r[9], p[3], f, c[2], aspect = 1.0, radial[3] = {0.0}, tangential[2] = {0.0};
-  vlResult result = vl_camera_side_pair(file, tree, "image_size", record);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(
-        file, tree, VL_FIELD_LIST("orientation", r, 9), VL_FIELD_LIST("position", p, 3),
-        VL_FIELD("focal_length", &f), VL_FIELD_LIST("principal_point", c, 2),
-        VL_FIELD_OPTIONAL("skew", &d->skew), VL_FIELD_OPTIONAL("pixel_aspect_ratio", &aspect),
-        VL_FIELD_LIST_OPTIONAL("radial_distortion", radial, 3, NULL),
-        VL_FIELD_LIST_OPTIONAL("tangential_distortion", tangential, 2, NULL));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_side_pair(file, tree, "image_size", record));
+  VL_TRY(VL_READ_FIELDS(
+      file, tree, VL_FIELD_LIST("orientation", r, 9), VL_FIELD_LIST("position", p, 3),
+      VL_FIELD("focal_length", &f), VL_FIELD_LIST("principal_point", c, 2),
+      VL_FIELD_OPTIONAL("skew", &d->skew), VL_FIELD_OPTIONAL("pixel_aspect_ratio", &aspect),
+      VL_FIELD_LIST_OPTIONAL("radial_distortion", radial, 3, NULL),
+      VL_FIELD_LIST_OPTIONAL("tangential_distortion", tangential, 2, NULL)));
   d->fx = f;
   d->fy = f * aspect;
   d->cx = c[0];

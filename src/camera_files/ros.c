@@ -19,18 +19,14 @@ static vlResult read_ros(const vlCameraFile *file, const json_t *tree, vlCameraR
                   : json_object_get(tree, "d") ? "d"
                                                : "distortion_coefficients";
   bool message = k[0] != 'c';
-  vlResult result =
-      VL_READ_FIELDS(file, tree, VL_FIELD_SIDE(message ? "width" : "image_width", &d->width),
-                     VL_FIELD_SIDE(message ? "height" : "image_height", &d->height));
-  if (result == VL_OK)
-    result = vl_opencv_read_matrix(file, tree, k, d);
-  if (result == VL_OK)
-    result = vl_opencv_read_lens(file, tree, c, d);
-  if (result == VL_OK)
-    result = vl_opencv_refuse_part(file, tree, d);
+  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_SIDE(message ? "width" : "image_width", &d->width),
+                        VL_FIELD_SIDE(message ? "height" : "image_height", &d->height)));
+  VL_TRY(vl_opencv_read_matrix(file, tree, k, d));
+  VL_TRY(vl_opencv_read_lens(file, tree, c, d));
+  VL_TRY(vl_opencv_refuse_part(file, tree, d));
   vl_camera_set_origin(d);
   vl_camera_name(record, vl_camera_text(tree, "camera_name"));
-  return result;
+  return VL_OK;
 }
 
 /* ---- .ini -------------------------------------------------------------------------------- */
@@ -158,17 +154,13 @@ static vlResult write_ros(const vlFittedCamera *fit, vlCameraText *text) {
   double k[14];
   uint32_t n = 0;
   bool fisheye = false;
-  vlResult result = vl_opencv_lens_of(fit->file, &fit->record->camera, k, &n, &fisheye);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_opencv_lens_of(fit->file, &fit->record->camera, k, &n, &fisheye));
   if (n > 8) {
     bool present = false;
     for (int i = 8; i < 14; i++)
       present = present || k[i] != 0.0;
-    result = vl_camera_refuse(fit->file, "distortion",
-                              present); /* s1 to s4, tilt: ROS has no such coefficients */
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_refuse(fit->file, "distortion",
+                            present)); /* s1 to s4, tilt: ROS has no such coefficients */
     n = 8;
   }
   if (!fisheye && n < 5)

@@ -54,15 +54,12 @@ static vlResult depthai_pose(const vlCameraFile *file, const json_t *list, const
     const json_t *extrinsics = json_object_get(camera, "extrinsics"),
                  *shift = json_object_get(extrinsics, "translation");
     double socket = -1.0, r[9], t[3] = {0.0};
-    vlResult result = vl_camera_optional(file, extrinsics, "toCameraSocket", &socket);
-    if (result != VL_OK || socket < 0.0)
-      return result;
-    result = vl_camera_numbers(file, extrinsics, "rotationMatrix", r, 9, 9, NULL);
-    if (result == VL_OK)
-      result = VL_READ_FIELDS(file, shift, VL_FIELD("x", &t[0]), VL_FIELD("y", &t[1]),
-                              VL_FIELD("z", &t[2]));
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_optional(file, extrinsics, "toCameraSocket", &socket));
+    if (socket < 0.0)
+      return VL_OK;
+    VL_TRY(vl_camera_numbers(file, extrinsics, "rotationMatrix", r, 9, 9, NULL));
+    VL_TRY(VL_READ_FIELDS(file, shift, VL_FIELD("x", &t[0]), VL_FIELD("y", &t[1]),
+                          VL_FIELD("z", &t[2])));
     *world = vl_mat4_multiply(rigid(r, t), *world);
     camera = depthai_camera(list, socket);
   }
@@ -93,17 +90,13 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree,
   }
   if (!camera)
     return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
-                                   VL_FIELD_SIDE("height", &d->height),
-                                   VL_FIELD_LIST("intrinsicMatrix", k, 9),
-                                   VL_FIELD_LIST_OPTIONAL("distortionCoeff", lens, 14, &count),
-                                   VL_FIELD_OPTIONAL("cameraType", &type));
-  if (result == VL_OK)
-    result = vl_camera_set_k(file, camera, "intrinsicMatrix", k, d);
-  if (result == VL_OK)
-    result = depthai_pose(file, list, camera, &world);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
+                        VL_FIELD_SIDE("height", &d->height),
+                        VL_FIELD_LIST("intrinsicMatrix", k, 9),
+                        VL_FIELD_LIST_OPTIONAL("distortionCoeff", lens, 14, &count),
+                        VL_FIELD_OPTIONAL("cameraType", &type)));
+  VL_TRY(vl_camera_set_k(file, camera, "intrinsicMatrix", k, d));
+  VL_TRY(depthai_pose(file, list, camera, &world));
   if (type != 0.0 && type != 1.0)
     return vl_camera_wrong_in(file, camera, "cameraType",
                               "depthai: \"cameraType\" %g is no model of velo; there are 0 "
@@ -159,19 +152,13 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree,
   if (!camera)
     return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *intrinsics, *pose;
-  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("SensorWidth", &d->width),
-                                   VL_FIELD_SIDE("SensorHeight", &d->height));
-  if (result == VL_OK)
-    result = vl_camera_field(file, camera, "Intrinsics", &intrinsics);
-  if (result == VL_OK)
-    result = vl_camera_field(file, camera, "Rt", &pose);
-  if (result == VL_OK)
-    result = vl_camera_numbers(file, intrinsics, "ModelParameters", v, 14, 14, NULL);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(file, pose, VL_FIELD_LIST("Rotation", r, 9),
-                            VL_FIELD_LIST("Translation", t, 3));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("SensorWidth", &d->width),
+                        VL_FIELD_SIDE("SensorHeight", &d->height)));
+  VL_TRY(vl_camera_field(file, camera, "Intrinsics", &intrinsics));
+  VL_TRY(vl_camera_field(file, camera, "Rt", &pose));
+  VL_TRY(vl_camera_numbers(file, intrinsics, "ModelParameters", v, 14, 14, NULL));
+  VL_TRY(VL_READ_FIELDS(file, pose, VL_FIELD_LIST("Rotation", r, 9),
+                        VL_FIELD_LIST("Translation", t, 3)));
   const char *model = vl_camera_text(intrinsics, "ModelType");
   if (model && !strstr(model, "BrownConrady"))
     return vl_camera_unknown(file, intrinsics, "ModelType", model, "there is BrownConrady");
@@ -216,13 +203,10 @@ static vlResult read_stream(const vlCameraFile *file, const json_t *stream,
   double fx, fy, cx, cy, k[5] = {0.0};
   uint32_t count = 0;
   const char *model = vl_camera_text(stream, "model");
-  vlResult result = vl_camera_sides(file, stream, "width", "height", record);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(file, stream, VL_FIELD("fx", &fx), VL_FIELD("fy", &fy),
-                            VL_FIELD("ppx", &cx), VL_FIELD("ppy", &cy),
-                            VL_FIELD_LIST_OPTIONAL("coeffs", k, 5, &count));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_sides(file, stream, "width", "height", record));
+  VL_TRY(VL_READ_FIELDS(file, stream, VL_FIELD("fx", &fx), VL_FIELD("fy", &fy),
+                        VL_FIELD("ppx", &cx), VL_FIELD("ppy", &cy),
+                        VL_FIELD_LIST_OPTIONAL("coeffs", k, 5, &count)));
   vl_camera_set_centred(d, fx, fy, cx, cy);
   vl_camera_set_origin(d);
   char lower[64] = "";

@@ -18,13 +18,10 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree,
   bool atan = vl_text_is(model, "ATAN");
   if (!atan && !(vl_text_is(model, "Pinhole")))
     return vl_camera_unknown(file, tree, "cam_model", model, "there are Pinhole, ATAN");
-  vlResult result = vl_camera_sides(file, tree, "cam_width", "cam_height", record);
-  if (result == VL_OK)
-    result = vl_camera_read_named(file, tree, names, 4, false, f);
-  for (int i = 0; i < (atan ? 1 : 4) && result == VL_OK; i++)
-    result = vl_camera_optional(file, tree, lens[i], &k[i]);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_sides(file, tree, "cam_width", "cam_height", record));
+  VL_TRY(vl_camera_read_named(file, tree, names, 4, false, f));
+  for (int i = 0; i < (atan ? 1 : 4); i++)
+    VL_TRY(vl_camera_optional(file, tree, lens[i], &k[i]));
   vl_camera_set_origin(d);
   if (atan) {
     d->fx = f[0] * d->width;
@@ -50,9 +47,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCame
   uint32_t n = 0;
   if (!lens || vl_text_is(type, "none"))
     return VL_OK;
-  vlResult result = vl_camera_numbers(file, lens, "parameters", k, 1, 4, &n);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, lens, "parameters", k, 1, 4, &n));
   if (vl_text_is(type, "radial-tangential") && n == 4) {
     vl_camera_set_opencv(d, k, n);
   } else if (vl_text_is(type, "equidistant") && n == 4 &&
@@ -78,40 +73,33 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
   vlCameraDef *d = &record->camera;
   double k[5], m[16];
   uint32_t n = 0;
-  vlResult result = vl_camera_field(file, item, "camera", &camera);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, item, "camera", &camera));
   const char *type = vl_camera_text(camera, "type");
   bool unified = vl_text_is(type, "omni");
   if (!unified && type && !vl_text_is(type, "pinhole"))
     return vl_camera_unknown(file, camera, "type", type, "there are pinhole, omni");
-  result =
-      vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n);
-  if (result == VL_OK)
-    result = vl_camera_sides(file, camera, "image_width", "image_height", record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(
+      vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n));
+  VL_TRY(vl_camera_sides(file, camera, "image_width", "image_height", record));
   if (unified) {
     d->projection = VL_PROJECTION_UNIFIED;
     d->shape[0] = k[0];
   }
   double delay = 0;
-  result = vl_camera_optional(file, camera, "line-delay-nanoseconds", &delay);
-  if (result == VL_OK && delay != 0.0)
+  VL_TRY(vl_camera_optional(file, camera, "line-delay-nanoseconds", &delay));
+  if (delay != 0.0)
     return vl_camera_wrong_in(file, camera, "line-delay-nanoseconds",
                               "svo: rows of an image at different times are not taken");
   const double *f = k + unified;
   vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
-  if (result == VL_OK)
-    result = read_lens(file, camera, d);
+  VL_TRY(read_lens(file, camera, d));
   vl_camera_set_origin(d);
-  if (result == VL_OK && vl_camera_has(item, "T_B_C")) {
-    result = vl_camera_numbers(file, item, "T_B_C", m, 16, 16, NULL);
-    if (result == VL_OK)
-      vl_camera_set_matrix(d, m, false);
+  if (vl_camera_has(item, "T_B_C")) {
+    VL_TRY(vl_camera_numbers(file, item, "T_B_C", m, 16, 16, NULL));
+    vl_camera_set_matrix(d, m, false);
   }
   vl_camera_name(record, vl_camera_text(camera, "label"));
-  return result;
+  return VL_OK;
 }
 
 static vlResult read_svo(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {

@@ -24,30 +24,25 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *object,
   if (json_is_true(json_object_get(json_object_get(object, "view"), "enabled")))
     return vl_camera_wrong_in(file, object, "view",
                               "threejs: \"view\", a part of the image, is not taken");
-  vlResult result = VL_READ_FIELDS(file, object, VL_FIELD_OPTIONAL("zoom", &zoom),
-                                   VL_FIELD_OPTIONAL("filmOffset", &shift));
-  if (result == VL_OK && shift != 0.0)
+  VL_TRY(VL_READ_FIELDS(file, object, VL_FIELD_OPTIONAL("zoom", &zoom),
+                        VL_FIELD_OPTIONAL("filmOffset", &shift)));
+  if (shift != 0.0)
     return vl_camera_wrong_in(file, object, "filmOffset",
                               "threejs: a \"filmOffset\" other than 0 is not taken");
-  if (result == VL_OK && !flat)
-    result = vl_camera_number(file, object, "fov", &fov);
-  if (result == VL_OK && !flat)
-    result = vl_camera_number(file, object, "aspect", &aspect);
-  for (int i = 0; i < 4 && flat && result == VL_OK; i++)
-    result = vl_camera_number(file, object, sides[i], &s[i]);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(file, object, VL_FIELD_OPTIONAL("near", &d->near_plane),
-                            VL_FIELD_OPTIONAL("far", &d->far_plane));
-  if (result != VL_OK)
-    return result;
+  if (!flat)
+    VL_TRY(vl_camera_number(file, object, "fov", &fov));
+  if (!flat)
+    VL_TRY(vl_camera_number(file, object, "aspect", &aspect));
+  for (int i = 0; i < 4 && flat; i++)
+    VL_TRY(vl_camera_number(file, object, sides[i], &s[i]));
+  VL_TRY(VL_READ_FIELDS(file, object, VL_FIELD_OPTIONAL("near", &d->near_plane),
+                        VL_FIELD_OPTIONAL("far", &d->far_plane)));
   if (flat)
     aspect = (s[1] - s[0]) / (s[2] - s[3]);
   if (!(zoom > 0.0 && aspect > 0.0) || (!flat && !(fov > 0.0 && fov < 180.0)))
     return vl_camera_wrong_in(file, object, flat ? "left" : "fov",
                               "threejs: these sides, fov or zoom give no image");
-  result = vl_camera_size(file, aspect, record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_size(file, aspect, record));
   if (flat) {
     d->projection = VL_PROJECTION_ORTHOGRAPHIC;
     d->fx = zoom * d->width / (s[1] - s[0]);
@@ -65,11 +60,8 @@ static vlResult read_threejs(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   const json_t *object = json_object_get(tree, "object");
   double c[16], m[16];
-  vlResult result = vl_camera_numbers(file, object, "matrix", c, 16, 16, NULL);
-  if (result == VL_OK)
-    result = read_lens(file, object, record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, object, "matrix", c, 16, 16, NULL));
+  VL_TRY(read_lens(file, object, record));
   for (int i = 0; i < 16; i++)
     m[i] = c[4 * (i % 4) + i / 4];
   record->camera.has_matrix = true;

@@ -336,9 +336,7 @@ static vlResult read_line(Csv *csv, char *line) {
                             "\"%s\" is \"%s\"; it must be a finite number", names[column],
                             vl_short_text(fields[i]).text);
   }
-  vlResult result = pose_of(csv, &location, v, m);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(pose_of(csv, &location, v, m));
   return vl_trajectory_add(csv->trajectory, csv->file, &location, VL_NO_CAMERA, m,
                            csv->has[TIME] ? v[TIME] * csv->time_unit : VL_UNSET);
 }
@@ -358,20 +356,17 @@ vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char 
     if (n && line[n - 1] == '\r')
       line[n - 1] = 0;
     const char *first = line + strspn(line, " \t");
-    vlResult result = VL_OK;
     if (*first == '#' && strstr(first, "p_RS_R_x")) {
-      result = read_euroc_header(&csv, line + (first - line) + 1);
+      VL_TRY(read_euroc_header(&csv, line + (first - line) + 1));
     } else if (*first == '#') {
       if (!take_comment(&csv, first))
-        result = wrong(
+        VL_TRY(wrong(
             &csv, 0,
             "\"%s\": axes are opencv or opengl, poses world_from_camera or camera_from_world",
-            vl_short_text(first).text);
+            vl_short_text(first).text));
     } else if (*first) {
-      result = read_line(&csv, line);
+      VL_TRY(read_line(&csv, line));
     }
-    if (result != VL_OK)
-      return result;
     line = next;
   }
   return VL_OK;

@@ -88,14 +88,10 @@ vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *from,
     record.dialect = VL_CAMERA_DIALECT_KALIBR;
     int32_t camera = 0;
     vlFrameLocation location = {.frame = i, .name = key};
-    vlResult result = vl_camera_read_kalibr(file, tree, &record);
-    if (result == VL_OK)
-      result = vl_trajectory_add_camera(t, file, &record, &camera);
-    if (result == VL_OK)
-      result = vl_trajectory_add(t, file, &location, camera, record.camera.world_from_camera,
-                                 VL_UNSET);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_read_kalibr(file, tree, &record));
+    VL_TRY(vl_trajectory_add_camera(t, file, &record, &camera));
+    VL_TRY(vl_trajectory_add(t, file, &location, camera, record.camera.world_from_camera,
+                             VL_UNSET));
   }
   return VL_OK;
 }
@@ -111,11 +107,8 @@ vlResult vl_trajectory_read_opencv(vlTrajectory *t, const vlCameraFile *from,
   record.camera = vl_default_camera_def(1, 1);
   record.dialect = VL_CAMERA_DIALECT_OPENCV;
   int32_t camera = 0;
-  vlResult result = vl_camera_read_opencv(file, tree, &record);
-  if (result == VL_OK)
-    result = vl_trajectory_add_camera(t, file, &record, &camera);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_read_opencv(file, tree, &record));
+  VL_TRY(vl_trajectory_add_camera(t, file, &record, &camera));
   const json_t *views = json_object_get(tree, "extrinsic_parameters");
   const json_t *data = json_is_object(views) ? json_object_get(views, "data") : views;
   bool nested = json_is_array(json_array_get(data, 0));
@@ -139,10 +132,8 @@ vlResult vl_trajectory_read_opencv(vlTrajectory *t, const vlCameraFile *from,
                             "\"extrinsic_parameters\" must be 6 finite numbers: rvec, tvec");
     vl_rotation_from_vector(v, r);
     vl_camera_set_pose(&record.camera, r, v + 3);
-    result = vl_trajectory_add(t, file, &location, camera, record.camera.world_from_camera,
-                               VL_UNSET);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_trajectory_add(t, file, &location, camera, record.camera.world_from_camera,
+                             VL_UNSET));
   }
   return VL_OK;
 }

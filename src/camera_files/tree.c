@@ -183,8 +183,8 @@ static vlResult number_of(const vlCameraFile *file, const json_t *object, const 
 vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key,
                           double *value) {
   const json_t *field;
-  vlResult result = vl_camera_field(file, object, key, &field);
-  return result == VL_OK ? number_of(file, object, field, key, value) : result;
+  VL_TRY(vl_camera_field(file, object, key, &field));
+  return number_of(file, object, field, key, value);
 }
 
 vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key,
@@ -209,9 +209,7 @@ vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const ch
                         uint32_t *value) {
   const json_t *field;
   double number;
-  vlResult result = vl_camera_field(file, object, key, &field);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, object, key, &field));
   const vlGiven given = vl_json_given(field);
   char name[120];
   char message[VL_GIVEN_MESSAGE];
@@ -244,18 +242,15 @@ static vlResult collect(const vlCameraFile *file, const json_t *list, const char
   size_t i;
   json_t *item;
   json_array_foreach((json_t *)list, i, item) {
-    vlResult result;
     if (json_is_array(item) && depth > 0) {
-      result = collect(file, item, key, depth - 1, values, most, count);
+      VL_TRY(collect(file, item, key, depth - 1, values, most, count));
     } else {
       if (*count == most)
         return vl_camera_wrong_in(file, list, NULL, "%s: \"%s\" holds more than %u numbers",
                                   file->dialect, key, most);
-      result = number_of(file, list, item, key, &values[*count]);
+      VL_TRY(number_of(file, list, item, key, &values[*count]));
       ++*count;
     }
-    if (result != VL_OK)
-      return result;
   }
   return VL_OK;
 }
@@ -264,24 +259,17 @@ vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const
                            double *values, uint32_t least, uint32_t most, uint32_t *count) {
   const json_t *field;
   uint32_t found = 0;
-  vlResult result = vl_camera_field(file, object, key, &field);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_field(file, object, key, &field));
   double rows = VL_UNSET, columns = VL_UNSET;
   if (json_is_object(field)) {
-    result = vl_camera_number(file, field, "rows", &rows);
-    if (result == VL_OK)
-      result = vl_camera_number(file, field, "cols", &columns);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_camera_number(file, field, "rows", &rows));
+    VL_TRY(vl_camera_number(file, field, "cols", &columns));
     field = json_object_get(field, "data");
   }
   if (!json_is_array(field))
     return vl_camera_wrong_in(file, object, key, "%s: \"%s\" must be a list of numbers",
                               file->dialect, key);
-  result = collect(file, field, key, 1, values, most, &found);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(collect(file, field, key, 1, values, most, &found));
   if (found < least)
     return vl_camera_wrong_in(file, object, key, "%s: \"%s\" holds %u numbers; it must hold %u",
                               file->dialect, key, found, least);

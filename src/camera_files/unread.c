@@ -165,15 +165,14 @@ typedef struct {
 
 static vlResult check(const vlCameraFile *file, const vlCameraFormat *format,
                       const json_t *item, Level level, vlCameraRecord *record) {
-  vlResult result = VL_OK;
   const Level below = {level.depth + 1, false};
   if (level.depth == MAX_DEPTH)
     return VL_OK;
   /* a list of numbers is passed at its first one */
-  for (size_t i = 0; i < json_array_size(item) && result == VL_OK; i++) {
+  for (size_t i = 0; i < json_array_size(item); i++) {
     if (json_is_number(json_array_get(item, i)))
       break;
-    result = check(file, format, json_array_get(item, i), below, record);
+    VL_TRY(check(file, format, json_array_get(item, i), below, record));
   }
   const char *element = vl_camera_text(item, "<");
   const Knowledge tag = element ? knowledge_of(format, element) : KNOWN;
@@ -185,18 +184,15 @@ static vlResult check(const vlCameraFile *file, const vlCameraFormat *format,
   json_t *value;
   if (tag != CLOSED)
     json_object_foreach((json_t *)item, key, value) {
-      if (result != VL_OK)
-        return result;
       const Knowledge known = knowledge_of(format, key);
       if (known == UNKNOWN && level.names && json_is_object(value))
-        result = check(file, format, value, below, record);
+        VL_TRY(check(file, format, value, below, record));
       else if (known == UNKNOWN)
-        result = take_unknown(file, format, item, key, key, value, record);
+        VL_TRY(take_unknown(file, format, item, key, key, value, record));
       else if (known != CLOSED)
-        result =
-            check(file, format, value, (Level){level.depth + 1, known == OF_NAMES}, record);
+        VL_TRY(check(file, format, value, (Level){level.depth + 1, known == OF_NAMES}, record));
     }
-  return result;
+  return VL_OK;
 }
 
 vlResult vl_camera_check_unread(const vlCameraFile *file, const vlCameraFormat *format,

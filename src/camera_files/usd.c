@@ -35,46 +35,41 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
   bool inverted = strncmp(op->name, "!invert!", 8) == 0;
   const char *key = op->name + (inverted ? 8 : 0), *kind = key + 8;
   double v[16], r[9];
-  vlResult result = VL_OK;
   *m = vl_mat4_identity();
   if (strncmp(key, "xformOp:", 8) != 0)
     return vl_camera_wrong(op->file, "usd: \"%s\" in xformOpOrder is no xformOp",
                            vl_short_text(op->name).text);
   size_t n = strcspn(kind, ":");
   if (n == 9 && strncmp(kind, "transform", n) == 0) {
-    result = op_numbers(op, key, v, 16);
-    for (int i = 0; i < 16 && result == VL_OK; i++)
+    VL_TRY(op_numbers(op, key, v, 16));
+    for (int i = 0; i < 16; i++)
       m->m[i] = v[4 * (i % 4) + i / 4];
   } else if (n == 9 && strncmp(kind, "translate", n) == 0) {
-    result = op_numbers(op, key, v, 3);
-    if (result == VL_OK)
-      *m = vl_mat4_translate(v[0], v[1], v[2]);
+    VL_TRY(op_numbers(op, key, v, 3));
+    *m = vl_mat4_translate(v[0], v[1], v[2]);
   } else if (n == 5 && strncmp(kind, "scale", n) == 0) {
-    result = op_numbers(op, key, v, 3);
-    if (result == VL_OK)
-      *m = vl_mat4_scale(v[0], v[1], v[2]);
+    VL_TRY(op_numbers(op, key, v, 3));
+    *m = vl_mat4_scale(v[0], v[1], v[2]);
   } else if (n == 6 && strncmp(kind, "orient", n) == 0) {
-    result = op_numbers(op, key, v, 4); /* w x y z */
-    if (result == VL_OK && !vl_rotation_from_quaternion(v, r))
-      result = vl_camera_wrong(op->file, "usd: \"%s\" is no rotation", vl_short_text(key).text);
-    for (int i = 0; i < 9 && result == VL_OK; i++)
+    VL_TRY(op_numbers(op, key, v, 4)); /* w x y z */
+    if (!vl_rotation_from_quaternion(v, r))
+      VL_TRY(vl_camera_wrong(op->file, "usd: \"%s\" is no rotation", vl_short_text(key).text));
+    for (int i = 0; i < 9; i++)
       m->m[4 * (i / 3) + i % 3] = r[i];
   } else if (n == 7 && strncmp(kind, "rotate", 6) == 0 && kind[6] >= 'X' && kind[6] <= 'Z') {
-    result = vl_camera_number(op->file, op->prim, key, v);
-    if (result == VL_OK)
-      *m = turn(kind[6] - 'X', v[0]);
+    VL_TRY(vl_camera_number(op->file, op->prim, key, v));
+    *m = turn(kind[6] - 'X', v[0]);
   } else if (n == 9 && strncmp(kind, "rotate", 6) == 0 && strspn(kind + 6, "XYZ") == 3) {
-    result =
-        op_numbers(op, key, v, 3); /* rotateXYZ: about x first, angles in the order x y z */
-    for (int i = 0; i < 3 && result == VL_OK; i++)
+    VL_TRY(op_numbers(op, key, v, 3)); /* rotateXYZ: about x first, angles in the order x y z */
+    for (int i = 0; i < 3; i++)
       *m = vl_mat4_multiply(turn(kind[6 + i] - 'X', v[kind[6 + i] - 'X']), *m);
   } else {
     return vl_camera_wrong(op->file, "usd: unknown xformOp \"%s\"", vl_short_text(key).text);
   }
-  if (result == VL_OK && inverted && !vl_mat4_inverse(*m, m))
-    result =
-        vl_camera_wrong(op->file, "usd: \"%s\" cannot be inverted", vl_short_text(key).text);
-  return result;
+  if (inverted && !vl_mat4_inverse(*m, m))
+    VL_TRY(
+        vl_camera_wrong(op->file, "usd: \"%s\" cannot be inverted", vl_short_text(key).text));
+  return VL_OK;
 }
 
 /* Transform of one prim. *reset: the transforms of its parents do not apply. */
@@ -93,9 +88,7 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat
     }
     Operation op = {file, prim, name ? name : ""};
     vlMat4 one;
-    vlResult result = operation(&op, &one);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(operation(&op, &one));
     *m = vl_mat4_multiply(*m, one);
   }
   return VL_OK;
@@ -133,11 +126,8 @@ static vlResult pose_of(Search *s) {
   for (int i = 0; i < s->depth; i++) {
     vlMat4 own;
     bool reset;
-    vlResult result = check_still(s->file, s->path[i]);
-    if (result == VL_OK)
-      result = local_matrix(s->file, s->path[i], &own, &reset);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(check_still(s->file, s->path[i]));
+    VL_TRY(local_matrix(s->file, s->path[i], &own, &reset));
     s->pose = reset ? own : vl_mat4_multiply(s->pose, own);
   }
   return VL_OK;
@@ -203,11 +193,9 @@ static vlResult read_settings(const Search *s, double *pixel) {
   *pixel = 1.0;
   if (!s->resolution)
     return VL_OK;
-  vlResult result = vl_camera_optional(s->file, s->resolution, "pixelAspectRatio", pixel);
-  if (result == VL_OK && json_object_get(s->resolution, "dataWindowNDC"))
-    result = vl_camera_numbers(s->file, s->resolution, "dataWindowNDC", window, 4, 4, NULL);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_optional(s->file, s->resolution, "pixelAspectRatio", pixel));
+  if (json_object_get(s->resolution, "dataWindowNDC"))
+    VL_TRY(vl_camera_numbers(s->file, s->resolution, "dataWindowNDC", window, 4, 4, NULL));
   if (window[0] != 0.0 || window[1] != 0.0 || window[2] != 1.0 || window[3] != 1.0)
     return vl_camera_wrong(s->file, "usd: a crop, \"dataWindowNDC\", is not taken");
   if (!(*pixel > 0.0))
@@ -221,9 +209,7 @@ static vlResult read_resolution(const Search *s, double aspect, vlCameraRecord *
   double size[2];
   if (!s->resolution)
     return vl_camera_size(s->file, aspect, record);
-  vlResult result = vl_camera_numbers(s->file, s->resolution, "resolution", size, 2, 2, NULL);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(s->file, s->resolution, "resolution", size, 2, 2, NULL));
   for (int i = 0; i < 2; i++)
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
       return vl_camera_wrong(
@@ -369,9 +355,7 @@ static vlResult write_usd(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCameraDef *d = &fit->record->camera;
   const vlCamera *c = &fit->camera;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  vlResult result = vl_camera_refuse(fit->file, "lens_radius", flat && c->lens_radius > 0.0);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_refuse(fit->file, "lens_radius", flat && c->lens_radius > 0.0));
   double w = c->width, h = c->height, m[16];
   /* the scene unit is a metre: 36 mm are 0.36 tenths of it */
   double across = 0.01 * (d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0),

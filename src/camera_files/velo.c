@@ -224,12 +224,12 @@ static vlResult read_distortion(const vlCameraFile *file, const json_t *tree,
   const char *keys[VL_DISTORTION_KIND_COUNT];
   for (uint32_t i = 0; i < VL_DISTORTION_KIND_COUNT; i++)
     keys[i] = vl_distortion_row(i)->key;
-  vlResult result = word(file, lens, "model", keys, VL_DISTORTION_KIND_COUNT, &kind);
+  VL_TRY(word(file, lens, "model", keys, VL_DISTORTION_KIND_COUNT, &kind));
   d->distortion = (vlDistortion)kind;
-  if (result == VL_OK && kind)
-    result = vl_camera_numbers(file, lens, "coefficients", d->distortion_coefficients, 1, 14,
-                               &d->distortion_count);
-  return result;
+  if (kind)
+    VL_TRY(vl_camera_numbers(file, lens, "coefficients", d->distortion_coefficients, 1, 14,
+                             &d->distortion_count));
+  return VL_OK;
 }
 
 static vlResult read_shape(const vlCameraFile *file, const json_t *tree, const Field *field,
@@ -246,10 +246,7 @@ static vlResult read_curve(const vlCameraFile *file, const json_t *tree, const F
   double curve[2 * VL_SHUTTER_POINTS];
   if (!json_object_get(tree, field->name))
     return VL_OK;
-  vlResult result =
-      vl_camera_numbers(file, tree, field->name, curve, 2, 2 * VL_SHUTTER_POINTS, &count);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, tree, field->name, curve, 2, 2 * VL_SHUTTER_POINTS, &count));
   if (count % 2)
     return vl_camera_wrong(file, "velo: \"%s\" must be a list of pairs, time and value",
                            field->name);
@@ -299,10 +296,9 @@ static vlResult read_numbers(const vlCameraFile *file, const json_t *value, cons
   if (json_array_size(value) != field->count)
     return vl_camera_wrong_in(file, value, NULL, "velo: \"%s\" must be a list of %u numbers",
                               field->name, field->count);
-  vlResult result = VL_OK;
-  for (uint32_t i = 0; i < field->count && result == VL_OK; i++)
-    result = read_item(file, json_array_get(value, i), field, &values[i]);
-  return result;
+  for (uint32_t i = 0; i < field->count; i++)
+    VL_TRY(read_item(file, json_array_get(value, i), field, &values[i]));
+  return VL_OK;
 }
 
 /* The def is unchanged if the field is missing. */
@@ -316,9 +312,7 @@ static vlResult read_field(const vlCameraFile *file, const json_t *tree, const F
   if (field->form == NUMBERS)
     return read_numbers(file, value, field, (double *)(void *)((char *)def + field->offset));
   double number;
-  vlResult result = read_item(file, value, field, &number);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_item(file, value, field, &number));
   vl_given_put(field->row, number, def);
   return VL_OK;
 }
@@ -333,16 +327,13 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree,
     projections[i] = projection_key((vlProjection)i);
   Fields fields;
   list_fields(&fields);
-  vlResult result = check_names(file, tree, &fields);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width),
-                            VL_FIELD_SIDE("height", &d->height));
-  if (result == VL_OK)
-    result = word(file, tree, "projection", projections, PROJECTIONS, &projection);
-  if (result == VL_OK)
-    result = word(file, tree, "pixel_origin", origins, 2, &origin);
-  for (size_t i = 0; i < fields.count && result == VL_OK; i++)
-    result = read_field(file, tree, &fields.items[i], d);
+  VL_TRY(check_names(file, tree, &fields));
+  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width),
+                        VL_FIELD_SIDE("height", &d->height)));
+  VL_TRY(word(file, tree, "projection", projections, PROJECTIONS, &projection));
+  VL_TRY(word(file, tree, "pixel_origin", origins, 2, &origin));
+  for (size_t i = 0; i < fields.count; i++)
+    VL_TRY(read_field(file, tree, &fields.items[i], d));
   d->projection = (vlProjection)projection;
   if (origin) { /* unset values stay unset */
     d->cx += 0.5;
@@ -351,7 +342,7 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree,
     d->lens.focus_pixel[1] += 0.5;
   }
   vl_camera_name(record, vl_camera_text(tree, "name"));
-  return result;
+  return VL_OK;
 }
 
 /* ---- writing ----------------------------------------------------------------------------- */
@@ -500,13 +491,12 @@ void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text) {
 
 vlResult vl_camera_write_velo(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCameraDef *d = &fit->record->camera;
-  vlResult result = vl_camera_refuse(fit->file, "aperture", d->lens.aperture != NULL);
-  if (result == VL_OK && d->projection == VL_PROJECTION_OPTICS)
+  VL_TRY(vl_camera_refuse(fit->file, "aperture", d->lens.aperture != NULL));
+  if (d->projection == VL_PROJECTION_OPTICS)
     return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
                       "velo cannot hold a lens of many elements");
-  if (result == VL_OK)
-    vl_camera_put_velo(fit->record, text);
-  return result;
+  vl_camera_put_velo(fit->record, text);
+  return VL_OK;
 }
 
 const vlCameraFormat vl_format_velo = {.name = "velo",

@@ -31,24 +31,19 @@ static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCame
                                                                                   "k3", "k4"};
   double f[4], k[4];
   char type[64];
-  vlResult result = VL_OK;
   child_text(model, "type", type);
-  for (int i = 0; i < 4 && result == VL_OK; i++)
-    result = vl_camera_child_number(file, model, names[i], true, &f[i]);
-  if (result != VL_OK)
-    return result;
+  for (int i = 0; i < 4; i++)
+    VL_TRY(vl_camera_child_number(file, model, names[i], true, &f[i]));
   if (vl_text_is(type, with_distortion)) {
-    result = vl_camera_child_number(file, model, "kud", true, &k[0]);
-    if (result == VL_OK && k[0] != 0.0) {
+    VL_TRY(vl_camera_child_number(file, model, "kud", true, &k[0]));
+    if (k[0] != 0.0) {
       d->distortion = VL_DISTORTION_RADIAL;
       d->distortion_count = 1;
       d->distortion_coefficients[0] = k[0];
     }
   } else if (vl_text_is(type, kannala_brandt)) {
-    for (int i = 0; i < 4 && result == VL_OK; i++)
-      result = vl_camera_child_number(file, model, radial[i], true, &k[i]);
-    if (result != VL_OK)
-      return result;
+    for (int i = 0; i < 4; i++)
+      VL_TRY(vl_camera_child_number(file, model, radial[i], true, &k[i]));
     vl_camera_set_fisheye(d, k);
   } else if (!vl_text_is(type, without_distortion)) {
     return vl_camera_wrong_element(file, model, "unknown model \"%s\"; there are %s, %s, %s",
@@ -56,7 +51,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCame
                                    with_distortion, kannala_brandt);
   }
   vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
-  return result;
+  return VL_OK;
 }
 
 static vlResult read_camera(const vlCameraFile *file, const json_t *camera, const json_t *model,
@@ -64,12 +59,9 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   vlCameraDef *d = &record->camera;
   double size[2] = {0.0, 0.0};
   char name[64];
-  vlResult result = VL_READ_CHILDREN(file, camera, VL_FIELD_OPTIONAL("image_width", &size[0]),
-                                     VL_FIELD_OPTIONAL("image_height", &size[1]));
-  if (result == VL_OK)
-    result = read_model(file, model, d);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(VL_READ_CHILDREN(file, camera, VL_FIELD_OPTIONAL("image_width", &size[0]),
+                          VL_FIELD_OPTIONAL("image_height", &size[1])));
+  VL_TRY(read_model(file, model, d));
   vl_camera_set_origin(d);
   child_text(camera, "name", name);
   vl_camera_name(record, name);

@@ -53,21 +53,17 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
   double fixed[5] = {0.0}, count = 0.0, v[10], r[9];
   uint32_t n = 0;
   bool taken = false;
-  vlResult result = VL_OK;
   vl_camera_next_line(&lines);
   const char *k = strstr(lines.text, "FixedK");
   if (k)
-    result = vl_camera_line_numbers(file, &lines, k + 6, fixed, 4, 5, &n);
-  if (result == VL_OK && !vl_camera_next_line(&lines))
+    VL_TRY(vl_camera_line_numbers(file, &lines, k + 6, fixed, 4, 5, &n));
+  if (!vl_camera_next_line(&lines))
     return vl_camera_wrong(file, "visualsfm: the file has no camera");
-  if (result == VL_OK)
-    result = vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1, &n);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1, &n));
   if (!(count >= 1.0 && count <= 1e7))
     return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
   record->frames = (uint32_t)count;
-  for (uint32_t i = 0; result == VL_OK && i < record->frames && !taken; i++) {
+  for (uint32_t i = 0; i < record->frames && !taken; i++) {
     char name[sizeof record->name];
     if (!vl_camera_next_line(&lines))
       return vl_camera_wrong(file, "visualsfm: the file ends within the cameras");
@@ -79,17 +75,15 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
     taken = vl_camera_is_frame(file, i, name);
     if (!taken)
       continue;
-    result = read_camera(file, &lines, length, v);
+    VL_TRY(read_camera(file, &lines, length, v));
     vl_camera_name(record, name);
   }
-  if (result != VL_OK)
-    return result;
   if (!taken)
     return vl_camera_no_frame(file, "camera", record->frames);
   if (!vl_rotation_from_quaternion(v + 1, r))
     return vl_camera_wrong_line(file, &lines, lines.text, "the quaternion is no rotation");
   vl_camera_set_centre(d, r, v + 5);
-  result = vl_camera_size_beside(file, (const char *const[]){record->name, NULL}, record);
+  VL_TRY(vl_camera_size_beside(file, (const char *const[]){record->name, NULL}, record));
   d->fx = d->fy = v[0];
   d->cx = 0.5 * d->width;
   d->cy = 0.5 * d->height;
@@ -100,7 +94,7 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
     d->cy = fixed[3];
   }
   set_distortion(v[8], d);
-  return result;
+  return VL_OK;
 }
 
 static bool is_visualsfm(const char *text, size_t size) {

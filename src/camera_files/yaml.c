@@ -84,15 +84,13 @@ static vlResult locate_copy(const vlCameraFile *file, Builder *b, const json_t *
   size_t i;
   if (++b->copies > MAX_COPIES)
     return wrong_at(file, mark, "the aliases make more than 100,000 values");
-  vlResult result = locate(file, mark);
+  VL_TRY(locate(file, mark));
   if (json_is_object(value)) {
-    json_object_foreach((json_t *)value, key, child) if (result == VL_OK) result =
-        locate_copy(file, b, child, mark);
+    json_object_foreach((json_t *)value, key, child) VL_TRY(locate_copy(file, b, child, mark));
   } else {
-    json_array_foreach((json_t *)value, i, child) if (result == VL_OK) result =
-        locate_copy(file, b, child, mark);
+    json_array_foreach((json_t *)value, i, child) VL_TRY(locate_copy(file, b, child, mark));
   }
-  return result;
+  return VL_OK;
 }
 
 static vlResult remember(const vlCameraFile *file, Builder *b, const yaml_char_t *name,
@@ -149,8 +147,8 @@ static vlResult alias(const vlCameraFile *file, Builder *b, const yaml_event_t *
   const char *key = b->depth ? b->key[b->depth - 1] : NULL;
   if (vl_text_is(key, "<<"))
     return merge(file, b, value, event->start_mark);
-  vlResult result = locate_copy(file, b, value, event->start_mark);
-  return result == VL_OK ? add(file, b, json_deep_copy(value), event->start_mark) : result;
+  VL_TRY(locate_copy(file, b, value, event->start_mark));
+  return add(file, b, json_deep_copy(value), event->start_mark);
 }
 
 static vlResult take_value(const vlCameraFile *file, Builder *b, json_t *value,
@@ -180,13 +178,12 @@ static vlResult take(const vlCameraFile *file, Builder *b, const yaml_event_t *e
         return wrong_at(file, event->start_mark, "nested too deeply for a camera");
       bool list = event->type == YAML_SEQUENCE_START_EVENT;
       json_t *value = list ? json_array() : json_object();
-      vlResult result = take_value(
+      VL_TRY(take_value(
           file, b, value,
           list ? event->data.sequence_start.anchor : event->data.mapping_start.anchor,
-          event->start_mark);
-      if (result == VL_OK)
-        b->tree[b->depth++] = value;
-      return result;
+          event->start_mark));
+      b->tree[b->depth++] = value;
+      return VL_OK;
     }
     case YAML_SEQUENCE_END_EVENT:
     case YAML_MAPPING_END_EVENT:

@@ -76,19 +76,15 @@ static vlResult read_right(const vlCameraFile *file, const char *text, size_t si
                                                                                   "RZ"};
   double t[3] = {0.0}, v[3] = {0.0}, r[9];
   bool found;
-  vlResult result = VL_OK;
-  for (int i = 0; i < 3 && result == VL_OK; i++) {
+  for (int i = 0; i < 3; i++) {
     char key[32];
-    result = find_value(file, text, size, "STEREO", shifts[i], &t[i], &found);
-    if (result == VL_OK && i == 0 && !found)
+    VL_TRY(find_value(file, text, size, "STEREO", shifts[i], &t[i], &found));
+    if (i == 0 && !found)
       return vl_camera_wrong(file, "zed: [STEREO] has no Baseline");
     snprintf(key, sizeof key, "%s_%s", turns[i], modes[mode].name);
-    if (result == VL_OK)
-      result = find_value(file, text, size, "STEREO", key, &v[i], &found);
+    VL_TRY(find_value(file, text, size, "STEREO", key, &v[i], &found));
     t[i] = 0.0 - t[i];
   }
-  if (result != VL_OK)
-    return result;
   vl_rotation_from_vector(v, r);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
@@ -121,9 +117,7 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
                            right ? "RIGHT_DISTO" : "LEFT_DISTO");
   for (int i = 0; i < 9; i++) {
     bool there;
-    vlResult result = find_value(file, text, size, section, keys[i], &v[i], &there);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(find_value(file, text, size, section, keys[i], &v[i], &there));
     if (!there && i < 4)
       return vl_camera_wrong(file, "zed: [%s] has no %s", section, keys[i]);
   }

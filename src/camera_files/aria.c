@@ -47,7 +47,7 @@ static vlResult read_projection(const vlCameraFile *file, const json_t *camera,
                               "aria: \"Params\" of %s holds %u numbers; it must hold %u or %u",
                               model->name, count, model->coefficients + 3,
                               model->coefficients + 4);
-  vl_camera_set_centred(d, p[0], p[first - 3], p[first - 2], p[first - 1]);
+  vl_camera_set_centred(d, (double[]){p[0], p[first - 3], p[first - 2], p[first - 1]});
   d->projection = model->projection;
   d->distortion = model->distortion;
   d->distortion_count = model->coefficients;

@@ -17,7 +17,7 @@ static const Model models[] = {{"pinhole", VL_LENS_PINHOLE, {NULL}, {NULL}},
                                {"ds", VL_LENS_DOUBLE_SPHERE, {"xi", "alpha"}, {NULL}},
                                {"eucm", VL_LENS_EUCM, {"alpha", "beta"}, {NULL}},
                                {"ucm", VL_LENS_EUCM, {"alpha", NULL}, {NULL}}, /* beta is 1 */
-                               {"fov", VL_LENS_FOV, {"w", NULL}, {NULL}},
+                               {"fov", VL_LENS_FOV, {NULL}, {"w"}},
                                {"pinhole-radtan8",
                                 VL_LENS_OPENCV,
                                 {NULL},
@@ -27,12 +27,9 @@ enum { MODELS = VL_LENGTH(models) };
 static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
   const json_t *values;
   const char *name;
-  double f[4], k[8];
-  vlResult result = vl_camera_word(file, camera, "camera_type", &name);
-  if (result == VL_OK)
-    result = vl_camera_field(file, camera, "intrinsics", &values);
-  if (result != VL_OK)
-    return result;
+  double f[4], k[8] = {0.0};
+  VL_TRY(vl_camera_word(file, camera, "camera_type", &name));
+  VL_TRY(vl_camera_field(file, camera, "intrinsics", &values));
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
     if (vl_text_is(name, models[i].name))
@@ -40,28 +37,11 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
   if (!model)
     return vl_camera_unknown(file, camera, "camera_type", name,
                              "there are pinhole, pinhole-radtan8, kb4, ds, eucm, ucm, fov");
-  if (result == VL_OK)
-    result = vl_camera_read_named(file, values, vl_camera_matrix_names, 4, false, f);
-  for (int i = 0; i < 2 && model->shapes[i] && result == VL_OK; i++)
-    result = vl_camera_number(file, values, model->shapes[i], &d->shape[i]);
-  uint32_t count = 0;
-  while (count < 8 && model->lens[count] && result == VL_OK) {
-    result = vl_camera_number(file, values, model->lens[count], &k[count]);
-    count++;
-  }
-  if (result != VL_OK)
-    return result;
-  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
-  if (model->family == VL_LENS_OPENCV)
-    vl_camera_set_opencv(d, k, count);
-  if (model->family == VL_LENS_FISHEYE)
-    vl_camera_set_fisheye(d, k);
-  if (model->family == VL_LENS_DOUBLE_SPHERE)
-    d->projection = VL_PROJECTION_DOUBLE_SPHERE;
-  if (model->family == VL_LENS_FOV)
-    d->projection = VL_PROJECTION_FOV;
-  if (model->family == VL_LENS_EUCM)
-    d->projection = VL_PROJECTION_EUCM;
+  VL_TRY(vl_camera_read_named(file, values, vl_camera_matrix_names, 4, false, f));
+  VL_TRY(vl_camera_read_named(file, values, model->shapes, 2, false, d->shape));
+  VL_TRY(vl_camera_read_named(file, values, model->lens, 8, false, k));
+  vl_camera_set_centred(d, f);
+  vl_camera_set_lens(d, model->family, k, 8);
   if (model->family == VL_LENS_EUCM && !model->shapes[1])
     d->shape[1] = 1.0;
   return VL_OK;
@@ -79,73 +59,58 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *pose, vlCamera
 
 static vlResult read_basalt(const vlCameraFile *file, const json_t *tree,
                             vlCameraRecord *record) {
-  const json_t *root, *cameras, *poses = NULL, *sizes = NULL;
+  const json_t *root, *cameras;
   vlCameraDef *d = &record->camera;
   double size[2];
-  vlResult result = vl_camera_field(file, tree, "value0", &root);
-  if (result == VL_OK)
-    result = vl_camera_field(file, root, "intrinsics", &cameras);
-  if (result != VL_OK)
-    return result;
-  poses = json_object_get(root, "T_imu_cam");
-  sizes = json_object_get(root, "resolution");
-  record->frames = (uint32_t)json_array_size(cameras);
-  for (uint32_t i = 0; i < record->frames; i++) {
-    if (!vl_camera_is_frame(file, i, NULL))
-      continue;
-    const json_t *pose = json_array_get(poses, i), *pair = json_array_get(sizes, i);
-    result = read_model(file, json_array_get(cameras, i), d);
-    vl_camera_set_origin(d);
-    if (result == VL_OK && pose)
-      result = read_pose(file, pose, d);
-    if (result != VL_OK || !pair)
-      return result == VL_OK ? vl_camera_size_beside(file, NULL, record) : result;
-    for (int k = 0; k < 2; k++) {
-      size[k] = json_number_value(json_array_get(pair, (size_t)k));
-      if (!(size[k] >= 1.0 && size[k] <= 1 << 24) || size[k] != (double)(uint32_t)size[k])
-        return vl_camera_wrong_in(file, pair, NULL,
-                                  "basalt: \"resolution\" must be two whole numbers of pixels");
-    }
-    d->width = (uint32_t)size[0];
-    d->height = (uint32_t)size[1];
-    return VL_OK;
-  }
-  return vl_camera_wrong_in(file, root, "intrinsics",
-                            "basalt: there is no camera \"%s\" among the %u",
-                            vl_camera_asked(file, "0").text, record->frames);
+  VL_TRY(vl_camera_field(file, tree, "value0", &root));
+  VL_TRY(vl_camera_field(file, root, "intrinsics", &cameras));
+  const json_t *camera = vl_camera_choose(file, cameras, NULL, record);
+  if (!camera)
+    return vl_camera_none_in(file, root, "intrinsics", "camera", record->frames);
+  size_t index = 0;
+  while (json_array_get(cameras, index) != camera)
+    index++;
+  const json_t *pose = json_array_get(json_object_get(root, "T_imu_cam"), index);
+  const json_t *pair = json_array_get(json_object_get(root, "resolution"), index);
+  VL_TRY(read_model(file, camera, d));
+  vl_camera_set_origin(d);
+  if (pose)
+    VL_TRY(read_pose(file, pose, d));
+  if (!pair)
+    return vl_camera_size_beside(file, NULL, record);
+  for (size_t i = 0; i < 2; i++)
+    size[i] = json_number_value(json_array_get(pair, i));
+  if (!vl_camera_set_sides(d, size))
+    return vl_camera_wrong_in(file, pair, NULL,
+                              "basalt: \"resolution\" must be two whole numbers of pixels");
+  return VL_OK;
 }
 
 static vlResult write_basalt(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   double r[9], q[4];
   const Model *model = NULL;
-  if (fit->family == VL_LENS_UNIFIED)
-    return vl_camera_no_model(fit->file, &fit->record->camera);
   for (int i = 0; i < MODELS; i++)
     if (models[i].family == fit->family && !model)
       model = &models[i];
-  if (!model || (fit->family == VL_LENS_OPENCV && fit->count > 8))
+  if (!model || fit->count > 8)
     return vl_camera_no_model(fit->file, &fit->record->camera);
   for (int i = 0; i < 9; i++)
     r[i] = c->world_from_camera[4 * (i / 3) + i % 3];
   vl_rotation_to_quaternion(r, q);
-  VL_PUT_FORM(
+  return VL_PUT_FORM(
       text, fit,
       "{\n  \"value0\": {\n    \"T_imu_cam\": [\n      {\"px\": $centre@0, \"py\": "
       "$centre@1, \"pz\": $centre@2, "
       "\"qx\": $q@1, \"qy\": $q@2, \"qz\": $q@3, \"qw\": $q@0}\n    ],\n"
       "    \"intrinsics\": [\n      {\"camera_type\": \"$type\", \"intrinsics\": {\"fx\": "
       "$fx, \"fy\": $fy, "
-      "\"cx\": $cx0, \"cy\": $cy0",
-      VL_WORD("type", model->name), VL_VALUES("q", q, 4));
-  for (int i = 0; i < 2 && model->shapes[i]; i++)
-    vl_camera_put(text, ", \"%s\": %.17g", model->shapes[i], c->shape[i]);
-  for (int i = 0; i < 8 && model->lens[i]; i++)
-    vl_camera_put(text, ", \"%s\": %.17g", model->lens[i], fit->k[i] + 0.0);
-  if (fit->family == VL_LENS_OPENCV)
-    vl_camera_put(text, ", \"rpmax\": 0");
-  return vl_camera_put_form(text, fit, NULL,
-                            "}}\n    ],\n    \"resolution\": [[$width, $height]]\n  }\n}\n");
+      "\"cx\": $cx0, \"cy\": $cy0$shapes$lens$limit"
+      "}}\n    ],\n    \"resolution\": [[$width, $height]]\n  }\n}\n",
+      VL_WORD("type", model->name), VL_VALUES("q", q, 4),
+      VL_NAMED("shapes", model->shapes, c->shape, 2, ", \"$item\": $value"),
+      VL_NAMED("lens", model->lens, fit->k, 8, ", \"$item\": $value"),
+      VL_PART("limit", fit->family == VL_LENS_OPENCV, ", \"rpmax\": 0"));
 }
 
 const vlCameraFormat vl_format_basalt = {

@@ -62,33 +62,27 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
 static vlResult write_blender(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCameraDef *d = &fit->record->camera;
   const vlCamera *c = &fit->camera;
-  double m[16];
-  bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  const bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
   /* Blender requires that the smaller of the two aspects is 1 */
-  double ratio = c->fx / c->fy, w = c->width, h = c->height,
-         side = w >= ratio * h ? w : ratio * h;
-  double sensor = d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0;
-  vl_camera_flip_axes(c->world_from_camera, m);
-  vl_camera_put(text, "{\n  \"name\": ");
-  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : "Camera");
-  vl_camera_put(text, ",\n  \"type\": \"%s\",\n  \"%s\": %.17g,\n", flat ? "ORTHO" : "PERSP",
-                flat ? "ortho_scale" : "lens", flat ? side / c->fx : c->fx * sensor / side);
-  vl_camera_put(
-      text, "  \"sensor_fit\": \"AUTO\",\n  \"sensor_width\": %.17g,\n  \"shift_x\": %.17g,\n",
-      sensor, (0.5 * w - c->cx) / side + 0.0);
-  vl_camera_put(text, "  \"shift_y\": %.17g,\n", (c->cy - 0.5 * h) * ratio / side + 0.0);
-  if (c->near_plane > 0.0)
-    vl_camera_put(text, "  \"clip_start\": %.17g,\n", c->near_plane);
-  if (!isinf(c->far_plane))
-    vl_camera_put(text, "  \"clip_end\": %.17g,\n", c->far_plane);
-  vl_camera_put(text, "  \"resolution_x\": %u,\n  \"resolution_y\": %u,\n", c->width,
-                c->height);
-  vl_camera_put(text, "  \"pixel_aspect_x\": %.17g,\n  \"pixel_aspect_y\": %.17g,\n",
-                ratio < 1.0 ? 1.0 / ratio : 1.0, ratio < 1.0 ? 1.0 : ratio);
-  vl_camera_put(text, "  \"matrix_world\": [");
-  vl_camera_put_rows(text, m);
-  vl_camera_put(text, "]\n}\n");
-  return VL_OK;
+  const double ratio = c->fx / c->fy, w = c->width, h = c->height;
+  const double side = w >= ratio * h ? w : ratio * h;
+  const double sensor = d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0;
+  const double lens = flat ? side / c->fx : c->fx * sensor / side;
+  const double shift[2] = {(0.5 * w - c->cx) / side, (c->cy - 0.5 * h) * ratio / side};
+  const double aspect[2] = {ratio < 1.0 ? 1.0 / ratio : 1.0, ratio < 1.0 ? 1.0 : ratio};
+  return VL_PUT_FORM(
+      text, fit,
+      "{\n  \"name\": $name,\n  \"type\": \"$type\",\n  \"$kind\": $lens,\n"
+      "  \"sensor_fit\": \"AUTO\",\n  \"sensor_width\": $sensor,\n  \"shift_x\": $shift@0,\n"
+      "  \"shift_y\": $shift@1,\n$start$end"
+      "  \"resolution_x\": $width,\n  \"resolution_y\": $height,\n"
+      "  \"pixel_aspect_x\": $pixel@0,\n  \"pixel_aspect_y\": $pixel@1,\n"
+      "  \"matrix_world\": [$flipped:4]\n}\n",
+      VL_WORD("type", flat ? "ORTHO" : "PERSP"), VL_WORD("kind", flat ? "ortho_scale" : "lens"),
+      VL_VALUES("lens", &lens, 1), VL_VALUES("sensor", &sensor, 1),
+      VL_VALUES("shift", shift, 2), VL_VALUES("pixel", aspect, 2),
+      VL_PART("start", c->near_plane > 0.0, "  \"clip_start\": $near,\n"),
+      VL_PART("end", !isinf(c->far_plane), "  \"clip_end\": $far,\n"));
 }
 
 const vlCameraFormat vl_format_blender = {
@@ -103,4 +97,5 @@ const vlCameraFormat vl_format_blender = {
     .read = read_blender,
     .holds = VL_HOLDS_POSE | VL_HOLDS_PLANES,
     .plain = true,
+    .unnamed = "Camera",
     .write = write_blender};

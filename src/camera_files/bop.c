@@ -37,7 +37,7 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, vlCameraR
   double f[4];
   VL_TRY(vl_camera_read_named(file, tree, vl_camera_matrix_names, 4, false, f));
   VL_TRY(vl_camera_sides(file, tree, "width", "height", record));
-  vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
+  vl_camera_set_centred(&record->camera, f);
   vl_camera_set_origin(&record->camera);
   return VL_OK;
 }

@@ -30,32 +30,20 @@ enum { MODELS = VL_LENGTH(models) };
 
 static vlResult read_model(const vlCameraFile *file, const json_t *tree, const Model *model,
                            vlCameraDef *d) {
-  const json_t *plane, *lens = NULL, *mirror = NULL;
-  double f[4], k[8];
-  bool fisheye = model->family == VL_LENS_FISHEYE;
-  uint32_t count = 0;
-  vlResult result = vl_camera_field(file, tree, "projection_parameters", &plane);
-  for (int i = 0; i < 4 && result == VL_OK; i++)
-    result = vl_camera_number(file, plane, model->intrinsics[i], &f[i]);
-  if (result == VL_OK && !fisheye)
-    result = vl_camera_field(file, tree, "distortion_parameters", &lens);
-  while (count < 8 && model->lens[count] && result == VL_OK) {
-    result = vl_camera_number(file, fisheye ? plane : lens, model->lens[count], &k[count]);
-    count++;
+  const json_t *plane, *lens, *mirror;
+  double f[4], k[8] = {0.0};
+  VL_TRY(vl_camera_field(file, tree, "projection_parameters", &plane));
+  VL_TRY(vl_camera_read_named(file, plane, model->intrinsics, 4, false, f));
+  lens = plane;
+  if (model->family != VL_LENS_FISHEYE)
+    VL_TRY(vl_camera_field(file, tree, "distortion_parameters", &lens));
+  VL_TRY(vl_camera_read_named(file, lens, model->lens, 8, false, k));
+  if (model->family == VL_LENS_UNIFIED) {
+    VL_TRY(vl_camera_field(file, tree, "mirror_parameters", &mirror));
+    VL_TRY(vl_camera_number(file, mirror, "xi", &d->shape[0]));
   }
-  if (result == VL_OK && model->family == VL_LENS_UNIFIED) {
-    result = vl_camera_field(file, tree, "mirror_parameters", &mirror);
-    if (result == VL_OK)
-      result = vl_camera_number(file, mirror, "xi", &d->shape[0]);
-    d->projection = VL_PROJECTION_UNIFIED;
-  }
-  if (result != VL_OK)
-    return result;
-  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
-  if (fisheye)
-    vl_camera_set_fisheye(d, k);
-  else
-    vl_camera_set_opencv(d, k, count);
+  vl_camera_set_centred(d, f);
+  vl_camera_set_lens(d, model->family, k, model->lens[4] ? 8 : 4);
   return VL_OK;
 }
 
@@ -173,22 +161,19 @@ static vlResult write_camodocal(const vlFittedCamera *fit, vlCameraText *text) {
       model = &models[i];
   if (!model || (family == VL_LENS_UNIFIED && fit->count > 4))
     return vl_camera_no_model(fit->file, &fit->record->camera);
-  const double f[4] = {c->fx, c->fy, c->cx - 0.5, c->cy - 0.5};
-  VL_PUT_FORM(text, fit,
-              "%YAML:1.0\n---\nmodel_type: $model\ncamera_name: $name\nimage_width: $width\n"
-              "image_height: $height\n",
-              VL_WORD("model", model->name));
-  if (family == VL_LENS_UNIFIED)
-    vl_camera_put(text, "mirror_parameters:\n  xi: %.17g\n", c->shape[0]);
-  bool fisheye = family == VL_LENS_FISHEYE;
-  vl_camera_put(text, fisheye ? "projection_parameters:\n" : "distortion_parameters:\n");
-  for (int i = 0; i < 8 && model->lens[i]; i++)
-    vl_camera_put(text, "  %s: %.17g\n", model->lens[i], fit->k[i] + 0.0);
-  if (!fisheye)
-    vl_camera_put(text, "projection_parameters:\n");
-  for (int i = 0; i < 4; i++)
-    vl_camera_put(text, "  %s: %.17g\n", model->intrinsics[i], f[i]);
-  return VL_OK;
+  const double f[4] = {c->fx, c->fy, c->cx - 0.5, c->cy - 0.5}, xi = c->shape[0];
+  const bool fisheye = family == VL_LENS_FISHEYE;
+  return VL_PUT_FORM(
+      text, fit,
+      "%YAML:1.0\n---\nmodel_type: $model\ncamera_name: $name\nimage_width: $width\n"
+      "image_height: $height\n$mirror$before:\n$lens$between$plane",
+      VL_WORD("model", model->name),
+      VL_PART("mirror", family == VL_LENS_UNIFIED, "mirror_parameters:\n  xi: $xi\n"),
+      VL_VALUES("xi", &xi, 1),
+      VL_WORD("before", fisheye ? "projection_parameters" : "distortion_parameters"),
+      VL_NAMED("lens", model->lens, fit->k, 8, "  $item: $value\n"),
+      VL_PART("between", !fisheye, "projection_parameters:\n"),
+      VL_NAMED("plane", model->intrinsics, f, 4, "  $item: $value\n"));
 }
 
 const vlCameraFormat vl_format_camodocal = {

@@ -9,25 +9,24 @@
 #include "camera_files/lines.h"
 #include "velo/projection.h"
 
-static const struct {
-  const char *name;
-  uint32_t count; /* of the lens */
-} models[] = {
-    {"FOV", 1}, {"Pinhole", 1}, {"RadTan", 4}, {"EquiDistant", 4}, {"KannalaBrandt", 4}};
-enum { FOV, PINHOLE, RADTAN, EQUIDISTANT, KANNALA_BRANDT, MODELS };
+/* The first is that of lines without a name. */
+static const vlLensName models[] = {{"FOV", VL_LENS_FOV, 1, 1},
+                                    {"Pinhole", VL_LENS_PINHOLE, 0, 1},
+                                    {"RadTan", VL_LENS_OPENCV, 4, 4},
+                                    {"EquiDistant", VL_LENS_FISHEYE, 4, 4},
+                                    {"KannalaBrandt", VL_LENS_FISHEYE, 4, 4}};
 
-/* Returns the model of the first line and where its numbers begin; MODELS: the line is another
- * one. */
-static int model_of(const char *line, const char **numbers) {
-  for (int i = 0; i < MODELS; i++) {
+/* Returns the model of the first line and where its numbers begin. */
+static const vlLensName *model_of(const char *line, const char **numbers) {
+  for (size_t i = 0; i < VL_LENGTH(models); i++) {
     size_t length = strlen(models[i].name);
     *numbers = line + length;
     if (strncmp(line, models[i].name, length) == 0 &&
         (line[length] == ' ' || line[length] == '\t'))
-      return i;
+      return &models[i];
   }
   *numbers = line;
-  return FOV;
+  return models;
 }
 
 static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size,
@@ -36,11 +35,10 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
   vlCameraDef *d = &record->camera;
   const char *numbers;
   double v[8] = {0.0}, sides[2] = {0.0};
-  uint32_t count, most;
+  uint32_t count;
   vl_camera_next_line(&lines);
-  int model = model_of(lines.text, &numbers);
-  most = 4 + models[model].count;
-  VL_TRY(vl_camera_line_numbers(file, &lines, numbers, v, model == PINHOLE ? 4 : most, most,
+  const vlLensName *model = model_of(lines.text, &numbers);
+  VL_TRY(vl_camera_line_numbers(file, &lines, numbers, v, 4 + model->least, 4 + model->most,
                                 &count));
   const double *k = v + 4;
   if (!vl_camera_next_line(&lines))
@@ -56,16 +54,10 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
     d->cx = v[2] * sides[0];
     d->cy = v[3] * sides[1];
   } else {
-    vl_camera_set_centred(d, v[0], v[1], v[2], v[3]);
+    vl_camera_set_centred(d, v);
   }
-  if (model == FOV && k[0] != 0.0) {
-    d->projection = VL_PROJECTION_FOV;
-    d->shape[0] = k[0];
-  }
-  if (model == RADTAN)
-    vl_camera_set_opencv(d, k, 4);
-  if (model == EQUIDISTANT || model == KANNALA_BRANDT)
-    vl_camera_set_fisheye(d, k);
+  if (model->family != VL_LENS_FOV || k[0] != 0.0)
+    vl_camera_set_lens(d, model->family, k, 4);
   vl_camera_set_origin(d);
   return VL_OK;
 }

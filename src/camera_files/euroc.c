@@ -5,32 +5,15 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 
-/* Sets the distortion: 4 or 5 coefficients, by the name of their model. */
-static vlResult read_lens(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
-  double k[5];
-  uint32_t n = 0;
-  const char *model = vl_camera_text(tree, "distortion_model");
-  if (!vl_camera_has(tree, "distortion_model") || vl_text_is(model, "none"))
-    return VL_OK;
-  VL_TRY(vl_camera_numbers(file, tree, "distortion_coefficients", k, 4, 5, &n));
-  if (model && (vl_text_is(model, "radial-tangential") || vl_text_is(model, "radtan"))) {
-    vl_camera_set_opencv(d, k, n);
-  } else if (vl_text_is(model, "equidistant") && n == 4) {
-    vl_camera_set_fisheye(d, k);
-  } else {
-    return vl_camera_wrong_in(
-        file, tree, "distortion_model",
-        "euroc: unknown distortion_model \"%s\" of %u coefficients; there are "
-        "radial-tangential, equidistant, none",
-        vl_short_text(model).text, n);
-  }
-  return VL_OK;
-}
+static const vlLensName lenses[] = {{"radial-tangential", VL_LENS_OPENCV, 4, 5},
+                                    {"radtan", VL_LENS_OPENCV, 4, 5},
+                                    {"equidistant", VL_LENS_FISHEYE, 4, 4},
+                                    {.name = NULL}};
 
 static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
                            vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  double intrinsics[4], pose[16];
+  double f[4], pose[16];
   const char *model = vl_camera_text(tree, "camera_model"),
              *sensor = vl_camera_text(tree, "sensor_type");
   if (sensor && !vl_text_is(sensor, "camera"))
@@ -39,13 +22,14 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
                               vl_short_text(sensor).text);
   if (model && !vl_text_is(model, "pinhole"))
     return vl_camera_unknown(file, tree, "camera_model", model, "there is pinhole");
-  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", intrinsics, 4),
+  VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", f, 4),
                         VL_FIELD_LIST("T_BS", pose, 16)));
-  VL_TRY(vl_camera_has(tree, "resolution")
-             ? vl_camera_side_pair(file, tree, "resolution", record)
-             : vl_camera_size_beside(file, NULL, record));
-  VL_TRY(read_lens(file, tree, d));
-  vl_camera_set_centred(d, intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]);
+  VL_TRY(vl_camera_size_pair(file, tree, "resolution", record));
+  if (vl_camera_has(tree, "distortion_model"))
+    VL_TRY(vl_camera_read_lens(file, tree, "distortion_model", "distortion_coefficients",
+                               lenses, "distortion_model",
+                               "there are radial-tangential, equidistant, none", d));
+  vl_camera_set_centred(d, f);
   vl_camera_set_matrix(d, pose, false);
   vl_camera_name(record, vl_camera_text(tree, "comment"));
   return VL_OK;

@@ -43,26 +43,64 @@ vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element
 vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object,
                               const char *const *names, uint32_t count, bool optional,
                               double *values) {
-  for (uint32_t i = 0; i < count; i++)
+  for (uint32_t i = 0; i < count && names[i]; i++)
     VL_TRY(read_field(
         file, object,
         &(vlCameraField){.key = names[i], .values = &values[i], .optional = optional}));
   return VL_OK;
 }
 
+void vl_camera_offer(const vlCameraFile *file, const json_t *camera, const char *name,
+                     vlCameraRecord *record, const json_t **chosen) {
+  if (!*chosen && vl_camera_is_frame(file, record->frames, name)) {
+    *chosen = camera;
+    vl_camera_name(record, name);
+  }
+  record->frames++;
+}
+
 const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,
                                const char *name_key, vlCameraRecord *record) {
-  record->frames = (uint32_t)json_array_size(list);
-  for (uint32_t i = 0; i < record->frames; i++) {
-    const json_t *item = json_array_get(list, i);
-    const char *name = name_key ? vl_camera_text(item, name_key) : NULL;
-    if (!vl_camera_is_frame(file, i, name))
-      continue;
-    if (name)
-      vl_camera_name(record, name);
-    return item;
+  const json_t *item, *chosen = NULL;
+  size_t i;
+  record->frames = 0;
+  json_array_foreach(list, i, item) vl_camera_offer(
+      file, item, name_key ? vl_camera_text(item, name_key) : NULL, record, &chosen);
+  return chosen;
+}
+
+vlResult vl_camera_none_in(const vlCameraFile *file, const json_t *object, const char *key,
+                           const char *what, uint32_t count) {
+  return vl_camera_wrong_in(file, object, key, "%s: there is no %s \"%s\" among the %u",
+                            file->dialect, what, vl_camera_asked(file, "0").text, count);
+}
+
+vlResult vl_camera_read_lens(const vlCameraFile *file, const json_t *object,
+                             const char *name_key, const char *list_key,
+                             const vlLensName *names, const char *what, const char *known,
+                             vlCameraDef *def) {
+  const char *name = vl_camera_text(object, name_key);
+  const bool perspective = def->projection == VL_PROJECTION_PERSPECTIVE;
+  double k[14] = {0.0};
+  uint32_t n = 0, least = names->least, most = names->most;
+  if (vl_text_is(name, "none"))
+    return VL_OK;
+  for (const vlLensName *lens = names; lens->name; lens++) {
+    least = lens->least < least ? lens->least : least;
+    most = lens->most > most ? lens->most : most;
   }
-  return NULL;
+  VL_TRY(vl_camera_numbers(file, object, list_key, k, least, most, &n));
+  for (; names->name; names++) {
+    if (!vl_text_is(name, names->name) || n < names->least || n > names->most)
+      continue;
+    if (!perspective && names->family != VL_LENS_OPENCV)
+      continue;
+    vl_camera_set_lens(def, names->family, k, n);
+    return VL_OK;
+  }
+  return vl_camera_wrong_in(file, object, name_key,
+                            "%s: unknown %s \"%s\" of %u coefficients; %s", file->dialect, what,
+                            vl_short_text(name).text, n, known);
 }
 
 bool vl_camera_set_sides(vlCameraDef *def, const double size[2]) {
@@ -135,8 +173,9 @@ static Values values_of(const vlCamera *c) {
 
 /* layout: the letter of vl_camera_put_form (fields.h); 0: separated by commas. */
 static void put_list(vlCameraText *text, const double *values, uint32_t count, char layout) {
-  const bool bracketed = layout >= '1' && layout <= '9';
-  const uint32_t step = bracketed ? (uint32_t)(layout - '0') : 1;
+  const bool round = layout == 'p', bracketed = round || (layout >= '1' && layout <= '9');
+  const uint32_t step = round ? 4 : bracketed ? (uint32_t)(layout - '0') : 1;
+  const char *open = round ? "(" : "[", *close = round ? ")" : "]";
   const char *mark = layout == 'q' ? "\"" : "";
   for (uint32_t i = 0; i < count; i++) {
     const bool first = bracketed && i % step == 0, last = bracketed && (i + 1) % step == 0;
@@ -144,7 +183,7 @@ static void put_list(vlCameraText *text, const double *values, uint32_t count, c
                   !i              ? ""
                   : layout == 's' ? " "
                                   : ", ",
-                  first ? "[" : "", mark, values[i] + 0.0, mark, last ? "]" : "");
+                  first ? open : "", mark, values[i] + 0.0, mark, last ? close : "");
   }
 }
 
@@ -167,7 +206,7 @@ static const char *parse_key(const char *at, Key *key) {
     key->index = (int)strtol(at + 1, &end, 10);
     at = end;
   }
-  if (*at != ':' || !at[1] || !strchr("sq134", at[1]))
+  if (*at != ':' || !at[1] || !strchr("sqp134", at[1]))
     return at;
   key->layout = at[1];
   return at + 2;
@@ -180,16 +219,32 @@ static const vlCameraValue *find_value(const vlCameraValue *list, const Key *key
   return NULL;
 }
 
-static void put_value(vlCameraText *text, const vlCameraRecord *record,
+static void put_name(vlCameraText *text, const vlFittedCamera *fit) {
+  const char *unnamed = fit->format->unnamed ? fit->format->unnamed : "camera";
+  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : unnamed);
+}
+
+static void put_named(vlCameraText *text, const vlFittedCamera *fit,
+                      const vlCameraValue *list) {
+  for (uint32_t i = 0; i < list->count && list->names[i]; i++)
+    VL_PUT_FORM(text, fit, list->part, VL_WORD("item", list->names[i]),
+                VL_VALUES("value", &list->values[i], 1));
+}
+
+static void put_value(vlCameraText *text, const vlFittedCamera *fit, const vlCameraValue *own,
                       const vlCameraValue *value, const Key *key) {
   if (value->word)
     vl_camera_put(text, "%s", value->word);
+  else if (value->names)
+    put_named(text, fit, value);
+  else if (value->part)
+    vl_camera_put_form(text, fit, own, value->part);
   else if (value->values && key->index >= 0)
     put_list(text, value->values + key->index, 1, key->layout);
   else if (value->values)
     put_list(text, value->values, value->count, key->layout);
   else
-    vl_camera_put_string(text, record->name[0] ? record->name : "camera");
+    put_name(text, fit);
 }
 
 vlResult vl_camera_put_form(vlCameraText *text, const vlFittedCamera *fit,
@@ -236,21 +291,14 @@ vlResult vl_camera_put_form(vlCameraText *text, const vlFittedCamera *fit,
       value = find_value(all, &key);
     assert(value); /* the form names what no list has */
     if (value)
-      put_value(text, fit->record, value, &key);
+      put_value(text, fit, own, value, &key);
   }
   return VL_OK;
 }
 
 vlResult vl_camera_write_form(const vlCameraFormat *format, const vlFittedCamera *fit,
                               vlCameraText *text) {
-  vlCameraRecord named = *fit->record;
-  if (!named.name[0] && format->unnamed)
-    vl_camera_name(&named, format->unnamed);
-  vlFittedCamera own = *fit;
-  own.record = &named;
-  if (fit->family == VL_LENS_FOV)
-    own.k[0] = fit->camera.shape[0];
   const uint32_t count = fit->count > format->least ? fit->count : format->least;
-  return VL_PUT_FORM(text, &own, format->form, VL_VALUES("k", own.k, count),
+  return VL_PUT_FORM(text, fit, format->form, VL_VALUES("k", fit->k, count),
                      VL_WORD("lens", format->lens_words[fit->family]));
 }

@@ -36,7 +36,8 @@ vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element
                                  const vlCameraField *rows);
 #define VL_READ_CHILDREN(file, element, ...) \
   vl_camera_read_children(file, element, (const vlCameraField[]){__VA_ARGS__, {.key = NULL}})
-/* Reads the numbers with these names into values, all required or all optional. */
+/* Reads the numbers with these names, up to the first null, into values: all required or all
+ * optional. */
 vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object,
                               const char *const *names, uint32_t count, bool optional,
                               double *values);
@@ -46,6 +47,28 @@ extern const char *const vl_camera_matrix_names[4];
  * may be null and becomes the record's name. Sets record->frames. Null: it is not there. */
 const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,
                                const char *name_key, vlCameraRecord *record);
+/* A name that a dialect gives to a lens, and how many coefficients it may have. */
+typedef struct vlLensName {
+  const char *name; /* null ends a list */
+  vlLensFamily family;
+  uint32_t least, most;
+} vlLensName;
+/* Reads a lens: its name at name_key, which may be "none", and its coefficients at list_key.
+ * The message about another name or number says that it is no known `what`; known: "there are
+ * A, B". */
+vlResult vl_camera_read_lens(const vlCameraFile *file, const json_t *object,
+                             const char *name_key, const char *list_key,
+                             const vlLensName *names, const char *what, const char *known,
+                             vlCameraDef *def);
+/* Counts a camera of the file. If it is the first that the caller asked for, by its number or
+ * by this name, which may be null, *chosen becomes this camera, and the record gets the
+ * name. */
+void vl_camera_offer(const vlCameraFile *file, const json_t *camera, const char *name,
+                     vlCameraRecord *record, const json_t **chosen);
+/* Reports that the camera that the caller asked for is not in the list at object[key]. what:
+ * the format's word for a camera. */
+vlResult vl_camera_none_in(const vlCameraFile *file, const json_t *object, const char *key,
+                           const char *what, uint32_t count);
 /* Sets the image's size. Returns false if it is not 1 to 16777216 whole pixels. */
 bool vl_camera_set_sides(vlCameraDef *def, const double size[2]);
 /* Reports an unknown word at object[key]. known: "there are A, B". */
@@ -65,12 +88,20 @@ typedef struct vlCameraValue {
   const char *key;
   const double *values;
   uint32_t count;
-  const char *word; /* in place of values */
+  const char *word;         /* in place of values */
+  const char *part;         /* in place of values: a form with the same keys */
+  const char *const *names; /* of the values: part is written for each, with $item, $value */
 } vlCameraValue;
 #define VL_VALUES(name, pointer, length) \
   { .key = name, .values = pointer, .count = length }
 #define VL_WORD(name, text) \
   { .key = name, .word = text }
+/* A form for each value that has a name, up to the first null. */
+#define VL_NAMED(name, item_names, pointer, length, form) \
+  { .key = name, .names = item_names, .values = pointer, .count = length, .part = form }
+/* A form that is left out unless it is present. */
+#define VL_PART(name, present, form) \
+  { .key = name, .part = (present) ? form : "" }
 /* Appends a text in which $key stands for a value. Every dialect has
  *   $width $height, $fx $fy $skew $cx $cy, $cx0 $cy0 (from the centre of the first pixel),
  *     $near $far;
@@ -83,7 +114,8 @@ typedef struct vlCameraValue {
  *     last column.
  * $key@N is number N of a list, from 0. Lists are written as "1, 2, 3"; after :s as "1 2 3";
  * after :q with each number in quotation marks; after :1, :3 or :4 in brackets, so many at a
- * time. Returns VL_OK: text->failed says if memory is lacking. */
+ * time; after :p in parentheses, four at a time. Returns VL_OK: text->failed says if memory is
+ * lacking. */
 vlResult vl_camera_put_form(vlCameraText *text, const vlFittedCamera *fit,
                             const vlCameraValue *own, const char *form);
 #define VL_PUT_FORM(text, fit, form, ...) \

@@ -114,6 +114,9 @@ vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const c
 /* Reads a list of two numbers, width and height. */
 vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key,
                              vlCameraRecord *record);
+/* The same if the key exists; otherwise like vl_camera_size_beside without images. */
+vlResult vl_camera_size_pair(const vlCameraFile *file, const json_t *object, const char *key,
+                             vlCameraRecord *record);
 /* Reads between `least` and `most` numbers from a list, a list of lists, or FileStorage's
  * {rows, cols, data}. */
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
@@ -164,8 +167,6 @@ void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count);
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other);
 /* Appends numbers as "1, 2, 3". */
 void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t count);
-/* Appends a 4 x 4 matrix as "[1, 2, 3, 4], [...], [...], [...]". */
-void vl_camera_put_rows(vlCameraText *text, const double m[16]);
 /* Appends a quoted string, for JSON and YAML. */
 void vl_camera_put_string(vlCameraText *text, const char *string);
 /* Returns VL_OK if the camera does not use the field or if it may be dropped. Otherwise returns
@@ -181,7 +182,7 @@ typedef enum vlLensFamily {
   VL_LENS_PINHOLE,
   VL_LENS_OPENCV,  /* k has count coefficients */
   VL_LENS_FISHEYE, /* k1 to k4 */
-  VL_LENS_FOV,     /* shape[0] */
+  VL_LENS_FOV,     /* its only coefficient is shape[0] */
   VL_LENS_UNIFIED, /* shape[0], and OpenCV's distortion, whose count may be 0 */
   VL_LENS_EUCM,
   VL_LENS_DOUBLE_SPHERE,
@@ -193,6 +194,7 @@ struct vlCameraFormat;
 /* A camera that its dialect can hold. */
 typedef struct vlFittedCamera {
   const vlCameraFile *file;
+  const struct vlCameraFormat *format;
   const vlCameraRecord *record;
   vlCamera camera;     /* of the record */
   vlLensFamily family; /* of the lens; k: its coefficients (vl_camera_lens_family) */
@@ -214,15 +216,19 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count);
 /* ---- lenses ------------------------------------------------------------------------------ */
 
 /* Sets fx, fy, cx, cy from values for which the centre of the first pixel is (0, 0). */
-void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy);
+void vl_camera_set_centred(vlCameraDef *def, const double f[4]);
 /* The same and the skew from the matrix fx skew cx, 0 fy cy, 0 0 1; false: it is none, or skew
  * is not allowed. */
 bool vl_camera_set_intrinsics(vlCameraDef *def, const double k[9], bool skew);
 /* Sets OpenCV's distortion. Zeros are appended up to the next number of coefficients that
  * OpenCV allows. */
 void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count);
+/* The same with as few coefficients as the values need. */
+void vl_camera_set_shortest(vlCameraDef *def, const double *k, uint32_t count);
 /* Sets OpenCV's fisheye: k1 to k4. */
 void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]);
+/* Sets the lens of a family, with its coefficients; a pinhole leaves the def as it is. */
+void vl_camera_set_lens(vlCameraDef *def, vlLensFamily family, const double *k, uint32_t count);
 /* The family of a camera's lens, with its coefficients. */
 vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_t *count);
 

@@ -197,8 +197,13 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
   vlCamera *c = &fit->camera;
   VL_TRY(hold(file, d, format->holds, c));
   fit->file = file;
+  fit->format = format;
   fit->record = record;
   fit->family = vl_camera_lens_family(d, fit->k, &fit->count);
+  if (fit->family == VL_LENS_FOV) {
+    fit->k[0] = c->shape[0];
+    fit->count = 1;
+  }
   const bool known = format->lenses >> fit->family & 1 && fit->count <= format->most;
   if (!format->plain && format->lenses && !known)
     return vl_camera_no_model(file, d);

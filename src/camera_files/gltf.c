@@ -270,30 +270,25 @@ static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
     if (fabs(dots[k]) > 1e-9 * sqrt(squares[k] * squares[(k + 1) % 3]))
       return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
                         "gltf cannot hold a pose that shears");
-  vl_camera_put(
-      text,
-      "{\n  \"asset\": {\"version\": \"2.0\", \"generator\": \"velo\"},\n  \"scene\": 0,\n");
-  vl_camera_put(text, "  \"scenes\": [{\"nodes\": [0]}],\n  \"nodes\": [{\n    \"name\": ");
-  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : "Camera");
-  vl_camera_put(text, ",\n    \"camera\": 0,\n    \"matrix\": [");
-  for (int i = 0; i < 16; i++)
-    vl_camera_put(text, "%s%.17g", i ? ", " : "", m[4 * (i % 4) + i / 4]);
-  vl_camera_put(text, "]\n  }],\n  \"cameras\": [{\n    \"type\": \"%s\",\n    \"%s\": {",
-                n.flat ? "orthographic" : "perspective",
-                n.flat ? "orthographic" : "perspective");
-  if (n.flat)
-    vl_camera_put(text, "\"xmag\": %.17g, \"ymag\": %.17g", n.xmag, n.ymag);
-  else
-    vl_camera_put(text, "\"aspectRatio\": %.17g, \"yfov\": %.17g", n.aspect, n.yfov);
   /* glTF requires a near plane, and a far plane of orthographic cameras; the extras record that
    * the camera has none */
   double near_plane =
       c->near_plane > 0.0 || n.flat ? c->near_plane : fmin(0.01, 1e-3 * c->far_plane);
-  vl_camera_put(text, ", \"znear\": %.17g", near_plane);
-  if (!isinf(c->far_plane) || n.flat)
-    vl_camera_put(text, ", \"zfar\": %.17g",
-                  isinf(c->far_plane) ? near_plane + 1e4 : c->far_plane);
-  vl_camera_put(text, "},\n    \"extras\": {\"velo\": ");
+  const double planes[2] = {near_plane, isinf(c->far_plane) ? near_plane + 1e4 : c->far_plane};
+  const double sides[4] = {n.xmag, n.ymag, n.aspect, n.yfov};
+  VL_PUT_FORM(
+      text, fit,
+      "{\n  \"asset\": {\"version\": \"2.0\", \"generator\": \"velo\"},\n  \"scene\": 0,\n"
+      "  \"scenes\": [{\"nodes\": [0]}],\n  \"nodes\": [{\n    \"name\": $name"
+      ",\n    \"camera\": 0,\n    \"matrix\": [$flippedcolumns]\n  }],\n  \"cameras\": [{\n"
+      "    \"type\": \"$type\",\n    \"$type\": {$sides, \"znear\": $planes@0$end},\n"
+      "    \"extras\": {\"velo\": ",
+      VL_WORD("type", n.flat ? "orthographic" : "perspective"),
+      {.key = "sides",
+       .part = n.flat ? "\"xmag\": $own@0, \"ymag\": $own@1"
+                      : "\"aspectRatio\": $own@2, \"yfov\": $own@3"},
+      VL_VALUES("own", sides, 4), VL_VALUES("planes", planes, 2),
+      VL_PART("end", !isinf(c->far_plane) || n.flat, ", \"zfar\": $planes@1"));
   vlCameraText whole = {.context = text->context};
   result = vl_camera_write_velo(fit, &whole);
   vl_camera_put_text(text, &whole);
@@ -307,4 +302,5 @@ const vlCameraFormat vl_format_gltf = {
     .marks = {"asset"},
     .read = read_gltf,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES,
+    .unnamed = "Camera",
     .write = write_gltf};

@@ -108,3 +108,9 @@ vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, con
   record->camera.height = (uint32_t)size[1];
   return VL_OK;
 }
+
+vlResult vl_camera_size_pair(const vlCameraFile *file, const json_t *object, const char *key,
+                             vlCameraRecord *record) {
+  return vl_camera_has(object, key) ? vl_camera_side_pair(file, object, key, record)
+                                    : vl_camera_size_beside(file, NULL, record);
+}

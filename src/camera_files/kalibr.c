@@ -43,16 +43,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraD
     return vl_camera_wrong_in(file, cam, "distortion_coeffs",
                               "kalibr: \"distortion_coeffs\" holds %u numbers; %s has %d", n,
                               lens, fov ? 1 : 4);
-  if (fov) {
-    d->projection = VL_PROJECTION_FOV;
-    d->shape[0] = k[0];
-    return VL_OK;
-  }
-  if (equi)
-    d->projection = VL_PROJECTION_EQUIDISTANT;
-  d->distortion = equi ? VL_DISTORTION_RADIAL : VL_DISTORTION_OPENCV;
-  d->distortion_count = 4;
-  memcpy(d->distortion_coefficients, k, sizeof k);
+  vl_camera_set_lens(d, fov ? VL_LENS_FOV : equi ? VL_LENS_FISHEYE : VL_LENS_OPENCV, k, n);
   return VL_OK;
 }
 
@@ -71,13 +62,10 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
   d->projection = model->projection;
   VL_TRY(vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4,
                            NULL));
-  bool sized = vl_camera_has(cam, "resolution");
-  VL_TRY(sized ? vl_camera_side_pair(file, cam, "resolution", record)
-               : vl_camera_size_beside(file, NULL, record));
+  VL_TRY(vl_camera_size_pair(file, cam, "resolution", record));
   for (uint32_t i = 0; i < model->shapes; i++)
     d->shape[i] = k[i];
-  const double *f = k + model->shapes;
-  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
+  vl_camera_set_centred(d, k + model->shapes);
   return read_lens(file, cam, d);
 }
 
@@ -149,56 +137,43 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree,
 static vlResult write_kalibr(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCameraDef *d = &fit->record->camera;
   const vlCamera *c = &fit->camera;
-  double k[14] = {0};
-  uint32_t n = 0;
-  bool fov = d->projection == VL_PROJECTION_FOV,
-       equi = d->projection == VL_PROJECTION_EQUIDISTANT;
-  const char *lens = "none";
-  const Model *model = fov || equi ? &models[0] : NULL;
+  const bool fov = fit->family == VL_LENS_FOV, equi = fit->family == VL_LENS_FISHEYE;
+  const uint32_t n = fov ? 1 : equi || d->distortion != VL_DISTORTION_NONE ? 4 : 0;
+  bool fits = fit->family != VL_LENS_OTHER;
+  const Model *model = &models[0];
   for (int i = 0; i < MODELS; i++)
     if (d->projection == models[i].projection)
       model = &models[i];
-  if (!model)
+  for (int i = 4; i < 14; i++)
+    fits = fits && fit->k[i] == 0.0;
+  if (!fits)
     return vl_camera_no_model(fit->file, d);
-  if (fov) {
-    if (d->distortion != VL_DISTORTION_NONE)
-      return vl_camera_no_model(fit->file, d);
-    k[0] = d->shape[0];
-    n = 1;
-    lens = "fov";
-  } else if (equi) {
-    if (d->distortion != VL_DISTORTION_NONE && d->distortion != VL_DISTORTION_RADIAL)
-      return vl_camera_no_model(fit->file, d);
-    memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
-    n = 4;
-    lens = "equidistant";
-  } else if (d->distortion != VL_DISTORTION_NONE) {
-    bool fits = vl_camera_as_opencv(d, k, &n);
-    for (int i = 4; i < 14; i++)
-      fits = fits && k[i] == 0.0;
-    if (!fits || model->shapes == 2)
-      return vl_camera_no_model(fit->file, d);
-    n = 4;
-    lens = "radtan";
-  }
-  vl_camera_put(text, "cam0:\n  camera_model: %s\n  intrinsics: [", model->name);
-  for (uint32_t i = 0; i < model->shapes; i++)
-    vl_camera_put(text, "%.17g, ", c->shape[i]);
-  VL_PUT_FORM(text, fit,
-              "$fx, $fy, $cx0, $cy0]\n  distortion_model: $lens\n  distortion_coeffs: [$k]\n"
-              "  resolution: [$width, $height]\n",
-              VL_WORD("lens", lens), VL_VALUES("k", k, n));
   bool posed = false;
   for (int i = 0; i < 16; i++)
     posed = posed || c->camera_from_world[i] != (i % 5 == 0 ? 1.0 : 0.0);
-  if (posed)
-    vl_camera_put(text, "  T_cam_imu:\n"); /* the world's space is the IMU's */
-  for (int i = 0; i < 16 && posed; i += 4) {
-    vl_camera_put(text, "  - [");
-    vl_camera_put_numbers(text, c->camera_from_world + i, 4);
-    vl_camera_put(text, "]\n");
-  }
-  return VL_OK;
+  /* the world's space is the IMU's */
+  return VL_PUT_FORM(
+      text, fit,
+      "cam0:\n  camera_model: $model\n  intrinsics: [$shapes$fx, $fy, $cx0, $cy0]\n"
+      "  distortion_model: $lens\n  distortion_coeffs: [$k]\n"
+      "  resolution: [$width, $height]\n$imu",
+      VL_WORD("model", model->name),
+      {.key = "shapes",
+       .part = model->shapes == 2   ? "$shape, "
+               : model->shapes == 1 ? "$shape@0, "
+                                    : ""},
+      VL_VALUES("shape", c->shape, 2),
+      VL_WORD("lens", fov    ? "fov"
+                      : equi ? "equidistant"
+                      : n    ? "radtan"
+                             : "none"),
+      VL_VALUES("k", fit->k, n),
+      VL_PART("imu", posed,
+              "  T_cam_imu:\n  - [$rows@0, $rows@1, $rows@2, $rows@3]\n"
+              "  - [$rows@4, $rows@5, $rows@6, $rows@7]\n"
+              "  - [$rows@8, $rows@9, $rows@10, $rows@11]\n"
+              "  - [$rows@12, $rows@13, $rows@14, $rows@15]\n"),
+      VL_VALUES("rows", c->camera_from_world, 16));
 }
 
 const vlCameraFormat vl_format_kalibr = {

@@ -49,7 +49,7 @@ static vlResult read_projection(const vlCameraFile *file, const Row *row, uint32
   /* the images beside the two kinds of file */
   snprintf(odometry, sizeof odometry, "image_%u/000000.png", camera);
   snprintf(object, sizeof object, "../image_%u/000000.png", camera);
-  vl_camera_set_centred(d, p[0], p[5], p[2], p[6]);
+  vl_camera_set_centred(d, (double[]){p[0], p[5], p[2], p[6]});
   const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const double t[3] = {(p[3] - p[2] * p[11]) / p[0], (p[7] - p[6] * p[11]) / p[5], p[11]};
   vl_camera_set_pose(d, r, t);

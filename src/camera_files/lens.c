@@ -8,17 +8,17 @@
 #include "velo/distortion.h"
 #include "velo/projection.h"
 
-void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy) {
-  def->fx = fx;
-  def->fy = fy;
-  def->cx = cx + 0.5;
-  def->cy = cy + 0.5;
+void vl_camera_set_centred(vlCameraDef *def, const double f[4]) {
+  def->fx = f[0];
+  def->fy = f[1];
+  def->cx = f[2] + 0.5;
+  def->cy = f[3] + 0.5;
 }
 
 bool vl_camera_set_intrinsics(vlCameraDef *d, const double k[9], bool skew) {
   if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0 || (!skew && k[1] != 0.0))
     return false;
-  vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
+  vl_camera_set_centred(d, (double[]){k[0], k[4], k[2], k[5]});
   d->skew = k[1];
   return true;
 }
@@ -34,11 +34,34 @@ void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count) {
       def->distortion_count = counts[i];
 }
 
+void vl_camera_set_shortest(vlCameraDef *def, const double *k, uint32_t count) {
+  while (count && k[count - 1] == 0.0)
+    count--;
+  vl_camera_set_opencv(def, k, count);
+}
+
 void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]) {
   def->projection = VL_PROJECTION_EQUIDISTANT;
   def->distortion = VL_DISTORTION_RADIAL;
   def->distortion_count = 4;
   memcpy(def->distortion_coefficients, k, 4 * sizeof *k);
+}
+
+void vl_camera_set_lens(vlCameraDef *def, vlLensFamily family, const double *k,
+                        uint32_t count) {
+  static const vlProjection projections[VL_LENS_OTHER] = {
+      [VL_LENS_FOV] = VL_PROJECTION_FOV,
+      [VL_LENS_UNIFIED] = VL_PROJECTION_UNIFIED,
+      [VL_LENS_EUCM] = VL_PROJECTION_EUCM,
+      [VL_LENS_DOUBLE_SPHERE] = VL_PROJECTION_DOUBLE_SPHERE};
+  if (family >= VL_LENS_FOV)
+    def->projection = projections[family];
+  if (family == VL_LENS_OPENCV || family == VL_LENS_UNIFIED)
+    vl_camera_set_opencv(def, k, count);
+  if (family == VL_LENS_FISHEYE)
+    vl_camera_set_fisheye(def, k);
+  if (family == VL_LENS_FOV)
+    def->shape[0] = k[0];
 }
 
 vlLensFamily vl_camera_lens_family(const vlCameraDef *d, double k[14], uint32_t *count) {

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/transform.h"
 
 typedef struct {
@@ -243,23 +243,18 @@ static vlResult write_matrices(const vlFittedCamera *fit, vlCameraText *text) {
   for (int i = 4; i < 12; i++)
     view.m[i] = 0.0 - view.m[i];
   bool transposed = api->rows_first == api->row_vectors;
-  vl_camera_put(text, "{\n  \"graphics_api\": \"%s\",\n", api->name);
-  if (fit->record->name[0]) {
-    vl_camera_put(text, "  \"name\": ");
-    vl_camera_put_string(text, fit->record->name);
-    vl_camera_put(text, ",\n");
-  }
-  vl_camera_put(text, "  \"width\": %u,\n  \"height\": %u,\n  \"pixel_origin\": \"corner\",\n",
-                c->width, c->height);
-  vl_camera_put(text,
-                "  \"view_axes\": \"x right, y up, z back\",\n  \"order\": \"%s\",\n  "
-                "\"vectors\": \"%s\",\n",
-                api->rows_first ? "row-major" : "column-major",
-                api->row_vectors ? "row" : "column");
-  vl_camera_put(text, "  \"clip_y\": \"%s\",\n  \"clip_z\": [%g, 1],\n",
-                api->down ? "down" : "up", api->z_near);
-  vl_camera_put(text, "  \"near_plane\": %.17g,\n  \"far_plane\": ", c->near_plane);
-  vl_camera_put(text, isinf(c->far_plane) ? "null,\n" : "%.17g,\n", c->far_plane);
+  VL_PUT_FORM(
+      text, fit,
+      "{\n  \"graphics_api\": \"$api\",\n$named"
+      "  \"width\": $width,\n  \"height\": $height,\n  \"pixel_origin\": \"corner\",\n"
+      "  \"view_axes\": \"x right, y up, z back\",\n  \"order\": \"$order\",\n"
+      "  \"vectors\": \"$vectors\",\n  \"clip_y\": \"$clip\",\n  \"clip_z\": [$lowest, 1],\n"
+      "  \"near_plane\": $near,\n  \"far_plane\": $end,\n",
+      VL_WORD("api", api->name), VL_PART("named", fit->record->name[0], "  \"name\": $name,\n"),
+      VL_WORD("order", api->rows_first ? "row-major" : "column-major"),
+      VL_WORD("vectors", api->row_vectors ? "row" : "column"),
+      VL_WORD("clip", api->down ? "down" : "up"), VL_VALUES("lowest", &api->z_near, 1),
+      {.key = "end", .part = isinf(c->far_plane) ? "null" : "$far"});
   put_matrix(text, "projection_matrix", &projection, transposed);
   vl_camera_put(text, ",\n");
   put_matrix(text, "view_matrix", &view, transposed);

@@ -216,38 +216,27 @@ static vlResult write_metashape(const vlFittedCamera *fit, vlCameraText *text) {
              fit->count > 5) {
     return vl_camera_no_model(fit->file, d);
   }
-  const char *type = fisheye ? "fisheye" : "frame";
   const char *name = fit->record->name[0] && !strpbrk(fit->record->name, "<>&\"")
                          ? fit->record->name
                          : "camera";
-  vl_camera_put(text,
-                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n  "
-                "<chunk label=\"Chunk\" enabled=\"true\">\n    <sensors next_id=\"1\">\n");
-  vl_camera_put(
-      text,
-      "      <sensor id=\"0\" label=\"sensor\" type=\"%s\">\n        <resolution width=\"%u\" "
-      "height=\"%u\"/>\n",
-      type, c->width, c->height);
-  vl_camera_put(text,
-                "        <calibration type=\"%s\" class=\"adjusted\">\n          <resolution "
-                "width=\"%u\" height=\"%u\"/>\n          <f>%.17g</f>\n",
-                type, c->width, c->height, c->fy);
-  vl_camera_put(text, "          <cx>%.17g</cx>\n          <cy>%.17g</cy>\n",
-                c->cx - 0.5 * c->width + 0.0, c->cy - 0.5 * c->height + 0.0);
-  vl_camera_put(text, "          <b1>%.17g</b1>\n          <b2>%.17g</b2>\n",
-                c->fx - c->fy + 0.0, c->skew + 0.0);
-  for (int i = 0; i < 6; i++)
-    vl_camera_put(text, "          <%s>%.17g</%s>\n", names[i], k[i] + 0.0, names[i]);
-  vl_camera_put(
-      text,
+  const double plane[4] = {c->cx - 0.5 * c->width, c->cy - 0.5 * c->height, c->fx - c->fy,
+                           c->skew};
+  return VL_PUT_FORM(
+      text, fit,
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n  "
+      "<chunk label=\"Chunk\" enabled=\"true\">\n    <sensors next_id=\"1\">\n"
+      "      <sensor id=\"0\" label=\"sensor\" type=\"$type\">\n"
+      "        <resolution width=\"$width\" height=\"$height\"/>\n"
+      "        <calibration type=\"$type\" class=\"adjusted\">\n"
+      "          <resolution width=\"$width\" height=\"$height\"/>\n          <f>$fy</f>\n"
+      "          <cx>$plane@0</cx>\n          <cy>$plane@1</cy>\n"
+      "          <b1>$plane@2</b1>\n          <b2>$plane@3</b2>\n$lens"
       "        </calibration>\n      </sensor>\n    </sensors>\n    <cameras next_id=\"1\">\n"
-      "      <camera id=\"0\" sensor_id=\"0\" label=\"%s\">\n        <transform>",
-      name);
-  for (int i = 0; i < 16; i++)
-    vl_camera_put(text, "%s%.17g", i ? " " : "", c->world_from_camera[i] + 0.0);
-  vl_camera_put(text,
-                "</transform>\n      </camera>\n    </cameras>\n  </chunk>\n</document>\n");
-  return VL_OK;
+      "      <camera id=\"0\" sensor_id=\"0\" label=\"$own\">\n"
+      "        <transform>$pose:s</transform>\n"
+      "      </camera>\n    </cameras>\n  </chunk>\n</document>\n",
+      VL_WORD("type", fisheye ? "fisheye" : "frame"), VL_VALUES("plane", plane, 4),
+      VL_NAMED("lens", names, k, 6, "          <$item>$value</$item>\n"), VL_WORD("own", name));
 }
 
 const vlCameraFormat vl_format_metashape = {

@@ -439,10 +439,6 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
-static void put_float(vlCameraText *text, const char *name, double value) {
-  vl_camera_put(text, "    <float name=\"%s\" value=\"%.17g\"/>\n", name, value + 0.0);
-}
-
 static void put_name(vlCameraText *text, const char *name) {
   for (; *name; name++) {
     if (strchr("<>&\"", *name) || (unsigned char)*name < 0x20)
@@ -468,51 +464,49 @@ static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
     m[i] *= 0.5 * c->width / c->fx;
     m[i + 1] *= 0.5 * c->width / c->fy;
   }
+  const double fov = 2.0 * vl_precise_atan(0.5 * c->width / c->fx) / degree;
+  const double offset[2] = {0.5 - c->cx / c->width, 0.5 - c->cy / c->height};
+  const bool focused =
+      !isinf(c->focus_distance) && !vl_camera_drops(fit->file, "focus_distance");
+  const bool timed = c->shutter_open != 0.0 || c->shutter_close != 1.0;
+  const struct {
+    const char *name;
+    double value;
+    bool present;
+  } numbers[] = {{"fov", fov, !flat},
+                 {"principal_point_offset_x", offset[0], !centred && c->cx != 0.5 * c->width},
+                 {"principal_point_offset_y", offset[1], !centred && c->cy != 0.5 * c->height},
+                 {"aperture_radius", c->lens_radius, lens},
+                 {"focus_distance", c->focus_distance, focused},
+                 {"near_clip", c->near_plane, c->near_plane > 0.0},
+                 {"far_clip", c->far_plane, !isinf(c->far_plane)},
+                 {"shutter_open", c->shutter_open, timed},
+                 {"shutter_close", c->shutter_close, timed}};
   vl_camera_put(
       text,
       "<!-- pixels count from the film's upper left corner; camera axes x left, y up, z "
-      "forward -->\n");
-  vl_camera_put(text, "<scene version=\"3.0.0\">\n  <sensor type=\"%s\"",
-                flat   ? "orthographic"
-                : lens ? "thinlens"
-                       : "perspective");
+      "forward -->\n<scene version=\"3.0.0\">\n  <sensor type=\"%s\"",
+      flat   ? "orthographic"
+      : lens ? "thinlens"
+             : "perspective");
   if (fit->record->name[0]) {
     vl_camera_put(text, " id=\"");
     put_name(text, fit->record->name);
     vl_camera_put(text, "\"");
   }
-  vl_camera_put(text, ">\n    <transform name=\"to_world\">\n      <matrix value=\"");
-  for (int i = 0; i < 16; i++)
-    vl_camera_put(text, "%s%.17g", i ? " " : "", m[i]);
-  vl_camera_put(text, "\"/>\n    </transform>\n");
-  if (!flat) {
-    vl_camera_put(text, "    <string name=\"fov_axis\" value=\"x\"/>\n");
-    put_float(text, "fov", 2.0 * vl_precise_atan(0.5 * c->width / c->fx) / degree);
-  }
-  if (!centred && c->cx != 0.5 * c->width)
-    put_float(text, "principal_point_offset_x", 0.5 - c->cx / c->width);
-  if (!centred && c->cy != 0.5 * c->height)
-    put_float(text, "principal_point_offset_y", 0.5 - c->cy / c->height);
-  if (lens)
-    put_float(text, "aperture_radius", c->lens_radius);
-  if (!isinf(c->focus_distance) && !vl_camera_drops(fit->file, "focus_distance"))
-    put_float(text, "focus_distance", c->focus_distance);
-  if (c->near_plane > 0.0)
-    put_float(text, "near_clip", c->near_plane);
-  if (!isinf(c->far_plane))
-    put_float(text, "far_clip", c->far_plane);
-  if (c->shutter_open != 0.0 || c->shutter_close != 1.0) {
-    put_float(text, "shutter_open", c->shutter_open);
-    put_float(text, "shutter_close", c->shutter_close);
-  }
-  vl_camera_put(text,
-                "    <film type=\"hdrfilm\">\n      <integer name=\"width\" value=\"%u\"/>\n",
-                c->width);
-  vl_camera_put(
-      text,
-      "      <integer name=\"height\" value=\"%u\"/>\n    </film>\n  </sensor>\n</scene>\n",
-      c->height);
-  return VL_OK;
+  VL_PUT_FORM(text, fit,
+              ">\n    <transform name=\"to_world\">\n      <matrix value=\"$matrix:s\"/>\n"
+              "    </transform>\n$axis",
+              VL_VALUES("matrix", m, 16),
+              VL_PART("axis", !flat, "    <string name=\"fov_axis\" value=\"x\"/>\n"));
+  for (size_t i = 0; i < VL_LENGTH(numbers); i++)
+    if (numbers[i].present)
+      vl_camera_put(text, "    <float name=\"%s\" value=\"%.17g\"/>\n", numbers[i].name,
+                    numbers[i].value + 0.0);
+  return vl_camera_put_form(text, fit, NULL,
+                            "    <film type=\"hdrfilm\">\n      <integer name=\"width\" "
+                            "value=\"$width\"/>\n      <integer name=\"height\" "
+                            "value=\"$height\"/>\n    </film>\n  </sensor>\n</scene>\n");
 }
 
 static bool is_mitsuba(const char *text, size_t size) {

@@ -190,43 +190,34 @@ static vlResult read_nerf(const vlCameraFile *file, const json_t *tree,
 }
 
 static vlResult write_nerf(const vlFittedCamera *fit, vlCameraText *text) {
-  static const char *const radial_names[] = {"k1", "k2", "k3", "k4"}, *const names[] = {
-                                                                          "k1", "k2", "p1",
-                                                                          "p2", "k3"};
+  static const char *const radial[] = {"k1", "k2", "k3", "k4"};
+  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"};
   const vlCameraDef *d = &fit->record->camera;
-  double k[14] = {0};
-  uint32_t n = 0;
-  bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT,
-       aria = fisheye && d->distortion == VL_DISTORTION_RAD_TAN_THIN_PRISM;
-  if (aria) {
-    n = 0; /* its coefficients are a list */
-  } else if (fisheye &&
-             (d->distortion == VL_DISTORTION_RADIAL || d->distortion == VL_DISTORTION_NONE)) {
-    memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
-    n = 4;
-  } else if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n)) {
-    return vl_camera_no_model(fit->file, d);
-  }
+  const bool aria = d->projection == VL_PROJECTION_EQUIDISTANT &&
+                    d->distortion == VL_DISTORTION_RAD_TAN_THIN_PRISM;
+  const bool fisheye = fit->family == VL_LENS_FISHEYE;
+  bool fits = aria || fit->family <= VL_LENS_FISHEYE;
   for (int i = 5; i < 14; i++)
-    if (k[i] != 0.0)
-      return vl_camera_no_model(fit->file, d);
-  VL_PUT_FORM(text, fit,
-              "{\n  \"camera_model\": \"$model\",\n  \"w\": $width,\n  \"h\": $height,\n  "
-              "\"fl_x\": $fx,\n"
-              "  \"fl_y\": $fy,\n  \"cx\": $cx,\n  \"cy\": $cy",
-              VL_WORD("model", aria      ? "FISHEYE624"
-                               : fisheye ? "OPENCV_FISHEYE"
-                               : n       ? "OPENCV"
-                                         : "PINHOLE"));
-  for (uint32_t i = 0; n && i < (fisheye ? 4u : 5u); i++)
-    vl_camera_put(text, ",\n  \"%s\": %.17g", fisheye ? radial_names[i] : names[i], k[i]);
-  for (uint32_t i = 0; aria && i < 12; i++)
-    vl_camera_put(text, "%s%.17g%s", i ? ", " : ",\n  \"distortion_params\": [",
-                  d->distortion_coefficients[i], i == 11 ? "]" : "");
-  vl_camera_put(text, ",\n  \"frames\": [\n    {\"file_path\": ");
-  vl_camera_put_string(text, fit->record->name);
-  return vl_camera_put_form(text, fit, NULL,
-                            ",\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n");
+    fits = fits && fit->k[i] == 0.0;
+  if (!fits)
+    return vl_camera_no_model(fit->file, d);
+  return VL_PUT_FORM(
+      text, fit,
+      "{\n  \"camera_model\": \"$model\",\n  \"w\": $width,\n  \"h\": $height,\n  "
+      "\"fl_x\": $fx,\n"
+      "  \"fl_y\": $fy,\n  \"cx\": $cx,\n  \"cy\": $cy$lens$aria,\n  \"frames\": [\n"
+      "    {\"file_path\": $name,\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n",
+      VL_WORD("model", aria         ? "FISHEYE624"
+                       : fisheye    ? "OPENCV_FISHEYE"
+                       : fit->count ? "OPENCV"
+                                    : "PINHOLE"),
+      VL_NAMED("lens", fisheye ? radial : brown, fit->k,
+               fisheye      ? 4
+               : fit->count ? 5
+                            : 0,
+               ",\n  \"$item\": $value"),
+      VL_PART("aria", aria, ",\n  \"distortion_params\": [$params]"),
+      VL_VALUES("params", d->distortion_coefficients, 12));
 }
 
 const vlCameraFormat vl_format_nerf = {
@@ -246,4 +237,5 @@ const vlCameraFormat vl_format_nerf = {
         "distortion_params fisheye_crop_radius",
     .read = read_nerf,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE,
+    .unnamed = "",
     .write = write_nerf};

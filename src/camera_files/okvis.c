@@ -5,48 +5,30 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 
-static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
-  const char *name;
-  double k[8] = {0};
-  uint32_t n = 0;
-  VL_TRY(vl_camera_word(file, camera, "distortion_type", &name));
-  if (vl_text_is(name, "none"))
-    return VL_OK;
-  VL_TRY(vl_camera_numbers(file, camera, "distortion_coefficients", k, 4, 8, &n));
-  bool plain = vl_text_is(name, "radialtangential"),
-       full = vl_text_is(name, "radialtangential8");
-  bool fisheye = vl_text_is(name, "equidistant");
-  if ((plain || fisheye) && n == 4) {
-    fisheye ? vl_camera_set_fisheye(d, k) : vl_camera_set_opencv(d, k, n);
-  } else if (full && n == 8) {
-    vl_camera_set_opencv(d, k, n);
-  } else {
-    return vl_camera_wrong_in(
-        file, camera, "distortion_type",
-        "okvis: unknown distortion_type \"%s\" of %u coefficients; there are radialtangential "
-        "and equidistant of 4, radialtangential8 of 8, none",
-        vl_short_text(name).text, n);
-  }
-  return VL_OK;
-}
+static const vlLensName lenses[] = {{"radialtangential", VL_LENS_OPENCV, 4, 4},
+                                    {"radialtangential8", VL_LENS_OPENCV, 8, 8},
+                                    {"equidistant", VL_LENS_FISHEYE, 4, 4},
+                                    {.name = NULL}};
 
 static vlResult read_okvis(const vlCameraFile *file, const json_t *tree,
                            vlCameraRecord *record) {
   const json_t *camera = vl_camera_choose(file, json_object_get(tree, "cameras"), NULL, record);
   vlCameraDef *d = &record->camera;
-  double m[16], f[2], c[2];
+  double m[16], f[4];
+  const json_t *name;
   if (!camera)
-    return vl_camera_wrong_in(file, tree, "cameras",
-                              "okvis: there is no camera \"%s\" among the %u",
-                              vl_camera_asked(file, "0").text, record->frames);
+    return vl_camera_none_in(file, tree, "cameras", "camera", record->frames);
   VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_LIST("T_SC", m, 16),
                         VL_FIELD_LIST("focal_length", f, 2),
-                        VL_FIELD_LIST("principal_point", c, 2)));
-  VL_TRY(vl_camera_has(camera, "image_dimension")
-             ? vl_camera_side_pair(file, camera, "image_dimension", record)
-             : vl_camera_size_beside(file, NULL, record));
-  VL_TRY(read_lens(file, camera, d));
-  vl_camera_set_centred(d, f[0], f[1], c[0], c[1]);
+                        VL_FIELD_LIST("principal_point", f + 2, 2)));
+  VL_TRY(vl_camera_size_pair(file, camera, "image_dimension", record));
+  VL_TRY(vl_camera_field(file, camera, "distortion_type", &name));
+  VL_TRY(vl_camera_read_lens(file, camera, "distortion_type", "distortion_coefficients", lenses,
+                             "distortion_type",
+                             "there are radialtangential and equidistant of 4, "
+                             "radialtangential8 of 8, none",
+                             d));
+  vl_camera_set_centred(d, f);
   vl_camera_set_matrix(d, m, false);
   return VL_OK;
 }

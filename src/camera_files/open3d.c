@@ -15,7 +15,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *intrinsic
         file, intrinsic, "intrinsic_matrix",
         "open3d: \"intrinsic_matrix\" must be fx 0 0, skew fy 0, cx cy 1: it is written by "
         "columns");
-  vl_camera_set_centred(&record->camera, k[0], k[4], k[6], k[7]);
+  vl_camera_set_centred(&record->camera, (double[]){k[0], k[4], k[6], k[7]});
   record->camera.skew = k[3];
   return VL_OK;
 }

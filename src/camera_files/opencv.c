@@ -276,108 +276,45 @@ static bool is_opencv(const json_t *tree) {
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
-/* The lens as both dialects write it: coefficients, and whether it is a fisheye. */
-vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *d, double k[14],
-                           uint32_t *n, bool *fisheye) {
-  *fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
-  *n = 0;
-  if (*fisheye && d->distortion <= VL_DISTORTION_RADIAL &&
-      d->distortion != VL_DISTORTION_OPENCV) {
-    memset(k, 0, 14 * sizeof *k);
-    memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
-    *n = 4;
-    return VL_OK;
-  }
-  if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, n))
-    return vl_camera_no_model(file, d);
-  return VL_OK;
-}
+static const char json_form[] =
+    "{\n  \"image_width\": $width,\n  \"image_height\": $height,\n  \"camera_matrix\": [$K:3]"
+    "$model,\n  \"distortion_coefficients\": [$k],\n  \"rvec\": [$V],\n  \"tvec\": [$t]\n}\n";
 
-void vl_opencv_put_matrix(vlCameraText *text, const char *name, int rows, int columns,
-                          const double *data, bool tagged) {
-  vl_camera_put(text, "%s: %s\n  rows: %d\n  cols: %d\n", name, tagged ? "!!opencv-matrix" : "",
-                rows, columns);
-  if (tagged)
-    vl_camera_put(text, "  dt: d\n");
-  vl_camera_put(text, "  data: [");
-  vl_camera_put_numbers(text, data, (uint32_t)(rows * columns));
-  vl_camera_put(text, "]\n");
-}
+static const char xml_form[] =
+    "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>$width</image_width>\n"
+    "<image_height>$height</image_height>\n"
+    "<camera_matrix type_id=\"opencv-matrix\">\n  <rows>3</rows>\n  <cols>3</cols>\n"
+    "  <dt>d</dt>\n  <data>$K:s</data></camera_matrix>\n$model"
+    "<distortion_coefficients type_id=\"opencv-matrix\">\n  <rows>$count</rows>\n"
+    "  <cols>1</cols>\n  <dt>d</dt>\n  <data>$k:s</data></distortion_coefficients>\n"
+    "<rvec type_id=\"opencv-matrix\">\n  <rows>3</rows>\n  <cols>1</cols>\n"
+    "  <dt>d</dt>\n  <data>$V:s</data></rvec>\n"
+    "<tvec type_id=\"opencv-matrix\">\n  <rows>3</rows>\n  <cols>1</cols>\n"
+    "  <dt>d</dt>\n  <data>$t:s</data></tvec>\n</opencv_storage>\n";
 
-static void put_list(vlCameraText *text, const char *name, const double *data, uint32_t count) {
-  vl_camera_put(text, ",\n  \"%s\": [", name);
-  vl_camera_put_numbers(text, data, count);
-  vl_camera_put(text, "]");
-}
-
-static void put_xml_matrix(vlCameraText *text, const char *name, int rows, int columns,
-                           const double *data) {
-  vl_camera_put(text,
-                "<%s type_id=\"opencv-matrix\">\n  <rows>%d</rows>\n  <cols>%d</cols>\n  "
-                "<dt>d</dt>\n  <data>",
-                name, rows, columns);
-  for (int i = 0; i < rows * columns; i++)
-    vl_camera_put(text, "%s%.17g", i ? " " : "", data[i] + 0.0);
-  vl_camera_put(text, "</data></%s>\n", name);
-}
-
-static void put_xml(vlCameraText *text, const vlCamera *c, bool fisheye, const double m[9],
-                    const double *k, uint32_t n, const double v[3], const double t[3]) {
-  vl_camera_put(text,
-                "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>%u</image_width>\n",
-                c->width);
-  vl_camera_put(text, "<image_height>%u</image_height>\n", c->height);
-  put_xml_matrix(text, "camera_matrix", 3, 3, m);
-  if (fisheye)
-    vl_camera_put(text, "<fisheye_model>1</fisheye_model>\n");
-  put_xml_matrix(text, "distortion_coefficients", (int)n, 1, k);
-  put_xml_matrix(text, "rvec", 3, 1, v);
-  put_xml_matrix(text, "tvec", 3, 1, t);
-  vl_camera_put(text, "</opencv_storage>\n");
-}
+static const char yaml_form[] =
+    "%YAML:1.0\n---\nimage_width: $width\nimage_height: $height\n"
+    "camera_matrix: !!opencv-matrix\n  rows: 3\n  cols: 3\n  dt: d\n  data: [$K]$model\n"
+    "distortion_coefficients: !!opencv-matrix\n  rows: $count\n  cols: 1\n  dt: d\n"
+    "  data: [$k]\n"
+    "rvec: !!opencv-matrix\n  rows: 3\n  cols: 1\n  dt: d\n  data: [$V]\n"
+    "tvec: !!opencv-matrix\n  rows: 3\n  cols: 1\n  dt: d\n  data: [$t]\n";
 
 static vlResult write_opencv(const vlFittedCamera *fit, vlCameraText *text) {
-  const vlCamera *c = &fit->camera;
-  double k[14], r[9], v[3], t[3];
-  uint32_t n = 0;
-  bool fisheye = false;
-  VL_TRY(vl_opencv_lens_of(fit->file, &fit->record->camera, k, &n, &fisheye));
-  vl_camera_get_pose(c, r, t);
-  vl_rotation_to_vector(r, v);
-  const double m[9] = {c->fx, 0, c->cx - 0.5, 0, c->fy, c->cy - 0.5, 0, 0, 1};
-  if (vl_ends_with(fit->file->path, ".json")) {
-    vl_camera_put(text,
-                  "{\n  \"image_width\": %u,\n  \"image_height\": %u,\n  \"camera_matrix\": [",
-                  c->width, c->height);
-    for (int i = 0; i < 3; i++) {
-      vl_camera_put(text, "%s[", i ? ", " : "");
-      vl_camera_put_numbers(text, m + 3 * i, 3);
-      vl_camera_put(text, "]");
-    }
-    vl_camera_put(text, "]");
-    if (fisheye)
-      vl_camera_put(text, ",\n  \"distortion_model\": \"fisheye\"");
-    put_list(text, "distortion_coefficients", k, n);
-    put_list(text, "rvec", v, 3);
-    put_list(text, "tvec", t, 3);
-    vl_camera_put(text, "\n}\n");
-    return VL_OK;
-  }
-  if (n == 0)
-    n = 4; /* FileStorage has no empty matrix; four zeros are equivalent */
-  if (vl_ends_with(fit->file->path, ".xml")) {
-    put_xml(text, c, fisheye, m, k, n, v, t);
-    return VL_OK;
-  }
-  vl_camera_put(text, "%%YAML:1.0\n---\nimage_width: %u\nimage_height: %u\n", c->width,
-                c->height);
-  vl_opencv_put_matrix(text, "camera_matrix", 3, 3, m, true);
-  if (fisheye)
-    vl_camera_put(text, "distortion_model: fisheye\n");
-  vl_opencv_put_matrix(text, "distortion_coefficients", (int)n, 1, k, true);
-  vl_opencv_put_matrix(text, "rvec", 3, 1, v, true);
-  vl_opencv_put_matrix(text, "tvec", 3, 1, t, true);
-  return VL_OK;
+  const bool json = vl_ends_with(fit->file->path, ".json");
+  const bool xml = vl_ends_with(fit->file->path, ".xml");
+  const char *fisheye = json  ? ",\n  \"distortion_model\": \"fisheye\""
+                        : xml ? "<fisheye_model>1</fisheye_model>\n"
+                              : "\ndistortion_model: fisheye";
+  /* FileStorage has no empty matrix; four zeros are equivalent */
+  const uint32_t n = fit->count || json ? fit->count : 4;
+  const double count = n;
+  return VL_PUT_FORM(text, fit,
+                     json  ? json_form
+                     : xml ? xml_form
+                           : yaml_form,
+                     VL_WORD("model", fit->family == VL_LENS_FISHEYE ? fisheye : ""),
+                     VL_VALUES("count", &count, 1), VL_VALUES("k", fit->k, n));
 }
 
 const vlCameraFormat vl_format_opencv = {
@@ -397,4 +334,6 @@ const vlCameraFormat vl_format_opencv = {
     .knows = vl_opencv_is_field,
     .read = vl_camera_read_opencv,
     .holds = VL_HOLDS_POSE,
+    .lenses = VL_LENSES_COMMON,
+    .most = 14,
     .write = write_opencv};

@@ -16,13 +16,6 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const
  * Refuses them. def: with the size. */
 vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree,
                                const vlCameraDef *def);
-/* Computes the coefficients to write, and whether the camera is a fisheye. */
-vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *def, double k[14],
-                           uint32_t *count, bool *fisheye);
-/* Appends a matrix. tagged: with FileStorage's tag !!opencv-matrix. */
-void vl_opencv_put_matrix(vlCameraText *text, const char *name, int rows, int columns,
-                          const double *data, bool tagged);
-
 /* Whether the name is that of a field of these files; whether it is that of a lens. */
 bool vl_opencv_is_field(const char *name);
 bool vl_opencv_is_lens(const char *name);

@@ -162,14 +162,11 @@ static vlResult write_openmvg(const vlFittedCamera *fit, vlCameraText *text) {
   for (int i = 0; i < 3; i++)
     centre[i] = -(r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
   const bool fisheye = fit->family == VL_LENS_FISHEYE, bent = fit->family == VL_LENS_OPENCV;
-  vl_camera_put_form(
-      text, fit, NULL,
-      "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": "
-      "0, \"value\": {\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, "
-      "\"data\": {\"local_path\": \"\", \"filename\": ");
-  vl_camera_put_string(text, fit->record->name);
   return VL_PUT_FORM(
       text, fit,
+      "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": "
+      "0, \"value\": {\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, "
+      "\"data\": {\"local_path\": \"\", \"filename\": $name"
       ", \"width\": $width, \"height\": $height, \"id_view\": 0, \"id_intrinsic\": 0, "
       "\"id_pose\": "
       "0}}}}],\n"
@@ -209,4 +206,5 @@ const vlCameraFormat vl_format_openmvg = {
     .lenses = VL_LENSES_COMMON,
     .most = 5,
     .square = true,
+    .unnamed = "",
     .write = write_openmvg};

@@ -10,31 +10,21 @@
 #include "camera_files/fields.h"
 #include "velo/projection.h"
 
-static vlResult coefficients(const vlCameraFile *file, const json_t *camera,
-                             const char *const *names, double *k, uint32_t count) {
-  for (uint32_t i = 0; i < count; i++) {
-    k[i] = 0.0;
-    VL_TRY(vl_camera_optional(file, camera, names[i], &k[i]));
-  }
-  return VL_OK;
-}
+static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"};
+static const char *const fisheye[] = {"k1", "k2", "k3", "k4"};
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const char *type,
                           vlCameraDef *d) {
-  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {
-                                                                         "k1", "k2", "k3",
-                                                                         "k4"};
-  double k[5];
+  double k[5] = {0.0};
   if (vl_text_is(type, "brown")) {
-    VL_TRY(coefficients(file, camera, brown, k, 5));
+    VL_TRY(vl_camera_read_named(file, camera, brown, 5, true, k));
     vl_camera_set_opencv(d, k, 5);
   } else if (vl_text_is(type, "perspective") || vl_text_is(type, "radial") ||
              vl_text_is(type, "simple_radial")) {
-    VL_TRY(coefficients(file, camera, brown, k, 2));
-    k[2] = k[3] = 0.0;
+    VL_TRY(vl_camera_read_named(file, camera, brown, 2, true, k));
     vl_camera_set_opencv(d, k, 4);
   } else if (vl_text_is(type, "fisheye") || vl_text_is(type, "fisheye_opencv")) {
-    VL_TRY(coefficients(file, camera, fisheye, k, 4));
+    VL_TRY(vl_camera_read_named(file, camera, fisheye, 4, true, k));
     if (type[7] == 0)
       k[2] = k[3] = 0.0;
     vl_camera_set_fisheye(d, k);
@@ -94,21 +84,16 @@ static vlResult read_shot(const vlCameraFile *file, const json_t *shot, const js
 /* Reads camera_models.json, which holds cameras without shots. */
 static vlResult read_models(const vlCameraFile *file, const json_t *cameras,
                             vlCameraRecord *record) {
-  const char *name, *chosen = NULL;
+  const char *name;
+  const json_t *chosen = NULL;
   json_t *camera;
   record->frames = 0;
-  json_object_foreach((json_t *)cameras, name, camera) {
-    if (!chosen && vl_camera_is_frame(file, record->frames, name))
-      chosen = name;
-    record->frames++;
-  }
+  json_object_foreach((json_t *)cameras, name, camera)
+      vl_camera_offer(file, camera, name, record, &chosen);
   if (!chosen)
-    return vl_camera_wrong_in(file, cameras, NULL,
-                              "opensfm: there is no camera \"%s\" among the %u",
-                              vl_camera_asked(file, "0").text, record->frames);
+    return vl_camera_none_in(file, cameras, NULL, "camera", record->frames);
   vl_camera_set_origin(&record->camera);
-  vl_camera_name(record, chosen);
-  return read_camera(file, json_object_get(cameras, chosen), record);
+  return read_camera(file, chosen, record);
 }
 
 /* Reads the shots of all reconstructions in the file, one reconstruction after the other. */
@@ -158,9 +143,6 @@ static bool is_sphere(const vlCamera *c) {
 }
 
 static vlResult write_opensfm(const vlFittedCamera *fit, vlCameraText *text) {
-  static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {
-                                                                         "k1", "k2", "k3",
-                                                                         "k4"};
   const vlCamera *c = &fit->camera;
   bool bent = fit->family == VL_LENS_FISHEYE,
        whole = fit->record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
@@ -174,21 +156,22 @@ static vlResult write_opensfm(const vlFittedCamera *fit, vlCameraText *text) {
   const double side = c->width > c->height ? c->width : c->height;
   const double f[4] = {c->fx / side, c->fy / side, (c->cx - 0.5 * c->width) / side,
                        (c->cy - 0.5 * c->height) / side};
-  VL_PUT_FORM(text, fit,
-              "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": "
-              "\"$type\", \"width\": $width, \"height\": $height",
-              VL_WORD("type", type));
-  if (!whole)
-    VL_PUT_FORM(text, fit,
-                ",\n        \"focal_x\": $f@0, \"focal_y\": $f@1, \"c_x\": $f@2, \"c_y\": $f@3",
-                VL_VALUES("f", f, 4));
-  for (int i = 0; i < (bent ? 4 : 5) && !whole; i++)
-    vl_camera_put(text, ", \"%s\": %.17g", bent ? fisheye[i] : brown[i], fit->k[i] + 0.0);
-  return vl_camera_put_form(
-      text, fit, NULL,
+  return VL_PUT_FORM(
+      text, fit,
+      "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": "
+      "\"$type\", \"width\": $width, \"height\": $height$plane$lens"
       "}\n    },\n    \"shots\": {\n      $name: {\"camera\": \"camera\",\n"
       "        \"rotation\": [$V],\n        \"translation\": [$t]}\n    },\n"
-      "    \"points\": {}\n  }\n]\n");
+      "    \"points\": {}\n  }\n]\n",
+      VL_WORD("type", type),
+      VL_PART("plane", !whole,
+              ",\n        \"focal_x\": $f@0, \"focal_y\": $f@1, \"c_x\": $f@2, \"c_y\": $f@3"),
+      VL_VALUES("f", f, 4),
+      VL_NAMED("lens", bent ? fisheye : brown, fit->k,
+               whole  ? 0
+               : bent ? 4
+                      : 5,
+               ", \"$item\": $value"));
 }
 
 const vlCameraFormat vl_format_opensfm = {

@@ -11,11 +11,12 @@ static const char *key_of(char key[64], const char *prefix, const char *name) {
   return key;
 }
 
+static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+static const char *const radial[] = {"k1", "k2", "k3", "k4"};
+
 /* Reads k1 k2 p1 p2 k3 ... by name. *count includes the last one that exists. */
 static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const char *prefix,
                           bool fisheye, vlCameraDef *d) {
-  static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
-  static const char *const radial[] = {"k1", "k2", "k3", "k4"};
   double k[8] = {0};
   char key[64];
   uint32_t count = 0;
@@ -26,16 +27,12 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const ch
     VL_TRY(vl_camera_number(file, tree, key, &k[i]));
     count = i + 1;
   }
-  if (fisheye)
-    vl_camera_set_fisheye(d, k);
-  else
-    vl_camera_set_opencv(d, k, count);
+  vl_camera_set_lens(d, fisheye ? VL_LENS_FISHEYE : VL_LENS_OPENCV, k, count);
   return VL_OK;
 }
 
 static vlResult read_one(const vlCameraFile *file, const json_t *tree, const char *prefix,
                          vlCameraRecord *record) {
-  static const char *const names[] = {"fx", "fy", "cx", "cy"};
   const char *type = vl_camera_text(tree, "Camera.type");
   char key[64];
   double f[4];
@@ -44,10 +41,10 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, const cha
     return vl_camera_unknown(file, tree, "Camera.type", type,
                              "there are PinHole, Rectified, KannalaBrandt8");
   for (int i = 0; i < 4; i++)
-    VL_TRY(vl_camera_number(file, tree, key_of(key, prefix, names[i]), &f[i]));
+    VL_TRY(vl_camera_number(file, tree, key_of(key, prefix, vl_camera_matrix_names[i]), &f[i]));
   VL_TRY(read_lens(file, tree, prefix, fisheye, &record->camera));
   VL_TRY(vl_camera_sides(file, tree, "Camera.width", "Camera.height", record));
-  vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
+  vl_camera_set_centred(&record->camera, f);
   return VL_OK;
 }
 
@@ -74,20 +71,15 @@ static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree,
 }
 
 static vlResult write_orbslam(const vlFittedCamera *fit, vlCameraText *text) {
-  static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3"}, *const radial[] = {
-                                                                           "k1", "k2", "k3",
-                                                                           "k4"};
-  bool fisheye = fit->family == VL_LENS_FISHEYE;
-  VL_PUT_FORM(text, fit,
-              "%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"$type\"\n\nCamera1.fx: "
-              "$fx\nCamera1.fy: $fy\n"
-              "Camera1.cx: $cx0\nCamera1.cy: $cy0\n\n",
-              VL_WORD("type", fisheye ? "KannalaBrandt8" : "PinHole"));
-  for (uint32_t i = 0; i < fit->count; i++)
-    vl_camera_put(text, "Camera1.%s: %.17g\n", fisheye ? radial[i] : pinhole[i],
-                  fit->k[i] + 0.0);
-  return vl_camera_put_form(text, fit, NULL,
-                            "\nCamera.width: $width\nCamera.height: $height\n");
+  const bool fisheye = fit->family == VL_LENS_FISHEYE;
+  return VL_PUT_FORM(
+      text, fit,
+      "%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"$type\"\n\nCamera1.fx: "
+      "$fx\nCamera1.fy: $fy\n"
+      "Camera1.cx: $cx0\nCamera1.cy: $cy0\n\n$lens\nCamera.width: $width\nCamera.height: $height\n",
+      VL_WORD("type", fisheye ? "KannalaBrandt8" : "PinHole"),
+      VL_NAMED("lens", fisheye ? radial : pinhole, fit->k, fit->count,
+               "Camera1.$item: $value\n"));
 }
 
 const vlCameraFormat vl_format_orbslam = {

@@ -8,12 +8,6 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 
-static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
-  while (count && k[count - 1] == 0.0)
-    count--;
-  vl_camera_set_opencv(d, k, count);
-}
-
 /* ---- calib.io ---------------------------------------------------------------------------- */
 
 static vlResult read_value(const vlCameraFile *file, const json_t *parameters, const char *key,
@@ -49,7 +43,7 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree,
   const json_t *list = json_object_get(json_object_get(tree, "Calibration"), "cameras"),
                *camera = vl_camera_choose(file, list, NULL, record);
   vlCameraDef *d = &record->camera;
-  double f = 0.0, aspect = 1.0, cx = 0.0, cy = 0.0, k[14] = {0.0};
+  double f[4] = {0.0}, aspect = 1.0, k[14] = {0.0};
   if (!camera)
     return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *model, *parameters;
@@ -65,15 +59,16 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree,
   const json_t *size = json_object_get(json_object_get(base, "CameraModelBase"), "imageSize");
   VL_TRY(vl_camera_sides(file, size, "width", "height", record));
   VL_TRY(vl_camera_field(file, data, "parameters", &parameters));
-  VL_TRY(read_value(file, parameters, "f", true, &f));
+  VL_TRY(read_value(file, parameters, "f", true, &f[0]));
   VL_TRY(read_value(file, parameters, "ar", false, &aspect));
-  VL_TRY(read_value(file, parameters, "cx", true, &cx));
-  VL_TRY(read_value(file, parameters, "cy", true, &cy));
+  VL_TRY(read_value(file, parameters, "cx", true, &f[2]));
+  VL_TRY(read_value(file, parameters, "cy", true, &f[3]));
   for (int i = 0; i < 14; i++)
     VL_TRY(read_value(file, parameters, lens[i], false, &k[i]));
   VL_TRY(read_transform(file, json_object_get(camera, "transform"), d));
-  vl_camera_set_centred(d, f, f * aspect, cx, cy);
-  set_lens(k, 14, d);
+  f[1] = f[0] * aspect;
+  vl_camera_set_centred(d, f);
+  vl_camera_set_shortest(d, k, 14);
   return VL_OK;
 }
 
@@ -106,12 +101,7 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree,
   json_array_foreach(list, i, item) {
     if (json_array_size(json_object_get(item, "camera_intrinsic")) == 0)
       continue; /* lidar and radar */
-    const char *token = vl_camera_text(item, "token");
-    if (!chosen && vl_camera_is_frame(file, record->frames, token)) {
-      chosen = item;
-      vl_camera_name(record, token);
-    }
-    record->frames++;
+    vl_camera_offer(file, item, vl_camera_text(item, "token"), record, &chosen);
   }
   if (!chosen)
     return vl_camera_no_frame(file, "camera", record->frames);
@@ -150,7 +140,7 @@ static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree,
                         VL_FIELD_LIST("distCoef", lens, 5), VL_FIELD_LIST("R", r, 9),
                         VL_FIELD_LIST("t", t, 3)));
   VL_TRY(vl_camera_set_k(file, chosen, "K", k, d));
-  set_lens(lens, 5, d);
+  vl_camera_set_shortest(d, lens, 5);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
 }
@@ -193,7 +183,8 @@ static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree,
   d->fy = f * aspect;
   d->cx = c[0];
   d->cy = c[1];
-  set_lens((double[]){radial[0], radial[1], tangential[0], tangential[1], radial[2]}, 5, d);
+  vl_camera_set_shortest(
+      d, (double[]){radial[0], radial[1], tangential[0], tangential[1], radial[2]}, 5);
   vl_camera_set_centre(d, r, p);
   return VL_OK;
 }

@@ -142,55 +142,37 @@ static bool is_ros(const json_t *tree) {
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
-static void put_rows(vlCameraText *text, const char *name, const double *m, int rows,
-                     int columns) {
-  vl_camera_put(text, "\n%s\n", name);
-  for (int i = 0; i < rows * columns; i++)
-    vl_camera_put(text, "%.17g%s", m[i] + 0.0, (i + 1) % columns ? " " : "\n");
-}
+static const char ini_form[] =
+    "[image]\n\nwidth\n$width\n\nheight\n$height\n\n[$own]\n"
+    "\ncamera matrix\n$fx 0 $cx0\n0 $fy $cy0\n0 0 1\n\ndistortion\n$k:s\n"
+    "\nrectification\n1 0 0\n0 1 0\n0 0 1\n"
+    "\nprojection\n$fx 0 $cx0 0\n0 $fy $cy0 0\n0 0 1 0\n";
+
+static const char yaml_form[] =
+    "image_width: $width\nimage_height: $height\ncamera_name: $name\n"
+    "camera_matrix: \n  rows: 3\n  cols: 3\n  data: [$K]\ndistortion_model: $model\n"
+    "distortion_coefficients: \n  rows: 1\n  cols: $count\n  data: [$k]\n"
+    "rectification_matrix: \n  rows: 3\n  cols: 3\n  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+    "projection_matrix: \n  rows: 3\n  cols: 4\n"
+    "  data: [$fx, 0, $cx0, 0, 0, $fy, $cy0, 0, 0, 0, 1, 0]\n";
 
 static vlResult write_ros(const vlFittedCamera *fit, vlCameraText *text) {
-  const vlCamera *c = &fit->camera;
-  double k[14];
-  uint32_t n = 0;
-  bool fisheye = false;
-  VL_TRY(vl_opencv_lens_of(fit->file, &fit->record->camera, k, &n, &fisheye));
-  if (n > 8) {
-    bool present = false;
-    for (int i = 8; i < 14; i++)
-      present = present || k[i] != 0.0;
-    VL_TRY(vl_camera_refuse(fit->file, "distortion",
-                            present)); /* s1 to s4, tilt: ROS has no such coefficients */
-    n = 8;
-  }
-  if (!fisheye && n < 5)
-    n = 5;
-  const double m[9] = {c->fx, 0, c->cx - 0.5, 0, c->fy, c->cy - 0.5, 0, 0, 1};
-  const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const double p[12] = {m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, 0, 0, 1, 0};
-  if (vl_ends_with(fit->file->path, ".ini")) {
-    if (fisheye)
-      return vl_camera_no_model(fit->file, &fit->record->camera);
-    vl_camera_put(text, "[image]\n\nwidth\n%u\n\nheight\n%u\n\n[%s]\n", c->width, c->height,
-                  fit->record->name[0] ? fit->record->name : "camera");
-    put_rows(text, "camera matrix", m, 3, 3);
-    put_rows(text, "distortion", k, 1, (int)n);
-    put_rows(text, "rectification", identity, 3, 3);
-    put_rows(text, "projection", p, 3, 4);
-    return VL_OK;
-  }
-  vl_camera_put(text, "image_width: %u\nimage_height: %u\ncamera_name: ", c->width, c->height);
-  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : "camera");
-  vl_camera_put(text, "\n");
-  vl_opencv_put_matrix(text, "camera_matrix", 3, 3, m, false);
-  vl_camera_put(text, "distortion_model: %s\n",
-                fisheye  ? "equidistant"
-                : n == 8 ? "rational_polynomial"
-                         : "plumb_bob");
-  vl_opencv_put_matrix(text, "distortion_coefficients", 1, (int)n, k, false);
-  vl_opencv_put_matrix(text, "rectification_matrix", 3, 3, identity, false);
-  vl_opencv_put_matrix(text, "projection_matrix", 3, 4, p, false);
-  return VL_OK;
+  const bool fisheye = fit->family == VL_LENS_FISHEYE;
+  const bool ini = vl_ends_with(fit->file->path, ".ini");
+  bool more = false; /* s1 to s4, tilt: ROS has no such coefficients */
+  for (int i = 8; i < 14; i++)
+    more = more || fit->k[i] != 0.0;
+  VL_TRY(vl_camera_refuse(fit->file, "distortion", more));
+  if (ini && fisheye)
+    return vl_camera_no_model(fit->file, &fit->record->camera);
+  const uint32_t n = fisheye ? 4 : fit->count > 5 ? 8 : 5;
+  const double count = n;
+  const char *name = fit->record->name[0] ? fit->record->name : "camera";
+  return VL_PUT_FORM(text, fit, ini ? ini_form : yaml_form, VL_WORD("own", name),
+                     VL_WORD("model", fisheye  ? "equidistant"
+                                      : n == 8 ? "rational_polynomial"
+                                               : "plumb_bob"),
+                     VL_VALUES("count", &count, 1), VL_VALUES("k", fit->k, n));
 }
 
 const vlCameraFormat vl_format_ros = {
@@ -206,4 +188,6 @@ const vlCameraFormat vl_format_ros = {
         "nsecs sec nanosec frame_id",
     .read = read_ros,
     .read_text = read_ini,
+    .lenses = VL_LENSES_COMMON,
+    .most = 14,
     .write = write_ros};

@@ -17,13 +17,6 @@ static bool all_zero(const double *k, uint32_t count) {
   return true;
 }
 
-/* Sets OpenCV's distortion with as few coefficients as the values need. */
-static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
-  while (count && k[count - 1] == 0.0)
-    count--;
-  vl_camera_set_opencv(d, k, count);
-}
-
 static vlMat4 rigid(const double r[9], const double t[3]) {
   vlMat4 m = vl_mat4_identity();
   for (int i = 0; i < 9; i++)
@@ -82,11 +75,7 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree,
     if (json_number_value(json_object_get(one, "width")) < 1.0)
       continue; /* a socket that is not used */
     snprintf(name, sizeof name, "socket%g", json_number_value(json_array_get(pair, 0)));
-    if (!camera && vl_camera_is_frame(file, record->frames, name)) {
-      camera = one;
-      vl_camera_name(record, name);
-    }
-    record->frames++;
+    vl_camera_offer(file, one, name, record, &camera);
   }
   if (!camera)
     return vl_camera_no_frame(file, "camera", record->frames);
@@ -105,7 +94,7 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree,
   if (type == 1.0)
     vl_camera_set_fisheye(d, lens);
   else
-    set_lens(lens, count, d);
+    vl_camera_set_shortest(d, lens, count);
   vl_camera_set_matrix(d, world.m, false);
   return VL_OK;
 }
@@ -139,15 +128,12 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree,
   vlCameraDef *d = &record->camera;
   double v[14], r[9], t[3];
   size_t i;
-  record->frames = (uint32_t)json_array_size(list);
+  record->frames = 0;
   json_array_foreach(list, i, one) {
     const char *name = vl_camera_text(one, "Location");
     if (name && strncmp(name, "CALIBRATION_CameraLocation", 26) == 0)
       name += 26; /* D0, PV0 */
-    if (camera || !vl_camera_is_frame(file, (uint32_t)i, name))
-      continue;
-    camera = one;
-    vl_camera_name(record, name);
+    vl_camera_offer(file, one, name, record, &camera);
   }
   if (!camera)
     return vl_camera_no_frame(file, "camera", record->frames);
@@ -169,7 +155,7 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree,
   d->cy = v[1] * d->height;
   d->fx = v[2] * d->width;
   d->fy = v[3] * d->height;
-  set_lens((double[]){v[4], v[5], v[13], v[12], v[6], v[7], v[8], v[9]}, 8, d);
+  vl_camera_set_shortest(d, (double[]){v[4], v[5], v[13], v[12], v[6], v[7], v[8], v[9]}, 8);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
 }
@@ -200,14 +186,14 @@ static bool is_stream(const json_t *object) {
 static vlResult read_stream(const vlCameraFile *file, const json_t *stream,
                             vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  double fx, fy, cx, cy, k[5] = {0.0};
+  double f[4], k[5] = {0.0};
   uint32_t count = 0;
   const char *model = vl_camera_text(stream, "model");
   VL_TRY(vl_camera_sides(file, stream, "width", "height", record));
-  VL_TRY(VL_READ_FIELDS(file, stream, VL_FIELD("fx", &fx), VL_FIELD("fy", &fy),
-                        VL_FIELD("ppx", &cx), VL_FIELD("ppy", &cy),
+  VL_TRY(VL_READ_FIELDS(file, stream, VL_FIELD("fx", &f[0]), VL_FIELD("fy", &f[1]),
+                        VL_FIELD("ppx", &f[2]), VL_FIELD("ppy", &f[3]),
                         VL_FIELD_LIST_OPTIONAL("coeffs", k, 5, &count)));
-  vl_camera_set_centred(d, fx, fy, cx, cy);
+  vl_camera_set_centred(d, f);
   vl_camera_set_origin(d);
   char lower[64] = "";
   for (size_t i = 0; model && model[i] && i < sizeof lower - 1; i++)
@@ -222,7 +208,7 @@ static vlResult read_stream(const vlCameraFile *file, const json_t *stream,
     vl_camera_set_fisheye(d, k);
   } else if (strstr(lower, "brown") && !strstr(lower, "inverse") &&
              (!strstr(lower, "modified") || all_zero(k + 2, 2))) {
-    set_lens(k, 5, d);
+    vl_camera_set_shortest(d, k, 5);
   } else {
     return vl_camera_wrong_in(
         file, stream, vl_camera_has(stream, "model") ? "model" : "coeffs",
@@ -243,13 +229,8 @@ static vlResult read_realsense(const vlCameraFile *file, const json_t *tree,
     return read_stream(file, tree, record);
   record->frames = 0;
   json_object_foreach((json_t *)tree, name, stream) {
-    if (!is_stream(stream))
-      continue;
-    if (!chosen && vl_camera_is_frame(file, record->frames, name)) {
-      chosen = stream;
-      vl_camera_name(record, name);
-    }
-    record->frames++;
+    if (is_stream(stream))
+      vl_camera_offer(file, stream, name, record, &chosen);
   }
   return chosen ? read_stream(file, chosen, record)
                 : vl_camera_no_frame(file, "camera", record->frames);

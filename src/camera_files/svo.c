@@ -33,39 +33,17 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree,
       d->shape[0] = k[0];
     }
   } else {
-    vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
+    vl_camera_set_centred(d, f);
     vl_camera_set_opencv(d, k,
                          k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0 || k[3] != 0.0 ? 4 : 0);
   }
   return VL_OK;
 }
 
-static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
-  const json_t *lens = json_object_get(camera, "distortion");
-  const char *type = vl_camera_text(lens, "type");
-  double k[4] = {0};
-  uint32_t n = 0;
-  if (!lens || vl_text_is(type, "none"))
-    return VL_OK;
-  VL_TRY(vl_camera_numbers(file, lens, "parameters", k, 1, 4, &n));
-  if (vl_text_is(type, "radial-tangential") && n == 4) {
-    vl_camera_set_opencv(d, k, n);
-  } else if (vl_text_is(type, "equidistant") && n == 4 &&
-             d->projection == VL_PROJECTION_PERSPECTIVE) {
-    vl_camera_set_fisheye(d, k);
-  } else if (vl_text_is(type, "fisheye") && n == 1 &&
-             d->projection == VL_PROJECTION_PERSPECTIVE) {
-    d->projection = VL_PROJECTION_FOV;
-    d->shape[0] = k[0];
-  } else {
-    return vl_camera_wrong_in(
-        file, lens, "type",
-        "svo: unknown distortion \"%s\" of %u coefficients; there are radial-tangential and "
-        "equidistant of 4, fisheye of 1, none",
-        vl_short_text(type).text, n);
-  }
-  return VL_OK;
-}
+static const vlLensName lenses[] = {{"radial-tangential", VL_LENS_OPENCV, 4, 4},
+                                    {"equidistant", VL_LENS_FISHEYE, 4, 4},
+                                    {"fisheye", VL_LENS_FOV, 1, 1},
+                                    {.name = NULL}};
 
 static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
                                 vlCameraRecord *record) {
@@ -90,9 +68,14 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
   if (delay != 0.0)
     return vl_camera_wrong_in(file, camera, "line-delay-nanoseconds",
                               "svo: rows of an image at different times are not taken");
-  const double *f = k + unified;
-  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
-  VL_TRY(read_lens(file, camera, d));
+  vl_camera_set_centred(d, k + unified);
+  const json_t *lens = json_object_get(camera, "distortion");
+  if (lens)
+    VL_TRY(
+        vl_camera_read_lens(file, lens, "type", "parameters", lenses, "distortion",
+                            "there are radial-tangential and equidistant of 4, fisheye of 1, "
+                            "none",
+                            d));
   vl_camera_set_origin(d);
   if (vl_camera_has(item, "T_B_C")) {
     VL_TRY(vl_camera_numbers(file, item, "T_B_C", m, 16, 16, NULL));
@@ -106,47 +89,38 @@ static vlResult read_svo(const vlCameraFile *file, const json_t *tree, vlCameraR
   const json_t *cameras = json_object_get(tree, "cameras");
   if (vl_camera_has(tree, "cam_model"))
     return read_first(file, tree, record);
-  record->frames = (uint32_t)json_array_size(cameras);
-  for (uint32_t i = 0; i < record->frames; i++) {
-    const json_t *item = json_array_get(cameras, i);
-    if (vl_camera_is_frame(file, i, vl_camera_text(json_object_get(item, "camera"), "label")))
-      return read_rig_camera(file, item, record);
-  }
-  return vl_camera_wrong_in(file, tree, "cameras",
-                            "svo: there is no camera \"%s\" among the %u",
-                            vl_camera_asked(file, "0").text, record->frames);
+  const json_t *item, *chosen = NULL;
+  size_t i;
+  record->frames = 0;
+  json_array_foreach(cameras, i, item) vl_camera_offer(
+      file, item, vl_camera_text(json_object_get(item, "camera"), "label"), record, &chosen);
+  return chosen ? read_rig_camera(file, chosen, record)
+                : vl_camera_none_in(file, tree, "cameras", "camera", record->frames);
 }
 
 static bool is_svo(const json_t *tree) {
   return vl_camera_has(tree, "cam_model") || vl_camera_has_in(tree, "cameras", "camera");
 }
 
-static void put_matrix(vlCameraText *text, const char *indent, const char *name, int rows,
-                       int columns, const double *values) {
-  vl_camera_put(text, "%s%s:\n%s  cols: %d\n%s  rows: %d\n%s  data: [", indent, name, indent,
-                columns, indent, rows, indent);
-  vl_camera_put_numbers(text, values, (uint32_t)(rows * columns));
-  vl_camera_put(text, "]\n");
-}
-
 static vlResult write_svo(const vlFittedCamera *fit, vlCameraText *text) {
   static const char *const words[] = {"none", "radial-tangential", "equidistant", "fisheye"};
   const vlCamera *c = &fit->camera;
-  const bool unified = fit->family == VL_LENS_UNIFIED, fov = fit->family == VL_LENS_FOV;
-  const double f[5] = {c->shape[0], c->fx, c->fy, c->cx - 0.5, c->cy - 0.5};
-  vl_camera_put(text, "label: rig\ncameras:\n- camera:\n    label: ");
-  vl_camera_put_string(text, fit->record->name[0] ? fit->record->name : "cam0");
-  VL_PUT_FORM(text, fit,
-              "\n    type: $type\n    image_width: $width\n    image_height: $height\n",
-              VL_WORD("type", unified ? "omni" : "pinhole"));
-  put_matrix(text, "    ", "intrinsics", unified ? 5 : 4, 1, unified ? f : f + 1);
-  vl_camera_put(text, "    distortion:\n      type: %s\n",
-                unified ? words[fit->count > 0] : words[fit->family]);
-  if (fit->count || fov)
-    put_matrix(text, "      ", "parameters", fov ? 1 : (int)fit->count, 1,
-               fov ? c->shape : fit->k);
-  put_matrix(text, "  ", "T_B_C", 4, 4, c->world_from_camera);
-  return VL_OK;
+  const bool unified = fit->family == VL_LENS_UNIFIED;
+  const double xi = c->shape[0], numbers[2] = {unified ? 5.0 : 4.0, fit->count};
+  return VL_PUT_FORM(
+      text, fit,
+      "label: rig\ncameras:\n- camera:\n    label: $name\n    type: $type\n"
+      "    image_width: $width\n    image_height: $height\n    intrinsics:\n      cols: 1\n"
+      "      rows: $numbers@0\n      data: [$mirror$fx, $fy, $cx0, $cy0]\n"
+      "    distortion:\n      type: $lens\n$coefficients"
+      "  T_B_C:\n    cols: 4\n    rows: 4\n    data: [$pose]\n",
+      VL_WORD("type", unified ? "omni" : "pinhole"), VL_VALUES("numbers", numbers, 2),
+      VL_PART("mirror", unified, "$xi, "), VL_VALUES("xi", &xi, 1),
+      VL_WORD("lens", unified ? words[fit->count > 0] : words[fit->family]),
+      VL_PART("coefficients", fit->count,
+              "      parameters:\n        cols: 1\n        rows: $numbers@1\n"
+              "        data: [$k]\n"),
+      VL_VALUES("k", fit->k, fit->count));
 }
 
 const vlCameraFormat vl_format_svo = {
@@ -162,4 +136,5 @@ const vlCameraFormat vl_format_svo = {
     .holds = VL_HOLDS_POSE,
     .lenses = VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED,
     .most = 4,
+    .unnamed = "cam0",
     .write = write_svo};

@@ -356,14 +356,6 @@ void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t co
     vl_camera_put(text, "%s%.17g", i ? ", " : "", values[i] + 0.0);
 }
 
-void vl_camera_put_rows(vlCameraText *text, const double m[16]) {
-  for (int i = 0; i < 4; i++) {
-    vl_camera_put(text, "%s[", i ? ", " : "");
-    vl_camera_put_numbers(text, m + 4 * i, 4);
-    vl_camera_put(text, "]");
-  }
-}
-
 void vl_camera_put_string(vlCameraText *text, const char *string) {
   vl_camera_put(text, "\"");
   for (const char *s = string; *s; s++) {

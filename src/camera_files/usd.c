@@ -4,6 +4,7 @@
  * moves the window, so the principal point moves the other way; y is up. The image's size is
  * the resolution of the file's RenderSettings or RenderProduct. */
 #include <math.h>
+#include <stdio.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"
@@ -341,13 +342,14 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
 /* ---- writing ----------------------------------------------------------------------------- */
 
 /* Names in USD consist of letters, digits and _. */
-static void put_name(vlCameraText *text, const char *name) {
-  if (!*name || (*name >= '0' && *name <= '9'))
-    vl_camera_put(text, "Camera%s", *name ? "_" : "");
-  for (; *name; name++) {
-    bool good = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z') ||
-                (*name >= '0' && *name <= '9');
-    vl_camera_put(text, "%c", good ? *name : '_');
+static void set_name(const char *name, char *result, size_t size) {
+  const char *before = !*name ? "Camera" : *name >= '0' && *name <= '9' ? "Camera_" : "";
+  snprintf(result, size, "%s%s", before, name);
+  for (; *result; result++) {
+    bool good = (*result >= 'a' && *result <= 'z') || (*result >= 'A' && *result <= 'Z') ||
+                (*result >= '0' && *result <= '9');
+    if (!good)
+      *result = '_';
   }
 }
 
@@ -356,7 +358,7 @@ static vlResult write_usd(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
   VL_TRY(vl_camera_refuse(fit->file, "lens_radius", flat && c->lens_radius > 0.0));
-  double w = c->width, h = c->height, m[16];
+  double w = c->width, h = c->height;
   /* the scene unit is a metre: 36 mm are 0.36 tenths of it */
   double across = 0.01 * (d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0),
          focal = c->fx * (across / w);
@@ -366,57 +368,41 @@ static vlResult write_usd(const vlFittedCamera *fit, vlCameraText *text) {
   }
   double down = flat ? 10.0 * h / c->fy : across * (h / w) * (c->fx / c->fy);
   bool timed = c->shutter_open != 0.0 || c->shutter_close != 1.0;
-  vl_camera_flip_axes(c->world_from_camera, m);
-  vl_camera_put(text, "#usda 1.0\n(\n    defaultPrim = \"");
-  put_name(text, fit->record->name);
-  vl_camera_put(
-      text,
-      "\"\n    doc = \"pixels count from the image's upper left corner; camera axes x right, "
-      "y up, z back; matrices act on row vectors\"\n    metersPerUnit = 1\n");
-  if (timed)
-    vl_camera_put(text, "    timeCodesPerSecond = 1\n");
-  vl_camera_put(text, "    upAxis = \"Y\"\n)\n\ndef Camera \"");
-  put_name(text, fit->record->name);
+  const double planes[2] = {c->near_plane, isinf(c->far_plane) ? 1e38 : c->far_plane};
+  const double lens[3] = {0.1 * focal / (2.0 * c->lens_radius), c->focus_distance,
+                          vl_precise_log2(c->exposure_time)};
+  const double shutter[2] = {c->shutter_open, c->shutter_close};
   const double film[] = {focal, across, down, (0.5 * w - c->cx) * (across / w),
                          (c->cy - 0.5 * h) * (down / h)};
-  VL_PUT_FORM(text, fit,
-              "\"\n{\n    token projection = \"$kind\"\n    float focalLength = $film@0\n"
-              "    float horizontalAperture = $film@1\n    float verticalAperture = $film@2\n"
-              "    float horizontalApertureOffset = $film@3\n    float verticalApertureOffset "
-              "= $film@4\n",
-              VL_WORD("kind", flat ? "orthographic" : "perspective"),
-              VL_VALUES("film", film, 5));
-  if (c->near_plane > 0.0 || !isinf(c->far_plane))
-    vl_camera_put(text, "    float2 clippingRange = (%.17g, %.17g)\n", c->near_plane,
-                  isinf(c->far_plane) ? 1e38 : c->far_plane);
-  if (c->lens_radius > 0.0 && !flat)
-    vl_camera_put(text, "    float fStop = %.17g\n", 0.1 * focal / (2.0 * c->lens_radius));
-  if (!isinf(c->focus_distance))
-    vl_camera_put(text, "    float focusDistance = %.17g\n", c->focus_distance);
-  if (c->exposure_time != 1.0)
-    vl_camera_put(text, "    float exposure = %.17g\n", vl_precise_log2(c->exposure_time));
-  if (timed)
-    vl_camera_put(text, "    double shutter:open = %.17g\n    double shutter:close = %.17g\n",
-                  c->shutter_open, c->shutter_close);
-  vl_camera_put(text, "    matrix4d xformOp:transform = (");
-  for (int row = 0; row < 4; row++) {
-    vl_camera_put(text, "%s(", row ? ", " : " ");
-    for (int i = 0; i < 4; i++)
-      vl_camera_put(text, "%s%.17g", i ? ", " : "", m[4 * i + row]);
-    vl_camera_put(text, ")");
-  }
-  vl_camera_put(text, " )\n    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n}\n\n");
-  vl_camera_put(
-      text,
+  const double pixel = c->fy / c->fx;
+  char name[sizeof fit->record->name + 8];
+  set_name(fit->record->name, name, sizeof name);
+  return VL_PUT_FORM(
+      text, fit,
+      "#usda 1.0\n(\n    defaultPrim = \"$own\"\n    doc = \"pixels count from the image's upper "
+      "left corner; camera axes x right, "
+      "y up, z back; matrices act on row vectors\"\n    metersPerUnit = 1\n$rate"
+      "    upAxis = \"Y\"\n)\n\ndef Camera \"$own"
+      "\"\n{\n    token projection = \"$kind\"\n    float focalLength = $film@0\n"
+      "    float horizontalAperture = $film@1\n    float verticalAperture = $film@2\n"
+      "    float horizontalApertureOffset = $film@3\n    float verticalApertureOffset "
+      "= $film@4\n$range$stop$focus$exposure$shutter"
+      "    matrix4d xformOp:transform = ( $flippedcolumns:p )\n"
+      "    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n}\n\n"
       "def Scope \"Render\"\n{\n    def RenderSettings \"Settings\"\n    {\n        rel "
-      "camera = </");
-  put_name(text, fit->record->name);
-  vl_camera_put(text,
-                ">\n        uniform int2 resolution = (%u, %u)\n        uniform float "
-                "pixelAspectRatio = %.17g\n",
-                c->width, c->height, c->fy / c->fx);
-  vl_camera_put(text, "    }\n}\n");
-  return VL_OK;
+      "camera = </$own>\n        uniform int2 resolution = ($width, $height)\n        uniform "
+      "float pixelAspectRatio = $pixel\n    }\n}\n",
+      VL_WORD("own", name), VL_WORD("kind", flat ? "orthographic" : "perspective"),
+      VL_VALUES("film", film, 5), VL_VALUES("pixel", &pixel, 1), VL_VALUES("planes", planes, 2),
+      VL_VALUES("lens", lens, 3), VL_VALUES("open", shutter, 2),
+      VL_PART("rate", timed, "    timeCodesPerSecond = 1\n"),
+      VL_PART("range", c->near_plane > 0.0 || !isinf(c->far_plane),
+              "    float2 clippingRange = ($planes)\n"),
+      VL_PART("stop", c->lens_radius > 0.0 && !flat, "    float fStop = $lens@0\n"),
+      VL_PART("focus", !isinf(c->focus_distance), "    float focusDistance = $lens@1\n"),
+      VL_PART("exposure", c->exposure_time != 1.0, "    float exposure = $lens@2\n"),
+      VL_PART("shutter", timed,
+              "    double shutter:open = $open@0\n    double shutter:close = $open@1\n"));
 }
 
 static bool is_usd(const char *text, size_t size) {

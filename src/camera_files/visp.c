@@ -50,7 +50,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCame
                                    vl_short_text(type).text, without_distortion,
                                    with_distortion, kannala_brandt);
   }
-  vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
+  vl_camera_set_centred(d, f);
   return VL_OK;
 }
 

@@ -123,7 +123,7 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
   }
   d->width = modes[mode].width;
   d->height = modes[mode].height;
-  vl_camera_set_centred(d, v[0], v[1], v[2], v[3]);
+  vl_camera_set_centred(d, v);
   bool bent = false;
   for (int i = 4; i < 9; i++)
     bent = bent || v[i] != 0.0;

@@ -88,8 +88,8 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   d->width = (uint32_t)size[0];
   d->height = (uint32_t)size[1];
   vlError error = {0};
-  VL_TRY(vl_camera_def_colmap(d, model, parameters, count, &error));
-  return VL_OK;
+  if (vl_camera_def_colmap(d, model, parameters, count, &error) == VL_OK)
+    return VL_OK;
   vl_shorten_quoted(&error, model);
   return wrong_line(file, path, lines->line, error.message);
 }

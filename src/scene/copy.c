@@ -35,6 +35,12 @@ bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t 
   return true;
 }
 
+bool vl_scene_copy_array(vlScene *scene, void *pointer, size_t count, size_t size) {
+  const void *data;
+  memcpy(&data, pointer, sizeof data);
+  return vl_scene_copy_block(scene, data, count, size, pointer);
+}
+
 bool vl_scene_copy_string(vlScene *scene, const char **text) {
   return !*text || vl_scene_copy_block(scene, *text, strlen(*text) + 1, 1, text);
 }

@@ -150,54 +150,6 @@ vlSceneMark *vl_scene_mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) 
   return &marks->items[id - 1];
 }
 
-/* Sets the object of an array by the function that adds one. */
-#define SET(scene, array, add, id, def, what, error)                                \
-  do {                                                                              \
-    vlResult checked = check(scene, ITEM(scene, array, id) != NULL, what, error);   \
-    if (checked != VL_OK)                                                           \
-      return checked;                                                               \
-    if (!(def))                                                                     \
-      return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", what);            \
-    vlSource source = (def)->source; /* its file's name outlives the change */      \
-    if (!vl_scene_copy_source(scene, &source))                                      \
-      return take_error(scene, error);                                              \
-    size_t blocks = (scene)->blocks.count, images = (scene)->images.count;          \
-    size_t count = (scene)->array.count;                                            \
-    const size_t at = (id).index - 1;                                               \
-    __typeof__(*(scene)->array.items) old = (scene)->array.items[at];               \
-    (scene)->array.count = at;                                                      \
-    bool done = add(scene, def).index != 0;                                         \
-    (scene)->array.count = count;                                                   \
-    if (!done)                                                                      \
-      (scene)->array.items[at] = old;                                               \
-    return finish(scene, &(scene)->array, (id).index, blocks, images, done, error); \
-  } while (0)
-
-static vlResult set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def,
-                            vlError *error) {
-  SET(scene, textures, vl_scene_add_texture, id, def, "texture", error);
-}
-static vlResult set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error) {
-  SET(scene, lights, vl_scene_add_light, id, def, "light", error);
-}
-static vlResult set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def,
-                           vlError *error) {
-  SET(scene, media, vl_scene_add_medium, id, def, "medium", error);
-}
-
-static vlResult set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def, vlError *error) {
-  SET(scene, shapes, vl_scene_add_shape, id, def, "shape", error);
-}
-
-static vlResult set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def,
-                             vlError *error) {
-  SET(scene, materials, vl_scene_add_material, id, def, "material", error);
-}
-static vlResult set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def,
-                             vlError *error) {
-  SET(scene, emissions, vl_scene_add_emission, id, def, "emission", error);
-}
-
 /* A removed object is there again. */
 static void note_change(vlScene *scene, vlSceneMark *mark) {
   mark->generation = vl_context_number(scene->context);
@@ -208,61 +160,65 @@ static void note_change(vlScene *scene, vlSceneMark *mark) {
   mark->serial = mark->generation;
 }
 
-/* Calls set (one of the above). After success the object's mark has a new generation. The id
- * must be checked before. */
-#define SET_AND_MARK(scene, marks, set, id, def, error)                       \
-  do {                                                                        \
-    vlSceneMark *mark = vl_scene_mark_of(scene, &(scene)->marks, (id).index); \
-    if (!mark)                                                                \
-      return vl_fail_memory(error);                                           \
-    vlResult changed = set(scene, id, def, error);                            \
-    if (changed == VL_OK)                                                     \
-      note_change(scene, mark);                                               \
-    return changed;                                                           \
+/* Sets the object of an array by the function that adds one. After success the object's mark
+ * has a new generation. */
+#define SET(scene, array, marks, add, id, def, what, error)                          \
+  do {                                                                               \
+    VL_TRY(check(scene, ITEM(scene, array, id) != NULL, what, error));               \
+    vlSceneMark *mark = vl_scene_mark_of(scene, &(scene)->marks, (id).index);        \
+    if (!mark)                                                                       \
+      return vl_fail_memory(error);                                                  \
+    if (!(def))                                                                      \
+      return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", what);             \
+    vlSource source = (def)->source; /* its file's name outlives the change */       \
+    if (!vl_scene_copy_source(scene, &source))                                       \
+      return take_error(scene, error);                                               \
+    size_t blocks = (scene)->blocks.count, images = (scene)->images.count;           \
+    size_t count = (scene)->array.count;                                             \
+    const size_t at = (id).index - 1;                                                \
+    __typeof__(*(scene)->array.items) old = (scene)->array.items[at];                \
+    (scene)->array.count = at;                                                       \
+    bool done = add(scene, def).index != 0;                                          \
+    (scene)->array.count = count;                                                    \
+    if (!done)                                                                       \
+      (scene)->array.items[at] = old;                                                \
+    VL_TRY(finish(scene, &(scene)->array, (id).index, blocks, images, done, error)); \
+    note_change(scene, mark);                                                        \
+    return VL_OK;                                                                    \
   } while (0)
 
 vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def,
                               vlError *error) {
-  vlResult result = check(scene, ITEM(scene, textures, id) != NULL, "texture", error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(scene, ITEM(scene, textures, id) != NULL, "texture", error));
   const bool there = vl_scene_has(scene, VL_SCENE_TEXTURES, id.index);
   if (there && def && def->spectrum != scene->textures.items[id.index - 1].spectrum)
     return vl_fail(error, VL_ERROR_ARGUMENT, "texture: a texture of %s cannot become one of %s",
                    def->spectrum ? "floats" : "colours", def->spectrum ? "colours" : "floats");
-  SET_AND_MARK(scene, texture_marks, set_texture, id, def, error);
+  SET(scene, textures, texture_marks, vl_scene_add_texture, id, def, "texture", error);
 }
 
 vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def,
                                vlError *error) {
-  vlResult result = check(scene, ITEM(scene, materials, id) != NULL, "material", error);
-  if (result != VL_OK)
-    return result;
-  SET_AND_MARK(scene, material_marks, set_material, id, def, error);
+  SET(scene, materials, material_marks, vl_scene_add_material, id, def, "material", error);
 }
 
 vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def,
                                vlError *error) {
-  vlResult result = check(scene, ITEM(scene, emissions, id) != NULL, "emission", error);
-  if (result != VL_OK)
-    return result;
-  SET_AND_MARK(scene, emission_marks, set_emission, id, def, error);
+  SET(scene, emissions, emission_marks, vl_scene_add_emission, id, def, "emission", error);
 }
 
 vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def,
                             vlError *error) {
-  vlResult result = check(scene, ITEM(scene, lights, id) != NULL, "light", error);
-  if (result != VL_OK)
-    return result;
-  SET_AND_MARK(scene, light_marks, set_light, id, def, error);
+  SET(scene, lights, light_marks, vl_scene_add_light, id, def, "light", error);
 }
 
 vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def,
                              vlError *error) {
-  vlResult result = check(scene, ITEM(scene, media, id) != NULL, "medium", error);
-  if (result != VL_OK)
-    return result;
-  SET_AND_MARK(scene, medium_marks, set_medium, id, def, error);
+  SET(scene, media, medium_marks, vl_scene_add_medium, id, def, "medium", error);
+}
+
+static vlResult set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def, vlError *error) {
+  SET(scene, shapes, shape_marks, vl_scene_add_shape, id, def, "shape", error);
 }
 
 /* ---- shapes, lights ---------------------------------------------------------------------- */
@@ -277,13 +233,13 @@ static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool show
 }
 
 vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error) {
-  vlResult result = check(scene, vl_scene_light(scene, id) != NULL, "light", error);
-  return result == VL_OK ? show(scene, &scene->light_marks, id.index, shown, error) : result;
+  VL_TRY(check(scene, vl_scene_light(scene, id) != NULL, "light", error));
+  return show(scene, &scene->light_marks, id.index, shown, error);
 }
 
 vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *error) {
-  vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
-  return result == VL_OK ? show(scene, &scene->shape_marks, id.index, shown, error) : result;
+  VL_TRY(check(scene, vl_scene_shape(scene, id) != NULL, "shape", error));
+  return show(scene, &scene->shape_marks, id.index, shown, error);
 }
 
 void vl_scene_free_blocks(vlScene *scene, const void *const *own, int count) {
@@ -329,27 +285,18 @@ void vl_scene_forget_removed_shape(vlScene *scene, uint32_t id) {
 
 vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
                             vlError *error) {
-  vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
-  if (result != VL_OK)
-    return result;
-  vlSceneMark *mark = vl_scene_mark_of(scene, &scene->shape_marks, id.index);
-  if (!mark)
-    return vl_fail_memory(error);
+  VL_TRY(check(scene, ITEM(scene, shapes, id) != NULL, "shape", error));
   const vlShapeDef old = scene->shapes.items[id.index - 1];
-  result = set_shape(scene, id, def, error);
-  if (result != VL_OK)
-    return result;
+  const bool removed = vl_scene_shape_is_removed(scene, id.index - 1);
+  VL_TRY(set_shape(scene, id, def, error));
   end_change(scene, &old);
-  if (mark->removed)
+  if (removed)
     vl_scene_forget_removed_shape(scene, id.index);
-  note_change(scene, mark);
   return VL_OK;
 }
 
 vlResult vl_scene_remove_shape(vlScene *scene, vlShapeId id, vlError *error) {
-  vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(scene, vl_scene_shape(scene, id) != NULL, "shape", error));
   vlSceneMark *mark = vl_scene_mark_of(scene, &scene->shape_marks, id.index);
   uint32_t *slot = mark ? VL_PUSH(scene->context, &scene->removed_shapes) : NULL;
   if (!slot)
@@ -379,25 +326,20 @@ uint64_t vl_scene_shape_serial(const vlScene *scene, vlShapeId id) {
 
 vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material,
                                      vlError *error) {
-  vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
-  if (result == VL_OK)
-    result =
-        check(scene, !material.index || vl_scene_has(scene, VL_SCENE_MATERIALS, material.index),
-              "material", error);
-  if (result == VL_OK)
-    scene->shapes.items[id.index - 1].material = material;
-  return result;
+  VL_TRY(check(scene, vl_scene_shape(scene, id) != NULL, "shape", error));
+  VL_TRY(check(scene,
+               !material.index || vl_scene_has(scene, VL_SCENE_MATERIALS, material.index),
+               "material", error));
+  scene->shapes.items[id.index - 1].material = material;
+  return VL_OK;
 }
 
 vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission,
                                      vlError *error) {
-  vlResult result = check(scene, vl_scene_shape(scene, id) != NULL, "shape", error);
-  if (result == VL_OK)
-    result =
-        check(scene, !emission.index || vl_scene_has(scene, VL_SCENE_EMISSIONS, emission.index),
-              "emission", error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(scene, vl_scene_shape(scene, id) != NULL, "shape", error));
+  VL_TRY(check(scene,
+               !emission.index || vl_scene_has(scene, VL_SCENE_EMISSIONS, emission.index),
+               "emission", error));
   const vlShapeDef *shape = &scene->shapes.items[id.index - 1];
   if (emission.index && !vl_shape_may_emit(shape))
     return vl_fail(error, VL_ERROR_SCENE, "shape: a shape of this kind cannot emit light");
@@ -416,9 +358,7 @@ static vlResult find_instance(vlScene *scene, vlInstanceId id, vlSceneInstance *
 vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id,
                                const double world_from_group[16], vlError *error) {
   vlSceneInstance *instance;
-  vlResult result = find_instance(scene, id, &instance, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(find_instance(scene, id, &instance, error));
   for (int i = 0; i < 16; i++)
     if (!world_from_group || !isfinite(world_from_group[i]))
       return vl_fail(error, VL_ERROR_SCENE, "instance: transform is not finite");
@@ -429,17 +369,14 @@ vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id,
 
 vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool shown, vlError *error) {
   vlSceneInstance *instance;
-  vlResult result = find_instance(scene, id, &instance, error);
-  if (result == VL_OK)
-    instance->hidden = !shown;
-  return result;
+  VL_TRY(find_instance(scene, id, &instance, error));
+  instance->hidden = !shown;
+  return VL_OK;
 }
 
 vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *error) {
   vlSceneInstance *instance;
-  vlResult result = find_instance(scene, id, &instance, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(find_instance(scene, id, &instance, error));
   uint32_t *slot = VL_PUSH(scene->context, &scene->removed_instances);
   if (!slot)
     return vl_fail_memory(error);

@@ -198,6 +198,8 @@ bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum,
 bool vl_scene_own(vlScene *scene, void *block);
 bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size,
                          void *result_pointer);
+/* pointer: address of the pointer to the array, which becomes that of the copy. */
+bool vl_scene_copy_array(vlScene *scene, void *pointer, size_t count, size_t size);
 bool vl_scene_copy_string(vlScene *scene, const char **text);
 bool vl_scene_copy_label(vlScene *scene, vlLabel *label);
 bool vl_scene_copy_source(vlScene *scene, vlSource *source);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/text.h"
 #include "math/double3.h"
 #include "math/motion.h"
 #include "scene/scene.h"
@@ -11,8 +12,9 @@
 #include "velo/edit.h"
 #include "velo/shape_kinds.h"
 
-static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
-  return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
+static bool bad(vlScene *scene, const vlShapeDef *d, const char *why) {
+  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
+  return false;
 }
 
 /* Index of the first element that is not finite, or count. x - x is 0 for finite x and NaN
@@ -51,18 +53,12 @@ static bool check_floats(vlScene *scene, const vlShapeDef *d, const float *v, si
 static bool check_motion(vlScene *scene, const vlShapeDef *d) {
   if (!d->positions_close && !d->normals_close)
     return true;
-  if (d->kind != VL_SHAPE_TRIANGLES) {
-    bad(scene, d, "only vertices of triangles can move");
-    return false;
-  }
-  if (!d->positions_close) {
-    bad(scene, d, "normals move, but positions do not");
-    return false;
-  }
-  if (!d->normals != !d->normals_close) {
-    bad(scene, d, "normals are needed at both ends of a motion or at neither");
-    return false;
-  }
+  if (d->kind != VL_SHAPE_TRIANGLES)
+    return bad(scene, d, "only vertices of triangles can move");
+  if (!d->positions_close)
+    return bad(scene, d, "normals move, but positions do not");
+  if (!d->normals != !d->normals_close)
+    return bad(scene, d, "normals are needed at both ends of a motion or at neither");
   if (!isfinite(d->times[0]) || !isfinite(d->times[1]) || !(d->times[0] < d->times[1])) {
     vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
                   "vertices cannot move from %g to %g seconds", d->times[0], d->times[1]);
@@ -84,14 +80,10 @@ static bool check_colors(vlScene *scene, const vlShapeDef *d) {
 static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
   size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   const char *face = per == 3 ? "triangle" : "patch";
-  if (d->vertices == 0 || !d->positions) {
-    bad(scene, d, "mesh has no vertices");
-    return false;
-  }
-  if (d->faces == 0 || !d->indices) {
-    bad(scene, d, "mesh has no faces");
-    return false;
-  }
+  if (d->vertices == 0 || !d->positions)
+    return bad(scene, d, "mesh has no vertices");
+  if (d->faces == 0 || !d->indices)
+    return bad(scene, d, "mesh has no faces");
   size_t count = (size_t)d->faces * per;
   uint32_t top = 0;
   for (size_t i = 0; i < count; i++)
@@ -117,46 +109,30 @@ static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
 }
 
 static bool check_curves(vlScene *scene, const vlShapeDef *d) {
-  if (d->faces == 0 || !d->positions) {
-    bad(scene, d, "curves have no segments");
-    return false;
-  }
-  if (!d->widths) {
-    bad(scene, d, "curves need widths, two for each segment");
-    return false;
-  }
-  if (d->faces > 0x1fffffff || d->vertices != 4 * d->faces) {
-    bad(scene, d, "curves need four points for each segment");
-    return false;
-  }
-  if (d->curve == VL_CURVE_RIBBON && !d->normals) {
-    bad(scene, d, "ribbons need normals");
-    return false;
-  }
+  if (d->faces == 0 || !d->positions)
+    return bad(scene, d, "curves have no segments");
+  if (!d->widths)
+    return bad(scene, d, "curves need widths, two for each segment");
+  if (d->faces > 0x1fffffff || d->vertices != 4 * d->faces)
+    return bad(scene, d, "curves need four points for each segment");
+  if (d->curve == VL_CURVE_RIBBON && !d->normals)
+    return bad(scene, d, "ribbons need normals");
   if (first_not_finite(d->widths, 2 * (size_t)d->faces) < 2 * (size_t)d->faces ||
-      (d->normals &&
-       first_not_finite(d->normals, 6 * (size_t)d->faces) < 6 * (size_t)d->faces)) {
-    bad(scene, d, "a width or normal of a curve is not finite");
-    return false;
-  }
+      (d->normals && first_not_finite(d->normals, 6 * (size_t)d->faces) < 6 * (size_t)d->faces))
+    return bad(scene, d, "a width or normal of a curve is not finite");
   for (size_t i = 0; i < 2 * (size_t)d->faces; i++)
-    if (d->widths[i] < 0.0f) {
-      bad(scene, d, "a curve's width is negative");
-      return false;
-    }
+    if (d->widths[i] < 0.0f)
+      return bad(scene, d, "a curve's width is negative");
   return check_floats(scene, d, d->positions, 3, "position");
 }
 
 static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
-  if (!d->centers || !d->radii || d->faces == 0 || d->faces > 0x7fffffff) {
-    bad(scene, d,
+  if (!d->centers || !d->radii || d->faces == 0 || d->faces > 0x7fffffff)
+    return bad(
+        scene, d,
         "many spheres: they need centers, radii and a number of faces from 1 to 2^31 - 1");
-    return false;
-  }
-  if (d->emission.index) {
-    bad(scene, d, "many spheres as one shape cannot be area lights");
-    return false;
-  }
+  if (d->emission.index)
+    return bad(scene, d, "many spheres as one shape cannot be area lights");
   for (size_t i = 0; i < d->faces; i++) {
     const double *c = d->centers + 3 * i;
     if (!isfinite(c[0] + c[1] + c[2])) {
@@ -178,18 +154,12 @@ static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
   if (d->centers || d->radii)
     return check_spheres(scene, d);
-  if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius) {
-    bad(scene, d, "inner radius must be less than the radius");
-    return false;
-  }
-  if (d->kind != VL_SHAPE_DISK && !(d->z_min < d->z_max)) {
-    bad(scene, d, "zmin must be below zmax");
-    return false;
-  }
-  if (d->kind == VL_SHAPE_SPHERE && (d->z_min >= d->radius || d->z_max <= -d->radius)) {
-    bad(scene, d, "zmin and zmax leave nothing of the sphere");
-    return false;
-  }
+  if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius)
+    return bad(scene, d, "inner radius must be less than the radius");
+  if (d->kind != VL_SHAPE_DISK && !(d->z_min < d->z_max))
+    return bad(scene, d, "zmin must be below zmax");
+  if (d->kind == VL_SHAPE_SPHERE && (d->z_min >= d->radius || d->z_max <= -d->radius))
+    return bad(scene, d, "zmin and zmax leave nothing of the sphere");
   return true;
 }
 
@@ -197,10 +167,8 @@ static bool check_displacement(vlScene *scene, const vlShapeDef *d) {
   uint32_t index = d->displacement.texture.index;
   if (!index)
     return true;
-  if (d->kind != VL_SHAPE_TRIANGLES || d->positions_close) {
-    bad(scene, d, "displacement: only triangles at rest can be displaced");
-    return false;
-  }
+  if (d->kind != VL_SHAPE_TRIANGLES || d->positions_close)
+    return bad(scene, d, "displacement: only triangles at rest can be displaced");
   return true;
 }
 
@@ -216,46 +184,30 @@ static bool is_there(const vlScene *scene, vlSceneFamily family, uint32_t index)
 
 static bool check_shape(vlScene *scene, vlShapeDef *d) {
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
-  if (!row) {
-    bad(scene, d, "unknown kind of shape");
-    return false;
-  }
+  if (!row)
+    return bad(scene, d, "unknown kind of shape");
   if (!vl_row_take(scene, row, d, false, d->source, row->name))
     return false;
-  if (d->emission.index && !(row->traits & VL_SHAPE_TRAIT_EMITS)) {
-    bad(scene, d, "shapes of this kind cannot be area lights");
-    return false;
-  }
-  if (!is_there(scene, VL_SCENE_GROUPS, d->group.index)) {
-    bad(scene, d, "there is no such group");
-    return false;
-  }
-  if (!is_there(scene, VL_SCENE_MATERIALS, d->material.index)) {
-    bad(scene, d, "there is no such material");
-    return false;
-  }
-  if (!is_there(scene, VL_SCENE_EMISSIONS, d->emission.index)) {
-    bad(scene, d, "there is no such emission");
-    return false;
-  }
+  if (d->emission.index && !(row->traits & VL_SHAPE_TRAIT_EMITS))
+    return bad(scene, d, "shapes of this kind cannot be area lights");
+  if (!is_there(scene, VL_SCENE_GROUPS, d->group.index))
+    return bad(scene, d, "there is no such group");
+  if (!is_there(scene, VL_SCENE_MATERIALS, d->material.index))
+    return bad(scene, d, "there is no such material");
+  if (!is_there(scene, VL_SCENE_EMISSIONS, d->emission.index))
+    return bad(scene, d, "there is no such emission");
   if (!is_there(scene, VL_SCENE_MEDIA, d->inside.index) ||
-      !is_there(scene, VL_SCENE_MEDIA, d->outside.index)) {
-    bad(scene, d, "there is no such medium");
-    return false;
-  }
+      !is_there(scene, VL_SCENE_MEDIA, d->outside.index))
+    return bad(scene, d, "there is no such medium");
   if (!check_displacement(scene, d))
     return false;
   const double *m = d->group_from_shape;
   for (int i = 0; i < 16; i++)
-    if (!isfinite(m[i])) {
-      bad(scene, d, "transform of the shape is not finite");
-      return false;
-    }
+    if (!isfinite(m[i]))
+      return bad(scene, d, "transform of the shape is not finite");
   double det = vl_determinant3(m);
-  if (det == 0.0 || !isfinite(det)) {
-    bad(scene, d, "transform of the shape is singular: it flattens the shape");
-    return false;
-  }
+  if (det == 0.0 || !isfinite(det))
+    return bad(scene, d, "transform of the shape is singular: it flattens the shape");
   if (row->traits & VL_SHAPE_TRAIT_MESH)
     return check_mesh(scene, d);
   if (row->traits & VL_SHAPE_TRAIT_QUADRIC)
@@ -320,22 +272,26 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
     return none;
   size_t v = d.vertices, per = d.kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   size_t normals = d.kind == VL_SHAPE_CURVES ? 2 * (size_t)d.faces : v;
-  if (!vl_scene_copy_block(scene, d.positions, v, 3 * sizeof(float), &d.positions) ||
-      !vl_scene_copy_block(scene, d.normals, normals, 3 * sizeof(float), &d.normals) ||
-      !vl_scene_copy_block(scene, d.tangents, v, 3 * sizeof(float), &d.tangents) ||
-      !vl_scene_copy_block(scene, d.uvs, v, 2 * sizeof(float), &d.uvs) ||
-      !vl_scene_copy_block(scene, d.positions_close, v, 3 * sizeof(float),
-                           &d.positions_close) ||
-      !vl_scene_copy_block(scene, d.normals_close, v, 3 * sizeof(float), &d.normals_close) ||
-      !vl_scene_copy_block(scene, d.tangent_signs, v, sizeof(float), &d.tangent_signs) ||
-      !vl_scene_copy_block(scene, d.colors, v, 4 * sizeof(float), &d.colors) ||
-      !vl_scene_copy_block(scene, d.widths, 2 * (size_t)d.faces, sizeof(float), &d.widths) ||
-      !vl_scene_copy_block(scene, d.centers, d.faces, 3 * sizeof(double), &d.centers) ||
-      !vl_scene_copy_block(scene, d.radii, d.faces, sizeof(float), &d.radii) ||
-      !vl_scene_copy_block(scene, d.indices, d.faces, per * sizeof(uint32_t), &d.indices))
-    return none;
-  for (int k = 0; k < 3; k++)
-    if (!vl_scene_copy_block(scene, d.more_uvs[k], v, 2 * sizeof(float), &d.more_uvs[k]))
+  const struct {
+    void *array; /* its address in the def */
+    size_t count, size;
+  } arrays[] = {{&d.positions, v, 3 * sizeof(float)},
+                {&d.normals, normals, 3 * sizeof(float)},
+                {&d.tangents, v, 3 * sizeof(float)},
+                {&d.uvs, v, 2 * sizeof(float)},
+                {&d.positions_close, v, 3 * sizeof(float)},
+                {&d.normals_close, v, 3 * sizeof(float)},
+                {&d.tangent_signs, v, sizeof(float)},
+                {&d.colors, v, 4 * sizeof(float)},
+                {&d.widths, 2 * (size_t)d.faces, sizeof(float)},
+                {&d.centers, d.faces, 3 * sizeof(double)},
+                {&d.radii, d.faces, sizeof(float)},
+                {&d.indices, d.faces, per * sizeof(uint32_t)},
+                {&d.more_uvs[0], v, 2 * sizeof(float)},
+                {&d.more_uvs[1], v, 2 * sizeof(float)},
+                {&d.more_uvs[2], v, 2 * sizeof(float)}};
+  for (size_t i = 0; i < VL_LENGTH(arrays); i++)
+    if (!vl_scene_copy_array(scene, arrays[i].array, arrays[i].count, arrays[i].size))
       return none;
   return push_shape(scene, &d);
 }
@@ -345,12 +301,9 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE &&
               vl_scene_copy_source(scene, &d.source) && vl_scene_copy_label(scene, &d.label) &&
               check_shape(scene, &d);
-  enum { BLOCKS = 15 };
-  const void *blocks[BLOCKS] = {
-      d.positions,       d.normals,       d.tangents,      d.uvs,     d.indices,
-      d.positions_close, d.normals_close, d.tangent_signs, d.colors,  d.more_uvs[0],
-      d.more_uvs[1],     d.more_uvs[2],   d.widths,        d.centers, d.radii};
-  for (int i = 0; i < BLOCKS; i++) {
+  const void *blocks[VL_SHAPE_ARRAYS];
+  vl_shape_arrays(&d, blocks);
+  for (int i = 0; i < VL_SHAPE_ARRAYS; i++) {
     void *block;
     memcpy(&block, &blocks[i],
            sizeof block); /* the scene owns the array; const is for readers */

@@ -86,9 +86,7 @@ static vlResult check_rows(const vlCameraDef *d, vlError *error) {
 
 /* Checks what each number may be, and those that no other function compares. */
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
-  vlResult result = check_rows(d, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check_rows(d, error));
   if (d->shutter_close < d->shutter_open)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter opens at %g and closes at %g",
                    d->shutter_open, d->shutter_close);
@@ -127,33 +125,23 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
       .near_plane = def->near_plane,
       .far_plane = def->far_plane,
   };
-  vlResult result = check_rest(def, error);
-  if (result == VL_OK)
-    result = vl_camera_model(def, &made, error);
-  if (result == VL_OK)
-    result = vl_camera_intrinsics(def, &made, error);
-  if (result == VL_OK)
-    result = vl_camera_pose(def, &made, warning, error);
-  if (result == VL_OK)
-    result = vl_camera_time_part(def, &made, warning, error);
-  if (result == VL_OK)
-    result = vl_camera_lens(def, &made, error);
-  if (result == VL_OK)
-    result = vl_camera_own(def, &made, error);
-  if (result == VL_OK)
-    result = vl_camera_domain(def, &made, warning, error);
-  if (result == VL_OK)
-    result = vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error);
-  if (result == VL_OK && !vl_camera_rays_are_finite(&made))
-    result =
-        vl_fail(error, VL_ERROR_ARGUMENT,
-                "camera: its rays are not finite: fx %g, fy %g, cx %g, cy %g, position (%g, "
-                "%g, %g)",
-                made.fx, made.fy, made.cx, made.cy, made.world_from_camera[3],
-                made.world_from_camera[7], made.world_from_camera[11]);
-  if (result == VL_OK)
-    *camera = made;
-  return result;
+  VL_TRY(check_rest(def, error));
+  VL_TRY(vl_camera_model(def, &made, error));
+  VL_TRY(vl_camera_intrinsics(def, &made, error));
+  VL_TRY(vl_camera_pose(def, &made, warning, error));
+  VL_TRY(vl_camera_time_part(def, &made, warning, error));
+  VL_TRY(vl_camera_lens(def, &made, error));
+  VL_TRY(vl_camera_own(def, &made, error));
+  VL_TRY(vl_camera_domain(def, &made, warning, error));
+  VL_TRY(vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error));
+  if (!vl_camera_rays_are_finite(&made))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: its rays are not finite: fx %g, fy %g, cx %g, cy %g, position (%g, "
+                   "%g, %g)",
+                   made.fx, made.fy, made.cx, made.cy, made.world_from_camera[3],
+                   made.world_from_camera[7], made.world_from_camera[11]);
+  *camera = made;
+  return VL_OK;
 }
 
 vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t height,

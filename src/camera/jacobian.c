@@ -423,9 +423,7 @@ static JacobianFn *const unproject[2] = {unproject_one, unproject_moving};
 static vlResult each(const vlCamera *camera, size_t count, const double *in, size_t inputs,
                      double *out, size_t outputs, uint8_t *valid, JacobianFn *const one[2],
                      vlError *error) {
-  vlResult result = check(camera, count > 0 && (!in || !out), error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(camera, count > 0 && (!in || !out), error));
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
   for (size_t i = 0; i < count; i++) {

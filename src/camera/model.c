@@ -92,9 +92,7 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: %u %s distortion coefficients; there are %s", n, row->title,
                    row->how_many);
-  vlResult result = compile_kind(def, m, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(compile_kind(def, m, error));
   for (uint32_t i = 0; i < n; i++)
     if (k[i] != 0.0)
       m->steps = 1; /* if all are zero there is no distortion */
@@ -102,11 +100,10 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
 }
 
 vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *error) {
-  vlResult result = shape(def, camera, error);
-  if (result == VL_OK)
-    result = distortion(def, &camera->distortion, error);
+  VL_TRY(shape(def, camera, error));
+  VL_TRY(distortion(def, &camera->distortion, error));
   camera->limit = INFINITY;
-  return result;
+  return VL_OK;
 }
 
 bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical,

@@ -148,9 +148,7 @@ vlCameraDef vl_camera_own_def(const vlCameraDef *def) {
 vlResult vl_camera_own(const vlCameraDef *def, vlCamera *camera, vlError *error) {
   if (def->projection != VL_PROJECTION_OWN)
     return VL_OK;
-  vlResult result = vl_own_check("camera", def->own->name, def->own->rays != NULL, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_own_check("camera", def->own->name, def->own->rays != NULL, error));
   vlOwnRows rows;
   camera->own = def->own;
   camera->own_size[0] = def->width;

@@ -120,17 +120,12 @@ static vlResult fill(vlMat4 m, vlCamera *camera, vlError *error) {
 vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning,
                         vlError *error) {
   vlMat4 m = vl_mat4_identity();
-  vlResult result;
   if (def->has_matrix) {
     m = vl_mat4_load(def->world_from_camera);
-    result = check_matrix(&m, error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(check_matrix(&m, error));
   } else {
     Basis b = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    result = basis_from_lookat(def, &b, warning, error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(basis_from_lookat(def, &b, warning, error));
     /* x = u, y = -v (down), z = -w (forward); 0 - v instead of -v keeps -0 out of the matrix */
     m.m[0] = b.u.x;
     m.m[1] = 0.0 - b.v.x;
@@ -161,6 +156,6 @@ vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **w
 vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *camera,
                                vlError *error) {
   vlMat4 m = vl_mat4_load(world_from_camera);
-  vlResult result = check_matrix(&m, error);
-  return result == VL_OK ? fill(m, camera, error) : result;
+  VL_TRY(check_matrix(&m, error));
+  return fill(m, camera, error);
 }

@@ -70,9 +70,7 @@ vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye
   vl_error_clear(error);
   if (!camera || !stereo || !result)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: camera, stereo or result is null");
-  vlResult status = check_stereo(camera, stereo, error);
-  if (status != VL_OK)
-    return status;
+  VL_TRY(check_stereo(camera, stereo, error));
   if ((uint32_t)eye > VL_EYE_RIGHT)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown eye %d", (int)eye);
   vlCamera made = *camera;
@@ -87,7 +85,7 @@ vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye
   } else {
     vlMat4 from_between = eye_pose(x, stereo->mode == VL_STEREO_TOE_IN ? -meet : 0.0);
     vlMat4 pose = vl_mat4_multiply(vl_mat4_load(camera->world_from_camera), from_between);
-    status = vl_camera_pose_matrix(pose.m, &made, error);
+    VL_TRY(vl_camera_pose_matrix(pose.m, &made, error));
     vlMat4 there =
         vl_mat4_multiply(vl_mat4_load(camera->world_from_camera_close), from_between);
     memcpy(made.world_from_camera_close, there.m, sizeof there.m);
@@ -96,9 +94,8 @@ vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye
     if (stereo->mode == VL_STEREO_OFF_AXIS)
       made.cx += made.fx * meet;
   }
-  if (status == VL_OK)
-    *result = made;
-  return status;
+  *result = made;
+  return VL_OK;
 }
 
 vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *right,
@@ -130,11 +127,10 @@ vlResult vl_camera_move(const vlCamera *camera, const double world_from_camera[1
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: camera, world_from_camera or result is null");
   vlCamera moved = *camera;
-  vlResult status = vl_camera_pose_matrix(world_from_camera, &moved, error);
+  VL_TRY(vl_camera_pose_matrix(world_from_camera, &moved, error));
   memcpy(moved.world_from_camera_close, moved.world_from_camera,
          sizeof moved.world_from_camera);
   moved.moves = false;
-  if (status == VL_OK)
-    *result = moved;
-  return status;
+  *result = moved;
+  return VL_OK;
 }

@@ -225,19 +225,14 @@ vlResult vl_camera_lens(const vlCameraDef *def, vlCamera *camera, vlError *error
                           .vignetting = d->vignetting,
                           .aperture = d->aperture,
                           .optics = d->optics};
-  vlResult result = check(def, error);
-  if (result == VL_OK && (def->projection == VL_PROJECTION_OPTICS || d->optics))
+  VL_TRY(check(def, error));
+  if (def->projection == VL_PROJECTION_OPTICS || d->optics)
     return optics(def, camera, error);
   double focal_mm = focal_length(def, camera);
-  if (result == VL_OK)
-    result = radius(def, focal_mm, camera, error);
-  if (result == VL_OK)
-    result = tilt(def, focal_mm, camera, error);
-  if (result == VL_OK)
-    result = focus(def, camera, error);
-  if (result == VL_OK)
-    result = exposure(def, camera, error);
-  return result;
+  VL_TRY(radius(def, focal_mm, camera, error));
+  VL_TRY(tilt(def, focal_mm, camera, error));
+  VL_TRY(focus(def, camera, error));
+  return exposure(def, camera, error);
 }
 
 /* ---- points of any lens that is not a plain disc ----------------------------------------- */

@@ -99,16 +99,13 @@ vlResult vl_camera_travel(const vlCamera *camera, const double open[16], const d
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: camera, open, close, times or result is null");
   vlCamera there = *camera, made = *camera;
-  vlResult status = vl_camera_pose_matrix(open, &made, error);
-  if (status == VL_OK)
-    status = vl_camera_pose_matrix(close, &there, error);
+  VL_TRY(vl_camera_pose_matrix(open, &made, error));
+  VL_TRY(vl_camera_pose_matrix(close, &there, error));
   made.pose_times[0] = times[0];
   made.pose_times[1] = times[1];
-  if (status == VL_OK)
-    status = go_to(there.world_from_camera, &made, error);
-  if (status == VL_OK)
-    *result = made;
-  return status;
+  VL_TRY(go_to(there.world_from_camera, &made, error));
+  *result = made;
+  return VL_OK;
 }
 
 static vlResult make_motion(const vlCameraDef *def, vlCamera *camera, const char **warning,
@@ -120,19 +117,17 @@ static vlResult make_motion(const vlCameraDef *def, vlCamera *camera, const char
   camera->pose_times[0] =
       vl_is_unset(def->pose_times[0]) ? def->shutter_open : def->pose_times[0];
   camera->pose_times[1] = vl_is_unset(def->pose_times[1]) ? end : def->pose_times[1];
-  vlResult result = check_second_pose(def, error);
-  if (result != VL_OK || !second_pose(def, &close))
-    return result;
+  VL_TRY(check_second_pose(def, error));
+  if (!second_pose(def, &close))
+    return VL_OK;
   vlCamera there = *camera;
-  result = vl_camera_pose(&close, &there, warning, error);
-  return result == VL_OK ? go_to(there.world_from_camera, camera, error) : result;
+  VL_TRY(vl_camera_pose(&close, &there, warning, error));
+  return go_to(there.world_from_camera, camera, error);
 }
 
 vlResult vl_camera_time_part(const vlCameraDef *def, vlCamera *camera, const char **warning,
                              vlError *error) {
-  vlResult result = check_curve(def, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check_curve(def, error));
   camera->readout = def->readout;
   camera->readout_direction = def->readout_direction;
   camera->shutter_points = def->shutter_points;
@@ -201,9 +196,7 @@ vlResult vl_camera_at(const vlCamera *camera, double time, vlCamera *result) {
   if (camera->moves) {
     if (!vl_motion_at(camera->world_from_camera, camera->world_from_camera_close, f, m))
       return VL_ERROR_ARGUMENT;
-    vlResult status = vl_camera_pose_matrix(m, &still, NULL);
-    if (status != VL_OK)
-      return status;
+    VL_TRY(vl_camera_pose_matrix(m, &still, NULL));
   }
   memcpy(still.world_from_camera_close, still.world_from_camera,
          sizeof still.world_from_camera);

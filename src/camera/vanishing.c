@@ -160,11 +160,9 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   if (!def || !camera)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
   double p[2] = {0.5 * def->width, 0.5 * def->height}, f2 = 0.0;
-  vlResult result = check(def, error);
-  if (result == VL_OK && def->count == 3)
-    result = orthocentre(def, p, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(def, error));
+  if (def->count == 3)
+    VL_TRY(orthocentre(def, p, error));
   uint32_t pairs = def->count == 3 ? 3 : 1;
   if (def->count == 2 && !vl_is_unset(def->cx)) {
     p[0] = def->cx;

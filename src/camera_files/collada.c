@@ -59,7 +59,7 @@ static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlM
       step = vl_mat4_scale(v[0], v[1], v[2]);
     } else if (has_tag(child, "rotate")) {
       VL_TRY(vl_camera_element_numbers(file, child, v, 4));
-      if ((v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0))
+      if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0)
         step = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
     } else if (has_tag(child, "lookat")) {
       VL_TRY(vl_camera_element_numbers(file, child, v, 9));
@@ -171,7 +171,7 @@ static vlResult refuse_shift(const vlCameraFile *file, const json_t *element, in
     else if (depth > 0)
       VL_TRY(refuse_shift(file, child, depth - 1));
     if (shift != 0.0)
-      VL_TRY(vl_camera_wrong_element(file, child, "a lens shift, <%s>, is not taken", tag));
+      return vl_camera_wrong_element(file, child, "a lens shift, <%s>, is not taken", tag);
   }
   return VL_OK;
 }

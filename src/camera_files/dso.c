@@ -45,8 +45,8 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
     return vl_camera_wrong(file, "dso: the image's size is missing");
   VL_TRY(vl_camera_line_numbers(file, &lines, lines.text, sides, 2, 2, &count));
   if (!vl_camera_set_sides(d, sides))
-    VL_TRY(vl_camera_wrong_line(file, &lines, lines.text,
-                                "the image's size must be two whole numbers of pixels"));
+    return vl_camera_wrong_line(file, &lines, lines.text,
+                                "the image's size must be two whole numbers of pixels");
   bool shares = v[2] < 1.0 && v[3] < 1.0;
   if (shares) {
     d->fx = v[0] * sides[0];

@@ -165,8 +165,6 @@ void vl_camera_put(vlCameraText *text, const char *format, ...)
 void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count);
 /* Appends all of another text. */
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other);
-/* Appends numbers as "1, 2, 3". */
-void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t count);
 /* Appends a quoted string, for JSON and YAML. */
 void vl_camera_put_string(vlCameraText *text, const char *string);
 /* Returns VL_OK if the camera does not use the field or if it may be dropped. Otherwise returns

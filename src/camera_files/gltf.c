@@ -45,7 +45,7 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *node, vlMat
     VL_TRY(vl_camera_numbers(file, node, "scale", s, 3, 3, NULL));
   const double wxyz[4] = {q[3], q[0], q[1], q[2]};
   if (!vl_rotation_from_quaternion(wxyz, r))
-    VL_TRY(vl_camera_wrong(file, "gltf: a node's \"rotation\" is no rotation"));
+    return vl_camera_wrong(file, "gltf: a node's \"rotation\" is no rotation");
   for (int i = 0; i < 3; i++) {
     for (int j = 0; j < 3; j++)
       result->m[4 * i + j] = r[3 * i + j] * s[j];

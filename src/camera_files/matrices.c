@@ -174,7 +174,7 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
     VL_TRY(vl_camera_numbers(&own, tree, "clip_z", z, 2, 2, NULL));
     zero_to_one = z[0] == 0.0;
     if (!(z[1] == 1.0 && (z[0] == 0.0 || z[0] == -1.0)))
-      VL_TRY(vl_camera_wrong(&own, "%s: \"clip_z\" must be [0, 1] or [-1, 1]", own.dialect));
+      return vl_camera_wrong(&own, "%s: \"clip_z\" must be [0, 1] or [-1, 1]", own.dialect);
   }
   bool transposed = rows_first == row_vectors;
   VL_TRY(read_matrix(&own, tree, "projection_matrix", transposed, &projection));

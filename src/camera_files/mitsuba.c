@@ -75,7 +75,7 @@ static vlResult numbers(const Scene *scene, const json_t *element, const char *k
   VL_TRY(attribute(scene, element, key, &text));
   if (found)
     *found = text != NULL;
-  if ((!text && found))
+  if (!text && found)
     return VL_OK;
   uint32_t n = 0;
   char *end = (char *)text;
@@ -339,15 +339,15 @@ static vlResult check_sensor(const Scene *scene, const json_t *sensor, int kind,
   size_t i;
   char known[512];
   snprintf(known, sizeof known, "%s %s %s", common, kind < 2 ? fov : "", more[kind]);
-  VL_TRY(check_parameters(scene, sensor, known, record));
+  vlResult result = check_parameters(scene, sensor, known, record);
   json_array_foreach(json_object_get(sensor, "/"), i, item) {
-    if (vl_text_is(tag_of(item), "film"))
-      VL_TRY(check_parameters(scene, item, film, record));
+    if (result == VL_OK && vl_text_is(tag_of(item), "film"))
+      result = check_parameters(scene, item, film, record);
     if (vl_text_is(tag_of(item), "ref") && vl_text_is(vl_camera_text(item, "name"), "film"))
-      VL_TRY(vl_camera_wrong_at(scene->file, line_of(item), 0,
-                                "mitsuba: the film is a reference; write it into the sensor"));
+      result = vl_camera_wrong_at(scene->file, line_of(item), 0,
+                                  "mitsuba: the film is a reference; write it into the sensor");
   }
-  return VL_OK;
+  return result;
 }
 
 static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRecord *record) {

@@ -81,7 +81,7 @@ vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree,
   double binning[2] = {0, 0}, x = 0, y = 0, width = 0, height = 0;
   VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("binning_x", &binning[0]),
                         VL_FIELD_OPTIONAL("binning_y", &binning[1])));
-  if ((binning[0] > 1.0 || binning[1] > 1.0))
+  if (binning[0] > 1.0 || binning[1] > 1.0)
     return vl_camera_wrong_in(
         file, tree, "binning_x",
         "%s: binning of %g x %g pixels is not taken; give the full image's camera",

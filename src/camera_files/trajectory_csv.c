@@ -360,10 +360,10 @@ vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char 
       VL_TRY(read_euroc_header(&csv, line + (first - line) + 1));
     } else if (*first == '#') {
       if (!take_comment(&csv, first))
-        VL_TRY(wrong(
+        return wrong(
             &csv, 0,
             "\"%s\": axes are opencv or opengl, poses world_from_camera or camera_from_world",
-            vl_short_text(first).text));
+            vl_short_text(first).text);
     } else if (*first) {
       VL_TRY(read_line(&csv, line));
     }

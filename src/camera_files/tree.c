@@ -351,11 +351,6 @@ void vl_camera_put_text(vlCameraText *text, const vlCameraText *other) {
     vl_camera_put(text, "%.*s", (int)other->text.count, other->text.items);
 }
 
-void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t count) {
-  for (uint32_t i = 0; i < count; i++)
-    vl_camera_put(text, "%s%.17g", i ? ", " : "", values[i] + 0.0);
-}
-
 void vl_camera_put_string(vlCameraText *text, const char *string) {
   vl_camera_put(text, "\"");
   for (const char *s = string; *s; s++) {

@@ -54,7 +54,7 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
   } else if (n == 6 && strncmp(kind, "orient", n) == 0) {
     VL_TRY(op_numbers(op, key, v, 4)); /* w x y z */
     if (!vl_rotation_from_quaternion(v, r))
-      VL_TRY(vl_camera_wrong(op->file, "usd: \"%s\" is no rotation", vl_short_text(key).text));
+      return vl_camera_wrong(op->file, "usd: \"%s\" is no rotation", vl_short_text(key).text);
     for (int i = 0; i < 9; i++)
       m->m[4 * (i / 3) + i % 3] = r[i];
   } else if (n == 7 && strncmp(kind, "rotate", 6) == 0 && kind[6] >= 'X' && kind[6] <= 'Z') {

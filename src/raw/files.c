@@ -18,20 +18,17 @@ static vlResult numbers_image(const vlRaw *raw, vlImage **image) {
   vlImageDef def = vl_default_image_def(raw->def.width, raw->def.height, 1);
   def.type = VL_PIXEL_U16;
   def.encoding = VL_ENCODING_LINEAR;
-  vlResult result = vl_image_create(raw->context, &def, image);
-  if (result == VL_OK)
-    memcpy(vl_image_pixels(*image), raw->numbers,
-           (size_t)raw->def.width * raw->def.height * sizeof *raw->numbers);
-  return result;
+  VL_TRY(vl_image_create(raw->context, &def, image));
+  memcpy(vl_image_pixels(*image), raw->numbers,
+         (size_t)raw->def.width * raw->def.height * sizeof *raw->numbers);
+  return VL_OK;
 }
 
 /* The electrons: (number - black) / gain. */
 static vlResult electrons_image(const vlRaw *raw, vlImage **image) {
   const vlRawDef *raw_def = &raw->def;
   vlImageDef def = vl_default_image_def(raw_def->width, raw_def->height, 1);
-  vlResult result = vl_image_create(raw->context, &def, image);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_image_create(raw->context, &def, image));
   float *electrons = vl_image_pixels(*image);
   size_t at = 0;
   for (uint32_t y = 0; y < raw_def->height; y++)
@@ -83,11 +80,8 @@ vlResult vl_raw_write(const vlRaw *raw, const char *path, vlError *error) {
   vl_error_clear(error);
   if (!raw || !path)
     return vl_fail(error, VL_ERROR_ARGUMENT, "raw file: raw image or path is null");
-  vlResult result = vl_raw_check_numbers(raw, error);
-  if (result == VL_OK)
-    result = vl_check_output(raw->context, path, VL_OUTPUT_PLAIN, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_raw_check_numbers(raw, error));
+  VL_TRY(vl_check_output(raw->context, path, VL_OUTPUT_PLAIN, error));
   if (vl_ends_with(path, ".dng") || vl_ends_with(path, ".tif") || vl_ends_with(path, ".tiff"))
     return write_tiff(raw, path, error);
   if (vl_ends_with(path, ".png") || vl_ends_with(path, ".exr"))

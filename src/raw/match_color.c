@@ -164,9 +164,7 @@ vlResult vl_raw_match_color(vlRawDef *def, const float *sensitivities, const flo
   vl_error_clear(error);
   if (!sensitivities)
     return vl_fail(error, VL_ERROR_ARGUMENT, "colour of a sensor: sensitivities is null");
-  vlResult result = vl_raw_check(def, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_raw_check(def, error));
   vlRawDef changed = *def;
   uint8_t colors[COLORS];
   uint32_t count = vl_raw_colors(def, colors);
@@ -181,9 +179,7 @@ vlResult vl_raw_match_color(vlRawDef *def, const float *sensitivities, const flo
   memset(changed.matrices, 0, sizeof changed.matrices);
   memset(changed.neutral, 0, sizeof changed.neutral);
   for (int i = 0; i < 2; i++) {
-    result = named_light(lights[i], tables[i], error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(named_light(lights[i], tables[i], error));
     if (count > 1 && !match(curves, count, tables[i], changed.matrices[i]))
       return vl_fail(error, VL_ERROR_ARGUMENT,
                      "colour of a sensor: its sensitivities are linearly dependent");

@@ -84,9 +84,7 @@ vlResult vl_raw_set_pattern(vlRawDef *def, const char *text, vlError *error) {
   vlRawDef changed = *def;
   uint8_t colors[VL_RAW_MAX_COLORS];
   memset(changed.pattern, 0, sizeof changed.pattern);
-  vlResult result = read_rows(&changed, text, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_rows(&changed, text, error));
   if (!vl_raw_colors(&changed, colors))
     return wrong(error, text, "it has more than 4 colours");
   *def = changed;

@@ -108,14 +108,11 @@ vlResult vl_raw_check(const vlRawDef *def, vlError *error) {
     return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: def is null");
   if (def->cookie != VL_COOKIE_RAW)
     return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: " VL_BAD_COOKIE);
-  vlResult result = check_size(def, error);
-  if (result == VL_OK)
-    result = check_levels(def, error);
-  if (result == VL_OK)
-    result = check_name(def, error);
-  if (result == VL_OK)
-    result = check_metadata(def, error);
-  return result == VL_OK ? check_color(def, error) : result;
+  VL_TRY(check_size(def, error));
+  VL_TRY(check_levels(def, error));
+  VL_TRY(check_name(def, error));
+  VL_TRY(check_metadata(def, error));
+  return check_color(def, error);
 }
 
 vlResult vl_raw_check_numbers(const vlRaw *raw, vlError *error) {

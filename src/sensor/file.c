@@ -137,10 +137,7 @@ static vlResult read_efficiency(const vlCameraFile *file, const json_t *tree,
 static vlResult read_microlens(const vlCameraFile *file, const json_t *tree, vlSensorDef *def) {
   double values[2 * VL_SENSOR_ANGLES];
   uint32_t count = 0;
-  vlResult result =
-      vl_camera_numbers(file, tree, "microlens", values, 2, 2 * VL_SENSOR_ANGLES, &count);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers(file, tree, "microlens", values, 2, 2 * VL_SENSOR_ANGLES, &count));
   if (count % 2)
     return vl_camera_wrong_in(file, tree, "microlens",
                               "microlens must be a list of pairs: angle in degrees, response");

@@ -200,14 +200,13 @@ vlResult vl_sensor_set_curves(vlSensorDef *def, const char *name, double peak, v
       largest = fmax(largest, value);
     }
   }
-  vlResult result = VL_OK;
-  for (int c = 0; c < 3 && result == VL_OK; c++) {
+  for (int c = 0; c < 3; c++) {
     for (int i = 0; i < VL_SENSOR_SAMPLES; i++)
       efficiency[c][i] = fmin(efficiency[c][i] * peak / largest, 1.0);
-    result = vl_sensor_set_efficiency(def, "RGB"[c], VL_SENSOR_SAMPLES, wavelengths,
-                                      efficiency[c], error);
+    VL_TRY(vl_sensor_set_efficiency(def, "RGB"[c], VL_SENSOR_SAMPLES, wavelengths,
+                                    efficiency[c], error));
   }
-  return result;
+  return VL_OK;
 }
 
 /* ---- checks ------------------------------------------------------------------------------ */
@@ -294,17 +293,13 @@ vlResult vl_sensor_create(vlContext *context, const vlSensorDef *def, vlSensor *
     return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
   if (def->cookie != VL_COOKIE_SENSOR)
     return vl_fail(error, VL_ERROR_ARGUMENT, VL_BAD_COOKIE);
-  vlResult result = check_rows(&vl_sensor_settings_row, def, error);
-  if (result == VL_OK)
-    result = check_mosaic(def, error);
-  if (result == VL_OK)
-    result = check_light(def, error);
-  if (result == VL_OK && def->black_level >= ldexp(1.0, (int)def->bits) - 1.0)
-    result = vl_fail(error, VL_ERROR_ARGUMENT,
-                     "black_level must be below the largest number of %u bits; it is %g DN",
-                     def->bits, def->black_level);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check_rows(&vl_sensor_settings_row, def, error));
+  VL_TRY(check_mosaic(def, error));
+  VL_TRY(check_light(def, error));
+  if (def->black_level >= ldexp(1.0, (int)def->bits) - 1.0)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "black_level must be below the largest number of %u bits; it is %g DN",
+                   def->bits, def->black_level);
   vlSensor *made = vl_alloc(context, sizeof *made);
   if (!made)
     return vl_fail_memory(error);

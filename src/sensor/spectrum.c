@@ -160,10 +160,9 @@ vlResult vl_exposure_write_window(const vlExposureDef *exposure, vlImage *image)
   const uint32_t *window = exposure->window;
   if (!window[2])
     return VL_OK;
-  vlResult result = write_box(image, "dataWindow", window[0], window[1], vl_image_width(image),
-                              vl_image_height(image));
-  return result == VL_OK ? write_box(image, "displayWindow", 0, 0, window[2], window[3])
-                         : result;
+  VL_TRY(write_box(image, "dataWindow", window[0], window[1], vl_image_width(image),
+                   vl_image_height(image)));
+  return write_box(image, "displayWindow", 0, 0, window[2], window[3]);
 }
 
 vlResult vl_exposure_window(const vlExposureDef *exposure, uint32_t width, uint32_t height,

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 """all.py [--check]: writes the scenes that the programs beside this file make, packed with gzip: arches, jewel, library, table,
-watch, and parts/rotunda. With --check: writes nothing, and fails if a scene is not the one that its program makes."""
+watch, and parts/fruit, parts/orangery, parts/rotunda. With --check: writes nothing, and fails if a scene is not the one that its program makes."""
 import gzip
 import os
 import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-SCENES = ("arches", "jewel", "library", "parts/rotunda", "table", "watch")
+SCENES = ("arches", "jewel", "library", "parts/fruit", "parts/orangery", "parts/rotunda", "table", "watch")
 
 
 def main() -> int:

@@ -373,8 +373,7 @@ static bool finish(vlImport *import) {
     return vl_import_fail(import, VL_ERROR_SCENE, top->source, "%s is never closed",
                           top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
   }
-  if (!vl_import_flush_curves(import) || !vl_import_flush_meshes(import) ||
-      !vl_import_flush_spheres(import))
+  if (!vl_import_flush_runs(import))
     return false;
   if (!vl_import_read_meshes(import))
     return false;
@@ -432,9 +431,7 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->stack);
   VL_ARRAY_FREE(context, &import->matrices);
   VL_ARRAY_FREE(context, &import->moving);
-  vl_import_free_curves(import);
-  vl_import_free_meshes(import);
-  vl_import_free_spheres(import);
+  vl_import_free_runs(import);
   VL_ARRAY_FREE(context, &import->object_list);
   VL_ARRAY_FREE(context, &import->links);
   VL_ARRAY_FREE(context, &import->mesh_files);

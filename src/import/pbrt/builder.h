@@ -100,40 +100,24 @@ typedef struct vlMediumLink {
   vlSource source;
 } vlMediumLink;
 
-/* Successive curves that become one shape. */
-typedef struct vlCurveRun {
+/* Shapes of equal graphics state that become one shape (run.c). */
+typedef enum vlRunKind { VL_RUN_CURVES, VL_RUN_MESHES, VL_RUN_SPHERES, VL_RUN_KINDS } vlRunKind;
+enum { VL_RUNS = 16, VL_RUN_FROM = 4096 };
+typedef VL_ARRAY(float) vlRunFloats;
+typedef struct vlShapeRun {
   bool open;
-  vlShapeDef def;
+  uint32_t faces; /* gathered so far */
+  vlShapeDef def; /* normals, uvs: not null when the run of meshes has them */
   vlShapeLink link;
   const char *inside, *outside; /* media */
-  VL_ARRAY(float) points;
-  VL_ARRAY(float) widths;
-  VL_ARRAY(float) normals;
-} vlCurveRun;
-
-/* Small meshes that become one shape (mesh_run.c). */
-enum { VL_MESH_RUNS = 16, VL_MESH_RUN_FROM = 4096 };
-typedef struct vlMeshRun {
-  bool open;
-  vlShapeDef def; /* normals, uvs: not null when the run has them */
-  vlShapeLink link;
-  const char *inside, *outside; /* media */
-  VL_ARRAY(float) positions;
-  VL_ARRAY(float) normals;
-  VL_ARRAY(float) uvs;
+  vlRunFloats positions, normals, uvs, widths, radii;
+  VL_ARRAY(double) centers; /* 3 a sphere */
   VL_ARRAY(uint32_t) indices;
-} vlMeshRun;
-
-/* Whole spheres that are gathered into one shape (sphere_run.c), from the VL_MESH_RUN_FROM-th
- * shape on. */
-typedef struct vlSphereRun {
-  bool open;
-  vlShapeDef def;
-  vlShapeLink link;
-  const char *inside, *outside; /* media */
-  VL_ARRAY(double) centers;     /* 3 a sphere */
-  VL_ARRAY(float) radii;
-} vlSphereRun;
+} vlShapeRun;
+typedef struct vlRuns {
+  vlShapeRun items[VL_RUNS]; /* of curves the first only */
+  uint32_t next;             /* the run that is ended when a new one needs its slot */
+} vlRuns;
 
 /* Shapes under an animated transform. */
 typedef struct vlMovingGroup {
@@ -183,11 +167,7 @@ struct vlImport {
   VL_ARRAY(vlMediumLink) medium_links;
   double times[2]; /* TransformTimes: times of the two current transforms in seconds */
   VL_ARRAY(vlMovingGroup) moving;
-  vlCurveRun curves;
-  vlMeshRun mesh_runs[VL_MESH_RUNS];
-  vlSphereRun sphere_runs[VL_MESH_RUNS];
-  uint32_t next_sphere_run; /* the run that is ended when a new one needs its slot */
-  uint32_t next_run;
+  vlRuns runs[VL_RUN_KINDS];
   double edge_scale; /* Option "displacementedgescale" */
   uint32_t depth;    /* nesting of textures or materials that refer to each other */
   uint32_t problems; /* number of errors reported so far */
@@ -197,9 +177,20 @@ enum { VL_IMPORT_DEPTH = 200, VL_IMPORT_PROBLEMS = 1000 };
 /* ---- errors, warnings, copies (report.c) ------------------------------------------------- */
 bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* The same of what the scene's text says: the code is VL_ERROR_SCENE. */
+bool vl_import_wrong(vlImport *import, vlSource source, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* The same at a directive or at one of its parameters; the message begins with dict->what. */
+bool vl_dict_fail(const vlDict *dict, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+bool vl_dict_fail_at(const vlDict *dict, vlSource source, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+bool vl_import_fine(const vlImport *import); /* no error was reported */
 bool vl_import_fail_memory(vlImport *import);
 void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format,
                     ...) __attribute__((format(printf, 4, 5)));
+void vl_dict_warn(const vlDict *dict, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /* While diagnosing (vl_scene_diagnose): reports the scene's error and clears it. False when not
  * diagnosing or when the error is fatal. */
 bool vl_import_recover(vlImport *import);
@@ -344,22 +335,22 @@ bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def,
                                  const vlShapeLink *link, const char *inside,
                                  const char *outside);
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
-bool vl_import_flush_curves(
-    vlImport *import); /* called before any other shape, and at the end */
-void vl_import_free_curves(vlImport *import);
-/* Copies a small mesh into a run. *taken: whether the mesh was copied. */
+/* Runs (run.c): the one that the shape joins; a new one ends another. Null after an error. */
+vlShapeRun *vl_import_run(vlImport *import, vlRunKind kind, const vlShapeDef *def,
+                          const vlShapeLink *link);
+bool vl_import_flush_curves(vlImport *import); /* called before any other shape */
+bool vl_import_flush_runs(vlImport *import);   /* called at the end */
+void vl_import_free_runs(vlImport *import);
+/* Whether meshes and spheres are gathered yet, and such ones. */
+bool vl_import_may_gather(const vlImport *import, const vlShapeDef *def,
+                          const vlShapeLink *link);
+bool vl_import_all_finite(const float *v, size_t count);
+/* Copy a small mesh or a whole sphere into a run. *taken is false when it must become a shape
+ * of its own. */
 bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,
                            bool *taken);
-bool vl_import_flush_meshes(vlImport *import); /* called at the end */
-void vl_import_free_meshes(vlImport *import);
-/* Adds a sphere to a run. *taken is false when the sphere must become a shape of its own. */
 bool vl_import_gather_sphere(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,
                              bool *taken);
-bool vl_import_flush_spheres(vlImport *import); /* at the end */
-void vl_import_free_spheres(vlImport *import);
-/* Whether shapes with these two links may become one shape. */
-bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b);
-bool vl_import_same_text(const char *a, const char *b); /* null equals the empty string */
 bool vl_import_medium(vlImport *import, const vlStatement *s);
 /* Records the media of the current state for a shape ('s'), a light ('l') or the camera
  * ('c'). */

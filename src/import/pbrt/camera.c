@@ -14,7 +14,7 @@ static const double degrees = 0.017453292519943295;
 /* ---- lenses: aperture images and lens files become objects owned by the scene ------------ */
 
 static bool scene_ok(const vlDict *dict) {
-  return dict->import->scene->error.code == VL_OK;
+  return vl_import_fine(dict->import);
 }
 
 static bool fail_with(vlDict *dict, vlSource source, vlResult code, const vlError *error) {
@@ -58,7 +58,7 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
   static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
   vlImport *import = dict->import;
   const char *name = "circle";
-  vlParam *p = vl_dict_find(dict, "aperture", 1u << VL_PARAM_STRING);
+  vlParam *p = vl_dict_find(dict, "aperture", VL_BIT_STRING);
   if (!vl_dict_string(dict, "aperture", &name) || vl_text_is(name, "circle") ||
       vl_text_is(name, "circular") || name[0] == 0)
     return scene_ok(dict);
@@ -106,13 +106,12 @@ static bool read_optics(vlDict *dict, vlCameraDef *def, double film_diagonal) {
   optics.film_diagonal = film_diagonal;
   vl_dict_double(dict, "aperturediameter", &optics.aperture_diameter);
   vl_dict_double(dict, "focusdistance", &optics.focus_distance);
-  vlParam *p = vl_dict_find(dict, "lensfile", 1u << VL_PARAM_STRING);
+  vlParam *p = vl_dict_find(dict, "lensfile", VL_BIT_STRING);
   vl_dict_string(dict, "lensfile", &file);
   if (!scene_ok(dict))
     return false;
   if (!p)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"string lensfile\" is missing", dict->what);
+    return vl_dict_fail(dict, "\"string lensfile\" is missing");
   if (!vl_import_path(import, p, path, sizeof path) || !read_aperture(dict, &optics.aperture))
     return false;
   vlOptics **slot = VL_PUSH(import->context, &import->scene->optics);
@@ -135,8 +134,8 @@ static bool read_optics(vlDict *dict, vlCameraDef *def, double film_diagonal) {
 static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
   vlMat4 m;
   if (!vl_mat4_inverse(*ctm, &m))
-    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.source,
-                          "Camera: the current transform is singular");
+    return vl_import_wrong(import, import->camera.source,
+                           "Camera: the current transform is singular");
   for (int row = 0; row < 3; row++) {
     for (int column = 0; column < 4; column++)
       pose[4 * row + column] = m.m[4 * row + column] * (column == 1 ? -1.0 : 1.0);
@@ -168,12 +167,10 @@ static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
 /* A rolling shutter may expose each row for an instant. */
 static bool check_shutter(vlDict *dict, vlCameraDef *def) {
   bool instant = def->shutter_close == def->shutter_open && def->readout > 0.0;
-  if (instant || def->shutter_close > def->shutter_open ||
-      dict->import->scene->error.code != VL_OK)
-    return dict->import->scene->error.code == VL_OK;
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                        "%s: the shutter does not open: it closes at %g, opens at %g",
-                        dict->what, def->shutter_close, def->shutter_open);
+  if (instant || def->shutter_close > def->shutter_open || !vl_import_fine(dict->import))
+    return vl_import_fine(dict->import);
+  return vl_dict_fail(dict, "the shutter does not open: it closes at %g, opens at %g",
+                      def->shutter_close, def->shutter_open);
 }
 
 /* pbrt's cameras (book 5.2). Unless the file gives the screen window, it extends from -1 to 1
@@ -183,8 +180,7 @@ static bool read_pbrt(vlDict *dict, vlCameraDef *def, bool flat) {
   double frame = (double)def->width / def->height, window[4], focus = 1e6;
   bool given = vl_dict_double(dict, "frameaspectratio", &frame);
   if (given && !(frame > 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"frameaspectratio\" must be above 0", dict->what);
+    return vl_dict_fail(dict, "\"frameaspectratio\" must be above 0");
   double x = frame > 1.0 ? frame : 1.0, y = frame > 1.0 ? 1.0 : 1.0 / frame;
   double standard[4] = {-x, x, -y, y};
   memcpy(window, standard, sizeof window);
@@ -241,20 +237,19 @@ static bool read_curve(vlDict *dict, vlCameraDef *def) {
   vl_dict_choice(dict, "shuttercurve", curves, 3, &curve);
   bool risen = vl_dict_double(dict, "shutterrise", &rise);
   vlParam *points = vl_dict_find(dict, "shutterpoints", VL_BIT_FLOAT);
-  if (dict->import->scene->error.code != VL_OK)
+  if (!vl_import_fine(dict->import))
     return false;
   if (risen && (curve != 2 || !(rise > 0.0 && rise <= 0.5)))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"shutterrise\" is the share, above 0 and at most 0.5, in "
-                          "which a trapezoid rises and falls",
-                          dict->what);
+    return vl_dict_fail(dict,
+                        "\"shutterrise\" is the share, above 0 and at most 0.5, in "
+                        "which a trapezoid rises and falls");
   if (points) {
     size_t n = vl_param_count(points);
     if (curve || n % 2 || n < 4 || n > 2 * VL_SHUTTER_POINTS)
-      return vl_import_fail(dict->import, VL_ERROR_SCENE, points->source,
-                            "%s: \"shutterpoints\" are 2 to %d pairs (share of the time, how "
-                            "far open), instead of \"shuttercurve\"",
-                            dict->what, (int)VL_SHUTTER_POINTS);
+      return vl_dict_fail_at(dict, points->source,
+                             "\"shutterpoints\" are 2 to %d pairs (share of the time, how "
+                             "far open), instead of \"shuttercurve\"",
+                             (int)VL_SHUTTER_POINTS);
     def->shutter_points = (uint32_t)(n / 2);
     for (size_t i = 0; i < n; i++)
       (i % 2 ? def->shutter_value : def->shutter_at)[i / 2] = points->exact[i];
@@ -275,9 +270,8 @@ static bool read_coefficients(vlDict *dict, const char *name, double *values, ui
     return false;
   size_t n = vl_param_count(p);
   if (n > 14)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                          "%s: \"%s\" has %zu numbers; at most 14 have a meaning", dict->what,
-                          name, n);
+    return vl_dict_fail_at(dict, p->source, "\"%s\" has %zu numbers; at most 14 have a meaning",
+                           name, n);
   for (size_t i = 0; i < n; i++)
     values[i] = p->exact[i];
   *count = (uint32_t)n;
@@ -302,13 +296,12 @@ static bool read_colmap(vlDict *dict, vlCameraDef *def) {
   vlError error = {0};
   vl_dict_string(dict, "model", &model);
   read_coefficients(dict, "parameters", values, &count);
-  if (dict->import->scene->error.code != VL_OK)
+  if (!vl_import_fine(dict->import))
     return false;
   if (vl_camera_def_colmap(def, model, values, count, &error) == VL_OK)
     return true;
   vl_shorten_quoted(&error, model);
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: %s", dict->what,
-                        error.message + strlen("camera: "));
+  return vl_dict_fail(dict, "%s", error.message + strlen("camera: "));
 }
 
 /* Reads the angular limits of the image in degrees; right and up are positive. */
@@ -346,7 +339,7 @@ static bool read_model(vlDict *dict, vlCameraDef *def, vlCameraKind kind,
     read_limits(dict, def);
   if (vl_row_find(row, "layout"))
     def->shape[0] = read_choice(dict, row, "layout");
-  return dict->import->scene->error.code == VL_OK;
+  return vl_import_fine(dict->import);
 }
 
 /* Reads the parameters common to velo's own cameras: eye, lookat, up, roll; d, zoom, s or a
@@ -364,10 +357,9 @@ static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind,
   for (int i = 0; i < 16; i++)
     if (import->camera_from_world[0].m[i] != identity.m[i] ||
         import->camera_from_world[1].m[i] != identity.m[i])
-      return vl_import_fail(
-          import, VL_ERROR_SCENE, dict->source,
-          "%s: its pose is given by eye, lookat and up; transforms before it have no meaning",
-          dict->what);
+      return vl_dict_fail(
+          dict,
+          "its pose is given by eye, lookat and up; transforms before it have no meaning");
   return true;
 }
 
@@ -379,7 +371,7 @@ static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
   if (vl_camera_make(def, &camera, &warning, &error) != VL_OK) {
     const char *text =
         strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
-    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.source, "%s: %s", what, text);
+    return vl_import_wrong(import, import->camera.source, "%s: %s", what, text);
   }
   if (warning && camera.outside > 0.0)
     vl_import_warn(import, VL_LOG_WARNING, import->camera.source,

@@ -1,56 +1,11 @@
 /* import/pbrt/curve.c: Shape "curve". Every basis and degree becomes cubic Bezier segments.
- * Successive curves that differ only in their points become one shape, since hair is described
- * by millions of directives. */
+ * Successive curves that differ only in their points become one shape (run.c), since hair is
+ * described by millions of directives. */
 
 #include <string.h>
 
 #include "import/pbrt/builder.h"
 #include "velo/shape_kinds.h"
-
-/* Whether the curve can join the shape being gathered. */
-static bool continues(const vlCurveRun *run, const vlShapeDef *def, const vlShapeLink *link,
-                      const vlGraphicsState *state) {
-  const vlShapeDef *d = &run->def;
-  return run->open && d->curve == def->curve && d->split_depth == def->split_depth &&
-         d->group.index == def->group.index &&
-         d->reverse_orientation == def->reverse_orientation &&
-         d->alpha.value == def->alpha.value &&
-         memcmp(d->group_from_shape, def->group_from_shape, sizeof d->group_from_shape) == 0 &&
-         vl_import_same_link(&run->link, link) &&
-         vl_import_same_text(run->inside, state->inside) &&
-         vl_import_same_text(run->outside, state->outside);
-}
-
-bool vl_import_flush_curves(vlImport *import) {
-  vlCurveRun *run = &import->curves;
-  if (!run->open)
-    return true;
-  run->open = false;
-  run->def.faces = (uint32_t)(run->widths.count / 2);
-  run->def.vertices = 4 * run->def.faces;
-  run->def.positions = run->points.items;
-  run->def.widths = run->widths.items;
-  run->def.normals = run->normals.count ? run->normals.items : NULL;
-  if (!run->def.normals)
-    vl_free(import->context, run->normals.items);
-  memset(&run->points, 0, sizeof run->points);
-  memset(&run->widths, 0, sizeof run->widths);
-  memset(&run->normals, 0, sizeof run->normals);
-  vlGraphicsState now = import->state;
-  import->state.inside = run->inside;
-  import->state.outside = run->outside;
-  bool fine = vl_import_add_shape(import, &run->def, &run->link) &&
-              vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1,
-                                   run->def.source);
-  import->state = now;
-  return fine;
-}
-
-void vl_import_free_curves(vlImport *import) {
-  VL_ARRAY_FREE(import->context, &import->curves.points);
-  VL_ARRAY_FREE(import->context, &import->curves.widths);
-  VL_ARRAY_FREE(import->context, &import->curves.normals);
-}
 
 /* Writes the Bezier control points of segment k of the curve with control points p. B-splines
  * are converted by knot insertion; degree 2 is raised to 3. */
@@ -88,20 +43,18 @@ typedef struct Curve {
   float width[2];
 } Curve;
 
-static bool append(vlImport *import, const Curve *c) {
-  vlCurveRun *run = &import->curves;
+static bool append(vlImport *import, vlShapeRun *run, const Curve *c) {
   size_t n = c->segments;
-  if (run->widths.count / 2 + n > 0x1fffffff)
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source,
-                          "too many segments of curves");
-  if (!VL_RESERVE(import->context, &run->points, 12 * n) ||
+  if (run->faces + n > 0x1fffffff)
+    return vl_import_wrong(import, c->points->source, "too many segments of curves");
+  if (!VL_RESERVE(import->context, &run->positions, 12 * n) ||
       !VL_RESERVE(import->context, &run->widths, 2 * n) ||
       (c->normals && !VL_RESERVE(import->context, &run->normals, 6 * n)))
     return vl_import_fail_memory(import);
   for (size_t k = 0; k < n; k++) {
     bezier_points(c->points->floats.items, k, c->spline, c->degree,
-                  run->points.items + run->points.count);
-    run->points.count += 12;
+                  run->positions.items + run->positions.count);
+    run->positions.count += 12;
     for (size_t e = 0; e < 2; e++) {
       double at = (double)(k + e) / (double)n;
       run->widths.items[run->widths.count++] =
@@ -113,48 +66,43 @@ static bool append(vlImport *import, const Curve *c) {
            6 * sizeof(float));
     run->normals.count += 6;
   }
+  run->faces += (uint32_t)n;
   return true;
 }
 
 static bool finite(const vlParam *p) {
-  for (size_t i = 0; i < p->floats.count; i++)
-    if (!(p->floats.items[i] - p->floats.items[i] == 0.0f))
-      return false;
-  return true;
+  return vl_import_all_finite(p->floats.items, p->floats.count);
 }
 
 static bool read_points(vlDict *dict, Curve *c) {
   vlImport *import = dict->import;
-  if (!(c->points = vl_dict_find(dict, "P", 1u << VL_PARAM_POINT3))) {
-    if (import->scene->error.code != VL_OK || !vl_dict_done(dict))
+  if (!(c->points = vl_dict_find(dict, "P", VL_BIT_POINT3))) {
+    if (!vl_import_fine(import) || !vl_dict_done(dict))
       return false;
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"point3 P\" is missing",
-                          dict->what);
+    return vl_dict_fail(dict, "\"point3 P\" is missing");
   }
   size_t numbers = c->points->floats.count, n = numbers / 3;
   if (numbers % 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source,
-                          "%s: \"P\" holds %zu numbers, not a multiple of 3", dict->what,
-                          numbers);
+    return vl_dict_fail_at(dict, c->points->source,
+                           "\"P\" holds %zu numbers, not a multiple of 3", numbers);
   if (n < c->degree + 1 || (!c->spline && (n - 1) % c->degree))
-    return vl_import_fail(
-        import, VL_ERROR_SCENE, c->points->source,
+    return vl_dict_fail_at(
+        dict, c->points->source,
         c->spline
-            ? "%s: %zu points, but a B-spline of degree %u needs at least %u"
-            : "%s: %zu points, but Bezier curves of degree %u need %u, or that and a multiple "
+            ? "%zu points, but a B-spline of degree %u needs at least %u"
+            : "%zu points, but Bezier curves of degree %u need %u, or that and a multiple "
               "of the degree",
-        dict->what, n, c->degree, c->degree + 1);
+        n, c->degree, c->degree + 1);
   c->segments = c->spline ? n - c->degree : (n - 1) / c->degree;
   if (!finite(c->points))
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source,
-                          "%s: a point is not finite", dict->what);
+    return vl_dict_fail_at(dict, c->points->source, "a point is not finite");
   return true;
 }
 
 static bool read_normals(vlDict *dict, vlCurveKind kind, Curve *c) {
   vlImport *import = dict->import;
-  c->normals = vl_dict_find(dict, "N", 1u << VL_PARAM_NORMAL);
-  if (import->scene->error.code != VL_OK)
+  c->normals = vl_dict_find(dict, "N", VL_BIT_NORMAL);
+  if (!vl_import_fine(import))
     return false;
   if (kind != VL_CURVE_RIBBON) {
     if (c->normals)
@@ -164,15 +112,13 @@ static bool read_normals(vlDict *dict, vlCurveKind kind, Curve *c) {
     return true;
   }
   if (!c->normals)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: ribbons need \"normal N\"",
-                          dict->what);
+    return vl_dict_fail(dict, "ribbons need \"normal N\"");
   if (c->normals->floats.count == 3 * (c->segments + 1) && finite(c->normals))
     return true;
-  return vl_import_fail(import, VL_ERROR_SCENE, c->normals->source,
-                        "%s: \"N\" holds %zu numbers; %zu segments need %zu finite ones, 3 for "
-                        "each of their ends",
-                        dict->what, c->normals->floats.count, c->segments,
-                        3 * (c->segments + 1));
+  return vl_dict_fail_at(dict, c->normals->source,
+                         "\"N\" holds %zu numbers; %zu segments need %zu finite ones, 3 for "
+                         "each of their ends",
+                         c->normals->floats.count, c->segments, 3 * (c->segments + 1));
 }
 
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
@@ -190,8 +136,8 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
   c.width[0] = c.width[1] = width;
   vl_dict_float(dict, "width0", &c.width[0]);
   vl_dict_float(dict, "width1", &c.width[1]);
-  vlParam *split = vl_dict_find(dict, "splitdepth", 1u << VL_PARAM_INTEGER | VL_BIT_FLOAT);
-  if (import->scene->error.code != VL_OK)
+  vlParam *split = vl_dict_find(dict, "splitdepth", VL_BIT_INTEGER | VL_BIT_FLOAT);
+  if (!vl_import_fine(import))
     return false;
   if (split && vl_param_count(split) == 1) {
     double depth =
@@ -200,12 +146,10 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
   }
   c.spline = basis == 1;
   if (c.degree > 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: the degree must be 2 or 3, not %u", dict->what, c.degree);
+    return vl_dict_fail(dict, "the degree must be 2 or 3, not %u", c.degree);
   if (!(c.width[0] >= 0.0f) || !(c.width[1] >= 0.0f) || c.width[0] > 1e30f ||
       c.width[1] > 1e30f)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: a width must not be negative", dict->what);
+    return vl_dict_fail(dict, "a width must not be negative");
   if (!read_points(dict, &c) || !read_normals(dict, def->curve, &c) || !vl_dict_done(dict))
     return false;
   if (def->emission.index) {
@@ -213,17 +157,6 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
                    "curves cannot be area lights (nor can pbrt's): it gives none");
     def->emission.index = 0;
   }
-  if (!continues(&import->curves, def, link, &import->state)) {
-    if (!vl_import_flush_curves(import))
-      return false;
-    vlCurveRun *run = &import->curves;
-    run->def = *def;
-    run->link = *link;
-    run->inside = import->state.inside;
-    run->outside = import->state.outside;
-    if (!vl_scene_copy_source(import->scene, &run->def.source))
-      return false;
-    run->open = true;
-  }
-  return append(import, &c);
+  vlShapeRun *run = vl_import_run(import, VL_RUN_CURVES, def, link);
+  return run && append(import, run, &c);
 }

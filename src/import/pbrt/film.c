@@ -20,14 +20,14 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   double w = s->film.width, h = s->film.height;
   double box[4] = {0, w, 0, h}; /* x0 x1 y0 y1, pixels */
   double crop[4];
-  vlParam *pixels = vl_dict_find(dict, "pixelbounds", 1u << VL_PARAM_INTEGER);
+  vlParam *pixels = vl_dict_find(dict, "pixelbounds", VL_BIT_INTEGER);
   vlSource source = dict->source;
   if (pixels) {
     source = pixels->source;
     if (pixels->integers.count != 4)
-      return vl_import_fail(import, VL_ERROR_SCENE, source,
-                            "%s: parameter \"pixelbounds\" takes 4 values, found %zu",
-                            dict->what, pixels->integers.count);
+      return vl_dict_fail_at(dict, source,
+                             "parameter \"pixelbounds\" takes 4 values, found %zu",
+                             pixels->integers.count);
     for (int i = 0; i < 4; i++) {
       const double bound = pixels->integers.items[i];
       box[i] = clamped(bound, i < 2 ? w : h);
@@ -45,13 +45,12 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
     }
   }
   if (!(box[0] < box[1] && box[2] < box[3]))
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s: the crop window holds no pixel",
-                          dict->what);
+    return vl_dict_fail_at(dict, source, "the crop window holds no pixel");
   s->film.crop[0] = (uint32_t)box[0];
   s->film.crop[2] = (uint32_t)box[1];
   s->film.crop[1] = (uint32_t)box[2];
   s->film.crop[3] = (uint32_t)box[3];
-  return import->scene->error.code == VL_OK;
+  return vl_import_fine(import);
 }
 
 /* Reads the name of the sensor. The default white of a measured sensor is daylight of 6500 K.
@@ -65,7 +64,7 @@ static bool read_sensor_name(vlDict *dict, double *white) {
     names[count] = vl_sensor_name(count);
     count++;
   }
-  vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
+  vlParam *p = vl_dict_find(dict, "sensor", VL_BIT_STRING);
   if (!vl_dict_string(dict, "sensor", &name) || vl_text_is(name, plain))
     return true;
   *white = 6500.0;
@@ -85,16 +84,14 @@ static bool read_sensor(vlDict *dict) {
     return false;
   if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 &&
       !(white >= 1000.0 && white <= 1e5))
-    return vl_import_fail(
-        import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->source,
-        "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
-        white);
+    return vl_dict_fail_at(
+        dict, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->source,
+        "\"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", white);
   vl_scene_defs(import->scene)->film.white_balance = white != 0.0 ? white : usual;
   if (vl_dict_double(dict, "maxcomponentvalue", &top) && !(top >= 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"maxcomponentvalue\" must not be negative", dict->what);
+    return vl_dict_fail(dict, "\"maxcomponentvalue\" must not be negative");
   vl_scene_defs(import->scene)->film.max_component = top < 1e30 ? (float)top : INFINITY;
-  return import->scene->error.code == VL_OK;
+  return vl_import_fine(import);
 }
 
 /* Reads the parameters that the rows do not describe: the file name, the factors of the
@@ -104,7 +101,7 @@ static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   double iso = 100.0, time = 1.0, ratio = 1.0;
   bool half = true;
   const char *output = "";
-  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  vlParam *file = vl_dict_find(dict, "filename", VL_BIT_STRING);
   vl_dict_string(dict, "filename", &output);
   import->film_diagonal = 35.0;
   vl_dict_double(dict, "diagonal", &import->film_diagonal); /* used by realistic cameras only */
@@ -113,16 +110,14 @@ static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   vl_dict_double(dict, "iso", &iso);
   vl_dict_double(dict, "exposuretime", &time);
   vl_dict_double(dict, "imagingratio", &ratio);
-  if (import->scene->error.code != VL_OK)
+  if (!vl_import_fine(import))
     return false;
   if (strlen(output) >= sizeof s->output)
-    return vl_import_fail(import, VL_ERROR_SCENE, file->source, "%s: the file name is too long",
-                          dict->what);
+    return vl_dict_fail_at(dict, file->source, "the file name is too long");
   snprintf(s->output, sizeof s->output, "%s", output);
   s->develop.exposure = (float)(iso / 100.0 * time * ratio);
   if (!(s->develop.exposure >= 0.0f) || !isfinite(s->develop.exposure))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: the exposure is negative or not finite", dict->what);
+    return vl_dict_fail(dict, "the exposure is negative or not finite");
   return read_crop(dict, s) && read_sensor(dict);
 }
 
@@ -138,9 +133,8 @@ static bool read_gbuffer(vlDict *dict, vlSceneDefs *s) {
 static bool check_wavelengths(vlDict *dict, vlSceneDefs *s) {
   if (!s->film.buckets || s->film.lambda_min < s->film.lambda_max)
     return true;
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                        "%s: \"lambdamin\" is %g, it must be below \"lambdamax\", %g",
-                        dict->what, s->film.lambda_min, s->film.lambda_max);
+  return vl_dict_fail(dict, "\"lambdamin\" is %g, it must be below \"lambdamax\", %g",
+                      s->film.lambda_min, s->film.lambda_max);
 }
 
 /* Functions, by kind, for what the rows do not describe; null: none. */
@@ -190,9 +184,9 @@ static bool read_switch(vlImport *import, const vlStatement *s, const Switch *ro
   const char *value = s->names[1];
   const bool on = vl_text_is(value, "true");
   if (!on && !vl_text_is(value, "false"))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "Option \"%s\": expected true or false, found \"%s\"", row->name,
-                          vl_short_text(value).text);
+    return vl_import_wrong(import, s->source,
+                           "Option \"%s\": expected true or false, found \"%s\"", row->name,
+                           vl_short_text(value).text);
   if (row->value)
     *row->value = on;
   return row->value || !on ||
@@ -206,9 +200,8 @@ static bool read_seed(vlImport *import, const vlStatement *s) {
   double seed;
   if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) ||
       fabs(seed) > 4294967295.0)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "Option \"seed\": \"%s\" is not an integer",
-                          vl_short_text(value).text);
+    return vl_import_wrong(import, s->source, "Option \"seed\": \"%s\" is not an integer",
+                           vl_short_text(value).text);
   vl_scene_defs(import->scene)->render.seed = (uint32_t)(int64_t)seed;
   return true;
 }
@@ -217,9 +210,8 @@ static bool read_edge_scale(vlImport *import, const vlStatement *s, const char *
   const char *value = s->names[1];
   if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0)
     return true;
-  return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                        "Option \"%s\": \"%s\" is not a number above 0", name,
-                        vl_short_text(value).text);
+  return vl_import_wrong(import, s->source, "Option \"%s\": \"%s\" is not a number above 0",
+                         name, vl_short_text(value).text);
 }
 
 bool vl_import_option(vlImport *import, const vlStatement *s) {

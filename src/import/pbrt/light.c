@@ -14,12 +14,10 @@ static void drop_target(double *value) {
 
 /* The portal is in world space whatever the current transform is, as in pbrt. */
 static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
-  vlImport *import = dict->import;
   size_t count = portal->floats.count;
   if (count != 12)
-    return vl_import_fail(import, VL_ERROR_SCENE, portal->source,
-                          "%s: \"portal\" takes 4 points, found %zu numbers", dict->what,
-                          count);
+    return vl_dict_fail_at(dict, portal->source, "\"portal\" takes 4 points, found %zu numbers",
+                           count);
   def->has_portal = true;
   for (int i = 0; i < 12; i++)
     def->portal[i / 3][i % 3] = portal->floats.items[i];
@@ -31,11 +29,10 @@ static bool check_source(vlDict *dict, const vlKindRow *row) {
   if (!vl_row_find(row, "L") || !vl_row_find(row, "filename"))
     return true;
   vlParam *color = vl_dict_find(dict, "L", VL_BITS_SPECTRUM);
-  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  vlParam *file = vl_dict_find(dict, "filename", VL_BIT_STRING);
   if (color && file && file->strings.items[0][0])
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, file->source,
-                          "%s: give either \"L\" or \"filename\", not both", dict->what);
-  return dict->import->scene->error.code == VL_OK;
+    return vl_dict_fail_at(dict, file->source, "give either \"L\" or \"filename\", not both");
+  return vl_import_fine(dict->import);
 }
 
 /* Rules that the row does not express. given: one entry per parameter of the row. */
@@ -43,7 +40,7 @@ static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given,
                          vlLightDef *def) {
   vlImport *import = dict->import;
   vlParam *portal =
-      vl_row_find(row, "portal") ? vl_dict_find(dict, "portal", 1u << VL_PARAM_POINT3) : NULL;
+      vl_row_find(row, "portal") ? vl_dict_find(dict, "portal", VL_BIT_POINT3) : NULL;
   bool far = row->traits & VL_LIGHT_TRAIT_FAR,
        has_color = vl_row_find(row, far ? "L" : "I") != NULL;
   bool color_given = has_color && vl_import_given(row, given, far ? "L" : "I");
@@ -54,14 +51,11 @@ static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given,
   if (portal && !read_portal(dict, def, portal))
     return false;
   if (!has_color && vl_dict_find(dict, "I", VL_BITS_SPECTRUM))
-    vl_import_warn(import, VL_LOG_WARNING, dict->source,
-                   "%s: \"I\" has no effect, as in pbrt: the image is the intensity",
-                   dict->what);
+    vl_dict_warn(dict, "\"I\" has no effect, as in pbrt: the image is the intensity");
   if (!vl_dict_done(dict))
     return false;
   if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def->path && !import->image_missing)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"string filename\" is missing", dict->what);
+    return vl_dict_fail(dict, "\"string filename\" is missing");
   return true;
 }
 

@@ -22,10 +22,9 @@ bool vl_import_material(vlImport *import, const vlStatement *s) {
 bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
   uint32_t index;
   if (vl_names_find(&import->named_materials, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "material \"%s\" is made a second time (first in line %u)",
-                          vl_short_text(s->names[0]).text,
-                          import->materials.items[index].source.line);
+    return vl_import_wrong(
+        import, s->source, "material \"%s\" is made a second time (first in line %u)",
+        vl_short_text(s->names[0]).text, import->materials.items[index].source.line);
   vlPending *p = vl_import_wait(import, s, VL_ATTR_MATERIAL, false);
   if (!p || !(p->name = vl_import_keep(import, s->names[0])))
     return false;
@@ -56,8 +55,8 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
   if (!vl_names_find(&import->named_materials, name, &index))
     return vl_import_missing_name(import, source, "material", name, &import->named_materials);
   if (import->materials.items[index].state == VL_IN_PROGRESS)
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "material \"%s\" is mixed of itself",
-                          vl_short_text(name).text);
+    return vl_import_wrong(import, source, "material \"%s\" is mixed of itself",
+                           vl_short_text(name).text);
   if (!vl_import_finish_material(import, index))
     return false;
   id->index = import->materials.items[index].id;
@@ -74,11 +73,6 @@ typedef struct Reading {
   const bool *given;
 } Reading;
 
-static bool refuse(const Reading *r, const char *what) {
-  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source, "%s: %s",
-                        r->dict->what, what);
-}
-
 static bool given(const Reading *r, const char *name) {
   return vl_import_given(r->row, r->given, name);
 }
@@ -87,9 +81,8 @@ static bool finish_metal(const Reading *r, vlMaterialDef *def, const char *eta, 
   def->use_reflectance = given(r, "reflectance");
   if (!def->use_reflectance || (!given(r, eta) && !given(r, k)))
     return true;
-  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
-                        "%s: give either \"reflectance\" or \"%s\" and \"%s\", not both",
-                        r->dict->what, eta, k);
+  return vl_dict_fail(r->dict, "give either \"reflectance\" or \"%s\" and \"%s\", not both",
+                      eta, k);
 }
 
 static bool finish_conductor(const Reading *r, vlMaterialDef *def) {
@@ -102,13 +95,14 @@ static bool finish_coated_conductor(const Reading *r, vlMaterialDef *def) {
 
 static bool finish_mix(const Reading *r, vlMaterialDef *def) {
   vlImport *import = r->dict->import;
-  vlParam *p = vl_dict_find(r->dict, "materials", 1u << VL_PARAM_STRING);
+  vlParam *p = vl_dict_find(r->dict, "materials", VL_BIT_STRING);
   if (!p)
-    return vl_dict_done(r->dict) && refuse(r, "\"string materials\" (two names) is missing");
+    return vl_dict_done(r->dict) &&
+           vl_dict_fail(r->dict, "\"string materials\" (two names) is missing");
   if (p->strings.count != 2)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                          "%s: parameter \"materials\" takes 2 values, found %zu",
-                          r->dict->what, p->strings.count);
+    return vl_dict_fail_at(r->dict, p->source,
+                           "parameter \"materials\" takes 2 values, found %zu",
+                           p->strings.count);
   for (int i = 0; i < 2; i++) {
     bool is_interface;
     if (!vl_import_material_id(import, p->strings.items[i], p->source, &def->materials[i],
@@ -130,10 +124,9 @@ static bool finish_hair(const Reading *r, vlMaterialDef *def) {
                     : reflectance ? VL_HAIR_REFLECTANCE
                                   : VL_HAIR_MELANIN;
   if (sigma + reflectance + melanin > 1)
-    vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->source,
-                   "%s: its colour is given in several ways; sigma_a comes before reflectance, "
-                   "that before melanin",
-                   r->dict->what);
+    vl_dict_warn(r->dict,
+                 "its colour is given in several ways; sigma_a comes before reflectance, "
+                 "that before melanin");
   return true;
 }
 
@@ -146,24 +139,24 @@ static bool finish_subsurface(const Reading *r, vlMaterialDef *def) {
   if (!vl_import_scattering_preset(r->dict, "name", &preset_a, &preset_s, &named))
     return false;
   if (named + (a || s) + (d->from_reflectance || mfp) > 1)
-    return refuse(
-        r,
+    return vl_dict_fail(
+        r->dict,
         "give only one of \"name\", \"sigma_a\" and \"sigma_s\", \"reflectance\" (and "
         "\"mfp\"): each says all");
   if (a != s)
-    return refuse(r, a ? "\"sigma_s\" is missing beside \"sigma_a\""
-                       : "\"sigma_a\" is missing beside \"sigma_s\"");
+    return vl_dict_fail(r->dict, "%s",
+                        a ? "\"sigma_s\" is missing beside \"sigma_a\""
+                          : "\"sigma_a\" is missing beside \"sigma_s\"");
   if (mfp && !d->from_reflectance)
-    return refuse(r, "\"reflectance\" is missing beside \"mfp\"");
+    return vl_dict_fail(r->dict, "\"reflectance\" is missing beside \"mfp\"");
   if (!named)
     return true;
   d->sigma_a = vl_spectrum_input(preset_a);
   d->sigma_s = vl_spectrum_input(preset_s);
   if (def->g.value == 0.0f)
     return true;
-  vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->source,
-                 "%s: \"g\" is ignored beside \"name\": measured scattering is that of g = 0",
-                 r->dict->what);
+  vl_dict_warn(r->dict,
+               "\"g\" is ignored beside \"name\": measured scattering is that of g = 0");
   def->g = vl_float_input(0.0f);
   return true;
 }
@@ -195,13 +188,13 @@ static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *k
   vlSource source = pending->source;
   if (!type) { /* MakeNamedMaterial */
     if (!vl_dict_string(dict, "type", &type)) {
-      if (import->scene->error.code != VL_OK)
+      if (!vl_import_fine(import))
         return false;
-      return vl_import_fail(import, VL_ERROR_SCENE, source,
-                            "MakeNamedMaterial \"%s\": \"string type\" is missing",
-                            vl_short_text(pending->name).text);
+      return vl_import_wrong(import, source,
+                             "MakeNamedMaterial \"%s\": \"string type\" is missing",
+                             vl_short_text(pending->name).text);
     }
-    source = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->source;
+    source = vl_dict_find(dict, "type", VL_BIT_STRING)->source;
   }
   *kind = type[0] ? vl_kind_find(&vl_material_family, type)
                   : VL_MATERIAL_INTERFACE; /* pbrt-v3's spelling */
@@ -237,9 +230,9 @@ bool vl_import_finish_material(vlImport *import, uint32_t index) {
   if (pending->state == VL_DONE)
     return true;
   if (++import->depth > VL_IMPORT_DEPTH)
-    return vl_import_fail(import, VL_ERROR_SCENE, pending->source,
-                          "materials are mixed of each other more than %d deep",
-                          VL_IMPORT_DEPTH);
+    return vl_import_wrong(import, pending->source,
+                           "materials are mixed of each other more than %d deep",
+                           VL_IMPORT_DEPTH);
   pending->state = VL_IN_PROGRESS;
   if (!finish(import, index))
     return false;

@@ -19,7 +19,7 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
   size_t count = 0;
   *given = false;
   if (!vl_dict_string(dict, parameter, &name))
-    return dict->import->scene->error.code == VL_OK;
+    return vl_import_fine(dict->import);
   *given = name[0] != 0;
   for (const vlScattering *s; *given && count < 64 && (s = vl_scattering_preset(count));
        count++) {
@@ -32,14 +32,12 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
   }
   if (!*given)
     return true;
-  vlSource at = vl_dict_find(dict, parameter, 1u << VL_PARAM_STRING)->source;
+  vlSource at = vl_dict_find(dict, parameter, VL_BIT_STRING)->source;
   const char *near = vl_nearest_name(name, names, count);
   if (near)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, at,
-                          "%s: no preset is named \"%s\" (did you mean \"%s\"?)", dict->what,
-                          vl_short_text(name).text, near);
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%s\"",
-                        dict->what, vl_short_text(name).text);
+    return vl_dict_fail_at(dict, at, "no preset is named \"%s\" (did you mean \"%s\"?)",
+                           vl_short_text(name).text, near);
+  return vl_dict_fail_at(dict, at, "no preset is named \"%s\"", vl_short_text(name).text);
 }
 
 /* A preset takes precedence over sigma_a and sigma_s, as in pbrt. */
@@ -72,14 +70,14 @@ static bool read_cells(vlDict *dict, const char *name, vlParamType type, const v
                        const float **values) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
   if (!p)
-    return dict->import->scene->error.code == VL_OK;
+    return vl_import_fine(dict->import);
   size_t per = type == VL_PARAM_RGB ? 3 : 1, count = p->floats.count / per;
   double cells = (double)def->nx * def->ny * def->nz;
   if (p->floats.count % per || (double)count != cells)
-    return vl_import_fail(
-        dict->import, VL_ERROR_SCENE, p->source,
-        "%s: \"%s\" holds %zu numbers, but nx * ny * nz = %u * %u * %u cells need %.0f",
-        dict->what, name, p->floats.count, def->nx, def->ny, def->nz, cells * (double)per);
+    return vl_dict_fail_at(
+        dict, p->source,
+        "\"%s\" holds %zu numbers, but nx * ny * nz = %u * %u * %u cells need %.0f", name,
+        p->floats.count, def->nx, def->ny, def->nz, cells * (double)per);
   *values = p->floats.items;
   return true;
 }
@@ -87,8 +85,7 @@ static bool read_cells(vlDict *dict, const char *name, vlParamType type, const v
 static bool missing(vlDict *dict, const char *what) {
   if (!vl_dict_done(dict))
     return false; /* a misspelt parameter is reported first */
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: %s is missing",
-                        dict->what, what);
+  return vl_dict_fail(dict, "%s is missing", what);
 }
 
 /* Rules that the rows do not express, by kind; null: none. given: one entry per parameter of
@@ -97,14 +94,13 @@ typedef bool ReadMedium(vlDict *dict, const vlKindRow *row, const bool *given,
                         vlMediumDef *def);
 
 static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
-  vlParam *scale = vl_dict_find(dict, "Lescale", 1u << VL_PARAM_FLOAT);
+  vlParam *scale = vl_dict_find(dict, "Lescale", VL_BIT_FLOAT);
   if (scale && scale->floats.count == 1)
     def->emission_scale = scale->floats.items[0];
   else if (!read_cells(dict, "Lescale", VL_PARAM_FLOAT, def, &def->emission_scales))
     return false;
   if (vl_import_given(row, given, "Le") && def->temperature)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                          "%s: give either \"Le\" or \"temperature\", not both", dict->what);
+    return vl_dict_fail(dict, "give either \"Le\" or \"temperature\", not both");
   return def->density || missing(dict, "\"float density\"");
 }
 
@@ -155,16 +151,14 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
   const char *type = NULL;
   snprintf(what, sizeof what, "MakeNamedMedium \"%s\"", vl_short_text(s->names[0]).text);
   if (vl_names_find(&import->media, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "medium \"%s\" is made a second time",
-                          vl_short_text(s->names[0]).text);
+    return vl_import_wrong(import, s->source, "medium \"%s\" is made a second time",
+                           vl_short_text(s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_MEDIUM));
   if (!vl_dict_string(&dict, "type", &type)) {
-    if (import->scene->error.code != VL_OK)
+    if (!vl_import_fine(import))
       return false;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s: \"string type\" is missing",
-                          what);
+    return vl_import_wrong(import, s->source, "%s: \"string type\" is missing", what);
   }
   int kind = vl_kind_find(&vl_medium_family, type);
   const char *name = vl_import_keep(import, s->names[0]);

@@ -1,80 +1,12 @@
 /* import/pbrt/mesh_run.c: merges small meshes. Some exporters write every quad as its own
- * Shape, and each Shape would take two kilobytes in scene, world and accelerator. From the
- * VL_MESH_RUN_FROM-th shape of a file on, meshes of few triangles with equal graphics state are
- * merged. Nothing is merged before that, or while diagnosing. Several runs are open at a time,
- * since exporters alternate between materials. */
+ * Shape, and each Shape would take two kilobytes in scene, world and accelerator (run.c). */
 
-#include "base/text.h"
+#include <string.h>
+
 #include "import/pbrt/builder.h"
-#include "velo/shape.h"
+#include "velo/shape_kinds.h"
 
-enum { MAX_FACES = 256, MAX_OF_A_RUN = 1 << 20 };
-
-bool vl_import_same_text(const char *a, const char *b) {
-  return a == b || vl_text_is(a ? a : "", b ? b : "");
-}
-
-bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b) {
-  return a->material == b->material &&
-         vl_import_same_text(a->material_name, b->material_name) &&
-         vl_import_same_text(a->alpha, b->alpha);
-}
-
-static bool fits(const vlMeshRun *run, const vlShapeDef *def, const vlShapeLink *link,
-                 const vlGraphicsState *state) {
-  const vlShapeDef *d = &run->def;
-  return run->open && d->group.index == def->group.index &&
-         d->reverse_orientation == def->reverse_orientation &&
-         d->alpha.value == def->alpha.value && !d->normals == !def->normals &&
-         !d->uvs == !def->uvs && vl_import_same_link(&run->link, link) &&
-         vl_import_same_text(run->inside, state->inside) &&
-         vl_import_same_text(run->outside, state->outside) &&
-         run->indices.count / 3 + def->faces < MAX_OF_A_RUN;
-}
-
-static bool all_finite(const float *v, size_t count) {
-  float zero = 0;
-  for (size_t i = 0; v && i < count; i++)
-    zero += v[i] - v[i];
-  return zero == 0.0f;
-}
-
-static void free_rows(vlImport *import, vlMeshRun *run) {
-  VL_ARRAY_FREE(import->context, &run->positions);
-  VL_ARRAY_FREE(import->context, &run->normals);
-  VL_ARRAY_FREE(import->context, &run->uvs);
-  VL_ARRAY_FREE(import->context, &run->indices);
-}
-
-static bool flush(vlImport *import, vlMeshRun *run) {
-  if (!run->open)
-    return true;
-  run->open = false;
-  vlShapeDef *d = &run->def;
-  d->vertices = (uint32_t)(run->positions.count / 3);
-  d->faces = (uint32_t)(run->indices.count / 3);
-  d->positions = run->positions.items;
-  d->indices = run->indices.items;
-  d->normals = d->normals ? run->normals.items : NULL;
-  d->uvs = d->uvs ? run->uvs.items : NULL;
-  memset(&run->positions, 0, sizeof run->positions);
-  memset(&run->normals, 0, sizeof run->normals);
-  memset(&run->uvs, 0, sizeof run->uvs);
-  memset(&run->indices, 0, sizeof run->indices);
-  return vl_import_add_shape_between(import, d, &run->link, run->inside, run->outside);
-}
-
-bool vl_import_flush_meshes(vlImport *import) {
-  for (int i = 0; i < VL_MESH_RUNS; i++)
-    if (!flush(import, &import->mesh_runs[i]))
-      return false;
-  return true;
-}
-
-void vl_import_free_meshes(vlImport *import) {
-  for (int i = 0; i < VL_MESH_RUNS; i++)
-    free_rows(import, &import->mesh_runs[i]);
-}
+enum { MAX_FACES = 256 };
 
 /* Transforms points as the world's builder does (world/shapes.c). False when a result
  * exceeds the range of floats. */
@@ -85,7 +17,7 @@ static bool move_points(const vlMat4 *m, const float *from, size_t count, float 
     for (int k = 0; k < 3; k++)
       to[3 * i + (size_t)k] = (float)q[k];
   }
-  return all_finite(to, 3 * count);
+  return vl_import_all_finite(to, 3 * count);
 }
 
 /* Transforms normals. A transform that mirrors moves the mirroring to reverse_orientation,
@@ -100,18 +32,13 @@ static void move_normals(const vlMat4 *m, const vlMat4 *inverse, bool mirrored,
   }
 }
 
-static bool open_run(vlImport *import, vlMeshRun *run, const vlShapeDef *def,
-                     const vlShapeLink *link) {
-  if (!flush(import, run))
-    return false;
-  run->def = *def;
-  run->link = *link;
-  vlMat4 unit = vl_mat4_identity();
-  memcpy(run->def.group_from_shape, unit.m, sizeof run->def.group_from_shape);
-  run->inside = import->state.inside;
-  run->outside = import->state.outside;
-  run->open = vl_scene_copy_source(import->scene, &run->def.source);
-  return run->open;
+/* Whether the mesh is small and sound. */
+static bool is_small(const vlShapeDef *def, vlMat4 m) {
+  const size_t n = def->vertices;
+  return def->faces > 0 && n > 0 && def->faces <= MAX_FACES && n <= 3 * MAX_FACES &&
+         !def->tangents && vl_import_all_finite(def->positions, 3 * n) &&
+         vl_import_all_finite(def->normals, 3 * n) && vl_import_all_finite(def->uvs, 2 * n) &&
+         vl_mat4_is_finite(m);
 }
 
 bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlShapeLink *link,
@@ -120,23 +47,16 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlSh
   vlShapeDef def = *given;
   size_t n = def.vertices;
   vlMat4 m = vl_mat4_load(def.group_from_shape), inverse;
-  if (import->scene->shapes.count < VL_MESH_RUN_FROM || import->scene->problem ||
-      def.faces == 0 || n == 0 || def.faces > MAX_FACES || n > 3 * MAX_FACES || def.tangents ||
-      def.emission.index || link->displacement || !all_finite(def.positions, 3 * n) ||
-      !all_finite(def.normals, 3 * n) || !all_finite(def.uvs, 2 * n) || !vl_mat4_is_finite(m) ||
+  const vlMat4 unit = vl_mat4_identity();
+  if (!vl_import_may_gather(import, &def, link) || !is_small(&def, m) ||
       !vl_mat4_inverse(m, &inverse))
     return true;
   bool mirrored = vl_mat4_determinant3(m) < 0;
   def.reverse_orientation = def.reverse_orientation != mirrored;
-  vlMeshRun *run = NULL;
-  for (int i = 0; i < VL_MESH_RUNS && !run; i++)
-    if (fits(&import->mesh_runs[i], &def, link, &import->state))
-      run = &import->mesh_runs[i];
-  if (!run) {
-    run = &import->mesh_runs[import->next_run++ % VL_MESH_RUNS];
-    if (!open_run(import, run, &def, link))
-      return false;
-  }
+  memcpy(def.group_from_shape, unit.m, sizeof def.group_from_shape);
+  vlShapeRun *run = vl_import_run(import, VL_RUN_MESHES, &def, link);
+  if (!run)
+    return false;
   vlContext *context = import->context;
   uint32_t first = (uint32_t)(run->positions.count / 3);
   if (!VL_RESERVE(context, &run->positions, 3 * n) ||
@@ -145,7 +65,7 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlSh
       !VL_RESERVE(context, &run->indices, 3 * (size_t)def.faces))
     return vl_import_fail_memory(import);
   if (!move_points(&m, def.positions, n, run->positions.items + run->positions.count)) {
-    run->open = run->indices.count > 0;
+    run->open = run->faces > 0;
     return true; /* kept as its own shape; the world reports the error */
   }
   run->positions.count += 3 * n;
@@ -160,6 +80,6 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlSh
   }
   for (size_t i = 0; i < 3 * (size_t)def.faces; i++)
     run->indices.items[run->indices.count++] = first + def.indices[i];
-  *taken = true;
-  return true;
+  run->faces += def.faces;
+  return *taken = true;
 }

@@ -25,9 +25,9 @@ bool vl_import_ctm(vlImport *import, vlSource source, vlMat4 *ctm) {
 bool vl_import_times(vlImport *import, const vlStatement *s) {
   const double *t = s->numbers;
   if (!isfinite(t[0]) || !isfinite(t[1]) || !(t[0] < t[1]))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "TransformTimes: the end (%g) must be after the start (%g)", t[1],
-                          t[0]);
+    return vl_import_wrong(import, s->source,
+                           "TransformTimes: the end (%g) must be after the start (%g)", t[1],
+                           t[0]);
   import->times[0] = t[0];
   import->times[1] = t[1];
   return true;
@@ -42,9 +42,9 @@ static bool check_motion(vlImport *import, vlSource source, const vlMat4 ctm[2])
   vlMotion motion;
   if (vl_motion_make(ctm[0].m, ctm[1].m, &motion))
     return true;
-  return vl_import_fail(import, VL_ERROR_SCENE, source,
-                        "no motion leads from the transform at the start to that at the end: "
-                        "one is singular, not affine, or mirrors alone");
+  return vl_import_wrong(import, source,
+                         "no motion leads from the transform at the start to that at the end: "
+                         "one is singular, not affine, or mirrors alone");
 }
 
 bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2],
@@ -59,7 +59,7 @@ bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[
     memcpy(poses + 16, ctm[1].m, sizeof ctm[1].m);
     vl_scene_add_moving_instance(import->scene, group, 2, import->times, poses, source);
   }
-  return import->scene->error.code == VL_OK;
+  return vl_import_fine(import);
 }
 
 bool vl_import_moving_group(vlImport *import, vlSource source, vlGroupId *group) {
@@ -71,7 +71,7 @@ bool vl_import_moving_group(vlImport *import, vlSource source, vlGroupId *group)
     vlGroupId made = vl_scene_add_group(import->scene, "");
     last = made.index ? VL_PUSH(import->context, &import->moving) : NULL;
     if (!last)
-      return import->scene->error.code == VL_OK ? vl_import_fail_memory(import) : false;
+      return vl_import_fine(import) ? vl_import_fail_memory(import) : false;
     *last = (vlMovingGroup){.group = made, .object = import->object, .source = source};
     memcpy(last->ctm, ctm, sizeof last->ctm);
     if (!vl_scene_copy_source(import->scene, &last->source) ||
@@ -104,7 +104,7 @@ static bool place_part(vlImport *import, const vlMovingGroup *part,
   }
   vl_scene_add_moving_instance(import->scene, part->group, PRODUCT_KEYS, times, poses,
                                object->source);
-  return import->scene->error.code == VL_OK;
+  return vl_import_fine(import);
 }
 
 bool vl_import_finish_motion(vlImport *import) {

@@ -15,6 +15,28 @@ bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char
   return false;
 }
 
+bool vl_import_wrong(vlImport *import, vlSource source, const char *format, ...) {
+  char text[512];
+  VL_FORMAT(text, format);
+  return vl_import_fail(import, VL_ERROR_SCENE, source, "%s", text);
+}
+
+bool vl_dict_fail_at(const vlDict *dict, vlSource source, const char *format, ...) {
+  char text[512];
+  VL_FORMAT(text, format);
+  return vl_import_wrong(dict->import, source, "%s: %s", dict->what, text);
+}
+
+bool vl_dict_fail(const vlDict *dict, const char *format, ...) {
+  char text[512];
+  VL_FORMAT(text, format);
+  return vl_dict_fail_at(dict, dict->source, "%s", text);
+}
+
+bool vl_import_fine(const vlImport *import) {
+  return import->scene->error.code == VL_OK;
+}
+
 bool vl_import_fail_memory(vlImport *import) {
   return vl_import_fail(import, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
 }
@@ -30,6 +52,12 @@ void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const c
   char text[512];
   VL_FORMAT(text, format);
   log_text(import, level, source, text);
+}
+
+void vl_dict_warn(const vlDict *dict, const char *format, ...) {
+  char text[512];
+  VL_FORMAT(text, format);
+  vl_import_warn(dict->import, VL_LOG_WARNING, dict->source, "%s: %s", dict->what, text);
 }
 
 bool vl_import_recover(vlImport *import) {
@@ -58,7 +86,7 @@ bool vl_import_unsupported(vlImport *import, vlSource source, const char *format
   char text[400];
   VL_FORMAT(text, format);
   if (!import->permissive)
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s", text);
+    return vl_import_wrong(import, source, "%s", text);
   log_text(import, VL_LOG_WARNING, source, text);
   return true;
 }
@@ -108,11 +136,10 @@ bool vl_import_missing_name(vlImport *import, vlSource source, const char *thing
                             const char *name, const vlNameTable *table) {
   const char *near = vl_names_nearest(table, name);
   if (near)
-    return vl_import_fail(import, VL_ERROR_SCENE, source,
-                          "there is no %s \"%s\" (did you mean \"%s\"?)", thing,
-                          vl_short_text(name).text, vl_short_text(near).text);
-  return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no %s \"%s\"", thing,
-                        vl_short_text(name).text);
+    return vl_import_wrong(import, source, "there is no %s \"%s\" (did you mean \"%s\"?)",
+                           thing, vl_short_text(name).text, vl_short_text(near).text);
+  return vl_import_wrong(import, source, "there is no %s \"%s\"", thing,
+                         vl_short_text(name).text);
 }
 
 void vl_import_note_elsewhere(void *user, vlSource source, const char *path) {
@@ -134,16 +161,13 @@ vlFound vl_import_find(vlImport *import, vlSource source, const char *name, char
 
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size) {
   if (param->strings.count != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->source,
-                          "\"%s\" takes one file name, found %zu", param->name,
-                          param->strings.count);
+    return vl_import_wrong(import, param->source, "\"%s\" takes one file name, found %zu",
+                           param->name, param->strings.count);
   if (param->strings.items[0][0] == 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\" is an empty file name",
-                          param->name);
+    return vl_import_wrong(import, param->source, "\"%s\" is an empty file name", param->name);
   if (vl_import_find(import, param->source, param->strings.items[0], path, size) ==
       VL_FOUND_TOO_LONG)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\": file name too long",
-                          param->name);
+    return vl_import_wrong(import, param->source, "\"%s\": file name too long", param->name);
   if (vl_context_allows(import->context, path) && access(path, R_OK) == 0)
     return true;
   char *data;

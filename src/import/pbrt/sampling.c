@@ -35,7 +35,7 @@ static void skip_ignored(vlDict *dict, const vlKindRow *row) {
     if (p->type == VL_PARAMETER_FLOAT)
       vl_dict_float(dict, p->name, &number);
     if (p->type == VL_PARAMETER_COUNT)
-      vl_dict_find(dict, p->name, 1u << VL_PARAM_INTEGER);
+      vl_dict_find(dict, p->name, VL_BIT_INTEGER);
   }
 }
 
@@ -48,8 +48,7 @@ static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   given = vl_dict_count(dict, "ysamples", 1, &y) || given;
   vl_dict_bool(dict, "jitter", &jitter);
   if ((uint64_t)x * y > 0x7fffffff)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: too many samples",
-                          dict->what);
+    return vl_dict_fail(dict, "too many samples");
   if (!jitter)
     s->render.sampler = VL_SAMPLER_REGULAR;
   if (given || !spp_given)
@@ -63,7 +62,7 @@ static void read_randomization(vlDict *dict, const vlParameter *p) {
   int randomization = 2;
   if (p && vl_dict_choice(dict, p->name, p->choices, 4, &randomization) && randomization == 0)
     vl_import_warn(
-        dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->source,
+        dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, VL_BIT_STRING)->source,
         "%s: randomization \"none\": samples are scrambled all the same", dict->what);
 }
 
@@ -124,7 +123,7 @@ static void read_depth(vlDict *dict, vlSceneDefs *s) {
   if (s->render.max_depth <= MAX_DEPTH)
     return;
   vl_import_warn(
-      dict->import, VL_LOG_INFO, vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->source,
+      dict->import, VL_LOG_INFO, vl_dict_find(dict, "maxdepth", VL_BIT_INTEGER)->source,
       "%s: \"maxdepth\" %u: %d is taken", dict->what, s->render.max_depth, MAX_DEPTH);
   s->render.max_depth = MAX_DEPTH;
 }
@@ -136,7 +135,7 @@ static void read_light_sampler(vlDict *dict, const vlKindRow *row, vlSceneDefs *
     return;
   if (sampler == 3)
     vl_import_warn(
-        dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->source,
+        dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, VL_BIT_STRING)->source,
         "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
   s->build.light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
 }
@@ -167,10 +166,9 @@ static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) 
 static void remark_regularize(vlDict *dict, const vlSceneDefs *s) {
   bool asked = false;
   if (vl_dict_bool(dict, "regularize", &asked) && asked && !s->build.regularize)
-    vl_import_warn(dict->import, VL_LOG_INFO,
-                   vl_dict_find(dict, "regularize", 1u << VL_PARAM_BOOL)->source,
-                   "%s: \"regularize\" is ignored: only \"path\" and \"volpath\" have it",
-                   dict->what);
+    vl_import_warn(
+        dict->import, VL_LOG_INFO, vl_dict_find(dict, "regularize", VL_BIT_BOOL)->source,
+        "%s: \"regularize\" is ignored: only \"path\" and \"volpath\" have it", dict->what);
 }
 
 static bool read_integrator(vlImport *import, vlSceneDefs *s) {
@@ -191,7 +189,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
                            later, 1))
       return false;
     read_depth(&dict, s);
-    return import->scene->error.code == VL_OK;
+    return vl_import_fine(import);
   }
   s->render.tracer = (vlTracer)kind;
   if (!vl_import_parameters(&dict, row, s, false, NULL))

@@ -34,36 +34,34 @@ static bool take_vertex_floats(vlDict *dict, const char *name, vlParamType type,
                                uint32_t vertices, const float **result) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
   if (!p)
-    return dict->import->scene->error.code == VL_OK;
+    return vl_import_fine(dict->import);
   size_t count = p->floats.count;
   if (count != per * vertices)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                          "%s: \"%s\" holds %zu numbers, but %u vertices need %zu", dict->what,
-                          name, count, vertices, per * vertices);
+    return vl_dict_fail_at(dict, p->source,
+                           "\"%s\" holds %zu numbers, but %u vertices need %zu", name, count,
+                           vertices, per * vertices);
   return take_floats(dict->import, p, result);
 }
 
 static bool take_indices(vlDict *dict, vlShapeDef *def, size_t per) {
   vlImport *import = dict->import;
-  vlParam *p = vl_dict_find(dict, "indices", 1u << VL_PARAM_INTEGER);
-  if (!p && import->scene->error.code != VL_OK)
+  vlParam *p = vl_dict_find(dict, "indices", VL_BIT_INTEGER);
+  if (!p && !vl_import_fine(import))
     return false;
   size_t count = p ? p->integers.count : per;
   if (!p && def->vertices != per)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"integer indices\" is missing", dict->what);
+    return vl_dict_fail(dict, "\"integer indices\" is missing");
   if (count % per)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                          "%s: \"indices\" holds %zu numbers, not a multiple of %zu",
-                          dict->what, count, per);
+    return vl_dict_fail_at(dict, p->source,
+                           "\"indices\" holds %zu numbers, not a multiple of %zu", count, per);
   if (count / per > 0x7fffffffu)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: too many faces", dict->what);
+    return vl_dict_fail_at(dict, p->source, "too many faces");
   for (size_t i = 0; p && i < count; i++)
     if (p->integers.items[i] < 0 || (uint32_t)p->integers.items[i] >= def->vertices)
-      return vl_import_fail(
-          import, VL_ERROR_SCENE, p->source,
-          "%s: \"indices\": number %zu names vertex %d, but there are %u vertices (0 to %u)",
-          dict->what, i, p->integers.items[i], def->vertices, def->vertices - 1);
+      return vl_dict_fail_at(
+          dict, p->source,
+          "\"indices\": number %zu names vertex %d, but there are %u vertices (0 to %u)", i,
+          p->integers.items[i], def->vertices, def->vertices - 1);
   uint32_t *indices = vl_alloc_array(import->context, count, sizeof *indices);
   if (!indices)
     return vl_import_fail_memory(import);
@@ -78,33 +76,29 @@ static bool take_indices(vlDict *dict, vlShapeDef *def, size_t per) {
 
 static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
   vlImport *import = dict->import;
-  vlParam *p = vl_dict_find(dict, "P", 1u << VL_PARAM_POINT3);
+  vlParam *p = vl_dict_find(dict, "P", VL_BIT_POINT3);
   if (!p) {
-    if (import->scene->error.code != VL_OK)
+    if (!vl_import_fine(import))
       return false;
-    vl_dict_find(dict, "indices", 1u << VL_PARAM_INTEGER);
-    vl_dict_find(dict, "uv", 1u << VL_PARAM_POINT2);
-    vl_dict_find(dict, "N", 1u << VL_PARAM_NORMAL);
-    vl_dict_find(dict, "faceIndices", 1u << VL_PARAM_INTEGER);
+    vl_dict_find(dict, "indices", VL_BIT_INTEGER);
+    vl_dict_find(dict, "uv", VL_BIT_POINT2);
+    vl_dict_find(dict, "N", VL_BIT_NORMAL);
+    vl_dict_find(dict, "faceIndices", VL_BIT_INTEGER);
     if (per == 3)
-      vl_dict_find(dict, "S", 1u << VL_PARAM_VECTOR3);
+      vl_dict_find(dict, "S", VL_BIT_VECTOR3);
     if (!vl_dict_done(dict))
       return false; /* a misspelt parameter is reported first */
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"point3 P\" is missing",
-                          dict->what);
+    return vl_dict_fail(dict, "\"point3 P\" is missing");
   }
   size_t count = p->floats.count;
   if (count % 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                          "%s: \"P\" holds %zu numbers, not a multiple of 3", dict->what,
-                          count);
+    return vl_dict_fail_at(dict, p->source, "\"P\" holds %zu numbers, not a multiple of 3",
+                           count);
   if (count / 3 > 0x7fffffffu)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: too many vertices",
-                          dict->what);
+    return vl_dict_fail_at(dict, p->source, "too many vertices");
   def->vertices = (uint32_t)(count / 3);
-  vl_dict_find(
-      dict, "faceIndices",
-      1u << VL_PARAM_INTEGER); /* accepted and ignored: only pbrt's ptex textures use it */
+  vl_dict_find(dict, "faceIndices",
+               VL_BIT_INTEGER); /* accepted and ignored: only pbrt's ptex textures use it */
   if (!take_floats(import, p, &def->positions) || !take_indices(dict, def, per) ||
       !take_vertex_floats(dict, "uv", VL_PARAM_POINT2, 2, def->vertices, &def->uvs) ||
       !take_vertex_floats(dict, "N", VL_PARAM_NORMAL, 3, def->vertices, &def->normals) ||
@@ -112,12 +106,11 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
        !take_vertex_floats(dict, "S", VL_PARAM_VECTOR3, 3, def->vertices, &def->tangents)))
     return false;
   if (per == 4)
-    vl_dict_find(
-        dict, "emissionfilename",
-        1u << VL_PARAM_STRING); /* accepted and ignored: a hint for pbrt's light sampling */
+    vl_dict_find(dict, "emissionfilename",
+                 VL_BIT_STRING); /* accepted and ignored: a hint for pbrt's light sampling */
   if (import->permissive && !vl_repair_mesh(import->context, &import->repairs, def))
     return vl_import_fail_memory(import);
-  return import->scene->error.code == VL_OK;
+  return vl_import_fine(import);
 }
 
 static void free_arrays(vlImport *import, const vlShapeDef *def) {
@@ -217,14 +210,12 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
   const char *const lengths[] = {"displacement.edgelength", "edgelength"};
   for (int i = 0; i < 2; i++)
     if (vl_dict_float(dict, lengths[i], &def->edge_length) && !(def->edge_length > 0.0f))
-      return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"%s\" must be above 0",
-                            dict->what, lengths[i]);
+      return vl_dict_fail(dict, "\"%s\" must be above 0", lengths[i]);
   def->edge_length *= (float)import->edge_scale;
   if (!p)
-    return import->scene->error.code == VL_OK;
+    return vl_import_fine(import);
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                          "%s: \"displacement\" takes one texture", dict->what);
+    return vl_dict_fail_at(dict, p->source, "\"displacement\" takes one texture");
   link->displacement = vl_import_keep(import, p->strings.items[0]);
   link->displacement_source = p->source;
   return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_source);
@@ -233,12 +224,11 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
 /* Records the mesh file. All mesh files are read at the end (meshes.c). */
 static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
-  vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
+  vlParam *file = vl_dict_find(dict, "filename", VL_BIT_STRING);
   if (!read_displacement(dict, def, link) || !vl_dict_done(dict))
     return false;
   if (!file)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
-                          "%s: \"string filename\" is missing", dict->what);
+    return vl_dict_fail(dict, "\"string filename\" is missing");
   char path[4096];
   if (!vl_import_path(import, file, path, sizeof path))
     return false;
@@ -250,11 +240,10 @@ static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, "alpha", VL_BIT_FLOAT | VL_BIT_TEXTURE);
   if (!p)
-    return import->scene->error.code == VL_OK;
+    return vl_import_fine(import);
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                          "%s: parameter \"alpha\" takes 1 value, found %zu", dict->what,
-                          vl_param_count(p));
+    return vl_dict_fail_at(dict, p->source, "parameter \"alpha\" takes 1 value, found %zu",
+                           vl_param_count(p));
   if (p->type == VL_PARAM_FLOAT) {
     def->alpha.value = p->floats.items[0];
     return true;

@@ -24,9 +24,9 @@ static float *keep_floats(vlImport *import, size_t count) {
 static bool take_pairs(vlImport *import, const float *pairs, size_t values, vlSource source,
                        vlSpectrum *spectrum) {
   if (values % 2)
-    return vl_import_fail(import, VL_ERROR_SCENE, source,
-                          "a spectrum holds pairs of wavelength and value; found %zu numbers",
-                          values);
+    return vl_import_wrong(import, source,
+                           "a spectrum holds pairs of wavelength and value; found %zu numbers",
+                           values);
   size_t n = values / 2;
   float *block = keep_floats(import, values);
   if (!block)
@@ -35,9 +35,9 @@ static bool take_pairs(vlImport *import, const float *pairs, size_t values, vlSo
     block[i] = pairs[2 * i];
     block[n + i] = pairs[2 * i + 1];
     if (i && !(block[i] > block[i - 1]))
-      return vl_import_fail(import, VL_ERROR_SCENE, source,
-                            "wavelengths of a spectrum must increase: %g comes after %g",
-                            (double)block[i], (double)block[i - 1]);
+      return vl_import_wrong(import, source,
+                             "wavelengths of a spectrum must increase: %g comes after %g",
+                             (double)block[i], (double)block[i - 1]);
   }
   *spectrum = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED,
                            .scale = 1.0f,
@@ -60,7 +60,7 @@ static bool parse_file(vlImport *import, const char *path, char *data, size_t si
     double value;
     vlSource at = {path, token.line, token.column};
     if (token.kind != VL_TOKEN_WORD || !vl_number_parse(token.text, token.length, &value)) {
-      fine = vl_import_fail(import, VL_ERROR_SCENE, at, "spectrum file: expected a number");
+      fine = vl_import_wrong(import, at, "spectrum file: expected a number");
       break;
     }
     float *slot = VL_PUSH(import->context, &pairs);
@@ -71,7 +71,7 @@ static bool parse_file(vlImport *import, const char *path, char *data, size_t si
   }
   vlSource whole = {path, 1, 1};
   if (fine && pairs.count == 0)
-    fine = vl_import_fail(import, VL_ERROR_SCENE, whole, "spectrum file: holds no numbers");
+    fine = vl_import_wrong(import, whole, "spectrum file: holds no numbers");
   fine = fine && take_pairs(import, pairs.items, pairs.count, whole, spectrum);
   VL_ARRAY_FREE(import->context, &pairs);
   return fine;
@@ -109,41 +109,40 @@ static bool read_named(vlImport *import, const vlParam *param, vlSpectrum *spect
   if (!near &&
       vl_import_find(import, param->source, text, path, sizeof path) != VL_FOUND_TOO_LONG)
     return read_file(import, param, spectrum);
-  return vl_import_fail(import, VL_ERROR_SCENE, param->source,
-                        "no spectrum is named \"%s\" (did you mean \"%s\"?)",
-                        vl_short_text(text).text, near ? near : "");
+  return vl_import_wrong(import, param->source,
+                         "no spectrum is named \"%s\" (did you mean \"%s\"?)",
+                         vl_short_text(text).text, near ? near : "");
 }
 
 bool vl_import_spectrum(vlImport *import, vlParam *p, vlSpectrum *spectrum) {
   size_t count = vl_param_count(p);
   if (p->type == VL_PARAM_RGB) {
     if (count != 3)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                            "\"rgb %s\" takes 3 values, found %zu", p->name, count);
+      return vl_import_wrong(import, p->source, "\"rgb %s\" takes 3 values, found %zu", p->name,
+                             count);
     *spectrum = vl_spectrum_rgb(p->floats.items[0], p->floats.items[1], p->floats.items[2]);
     spectrum->space = p->space;
     for (int i = 0; i < 3; i++)
       if (spectrum->rgb[i] < 0.0f)
-        return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                              "\"rgb %s\" has a negative value", p->name);
+        return vl_import_wrong(import, p->source, "\"rgb %s\" has a negative value", p->name);
     return true;
   }
   if (p->type == VL_PARAM_BLACKBODY) {
     if (count != 1)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                            "\"blackbody %s\" takes 1 value (kelvin), found %zu", p->name,
-                            count);
+      return vl_import_wrong(import, p->source,
+                             "\"blackbody %s\" takes 1 value (kelvin), found %zu", p->name,
+                             count);
     *spectrum = vl_spectrum_blackbody(p->floats.items[0]);
     if (p->floats.items[0] > 0.0f)
       return true;
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                          "\"blackbody %s\" must be above 0 kelvin", p->name);
+    return vl_import_wrong(import, p->source, "\"blackbody %s\" must be above 0 kelvin",
+                           p->name);
   }
   if (p->strings.count == 0)
     return take_pairs(import, p->floats.items, p->floats.count, p->source, spectrum);
   if (count != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                          "\"spectrum %s\" takes one name, found %zu", p->name, count);
+    return vl_import_wrong(import, p->source, "\"spectrum %s\" takes one name, found %zu",
+                           p->name, count);
   return read_named(import, p, spectrum);
 }
 
@@ -153,11 +152,10 @@ bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, 
   if (given)
     *given = p != NULL;
   if (!p)
-    return import->scene->error.code == VL_OK;
+    return vl_import_fine(import);
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                          "%s: parameter \"%s\" takes 1 value, found %zu", dict->what, name,
-                          vl_param_count(p));
+    return vl_dict_fail_at(dict, p->source, "parameter \"%s\" takes 1 value, found %zu", name,
+                           vl_param_count(p));
   if (p->type == VL_PARAM_FLOAT) {
     *input = vl_float_input(p->floats.items[0]);
     return true;
@@ -172,12 +170,11 @@ bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *i
   if (given)
     *given = p != NULL;
   if (!p)
-    return import->scene->error.code == VL_OK;
+    return vl_import_fine(import);
   if (p->type == VL_PARAM_TEXTURE) {
     if (vl_param_count(p) != 1)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                            "%s: parameter \"%s\" takes 1 texture, found %zu", dict->what, name,
-                            vl_param_count(p));
+      return vl_dict_fail_at(dict, p->source, "parameter \"%s\" takes 1 texture, found %zu",
+                             name, vl_param_count(p));
     return vl_import_texture_id(import, p->strings.items[0], true, p->source, &input->texture);
   }
   *input = (vlSpectrumInput){0};
@@ -186,9 +183,8 @@ bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *i
   if (albedo && p->type == VL_PARAM_RGB)
     for (int i = 0; i < 3; i++)
       if (p->floats.items[i] > 1.0f)
-        return vl_import_fail(
-            import, VL_ERROR_SCENE, p->source,
-            "%s: \"rgb %s\" is a reflectance and must not be above 1, it is %g", dict->what,
-            name, (double)p->floats.items[i]);
+        return vl_dict_fail_at(dict, p->source,
+                               "\"rgb %s\" is a reflectance and must not be above 1, it is %g",
+                               name, (double)p->floats.items[i]);
   return true;
 }

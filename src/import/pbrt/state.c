@@ -24,8 +24,8 @@ static bool look_at(vlImport *import, const vlStatement *s) {
   double d[3] = {l[0] - e[0], l[1] - e[1], l[2] - e[2]};
   double length = vl_norm3(d);
   if (!(length > 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "LookAt: the eye and the point it looks at are the same");
+    return vl_import_wrong(import, s->source,
+                           "LookAt: the eye and the point it looks at are the same");
   for (int i = 0; i < 3; i++)
     d[i] /= length;
   double r[3], n[3];
@@ -33,10 +33,10 @@ static bool look_at(vlImport *import, const vlStatement *s) {
   double size = vl_norm3(r);
   double up = vl_norm3(u);
   if (!(up > 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the up vector is zero");
+    return vl_import_wrong(import, s->source, "LookAt: the up vector is zero");
   if (!(size > 1e-12 * up))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "LookAt: the up vector is parallel to the view direction");
+    return vl_import_wrong(import, s->source,
+                           "LookAt: the up vector is parallel to the view direction");
   for (int i = 0; i < 3; i++)
     r[i] /= size;
   vl_cross3(d, r, n);
@@ -54,7 +54,7 @@ bool vl_import_transform(vlImport *import, const vlStatement *s) {
   if (s->directive == VL_DIR_LOOK_AT)
     return look_at(import, s);
   if (s->directive == VL_DIR_ROTATE && v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Rotate: the axis is zero");
+    return vl_import_wrong(import, s->source, "Rotate: the axis is zero");
   if (s->directive == VL_DIR_IDENTITY)
     set_ctm(import, m);
   else if (s->directive == VL_DIR_TRANSLATE)
@@ -103,8 +103,7 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s) {
 
 bool vl_import_push(vlImport *import, char kind, vlSource source) {
   if (import->stack.count > 100000)
-    return vl_import_fail(import, VL_ERROR_SCENE, source,
-                          "attributes are nested more than 100000 deep");
+    return vl_import_wrong(import, source, "attributes are nested more than 100000 deep");
   vlStackEntry *entry = VL_PUSH(import->context, &import->stack);
   if (!entry)
     return vl_import_fail_memory(import);
@@ -129,16 +128,14 @@ bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource 
   const vlStackEntry *top =
       import->stack.count ? &import->stack.items[import->stack.count - 1] : NULL;
   if (!top || (top->kind != kind && top->kind == 'i'))
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s without its beginning",
-                          directive);
+    return vl_import_wrong(import, source, "%s without its beginning", directive);
   if (top->kind != kind) {
     const char *open = "";
     for (size_t i = 0; i < 3; i++)
       if (openers[i].kind == top->kind)
         open = openers[i].name;
-    return vl_import_fail(import, VL_ERROR_SCENE, source,
-                          "%s: the %s of line %u must be closed first", directive, open,
-                          top->source.line);
+    return vl_import_wrong(import, source, "%s: the %s of line %u must be closed first",
+                           directive, open, top->source.line);
   }
   vl_import_restore(import);
   return true;
@@ -153,8 +150,8 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
     if (vl_text_is(s->names[0], targets[i]))
       target = i;
   if (target < 0)
-    return vl_import_fail(
-        import, VL_ERROR_SCENE, s->source,
+    return vl_import_wrong(
+        import, s->source,
         "Attribute: unknown target \"%s\" (known: shape, light, material, medium, texture)",
         vl_short_text(s->names[0]).text);
   for (size_t i = 0; i < s->params->list.count; i++)
@@ -190,15 +187,14 @@ static vlObject *find_object(vlImport *import, const char *name, vlSource source
 
 bool vl_import_object_begin(vlImport *import, const vlStatement *s) {
   if (import->in_object)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "ObjectBegin inside of an object: objects do not nest");
+    return vl_import_wrong(import, s->source,
+                           "ObjectBegin inside of an object: objects do not nest");
   vlObject *object = find_object(import, s->names[0], s->source);
   if (!object)
     return false;
   if (object->defined)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "object \"%s\" is defined a second time",
-                          vl_short_text(s->names[0]).text);
+    return vl_import_wrong(import, s->source, "object \"%s\" is defined a second time",
+                           vl_short_text(s->names[0]).text);
   object->defined = true;
   import->in_object = true;
   import->object = object->group;
@@ -215,8 +211,8 @@ bool vl_import_object_end(vlImport *import, const vlStatement *s) {
 
 bool vl_import_object_instance(vlImport *import, const vlStatement *s) {
   if (import->in_object)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "ObjectInstance inside of an object: objects do not nest");
+    return vl_import_wrong(import, s->source,
+                           "ObjectInstance inside of an object: objects do not nest");
   const vlObject *object = find_object(import, s->names[0], s->source);
   return object && vl_import_add_instance(import, object->group, import->state.ctm, s->source);
 }

@@ -180,6 +180,20 @@ size_t vl_json_problem_length(const char *message) {
   return quote ? (size_t)(quote - message) : strlen(message);
 }
 
+bool vl_has_word_of(const char *words, const char *word, size_t length) {
+  for (const char *at = words; *at; at += strspn(at, " ")) {
+    const size_t n = strcspn(at, " ");
+    if (n == length && memcmp(at, word, n) == 0)
+      return true;
+    at += n;
+  }
+  return false;
+}
+
+bool vl_has_word(const char *words, const char *word) {
+  return vl_has_word_of(words, word, strlen(word));
+}
+
 bool vl_ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);
   return n >= m && strcasecmp(text + n - m, suffix) == 0;

@@ -57,6 +57,10 @@ size_t vl_json_problem_length(const char *message);
 static inline bool vl_text_is(const char *text, const char *word) {
   return text && strcmp(text, word) == 0;
 }
+/* Whether the word is one of `words`, which blanks separate. */
+bool vl_has_word(const char *words, const char *word);
+/* The same for a word of `length` bytes. */
+bool vl_has_word_of(const char *words, const char *word, size_t length);
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */
 /* Whether a path names a lamp file, by its end: .ies or .ldt. Null: it does not. */
 bool vl_names_lamp(const char *path);

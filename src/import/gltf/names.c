@@ -129,16 +129,6 @@ static const char *members_of(const char *object) {
   return vl_ends_with(object, "Texture") ? texture_members : NULL;
 }
 
-static bool has_word(const char *words, const char *word) {
-  const size_t length = strlen(word);
-  if (length == 0)
-    return false; /* it is found everywhere, without an end */
-  for (const char *at = words; (at = strstr(at, word)); at += length)
-    if ((at == words || at[-1] == ' ') && (at[length] == ' ' || at[length] == 0))
-      return true;
-  return false;
-}
-
 /* Numbered attributes (TEXCOORD_7) are known, and those of applications, which begin with _. */
 static bool is_attribute(const char *key) {
   size_t length = strlen(key);
@@ -148,7 +138,7 @@ static bool is_attribute(const char *key) {
 }
 
 static bool is_known(const char *object, const char *members, const char *key) {
-  if (vl_text_is(key, "extras") || vl_text_is(key, "extensions") || has_word(members, key))
+  if (vl_text_is(key, "extras") || vl_text_is(key, "extensions") || vl_has_word(members, key))
     return true;
   return (vl_text_is(object, "attributes") || vl_text_is(object, "targets")) &&
          is_attribute(key);

@@ -410,11 +410,10 @@ static bool open_object(vlObj *obj, bool group) {
 }
 
 static bool read_statement(vlObj *obj) {
-  static const char *const curves[] = {"vp",    "cstype", "deg",  "bmat",  "step", "curv",
-                                       "curv2", "surf",   "parm", "trim",  "hole", "scrv",
-                                       "sp",    "end",    "con",  "ctech", "stech"};
-  static const char *const silent[] = {"mg",         "bevel",     "c_interp", "d_interp", "lod",
-                                       "shadow_obj", "trace_obj", "maplib",   "usemap"};
+  static const char curves[] =
+      "vp cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech";
+  static const char silent[] =
+      "mg bevel c_interp d_interp lod shadow_obj trace_obj maplib usemap";
   const char *word;
   size_t n = vl_obj_word(obj, &word);
   if (n == 0)
@@ -446,14 +445,12 @@ static bool read_statement(vlObj *obj) {
     return use_material(obj);
   if (n == 6 && memcmp(word, "mtllib", 6) == 0)
     return vl_obj_read_libraries(obj);
-  for (size_t i = 0; i < VL_LENGTH(silent); i++)
-    if (strlen(silent[i]) == n && memcmp(word, silent[i], n) == 0)
-      return true;
-  for (size_t i = 0; i < VL_LENGTH(curves); i++)
-    if (strlen(curves[i]) == n && memcmp(word, curves[i], n) == 0) {
-      once(obj, REPORTED_CURVES, word, n);
-      return true;
-    }
+  if (vl_has_word_of(silent, word, n))
+    return true;
+  if (vl_has_word_of(curves, word, n)) {
+    once(obj, REPORTED_CURVES, word, n);
+    return true;
+  }
   for (size_t i = 0; i < n; i++)
     if ((unsigned char)word[i] < 32)
       return vl_obj_fail(obj, "not an OBJ file: byte %d here", (unsigned char)word[i]);

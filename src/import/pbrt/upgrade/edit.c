@@ -35,12 +35,12 @@ static void report(const vlOldFile *file, vlUpgradeNote note, uint32_t line, con
     def->report(def->report_user, note, &where, text);
 }
 
-void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...) {
+void vl_old_lose(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
   char text[512];
   VL_FORMAT(text, format);
   if (!file->u->quiet)
     file->u->lost++;
-  report(file, VL_UPGRADE_LOST, line, text);
+  report(file, VL_UPGRADE_LOST, s->line, text);
 }
 
 void vl_old_note(vlOldStatement *s, const char *format, ...) {

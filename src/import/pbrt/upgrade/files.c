@@ -48,7 +48,7 @@ static bool is_metal(const char *name, char *result, size_t size) {
   return false;
 }
 
-bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result,
+bool vl_old_file_name(vlOldFile *file, const vlOldStatement *s, const char *name, char *result,
                       size_t size) {
   vlUpgrade *u = file->u;
   char path[4096], beside[4096], real[PATH_MAX];
@@ -57,11 +57,11 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
   vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name,
                                path, sizeof path);
   if (found == VL_FOUND_TOO_LONG || strlen(name) >= size)
-    return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
+    return vl_old_fail(file, VL_ERROR_SCENE, s->line, 0, "file name too long");
   snprintf(result, size, "%s", name);
   if (found == VL_FOUND_NOT) {
     u->missing++;
-    vl_old_lose(file, line, "there is no file \"%s\": its name stays as it is", name);
+    vl_old_lose(file, s, "there is no file \"%s\": its name stays as it is", name);
     return true;
   }
   struct stat info;
@@ -70,7 +70,7 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
   if (name[0] == '/' || (u->same_folder && first))
     return true;
   if (!realpath(first ? beside : path, real) || !relative(u->to_folder, real, result, size))
-    return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long: %s", path);
+    return vl_old_fail(file, VL_ERROR_SCENE, s->line, 0, "file name too long: %s", path);
   return true;
 }
 
@@ -78,7 +78,7 @@ bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam
   char name[4096];
   if (!p || !p->strings)
     return true;
-  if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name))
+  if (!vl_old_file_name(file, s, p->text[0], name, sizeof name))
     return false;
   if (vl_text_is(name, p->text[0]))
     return true;
@@ -182,7 +182,7 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
     vl_free(u->context, text);
     return known;
   }
-  if (!text && !vl_old_file_name(file, s->line, s->name[0], name, sizeof name))
+  if (!text && !vl_old_file_name(file, s, s->name[0], name, sizeof name))
     return NULL;
   if (text && !choose_name(file, s, path, text, name, sizeof name)) {
     vl_free(u->context, text);
@@ -219,7 +219,7 @@ bool vl_old_include(vlOldFile *file, vlOldStatement *s) {
                        "files include each other more than 64 deep");
   if (found == VL_FOUND_NOT) {
     u->missing++;
-    vl_old_lose(file, s->line, "there is no file \"%s\": its name stays as it is", s->name[0]);
+    vl_old_lose(file, s, "there is no file \"%s\": its name stays as it is", s->name[0]);
     return true;
   }
   const vlOldInclude *known = find_include(u, path);

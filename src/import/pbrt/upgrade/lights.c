@@ -7,32 +7,32 @@
 #include "import/pbrt/decimal.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
-#define POSE  \
-  {"from"}, { \
-    "to"      \
-  }
+#define POSE \
+  { "from to" }
 #define COMMON \
-  {"scale"}, { \
-    "power"    \
-  }
+  { "scale power" }
 #define SAMPLES               \
   {"samples", VL_OLD_DROP}, { \
     "nsamples", VL_OLD_DROP   \
   }
 
 static const vlOldRow point[] = {{"I"}, POSE, COMMON, {0}};
-static const vlOldRow spot[] = {{"I"}, {"coneangle"}, {"conedeltaangle"}, POSE, COMMON, {0}};
+static const vlOldRow spot[] = {{"I coneangle conedeltaangle"}, POSE, COMMON, {0}};
 static const vlOldRow goniometric[] = {
     {"I"}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename"}, COMMON, {0}};
-static const vlOldRow projection[] = {
-    {"mapname", VL_OLD_RENAME, "filename"},      {"filename"}, {"fov"},
-    {"fov", VL_OLD_DEFAULT, "\"float fov\" 45"}, COMMON,       {0}};
+static const vlOldRow projection[] = {{"mapname", VL_OLD_RENAME, "filename"},
+                                      {"filename fov"},
+                                      {"fov", VL_OLD_DEFAULT, "\"float fov\" 45"},
+                                      COMMON,
+                                      {0}};
 static const vlOldRow distant[] = {{"L"}, POSE, COMMON, {"illuminance"}, {0}};
-static const vlOldRow infinite[] = {{"L"},           {"mapname", VL_OLD_RENAME, "filename"},
-                                    {"filename"},    {"portal"},
-                                    {"illuminance"}, SAMPLES,
-                                    COMMON,          {0}};
-static const vlOldRow area[] = {{"L"}, {"twosided"}, SAMPLES, COMMON, {0}};
+static const vlOldRow infinite[] = {{"L"},
+                                    {"mapname", VL_OLD_RENAME, "filename"},
+                                    {"filename portal illuminance"},
+                                    SAMPLES,
+                                    COMMON,
+                                    {0}};
+static const vlOldRow area[] = {{"L twosided"}, SAMPLES, COMMON, {0}};
 
 /* ---- the factor -------------------------------------------------------------------------- */
 
@@ -58,14 +58,15 @@ static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths
 }
 
 /* pbrt-v4 divides a light's spectrum by its luminance, pbrt-v3 does not. 1 for colours. */
-static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, double *factor) {
+static bool luminance(vlOldFile *file, const vlOldStatement *s, const vlOldParam *p,
+                      double *factor) {
   vlSpectrum one = vl_spectrum_constant(1.0f), spectrum = one;
   float *wavelengths = NULL, *values = NULL;
   bool fine = true, sampled = p && vl_text_is(p->type, "spectrum");
   vlError error;
   *factor = 1;
   if (sampled && p->strings)
-    vl_old_lose(file, line,
+    vl_old_lose(file, s,
                 "pbrt-v4 divides the spectrum of \"%s\" by its luminance: give the brightness "
                 "by \"scale\"",
                 p->name);
@@ -89,17 +90,11 @@ static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, doubl
   return fine;
 }
 
-static bool set_color(vlOldFile *file, vlOldParam *p, const double rgb[3]) {
-  char n[3][32];
-  (void)file;
-  for (int i = 0; i < 3; i++)
-    vl_old_text(rgb[i], n[i]);
+static void set_color(vlOldParam *p, const double rgb[3]) {
   p->new_type = "rgb";
-  snprintf(p->new_value, sizeof p->new_value, "[ %s %s %s ]", n[0], n[1], n[2]);
-  for (int i = 0; i < 3; i++)
-    p->number[i] = rgb[i];
+  vl_old_rgb_text(rgb, p->new_value);
+  memcpy(p->number, rgb, 3 * sizeof *rgb);
   p->count = 3;
-  return true;
 }
 
 /* Makes one number of all factors: "scale", which was a colour, and `more`. tint receives what
@@ -114,11 +109,11 @@ static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, do
   if (scale && !vl_old_is_grey(scale, &value)) {
     value = 1;
     if (!vl_old_is_color(scale, rgb)) {
-      vl_old_lose(file, s->line, "\"scale\": a spectrum has no counterpart: 1 is taken");
+      vl_old_lose(file, s, "\"scale\": a spectrum has no counterpart: 1 is taken");
     } else if (color && vl_old_is_color(color, own)) {
       for (int i = 0; i < 3; i++)
         own[i] *= rgb[i];
-      set_color(file, color, own);
+      set_color(color, own);
       vl_old_note(s, "%s times scale", color->name);
     } else {
       memcpy(tint, rgb, sizeof rgb);
@@ -130,9 +125,7 @@ static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, do
   bool needed = (float)value != 1.0f;
   if (scale && needed && scale->count == 3 && more == 1) { /* the number as it is written */
     scale->new_type = "float";
-    snprintf(scale->new_value, sizeof scale->new_value, "%.*s",
-             (int)(scale->span[0].end - scale->span[0].start),
-             file->text + scale->span[0].start);
+    vl_old_keep_first(file, scale);
     return true;
   }
   if (scale)
@@ -147,8 +140,7 @@ static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, do
 static double blackbody_scale(vlOldFile *file, vlOldParam *p) {
   if (!p || !vl_text_is(p->type, "blackbody") || p->count != 2)
     return 1;
-  snprintf(p->new_value, sizeof p->new_value, "%.*s", (int)(p->span[0].end - p->span[0].start),
-           file->text + p->span[0].start);
+  vl_old_keep_first(file, p);
   return p->number[1];
 }
 
@@ -159,8 +151,8 @@ static bool name_image(vlOldFile *file, vlOldStatement *s, vlOldParam *map, bool
   char name[4096];
   if (!map->strings)
     return true;
-  if (!(around ? vl_old_environment(file, s->line, map->text[0], factor, name, sizeof name)
-               : vl_old_file_name(file, s->line, map->text[0], name, sizeof name)))
+  if (!(around ? vl_old_environment(file, s, map->text[0], factor, name, sizeof name)
+               : vl_old_file_name(file, s, map->text[0], name, sizeof name)))
     return false;
   if (vl_text_is(name, map->text[0]))
     return true;
@@ -173,11 +165,10 @@ static bool goniometric_light(vlOldFile *file, vlOldStatement *s, vlOldParam *ma
   vlOldParam *color = vl_old_find(s, "I");
   const double one[3] = {1, 1, 1};
   double more = blackbody_scale(file, color), factor, tint[3];
-  if (!luminance(file, s->line, color, &factor) ||
-      !fold_scale(file, s, color, more * factor, tint))
+  if (!luminance(file, s, color, &factor) || !fold_scale(file, s, color, more * factor, tint))
     return false;
   if (tint[0] != tint[1] || tint[1] != tint[2])
-    vl_old_lose(file, s->line, "goniometric: a colour \"scale\" has no counterpart: left out");
+    vl_old_lose(file, s, "goniometric: a colour \"scale\" has no counterpart: left out");
   return name_image(file, s, map, true, one);
 }
 
@@ -192,7 +183,7 @@ static bool image_light(vlOldFile *file, vlOldStatement *s) {
   if (!color)
     color = vl_old_find(s, "I");
   if (color && !vl_old_is_color(color, rgb)) {
-    vl_old_lose(file, s->line, "\"%s\" is a spectrum beside an image: left out", color->name);
+    vl_old_lose(file, s, "\"%s\" is a spectrum beside an image: left out", color->name);
     color->dropped = true;
   } else if (color && vl_old_is_grey(color, &grey)) {
     more = grey;
@@ -205,7 +196,7 @@ static bool image_light(vlOldFile *file, vlOldStatement *s) {
     color->dropped = true;
     vl_old_note(s, "%s in the image", color->name);
   } else if (color) {
-    vl_old_lose(file, s->line, "projection: a colour \"I\" has no counterpart: left out");
+    vl_old_lose(file, s, "projection: a colour \"I\" has no counterpart: left out");
     color->dropped = true;
   }
   if (!fold_scale(file, s, NULL, more, tint))
@@ -213,7 +204,7 @@ static bool image_light(vlOldFile *file, vlOldStatement *s) {
   for (int i = 0; i < 3; i++)
     tint[i] *= rgb[i];
   if (!around && (tint[0] != tint[1] || tint[1] != tint[2]))
-    vl_old_lose(file, s->line, "projection: a colour \"scale\" has no counterpart: left out");
+    vl_old_lose(file, s, "projection: a colour \"scale\" has no counterpart: left out");
   return name_image(file, s, map, around, tint);
 }
 
@@ -227,20 +218,17 @@ static bool plain_light(vlOldFile *file, vlOldStatement *s) {
   if (map)
     map->dropped = true;
   more = blackbody_scale(file, color);
-  if (!luminance(file, s->line, color, &factor) ||
-      !fold_scale(file, s, color, more * factor, tint))
+  if (!luminance(file, s, color, &factor) || !fold_scale(file, s, color, more * factor, tint))
     return false;
   if (tint[0] == tint[1] && tint[1] == tint[2])
     return true;
   if (!color) {
-    char n[3][32];
-    for (int i = 0; i < 3; i++)
-      vl_old_text(tint[i], n[i]);
+    char text[VL_OLD_VALUE];
     bool intensity = vl_text_is(s->name[0], "point") || vl_text_is(s->name[0], "spot");
-    return vl_old_add(file, s, "\"rgb %s\" [ %s %s %s ]", intensity ? "I" : "L", n[0], n[1],
-                      n[2]);
+    return vl_old_add(file, s, "\"rgb %s\" %s", intensity ? "I" : "L",
+                      vl_old_rgb_text(tint, text));
   }
-  vl_old_lose(file, s->line, "a colour \"scale\" of a spectrum has no counterpart: left out");
+  vl_old_lose(file, s, "a colour \"scale\" of a spectrum has no counterpart: left out");
   return true;
 }
 
@@ -256,11 +244,10 @@ static const vlOldKind kinds[] = {{"point", "point", point, plain_light},
 bool vl_old_light(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
-    vl_old_lose(file, s->line, "light \"%s\" has no counterpart: left out", s->name[0]);
+    vl_old_lose(file, s, "light \"%s\" has no counterpart: left out", s->name[0]);
     return vl_old_remove(file, s);
   }
-  return kind->rule(file, s) && vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) &&
-         vl_old_rename(file, s, 0, kind->to);
+  return vl_old_become(file, s, kind);
 }
 
 bool vl_old_area_light(vlOldFile *file, vlOldStatement *s) {
@@ -268,9 +255,9 @@ bool vl_old_area_light(vlOldFile *file, vlOldStatement *s) {
   if (!s->name[0][0])
     return true;
   if (!diffuse) {
-    vl_old_lose(file, s->line, "area light \"%s\" has no counterpart: left out", s->name[0]);
+    vl_old_lose(file, s, "area light \"%s\" has no counterpart: left out", s->name[0]);
     return vl_old_remove(file, s);
   }
-  return plain_light(file, s) && vl_old_rows(file, s, area, VL_OLD_LOSE) &&
+  return plain_light(file, s) && vl_old_rows(file, s, area) &&
          vl_old_rename(file, s, 0, "diffuse");
 }

@@ -8,10 +8,8 @@
   {"bumpmap", VL_OLD_RENAME, "displacement"}, { \
     "displacement"                              \
   }
-#define ROUGHNESSES                                \
-  {"roughness"}, {"uroughness"}, {"vroughness"}, { \
-    "remaproughness"                               \
-  }
+#define ROUGHNESSES \
+  { "roughness uroughness vroughness remaproughness" }
 static const char whole_coat[] = "the coat reflects what its eta says";
 
 static const vlOldRow matte[] = {{"Kd", VL_OLD_RENAME, "reflectance"}, {"sigma"}, BUMP, {0}};
@@ -27,7 +25,7 @@ static const vlOldRow substrate[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
                                      ROUGHNESSES,
                                      BUMP,
                                      {0}};
-static const vlOldRow metal[] = {{"eta"}, {"k"}, ROUGHNESSES, BUMP, {0}};
+static const vlOldRow metal[] = {{"eta k"}, ROUGHNESSES, BUMP, {0}};
 static const vlOldRow mirror[] = {
     {"Kr", VL_OLD_RENAME, "reflectance"},
     {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.9 0.9 0.9 ]"},
@@ -44,13 +42,7 @@ static const vlOldRow translucent[] = {{"Ks", VL_OLD_LOSE, "only the diffuse par
                                        BUMP,
                                        {0}};
 static const vlOldRow hair[] = {{"color", VL_OLD_RENAME, "reflectance"},
-                                {"sigma_a"},
-                                {"eumelanin"},
-                                {"pheomelanin"},
-                                {"eta"},
-                                {"beta_m"},
-                                {"beta_n"},
-                                {"alpha"},
+                                {"sigma_a eumelanin pheomelanin eta beta_m beta_n alpha"},
                                 {0}};
 static const vlOldRow kdsubsurface[] = {
     {"Kd", VL_OLD_RENAME, "reflectance"},
@@ -61,21 +53,14 @@ static const vlOldRow kdsubsurface[] = {
     {"Kt", VL_OLD_DROP},
     {"index", VL_OLD_RENAME, "eta"},
     {"eta", VL_OLD_DEFAULT, "\"float eta\" 1.3"},
-    {"eta"},
-    {"g"},
-    {"scale"},
+    {"eta g scale"},
     ROUGHNESSES,
     BUMP,
     {0}};
 static const vlOldRow subsurface[] = {{"Kr", VL_OLD_DROP},
                                       {"Kt", VL_OLD_DROP},
                                       {"index", VL_OLD_RENAME, "eta"},
-                                      {"eta"},
-                                      {"name"},
-                                      {"sigma_a"},
-                                      {"sigma_s"},
-                                      {"scale"},
-                                      {"g"},
+                                      {"eta name sigma_a sigma_s scale g"},
                                       ROUGHNESSES,
                                       BUMP,
                                       {0}};
@@ -92,9 +77,8 @@ static const vlOldRow uber[] = {
     {0}};
 static const vlOldRow none[] = {{"bumpmap", VL_OLD_DROP}, {0}};
 static const vlOldRow fourier[] = {{"bsdffile", VL_OLD_DROP}, BUMP, {0}};
-static const vlOldRow disney[] = {{"metallic"},  {"roughness"}, {"eta"},
-                                  {"clearcoat"}, BUMP,          {0}};
-static const vlOldRow mix[] = {{"materials"}, {"amount"}, {0}};
+static const vlOldRow disney[] = {{"metallic roughness eta clearcoat"}, BUMP, {0}};
+static const vlOldRow mix[] = {{"materials amount"}, {0}};
 
 /* ---- rules ------------------------------------------------------------------------------- */
 
@@ -105,8 +89,7 @@ static bool matte_rule(vlOldFile *file, vlOldStatement *s) {
   if (!p)
     return true;
   if (!vl_old_is_grey(p, &value) || value != 0)
-    vl_old_lose(file, s->line,
-                "matte's \"sigma\" has no counterpart: the surface is Lambertian");
+    vl_old_lose(file, s, "matte's \"sigma\" has no counterpart: the surface is Lambertian");
   p->dropped = true;
   return true;
 }
@@ -161,7 +144,7 @@ static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
     if (!p)
       continue;
     if (!vl_old_is_grey(p, &value) || value != 1)
-      vl_old_lose(file, s->line, "glass: \"%s\" has no counterpart: clear glass is written",
+      vl_old_lose(file, s, "glass: \"%s\" has no counterpart: clear glass is written",
                   names[i]);
     vl_old_drop(s, p);
   }
@@ -169,8 +152,7 @@ static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
   if (!eta)
     eta = vl_old_find(s, "index");
   if (eta && vl_old_is_texture(eta)) {
-    vl_old_lose(file, s->line,
-                "glass: an \"eta\" of a texture has no counterpart: 1.5 is taken");
+    vl_old_lose(file, s, "glass: an \"eta\" of a texture has no counterpart: 1.5 is taken");
     vl_old_drop(s, eta);
   }
   return true;
@@ -181,7 +163,7 @@ static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
 static void warn_of_path(vlOldFile *file, const vlOldStatement *s) {
   vlUpgrade *u = file->u;
   if (u->plain_path && !u->subsurface)
-    vl_old_lose(file, s->line,
+    vl_old_lose(file, s,
                 "pbrt-v4's \"path\" does not render subsurface scattering: name \"volpath\" as "
                 "integrator");
   u->plain_path = false;
@@ -245,15 +227,12 @@ static const vlOldKind kinds[] = {
 
 /* Kinds that only pbrt-v4 has stay as they are. */
 static bool is_new(const char *name, vlOldStatement *s) {
-  static const char *const names[] = {"diffuse",         "coateddiffuse", "conductor",
-                                      "coatedconductor", "dielectric",    "diffusetransmission",
-                                      "thindielectric",  "interface",     "principled"};
+  static const char names[] =
+      "diffuse coateddiffuse conductor coatedconductor dielectric "
+      "diffusetransmission thindielectric interface principled";
   if (vl_text_is(name, "measured"))
     return vl_old_find(s, "filename") != NULL && !vl_old_find(s, "type");
-  for (size_t i = 0; i < VL_LENGTH(names); i++)
-    if (vl_text_is(names[i], name))
-      return true;
-  return false;
+  return vl_has_word(names, name);
 }
 
 /* The name of the kind in pbrt-v4. A coated one whose coat is black (coat_rule has dropped its
@@ -278,14 +257,14 @@ static const vlOldKind *find_kind(vlOldFile *file, vlOldStatement *s, const char
   if (kind)
     return kind;
   static const vlOldKind unknown = {"", "diffuse", NULL, none_rule};
-  vl_old_lose(file, s->line, "material \"%s\" is not one of pbrt-v3's: grey diffuse is written",
+  vl_old_lose(file, s, "material \"%s\" is not one of pbrt-v3's: grey diffuse is written",
               name);
   return &unknown;
 }
 
 static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
   if (kind->lost)
-    vl_old_lose(file, s->line, "%s", kind->lost);
+    vl_old_lose(file, s, "%s", kind->lost);
   if (kind->rule && !kind->rule(file, s))
     return false;
   const vlOldRow *rows = kind->rows;
@@ -296,7 +275,7 @@ static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
       {0}};
   if (!vl_text_is(new_kind(s, kind), kind->to))
     rows = without_coat;
-  return vl_old_rows(file, s, rows, VL_OLD_LOSE);
+  return vl_old_rows(file, s, rows);
 }
 
 bool vl_old_material(vlOldFile *file, vlOldStatement *s) {

@@ -5,14 +5,6 @@
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
-/* Text of a colour: [ r g b ]. */
-static void color_text(const double rgb[3], char text[120]) {
-  char n[3][32];
-  for (int i = 0; i < 3; i++)
-    vl_old_text(rgb[i], n[i]);
-  snprintf(text, 120, "[ %s %s %s ]", n[0], n[1], n[2]);
-}
-
 /* Writes a share as a parameter "amount": a number, or a float texture. False after an
  * error. */
 static bool amount_text(vlOldFile *file, vlOldStatement *s, const vlOldParam *p,
@@ -25,14 +17,14 @@ static bool amount_text(vlOldFile *file, vlOldStatement *s, const vlOldParam *p,
       return false;
     if (copy)
       return snprintf(text, size, "\"texture amount\" \"%s\"", copy) > 0;
-    vl_old_lose(file, s->line, "%s: texture \"%s\" cannot become one of numbers: 0.5 is taken",
-                what, p->text[0]);
+    vl_old_lose(file, s, "%s: texture \"%s\" cannot become one of numbers: 0.5 is taken", what,
+                p->text[0]);
   }
   double value = 0.5;
   if (p && vl_old_is_color(p, rgb))
     value = (rgb[0] + rgb[1] + rgb[2]) / 3;
   if (p && vl_old_is_color(p, rgb) && !vl_old_is_grey(p, &value))
-    vl_old_lose(file, s->line, "%s: a colour has no counterpart: its mean is taken", what);
+    vl_old_lose(file, s, "%s: a colour has no counterpart: its mean is taken", what);
   snprintf(text, size, "\"float amount\" %s", vl_old_text(value, number));
   return true;
 }
@@ -110,12 +102,11 @@ bool vl_old_translucent(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "Kd");
   const char *texture = p && vl_old_is_texture(p) ? p->text[0] : NULL;
   if (p && !texture && !vl_old_is_color(p, kd))
-    vl_old_lose(file, s->line,
-                "translucent: a sampled \"Kd\" has no counterpart: 0.25 is taken");
+    vl_old_lose(file, s, "translucent: a sampled \"Kd\" has no counterpart: 0.25 is taken");
   for (int k = 0; k < 2; k++) {
     vlOldParam *q = vl_old_find(s, from[k]);
     if (q && !vl_old_is_color(q, share[k]))
-      vl_old_lose(file, s->line,
+      vl_old_lose(file, s,
                   "translucent: a \"%s\" that is no colour has no counterpart: 0.5 is taken",
                   from[k]);
   }
@@ -129,7 +120,7 @@ bool vl_old_translucent(vlOldFile *file, vlOldStatement *s) {
         texture, texture, vl_old_text(share[0][0], scale));
   }
   if (texture) {
-    vl_old_lose(file, s->line,
+    vl_old_lose(file, s,
                 "translucent: a texture times \"reflect\" has no counterpart: the texture "
                 "alone is taken where that is not black");
     for (int k = 0; k < 2; k++) {
@@ -141,12 +132,11 @@ bool vl_old_translucent(vlOldFile *file, vlOldStatement *s) {
     return true;
   }
   for (int k = 0; k < 2; k++) {
-    char text[120];
+    char text[VL_OLD_VALUE];
     double product[3];
     for (int i = 0; i < 3; i++)
       product[i] = kd[i] * share[k][i];
-    color_text(product, text);
-    if (!vl_old_add(file, s, "\"rgb %s\" %s", to[k], text))
+    if (!vl_old_add(file, s, "\"rgb %s\" %s", to[k], vl_old_rgb_text(product, text)))
       return false;
   }
   return true;
@@ -174,15 +164,12 @@ bool vl_old_mix(vlOldFile *file, vlOldStatement *s) {
   } else if (amount) {
     amount->new_type = "float";
     if (amount->count == 3)
-      snprintf(amount->new_value, sizeof amount->new_value, "%.*s",
-               (int)(amount->span[0].end - amount->span[0].start),
-               file->text + amount->span[0].start);
+      vl_old_keep_first(file, amount);
   }
   vl_old_note(s, "namedmaterial1, namedmaterial2 -> materials");
   second->dropped = true;
   first->new_name = "materials";
-  snprintf(first->new_value, sizeof first->new_value, "[ \"%.80s\" \"%.80s\" ]",
-           second->text[0], first->text[0]);
+  vl_old_value(first, "[ \"%.80s\" \"%.80s\" ]", second->text[0], first->text[0]);
   return true;
 }
 
@@ -216,7 +203,7 @@ bool vl_old_disney(vlOldFile *file, vlOldStatement *s) {
     if (!p)
       continue;
     if (!vl_old_is_grey(p, &value) || value != 0)
-      vl_old_lose(file, s->line, "disney: \"%s\" has no counterpart", lost[i]);
+      vl_old_lose(file, s, "disney: \"%s\" has no counterpart", lost[i]);
     p->dropped = true;
   }
   return true;

@@ -99,24 +99,18 @@ static void refer_by(vlUpgrade *u, vlOldStatement *s, vlOldParam *p, Family fami
     return;
   vl_old_note(s, "%s is \"%s\"", p->name, name);
   p->text[0] = name;
-  snprintf(p->new_value, sizeof p->new_value, "\"%.150s\"", name);
+  vl_old_value(p, "\"%.150s\"", name);
 }
 
 /* Whether the parameter takes a float texture. It matters only where there is a colour texture
  * of the name, too. */
 static bool takes_numbers(const vlOldStatement *s, const char *name) {
-  static const char *const numbers[] = {
-      "alpha",          "shadowalpha", "amount",       "bumpmap",  "displacement", "roughness",
-      "uroughness",     "vroughness",  "sigma",        "eta",      "index",        "beta_m",
-      "beta_n",         "eumelanin",   "pheomelanin",  "metallic", "clearcoat",    "sheen",
-      "clearcoatgloss", "sheentint",   "speculartint", "flatness", "anisotropic",  "spectrans",
-      "difftrans",      "scale"};
-  if (is_word(s, "Texture") && vl_text_is(s->name[1], "float"))
-    return true;
-  for (size_t i = 0; i < VL_LENGTH(numbers); i++)
-    if (vl_text_is(numbers[i], name))
-      return true;
-  return false;
+  static const char numbers[] =
+      "alpha shadowalpha amount bumpmap displacement roughness uroughness vroughness sigma eta "
+      "index beta_m beta_n eumelanin pheomelanin metallic clearcoat sheen clearcoatgloss "
+      "sheentint speculartint flatness anisotropic spectrans difftrans scale";
+  return (is_word(s, "Texture") && vl_text_is(s->name[1], "float")) ||
+         vl_has_word(numbers, name);
 }
 
 static Family texture_family(const vlUpgrade *u, const vlOldStatement *s, const vlOldParam *p) {

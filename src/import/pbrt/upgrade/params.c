@@ -61,6 +61,23 @@ const char *vl_old_text(double value, char text[32]) {
   return text;
 }
 
+const char *vl_old_rgb_text(const double rgb[3], char text[VL_OLD_VALUE]) {
+  char n[3][32];
+  for (int i = 0; i < 3; i++)
+    vl_old_text(rgb[i], n[i]);
+  snprintf(text, VL_OLD_VALUE, "[ %s %s %s ]", n[0], n[1], n[2]);
+  return text;
+}
+
+void vl_old_value(vlOldParam *p, const char *format, ...) {
+  VL_FORMAT(p->new_value, format);
+}
+
+void vl_old_keep_first(const vlOldFile *file, vlOldParam *p) {
+  const vlOldSpan first = p->span[0];
+  vl_old_value(p, "%.*s", (int)(first.end - first.start), file->text + first.start);
+}
+
 /* ---- types ------------------------------------------------------------------------------- */
 
 static const char *const types[][2] = {{"color", "rgb"},
@@ -75,17 +92,14 @@ static void set_rgb_of_xyz(vlOldParam *p) {
                                  {-0.969256, 1.875991, 0.041556},
                                  {0.055648, -0.204043, 1.057311}};
   double rgb[3];
-  char text[3][32];
   for (int i = 0; i < 3; i++) {
     rgb[i] = m[i][0] * p->number[0] + m[i][1] * p->number[1] + m[i][2] * p->number[2];
     if (rgb[i] < 0)
       rgb[i] = 0;
-    vl_old_text(rgb[i], text[i]);
   }
-  for (int i = 0; i < 3; i++)
-    p->number[i] = rgb[i];
+  memcpy(p->number, rgb, sizeof rgb);
   p->new_type = "rgb";
-  snprintf(p->new_value, sizeof p->new_value, "[ %s %s %s ]", text[0], text[1], text[2]);
+  vl_old_rgb_text(rgb, p->new_value);
 }
 
 static bool unquote_bools(vlOldFile *file, vlOldStatement *s, vlOldParam *p) {
@@ -120,10 +134,10 @@ bool vl_old_types(vlOldFile *file, vlOldStatement *s) {
     char name[4096];
     if (!strchr(p->text[0], '.') && !strchr(p->text[0], '/'))
       continue;
-    if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name))
+    if (!vl_old_file_name(file, s, p->text[0], name, sizeof name))
       return false;
     if (p->count > 1)
-      vl_old_lose(file, s->line, "\"%s\" names several files: the first is kept", p->name);
+      vl_old_lose(file, s, "\"%s\" names several files: the first is kept", p->name);
     if (vl_text_is(name, p->text[0]) && p->count == 1)
       continue;
     vl_old_note(s, "%s is \"%s\"", p->name, name);
@@ -143,7 +157,7 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
   bool found = false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
-    bool same = vl_text_is(p->name, row->name);
+    bool same = vl_has_word(row->name, p->name);
     if (same && row->action != VL_OLD_DEFAULT)
       known[i] = true;
     found = found || same || vl_text_is(p->new_name, row->name);
@@ -161,7 +175,7 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
         break;
       case VL_OLD_LOSE:
         p->dropped = true;
-        vl_old_lose(file, s->line, "%s \"%s\": \"%s\" has no counterpart%s%s", s->word->name,
+        vl_old_lose(file, s, "%s \"%s\": \"%s\" has no counterpart%s%s", s->word->name,
                     s->name_count ? s->name[s->name_count - 1] : "", p->name,
                     row->to ? ": " : "", row->to ? row->to : "");
         break;
@@ -177,7 +191,7 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
   return vl_old_add(file, s, "%s", row->to);
 }
 
-bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOldAction others) {
+bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows) {
   enum { MAX_PARAMETERS = 64 };
   bool known[MAX_PARAMETERS] = {false};
   if (s->params.count > MAX_PARAMETERS)
@@ -187,10 +201,10 @@ bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOld
       return false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
-    if (known[i] || !is_open(p) || others == VL_OLD_KEEP || vl_text_is(p->name, "type"))
+    if (known[i] || !is_open(p) || vl_text_is(p->name, "type"))
       continue;
     p->dropped = true;
-    vl_old_lose(file, s->line, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out",
+    vl_old_lose(file, s, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out",
                 s->word->name, s->name_count ? s->name[s->name_count - 1] : "", p->name);
   }
   return true;
@@ -201,4 +215,11 @@ const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name) {
     if (vl_text_is(k->from, name))
       return k;
   return NULL;
+}
+
+bool vl_old_become(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
+  if (kind->lost)
+    vl_old_lose(file, s, "%s", kind->lost);
+  return (!kind->rule || kind->rule(file, s)) && vl_old_rows(file, s, kind->rows) &&
+         vl_old_rename(file, s, 0, kind->to);
 }

@@ -133,7 +133,7 @@ bool vl_old_mesh_of_shape(vlOldFile *file, vlOldStatement *s) {
   bool fine = write_grid(context, &g, &text) || vl_old_fail_memory(file->u);
   vl_free(context, g.z_values);
   if (fine && g.kind < 3)
-    vl_old_lose(file, s->line, "shape \"%s\" has no counterpart: %u triangles are written",
+    vl_old_lose(file, s, "shape \"%s\" has no counterpart: %u triangles are written",
                 s->name[0], 2 * (g.nu - 1) * (g.nv - 1));
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];

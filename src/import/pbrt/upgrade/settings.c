@@ -11,21 +11,15 @@
 
 /* ---- camera ------------------------------------------------------------------------------ */
 
-#define SHUTTER                                              \
-  {"shutteropen"}, {"shutterclose"}, {"frameaspectratio"}, { \
-    "screenwindow"                                           \
-  }
-static const vlOldRow perspective[] = {
-    {"fov"}, {"lensradius"}, {"focaldistance"}, SHUTTER, {0}};
+#define SHUTTER \
+  { "shutteropen shutterclose frameaspectratio screenwindow" }
+static const vlOldRow perspective[] = {{"fov lensradius focaldistance"}, SHUTTER, {0}};
 static const vlOldRow environment[] = {
     SHUTTER,
     {"mapping", VL_OLD_DEFAULT, "\"string mapping\" \"equirectangular\""},
     {"fov", VL_OLD_DROP},
     {0}};
-static const vlOldRow realistic[] = {{"lensfile"},
-                                     {"aperturediameter"},
-                                     {"focusdistance"},
-                                     {"aperture"},
+static const vlOldRow realistic[] = {{"lensfile aperturediameter focusdistance aperture"},
                                      {"simpleweighting", VL_OLD_DROP},
                                      SHUTTER,
                                      {0}};
@@ -41,7 +35,7 @@ static bool half_fov(vlOldFile *file, vlOldStatement *s) {
     return true;
   }
   p->new_name = "fov";
-  snprintf(p->new_value, sizeof p->new_value, "%s", vl_old_text(2 * p->number[0], text));
+  vl_old_value(p, "%s", vl_old_text(2 * p->number[0], text));
   return true;
 }
 
@@ -50,7 +44,7 @@ static bool lens_file(vlOldFile *file, vlOldStatement *s) {
   char name[4096];
   if (!p || !p->strings)
     return true;
-  if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name))
+  if (!vl_old_file_name(file, s, p->text[0], name, sizeof name))
     return false;
   return vl_text_is(name, p->text[0]) || vl_old_edit(file, p->span[0], "\"%s\"", name);
 }
@@ -66,16 +60,13 @@ static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kinds,
                     const char *otherwise) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
-    vl_old_lose(file, s->line, "%s \"%s\" has no counterpart: \"%s\" is written", s->word->name,
+    vl_old_lose(file, s, "%s \"%s\" has no counterpart: \"%s\" is written", s->word->name,
                 s->name[0], otherwise);
     for (size_t i = 0; i < s->params.count; i++)
       s->params.items[i].dropped = true;
     return vl_old_rename(file, s, 0, otherwise);
   }
-  if (kind->lost)
-    vl_old_lose(file, s->line, "%s", kind->lost);
-  return (!kind->rule || kind->rule(file, s)) &&
-         vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) && vl_old_rename(file, s, 0, kind->to);
+  return vl_old_become(file, s, kind);
 }
 
 /* In pbrt-v4 the image is as much brighter as the shutter is open longer. */
@@ -88,23 +79,18 @@ bool vl_old_camera(vlOldFile *file, vlOldStatement *s) {
 
 /* ---- film -------------------------------------------------------------------------------- */
 
-static const vlOldRow film[] = {{"xresolution"},
-                                {"yresolution"},
+static const vlOldRow film[] = {{"xresolution yresolution"},
                                 {"xresolution", VL_OLD_DEFAULT, "\"integer xresolution\" 640"},
                                 {"yresolution", VL_OLD_DEFAULT, "\"integer yresolution\" 480"},
-                                {"cropwindow"},
-                                {"diagonal"},
-                                {"filename"},
+                                {"cropwindow diagonal filename"},
                                 {"maxsampleluminance", VL_OLD_RENAME, "maxcomponentvalue"},
                                 {"display", VL_OLD_DROP},
                                 {0}};
 static const vlOldKind films[] = {{"image", "rgb", film}, {0}};
 
 bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
-  static const char *const news[] = {"rgb", "gbuffer", "spectral"};
-  for (int i = 0; i < 3; i++)
-    if (vl_text_is(s->name[0], news[i]))
-      return true;
+  if (vl_has_word("rgb gbuffer spectral", s->name[0]))
+    return true;
   vlOldParam *scale = vl_old_find(s, "scale");
   vlUpgrade *u = file->u;
   if (scale && scale->count == 1)
@@ -119,10 +105,7 @@ bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
 
 /* ---- sampler, filter, accelerator -------------------------------------------------------- */
 
-static const vlOldRow sampler[] = {{"pixelsamples"},
-                                   {"xsamples"},
-                                   {"ysamples"},
-                                   {"jitter"},
+static const vlOldRow sampler[] = {{"pixelsamples xsamples ysamples jitter"},
                                    {"dimensions", VL_OLD_DROP},
                                    {"samplepixelcenter", VL_OLD_DROP},
                                    {"seed"},
@@ -152,9 +135,9 @@ bool vl_old_sampler(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, samplers, "zsobol");
 }
 
-#define RADIUS                                                                               \
-  {"xwidth", VL_OLD_RENAME, "xradius"}, {"ywidth", VL_OLD_RENAME, "yradius"}, {"xradius"}, { \
-    "yradius"                                                                                \
+#define RADIUS                                                                  \
+  {"xwidth", VL_OLD_RENAME, "xradius"}, {"ywidth", VL_OLD_RENAME, "yradius"}, { \
+    "xradius yradius"                                                           \
   }
 static const vlOldRow plain_filter[] = {RADIUS, {0}};
 static const vlOldRow gaussian[] = {RADIUS,
@@ -162,7 +145,7 @@ static const vlOldRow gaussian[] = {RADIUS,
                                     {"yradius", VL_OLD_DEFAULT, "\"float yradius\" 2"},
                                     {"sigma"},
                                     {0}};
-static const vlOldRow mitchell[] = {RADIUS, {"B"}, {"C"}, {0}};
+static const vlOldRow mitchell[] = {RADIUS, {"B C"}, {0}};
 static const vlOldRow sinc[] = {RADIUS, {"tau"}, {0}};
 
 /* exp(-alpha x^2) is a Gaussian of the variance 1 / (2 alpha). */
@@ -173,8 +156,7 @@ static bool gaussian_rule(vlOldFile *file, vlOldStatement *s) {
   if (!p || p->count != 1 || !(p->number[0] > 0))
     return true;
   p->new_name = "sigma";
-  snprintf(p->new_value, sizeof p->new_value, "%s",
-           vl_old_text(sqrt(0.5 / p->number[0]), text));
+  vl_old_value(p, "%s", vl_old_text(sqrt(0.5 / p->number[0]), text));
   return true;
 }
 
@@ -190,9 +172,9 @@ bool vl_old_filter(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, filters, "gaussian");
 }
 
-static const vlOldRow bvh[] = {{"maxnodeprims"}, {"splitmethod"}, {0}};
-static const vlOldRow kdtree[] = {{"intersectcost"}, {"traversalcost"}, {"emptybonus"},
-                                  {"maxprims"},      {"maxdepth"},      {0}};
+static const vlOldRow bvh[] = {{"maxnodeprims splitmethod"}, {0}};
+static const vlOldRow kdtree[] = {{"intersectcost traversalcost emptybonus maxprims maxdepth"},
+                                  {0}};
 static const vlOldKind accelerators[] = {
     {"bvh", "bvh", bvh}, {"kdtree", "kdtree", kdtree}, {"none", "bvh"}, {0}};
 
@@ -209,16 +191,10 @@ bool vl_old_accelerator(vlOldFile *file, vlOldStatement *s) {
 static const vlOldRow path[] = {
     {"maxdepth"}, {"rrthreshold", VL_OLD_DROP}, LIGHTS, BOUNDS, {"regularize"}, {0}};
 static const vlOldRow bdpt[] = {
-    {"maxdepth"},         LIGHTS,         BOUNDS, {"visualizestrategies"},
-    {"visualizeweights"}, {"regularize"}, {0}};
-static const vlOldRow mlt[] = {{"maxdepth"},
-                               {"bootstrapsamples"},
-                               {"chains"},
-                               {"mutationsperpixel"},
-                               {"largestepprobability"},
-                               {"sigma"},
-                               {"regularize"},
-                               {0}};
+    {"maxdepth"}, LIGHTS, BOUNDS, {"visualizestrategies visualizeweights regularize"}, {0}};
+static const vlOldRow mlt[] = {
+    {"maxdepth bootstrapsamples chains mutationsperpixel largestepprobability sigma regularize"},
+    {0}};
 static const vlOldRow sppm[] = {
     {"maxdepth"},
     {"numiterations", VL_OLD_LOSE, "give the sampler's \"pixelsamples\""},
@@ -276,13 +252,10 @@ bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
 
 /* ---- media ------------------------------------------------------------------------------- */
 
-#define SUBSTANCE                                \
-  {"preset"}, {"sigma_a"}, {"sigma_s"}, {"g"}, { \
-    "scale"                                      \
-  }
+#define SUBSTANCE \
+  { "preset sigma_a sigma_s g scale" }
 static const vlOldRow homogeneous[] = {SUBSTANCE, {"Le"}, {0}};
-static const vlOldRow grid[] = {SUBSTANCE, {"density"}, {"nx"}, {"ny"},
-                                {"nz"},    {"p0"},      {"p1"}, {0}};
+static const vlOldRow grid[] = {SUBSTANCE, {"density nx ny nz p0 p1"}, {0}};
 static const vlOldKind media[] = {
     {"homogeneous", "homogeneous", homogeneous}, {"heterogeneous", "uniformgrid", grid}, {0}};
 
@@ -291,7 +264,7 @@ bool vl_old_medium(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = type && type->strings ? vl_old_kind(media, type->text[0]) : NULL;
   if (!kind)
     return true; /* pbrt-v4's own */
-  if (!vl_old_rows(file, s, kind->rows, VL_OLD_LOSE))
+  if (!vl_old_rows(file, s, kind->rows))
     return false;
   if (vl_text_is(kind->from, kind->to))
     return true;
@@ -314,8 +287,7 @@ bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
   if (iso == 100)
     return true;
   if (u->film_file != file) {
-    vl_old_lose(file, s->line,
-                "the film's \"iso\" must be %s, for its scale and the shutter's time",
+    vl_old_lose(file, s, "the film's \"iso\" must be %s, for its scale and the shutter's time",
                 vl_old_text(iso, text));
     return true;
   }

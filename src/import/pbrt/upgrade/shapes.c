@@ -7,19 +7,15 @@
     "discarddegenerateUVs", VL_OLD_DROP                                           \
   }
 
-static const vlOldRow sphere[] = {{"radius"}, {"zmin"}, {"zmax"}, {"phimax"}, ALPHA, {0}};
-static const vlOldRow disk[] = {{"radius"}, {"height"}, {"innerradius"},
-                                {"phimax"}, ALPHA,      {0}};
+static const vlOldRow sphere[] = {{"radius zmin zmax phimax"}, ALPHA, {0}};
+static const vlOldRow disk[] = {{"radius height innerradius phimax"}, ALPHA, {0}};
 static const vlOldRow mesh[] = {
-    {"P"},       {"N"},           {"S"}, {"uv"}, {"st", VL_OLD_RENAME, "uv"},
-    {"indices"}, {"faceIndices"}, ALPHA, {0}};
+    {"P N S uv"}, {"st", VL_OLD_RENAME, "uv"}, {"indices faceIndices"}, ALPHA, {0}};
 static const vlOldRow ply[] = {{"filename"}, ALPHA, {0}};
-static const vlOldRow loop[] = {{"P"},      {"indices"}, {"nlevels", VL_OLD_RENAME, "levels"},
-                                {"levels"}, {"scheme"},  ALPHA,
-                                {0}};
-static const vlOldRow curve[] = {{"P"},          {"N"},     {"type"},   {"basis"},
-                                 {"degree"},     {"width"}, {"width0"}, {"width1"},
-                                 {"splitdepth"}, ALPHA,     {0}};
+static const vlOldRow loop[] = {
+    {"P indices"}, {"nlevels", VL_OLD_RENAME, "levels"}, {"levels scheme"}, ALPHA, {0}};
+static const vlOldRow curve[] = {
+    {"P N type basis degree width width0 width1 splitdepth"}, ALPHA, {0}};
 
 /* uvs were lists of numbers. */
 static bool mesh_rule(vlOldFile *file, vlOldStatement *s) {
@@ -54,11 +50,11 @@ static const vlOldKind kinds[] = {{"sphere", "sphere", sphere},
 bool vl_old_shape(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
-    vl_old_lose(file, s->line, "shape \"%s\" has no counterpart: left out%s", s->name[0],
+    vl_old_lose(file, s, "shape \"%s\" has no counterpart: left out%s", s->name[0],
                 vl_text_is(s->name[0], "nurbs") ? " (convert it to a mesh)" : "");
     return vl_old_remove(file, s);
   }
   return (!kind->rule || kind->rule(file, s)) &&
-         (!kind->rows || vl_old_rows(file, s, kind->rows, VL_OLD_LOSE)) &&
+         (!kind->rows || vl_old_rows(file, s, kind->rows)) &&
          vl_old_rename(file, s, 0, kind->to);
 }

@@ -18,25 +18,22 @@ static bool is_noise(vlUpgrade *u, const char *name) {
   return t && t->grey;
 }
 
-#define MAPPING                                                          \
-  {"mapping"}, {"uscale"}, {"vscale"}, {"udelta"}, {"vdelta"}, {"v1"}, { \
-    "v2"                                                                 \
-  }
+#define MAPPING \
+  { "mapping uscale vscale udelta vdelta v1 v2" }
 
 static const vlOldRow constant[] = {{"value"}, {0}};
-static const vlOldRow scale[] = {{"tex"}, {"scale"}, {0}};
-static const vlOldRow mix[] = {{"tex1"}, {"tex2"}, {"amount"}, {0}};
-static const vlOldRow bilerp[] = {{"v00"}, {"v01"}, {"v10"}, {"v11"}, MAPPING, {0}};
-static const vlOldRow imagemap[] = {{"filename"}, {"wrap"},   {"maxanisotropy"},
-                                    {"scale"},    {"invert"}, {"encoding"},
-                                    {"filter"},   MAPPING,    {0}};
+static const vlOldRow scale[] = {{"tex scale"}, {0}};
+static const vlOldRow mix[] = {{"tex1 tex2 amount"}, {0}};
+static const vlOldRow bilerp[] = {{"v00 v01 v10 v11"}, MAPPING, {0}};
+static const vlOldRow imagemap[] = {
+    {"filename wrap maxanisotropy scale invert encoding filter"}, MAPPING, {0}};
 static const vlOldRow uv[] = {MAPPING, {0}};
-static const vlOldRow checkerboard[] = {{"dimension"},           {"tex1"}, {"tex2"},
-                                        {"aamode", VL_OLD_DROP}, MAPPING,  {0}};
-static const vlOldRow dots[] = {{"inside"}, {"outside"}, MAPPING, {0}};
-static const vlOldRow noise[] = {{"octaves"}, {"roughness"}, {0}};
-static const vlOldRow marble[] = {{"octaves"}, {"roughness"}, {"scale"}, {"variation"}, {0}};
-static const vlOldRow ptex[] = {{"filename"}, {"encoding"}, {"scale"}, {0}};
+static const vlOldRow checkerboard[] = {
+    {"dimension tex1 tex2"}, {"aamode", VL_OLD_DROP}, MAPPING, {0}};
+static const vlOldRow dots[] = {{"inside outside"}, MAPPING, {0}};
+static const vlOldRow noise[] = {{"octaves roughness"}, {0}};
+static const vlOldRow marble[] = {{"octaves roughness scale variation"}, {0}};
+static const vlOldRow ptex[] = {{"filename encoding scale"}, {0}};
 
 static bool is_spectrum(const vlOldStatement *s) {
   return !vl_text_is(s->name[1], "float");
@@ -56,8 +53,7 @@ static void set_scale(vlOldFile *file, vlOldParam *p) {
   p->new_type = "float";
   if (p->count != 3)
     return;
-  snprintf(p->new_value, sizeof p->new_value, "%.*s", (int)(p->span[0].end - p->span[0].start),
-           file->text + p->span[0].start);
+  vl_old_keep_first(file, p);
 }
 
 /* pbrt-v3 multiplies two textures of one type, pbrt-v4 a texture by numbers. */
@@ -92,26 +88,25 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
       return false;
     if (copy) {
       if (!is_noise(file->u, b->text[0]))
-        vl_old_lose(file, s->line,
+        vl_old_lose(file, s,
                     "a product of two colour textures has no counterpart: \"%s\" becomes one "
                     "of numbers",
                     b->text[0]);
       b->new_name = "scale";
-      snprintf(b->new_value, sizeof b->new_value, "\"%.150s\"", copy);
+      vl_old_value(b, "\"%.150s\"", copy);
     } else {
-      vl_old_lose(file, s->line,
+      vl_old_lose(file, s,
                   "a product of two colour textures has no counterpart: \"%s\" is left out",
                   b->text[0]);
       b->dropped = true;
     }
   } else if (b && vl_old_is_color(b, rgb)) {
-    vl_old_lose(file, s->line,
+    vl_old_lose(file, s,
                 "a texture times a colour has no counterpart: the colour's mean is taken");
     set_scale(file, b);
-    snprintf(b->new_value, sizeof b->new_value, "%s",
-             vl_old_text((rgb[0] + rgb[1] + rgb[2]) / 3, text));
+    vl_old_value(b, "%s", vl_old_text((rgb[0] + rgb[1] + rgb[2]) / 3, text));
   } else if (b) {
-    vl_old_lose(file, s->line,
+    vl_old_lose(file, s,
                 "a texture times a spectrum has no counterpart: the texture alone is taken");
     b->dropped = true;
   }
@@ -195,8 +190,7 @@ static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
 static bool marble_rule(vlOldFile *file, vlOldStatement *s) {
   if (is_spectrum(s))
     return true;
-  vl_old_lose(file, s->line,
-              "marble of numbers has no counterpart: the constant 1 replaces it");
+  vl_old_lose(file, s, "marble of numbers has no counterpart: the constant 1 replaces it");
   for (size_t i = 0; i < s->params.count; i++)
     vl_old_drop(s, &s->params.items[i]);
   return vl_old_edit(file, s->names[2], "\"constant\"");
@@ -258,12 +252,11 @@ static bool keep(vlOldFile *file, const vlOldStatement *s) {
 bool vl_old_texture(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[2]);
   if (kind && kind->lost)
-    vl_old_lose(file, s->line, "%s", kind->lost);
+    vl_old_lose(file, s, "%s", kind->lost);
   if (kind && kind->rule && !kind->rule(file, s))
     return false;
   if (vl_text_is(s->name[1], "color") && !vl_old_rename(file, s, 1, "spectrum"))
     return false;
-  return !kind ||
-         (vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) &&
-          vl_old_rename(file, s, 2, kind->to) && vl_old_finish(file, s) && keep(file, s));
+  return !kind || (vl_old_rows(file, s, kind->rows) && vl_old_rename(file, s, 2, kind->to) &&
+                   vl_old_finish(file, s) && keep(file, s));
 }

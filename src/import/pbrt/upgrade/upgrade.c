@@ -25,7 +25,7 @@ static bool remove_it(vlOldFile *file, vlOldStatement *s) {
 }
 
 static bool lose_it(vlOldFile *file, vlOldStatement *s) {
-  vl_old_lose(file, s->line, "%s has no counterpart: left out", s->word->name);
+  vl_old_lose(file, s, "%s has no counterpart: left out", s->word->name);
   return vl_old_remove(file, s);
 }
 

@@ -14,13 +14,16 @@ typedef struct vlOldSpan {
   size_t start, end;
 } vlOldSpan;
 
-enum { VL_OLD_FIRST = 16 }; /* values of a parameter that are kept */
+enum {
+  VL_OLD_FIRST = 16, /* values of a parameter that are kept */
+  VL_OLD_VALUE = 200 /* size of a new value */
+};
 
 typedef struct vlOldParam {
   const char *type, *name; /* as written */
   const char *new_type, *new_name;
-  char new_value[200];   /* empty: as written */
-  vlOldSpan decl, value; /* value includes its brackets */
+  char new_value[VL_OLD_VALUE]; /* empty: as written */
+  vlOldSpan decl, value;        /* value includes its brackets */
   size_t count;
   bool bracket, strings, dropped;
   vlOldSpan span[VL_OLD_FIRST];
@@ -162,7 +165,7 @@ bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column,
                  const char *format, ...) __attribute__((format(printf, 5, 6)));
 bool vl_old_fail_memory(vlUpgrade *u);
 /* Reports what has no counterpart. */
-void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...)
+void vl_old_lose(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Adds to what the report says of the statement's change. */
 void vl_old_note(vlOldStatement *s, const char *format, ...)
@@ -204,9 +207,15 @@ bool vl_old_is_texture(const vlOldParam *p);
 double vl_old_number(vlOldStatement *s, const char *name, double otherwise);
 /* The number as text: the shortest that gives the same float. */
 const char *vl_old_text(double value, char text[32]);
+/* The colour as text: [ r g b ]. */
+const char *vl_old_rgb_text(const double rgb[3], char text[VL_OLD_VALUE]);
+/* Sets the new value. */
+void vl_old_value(vlOldParam *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Of several numbers the first is kept, as it is written. */
+void vl_old_keep_first(const vlOldFile *file, vlOldParam *p);
 
 typedef enum vlOldAction {
-  VL_OLD_KEEP, /* of a row that gives a name only */
+  VL_OLD_KEEP, /* of a row that gives names only, separated by blanks */
   VL_OLD_RENAME,
   VL_OLD_DROP,   /* has no meaning in pbrt-v4 */
   VL_OLD_LOSE,   /* has one that pbrt-v4 does not have */
@@ -218,8 +227,8 @@ typedef struct vlOldRow {
   const char *to;
 } vlOldRow;
 /* Applies rows, which end with a null name, to the parameters that are not yet renamed or
- * dropped. others: what is done with parameters that no row names. */
-bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOldAction others);
+ * dropped. Parameters that no row names are lost. */
+bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows);
 
 /* A kind of one directive. A row of a table ends with its last member that is not null. */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
@@ -231,6 +240,9 @@ typedef struct vlOldKind {
 } vlOldKind;
 /* The row of a kind; null for unknown kinds. The table ends with a null name. */
 const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name);
+/* Reports what is lost, applies rule and rows, and writes the kind's new name in place of the
+ * statement's first. */
+bool vl_old_become(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind);
 
 /* ---- rules ------------------------------------------------------------------------------- */
 
@@ -256,7 +268,7 @@ vlOldRule vl_old_mesh_of_shape;
 /* ---- files (files.c, environment.c) ------------------------------------------------------ */
 
 /* What the new scene says for a file that the old one names. False after an error. */
-bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result,
+bool vl_old_file_name(vlOldFile *file, const vlOldStatement *s, const char *name, char *result,
                       size_t size);
 /* The same for the file that a parameter names (null: none), and says so. */
 bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam *p);
@@ -266,7 +278,7 @@ vlOldRule vl_old_include;
 bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed);
 /* The name of the equal-area image that an image over longitude and latitude becomes, times the
  * factor. The image is made, and written at the end. */
-bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name,
+bool vl_old_environment(vlOldFile *file, const vlOldStatement *s, const char *name,
                         const double factor[3], char *result, size_t size);
 
 #endif

@@ -53,10 +53,9 @@ static bool fits(vlGltf *g, const vlGltfLocation *at, int64_t view, size_t offse
   return true;
 }
 
-static bool read_sparse(vlGltf *g, const vlGltfLocation *up, const json_t *json,
-                        vlGltfAccessor *a, size_t size) {
+static bool read_sparse(vlGltf *g, const vlGltfLocation *up, vlGltfAccessor *a, size_t size) {
   const json_t *sparse, *indices, *values;
-  if (!vl_gltf_object(g, up, json, "sparse", &sparse))
+  if (!vl_gltf_object(g, up, "sparse", &sparse))
     return false;
   if (!sparse)
     return true;
@@ -64,14 +63,14 @@ static bool read_sparse(vlGltf *g, const vlGltfLocation *up, const json_t *json,
                        *at_v = VL_GLTF_KEY(at, "values");
   int64_t index_view, value_view;
   size_t index_offset = 0, value_offset = 0, type = 0;
-  if (!vl_gltf_size(g, at, sparse, "count", &a->sparse_count) ||
-      !vl_gltf_object(g, at, sparse, "indices", &indices) ||
-      !vl_gltf_object(g, at, sparse, "values", &values) ||
-      !vl_gltf_index(g, at_i, indices, "bufferView", g->view_count, &index_view) ||
-      !vl_gltf_size(g, at_i, indices, "byteOffset", &index_offset) ||
-      !vl_gltf_size(g, at_i, indices, "componentType", &type) ||
-      !vl_gltf_index(g, at_v, values, "bufferView", g->view_count, &value_view) ||
-      !vl_gltf_size(g, at_v, values, "byteOffset", &value_offset))
+  if (!vl_gltf_size(g, at, "count", &a->sparse_count) ||
+      !vl_gltf_object(g, at, "indices", &indices) ||
+      !vl_gltf_object(g, at, "values", &values) ||
+      !vl_gltf_index(g, at_i, "bufferView", g->view_count, &index_view) ||
+      !vl_gltf_size(g, at_i, "byteOffset", &index_offset) ||
+      !vl_gltf_size(g, at_i, "componentType", &type) ||
+      !vl_gltf_index(g, at_v, "bufferView", g->view_count, &value_view) ||
+      !vl_gltf_size(g, at_v, "byteOffset", &value_offset))
     return false;
   if (index_view < 0)
     return vl_gltf_fail(g, at_i, "\"bufferView\" is missing");
@@ -105,79 +104,62 @@ static uint32_t read_uint(const uint8_t *p, uint32_t type) {
   return i;
 }
 
-const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfLocation *from, size_t index) {
-  (void)from;
-  vlGltfAccessor *a = &g->accessors[index];
-  if (a->state == VL_GLTF_GOOD)
-    return a;
+static bool read_accessor(vlGltf *g, size_t index, vlGltfAccessor *a) {
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "accessors", index);
-  const json_t *json = vl_gltf_item(g, "accessors", index);
   const char *type = "";
   int64_t view;
   size_t offset = 0, component = 0;
-  if (!vl_gltf_index(g, at, json, "bufferView", g->view_count, &view) ||
-      !vl_gltf_size(g, at, json, "byteOffset", &offset) ||
-      !vl_gltf_size(g, at, json, "count", &a->count) ||
-      !vl_gltf_size(g, at, json, "componentType", &component) ||
-      !vl_gltf_text(g, at, json, "type", &type) ||
-      !vl_gltf_bool(g, at, json, "normalized", &a->normalized))
-    return NULL;
+  if (!vl_gltf_index(g, at, "bufferView", g->view_count, &view) ||
+      !vl_gltf_size(g, at, "byteOffset", &offset) || !vl_gltf_size(g, at, "count", &a->count) ||
+      !vl_gltf_size(g, at, "componentType", &component) ||
+      !vl_gltf_text(g, at, "type", &type) || !vl_gltf_bool(g, at, "normalized", &a->normalized))
+    return false;
   a->components = component_count(type, &a->matrix);
   a->type = component <= VL_GLTF_FLOAT ? (uint32_t)component : 0;
   size_t one = component_size(a->type);
-  if (!a->components) {
-    vl_gltf_fail(g, VL_GLTF_KEY(at, "type"),
-                 "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
-                 vl_short_text(type).text);
-    return NULL;
-  }
-  if (!one) {
-    vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"),
-                 "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126", component);
-    return NULL;
-  }
-  if (a->count == 0) {
-    vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "must be at least 1");
-    return NULL;
-  }
-  if (a->count > UINT32_MAX) {
-    vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu is too many", a->count);
-    return NULL;
-  }
-  if (a->matrix && one < 4) {
-    vl_gltf_fail(g, at, "matrices of small integers are not supported");
-    return NULL;
-  }
+  if (!a->components)
+    return vl_gltf_fail(
+        g, VL_GLTF_KEY(at, "type"),
+        "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
+        vl_short_text(type).text);
+  if (!one)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"),
+                        "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126", component);
+  if (a->count == 0)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "must be at least 1");
+  if (a->count > UINT32_MAX)
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu is too many", a->count);
+  if (a->matrix && one < 4)
+    return vl_gltf_fail(g, at, "matrices of small integers are not supported");
   size_t size = one * a->components;
   a->stride = view >= 0 && g->views[view].stride ? g->views[view].stride : size;
-  if (a->stride < size) {
-    vl_gltf_fail(g, at, "its elements of %zu bytes overlap at a byteStride of %zu", size,
-                 a->stride);
-    return NULL;
-  }
+  if (a->stride < size)
+    return vl_gltf_fail(g, at, "its elements of %zu bytes overlap at a byteStride of %zu", size,
+                        a->stride);
   if (view >= 0) {
     if (!fits(g, at, view, offset, a->count, size, a->stride))
-      return NULL;
+      return false;
     a->data = g->views[view].data + offset;
-  } else if (a->count > g->total + 65536) { /* without a view all elements are zero, so the
+  } else if (a->count > g->total + 65536) /* without a view all elements are zero, so the
                                                file's size does not limit their number */
-    vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file",
-                 a->count);
-    return NULL;
-  }
-  if (!read_sparse(g, at, json, a, size))
-    return NULL;
+    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"),
+                        "%zu zeros are out of proportion to the file", a->count);
+  if (!read_sparse(g, at, a, size))
+    return false;
   for (size_t i = 0; i < a->sparse_count; i++) {
     uint32_t k =
         read_uint(a->sparse_indices + i * component_size(a->sparse_type), a->sparse_type);
-    if (k >= a->count) {
-      vl_gltf_fail(g, VL_GLTF_KEY(at, "sparse.indices"), "names element %u of %zu", k,
-                   a->count);
-      return NULL;
-    }
+    if (k >= a->count)
+      return vl_gltf_fail(g, VL_GLTF_KEY(at, "sparse.indices"), "names element %u of %zu", k,
+                          a->count);
   }
   a->state = VL_GLTF_GOOD;
-  return a;
+  return true;
+}
+
+const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, size_t index) {
+  vlGltfAccessor *a = &g->accessors[index];
+  return a->state == VL_GLTF_GOOD || read_accessor(g, index, a) ? a : NULL;
 }
 
 /* ---- reading ----------------------------------------------------------------------------- */
@@ -273,7 +255,7 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfLocation *at, uint64_t bytes) {
 
 float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
                            uint32_t components, size_t count, size_t *read) {
-  const vlGltfAccessor *a = vl_gltf_accessor(g, at, index);
+  const vlGltfAccessor *a = vl_gltf_accessor(g, index);
   if (!a)
     return NULL;
   if (count && a->count != count) {

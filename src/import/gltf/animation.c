@@ -24,15 +24,14 @@ static void free_track(vlContext *context, Track *t) {
   vl_free(context, t->values);
 }
 
-static bool read_track(vlGltf *g, const vlGltfLocation *at, const json_t *sampler,
-                       uint32_t components, Track *t) {
+static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components, Track *t) {
   int64_t input, output;
   static const char *const modes[] = {"STEP", "LINEAR", "CUBICSPLINE"};
   int mode = LINEAR;
   size_t total = 0;
-  if (!vl_gltf_index(g, at, sampler, "input", g->accessor_count, &input) ||
-      !vl_gltf_index(g, at, sampler, "output", g->accessor_count, &output) ||
-      !vl_gltf_choice(g, at, sampler, "interpolation", modes, 3, &mode))
+  if (!vl_gltf_index(g, at, "input", g->accessor_count, &input) ||
+      !vl_gltf_index(g, at, "output", g->accessor_count, &output) ||
+      !vl_gltf_choice(g, at, "interpolation", modes, 3, &mode))
     return false;
   if (input < 0 || output < 0)
     return vl_gltf_fail(g, at, "needs \"input\" and \"output\"");
@@ -135,12 +134,11 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
 
 /* KHR_animation_pointer: pointers to node properties ("/nodes/3/translation") are read. Other
  * pointers are ignored. */
-static bool read_pointer(vlGltf *g, const vlGltfLocation *up, const json_t *target,
-                         int64_t *node, const char **path) {
-  const json_t *json = vl_gltf_extension(target, "KHR_animation_pointer");
+static bool read_pointer(vlGltf *g, const vlGltfLocation *up, int64_t *node,
+                         const char **path) {
   const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.KHR_animation_pointer");
   const char *pointer = "";
-  if (!vl_gltf_text(g, at, json, "pointer", &pointer))
+  if (!vl_gltf_text(g, at, "pointer", &pointer))
     return false;
   const char *number = pointer + 7;
   char *end = NULL;
@@ -166,14 +164,14 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
   int64_t sampler, node;
   if (!json_is_object(channel))
     return vl_gltf_fail(g, at, "must be an object");
-  if (!vl_gltf_index(g, at, channel, "sampler", json_array_size(samplers), &sampler) ||
-      !vl_gltf_object(g, at, channel, "target", &target) ||
-      !vl_gltf_index(g, at_target, target, "node", g->node_count, &node) ||
-      !vl_gltf_text(g, at_target, target, "path", &path))
+  if (!vl_gltf_index(g, at, "sampler", json_array_size(samplers), &sampler) ||
+      !vl_gltf_object(g, at, "target", &target) ||
+      !vl_gltf_index(g, at_target, "node", g->node_count, &node) ||
+      !vl_gltf_text(g, at_target, "path", &path))
     return false;
   if (sampler < 0)
     return vl_gltf_fail(g, at, "\"sampler\" is missing");
-  if (vl_text_is(path, "pointer") && !read_pointer(g, at_target, target, &node, &path))
+  if (vl_text_is(path, "pointer") && !read_pointer(g, at_target, &node, &path))
     return false;
   int what = -1;
   for (int k = 0; k < 4; k++)
@@ -191,7 +189,7 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
   static const uint32_t components[] = {3, 4, 3, 1};
   Track track = {0};
   vlGltfNode *n = &g->nodes[node];
-  bool ok = read_track(g, at_sampler, json, components[what], &track);
+  bool ok = read_track(g, at_sampler, components[what], &track);
   if (ok && what == 3) {
     ok = apply_weights(g, n, &track);
   } else if (ok && track.width != components[what]) {
@@ -213,8 +211,8 @@ bool vl_gltf_apply_animation(vlGltf *g, size_t index) {
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "animations", index);
   const json_t *animation = vl_gltf_item(g, "animations", index), *channels, *samplers;
   size_t count, sampler_count;
-  if (!vl_gltf_array(g, at, animation, "channels", &channels, &count) ||
-      !vl_gltf_array(g, at, animation, "samplers", &samplers, &sampler_count))
+  if (!vl_gltf_array(g, at, "channels", &channels, &count) ||
+      !vl_gltf_array(g, at, "samplers", &samplers, &sampler_count))
     return false;
   for (size_t i = 0; i < count; i++)
     if (!apply_channel(g, at, animation, i))

@@ -21,13 +21,11 @@ static void set_size(vlGltf *g, double aspect) {
   memcpy(s->film.crop, whole, sizeof whole);
 }
 
-static bool take_perspective(vlGltf *g, const vlGltfLocation *at, const json_t *json,
-                             vlCameraDef *def) {
+static bool take_perspective(vlGltf *g, const vlGltfLocation *at, vlCameraDef *def) {
   double yfov = 0, aspect = 16.0 / 9.0, near_plane = 0, far_plane = INFINITY;
-  if (!vl_gltf_number(g, at, json, "yfov", &yfov) ||
-      !vl_gltf_number(g, at, json, "aspectRatio", &aspect) ||
-      !vl_gltf_number(g, at, json, "znear", &near_plane) ||
-      !vl_gltf_number(g, at, json, "zfar", &far_plane))
+  if (!vl_gltf_number(g, at, "yfov", &yfov) || !vl_gltf_number(g, at, "aspectRatio", &aspect) ||
+      !vl_gltf_number(g, at, "znear", &near_plane) ||
+      !vl_gltf_number(g, at, "zfar", &far_plane))
     return false;
   if (!(yfov > 0 && yfov < 3.1415926))
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "yfov"), "must lie between 0 and pi");
@@ -43,12 +41,11 @@ static bool take_perspective(vlGltf *g, const vlGltfLocation *at, const json_t *
   return true;
 }
 
-static bool take_orthographic(vlGltf *g, const vlGltfLocation *at, const json_t *json,
-                              vlCameraDef *def) {
+static bool take_orthographic(vlGltf *g, const vlGltfLocation *at, vlCameraDef *def) {
   double x = 0, y = 0, near_plane = 0, far_plane = INFINITY;
-  if (!vl_gltf_number(g, at, json, "xmag", &x) || !vl_gltf_number(g, at, json, "ymag", &y) ||
-      !vl_gltf_number(g, at, json, "znear", &near_plane) ||
-      !vl_gltf_number(g, at, json, "zfar", &far_plane))
+  if (!vl_gltf_number(g, at, "xmag", &x) || !vl_gltf_number(g, at, "ymag", &y) ||
+      !vl_gltf_number(g, at, "znear", &near_plane) ||
+      !vl_gltf_number(g, at, "zfar", &far_plane))
     return false;
   x = fabs(x);
   y = fabs(y); /* some exporters write negative values */
@@ -86,16 +83,16 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   int flat = 0;
   if (!json_object_get(json, "type"))
     return vl_gltf_fail(g, at, "\"type\" is missing");
-  if (!vl_gltf_choice(g, at, json, "type", types, 2, &flat))
+  if (!vl_gltf_choice(g, at, "type", types, 2, &flat))
     return false;
   const char *type = types[flat];
-  if (!vl_gltf_object(g, at, json, type, &lens))
+  if (!vl_gltf_object(g, at, type, &lens))
     return false;
   if (!lens)
     return vl_gltf_fail(g, at, "\"%s\" is missing", type);
   vlCameraDef def = vl_default_camera_def(1, 1);
-  if (!(flat ? take_orthographic(g, VL_GLTF_KEY(at, type), lens, &def)
-             : take_perspective(g, VL_GLTF_KEY(at, type), lens, &def)))
+  if (!(flat ? take_orthographic(g, VL_GLTF_KEY(at, type), &def)
+             : take_perspective(g, VL_GLTF_KEY(at, type), &def)))
     return false;
   def.has_matrix = true;
   set_pose(&node->world, def.world_from_camera);
@@ -140,8 +137,7 @@ bool vl_gltf_choose_camera(vlGltf *g) {
     const vlGltfNode *node = &g->nodes[i];
     if (!node->reached)
       continue;
-    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), node->json, "camera", g->camera_count,
-                       &camera))
+    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), "camera", g->camera_count, &camera))
       return false;
     if (camera < 0)
       continue;

@@ -30,8 +30,7 @@ static bool list_cameras(vlGltf *g) {
     int64_t camera;
     if (!g->nodes[i].reached)
       continue;
-    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), g->nodes[i].json, "camera",
-                       g->camera_count, &camera))
+    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), "camera", g->camera_count, &camera))
       return false;
     if (camera < 0)
       continue;

@@ -2,37 +2,50 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "math/double3.h"
 
 /* ---- morph targets ----------------------------------------------------------------------- */
 
-/* out += weight * delta, for the first `components` floats of each vertex. Vertices of out are
- * `stride` floats apart. */
-static bool add_target(vlGltf *g, const vlGltfLocation *at, const json_t *target,
-                       const char *name, uint32_t components, uint32_t stride, float weight,
-                       size_t vertices, float sign_y, float *out) {
+/* What the targets of one attribute change: the first `components` floats of each vertex, which
+ * are `stride` floats apart. sign_y: of the second one. */
+typedef struct Morphed {
+  const char *name;
+  uint32_t components, stride;
+  float sign_y;
+  float *out;
+} Morphed;
+
+/* out += weight * delta */
+static bool add_target(vlGltf *g, const vlGltfLocation *at, const Morphed *m, float weight,
+                       size_t vertices) {
   int64_t index;
-  if (!vl_gltf_index(g, at, target, name, g->accessor_count, &index))
+  if (!vl_gltf_index(g, at, m->name, g->accessor_count, &index))
     return false;
-  if (index < 0 || !out || weight == 0.0f)
+  if (index < 0 || !m->out || weight == 0.0f)
     return true;
+  const uint32_t n = m->components;
   float *delta =
-      vl_gltf_load_floats(g, VL_GLTF_KEY(at, name), (size_t)index, components, vertices, NULL);
+      vl_gltf_load_floats(g, VL_GLTF_KEY(at, m->name), (size_t)index, n, vertices, NULL);
   if (!delta)
     return false;
   for (size_t i = 0; i < vertices; i++)
-    for (uint32_t c = 0; c < components; c++)
-      out[i * stride + c] += weight * (c == 1 ? sign_y : 1.0f) * delta[i * components + c];
+    for (uint32_t c = 0; c < n; c++)
+      m->out[i * m->stride + c] += weight * (c == 1 ? m->sign_y : 1.0f) * delta[i * n + c];
   vl_free(g->context, delta);
   return true;
 }
 
 bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                   const json_t *primitive, const vlGltfNode *node, vlGltfPrimitive *p) {
+                   const vlGltfNode *node, vlGltfPrimitive *p) {
+  const Morphed rows[] = {
+      {"POSITION", 3, 3, 1, p->positions}, {"NORMAL", 3, 3, 1, p->normals},
+      {"TANGENT", 3, 4, 1, p->tangents},   {"TEXCOORD_0", 2, 2, -1, p->uvs[0]},
+      {"TEXCOORD_1", 2, 2, -1, p->uvs[1]}, {"COLOR_0", 4, 4, 1, p->colors}};
   const json_t *targets;
   size_t count;
-  if (!vl_gltf_array(g, at, primitive, "targets", &targets, &count) || count == 0)
+  if (!vl_gltf_array(g, at, "targets", &targets, &count) || count == 0)
     return count == 0 && !g->scene->error.code;
   const json_t *given = node ? json_object_get(node->json, "weights") : NULL;
   if (!given)
@@ -51,13 +64,9 @@ bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
       return vl_gltf_fail(g, here, "must be an object");
     if (!isfinite(weight))
       return vl_gltf_fail(g, here, "its weight is not finite");
-    if (!add_target(g, here, target, "POSITION", 3, 3, weight, p->vertices, 1, p->positions) ||
-        !add_target(g, here, target, "NORMAL", 3, 3, weight, p->vertices, 1, p->normals) ||
-        !add_target(g, here, target, "TANGENT", 3, 4, weight, p->vertices, 1, p->tangents) ||
-        !add_target(g, here, target, "TEXCOORD_0", 2, 2, weight, p->vertices, -1, p->uvs[0]) ||
-        !add_target(g, here, target, "TEXCOORD_1", 2, 2, weight, p->vertices, -1, p->uvs[1]) ||
-        !add_target(g, here, target, "COLOR_0", 4, 4, weight, p->vertices, 1, p->colors))
-      return false;
+    for (size_t k = 0; k < VL_LENGTH(rows); k++)
+      if (!add_target(g, here, &rows[k], weight, p->vertices))
+        return false;
   }
   return true;
 }
@@ -71,11 +80,11 @@ static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
 /* Computes the matrix world_from_mesh of each joint. */
 static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *count) {
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "skins", skin);
-  const json_t *json = vl_gltf_item(g, "skins", skin), *joints;
+  const json_t *joints;
   int64_t inverse;
   *matrices = NULL;
-  if (!vl_gltf_array(g, at, json, "joints", &joints, count) ||
-      !vl_gltf_index(g, at, json, "inverseBindMatrices", g->accessor_count, &inverse))
+  if (!vl_gltf_array(g, at, "joints", &joints, count) ||
+      !vl_gltf_index(g, at, "inverseBindMatrices", g->accessor_count, &inverse))
     return false;
   if (*count == 0)
     return vl_gltf_fail(g, at, "has no joints");
@@ -83,7 +92,7 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   size_t inverse_count = 0;
   if (inverse >= 0) {
     const vlGltfLocation *here = VL_GLTF_KEY(at, "inverseBindMatrices");
-    const vlGltfAccessor *a = vl_gltf_accessor(g, here, (size_t)inverse);
+    const vlGltfAccessor *a = vl_gltf_accessor(g, (size_t)inverse);
     if (!a)
       return false;
     if (a->components != 16)
@@ -98,14 +107,12 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   vlMat4 *m = vl_alloc_array(g->context, *count, sizeof *m);
   bool ok = m || vl_gltf_fail_memory(g);
   for (size_t i = 0; ok && i < *count; i++) {
-    const json_t *joint = json_array_get(joints, i);
-    double index = json_number_value(joint);
-    if (!json_is_number(joint) || !(index >= 0 && index < (double)g->node_count) ||
-        index != floor(index)) {
-      ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "joints", i), "there is no such node");
+    const vlGltfLocation *here = VL_GLTF_ITEM(at, "joints", i);
+    size_t index;
+    ok = vl_gltf_element(g, here, json_array_get(joints, i), g->node_count, "node", &index);
+    if (!ok)
       break;
-    }
-    m[i] = *world_of(g, &g->nodes[(size_t)index]);
+    m[i] = *world_of(g, &g->nodes[index]);
     if (!columns)
       continue;
     vlMat4 bind;
@@ -113,7 +120,7 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
       bind.m[k] = columns[16 * i + 4 * (size_t)(k % 4) + (size_t)(k / 4)];
     m[i] = vl_mat4_multiply(m[i], bind);
     if (!vl_mat4_is_finite(m[i]))
-      ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "joints", i), "its matrix is not finite");
+      ok = vl_gltf_fail(g, here, "its matrix is not finite");
   }
   vl_free(g->context, columns);
   if (!ok) {
@@ -127,19 +134,18 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
 /* Adds weight * matrix of each joint to sums (12 numbers per vertex, row-major), as the
  * attributes JOINTS_set and WEIGHTS_set give them. *found: whether the mesh has these
  * attributes. */
-static bool add_influences(vlGltf *g, const vlGltfLocation *up, const json_t *attributes,
-                           const char *joints_name, const char *weights_name,
-                           const vlMat4 *matrices, size_t count, size_t vertices, double *sums,
-                           bool *found) {
+static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *joints_name,
+                           const char *weights_name, const vlMat4 *matrices, size_t count,
+                           size_t vertices, double *sums, bool *found) {
   int64_t joint_index, weight_index;
   *found = false;
-  if (!vl_gltf_index(g, up, attributes, joints_name, g->accessor_count, &joint_index) ||
-      !vl_gltf_index(g, up, attributes, weights_name, g->accessor_count, &weight_index))
+  if (!vl_gltf_index(g, up, joints_name, g->accessor_count, &joint_index) ||
+      !vl_gltf_index(g, up, weights_name, g->accessor_count, &weight_index))
     return false;
   if (joint_index < 0 || weight_index < 0)
     return true;
   const vlGltfLocation *at = VL_GLTF_KEY(up, joints_name);
-  const vlGltfAccessor *a = vl_gltf_accessor(g, at, (size_t)joint_index);
+  const vlGltfAccessor *a = vl_gltf_accessor(g, (size_t)joint_index);
   if (!a)
     return false;
   if (a->count != vertices || a->components != 4 || a->type == VL_GLTF_FLOAT)
@@ -190,14 +196,14 @@ static void turn(const double *m, bool normal, float *v) {
     v[i] = l > 0 ? (float)(r[i] / l) : v[i];
 }
 
-bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
-                  const vlGltfNode *node, vlGltfPrimitive *p) {
+bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node,
+                  vlGltfPrimitive *p) {
   static const char *const joints[] = {"JOINTS_0", "JOINTS_1", "JOINTS_2", "JOINTS_3"};
   static const char *const weights[] = {"WEIGHTS_0", "WEIGHTS_1", "WEIGHTS_2", "WEIGHTS_3"};
   int64_t skin;
-  if (!vl_gltf_index(g, VL_GLTF_KEY(NULL, "nodes"), node->json, "skin", g->skin_count, &skin))
+  if (!vl_gltf_index_in(g, VL_GLTF_KEY(NULL, "nodes"), node->json, "skin", g->skin_count,
+                        &skin))
     return false;
-  const json_t *attributes = json_object_get(primitive, "attributes");
   const vlGltfLocation *here = VL_GLTF_KEY(at, "attributes");
   vlMat4 *matrices;
   size_t count;
@@ -206,8 +212,8 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
   double *sums = vl_alloc_zero(g->context, p->vertices, 12 * sizeof *sums);
   bool ok = sums || vl_gltf_fail_memory(g), found = true, any = false;
   for (int set = 0; set < 4 && ok && found; set++) {
-    ok = add_influences(g, here, attributes, joints[set], weights[set], matrices, count,
-                        p->vertices, sums, &found);
+    ok = add_influences(g, here, joints[set], weights[set], matrices, count, p->vertices, sums,
+                        &found);
     any = any || found;
   }
   for (size_t i = 0; ok && i < p->vertices; i++) {

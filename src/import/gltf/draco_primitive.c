@@ -12,7 +12,7 @@ static const char name[] = "KHR_draco_mesh_compression";
  * faces. */
 static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_t index,
                  int64_t id) {
-  const vlGltfAccessor *read = vl_gltf_accessor(g, at, index);
+  const vlGltfAccessor *read = vl_gltf_accessor(g, index);
   vlGltfAccessor *a = &g->accessors[index];
   if (!read)
     return false;
@@ -43,19 +43,17 @@ static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_
 }
 
 static bool fill_all(vlGltf *g, const vlGltfLocation *at, const vlGltfLocation *here,
-                     const json_t *primitive, const json_t *own, const vlDraco *mesh) {
-  const json_t *attributes = json_object_get(primitive, "attributes");
+                     const json_t *own, const vlDraco *mesh) {
   const char *key;
   json_t *value;
   int64_t accessor;
   g->total += 64 * (uint64_t)vl_draco_points(mesh) + 12 * (uint64_t)vl_draco_faces(mesh);
-  if (!vl_gltf_index(g, at, primitive, "indices", g->accessor_count, &accessor))
+  if (!vl_gltf_index(g, at, "indices", g->accessor_count, &accessor))
     return false;
   if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, -1))
     return false;
   json_object_foreach((json_t *)(uintptr_t)own, key, value) {
-    if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, key, g->accessor_count,
-                       &accessor))
+    if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), key, g->accessor_count, &accessor))
       return false;
     double id = json_is_integer(value) ? json_number_value(value) : -1;
     if (!(id >= 0 && id < 4294967296.0))
@@ -67,15 +65,15 @@ static bool fill_all(vlGltf *g, const vlGltfLocation *at, const vlGltfLocation *
   return true;
 }
 
-bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *primitive) {
-  const json_t *json = vl_gltf_extension(primitive, name), *own;
+bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
   const vlGltfLocation *here = VL_GLTF_KEY(at, "extensions.KHR_draco_mesh_compression");
+  const json_t *own;
   int64_t view, first;
-  if (!json)
+  if (!json_is_object(vl_gltf_json(g, here)))
     return true;
-  if (!vl_gltf_index(g, here, json, "bufferView", g->view_count, &view) ||
-      !vl_gltf_object(g, here, json, "attributes", &own) ||
-      !vl_gltf_index(g, at, primitive, "indices", g->accessor_count, &first))
+  if (!vl_gltf_index(g, here, "bufferView", g->view_count, &view) ||
+      !vl_gltf_object(g, here, "attributes", &own) ||
+      !vl_gltf_index(g, at, "indices", g->accessor_count, &first))
     return false;
   if (view < 0 || !own)
     return vl_gltf_fail(g, here, "needs bufferView and attributes");
@@ -89,18 +87,17 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at, const json_t 
   vlDraco *mesh = vl_draco_open(v->data, v->size, reason, sizeof reason);
   if (!mesh)
     return vl_gltf_fail(g, here, "its bytes are no mesh of Draco: %s", reason);
-  bool ok = fill_all(g, at, here, primitive, own, mesh);
+  bool ok = fill_all(g, at, here, own, mesh);
   vl_draco_close(mesh);
   return ok;
 }
 #else
-bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *primitive) {
-  const json_t *attributes = json_object_get(primitive, "attributes");
+bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
   int64_t position;
-  if (!vl_gltf_extension(primitive, name))
+  if (!vl_gltf_extension(vl_gltf_json(g, at), name))
     return true;
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION",
-                     g->accessor_count, &position))
+  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count,
+                     &position))
     return false;
   /* a fallback that is not compressed is read */
   if (position < 0 ||

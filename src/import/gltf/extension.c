@@ -88,8 +88,8 @@ bool vl_gltf_check_extensions(vlGltf *g) {
   const size_t known_count = VL_LENGTH(known);
   const json_t *used, *required;
   size_t used_count, required_count;
-  if (!vl_gltf_array(g, NULL, g->root, "extensionsUsed", &used, &used_count) ||
-      !vl_gltf_array(g, NULL, g->root, "extensionsRequired", &required, &required_count))
+  if (!vl_gltf_array(g, NULL, "extensionsUsed", &used, &used_count) ||
+      !vl_gltf_array(g, NULL, "extensionsRequired", &required, &required_count))
     return false;
   for (size_t i = 0; i < required_count; i++) {
     const char *name = json_string_value(json_array_get(required, i));

@@ -85,7 +85,7 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
 /* Counts the elements of the root's array `key` and checks that they are objects. */
 static bool count_items(vlGltf *g, const char *key, size_t *count) {
   const json_t *array;
-  if (!vl_gltf_array(g, NULL, g->root, key, &array, count))
+  if (!vl_gltf_array(g, NULL, key, &array, count))
     return false;
   if (*count > MAX_ITEMS)
     return vl_gltf_fail(g, VL_GLTF_KEY(NULL, key), "too many: %zu", *count);
@@ -96,7 +96,6 @@ static bool count_items(vlGltf *g, const char *key, size_t *count) {
 }
 
 static bool count_all(vlGltf *g) {
-  const json_t *punctual = vl_gltf_extension(g->root, "KHR_lights_punctual");
   bool ok = count_items(g, "buffers", &g->buffer_count) &&
             count_items(g, "bufferViews", &g->view_count) &&
             count_items(g, "accessors", &g->accessor_count) &&
@@ -110,11 +109,10 @@ static bool count_all(vlGltf *g) {
             count_items(g, "samplers", &g->sampler_count) &&
             count_items(g, "animations", &g->animation_count) &&
             count_items(g, "scenes", &g->scene_count) &&
-            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"), punctual,
-                          "lights", &g->lights, &g->light_count) &&
-            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.EXT_lights_ies"),
-                          vl_gltf_extension(g->root, "EXT_lights_ies"), "lights", &g->lamps,
-                          &g->lamp_count);
+            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"), "lights",
+                          &g->lights, &g->light_count) &&
+            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.EXT_lights_ies"), "lights",
+                          &g->lamps, &g->lamp_count);
   if (!ok)
     return false;
   vlContext *c = g->context;
@@ -276,12 +274,10 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uin
 
 static bool read_buffer(vlGltf *g, size_t i) {
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "buffers", i);
-  const json_t *json = vl_gltf_item(g, "buffers", i);
   vlGltfBuffer *b = &g->buffers[i];
   const char *uri = NULL, *path = NULL;
   size_t length = 0, size = 0;
-  if (!vl_gltf_text(g, at, json, "uri", &uri) ||
-      !vl_gltf_size(g, at, json, "byteLength", &length))
+  if (!vl_gltf_text(g, at, "uri", &uri) || !vl_gltf_size(g, at, "byteLength", &length))
     return false;
   if (!uri) {
     if (i == 0 && g->chunk) {
@@ -322,11 +318,11 @@ static bool read_view(vlGltf *g, size_t i) {
   int64_t buffer;
   size_t offset = 0, length = 0, stride = 0;
   if (packed)
-    return vl_gltf_unpack_view(g, at, packed, &g->views[i]);
-  if (!vl_gltf_index(g, at, json, "buffer", g->buffer_count, &buffer) ||
-      !vl_gltf_size(g, at, json, "byteOffset", &offset) ||
-      !vl_gltf_size(g, at, json, "byteLength", &length) ||
-      !vl_gltf_size(g, at, json, "byteStride", &stride))
+    return vl_gltf_unpack_view(g, at, &g->views[i]);
+  if (!vl_gltf_index(g, at, "buffer", g->buffer_count, &buffer) ||
+      !vl_gltf_size(g, at, "byteOffset", &offset) ||
+      !vl_gltf_size(g, at, "byteLength", &length) ||
+      !vl_gltf_size(g, at, "byteStride", &stride))
     return false;
   if (buffer < 0)
     return vl_gltf_fail(g, at, "\"buffer\" is missing");

@@ -9,10 +9,10 @@ static bool choose_variant(vlGltf *g) {
   g->variant = -1;
   if (!g->def->variant)
     return true;
-  const json_t *extension = vl_gltf_extension(g->root, "KHR_materials_variants"), *variants;
+  const json_t *variants;
   size_t count;
   const vlGltfLocation *at = VL_GLTF_KEY(NULL, "extensions.KHR_materials_variants");
-  if (!vl_gltf_array(g, at, extension, "variants", &variants, &count))
+  if (!vl_gltf_array(g, at, "variants", &variants, &count))
     return false;
   char names[300] = "";
   for (size_t i = 0; i < count; i++) {

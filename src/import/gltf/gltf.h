@@ -175,31 +175,36 @@ void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfLocation *location,
 /* Returns true on the first call for this bit. */
 bool vl_gltf_once(vlGltf *g, uint32_t bit);
 
-/* Typed members of a JSON object. An absent member leaves the value as it is and returns true.
- * A member of the wrong type is an error. object may be null: every member is absent. */
-bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                    double *value);
-bool vl_gltf_float(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                   float *value);
-bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                     size_t count, double *values);
-bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                  bool *value);
-bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                  const char **value);
+/* The value at a location (null: the root); null if there is none. */
+const json_t *vl_gltf_json(const vlGltf *g, const vlGltfLocation *at);
+/* Typed members of the JSON object at a location. An absent member leaves the value as it is
+ * and returns true. A member of the wrong type is an error. Where there is no object, every
+ * member is absent. */
+bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const char *key, double *value);
+bool vl_gltf_float(vlGltf *g, const vlGltfLocation *at, const char *key, float *value);
+bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const char *key, size_t count,
+                     double *values);
+bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const char *key, bool *value);
+bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const char *key, const char **value);
 /* *value receives the index of the member's string among the names. */
-bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
+bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const char *key,
                     const char *const *names, int count, int *value);
 /* A non-negative integer. */
-bool vl_gltf_size(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                  size_t *value);
+bool vl_gltf_size(vlGltf *g, const vlGltfLocation *at, const char *key, size_t *value);
 /* An index below limit; -1 when absent. */
-bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                   size_t limit, int64_t *index);
-bool vl_gltf_object(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                    const json_t **value);
-bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                   const json_t **value, size_t *count);
+bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const char *key, size_t limit,
+                   int64_t *index);
+/* The same of an object that is not at the location, which messages name. */
+bool vl_gltf_size_in(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
+                     size_t *value);
+bool vl_gltf_index_in(vlGltf *g, const vlGltfLocation *at, const json_t *object,
+                      const char *key, size_t limit, int64_t *index);
+/* The index that an element of an array holds; what: of what, for the message. */
+bool vl_gltf_element(vlGltf *g, const vlGltfLocation *at, const json_t *value, size_t limit,
+                     const char *what, size_t *index);
+bool vl_gltf_object(vlGltf *g, const vlGltfLocation *at, const char *key, const json_t **value);
+bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const char *key, const json_t **value,
+                   size_t *count);
 /* object.extensions.name, or null. */
 const json_t *vl_gltf_extension(const json_t *object, const char *name);
 /* Element i of an array at the root, for example nodes[3]. The caller must have checked i. */
@@ -214,11 +219,10 @@ bool vl_gltf_own(vlGltf *g, void *block);
 bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
-bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *at, const json_t *json,
-                         vlGltfView *view);
+bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *at, vlGltfView *view);
 /* Decodes a compressed primitive (KHR_draco_mesh_compression) into its accessors; true if it is
  * not compressed. */
-bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *primitive);
+bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at);
 /* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is
  * the file's path: in the folder of the glTF file, else on the search path. */
 bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uint8_t **data,
@@ -238,7 +242,7 @@ void vl_gltf_check_names(vlGltf *g);
 /* ---- arrays (accessor.c) ----------------------------------------------------------------- */
 
 /* The accessor, checked; null after an error. */
-const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfLocation *at, size_t index);
+const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, size_t index);
 void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uint32_t *out);
 /* A new block of count * components floats from an accessor. The accessor must have one of the
  * given numbers of components and count elements (0: any; *read receives the count). Null after
@@ -335,10 +339,10 @@ bool vl_gltf_triangles(vlGltf *g, const vlGltfLocation *at, uint32_t mode, uint3
 bool vl_gltf_compact(vlGltf *g, vlGltfPrimitive *p);
 /* deform.c: applies morph targets and skins. */
 bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                   const json_t *primitive, const vlGltfNode *node, vlGltfPrimitive *p);
+                   const vlGltfNode *node, vlGltfPrimitive *p);
 /* Transforms the positions to world space. */
-bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
-                  const vlGltfNode *node, vlGltfPrimitive *p);
+bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node,
+                  vlGltfPrimitive *p);
 /* tangent.c: MikkTSpace tangents for uv set `set`, and flat normals where the primitive has
  * none. Vertices are split where tangents differ. */
 bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p);
@@ -362,25 +366,23 @@ typedef struct vlGltfTextureUse {
 } vlGltfTextureUse;
 vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);
-bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
+bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *at, const char *key,
                      const vlGltfTextureUse *use, vlTextureId *id);
 /* The bytes or the path of images[index]. */
 bool vl_gltf_read_image(vlGltf *g, size_t index);
 /* The uv set of a textureInfo; the one of KHR_texture_transform takes precedence. */
-bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, const json_t *info,
-                         uint32_t *set);
+bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, uint32_t *set);
 
 /* volume.c: vl_gltf_volume reads KHR_materials_volume of a solid. vl_gltf_angle_texture
  * converts a texture of directions to a texture of angles in radians and adds rotation. */
-bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, const json_t *json,
-                    vlGltfMaterial *result);
+bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, vlGltfMaterial *result);
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input);
 
 /* ---- lights, cameras --------------------------------------------------------------------- */
 
-bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t light);
-/* Adds the node's lamp of EXT_lights_ies, if it has one. */
-bool vl_gltf_add_lamp(vlGltf *g, size_t node);
+/* Adds the node's light of KHR_lights_punctual and its lamp of EXT_lights_ies, if it has
+ * them. */
+bool vl_gltf_add_lights(vlGltf *g, size_t node);
 bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *at);
 bool vl_gltf_choose_camera(vlGltf *g);
 /* Reads a camera that no node has. The scene's own camera is replaced. */

@@ -107,10 +107,9 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *s
   const vlGltfLocation *up = VL_GLTF_KEY(NULL, "extensions.EXT_lights_image_based");
   size_t count, level_count;
   int64_t index;
-  if (!vl_gltf_array(g, up, vl_gltf_extension(g->root, "EXT_lights_image_based"), "lights",
-                     &lights, &count) ||
-      !vl_gltf_index(g, VL_GLTF_KEY(scene_at, "extensions.EXT_lights_image_based"), own,
-                     "light", count, &index))
+  if (!vl_gltf_array(g, up, "lights", &lights, &count) ||
+      !vl_gltf_index(g, VL_GLTF_KEY(scene_at, "extensions.EXT_lights_image_based"), "light",
+                     count, &index))
     return false;
   if (index < 0)
     return true;
@@ -120,9 +119,9 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *s
   double rotation[4] = {0, 0, 0, 1}, intensity = 1;
   if (!json_is_object(json))
     return vl_gltf_fail(g, at, "must be an object");
-  if (!vl_gltf_numbers(g, at, json, "rotation", 4, rotation) ||
-      !vl_gltf_number(g, at, json, "intensity", &intensity) ||
-      !vl_gltf_array(g, at, json, "specularImages", &levels, &level_count))
+  if (!vl_gltf_numbers(g, at, "rotation", 4, rotation) ||
+      !vl_gltf_number(g, at, "intensity", &intensity) ||
+      !vl_gltf_array(g, at, "specularImages", &levels, &level_count))
     return false;
   const json_t *faces = json_array_get(levels, 0);
   if (json_array_size(faces) != 6)
@@ -132,12 +131,10 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *s
   Cube cube = {{0}, {NULL}};
   bool ok = true;
   for (int k = 0; ok && k < 6; k++) {
-    double image = json_number_value(json_array_get(faces, (size_t)k));
-    ok = json_is_number(json_array_get(faces, (size_t)k)) && image >= 0 &&
-         image < (double)g->image_count && image == floor(image);
-    if (!ok)
-      vl_gltf_fail(g, VL_GLTF_ITEM(at_images, "[0]", (size_t)k), "there is no such image");
-    ok = ok && read_face(g, at_images, (size_t)image, &cube, k);
+    size_t image;
+    ok = vl_gltf_element(g, VL_GLTF_ITEM(at_images, "[0]", (size_t)k),
+                         json_array_get(faces, (size_t)k), g->image_count, "image", &image) &&
+         read_face(g, at_images, image, &cube, k);
   }
   bool whole = true;
   for (int k = 0; k < 6; k++)

@@ -18,6 +18,20 @@ size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t
   return wrote < 0 ? n : n + (size_t)wrote < size ? n + (size_t)wrote : size - 1;
 }
 
+const json_t *vl_gltf_json(const vlGltf *g, const vlGltfLocation *at) {
+  static const char within[] = "extensions.";
+  if (!at)
+    return g->root;
+  const json_t *value = vl_gltf_json(g, at->up);
+  const char *key = at->key;
+  if (strncmp(key, within, sizeof within - 1) == 0) {
+    value = json_object_get(value, "extensions");
+    key += sizeof within - 1;
+  }
+  value = json_object_get(value, key);
+  return at->index == SIZE_MAX ? value : json_array_get(value, at->index);
+}
+
 static void format_message(const vlGltfLocation *location, const char *format, va_list args,
                            char *text, size_t size) {
   size_t n = vl_gltf_write_location(location, text, size);
@@ -97,9 +111,9 @@ static bool wrong_kind(vlGltf *g, const vlGltfLocation *at, const char *key, con
 
 /* Looks up a member of this kind. *value is null if it is not there. Returns false after an
  * error. */
-static bool member(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                   const char *wanted, const json_t **value) {
-  *value = json_object_get(object, key);
+static bool member(vlGltf *g, const vlGltfLocation *at, const char *key, const char *wanted,
+                   const json_t **value) {
+  *value = json_object_get(vl_gltf_json(g, at), key);
   if (!*value || vl_text_is(kind_of(*value), wanted))
     return true;
   wrong_kind(g, at, key, wanted, *value);
@@ -107,10 +121,9 @@ static bool member(vlGltf *g, const vlGltfLocation *at, const json_t *object, co
   return false;
 }
 
-bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                    double *value) {
+bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const char *key, double *value) {
   const json_t *v;
-  if (!member(g, at, object, key, "a number", &v))
+  if (!member(g, at, key, "a number", &v))
     return false;
   if (!v)
     return true;
@@ -120,18 +133,17 @@ bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const json_t *object, c
   return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%g is out of range", *value);
 }
 
-bool vl_gltf_float(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                   float *value) {
+bool vl_gltf_float(vlGltf *g, const vlGltfLocation *at, const char *key, float *value) {
   double x = *value;
-  bool ok = vl_gltf_number(g, at, object, key, &x);
+  bool ok = vl_gltf_number(g, at, key, &x);
   *value = (float)x;
   return ok;
 }
 
-bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                     size_t count, double *values) {
+bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const char *key, size_t count,
+                     double *values) {
   const json_t *v;
-  if (!member(g, at, object, key, "an array", &v))
+  if (!member(g, at, key, "an array", &v))
     return false;
   if (!v)
     return true;
@@ -150,10 +162,9 @@ bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const json_t *object, 
   return true;
 }
 
-bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                  bool *value) {
+bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const char *key, bool *value) {
   const json_t *v;
-  if (!member(g, at, object, key, "true or false", &v))
+  if (!member(g, at, key, "true or false", &v))
     return false;
   if (!v)
     return true;
@@ -161,10 +172,9 @@ bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const json_t *object, con
   return true;
 }
 
-bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                  const char **value) {
+bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const char *key, const char **value) {
   const json_t *v;
-  if (!member(g, at, object, key, "a string", &v))
+  if (!member(g, at, key, "a string", &v))
     return false;
   if (!v)
     return true;
@@ -172,10 +182,10 @@ bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const json_t *object, con
   return true;
 }
 
-bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
+bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const char *key,
                     const char *const *names, int count, int *value) {
   const char *text = names[*value];
-  if (!vl_gltf_text(g, at, object, key, &text))
+  if (!vl_gltf_text(g, at, key, &text))
     return false;
   char list[160] = "";
   for (int i = 0; i < count; i++) {
@@ -201,21 +211,24 @@ static bool whole(vlGltf *g, const vlGltfLocation *at, const char *key, const js
   return true;
 }
 
-bool vl_gltf_size(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                  size_t *value) {
+bool vl_gltf_size_in(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
+                     size_t *value) {
   const json_t *v = json_object_get(object, key);
   return !v || whole(g, at, key, v, value);
 }
 
-bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                   size_t limit, int64_t *index) {
-  const json_t *v = json_object_get(object, key);
-  size_t value = 0;
+bool vl_gltf_size(vlGltf *g, const vlGltfLocation *at, const char *key, size_t *value) {
+  return vl_gltf_size_in(g, at, vl_gltf_json(g, at), key, value);
+}
+
+bool vl_gltf_index_in(vlGltf *g, const vlGltfLocation *at, const json_t *object,
+                      const char *key, size_t limit, int64_t *index) {
+  size_t value = SIZE_MAX;
   *index = -1;
-  if (!v)
-    return true;
-  if (!whole(g, at, key, v, &value))
+  if (!vl_gltf_size_in(g, at, object, key, &value))
     return false;
+  if (value == SIZE_MAX)
+    return true;
   if (value >= limit)
     return limit ? vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)",
                                 value, limit, limit - 1)
@@ -224,14 +237,28 @@ bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const json_t *object, co
   return true;
 }
 
-bool vl_gltf_object(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                    const json_t **value) {
-  return member(g, at, object, key, "an object", value);
+bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const char *key, size_t limit,
+                   int64_t *index) {
+  return vl_gltf_index_in(g, at, vl_gltf_json(g, at), key, limit, index);
 }
 
-bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
-                   const json_t **value, size_t *count) {
-  const bool ok = member(g, at, object, key, "an array", value);
+bool vl_gltf_element(vlGltf *g, const vlGltfLocation *at, const json_t *value, size_t limit,
+                     const char *what, size_t *index) {
+  const double x = json_number_value(value);
+  if (!json_is_number(value) || !(x >= 0 && x < (double)limit) || x != floor(x))
+    return vl_gltf_fail(g, at, "there is no such %s", what);
+  *index = (size_t)x;
+  return true;
+}
+
+bool vl_gltf_object(vlGltf *g, const vlGltfLocation *at, const char *key,
+                    const json_t **value) {
+  return member(g, at, key, "an object", value);
+}
+
+bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const char *key, const json_t **value,
+                   size_t *count) {
+  const bool ok = member(g, at, key, "an array", value);
   *count = json_array_size(*value);
   return ok;
 }

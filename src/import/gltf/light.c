@@ -6,8 +6,23 @@
 #include "import/gltf/gltf.h"
 #include "velo/light.h"
 
-bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
-  const vlGltfLocation *up = VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"),
+#define PUNCTUAL "extensions.KHR_lights_punctual"
+#define LAMPS "extensions.EXT_lights_ies"
+
+/* A light's colour and factor must not be negative. */
+static bool check_light(vlGltf *g, const vlGltfLocation *at, const char *factor_key,
+                        double factor, const double color[3]) {
+  const char *key = NULL;
+  for (int i = 0; i < 3; i++)
+    if (!(color[i] >= 0))
+      key = "color";
+  if (!(factor >= 0))
+    key = factor_key;
+  return !key || vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must not be negative");
+}
+
+static bool add_light(vlGltf *g, size_t node, int64_t index) {
+  const vlGltfLocation *up = VL_GLTF_KEY(NULL, PUNCTUAL),
                        *at = VL_GLTF_ITEM(up, "lights", (size_t)index);
   const json_t *json = json_array_get(g->lights, (size_t)index), *spot;
   if (!json_is_object(json))
@@ -18,20 +33,16 @@ bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
          range = INFINITY;
   if (!json_object_get(json, "type"))
     return vl_gltf_fail(g, at, "\"type\" is missing");
-  if (!vl_gltf_choice(g, at, json, "type", types, 3, &type) ||
-      !vl_gltf_numbers(g, at, json, "color", 3, color) ||
-      !vl_gltf_number(g, at, json, "intensity", &intensity) ||
-      !vl_gltf_number(g, at, json, "range", &range) ||
-      !vl_gltf_object(g, at, json, "spot", &spot) ||
-      !vl_gltf_number(g, VL_GLTF_KEY(at, "spot"), spot, "innerConeAngle", &inner) ||
-      !vl_gltf_number(g, VL_GLTF_KEY(at, "spot"), spot, "outerConeAngle", &outer))
+  if (!vl_gltf_choice(g, at, "type", types, 3, &type) ||
+      !vl_gltf_numbers(g, at, "color", 3, color) ||
+      !vl_gltf_number(g, at, "intensity", &intensity) ||
+      !vl_gltf_number(g, at, "range", &range) || !vl_gltf_object(g, at, "spot", &spot) ||
+      !vl_gltf_number(g, VL_GLTF_KEY(at, "spot"), "innerConeAngle", &inner) ||
+      !vl_gltf_number(g, VL_GLTF_KEY(at, "spot"), "outerConeAngle", &outer))
     return false;
   bool is_spot = type == 2, is_distant = type == 0;
-  if (!(intensity >= 0))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "intensity"), "must not be negative");
-  for (int i = 0; i < 3; i++)
-    if (!(color[i] >= 0))
-      return vl_gltf_fail(g, VL_GLTF_KEY(at, "color"), "must not be negative");
+  if (!check_light(g, at, "intensity", intensity, color))
+    return false;
   if (is_spot && !(inner >= 0 && inner <= outer && outer > 0 && outer <= 1.5707964))
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "spot"),
                         "its angles must be 0 <= inner <= outer <= pi/2");
@@ -64,16 +75,13 @@ bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
 /* Lamp files are external or embedded. A node's lamp aims along the node's -z; C 0 is its x, C
  * 90 its y. */
 
-#define EXTENSION "extensions.EXT_lights_ies"
-
 /* The contents of the light profile: from a file, a data: uri or a buffer view. */
-static bool read_profile(vlGltf *g, const vlGltfLocation *at, const json_t *json,
-                         vlLightDef *def) {
+static bool read_profile(vlGltf *g, const vlGltfLocation *at, vlLightDef *def) {
   const char *uri = NULL, *path = NULL;
   const uint8_t *data = NULL;
   int64_t view = -1;
-  if (!vl_gltf_text(g, at, json, "uri", &uri) ||
-      !vl_gltf_index(g, at, json, "bufferView", g->view_count, &view))
+  if (!vl_gltf_text(g, at, "uri", &uri) ||
+      !vl_gltf_index(g, at, "bufferView", g->view_count, &view))
     return false;
   if (!uri && view < 0)
     return vl_gltf_fail(g, at, "has neither \"uri\" nor \"bufferView\"");
@@ -106,24 +114,20 @@ static void set_pose(const vlMat4 *world, vlLightDef *def) {
   }
 }
 
-bool vl_gltf_add_lamp(vlGltf *g, size_t node) {
-  const json_t *own = vl_gltf_extension(g->nodes[node].json, "EXT_lights_ies");
-  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(NULL, "nodes", node), EXTENSION);
+static bool add_lamp(vlGltf *g, size_t node) {
+  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(NULL, "nodes", node), LAMPS);
   int64_t index = -1;
   double color[3] = {1, 1, 1}, multiplier = 1;
-  if (!vl_gltf_index(g, at, own, "light", g->lamp_count, &index) ||
-      !vl_gltf_numbers(g, at, own, "color", 3, color) ||
-      !vl_gltf_number(g, at, own, "multiplier", &multiplier))
+  if (!vl_gltf_index(g, at, "light", g->lamp_count, &index) ||
+      !vl_gltf_numbers(g, at, "color", 3, color) ||
+      !vl_gltf_number(g, at, "multiplier", &multiplier))
     return false;
   if (index < 0)
     return true;
-  if (!(multiplier >= 0))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "multiplier"), "must not be negative");
-  for (int i = 0; i < 3; i++)
-    if (!(color[i] >= 0))
-      return vl_gltf_fail(g, VL_GLTF_KEY(at, "color"), "must not be negative");
+  if (!check_light(g, at, "multiplier", multiplier, color))
+    return false;
   const vlGltfLocation *profile =
-      VL_GLTF_ITEM(VL_GLTF_KEY(NULL, EXTENSION), "lights", (size_t)index);
+      VL_GLTF_ITEM(VL_GLTF_KEY(NULL, LAMPS), "lights", (size_t)index);
   const json_t *json = json_array_get(g->lamps, (size_t)index);
   if (!json_is_object(json))
     return vl_gltf_fail(g, profile, "must be an object");
@@ -132,11 +136,18 @@ bool vl_gltf_add_lamp(vlGltf *g, size_t node) {
   def.color = vl_spectrum_rgb((float)fmin(color[0], 1), (float)fmin(color[1], 1),
                               (float)fmin(color[2], 1));
   def.scale = (float)multiplier;
-  if (!read_profile(g, profile, json, &def))
+  if (!read_profile(g, profile, &def))
     return false;
   set_pose(&g->nodes[node].world, &def);
   if (multiplier > 0 && vl_scene_add_light(g->scene, &def).index == 0)
     return false;
   g->lights_made++;
   return true;
+}
+
+bool vl_gltf_add_lights(vlGltf *g, size_t node) {
+  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(NULL, "nodes", node), PUNCTUAL);
+  int64_t light;
+  return vl_gltf_index(g, at, "light", g->light_count, &light) &&
+         (light < 0 || add_light(g, node, light)) && add_lamp(g, node);
 }

@@ -12,8 +12,8 @@
 
 typedef struct Reader {
   vlGltf *g;
-  const vlGltfLocation *at;
-  const json_t *json;
+  const vlGltfLocation *at; /* of the object that is read: the material or a part of it */
+  const json_t *json;       /* of the material */
   vlMaterialDef *def;
   vlGltfMaterial *result;
   bool colors; /* the mesh has vertex colours */
@@ -22,26 +22,24 @@ typedef struct Reader {
 /* ---- parameters -------------------------------------------------------------------------- */
 
 /* A factor in [0, 1] times a channel of a texture. */
-static bool channel(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                    const char *factor_key, const char *texture_key, int which,
+static bool channel(const Reader *r, const char *factor_key, const char *texture_key, int which,
                     float default_factor, vlFloatInput *input) {
   float factor = default_factor;
-  if (factor_key && !vl_gltf_float(r->g, at, json, factor_key, &factor))
+  if (!vl_gltf_float(r->g, r->at, factor_key, &factor))
     return false;
   if (!(factor >= 0 && factor <= 1)) {
-    vl_gltf_warn(r->g, VL_LOG_WARNING, VL_GLTF_KEY(at, factor_key),
+    vl_gltf_warn(r->g, VL_LOG_WARNING, VL_GLTF_KEY(r->at, factor_key),
                  "%g does not lie between 0 and 1: %d is taken", (double)factor, factor > 1);
     factor = factor > 1;
   }
   vlGltfTextureUse use = vl_gltf_use_channel(which, factor);
   *input = vl_float_input(factor);
-  return vl_gltf_texture(r->g, at, json, texture_key, &use, &input->texture);
+  return vl_gltf_texture(r->g, r->at, texture_key, &use, &input->texture);
 }
 
-static bool read_color(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                       const char *key, size_t count, float color[4]) {
+static bool read_color(const Reader *r, const char *key, size_t count, float color[4]) {
   double v[4] = {color[0], color[1], color[2], color[3]};
-  if (!vl_gltf_numbers(r->g, at, json, key, count, v))
+  if (!vl_gltf_numbers(r->g, r->at, key, count, v))
     return false;
   for (int i = 0; i < 4; i++)
     color[i] = v[i] > 0 ? (float)v[i] : 0.0f;
@@ -49,14 +47,13 @@ static bool read_color(const Reader *r, const vlGltfLocation *at, const json_t *
 }
 
 /* A colour times an sRGB texture (times the vertex colours). */
-static bool color_input(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                        const char *texture_key, const float color[4], bool vertex_colors,
-                        vlSpectrumInput *input) {
+static bool color_input(const Reader *r, const char *texture_key, const float color[4],
+                        bool vertex_colors, vlSpectrumInput *input) {
   vlGltfTextureUse use = vl_gltf_use_color();
   memcpy(use.tint, color, sizeof use.tint);
   use.colors = vertex_colors;
   *input = vl_spectrum_input(vl_spectrum_rgb(color[0], color[1], color[2]));
-  if (!vl_gltf_texture(r->g, at, json, texture_key, &use, &input->texture))
+  if (!vl_gltf_texture(r->g, r->at, texture_key, &use, &input->texture))
     return false;
   if (input->texture.index || !vertex_colors)
     return true;
@@ -67,18 +64,23 @@ static bool color_input(const Reader *r, const vlGltfLocation *at, const json_t 
   return input->texture.index != 0;
 }
 
-static bool normal_input(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                         const char *key, vlTextureId *id, float *scale) {
-  const json_t *info = json_object_get(json, key);
+/* A colour's factor, whose default is `first`, times its texture. */
+static bool layer_color(const Reader *r, const char *factor_key, const char *texture_key,
+                        float first, vlSpectrumInput *input) {
+  float color[4] = {first, first, first, 1};
+  return read_color(r, factor_key, 3, color) &&
+         color_input(r, texture_key, color, false, input);
+}
+
+static bool normal_input(const Reader *r, const char *key, vlTextureId *id, float *scale) {
+  const vlGltfLocation *at = VL_GLTF_KEY(r->at, key);
   vlGltfTextureUse use = vl_gltf_use_color();
   use.srgb = false;
-  if (!vl_gltf_texture(r->g, at, json, key, &use, id) ||
-      !vl_gltf_float(r->g, VL_GLTF_KEY(at, key), info, "scale", scale))
+  if (!vl_gltf_texture(r->g, r->at, key, &use, id) || !vl_gltf_float(r->g, at, "scale", scale))
     return false;
   if (!id->index)
     return true;
-  if (!r->result->needs_tangents &&
-      !vl_gltf_texture_set(r->g, VL_GLTF_KEY(at, key), info, &r->result->tangent_set))
+  if (!r->result->needs_tangents && !vl_gltf_texture_set(r->g, at, &r->result->tangent_set))
     return false;
   r->result->needs_tangents = true;
   return true;
@@ -87,14 +89,14 @@ static bool normal_input(const Reader *r, const vlGltfLocation *at, const json_t
 /* ---- coverage ---------------------------------------------------------------------------- */
 
 /* Reads the coverage: the base colour's fourth channel, interpreted by alphaMode. */
-static bool read_alpha(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                       const char *texture_key, float factor) {
+static bool read_alpha(const Reader *r, const vlGltfLocation *at, const char *texture_key,
+                       float factor) {
   static const char *const modes[] = {"OPAQUE", "MASK", "BLEND"};
   int mode = 0;
   float cutoff = 0.5f;
   r->result->alpha = vl_float_input(1.0f);
-  if (!vl_gltf_choice(r->g, r->at, r->json, "alphaMode", modes, 3, &mode) ||
-      !vl_gltf_float(r->g, r->at, r->json, "alphaCutoff", &cutoff))
+  if (!vl_gltf_choice(r->g, r->at, "alphaMode", modes, 3, &mode) ||
+      !vl_gltf_float(r->g, r->at, "alphaCutoff", &cutoff))
     return false;
   if (mode == 0)
     return true;
@@ -106,7 +108,7 @@ static bool read_alpha(const Reader *r, const vlGltfLocation *at, const json_t *
   if (mask)
     use.cutoff = cutoff;
   r->result->alpha.value = mask ? factor >= cutoff : factor > 1 ? 1 : factor;
-  if (!vl_gltf_texture(r->g, at, json, texture_key, &use, &r->result->alpha.texture))
+  if (!vl_gltf_texture(r->g, at, texture_key, &use, &r->result->alpha.texture))
     return false;
   if (r->result->alpha.texture.index || !r->colors)
     return true;
@@ -122,34 +124,37 @@ static bool read_alpha(const Reader *r, const vlGltfLocation *at, const json_t *
 
 /* ---- the base ---------------------------------------------------------------------------- */
 
+static Reader part(const Reader *r, const vlGltfLocation *at) {
+  Reader result = *r;
+  result.at = at;
+  return result;
+}
+
 static bool read_metallic_roughness(const Reader *r, float base[4]) {
   const json_t *json;
-  const vlGltfLocation *at = VL_GLTF_KEY(r->at, "pbrMetallicRoughness");
+  const Reader own = part(r, VL_GLTF_KEY(r->at, "pbrMetallicRoughness"));
   vlPrincipledDef *p = &r->def->principled;
-  return vl_gltf_object(r->g, r->at, r->json, "pbrMetallicRoughness", &json) &&
-         read_color(r, at, json, "baseColorFactor", 4, base) &&
-         color_input(r, at, json, "baseColorTexture", base, r->colors, &r->def->reflectance) &&
-         channel(r, at, json, "metallicFactor", "metallicRoughnessTexture", 2, 1.0f,
-                 &p->metallic) &&
-         channel(r, at, json, "roughnessFactor", "metallicRoughnessTexture", 1, 1.0f,
-                 &p->roughness) &&
-         read_alpha(r, at, json, "baseColorTexture", base[3]);
+  return vl_gltf_object(r->g, r->at, "pbrMetallicRoughness", &json) &&
+         read_color(&own, "baseColorFactor", 4, base) &&
+         color_input(&own, "baseColorTexture", base, r->colors, &r->def->reflectance) &&
+         channel(&own, "metallicFactor", "metallicRoughnessTexture", 2, 1.0f, &p->metallic) &&
+         channel(&own, "roughnessFactor", "metallicRoughnessTexture", 1, 1.0f, &p->roughness) &&
+         read_alpha(r, own.at, "baseColorTexture", base[3]);
 }
 
 /* Reads KHR_materials_pbrSpecularGlossiness as a material that is not metallic. The reflectance
  * at normal incidence is the specular colour. */
-static bool read_specular_glossiness(const Reader *r, const json_t *json, float base[4]) {
-  const vlGltfLocation *at =
-      VL_GLTF_KEY(r->at, "extensions.KHR_materials_pbrSpecularGlossiness");
+static bool read_specular_glossiness(const Reader *r, float base[4]) {
+  const Reader own =
+      part(r, VL_GLTF_KEY(r->at, "extensions.KHR_materials_pbrSpecularGlossiness"));
   vlPrincipledDef *p = &r->def->principled;
   float specular[4] = {1, 1, 1, 1}, glossiness = 1;
-  if (!read_color(r, at, json, "diffuseFactor", 4, base) ||
-      !read_color(r, at, json, "specularFactor", 3, specular) ||
-      !color_input(r, at, json, "diffuseTexture", base, r->colors, &r->def->reflectance) ||
-      !color_input(r, at, json, "specularGlossinessTexture", specular, false,
-                   &p->specular_color) ||
-      !vl_gltf_float(r->g, at, json, "glossinessFactor", &glossiness) ||
-      !read_alpha(r, at, json, "diffuseTexture", base[3]))
+  if (!read_color(&own, "diffuseFactor", 4, base) ||
+      !read_color(&own, "specularFactor", 3, specular) ||
+      !color_input(&own, "diffuseTexture", base, r->colors, &r->def->reflectance) ||
+      !color_input(&own, "specularGlossinessTexture", specular, false, &p->specular_color) ||
+      !vl_gltf_float(r->g, own.at, "glossinessFactor", &glossiness) ||
+      !read_alpha(r, own.at, "diffuseTexture", base[3]))
     return false;
   p->metallic = vl_float_input(0.0f);
   p->roughness = vl_float_input(1.0f - glossiness);
@@ -157,65 +162,50 @@ static bool read_specular_glossiness(const Reader *r, const json_t *json, float 
   vlGltfTextureUse use = vl_gltf_use_channel(3, -glossiness);
   use.srgb = true;
   use.bias = 1.0f;
-  return vl_gltf_texture(r->g, at, json, "specularGlossinessTexture", &use,
+  return vl_gltf_texture(r->g, own.at, "specularGlossinessTexture", &use,
                          &p->roughness.texture);
 }
 
 /* ---- extensions -------------------------------------------------------------------------- */
 
-static const json_t *extension(const Reader *r, const char *name) {
-  return vl_gltf_extension(r->json, name);
+static bool read_specular(const Reader *r, vlPrincipledDef *p) {
+  return channel(r, "specularFactor", "specularTexture", 3, 1.0f, &p->specular) &&
+         layer_color(r, "specularColorFactor", "specularColorTexture", 1, &p->specular_color);
 }
 
-static bool read_specular(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                          vlPrincipledDef *p) {
-  float color[4] = {1, 1, 1, 1};
-  return channel(r, at, json, "specularFactor", "specularTexture", 3, 1.0f, &p->specular) &&
-         read_color(r, at, json, "specularColorFactor", 3, color) &&
-         color_input(r, at, json, "specularColorTexture", color, false, &p->specular_color);
-}
-
-static bool read_coat(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                      vlPrincipledDef *p) {
-  return channel(r, at, json, "clearcoatFactor", "clearcoatTexture", 0, 0.0f, &p->clearcoat) &&
-         channel(r, at, json, "clearcoatRoughnessFactor", "clearcoatRoughnessTexture", 1, 0.0f,
+static bool read_coat(const Reader *r, vlPrincipledDef *p) {
+  return channel(r, "clearcoatFactor", "clearcoatTexture", 0, 0.0f, &p->clearcoat) &&
+         channel(r, "clearcoatRoughnessFactor", "clearcoatRoughnessTexture", 1, 0.0f,
                  &p->clearcoat_roughness) &&
-         normal_input(r, at, json, "clearcoatNormalTexture", &p->clearcoat_normal,
+         normal_input(r, "clearcoatNormalTexture", &p->clearcoat_normal,
                       &p->clearcoat_normal_scale);
 }
 
-static bool read_sheen(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                       vlPrincipledDef *p) {
-  float color[4] = {0, 0, 0, 1};
-  return read_color(r, at, json, "sheenColorFactor", 3, color) &&
-         color_input(r, at, json, "sheenColorTexture", color, false, &p->sheen_color) &&
-         channel(r, at, json, "sheenRoughnessFactor", "sheenRoughnessTexture", 3, 0.0f,
+static bool read_sheen(const Reader *r, vlPrincipledDef *p) {
+  return layer_color(r, "sheenColorFactor", "sheenColorTexture", 0, &p->sheen_color) &&
+         channel(r, "sheenRoughnessFactor", "sheenRoughnessTexture", 3, 0.0f,
                  &p->sheen_roughness);
 }
 
-static bool read_iridescence(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                             vlPrincipledDef *p) {
+static bool read_iridescence(const Reader *r, vlPrincipledDef *p) {
   float least = 100, most = 400;
-  if (!channel(r, at, json, "iridescenceFactor", "iridescenceTexture", 0, 0.0f,
-               &p->iridescence) ||
-      !vl_gltf_float(r->g, at, json, "iridescenceIor", &p->iridescence_ior) ||
-      !vl_gltf_float(r->g, at, json, "iridescenceThicknessMinimum", &least) ||
-      !vl_gltf_float(r->g, at, json, "iridescenceThicknessMaximum", &most))
+  if (!channel(r, "iridescenceFactor", "iridescenceTexture", 0, 0.0f, &p->iridescence) ||
+      !vl_gltf_float(r->g, r->at, "iridescenceIor", &p->iridescence_ior) ||
+      !vl_gltf_float(r->g, r->at, "iridescenceThicknessMinimum", &least) ||
+      !vl_gltf_float(r->g, r->at, "iridescenceThicknessMaximum", &most))
     return false;
   p->iridescence_ior = p->iridescence_ior < 1.0f ? 1.0f : p->iridescence_ior;
   p->iridescence_thickness = vl_float_input(most);
   vlGltfTextureUse use = vl_gltf_use_channel(1, most - least);
   use.bias = least;
-  return vl_gltf_texture(r->g, at, json, "iridescenceThicknessTexture", &use,
+  return vl_gltf_texture(r->g, r->at, "iridescenceThicknessTexture", &use,
                          &p->iridescence_thickness.texture);
 }
 
-static bool read_anisotropy(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                            vlPrincipledDef *p) {
+static bool read_anisotropy(const Reader *r, vlPrincipledDef *p) {
   float rotation = 0;
-  if (!channel(r, at, json, "anisotropyStrength", "anisotropyTexture", 2, 0.0f,
-               &p->anisotropy) ||
-      !vl_gltf_float(r->g, at, json, "anisotropyRotation", &rotation))
+  if (!channel(r, "anisotropyStrength", "anisotropyTexture", 2, 0.0f, &p->anisotropy) ||
+      !vl_gltf_float(r->g, r->at, "anisotropyRotation", &rotation))
     return false;
   p->anisotropy_rotation = vl_float_input(rotation);
   if (p->anisotropy.texture.index || p->anisotropy.value > 0.0f)
@@ -224,78 +214,84 @@ static bool read_anisotropy(const Reader *r, const vlGltfLocation *at, const jso
          vl_gltf_angle_texture(r->g, p->anisotropy.texture, rotation, &p->anisotropy_rotation);
 }
 
-/* The extensions that add one layer each; their functions are called where the material has the
- * extension. */
+/* ---- light that passes ------------------------------------------------------------------- */
+
+static bool read_glass(const Reader *r, vlPrincipledDef *p) {
+  return channel(r, "transmissionFactor", "transmissionTexture", 0, 0.0f, &p->transmission);
+}
+
+static bool read_ior(const Reader *r, vlPrincipledDef *p) {
+  (void)p;
+  float index = 1.5f;
+  if (!vl_gltf_float(r->g, r->at, "ior", &index))
+    return false;
+  if (index != 0.0f && !(index >= 1.0f))
+    return vl_gltf_fail(r->g, VL_GLTF_KEY(r->at, "ior"), "%g is below 1", (double)index);
+  r->def->eta = vl_spectrum_input(vl_spectrum_constant(index));
+  return true;
+}
+
+static bool read_dispersion(const Reader *r, vlPrincipledDef *p) {
+  if (!vl_gltf_float(r->g, r->at, "dispersion", &p->dispersion))
+    return false;
+  return !(p->dispersion < 0.0f) ||
+         vl_gltf_fail(r->g, VL_GLTF_KEY(r->at, "dispersion"), "must not be negative");
+}
+
+static bool read_diffuse(const Reader *r, vlPrincipledDef *p) {
+  return channel(r, "diffuseTransmissionFactor", "diffuseTransmissionTexture", 3, 0.0f,
+                 &p->diffuse_transmission) &&
+         layer_color(r, "diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture", 1,
+                     &p->diffuse_transmission_color);
+}
+
+static bool read_volume(const Reader *r, vlPrincipledDef *p) {
+  float thickness = 0;
+  if (!vl_gltf_float(r->g, r->at, "thicknessFactor", &thickness))
+    return false;
+  p->thin_walled = !(thickness > 0.0f);
+  return p->thin_walled || vl_gltf_volume(r->g, r->at, r->result);
+}
+
+/* The extensions, in the order in which they are read; their functions are called where the
+ * material has the extension. not_glossy: glossy materials have their own layer of it. */
 static const struct {
   const char *key;
-  bool (*read)(const Reader *r, const vlGltfLocation *at, const json_t *json,
-               vlPrincipledDef *p);
-} layers[] = {{"extensions.KHR_materials_specular", read_specular},
-              {"extensions.KHR_materials_clearcoat", read_coat},
-              {"extensions.KHR_materials_sheen", read_sheen},
-              {"extensions.KHR_materials_iridescence", read_iridescence},
-              {"extensions.KHR_materials_anisotropy", read_anisotropy}};
+  bool (*read)(const Reader *r, vlPrincipledDef *p);
+  bool not_glossy;
+} layers[] = {{"extensions.KHR_materials_transmission", read_glass, false},
+              {"extensions.KHR_materials_ior", read_ior, false},
+              {"extensions.KHR_materials_dispersion", read_dispersion, false},
+              {"extensions.KHR_materials_diffuse_transmission", read_diffuse, false},
+              {"extensions.KHR_materials_volume", read_volume, false},
+              {"extensions.KHR_materials_specular", read_specular, true},
+              {"extensions.KHR_materials_clearcoat", read_coat, false},
+              {"extensions.KHR_materials_sheen", read_sheen, false},
+              {"extensions.KHR_materials_iridescence", read_iridescence, false},
+              {"extensions.KHR_materials_anisotropy", read_anisotropy, false}};
 
-/* Glossy materials have their own specular layer. */
 static bool read_layers(const Reader *r, bool glossy) {
-  for (size_t i = glossy ? 1 : 0; i < VL_LENGTH(layers); i++) {
-    const json_t *json = extension(r, layers[i].key + strlen("extensions."));
-    if (json &&
-        !layers[i].read(r, VL_GLTF_KEY(r->at, layers[i].key), json, &r->def->principled))
+  r->def->principled.thin_walled = true;
+  for (size_t i = 0; i < VL_LENGTH(layers); i++) {
+    const Reader layer = part(r, VL_GLTF_KEY(r->at, layers[i].key));
+    if ((glossy && layers[i].not_glossy) || !json_is_object(vl_gltf_json(r->g, layer.at)))
+      continue;
+    if (!layers[i].read(&layer, &r->def->principled))
       return false;
   }
   return true;
 }
 
-/* Reads the transmission of thin surfaces and solids. */
-static bool read_transmission(const Reader *r) {
-  const json_t *glass = extension(r, "KHR_materials_transmission"),
-               *volume = extension(r, "KHR_materials_volume"),
-               *diffuse = extension(r, "KHR_materials_diffuse_transmission"),
-               *dispersion = extension(r, "KHR_materials_dispersion"),
-               *ior = extension(r, "KHR_materials_ior");
-  const vlGltfLocation *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_transmission");
-  vlPrincipledDef *p = &r->def->principled;
-  float color[4] = {1, 1, 1, 1}, index = 1.5f, thickness = 0;
-  if (glass && !channel(r, at, glass, "transmissionFactor", "transmissionTexture", 0, 0.0f,
-                        &p->transmission))
-    return false;
-  at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_ior");
-  if (!vl_gltf_float(r->g, at, ior, "ior", &index))
-    return false;
-  if (index != 0.0f && !(index >= 1.0f))
-    return vl_gltf_fail(r->g, VL_GLTF_KEY(at, "ior"), "%g is below 1", (double)index);
-  if (ior)
-    r->def->eta = vl_spectrum_input(vl_spectrum_constant(index));
-  at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_dispersion");
-  if (!vl_gltf_float(r->g, at, dispersion, "dispersion", &p->dispersion))
-    return false;
-  if (p->dispersion < 0.0f)
-    return vl_gltf_fail(r->g, VL_GLTF_KEY(at, "dispersion"), "must not be negative");
-  at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_diffuse_transmission");
-  if (diffuse && (!channel(r, at, diffuse, "diffuseTransmissionFactor",
-                           "diffuseTransmissionTexture", 3, 0.0f, &p->diffuse_transmission) ||
-                  !read_color(r, at, diffuse, "diffuseTransmissionColorFactor", 3, color) ||
-                  !color_input(r, at, diffuse, "diffuseTransmissionColorTexture", color, false,
-                               &p->diffuse_transmission_color)))
-    return false;
-  at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_volume");
-  if (!vl_gltf_float(r->g, at, volume, "thicknessFactor", &thickness))
-    return false;
-  p->thin_walled = !(thickness > 0.0f);
-  return p->thin_walled || vl_gltf_volume(r->g, at, volume, r->result);
-}
-
 /* ---- emission ---------------------------------------------------------------------------- */
 
-static bool add_emission(const Reader *r, const vlGltfLocation *at, const json_t *json,
-                         const char *texture_key, const float color[4], float strength) {
+static bool add_emission(const Reader *r, const char *texture_key, const float color[4],
+                         float strength) {
   if (!(color[0] > 0 || color[1] > 0 || color[2] > 0) || !(strength > 0))
     return true;
   vlEmissionDef def = vl_default_emission_def();
   vlGltfTextureUse use = vl_gltf_use_color();
   memcpy(use.tint, color, sizeof use.tint);
-  if (!vl_gltf_texture(r->g, at, json, texture_key, &use, &def.texture))
+  if (!vl_gltf_texture(r->g, r->at, texture_key, &use, &def.texture))
     return false;
   def.source.file = r->g->path;
   def.radiance = vl_spectrum_rgb(color[0], color[1], color[2]);
@@ -307,11 +303,10 @@ static bool add_emission(const Reader *r, const vlGltfLocation *at, const json_t
 
 static bool read_emission(const Reader *r) {
   float color[4] = {0, 0, 0, 1}, strength = 1;
-  const json_t *json = extension(r, "KHR_materials_emissive_strength");
-  return read_color(r, r->at, r->json, "emissiveFactor", 3, color) &&
+  return read_color(r, "emissiveFactor", 3, color) &&
          vl_gltf_float(r->g, VL_GLTF_KEY(r->at, "extensions.KHR_materials_emissive_strength"),
-                       json, "emissiveStrength", &strength) &&
-         add_emission(r, r->at, r->json, "emissiveTexture", color, strength);
+                       "emissiveStrength", &strength) &&
+         add_emission(r, "emissiveTexture", color, strength);
 }
 
 /* KHR_materials_unlit: the image shows the base colour whatever the lighting. A black diffuse
@@ -319,14 +314,14 @@ static bool read_emission(const Reader *r) {
 static bool read_unlit(const Reader *r) {
   float base[4] = {1, 1, 1, 1};
   const json_t *json;
-  const vlGltfLocation *at = VL_GLTF_KEY(r->at, "pbrMetallicRoughness");
+  const Reader own = part(r, VL_GLTF_KEY(r->at, "pbrMetallicRoughness"));
   *r->def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   r->def->source.file = r->g->path;
   r->def->reflectance = vl_spectrum_input(vl_spectrum_constant(0.0f));
-  return vl_gltf_object(r->g, r->at, r->json, "pbrMetallicRoughness", &json) &&
-         read_color(r, at, json, "baseColorFactor", 4, base) &&
-         read_alpha(r, at, json, "baseColorTexture", base[3]) &&
-         add_emission(r, at, json, "baseColorTexture", base, 1.0f);
+  return vl_gltf_object(r->g, r->at, "pbrMetallicRoughness", &json) &&
+         read_color(&own, "baseColorFactor", 4, base) &&
+         read_alpha(r, own.at, "baseColorTexture", base[3]) &&
+         add_emission(&own, "baseColorTexture", base, 1.0f);
 }
 
 /* ---- the whole --------------------------------------------------------------------------- */
@@ -334,16 +329,16 @@ static bool read_unlit(const Reader *r) {
 static bool read_material(const Reader *r) {
   float base[4] = {1, 1, 1, 1};
   vlPrincipledDef *p = &r->def->principled;
-  if (!vl_gltf_bool(r->g, r->at, r->json, "doubleSided", &r->result->double_sided))
+  if (!vl_gltf_bool(r->g, r->at, "doubleSided", &r->result->double_sided))
     return false;
-  if (extension(r, "KHR_materials_unlit"))
+  if (vl_gltf_extension(r->json, "KHR_materials_unlit"))
     return read_unlit(r);
-  const json_t *glossy = extension(r, "KHR_materials_pbrSpecularGlossiness");
-  if (!(glossy ? read_specular_glossiness(r, glossy, base) : read_metallic_roughness(r, base)))
+  const json_t *glossy = vl_gltf_extension(r->json, "KHR_materials_pbrSpecularGlossiness");
+  if (!(glossy ? read_specular_glossiness(r, base) : read_metallic_roughness(r, base)))
     return false;
-  if (!normal_input(r, r->at, r->json, "normalTexture", &p->normal, &p->normal_scale))
+  if (!normal_input(r, "normalTexture", &p->normal, &p->normal_scale))
     return false;
-  if (!read_transmission(r) || !read_layers(r, glossy != NULL) || !read_emission(r))
+  if (!read_layers(r, glossy != NULL) || !read_emission(r))
     return false;
   bool passes = p->transmission.texture.index || p->transmission.value > 0.0f ||
                 p->diffuse_transmission.texture.index || p->diffuse_transmission.value > 0.0f;
@@ -368,9 +363,10 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors) {
     return NULL;
   char location[40];
   snprintf(location, sizeof location, "materials[%d]", (int)index);
-  Reader r = {g,      VL_GLTF_ITEM(NULL, "materials", (size_t)(index < 0 ? 0 : index)),
-              json,   &def,
-              result, colors};
+  Reader r = {
+      g,      VL_GLTF_ITEM(NULL, "materials", index < 0 ? g->material_count : (size_t)index),
+      json,   &def,
+      result, colors};
   def.source.file = g->path;
   if (!read_material(&r))
     return NULL;

@@ -9,16 +9,15 @@
 
 /* Reads attribute `name` as floats, `components` per vertex. VEC3 colours get alpha 1. Null
  * when the primitive lacks the attribute. */
-static bool attribute(vlGltf *g, const vlGltfLocation *up, const json_t *attributes,
-                      const char *name, uint32_t least, uint32_t components, size_t vertices,
-                      float **out) {
+static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uint32_t least,
+                      uint32_t components, size_t vertices, float **out) {
   int64_t index;
   const vlGltfLocation *at = VL_GLTF_KEY(up, name);
-  if (!vl_gltf_index(g, up, attributes, name, g->accessor_count, &index))
+  if (!vl_gltf_index(g, up, name, g->accessor_count, &index))
     return false;
   if (index < 0)
     return true;
-  const vlGltfAccessor *a = vl_gltf_accessor(g, at, (size_t)index);
+  const vlGltfAccessor *a = vl_gltf_accessor(g, (size_t)index);
   if (!a)
     return false;
   if (a->matrix || a->components < least || a->components > components)
@@ -28,24 +27,24 @@ static bool attribute(vlGltf *g, const vlGltfLocation *up, const json_t *attribu
   return *out != NULL;
 }
 
-static bool read_attributes(vlGltf *g, const vlGltfLocation *up, const json_t *attributes,
-                            int64_t position, vlGltfPrimitive *p) {
+static bool read_attributes(vlGltf *g, const vlGltfLocation *up, int64_t position,
+                            vlGltfPrimitive *p) {
   static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
   const vlGltfLocation *at = VL_GLTF_KEY(up, "attributes"),
                        *at_position = VL_GLTF_KEY(at, "POSITION");
-  const vlGltfAccessor *a = vl_gltf_accessor(g, at_position, (size_t)position);
+  const vlGltfAccessor *a = vl_gltf_accessor(g, (size_t)position);
   if (!a)
     return false;
   if (a->components != 3)
     return vl_gltf_fail(g, at_position, "must be of type VEC3");
   p->vertices = a->count;
-  if (!attribute(g, at, attributes, "POSITION", 3, 3, p->vertices, &p->positions) ||
-      !attribute(g, at, attributes, "NORMAL", 3, 3, p->vertices, &p->normals) ||
-      !attribute(g, at, attributes, "TANGENT", 4, 4, p->vertices, &p->tangents) ||
-      !attribute(g, at, attributes, "COLOR_0", 3, 4, p->vertices, &p->colors))
+  if (!attribute(g, at, "POSITION", 3, 3, p->vertices, &p->positions) ||
+      !attribute(g, at, "NORMAL", 3, 3, p->vertices, &p->normals) ||
+      !attribute(g, at, "TANGENT", 4, 4, p->vertices, &p->tangents) ||
+      !attribute(g, at, "COLOR_0", 3, 4, p->vertices, &p->colors))
     return false;
   for (int k = 0; k < 4; k++) {
-    if (!attribute(g, at, attributes, sets[k], 2, 2, p->vertices, &p->uvs[k]))
+    if (!attribute(g, at, sets[k], 2, 2, p->vertices, &p->uvs[k]))
       return false;
     for (size_t i = 0; p->uvs[k] && i < p->vertices; i++)
       p->uvs[k][2 * i + 1] = 1.0f - p->uvs[k][2 * i + 1];
@@ -54,13 +53,13 @@ static bool read_attributes(vlGltf *g, const vlGltfLocation *up, const json_t *a
 }
 
 /* The indices in a new block; 0, 1, 2, ... when the primitive has none. */
-static bool read_indices(vlGltf *g, const vlGltfLocation *up, const json_t *primitive,
-                         size_t vertices, uint32_t **indices, size_t *count) {
+static bool read_indices(vlGltf *g, const vlGltfLocation *up, size_t vertices,
+                         uint32_t **indices, size_t *count) {
   int64_t index;
   const vlGltfLocation *at = VL_GLTF_KEY(up, "indices");
-  if (!vl_gltf_index(g, up, primitive, "indices", g->accessor_count, &index))
+  if (!vl_gltf_index(g, up, "indices", g->accessor_count, &index))
     return false;
-  const vlGltfAccessor *a = index < 0 ? NULL : vl_gltf_accessor(g, at, (size_t)index);
+  const vlGltfAccessor *a = index < 0 ? NULL : vl_gltf_accessor(g, (size_t)index);
   if (index >= 0 && !a)
     return false;
   *count = a ? a->count : vertices;
@@ -88,20 +87,18 @@ static bool read_indices(vlGltf *g, const vlGltfLocation *up, const json_t *prim
 }
 
 /* The material of the chosen variant, or the primitive's own. */
-static bool choose_material(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
-                            int64_t *material) {
-  if (!vl_gltf_index(g, at, primitive, "material", g->material_count, material))
+static bool choose_material(vlGltf *g, const vlGltfLocation *at, int64_t *material) {
+  if (!vl_gltf_index(g, at, "material", g->material_count, material))
     return false;
-  const json_t *mappings =
-      json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
   const vlGltfLocation *up = VL_GLTF_KEY(at, "extensions.KHR_materials_variants");
+  const json_t *mappings = json_object_get(vl_gltf_json(g, up), "mappings");
   for (size_t i = 0; g->variant >= 0 && i < json_array_size(mappings); i++) {
     const json_t *mapping = json_array_get(mappings, i),
                  *variants = json_object_get(mapping, "variants");
     for (size_t k = 0; k < json_array_size(variants); k++)
       if (json_number_value(json_array_get(variants, k)) == (double)g->variant)
-        return vl_gltf_index(g, VL_GLTF_ITEM(up, "mappings", i), mapping, "material",
-                             g->material_count, material);
+        return vl_gltf_index(g, VL_GLTF_ITEM(up, "mappings", i), "material", g->material_count,
+                             material);
   }
   return true;
 }
@@ -207,13 +204,12 @@ static bool finish_primitive(vlGltf *g, const vlGltfLocation *at, const vlGltfMa
 
 /* The vertices as deformed at shutter close. */
 static bool read_close(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                       const json_t *primitive, const vlGltfNode *node, int64_t position,
-                       bool skinned, vlGltfPrimitive *p) {
+                       const vlGltfNode *node, int64_t position, bool skinned,
+                       vlGltfPrimitive *p) {
   vlGltfPrimitive q = {0};
   g->closing = true;
-  bool ok = read_attributes(g, at, json_object_get(primitive, "attributes"), position, &q) &&
-            vl_gltf_morph(g, at, mesh, primitive, node, &q) &&
-            (!skinned || vl_gltf_skin(g, at, primitive, node, &q));
+  bool ok = read_attributes(g, at, position, &q) && vl_gltf_morph(g, at, mesh, node, &q) &&
+            (!skinned || vl_gltf_skin(g, at, node, &q));
   g->closing = false;
   if (ok && memcmp(p->positions, q.positions, 3 * p->vertices * sizeof(float)) != 0) {
     p->positions_close = q.positions;
@@ -236,17 +232,16 @@ static void still(vlGltf *g, const vlGltfLocation *at, vlGltfPrimitive *p) {
 }
 
 static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                          const json_t *primitive, const vlGltfNode *node, vlGroupId group,
-                          vlMat4 pose, vlGltfPrimitive *p) {
+                          const vlGltfNode *node, vlGroupId group, vlMat4 pose,
+                          vlGltfPrimitive *p) {
   const json_t *attributes;
   int64_t position, material;
   size_t mode = 4, count = 0;
   uint32_t *indices = NULL;
-  if (!vl_gltf_object(g, at, primitive, "attributes", &attributes) ||
-      !vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION",
-                     g->accessor_count, &position) ||
-      !vl_gltf_size(g, at, primitive, "mode", &mode) ||
-      !choose_material(g, at, primitive, &material))
+  if (!vl_gltf_object(g, at, "attributes", &attributes) ||
+      !vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count,
+                     &position) ||
+      !vl_gltf_size(g, at, "mode", &mode) || !choose_material(g, at, &material))
     return false;
   if (mode > 6)
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "mode"), "%zu is not from 0 to 6", mode);
@@ -254,18 +249,16 @@ static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mes
     vl_gltf_warn(g, VL_LOG_WARNING, at, "has no positions and is not drawn");
     return true;
   }
-  if (!vl_gltf_unpack_primitive(g, at, primitive) ||
-      !read_attributes(g, at, attributes, position, p) ||
-      !read_indices(g, at, primitive, p->vertices, &indices, &count))
+  if (!vl_gltf_unpack_primitive(g, at) || !read_attributes(g, at, position, p) ||
+      !read_indices(g, at, p->vertices, &indices, &count))
     return false;
   bool skinned = node && json_object_get(node->json, "skin");
-  if (!vl_gltf_morph(g, at, mesh, primitive, node, p) ||
-      (skinned && !vl_gltf_skin(g, at, primitive, node, p))) {
+  if (!vl_gltf_morph(g, at, mesh, node, p) || (skinned && !vl_gltf_skin(g, at, node, p))) {
     vl_free(g->context, indices);
     return false;
   }
   if (g->moves && node && mode >= 4 && (skinned || node->weights) &&
-      !read_close(g, at, mesh, primitive, node, position, skinned, p)) {
+      !read_close(g, at, mesh, node, position, skinned, p)) {
     vl_free(g->context, indices);
     return false;
   }
@@ -284,10 +277,10 @@ static void count_deformed(vlGltf *g, const json_t *primitive, bool skinned) {
   g->scene->morphed += json_object_get(primitive, "targets") != NULL;
 }
 
-static bool label_last(vlGltf *g, const vlGltfLocation *at, const json_t *primitive,
-                       size_t node, size_t mesh, size_t i) {
+static bool label_last(vlGltf *g, const vlGltfLocation *at, size_t node, size_t mesh,
+                       size_t i) {
   vlGltfShapeIndices at_shape = {.node = node, .mesh = mesh, .primitive = i};
-  return choose_material(g, at, primitive, &at_shape.material) &&
+  return choose_material(g, at, &at_shape.material) &&
          vl_gltf_label_shape(g, &at_shape,
                              &g->scene->shapes.items[g->scene->shapes.count - 1].label);
 }
@@ -297,7 +290,7 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
-  if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count))
+  if (!vl_gltf_array(g, at, "primitives", &primitives, &count))
     return false;
   for (size_t i = 0; i < count; i++) {
     const json_t *primitive = json_array_get(primitives, i);
@@ -306,10 +299,9 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
       return vl_gltf_fail(g, here, "must be an object");
     vlGltfPrimitive p = {0};
     const size_t before = g->scene->shapes.count;
-    bool ok = add_primitive(g, here, mesh, primitive, node, group, pose, &p);
+    bool ok = add_primitive(g, here, mesh, node, group, pose, &p);
     vl_gltf_free_primitive(g->context, &p);
-    if (!ok || (g->scene->shapes.count > before &&
-                !label_last(g, here, primitive, node_index, index, i)))
+    if (!ok || (g->scene->shapes.count > before && !label_last(g, here, node_index, index, i)))
       return false;
     count_deformed(g, primitive, node && json_object_get(node->json, "skin"));
   }
@@ -319,21 +311,17 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
 /* Grows the box by one primitive's positions, in the node's space; those of a skin are in the
  * world. */
 static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                          const json_t *primitive, const vlGltfNode *node, double low[3],
-                          double high[3]) {
-  const json_t *attributes = json_object_get(primitive, "attributes");
+                          const vlGltfNode *node, double low[3], double high[3]) {
   const bool skinned = json_object_get(node->json, "skin") != NULL;
   int64_t position;
   vlGltfPrimitive p = {0};
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION",
-                     g->accessor_count, &position))
+  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count,
+                     &position))
     return false;
   if (position < 0)
     return true;
-  bool ok = vl_gltf_unpack_primitive(g, at, primitive) &&
-            read_attributes(g, at, attributes, position, &p) &&
-            vl_gltf_morph(g, at, mesh, primitive, node, &p) &&
-            (!skinned || vl_gltf_skin(g, at, primitive, node, &p));
+  bool ok = vl_gltf_unpack_primitive(g, at) && read_attributes(g, at, position, &p) &&
+            vl_gltf_morph(g, at, mesh, node, &p) && (!skinned || vl_gltf_skin(g, at, node, &p));
   for (size_t i = 0; ok && i < p.vertices; i++)
     for (size_t k = 0; k < 3; k++) {
       low[k] = fmin(low[k], (double)p.positions[3 * i + k]);
@@ -349,11 +337,10 @@ bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double lo
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
   const uint64_t spent = g->spent; /* the arrays are freed again */
-  if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count))
+  if (!vl_gltf_array(g, at, "primitives", &primitives, &count))
     return false;
   for (size_t i = 0; i < count; i++)
-    if (!primitive_box(g, VL_GLTF_ITEM(at, "primitives", i), mesh,
-                       json_array_get(primitives, i), node, low, high))
+    if (!primitive_box(g, VL_GLTF_ITEM(at, "primitives", i), mesh, node, low, high))
       return false;
   g->spent = spent;
   return true;

@@ -36,21 +36,19 @@ static int decode(Mode mode, void *out, size_t count, size_t stride, const uint8
   return -1;
 }
 
-bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, const json_t *json,
-                         vlGltfView *view) {
+bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) {
   static const char *const modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
   static const char *const filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
   const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.EXT_meshopt_compression");
   int64_t buffer;
   size_t offset = 0, length = 0, stride = 0, count = 0;
   int mode = ATTRIBUTES, filter = NONE;
-  if (!vl_gltf_index(g, at, json, "buffer", g->buffer_count, &buffer) ||
-      !vl_gltf_size(g, at, json, "byteOffset", &offset) ||
-      !vl_gltf_size(g, at, json, "byteLength", &length) ||
-      !vl_gltf_size(g, at, json, "byteStride", &stride) ||
-      !vl_gltf_size(g, at, json, "count", &count) ||
-      !vl_gltf_choice(g, at, json, "mode", modes, 3, &mode) ||
-      !vl_gltf_choice(g, at, json, "filter", filters, 4, &filter))
+  if (!vl_gltf_index(g, at, "buffer", g->buffer_count, &buffer) ||
+      !vl_gltf_size(g, at, "byteOffset", &offset) ||
+      !vl_gltf_size(g, at, "byteLength", &length) ||
+      !vl_gltf_size(g, at, "byteStride", &stride) || !vl_gltf_size(g, at, "count", &count) ||
+      !vl_gltf_choice(g, at, "mode", modes, 3, &mode) ||
+      !vl_gltf_choice(g, at, "filter", filters, 4, &filter))
     return false;
   if (buffer < 0)
     return vl_gltf_fail(g, at, "\"buffer\" is missing");

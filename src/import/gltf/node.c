@@ -35,11 +35,11 @@ static bool read_node(vlGltf *g, size_t i) {
   size_t count;
   n->has_matrix = json_object_get(n->json, "matrix") != NULL;
   n->rotation[3] = n->scale[0] = n->scale[1] = n->scale[2] = 1;
-  if (!vl_gltf_numbers(g, at, n->json, "translation", 3, n->translation) ||
-      !vl_gltf_numbers(g, at, n->json, "rotation", 4, n->rotation) ||
-      !vl_gltf_numbers(g, at, n->json, "scale", 3, n->scale) ||
-      !vl_gltf_numbers(g, at, n->json, "matrix", 16, columns) ||
-      !vl_gltf_array(g, at, n->json, "children", &children, &count))
+  if (!vl_gltf_numbers(g, at, "translation", 3, n->translation) ||
+      !vl_gltf_numbers(g, at, "rotation", 4, n->rotation) ||
+      !vl_gltf_numbers(g, at, "scale", 3, n->scale) ||
+      !vl_gltf_numbers(g, at, "matrix", 16, columns) ||
+      !vl_gltf_array(g, at, "children", &children, &count))
     return false;
   for (int k = 0; n->has_matrix && k < 16; k++)
     n->matrix[k] = columns[4 * (k % 4) + k / 4];
@@ -47,15 +47,13 @@ static bool read_node(vlGltf *g, size_t i) {
       (n->matrix[12] != 0 || n->matrix[13] != 0 || n->matrix[14] != 0 || n->matrix[15] != 1))
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "matrix"), "its last row must be 0 0 0 1");
   for (size_t k = 0; k < count; k++) {
-    const json_t *child = json_array_get(children, k);
-    double index = json_number_value(child);
-    if (!json_is_number(child) || !(index >= 0 && index < (double)g->node_count) ||
-        index != floor(index))
-      return vl_gltf_fail(g, VL_GLTF_ITEM(at, "children", k), "there is no such node");
-    vlGltfNode *c = &g->nodes[(size_t)index];
+    const vlGltfLocation *here = VL_GLTF_ITEM(at, "children", k);
+    size_t index;
+    if (!vl_gltf_element(g, here, json_array_get(children, k), g->node_count, "node", &index))
+      return false;
+    vlGltfNode *c = &g->nodes[index];
     if (c->parent != UINT32_MAX)
-      return vl_gltf_fail(g, VL_GLTF_ITEM(at, "children", k),
-                          "node %zu is already a child of node %u", (size_t)index, c->parent);
+      return vl_gltf_fail(g, here, "node %zu is already a child of node %u", index, c->parent);
     c->parent = (uint32_t)i;
   }
   return true;
@@ -140,14 +138,14 @@ static bool read_instances(vlGltf *g, const vlGltfLocation *node_at, const json_
   if (!extension)
     return true;
   const vlGltfLocation *at = VL_GLTF_KEY(node_at, "extensions.EXT_mesh_gpu_instancing");
-  if (!vl_gltf_object(g, at, extension, "attributes", &attributes))
+  if (!vl_gltf_object(g, at, "attributes", &attributes))
     return false;
   float *values[3] = {NULL, NULL, NULL};
   bool ok = true;
   for (int k = 0; k < 3 && ok; k++) {
     int64_t index;
     const vlGltfLocation *here = VL_GLTF_KEY(at, "attributes");
-    ok = vl_gltf_index(g, here, attributes, names[k], g->accessor_count, &index);
+    ok = vl_gltf_index(g, here, names[k], g->accessor_count, &index);
     if (!ok || index < 0)
       continue;
     values[k] = vl_gltf_load_floats(g, VL_GLTF_KEY(here, names[k]), (size_t)index, sizes[k],
@@ -274,13 +272,8 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
 static bool draw_node(vlGltf *g, size_t i) {
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "nodes", i);
   const vlGltfNode *node = &g->nodes[i];
-  int64_t mesh, light = -1;
-  const json_t *punctual = vl_gltf_extension(node->json, "KHR_lights_punctual");
-  const vlGltfLocation *at_light = VL_GLTF_KEY(at, "extensions.KHR_lights_punctual");
-  if (!vl_gltf_index(g, at, node->json, "mesh", g->mesh_count, &mesh) ||
-      !vl_gltf_index(g, at_light, punctual, "light", g->light_count, &light))
-    return false;
-  if ((light >= 0 && !vl_gltf_add_light(g, i, light)) || !vl_gltf_add_lamp(g, i))
+  int64_t mesh;
+  if (!vl_gltf_index(g, at, "mesh", g->mesh_count, &mesh) || !vl_gltf_add_lights(g, i))
     return false;
   if (mesh < 0)
     return true;
@@ -332,15 +325,11 @@ static bool collect(vlGltf *g, const json_t *roots, const vlGltfLocation *at, ui
   bool ok = true;
   *count = 0;
   for (size_t k = 0; ok && k < json_array_size(roots); k++) {
-    const json_t *root = json_array_get(roots, k);
-    double index = json_number_value(root);
-    if (!json_is_number(root) || !(index >= 0 && index < (double)g->node_count) ||
-        index != floor(index)) {
-      ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "nodes", k), "there is no such node");
-      break;
-    }
-    size_t top = 0;
-    stack[top++] = (uint32_t)index;
+    size_t top = 0, index;
+    ok = vl_gltf_element(g, VL_GLTF_ITEM(at, "nodes", k), json_array_get(roots, k),
+                         g->node_count, "node", &index);
+    if (ok)
+      stack[top++] = (uint32_t)index;
     while (top > 0) {
       uint32_t i = stack[--top];
       if (g->nodes[i].reached)
@@ -364,8 +353,7 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
   for (size_t k = 0; k < count; k++) {
     int64_t mesh;
     const vlGltfNode *node = &g->nodes[order[k]];
-    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", order[k]), node->json, "mesh",
-                       g->mesh_count, &mesh))
+    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", order[k]), "mesh", g->mesh_count, &mesh))
       return false;
     if (mesh < 0 || vl_gltf_deforms(g, node))
       continue;
@@ -409,7 +397,7 @@ static bool choose_scene(vlGltf *g, size_t *chosen) {
 
 bool vl_gltf_draw(vlGltf *g) {
   int64_t index;
-  if (!vl_gltf_index(g, NULL, g->root, "scene", g->scene_count, &index))
+  if (!vl_gltf_index(g, NULL, "scene", g->scene_count, &index))
     return false;
   size_t chosen = index < 0 ? 0 : (size_t)index;
   if (g->def->scene && !choose_scene(g, &chosen))
@@ -418,7 +406,7 @@ bool vl_gltf_draw(vlGltf *g) {
   const json_t *scene = g->scene_count ? vl_gltf_item(g, "scenes", chosen) : NULL,
                *roots = NULL;
   size_t root_count = 0, count = 0;
-  if (!vl_gltf_array(g, at, scene, "nodes", &roots, &root_count))
+  if (!vl_gltf_array(g, at, "nodes", &roots, &root_count))
     return false;
   json_t *all = NULL;
   if (!scene) { /* a file without scenes: all root nodes */

@@ -59,11 +59,10 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   if (image->read)
     return true;
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "images", index);
-  const json_t *json = vl_gltf_item(g, "images", index);
   const char *uri = NULL;
   int64_t view;
-  if (!vl_gltf_text(g, at, json, "uri", &uri) ||
-      !vl_gltf_index(g, at, json, "bufferView", g->view_count, &view))
+  if (!vl_gltf_text(g, at, "uri", &uri) ||
+      !vl_gltf_index(g, at, "bufferView", g->view_count, &view))
     return false;
   if (uri) {
     if (is_remote(uri))
@@ -92,19 +91,17 @@ static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
   static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds",
                                        "EXT_texture_avif"};
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "textures", texture);
-  const json_t *json = vl_gltf_item(g, "textures", texture);
-  const json_t *webp = vl_gltf_extension(json, "EXT_texture_webp");
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), webp, "source",
+  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), "source",
                      g->image_count, image))
     return false;
   if (*image >= 0)
     return true;
-  if (!vl_gltf_index(g, at, json, "source", g->image_count, image))
+  if (!vl_gltf_index(g, at, "source", g->image_count, image))
     return false;
   if (*image >= 0)
     return true;
   for (size_t i = 0; i < VL_LENGTH(others); i++)
-    if (vl_gltf_extension(json, others[i]))
+    if (vl_gltf_extension(vl_gltf_json(g, at), others[i]))
       return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
                                "its image is there by %s only, which velo does not read",
                                others[i]);
@@ -119,15 +116,13 @@ static vlWrap wrap_of(double code) {
 static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "textures", texture);
   int64_t index;
-  if (!vl_gltf_index(g, at, vl_gltf_item(g, "textures", texture), "sampler", g->sampler_count,
-                     &index))
+  if (!vl_gltf_index(g, at, "sampler", g->sampler_count, &index))
     return false;
-  const json_t *sampler = index < 0 ? NULL : vl_gltf_item(g, "samplers", (size_t)index);
-  const vlGltfLocation *here = VL_GLTF_ITEM(NULL, "samplers", (size_t)(index < 0 ? 0 : index));
+  const vlGltfLocation *here =
+      VL_GLTF_ITEM(NULL, "samplers", index < 0 ? g->sampler_count : (size_t)index);
   double s = 10497, t = 10497, large = 9729;
-  if (!vl_gltf_number(g, here, sampler, "wrapS", &s) ||
-      !vl_gltf_number(g, here, sampler, "wrapT", &t) ||
-      !vl_gltf_number(g, here, sampler, "magFilter", &large))
+  if (!vl_gltf_number(g, here, "wrapS", &s) || !vl_gltf_number(g, here, "wrapT", &t) ||
+      !vl_gltf_number(g, here, "magFilter", &large))
     return false;
   def->wrap = wrap_of(s);
   def->wrap_t = wrap_of(t);
@@ -136,12 +131,11 @@ static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
   return true;
 }
 
-bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, const json_t *info,
-                         uint32_t *set) {
+bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, uint32_t *set) {
   size_t value = 0;
-  const json_t *transform = vl_gltf_extension(info, "KHR_texture_transform");
-  if (!vl_gltf_size(g, at, info, "texCoord", &value) ||
-      !vl_gltf_size(g, at, transform, "texCoord", &value))
+  const json_t *transform = vl_gltf_extension(vl_gltf_json(g, at), "KHR_texture_transform");
+  if (!vl_gltf_size(g, at, "texCoord", &value) ||
+      !vl_gltf_size_in(g, at, transform, "texCoord", &value))
     return false;
   if (value > 3) {
     if (vl_gltf_once(g, VL_GLTF_REPORTED_SETS))
@@ -154,16 +148,14 @@ bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, const json_t *info
 }
 
 /* KHR_texture_transform maps uvs with v downwards; here v points upwards before and after. */
-static bool read_transform(vlGltf *g, const vlGltfLocation *up, const json_t *info,
-                           vlTextureDef *def) {
-  const json_t *json = vl_gltf_extension(info, "KHR_texture_transform");
-  if (!json)
-    return true;
+static bool read_transform(vlGltf *g, const vlGltfLocation *up, vlTextureDef *def) {
   const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.KHR_texture_transform");
+  if (!json_is_object(vl_gltf_json(g, at)))
+    return true;
   double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation = 0;
-  if (!vl_gltf_numbers(g, at, json, "offset", 2, offset) ||
-      !vl_gltf_numbers(g, at, json, "scale", 2, scale) ||
-      !vl_gltf_number(g, at, json, "rotation", &rotation))
+  if (!vl_gltf_numbers(g, at, "offset", 2, offset) ||
+      !vl_gltf_numbers(g, at, "scale", 2, scale) ||
+      !vl_gltf_number(g, at, "rotation", &rotation))
     return false;
   double c = vl_precise_cos(rotation), s = vl_precise_sin(rotation);
   double m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
@@ -174,17 +166,17 @@ static bool read_transform(vlGltf *g, const vlGltfLocation *up, const json_t *in
   return true;
 }
 
-bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const json_t *object, const char *key,
+bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const char *key,
                      const vlGltfTextureUse *use, vlTextureId *id) {
   const json_t *info;
   const vlGltfLocation *at = VL_GLTF_KEY(up, key);
   int64_t texture, image;
   *id = (vlTextureId){0};
-  if (!vl_gltf_object(g, up, object, key, &info))
+  if (!vl_gltf_object(g, up, key, &info))
     return false;
   if (!info)
     return true;
-  if (!vl_gltf_index(g, at, info, "index", g->texture_count, &texture))
+  if (!vl_gltf_index(g, at, "index", g->texture_count, &texture))
     return false;
   if (texture < 0)
     return vl_gltf_fail(g, at, "\"index\" is missing");
@@ -206,8 +198,8 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const json_t *object, 
   def.path = g->images[image].path;
   def.data = def.path ? NULL : g->images[image].data;
   def.data_size = g->images[image].size;
-  if (!read_sampler(g, (size_t)texture, &def) ||
-      !vl_gltf_texture_set(g, at, info, &def.uv_set) || !read_transform(g, at, info, &def))
+  if (!read_sampler(g, (size_t)texture, &def) || !vl_gltf_texture_set(g, at, &def.uv_set) ||
+      !read_transform(g, at, &def))
     return false;
   def.encoding_given = !use->srgb;
   def.encoding = VL_ENCODING_LINEAR;

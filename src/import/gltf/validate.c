@@ -46,7 +46,7 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
 }
 
 static void check_accessor(vlGltf *g, size_t index, uint32_t *reported) {
-  const vlGltfAccessor *a = vl_gltf_accessor(g, VL_GLTF_ITEM(NULL, "accessors", index), index);
+  const vlGltfAccessor *a = vl_gltf_accessor(g, index);
   if (!a || a->type != VL_GLTF_FLOAT || a->matrix || !a->count)
     return;
   size_t count;
@@ -92,12 +92,8 @@ static void mark_used(const vlGltf *g, uint8_t *used) {
 static bool read_node(vlGltf *g, size_t index) {
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "nodes", index);
   const vlGltfNode *node = &g->nodes[index];
-  const json_t *punctual = vl_gltf_extension(node->json, "KHR_lights_punctual");
-  int64_t mesh, light = -1;
-  return vl_gltf_index(g, at, node->json, "mesh", g->mesh_count, &mesh) &&
-         vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.KHR_lights_punctual"), punctual, "light",
-                       g->light_count, &light) &&
-         (light < 0 || vl_gltf_add_light(g, index, light)) && vl_gltf_add_lamp(g, index) &&
+  int64_t mesh;
+  return vl_gltf_index(g, at, "mesh", g->mesh_count, &mesh) && vl_gltf_add_lights(g, index) &&
          (mesh < 0 ||
           vl_gltf_add_mesh(g, (size_t)mesh, node, index, (vlGroupId){0}, vl_mat4_identity()));
 }

@@ -11,12 +11,11 @@
 
 /* White light takes on `attenuationColor` after `attenuationDistance`: sigma_a = -ln(colour) /
  * distance per channel. */
-bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, const json_t *json,
-                    vlGltfMaterial *result) {
+bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, vlGltfMaterial *result) {
   double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
   float sigma[3];
-  if (!vl_gltf_number(g, at, json, "attenuationDistance", &distance) ||
-      !vl_gltf_numbers(g, at, json, "attenuationColor", 3, color))
+  if (!vl_gltf_number(g, at, "attenuationDistance", &distance) ||
+      !vl_gltf_numbers(g, at, "attenuationColor", 3, color))
     return false;
   if (!(distance > 0))
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "attenuationDistance"), "must be above 0");

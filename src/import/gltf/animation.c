@@ -220,29 +220,8 @@ bool vl_gltf_apply_animation(vlGltf *g, size_t index) {
   return true;
 }
 
-/* Index of the animation of this name or number; SIZE_MAX: none. */
-static size_t find_animation(const vlGltf *g, const char *name) {
-  for (size_t i = 0; i < g->animation_count; i++) {
-    const char *own =
-        json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
-    if (vl_text_is(own, name))
-      return i;
-  }
-  char *end;
-  unsigned long number = strtoul(name, &end, 10);
-  return *end || end == name || number >= g->animation_count ? SIZE_MAX : number;
-}
-
 static bool fail_animation(vlGltf *g, const char *name) {
-  char names[300] = "";
-  for (size_t i = 0; i < g->animation_count; i++) {
-    const char *own =
-        json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
-    if (own)
-      vl_list_name(names, sizeof names, vl_short_text(own).text);
-  }
-  return vl_gltf_fail(g, NULL, "there is no animation \"%s\" (%zu are there%s)",
-                      vl_argument_text(name).text, g->animation_count, names);
+  return vl_gltf_fail_choice(g, "animation", json_object_get(g->root, "animations"), name, 300);
 }
 
 /* One animation, several in this order with commas between them, or "all". A later one
@@ -251,7 +230,7 @@ bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
   const char *wanted = g->def->animation;
   if (g->animation_count == 0)
     return true;
-  size_t whole = wanted ? find_animation(g, wanted) : 0;
+  size_t whole = wanted ? vl_gltf_find(g, "animations", wanted) : 0;
   if (whole != SIZE_MAX)
     return visit(g, whole);
   bool all = vl_text_is(wanted, "all");
@@ -265,7 +244,7 @@ bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
       return fail_animation(g, from);
     memcpy(name, from, n);
     name[n] = 0;
-    size_t one = find_animation(g, name);
+    size_t one = vl_gltf_find(g, "animations", name);
     if (one == SIZE_MAX)
       return fail_animation(g, name);
     if (!visit(g, one))

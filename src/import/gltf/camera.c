@@ -21,6 +21,12 @@ static void set_size(vlGltf *g, double aspect) {
   memcpy(s->film.crop, whole, sizeof whole);
 }
 
+static bool set_planes(vlCameraDef *def, double near_plane, double far_plane) {
+  def->near_plane = near_plane > 0 ? near_plane : 0;
+  def->far_plane = far_plane > def->near_plane ? far_plane : INFINITY;
+  return true;
+}
+
 static bool take_perspective(vlGltf *g, const vlGltfLocation *at, vlCameraDef *def) {
   double yfov = 0, aspect = 16.0 / 9.0, near_plane = 0, far_plane = INFINITY;
   if (!vl_gltf_number(g, at, "yfov", &yfov) || !vl_gltf_number(g, at, "aspectRatio", &aspect) ||
@@ -36,9 +42,7 @@ static bool take_perspective(vlGltf *g, const vlGltfLocation *at, vlCameraDef *d
   set_size(g, aspect);
   def->fov = yfov;
   def->fov_axis = VL_FOV_VERTICAL;
-  def->near_plane = near_plane > 0 ? near_plane : 0;
-  def->far_plane = far_plane > def->near_plane ? far_plane : INFINITY;
-  return true;
+  return set_planes(def, near_plane, far_plane);
 }
 
 static bool take_orthographic(vlGltf *g, const vlGltfLocation *at, vlCameraDef *def) {
@@ -57,9 +61,7 @@ static bool take_orthographic(vlGltf *g, const vlGltfLocation *at, vlCameraDef *
   def->screen_max_x = x;
   def->screen_min_y = -y;
   def->screen_max_y = y;
-  def->near_plane = near_plane > 0 ? near_plane : 0;
-  def->far_plane = far_plane > def->near_plane ? far_plane : INFINITY;
-  return true;
+  return set_planes(def, near_plane, far_plane);
 }
 
 /* A glTF camera has y up and looks along -z. The position and orientation of the node are used;
@@ -121,11 +123,6 @@ bool vl_gltf_check_camera(vlGltf *g, size_t index) {
   return take_camera(g, index, &node);
 }
 
-static bool is_called(const json_t *json, const char *name) {
-  const char *own = json_string_value(json_object_get(json, "name"));
-  return vl_text_is(own, name);
-}
-
 bool vl_gltf_choose_camera(vlGltf *g) {
   const char *wanted = g->def->camera;
   char *end = NULL;
@@ -141,8 +138,9 @@ bool vl_gltf_choose_camera(vlGltf *g) {
       return false;
     if (camera < 0)
       continue;
-    bool named = wanted && (is_called(node->json, wanted) ||
-                            is_called(vl_gltf_item(g, "cameras", (size_t)camera), wanted));
+    bool named = wanted &&
+                 (vl_text_is(vl_gltf_name(node->json), wanted) ||
+                  vl_text_is(vl_gltf_name(vl_gltf_item(g, "cameras", (size_t)camera)), wanted));
     if (named && by_name < 0)
       by_name = (int64_t)i;
     if ((numbered || !wanted) && g->cameras_seen == number)
@@ -153,7 +151,7 @@ bool vl_gltf_choose_camera(vlGltf *g) {
   if (chosen < 0 && wanted) {
     char names[200] = "";
     for (size_t i = 0; i < g->node_count; i++) {
-      const char *own = json_string_value(json_object_get(g->nodes[i].json, "name"));
+      const char *own = vl_gltf_name(g->nodes[i].json);
       if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "camera") || !own)
         continue;
       vl_list_name(names, sizeof names, vl_short_text(own).text);

@@ -1,9 +1,30 @@
 /* import/gltf/choices.c: lists the file's scenes, cameras, animations and variants for
  * vl_scene_choice_info. */
+#include <stdlib.h>
+
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 
-static const char *name_of(const json_t *json) {
-  return json_string_value(json_object_get(json, "name"));
+size_t vl_gltf_find(const vlGltf *g, const char *array, const char *name) {
+  const json_t *items = json_object_get(g->root, array);
+  char *end;
+  for (size_t i = 0; i < json_array_size(items); i++)
+    if (vl_text_is(vl_gltf_name(json_array_get(items, i)), name))
+      return i;
+  unsigned long number = strtoul(name, &end, 10);
+  return *end || end == name || number >= json_array_size(items) ? SIZE_MAX : number;
+}
+
+bool vl_gltf_fail_choice(vlGltf *g, const char *what, const json_t *items, const char *name,
+                         size_t size) {
+  char names[300] = "";
+  for (size_t i = 0; i < json_array_size(items); i++) {
+    const char *own = vl_gltf_name(json_array_get(items, i));
+    if (own)
+      vl_list_name(names, size, vl_short_text(own).text);
+  }
+  return vl_gltf_fail(g, NULL, "there is no %s \"%s\" (%zu are there%s)", what,
+                      vl_argument_text(name).text, json_array_size(items), names);
 }
 
 /* The time of the last key: the maximum of the input accessors of its samplers. */
@@ -34,9 +55,9 @@ static bool list_cameras(vlGltf *g) {
       return false;
     if (camera < 0)
       continue;
-    const char *name = name_of(g->nodes[i].json);
+    const char *name = vl_gltf_name(g->nodes[i].json);
     if (!name)
-      name = name_of(vl_gltf_item(g, "cameras", (size_t)camera));
+      name = vl_gltf_name(vl_gltf_item(g, "cameras", (size_t)camera));
     if (!vl_scene_add_choice(g->scene, VL_CHOICE_CAMERA, name, 0))
       return false;
   }
@@ -47,17 +68,17 @@ bool vl_gltf_list_choices(vlGltf *g) {
   const json_t *variants =
       json_object_get(vl_gltf_extension(g->root, "KHR_materials_variants"), "variants");
   for (size_t i = 0; i < g->scene_count; i++)
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_SCENE, name_of(vl_gltf_item(g, "scenes", i)),
-                             0))
+    if (!vl_scene_add_choice(g->scene, VL_CHOICE_SCENE,
+                             vl_gltf_name(vl_gltf_item(g, "scenes", i)), 0))
       return false;
   for (size_t i = 0; i < g->animation_count; i++)
     if (!vl_scene_add_choice(g->scene, VL_CHOICE_ANIMATION,
-                             name_of(vl_gltf_item(g, "animations", i)),
+                             vl_gltf_name(vl_gltf_item(g, "animations", i)),
                              vl_gltf_animation_end(g, i)))
       return false;
   for (size_t i = 0; i < json_array_size(variants); i++)
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_VARIANT, name_of(json_array_get(variants, i)),
-                             0))
+    if (!vl_scene_add_choice(g->scene, VL_CHOICE_VARIANT,
+                             vl_gltf_name(json_array_get(variants, i)), 0))
       return false;
   return list_cameras(g);
 }

@@ -14,19 +14,10 @@ static bool choose_variant(vlGltf *g) {
   const vlGltfLocation *at = VL_GLTF_KEY(NULL, "extensions.KHR_materials_variants");
   if (!vl_gltf_array(g, at, "variants", &variants, &count))
     return false;
-  char names[300] = "";
-  for (size_t i = 0; i < count; i++) {
-    const char *name = json_string_value(json_object_get(json_array_get(variants, i), "name"));
-    if (!name)
-      continue;
-    if (vl_text_is(name, g->def->variant)) {
+  for (size_t i = 0; i < count && g->variant < 0; i++)
+    if (vl_text_is(vl_gltf_name(json_array_get(variants, i)), g->def->variant))
       g->variant = (int64_t)i;
-      return true;
-    }
-    vl_list_name(names, sizeof names, vl_short_text(name).text);
-  }
-  return vl_gltf_fail(g, NULL, "there is no variant \"%s\" (%zu are there%s)",
-                      vl_argument_text(g->def->variant).text, count, names);
+  return g->variant >= 0 || vl_gltf_fail_choice(g, "variant", variants, g->def->variant, 300);
 }
 
 vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def,

@@ -207,6 +207,10 @@ bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const char *key, const j
                    size_t *count);
 /* object.extensions.name, or null. */
 const json_t *vl_gltf_extension(const json_t *object, const char *name);
+/* object.name, or null. */
+static inline const char *vl_gltf_name(const json_t *object) {
+  return json_string_value(json_object_get(object, "name"));
+}
 /* Element i of an array at the root, for example nodes[3]. The caller must have checked i. */
 const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 
@@ -284,6 +288,12 @@ bool vl_gltf_count_unread(vlGltf *g);
 /* choices.c: lists the file's scenes, cameras, animations and variants. Call after
  * vl_gltf_draw. */
 bool vl_gltf_list_choices(vlGltf *g);
+/* The index of the element of the root's array with this name, else of this number; SIZE_MAX:
+ * none. */
+size_t vl_gltf_find(const vlGltf *g, const char *array, const char *name);
+/* Reports that there is none, with the names that are there, of `size` bytes at most, 300. */
+bool vl_gltf_fail_choice(vlGltf *g, const char *what, const json_t *items, const char *name,
+                         size_t size);
 double vl_gltf_animation_end(const vlGltf *g, size_t animation);
 
 /* ---- names (label.c) --------------------------------------------------------------------- */
@@ -329,6 +339,8 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
 /* Grows the box by the primitives of the mesh as the node poses it. */
 bool vl_gltf_mesh_box(vlGltf *g, size_t mesh, const vlGltfNode *node, double low[3],
                       double high[3]);
+/* The node's mesh; -1: none. */
+int64_t vl_gltf_mesh_of(const vlGltf *g, const vlGltfNode *node);
 /* Whether the node deforms its mesh by a skin or morph targets. */
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node);
 /* topology.c: turns the primitive's indices (0, 1, 2, ... if it has none) into triangles,

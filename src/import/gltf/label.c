@@ -11,15 +11,8 @@
 enum { MAX_PARENTS = 8, CHAIN = 64 };
 
 static const char *name_of(const json_t *json) {
-  const char *name = json_string_value(json_object_get(json, "name"));
+  const char *name = vl_gltf_name(json);
   return name && *name ? name : NULL;
-}
-
-static int64_t mesh_of(const vlGltf *g, size_t node) {
-  const json_t *mesh = json_object_get(g->nodes[node].json, "mesh");
-  double index = json_number_value(mesh);
-  return json_is_number(mesh) && index >= 0 && index < (double)g->mesh_count ? (int64_t)index
-                                                                             : -1;
 }
 
 /* Number of named parents. */
@@ -39,7 +32,7 @@ static void node_path(const vlGltf *g, size_t node, uint32_t depth, char path[VL
   for (uint32_t k = depth < n ? depth : n; k-- > 0;)
     vl_label_append(path, name_of(g->nodes[parents[k]].json));
   const char *name = name_of(g->nodes[node].json);
-  const int64_t mesh = mesh_of(g, node);
+  const int64_t mesh = vl_gltf_mesh_of(g, &g->nodes[node]);
   if (!name && mesh >= 0)
     name = name_of(vl_gltf_item(g, "meshes", (size_t)mesh));
   if (!name)
@@ -105,7 +98,7 @@ static bool label_nodes(vlGltf *g) {
   char **paths = vl_alloc_zero(g->context, g->node_count + 1, sizeof *paths);
   bool ok = (list && depths && paths) || vl_gltf_fail_memory(g);
   for (size_t i = 0; ok && i < g->node_count; i++)
-    if (mesh_of(g, i) >= 0)
+    if (vl_gltf_mesh_of(g, &g->nodes[i]) >= 0)
       list[count++] = (uint32_t)i;
   ok = ok && label_list(g, list, count, depths, paths);
   for (size_t i = 0; paths && i < count; i++)

@@ -115,11 +115,18 @@ bool vl_gltf_pose_nodes(vlGltf *g) {
   return true;
 }
 
+int64_t vl_gltf_mesh_of(const vlGltf *g, const vlGltfNode *node) {
+  const json_t *mesh = json_object_get(node->json, "mesh");
+  double index = json_number_value(mesh);
+  return json_is_number(mesh) && index >= 0 && index < (double)g->mesh_count ? (int64_t)index
+                                                                             : -1;
+}
+
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node) {
   if (json_object_get(node->json, "skin"))
     return true;
-  double mesh = json_number_value(json_object_get(node->json, "mesh"));
-  const json_t *json = vl_gltf_item(g, "meshes", (size_t)(mesh > 0 ? mesh : 0));
+  int64_t mesh = vl_gltf_mesh_of(g, node);
+  const json_t *json = mesh < 0 ? NULL : vl_gltf_item(g, "meshes", (size_t)mesh);
   return (node->weights || json_object_get(node->json, "weights") ||
           json_object_get(json, "weights")) &&
          json_object_get(json_array_get(json_object_get(json, "primitives"), 0), "targets");
@@ -203,8 +210,7 @@ static bool group_mesh(vlGltf *g, size_t mesh) {
   vlGltfMesh *m = &g->meshes[mesh];
   if (m->grouped)
     return true;
-  const char *name =
-      json_string_value(json_object_get(vl_gltf_item(g, "meshes", mesh), "name"));
+  const char *name = vl_gltf_name(vl_gltf_item(g, "meshes", mesh));
   m->group = vl_scene_add_group(g->scene, name ? name : "");
   m->grouped = true;
   return vl_gltf_add_mesh(g, mesh, NULL, SIZE_MAX, m->group, vl_mat4_identity());
@@ -372,36 +378,16 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
   return true;
 }
 
-/* Finds the wanted scene by name or number. Without such a choice the file's default scene is
- * kept. */
-static bool choose_scene(vlGltf *g, size_t *chosen) {
-  const char *wanted = g->def->scene;
-  char names[200] = "", *end;
-  for (size_t i = 0; i < g->scene_count; i++) {
-    const char *own = json_string_value(json_object_get(vl_gltf_item(g, "scenes", i), "name"));
-    if (vl_text_is(own, wanted)) {
-      *chosen = i;
-      return true;
-    }
-    if (own)
-      vl_list_name(names, sizeof names, vl_short_text(own).text);
-  }
-  unsigned long number = strtoul(wanted, &end, 10);
-  if (end != wanted && !*end && number < g->scene_count) {
-    *chosen = number;
-    return true;
-  }
-  return vl_gltf_fail(g, NULL, "there is no scene \"%s\" (%zu are there%s)",
-                      vl_argument_text(wanted).text, g->scene_count, names);
-}
-
 bool vl_gltf_draw(vlGltf *g) {
   int64_t index;
   if (!vl_gltf_index(g, NULL, "scene", g->scene_count, &index))
     return false;
   size_t chosen = index < 0 ? 0 : (size_t)index;
-  if (g->def->scene && !choose_scene(g, &chosen))
-    return false;
+  if (g->def->scene)
+    chosen = vl_gltf_find(g, "scenes", g->def->scene);
+  if (chosen == SIZE_MAX)
+    return vl_gltf_fail_choice(g, "scene", json_object_get(g->root, "scenes"), g->def->scene,
+                               200);
   const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "scenes", chosen);
   const json_t *scene = g->scene_count ? vl_gltf_item(g, "scenes", chosen) : NULL,
                *roots = NULL;

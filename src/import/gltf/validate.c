@@ -72,11 +72,9 @@ enum { HAS_NODE = 1, HAS_REACHED_NODE = 2, HAS_MATERIAL = 4 };
 /* Bits for each mesh and, in the same array, for each material. */
 static void mark_used(const vlGltf *g, uint8_t *used) {
   for (size_t i = 0; i < g->node_count; i++) {
-    const json_t *mesh = json_object_get(g->nodes[i].json, "mesh");
-    const double index = json_number_value(mesh);
-    if (!json_is_number(mesh) || !(index >= 0 && index < (double)g->mesh_count))
-      continue;
-    used[(size_t)index] |= g->nodes[i].reached ? HAS_NODE | HAS_REACHED_NODE : HAS_NODE;
+    const int64_t mesh = vl_gltf_mesh_of(g, &g->nodes[i]);
+    if (mesh >= 0)
+      used[mesh] |= g->nodes[i].reached ? HAS_NODE | HAS_REACHED_NODE : HAS_NODE;
   }
   for (size_t i = 0; i < g->material_count; i++) {
     vlGltfMaterial *m = &g->materials[2 * (i + 1)];

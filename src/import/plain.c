@@ -27,27 +27,6 @@ void vl_import_plain_settings(vlScene *scene) {
   s->light_missing = true;
 }
 
-/* Appends each quad to the triangles, as two triangles. */
-static bool split_quads(vlContext *context, vlPlyMesh *m) {
-  if (!m->quads)
-    return true;
-  size_t count = (size_t)m->triangles + 2 * (size_t)m->quads;
-  if (count > 0x7fffffff)
-    return false;
-  uint32_t *fresh = vl_realloc_array(context, m->triangle_indices, 3 * count, sizeof *fresh);
-  if (!fresh)
-    return false;
-  m->triangle_indices = fresh;
-  uint32_t *to = fresh + 3 * (size_t)m->triangles;
-  for (size_t i = 0; i < m->quads; i++, to += 6) {
-    const uint32_t *q = m->quad_indices + 4 * i; /* p00 p10 p01 p11 */
-    const uint32_t two[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
-    memcpy(to, two, sizeof two);
-  }
-  m->triangles = (uint32_t)count;
-  return true;
-}
-
 /* The default material: grey or the vertex colours, with the roughness of slightly polished
  * plaster. */
 static vlMaterialId add_material(vlScene *scene, bool colors) {
@@ -170,7 +149,7 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load,
   vlError inside = {0};
   vlResult r =
       vl_ply_read_given(context, scene->task, path, load && load->permissive, &mesh, &inside);
-  if (r == VL_OK && !split_quads(context, &mesh)) {
+  if (r == VL_OK && !vl_ply_split_quads(context, &mesh)) {
     r = VL_ERROR_MEMORY;
     vl_ply_free(context, &mesh);
   }
@@ -180,7 +159,6 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load,
                   r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
     return vl_scene_result(scene, error);
   }
-  vl_free(context, mesh.quad_indices);
   vlPlainMesh plain = {mesh.vertices, mesh.triangles, mesh.positions,   mesh.normals,
                        mesh.uvs,      mesh.colors,    mesh.face_colors, mesh.triangle_indices};
   memcpy(plain.origin, mesh.origin, sizeof plain.origin);

@@ -253,11 +253,10 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
     if (is_word(word, n, colors[i].name))
       return read_color(obj, colors[i].name, colors[i].to);
   if (is_word(word, n, "d")) { /* also "d -halo 0.5" */
-    char *at = obj->at;
     const char *halo;
-    size_t k = vl_obj_word(obj, &halo);
-    if (!is_word(halo, k, "-halo"))
-      obj->at = at;
+    size_t k = vl_obj_next_word(obj, &halo);
+    if (is_word(halo, k, "-halo"))
+      vl_obj_word(obj, &halo);
   }
   for (size_t i = 0; i < VL_LENGTH(numbers); i++)
     if (is_word(word, n, numbers[i].name))

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "image/pixel.h"
 #include "import/far.h"
@@ -96,6 +97,13 @@ size_t vl_obj_word(vlObj *obj, const char **word) {
   return (size_t)(obj->at - *word);
 }
 
+size_t vl_obj_next_word(vlObj *obj, const char **word) {
+  char *at = obj->at;
+  size_t n = vl_obj_word(obj, word);
+  obj->at = at;
+  return n;
+}
+
 char *vl_obj_rest(vlObj *obj) {
   skip_blanks(obj);
   char *end = obj->end;
@@ -125,9 +133,7 @@ static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most,
                     uint32_t *count) {
   if (!vl_obj_numbers(obj, most, values, count)) {
     const char *word;
-    char *at = obj->at;
-    size_t n = vl_obj_word(obj, &word);
-    obj->at = at;
+    size_t n = vl_obj_next_word(obj, &word);
     return vl_obj_fail(obj, "%s: \"%s\" is not a finite number", what,
                        vl_short_text_of(word, n).text);
   }
@@ -261,8 +267,7 @@ static bool read_corner(vlObj *obj, vlObjCorner *c) {
     return true;
   const char *word;
   obj->at = start;
-  size_t n = vl_obj_word(obj, &word);
-  obj->at = start;
+  size_t n = vl_obj_next_word(obj, &word);
   return vl_obj_fail(obj, "f: \"%s\" is no corner (v, v/vt, v//vn or v/vt/vn)",
                      vl_short_text_of(word, n).text);
 }
@@ -376,10 +381,8 @@ static bool use_smoothing(vlObj *obj) {
                     ? (uint32_t)value
                     : 0;
   const char *word;
-  char *at = obj->at;
-  if (vl_obj_word(obj, &word) == 2 && memcmp(word, "on", 2) == 0)
+  if (vl_obj_next_word(obj, &word) == 2 && memcmp(word, "on", 2) == 0)
     obj->smooth = 1;
-  obj->at = at;
   return true;
 }
 
@@ -459,22 +462,11 @@ static bool read_statement(vlObj *obj) {
 }
 
 static void free_all(vlObj *obj) {
-  vlContext *c = obj->context;
-  VL_ARRAY_FREE(c, &obj->positions);
-  VL_ARRAY_FREE(c, &obj->colors);
-  VL_ARRAY_FREE(c, &obj->uvs);
-  VL_ARRAY_FREE(c, &obj->normals);
-  VL_ARRAY_FREE(c, &obj->corners);
-  VL_ARRAY_FREE(c, &obj->triangle_part);
-  VL_ARRAY_FREE(c, &obj->triangle_smooth);
-  VL_ARRAY_FREE(c, &obj->parts);
-  VL_ARRAY_FREE(c, &obj->objects);
-  VL_ARRAY_FREE(c, &obj->materials);
-  VL_ARRAY_FREE(c, &obj->marks);
-  VL_ARRAY_FREE(c, &obj->polygon);
-  VL_ARRAY_FREE(c, &obj->ears);
-  VL_ARRAY_FREE(c, &obj->libraries);
-  vl_free(c, obj);
+  VL_FREE(obj->context, obj->positions.items, obj->colors.items, obj->uvs.items,
+          obj->normals.items, obj->corners.items, obj->triangle_part.items,
+          obj->triangle_smooth.items, obj->parts.items, obj->objects.items,
+          obj->materials.items, obj->marks.items, obj->polygon.items, obj->ears.items,
+          (void *)obj->libraries.items, obj);
 }
 
 vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {

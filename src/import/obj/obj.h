@@ -132,6 +132,8 @@ bool vl_obj_statement(vlObj *obj, char **from, char *end);
 /* Finds the statement's next word, which is not zero-terminated, and returns its length; 0 at
  * the end of the statement. */
 size_t vl_obj_word(vlObj *obj, const char **word);
+/* The same without reading past it. */
+size_t vl_obj_next_word(vlObj *obj, const char **word);
 /* Reads up to `most` numbers; *count receives how many. False when a word is not a number. */
 bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count);
 /* The rest of the statement without surrounding blanks, zero-terminated. */

@@ -55,29 +55,6 @@ static void read_one(void *user, uint32_t index, uint32_t worker) {
                             import->permissive, &job->mesh, &job->error);
 }
 
-/* Splits patches into triangles, since only triangles can be displaced. */
-static bool only_triangles(vlImport *import, vlPlyMesh *mesh) {
-  if (!mesh->quads)
-    return true;
-  size_t old = 3 * (size_t)mesh->triangles, quads = mesh->quads;
-  if (old / 3 + 2 * quads > 0x7fffffff)
-    return vl_import_fail_memory(import);
-  uint32_t *indices = vl_realloc_array(import->context, mesh->triangle_indices, old + 6 * quads,
-                                       sizeof *indices);
-  if (!indices)
-    return vl_import_fail_memory(import);
-  for (size_t i = 0; i < quads; i++) {
-    const uint32_t *q = mesh->quad_indices + 4 * i, t[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
-    memcpy(indices + old + 6 * i, t, sizeof t);
-  }
-  mesh->triangle_indices = indices;
-  mesh->triangles += (uint32_t)(2 * quads);
-  vl_free(import->context, mesh->quad_indices);
-  mesh->quad_indices = NULL;
-  mesh->quads = 0;
-  return true;
-}
-
 /* Permissive: repairs the mesh; the first one is reported with the mesh file's name. */
 static bool repair(vlImport *import, const vlMeshFile *file, const vlShapeDef *def) {
   vlShapeDef named = *def;
@@ -96,8 +73,8 @@ static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
                           job->error.message);
   }
   vlShapeDef def = file->def;
-  if (file->link.displacement && !only_triangles(import, mesh))
-    return false;
+  if (file->link.displacement && !vl_ply_split_quads(import->context, mesh))
+    return vl_import_fail_memory(import); /* only triangles can be displaced */
   def.vertices = mesh->vertices;
   def.positions = mesh->positions;
   def.normals = mesh->normals;

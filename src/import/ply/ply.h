@@ -34,6 +34,9 @@ vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool br
  * changed. */
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size,
                       vlPlyMesh *mesh, vlError *error);
+/* Appends each patch to the triangles, as two of them. False: memory is exhausted; the mesh is
+ * as before. */
+bool vl_ply_split_quads(vlContext *context, vlPlyMesh *mesh);
 void vl_ply_free(vlContext *context, vlPlyMesh *mesh);
 
 #endif

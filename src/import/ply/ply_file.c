@@ -108,13 +108,12 @@ bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length
   return true;
 }
 
-bool vl_ply_skip_property(vlPlyReader *r, const vlPlyProperty *p) {
-  double ignored;
+bool vl_ply_read_property(vlPlyReader *r, const vlPlyProperty *p, double *value) {
   uint64_t n = 1;
   if (p->is_list && !vl_ply_read_length(r, p, &n))
     return false;
   for (uint64_t k = 0; k < n; k++)
-    if (!vl_ply_read_value(r, p->type, &ignored))
+    if (!vl_ply_read_value(r, p->type, value))
       return false;
   return true;
 }
@@ -126,9 +125,10 @@ static bool skip_rows(vlPlyReader *r, const vlPlyElement *e) {
   }
   if (e->property_count == 0)
     return true;
+  double ignored;
   for (uint64_t i = 0; i < e->count; i++)
     for (uint32_t j = 0; j < e->property_count; j++)
-      if (!vl_ply_skip_property(r, &e->properties[j]))
+      if (!vl_ply_read_property(r, &e->properties[j], &ignored))
         return false;
   return true;
 }
@@ -156,6 +156,14 @@ static bool read_body(vlPlyReader *r) {
   return true;
 }
 
+static bool check_indices(vlPlyReader *r, const uint32_t *indices, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (indices[i] >= r->mesh->vertices)
+      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices", indices[i],
+                         r->mesh->vertices);
+  return true;
+}
+
 /* Checks the faces that were read before the vertices. */
 static bool check(vlPlyReader *r) {
   const vlPlyMesh *m = r->mesh;
@@ -164,15 +172,8 @@ static bool check(vlPlyReader *r) {
     return vl_ply_fail(r, "the mesh has no vertices");
   if (m->triangles == 0 && m->quads == 0 && !r->alone)
     return vl_ply_fail(r, "the mesh has no faces");
-  for (size_t i = 0; i < 3 * (size_t)m->triangles; i++)
-    if (m->triangle_indices[i] >= m->vertices)
-      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices",
-                         m->triangle_indices[i], m->vertices);
-  for (size_t i = 0; i < 4 * (size_t)m->quads; i++)
-    if (m->quad_indices[i] >= m->vertices)
-      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices",
-                         m->quad_indices[i], m->vertices);
-  return true;
+  return check_indices(r, m->triangle_indices, 3 * (size_t)m->triangles) &&
+         check_indices(r, m->quad_indices, 4 * (size_t)m->quads);
 }
 
 /* Shrinks arrays to their size; empty ones become null. */
@@ -195,6 +196,29 @@ void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
   VL_FREE(context, mesh->positions, mesh->normals, mesh->uvs, mesh->colors, mesh->face_colors,
           mesh->triangle_indices, mesh->quad_indices);
   *mesh = (vlPlyMesh){0};
+}
+
+bool vl_ply_split_quads(vlContext *context, vlPlyMesh *m) {
+  if (!m->quads)
+    return true;
+  size_t count = (size_t)m->triangles + 2 * (size_t)m->quads;
+  if (count > 0x7fffffff)
+    return false;
+  uint32_t *fresh = vl_realloc_array(context, m->triangle_indices, 3 * count, sizeof *fresh);
+  if (!fresh)
+    return false;
+  m->triangle_indices = fresh;
+  uint32_t *to = fresh + 3 * (size_t)m->triangles;
+  for (size_t i = 0; i < m->quads; i++, to += 6) {
+    const uint32_t *q = m->quad_indices + 4 * i; /* p00 p10 p01 p11 */
+    const uint32_t two[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
+    memcpy(to, two, sizeof two);
+  }
+  m->triangles = (uint32_t)count;
+  vl_free(context, m->quad_indices);
+  m->quad_indices = NULL;
+  m->quads = 0;
+  return true;
 }
 
 static vlResult parse(vlContext *context, vlTask *task, const char *name, const char *data,

@@ -101,8 +101,9 @@ bool vl_ply_read_header(vlPlyReader *r); /* stops at the first byte of the data 
 bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value);
 /* Reads the length of a list and checks that the file has enough bytes for its items. */
 bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length);
-/* Reads past a value, or a list with its length. */
-bool vl_ply_skip_property(vlPlyReader *r, const vlPlyProperty *p);
+/* Reads a value, or a list with its length, of which *value receives the last one; it is
+ * unchanged if there is none. */
+bool vl_ply_read_property(vlPlyReader *r, const vlPlyProperty *p, double *value);
 bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e);
 bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e);
 bool vl_ply_read_strips(vlPlyReader *r, const vlPlyElement *e);

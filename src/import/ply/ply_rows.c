@@ -106,12 +106,8 @@ static bool read_vertex_rows(vlPlyReader *r, const vlPlyElement *e) {
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
       double value = 0;
-      uint64_t n = 1;
-      if (p->is_list && !vl_ply_read_length(r, p, &n))
+      if (!vl_ply_read_property(r, p, &value))
         return false;
-      for (uint64_t k = 0; k < n; k++)
-        if (!vl_ply_read_value(r, p->type, &value))
-          return false;
       if (p->role == VL_PLY_NOTHING)
         continue;
       float *to = p->role <= VL_PLY_Z ? &m->positions[3 * i + (p->role - VL_PLY_X)]
@@ -254,20 +250,11 @@ static bool read_corners(vlPlyReader *r, const vlPlyProperty *p, uint64_t face) 
 
 static bool read_face_row(vlPlyReader *r, const vlPlyElement *e, const vlPlyProperty *indices,
                           uint64_t face, float color[4]) {
-  double value;
+  double value = 0;
   for (uint32_t j = 0; j < e->property_count; j++) {
     const vlPlyProperty *p = &e->properties[j];
-    uint64_t n = 1;
-    if (p == indices) {
-      if (!read_corners(r, p, face))
-        return false;
-      continue;
-    }
-    if (p->is_list && !vl_ply_read_length(r, p, &n))
+    if (!(p == indices ? read_corners(r, p, face) : vl_ply_read_property(r, p, &value)))
       return false;
-    for (uint64_t k = 0; k < n; k++)
-      if (!vl_ply_read_value(r, p->type, &value))
-        return false;
     if (p->role < VL_PLY_RED || p->role > VL_PLY_ALPHA)
       continue;
     color[p->role - VL_PLY_RED] = color_value(p->type, p->role == VL_PLY_ALPHA, value);
@@ -374,10 +361,12 @@ static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
 bool vl_ply_read_strips(vlPlyReader *r, const vlPlyElement *e) {
   if (r->mesh->face_colors)
     return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
+  double ignored;
   for (uint64_t i = 0; i < e->count; i++)
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
-      if (!(p->role == VL_PLY_INDICES ? read_strip(r, p) : vl_ply_skip_property(r, p)))
+      if (!(p->role == VL_PLY_INDICES ? read_strip(r, p)
+                                      : vl_ply_read_property(r, p, &ignored)))
         return false;
     }
   return true;

@@ -143,8 +143,7 @@ typedef struct vlGltf {
   vlRepairs repairs;
   size_t copy;       /* which of EXT_mesh_gpu_instancing's poses is placed; SIZE_MAX: none */
   uint32_t reported; /* bit mask of warnings (VL_GLTF_REPORTED_*) that were given */
-  size_t shapes_made, lights_made, cameras_seen;
-  double bounds_min[3], bounds_max[3];
+  size_t shapes_made, cameras_seen;
 } vlGltf;
 
 enum {

@@ -64,10 +64,7 @@ static bool add_light(vlGltf *g, size_t node, int64_t index) {
   def.cone_angle = (float)outer;
   def.cone_delta = (float)(outer - inner);
   def.cone_squared = true;
-  if (intensity > 0 && vl_scene_add_light(g->scene, &def).index == 0)
-    return false;
-  g->lights_made++;
-  return true;
+  return !(intensity > 0) || vl_scene_add_light(g->scene, &def).index != 0;
 }
 
 /* ---- lamp files -------------------------------------------------------------------------- */
@@ -139,10 +136,7 @@ static bool add_lamp(vlGltf *g, size_t node) {
   if (!read_profile(g, profile, &def))
     return false;
   set_pose(&g->nodes[node].world, &def);
-  if (multiplier > 0 && vl_scene_add_light(g->scene, &def).index == 0)
-    return false;
-  g->lights_made++;
-  return true;
+  return !(multiplier > 0) || vl_scene_add_light(g->scene, &def).index != 0;
 }
 
 bool vl_gltf_add_lights(vlGltf *g, size_t node) {

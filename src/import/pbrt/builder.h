@@ -147,7 +147,8 @@ struct vlImport {
   bool in_world;
   vlGraphicsState state;
   VL_ARRAY(vlStackEntry) stack;
-  vlParamList attributes[VL_ATTR_TARGETS]; /* a stack per target; restoring the graphics state
+  vlParamList attributes[VL_ATTR_TARGETS]; /* parameters of Attribute directives that apply, a
+                                              stack per target; restoring the graphics state
                                               removes the newer entries */
   vlNameTable coordinate_systems;          /* to indices in matrices */
   VL_ARRAY(vlTransforms) matrices;
@@ -201,6 +202,11 @@ void vl_import_remark(vlImport *import, vlSource source, const char *format, ...
  * warning; it then returns true. */
 bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* The end of a message: the name that is meant, or nothing for null. */
+typedef struct vlHint {
+  char text[200];
+} vlHint;
+vlHint vl_import_hint(const char *near);
 /* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not
  * support. */
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
@@ -232,35 +238,42 @@ bool vl_import_color_space(const char *name, vlColorSpace *space);
 
 /* Appends copies of the parameters, marked optional, to `to`. */
 bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to);
-/* The parameters of Attribute directives that currently apply to this kind of directive. */
-const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target);
 /* State (state.c). */
-bool vl_import_transform(vlImport *import,
-                         const vlStatement *s); /* Translate, LookAt, Transform, ... */
 bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]);
-bool vl_import_use_system(vlImport *import, const vlStatement *s);
 bool vl_import_push(vlImport *import, char kind, vlSource source);
 bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource source);
 void vl_import_restore(vlImport *import);
 /* Motion (motion.c). vl_import_ctm returns the current transform for something that cannot move
  * and warns when the start and end transforms differ. */
 bool vl_import_ctm(vlImport *import, vlSource source, vlMat4 *ctm);
-bool vl_import_times(vlImport *import, const vlStatement *s); /* TransformTimes */
 bool vl_import_moves(const vlImport *import); /* whether the start and end transforms differ */
 /* The group for a shape under the current, animated transform. The shape's own transform
  * becomes the identity. */
 bool vl_import_moving_group(vlImport *import, vlSource source, vlGroupId *group);
 bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2],
                             vlSource source);
-bool vl_import_finish_motion(
-    vlImport *import); /* places moving groups inside objects, once all instances are known */
 
 /* ---- parts ------------------------------------------------------------------------------- */
-bool vl_import_camera(vlImport *import); /* applies the directives before WorldBegin to the
-                                            scene's defs; the camera follows the film */
-bool vl_import_film(vlImport *import);
-bool vl_import_sampling(vlImport *import); /* sampler, filter, integrator */
-bool vl_import_option(vlImport *import, const vlStatement *s);
+
+/* Functions that obey a directive. False after an error. */
+typedef bool vlImportStatement(vlImport *import, const vlStatement *s);
+vlImportStatement vl_import_transform, vl_import_use_system, vl_import_attribute; /* state.c */
+vlImportStatement vl_import_object_begin, vl_import_object_end, vl_import_object_instance;
+vlImportStatement vl_import_times;  /* motion.c */
+vlImportStatement vl_import_option; /* film.c */
+vlImportStatement vl_import_texture, vl_import_medium, vl_import_shape;
+vlImportStatement vl_import_light, vl_import_area_light;
+vlImportStatement vl_import_material, vl_import_make_named_material, vl_import_named_material;
+
+/* Functions of the whole import. False after an error. */
+typedef bool vlImportStep(vlImport *import);
+/* They apply the directives before WorldBegin to the scene's defs: sampling.c those of sampler,
+ * filter and integrator; the camera follows the film. */
+vlImportStep vl_import_camera, vl_import_film, vl_import_sampling;
+/* At the end: mesh files, media, moving groups inside objects (once all instances are known),
+ * and the runs (run.c). Other shapes than curves end a run of curves. */
+vlImportStep vl_import_read_meshes, vl_import_finish_media, vl_import_finish_motion;
+vlImportStep vl_import_flush_runs, vl_import_flush_curves;
 
 /* The spectrum of a parameter (rgb, spectrum, blackbody). Sampled values are kept with the
  * import's strings. */
@@ -311,23 +324,11 @@ bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *
  * Null after an error. */
 vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTarget target,
                           bool is_texture);
-bool vl_import_attribute(vlImport *import, const vlStatement *s);
-bool vl_import_object_begin(vlImport *import, const vlStatement *s);
-bool vl_import_object_end(vlImport *import, const vlStatement *s);
-bool vl_import_object_instance(vlImport *import, const vlStatement *s);
-bool vl_import_material(vlImport *import, const vlStatement *s);
-bool vl_import_make_named_material(vlImport *import, const vlStatement *s);
-bool vl_import_named_material(vlImport *import, const vlStatement *s);
-bool vl_import_texture(vlImport *import, const vlStatement *s);
 /* Notes that pbrt shows the rough coats of the scene brighter. */
 void vl_import_note_rough_coats(vlImport *import);
 
-bool vl_import_light(vlImport *import, const vlStatement *s);
-bool vl_import_area_light(vlImport *import, const vlStatement *s);
-bool vl_import_shape(vlImport *import, const vlStatement *s);
 bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source,
                          const vlShapeDef *def, const vlShapeLink *link);
-bool vl_import_read_meshes(vlImport *import); /* reads all noted mesh files */
 /* Adds a shape. The scene takes ownership of the def's arrays. */
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
 /* The same between two media that are not those of the current state. */
@@ -338,8 +339,6 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
 /* Runs (run.c): the one that the shape joins; a new one ends another. Null after an error. */
 vlShapeRun *vl_import_run(vlImport *import, vlRunKind kind, const vlShapeDef *def,
                           const vlShapeLink *link);
-bool vl_import_flush_curves(vlImport *import); /* called before any other shape */
-bool vl_import_flush_runs(vlImport *import);   /* called at the end */
 void vl_import_free_runs(vlImport *import);
 /* Whether meshes and spheres are gathered yet, and such ones. */
 bool vl_import_may_gather(const vlImport *import, const vlShapeDef *def,
@@ -351,10 +350,8 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShap
                            bool *taken);
 bool vl_import_gather_sphere(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,
                              bool *taken);
-bool vl_import_medium(vlImport *import, const vlStatement *s);
 /* Records the media of the current state for a shape ('s'), a light ('l') or the camera
  * ('c'). */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source);
-bool vl_import_finish_media(vlImport *import);
 
 #endif

@@ -214,15 +214,16 @@ static bool read_edge_scale(vlImport *import, const vlStatement *s, const char *
                          name, vl_short_text(value).text);
 }
 
+/* Options that do not change the image. */
+static const char harmless[] =
+    "msereferenceimage msereferenceout pixelstats wavefront rendercoordsys";
+
 bool vl_import_option(vlImport *import, const vlStatement *s) {
   vlRenderDef *render = &vl_scene_defs(import->scene)->render;
   const Switch switches[] = {{"disablepixeljitter", &render->centred},
                              {"disabletexturefiltering", &render->sharp_textures},
                              {"disablewavelengthjitter", &render->same_wavelengths},
                              {"forcediffuse", NULL}};
-  /* they do not change the image */
-  static const char *const harmless[] = {"msereferenceimage", "msereferenceout", "pixelstats",
-                                         "wavefront", "rendercoordsys"};
   char name[64];
   normalise(s->names[0], name, sizeof name);
   if (vl_text_is(name, "seed"))
@@ -232,9 +233,8 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   for (size_t i = 0; i < VL_LENGTH(switches); i++)
     if (vl_text_is(name, switches[i].name))
       return read_switch(import, s, &switches[i]);
-  for (size_t i = 0; i < VL_LENGTH(harmless); i++)
-    if (vl_text_is(name, harmless[i]))
-      return true;
+  if (vl_has_word(harmless, name))
+    return true;
   static const char *const known[] = {"seed",
                                       "displacementedgescale",
                                       "disablepixeljitter",

@@ -78,9 +78,9 @@ enum { MAX_PARAMETERS = 32 };
 
 bool vl_import_light(vlImport *import, const vlStatement *s) {
   bool given[MAX_PARAMETERS];
-  vlDict dict = vl_import_kind_dict(import, "LightSource", &vl_light_family, s->names[0],
-                                    s->source, import->state.space, s->params,
-                                    vl_import_attributes(import, VL_ATTR_LIGHT));
+  vlDict dict =
+      vl_import_kind_dict(import, "LightSource", &vl_light_family, s->names[0], s->source,
+                          import->state.space, s->params, &import->attributes[VL_ATTR_LIGHT]);
   int kind = vl_kind_find(&vl_light_family, s->names[0]);
   if (kind < 0) /* permissive: skipped */
     return vl_import_unknown_kind(import, s->source, &vl_light_family, s->names[0]);
@@ -114,7 +114,7 @@ bool vl_import_area_light(vlImport *import, const vlStatement *s) {
   bool given[MAX_PARAMETERS];
   vlDict dict = vl_import_kind_dict(import, "AreaLightSource", &vl_emission_family, s->names[0],
                                     s->source, import->state.space, s->params,
-                                    vl_import_attributes(import, VL_ATTR_LIGHT));
+                                    &import->attributes[VL_ATTR_LIGHT]);
   import->state.emission = (vlEmissionId){0};
   if (s->names[0][0] == 0)
     return true; /* as in pbrt, an empty name ends the current area light */

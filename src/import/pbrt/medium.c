@@ -34,10 +34,8 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
     return true;
   vlSource at = vl_dict_find(dict, parameter, VL_BIT_STRING)->source;
   const char *near = vl_nearest_name(name, names, count);
-  if (near)
-    return vl_dict_fail_at(dict, at, "no preset is named \"%s\" (did you mean \"%s\"?)",
-                           vl_short_text(name).text, near);
-  return vl_dict_fail_at(dict, at, "no preset is named \"%s\"", vl_short_text(name).text);
+  return vl_dict_fail_at(dict, at, "no preset is named \"%s\"%s", vl_short_text(name).text,
+                         vl_import_hint(near).text);
 }
 
 /* A preset takes precedence over sigma_a and sigma_s, as in pbrt. */
@@ -154,7 +152,7 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
     return vl_import_wrong(import, s->source, "medium \"%s\" is made a second time",
                            vl_short_text(s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
-                               vl_import_attributes(import, VL_ATTR_MEDIUM));
+                               &import->attributes[VL_ATTR_MEDIUM]);
   if (!vl_dict_string(&dict, "type", &type)) {
     if (!vl_import_fine(import))
       return false;

@@ -91,6 +91,13 @@ bool vl_import_unsupported(vlImport *import, vlSource source, const char *format
   return true;
 }
 
+vlHint vl_import_hint(const char *near) {
+  vlHint hint = {""};
+  if (near)
+    snprintf(hint.text, sizeof hint.text, " (did you mean \"%s\"?)", near);
+  return hint;
+}
+
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
                        const char *const *known, size_t known_count, const char *const *later,
                        size_t later_count) {
@@ -101,11 +108,8 @@ bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, con
   const char *near = vl_nearest_name(name, known, known_count);
   if (!near)
     near = vl_nearest_name(name, later, later_count);
-  if (near)
-    return vl_import_unsupported(import, source, "unknown %s \"%s\" (did you mean \"%s\"?)",
-                                 thing, vl_short_text(name).text, near);
-  return vl_import_unsupported(import, source, "unknown %s \"%s\"", thing,
-                               vl_short_text(name).text);
+  return vl_import_unsupported(import, source, "unknown %s \"%s\"%s", thing,
+                               vl_short_text(name).text, vl_import_hint(near).text);
 }
 
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name) {
@@ -135,11 +139,9 @@ const char *vl_import_keep(vlImport *import, const char *text) {
 bool vl_import_missing_name(vlImport *import, vlSource source, const char *thing,
                             const char *name, const vlNameTable *table) {
   const char *near = vl_names_nearest(table, name);
-  if (near)
-    return vl_import_wrong(import, source, "there is no %s \"%s\" (did you mean \"%s\"?)",
-                           thing, vl_short_text(name).text, vl_short_text(near).text);
-  return vl_import_wrong(import, source, "there is no %s \"%s\"", thing,
-                         vl_short_text(name).text);
+  return vl_import_wrong(import, source, "there is no %s \"%s\"%s", thing,
+                         vl_short_text(name).text,
+                         vl_import_hint(near ? vl_short_text(near).text : NULL).text);
 }
 
 void vl_import_note_elsewhere(void *user, vlSource source, const char *path) {
@@ -259,8 +261,4 @@ bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamLis
       return vl_import_fail_memory(import);
   }
   return true;
-}
-
-const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target) {
-  return &import->attributes[target];
 }

@@ -377,7 +377,7 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   char what[96];
   snprintf(what, sizeof what, "Shape \"%s\"", vl_short_text(s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
-                               vl_import_attributes(import, VL_ATTR_SHAPE));
+                               &import->attributes[VL_ATTR_SHAPE]);
   vlShapeKind kind;
   EnterShape *function = find_shape(s->names[0], &kind);
   if (!function)

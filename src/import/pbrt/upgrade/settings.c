@@ -99,7 +99,6 @@ bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
     vl_old_drop(s, scale);
   u->film_file = file;
   u->film_end = s->whole.end;
-  u->film_line = s->line;
   return rewrite(file, s, films, "rgb");
 }
 

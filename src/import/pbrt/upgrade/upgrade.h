@@ -114,7 +114,6 @@ typedef struct vlUpgrade {
   double iso;      /* of the film: 100 * its scale */
   struct vlOldFile *film_file;
   size_t film_end; /* where parameters of the film can be added */
-  uint32_t film_line;
 } vlUpgrade;
 
 enum { VL_OLD_ATTRIBUTES = 3 };

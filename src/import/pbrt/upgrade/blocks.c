@@ -20,10 +20,10 @@ static int attribute_of(const char *word) {
   return -1;
 }
 
-static bool push(vlOldFile *file, bool transform) {
-  vlOldBlock *b = VL_PUSH(file->u->context, &file->blocks);
+static bool push(const vlOldStatement *s, bool transform) {
+  vlOldBlock *b = VL_PUSH(s->u->context, &s->file->blocks);
   if (!b)
-    return vl_old_fail_memory(file->u);
+    return vl_old_fail_memory(s->u);
   *b = (vlOldBlock){.transform = transform};
   return true;
 }
@@ -45,14 +45,14 @@ static const char *last_statement(const char *text) {
   return last;
 }
 
-static bool repeat(vlOldFile *file, vlOldStatement *s, const vlOldBlock *block) {
+static bool repeat(vlOldStatement *s, const vlOldBlock *block) {
   for (int i = 0; i < SETTERS; i++) {
     if (block->set[i].end == block->set[i].start)
       continue;
-    char *text = vl_old_render(file, block->set[i]);
-    bool fine = text ? vl_old_insert(file, s, VL_OLD_AFTER, "%s", last_statement(text))
-                     : vl_old_fail_memory(file->u);
-    vl_free(file->u->context, text);
+    char *text = vl_old_render(s->file, block->set[i]);
+    bool fine = text ? vl_old_insert(s, VL_OLD_AFTER, "%s", last_statement(text))
+                     : vl_old_fail_memory(s->u);
+    vl_free(s->u->context, text);
     if (!fine)
       return false;
     vl_old_note(s, "%s of line %u again", setters[i][0], block->line[i]);
@@ -60,36 +60,37 @@ static bool repeat(vlOldFile *file, vlOldStatement *s, const vlOldBlock *block) 
   return true;
 }
 
-bool vl_old_block(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_block(vlOldStatement *s) {
   const char *word = s->word->name;
   bool transform = strncmp(word, "Transform", 9) == 0, begin = word[strlen(word) - 1] == 'n';
   if (transform) {
     vl_old_note(s, "-> %s", begin ? "AttributeBegin" : "AttributeEnd");
-    if (!vl_old_edit(file, s->keyword, begin ? "AttributeBegin" : "AttributeEnd"))
+    if (!vl_old_edit(s, s->keyword, begin ? "AttributeBegin" : "AttributeEnd"))
       return false;
   }
   if (begin)
-    return push(file, transform);
-  if (!file->blocks.count)
+    return push(s, transform);
+  if (!s->file->blocks.count)
     return true;
-  vlOldBlock block = file->blocks.items[--file->blocks.count];
+  vlOldBlock block = s->file->blocks.items[--s->file->blocks.count];
   if (!block.transform)
     return true;
   /* an outer block of the same kind sets the attribute, too */
-  vlOldBlock *outer = file->blocks.count ? &file->blocks.items[file->blocks.count - 1] : NULL;
+  vlOldBlock *outer =
+      s->file->blocks.count ? &s->file->blocks.items[s->file->blocks.count - 1] : NULL;
   for (int i = 0; i < SETTERS && outer; i++)
     if (block.set[i].end > block.set[i].start) {
       outer->set[i] = block.set[i];
       outer->line[i] = block.line[i];
     }
-  return repeat(file, s, &block);
+  return repeat(s, &block);
 }
 
-void vl_old_block_sets(vlOldFile *file, const vlOldStatement *s) {
+void vl_old_block_sets(const vlOldStatement *s) {
   int i = attribute_of(s->word->name);
-  if (i < 0 || !file->blocks.count)
+  if (i < 0 || !s->file->blocks.count)
     return;
-  vlOldBlock *block = &file->blocks.items[file->blocks.count - 1];
+  vlOldBlock *block = &s->file->blocks.items[s->file->blocks.count - 1];
   block->set[i] = s->whole;
   block->line[i] = s->line;
 }

@@ -151,7 +151,7 @@ static const vlOldWord *find_word(const vlToken *token) {
 
 bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *end) {
   vlToken token = vl_token_next(tokens);
-  *s = (vlOldStatement){.line = token.line, .column = token.column};
+  *s = (vlOldStatement){.u = file->u, .file = file, .line = token.line, .column = token.column};
   *end = token.kind == VL_TOKEN_END;
   if (*end)
     return true;
@@ -183,6 +183,6 @@ bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *
   return fine;
 }
 
-void vl_old_free(vlOldFile *file, vlOldStatement *s) {
-  VL_ARRAY_FREE(file->u->context, &s->params);
+void vl_old_free(vlOldStatement *s) {
+  VL_ARRAY_FREE(s->u->context, &s->params);
 }

@@ -19,28 +19,33 @@ bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column,
   return false;
 }
 
+bool vl_old_wrong(const vlOldStatement *s, const char *format, ...) {
+  char text[512];
+  VL_FORMAT(text, format);
+  return vl_old_fail(s->file, VL_ERROR_SCENE, s->line, s->column, "%s", text);
+}
+
 bool vl_old_fail_memory(vlUpgrade *u) {
   if (u->result == VL_OK)
     u->result = vl_fail_memory(&u->error);
   return false;
 }
 
-static void report(const vlOldFile *file, vlUpgradeNote note, uint32_t line, const char *text) {
-  const vlUpgradeDef *def = file->u->def;
-  if (file->u->quiet)
-    return;
+static void report(const vlOldStatement *s, vlUpgradeNote note, const char *text) {
+  const vlUpgradeDef *def = s->u->def;
   vlError where = {0};
-  vl_fail_at(&where, VL_OK, file->path, line, 0, "%s", "");
-  if (def->report)
-    def->report(def->report_user, note, &where, text);
+  if (s->u->quiet || !def->report)
+    return;
+  vl_fail_at(&where, VL_OK, s->file->path, s->line, 0, "%s", "");
+  def->report(def->report_user, note, &where, text);
 }
 
-void vl_old_lose(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
+void vl_old_lose(const vlOldStatement *s, const char *format, ...) {
   char text[512];
   VL_FORMAT(text, format);
-  if (!file->u->quiet)
-    file->u->lost++;
-  report(file, VL_UPGRADE_LOST, s->line, text);
+  if (!s->u->quiet)
+    s->u->lost++;
+  report(s, VL_UPGRADE_LOST, text);
 }
 
 void vl_old_note(vlOldStatement *s, const char *format, ...) {
@@ -61,14 +66,14 @@ static const uint32_t AFTER = 0x80000000u;
 
 /* ---- edits ------------------------------------------------------------------------------- */
 
-static bool edit_text(vlOldFile *file, vlOldSpan span, const char *text) {
-  vlContext *context = file->u->context;
-  uint32_t order = (uint32_t)file->edits.count;
-  vlOldEdit *edit = VL_PUSH(context, &file->edits);
+static bool edit_text(const vlOldStatement *s, vlOldSpan span, const char *text) {
+  vlContext *context = s->u->context;
+  uint32_t order = (uint32_t)s->file->edits.count;
+  vlOldEdit *edit = VL_PUSH(context, &s->file->edits);
   if (!edit)
-    return vl_old_fail_memory(file->u);
+    return vl_old_fail_memory(s->u);
   *edit = (vlOldEdit){span, vl_strdup(context, text), order};
-  return edit->text || vl_old_fail_memory(file->u);
+  return edit->text || vl_old_fail_memory(s->u);
 }
 
 /* Formats text of any length into a new block. */
@@ -84,27 +89,27 @@ static char *format_text(vlContext *context, const char *format, va_list args) {
 }
 
 /* An edit of prefix, text and suffix. Frees text. */
-static bool edit_parts(vlOldFile *file, vlOldSpan span, const char *prefix, int prefix_length,
-                       char *text, const char *suffix, int suffix_length) {
-  vlContext *context = file->u->context;
+static bool edit_parts(const vlOldStatement *s, vlOldSpan span, const char *prefix,
+                       int prefix_length, char *text, const char *suffix, int suffix_length) {
+  vlContext *context = s->u->context;
   size_t size = text ? strlen(text) + (size_t)prefix_length + (size_t)suffix_length + 1 : 0;
   char *whole = text ? vl_alloc(context, size) : NULL;
   bool fine = whole != NULL;
   if (fine) {
     snprintf(whole, size, "%.*s%s%.*s", prefix_length, prefix, text, suffix_length, suffix);
-    fine = edit_text(file, span, whole);
+    fine = edit_text(s, span, whole);
   }
   vl_free(context, whole);
   vl_free(context, text);
-  return fine || vl_old_fail_memory(file->u);
+  return fine || vl_old_fail_memory(s->u);
 }
 
-bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...) {
+bool vl_old_edit(const vlOldStatement *s, vlOldSpan span, const char *format, ...) {
   va_list args;
   va_start(args, format);
-  char *text = format_text(file->u->context, format, args);
+  char *text = format_text(s->u->context, format, args);
   va_end(args);
-  return edit_parts(file, span, "", 0, text, "", 0);
+  return edit_parts(s, span, "", 0, text, "", 0);
 }
 
 /* Start of the line of an offset, and the length of its indentation. */
@@ -119,19 +124,19 @@ static size_t line_start(const vlOldFile *file, size_t at, int *indent) {
   return start;
 }
 
-bool vl_old_remove(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_remove(vlOldStatement *s) {
   int indent;
-  size_t line = line_start(file, s->whole.start, &indent), end = s->whole.end;
-  while (end < file->size &&
-         (file->text[end] == ' ' || file->text[end] == '\t' || file->text[end] == '\r'))
+  size_t line = line_start(s->file, s->whole.start, &indent), end = s->whole.end;
+  while (end < s->file->size && (s->file->text[end] == ' ' || s->file->text[end] == '\t' ||
+                                 s->file->text[end] == '\r'))
     end++;
-  bool alone =
-      line + (size_t)indent == s->whole.start && (end >= file->size || file->text[end] == '\n');
-  vlOldSpan span = alone ? (vlOldSpan){line, end < file->size ? end + 1 : end} : s->whole;
+  bool alone = line + (size_t)indent == s->whole.start &&
+               (end >= s->file->size || s->file->text[end] == '\n');
+  vlOldSpan span = alone ? (vlOldSpan){line, end < s->file->size ? end + 1 : end} : s->whole;
   for (size_t i = 0; i < s->params.count; i++)
     s->params.items[i].dropped = true;
   s->whole.end = s->whole.start;
-  return vl_old_edit(file, span, "%s", "");
+  return vl_old_edit(s, span, "%s", "");
 }
 
 typedef struct LineBegin {
@@ -140,91 +145,90 @@ typedef struct LineBegin {
 } LineBegin;
 
 /* A line break, and the indentation of the statement's line. */
-static LineBegin line_of(const vlOldFile *file, const vlOldStatement *s) {
+static LineBegin line_of(const vlOldStatement *s) {
   LineBegin result;
   int indent;
-  size_t line = line_start(file, s->keyword.start, &indent);
-  snprintf(result.text, sizeof result.text, "\n%.*s", indent, file->text + line);
+  size_t line = line_start(s->file, s->keyword.start, &indent);
+  snprintf(result.text, sizeof result.text, "\n%.*s", indent, s->file->text + line);
   result.length = (int)strlen(result.text);
   return result;
 }
 
-bool vl_old_insert(vlOldFile *file, const vlOldStatement *s, vlOldSide side, const char *format,
-                   ...) {
+bool vl_old_insert(const vlOldStatement *s, vlOldSide side, const char *format, ...) {
   const bool after = side == VL_OLD_AFTER;
-  const LineBegin line = line_of(file, s);
+  const LineBegin line = line_of(s);
   const size_t at = after ? s->whole.end : s->keyword.start;
   va_list args;
   va_start(args, format);
-  char *text = format_text(file->u->context, format, args);
+  char *text = format_text(s->u->context, format, args);
   va_end(args);
-  bool fine = edit_parts(file, (vlOldSpan){at, at}, line.text, after ? line.length : 0, text,
+  bool fine = edit_parts(s, (vlOldSpan){at, at}, line.text, after ? line.length : 0, text,
                          line.text, after ? 0 : line.length);
   if (fine && after)
-    file->edits.items[file->edits.count - 1].order |= AFTER;
+    s->file->edits.items[s->file->edits.count - 1].order |= AFTER;
   return fine;
 }
 
 /* The blanks before the last parameter, which separate an added one, too. */
-static int separator(const vlOldFile *file, const vlOldStatement *s, const char **text) {
+static int separator(const vlOldStatement *s, const char **text) {
   *text = " ";
   if (s->params.count < 2)
     return 1;
   size_t end = s->params.items[s->params.count - 1].decl.start, start = end;
-  while (start > 0 && strchr(" \t\r\n", file->text[start - 1]))
+  while (start > 0 && strchr(" \t\r\n", s->file->text[start - 1]))
     start--;
   if (start == end || end - start > 100)
     return 1;
-  *text = file->text + start;
+  *text = s->file->text + start;
   return (int)(end - start);
 }
 
-bool vl_old_add(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
+bool vl_old_add(const vlOldStatement *s, const char *format, ...) {
   const char *blank;
-  int n = separator(file, s, &blank);
+  int n = separator(s, &blank);
   va_list args;
   va_start(args, format);
-  char *text = format_text(file->u->context, format, args);
+  char *text = format_text(s->u->context, format, args);
   va_end(args);
-  return edit_parts(file, (vlOldSpan){s->whole.end, s->whole.end}, blank, n, text, "", 0);
+  return edit_parts(s, (vlOldSpan){s->whole.end, s->whole.end}, blank, n, text, "", 0);
 }
 
-bool vl_old_rename(vlOldFile *file, vlOldStatement *s, size_t i, const char *name) {
+bool vl_old_rename(vlOldStatement *s, size_t i, const char *name) {
   if (vl_text_is(s->name[i], name))
     return true;
   vl_old_note(s, "\"%s\" -> \"%s\"", s->name[i], name);
   s->name[i] = name;
-  return vl_old_edit(file, s->names[i], "\"%s\"", name);
+  return vl_old_edit(s, s->names[i], "\"%s\"", name);
 }
 
 /* ---- a finished statement ---------------------------------------------------------------- */
 
 /* Removes a parameter with the blanks before it. */
-static bool cut_param(vlOldFile *file, const vlOldParam *p) {
+static bool cut_param(const vlOldStatement *s, const vlOldParam *p) {
   size_t start = p->decl.start;
-  while (start > 0 && strchr(" \t\r\n", file->text[start - 1]))
+  while (start > 0 && strchr(" \t\r\n", s->file->text[start - 1]))
     start--;
   /* a comment before it ends with its line */
   size_t line = start;
-  while (line > 0 && file->text[line - 1] != '\n')
+  while (line > 0 && s->file->text[line - 1] != '\n')
     line--;
-  if (memchr(file->text + line, '#', start - line))
+  if (memchr(s->file->text + line, '#', start - line))
     start = p->decl.start;
-  return vl_old_edit(file, (vlOldSpan){start, p->value.end}, "%s", "");
+  return vl_old_edit(s, (vlOldSpan){start, p->value.end}, "%s", "");
 }
 
-bool vl_old_finish(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_finish(vlOldStatement *s) {
   if (s->finished)
     return true;
   s->finished = true;
   for (size_t i = 0; i < s->name_count; i++)
-    if (s->renamed >> i & 1 && !vl_old_edit(file, s->names[i], "\"%s\"", s->name[i]))
+    if (s->renamed >> i & 1 && !vl_old_edit(s, s->names[i], "\"%s\"", s->name[i]))
       return false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
     if (p->dropped && s->whole.end == s->whole.start)
       continue; /* the whole statement is removed */
-    if (p->dropped && !cut_param(file, p))
+    if (p->dropped && !cut_param(s, p))
       return false;
     if (p->dropped)
       continue;
@@ -233,10 +237,9 @@ bool vl_old_finish(vlOldFile *file, vlOldStatement *s) {
       vl_old_note(s, "%s -> %s", p->name, p->new_name);
     if (named && !typed)
       vl_old_note(s, "%s %s -> %s", p->type, p->name, p->new_type);
-    if ((!named || !typed) &&
-        !vl_old_edit(file, p->decl, "\"%s %s\"", p->new_type, p->new_name))
+    if ((!named || !typed) && !vl_old_edit(s, p->decl, "\"%s %s\"", p->new_type, p->new_name))
       return false;
-    if (p->new_value[0] && !vl_old_edit(file, p->value, "%s", p->new_value))
+    if (p->new_value[0] && !vl_old_edit(s, p->value, "%s", p->new_value))
       return false;
   }
   if (!s->changes[0])
@@ -244,7 +247,7 @@ bool vl_old_finish(vlOldFile *file, vlOldStatement *s) {
   char text[520];
   bool of_kind = s->name_count > 0 && s->word->form == VL_OLD_PARAMS;
   snprintf(text, sizeof text, "%s%s%s", s->word->name, of_kind ? ": " : " ", s->changes);
-  report(file, VL_UPGRADE_CHANGED, s->line, text);
+  report(s, VL_UPGRADE_CHANGED, text);
   return true;
 }
 

@@ -116,17 +116,17 @@ static bool make_map(vlUpgrade *u, vlOldMap *map, const char *old, char *name, s
   return u->result == VL_OK && (map->name || vl_old_fail_memory(u));
 }
 
-bool vl_old_environment(vlOldFile *file, const vlOldStatement *s, const char *name,
-                        const double factor[3], char *result, size_t size) {
-  vlUpgrade *u = file->u;
+bool vl_old_environment(const vlOldStatement *s, const char *name, const double factor[3],
+                        char *result, size_t size) {
+  vlUpgrade *u = s->u;
   char path[4096];
-  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name,
+  vlFound found = vl_find_file(u->context, s->file->path, u->first, u->def->search_path, name,
                                path, sizeof path);
   if (found == VL_FOUND_TOO_LONG)
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, 0, "file name too long");
+    return vl_old_fail(s->file, VL_ERROR_SCENE, s->line, 0, "file name too long");
   if (found == VL_FOUND_NOT) {
     u->missing++;
-    vl_old_lose(file, s, "there is no image \"%s\": it must become an equal-area map", name);
+    vl_old_lose(s, "there is no image \"%s\": it must become an equal-area map", name);
     return snprintf(result, size, "%s", name) > 0;
   }
   for (size_t i = 0; i < u->maps.count; i++) {

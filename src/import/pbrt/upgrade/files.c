@@ -48,20 +48,19 @@ static bool is_metal(const char *name, char *result, size_t size) {
   return false;
 }
 
-bool vl_old_file_name(vlOldFile *file, const vlOldStatement *s, const char *name, char *result,
-                      size_t size) {
-  vlUpgrade *u = file->u;
+bool vl_old_file_name(const vlOldStatement *s, const char *name, char *result, size_t size) {
+  vlUpgrade *u = s->u;
   char path[4096], beside[4096], real[PATH_MAX];
   if (is_metal(name, result, size))
     return true;
-  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name,
+  vlFound found = vl_find_file(u->context, s->file->path, u->first, u->def->search_path, name,
                                path, sizeof path);
   if (found == VL_FOUND_TOO_LONG || strlen(name) >= size)
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, 0, "file name too long");
+    return vl_old_fail(s->file, VL_ERROR_SCENE, s->line, 0, "file name too long");
   snprintf(result, size, "%s", name);
   if (found == VL_FOUND_NOT) {
     u->missing++;
-    vl_old_lose(file, s, "there is no file \"%s\": its name stays as it is", name);
+    vl_old_lose(s, "there is no file \"%s\": its name stays as it is", name);
     return true;
   }
   struct stat info;
@@ -70,20 +69,20 @@ bool vl_old_file_name(vlOldFile *file, const vlOldStatement *s, const char *name
   if (name[0] == '/' || (u->same_folder && first))
     return true;
   if (!realpath(first ? beside : path, real) || !relative(u->to_folder, real, result, size))
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, 0, "file name too long: %s", path);
+    return vl_old_fail(s->file, VL_ERROR_SCENE, s->line, 0, "file name too long: %s", path);
   return true;
 }
 
-bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam *p) {
+bool vl_old_write_file_name(vlOldStatement *s, const vlOldParam *p) {
   char name[4096];
   if (!p || !p->strings)
     return true;
-  if (!vl_old_file_name(file, s, p->text[0], name, sizeof name))
+  if (!vl_old_file_name(s, p->text[0], name, sizeof name))
     return false;
   if (vl_text_is(name, p->text[0]))
     return true;
   vl_old_note(s, "filename is \"%s\"", name);
-  return vl_old_edit(file, p->span[0], "\"%s\"", name);
+  return vl_old_edit(s, p->span[0], "\"%s\"", name);
 }
 
 /* ---- Include ----------------------------------------------------------------------------- */
@@ -147,20 +146,19 @@ static const vlOldInclude *find_text(const vlUpgrade *u, const char *path, const
 }
 
 /* The name of the new file; a number is added where another file has it. */
-static bool choose_name(vlOldFile *file, const vlOldStatement *s, const char *path,
-                        const char *text, char *name, size_t size) {
-  vlUpgrade *u = file->u;
+static bool choose_name(const vlOldStatement *s, const char *path, const char *text, char *name,
+                        size_t size) {
+  vlUpgrade *u = s->u;
   if (!new_name(u, s->name[0], path, name, size))
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
+    return vl_old_wrong(s, "file name too long");
   u->result = vl_file_set_name(&u->files, name, size, text, strlen(text), &u->error);
   return u->result == VL_OK;
 }
 
 /* Upgrades the file, and names the new one. first: it was not included before. Null after an
  * error. */
-static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s,
-                                        const char *path, bool first) {
-  vlUpgrade *u = file->u;
+static const vlOldInclude *read_include(const vlOldStatement *s, const char *path, bool first) {
+  vlUpgrade *u = s->u;
   char name[4096], *text = NULL;
   const size_t made = u->names.count;
   const uint32_t referred = u->referred;
@@ -182,9 +180,9 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
     vl_free(u->context, text);
     return known;
   }
-  if (!text && !vl_old_file_name(file, s, s->name[0], name, sizeof name))
+  if (!text && !vl_old_file_name(s, s->name[0], name, sizeof name))
     return NULL;
-  if (text && !choose_name(file, s, path, text, name, sizeof name)) {
+  if (text && !choose_name(s, path, text, name, sizeof name)) {
     vl_free(u->context, text);
     return NULL;
   }
@@ -207,23 +205,22 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
   return n;
 }
 
-bool vl_old_include(vlOldFile *file, vlOldStatement *s) {
-  vlUpgrade *u = file->u;
+bool vl_old_include(vlOldStatement *s) {
+  vlUpgrade *u = s->u;
   char path[4096];
-  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path,
+  vlFound found = vl_find_file(u->context, s->file->path, u->first, u->def->search_path,
                                s->name[0], path, sizeof path);
   if (found == VL_FOUND_TOO_LONG)
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
+    return vl_old_wrong(s, "file name too long");
   if (u->depth > 64)
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column,
-                       "files include each other more than 64 deep");
+    return vl_old_wrong(s, "files include each other more than 64 deep");
   if (found == VL_FOUND_NOT) {
     u->missing++;
-    vl_old_lose(file, s, "there is no file \"%s\": its name stays as it is", s->name[0]);
+    vl_old_lose(s, "there is no file \"%s\": its name stays as it is", s->name[0]);
     return true;
   }
   const vlOldInclude *known = find_include(u, path);
   if (!known || known->makes || (known->refers && u->renamed))
-    known = read_include(file, s, path, !known);
-  return known && vl_old_rename(file, s, 0, known->name);
+    known = read_include(s, path, !known);
+  return known && vl_old_rename(s, 0, known->name);
 }

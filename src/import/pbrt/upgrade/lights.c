@@ -37,14 +37,14 @@ static const vlOldRow area[] = {{"L twosided"}, SAMPLES, COMMON, {0}};
 /* ---- the factor -------------------------------------------------------------------------- */
 
 /* The pairs of a sampled spectrum; the caller frees both arrays. */
-static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths,
+static bool read_pairs(const vlOldStatement *s, const vlOldParam *p, float **wavelengths,
                        float **values) {
-  vlContext *context = file->u->context;
-  const char *at = file->text + p->value.start, *end = file->text + p->value.end;
+  vlContext *context = s->u->context;
+  const char *at = s->file->text + p->value.start, *end = s->file->text + p->value.end;
   *wavelengths = vl_alloc_array(context, p->count, sizeof **wavelengths);
   *values = vl_alloc_array(context, p->count, sizeof **values);
   if (!*wavelengths || !*values)
-    return vl_old_fail_memory(file->u);
+    return vl_old_fail_memory(s->u);
   for (size_t n = 0; at < end && n < p->count;) {
     double number;
     if (!vl_number_scan(&at, end, &number)) {
@@ -58,22 +58,21 @@ static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths
 }
 
 /* pbrt-v4 divides a light's spectrum by its luminance, pbrt-v3 does not. 1 for colours. */
-static bool luminance(vlOldFile *file, const vlOldStatement *s, const vlOldParam *p,
-                      double *factor) {
+static bool luminance(const vlOldStatement *s, const vlOldParam *p, double *factor) {
   vlSpectrum one = vl_spectrum_constant(1.0f), spectrum = one;
   float *wavelengths = NULL, *values = NULL;
   bool fine = true, sampled = p && vl_text_is(p->type, "spectrum");
   vlError error;
   *factor = 1;
   if (sampled && p->strings)
-    vl_old_lose(file, s,
+    vl_old_lose(s,
                 "pbrt-v4 divides the spectrum of \"%s\" by its luminance: give the brightness "
                 "by \"scale\"",
                 p->name);
   if (p && vl_text_is(p->type, "blackbody") && p->count && p->number[0] > 0) {
     spectrum = vl_spectrum_blackbody((float)p->number[0]);
   } else if (sampled && !p->strings && p->count && p->count % 2 == 0) {
-    fine = read_pairs(file, p, &wavelengths, &values);
+    fine = read_pairs(s, p, &wavelengths, &values);
     spectrum.kind = VL_SPECTRUM_SAMPLED;
     spectrum.wavelengths = wavelengths;
     spectrum.values = values;
@@ -85,8 +84,8 @@ static bool luminance(vlOldFile *file, const vlOldStatement *s, const vlOldParam
          unit = vl_spectrum_photometric(&one, &error);
   if (y > 0 && unit > 0)
     *factor = y / unit;
-  vl_free(file->u->context, wavelengths);
-  vl_free(file->u->context, values);
+  vl_free(s->u->context, wavelengths);
+  vl_free(s->u->context, values);
   return fine;
 }
 
@@ -99,8 +98,7 @@ static void set_color(vlOldParam *p, const double rgb[3]) {
 
 /* Makes one number of all factors: "scale", which was a colour, and `more`. tint receives what
  * is not grey. */
-static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, double more,
-                       double tint[3]) {
+static bool fold_scale(vlOldStatement *s, vlOldParam *color, double more, double tint[3]) {
   vlOldParam *scale = vl_old_find(s, "scale");
   double value = 1, rgb[3] = {1, 1, 1}, own[3];
   char text[32];
@@ -109,7 +107,7 @@ static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, do
   if (scale && !vl_old_is_grey(scale, &value)) {
     value = 1;
     if (!vl_old_is_color(scale, rgb)) {
-      vl_old_lose(file, s, "\"scale\": a spectrum has no counterpart: 1 is taken");
+      vl_old_lose(s, "\"scale\": a spectrum has no counterpart: 1 is taken");
     } else if (color && vl_old_is_color(color, own)) {
       for (int i = 0; i < 3; i++)
         own[i] *= rgb[i];
@@ -125,7 +123,7 @@ static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, do
   bool needed = (float)value != 1.0f;
   if (scale && needed && scale->count == 3 && more == 1) { /* the number as it is written */
     scale->new_type = "float";
-    vl_old_keep_first(file, scale);
+    vl_old_keep_first(s, scale);
     return true;
   }
   if (scale)
@@ -133,57 +131,57 @@ static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, do
   if (!needed)
     return true;
   vl_old_note(s, "scale %s", vl_old_text(value, text));
-  return vl_old_add(file, s, "\"float scale\" %s", vl_old_text(value, text));
+  return vl_old_add(s, "\"float scale\" %s", vl_old_text(value, text));
 }
 
 /* pbrt-v3's blackbody has a factor as its second number. */
-static double blackbody_scale(vlOldFile *file, vlOldParam *p) {
+static double blackbody_scale(const vlOldStatement *s, vlOldParam *p) {
   if (!p || !vl_text_is(p->type, "blackbody") || p->count != 2)
     return 1;
-  vl_old_keep_first(file, p);
+  vl_old_keep_first(s, p);
   return p->number[1];
 }
 
 /* ---- images ------------------------------------------------------------------------------ */
 
-static bool name_image(vlOldFile *file, vlOldStatement *s, vlOldParam *map, bool around,
+static bool name_image(vlOldStatement *s, vlOldParam *map, bool around,
                        const double factor[3]) {
   char name[4096];
   if (!map->strings)
     return true;
-  if (!(around ? vl_old_environment(file, s, map->text[0], factor, name, sizeof name)
-               : vl_old_file_name(file, s, map->text[0], name, sizeof name)))
+  if (!(around ? vl_old_environment(s, map->text[0], factor, name, sizeof name)
+               : vl_old_file_name(s, map->text[0], name, sizeof name)))
     return false;
   if (vl_text_is(name, map->text[0]))
     return true;
   vl_old_note(s, around ? "an equal-area map \"%s\"" : "filename is \"%s\"", name);
-  return vl_old_edit(file, map->span[0], "\"%s\"", name);
+  return vl_old_edit(s, map->span[0], "\"%s\"", name);
 }
 
 /* Its colour stays beside the image, which has numbers. */
-static bool goniometric_light(vlOldFile *file, vlOldStatement *s, vlOldParam *map) {
+static bool goniometric_light(vlOldStatement *s, vlOldParam *map) {
   vlOldParam *color = vl_old_find(s, "I");
   const double one[3] = {1, 1, 1};
-  double more = blackbody_scale(file, color), factor, tint[3];
-  if (!luminance(file, s, color, &factor) || !fold_scale(file, s, color, more * factor, tint))
+  double more = blackbody_scale(s, color), factor, tint[3];
+  if (!luminance(s, color, &factor) || !fold_scale(s, color, more * factor, tint))
     return false;
   if (tint[0] != tint[1] || tint[1] != tint[2])
-    vl_old_lose(file, s, "goniometric: a colour \"scale\" has no counterpart: left out");
-  return name_image(file, s, map, true, one);
+    vl_old_lose(s, "goniometric: a colour \"scale\" has no counterpart: left out");
+  return name_image(s, map, true, one);
 }
 
-static bool image_light(vlOldFile *file, vlOldStatement *s) {
+static bool image_light(vlOldStatement *s) {
   vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
   bool around = !vl_text_is(s->name[0], "projection");
   double more = 1, tint[3], rgb[3] = {1, 1, 1}, grey;
   if (!map || !map->strings || !map->text[0][0])
     return true;
   if (vl_text_is(s->name[0], "goniometric"))
-    return goniometric_light(file, s, map);
+    return goniometric_light(s, map);
   if (!color)
     color = vl_old_find(s, "I");
   if (color && !vl_old_is_color(color, rgb)) {
-    vl_old_lose(file, s, "\"%s\" is a spectrum beside an image: left out", color->name);
+    vl_old_lose(s, "\"%s\" is a spectrum beside an image: left out", color->name);
     color->dropped = true;
   } else if (color && vl_old_is_grey(color, &grey)) {
     more = grey;
@@ -196,39 +194,38 @@ static bool image_light(vlOldFile *file, vlOldStatement *s) {
     color->dropped = true;
     vl_old_note(s, "%s in the image", color->name);
   } else if (color) {
-    vl_old_lose(file, s, "projection: a colour \"I\" has no counterpart: left out");
+    vl_old_lose(s, "projection: a colour \"I\" has no counterpart: left out");
     color->dropped = true;
   }
-  if (!fold_scale(file, s, NULL, more, tint))
+  if (!fold_scale(s, NULL, more, tint))
     return false;
   for (int i = 0; i < 3; i++)
     tint[i] *= rgb[i];
   if (!around && (tint[0] != tint[1] || tint[1] != tint[2]))
-    vl_old_lose(file, s, "projection: a colour \"scale\" has no counterpart: left out");
-  return name_image(file, s, map, around, tint);
+    vl_old_lose(s, "projection: a colour \"scale\" has no counterpart: left out");
+  return name_image(s, map, around, tint);
 }
 
-static bool plain_light(vlOldFile *file, vlOldStatement *s) {
+static bool plain_light(vlOldStatement *s) {
   vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
   double more, factor, tint[3];
   if (!color)
     color = vl_old_find(s, "I");
   if (map && map->strings && map->text[0][0])
-    return image_light(file, s);
+    return image_light(s);
   if (map)
     map->dropped = true;
-  more = blackbody_scale(file, color);
-  if (!luminance(file, s, color, &factor) || !fold_scale(file, s, color, more * factor, tint))
+  more = blackbody_scale(s, color);
+  if (!luminance(s, color, &factor) || !fold_scale(s, color, more * factor, tint))
     return false;
   if (tint[0] == tint[1] && tint[1] == tint[2])
     return true;
   if (!color) {
     char text[VL_OLD_VALUE];
     bool intensity = vl_text_is(s->name[0], "point") || vl_text_is(s->name[0], "spot");
-    return vl_old_add(file, s, "\"rgb %s\" %s", intensity ? "I" : "L",
-                      vl_old_rgb_text(tint, text));
+    return vl_old_add(s, "\"rgb %s\" %s", intensity ? "I" : "L", vl_old_rgb_text(tint, text));
   }
-  vl_old_lose(file, s, "a colour \"scale\" of a spectrum has no counterpart: left out");
+  vl_old_lose(s, "a colour \"scale\" of a spectrum has no counterpart: left out");
   return true;
 }
 
@@ -241,23 +238,22 @@ static const vlOldKind kinds[] = {{"point", "point", point, plain_light},
                                   {"exinfinite", "infinite", infinite, plain_light},
                                   {0}};
 
-bool vl_old_light(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_light(vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
-    vl_old_lose(file, s, "light \"%s\" has no counterpart: left out", s->name[0]);
-    return vl_old_remove(file, s);
+    vl_old_lose(s, "light \"%s\" has no counterpart: left out", s->name[0]);
+    return vl_old_remove(s);
   }
-  return vl_old_become(file, s, kind);
+  return vl_old_become(s, kind);
 }
 
-bool vl_old_area_light(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_area_light(vlOldStatement *s) {
   bool diffuse = vl_text_is(s->name[0], "diffuse") || vl_text_is(s->name[0], "area");
   if (!s->name[0][0])
     return true;
   if (!diffuse) {
-    vl_old_lose(file, s, "area light \"%s\" has no counterpart: left out", s->name[0]);
-    return vl_old_remove(file, s);
+    vl_old_lose(s, "area light \"%s\" has no counterpart: left out", s->name[0]);
+    return vl_old_remove(s);
   }
-  return plain_light(file, s) && vl_old_rows(file, s, area) &&
-         vl_old_rename(file, s, 0, "diffuse");
+  return plain_light(s) && vl_old_rows(s, area) && vl_old_rename(s, 0, "diffuse");
 }

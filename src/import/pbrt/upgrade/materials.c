@@ -83,28 +83,28 @@ static const vlOldRow mix[] = {{"materials amount"}, {0}};
 /* ---- rules ------------------------------------------------------------------------------- */
 
 /* Oren and Nayar's roughness; zero has no effect. */
-static bool matte_rule(vlOldFile *file, vlOldStatement *s) {
+static bool matte_rule(vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "sigma");
   double value;
   if (!p)
     return true;
   if (!vl_old_is_grey(p, &value) || value != 0)
-    vl_old_lose(file, s, "matte's \"sigma\" has no counterpart: the surface is Lambertian");
+    vl_old_lose(s, "matte's \"sigma\" has no counterpart: the surface is Lambertian");
   p->dropped = true;
   return true;
 }
 
 /* Adds pbrt-v3's default roughness, `value`, along the directions that have none. */
-static bool add_roughness(vlOldFile *file, vlOldStatement *s, const char *value) {
+static bool add_roughness(vlOldStatement *s, const char *value) {
   if (vl_old_find(s, "roughness"))
     return true;
   bool u = vl_old_find(s, "uroughness"), v = vl_old_find(s, "vroughness");
   vl_old_note(s, "with roughness %s", value);
   if (!u && !v)
-    return vl_old_add(file, s, "\"float roughness\" %s", value);
+    return vl_old_add(s, "\"float roughness\" %s", value);
   if (u && v)
     return true;
-  return vl_old_add(file, s, u ? "\"float vroughness\" %s" : "\"float uroughness\" %s", value);
+  return vl_old_add(s, u ? "\"float vroughness\" %s" : "\"float uroughness\" %s", value);
 }
 
 static bool is_black(vlOldStatement *s, const char *name) {
@@ -114,7 +114,7 @@ static bool is_black(vlOldStatement *s, const char *name) {
 }
 
 /* Without its coat, plastic and substrate are diffuse. */
-static bool coat_rule(vlOldFile *file, vlOldStatement *s) {
+static bool coat_rule(vlOldStatement *s) {
   if (is_black(s, "Ks")) {
     static const char *const coat[] = {"Ks", "roughness", "uroughness", "vroughness",
                                        "remaproughness"};
@@ -122,21 +122,21 @@ static bool coat_rule(vlOldFile *file, vlOldStatement *s) {
       vl_old_drop(s, vl_old_find(s, coat[i]));
     return true;
   }
-  return add_roughness(file, s, "0.1");
+  return add_roughness(s, "0.1");
 }
 
-static bool substrate_rule(vlOldFile *file, vlOldStatement *s) {
-  if (!coat_rule(file, s) || vl_old_find(s, "Kd"))
+static bool substrate_rule(vlOldStatement *s) {
+  if (!coat_rule(s) || vl_old_find(s, "Kd"))
     return true;
-  return vl_old_add(file, s, "\"rgb reflectance\" [ 0.5 0.5 0.5 ]");
+  return vl_old_add(s, "\"rgb reflectance\" [ 0.5 0.5 0.5 ]");
 }
 
-static bool metal_rule(vlOldFile *file, vlOldStatement *s) {
-  return add_roughness(file, s, "0.01");
+static bool metal_rule(vlOldStatement *s) {
+  return add_roughness(s, "0.01");
 }
 
 /* pbrt-v4's dielectric is not tinted: Kr and Kt go, and are lost unless they are 1. */
-static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
+static bool glass_rule(vlOldStatement *s) {
   static const char *const names[] = {"Kr", "Kt"};
   for (int i = 0; i < 2; i++) {
     vlOldParam *p = vl_old_find(s, names[i]);
@@ -144,15 +144,14 @@ static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
     if (!p)
       continue;
     if (!vl_old_is_grey(p, &value) || value != 1)
-      vl_old_lose(file, s, "glass: \"%s\" has no counterpart: clear glass is written",
-                  names[i]);
+      vl_old_lose(s, "glass: \"%s\" has no counterpart: clear glass is written", names[i]);
     vl_old_drop(s, p);
   }
   vlOldParam *eta = vl_old_find(s, "eta");
   if (!eta)
     eta = vl_old_find(s, "index");
   if (eta && vl_old_is_texture(eta)) {
-    vl_old_lose(file, s, "glass: an \"eta\" of a texture has no counterpart: 1.5 is taken");
+    vl_old_lose(s, "glass: an \"eta\" of a texture has no counterpart: 1.5 is taken");
     vl_old_drop(s, eta);
   }
   return true;
@@ -160,10 +159,10 @@ static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
 
 /* pbrt-v3's path tracer renders subsurface scattering, pbrt-v4's does not. Reports it once, if
  * the integrator is written already and its name cannot be changed any more. */
-static void warn_of_path(vlOldFile *file, const vlOldStatement *s) {
-  vlUpgrade *u = file->u;
+static void warn_of_path(const vlOldStatement *s) {
+  vlUpgrade *u = s->u;
   if (u->plain_path && !u->subsurface)
-    vl_old_lose(file, s,
+    vl_old_lose(s,
                 "pbrt-v4's \"path\" does not render subsurface scattering: name \"volpath\" as "
                 "integrator");
   u->plain_path = false;
@@ -171,7 +170,7 @@ static void warn_of_path(vlOldFile *file, const vlOldStatement *s) {
 
 /* The name of a measured substance replaces sigma_a and sigma_s. Without it pbrt-v4 wants both
  * or neither: the one that is missing gets pbrt-v3's default. */
-static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
+static bool subsurface_rule(vlOldStatement *s) {
   vlOldParam *name = vl_old_find(s, "name"), *a = vl_old_find(s, "sigma_a"),
              *b = vl_old_find(s, "sigma_s");
   bool named = name && name->strings && name->text[0][0];
@@ -179,21 +178,20 @@ static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
     vl_old_drop(s, a);
     vl_old_drop(s, b);
   }
-  warn_of_path(file, s);
+  warn_of_path(s);
   if (named || !a == !b)
     return true;
   return vl_old_add(
-      file, s, "%s",
+      s, "%s",
       a ? "\"rgb sigma_s\" [ 2.55 3.21 3.77 ]" : "\"rgb sigma_a\" [ .0011 .0024 .014 ]");
 }
 
-static bool kdsubsurface_rule(vlOldFile *file, vlOldStatement *s) {
-  warn_of_path(file, s);
+static bool kdsubsurface_rule(vlOldStatement *s) {
+  warn_of_path(s);
   return true;
 }
 
-static bool none_rule(vlOldFile *file, vlOldStatement *s) {
-  (void)file;
+static bool none_rule(vlOldStatement *s) {
   for (size_t i = 0; i < s->params.count; i++)
     if (!vl_text_is(s->params.items[i].name, "type"))
       vl_old_drop(s, &s->params.items[i]);
@@ -250,22 +248,21 @@ static const char *new_kind(vlOldStatement *s, const vlOldKind *kind) {
 
 /* The kind of that name; an unknown one, which is reported, becomes grey diffuse. Null: the
  * name is pbrt-v4's own, and the statement stays as it is. */
-static const vlOldKind *find_kind(vlOldFile *file, vlOldStatement *s, const char *name) {
+static const vlOldKind *find_kind(vlOldStatement *s, const char *name) {
   const vlOldKind *kind = vl_old_kind(kinds, name);
   if (is_new(name, s))
     return NULL;
   if (kind)
     return kind;
   static const vlOldKind unknown = {"", "diffuse", NULL, none_rule};
-  vl_old_lose(file, s, "material \"%s\" is not one of pbrt-v3's: grey diffuse is written",
-              name);
+  vl_old_lose(s, "material \"%s\" is not one of pbrt-v3's: grey diffuse is written", name);
   return &unknown;
 }
 
-static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
+static bool rewrite(vlOldStatement *s, const vlOldKind *kind) {
   if (kind->lost)
-    vl_old_lose(file, s, "%s", kind->lost);
-  if (kind->rule && !kind->rule(file, s))
+    vl_old_lose(s, "%s", kind->lost);
+  if (kind->rule && !kind->rule(s))
     return false;
   const vlOldRow *rows = kind->rows;
   static const vlOldRow without_coat[] = {
@@ -275,29 +272,29 @@ static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
       {0}};
   if (!vl_text_is(new_kind(s, kind), kind->to))
     rows = without_coat;
-  return vl_old_rows(file, s, rows);
+  return vl_old_rows(s, rows);
 }
 
-bool vl_old_material(vlOldFile *file, vlOldStatement *s) {
-  const vlOldKind *kind = find_kind(file, s, s->name[0]);
+bool vl_old_material(vlOldStatement *s) {
+  const vlOldKind *kind = find_kind(s, s->name[0]);
   if (!kind)
     return true;
-  if (!rewrite(file, s, kind))
+  if (!rewrite(s, kind))
     return false;
-  return vl_old_rename(file, s, 0, new_kind(s, kind));
+  return vl_old_rename(s, 0, new_kind(s, kind));
 }
 
-bool vl_old_named_material(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_named_material(vlOldStatement *s) {
   vlOldParam *type = vl_old_find(s, "type");
   const char *name = type && type->strings ? type->text[0] : "matte"; /* pbrt-v3's default */
-  const vlOldKind *kind = find_kind(file, s, name);
+  const vlOldKind *kind = find_kind(s, name);
   if (!kind)
     return true;
-  if (!rewrite(file, s, kind))
+  if (!rewrite(s, kind))
     return false;
   const char *to = new_kind(s, kind);
   vl_old_note(s, "\"%s\" -> \"%s\"", name, to);
   if (!type)
-    return vl_old_add(file, s, "\"string type\" \"%s\"", to);
-  return vl_old_edit(file, type->span[0], "\"%s\"", to);
+    return vl_old_add(s, "\"string type\" \"%s\"", to);
+  return vl_old_edit(s, type->span[0], "\"%s\"", to);
 }

@@ -135,8 +135,8 @@ static void enter_or_leave(vlUpgrade *u, const vlOldStatement *s) {
   }
 }
 
-bool vl_old_names(vlOldFile *file, vlOldStatement *s) {
-  vlUpgrade *u = file->u;
+bool vl_old_names(vlOldStatement *s) {
+  vlUpgrade *u = s->u;
   Family family;
   if (is_word(s, "NamedMaterial"))
     refer(u, s, 0, MATERIAL);

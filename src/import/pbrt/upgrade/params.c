@@ -73,9 +73,9 @@ void vl_old_value(vlOldParam *p, const char *format, ...) {
   VL_FORMAT(p->new_value, format);
 }
 
-void vl_old_keep_first(const vlOldFile *file, vlOldParam *p) {
+void vl_old_keep_first(const vlOldStatement *s, vlOldParam *p) {
   const vlOldSpan first = p->span[0];
-  vl_old_value(p, "%.*s", (int)(first.end - first.start), file->text + first.start);
+  vl_old_value(p, "%.*s", (int)(first.end - first.start), s->file->text + first.start);
 }
 
 /* ---- types ------------------------------------------------------------------------------- */
@@ -102,14 +102,14 @@ static void set_rgb_of_xyz(vlOldParam *p) {
   vl_old_rgb_text(rgb, p->new_value);
 }
 
-static bool unquote_bools(vlOldFile *file, vlOldStatement *s, vlOldParam *p) {
+static bool unquote_bools(vlOldStatement *s, vlOldParam *p) {
   for (size_t i = 0; i < p->count && i < VL_OLD_FIRST; i++) {
     if (!p->text[i])
       continue;
     bool on = vl_text_is(p->text[i], "true");
     if (!on && !vl_text_is(p->text[i], "false"))
       continue;
-    if (!vl_old_edit(file, p->span[i], on ? "true" : "false"))
+    if (!vl_old_edit(s, p->span[i], on ? "true" : "false"))
       return false;
     if (!i)
       vl_old_note(s, "bool %s without quotes", p->name);
@@ -117,7 +117,7 @@ static bool unquote_bools(vlOldFile *file, vlOldStatement *s, vlOldParam *p) {
   return true;
 }
 
-bool vl_old_types(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_types(vlOldStatement *s) {
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
     for (size_t k = 0; k < VL_LENGTH(types); k++)
@@ -125,7 +125,7 @@ bool vl_old_types(vlOldFile *file, vlOldStatement *s) {
         p->new_type = types[k][1];
     if (vl_text_is(p->type, "xyz") && p->count == 3)
       set_rgb_of_xyz(p);
-    if (vl_text_is(p->type, "bool") && p->strings && !unquote_bools(file, s, p))
+    if (vl_text_is(p->type, "bool") && p->strings && !unquote_bools(s, p))
       return false;
     /* a spectrum of numbers is pairs of wavelength and value; a file's name is that of a file
      * or of a metal */
@@ -134,14 +134,14 @@ bool vl_old_types(vlOldFile *file, vlOldStatement *s) {
     char name[4096];
     if (!strchr(p->text[0], '.') && !strchr(p->text[0], '/'))
       continue;
-    if (!vl_old_file_name(file, s, p->text[0], name, sizeof name))
+    if (!vl_old_file_name(s, p->text[0], name, sizeof name))
       return false;
     if (p->count > 1)
-      vl_old_lose(file, s, "\"%s\" names several files: the first is kept", p->name);
+      vl_old_lose(s, "\"%s\" names several files: the first is kept", p->name);
     if (vl_text_is(name, p->text[0]) && p->count == 1)
       continue;
     vl_old_note(s, "%s is \"%s\"", p->name, name);
-    if (!vl_old_edit(file, p->value, "\"%s\"", name))
+    if (!vl_old_edit(s, p->value, "\"%s\"", name))
       return false;
   }
   return true;
@@ -153,7 +153,7 @@ static bool is_open(const vlOldParam *p) {
   return !p->dropped && p->new_name == p->name;
 }
 
-static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool *known) {
+static bool apply(vlOldStatement *s, const vlOldRow *row, bool *known) {
   bool found = false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
@@ -175,7 +175,7 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
         break;
       case VL_OLD_LOSE:
         p->dropped = true;
-        vl_old_lose(file, s, "%s \"%s\": \"%s\" has no counterpart%s%s", s->word->name,
+        vl_old_lose(s, "%s \"%s\": \"%s\" has no counterpart%s%s", s->word->name,
                     s->name_count ? s->name[s->name_count - 1] : "", p->name,
                     row->to ? ": " : "", row->to ? row->to : "");
         break;
@@ -185,27 +185,27 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
     return true;
   bool shared = s->word->rule == vl_old_filter ||
                 s->word->rule == vl_old_light; /* kinds that both pbrts have */
-  if (shared && !file->u->is_old)
+  if (shared && !s->u->is_old)
     return true;
   vl_old_note(s, "with %s", row->to);
-  return vl_old_add(file, s, "%s", row->to);
+  return vl_old_add(s, "%s", row->to);
 }
 
-bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows) {
+bool vl_old_rows(vlOldStatement *s, const vlOldRow *rows) {
   enum { MAX_PARAMETERS = 64 };
   bool known[MAX_PARAMETERS] = {false};
   if (s->params.count > MAX_PARAMETERS)
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "too many parameters");
+    return vl_old_wrong(s, "too many parameters");
   for (const vlOldRow *row = rows; row && row->name; row++)
-    if (!apply(file, s, row, known))
+    if (!apply(s, row, known))
       return false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
     if (known[i] || !is_open(p) || vl_text_is(p->name, "type"))
       continue;
     p->dropped = true;
-    vl_old_lose(file, s, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out",
-                s->word->name, s->name_count ? s->name[s->name_count - 1] : "", p->name);
+    vl_old_lose(s, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out", s->word->name,
+                s->name_count ? s->name[s->name_count - 1] : "", p->name);
   }
   return true;
 }
@@ -217,9 +217,9 @@ const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name) {
   return NULL;
 }
 
-bool vl_old_become(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
+bool vl_old_become(vlOldStatement *s, const vlOldKind *kind) {
   if (kind->lost)
-    vl_old_lose(file, s, "%s", kind->lost);
-  return (!kind->rule || kind->rule(file, s)) && vl_old_rows(file, s, kind->rows) &&
-         vl_old_rename(file, s, 0, kind->to);
+    vl_old_lose(s, "%s", kind->lost);
+  return (!kind->rule || kind->rule(s)) && vl_old_rows(s, kind->rows) &&
+         vl_old_rename(s, 0, kind->to);
 }

@@ -80,18 +80,17 @@ static bool write_grid(vlContext *context, const Grid *g, Text *text) {
   return fine && put(context, text, " ]", 0, 0, 0);
 }
 
-static bool read_heights(vlOldFile *file, vlOldStatement *s, Grid *g) {
+static bool read_heights(vlOldStatement *s, Grid *g) {
   const vlOldParam *p = vl_old_find(s, "Pz");
   double nu = vl_old_number(s, "nu", 0), nv = vl_old_number(s, "nv", 0);
   if (!p || !(nu >= 2) || !(nv >= 2) || nu * nv != (double)p->count || p->count > MAX_HEIGHTS)
-    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column,
-                       "heightfield: \"Pz\" must hold nu * nv numbers");
+    return vl_old_wrong(s, "heightfield: \"Pz\" must hold nu * nv numbers");
   g->nu = (uint32_t)nu;
   g->nv = (uint32_t)nv;
-  g->z_values = vl_alloc_array(file->u->context, p->count, sizeof *g->z_values);
+  g->z_values = vl_alloc_array(s->u->context, p->count, sizeof *g->z_values);
   if (!g->z_values)
-    return vl_old_fail_memory(file->u);
-  const char *at = file->text + p->value.start, *end = file->text + p->value.end;
+    return vl_old_fail_memory(s->u);
+  const char *at = s->file->text + p->value.start, *end = s->file->text + p->value.end;
   size_t n = 0;
   while (at < end && n < p->count) {
     if (*at == '#')
@@ -101,8 +100,7 @@ static bool read_heights(vlOldFile *file, vlOldStatement *s, Grid *g) {
     else
       n++;
   }
-  return n == p->count || vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column,
-                                      "heightfield: \"Pz\" holds no number");
+  return n == p->count || vl_old_wrong(s, "heightfield: \"Pz\" holds no number");
 }
 
 static void read_point(vlOldStatement *s, const char *name, double p[3]) {
@@ -111,9 +109,9 @@ static void read_point(vlOldStatement *s, const char *name, double p[3]) {
     memcpy(p, given->number, 3 * sizeof *p);
 }
 
-bool vl_old_mesh_of_shape(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_mesh_of_shape(vlOldStatement *s) {
   static const char *const names[] = {"cone", "paraboloid", "hyperboloid", "heightfield"};
-  vlContext *context = file->u->context;
+  vlContext *context = s->u->context;
   Grid g = {.nu = AROUND + 1,
             .nv = ALONG + 1,
             .radius = vl_old_number(s, "radius", 1),
@@ -125,22 +123,21 @@ bool vl_old_mesh_of_shape(vlOldFile *file, vlOldStatement *s) {
   g.z[1] = g.kind == 1 ? vl_old_number(s, "zmax", 1) : vl_old_number(s, "height", 1);
   read_point(s, "p1", g.p1);
   read_point(s, "p2", g.p2);
-  if (g.kind == 3 && !read_heights(file, s, &g)) {
+  if (g.kind == 3 && !read_heights(s, &g)) {
     vl_free(context, g.z_values);
     return false;
   }
   Text text = {0};
-  bool fine = write_grid(context, &g, &text) || vl_old_fail_memory(file->u);
+  bool fine = write_grid(context, &g, &text) || vl_old_fail_memory(s->u);
   vl_free(context, g.z_values);
   if (fine && g.kind < 3)
-    vl_old_lose(file, s, "shape \"%s\" has no counterpart: %u triangles are written",
-                s->name[0], 2 * (g.nu - 1) * (g.nv - 1));
+    vl_old_lose(s, "shape \"%s\" has no counterpart: %u triangles are written", s->name[0],
+                2 * (g.nu - 1) * (g.nv - 1));
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
     p->dropped = !vl_text_is(p->name, "alpha");
   }
-  fine =
-      fine && vl_old_edit(file, (vlOldSpan){s->whole.end, s->whole.end}, "\n  %s", text.items);
+  fine = fine && vl_old_edit(s, (vlOldSpan){s->whole.end, s->whole.end}, "\n  %s", text.items);
   VL_ARRAY_FREE(context, &text);
   return fine;
 }

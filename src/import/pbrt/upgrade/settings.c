@@ -24,10 +24,9 @@ static const vlOldRow realistic[] = {{"lensfile aperturediameter focusdistance a
                                      SHUTTER,
                                      {0}};
 
-static bool half_fov(vlOldFile *file, vlOldStatement *s) {
+static bool half_fov(vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "halffov");
   char text[32];
-  (void)file;
   if (!p || p->count < 1)
     return true;
   if (vl_old_find(s, "fov")) {
@@ -39,14 +38,14 @@ static bool half_fov(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-static bool lens_file(vlOldFile *file, vlOldStatement *s) {
+static bool lens_file(vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "lensfile");
   char name[4096];
   if (!p || !p->strings)
     return true;
-  if (!vl_old_file_name(file, s, p->text[0], name, sizeof name))
+  if (!vl_old_file_name(s, p->text[0], name, sizeof name))
     return false;
-  return vl_text_is(name, p->text[0]) || vl_old_edit(file, p->span[0], "\"%s\"", name);
+  return vl_text_is(name, p->text[0]) || vl_old_edit(s, p->span[0], "\"%s\"", name);
 }
 
 static const vlOldKind cameras[] = {{"perspective", "perspective", perspective, half_fov},
@@ -56,25 +55,24 @@ static const vlOldKind cameras[] = {{"perspective", "perspective", perspective, 
                                     {0}};
 
 /* Replaces kind and parameters by the table. Unknown kinds become `otherwise`. */
-static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kinds,
-                    const char *otherwise) {
+static bool rewrite(vlOldStatement *s, const vlOldKind *kinds, const char *otherwise) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
-    vl_old_lose(file, s, "%s \"%s\" has no counterpart: \"%s\" is written", s->word->name,
-                s->name[0], otherwise);
+    vl_old_lose(s, "%s \"%s\" has no counterpart: \"%s\" is written", s->word->name, s->name[0],
+                otherwise);
     for (size_t i = 0; i < s->params.count; i++)
       s->params.items[i].dropped = true;
-    return vl_old_rename(file, s, 0, otherwise);
+    return vl_old_rename(s, 0, otherwise);
   }
-  return vl_old_become(file, s, kind);
+  return vl_old_become(s, kind);
 }
 
 /* In pbrt-v4 the image is as much brighter as the shutter is open longer. */
-bool vl_old_camera(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_camera(vlOldStatement *s) {
   double open = vl_old_number(s, "shutteropen", 0), close = vl_old_number(s, "shutterclose", 1);
   if (close > open)
-    file->u->exposure = 1 / (close - open);
-  return rewrite(file, s, cameras, "perspective");
+    s->u->exposure = 1 / (close - open);
+  return rewrite(s, cameras, "perspective");
 }
 
 /* ---- film -------------------------------------------------------------------------------- */
@@ -88,18 +86,18 @@ static const vlOldRow film[] = {{"xresolution yresolution"},
                                 {0}};
 static const vlOldKind films[] = {{"image", "rgb", film}, {0}};
 
-bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_film(vlOldStatement *s) {
   if (vl_has_word("rgb gbuffer spectral", s->name[0]))
     return true;
   vlOldParam *scale = vl_old_find(s, "scale");
-  vlUpgrade *u = file->u;
+  vlUpgrade *u = s->u;
   if (scale && scale->count == 1)
     u->iso = 100 * scale->number[0];
   if (scale)
     vl_old_drop(s, scale);
-  u->film_file = file;
+  u->film_file = s->file;
   u->film_end = s->whole.end;
-  return rewrite(file, s, films, "rgb");
+  return rewrite(s, films, "rgb");
 }
 
 /* ---- sampler, filter, accelerator -------------------------------------------------------- */
@@ -130,8 +128,8 @@ static const vlOldKind samplers[] = {{"halton", "halton", sampler},
                                      {"pmj02bn", "pmj02bn", sampler},
                                      {0}};
 
-bool vl_old_sampler(vlOldFile *file, vlOldStatement *s) {
-  return rewrite(file, s, samplers, "zsobol");
+bool vl_old_sampler(vlOldStatement *s) {
+  return rewrite(s, samplers, "zsobol");
 }
 
 #define RADIUS                                                                  \
@@ -148,10 +146,9 @@ static const vlOldRow mitchell[] = {RADIUS, {"B C"}, {0}};
 static const vlOldRow sinc[] = {RADIUS, {"tau"}, {0}};
 
 /* exp(-alpha x^2) is a Gaussian of the variance 1 / (2 alpha). */
-static bool gaussian_rule(vlOldFile *file, vlOldStatement *s) {
+static bool gaussian_rule(vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "alpha");
   char text[32];
-  (void)file;
   if (!p || p->count != 1 || !(p->number[0] > 0))
     return true;
   p->new_name = "sigma";
@@ -166,9 +163,9 @@ static const vlOldKind filters[] = {{"box", "box", plain_filter},
                                     {"sinc", "sinc", sinc},
                                     {0}};
 
-bool vl_old_filter(vlOldFile *file, vlOldStatement *s) {
-  file->u->filter_given = true;
-  return rewrite(file, s, filters, "gaussian");
+bool vl_old_filter(vlOldStatement *s) {
+  s->u->filter_given = true;
+  return rewrite(s, filters, "gaussian");
 }
 
 static const vlOldRow bvh[] = {{"maxnodeprims splitmethod"}, {0}};
@@ -177,8 +174,8 @@ static const vlOldRow kdtree[] = {{"intersectcost traversalcost emptybonus maxpr
 static const vlOldKind accelerators[] = {
     {"bvh", "bvh", bvh}, {"kdtree", "kdtree", kdtree}, {"none", "bvh"}, {0}};
 
-bool vl_old_accelerator(vlOldFile *file, vlOldStatement *s) {
-  return rewrite(file, s, accelerators, "bvh");
+bool vl_old_accelerator(vlOldStatement *s) {
+  return rewrite(s, accelerators, "bvh");
 }
 
 /* ---- integrator -------------------------------------------------------------------------- */
@@ -207,12 +204,12 @@ static const vlOldRow ao[] = {
 static const vlOldRow direct[] = {{"maxdepth"}, {"strategy", VL_OLD_DROP}, BOUNDS, {0}};
 
 /* pbrt-v3's spatial sampler is nearest to that of the light tree. */
-static bool light_sampler(vlOldFile *file, vlOldStatement *s) {
+static bool light_sampler(vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "lightsamplestrategy");
   if (!p || !p->strings || !vl_text_is(p->text[0], "spatial"))
     return true;
   vl_old_note(s, "spatial -> bvh");
-  return vl_old_edit(file, p->span[0], "\"bvh\"");
+  return vl_old_edit(s, p->span[0], "\"bvh\"");
 }
 
 static const char whole_path[] =
@@ -230,23 +227,23 @@ static const vlOldKind integrators[] = {{"path", "path", path, light_sampler},
                                         {"ambientocclusion", "ambientocclusion", ao},
                                         {0}};
 
-bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_integrator(vlOldStatement *s) {
   bool older = vl_text_is(s->word->name, "SurfaceIntegrator");
   if (older)
     vl_old_note(s, "-> Integrator");
-  if (older && !vl_old_edit(file, s->keyword, "Integrator"))
+  if (older && !vl_old_edit(s, s->keyword, "Integrator"))
     return false;
   /* pbrt-v3's path renders subsurface scattering, pbrt-v4's does not */
   const vlOldKind *kind = vl_old_kind(integrators, s->name[0]);
   bool path_tracer = !kind || vl_text_is(kind->to, "path");
-  if (path_tracer && file->u->subsurface) {
+  if (path_tracer && s->u->subsurface) {
     vlOldKind through = kind ? *kind : integrators[0];
     through.to = "volpath";
     vlOldKind table[2] = {through, {0}};
-    return rewrite(file, s, table, "volpath");
+    return rewrite(s, table, "volpath");
   }
-  file->u->plain_path = path_tracer;
-  return rewrite(file, s, integrators, "path");
+  s->u->plain_path = path_tracer;
+  return rewrite(s, integrators, "path");
 }
 
 /* ---- media ------------------------------------------------------------------------------- */
@@ -258,39 +255,39 @@ static const vlOldRow grid[] = {SUBSTANCE, {"density nx ny nz p0 p1"}, {0}};
 static const vlOldKind media[] = {
     {"homogeneous", "homogeneous", homogeneous}, {"heterogeneous", "uniformgrid", grid}, {0}};
 
-bool vl_old_medium(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_medium(vlOldStatement *s) {
   vlOldParam *type = vl_old_find(s, "type");
   const vlOldKind *kind = type && type->strings ? vl_old_kind(media, type->text[0]) : NULL;
   if (!kind)
     return true; /* pbrt-v4's own */
-  if (!vl_old_rows(file, s, kind->rows))
+  if (!vl_old_rows(s, kind->rows))
     return false;
   if (vl_text_is(kind->from, kind->to))
     return true;
   vl_old_note(s, "\"%s\" -> \"%s\"", kind->from, kind->to);
-  return vl_old_edit(file, type->span[0], "\"%s\"", kind->to);
+  return vl_old_edit(s, type->span[0], "\"%s\"", kind->to);
 }
 
 /* ---- WorldBegin -------------------------------------------------------------------------- */
 
-bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
-  file->u->has_world = true;
-  vlUpgrade *u = file->u;
+bool vl_old_world(vlOldStatement *s) {
+  s->u->has_world = true;
+  vlUpgrade *u = s->u;
   char text[32];
   double iso = u->iso * u->exposure;
   if (!u->filter_given && u->is_old) {
     vl_old_note(s, "PixelFilter \"box\", pbrt-v3's default, before it");
-    if (!vl_old_insert(file, s, VL_OLD_BEFORE, "PixelFilter \"box\""))
+    if (!vl_old_insert(s, VL_OLD_BEFORE, "PixelFilter \"box\""))
       return false;
   }
   if (iso == 100)
     return true;
-  if (u->film_file != file) {
-    vl_old_lose(file, s, "the film's \"iso\" must be %s, for its scale and the shutter's time",
+  if (u->film_file != s->file) {
+    vl_old_lose(s, "the film's \"iso\" must be %s, for its scale and the shutter's time",
                 vl_old_text(iso, text));
     return true;
   }
   vl_old_note(s, "the film's iso is %s", vl_old_text(iso, text));
-  return vl_old_edit(file, (vlOldSpan){u->film_end, u->film_end}, " \"float iso\" %s",
+  return vl_old_edit(s, (vlOldSpan){u->film_end, u->film_end}, " \"float iso\" %s",
                      vl_old_text(iso, text));
 }

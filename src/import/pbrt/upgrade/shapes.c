@@ -18,9 +18,8 @@ static const vlOldRow curve[] = {
     {"P N type basis degree width width0 width1 splitdepth"}, ALPHA, {0}};
 
 /* uvs were lists of numbers. */
-static bool mesh_rule(vlOldFile *file, vlOldStatement *s) {
+static bool mesh_rule(vlOldStatement *s) {
   static const char *const names[] = {"uv", "st"};
-  (void)file;
   for (int i = 0; i < 2; i++) {
     vlOldParam *p = vl_old_find(s, names[i]);
     if (p)
@@ -29,8 +28,8 @@ static bool mesh_rule(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-static bool ply_rule(vlOldFile *file, vlOldStatement *s) {
-  return vl_old_write_file_name(file, s, vl_old_find(s, "filename"));
+static bool ply_rule(vlOldStatement *s) {
+  return vl_old_write_file_name(s, vl_old_find(s, "filename"));
 }
 
 static const vlOldKind kinds[] = {{"sphere", "sphere", sphere},
@@ -47,14 +46,13 @@ static const vlOldKind kinds[] = {{"sphere", "sphere", sphere},
                                   {"bilinearmesh", "bilinearmesh"},
                                   {0}};
 
-bool vl_old_shape(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_shape(vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
-    vl_old_lose(file, s, "shape \"%s\" has no counterpart: left out%s", s->name[0],
+    vl_old_lose(s, "shape \"%s\" has no counterpart: left out%s", s->name[0],
                 vl_text_is(s->name[0], "nurbs") ? " (convert it to a mesh)" : "");
-    return vl_old_remove(file, s);
+    return vl_old_remove(s);
   }
-  return (!kind->rule || kind->rule(file, s)) &&
-         (!kind->rows || vl_old_rows(file, s, kind->rows)) &&
-         vl_old_rename(file, s, 0, kind->to);
+  return (!kind->rule || kind->rule(s)) && (!kind->rows || vl_old_rows(s, kind->rows)) &&
+         vl_old_rename(s, 0, kind->to);
 }

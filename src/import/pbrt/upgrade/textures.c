@@ -48,16 +48,16 @@ static bool one_number(const vlOldParam *p, double *value) {
 }
 
 /* Makes the parameter the float `scale`; of a grey colour the first of its three numbers. */
-static void set_scale(vlOldFile *file, vlOldParam *p) {
+static void set_scale(const vlOldStatement *s, vlOldParam *p) {
   p->new_name = "scale";
   p->new_type = "float";
   if (p->count != 3)
     return;
-  vl_old_keep_first(file, p);
+  vl_old_keep_first(s, p);
 }
 
 /* pbrt-v3 multiplies two textures of one type, pbrt-v4 a texture by numbers. */
-static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
+static bool scale_rule(vlOldStatement *s) {
   vlOldParam *a = vl_old_find(s, "tex1"), *b = vl_old_find(s, "tex2");
   double value, rgb[3];
   char text[32];
@@ -76,38 +76,35 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
     b = t;
   }
   if (b && one_number(b, &value)) {
-    set_scale(file, b);
+    set_scale(s, b);
   } else if (b && vl_old_is_texture(b)) {
-    if (a && vl_old_is_texture(a) && is_noise(file->u, a->text[0])) {
+    if (a && vl_old_is_texture(a) && is_noise(s->u, a->text[0])) {
       vlOldParam *t = a;
       a = b;
       b = t;
     }
-    const char *copy = vl_old_float_copy(file, s, b->text[0]);
-    if (file->u->result != VL_OK)
+    const char *copy = vl_old_float_copy(s, b->text[0]);
+    if (s->u->result != VL_OK)
       return false;
     if (copy) {
-      if (!is_noise(file->u, b->text[0]))
-        vl_old_lose(file, s,
+      if (!is_noise(s->u, b->text[0]))
+        vl_old_lose(s,
                     "a product of two colour textures has no counterpart: \"%s\" becomes one "
                     "of numbers",
                     b->text[0]);
       b->new_name = "scale";
       vl_old_value(b, "\"%.150s\"", copy);
     } else {
-      vl_old_lose(file, s,
-                  "a product of two colour textures has no counterpart: \"%s\" is left out",
+      vl_old_lose(s, "a product of two colour textures has no counterpart: \"%s\" is left out",
                   b->text[0]);
       b->dropped = true;
     }
   } else if (b && vl_old_is_color(b, rgb)) {
-    vl_old_lose(file, s,
-                "a texture times a colour has no counterpart: the colour's mean is taken");
-    set_scale(file, b);
+    vl_old_lose(s, "a texture times a colour has no counterpart: the colour's mean is taken");
+    set_scale(s, b);
     vl_old_value(b, "%s", vl_old_text((rgb[0] + rgb[1] + rgb[2]) / 3, text));
   } else if (b) {
-    vl_old_lose(file, s,
-                "a texture times a spectrum has no counterpart: the texture alone is taken");
+    vl_old_lose(s, "a texture times a spectrum has no counterpart: the texture alone is taken");
     b->dropped = true;
   }
   if (a)
@@ -118,40 +115,40 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
 /* ---- others ------------------------------------------------------------------------------ */
 
 /* The value of a bool, which old files have as a word or in quotation marks. */
-static bool is_true(const vlOldFile *file, const vlOldParam *p) {
-  return p->text[0] ? vl_text_is(p->text[0], "true") : file->text[p->span[0].start] == 't';
+static bool is_true(const vlOldStatement *s, const vlOldParam *p) {
+  return p->text[0] ? vl_text_is(p->text[0], "true") : s->file->text[p->span[0].start] == 't';
 }
 
 /* A flag of the filter becomes the filter's name; gamma, a number or a flag for sRGB, an
  * encoding. */
-static bool image_rule(vlOldFile *file, vlOldStatement *s) {
+static bool image_rule(vlOldStatement *s) {
   vlOldParam *trilinear = vl_old_find(s, "trilinear"), *gamma = vl_old_find(s, "gamma"),
              *name = vl_old_find(s, "filename");
   if (trilinear) {
-    bool on = is_true(file, trilinear);
+    bool on = is_true(s, trilinear);
     vl_old_drop(s, trilinear);
-    if (on && !vl_old_add(file, s, "\"string filter\" \"trilinear\""))
+    if (on && !vl_old_add(s, "\"string filter\" \"trilinear\""))
       return false;
   }
   if (gamma && vl_text_is(gamma->type, "bool")) {
-    bool on = is_true(file, gamma);
+    bool on = is_true(s, gamma);
     vl_old_drop(s, gamma);
-    if (!vl_old_add(file, s, "\"string encoding\" \"%s\"", on ? "sRGB" : "linear"))
+    if (!vl_old_add(s, "\"string encoding\" \"%s\"", on ? "sRGB" : "linear"))
       return false;
   } else if (gamma) {
     char text[32];
     vl_old_drop(s, gamma);
-    if (!(gamma->number[0] == 1 ? vl_old_add(file, s, "\"string encoding\" \"linear\"")
-                                : vl_old_add(file, s, "\"string encoding\" \"gamma %s\"",
+    if (!(gamma->number[0] == 1 ? vl_old_add(s, "\"string encoding\" \"linear\"")
+                                : vl_old_add(s, "\"string encoding\" \"gamma %s\"",
                                              vl_old_text(gamma->number[0], text))))
       return false;
   }
-  return vl_old_write_file_name(file, s, name);
+  return vl_old_write_file_name(s, name);
 }
 
 /* Red is u, green v: the corners of a bilinear interpolation. */
-static bool uv_rule(vlOldFile *file, vlOldStatement *s) {
-  return vl_old_add(file, s,
+static bool uv_rule(vlOldStatement *s) {
+  return vl_old_add(s,
                     "\"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb v10\" [ 1 0 0 ] \"rgb "
                     "v11\" [ 1 1 0 ]");
 }
@@ -167,19 +164,19 @@ static bool keep_noise(vlUpgrade *u, const char *name, const char *copy) {
 }
 
 /* pbrt-v4's noise is of numbers: a mix of black and white by it is the colour texture. */
-static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
+static bool noise_rule(vlOldStatement *s) {
   if (!is_spectrum(s))
     return true;
   char name[300];
   snprintf(name, sizeof name, "%.200s-float", s->name[0]);
   vl_old_note(s, "a mix by the float texture \"%s\"", name);
-  if (!keep_noise(file->u, s->name[0], name))
+  if (!keep_noise(s->u, s->name[0], name))
     return false;
   s->name[1] = "float";
   s->renamed = 0; /* its name is written here */
-  return vl_old_edit(file, s->names[0], "\"%s\"", name) &&
-         vl_old_edit(file, s->names[1], "\"float\"") &&
-         vl_old_insert(file, s, VL_OLD_AFTER,
+  return vl_old_edit(s, s->names[0], "\"%s\"", name) &&
+         vl_old_edit(s, s->names[1], "\"float\"") &&
+         vl_old_insert(s, VL_OLD_AFTER,
                        "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb "
                        "tex2\" [ 1 1 1 ] \"texture amount\" \"%s\"",
                        s->name[0], name);
@@ -187,13 +184,13 @@ static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
 
 /* pbrt-v4's marble is of colours. pbrt-v3 accepts a marble of numbers, but makes no texture of
  * it. */
-static bool marble_rule(vlOldFile *file, vlOldStatement *s) {
+static bool marble_rule(vlOldStatement *s) {
   if (is_spectrum(s))
     return true;
-  vl_old_lose(file, s, "marble of numbers has no counterpart: the constant 1 replaces it");
+  vl_old_lose(s, "marble of numbers has no counterpart: the constant 1 replaces it");
   for (size_t i = 0; i < s->params.count; i++)
     vl_old_drop(s, &s->params.items[i]);
-  return vl_old_edit(file, s->names[2], "\"constant\"");
+  return vl_old_edit(s, s->names[2], "\"constant\"");
 }
 
 /* The share of a mix is a number in both; as a texture it is a float texture in both. */
@@ -215,8 +212,8 @@ static const vlOldKind kinds[] = {
 
 /* ---- float copies ------------------------------------------------------------------------ */
 
-const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture) {
-  vlUpgrade *u = file->u;
+const char *vl_old_float_copy(vlOldStatement *s, const char *texture) {
+  vlUpgrade *u = s->u;
   vlOldTexture *t = find_texture(u, texture);
   if (!t)
     return NULL;
@@ -229,17 +226,16 @@ const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *te
     vl_old_fail_memory(u);
     return NULL;
   }
-  return vl_old_insert(file, s, VL_OLD_BEFORE, "Texture \"%s\" \"float\" %s", name, t->text)
-             ? t->copy
-             : NULL;
+  return vl_old_insert(s, VL_OLD_BEFORE, "Texture \"%s\" \"float\" %s", name, t->text) ? t->copy
+                                                                                       : NULL;
 }
 
 /* Keeps what follows name and type of an image texture in the new text. */
-static bool keep(vlOldFile *file, const vlOldStatement *s) {
-  vlUpgrade *u = file->u;
+static bool keep(const vlOldStatement *s) {
+  vlUpgrade *u = s->u;
   if (!vl_text_is(s->name[2], "imagemap") || !is_spectrum(s))
     return true;
-  char *text = vl_old_render(file, (vlOldSpan){s->names[2].start, s->whole.end});
+  char *text = vl_old_render(s->file, (vlOldSpan){s->names[2].start, s->whole.end});
   vlOldTexture *t = text ? VL_PUSH(u->context, &u->textures) : NULL;
   if (!t) {
     vl_free(u->context, text);
@@ -249,14 +245,14 @@ static bool keep(vlOldFile *file, const vlOldStatement *s) {
   return t->name || vl_old_fail_memory(u);
 }
 
-bool vl_old_texture(vlOldFile *file, vlOldStatement *s) {
+bool vl_old_texture(vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[2]);
   if (kind && kind->lost)
-    vl_old_lose(file, s, "%s", kind->lost);
-  if (kind && kind->rule && !kind->rule(file, s))
+    vl_old_lose(s, "%s", kind->lost);
+  if (kind && kind->rule && !kind->rule(s))
     return false;
-  if (vl_text_is(s->name[1], "color") && !vl_old_rename(file, s, 1, "spectrum"))
+  if (vl_text_is(s->name[1], "color") && !vl_old_rename(s, 1, "spectrum"))
     return false;
-  return !kind || (vl_old_rows(file, s, kind->rows) && vl_old_rename(file, s, 2, kind->to) &&
-                   vl_old_finish(file, s) && keep(file, s));
+  return !kind || (vl_old_rows(s, kind->rows) && vl_old_rename(s, 2, kind->to) &&
+                   vl_old_finish(s) && keep(s));
 }

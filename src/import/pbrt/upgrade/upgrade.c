@@ -19,26 +19,25 @@
 
 /* ---- directives without a table ---------------------------------------------------------- */
 
-static bool remove_it(vlOldFile *file, vlOldStatement *s) {
+static bool remove_it(vlOldStatement *s) {
   vl_old_note(s, "left out");
-  return vl_old_finish(file, s) && vl_old_remove(file, s);
+  return vl_old_finish(s) && vl_old_remove(s);
 }
 
-static bool lose_it(vlOldFile *file, vlOldStatement *s) {
-  vl_old_lose(file, s, "%s has no counterpart: left out", s->word->name);
-  return vl_old_remove(file, s);
+static bool lose_it(vlOldStatement *s) {
+  vl_old_lose(s, "%s has no counterpart: left out", s->word->name);
+  return vl_old_remove(s);
 }
 
 /* Numbers without brackets, those of a matrix in brackets. */
-static bool bracket(vlOldFile *file, vlOldStatement *s) {
+static bool bracket(vlOldStatement *s) {
   bool has = s->numbers[0].end > s->numbers[0].start, wanted = s->word->form == VL_OLD_MATRIX;
   if (has == wanted)
     return true;
   if (wanted)
-    return vl_old_edit(file, (vlOldSpan){s->keyword.end, s->keyword.end}, " [") &&
-           vl_old_edit(file, (vlOldSpan){s->whole.end, s->whole.end}, " ]");
-  return vl_old_edit(file, s->numbers[0], "%s", "") &&
-         vl_old_edit(file, s->numbers[1], "%s", "");
+    return vl_old_edit(s, (vlOldSpan){s->keyword.end, s->keyword.end}, " [") &&
+           vl_old_edit(s, (vlOldSpan){s->whole.end, s->whole.end}, " ]");
+  return vl_old_edit(s, s->numbers[0], "%s", "") && vl_old_edit(s, s->numbers[1], "%s", "");
 }
 
 const vlOldWord vl_old_words[] = {
@@ -98,15 +97,14 @@ static bool read_all(vlOldFile *file) {
     vlOldStatement s;
     bool fine = vl_old_read(file, &tokens, &s, &end);
     if (fine && !end) {
-      fine =
-          (s.word->form != VL_OLD_PARAMS || vl_old_types(file, &s)) && vl_old_names(file, &s);
+      fine = (s.word->form != VL_OLD_PARAMS || vl_old_types(&s)) && vl_old_names(&s);
       if (fine && s.word->rule)
-        fine = s.word->rule(file, &s);
-      fine = fine && vl_old_finish(file, &s);
+        fine = s.word->rule(&s);
+      fine = fine && vl_old_finish(&s);
       if (fine)
-        vl_old_block_sets(file, &s);
+        vl_old_block_sets(&s);
     }
-    vl_old_free(file, &s);
+    vl_old_free(&s);
     if (!fine)
       return false;
   }

@@ -34,6 +34,8 @@ typedef struct vlOldParam {
 typedef struct vlOldWord vlOldWord;
 
 typedef struct vlOldStatement {
+  struct vlUpgrade *u;
+  struct vlOldFile *file; /* that has it */
   const vlOldWord *word;
   vlOldSpan keyword, whole;
   uint32_t line, column;
@@ -143,7 +145,7 @@ typedef enum vlOldForm {
   VL_OLD_PARAMS   /* names and parameters */
 } vlOldForm;
 
-typedef bool vlOldRule(vlOldFile *file, vlOldStatement *s);
+typedef bool vlOldRule(vlOldStatement *s);
 
 struct vlOldWord {
   const char *name;
@@ -156,36 +158,39 @@ extern const vlOldWord vl_old_words[]; /* ends with a null name (upgrade.c) */
 typedef struct vlTokenizer vlTokenizer;
 /* Reads the next statement. *end: there is none. False after an error. */
 bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *end);
-void vl_old_free(vlOldFile *file, vlOldStatement *s);
+void vl_old_free(vlOldStatement *s);
 
 /* ---- edits and reports (edit.c) ---------------------------------------------------------- */
 
 bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column,
                  const char *format, ...) __attribute__((format(printf, 5, 6)));
+/* The same at the statement: the scene is wrong. */
+bool vl_old_wrong(const vlOldStatement *s, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 bool vl_old_fail_memory(vlUpgrade *u);
 /* Reports what has no counterpart. */
-void vl_old_lose(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+void vl_old_lose(const vlOldStatement *s, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /* Adds to what the report says of the statement's change. */
 void vl_old_note(vlOldStatement *s, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* Replaces part of the text. Insertions have an empty span; those at the same offset keep their
  * order. */
-bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...)
+bool vl_old_edit(const vlOldStatement *s, vlOldSpan span, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Removes a whole statement, with its line where it stands alone. */
-bool vl_old_remove(vlOldFile *file, vlOldStatement *s);
+bool vl_old_remove(vlOldStatement *s);
 /* Adds a statement before or after s, on a line of its own with the same indentation. */
 typedef enum vlOldSide { VL_OLD_BEFORE, VL_OLD_AFTER } vlOldSide;
-bool vl_old_insert(vlOldFile *file, const vlOldStatement *s, vlOldSide side, const char *format,
-                   ...) __attribute__((format(printf, 4, 5)));
-/* Adds a parameter at the end of the statement. */
-bool vl_old_add(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
+bool vl_old_insert(const vlOldStatement *s, vlOldSide side, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* Adds a parameter at the end of the statement. */
+bool vl_old_add(const vlOldStatement *s, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /* Replaces name i of the statement and notes the change. */
-bool vl_old_rename(vlOldFile *file, vlOldStatement *s, size_t i, const char *name);
+bool vl_old_rename(vlOldStatement *s, size_t i, const char *name);
 /* Makes the edits of the statement's parameters and reports the change. */
-bool vl_old_finish(vlOldFile *file, vlOldStatement *s);
+bool vl_old_finish(vlOldStatement *s);
 /* The new text of a span; the caller frees it. Null: out of memory. */
 char *vl_old_render(vlOldFile *file, vlOldSpan span);
 
@@ -196,7 +201,7 @@ vlOldParam *vl_old_find(vlOldStatement *s,
 /* Leaves the parameter out. */
 void vl_old_drop(vlOldStatement *s, vlOldParam *p);
 /* Converts type names and values to those of pbrt-v4. */
-bool vl_old_types(vlOldFile *file, vlOldStatement *s);
+bool vl_old_types(vlOldStatement *s);
 /* Whether the parameter is a number, or a colour of three equal numbers. */
 bool vl_old_is_grey(const vlOldParam *p, double *value);
 /* Whether the parameter is a colour; a number counts. */
@@ -211,7 +216,7 @@ const char *vl_old_rgb_text(const double rgb[3], char text[VL_OLD_VALUE]);
 /* Sets the new value. */
 void vl_old_value(vlOldParam *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Of several numbers the first is kept, as it is written. */
-void vl_old_keep_first(const vlOldFile *file, vlOldParam *p);
+void vl_old_keep_first(const vlOldStatement *s, vlOldParam *p);
 
 typedef enum vlOldAction {
   VL_OLD_KEEP, /* of a row that gives names only, separated by blanks */
@@ -227,7 +232,7 @@ typedef struct vlOldRow {
 } vlOldRow;
 /* Applies rows, which end with a null name, to the parameters that are not yet renamed or
  * dropped. Parameters that no row names are lost. */
-bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows);
+bool vl_old_rows(vlOldStatement *s, const vlOldRow *rows);
 
 /* A kind of one directive. A row of a table ends with its last member that is not null. */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
@@ -241,7 +246,7 @@ typedef struct vlOldKind {
 const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name);
 /* Reports what is lost, applies rule and rows, and writes the kind's new name in place of the
  * statement's first. */
-bool vl_old_become(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind);
+bool vl_old_become(vlOldStatement *s, const vlOldKind *kind);
 
 /* ---- rules ------------------------------------------------------------------------------- */
 
@@ -254,30 +259,29 @@ vlOldRule vl_old_camera, vl_old_film, vl_old_sampler, vl_old_integrator;  /* set
 vlOldRule vl_old_filter, vl_old_accelerator, vl_old_medium, vl_old_world; /* settings.c */
 /* A float texture with the values of the spectrum texture, written before the statement. Null:
  * there is none. */
-const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture);
+const char *vl_old_float_copy(vlOldStatement *s, const char *texture);
 /* Gives names that are made a second time new ones, also where the statement refers to them
  * (names.c). Runs before the rule of the statement. */
-bool vl_old_names(vlOldFile *file, vlOldStatement *s);
+bool vl_old_names(vlOldStatement *s);
 vlOldRule vl_old_block; /* blocks.c */
 /* Remembers a statement that sets an attribute. */
-void vl_old_block_sets(vlOldFile *file, const vlOldStatement *s);
+void vl_old_block_sets(const vlOldStatement *s);
 /* Shapes that pbrt-v4 does not have, as triangles (quadrics.c). */
 vlOldRule vl_old_mesh_of_shape;
 
 /* ---- files (files.c, environment.c) ------------------------------------------------------ */
 
 /* What the new scene says for a file that the old one names. False after an error. */
-bool vl_old_file_name(vlOldFile *file, const vlOldStatement *s, const char *name, char *result,
-                      size_t size);
+bool vl_old_file_name(const vlOldStatement *s, const char *name, char *result, size_t size);
 /* The same for the file that a parameter names (null: none), and says so. */
-bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam *p);
+bool vl_old_write_file_name(vlOldStatement *s, const vlOldParam *p);
 /* Includes: upgrades the file and names the new one. */
 vlOldRule vl_old_include;
 /* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */
 bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed);
 /* The name of the equal-area image that an image over longitude and latitude becomes, times the
  * factor. The image is made, and written at the end. */
-bool vl_old_environment(vlOldFile *file, const vlOldStatement *s, const char *name,
-                        const double factor[3], char *result, size_t size);
+bool vl_old_environment(const vlOldStatement *s, const char *name, const double factor[3],
+                        char *result, size_t size);
 
 #endif

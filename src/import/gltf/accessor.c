@@ -40,7 +40,7 @@ static bool fits(vlGltf *g, const vlGltfLocation *at, int64_t view, size_t offse
                  size_t size, size_t stride) {
   const vlGltfView *v = &g->views[view];
   if (!v->data)
-    return vl_gltf_fail(g, at, "bufferViews[%d] holds nothing that velo can read", (int)view);
+    return vl_gltf_fail(at, "bufferViews[%d] holds nothing that velo can read", (int)view);
   if (count == 0)
     return true;
   /* count and offset are below 2^53 and stride is at most 252. The division avoids an overflow
@@ -48,14 +48,14 @@ static bool fits(vlGltf *g, const vlGltfLocation *at, int64_t view, size_t offse
   if (count > v->size || offset > v->size || size > v->size - offset ||
       (count - 1) > (v->size - offset - size) / stride)
     return vl_gltf_fail(
-        g, at, "%zu elements of %zu bytes do not fit into bufferViews[%d], which has %zu bytes",
+        at, "%zu elements of %zu bytes do not fit into bufferViews[%d], which has %zu bytes",
         count, size, (int)view, v->size);
   return true;
 }
 
 static bool read_sparse(vlGltf *g, const vlGltfLocation *up, vlGltfAccessor *a, size_t size) {
   const json_t *sparse, *indices, *values;
-  if (!vl_gltf_object(g, up, "sparse", &sparse))
+  if (!vl_gltf_object(up, "sparse", &sparse))
     return false;
   if (!sparse)
     return true;
@@ -63,24 +63,23 @@ static bool read_sparse(vlGltf *g, const vlGltfLocation *up, vlGltfAccessor *a, 
                        *at_v = VL_GLTF_KEY(at, "values");
   int64_t index_view, value_view;
   size_t index_offset = 0, value_offset = 0, type = 0;
-  if (!vl_gltf_size(g, at, "count", &a->sparse_count) ||
-      !vl_gltf_object(g, at, "indices", &indices) ||
-      !vl_gltf_object(g, at, "values", &values) ||
-      !vl_gltf_index(g, at_i, "bufferView", g->view_count, &index_view) ||
-      !vl_gltf_size(g, at_i, "byteOffset", &index_offset) ||
-      !vl_gltf_size(g, at_i, "componentType", &type) ||
-      !vl_gltf_index(g, at_v, "bufferView", g->view_count, &value_view) ||
-      !vl_gltf_size(g, at_v, "byteOffset", &value_offset))
+  if (!vl_gltf_size(at, "count", &a->sparse_count) ||
+      !vl_gltf_object(at, "indices", &indices) || !vl_gltf_object(at, "values", &values) ||
+      !vl_gltf_index(at_i, "bufferView", g->view_count, &index_view) ||
+      !vl_gltf_size(at_i, "byteOffset", &index_offset) ||
+      !vl_gltf_size(at_i, "componentType", &type) ||
+      !vl_gltf_index(at_v, "bufferView", g->view_count, &value_view) ||
+      !vl_gltf_size(at_v, "byteOffset", &value_offset))
     return false;
   if (index_view < 0)
-    return vl_gltf_fail(g, at_i, "\"bufferView\" is missing");
+    return vl_gltf_fail(at_i, "\"bufferView\" is missing");
   if (value_view < 0)
-    return vl_gltf_fail(g, at_v, "\"bufferView\" is missing");
+    return vl_gltf_fail(at_v, "\"bufferView\" is missing");
   if (type != VL_GLTF_UBYTE && type != VL_GLTF_USHORT && type != VL_GLTF_UINT)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at_i, "componentType"), "%zu is not 5121, 5123 or 5125",
+    return vl_gltf_fail(VL_GLTF_KEY(at_i, "componentType"), "%zu is not 5121, 5123 or 5125",
                         type);
   if (a->sparse_count > a->count)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "more than the accessor's count");
+    return vl_gltf_fail(VL_GLTF_KEY(at, "count"), "more than the accessor's count");
   size_t index_size = component_size((uint32_t)type);
   if (!fits(g, at_i, index_view, index_offset, a->sparse_count, index_size, index_size) ||
       !fits(g, at_v, value_view, value_offset, a->sparse_count, size, size))
@@ -105,36 +104,36 @@ static uint32_t read_uint(const uint8_t *p, uint32_t type) {
 }
 
 static bool read_accessor(vlGltf *g, size_t index, vlGltfAccessor *a) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "accessors", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "accessors", index);
   const char *type = "";
   int64_t view;
   size_t offset = 0, component = 0;
-  if (!vl_gltf_index(g, at, "bufferView", g->view_count, &view) ||
-      !vl_gltf_size(g, at, "byteOffset", &offset) || !vl_gltf_size(g, at, "count", &a->count) ||
-      !vl_gltf_size(g, at, "componentType", &component) ||
-      !vl_gltf_text(g, at, "type", &type) || !vl_gltf_bool(g, at, "normalized", &a->normalized))
+  if (!vl_gltf_index(at, "bufferView", g->view_count, &view) ||
+      !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "count", &a->count) ||
+      !vl_gltf_size(at, "componentType", &component) || !vl_gltf_text(at, "type", &type) ||
+      !vl_gltf_bool(at, "normalized", &a->normalized))
     return false;
   a->components = component_count(type, &a->matrix);
   a->type = component <= VL_GLTF_FLOAT ? (uint32_t)component : 0;
   size_t one = component_size(a->type);
   if (!a->components)
     return vl_gltf_fail(
-        g, VL_GLTF_KEY(at, "type"),
+        VL_GLTF_KEY(at, "type"),
         "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
         vl_short_text(type).text);
   if (!one)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"),
+    return vl_gltf_fail(VL_GLTF_KEY(at, "componentType"),
                         "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126", component);
   if (a->count == 0)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "must be at least 1");
+    return vl_gltf_fail(VL_GLTF_KEY(at, "count"), "must be at least 1");
   if (a->count > UINT32_MAX)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu is too many", a->count);
+    return vl_gltf_fail(VL_GLTF_KEY(at, "count"), "%zu is too many", a->count);
   if (a->matrix && one < 4)
-    return vl_gltf_fail(g, at, "matrices of small integers are not supported");
+    return vl_gltf_fail(at, "matrices of small integers are not supported");
   size_t size = one * a->components;
   a->stride = view >= 0 && g->views[view].stride ? g->views[view].stride : size;
   if (a->stride < size)
-    return vl_gltf_fail(g, at, "its elements of %zu bytes overlap at a byteStride of %zu", size,
+    return vl_gltf_fail(at, "its elements of %zu bytes overlap at a byteStride of %zu", size,
                         a->stride);
   if (view >= 0) {
     if (!fits(g, at, view, offset, a->count, size, a->stride))
@@ -142,15 +141,15 @@ static bool read_accessor(vlGltf *g, size_t index, vlGltfAccessor *a) {
     a->data = g->views[view].data + offset;
   } else if (a->count > g->total + 65536) /* without a view all elements are zero, so the
                                                file's size does not limit their number */
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"),
-                        "%zu zeros are out of proportion to the file", a->count);
+    return vl_gltf_fail(VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file",
+                        a->count);
   if (!read_sparse(g, at, a, size))
     return false;
   for (size_t i = 0; i < a->sparse_count; i++) {
     uint32_t k =
         read_uint(a->sparse_indices + i * component_size(a->sparse_type), a->sparse_type);
     if (k >= a->count)
-      return vl_gltf_fail(g, VL_GLTF_KEY(at, "sparse.indices"), "names element %u of %zu", k,
+      return vl_gltf_fail(VL_GLTF_KEY(at, "sparse.indices"), "names element %u of %zu", k,
                           a->count);
   }
   a->state = VL_GLTF_GOOD;
@@ -248,8 +247,7 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfLocation *at, uint64_t bytes) {
   uint64_t limit = (256u << 20) + 1000 * (g->total + g->file_size);
   g->spent += bytes;
   return g->spent <= limit ||
-         vl_gltf_fail(g, at,
-                      "the file repeats its data too often: more than %llu MB of geometry",
+         vl_gltf_fail(at, "the file repeats its data too often: more than %llu MB of geometry",
                       (unsigned long long)(limit >> 20));
 }
 
@@ -259,8 +257,7 @@ float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
   if (!a)
     return NULL;
   if (count && a->count != count) {
-    vl_gltf_fail(g, at, "accessors[%zu] has %zu elements, %zu are needed", index, a->count,
-                 count);
+    vl_gltf_fail(at, "accessors[%zu] has %zu elements, %zu are needed", index, a->count, count);
     return NULL;
   }
   if (!vl_gltf_spend(g, at, (uint64_t)a->count * components * 4))

@@ -29,12 +29,12 @@ static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components,
   static const char *const modes[] = {"STEP", "LINEAR", "CUBICSPLINE"};
   int mode = LINEAR;
   size_t total = 0;
-  if (!vl_gltf_index(g, at, "input", g->accessor_count, &input) ||
-      !vl_gltf_index(g, at, "output", g->accessor_count, &output) ||
-      !vl_gltf_choice(g, at, "interpolation", modes, 3, &mode))
+  if (!vl_gltf_index(at, "input", g->accessor_count, &input) ||
+      !vl_gltf_index(at, "output", g->accessor_count, &output) ||
+      !vl_gltf_choice(at, "interpolation", modes, 3, &mode))
     return false;
   if (input < 0 || output < 0)
-    return vl_gltf_fail(g, at, "needs \"input\" and \"output\"");
+    return vl_gltf_fail(at, "needs \"input\" and \"output\"");
   t->mode = (Mode)mode;
   if (!(t->times =
             vl_gltf_load_floats(g, VL_GLTF_KEY(at, "input"), (size_t)input, 1, 0, &t->count)) ||
@@ -43,15 +43,14 @@ static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components,
     return false;
   for (size_t i = 0; i < t->count; i++)
     if (!isfinite(t->times[i]) || (i && !(t->times[i] > t->times[i - 1])))
-      return vl_gltf_fail(g, VL_GLTF_KEY(at, "input"), "times must ascend; number %zu does not",
+      return vl_gltf_fail(VL_GLTF_KEY(at, "input"), "times must ascend; number %zu does not",
                           i);
   for (size_t i = 0; i < total * components; i++)
     if (!isfinite(t->values[i]))
-      return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "a value is not finite");
+      return vl_gltf_fail(VL_GLTF_KEY(at, "output"), "a value is not finite");
   size_t keys = t->count * (t->mode == CUBIC ? 3 : 1);
   if (total % keys != 0)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "output"), "%zu values for %zu keys", total,
-                        t->count);
+    return vl_gltf_fail(VL_GLTF_KEY(at, "output"), "%zu values for %zu keys", total, t->count);
   t->width = total / keys * components;
   return true;
 }
@@ -138,7 +137,7 @@ static bool read_pointer(vlGltf *g, const vlGltfLocation *up, int64_t *node,
                          const char **path) {
   const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.KHR_animation_pointer");
   const char *pointer = "";
-  if (!vl_gltf_text(g, at, "pointer", &pointer))
+  if (!vl_gltf_text(at, "pointer", &pointer))
     return false;
   const char *number = pointer + 7;
   char *end = NULL;
@@ -148,7 +147,7 @@ static bool read_pointer(vlGltf *g, const vlGltfLocation *up, int64_t *node,
   *node = is_node ? (int64_t)index : -1;
   *path = is_node ? end + 1 : "";
   if (!is_node)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "pointer"),
+    vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_KEY(at, "pointer"),
                  "%s is not animated: velo moves nodes only", vl_short_text(pointer).text);
   return true;
 }
@@ -163,14 +162,14 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
   const char *path = "";
   int64_t sampler, node;
   if (!json_is_object(channel))
-    return vl_gltf_fail(g, at, "must be an object");
-  if (!vl_gltf_index(g, at, "sampler", json_array_size(samplers), &sampler) ||
-      !vl_gltf_object(g, at, "target", &target) ||
-      !vl_gltf_index(g, at_target, "node", g->node_count, &node) ||
-      !vl_gltf_text(g, at_target, "path", &path))
+    return vl_gltf_fail(at, "must be an object");
+  if (!vl_gltf_index(at, "sampler", json_array_size(samplers), &sampler) ||
+      !vl_gltf_object(at, "target", &target) ||
+      !vl_gltf_index(at_target, "node", g->node_count, &node) ||
+      !vl_gltf_text(at_target, "path", &path))
     return false;
   if (sampler < 0)
-    return vl_gltf_fail(g, at, "\"sampler\" is missing");
+    return vl_gltf_fail(at, "\"sampler\" is missing");
   if (vl_text_is(path, "pointer") && !read_pointer(g, at_target, &node, &path))
     return false;
   int what = -1;
@@ -178,14 +177,14 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
     if (vl_text_is(path, paths[k]))
       what = k;
   if (what < 0 && *path)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"),
+    vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"),
                  "unknown name \"%s\" is ignored", vl_short_text(path).text);
   if (node < 0 || what < 0)
     return true; /* the specification allows to ignore these channels */
   const json_t *json = json_array_get(samplers, (size_t)sampler);
   const vlGltfLocation *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
   if (!json_is_object(json))
-    return vl_gltf_fail(g, at_sampler, "must be an object");
+    return vl_gltf_fail(at_sampler, "must be an object");
   static const uint32_t components[] = {3, 4, 3, 1};
   Track track = {0};
   vlGltfNode *n = &g->nodes[node];
@@ -193,7 +192,7 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
   if (ok && what == 3) {
     ok = apply_weights(g, n, &track);
   } else if (ok && track.width != components[what]) {
-    ok = vl_gltf_fail(g, at_sampler, "its output holds more values than keys");
+    ok = vl_gltf_fail(at_sampler, "its output holds more values than keys");
   } else if (ok) {
     double v[4];
     evaluate(&track, g->time, what == 1, v);
@@ -208,11 +207,11 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
 }
 
 bool vl_gltf_apply_animation(vlGltf *g, size_t index) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "animations", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "animations", index);
   const json_t *animation = vl_gltf_item(g, "animations", index), *channels, *samplers;
   size_t count, sampler_count;
-  if (!vl_gltf_array(g, at, "channels", &channels, &count) ||
-      !vl_gltf_array(g, at, "samplers", &samplers, &sampler_count))
+  if (!vl_gltf_array(at, "channels", &channels, &count) ||
+      !vl_gltf_array(at, "samplers", &samplers, &sampler_count))
     return false;
   for (size_t i = 0; i < count; i++)
     if (!apply_channel(g, at, animation, i))

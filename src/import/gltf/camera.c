@@ -29,16 +29,15 @@ static bool set_planes(vlCameraDef *def, double near_plane, double far_plane) {
 
 static bool take_perspective(vlGltf *g, const vlGltfLocation *at, vlCameraDef *def) {
   double yfov = 0, aspect = 16.0 / 9.0, near_plane = 0, far_plane = INFINITY;
-  if (!vl_gltf_number(g, at, "yfov", &yfov) || !vl_gltf_number(g, at, "aspectRatio", &aspect) ||
-      !vl_gltf_number(g, at, "znear", &near_plane) ||
-      !vl_gltf_number(g, at, "zfar", &far_plane))
+  if (!vl_gltf_number(at, "yfov", &yfov) || !vl_gltf_number(at, "aspectRatio", &aspect) ||
+      !vl_gltf_number(at, "znear", &near_plane) || !vl_gltf_number(at, "zfar", &far_plane))
     return false;
   if (!(yfov > 0 && yfov < 3.1415926))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "yfov"), "must lie between 0 and pi");
+    return vl_gltf_fail(VL_GLTF_KEY(at, "yfov"), "must lie between 0 and pi");
   if (aspect == 0)
     aspect = 16.0 / 9.0; /* not valid, but Assimp writes it where it knows none */
   if (!(aspect > 1e-3 && aspect < 1e3))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "aspectRatio"), "%g is no shape", aspect);
+    return vl_gltf_fail(VL_GLTF_KEY(at, "aspectRatio"), "%g is no shape", aspect);
   set_size(g, aspect);
   def->fov = yfov;
   def->fov_axis = VL_FOV_VERTICAL;
@@ -47,14 +46,13 @@ static bool take_perspective(vlGltf *g, const vlGltfLocation *at, vlCameraDef *d
 
 static bool take_orthographic(vlGltf *g, const vlGltfLocation *at, vlCameraDef *def) {
   double x = 0, y = 0, near_plane = 0, far_plane = INFINITY;
-  if (!vl_gltf_number(g, at, "xmag", &x) || !vl_gltf_number(g, at, "ymag", &y) ||
-      !vl_gltf_number(g, at, "znear", &near_plane) ||
-      !vl_gltf_number(g, at, "zfar", &far_plane))
+  if (!vl_gltf_number(at, "xmag", &x) || !vl_gltf_number(at, "ymag", &y) ||
+      !vl_gltf_number(at, "znear", &near_plane) || !vl_gltf_number(at, "zfar", &far_plane))
     return false;
   x = fabs(x);
   y = fabs(y); /* some exporters write negative values */
   if (!(x > 0 && y > 0 && x / y > 1e-3 && x / y < 1e3))
-    return vl_gltf_fail(g, at, "needs xmag and ymag above 0");
+    return vl_gltf_fail(at, "needs xmag and ymag above 0");
   set_size(g, x / y);
   def->projection = VL_PROJECTION_ORTHOGRAPHIC;
   def->screen_min_x = -x;
@@ -79,19 +77,19 @@ static void set_pose(const vlMat4 *world, double m[16]) {
 }
 
 static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "cameras", camera);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "cameras", camera);
   const json_t *json = vl_gltf_item(g, "cameras", camera), *lens;
   static const char *const types[] = {"perspective", "orthographic"};
   int flat = 0;
   if (!json_object_get(json, "type"))
-    return vl_gltf_fail(g, at, "\"type\" is missing");
-  if (!vl_gltf_choice(g, at, "type", types, 2, &flat))
+    return vl_gltf_fail(at, "\"type\" is missing");
+  if (!vl_gltf_choice(at, "type", types, 2, &flat))
     return false;
   const char *type = types[flat];
-  if (!vl_gltf_object(g, at, type, &lens))
+  if (!vl_gltf_object(at, type, &lens))
     return false;
   if (!lens)
-    return vl_gltf_fail(g, at, "\"%s\" is missing", type);
+    return vl_gltf_fail(at, "\"%s\" is missing", type);
   vlCameraDef def = vl_default_camera_def(1, 1);
   if (!(flat ? take_orthographic(g, VL_GLTF_KEY(at, type), &def)
              : take_perspective(g, VL_GLTF_KEY(at, type), &def)))
@@ -106,7 +104,7 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   if (def.has_matrix_close)
     set_pose(&node->keys[VL_GLTF_KEYS - 1], def.world_from_camera_close);
   if (!(fabs(vl_mat4_determinant3(vl_mat4_load(def.world_from_camera))) > 1e-9))
-    return vl_gltf_fail(g, at, "its node's transform is singular");
+    return vl_gltf_fail(at, "its node's transform is singular");
   vlSceneDefs *s = vl_scene_defs(g->scene);
   def.width = s->film.width;
   def.height = s->film.height;
@@ -134,7 +132,7 @@ bool vl_gltf_choose_camera(vlGltf *g) {
     const vlGltfNode *node = &g->nodes[i];
     if (!node->reached)
       continue;
-    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), "camera", g->camera_count, &camera))
+    if (!vl_gltf_index(VL_GLTF_ITEM(&g->top, "nodes", i), "camera", g->camera_count, &camera))
       return false;
     if (camera < 0)
       continue;
@@ -156,7 +154,7 @@ bool vl_gltf_choose_camera(vlGltf *g) {
         continue;
       vl_list_name(names, sizeof names, vl_short_text(own).text);
     }
-    return vl_gltf_fail(g, NULL, "the scene has no camera \"%s\" (%zu are there%s)",
+    return vl_gltf_fail(&g->top, "the scene has no camera \"%s\" (%zu are there%s)",
                         vl_argument_text(wanted).text, g->cameras_seen, names);
   }
   if (chosen < 0)

@@ -23,7 +23,7 @@ bool vl_gltf_fail_choice(vlGltf *g, const char *what, const json_t *items, const
     if (own)
       vl_list_name(names, size, vl_short_text(own).text);
   }
-  return vl_gltf_fail(g, NULL, "there is no %s \"%s\" (%zu are there%s)", what,
+  return vl_gltf_fail(&g->top, "there is no %s \"%s\" (%zu are there%s)", what,
                       vl_argument_text(name).text, json_array_size(items), names);
 }
 
@@ -51,7 +51,7 @@ static bool list_cameras(vlGltf *g) {
     int64_t camera;
     if (!g->nodes[i].reached)
       continue;
-    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", i), "camera", g->camera_count, &camera))
+    if (!vl_gltf_index(VL_GLTF_ITEM(&g->top, "nodes", i), "camera", g->camera_count, &camera))
       return false;
     if (camera < 0)
       continue;

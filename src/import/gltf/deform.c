@@ -21,7 +21,7 @@ typedef struct Morphed {
 static bool add_target(vlGltf *g, const vlGltfLocation *at, const Morphed *m, float weight,
                        size_t vertices) {
   int64_t index;
-  if (!vl_gltf_index(g, at, m->name, g->accessor_count, &index))
+  if (!vl_gltf_index(at, m->name, g->accessor_count, &index))
     return false;
   if (index < 0 || !m->out || weight == 0.0f)
     return true;
@@ -45,7 +45,7 @@ bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
       {"TEXCOORD_1", 2, 2, -1, p->uvs[1]}, {"COLOR_0", 4, 4, 1, p->colors}};
   const json_t *targets;
   size_t count;
-  if (!vl_gltf_array(g, at, "targets", &targets, &count) || count == 0)
+  if (!vl_gltf_array(at, "targets", &targets, &count) || count == 0)
     return count == 0 && !g->scene->error.code;
   const json_t *given = node ? json_object_get(node->json, "weights") : NULL;
   if (!given)
@@ -61,9 +61,9 @@ bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
     const json_t *target = json_array_get(targets, i);
     const vlGltfLocation *here = VL_GLTF_ITEM(at, "targets", i);
     if (!json_is_object(target))
-      return vl_gltf_fail(g, here, "must be an object");
+      return vl_gltf_fail(here, "must be an object");
     if (!isfinite(weight))
-      return vl_gltf_fail(g, here, "its weight is not finite");
+      return vl_gltf_fail(here, "its weight is not finite");
     for (size_t k = 0; k < VL_LENGTH(rows); k++)
       if (!add_target(g, here, &rows[k], weight, p->vertices))
         return false;
@@ -79,15 +79,15 @@ static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
 
 /* Computes the matrix world_from_mesh of each joint. */
 static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *count) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "skins", skin);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "skins", skin);
   const json_t *joints;
   int64_t inverse;
   *matrices = NULL;
-  if (!vl_gltf_array(g, at, "joints", &joints, count) ||
-      !vl_gltf_index(g, at, "inverseBindMatrices", g->accessor_count, &inverse))
+  if (!vl_gltf_array(at, "joints", &joints, count) ||
+      !vl_gltf_index(at, "inverseBindMatrices", g->accessor_count, &inverse))
     return false;
   if (*count == 0)
-    return vl_gltf_fail(g, at, "has no joints");
+    return vl_gltf_fail(at, "has no joints");
   float *columns = NULL;
   size_t inverse_count = 0;
   if (inverse >= 0) {
@@ -96,12 +96,12 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
     if (!a)
       return false;
     if (a->components != 16)
-      return vl_gltf_fail(g, here, "must be of type MAT4");
+      return vl_gltf_fail(here, "must be of type MAT4");
     if (!(columns = vl_gltf_load_floats(g, here, (size_t)inverse, 16, 0, &inverse_count)))
       return false;
     if (inverse_count < *count) {
       vl_free(g->context, columns);
-      return vl_gltf_fail(g, here, "%zu matrices for %zu joints", inverse_count, *count);
+      return vl_gltf_fail(here, "%zu matrices for %zu joints", inverse_count, *count);
     }
   }
   vlMat4 *m = vl_alloc_array(g->context, *count, sizeof *m);
@@ -109,7 +109,7 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   for (size_t i = 0; ok && i < *count; i++) {
     const vlGltfLocation *here = VL_GLTF_ITEM(at, "joints", i);
     size_t index;
-    ok = vl_gltf_element(g, here, json_array_get(joints, i), g->node_count, "node", &index);
+    ok = vl_gltf_element(here, json_array_get(joints, i), g->node_count, "node", &index);
     if (!ok)
       break;
     m[i] = *world_of(g, &g->nodes[index]);
@@ -120,7 +120,7 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
       bind.m[k] = columns[16 * i + 4 * (size_t)(k % 4) + (size_t)(k / 4)];
     m[i] = vl_mat4_multiply(m[i], bind);
     if (!vl_mat4_is_finite(m[i]))
-      ok = vl_gltf_fail(g, here, "its matrix is not finite");
+      ok = vl_gltf_fail(here, "its matrix is not finite");
   }
   vl_free(g->context, columns);
   if (!ok) {
@@ -139,8 +139,8 @@ static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *join
                            size_t vertices, double *sums, bool *found) {
   int64_t joint_index, weight_index;
   *found = false;
-  if (!vl_gltf_index(g, up, joints_name, g->accessor_count, &joint_index) ||
-      !vl_gltf_index(g, up, weights_name, g->accessor_count, &weight_index))
+  if (!vl_gltf_index(up, joints_name, g->accessor_count, &joint_index) ||
+      !vl_gltf_index(up, weights_name, g->accessor_count, &weight_index))
     return false;
   if (joint_index < 0 || weight_index < 0)
     return true;
@@ -149,7 +149,7 @@ static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *join
   if (!a)
     return false;
   if (a->count != vertices || a->components != 4 || a->type == VL_GLTF_FLOAT)
-    return vl_gltf_fail(g, at, "must be VEC4 of whole numbers, one for each of %zu vertices",
+    return vl_gltf_fail(at, "must be VEC4 of whole numbers, one for each of %zu vertices",
                         vertices);
   float *weights = vl_gltf_load_floats(g, VL_GLTF_KEY(up, weights_name), (size_t)weight_index,
                                        4, vertices, NULL);
@@ -162,10 +162,10 @@ static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *join
     if (w == 0)
       continue;
     if (!isfinite(w)) {
-      ok = vl_gltf_fail(g, VL_GLTF_KEY(up, weights_name),
-                        "a weight of vertex %zu is not finite", i / 4);
+      ok = vl_gltf_fail(VL_GLTF_KEY(up, weights_name), "a weight of vertex %zu is not finite",
+                        i / 4);
     } else if (joints[i] >= count) {
-      ok = vl_gltf_fail(g, at, "vertex %zu names joint %u of %zu", i / 4, joints[i], count);
+      ok = vl_gltf_fail(at, "vertex %zu names joint %u of %zu", i / 4, joints[i], count);
     } else {
       for (int k = 0; k < 12; k++)
         sums[12 * (i / 4) + (size_t)k] += w * matrices[joints[i]].m[k];
@@ -201,7 +201,7 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node,
   static const char *const joints[] = {"JOINTS_0", "JOINTS_1", "JOINTS_2", "JOINTS_3"};
   static const char *const weights[] = {"WEIGHTS_0", "WEIGHTS_1", "WEIGHTS_2", "WEIGHTS_3"};
   int64_t skin;
-  if (!vl_gltf_index_in(g, VL_GLTF_KEY(NULL, "nodes"), node->json, "skin", g->skin_count,
+  if (!vl_gltf_index_in(VL_GLTF_KEY(&g->top, "nodes"), node->json, "skin", g->skin_count,
                         &skin))
     return false;
   const vlGltfLocation *here = VL_GLTF_KEY(at, "attributes");
@@ -234,7 +234,7 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node,
       turn(m, false, p->tangents + 4 * i);
   }
   if (ok && !any && vl_gltf_once(g, VL_GLTF_REPORTED_SKIN))
-    vl_gltf_warn(g, VL_LOG_WARNING, here, "has a skin, but neither joints nor weights");
+    vl_gltf_warn(VL_LOG_WARNING, here, "has a skin, but neither joints nor weights");
   vl_free(g->context, sums);
   vl_free(g->context, matrices);
   return ok;

@@ -18,7 +18,7 @@ static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_
     return false;
   size_t wanted = id < 0 ? 3 * (size_t)vl_draco_faces(mesh) : vl_draco_points(mesh);
   if (a->count != wanted)
-    return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "accessors", index),
+    return vl_gltf_fail(VL_GLTF_ITEM(&g->top, "accessors", index),
                         "%zu elements, but the compressed mesh has %zu", a->count, wanted);
   uint32_t type = id < 0 ? VL_GLTF_UINT : a->type;
   size_t size = id < 0 || a->type == VL_GLTF_FLOAT ? 4
@@ -35,7 +35,7 @@ static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_
   if (id < 0)
     vl_draco_indices(mesh, (uint32_t *)(void *)data);
   else if (!vl_draco_values(mesh, (uint32_t)id, type, a->components, data))
-    return vl_gltf_fail(g, at, "the compressed mesh has no attribute %d of this type", (int)id);
+    return vl_gltf_fail(at, "the compressed mesh has no attribute %d of this type", (int)id);
   a->data = data;
   a->type = type;
   a->stride = size * a->components;
@@ -48,16 +48,16 @@ static bool fill_all(vlGltf *g, const vlGltfLocation *at, const vlGltfLocation *
   json_t *value;
   int64_t accessor;
   g->total += 64 * (uint64_t)vl_draco_points(mesh) + 12 * (uint64_t)vl_draco_faces(mesh);
-  if (!vl_gltf_index(g, at, "indices", g->accessor_count, &accessor))
+  if (!vl_gltf_index(at, "indices", g->accessor_count, &accessor))
     return false;
   if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, -1))
     return false;
   json_object_foreach((json_t *)(uintptr_t)own, key, value) {
-    if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), key, g->accessor_count, &accessor))
+    if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), key, g->accessor_count, &accessor))
       return false;
     double id = json_is_integer(value) ? json_number_value(value) : -1;
     if (!(id >= 0 && id < 4294967296.0))
-      return vl_gltf_fail(g, VL_GLTF_KEY(here, "attributes"),
+      return vl_gltf_fail(VL_GLTF_KEY(here, "attributes"),
                           "an id of an attribute makes no sense");
     if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, (int64_t)id))
       return false;
@@ -69,24 +69,24 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
   const vlGltfLocation *here = VL_GLTF_KEY(at, "extensions.KHR_draco_mesh_compression");
   const json_t *own;
   int64_t view, first;
-  if (!json_is_object(vl_gltf_json(g, here)))
+  if (!json_is_object(vl_gltf_json(here)))
     return true;
-  if (!vl_gltf_index(g, here, "bufferView", g->view_count, &view) ||
-      !vl_gltf_object(g, here, "attributes", &own) ||
-      !vl_gltf_index(g, at, "indices", g->accessor_count, &first))
+  if (!vl_gltf_index(here, "bufferView", g->view_count, &view) ||
+      !vl_gltf_object(here, "attributes", &own) ||
+      !vl_gltf_index(at, "indices", g->accessor_count, &first))
     return false;
   if (view < 0 || !own)
-    return vl_gltf_fail(g, here, "needs bufferView and attributes");
+    return vl_gltf_fail(here, "needs bufferView and attributes");
   const vlGltfView *v = &g->views[view];
   if (!v->data)
-    return vl_gltf_fail(g, here, "bufferViews[%d] holds nothing that velo can read", (int)view);
+    return vl_gltf_fail(here, "bufferViews[%d] holds nothing that velo can read", (int)view);
   /* The mesh of an accessor that stands in two primitives is decoded once. */
   if (first >= 0 && g->accessors[first].state == VL_GLTF_GOOD && g->accessors[first].data)
     return true;
   char reason[100] = "memory is exhausted";
   vlDraco *mesh = vl_draco_open(v->data, v->size, reason, sizeof reason);
   if (!mesh)
-    return vl_gltf_fail(g, here, "its bytes are no mesh of Draco: %s", reason);
+    return vl_gltf_fail(here, "its bytes are no mesh of Draco: %s", reason);
   bool ok = fill_all(g, at, here, own, mesh);
   vl_draco_close(mesh);
   return ok;
@@ -94,16 +94,15 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
 #else
 bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
   int64_t position;
-  if (!vl_gltf_extension(vl_gltf_json(g, at), name))
+  if (!vl_gltf_extension(vl_gltf_json(at), name))
     return true;
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count,
-                     &position))
+  if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count, &position))
     return false;
   /* a fallback that is not compressed is read */
   if (position < 0 ||
       json_object_get(vl_gltf_item(g, "accessors", (size_t)position), "bufferView"))
     return true;
-  return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+  return vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at,
                            "is compressed by %s: this velo was built without libdraco", name);
 }
 #endif

@@ -88,38 +88,38 @@ bool vl_gltf_check_extensions(vlGltf *g) {
   const size_t known_count = VL_LENGTH(known);
   const json_t *used, *required;
   size_t used_count, required_count;
-  if (!vl_gltf_array(g, NULL, "extensionsUsed", &used, &used_count) ||
-      !vl_gltf_array(g, NULL, "extensionsRequired", &required, &required_count))
+  if (!vl_gltf_array(&g->top, "extensionsUsed", &used, &used_count) ||
+      !vl_gltf_array(&g->top, "extensionsRequired", &required, &required_count))
     return false;
   for (size_t i = 0; i < required_count; i++) {
     const char *name = json_string_value(json_array_get(required, i));
-    const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "extensionsRequired", i);
+    const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "extensionsRequired", i);
     if (!name)
-      return vl_gltf_fail(g, at, "must be a string");
+      return vl_gltf_fail(at, "must be a string");
     if (is_in(name, known, known_count))
       continue;
     if (vl_text_is(name, "KHR_draco_mesh_compression"))
-      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+      return vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at,
                                "this velo was built without libdraco, which %s needs", name);
     if (vl_text_is(name, "KHR_texture_basisu"))
       return vl_gltf_fail_code(
-          g, VL_ERROR_UNSUPPORTED, at,
+          VL_ERROR_UNSUPPORTED, at,
           "velo does not read KTX2 images (%s): convert them to PNG, as gltf-transform does",
           name);
     const char *near = vl_nearest_name(name, known, known_count);
-    return near ? vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+    return near ? vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at,
                                     "velo does not read %s (it reads %s)",
                                     vl_gltf_extension_text(name).text, near)
-                : vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s",
+                : vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at, "velo does not read %s",
                                     vl_gltf_extension_text(name).text);
   }
   for (size_t i = 0; i < used_count; i++) {
     const char *name = json_string_value(json_array_get(used, i));
-    const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
+    const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "extensionsUsed", i);
     if (!name)
-      return vl_gltf_fail(g, at, "must be a string");
+      return vl_gltf_fail(at, "must be a string");
     if (!is_in(name, known, known_count) && !vl_gltf_passes_extension(name))
-      vl_gltf_warn(g, VL_LOG_WARNING, at, "%s is ignored: velo does not read it",
+      vl_gltf_warn(VL_LOG_WARNING, at, "%s is ignored: velo does not read it",
                    vl_gltf_extension_text(name).text);
   }
   return true;

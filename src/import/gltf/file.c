@@ -18,23 +18,23 @@ static uint32_t little(const uint8_t *p) {
  * type and its data. */
 static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
   if (g->file_size < 20)
-    return vl_gltf_fail(g, NULL, "broken .glb: only %zu bytes", g->file_size);
+    return vl_gltf_fail(&g->top, "broken .glb: only %zu bytes", g->file_size);
   uint32_t version = little(g->file + 4), length = little(g->file + 8);
   if (version != 2)
-    return vl_gltf_fail(g, NULL, ".glb of version %u; velo reads version 2", version);
+    return vl_gltf_fail(&g->top, ".glb of version %u; velo reads version 2", version);
   if (length > g->file_size)
-    return vl_gltf_fail(g, NULL, "broken .glb: says that it has %u bytes, the file has %zu",
+    return vl_gltf_fail(&g->top, "broken .glb: says that it has %u bytes, the file has %zu",
                         length, g->file_size);
   size_t at = 12, end = length < 20 ? g->file_size : length;
   for (int k = 0; at + 8 <= end; k++) {
     size_t size = little(g->file + at);
     uint32_t kind = little(g->file + at + 4);
     if (size > end - at - 8)
-      return vl_gltf_fail(g, NULL,
+      return vl_gltf_fail(&g->top,
                           "broken .glb: chunk %d of %zu bytes at byte %zu goes past the end", k,
                           size, at);
     if (k == 0 && kind != 0x4E4F534A)
-      return vl_gltf_fail(g, NULL, "broken .glb: its first chunk is not JSON");
+      return vl_gltf_fail(&g->top, "broken .glb: its first chunk is not JSON");
     if (k == 0) {
       *json = (const char *)g->file + at + 8;
       *json_size = size;
@@ -47,7 +47,7 @@ static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
     at = (at + 3) & ~(size_t)3;
   }
   if (!*json)
-    return vl_gltf_fail(g, NULL, "broken .glb: it has no JSON");
+    return vl_gltf_fail(&g->top, "broken .glb: it has no JSON");
   return true;
 }
 
@@ -70,14 +70,14 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
     return false;
   }
   if (!json_is_object(g->root))
-    return vl_gltf_fail(g, NULL, "not glTF: the JSON is not an object");
+    return vl_gltf_fail(&g->top, "not glTF: the JSON is not an object");
   const json_t *asset = json_object_get(g->root, "asset");
   const char *version = json_string_value(json_object_get(asset, "version"));
   const char *least = json_string_value(json_object_get(asset, "minVersion"));
   if (!version)
-    return vl_gltf_fail(g, NULL, "asset.version: is missing: not glTF 2.0");
+    return vl_gltf_fail(&g->top, "asset.version: is missing: not glTF 2.0");
   if (strncmp(least ? least : version, "2.", 2) != 0 || (least && !vl_text_is(least, "2.0")))
-    return vl_gltf_fail(g, NULL, "asset: glTF %s; velo reads 2.0",
+    return vl_gltf_fail(&g->top, "asset: glTF %s; velo reads 2.0",
                         vl_short_text(least ? least : version).text);
   return true;
 }
@@ -85,13 +85,13 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
 /* Counts the elements of the root's array `key` and checks that they are objects. */
 static bool count_items(vlGltf *g, const char *key, size_t *count) {
   const json_t *array;
-  if (!vl_gltf_array(g, NULL, key, &array, count))
+  if (!vl_gltf_array(&g->top, key, &array, count))
     return false;
   if (*count > MAX_ITEMS)
-    return vl_gltf_fail(g, VL_GLTF_KEY(NULL, key), "too many: %zu", *count);
+    return vl_gltf_fail(VL_GLTF_KEY(&g->top, key), "too many: %zu", *count);
   for (size_t i = 0; i < *count; i++)
     if (!json_is_object(json_array_get(array, i)))
-      return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, key, i), "must be an object");
+      return vl_gltf_fail(VL_GLTF_ITEM(&g->top, key, i), "must be an object");
   return true;
 }
 
@@ -109,9 +109,9 @@ static bool count_all(vlGltf *g) {
             count_items(g, "samplers", &g->sampler_count) &&
             count_items(g, "animations", &g->animation_count) &&
             count_items(g, "scenes", &g->scene_count) &&
-            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"), "lights",
+            vl_gltf_array(VL_GLTF_KEY(&g->top, "extensions.KHR_lights_punctual"), "lights",
                           &g->lights, &g->light_count) &&
-            vl_gltf_array(g, VL_GLTF_KEY(NULL, "extensions.EXT_lights_ies"), "lights",
+            vl_gltf_array(VL_GLTF_KEY(&g->top, "extensions.EXT_lights_ies"), "lights",
                           &g->lamps, &g->lamp_count);
   if (!ok)
     return false;
@@ -159,7 +159,7 @@ bool vl_gltf_open(vlGltf *g) {
       return false;
   } else if (vl_ends_with(g->path, ".glb") &&
              (size == 0 || (data[0] != '{' && (unsigned char)data[0] != 0xef)))
-    return vl_gltf_fail(g, NULL, "no .glb: it does not begin with \"glTF\"");
+    return vl_gltf_fail(&g->top, "no .glb: it does not begin with \"glTF\"");
   return parse(g, json, size) && count_all(g);
 }
 
@@ -216,7 +216,7 @@ static bool unpack(vlGltf *g, const vlGltfLocation *at, const char *uri, const u
                    size_t *size) {
   const char *comma = strchr(uri, ',');
   if (!comma)
-    return vl_gltf_fail(g, at, "broken data: uri, it has no comma");
+    return vl_gltf_fail(at, "broken data: uri, it has no comma");
   bool base64 = comma - uri >= 7 && strncmp(comma - 7, ";base64", 7) == 0;
   const char *text = comma + 1;
   uint8_t *block = vl_alloc_array(g->context, strlen(text) + 1, 1);
@@ -234,8 +234,7 @@ static bool unpack(vlGltf *g, const vlGltfLocation *at, const char *uri, const u
   for (const char *s = text; *s && *s != '='; s++) {
     int digit = base64_digit(*s);
     if (digit < 0)
-      return vl_gltf_fail(g, at, "broken data: uri, byte %zu is not of base64",
-                          (size_t)(s - uri));
+      return vl_gltf_fail(at, "broken data: uri, byte %zu is not of base64", (size_t)(s - uri));
     bits = (bits << 6 | (uint32_t)digit) & 0xffffff;
     held += 6;
     if (held >= 8) {
@@ -254,18 +253,18 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uin
   if (strncmp(uri, "data:", 5) == 0)
     return unpack(g, at, uri, data, size);
   if (strstr(uri, "://") && strncmp(uri, "file://", 7) != 0)
-    return vl_gltf_fail(g, at, "\"%s\": velo fetches nothing from the net",
+    return vl_gltf_fail(at, "\"%s\": velo fetches nothing from the net",
                         vl_short_text(uri).text);
   if (strncmp(uri, "file://", 7) == 0)
     uri += 7;
   char name[4096], whole[4096];
   if (strlen(uri) >= sizeof name)
-    return vl_gltf_fail(g, at, "the file name is too long");
+    return vl_gltf_fail(at, "the file name is too long");
   unescape(uri, name);
   vlFound found =
       vl_find_file(g->context, g->path, NULL, g->def->search_path, name, whole, sizeof whole);
   if (found == VL_FOUND_TOO_LONG)
-    return vl_gltf_fail(g, at, "the file name is too long");
+    return vl_gltf_fail(at, "the file name is too long");
   *path = whole;
   return vl_scene_copy_string(g->scene, path);
 }
@@ -273,11 +272,11 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uin
 /* ---- buffers ----------------------------------------------------------------------------- */
 
 static bool read_buffer(vlGltf *g, size_t i) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "buffers", i);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "buffers", i);
   vlGltfBuffer *b = &g->buffers[i];
   const char *uri = NULL, *path = NULL;
   size_t length = 0, size = 0;
-  if (!vl_gltf_text(g, at, "uri", &uri) || !vl_gltf_size(g, at, "byteLength", &length))
+  if (!vl_gltf_text(at, "uri", &uri) || !vl_gltf_size(at, "byteLength", &length))
     return false;
   if (!uri) {
     if (i == 0 && g->chunk) {
@@ -297,14 +296,14 @@ static bool read_buffer(vlGltf *g, size_t i) {
       vl_error_clear(&error);
       vlResult r = vl_file_read(g->context, path, false, &data, &size, &error);
       if (r != VL_OK)
-        return vl_gltf_fail_code(g, r, VL_GLTF_KEY(at, "uri"), "%s", error.message);
+        return vl_gltf_fail_code(r, VL_GLTF_KEY(at, "uri"), "%s", error.message);
       if (!vl_gltf_own(g, data))
         return false;
       b->data = (const uint8_t *)data;
     }
   }
   if (size < length)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "byteLength"), "%zu, but there are only %zu bytes",
+    return vl_gltf_fail(VL_GLTF_KEY(at, "byteLength"), "%zu, but there are only %zu bytes",
                         length, size);
   b->size = length;
   g->total += length;
@@ -312,28 +311,27 @@ static bool read_buffer(vlGltf *g, size_t i) {
 }
 
 static bool read_view(vlGltf *g, size_t i) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "bufferViews", i);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "bufferViews", i);
   const json_t *json = vl_gltf_item(g, "bufferViews", i);
   const json_t *packed = vl_gltf_extension(json, "EXT_meshopt_compression");
   int64_t buffer;
   size_t offset = 0, length = 0, stride = 0;
   if (packed)
     return vl_gltf_unpack_view(g, at, &g->views[i]);
-  if (!vl_gltf_index(g, at, "buffer", g->buffer_count, &buffer) ||
-      !vl_gltf_size(g, at, "byteOffset", &offset) ||
-      !vl_gltf_size(g, at, "byteLength", &length) ||
-      !vl_gltf_size(g, at, "byteStride", &stride))
+  if (!vl_gltf_index(at, "buffer", g->buffer_count, &buffer) ||
+      !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "byteLength", &length) ||
+      !vl_gltf_size(at, "byteStride", &stride))
     return false;
   if (buffer < 0)
-    return vl_gltf_fail(g, at, "\"buffer\" is missing");
+    return vl_gltf_fail(at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
   if (!b->data)
     return true; /* what reads the view reports it */
   if (offset > b->size || length > b->size - offset)
-    return vl_gltf_fail(g, at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset,
+    return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset,
                         offset + length, (int)buffer, b->size);
   if (stride && (stride < 4 || stride > 252))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "byteStride"), "%zu is not from 4 to 252", stride);
+    return vl_gltf_fail(VL_GLTF_KEY(at, "byteStride"), "%zu is not from 4 to 252", stride);
   g->views[i] = (vlGltfView){b->data + offset, length, stride};
   return true;
 }

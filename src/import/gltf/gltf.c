@@ -11,8 +11,8 @@ static bool choose_variant(vlGltf *g) {
     return true;
   const json_t *variants;
   size_t count;
-  const vlGltfLocation *at = VL_GLTF_KEY(NULL, "extensions.KHR_materials_variants");
-  if (!vl_gltf_array(g, at, "variants", &variants, &count))
+  const vlGltfLocation *at = VL_GLTF_KEY(&g->top, "extensions.KHR_materials_variants");
+  if (!vl_gltf_array(at, "variants", &variants, &count))
     return false;
   for (size_t i = 0; i < count && g->variant < 0; i++)
     if (vl_text_is(vl_gltf_name(json_array_get(variants, i)), g->def->variant))
@@ -28,6 +28,7 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def,
               .def = def ? def : &plain,
               .path = path,
               .copy = SIZE_MAX};
+  g.top.g = &g;
   vl_import_plain_settings(scene);
   bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g);
   if (ok)
@@ -38,7 +39,7 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def,
   ok = ok && vl_gltf_frame_animation(&g);
   vl_repairs_report(g.context, &g.repairs, path);
   if (ok && g.shapes_made == 0)
-    vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");
+    vl_gltf_warn(VL_LOG_WARNING, &g.top, "draws nothing");
   if (ok && scene->problem)
     vl_gltf_validate(&g);
   vl_gltf_close(&g);

@@ -16,14 +16,15 @@
 #include "scene/scene.h"
 
 /* A location in the JSON: a key, and an index for an element of an array. Locations are linked
- * on the caller's stack. */
+ * on the caller's stack, up to that of the whole file (vlGltf.top). */
 typedef struct vlGltfLocation {
-  const struct vlGltfLocation *up;
+  const struct vlGltfLocation *up; /* null: the whole file, which g reads */
   const char *key;
   size_t index; /* SIZE_MAX: none */
+  struct vlGltf *g;
 } vlGltfLocation;
-#define VL_GLTF_KEY(up, key) (&(vlGltfLocation){(up), (key), SIZE_MAX})
-#define VL_GLTF_ITEM(up, key, index) (&(vlGltfLocation){(up), (key), (index)})
+#define VL_GLTF_KEY(up, key) (&(vlGltfLocation){(up), (key), SIZE_MAX, NULL})
+#define VL_GLTF_ITEM(up, key, index) (&(vlGltfLocation){(up), (key), (index), NULL})
 
 typedef struct vlGltfBuffer {
   const uint8_t *data;
@@ -107,7 +108,8 @@ typedef struct vlGltf {
   vlContext *context;
   vlScene *scene;
   const vlLoadDef *def;
-  const char *path; /* of the file */
+  const char *path;   /* of the file */
+  vlGltfLocation top; /* the whole file */
   json_t *root;
   uint8_t *file;
   size_t file_size;
@@ -159,50 +161,50 @@ enum {
  * returns false --------- */
 
 /* Report the error "path: location: message". Always return false. */
-bool vl_gltf_fail(vlGltf *g, const vlGltfLocation *location, const char *format, ...)
+bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+bool vl_gltf_fail_code(vlResult code, const vlGltfLocation *location, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfLocation *location,
-                       const char *format, ...) __attribute__((format(printf, 4, 5)));
 static inline bool vl_gltf_fail_memory(vlGltf *g) {
   return vl_scene_fail_memory(g->scene);
 }
-/* Writes the location from its outermost part inwards, cut to the size; nothing if it is null.
+/* The import that reads the file. */
+vlGltf *vl_gltf_of(const vlGltfLocation *location);
+/* Writes the location from its outermost part inwards, cut to the size; nothing for the file.
  * Returns the length. */
 size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t size);
-void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfLocation *location,
-                  const char *format, ...) __attribute__((format(printf, 4, 5)));
+void vl_gltf_warn(vlLogLevel level, const vlGltfLocation *location, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* Returns true on the first call for this bit. */
 bool vl_gltf_once(vlGltf *g, uint32_t bit);
 
-/* The value at a location (null: the root); null if there is none. */
-const json_t *vl_gltf_json(const vlGltf *g, const vlGltfLocation *at);
+/* The value at a location; null if there is none. */
+const json_t *vl_gltf_json(const vlGltfLocation *at);
 /* Typed members of the JSON object at a location. An absent member leaves the value as it is
  * and returns true. A member of the wrong type is an error. Where there is no object, every
  * member is absent. */
-bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const char *key, double *value);
-bool vl_gltf_float(vlGltf *g, const vlGltfLocation *at, const char *key, float *value);
-bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const char *key, size_t count,
-                     double *values);
-bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const char *key, bool *value);
-bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const char *key, const char **value);
+bool vl_gltf_number(const vlGltfLocation *at, const char *key, double *value);
+bool vl_gltf_float(const vlGltfLocation *at, const char *key, float *value);
+bool vl_gltf_numbers(const vlGltfLocation *at, const char *key, size_t count, double *values);
+bool vl_gltf_bool(const vlGltfLocation *at, const char *key, bool *value);
+bool vl_gltf_text(const vlGltfLocation *at, const char *key, const char **value);
 /* *value receives the index of the member's string among the names. */
-bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const char *key,
-                    const char *const *names, int count, int *value);
+bool vl_gltf_choice(const vlGltfLocation *at, const char *key, const char *const *names,
+                    int count, int *value);
 /* A non-negative integer. */
-bool vl_gltf_size(vlGltf *g, const vlGltfLocation *at, const char *key, size_t *value);
+bool vl_gltf_size(const vlGltfLocation *at, const char *key, size_t *value);
 /* An index below limit; -1 when absent. */
-bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const char *key, size_t limit,
-                   int64_t *index);
+bool vl_gltf_index(const vlGltfLocation *at, const char *key, size_t limit, int64_t *index);
 /* The same of an object that is not at the location, which messages name. */
-bool vl_gltf_size_in(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
+bool vl_gltf_size_in(const vlGltfLocation *at, const json_t *object, const char *key,
                      size_t *value);
-bool vl_gltf_index_in(vlGltf *g, const vlGltfLocation *at, const json_t *object,
-                      const char *key, size_t limit, int64_t *index);
+bool vl_gltf_index_in(const vlGltfLocation *at, const json_t *object, const char *key,
+                      size_t limit, int64_t *index);
 /* The index that an element of an array holds; what: of what, for the message. */
-bool vl_gltf_element(vlGltf *g, const vlGltfLocation *at, const json_t *value, size_t limit,
+bool vl_gltf_element(const vlGltfLocation *at, const json_t *value, size_t limit,
                      const char *what, size_t *index);
-bool vl_gltf_object(vlGltf *g, const vlGltfLocation *at, const char *key, const json_t **value);
-bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const char *key, const json_t **value,
+bool vl_gltf_object(const vlGltfLocation *at, const char *key, const json_t **value);
+bool vl_gltf_array(const vlGltfLocation *at, const char *key, const json_t **value,
                    size_t *count);
 /* object.extensions.name, or null. */
 const json_t *vl_gltf_extension(const json_t *object, const char *name);

@@ -29,12 +29,12 @@ static bool read_face(vlGltf *g, const vlGltfLocation *at, size_t index, Cube *c
                           : vl_image_read_memory(g->context, "image", file->data, file->size,
                                                  &image, &error);
   if (r != VL_OK)
-    return vl_gltf_fail_code(g, r, at, "%s", error.message);
+    return vl_gltf_fail_code(r, at, "%s", error.message);
   uint32_t channel[4], count = vl_image_color(image, channel);
   float *pixels = NULL;
   bool ok = count >= 3 && image->width == image->height;
   if (!ok)
-    vl_gltf_fail(g, at, "images[%zu]: a face of a cube must be square and in colour", index);
+    vl_gltf_fail(at, "images[%zu]: a face of a cube must be square and in colour", index);
   if (ok && vl_image_to_float(image, channel, count, &pixels) != VL_OK)
     ok = vl_gltf_fail_memory(g);
   size_t texels = (size_t)image->width * image->height;
@@ -104,12 +104,12 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *s
   const json_t *own = vl_gltf_extension(scene, "EXT_lights_image_based"), *lights, *levels;
   if (!own)
     return true;
-  const vlGltfLocation *up = VL_GLTF_KEY(NULL, "extensions.EXT_lights_image_based");
+  const vlGltfLocation *up = VL_GLTF_KEY(&g->top, "extensions.EXT_lights_image_based");
   size_t count, level_count;
   int64_t index;
-  if (!vl_gltf_array(g, up, "lights", &lights, &count) ||
-      !vl_gltf_index(g, VL_GLTF_KEY(scene_at, "extensions.EXT_lights_image_based"), "light",
-                     count, &index))
+  if (!vl_gltf_array(up, "lights", &lights, &count) ||
+      !vl_gltf_index(VL_GLTF_KEY(scene_at, "extensions.EXT_lights_image_based"), "light", count,
+                     &index))
     return false;
   if (index < 0)
     return true;
@@ -118,21 +118,21 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *s
   const json_t *json = json_array_get(lights, (size_t)index);
   double rotation[4] = {0, 0, 0, 1}, intensity = 1;
   if (!json_is_object(json))
-    return vl_gltf_fail(g, at, "must be an object");
-  if (!vl_gltf_numbers(g, at, "rotation", 4, rotation) ||
-      !vl_gltf_number(g, at, "intensity", &intensity) ||
-      !vl_gltf_array(g, at, "specularImages", &levels, &level_count))
+    return vl_gltf_fail(at, "must be an object");
+  if (!vl_gltf_numbers(at, "rotation", 4, rotation) ||
+      !vl_gltf_number(at, "intensity", &intensity) ||
+      !vl_gltf_array(at, "specularImages", &levels, &level_count))
     return false;
   const json_t *faces = json_array_get(levels, 0);
   if (json_array_size(faces) != 6)
-    return vl_gltf_fail(g, at_images, "must hold six faces for each level");
+    return vl_gltf_fail(at_images, "must hold six faces for each level");
   if (!(intensity >= 0))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "intensity"), "must not be negative");
+    return vl_gltf_fail(VL_GLTF_KEY(at, "intensity"), "must not be negative");
   Cube cube = {{0}, {NULL}};
   bool ok = true;
   for (int k = 0; ok && k < 6; k++) {
     size_t image;
-    ok = vl_gltf_element(g, VL_GLTF_ITEM(at_images, "[0]", (size_t)k),
+    ok = vl_gltf_element(VL_GLTF_ITEM(at_images, "[0]", (size_t)k),
                          json_array_get(faces, (size_t)k), g->image_count, "image", &image) &&
          read_face(g, at_images, image, &cube, k);
   }

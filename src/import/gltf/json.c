@@ -5,8 +5,14 @@
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
+vlGltf *vl_gltf_of(const vlGltfLocation *location) {
+  while (location->up)
+    location = location->up;
+  return location->g;
+}
+
 size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t size) {
-  if (!location)
+  if (!location->up)
     return 0;
   size_t n = vl_gltf_write_location(location->up, text, size);
   if (n + 1 >= size)
@@ -18,11 +24,11 @@ size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t
   return wrote < 0 ? n : n + (size_t)wrote < size ? n + (size_t)wrote : size - 1;
 }
 
-const json_t *vl_gltf_json(const vlGltf *g, const vlGltfLocation *at) {
+const json_t *vl_gltf_json(const vlGltfLocation *at) {
   static const char within[] = "extensions.";
-  if (!at)
-    return g->root;
-  const json_t *value = vl_gltf_json(g, at->up);
+  if (!at->up)
+    return at->g->root;
+  const json_t *value = vl_gltf_json(at->up);
   const char *key = at->key;
   if (strncmp(key, within, sizeof within - 1) == 0) {
     value = json_object_get(value, "extensions");
@@ -32,48 +38,37 @@ const json_t *vl_gltf_json(const vlGltf *g, const vlGltfLocation *at) {
   return at->index == SIZE_MAX ? value : json_array_get(value, at->index);
 }
 
-static void format_message(const vlGltfLocation *location, const char *format, va_list args,
-                           char *text, size_t size) {
-  size_t n = vl_gltf_write_location(location, text, size);
-  if (n && n + 3 < size)
-    n += (size_t)snprintf(text + n, size - n, ": ");
-  vsnprintf(text + n, size - n, format, args);
+enum { MESSAGE = 512 };
+
+static void write_message(const vlGltfLocation *location, const char *text,
+                          char message[MESSAGE]) {
+  size_t n = vl_gltf_write_location(location, message, MESSAGE);
+  snprintf(message + n, MESSAGE - n, "%s%s", n ? ": " : "", text);
 }
 
-static void fail(vlGltf *g, vlResult code, const vlGltfLocation *location, const char *format,
-                 va_list args) {
-  char text[512];
-  format_message(location, format, args, text, sizeof text);
-  vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", text);
-}
-
-bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfLocation *location,
-                       const char *format, ...) {
-  va_list args;
-  va_start(args, format);
-  fail(g, code, location, format, args);
-  va_end(args);
+bool vl_gltf_fail_code(vlResult code, const vlGltfLocation *location, const char *format, ...) {
+  const vlGltf *g = vl_gltf_of(location);
+  char text[MESSAGE], message[MESSAGE];
+  VL_FORMAT(text, format);
+  write_message(location, text, message);
+  vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", message);
   return false;
 }
 
-bool vl_gltf_fail(vlGltf *g, const vlGltfLocation *location, const char *format, ...) {
-  va_list args;
-  va_start(args, format);
-  fail(g, VL_ERROR_SCENE, location, format, args);
-  va_end(args);
-  return false;
+bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...) {
+  char text[MESSAGE];
+  VL_FORMAT(text, format);
+  return vl_gltf_fail_code(VL_ERROR_SCENE, location, "%s", text);
 }
 
-void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfLocation *location,
-                  const char *format, ...) {
-  char text[512];
-  va_list args;
-  va_start(args, format);
-  format_message(location, format, args, text, sizeof text);
-  va_end(args);
+void vl_gltf_warn(vlLogLevel level, const vlGltfLocation *location, const char *format, ...) {
+  const vlGltf *g = vl_gltf_of(location);
+  char text[MESSAGE], message[MESSAGE];
+  VL_FORMAT(text, format);
+  write_message(location, text, message);
   vlError where;
   vl_fail_at(&where, VL_ERROR_SCENE, g->path, 0, 0, " ");
-  vl_log(g->context, level, &where, "%s", text);
+  vl_log(g->context, level, &where, "%s", message);
 }
 
 bool vl_gltf_once(vlGltf *g, uint32_t bit) {
@@ -104,67 +99,65 @@ static const char *kind_of(const json_t *value) {
   return "nothing";
 }
 
-static bool wrong_kind(vlGltf *g, const vlGltfLocation *at, const char *key, const char *wanted,
+static bool wrong_kind(const vlGltfLocation *at, const char *key, const char *wanted,
                        const json_t *found) {
-  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must be %s, found %s", wanted, kind_of(found));
+  return vl_gltf_fail(VL_GLTF_KEY(at, key), "must be %s, found %s", wanted, kind_of(found));
 }
 
 /* Looks up a member of this kind. *value is null if it is not there. Returns false after an
  * error. */
-static bool member(vlGltf *g, const vlGltfLocation *at, const char *key, const char *wanted,
+static bool member(const vlGltfLocation *at, const char *key, const char *wanted,
                    const json_t **value) {
-  *value = json_object_get(vl_gltf_json(g, at), key);
+  *value = json_object_get(vl_gltf_json(at), key);
   if (!*value || vl_text_is(kind_of(*value), wanted))
     return true;
-  wrong_kind(g, at, key, wanted, *value);
+  wrong_kind(at, key, wanted, *value);
   *value = NULL;
   return false;
 }
 
-bool vl_gltf_number(vlGltf *g, const vlGltfLocation *at, const char *key, double *value) {
+bool vl_gltf_number(const vlGltfLocation *at, const char *key, double *value) {
   const json_t *v;
-  if (!member(g, at, key, "a number", &v))
+  if (!member(at, key, "a number", &v))
     return false;
   if (!v)
     return true;
   *value = json_number_value(v);
   if (isfinite(*value) && fabs(*value) <= 3e38)
     return true;
-  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%g is out of range", *value);
+  return vl_gltf_fail(VL_GLTF_KEY(at, key), "%g is out of range", *value);
 }
 
-bool vl_gltf_float(vlGltf *g, const vlGltfLocation *at, const char *key, float *value) {
+bool vl_gltf_float(const vlGltfLocation *at, const char *key, float *value) {
   double x = *value;
-  bool ok = vl_gltf_number(g, at, key, &x);
+  bool ok = vl_gltf_number(at, key, &x);
   *value = (float)x;
   return ok;
 }
 
-bool vl_gltf_numbers(vlGltf *g, const vlGltfLocation *at, const char *key, size_t count,
-                     double *values) {
+bool vl_gltf_numbers(const vlGltfLocation *at, const char *key, size_t count, double *values) {
   const json_t *v;
-  if (!member(g, at, key, "an array", &v))
+  if (!member(at, key, "an array", &v))
     return false;
   if (!v)
     return true;
   if (json_array_size(v) != count)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must hold %zu numbers, found %zu", count,
+    return vl_gltf_fail(VL_GLTF_KEY(at, key), "must hold %zu numbers, found %zu", count,
                         json_array_size(v));
   for (size_t i = 0; i < count; i++) {
     const json_t *x = json_array_get(v, i);
     if (!json_is_number(x))
-      return vl_gltf_fail(g, VL_GLTF_ITEM(at, key, i), "must be a number, found %s",
-                          kind_of(x));
+      return vl_gltf_fail(VL_GLTF_ITEM(at, key, i), "must be a number, found %s", kind_of(x));
     values[i] = json_number_value(x);
     if (!isfinite(values[i]) || fabs(values[i]) > 3e38)
-      return vl_gltf_fail(g, VL_GLTF_ITEM(at, key, i), "%g is out of range", values[i]);
+      return vl_gltf_fail(VL_GLTF_ITEM(at, key, i), "%g is out of range", values[i]);
   }
   return true;
 }
 
-bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const char *key, bool *value) {
+bool vl_gltf_bool(const vlGltfLocation *at, const char *key, bool *value) {
   const json_t *v;
-  if (!member(g, at, key, "true or false", &v))
+  if (!member(at, key, "true or false", &v))
     return false;
   if (!v)
     return true;
@@ -172,9 +165,9 @@ bool vl_gltf_bool(vlGltf *g, const vlGltfLocation *at, const char *key, bool *va
   return true;
 }
 
-bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const char *key, const char **value) {
+bool vl_gltf_text(const vlGltfLocation *at, const char *key, const char **value) {
   const json_t *v;
-  if (!member(g, at, key, "a string", &v))
+  if (!member(at, key, "a string", &v))
     return false;
   if (!v)
     return true;
@@ -182,10 +175,10 @@ bool vl_gltf_text(vlGltf *g, const vlGltfLocation *at, const char *key, const ch
   return true;
 }
 
-bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const char *key,
-                    const char *const *names, int count, int *value) {
+bool vl_gltf_choice(const vlGltfLocation *at, const char *key, const char *const *names,
+                    int count, int *value) {
   const char *text = names[*value];
-  if (!vl_gltf_text(g, at, key, &text))
+  if (!vl_gltf_text(at, key, &text))
     return false;
   char list[160] = "";
   for (int i = 0; i < count; i++) {
@@ -195,70 +188,67 @@ bool vl_gltf_choice(vlGltf *g, const vlGltfLocation *at, const char *key,
     }
     vl_list_name(list, sizeof list, names[i]);
   }
-  return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "unknown name \"%s\" (known%s)",
+  return vl_gltf_fail(VL_GLTF_KEY(at, key), "unknown name \"%s\" (known%s)",
                       vl_short_text(text).text, list);
 }
 
-static bool whole(vlGltf *g, const vlGltfLocation *at, const char *key, const json_t *v,
-                  size_t *value) {
+static bool whole(const vlGltfLocation *at, const char *key, const json_t *v, size_t *value) {
   if (!json_is_number(v))
-    return wrong_kind(g, at, key, "a whole number", v);
+    return wrong_kind(at, key, "a whole number", v);
   double x = json_number_value(v); /* some exporters write integers as 3.0 */
   if (!(x >= 0 && x <= 9007199254740992.0) || x != floor(x))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, key),
-                        "must be a whole number from 0 on, found %.17g", x);
+    return vl_gltf_fail(VL_GLTF_KEY(at, key), "must be a whole number from 0 on, found %.17g",
+                        x);
   *value = (size_t)x;
   return true;
 }
 
-bool vl_gltf_size_in(vlGltf *g, const vlGltfLocation *at, const json_t *object, const char *key,
+bool vl_gltf_size_in(const vlGltfLocation *at, const json_t *object, const char *key,
                      size_t *value) {
   const json_t *v = json_object_get(object, key);
-  return !v || whole(g, at, key, v, value);
+  return !v || whole(at, key, v, value);
 }
 
-bool vl_gltf_size(vlGltf *g, const vlGltfLocation *at, const char *key, size_t *value) {
-  return vl_gltf_size_in(g, at, vl_gltf_json(g, at), key, value);
+bool vl_gltf_size(const vlGltfLocation *at, const char *key, size_t *value) {
+  return vl_gltf_size_in(at, vl_gltf_json(at), key, value);
 }
 
-bool vl_gltf_index_in(vlGltf *g, const vlGltfLocation *at, const json_t *object,
-                      const char *key, size_t limit, int64_t *index) {
+bool vl_gltf_index_in(const vlGltfLocation *at, const json_t *object, const char *key,
+                      size_t limit, int64_t *index) {
   size_t value = SIZE_MAX;
   *index = -1;
-  if (!vl_gltf_size_in(g, at, object, key, &value))
+  if (!vl_gltf_size_in(at, object, key, &value))
     return false;
   if (value == SIZE_MAX)
     return true;
   if (value >= limit)
-    return limit ? vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)",
+    return limit ? vl_gltf_fail(VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)",
                                 value, limit, limit - 1)
-                 : vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%zu: there are none", value);
+                 : vl_gltf_fail(VL_GLTF_KEY(at, key), "%zu: there are none", value);
   *index = (int64_t)value;
   return true;
 }
 
-bool vl_gltf_index(vlGltf *g, const vlGltfLocation *at, const char *key, size_t limit,
-                   int64_t *index) {
-  return vl_gltf_index_in(g, at, vl_gltf_json(g, at), key, limit, index);
+bool vl_gltf_index(const vlGltfLocation *at, const char *key, size_t limit, int64_t *index) {
+  return vl_gltf_index_in(at, vl_gltf_json(at), key, limit, index);
 }
 
-bool vl_gltf_element(vlGltf *g, const vlGltfLocation *at, const json_t *value, size_t limit,
+bool vl_gltf_element(const vlGltfLocation *at, const json_t *value, size_t limit,
                      const char *what, size_t *index) {
   const double x = json_number_value(value);
   if (!json_is_number(value) || !(x >= 0 && x < (double)limit) || x != floor(x))
-    return vl_gltf_fail(g, at, "there is no such %s", what);
+    return vl_gltf_fail(at, "there is no such %s", what);
   *index = (size_t)x;
   return true;
 }
 
-bool vl_gltf_object(vlGltf *g, const vlGltfLocation *at, const char *key,
-                    const json_t **value) {
-  return member(g, at, key, "an object", value);
+bool vl_gltf_object(const vlGltfLocation *at, const char *key, const json_t **value) {
+  return member(at, key, "an object", value);
 }
 
-bool vl_gltf_array(vlGltf *g, const vlGltfLocation *at, const char *key, const json_t **value,
+bool vl_gltf_array(const vlGltfLocation *at, const char *key, const json_t **value,
                    size_t *count) {
-  const bool ok = member(g, at, key, "an array", value);
+  const bool ok = member(at, key, "an array", value);
   *count = json_array_size(*value);
   return ok;
 }

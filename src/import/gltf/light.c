@@ -10,44 +10,43 @@
 #define LAMPS "extensions.EXT_lights_ies"
 
 /* A light's colour and factor must not be negative. */
-static bool check_light(vlGltf *g, const vlGltfLocation *at, const char *factor_key,
-                        double factor, const double color[3]) {
+static bool check_light(const vlGltfLocation *at, const char *factor_key, double factor,
+                        const double color[3]) {
   const char *key = NULL;
   for (int i = 0; i < 3; i++)
     if (!(color[i] >= 0))
       key = "color";
   if (!(factor >= 0))
     key = factor_key;
-  return !key || vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must not be negative");
+  return !key || vl_gltf_fail(VL_GLTF_KEY(at, key), "must not be negative");
 }
 
 static bool add_light(vlGltf *g, size_t node, int64_t index) {
-  const vlGltfLocation *up = VL_GLTF_KEY(NULL, PUNCTUAL),
+  const vlGltfLocation *up = VL_GLTF_KEY(&g->top, PUNCTUAL),
                        *at = VL_GLTF_ITEM(up, "lights", (size_t)index);
   const json_t *json = json_array_get(g->lights, (size_t)index), *spot;
   if (!json_is_object(json))
-    return vl_gltf_fail(g, at, "must be an object");
+    return vl_gltf_fail(at, "must be an object");
   static const char *const types[] = {"directional", "point", "spot"};
   int type = 0;
   double color[3] = {1, 1, 1}, intensity = 1, inner = 0, outer = 0.7853981633974483,
          range = INFINITY;
   if (!json_object_get(json, "type"))
-    return vl_gltf_fail(g, at, "\"type\" is missing");
-  if (!vl_gltf_choice(g, at, "type", types, 3, &type) ||
-      !vl_gltf_numbers(g, at, "color", 3, color) ||
-      !vl_gltf_number(g, at, "intensity", &intensity) ||
-      !vl_gltf_number(g, at, "range", &range) || !vl_gltf_object(g, at, "spot", &spot) ||
-      !vl_gltf_number(g, VL_GLTF_KEY(at, "spot"), "innerConeAngle", &inner) ||
-      !vl_gltf_number(g, VL_GLTF_KEY(at, "spot"), "outerConeAngle", &outer))
+    return vl_gltf_fail(at, "\"type\" is missing");
+  if (!vl_gltf_choice(at, "type", types, 3, &type) || !vl_gltf_numbers(at, "color", 3, color) ||
+      !vl_gltf_number(at, "intensity", &intensity) || !vl_gltf_number(at, "range", &range) ||
+      !vl_gltf_object(at, "spot", &spot) ||
+      !vl_gltf_number(VL_GLTF_KEY(at, "spot"), "innerConeAngle", &inner) ||
+      !vl_gltf_number(VL_GLTF_KEY(at, "spot"), "outerConeAngle", &outer))
     return false;
   bool is_spot = type == 2, is_distant = type == 0;
-  if (!check_light(g, at, "intensity", intensity, color))
+  if (!check_light(at, "intensity", intensity, color))
     return false;
   if (is_spot && !(inner >= 0 && inner <= outer && outer > 0 && outer <= 1.5707964))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "spot"),
+    return vl_gltf_fail(VL_GLTF_KEY(at, "spot"),
                         "its angles must be 0 <= inner <= outer <= pi/2");
   if (isfinite(range) && vl_gltf_once(g, VL_GLTF_REPORTED_RANGE))
-    vl_gltf_warn(g, VL_LOG_INFO, at, "its range is ignored: light goes on as far as it may");
+    vl_gltf_warn(VL_LOG_INFO, at, "its range is ignored: light goes on as far as it may");
   vlLightDef def = vl_default_light_def(is_spot      ? VL_LIGHT_SPOT
                                         : is_distant ? VL_LIGHT_DISTANT
                                                      : VL_LIGHT_POINT);
@@ -77,13 +76,12 @@ static bool read_profile(vlGltf *g, const vlGltfLocation *at, vlLightDef *def) {
   const char *uri = NULL, *path = NULL;
   const uint8_t *data = NULL;
   int64_t view = -1;
-  if (!vl_gltf_text(g, at, "uri", &uri) ||
-      !vl_gltf_index(g, at, "bufferView", g->view_count, &view))
+  if (!vl_gltf_text(at, "uri", &uri) || !vl_gltf_index(at, "bufferView", g->view_count, &view))
     return false;
   if (!uri && view < 0)
-    return vl_gltf_fail(g, at, "has neither \"uri\" nor \"bufferView\"");
+    return vl_gltf_fail(at, "has neither \"uri\" nor \"bufferView\"");
   if (!uri && !g->views[view].data)
-    return vl_gltf_fail(g, at, "bufferViews[%d] holds nothing that velo can read", (int)view);
+    return vl_gltf_fail(at, "bufferViews[%d] holds nothing that velo can read", (int)view);
   if (!uri) {
     def->lamp_data = g->views[view].data;
     def->lamp_size = g->views[view].size;
@@ -95,7 +93,7 @@ static bool read_profile(vlGltf *g, const vlGltfLocation *at, vlLightDef *def) {
   def->path = vl_names_lamp(path) ? path : NULL;
   if (def->lamp_data || def->path)
     return true;
-  return vl_gltf_fail(g, VL_GLTF_KEY(at, "uri"), "\"%s\" does not end with .ies",
+  return vl_gltf_fail(VL_GLTF_KEY(at, "uri"), "\"%s\" does not end with .ies",
                       vl_short_text(uri).text);
 }
 
@@ -112,22 +110,21 @@ static void set_pose(const vlMat4 *world, vlLightDef *def) {
 }
 
 static bool add_lamp(vlGltf *g, size_t node) {
-  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(NULL, "nodes", node), LAMPS);
+  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(&g->top, "nodes", node), LAMPS);
   int64_t index = -1;
   double color[3] = {1, 1, 1}, multiplier = 1;
-  if (!vl_gltf_index(g, at, "light", g->lamp_count, &index) ||
-      !vl_gltf_numbers(g, at, "color", 3, color) ||
-      !vl_gltf_number(g, at, "multiplier", &multiplier))
+  if (!vl_gltf_index(at, "light", g->lamp_count, &index) ||
+      !vl_gltf_numbers(at, "color", 3, color) || !vl_gltf_number(at, "multiplier", &multiplier))
     return false;
   if (index < 0)
     return true;
-  if (!check_light(g, at, "multiplier", multiplier, color))
+  if (!check_light(at, "multiplier", multiplier, color))
     return false;
   const vlGltfLocation *profile =
-      VL_GLTF_ITEM(VL_GLTF_KEY(NULL, LAMPS), "lights", (size_t)index);
+      VL_GLTF_ITEM(VL_GLTF_KEY(&g->top, LAMPS), "lights", (size_t)index);
   const json_t *json = json_array_get(g->lamps, (size_t)index);
   if (!json_is_object(json))
-    return vl_gltf_fail(g, profile, "must be an object");
+    return vl_gltf_fail(profile, "must be an object");
   vlLightDef def = vl_default_light_def(VL_LIGHT_GONIOMETRIC);
   def.source.file = g->path;
   def.color = vl_spectrum_rgb((float)fmin(color[0], 1), (float)fmin(color[1], 1),
@@ -140,8 +137,8 @@ static bool add_lamp(vlGltf *g, size_t node) {
 }
 
 bool vl_gltf_add_lights(vlGltf *g, size_t node) {
-  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(NULL, "nodes", node), PUNCTUAL);
+  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(&g->top, "nodes", node), PUNCTUAL);
   int64_t light;
-  return vl_gltf_index(g, at, "light", g->light_count, &light) &&
+  return vl_gltf_index(at, "light", g->light_count, &light) &&
          (light < 0 || add_light(g, node, light)) && add_lamp(g, node);
 }

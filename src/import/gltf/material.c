@@ -25,10 +25,10 @@ typedef struct Reader {
 static bool channel(const Reader *r, const char *factor_key, const char *texture_key, int which,
                     float default_factor, vlFloatInput *input) {
   float factor = default_factor;
-  if (!vl_gltf_float(r->g, r->at, factor_key, &factor))
+  if (!vl_gltf_float(r->at, factor_key, &factor))
     return false;
   if (!(factor >= 0 && factor <= 1)) {
-    vl_gltf_warn(r->g, VL_LOG_WARNING, VL_GLTF_KEY(r->at, factor_key),
+    vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_KEY(r->at, factor_key),
                  "%g does not lie between 0 and 1: %d is taken", (double)factor, factor > 1);
     factor = factor > 1;
   }
@@ -39,7 +39,7 @@ static bool channel(const Reader *r, const char *factor_key, const char *texture
 
 static bool read_color(const Reader *r, const char *key, size_t count, float color[4]) {
   double v[4] = {color[0], color[1], color[2], color[3]};
-  if (!vl_gltf_numbers(r->g, r->at, key, count, v))
+  if (!vl_gltf_numbers(r->at, key, count, v))
     return false;
   for (int i = 0; i < 4; i++)
     color[i] = v[i] > 0 ? (float)v[i] : 0.0f;
@@ -76,7 +76,7 @@ static bool normal_input(const Reader *r, const char *key, vlTextureId *id, floa
   const vlGltfLocation *at = VL_GLTF_KEY(r->at, key);
   vlGltfTextureUse use = vl_gltf_use_color();
   use.srgb = false;
-  if (!vl_gltf_texture(r->g, r->at, key, &use, id) || !vl_gltf_float(r->g, at, "scale", scale))
+  if (!vl_gltf_texture(r->g, r->at, key, &use, id) || !vl_gltf_float(at, "scale", scale))
     return false;
   if (!id->index)
     return true;
@@ -95,8 +95,8 @@ static bool read_alpha(const Reader *r, const vlGltfLocation *at, const char *te
   int mode = 0;
   float cutoff = 0.5f;
   r->result->alpha = vl_float_input(1.0f);
-  if (!vl_gltf_choice(r->g, r->at, "alphaMode", modes, 3, &mode) ||
-      !vl_gltf_float(r->g, r->at, "alphaCutoff", &cutoff))
+  if (!vl_gltf_choice(r->at, "alphaMode", modes, 3, &mode) ||
+      !vl_gltf_float(r->at, "alphaCutoff", &cutoff))
     return false;
   if (mode == 0)
     return true;
@@ -134,7 +134,7 @@ static bool read_metallic_roughness(const Reader *r, float base[4]) {
   const json_t *json;
   const Reader own = part(r, VL_GLTF_KEY(r->at, "pbrMetallicRoughness"));
   vlPrincipledDef *p = &r->def->principled;
-  return vl_gltf_object(r->g, r->at, "pbrMetallicRoughness", &json) &&
+  return vl_gltf_object(r->at, "pbrMetallicRoughness", &json) &&
          read_color(&own, "baseColorFactor", 4, base) &&
          color_input(&own, "baseColorTexture", base, r->colors, &r->def->reflectance) &&
          channel(&own, "metallicFactor", "metallicRoughnessTexture", 2, 1.0f, &p->metallic) &&
@@ -153,7 +153,7 @@ static bool read_specular_glossiness(const Reader *r, float base[4]) {
       !read_color(&own, "specularFactor", 3, specular) ||
       !color_input(&own, "diffuseTexture", base, r->colors, &r->def->reflectance) ||
       !color_input(&own, "specularGlossinessTexture", specular, false, &p->specular_color) ||
-      !vl_gltf_float(r->g, own.at, "glossinessFactor", &glossiness) ||
+      !vl_gltf_float(own.at, "glossinessFactor", &glossiness) ||
       !read_alpha(r, own.at, "diffuseTexture", base[3]))
     return false;
   p->metallic = vl_float_input(0.0f);
@@ -190,9 +190,9 @@ static bool read_sheen(const Reader *r, vlPrincipledDef *p) {
 static bool read_iridescence(const Reader *r, vlPrincipledDef *p) {
   float least = 100, most = 400;
   if (!channel(r, "iridescenceFactor", "iridescenceTexture", 0, 0.0f, &p->iridescence) ||
-      !vl_gltf_float(r->g, r->at, "iridescenceIor", &p->iridescence_ior) ||
-      !vl_gltf_float(r->g, r->at, "iridescenceThicknessMinimum", &least) ||
-      !vl_gltf_float(r->g, r->at, "iridescenceThicknessMaximum", &most))
+      !vl_gltf_float(r->at, "iridescenceIor", &p->iridescence_ior) ||
+      !vl_gltf_float(r->at, "iridescenceThicknessMinimum", &least) ||
+      !vl_gltf_float(r->at, "iridescenceThicknessMaximum", &most))
     return false;
   p->iridescence_ior = p->iridescence_ior < 1.0f ? 1.0f : p->iridescence_ior;
   p->iridescence_thickness = vl_float_input(most);
@@ -205,7 +205,7 @@ static bool read_iridescence(const Reader *r, vlPrincipledDef *p) {
 static bool read_anisotropy(const Reader *r, vlPrincipledDef *p) {
   float rotation = 0;
   if (!channel(r, "anisotropyStrength", "anisotropyTexture", 2, 0.0f, &p->anisotropy) ||
-      !vl_gltf_float(r->g, r->at, "anisotropyRotation", &rotation))
+      !vl_gltf_float(r->at, "anisotropyRotation", &rotation))
     return false;
   p->anisotropy_rotation = vl_float_input(rotation);
   if (p->anisotropy.texture.index || p->anisotropy.value > 0.0f)
@@ -223,19 +223,19 @@ static bool read_glass(const Reader *r, vlPrincipledDef *p) {
 static bool read_ior(const Reader *r, vlPrincipledDef *p) {
   (void)p;
   float index = 1.5f;
-  if (!vl_gltf_float(r->g, r->at, "ior", &index))
+  if (!vl_gltf_float(r->at, "ior", &index))
     return false;
   if (index != 0.0f && !(index >= 1.0f))
-    return vl_gltf_fail(r->g, VL_GLTF_KEY(r->at, "ior"), "%g is below 1", (double)index);
+    return vl_gltf_fail(VL_GLTF_KEY(r->at, "ior"), "%g is below 1", (double)index);
   r->def->eta = vl_spectrum_input(vl_spectrum_constant(index));
   return true;
 }
 
 static bool read_dispersion(const Reader *r, vlPrincipledDef *p) {
-  if (!vl_gltf_float(r->g, r->at, "dispersion", &p->dispersion))
+  if (!vl_gltf_float(r->at, "dispersion", &p->dispersion))
     return false;
   return !(p->dispersion < 0.0f) ||
-         vl_gltf_fail(r->g, VL_GLTF_KEY(r->at, "dispersion"), "must not be negative");
+         vl_gltf_fail(VL_GLTF_KEY(r->at, "dispersion"), "must not be negative");
 }
 
 static bool read_diffuse(const Reader *r, vlPrincipledDef *p) {
@@ -247,7 +247,7 @@ static bool read_diffuse(const Reader *r, vlPrincipledDef *p) {
 
 static bool read_volume(const Reader *r, vlPrincipledDef *p) {
   float thickness = 0;
-  if (!vl_gltf_float(r->g, r->at, "thicknessFactor", &thickness))
+  if (!vl_gltf_float(r->at, "thicknessFactor", &thickness))
     return false;
   p->thin_walled = !(thickness > 0.0f);
   return p->thin_walled || vl_gltf_volume(r->g, r->at, r->result);
@@ -274,7 +274,7 @@ static bool read_layers(const Reader *r, bool glossy) {
   r->def->principled.thin_walled = true;
   for (size_t i = 0; i < VL_LENGTH(layers); i++) {
     const Reader layer = part(r, VL_GLTF_KEY(r->at, layers[i].key));
-    if ((glossy && layers[i].not_glossy) || !json_is_object(vl_gltf_json(r->g, layer.at)))
+    if ((glossy && layers[i].not_glossy) || !json_is_object(vl_gltf_json(layer.at)))
       continue;
     if (!layers[i].read(&layer, &r->def->principled))
       return false;
@@ -304,7 +304,7 @@ static bool add_emission(const Reader *r, const char *texture_key, const float c
 static bool read_emission(const Reader *r) {
   float color[4] = {0, 0, 0, 1}, strength = 1;
   return read_color(r, "emissiveFactor", 3, color) &&
-         vl_gltf_float(r->g, VL_GLTF_KEY(r->at, "extensions.KHR_materials_emissive_strength"),
+         vl_gltf_float(VL_GLTF_KEY(r->at, "extensions.KHR_materials_emissive_strength"),
                        "emissiveStrength", &strength) &&
          add_emission(r, "emissiveTexture", color, strength);
 }
@@ -318,7 +318,7 @@ static bool read_unlit(const Reader *r) {
   *r->def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   r->def->source.file = r->g->path;
   r->def->reflectance = vl_spectrum_input(vl_spectrum_constant(0.0f));
-  return vl_gltf_object(r->g, r->at, "pbrMetallicRoughness", &json) &&
+  return vl_gltf_object(r->at, "pbrMetallicRoughness", &json) &&
          read_color(&own, "baseColorFactor", 4, base) &&
          read_alpha(r, own.at, "baseColorTexture", base[3]) &&
          add_emission(&own, "baseColorTexture", base, 1.0f);
@@ -329,7 +329,7 @@ static bool read_unlit(const Reader *r) {
 static bool read_material(const Reader *r) {
   float base[4] = {1, 1, 1, 1};
   vlPrincipledDef *p = &r->def->principled;
-  if (!vl_gltf_bool(r->g, r->at, "doubleSided", &r->result->double_sided))
+  if (!vl_gltf_bool(r->at, "doubleSided", &r->result->double_sided))
     return false;
   if (vl_gltf_extension(r->json, "KHR_materials_unlit"))
     return read_unlit(r);
@@ -364,7 +364,7 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors) {
   char location[40];
   snprintf(location, sizeof location, "materials[%d]", (int)index);
   Reader r = {
-      g,      VL_GLTF_ITEM(NULL, "materials", index < 0 ? g->material_count : (size_t)index),
+      g,      VL_GLTF_ITEM(&g->top, "materials", index < 0 ? g->material_count : (size_t)index),
       json,   &def,
       result, colors};
   def.source.file = g->path;

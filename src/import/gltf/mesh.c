@@ -13,7 +13,7 @@ static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uin
                       uint32_t components, size_t vertices, float **out) {
   int64_t index;
   const vlGltfLocation *at = VL_GLTF_KEY(up, name);
-  if (!vl_gltf_index(g, up, name, g->accessor_count, &index))
+  if (!vl_gltf_index(up, name, g->accessor_count, &index))
     return false;
   if (index < 0)
     return true;
@@ -21,7 +21,7 @@ static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uin
   if (!a)
     return false;
   if (a->matrix || a->components < least || a->components > components)
-    return vl_gltf_fail(g, at, "accessors[%d] has %u components, %u are needed", (int)index,
+    return vl_gltf_fail(at, "accessors[%d] has %u components, %u are needed", (int)index,
                         a->components, components);
   *out = vl_gltf_load_floats(g, at, (size_t)index, components, vertices, NULL);
   return *out != NULL;
@@ -36,7 +36,7 @@ static bool read_attributes(vlGltf *g, const vlGltfLocation *up, int64_t positio
   if (!a)
     return false;
   if (a->components != 3)
-    return vl_gltf_fail(g, at_position, "must be of type VEC3");
+    return vl_gltf_fail(at_position, "must be of type VEC3");
   p->vertices = a->count;
   if (!attribute(g, at, "POSITION", 3, 3, p->vertices, &p->positions) ||
       !attribute(g, at, "NORMAL", 3, 3, p->vertices, &p->normals) ||
@@ -57,7 +57,7 @@ static bool read_indices(vlGltf *g, const vlGltfLocation *up, size_t vertices,
                          uint32_t **indices, size_t *count) {
   int64_t index;
   const vlGltfLocation *at = VL_GLTF_KEY(up, "indices");
-  if (!vl_gltf_index(g, up, "indices", g->accessor_count, &index))
+  if (!vl_gltf_index(up, "indices", g->accessor_count, &index))
     return false;
   const vlGltfAccessor *a = index < 0 ? NULL : vl_gltf_accessor(g, (size_t)index);
   if (index >= 0 && !a)
@@ -65,7 +65,7 @@ static bool read_indices(vlGltf *g, const vlGltfLocation *up, size_t vertices,
   *count = a ? a->count : vertices;
   if (a && (a->components != 1 || a->type == VL_GLTF_FLOAT || a->type == VL_GLTF_BYTE ||
             a->type == VL_GLTF_SHORT))
-    return vl_gltf_fail(g, at, "must be SCALAR of unsigned whole numbers");
+    return vl_gltf_fail(at, "must be SCALAR of unsigned whole numbers");
   if (!vl_gltf_spend(g, at, 4 * (uint64_t)*count))
     return false;
   if (!(*indices = vl_alloc_array(g->context, *count, sizeof **indices)))
@@ -77,8 +77,8 @@ static bool read_indices(vlGltf *g, const vlGltfLocation *up, size_t vertices,
       (*indices)[i] = (uint32_t)i;
   for (size_t i = 0; i < *count; i++)
     if ((*indices)[i] >= vertices) {
-      vl_gltf_fail(g, at, "number %zu names vertex %u, but there are only %zu", i,
-                   (*indices)[i], vertices);
+      vl_gltf_fail(at, "number %zu names vertex %u, but there are only %zu", i, (*indices)[i],
+                   vertices);
       vl_free(g->context, *indices);
       *indices = NULL;
       return false;
@@ -88,16 +88,16 @@ static bool read_indices(vlGltf *g, const vlGltfLocation *up, size_t vertices,
 
 /* The material of the chosen variant, or the primitive's own. */
 static bool choose_material(vlGltf *g, const vlGltfLocation *at, int64_t *material) {
-  if (!vl_gltf_index(g, at, "material", g->material_count, material))
+  if (!vl_gltf_index(at, "material", g->material_count, material))
     return false;
   const vlGltfLocation *up = VL_GLTF_KEY(at, "extensions.KHR_materials_variants");
-  const json_t *mappings = json_object_get(vl_gltf_json(g, up), "mappings");
+  const json_t *mappings = json_object_get(vl_gltf_json(up), "mappings");
   for (size_t i = 0; g->variant >= 0 && i < json_array_size(mappings); i++) {
     const json_t *mapping = json_array_get(mappings, i),
                  *variants = json_object_get(mapping, "variants");
     for (size_t k = 0; k < json_array_size(variants); k++)
       if (json_number_value(json_array_get(variants, k)) == (double)g->variant)
-        return vl_gltf_index(g, VL_GLTF_ITEM(up, "mappings", i), "material", g->material_count,
+        return vl_gltf_index(VL_GLTF_ITEM(up, "mappings", i), "material", g->material_count,
                              material);
   }
   return true;
@@ -227,8 +227,7 @@ static void still(vlGltf *g, const vlGltfLocation *at, vlGltfPrimitive *p) {
   vl_free(g->context, p->normals_close);
   p->positions_close = p->normals_close = NULL;
   if (vl_gltf_once(g, VL_GLTF_REPORTED_MOTION))
-    vl_gltf_warn(g, VL_LOG_INFO, at,
-                 "gives out light, and stays as it is when the shutter opens");
+    vl_gltf_warn(VL_LOG_INFO, at, "gives out light, and stays as it is when the shutter opens");
 }
 
 static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
@@ -238,15 +237,14 @@ static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mes
   int64_t position, material;
   size_t mode = 4, count = 0;
   uint32_t *indices = NULL;
-  if (!vl_gltf_object(g, at, "attributes", &attributes) ||
-      !vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count,
-                     &position) ||
-      !vl_gltf_size(g, at, "mode", &mode) || !choose_material(g, at, &material))
+  if (!vl_gltf_object(at, "attributes", &attributes) ||
+      !vl_gltf_index(VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count, &position) ||
+      !vl_gltf_size(at, "mode", &mode) || !choose_material(g, at, &material))
     return false;
   if (mode > 6)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "mode"), "%zu is not from 0 to 6", mode);
+    return vl_gltf_fail(VL_GLTF_KEY(at, "mode"), "%zu is not from 0 to 6", mode);
   if (position < 0) {
-    vl_gltf_warn(g, VL_LOG_WARNING, at, "has no positions and is not drawn");
+    vl_gltf_warn(VL_LOG_WARNING, at, "has no positions and is not drawn");
     return true;
   }
   if (!vl_gltf_unpack_primitive(g, at) || !read_attributes(g, at, position, p) ||
@@ -287,16 +285,16 @@ static bool label_last(vlGltf *g, const vlGltfLocation *at, size_t node, size_t 
 
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index,
                       vlGroupId group, vlMat4 pose) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "meshes", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
-  if (!vl_gltf_array(g, at, "primitives", &primitives, &count))
+  if (!vl_gltf_array(at, "primitives", &primitives, &count))
     return false;
   for (size_t i = 0; i < count; i++) {
     const json_t *primitive = json_array_get(primitives, i);
     const vlGltfLocation *here = VL_GLTF_ITEM(at, "primitives", i);
     if (!json_is_object(primitive))
-      return vl_gltf_fail(g, here, "must be an object");
+      return vl_gltf_fail(here, "must be an object");
     vlGltfPrimitive p = {0};
     const size_t before = g->scene->shapes.count;
     bool ok = add_primitive(g, here, mesh, node, group, pose, &p);
@@ -315,8 +313,7 @@ static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mes
   const bool skinned = json_object_get(node->json, "skin") != NULL;
   int64_t position;
   vlGltfPrimitive p = {0};
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count,
-                     &position))
+  if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count, &position))
     return false;
   if (position < 0)
     return true;
@@ -333,11 +330,11 @@ static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mes
 
 bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double low[3],
                       double high[3]) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "meshes", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
   const uint64_t spent = g->spent; /* the arrays are freed again */
-  if (!vl_gltf_array(g, at, "primitives", &primitives, &count))
+  if (!vl_gltf_array(at, "primitives", &primitives, &count))
     return false;
   for (size_t i = 0; i < count; i++)
     if (!primitive_box(g, VL_GLTF_ITEM(at, "primitives", i), mesh, node, low, high))

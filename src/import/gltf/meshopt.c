@@ -43,24 +43,23 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) 
   int64_t buffer;
   size_t offset = 0, length = 0, stride = 0, count = 0;
   int mode = ATTRIBUTES, filter = NONE;
-  if (!vl_gltf_index(g, at, "buffer", g->buffer_count, &buffer) ||
-      !vl_gltf_size(g, at, "byteOffset", &offset) ||
-      !vl_gltf_size(g, at, "byteLength", &length) ||
-      !vl_gltf_size(g, at, "byteStride", &stride) || !vl_gltf_size(g, at, "count", &count) ||
-      !vl_gltf_choice(g, at, "mode", modes, 3, &mode) ||
-      !vl_gltf_choice(g, at, "filter", filters, 4, &filter))
+  if (!vl_gltf_index(at, "buffer", g->buffer_count, &buffer) ||
+      !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "byteLength", &length) ||
+      !vl_gltf_size(at, "byteStride", &stride) || !vl_gltf_size(at, "count", &count) ||
+      !vl_gltf_choice(at, "mode", modes, 3, &mode) ||
+      !vl_gltf_choice(at, "filter", filters, 4, &filter))
     return false;
   if (buffer < 0)
-    return vl_gltf_fail(g, at, "\"buffer\" is missing");
+    return vl_gltf_fail(at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
   if (!b->data || offset > b->size || length > b->size - offset)
-    return vl_gltf_fail(g, at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset,
+    return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset,
                         offset + length, (int)buffer, b->data ? b->size : 0);
   if (!sizes_fit((Mode)mode, (Filter)filter, count, stride))
-    return vl_gltf_fail(g, at, "%zu elements of %zu bytes: mode %s with filter %s has no such",
+    return vl_gltf_fail(at, "%zu elements of %zu bytes: mode %s with filter %s has no such",
                         count, stride, modes[mode], filters[filter]);
   if (count > MAX_TIMES * length / stride)
-    return vl_gltf_fail(g, at, "%zu bytes cannot hold %zu elements of %zu bytes", length, count,
+    return vl_gltf_fail(at, "%zu bytes cannot hold %zu elements of %zu bytes", length, count,
                         stride);
   uint8_t *out = vl_alloc_zero(g->context, count + 1, stride);
   if (!out)
@@ -68,7 +67,7 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) 
   if (!vl_gltf_own(g, out))
     return false;
   if (count && decode((Mode)mode, out, count, stride, b->data + offset, length) != 0)
-    return vl_gltf_fail(g, at, "its bytes are no meshopt %s", modes[mode]);
+    return vl_gltf_fail(at, "its bytes are no meshopt %s", modes[mode]);
   if (count && filter == OCTAHEDRAL)
     meshopt_decodeFilterOct(out, count, stride);
   if (count && filter == QUATERNION)

@@ -230,19 +230,19 @@ static void report(vlGltf *g, const Unknown *name) {
              name->count > 2 ? "s" : "");
   const char *location = *name->location ? name->location : "the root";
   if (extension)
-    vl_gltf_warn(g, VL_LOG_WARNING, NULL, "%s: %s is ignored: velo does not read it%s",
+    vl_gltf_warn(VL_LOG_WARNING, &g->top, "%s: %s is ignored: velo does not read it%s",
                  location, vl_gltf_extension_text(name->key).text, times);
   else
-    vl_gltf_warn(g, VL_LOG_WARNING, NULL, "%s: unknown name \"%s\" is ignored%s%s", location,
+    vl_gltf_warn(VL_LOG_WARNING, &g->top, "%s: unknown name \"%s\" is ignored%s%s", location,
                  vl_short_text(name->key).text, near, times);
 }
 
 void vl_gltf_check_names(vlGltf *g) {
   Look look = {.used = json_object_get(g->root, "extensionsUsed")};
-  walk(&look, NULL, "", g->root);
+  walk(&look, &g->top, "", g->root);
   for (uint32_t i = 0; i < look.count; i++)
     report(g, &look.names[i]);
   if (look.more)
-    vl_gltf_warn(g, VL_LOG_WARNING, NULL, "%u members of further unknown names are ignored",
+    vl_gltf_warn(VL_LOG_WARNING, &g->top, "%u members of further unknown names are ignored",
                  look.more);
 }

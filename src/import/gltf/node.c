@@ -28,32 +28,32 @@ vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const doubl
 }
 
 static bool read_node(vlGltf *g, size_t i) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "nodes", i);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "nodes", i);
   vlGltfNode *n = &g->nodes[i];
   double columns[16];
   const json_t *children;
   size_t count;
   n->has_matrix = json_object_get(n->json, "matrix") != NULL;
   n->rotation[3] = n->scale[0] = n->scale[1] = n->scale[2] = 1;
-  if (!vl_gltf_numbers(g, at, "translation", 3, n->translation) ||
-      !vl_gltf_numbers(g, at, "rotation", 4, n->rotation) ||
-      !vl_gltf_numbers(g, at, "scale", 3, n->scale) ||
-      !vl_gltf_numbers(g, at, "matrix", 16, columns) ||
-      !vl_gltf_array(g, at, "children", &children, &count))
+  if (!vl_gltf_numbers(at, "translation", 3, n->translation) ||
+      !vl_gltf_numbers(at, "rotation", 4, n->rotation) ||
+      !vl_gltf_numbers(at, "scale", 3, n->scale) ||
+      !vl_gltf_numbers(at, "matrix", 16, columns) ||
+      !vl_gltf_array(at, "children", &children, &count))
     return false;
   for (int k = 0; n->has_matrix && k < 16; k++)
     n->matrix[k] = columns[4 * (k % 4) + k / 4];
   if (n->has_matrix &&
       (n->matrix[12] != 0 || n->matrix[13] != 0 || n->matrix[14] != 0 || n->matrix[15] != 1))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "matrix"), "its last row must be 0 0 0 1");
+    return vl_gltf_fail(VL_GLTF_KEY(at, "matrix"), "its last row must be 0 0 0 1");
   for (size_t k = 0; k < count; k++) {
     const vlGltfLocation *here = VL_GLTF_ITEM(at, "children", k);
     size_t index;
-    if (!vl_gltf_element(g, here, json_array_get(children, k), g->node_count, "node", &index))
+    if (!vl_gltf_element(here, json_array_get(children, k), g->node_count, "node", &index))
       return false;
     vlGltfNode *c = &g->nodes[index];
     if (c->parent != UINT32_MAX)
-      return vl_gltf_fail(g, here, "node %zu is already a child of node %u", index, c->parent);
+      return vl_gltf_fail(here, "node %zu is already a child of node %u", index, c->parent);
     c->parent = (uint32_t)i;
   }
   return true;
@@ -74,7 +74,7 @@ bool vl_gltf_read_nodes(vlGltf *g) {
     for (uint32_t k = g->nodes[i].parent; k != UINT32_MAX && !g->nodes[k].reached;
          k = g->nodes[k].parent)
       if (++steps > g->node_count)
-        return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "nodes", i), "is among its own children");
+        return vl_gltf_fail(VL_GLTF_ITEM(&g->top, "nodes", i), "is among its own children");
     for (uint32_t k = (uint32_t)i; k != UINT32_MAX && !g->nodes[k].reached;
          k = g->nodes[k].parent)
       g->nodes[k].reached = true;
@@ -110,7 +110,7 @@ bool vl_gltf_pose_nodes(vlGltf *g) {
   vl_free(g->context, chain);
   for (size_t i = 0; i < g->node_count; i++)
     if (!vl_mat4_is_finite(g->nodes[i].world))
-      return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "nodes", i),
+      return vl_gltf_fail(VL_GLTF_ITEM(&g->top, "nodes", i),
                           "its transform to the world is not finite");
   return true;
 }
@@ -145,14 +145,14 @@ static bool read_instances(vlGltf *g, const vlGltfLocation *node_at, const json_
   if (!extension)
     return true;
   const vlGltfLocation *at = VL_GLTF_KEY(node_at, "extensions.EXT_mesh_gpu_instancing");
-  if (!vl_gltf_object(g, at, "attributes", &attributes))
+  if (!vl_gltf_object(at, "attributes", &attributes))
     return false;
   float *values[3] = {NULL, NULL, NULL};
   bool ok = true;
   for (int k = 0; k < 3 && ok; k++) {
     int64_t index;
     const vlGltfLocation *here = VL_GLTF_KEY(at, "attributes");
-    ok = vl_gltf_index(g, here, names[k], g->accessor_count, &index);
+    ok = vl_gltf_index(here, names[k], g->accessor_count, &index);
     if (!ok || index < 0)
       continue;
     values[k] = vl_gltf_load_floats(g, VL_GLTF_KEY(here, names[k]), (size_t)index, sizes[k],
@@ -230,7 +230,7 @@ static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t n
       continue;
     if (vl_gltf_once(g, VL_GLTF_REPORTED_MOTION))
       vl_gltf_warn(
-          g, VL_LOG_WARNING, VL_GLTF_ITEM(NULL, "nodes", node_index),
+          VL_LOG_WARNING, VL_GLTF_ITEM(&g->top, "nodes", node_index),
           "no motion leads from pose to pose: it stays as it is when the shutter opens");
     return -1;
   }
@@ -259,7 +259,7 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
   g->scale = vl_mat4_scale_of(&pose);
   bool deforms = vl_gltf_deforms(g, node), flat = is_flat(pose);
   if (flat && vl_gltf_once(g, VL_GLTF_REPORTED_FLAT))
-    vl_gltf_warn(g, VL_LOG_INFO, VL_GLTF_ITEM(NULL, "nodes", node_index),
+    vl_gltf_warn(VL_LOG_INFO, VL_GLTF_ITEM(&g->top, "nodes", node_index),
                  "its scale makes it flat");
   if (vl_gltf_node_moves(g, node) && !flat && !json_object_get(node->json, "skin")) {
     int done = place_moving(g, mesh, node, node_index, local, deforms);
@@ -276,10 +276,10 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
 }
 
 static bool draw_node(vlGltf *g, size_t i) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "nodes", i);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "nodes", i);
   const vlGltfNode *node = &g->nodes[i];
   int64_t mesh;
-  if (!vl_gltf_index(g, at, "mesh", g->mesh_count, &mesh) || !vl_gltf_add_lights(g, i))
+  if (!vl_gltf_index(at, "mesh", g->mesh_count, &mesh) || !vl_gltf_add_lights(g, i))
     return false;
   if (mesh < 0)
     return true;
@@ -332,8 +332,8 @@ static bool collect(vlGltf *g, const json_t *roots, const vlGltfLocation *at, ui
   *count = 0;
   for (size_t k = 0; ok && k < json_array_size(roots); k++) {
     size_t top = 0, index;
-    ok = vl_gltf_element(g, VL_GLTF_ITEM(at, "nodes", k), json_array_get(roots, k),
-                         g->node_count, "node", &index);
+    ok = vl_gltf_element(VL_GLTF_ITEM(at, "nodes", k), json_array_get(roots, k), g->node_count,
+                         "node", &index);
     if (ok)
       stack[top++] = (uint32_t)index;
     while (top > 0) {
@@ -359,7 +359,7 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
   for (size_t k = 0; k < count; k++) {
     int64_t mesh;
     const vlGltfNode *node = &g->nodes[order[k]];
-    if (!vl_gltf_index(g, VL_GLTF_ITEM(NULL, "nodes", order[k]), "mesh", g->mesh_count, &mesh))
+    if (!vl_gltf_index(VL_GLTF_ITEM(&g->top, "nodes", order[k]), "mesh", g->mesh_count, &mesh))
       return false;
     if (mesh < 0 || vl_gltf_deforms(g, node))
       continue;
@@ -380,7 +380,7 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
 
 bool vl_gltf_draw(vlGltf *g) {
   int64_t index;
-  if (!vl_gltf_index(g, NULL, "scene", g->scene_count, &index))
+  if (!vl_gltf_index(&g->top, "scene", g->scene_count, &index))
     return false;
   size_t chosen = index < 0 ? 0 : (size_t)index;
   if (g->def->scene)
@@ -388,11 +388,11 @@ bool vl_gltf_draw(vlGltf *g) {
   if (chosen == SIZE_MAX)
     return vl_gltf_fail_choice(g, "scene", json_object_get(g->root, "scenes"), g->def->scene,
                                200);
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "scenes", chosen);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "scenes", chosen);
   const json_t *scene = g->scene_count ? vl_gltf_item(g, "scenes", chosen) : NULL,
                *roots = NULL;
   size_t root_count = 0, count = 0;
-  if (!vl_gltf_array(g, at, "nodes", &roots, &root_count))
+  if (!vl_gltf_array(at, "nodes", &roots, &root_count))
     return false;
   json_t *all = NULL;
   if (!scene) { /* a file without scenes: all root nodes */

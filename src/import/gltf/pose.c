@@ -16,12 +16,12 @@ bool vl_gltf_pose(vlGltf *g) {
   g->close = g->def->time_close;
   bool both = g->open == g->open && g->close == g->close;
   if (both && g->close < g->open)
-    return vl_gltf_fail(g, NULL, "the shutter cannot close (%g s) before it opens (%g s)",
+    return vl_gltf_fail(&g->top, "the shutter cannot close (%g s) before it opens (%g s)",
                         g->close, g->open);
   g->moves = both && g->close > g->open && g->animation_count > 0;
   if (!g->moves)
     return pose_at(g, g->open);
-  if (!vl_gltf_spend(g, NULL, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys))
+  if (!vl_gltf_spend(g, &g->top, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys))
     return false;
   g->keys = vl_alloc_array(g->context, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
   if (!g->keys)

@@ -32,10 +32,8 @@ static bool report_missing(vlGltf *g, const vlGltfLocation *at, vlGltfImage *ima
   snprintf(text, sizeof text, "%.400s", name);
   vl_make_printable(text);
   if (g->def->strict || g->scene->problem)
-    return vl_gltf_fail_code(g, VL_ERROR_MISSING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s", text,
-                             why);
-  vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s; done without", text,
-               why);
+    return vl_gltf_fail_code(VL_ERROR_MISSING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s", text, why);
+  vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s; done without", text, why);
   g->repairs.images++;
   return image->read = image->missing = true;
 }
@@ -58,11 +56,10 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   vlGltfImage *image = &g->images[index];
   if (image->read)
     return true;
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "images", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "images", index);
   const char *uri = NULL;
   int64_t view;
-  if (!vl_gltf_text(g, at, "uri", &uri) ||
-      !vl_gltf_index(g, at, "bufferView", g->view_count, &view))
+  if (!vl_gltf_text(at, "uri", &uri) || !vl_gltf_index(at, "bufferView", g->view_count, &view))
     return false;
   if (uri) {
     if (is_remote(uri))
@@ -75,11 +72,11 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
       return report_missing(g, at, image, image->path, "no such file");
   } else if (view >= 0) {
     if (!g->views[view].data)
-      return vl_gltf_fail(g, at, "its bufferView holds nothing that velo can read");
+      return vl_gltf_fail(at, "its bufferView holds nothing that velo can read");
     image->data = g->views[view].data;
     image->size = g->views[view].size;
   } else {
-    return vl_gltf_fail(g, at, "has neither uri nor bufferView");
+    return vl_gltf_fail(at, "has neither uri nor bufferView");
   }
   image->read = true;
   return true;
@@ -90,22 +87,22 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
 static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
   static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds",
                                        "EXT_texture_avif"};
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "textures", texture);
-  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), "source",
-                     g->image_count, image))
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "textures", texture);
+  if (!vl_gltf_index(VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), "source", g->image_count,
+                     image))
     return false;
   if (*image >= 0)
     return true;
-  if (!vl_gltf_index(g, at, "source", g->image_count, image))
+  if (!vl_gltf_index(at, "source", g->image_count, image))
     return false;
   if (*image >= 0)
     return true;
   for (size_t i = 0; i < VL_LENGTH(others); i++)
-    if (vl_gltf_extension(vl_gltf_json(g, at), others[i]))
-      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+    if (vl_gltf_extension(vl_gltf_json(at), others[i]))
+      return vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at,
                                "its image is there by %s only, which velo does not read",
                                others[i]);
-  vl_gltf_warn(g, VL_LOG_WARNING, at, "has no image");
+  vl_gltf_warn(VL_LOG_WARNING, at, "has no image");
   return true;
 }
 
@@ -114,15 +111,15 @@ static vlWrap wrap_of(double code) {
 }
 
 static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "textures", texture);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "textures", texture);
   int64_t index;
-  if (!vl_gltf_index(g, at, "sampler", g->sampler_count, &index))
+  if (!vl_gltf_index(at, "sampler", g->sampler_count, &index))
     return false;
   const vlGltfLocation *here =
-      VL_GLTF_ITEM(NULL, "samplers", index < 0 ? g->sampler_count : (size_t)index);
+      VL_GLTF_ITEM(&g->top, "samplers", index < 0 ? g->sampler_count : (size_t)index);
   double s = 10497, t = 10497, large = 9729;
-  if (!vl_gltf_number(g, here, "wrapS", &s) || !vl_gltf_number(g, here, "wrapT", &t) ||
-      !vl_gltf_number(g, here, "magFilter", &large))
+  if (!vl_gltf_number(here, "wrapS", &s) || !vl_gltf_number(here, "wrapT", &t) ||
+      !vl_gltf_number(here, "magFilter", &large))
     return false;
   def->wrap = wrap_of(s);
   def->wrap_t = wrap_of(t);
@@ -133,13 +130,13 @@ static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
 
 bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, uint32_t *set) {
   size_t value = 0;
-  const json_t *transform = vl_gltf_extension(vl_gltf_json(g, at), "KHR_texture_transform");
-  if (!vl_gltf_size(g, at, "texCoord", &value) ||
-      !vl_gltf_size_in(g, at, transform, "texCoord", &value))
+  const json_t *transform = vl_gltf_extension(vl_gltf_json(at), "KHR_texture_transform");
+  if (!vl_gltf_size(at, "texCoord", &value) ||
+      !vl_gltf_size_in(at, transform, "texCoord", &value))
     return false;
   if (value > 3) {
     if (vl_gltf_once(g, VL_GLTF_REPORTED_SETS))
-      vl_gltf_warn(g, VL_LOG_WARNING, at, "uv set %zu: velo keeps sets 0 to 3; set 0 is taken",
+      vl_gltf_warn(VL_LOG_WARNING, at, "uv set %zu: velo keeps sets 0 to 3; set 0 is taken",
                    value);
     value = 0;
   }
@@ -148,14 +145,13 @@ bool vl_gltf_texture_set(vlGltf *g, const vlGltfLocation *at, uint32_t *set) {
 }
 
 /* KHR_texture_transform maps uvs with v downwards; here v points upwards before and after. */
-static bool read_transform(vlGltf *g, const vlGltfLocation *up, vlTextureDef *def) {
+static bool read_transform(const vlGltfLocation *up, vlTextureDef *def) {
   const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.KHR_texture_transform");
-  if (!json_is_object(vl_gltf_json(g, at)))
+  if (!json_is_object(vl_gltf_json(at)))
     return true;
   double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation = 0;
-  if (!vl_gltf_numbers(g, at, "offset", 2, offset) ||
-      !vl_gltf_numbers(g, at, "scale", 2, scale) ||
-      !vl_gltf_number(g, at, "rotation", &rotation))
+  if (!vl_gltf_numbers(at, "offset", 2, offset) || !vl_gltf_numbers(at, "scale", 2, scale) ||
+      !vl_gltf_number(at, "rotation", &rotation))
     return false;
   double c = vl_precise_cos(rotation), s = vl_precise_sin(rotation);
   double m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
@@ -172,14 +168,14 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const char *key,
   const vlGltfLocation *at = VL_GLTF_KEY(up, key);
   int64_t texture, image;
   *id = (vlTextureId){0};
-  if (!vl_gltf_object(g, up, key, &info))
+  if (!vl_gltf_object(up, key, &info))
     return false;
   if (!info)
     return true;
-  if (!vl_gltf_index(g, at, "index", g->texture_count, &texture))
+  if (!vl_gltf_index(at, "index", g->texture_count, &texture))
     return false;
   if (texture < 0)
-    return vl_gltf_fail(g, at, "\"index\" is missing");
+    return vl_gltf_fail(at, "\"index\" is missing");
   if (!choose_image(g, (size_t)texture, &image))
     return false;
   if (image < 0)
@@ -199,7 +195,7 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const char *key,
   def.data = def.path ? NULL : g->images[image].data;
   def.data_size = g->images[image].size;
   if (!read_sampler(g, (size_t)texture, &def) || !vl_gltf_texture_set(g, at, &def.uv_set) ||
-      !read_transform(g, at, &def))
+      !read_transform(at, &def))
     return false;
   def.encoding_given = !use->srgb;
   def.encoding = VL_ENCODING_LINEAR;

@@ -32,7 +32,7 @@ static bool make_room(vlGltf *g, const vlGltfLocation *at, const vlGltfPrimitive
                       size_t vertices, size_t faces, NewMesh *b) {
   memset(b, 0, sizeof *b);
   if (vertices > UINT32_MAX)
-    return vl_gltf_fail(g, at, "too many points");
+    return vl_gltf_fail(at, "too many points");
   if (!vl_gltf_spend(g, at, 36 * (uint64_t)vertices + 12 * (uint64_t)faces))
     return false;
   b->made.positions = vl_alloc_array(g->context, vertices, 3 * sizeof(float));
@@ -173,7 +173,7 @@ static bool make_solids(vlGltf *g, const vlGltfLocation *at, uint32_t mode,
     return true;
   }
   if (vl_gltf_once(g, VL_GLTF_REPORTED_POINTS))
-    vl_gltf_warn(g, VL_LOG_INFO, at, "points and lines are drawn as small balls and tubes");
+    vl_gltf_warn(VL_LOG_INFO, at, "points and lines are drawn as small balls and tubes");
   if (!make_room(g, at, p, solids * (mode == POINTS ? BALL_VERTICES : TUBE_VERTICES),
                  solids * (mode == POINTS ? BALL_FACES : TUBE_FACES), &b))
     return false;

@@ -25,7 +25,7 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
   static const char *const keys[2] = {"min", "max"}, *const codes[2] = {
                                                          "ACCESSOR_MIN_MISMATCH",
                                                          "ACCESSOR_MAX_MISMATCH"};
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "accessors", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "accessors", index);
   for (int k = 0; k < 2; k++) {
     const json_t *given = json_object_get(vl_gltf_item(g, "accessors", index), keys[k]);
     for (uint32_t c = 0; c < components && json_array_size(given) == components; c++) {
@@ -38,7 +38,7 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
       if (!json_is_number(number) || !isfinite(own) || own == (float)json_number_value(number))
         continue;
       if (++*reported <= MAX_MESSAGES)
-        vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(at, keys[k], c),
+        vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_ITEM(at, keys[k], c),
                      "%s: %.9g is given, the data has %.9g", codes[k],
                      json_number_value(number), (double)own);
     }
@@ -51,7 +51,7 @@ static void check_accessor(vlGltf *g, size_t index, uint32_t *reported) {
     return;
   size_t count;
   const uint64_t spent = g->spent;
-  float *values = vl_gltf_load_floats(g, VL_GLTF_ITEM(NULL, "accessors", index), index,
+  float *values = vl_gltf_load_floats(g, VL_GLTF_ITEM(&g->top, "accessors", index), index,
                                       a->components, 0, &count);
   if (values)
     check_bounds(g, index, values, count, a->components, reported);
@@ -63,7 +63,7 @@ static void check_accessor(vlGltf *g, size_t index, uint32_t *reported) {
 
 static void report_unused(vlGltf *g, const char *array, size_t index, uint32_t *reported) {
   if (++*reported <= MAX_MESSAGES)
-    vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_ITEM(NULL, array, index),
+    vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_ITEM(&g->top, array, index),
                  "UNUSED_OBJECT: the scene does not use it");
 }
 
@@ -88,10 +88,10 @@ static void mark_used(const vlGltf *g, uint8_t *used) {
 /* A node that no scene reaches, with its mesh as its skin and morph targets deform it, and its
  * light. */
 static bool read_node(vlGltf *g, size_t index) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(NULL, "nodes", index);
+  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "nodes", index);
   const vlGltfNode *node = &g->nodes[index];
   int64_t mesh;
-  return vl_gltf_index(g, at, "mesh", g->mesh_count, &mesh) && vl_gltf_add_lights(g, index) &&
+  return vl_gltf_index(at, "mesh", g->mesh_count, &mesh) && vl_gltf_add_lights(g, index) &&
          (mesh < 0 ||
           vl_gltf_add_mesh(g, (size_t)mesh, node, index, (vlGroupId){0}, vl_mat4_identity()));
 }

@@ -14,11 +14,11 @@
 bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, vlGltfMaterial *result) {
   double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
   float sigma[3];
-  if (!vl_gltf_number(g, at, "attenuationDistance", &distance) ||
-      !vl_gltf_numbers(g, at, "attenuationColor", 3, color))
+  if (!vl_gltf_number(at, "attenuationDistance", &distance) ||
+      !vl_gltf_numbers(at, "attenuationColor", 3, color))
     return false;
   if (!(distance > 0))
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "attenuationDistance"), "must be above 0");
+    return vl_gltf_fail(VL_GLTF_KEY(at, "attenuationDistance"), "must be above 0");
   for (int i = 0; i < 3; i++) {
     double c = color[i] > 1e-4 ? color[i] < 1 ? color[i] : 1 : 1e-4;
     sigma[i] = (float)(-vl_precise_log(c) / distance);
@@ -49,8 +49,8 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
                                                &image, &error)
                         : vl_image_read_named(g->context, NULL, def.path, &image, &error);
   if (r != VL_OK)
-    return vl_gltf_fail_code(g, r, NULL, "%s", error.message);
-  bool ok = image->channels >= 3 || vl_gltf_fail(g, NULL, "%s: has no directions", def.name);
+    return vl_gltf_fail_code(r, &g->top, "%s", error.message);
+  bool ok = image->channels >= 3 || vl_gltf_fail(&g->top, "%s: has no directions", def.name);
   if (ok) {
     vlImageDef form = vl_default_image_def(image->width, image->height, 1);
     form.type = VL_PIXEL_F32;

@@ -36,11 +36,11 @@ static uint32_t component_count(const char *type, bool *matrix) {
 
 /* Checks that `count` elements of `size` bytes, `stride` bytes apart from `offset` on, lie
  * inside the view. */
-static bool fits(vlGltf *g, const vlGltfLocation *at, int64_t view, size_t offset, size_t count,
+static bool fits(vlGltf *g, const vlGltfLocation *at, size_t view, size_t offset, size_t count,
                  size_t size, size_t stride) {
   const vlGltfView *v = &g->views[view];
   if (!v->data)
-    return vl_gltf_fail(at, "bufferViews[%d] holds nothing that velo can read", (int)view);
+    return vl_gltf_fail(at, "bufferViews[%zu] holds nothing that velo can read", view);
   if (count == 0)
     return true;
   /* count and offset are below 2^53 and stride is at most 252. The division avoids an overflow
@@ -48,8 +48,8 @@ static bool fits(vlGltf *g, const vlGltfLocation *at, int64_t view, size_t offse
   if (count > v->size || offset > v->size || size > v->size - offset ||
       (count - 1) > (v->size - offset - size) / stride)
     return vl_gltf_fail(
-        at, "%zu elements of %zu bytes do not fit into bufferViews[%d], which has %zu bytes",
-        count, size, (int)view, v->size);
+        at, "%zu elements of %zu bytes do not fit into bufferViews[%zu], which has %zu bytes",
+        count, size, view, v->size);
   return true;
 }
 
@@ -61,7 +61,7 @@ static bool read_sparse(vlGltf *g, const vlGltfLocation *up, vlGltfAccessor *a, 
     return true;
   const vlGltfLocation *at = VL_GLTF_KEY(up, "sparse"), *at_i = VL_GLTF_KEY(at, "indices"),
                        *at_v = VL_GLTF_KEY(at, "values");
-  int64_t index_view, value_view;
+  size_t index_view, value_view;
   size_t index_offset = 0, value_offset = 0, type = 0;
   if (!vl_gltf_size(at, "count", &a->sparse_count) ||
       !vl_gltf_object(at, "indices", &indices) || !vl_gltf_object(at, "values", &values) ||
@@ -71,9 +71,9 @@ static bool read_sparse(vlGltf *g, const vlGltfLocation *up, vlGltfAccessor *a, 
       !vl_gltf_index(at_v, "bufferView", g->view_count, &value_view) ||
       !vl_gltf_size(at_v, "byteOffset", &value_offset))
     return false;
-  if (index_view < 0)
+  if (index_view == VL_GLTF_NONE)
     return vl_gltf_fail(at_i, "\"bufferView\" is missing");
-  if (value_view < 0)
+  if (value_view == VL_GLTF_NONE)
     return vl_gltf_fail(at_v, "\"bufferView\" is missing");
   if (type != VL_GLTF_UBYTE && type != VL_GLTF_USHORT && type != VL_GLTF_UINT)
     return vl_gltf_fail(VL_GLTF_KEY(at_i, "componentType"), "%zu is not 5121, 5123 or 5125",
@@ -106,7 +106,7 @@ static uint32_t read_uint(const uint8_t *p, uint32_t type) {
 static bool read_accessor(vlGltf *g, size_t index, vlGltfAccessor *a) {
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "accessors", index);
   const char *type = "";
-  int64_t view;
+  size_t view;
   size_t offset = 0, component = 0;
   if (!vl_gltf_index(at, "bufferView", g->view_count, &view) ||
       !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "count", &a->count) ||
@@ -131,11 +131,11 @@ static bool read_accessor(vlGltf *g, size_t index, vlGltfAccessor *a) {
   if (a->matrix && one < 4)
     return vl_gltf_fail(at, "matrices of small integers are not supported");
   size_t size = one * a->components;
-  a->stride = view >= 0 && g->views[view].stride ? g->views[view].stride : size;
+  a->stride = view != VL_GLTF_NONE && g->views[view].stride ? g->views[view].stride : size;
   if (a->stride < size)
     return vl_gltf_fail(at, "its elements of %zu bytes overlap at a byteStride of %zu", size,
                         a->stride);
-  if (view >= 0) {
+  if (view != VL_GLTF_NONE) {
     if (!fits(g, at, view, offset, a->count, size, a->stride))
       return false;
     a->data = g->views[view].data + offset;

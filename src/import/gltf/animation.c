@@ -25,7 +25,7 @@ static void free_track(vlContext *context, Track *t) {
 }
 
 static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components, Track *t) {
-  int64_t input, output;
+  size_t input, output;
   static const char *const modes[] = {"STEP", "LINEAR", "CUBICSPLINE"};
   int mode = LINEAR;
   size_t total = 0;
@@ -33,13 +33,12 @@ static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components,
       !vl_gltf_index(at, "output", g->accessor_count, &output) ||
       !vl_gltf_choice(at, "interpolation", modes, 3, &mode))
     return false;
-  if (input < 0 || output < 0)
+  if (input == VL_GLTF_NONE || output == VL_GLTF_NONE)
     return vl_gltf_fail(at, "needs \"input\" and \"output\"");
   t->mode = (Mode)mode;
-  if (!(t->times =
-            vl_gltf_load_floats(g, VL_GLTF_KEY(at, "input"), (size_t)input, 1, 0, &t->count)) ||
-      !(t->values = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "output"), (size_t)output,
-                                        components, 0, &total)))
+  if (!(t->times = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "input"), input, 1, 0, &t->count)) ||
+      !(t->values =
+            vl_gltf_load_floats(g, VL_GLTF_KEY(at, "output"), output, components, 0, &total)))
     return false;
   for (size_t i = 0; i < t->count; i++)
     if (!isfinite(t->times[i]) || (i && !(t->times[i] > t->times[i - 1])))
@@ -133,8 +132,7 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
 
 /* KHR_animation_pointer: pointers to node properties ("/nodes/3/translation") are read. Other
  * pointers are ignored. */
-static bool read_pointer(vlGltf *g, const vlGltfLocation *up, int64_t *node,
-                         const char **path) {
+static bool read_pointer(vlGltf *g, const vlGltfLocation *up, size_t *node, const char **path) {
   const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.KHR_animation_pointer");
   const char *pointer = "";
   if (!vl_gltf_text(at, "pointer", &pointer))
@@ -144,7 +142,7 @@ static bool read_pointer(vlGltf *g, const vlGltfLocation *up, int64_t *node,
   bool is_node = strncmp(pointer, "/nodes/", 7) == 0 && *number >= '0' && *number <= '9';
   unsigned long index = is_node ? strtoul(number, &end, 10) : 0;
   is_node = is_node && *end == '/' && index < g->node_count;
-  *node = is_node ? (int64_t)index : -1;
+  *node = is_node ? index : VL_GLTF_NONE;
   *path = is_node ? end + 1 : "";
   if (!is_node)
     vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_KEY(at, "pointer"),
@@ -160,7 +158,7 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
   const json_t *channel = json_array_get(json_object_get(animation, "channels"), i), *target;
   const json_t *samplers = json_object_get(animation, "samplers");
   const char *path = "";
-  int64_t sampler, node;
+  size_t sampler, node;
   if (!json_is_object(channel))
     return vl_gltf_fail(at, "must be an object");
   if (!vl_gltf_index(at, "sampler", json_array_size(samplers), &sampler) ||
@@ -168,7 +166,7 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
       !vl_gltf_index(at_target, "node", g->node_count, &node) ||
       !vl_gltf_text(at_target, "path", &path))
     return false;
-  if (sampler < 0)
+  if (sampler == VL_GLTF_NONE)
     return vl_gltf_fail(at, "\"sampler\" is missing");
   if (vl_text_is(path, "pointer") && !read_pointer(g, at_target, &node, &path))
     return false;
@@ -179,10 +177,10 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
   if (what < 0 && *path)
     vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"),
                  "unknown name \"%s\" is ignored", vl_short_text(path).text);
-  if (node < 0 || what < 0)
+  if (node == VL_GLTF_NONE || what < 0)
     return true; /* the specification allows to ignore these channels */
-  const json_t *json = json_array_get(samplers, (size_t)sampler);
-  const vlGltfLocation *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
+  const json_t *json = json_array_get(samplers, sampler);
+  const vlGltfLocation *at_sampler = VL_GLTF_ITEM(up, "samplers", sampler);
   if (!json_is_object(json))
     return vl_gltf_fail(at_sampler, "must be an object");
   static const uint32_t components[] = {3, 4, 3, 1};

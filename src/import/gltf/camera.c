@@ -126,27 +126,27 @@ bool vl_gltf_choose_camera(vlGltf *g) {
   char *end = NULL;
   unsigned long number = wanted ? strtoul(wanted, &end, 10) : 0;
   bool numbered = wanted && end != wanted && !*end;
-  int64_t by_name = -1, by_number = -1;
+  size_t by_name = VL_GLTF_NONE, by_number = VL_GLTF_NONE;
   for (size_t i = 0; i < g->node_count; i++) {
-    int64_t camera;
+    size_t camera;
     const vlGltfNode *node = &g->nodes[i];
     if (!node->reached)
       continue;
     if (!vl_gltf_index(VL_GLTF_ITEM(&g->top, "nodes", i), "camera", g->camera_count, &camera))
       return false;
-    if (camera < 0)
+    if (camera == VL_GLTF_NONE)
       continue;
-    bool named = wanted &&
-                 (vl_text_is(vl_gltf_name(node->json), wanted) ||
-                  vl_text_is(vl_gltf_name(vl_gltf_item(g, "cameras", (size_t)camera)), wanted));
-    if (named && by_name < 0)
-      by_name = (int64_t)i;
+    bool named =
+        wanted && (vl_text_is(vl_gltf_name(node->json), wanted) ||
+                   vl_text_is(vl_gltf_name(vl_gltf_item(g, "cameras", camera)), wanted));
+    if (named && by_name == VL_GLTF_NONE)
+      by_name = i;
     if ((numbered || !wanted) && g->cameras_seen == number)
-      by_number = (int64_t)i;
+      by_number = i;
     g->cameras_seen++;
   }
-  int64_t chosen = by_name >= 0 ? by_name : by_number;
-  if (chosen < 0 && wanted) {
+  size_t chosen = by_name != VL_GLTF_NONE ? by_name : by_number;
+  if (chosen == VL_GLTF_NONE && wanted) {
     char names[200] = "";
     for (size_t i = 0; i < g->node_count; i++) {
       const char *own = vl_gltf_name(g->nodes[i].json);
@@ -157,7 +157,7 @@ bool vl_gltf_choose_camera(vlGltf *g) {
     return vl_gltf_fail(&g->top, "the scene has no camera \"%s\" (%zu are there%s)",
                         vl_argument_text(wanted).text, g->cameras_seen, names);
   }
-  if (chosen < 0)
+  if (chosen == VL_GLTF_NONE)
     return true;
   const vlGltfNode *node = &g->nodes[chosen];
   return take_camera(g, (size_t)json_number_value(json_object_get(node->json, "camera")), node);

@@ -20,14 +20,13 @@ typedef struct Morphed {
 /* out += weight * delta */
 static bool add_target(vlGltf *g, const vlGltfLocation *at, const Morphed *m, float weight,
                        size_t vertices) {
-  int64_t index;
+  size_t index;
   if (!vl_gltf_index(at, m->name, g->accessor_count, &index))
     return false;
-  if (index < 0 || !m->out || weight == 0.0f)
+  if (index == VL_GLTF_NONE || !m->out || weight == 0.0f)
     return true;
   const uint32_t n = m->components;
-  float *delta =
-      vl_gltf_load_floats(g, VL_GLTF_KEY(at, m->name), (size_t)index, n, vertices, NULL);
+  float *delta = vl_gltf_load_floats(g, VL_GLTF_KEY(at, m->name), index, n, vertices, NULL);
   if (!delta)
     return false;
   for (size_t i = 0; i < vertices; i++)
@@ -81,7 +80,7 @@ static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
 static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *count) {
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "skins", skin);
   const json_t *joints;
-  int64_t inverse;
+  size_t inverse;
   *matrices = NULL;
   if (!vl_gltf_array(at, "joints", &joints, count) ||
       !vl_gltf_index(at, "inverseBindMatrices", g->accessor_count, &inverse))
@@ -90,14 +89,14 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
     return vl_gltf_fail(at, "has no joints");
   float *columns = NULL;
   size_t inverse_count = 0;
-  if (inverse >= 0) {
+  if (inverse != VL_GLTF_NONE) {
     const vlGltfLocation *here = VL_GLTF_KEY(at, "inverseBindMatrices");
-    const vlGltfAccessor *a = vl_gltf_accessor(g, (size_t)inverse);
+    const vlGltfAccessor *a = vl_gltf_accessor(g, inverse);
     if (!a)
       return false;
     if (a->components != 16)
       return vl_gltf_fail(here, "must be of type MAT4");
-    if (!(columns = vl_gltf_load_floats(g, here, (size_t)inverse, 16, 0, &inverse_count)))
+    if (!(columns = vl_gltf_load_floats(g, here, inverse, 16, 0, &inverse_count)))
       return false;
     if (inverse_count < *count) {
       vl_free(g->context, columns);
@@ -137,22 +136,22 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
 static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *joints_name,
                            const char *weights_name, const vlMat4 *matrices, size_t count,
                            size_t vertices, double *sums, bool *found) {
-  int64_t joint_index, weight_index;
+  size_t joint_index, weight_index;
   *found = false;
   if (!vl_gltf_index(up, joints_name, g->accessor_count, &joint_index) ||
       !vl_gltf_index(up, weights_name, g->accessor_count, &weight_index))
     return false;
-  if (joint_index < 0 || weight_index < 0)
+  if (joint_index == VL_GLTF_NONE || weight_index == VL_GLTF_NONE)
     return true;
   const vlGltfLocation *at = VL_GLTF_KEY(up, joints_name);
-  const vlGltfAccessor *a = vl_gltf_accessor(g, (size_t)joint_index);
+  const vlGltfAccessor *a = vl_gltf_accessor(g, joint_index);
   if (!a)
     return false;
   if (a->count != vertices || a->components != 4 || a->type == VL_GLTF_FLOAT)
     return vl_gltf_fail(at, "must be VEC4 of whole numbers, one for each of %zu vertices",
                         vertices);
-  float *weights = vl_gltf_load_floats(g, VL_GLTF_KEY(up, weights_name), (size_t)weight_index,
-                                       4, vertices, NULL);
+  float *weights =
+      vl_gltf_load_floats(g, VL_GLTF_KEY(up, weights_name), weight_index, 4, vertices, NULL);
   uint32_t *joints = weights ? vl_alloc_array(g->context, vertices, 4 * sizeof *joints) : NULL;
   bool ok = joints || (weights && vl_gltf_fail_memory(g));
   if (ok)
@@ -200,14 +199,14 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node,
                   vlGltfPrimitive *p) {
   static const char *const joints[] = {"JOINTS_0", "JOINTS_1", "JOINTS_2", "JOINTS_3"};
   static const char *const weights[] = {"WEIGHTS_0", "WEIGHTS_1", "WEIGHTS_2", "WEIGHTS_3"};
-  int64_t skin;
+  size_t skin;
   if (!vl_gltf_index_in(VL_GLTF_KEY(&g->top, "nodes"), node->json, "skin", g->skin_count,
                         &skin))
     return false;
   const vlGltfLocation *here = VL_GLTF_KEY(at, "attributes");
   vlMat4 *matrices;
   size_t count;
-  if (!joint_matrices(g, (size_t)(skin < 0 ? 0 : skin), &matrices, &count))
+  if (!joint_matrices(g, skin == VL_GLTF_NONE ? 0 : skin, &matrices, &count))
     return false;
   double *sums = vl_alloc_zero(g->context, p->vertices, 12 * sizeof *sums);
   bool ok = sums || vl_gltf_fail_memory(g), found = true, any = false;

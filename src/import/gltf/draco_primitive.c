@@ -46,11 +46,11 @@ static bool fill_all(vlGltf *g, const vlGltfLocation *at, const vlGltfLocation *
                      const json_t *own, const vlDraco *mesh) {
   const char *key;
   json_t *value;
-  int64_t accessor;
+  size_t accessor;
   g->total += 64 * (uint64_t)vl_draco_points(mesh) + 12 * (uint64_t)vl_draco_faces(mesh);
   if (!vl_gltf_index(at, "indices", g->accessor_count, &accessor))
     return false;
-  if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, -1))
+  if (accessor != VL_GLTF_NONE && !fill(g, here, mesh, accessor, -1))
     return false;
   json_object_foreach((json_t *)(uintptr_t)own, key, value) {
     if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), key, g->accessor_count, &accessor))
@@ -59,7 +59,7 @@ static bool fill_all(vlGltf *g, const vlGltfLocation *at, const vlGltfLocation *
     if (!(id >= 0 && id < 4294967296.0))
       return vl_gltf_fail(VL_GLTF_KEY(here, "attributes"),
                           "an id of an attribute makes no sense");
-    if (accessor >= 0 && !fill(g, here, mesh, (size_t)accessor, (int64_t)id))
+    if (accessor != VL_GLTF_NONE && !fill(g, here, mesh, accessor, (int64_t)id))
       return false;
   }
   return true;
@@ -68,20 +68,21 @@ static bool fill_all(vlGltf *g, const vlGltfLocation *at, const vlGltfLocation *
 bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
   const vlGltfLocation *here = VL_GLTF_KEY(at, "extensions.KHR_draco_mesh_compression");
   const json_t *own;
-  int64_t view, first;
+  size_t view, first;
   if (!json_is_object(vl_gltf_json(here)))
     return true;
   if (!vl_gltf_index(here, "bufferView", g->view_count, &view) ||
       !vl_gltf_object(here, "attributes", &own) ||
       !vl_gltf_index(at, "indices", g->accessor_count, &first))
     return false;
-  if (view < 0 || !own)
+  if (view == VL_GLTF_NONE || !own)
     return vl_gltf_fail(here, "needs bufferView and attributes");
   const vlGltfView *v = &g->views[view];
   if (!v->data)
-    return vl_gltf_fail(here, "bufferViews[%d] holds nothing that velo can read", (int)view);
+    return vl_gltf_fail(here, "bufferViews[%zu] holds nothing that velo can read", view);
   /* The mesh of an accessor that stands in two primitives is decoded once. */
-  if (first >= 0 && g->accessors[first].state == VL_GLTF_GOOD && g->accessors[first].data)
+  if (first != VL_GLTF_NONE && g->accessors[first].state == VL_GLTF_GOOD &&
+      g->accessors[first].data)
     return true;
   char reason[100] = "memory is exhausted";
   vlDraco *mesh = vl_draco_open(v->data, v->size, reason, sizeof reason);
@@ -93,14 +94,14 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
 }
 #else
 bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
-  int64_t position;
+  size_t position;
   if (!vl_gltf_extension(vl_gltf_json(at), name))
     return true;
   if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count, &position))
     return false;
   /* a fallback that is not compressed is read */
-  if (position < 0 ||
-      json_object_get(vl_gltf_item(g, "accessors", (size_t)position), "bufferView"))
+  if (position == VL_GLTF_NONE ||
+      json_object_get(vl_gltf_item(g, "accessors", position), "bufferView"))
     return true;
   return vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at,
                            "is compressed by %s: this velo was built without libdraco", name);

@@ -314,7 +314,7 @@ static bool read_view(vlGltf *g, size_t i) {
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "bufferViews", i);
   const json_t *json = vl_gltf_item(g, "bufferViews", i);
   const json_t *packed = vl_gltf_extension(json, "EXT_meshopt_compression");
-  int64_t buffer;
+  size_t buffer;
   size_t offset = 0, length = 0, stride = 0;
   if (packed)
     return vl_gltf_unpack_view(g, at, &g->views[i]);
@@ -322,14 +322,14 @@ static bool read_view(vlGltf *g, size_t i) {
       !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "byteLength", &length) ||
       !vl_gltf_size(at, "byteStride", &stride))
     return false;
-  if (buffer < 0)
+  if (buffer == VL_GLTF_NONE)
     return vl_gltf_fail(at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
   if (!b->data)
     return true; /* what reads the view reports it */
   if (offset > b->size || length > b->size - offset)
-    return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset,
-                        offset + length, (int)buffer, b->size);
+    return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%zu] has only %zu", offset,
+                        offset + length, buffer, b->size);
   if (stride && (stride < 4 || stride > 252))
     return vl_gltf_fail(VL_GLTF_KEY(at, "byteStride"), "%zu is not from 4 to 252", stride);
   g->views[i] = (vlGltfView){b->data + offset, length, stride};

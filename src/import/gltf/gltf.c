@@ -6,7 +6,7 @@
 #include "import/plain.h"
 
 static bool choose_variant(vlGltf *g) {
-  g->variant = -1;
+  g->variant = VL_GLTF_NONE;
   if (!g->def->variant)
     return true;
   const json_t *variants;
@@ -14,10 +14,11 @@ static bool choose_variant(vlGltf *g) {
   const vlGltfLocation *at = VL_GLTF_KEY(&g->top, "extensions.KHR_materials_variants");
   if (!vl_gltf_array(at, "variants", &variants, &count))
     return false;
-  for (size_t i = 0; i < count && g->variant < 0; i++)
+  for (size_t i = 0; i < count && g->variant == VL_GLTF_NONE; i++)
     if (vl_text_is(vl_gltf_name(json_array_get(variants, i)), g->def->variant))
-      g->variant = (int64_t)i;
-  return g->variant >= 0 || vl_gltf_fail_choice(g, "variant", variants, g->def->variant, 300);
+      g->variant = i;
+  return g->variant != VL_GLTF_NONE ||
+         vl_gltf_fail_choice(g, "variant", variants, g->def->variant, 300);
 }
 
 vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def,

@@ -26,6 +26,9 @@ typedef struct vlGltfLocation {
 #define VL_GLTF_KEY(up, key) (&(vlGltfLocation){(up), (key), SIZE_MAX, NULL})
 #define VL_GLTF_ITEM(up, key, index) (&(vlGltfLocation){(up), (key), (index), NULL})
 
+/* The index of nothing. */
+#define VL_GLTF_NONE SIZE_MAX
+
 typedef struct vlGltfBuffer {
   const uint8_t *data;
   size_t size;
@@ -133,7 +136,7 @@ typedef struct vlGltf {
   double point_radius;          /* of points and lines, in the world; 0: not known */
   double scale;                 /* of the node that is drawn */
   uint64_t spent;               /* bytes of geometry made so far; see vl_gltf_spend */
-  int64_t variant;              /* index of the material variant; -1: none */
+  size_t variant;               /* index of the material variant; VL_GLTF_NONE: none */
   double time;                  /* time in seconds at which nodes are posed */
   double open, close;           /* shutter times, seconds */
   bool moves;                   /* close is later than open, and there are animations */
@@ -193,13 +196,13 @@ bool vl_gltf_choice(const vlGltfLocation *at, const char *key, const char *const
                     int count, int *value);
 /* A non-negative integer. */
 bool vl_gltf_size(const vlGltfLocation *at, const char *key, size_t *value);
-/* An index below limit; -1 when absent. */
-bool vl_gltf_index(const vlGltfLocation *at, const char *key, size_t limit, int64_t *index);
+/* An index below limit; VL_GLTF_NONE when absent. */
+bool vl_gltf_index(const vlGltfLocation *at, const char *key, size_t limit, size_t *index);
 /* The same of an object that is not at the location, which messages name. */
 bool vl_gltf_size_in(const vlGltfLocation *at, const json_t *object, const char *key,
                      size_t *value);
 bool vl_gltf_index_in(const vlGltfLocation *at, const json_t *object, const char *key,
-                      size_t limit, int64_t *index);
+                      size_t limit, size_t *index);
 /* The index that an element of an array holds; what: of what, for the message. */
 bool vl_gltf_element(const vlGltfLocation *at, const json_t *value, size_t limit,
                      const char *what, size_t *index);
@@ -299,11 +302,11 @@ double vl_gltf_animation_end(const vlGltf *g, size_t animation);
 
 /* ---- names (label.c) --------------------------------------------------------------------- */
 
-/* Where the file describes a shape. node is SIZE_MAX for a shape of a group, material -1 for
+/* Where the file describes a shape. node is VL_GLTF_NONE for a shape of a group, material for
  * the default one. */
 typedef struct vlGltfShapeIndices {
   size_t node, mesh, primitive;
-  int64_t material;
+  size_t material;
 } vlGltfShapeIndices;
 /* Makes the labels of nodes and materials. */
 bool vl_gltf_make_labels(vlGltf *g);
@@ -340,8 +343,8 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
 /* Grows the box by the primitives of the mesh as the node poses it. */
 bool vl_gltf_mesh_box(vlGltf *g, size_t mesh, const vlGltfNode *node, double low[3],
                       double high[3]);
-/* The node's mesh; -1: none. */
-int64_t vl_gltf_mesh_of(const vlGltf *g, const vlGltfNode *node);
+/* The node's mesh; VL_GLTF_NONE: it has none. */
+size_t vl_gltf_mesh_of(const vlGltf *g, const vlGltfNode *node);
 /* Whether the node deforms its mesh by a skin or morph targets. */
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node);
 /* topology.c: turns the primitive's indices (0, 1, 2, ... if it has none) into triangles,
@@ -362,9 +365,9 @@ bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p);
 
 /* ---- materials --------------------------------------------------------------------------- */
 
-/* The material `index` (-1: the default material) for a primitive with or without vertex
- * colours. Null after an error. */
-const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors);
+/* The material `index` (VL_GLTF_NONE: the default material) for a primitive with or without
+ * vertex colours. Null after an error. */
+const vlGltfMaterial *vl_gltf_material(vlGltf *g, size_t index, bool colors);
 /* Adds the texture of a textureInfo object. tint: factors of its channels. channel -1 makes a
  * colour texture. Without a textureInfo *id is 0. */
 typedef struct vlGltfTextureUse {

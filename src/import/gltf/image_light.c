@@ -106,16 +106,16 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *s
     return true;
   const vlGltfLocation *up = VL_GLTF_KEY(&g->top, "extensions.EXT_lights_image_based");
   size_t count, level_count;
-  int64_t index;
+  size_t index;
   if (!vl_gltf_array(up, "lights", &lights, &count) ||
       !vl_gltf_index(VL_GLTF_KEY(scene_at, "extensions.EXT_lights_image_based"), "light", count,
                      &index))
     return false;
-  if (index < 0)
+  if (index == VL_GLTF_NONE)
     return true;
-  const vlGltfLocation *at = VL_GLTF_ITEM(up, "lights", (size_t)index),
+  const vlGltfLocation *at = VL_GLTF_ITEM(up, "lights", index),
                        *at_images = VL_GLTF_KEY(at, "specularImages");
-  const json_t *json = json_array_get(lights, (size_t)index);
+  const json_t *json = json_array_get(lights, index);
   double rotation[4] = {0, 0, 0, 1}, intensity = 1;
   if (!json_is_object(json))
     return vl_gltf_fail(at, "must be an object");

@@ -214,22 +214,18 @@ bool vl_gltf_size(const vlGltfLocation *at, const char *key, size_t *value) {
 }
 
 bool vl_gltf_index_in(const vlGltfLocation *at, const json_t *object, const char *key,
-                      size_t limit, int64_t *index) {
-  size_t value = SIZE_MAX;
-  *index = -1;
-  if (!vl_gltf_size_in(at, object, key, &value))
+                      size_t limit, size_t *index) {
+  *index = VL_GLTF_NONE;
+  if (!vl_gltf_size_in(at, object, key, index))
     return false;
-  if (value == SIZE_MAX)
+  if (*index == VL_GLTF_NONE || *index < limit)
     return true;
-  if (value >= limit)
-    return limit ? vl_gltf_fail(VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)",
-                                value, limit, limit - 1)
-                 : vl_gltf_fail(VL_GLTF_KEY(at, key), "%zu: there are none", value);
-  *index = (int64_t)value;
-  return true;
+  return limit ? vl_gltf_fail(VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)",
+                              *index, limit, limit - 1)
+               : vl_gltf_fail(VL_GLTF_KEY(at, key), "%zu: there are none", *index);
 }
 
-bool vl_gltf_index(const vlGltfLocation *at, const char *key, size_t limit, int64_t *index) {
+bool vl_gltf_index(const vlGltfLocation *at, const char *key, size_t limit, size_t *index) {
   return vl_gltf_index_in(at, vl_gltf_json(at), key, limit, index);
 }
 

@@ -32,9 +32,9 @@ static void node_path(const vlGltf *g, size_t node, uint32_t depth, char path[VL
   for (uint32_t k = depth < n ? depth : n; k-- > 0;)
     vl_label_append(path, name_of(g->nodes[parents[k]].json));
   const char *name = name_of(g->nodes[node].json);
-  const int64_t mesh = vl_gltf_mesh_of(g, &g->nodes[node]);
-  if (!name && mesh >= 0)
-    name = name_of(vl_gltf_item(g, "meshes", (size_t)mesh));
+  const size_t mesh = vl_gltf_mesh_of(g, &g->nodes[node]);
+  if (!name && mesh != VL_GLTF_NONE)
+    name = name_of(vl_gltf_item(g, "meshes", mesh));
   if (!name)
     snprintf(number, sizeof number, "nodes[%zu]", node);
   vl_label_append(path, name ? name : number);
@@ -98,7 +98,7 @@ static bool label_nodes(vlGltf *g) {
   char **paths = vl_alloc_zero(g->context, g->node_count + 1, sizeof *paths);
   bool ok = (list && depths && paths) || vl_gltf_fail_memory(g);
   for (size_t i = 0; ok && i < g->node_count; i++)
-    if (vl_gltf_mesh_of(g, &g->nodes[i]) >= 0)
+    if (vl_gltf_mesh_of(g, &g->nodes[i]) != VL_GLTF_NONE)
       list[count++] = (uint32_t)i;
   ok = ok && label_list(g, list, count, depths, paths);
   for (size_t i = 0; paths && i < count; i++)
@@ -171,7 +171,7 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapeIndices *at, vlLabel *label
   char name[VL_LABEL_SIZE] = "", path[VL_LABEL_SIZE] = "", location[160], number[40];
   const char *mesh = name_of(vl_gltf_item(g, "meshes", at->mesh));
   const char *material =
-      at->material < 0 ? NULL : name_of(vl_gltf_item(g, "materials", (size_t)at->material));
+      at->material == VL_GLTF_NONE ? NULL : name_of(vl_gltf_item(g, "materials", at->material));
   size_t n = 0;
   snprintf(number, sizeof number, "meshes[%zu]", at->mesh);
   if (at->node == SIZE_MAX) {

@@ -21,10 +21,10 @@ static bool check_light(const vlGltfLocation *at, const char *factor_key, double
   return !key || vl_gltf_fail(VL_GLTF_KEY(at, key), "must not be negative");
 }
 
-static bool add_light(vlGltf *g, size_t node, int64_t index) {
+static bool add_light(vlGltf *g, size_t node, size_t index) {
   const vlGltfLocation *up = VL_GLTF_KEY(&g->top, PUNCTUAL),
-                       *at = VL_GLTF_ITEM(up, "lights", (size_t)index);
-  const json_t *json = json_array_get(g->lights, (size_t)index), *spot;
+                       *at = VL_GLTF_ITEM(up, "lights", index);
+  const json_t *json = json_array_get(g->lights, index), *spot;
   if (!json_is_object(json))
     return vl_gltf_fail(at, "must be an object");
   static const char *const types[] = {"directional", "point", "spot"};
@@ -75,13 +75,13 @@ static bool add_light(vlGltf *g, size_t node, int64_t index) {
 static bool read_profile(vlGltf *g, const vlGltfLocation *at, vlLightDef *def) {
   const char *uri = NULL, *path = NULL;
   const uint8_t *data = NULL;
-  int64_t view = -1;
+  size_t view = VL_GLTF_NONE;
   if (!vl_gltf_text(at, "uri", &uri) || !vl_gltf_index(at, "bufferView", g->view_count, &view))
     return false;
-  if (!uri && view < 0)
+  if (!uri && view == VL_GLTF_NONE)
     return vl_gltf_fail(at, "has neither \"uri\" nor \"bufferView\"");
   if (!uri && !g->views[view].data)
-    return vl_gltf_fail(at, "bufferViews[%d] holds nothing that velo can read", (int)view);
+    return vl_gltf_fail(at, "bufferViews[%zu] holds nothing that velo can read", view);
   if (!uri) {
     def->lamp_data = g->views[view].data;
     def->lamp_size = g->views[view].size;
@@ -111,18 +111,17 @@ static void set_pose(const vlMat4 *world, vlLightDef *def) {
 
 static bool add_lamp(vlGltf *g, size_t node) {
   const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(&g->top, "nodes", node), LAMPS);
-  int64_t index = -1;
+  size_t index = VL_GLTF_NONE;
   double color[3] = {1, 1, 1}, multiplier = 1;
   if (!vl_gltf_index(at, "light", g->lamp_count, &index) ||
       !vl_gltf_numbers(at, "color", 3, color) || !vl_gltf_number(at, "multiplier", &multiplier))
     return false;
-  if (index < 0)
+  if (index == VL_GLTF_NONE)
     return true;
   if (!check_light(at, "multiplier", multiplier, color))
     return false;
-  const vlGltfLocation *profile =
-      VL_GLTF_ITEM(VL_GLTF_KEY(&g->top, LAMPS), "lights", (size_t)index);
-  const json_t *json = json_array_get(g->lamps, (size_t)index);
+  const vlGltfLocation *profile = VL_GLTF_ITEM(VL_GLTF_KEY(&g->top, LAMPS), "lights", index);
+  const json_t *json = json_array_get(g->lamps, index);
   if (!json_is_object(json))
     return vl_gltf_fail(profile, "must be an object");
   vlLightDef def = vl_default_light_def(VL_LIGHT_GONIOMETRIC);
@@ -138,7 +137,7 @@ static bool add_lamp(vlGltf *g, size_t node) {
 
 bool vl_gltf_add_lights(vlGltf *g, size_t node) {
   const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(&g->top, "nodes", node), PUNCTUAL);
-  int64_t light;
+  size_t light;
   return vl_gltf_index(at, "light", g->light_count, &light) &&
-         (light < 0 || add_light(g, node, light)) && add_lamp(g, node);
+         (light == VL_GLTF_NONE || add_light(g, node, light)) && add_lamp(g, node);
 }

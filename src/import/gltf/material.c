@@ -348,30 +348,33 @@ static bool read_material(const Reader *r) {
   return true;
 }
 
-const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors) {
-  vlGltfMaterial *result = &g->materials[2 * (size_t)(index + 1) + colors];
+const vlGltfMaterial *vl_gltf_material(vlGltf *g, size_t index, bool colors) {
+  vlGltfMaterial *result = &g->materials[2 * (index + 1) + colors];
   if (result->made)
     return result;
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
   static const json_t *const nothing = NULL;
-  const json_t *json = index < 0 ? nothing : vl_gltf_item(g, "materials", (size_t)index);
-  const char *name = index < 0 ? NULL : g->material_labels[index];
+  const json_t *json = index == VL_GLTF_NONE ? nothing : vl_gltf_item(g, "materials", index);
+  const char *name = index == VL_GLTF_NONE ? NULL : g->material_labels[index];
   const vlGltfMaterial *other =
-      &g->materials[2 * (size_t)(index + 1) + !colors]; /* the same with vertex colours */
+      &g->materials[2 * (index + 1) + !colors]; /* the same with vertex colours */
   if (name && other->made &&
-      !vl_label_make_unique(g->scene, &g->material_names, name, (size_t)index, &name))
+      !vl_label_make_unique(g->scene, &g->material_names, name, index, &name))
     return NULL;
   char location[40];
-  snprintf(location, sizeof location, "materials[%d]", (int)index);
+  snprintf(location, sizeof location, "materials[%zu]", index);
   Reader r = {
-      g,      VL_GLTF_ITEM(&g->top, "materials", index < 0 ? g->material_count : (size_t)index),
-      json,   &def,
-      result, colors};
+      g,
+      VL_GLTF_ITEM(&g->top, "materials", index == VL_GLTF_NONE ? g->material_count : index),
+      json,
+      &def,
+      result,
+      colors};
   def.source.file = g->path;
   if (!read_material(&r))
     return NULL;
   def.name = name;
-  def.place = index < 0 ? NULL : location;
+  def.place = index == VL_GLTF_NONE ? NULL : location;
   result->material = vl_scene_add_material(g->scene, &def);
   result->made = result->material.index != 0;
   return result->made ? result : NULL;

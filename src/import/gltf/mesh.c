@@ -11,28 +11,28 @@
  * when the primitive lacks the attribute. */
 static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uint32_t least,
                       uint32_t components, size_t vertices, float **out) {
-  int64_t index;
+  size_t index;
   const vlGltfLocation *at = VL_GLTF_KEY(up, name);
   if (!vl_gltf_index(up, name, g->accessor_count, &index))
     return false;
-  if (index < 0)
+  if (index == VL_GLTF_NONE)
     return true;
-  const vlGltfAccessor *a = vl_gltf_accessor(g, (size_t)index);
+  const vlGltfAccessor *a = vl_gltf_accessor(g, index);
   if (!a)
     return false;
   if (a->matrix || a->components < least || a->components > components)
-    return vl_gltf_fail(at, "accessors[%d] has %u components, %u are needed", (int)index,
+    return vl_gltf_fail(at, "accessors[%zu] has %u components, %u are needed", index,
                         a->components, components);
-  *out = vl_gltf_load_floats(g, at, (size_t)index, components, vertices, NULL);
+  *out = vl_gltf_load_floats(g, at, index, components, vertices, NULL);
   return *out != NULL;
 }
 
-static bool read_attributes(vlGltf *g, const vlGltfLocation *up, int64_t position,
+static bool read_attributes(vlGltf *g, const vlGltfLocation *up, size_t position,
                             vlGltfPrimitive *p) {
   static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
   const vlGltfLocation *at = VL_GLTF_KEY(up, "attributes"),
                        *at_position = VL_GLTF_KEY(at, "POSITION");
-  const vlGltfAccessor *a = vl_gltf_accessor(g, (size_t)position);
+  const vlGltfAccessor *a = vl_gltf_accessor(g, position);
   if (!a)
     return false;
   if (a->components != 3)
@@ -55,12 +55,12 @@ static bool read_attributes(vlGltf *g, const vlGltfLocation *up, int64_t positio
 /* The indices in a new block; 0, 1, 2, ... when the primitive has none. */
 static bool read_indices(vlGltf *g, const vlGltfLocation *up, size_t vertices,
                          uint32_t **indices, size_t *count) {
-  int64_t index;
+  size_t index;
   const vlGltfLocation *at = VL_GLTF_KEY(up, "indices");
   if (!vl_gltf_index(up, "indices", g->accessor_count, &index))
     return false;
-  const vlGltfAccessor *a = index < 0 ? NULL : vl_gltf_accessor(g, (size_t)index);
-  if (index >= 0 && !a)
+  const vlGltfAccessor *a = index == VL_GLTF_NONE ? NULL : vl_gltf_accessor(g, index);
+  if (index != VL_GLTF_NONE && !a)
     return false;
   *count = a ? a->count : vertices;
   if (a && (a->components != 1 || a->type == VL_GLTF_FLOAT || a->type == VL_GLTF_BYTE ||
@@ -87,12 +87,12 @@ static bool read_indices(vlGltf *g, const vlGltfLocation *up, size_t vertices,
 }
 
 /* The material of the chosen variant, or the primitive's own. */
-static bool choose_material(vlGltf *g, const vlGltfLocation *at, int64_t *material) {
+static bool choose_material(vlGltf *g, const vlGltfLocation *at, size_t *material) {
   if (!vl_gltf_index(at, "material", g->material_count, material))
     return false;
   const vlGltfLocation *up = VL_GLTF_KEY(at, "extensions.KHR_materials_variants");
   const json_t *mappings = json_object_get(vl_gltf_json(up), "mappings");
-  for (size_t i = 0; g->variant >= 0 && i < json_array_size(mappings); i++) {
+  for (size_t i = 0; g->variant != VL_GLTF_NONE && i < json_array_size(mappings); i++) {
     const json_t *mapping = json_array_get(mappings, i),
                  *variants = json_object_get(mapping, "variants");
     for (size_t k = 0; k < json_array_size(variants); k++)
@@ -204,7 +204,7 @@ static bool finish_primitive(vlGltf *g, const vlGltfLocation *at, const vlGltfMa
 
 /* The vertices as deformed at shutter close. */
 static bool read_close(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                       const vlGltfNode *node, int64_t position, bool skinned,
+                       const vlGltfNode *node, size_t position, bool skinned,
                        vlGltfPrimitive *p) {
   vlGltfPrimitive q = {0};
   g->closing = true;
@@ -234,7 +234,7 @@ static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mes
                           const vlGltfNode *node, vlGroupId group, vlMat4 pose,
                           vlGltfPrimitive *p) {
   const json_t *attributes;
-  int64_t position, material;
+  size_t position, material;
   size_t mode = 4, count = 0;
   uint32_t *indices = NULL;
   if (!vl_gltf_object(at, "attributes", &attributes) ||
@@ -243,7 +243,7 @@ static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mes
     return false;
   if (mode > 6)
     return vl_gltf_fail(VL_GLTF_KEY(at, "mode"), "%zu is not from 0 to 6", mode);
-  if (position < 0) {
+  if (position == VL_GLTF_NONE) {
     vl_gltf_warn(VL_LOG_WARNING, at, "has no positions and is not drawn");
     return true;
   }
@@ -311,11 +311,11 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
 static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
                           const vlGltfNode *node, double low[3], double high[3]) {
   const bool skinned = json_object_get(node->json, "skin") != NULL;
-  int64_t position;
+  size_t position;
   vlGltfPrimitive p = {0};
   if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count, &position))
     return false;
-  if (position < 0)
+  if (position == VL_GLTF_NONE)
     return true;
   bool ok = vl_gltf_unpack_primitive(g, at) && read_attributes(g, at, position, &p) &&
             vl_gltf_morph(g, at, mesh, node, &p) && (!skinned || vl_gltf_skin(g, at, node, &p));

@@ -40,7 +40,7 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) 
   static const char *const modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
   static const char *const filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
   const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.EXT_meshopt_compression");
-  int64_t buffer;
+  size_t buffer;
   size_t offset = 0, length = 0, stride = 0, count = 0;
   int mode = ATTRIBUTES, filter = NONE;
   if (!vl_gltf_index(at, "buffer", g->buffer_count, &buffer) ||
@@ -49,12 +49,12 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) 
       !vl_gltf_choice(at, "mode", modes, 3, &mode) ||
       !vl_gltf_choice(at, "filter", filters, 4, &filter))
     return false;
-  if (buffer < 0)
+  if (buffer == VL_GLTF_NONE)
     return vl_gltf_fail(at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
   if (!b->data || offset > b->size || length > b->size - offset)
-    return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset,
-                        offset + length, (int)buffer, b->data ? b->size : 0);
+    return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%zu] has only %zu", offset,
+                        offset + length, buffer, b->data ? b->size : 0);
   if (!sizes_fit((Mode)mode, (Filter)filter, count, stride))
     return vl_gltf_fail(at, "%zu elements of %zu bytes: mode %s with filter %s has no such",
                         count, stride, modes[mode], filters[filter]);

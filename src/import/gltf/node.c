@@ -115,18 +115,18 @@ bool vl_gltf_pose_nodes(vlGltf *g) {
   return true;
 }
 
-int64_t vl_gltf_mesh_of(const vlGltf *g, const vlGltfNode *node) {
+size_t vl_gltf_mesh_of(const vlGltf *g, const vlGltfNode *node) {
   const json_t *mesh = json_object_get(node->json, "mesh");
   double index = json_number_value(mesh);
-  return json_is_number(mesh) && index >= 0 && index < (double)g->mesh_count ? (int64_t)index
-                                                                             : -1;
+  return json_is_number(mesh) && index >= 0 && index < (double)g->mesh_count ? (size_t)index
+                                                                             : VL_GLTF_NONE;
 }
 
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node) {
   if (json_object_get(node->json, "skin"))
     return true;
-  int64_t mesh = vl_gltf_mesh_of(g, node);
-  const json_t *json = mesh < 0 ? NULL : vl_gltf_item(g, "meshes", (size_t)mesh);
+  size_t mesh = vl_gltf_mesh_of(g, node);
+  const json_t *json = mesh == VL_GLTF_NONE ? NULL : vl_gltf_item(g, "meshes", mesh);
   return (node->weights || json_object_get(node->json, "weights") ||
           json_object_get(json, "weights")) &&
          json_object_get(json_array_get(json_object_get(json, "primitives"), 0), "targets");
@@ -150,13 +150,13 @@ static bool read_instances(vlGltf *g, const vlGltfLocation *node_at, const json_
   float *values[3] = {NULL, NULL, NULL};
   bool ok = true;
   for (int k = 0; k < 3 && ok; k++) {
-    int64_t index;
+    size_t index;
     const vlGltfLocation *here = VL_GLTF_KEY(at, "attributes");
     ok = vl_gltf_index(here, names[k], g->accessor_count, &index);
-    if (!ok || index < 0)
+    if (!ok || index == VL_GLTF_NONE)
       continue;
-    values[k] = vl_gltf_load_floats(g, VL_GLTF_KEY(here, names[k]), (size_t)index, sizes[k],
-                                    *count, count);
+    values[k] =
+        vl_gltf_load_floats(g, VL_GLTF_KEY(here, names[k]), index, sizes[k], *count, count);
     ok = values[k] != NULL;
   }
   if (ok && *count) {
@@ -278,10 +278,10 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
 static bool draw_node(vlGltf *g, size_t i) {
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "nodes", i);
   const vlGltfNode *node = &g->nodes[i];
-  int64_t mesh;
+  size_t mesh;
   if (!vl_gltf_index(at, "mesh", g->mesh_count, &mesh) || !vl_gltf_add_lights(g, i))
     return false;
-  if (mesh < 0)
+  if (mesh == VL_GLTF_NONE)
     return true;
   vlMat4 *poses;
   size_t count;
@@ -289,9 +289,9 @@ static bool draw_node(vlGltf *g, size_t i) {
     return false;
   bool ok = true;
   if (!poses)
-    ok = place_mesh(g, (size_t)mesh, node, i, vl_mat4_identity());
+    ok = place_mesh(g, mesh, node, i, vl_mat4_identity());
   for (g->copy = 0; ok && g->copy < count; g->copy++)
-    ok = place_mesh(g, (size_t)mesh, node, i, poses[g->copy]);
+    ok = place_mesh(g, mesh, node, i, poses[g->copy]);
   g->copy = SIZE_MAX;
   vl_free(g->context, poses);
   return ok;
@@ -357,11 +357,11 @@ static bool collect(vlGltf *g, const json_t *roots, const vlGltfLocation *at, ui
 
 static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
   for (size_t k = 0; k < count; k++) {
-    int64_t mesh;
+    size_t mesh;
     const vlGltfNode *node = &g->nodes[order[k]];
     if (!vl_gltf_index(VL_GLTF_ITEM(&g->top, "nodes", order[k]), "mesh", g->mesh_count, &mesh))
       return false;
-    if (mesh < 0 || vl_gltf_deforms(g, node))
+    if (mesh == VL_GLTF_NONE || vl_gltf_deforms(g, node))
       continue;
     size_t n = instance_count(g, node->json);
     vlGltfMesh *m = &g->meshes[mesh];
@@ -379,10 +379,10 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
 }
 
 bool vl_gltf_draw(vlGltf *g) {
-  int64_t index;
+  size_t index;
   if (!vl_gltf_index(&g->top, "scene", g->scene_count, &index))
     return false;
-  size_t chosen = index < 0 ? 0 : (size_t)index;
+  size_t chosen = index == VL_GLTF_NONE ? 0 : index;
   if (g->def->scene)
     chosen = vl_gltf_find(g, "scenes", g->def->scene);
   if (chosen == SIZE_MAX)

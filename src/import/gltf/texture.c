@@ -58,7 +58,7 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
     return true;
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "images", index);
   const char *uri = NULL;
-  int64_t view;
+  size_t view;
   if (!vl_gltf_text(at, "uri", &uri) || !vl_gltf_index(at, "bufferView", g->view_count, &view))
     return false;
   if (uri) {
@@ -70,7 +70,7 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
         access(image->path, F_OK) != 0 &&
         !g->scene->problem) /* vl_scene_check reports it itself */
       return report_missing(g, at, image, image->path, "no such file");
-  } else if (view >= 0) {
+  } else if (view != VL_GLTF_NONE) {
     if (!g->views[view].data)
       return vl_gltf_fail(at, "its bufferView holds nothing that velo can read");
     image->data = g->views[view].data;
@@ -84,18 +84,18 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
 
 /* The image of a texture; extensions may replace it by an image of another format. *image is
  * -1, with the result true, when the texture has no image; a warning was then given. */
-static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
+static bool choose_image(vlGltf *g, size_t texture, size_t *image) {
   static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds",
                                        "EXT_texture_avif"};
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "textures", texture);
   if (!vl_gltf_index(VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), "source", g->image_count,
                      image))
     return false;
-  if (*image >= 0)
+  if (*image != VL_GLTF_NONE)
     return true;
   if (!vl_gltf_index(at, "source", g->image_count, image))
     return false;
-  if (*image >= 0)
+  if (*image != VL_GLTF_NONE)
     return true;
   for (size_t i = 0; i < VL_LENGTH(others); i++)
     if (vl_gltf_extension(vl_gltf_json(at), others[i]))
@@ -112,11 +112,11 @@ static vlWrap wrap_of(double code) {
 
 static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "textures", texture);
-  int64_t index;
+  size_t index;
   if (!vl_gltf_index(at, "sampler", g->sampler_count, &index))
     return false;
   const vlGltfLocation *here =
-      VL_GLTF_ITEM(&g->top, "samplers", index < 0 ? g->sampler_count : (size_t)index);
+      VL_GLTF_ITEM(&g->top, "samplers", index == VL_GLTF_NONE ? g->sampler_count : index);
   double s = 10497, t = 10497, large = 9729;
   if (!vl_gltf_number(here, "wrapS", &s) || !vl_gltf_number(here, "wrapT", &t) ||
       !vl_gltf_number(here, "magFilter", &large))
@@ -166,7 +166,7 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const char *key,
                      const vlGltfTextureUse *use, vlTextureId *id) {
   const json_t *info;
   const vlGltfLocation *at = VL_GLTF_KEY(up, key);
-  int64_t texture, image;
+  size_t texture, image;
   *id = (vlTextureId){0};
   if (!vl_gltf_object(up, key, &info))
     return false;
@@ -174,13 +174,13 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const char *key,
     return true;
   if (!vl_gltf_index(at, "index", g->texture_count, &texture))
     return false;
-  if (texture < 0)
+  if (texture == VL_GLTF_NONE)
     return vl_gltf_fail(at, "\"index\" is missing");
-  if (!choose_image(g, (size_t)texture, &image))
+  if (!choose_image(g, texture, &image))
     return false;
-  if (image < 0)
+  if (image == VL_GLTF_NONE)
     return true;
-  if (!vl_gltf_read_image(g, (size_t)image))
+  if (!vl_gltf_read_image(g, image))
     return false;
   if (g->images[image].missing)
     return true;
@@ -188,13 +188,13 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const char *key,
     return false;
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, use->spectrum);
   char name[64];
-  snprintf(name, sizeof name, "images[%d]", (int)image);
+  snprintf(name, sizeof name, "images[%zu]", image);
   def.name = name;
   def.source.file = g->path;
   def.path = g->images[image].path;
   def.data = def.path ? NULL : g->images[image].data;
   def.data_size = g->images[image].size;
-  if (!read_sampler(g, (size_t)texture, &def) || !vl_gltf_texture_set(g, at, &def.uv_set) ||
+  if (!read_sampler(g, texture, &def) || !vl_gltf_texture_set(g, at, &def.uv_set) ||
       !read_transform(at, &def))
     return false;
   def.encoding_given = !use->srgb;

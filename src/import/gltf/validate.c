@@ -72,8 +72,8 @@ enum { HAS_NODE = 1, HAS_REACHED_NODE = 2, HAS_MATERIAL = 4 };
 /* Bits for each mesh and, in the same array, for each material. */
 static void mark_used(const vlGltf *g, uint8_t *used) {
   for (size_t i = 0; i < g->node_count; i++) {
-    const int64_t mesh = vl_gltf_mesh_of(g, &g->nodes[i]);
-    if (mesh >= 0)
+    const size_t mesh = vl_gltf_mesh_of(g, &g->nodes[i]);
+    if (mesh != VL_GLTF_NONE)
       used[mesh] |= g->nodes[i].reached ? HAS_NODE | HAS_REACHED_NODE : HAS_NODE;
   }
   for (size_t i = 0; i < g->material_count; i++) {
@@ -90,10 +90,10 @@ static void mark_used(const vlGltf *g, uint8_t *used) {
 static bool read_node(vlGltf *g, size_t index) {
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "nodes", index);
   const vlGltfNode *node = &g->nodes[index];
-  int64_t mesh;
+  size_t mesh;
   return vl_gltf_index(at, "mesh", g->mesh_count, &mesh) && vl_gltf_add_lights(g, index) &&
-         (mesh < 0 ||
-          vl_gltf_add_mesh(g, (size_t)mesh, node, index, (vlGroupId){0}, vl_mat4_identity()));
+         (mesh == VL_GLTF_NONE ||
+          vl_gltf_add_mesh(g, mesh, node, index, (vlGroupId){0}, vl_mat4_identity()));
 }
 
 static void read_unused(vlGltf *g, vlScene *kept, const uint8_t *used, uint32_t *reported) {
@@ -109,7 +109,7 @@ static void read_unused(vlGltf *g, vlScene *kept, const uint8_t *used, uint32_t 
     if (used[i] & HAS_MATERIAL)
       continue;
     report_unused(g, "materials", i, reported);
-    vl_gltf_material(g, (int64_t)i, false);
+    vl_gltf_material(g, i, false);
     flush(g, kept, reported);
   }
   for (size_t i = 0; i < g->mesh_count; i++) {

@@ -2,6 +2,7 @@
  * fields; rows from the bottom or the top. Run-length encoding is not supported. */
 #include <string.h>
 
+#include "base/bytes.h"
 #include "image/codec.h"
 
 typedef struct Bmp {
@@ -15,24 +16,21 @@ typedef struct Bmp {
 static uint32_t le16(const uint8_t *p) {
   return p[0] | (uint32_t)p[1] << 8;
 }
-static uint32_t le32(const uint8_t *p) {
-  return le16(p) | le16(p + 2) << 16;
-}
 
 bool vl_bmp_probe(const uint8_t *data, size_t size) {
   if (size < 26 || data[0] != 'B' || data[1] != 'M')
     return false;
-  uint32_t head = le32(data + 14);
+  uint32_t head = vl_little32(data + 14);
   return head == 12 || (head >= 40 && head <= 124);
 }
 
 static vlResult parse(const vlImageFile *file, Bmp *b) {
   const uint8_t *d = file->data;
-  uint32_t head = le32(d + 14), coding = 0;
+  uint32_t head = vl_little32(d + 14), coding = 0;
   memset(b, 0, sizeof *b);
   if ((size_t)14 + head > file->size)
     return vl_codec_broken(file, "BMP", "ends in its header");
-  b->pixels_at = le32(d + 10);
+  b->pixels_at = vl_little32(d + 10);
   b->palette_at = (size_t)14 + head;
   if (head == 12) {
     b->width = le16(d + 18);
@@ -40,16 +38,16 @@ static vlResult parse(const vlImageFile *file, Bmp *b) {
     b->depth = le16(d + 24);
     b->palette_bytes = 3;
   } else {
-    int32_t width = (int32_t)le32(d + 18), height = (int32_t)le32(d + 22);
+    int32_t width = (int32_t)vl_little32(d + 18), height = (int32_t)vl_little32(d + 22);
     if (width <= 0 || height == 0 || height == INT32_MIN)
       return vl_codec_broken(file, "BMP", "its image is empty");
     b->width = (uint32_t)width;
     b->from_top = height < 0;
     b->height = (uint32_t)(height < 0 ? -height : height);
     b->depth = le16(d + 28);
-    coding = le32(d + 30);
+    coding = vl_little32(d + 30);
     b->palette_bytes = 4;
-    b->palette_count = le32(d + 46);
+    b->palette_count = vl_little32(d + 46);
   }
   if (coding == 1 || coding == 2)
     return vl_codec_unsupported(file, "BMP", "run lengths");
@@ -71,7 +69,7 @@ static vlResult parse(const vlImageFile *file, Bmp *b) {
     if (file->size < 70)
       return vl_codec_broken(file, "BMP", "ends in its header");
     for (int i = 0; i < 4; i++)
-      b->mask[i] = i < 3 || head >= 56 ? le32(d + 54 + 4 * i) : 0;
+      b->mask[i] = i < 3 || head >= 56 ? vl_little32(d + 54 + 4 * i) : 0;
   } else if (b->depth == 16) {
     b->mask[0] = 0x7c00;
     b->mask[1] = 0x03e0;
@@ -122,7 +120,7 @@ vlResult vl_bmp_read(const vlImageFile *file, vlImage **image) {
       } else {
         uint32_t v = b.depth == 16 ? le16(p + 2 * (size_t)x)
                      : b.depth == 32
-                         ? le32(p + 4 * (size_t)x)
+                         ? vl_little32(p + 4 * (size_t)x)
                          : le16(p + 3 * (size_t)x) | (uint32_t)p[3 * (size_t)x + 2] << 16;
         for (uint32_t c = 0; c < channels; c++)
           out[c] = field(v, b.mask[c]);

@@ -3,6 +3,8 @@
  * the next eight bits hold n. Longer codes are numerically lower. */
 #include "image/exr_huffman.h"
 
+#include "base/bytes.h"
+
 enum { SYMBOLS = 65537, LONGEST = 58 };
 
 typedef struct Bits {
@@ -76,13 +78,10 @@ static bool next_symbol(const Decoder *d, Bits *b, uint32_t *symbol) {
   return false;
 }
 
-static uint32_t le32(const uint8_t *p) {
-  return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
-
 static bool unpack(Decoder *d, const uint8_t *packed, size_t size, uint16_t *values,
                    size_t count) {
-  uint32_t low = le32(packed), high = le32(packed + 4), bit_count = le32(packed + 12), symbol;
+  uint32_t low = vl_little32(packed), high = vl_little32(packed + 4),
+           bit_count = vl_little32(packed + 12), symbol;
   if (low >= SYMBOLS || high >= SYMBOLS || low > high)
     return false;
   Bits bits = {packed + 20, 0, (size - 20) * 8};

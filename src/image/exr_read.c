@@ -6,6 +6,7 @@
  * channels get one type: half or integer when all channels of the file have it, otherwise
  * float. */
 
+#include "base/bytes.h"
 #include "base/free.h"
 #include "base/text.h"
 #include "image/exr.h"
@@ -60,10 +61,6 @@ static int64_t on_size(exr_const_context_t exr, void *user) {
   return (int64_t)((vlExr *)user)->file->size;
 }
 
-static uint32_t le32(const uint8_t *p) {
-  return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
-
 /* Offset of the byte after the zero-terminated text of 1 to 255 characters at `at`; 0 when
  * there is none. */
 static size_t after_text(const vlImageFile *file, size_t at) {
@@ -80,21 +77,22 @@ static size_t after_text(const vlImageFile *file, size_t at) {
 static bool headers_fit(const vlImageFile *file) {
   if (file->size < 9)
     return false;
-  bool parts = le32(file->data + 4) & 0x1000u;
+  bool parts = vl_little32(file->data + 4) & 0x1000u;
   size_t at = 8;
   do {
     while (at < file->size && file->data[at]) {
       size_t type = after_text(file, at), size_at = type ? after_text(file, type) : 0;
       if (!size_at || file->size - size_at < 4)
         return false;
-      uint32_t size = le32(file->data + size_at);
+      uint32_t size = vl_little32(file->data + size_at);
       at = size_at + 4;
       if (size > file->size - at)
         return false;
       if (vl_text_is((const char *)file->data + type,
                      "preview")) { /* width, height, four bytes per pixel */
         if (size < 8 ||
-            (double)le32(file->data + at) * le32(file->data + at + 4) * 4.0 > size - 8.0)
+            (double)vl_little32(file->data + at) * vl_little32(file->data + at + 4) * 4.0 >
+                size - 8.0)
           return false;
       }
       at += size;

@@ -14,6 +14,14 @@ typedef struct vlNameTable {
   vlNamed *slots;
   uint32_t capacity, count;
 } vlNameTable;
+/* Slots of an open-addressing table of so many items: a power of two, at least twice as many.
+ */
+static inline size_t vl_table_size(size_t items) {
+  size_t size = 16;
+  while (size < 2 * items)
+    size *= 2;
+  return size;
+}
 bool vl_names_add(vlContext *context, vlNameTable *table, const char *name,
                   uint32_t index); /* false: out of memory */
 bool vl_names_find(const vlNameTable *table, const char *name, uint32_t *index);

@@ -1,6 +1,7 @@
 /* import/points.c: see points.h. */
 #include "import/points.h"
 #include "base/free.h"
+#include "math/axis.h"
 #include "math/double3.h"
 
 #include <math.h>
@@ -73,18 +74,13 @@ static void disc(const float *n, float radius, float corners[CORNERS][3]) {
       {1, 0},  {0.5, 0.8660254037844386},   {-0.5, 0.8660254037844386},
       {-1, 0}, {-0.5, -0.8660254037844386}, {0.5, -0.8660254037844386}};
   double l = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]), u[3], v[3],
-         w[3], lu = 0;
+         w[3];
   for (int i = 0; i < 3; i++)
     w[i] = l > 0 ? n[i] / l : i == 2;
-  int least = fabs(w[0]) < fabs(w[1])   ? (fabs(w[0]) < fabs(w[2]) ? 0 : 2)
-              : fabs(w[1]) < fabs(w[2]) ? 1
-                                        : 2;
-  for (int i = 0; i < 3; i++) {
-    u[i] = (i == least) - w[least] * w[i];
-    lu += u[i] * u[i];
-  }
+  int least = vl_least_axis3(w);
   for (int i = 0; i < 3; i++)
-    u[i] /= sqrt(lu);
+    u[i] = (i == least) - w[least] * w[i];
+  vl_normalize3(u);
   vl_cross3(w, u, v);
   for (int k = 0; k < CORNERS; k++)
     for (int i = 0; i < 3; i++)

@@ -2,6 +2,7 @@
  * JSON, uris, buffers and buffer views. */
 
 #include "base/file.h"
+#include "base/bytes.h"
 #include "base/free.h"
 #include "base/json.h"
 #include "base/text.h"
@@ -10,16 +11,12 @@
 
 enum { MAX_ITEMS = 1 << 24 };
 
-static uint32_t little(const uint8_t *p) {
-  return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
-
 /* The .glb container: a header of 12 bytes, then chunks. A chunk consists of its length, its
  * type and its data. */
 static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
   if (g->file_size < 20)
     return vl_gltf_fail(&g->top, "broken .glb: only %zu bytes", g->file_size);
-  uint32_t version = little(g->file + 4), length = little(g->file + 8);
+  uint32_t version = vl_little32(g->file + 4), length = vl_little32(g->file + 8);
   if (version != 2)
     return vl_gltf_fail(&g->top, ".glb of version %u; velo reads version 2", version);
   if (length > g->file_size)
@@ -27,8 +24,8 @@ static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
                         length, g->file_size);
   size_t at = 12, end = length < 20 ? g->file_size : length;
   for (int k = 0; at + 8 <= end; k++) {
-    size_t size = little(g->file + at);
-    uint32_t kind = little(g->file + at + 4);
+    size_t size = vl_little32(g->file + at);
+    uint32_t kind = vl_little32(g->file + at + 4);
     if (size > end - at - 8)
       return vl_gltf_fail(&g->top,
                           "broken .glb: chunk %d of %zu bytes at byte %zu goes past the end", k,

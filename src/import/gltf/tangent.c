@@ -46,15 +46,8 @@ static bool alike(const Maker *m, uint32_t a, uint32_t b) {
          m->uvs[2 * (size_t)a + 1] == m->uvs[2 * (size_t)b + 1];
 }
 
-static size_t table_size(size_t items) {
-  size_t size = 16;
-  while (size < 2 * items)
-    size *= 2;
-  return size;
-}
-
 static bool weld(vlContext *context, Maker *m) {
-  size_t size = table_size(m->p->vertices);
+  size_t size = vl_table_size(m->p->vertices);
   uint32_t *table = vl_alloc_zero(context, size, sizeof *table);
   if (!table)
     return false;
@@ -77,7 +70,7 @@ static void face_directions(Maker *m) {
   const vlGltfPrimitive *p = m->p;
   for (size_t f = 0; f < p->faces; f++) {
     const uint32_t *k = p->indices + 3 * f;
-    double e1[3], e2[3], t[3], l = 0;
+    double e1[3], e2[3], t[3];
     for (int i = 0; i < 3; i++) {
       e1[i] = (double)p->positions[3 * (size_t)k[1] + (size_t)i] -
               p->positions[3 * (size_t)k[0] + (size_t)i];
@@ -89,11 +82,9 @@ static void face_directions(Maker *m) {
     double s1 = (double)b[0] - a[0], t1 = (double)b[1] - a[1], s2 = (double)c[0] - a[0],
            t2 = (double)c[1] - a[1];
     double area = s1 * t2 - s2 * t1;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
       t[i] = (t2 * e1[i] - t1 * e2[i]) * (area < 0 ? -1 : 1);
-      l += t[i] * t[i];
-    }
-    l = sqrt(l);
+    const double l = vl_norm3(t);
     m->sign[f] = fabs(area) > 1e-30 && l > 0 ? (area > 0 ? 1 : -1) : 0;
     for (int i = 0; i < 3; i++)
       m->direction[3 * f + (size_t)i] = m->sign[f] ? (float)(t[i] / l) : 0.0f;
@@ -124,7 +115,7 @@ enum { MAX_PROBES = 200 };
  * directions. Of more than two faces the first matching pairs are joined. A degenerate face
  * joins either orientation. */
 static bool join_edges(vlContext *context, Maker *m) {
-  size_t corners = 3 * m->p->faces, size = table_size(corners);
+  size_t corners = 3 * m->p->faces, size = vl_table_size(corners);
   uint32_t *table = vl_alloc_zero(context, size, sizeof *table);
   if (!table)
     return false;
@@ -165,17 +156,12 @@ static bool join_edges(vlContext *context, Maker *m) {
 
 /* The part of v orthogonal to the unit vector n, normalised. False when it vanishes. */
 static bool project(const float *v, const float *n, double out[3]) {
-  double d = 0, l = 0;
+  double d = 0;
   for (int i = 0; i < 3; i++)
     d += (double)v[i] * n[i];
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; i++)
     out[i] = v[i] - d * n[i];
-    l += out[i] * out[i];
-  }
-  l = sqrt(l);
-  for (int i = 0; i < 3 && l > 0; i++)
-    out[i] /= l;
-  return l > 1e-12;
+  return vl_normalize3(out) > 1e-12;
 }
 
 /* sums: 3 per corner, kept at the corner that represents the group. */
@@ -275,7 +261,7 @@ static bool make_flat(vlGltf *g, vlGltfPrimitive *p) {
 
 /* Makes one vertex for each pair of a vertex and a group. */
 static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *sums) {
-  size_t corners = 3 * p->faces, size = table_size(corners), count = 0;
+  size_t corners = 3 * p->faces, size = vl_table_size(corners), count = 0;
   uint32_t *table = vl_alloc_zero(g->context, size, sizeof *table);
   uint32_t *from = vl_alloc_array(g->context, corners, sizeof *from);
   uint32_t *group = vl_alloc_array(g->context, corners, sizeof *group);

@@ -7,6 +7,7 @@
 #include "import/gltf/gltf.h"
 
 #include "base/free.h"
+#include "math/axis.h"
 #include "math/double3.h"
 #include "math/elementary.h"
 
@@ -107,19 +108,13 @@ static void put_tube(NewMesh *b, const vlGltfPrimitive *p, uint32_t from, uint32
   double d[3], u[3], v[3];
   for (int i = 0; i < 3; i++)
     d[i] = (double)ends[1][i] - ends[0][i];
-  double l = vl_norm3(d);
+  double l = vl_normalize3(d);
   if (!(l > 0) || !isfinite(l))
     return;
-  for (int i = 0; i < 3; i++)
-    d[i] /= l;
-  int least = fabs(d[0]) < fabs(d[1])   ? (fabs(d[0]) < fabs(d[2]) ? 0 : 2)
-              : fabs(d[1]) < fabs(d[2]) ? 1
-                                        : 2;
+  int least = vl_least_axis3(d);
   double e[3] = {least == 0, least == 1, least == 2};
   vl_cross3(d, e, u);
-  double n = vl_norm3(u);
-  for (int i = 0; i < 3; i++)
-    u[i] /= n;
+  vl_normalize3(u);
   vl_cross3(d, u, v);
   uint32_t ring[2][TUBE_SIDES];
   for (int side = 0; side < 2; side++)

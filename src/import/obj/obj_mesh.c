@@ -60,13 +60,6 @@ static void unit(double n[3]) {
   }
 }
 
-static size_t table_size(size_t items) {
-  size_t size = 16;
-  while (size < 2 * items)
-    size *= 2;
-  return size;
-}
-
 typedef struct Smooth {
   uint32_t v, group, normal;
 } Smooth;
@@ -79,7 +72,7 @@ static bool make_normals(vlObj *obj) {
   for (size_t t = 0; t < triangles; t++)
     for (size_t k = 0; k < 3; k++)
       wanted += obj->triangle_smooth.items[t] && !obj->corners.items[3 * t + k].vn;
-  size_t size = table_size(wanted), first = obj->normals.count;
+  size_t size = vl_table_size(wanted), first = obj->normals.count;
   Smooth *table = vl_alloc_zero(obj->context, size, sizeof *table);
   if (!table)
     return vl_obj_fail_memory(obj);
@@ -155,7 +148,7 @@ static bool sort_by_part(vlObj *obj, uint32_t **order) {
 /* indices: 3 per triangle. kept: the corners that remain as vertices. Both are new blocks. */
 static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint32_t **indices,
                  vlObjCorner **kept, uint32_t *vertices) {
-  size_t count = 3 * (size_t)part->triangles, size = table_size(count), n = 0;
+  size_t count = 3 * (size_t)part->triangles, size = vl_table_size(count), n = 0;
   *indices = vl_alloc_array(obj->context, count, sizeof **indices);
   *kept = vl_alloc_array(obj->context, count, sizeof **kept);
   uint32_t *table = vl_alloc_zero(obj->context, size, sizeof *table);

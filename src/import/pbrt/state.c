@@ -22,23 +22,19 @@ static void apply(vlImport *import, vlMat4 m) {
 static bool look_at(vlImport *import, const vlStatement *s) {
   const double *e = s->numbers, *l = s->numbers + 3, *u = s->numbers + 6;
   double d[3] = {l[0] - e[0], l[1] - e[1], l[2] - e[2]};
-  double length = vl_norm3(d);
+  double length = vl_normalize3(d);
   if (!(length > 0.0))
     return vl_import_wrong(import, s->source,
                            "LookAt: the eye and the point it looks at are the same");
-  for (int i = 0; i < 3; i++)
-    d[i] /= length;
   double r[3], n[3];
   vl_cross3(u, d, r);
-  double size = vl_norm3(r);
+  double size = vl_normalize3(r);
   double up = vl_norm3(u);
   if (!(up > 0.0))
     return vl_import_wrong(import, s->source, "LookAt: the up vector is zero");
   if (!(size > 1e-12 * up))
     return vl_import_wrong(import, s->source,
                            "LookAt: the up vector is parallel to the view direction");
-  for (int i = 0; i < 3; i++)
-    r[i] /= size;
   vl_cross3(d, r, n);
   vlMat4 world_from_camera = {{r[0], n[0], d[0], e[0], r[1], n[1], d[1], e[1], r[2], n[2], d[2],
                                e[2], 0, 0, 0, 1}},

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/bytes.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "import/far.h"
@@ -31,11 +32,6 @@ static bool fail(Stl *s, vlResult code, const char *what, const char *word) {
 
 /* ---- binary ------------------------------------------------------------------------------ */
 
-static uint32_t little32(const char *at) {
-  const unsigned char *b = (const unsigned char *)at;
-  return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-}
-
 static bool read_binary(Stl *s, uint64_t count) {
   if (count > 0x2aaaaaaa)
     return fail(s, VL_ERROR_SCENE, "too many facets", NULL);
@@ -43,7 +39,7 @@ static bool read_binary(Stl *s, uint64_t count) {
     return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
   for (uint64_t i = 0; i < count; i++)
     for (int k = 0; k < 9; k++) {
-      uint32_t bits = little32(s->at + HEADER + FACET * i + 12 + 4 * k);
+      uint32_t bits = vl_little32(s->at + HEADER + FACET * i + 12 + 4 * k);
       float v;
       memcpy(&v, &bits, sizeof v);
       if (!isfinite(v))
@@ -133,7 +129,7 @@ static bool read_near_text(Stl *s) {
 /* Binary files may begin with "solid", too: their length tells. */
 static bool read(Stl *s) {
   size_t size = (size_t)(s->end - s->at);
-  uint64_t count = size >= HEADER ? little32(s->at + HEADER - 4) : 0;
+  uint64_t count = size >= HEADER ? vl_little32(s->at + HEADER - 4) : 0;
   if (size >= HEADER && size == HEADER + FACET * count)
     return read_binary(s, count);
   const char *p = s->at;

@@ -329,9 +329,8 @@ void vl_import_note_rough_coats(vlImport *import);
 
 bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source,
                          const vlShapeDef *def, const vlShapeLink *link);
-/* Adds a shape. The scene takes ownership of the def's arrays. */
-bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
-/* The same between two media that are not those of the current state. */
+/* Adds a shape between two media that are not those of the current state. The scene takes
+ * ownership of the def's arrays. */
 bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def,
                                  const vlShapeLink *link, const char *inside,
                                  const char *outside);

@@ -177,7 +177,8 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def) {
 
 /* ---- shapes enter ------------------------------------------------------------------------ */
 
-bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
+/* Adds a shape. The scene takes ownership of the def's arrays. */
+static bool add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
   vlShapeId id = vl_scene_adopt_shape(import->scene, def);
   if (!id.index)
     return false;
@@ -198,7 +199,7 @@ bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def,
   import->state.inside = inside;
   import->state.outside = outside;
   bool fine =
-      vl_import_add_shape(import, def, link) &&
+      add_shape(import, def, link) &&
       vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, def->source);
   import->state = now;
   return fine;
@@ -269,8 +270,7 @@ static bool enter(vlDict *dict, const vlShapeDef *def, const vlShapeLink *link, 
     return false;
   *taken = true;
   size_t before = dict->import->scene->shapes.count;
-  return vl_import_add_shape(dict->import, def, link) &&
-         note_media(dict->import, before, dict->source);
+  return add_shape(dict->import, def, link) && note_media(dict->import, before, dict->source);
 }
 
 static bool enter_triangles(vlDict *dict, vlShapeDef *def, const vlShapeLink *link,

@@ -171,8 +171,6 @@ bool vl_gltf_fail_code(vlResult code, const vlGltfLocation *location, const char
 static inline bool vl_gltf_fail_memory(vlGltf *g) {
   return vl_scene_fail_memory(g->scene);
 }
-/* The import that reads the file. */
-vlGltf *vl_gltf_of(const vlGltfLocation *location);
 /* Writes the location from its outermost part inwards, cut to the size; nothing for the file.
  * Returns the length. */
 size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t size);

@@ -61,7 +61,7 @@ static bool repeat(vlOldStatement *s, const vlOldBlock *block) {
 }
 
 bool vl_old_block(vlOldStatement *s) {
-  const char *word = s->word->name;
+  const char *word = s->directive;
   bool transform = strncmp(word, "Transform", 9) == 0, begin = word[strlen(word) - 1] == 'n';
   if (transform) {
     vl_old_note(s, "-> %s", begin ? "AttributeBegin" : "AttributeEnd");
@@ -87,7 +87,7 @@ bool vl_old_block(vlOldStatement *s) {
 }
 
 void vl_old_block_sets(const vlOldStatement *s) {
-  int i = attribute_of(s->word->name);
+  int i = attribute_of(s->directive);
   if (i < 0 || !s->file->blocks.count)
     return;
   vlOldBlock *block = &s->file->blocks.items[s->file->blocks.count - 1];

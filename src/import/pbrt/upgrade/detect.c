@@ -7,35 +7,23 @@
 #include "base/text.h"
 #include "import/pbrt/token.h"
 
-/* Directives, and kinds of directives, that pbrt-v4 does not have. kind null: any. */
+/* Directives, and kinds of directives, that pbrt-v4 does not have. kinds null: any. */
 static const struct {
-  const char *directive, *kind;
+  const char *directive, *kinds;
   int version;
-} signs[] = {{"WorldEnd", NULL, 3},
-             {"Film", "image", 3},
-             {"SurfaceIntegrator", NULL, 2},
-             {"VolumeIntegrator", NULL, 2},
-             {"Renderer", NULL, 2},
-             {"Camera", "environment", 3},
-             {"Sampler", "lowdiscrepancy", 3},
-             {"Sampler", "02sequence", 3},
-             {"Sampler", "zerotwosequence", 3},
-             {"Sampler", "maxmindist", 3},
-             {"Sampler", "random", 3},
-             {"Integrator", "directlighting", 3},
-             {"Integrator", "whitted", 3},
-             {"Integrator", "ao", 3},
-             {"Material", "matte", 3},
-             {"Material", "plastic", 3},
-             {"Material", "metal", 3},
-             {"Material", "glass", 3},
-             {"Material", "mirror", 3},
-             {"Material", "uber", 3},
-             {"Material", "substrate", 3},
-             {"Material", "translucent", 3},
-             {"Material", "kdsubsurface", 3},
-             {"Material", "fourier", 3},
-             {"Material", "disney", 3}};
+} signs[] = {
+    {"WorldEnd", NULL, 3},
+    {"Film", "image", 3},
+    {"SurfaceIntegrator", NULL, 2},
+    {"VolumeIntegrator", NULL, 2},
+    {"Renderer", NULL, 2},
+    {"Camera", "environment", 3},
+    {"Sampler", "lowdiscrepancy 02sequence zerotwosequence maxmindist random", 3},
+    {"Integrator", "directlighting whitted ao", 3},
+    {"Material",
+     "matte plastic metal glass mirror uber substrate translucent kdsubsurface fourier "
+     "disney",
+     3}};
 
 static bool is_word(const vlToken *t, const char *word) {
   return t->kind == VL_TOKEN_WORD && strlen(word) == t->length &&
@@ -52,11 +40,11 @@ static void look(vlOldScene *found, char *data, size_t size) {
     if (t.kind == VL_TOKEN_END || t.kind == VL_TOKEN_BAD)
       return;
     for (size_t i = 0; i < VL_LENGTH(signs); i++) {
-      bool kind = signs[i].kind != NULL;
+      bool kind = signs[i].kinds != NULL;
       const vlToken *word = kind ? &before : &t;
       if (!is_word(word, signs[i].directive))
         continue;
-      if (kind && (t.kind != VL_TOKEN_STRING || !vl_text_is(t.text, signs[i].kind)))
+      if (kind && (t.kind != VL_TOKEN_STRING || !vl_has_word(signs[i].kinds, t.text)))
         continue;
       if (found->version && found->version <= signs[i].version)
         continue;

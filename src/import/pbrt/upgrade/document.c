@@ -110,16 +110,16 @@ static bool read_param(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) 
 }
 
 static bool read_names(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) {
-  while (s->name_count < s->word->names && peek(tokens).kind == VL_TOKEN_STRING) {
+  while (s->name_count < s->word->strings && peek(tokens).kind == VL_TOKEN_STRING) {
     vlToken token = vl_token_next(tokens);
     if (token.kind != VL_TOKEN_STRING)
       return bad_token(file, &token, "a name in quotes");
     s->names[s->name_count] = span_of(file, tokens, &token);
     s->name[s->name_count++] = token.text;
   }
-  bool optional =
-      s->word->form == VL_OLD_PLAIN && s->name_count + 1 == s->word->names && s->name_count > 0;
-  if (s->name_count == s->word->names || optional)
+  bool optional = s->word->form == VL_OLD_PLAIN && s->name_count + 1 == s->word->strings &&
+                  s->name_count > 0;
+  if (s->name_count == s->word->strings || optional)
     return true;
   vlToken token = vl_token_next(tokens);
   return bad_token(file, &token, "a name in quotes");
@@ -143,8 +143,8 @@ static bool read_numbers(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s
 }
 
 static const vlOldWord *find_word(const vlToken *token) {
-  for (const vlOldWord *w = vl_old_words; w->name; w++)
-    if (strlen(w->name) == token->length && memcmp(w->name, token->text, token->length) == 0)
+  for (const vlOldWord *w = vl_old_words; w->names; w++)
+    if (vl_has_word_of(w->names, token->text, token->length))
       return w;
   return NULL;
 }
@@ -163,6 +163,7 @@ bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *
     return vl_old_fail(file, VL_ERROR_SCENE, token.line, token.column,
                        "unknown directive \"%s\"",
                        vl_short_text_of(token.text, token.length).text);
+  snprintf(s->directive, sizeof s->directive, "%.*s", (int)token.length, token.text);
   bool fine = read_names(file, tokens, s);
   switch (s->word->form) {
     case VL_OLD_PLAIN:

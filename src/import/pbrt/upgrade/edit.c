@@ -194,7 +194,7 @@ bool vl_old_add(const vlOldStatement *s, const char *format, ...) {
 }
 
 bool vl_old_rename(vlOldStatement *s, size_t i, const char *name) {
-  if (vl_text_is(s->name[i], name))
+  if (!name || vl_text_is(s->name[i], name))
     return true;
   vl_old_note(s, "\"%s\" -> \"%s\"", s->name[i], name);
   s->name[i] = name;
@@ -246,7 +246,7 @@ bool vl_old_finish(vlOldStatement *s) {
     return true;
   char text[520];
   bool of_kind = s->name_count > 0 && s->word->form == VL_OLD_PARAMS;
-  snprintf(text, sizeof text, "%s%s%s", s->word->name, of_kind ? ": " : " ", s->changes);
+  snprintf(text, sizeof text, "%s%s%s", s->directive, of_kind ? ": " : " ", s->changes);
   report(s, VL_UPGRADE_CHANGED, text);
   return true;
 }

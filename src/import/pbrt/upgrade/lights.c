@@ -229,13 +229,12 @@ static bool plain_light(vlOldStatement *s) {
   return true;
 }
 
-static const vlOldKind kinds[] = {{"point", "point", point, plain_light},
-                                  {"spot", "spot", spot, plain_light},
-                                  {"goniometric", "goniometric", goniometric, plain_light},
-                                  {"projection", "projection", projection, plain_light},
-                                  {"distant", "distant", distant, plain_light},
-                                  {"infinite", "infinite", infinite, plain_light},
-                                  {"exinfinite", "infinite", infinite, plain_light},
+static const vlOldKind kinds[] = {{"point", NULL, point},
+                                  {"spot", NULL, spot},
+                                  {"goniometric", NULL, goniometric},
+                                  {"projection", NULL, projection},
+                                  {"distant", NULL, distant},
+                                  {"infinite exinfinite", "infinite", infinite},
                                   {0}};
 
 bool vl_old_light(vlOldStatement *s) {
@@ -244,7 +243,7 @@ bool vl_old_light(vlOldStatement *s) {
     vl_old_lose(s, "light \"%s\" has no counterpart: left out", s->name[0]);
     return vl_old_remove(s);
   }
-  return vl_old_become(s, kind);
+  return plain_light(s) && vl_old_become(s, kind);
 }
 
 bool vl_old_area_light(vlOldStatement *s) {

@@ -42,7 +42,7 @@ static bool mix_with_nothing(vlOldStatement *s, const vlOldParam *opacity) {
                      "MakeNamedMaterial \"see-through\" \"string type\" \"interface\""))
     return false;
   u->see_through = true;
-  if (vl_text_is(s->word->name, "Material")) {
+  if (vl_text_is(s->directive, "Material")) {
     snprintf(solid, sizeof solid, "solid-%u", ++u->made);
     vlOldSpan head = {s->keyword.start, s->names[0].end};
     if (!vl_old_edit(s, head, "MakeNamedMaterial \"%s\" \"string type\" \"coateddiffuse\"",

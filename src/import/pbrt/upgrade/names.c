@@ -16,7 +16,7 @@ static bool is_scoped(Family family) {
 }
 
 static bool is_word(const vlOldStatement *s, const char *word) {
-  return vl_text_is(s->word->name, word);
+  return vl_text_is(s->directive, word);
 }
 
 /* The family of which the statement makes a member. */

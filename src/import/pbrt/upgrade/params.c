@@ -175,7 +175,7 @@ static bool apply(vlOldStatement *s, const vlOldRow *row, bool *known) {
         break;
       case VL_OLD_LOSE:
         p->dropped = true;
-        vl_old_lose(s, "%s \"%s\": \"%s\" has no counterpart%s%s", s->word->name,
+        vl_old_lose(s, "%s \"%s\": \"%s\" has no counterpart%s%s", s->directive,
                     s->name_count ? s->name[s->name_count - 1] : "", p->name,
                     row->to ? ": " : "", row->to ? row->to : "");
         break;
@@ -204,7 +204,7 @@ bool vl_old_rows(vlOldStatement *s, const vlOldRow *rows) {
     if (known[i] || !is_open(p) || vl_text_is(p->name, "type"))
       continue;
     p->dropped = true;
-    vl_old_lose(s, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out", s->word->name,
+    vl_old_lose(s, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out", s->directive,
                 s->name_count ? s->name[s->name_count - 1] : "", p->name);
   }
   return true;
@@ -212,7 +212,7 @@ bool vl_old_rows(vlOldStatement *s, const vlOldRow *rows) {
 
 const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name) {
   for (const vlOldKind *k = kinds; k->from; k++)
-    if (vl_text_is(k->from, name))
+    if (vl_text_is(k->from, name) || vl_has_word(k->from, name))
       return k;
   return NULL;
 }

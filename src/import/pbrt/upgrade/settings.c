@@ -48,17 +48,17 @@ static bool lens_file(vlOldStatement *s) {
   return vl_text_is(name, p->text[0]) || vl_old_edit(s, p->span[0], "\"%s\"", name);
 }
 
-static const vlOldKind cameras[] = {{"perspective", "perspective", perspective, half_fov},
-                                    {"orthographic", "orthographic", perspective},
+static const vlOldKind cameras[] = {{"perspective", NULL, perspective, half_fov},
+                                    {"orthographic", NULL, perspective},
                                     {"environment", "spherical", environment},
-                                    {"realistic", "realistic", realistic, lens_file},
+                                    {"realistic", NULL, realistic, lens_file},
                                     {0}};
 
 /* Replaces kind and parameters by the table. Unknown kinds become `otherwise`. */
 static bool rewrite(vlOldStatement *s, const vlOldKind *kinds, const char *otherwise) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
-    vl_old_lose(s, "%s \"%s\" has no counterpart: \"%s\" is written", s->word->name, s->name[0],
+    vl_old_lose(s, "%s \"%s\" has no counterpart: \"%s\" is written", s->directive, s->name[0],
                 otherwise);
     for (size_t i = 0; i < s->params.count; i++)
       s->params.items[i].dropped = true;
@@ -112,21 +112,14 @@ static const vlOldRow adaptive[] = {{"maxsamples", VL_OLD_RENAME, "pixelsamples"
                                     {"method", VL_OLD_DROP},
                                     {"pixelsamples"},
                                     {0}};
-static const vlOldKind samplers[] = {{"halton", "halton", sampler},
-                                     {"sobol", "sobol", sampler},
-                                     {"stratified", "stratified", sampler},
-                                     {"random", "independent", sampler},
-                                     {"lowdiscrepancy", "paddedsobol", sampler},
-                                     {"02sequence", "paddedsobol", sampler},
-                                     {"zerotwosequence", "paddedsobol", sampler},
-                                     {"maxmindist", "pmj02bn", sampler},
-                                     {"bestcandidate", "sobol", sampler},
-                                     {"adaptive", "sobol", adaptive},
-                                     {"independent", "independent", sampler},
-                                     {"zsobol", "zsobol", sampler},
-                                     {"paddedsobol", "paddedsobol", sampler},
-                                     {"pmj02bn", "pmj02bn", sampler},
-                                     {0}};
+static const vlOldKind samplers[] = {
+    {"halton sobol stratified independent zsobol paddedsobol pmj02bn", NULL, sampler},
+    {"random", "independent", sampler},
+    {"lowdiscrepancy 02sequence zerotwosequence", "paddedsobol", sampler},
+    {"maxmindist", "pmj02bn", sampler},
+    {"bestcandidate", "sobol", sampler},
+    {"adaptive", "sobol", adaptive},
+    {0}};
 
 bool vl_old_sampler(vlOldStatement *s) {
   return rewrite(s, samplers, "zsobol");
@@ -156,11 +149,10 @@ static bool gaussian_rule(vlOldStatement *s) {
   return true;
 }
 
-static const vlOldKind filters[] = {{"box", "box", plain_filter},
-                                    {"triangle", "triangle", plain_filter},
-                                    {"gaussian", "gaussian", gaussian, gaussian_rule},
-                                    {"mitchell", "mitchell", mitchell},
-                                    {"sinc", "sinc", sinc},
+static const vlOldKind filters[] = {{"box triangle", NULL, plain_filter},
+                                    {"gaussian", NULL, gaussian, gaussian_rule},
+                                    {"mitchell", NULL, mitchell},
+                                    {"sinc", NULL, sinc},
                                     {0}};
 
 bool vl_old_filter(vlOldStatement *s) {
@@ -172,7 +164,7 @@ static const vlOldRow bvh[] = {{"maxnodeprims splitmethod"}, {0}};
 static const vlOldRow kdtree[] = {{"intersectcost traversalcost emptybonus maxprims maxdepth"},
                                   {0}};
 static const vlOldKind accelerators[] = {
-    {"bvh", "bvh", bvh}, {"kdtree", "kdtree", kdtree}, {"none", "bvh"}, {0}};
+    {"bvh", NULL, bvh}, {"kdtree", NULL, kdtree}, {"none", "bvh"}, {0}};
 
 bool vl_old_accelerator(vlOldStatement *s) {
   return rewrite(s, accelerators, "bvh");
@@ -215,20 +207,18 @@ static bool light_sampler(vlOldStatement *s) {
 static const char whole_path[] =
     "integrator of direct light has no counterpart: \"path\" is written, which adds "
     "indirect light";
-static const vlOldKind integrators[] = {{"path", "path", path, light_sampler},
-                                        {"volpath", "volpath", path, light_sampler},
-                                        {"bdpt", "bdpt", bdpt, light_sampler},
-                                        {"mlt", "mlt", mlt},
-                                        {"sppm", "sppm", sppm},
-                                        {"photonmap", "sppm", sppm},
-                                        {"directlighting", "path", direct, NULL, whole_path},
-                                        {"whitted", "path", direct, NULL, whole_path},
-                                        {"ao", "ambientocclusion", ao},
-                                        {"ambientocclusion", "ambientocclusion", ao},
-                                        {0}};
+static const vlOldKind integrators[] = {
+    {"path", "path", path, light_sampler},
+    {"volpath", NULL, path, light_sampler},
+    {"bdpt", NULL, bdpt, light_sampler},
+    {"mlt", NULL, mlt},
+    {"sppm photonmap", "sppm", sppm},
+    {"directlighting whitted", "path", direct, NULL, whole_path},
+    {"ao ambientocclusion", "ambientocclusion", ao},
+    {0}};
 
 bool vl_old_integrator(vlOldStatement *s) {
-  bool older = vl_text_is(s->word->name, "SurfaceIntegrator");
+  bool older = vl_text_is(s->directive, "SurfaceIntegrator");
   if (older)
     vl_old_note(s, "-> Integrator");
   if (older && !vl_old_edit(s, s->keyword, "Integrator"))
@@ -253,7 +243,7 @@ bool vl_old_integrator(vlOldStatement *s) {
 static const vlOldRow homogeneous[] = {SUBSTANCE, {"Le"}, {0}};
 static const vlOldRow grid[] = {SUBSTANCE, {"density nx ny nz p0 p1"}, {0}};
 static const vlOldKind media[] = {
-    {"homogeneous", "homogeneous", homogeneous}, {"heterogeneous", "uniformgrid", grid}, {0}};
+    {"homogeneous", NULL, homogeneous}, {"heterogeneous", "uniformgrid", grid}, {0}};
 
 bool vl_old_medium(vlOldStatement *s) {
   vlOldParam *type = vl_old_find(s, "type");
@@ -262,9 +252,9 @@ bool vl_old_medium(vlOldStatement *s) {
     return true; /* pbrt-v4's own */
   if (!vl_old_rows(s, kind->rows))
     return false;
-  if (vl_text_is(kind->from, kind->to))
+  if (!kind->to)
     return true;
-  vl_old_note(s, "\"%s\" -> \"%s\"", kind->from, kind->to);
+  vl_old_note(s, "\"%s\" -> \"%s\"", type->text[0], kind->to);
   return vl_old_edit(s, type->span[0], "\"%s\"", kind->to);
 }
 

@@ -32,19 +32,16 @@ static bool ply_rule(vlOldStatement *s) {
   return vl_old_write_file_name(s, vl_old_find(s, "filename"));
 }
 
-static const vlOldKind kinds[] = {{"sphere", "sphere", sphere},
-                                  {"cylinder", "cylinder", sphere},
-                                  {"disk", "disk", disk},
-                                  {"trianglemesh", "trianglemesh", mesh, mesh_rule},
-                                  {"plymesh", "plymesh", ply, ply_rule},
-                                  {"loopsubdiv", "loopsubdiv", loop},
-                                  {"curve", "curve", curve},
-                                  {"cone", "trianglemesh", NULL, vl_old_mesh_of_shape},
-                                  {"paraboloid", "trianglemesh", NULL, vl_old_mesh_of_shape},
-                                  {"hyperboloid", "trianglemesh", NULL, vl_old_mesh_of_shape},
-                                  {"heightfield", "trianglemesh", NULL, vl_old_mesh_of_shape},
-                                  {"bilinearmesh", "bilinearmesh"},
-                                  {0}};
+static const vlOldKind kinds[] = {
+    {"sphere cylinder", NULL, sphere},
+    {"disk", NULL, disk},
+    {"trianglemesh", NULL, mesh, mesh_rule},
+    {"plymesh", NULL, ply, ply_rule},
+    {"loopsubdiv", NULL, loop},
+    {"curve", NULL, curve},
+    {"cone paraboloid hyperboloid heightfield", "trianglemesh", NULL, vl_old_mesh_of_shape},
+    {"bilinearmesh"},
+    {0}};
 
 bool vl_old_shape(vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);

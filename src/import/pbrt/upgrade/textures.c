@@ -195,19 +195,18 @@ static bool marble_rule(vlOldStatement *s) {
 
 /* The share of a mix is a number in both; as a texture it is a float texture in both. */
 static const vlOldKind kinds[] = {
-    {"constant", "constant", constant},
-    {"scale", "scale", scale, scale_rule},
-    {"mix", "mix", mix},
-    {"bilerp", "bilerp", bilerp},
-    {"imagemap", "imagemap", imagemap, image_rule},
+    {"constant", NULL, constant},
+    {"scale", NULL, scale, scale_rule},
+    {"mix", NULL, mix},
+    {"bilerp", NULL, bilerp},
+    {"imagemap", NULL, imagemap, image_rule},
     {"uv", "bilerp", uv, uv_rule},
-    {"checkerboard", "checkerboard", checkerboard},
-    {"dots", "dots", dots},
-    {"fbm", "fbm", noise, noise_rule},
-    {"wrinkled", "wrinkled", noise, noise_rule},
-    {"windy", "windy", NULL, noise_rule},
-    {"marble", "marble", marble, marble_rule},
-    {"ptex", "ptex", ptex, image_rule, "velo does not read Ptex files: bake it into an image"},
+    {"checkerboard", NULL, checkerboard},
+    {"dots", NULL, dots},
+    {"fbm wrinkled", NULL, noise, noise_rule},
+    {"windy", NULL, NULL, noise_rule},
+    {"marble", NULL, marble, marble_rule},
+    {"ptex", NULL, ptex, image_rule, "velo does not read Ptex files: bake it into an image"},
     {0}};
 
 /* ---- float copies ------------------------------------------------------------------------ */

@@ -25,7 +25,7 @@ static bool remove_it(vlOldStatement *s) {
 }
 
 static bool lose_it(vlOldStatement *s) {
-  vl_old_lose(s, "%s has no counterpart: left out", s->word->name);
+  vl_old_lose(s, "%s has no counterpart: left out", s->directive);
   return vl_old_remove(s);
 }
 
@@ -41,40 +41,22 @@ static bool bracket(vlOldStatement *s) {
 }
 
 const vlOldWord vl_old_words[] = {
-    {"AttributeBegin", VL_OLD_PLAIN, 0, vl_old_block},
-    {"AttributeEnd", VL_OLD_PLAIN, 0, vl_old_block},
-    {"TransformBegin", VL_OLD_PLAIN, 0, vl_old_block},
-    {"TransformEnd", VL_OLD_PLAIN, 0, vl_old_block},
-    {"Identity", VL_OLD_PLAIN, 0, NULL},
-    {"ReverseOrientation", VL_OLD_PLAIN, 0, NULL},
+    {"AttributeBegin AttributeEnd TransformBegin TransformEnd", VL_OLD_PLAIN, 0, vl_old_block},
+    {"Identity ReverseOrientation ObjectEnd", VL_OLD_PLAIN, 0, NULL},
     {"WorldBegin", VL_OLD_PLAIN, 0, vl_old_world},
     {"WorldEnd", VL_OLD_PLAIN, 0, remove_it},
-    {"ObjectEnd", VL_OLD_PLAIN, 0, NULL},
     {"ActiveTransform", VL_OLD_WORD, 0, NULL},
-    {"Include", VL_OLD_PLAIN, 1, vl_old_include},
-    {"Import", VL_OLD_PLAIN, 1, vl_old_include},
-    {"Translate", VL_OLD_NUMBERS, 0, bracket},
-    {"Scale", VL_OLD_NUMBERS, 0, bracket},
-    {"Rotate", VL_OLD_NUMBERS, 0, bracket},
-    {"LookAt", VL_OLD_NUMBERS, 0, bracket},
-    {"TransformTimes", VL_OLD_NUMBERS, 0, bracket},
-    {"Transform", VL_OLD_MATRIX, 0, bracket},
-    {"ConcatTransform", VL_OLD_MATRIX, 0, bracket},
-    {"CoordinateSystem", VL_OLD_PLAIN, 1, NULL},
-    {"CoordSysTransform", VL_OLD_PLAIN, 1, NULL},
-    {"ColorSpace", VL_OLD_PLAIN, 1, NULL},
-    {"NamedMaterial", VL_OLD_PLAIN, 1, NULL},
-    {"ObjectBegin", VL_OLD_PLAIN, 1, NULL},
-    {"ObjectInstance", VL_OLD_PLAIN, 1, NULL},
+    {"Include Import", VL_OLD_PLAIN, 1, vl_old_include},
+    {"Translate Scale Rotate LookAt TransformTimes", VL_OLD_NUMBERS, 0, bracket},
+    {"Transform ConcatTransform", VL_OLD_MATRIX, 0, bracket},
+    {"CoordinateSystem CoordSysTransform ColorSpace NamedMaterial ObjectBegin ObjectInstance",
+     VL_OLD_PLAIN, 1, NULL},
     {"MediumInterface", VL_OLD_PLAIN, 2, NULL},
     {"Attribute", VL_OLD_PARAMS, 1, NULL},
     {"Film", VL_OLD_PARAMS, 1, vl_old_film},
     {"Sampler", VL_OLD_PARAMS, 1, vl_old_sampler},
-    {"Integrator", VL_OLD_PARAMS, 1, vl_old_integrator},
-    {"SurfaceIntegrator", VL_OLD_PARAMS, 1, vl_old_integrator},
-    {"VolumeIntegrator", VL_OLD_PARAMS, 1, lose_it},
-    {"Renderer", VL_OLD_PARAMS, 1, lose_it},
-    {"Volume", VL_OLD_PARAMS, 1, lose_it},
+    {"Integrator SurfaceIntegrator", VL_OLD_PARAMS, 1, vl_old_integrator},
+    {"VolumeIntegrator Renderer Volume", VL_OLD_PARAMS, 1, lose_it},
     {"SearchPath", VL_OLD_PLAIN, 1, lose_it},
     {"PixelFilter", VL_OLD_PARAMS, 1, vl_old_filter},
     {"Accelerator", VL_OLD_PARAMS, 1, vl_old_accelerator},

@@ -37,6 +37,7 @@ typedef struct vlOldStatement {
   struct vlUpgrade *u;
   struct vlOldFile *file; /* that has it */
   const vlOldWord *word;
+  char directive[40];
   vlOldSpan keyword, whole;
   uint32_t line, column;
   size_t name_count;
@@ -148,9 +149,9 @@ typedef enum vlOldForm {
 typedef bool vlOldRule(vlOldStatement *s);
 
 struct vlOldWord {
-  const char *name;
+  const char *names; /* directives, separated by blanks */
   vlOldForm form;
-  uint32_t names; /* most strings before the parameters; MediumInterface may have one fewer */
+  uint32_t strings; /* most strings before the parameters; MediumInterface may have one fewer */
   vlOldRule *rule;
 };
 extern const vlOldWord vl_old_words[]; /* ends with a null name (upgrade.c) */
@@ -187,7 +188,7 @@ bool vl_old_insert(const vlOldStatement *s, vlOldSide side, const char *format, 
 /* Adds a parameter at the end of the statement. */
 bool vl_old_add(const vlOldStatement *s, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/* Replaces name i of the statement and notes the change. */
+/* Replaces name i of the statement (by null: it stays), and notes the change. */
 bool vl_old_rename(vlOldStatement *s, size_t i, const char *name);
 /* Makes the edits of the statement's parameters and reports the change. */
 bool vl_old_finish(vlOldStatement *s);
@@ -234,10 +235,11 @@ typedef struct vlOldRow {
  * dropped. Parameters that no row names are lost. */
 bool vl_old_rows(vlOldStatement *s, const vlOldRow *rows);
 
-/* A kind of one directive. A row of a table ends with its last member that is not null. */
+/* Kinds of one directive. A row of a table ends with its last member that is not null. */
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 typedef struct vlOldKind {
-  const char *from, *to;
+  const char *from; /* names, separated by blanks */
+  const char *to;   /* null: the name stays */
   const vlOldRow *rows;
   vlOldRule *rule;  /* runs before the rows; may be null */
   const char *lost; /* reported; may be null */

@@ -7,24 +7,32 @@
 
 enum { MAX_MESSAGES = 200 }; /* messages */
 
+typedef struct Check {
+  vlGltf *g;
+  vlScene *kept;
+  uint32_t reported; /* messages */
+  const uint8_t *used;
+} Check;
+
 /* The first error of the scene that is thrown away becomes a message, and the next object is
  * read. */
-static void flush(vlGltf *g, vlScene *kept, uint32_t *reported) {
-  vlError *e = &g->scene->error;
-  if (e->code != VL_OK && e->code != VL_ERROR_MEMORY && ++*reported <= MAX_MESSAGES)
-    vl_log(g->context, VL_LOG_ERROR, e, "no scene uses it, but: %s", e->message);
+static void flush(Check *c) {
+  vlError *e = &c->g->scene->error;
+  if (e->code != VL_OK && e->code != VL_ERROR_MEMORY && ++c->reported <= MAX_MESSAGES)
+    vl_log(c->g->context, VL_LOG_ERROR, e, "no scene uses it, but: %s", e->message);
   if (e->code == VL_ERROR_MEMORY)
-    vl_scene_fail_memory(kept);
+    vl_scene_fail_memory(c->kept);
   vl_error_clear(e);
 }
 
 /* ---- accessors --------------------------------------------------------------------------- */
 
-static void check_bounds(vlGltf *g, size_t index, const float *values, size_t count,
-                         uint32_t components, uint32_t *reported) {
+static void check_bounds(Check *check, size_t index, const float *values, size_t count,
+                         uint32_t components) {
   static const char *const keys[2] = {"min", "max"}, *const codes[2] = {
                                                          "ACCESSOR_MIN_MISMATCH",
                                                          "ACCESSOR_MAX_MISMATCH"};
+  const vlGltf *g = check->g;
   const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "accessors", index);
   for (int k = 0; k < 2; k++) {
     const json_t *given = json_object_get(vl_gltf_item(g, "accessors", index), keys[k]);
@@ -37,7 +45,7 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
       }
       if (!json_is_number(number) || !isfinite(own) || own == (float)json_number_value(number))
         continue;
-      if (++*reported <= MAX_MESSAGES)
+      if (++check->reported <= MAX_MESSAGES)
         vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_ITEM(at, keys[k], c),
                      "%s: %.9g is given, the data has %.9g", codes[k],
                      json_number_value(number), (double)own);
@@ -45,7 +53,8 @@ static void check_bounds(vlGltf *g, size_t index, const float *values, size_t co
   }
 }
 
-static void check_accessor(vlGltf *g, size_t index, uint32_t *reported) {
+static void check_accessor(Check *c, size_t index) {
+  vlGltf *g = c->g;
   const vlGltfAccessor *a = vl_gltf_accessor(g, index);
   if (!a || a->type != VL_GLTF_FLOAT || a->matrix || !a->count)
     return;
@@ -54,16 +63,16 @@ static void check_accessor(vlGltf *g, size_t index, uint32_t *reported) {
   float *values = vl_gltf_load_floats(g, VL_GLTF_ITEM(&g->top, "accessors", index), index,
                                       a->components, 0, &count);
   if (values)
-    check_bounds(g, index, values, count, a->components, reported);
+    check_bounds(c, index, values, count, a->components);
   vl_free(g->context, values);
   g->spent = spent;
 }
 
 /* ---- what nothing uses ------------------------------------------------------------------- */
 
-static void report_unused(vlGltf *g, const char *array, size_t index, uint32_t *reported) {
-  if (++*reported <= MAX_MESSAGES)
-    vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_ITEM(&g->top, array, index),
+static void report_unused(Check *c, const char *array, size_t index) {
+  if (++c->reported <= MAX_MESSAGES)
+    vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_ITEM(&c->g->top, array, index),
                  "UNUSED_OBJECT: the scene does not use it");
 }
 
@@ -96,45 +105,45 @@ static bool read_node(vlGltf *g, size_t index) {
           vl_gltf_add_mesh(g, mesh, node, index, (vlGroupId){0}, vl_mat4_identity()));
 }
 
-static void read_unused(vlGltf *g, vlScene *kept, const uint8_t *used, uint32_t *reported) {
+static void read_unused(Check *c) {
+  vlGltf *g = c->g;
   for (size_t i = 0; i < g->accessor_count; i++) {
-    check_accessor(g, i, reported);
-    flush(g, kept, reported);
+    check_accessor(c, i);
+    flush(c);
   }
   for (size_t i = 0; i < g->animation_count; i++) {
     vl_gltf_apply_animation(g, i);
-    flush(g, kept, reported);
+    flush(c);
   }
   for (size_t i = 0; i < g->material_count; i++) {
-    if (used[i] & HAS_MATERIAL)
+    if (c->used[i] & HAS_MATERIAL)
       continue;
-    report_unused(g, "materials", i, reported);
+    report_unused(c, "materials", i);
     vl_gltf_material(g, i, false);
-    flush(g, kept, reported);
+    flush(c);
   }
   for (size_t i = 0; i < g->mesh_count; i++) {
-    if (used[i] & HAS_REACHED_NODE)
+    if (c->used[i] & HAS_REACHED_NODE)
       continue;
-    report_unused(g, "meshes", i, reported);
-    if (used[i] & HAS_NODE)
+    report_unused(c, "meshes", i);
+    if (c->used[i] & HAS_NODE)
       continue; /* read with its node */
     vl_gltf_add_mesh(g, i, NULL, SIZE_MAX, (vlGroupId){0}, vl_mat4_identity());
-    flush(g, kept, reported);
+    flush(c);
   }
   for (size_t i = 0; i < g->node_count; i++)
     if (!g->nodes[i].reached) {
       read_node(g, i);
-      flush(g, kept, reported);
+      flush(c);
     }
   for (size_t i = 0; i < g->camera_count; i++) {
     vl_gltf_check_camera(g, i);
-    flush(g, kept, reported);
+    flush(c);
   }
 }
 
 void vl_gltf_validate(vlGltf *g) {
-  vlScene *kept = g->scene, *scratch = NULL;
-  uint32_t reported = 0;
+  vlScene *scratch = NULL;
   const size_t count = g->mesh_count > g->material_count ? g->mesh_count : g->material_count;
   uint8_t *used = vl_alloc_zero(g->context, count + 1, 1);
   if (!used || vl_scene_create(g->context, &scratch) != VL_OK) {
@@ -145,9 +154,10 @@ void vl_gltf_validate(vlGltf *g) {
   mark_used(g, used);
   g->moves = false;
   g->time = 0;
+  Check c = {.g = g, .kept = g->scene, .used = used};
   g->scene = scratch;
-  read_unused(g, kept, used, &reported);
-  g->scene = kept;
+  read_unused(&c);
+  g->scene = c.kept;
   vl_scene_destroy(scratch);
   vl_free(g->context, used);
 }

@@ -117,6 +117,10 @@ typedef struct vlObj {
 
 /* Finds `origin` from all vertices. Call at the first one. */
 void vl_obj_find_origin(vlObj *obj);
+/* The position of the vertex of this number, counted from 1. */
+static inline const float *vl_obj_position(const vlObj *obj, uint32_t v) {
+  return obj->positions.items + 3 * (size_t)(v - 1);
+}
 /* Appends a row of `size` numbers. what: the rows' name in messages. Returns false after an
  * error. */
 bool vl_obj_push(vlObj *obj, vlObjRows *rows, uint32_t size, const double *row,

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "import/far.h"
 #include "import/obj/obj.h"
@@ -57,24 +58,27 @@ static int compare(const void *a, const void *b) {
   return (x->from > y->from) - (x->from < y->from);
 }
 
+/* Adds the shape of two arrays, which are freed; null: memory is exhausted. */
+static bool add_shape(vlObj *obj, const vlShapeDef *def, void *a, void *b) {
+  bool fine = a && b ? vl_scene_add_shape(obj->scene, def).index != 0 : vl_obj_fail_memory(obj);
+  VL_FREE(obj->context, a, b);
+  return fine;
+}
+
 static bool add_points(vlObj *obj, const vlObjMark *marks, size_t count, float radius,
                        vlShapeDef *def) {
   double *centers = vl_alloc_array(obj->context, count, 3 * sizeof *centers);
   float *radii = vl_alloc_array(obj->context, count, sizeof *radii);
   for (size_t i = 0; centers && radii && i < count; i++) {
     for (size_t k = 0; k < 3; k++)
-      centers[3 * i + k] = (double)obj->positions.items[3 * (size_t)(marks[i].v - 1) + k];
+      centers[3 * i + k] = (double)vl_obj_position(obj, marks[i].v)[k];
     radii[i] = radius;
   }
   vl_far_place(obj->origin, def);
   def->kind = VL_SHAPE_SPHERE;
   def->centers = centers;
   def->radii = radii;
-  bool fine = centers && radii ? vl_scene_add_shape(obj->scene, def).index != 0
-                               : vl_obj_fail_memory(obj);
-  vl_free(obj->context, centers);
-  vl_free(obj->context, radii);
-  return fine;
+  return add_shape(obj, def, centers, radii);
 }
 
 static bool add_lines(vlObj *obj, const vlObjMark *marks, size_t count, float radius,
@@ -82,8 +86,8 @@ static bool add_lines(vlObj *obj, const vlObjMark *marks, size_t count, float ra
   float *points = vl_alloc_array(obj->context, count, 12 * sizeof *points);
   float *widths = vl_alloc_array(obj->context, count, 2 * sizeof *widths);
   for (size_t i = 0; points && widths && i < count; i++) {
-    const float *a = obj->positions.items + 3 * (size_t)(marks[i].from - 1);
-    const float *b = obj->positions.items + 3 * (size_t)(marks[i].v - 1);
+    const float *a = vl_obj_position(obj, marks[i].from);
+    const float *b = vl_obj_position(obj, marks[i].v);
     for (size_t k = 0; k < 12; k++)
       points[12 * i + k] = a[k % 3] + (b[k % 3] - a[k % 3]) * (float)(k / 3) / 3;
     widths[2 * i] = widths[2 * i + 1] = 2 * radius;
@@ -94,11 +98,7 @@ static bool add_lines(vlObj *obj, const vlObjMark *marks, size_t count, float ra
   def->vertices = (uint32_t)(4 * count);
   def->positions = points;
   def->widths = widths;
-  bool fine = points && widths ? vl_scene_add_shape(obj->scene, def).index != 0
-                               : vl_obj_fail_memory(obj);
-  vl_free(obj->context, points);
-  vl_free(obj->context, widths);
-  return fine;
+  return add_shape(obj, def, points, widths);
 }
 
 bool vl_obj_add_marks(vlObj *obj) {

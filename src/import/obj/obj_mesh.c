@@ -17,20 +17,16 @@ static bool stopped(vlObj *obj, size_t done) {
 
 /* ---- normals ----------------------------------------------------------------------------- */
 
-static const float *position(const vlObj *obj, uint32_t v) {
-  return obj->positions.items + 3 * (size_t)(v - 1);
-}
-
 /* Normal of a face, not normalised: its length is twice the area. */
 static void face_normal(const vlObj *obj, const vlObjCorner *c, double n[3]) {
-  const float *a = position(obj, c[0].v), *b = position(obj, c[1].v),
-              *d = position(obj, c[2].v);
+  const float *a = vl_obj_position(obj, c[0].v), *b = vl_obj_position(obj, c[1].v),
+              *d = vl_obj_position(obj, c[2].v);
   vl_triangle_normal(a, b, d, n);
 }
 
 static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
-  const float *a = position(obj, c[i].v), *b = position(obj, c[(i + 1) % 3].v),
-              *d = position(obj, c[(i + 2) % 3].v);
+  const float *a = vl_obj_position(obj, c[i].v), *b = vl_obj_position(obj, c[(i + 1) % 3].v),
+              *d = vl_obj_position(obj, c[(i + 2) % 3].v);
   double ee = 0, ff = 0, ef = 0;
   for (int k = 0; k < 3; k++) {
     double e = (double)b[k] - a[k], f = (double)d[k] - a[k];
@@ -197,7 +193,7 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order,
   }
   for (size_t i = 0; fine && i < n; i++) {
     vlObjCorner c = kept[i];
-    memcpy(arrays[0] + 3 * i, obj->positions.items + 3 * (size_t)(c.v - 1), 3 * sizeof(float));
+    memcpy(arrays[0] + 3 * i, vl_obj_position(obj, c.v), 3 * sizeof(float));
     if (arrays[1])
       memcpy(arrays[1] + 3 * i, obj->normals.items + 3 * (size_t)(c.vn - 1), 3 * sizeof(float));
     if (arrays[2] && c.vt)

@@ -14,7 +14,7 @@ typedef struct Plane {
 } Plane;
 
 static const float *corner(const Plane *p, uint32_t i) {
-  return p->obj->positions.items + 3 * (size_t)(p->obj->polygon.items[i].v - 1);
+  return vl_obj_position(p->obj, p->obj->polygon.items[i].v);
 }
 
 /* Twice the signed area; positive when a, b, c have the orientation of the polygon. */

@@ -241,7 +241,8 @@ void vl_gltf_read_uints(const vlGltfAccessor *a, uint32_t wanted, uint32_t *out)
   }
 }
 
-bool vl_gltf_spend(vlGltf *g, const vlGltfLocation *at, uint64_t bytes) {
+bool vl_gltf_spend(const vlGltfLocation *at, uint64_t bytes) {
+  vlGltf *g = vl_gltf_of(at);
   /* Triangles may share their data and points become small solids, so the geometry may be
    * larger than the file. More than a thousandfold is refused. */
   uint64_t limit = (256u << 20) + 1000 * (g->total + g->file_size);
@@ -251,8 +252,9 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfLocation *at, uint64_t bytes) {
                       (unsigned long long)(limit >> 20));
 }
 
-float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
-                           uint32_t components, size_t count, size_t *read) {
+float *vl_gltf_load_floats(const vlGltfLocation *at, size_t index, uint32_t components,
+                           size_t count, size_t *read) {
+  vlGltf *g = vl_gltf_of(at);
   const vlGltfAccessor *a = vl_gltf_accessor(g, index);
   if (!a)
     return NULL;
@@ -260,7 +262,7 @@ float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
     vl_gltf_fail(at, "accessors[%zu] has %zu elements, %zu are needed", index, a->count, count);
     return NULL;
   }
-  if (!vl_gltf_spend(g, at, (uint64_t)a->count * components * 4))
+  if (!vl_gltf_spend(at, (uint64_t)a->count * components * 4))
     return NULL;
   float *out = vl_alloc_array(g->context, a->count, components * sizeof(float));
   if (!out) {

@@ -36,9 +36,9 @@ static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components,
   if (input == VL_GLTF_NONE || output == VL_GLTF_NONE)
     return vl_gltf_fail(at, "needs \"input\" and \"output\"");
   t->mode = (Mode)mode;
-  if (!(t->times = vl_gltf_load_floats(g, VL_GLTF_KEY(at, "input"), input, 1, 0, &t->count)) ||
+  if (!(t->times = vl_gltf_load_floats(VL_GLTF_KEY(at, "input"), input, 1, 0, &t->count)) ||
       !(t->values =
-            vl_gltf_load_floats(g, VL_GLTF_KEY(at, "output"), output, components, 0, &total)))
+            vl_gltf_load_floats(VL_GLTF_KEY(at, "output"), output, components, 0, &total)))
     return false;
   for (size_t i = 0; i < t->count; i++)
     if (!isfinite(t->times[i]) || (i && !(t->times[i] > t->times[i - 1])))

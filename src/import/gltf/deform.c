@@ -26,7 +26,7 @@ static bool add_target(vlGltf *g, const vlGltfLocation *at, const Morphed *m, fl
   if (index == VL_GLTF_NONE || !m->out || weight == 0.0f)
     return true;
   const uint32_t n = m->components;
-  float *delta = vl_gltf_load_floats(g, VL_GLTF_KEY(at, m->name), index, n, vertices, NULL);
+  float *delta = vl_gltf_load_floats(VL_GLTF_KEY(at, m->name), index, n, vertices, NULL);
   if (!delta)
     return false;
   for (size_t i = 0; i < vertices; i++)
@@ -96,7 +96,7 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
       return false;
     if (a->components != 16)
       return vl_gltf_fail(here, "must be of type MAT4");
-    if (!(columns = vl_gltf_load_floats(g, here, inverse, 16, 0, &inverse_count)))
+    if (!(columns = vl_gltf_load_floats(here, inverse, 16, 0, &inverse_count)))
       return false;
     if (inverse_count < *count) {
       vl_free(g->context, columns);
@@ -151,7 +151,7 @@ static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *join
     return vl_gltf_fail(at, "must be VEC4 of whole numbers, one for each of %zu vertices",
                         vertices);
   float *weights =
-      vl_gltf_load_floats(g, VL_GLTF_KEY(up, weights_name), weight_index, 4, vertices, NULL);
+      vl_gltf_load_floats(VL_GLTF_KEY(up, weights_name), weight_index, 4, vertices, NULL);
   uint32_t *joints = weights ? vl_alloc_array(g->context, vertices, 4 * sizeof *joints) : NULL;
   bool ok = joints || (weights && vl_gltf_fail_memory(g));
   if (ok)

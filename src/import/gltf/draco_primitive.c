@@ -25,7 +25,7 @@ static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_
                 : a->type == VL_GLTF_UINT          ? 4
                 : a->type >= VL_GLTF_SHORT         ? 2
                                                    : 1;
-  if (!vl_gltf_spend(g, at, (uint64_t)a->count * a->components * size))
+  if (!vl_gltf_spend(at, (uint64_t)a->count * a->components * size))
     return false;
   uint8_t *data = vl_alloc_array(g->context, a->count + 1, a->components * size);
   if (!data)

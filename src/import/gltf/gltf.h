@@ -171,6 +171,8 @@ bool vl_gltf_fail_code(vlResult code, const vlGltfLocation *location, const char
 static inline bool vl_gltf_fail_memory(vlGltf *g) {
   return vl_scene_fail_memory(g->scene);
 }
+/* The import that reads the file. */
+vlGltf *vl_gltf_of(const vlGltfLocation *location);
 /* Writes the location from its outermost part inwards, cut to the size; nothing for the file.
  * Returns the length. */
 size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t size);
@@ -253,11 +255,11 @@ void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uin
 /* A new block of count * components floats from an accessor. The accessor must have one of the
  * given numbers of components and count elements (0: any; *read receives the count). Null after
  * an error. */
-float *vl_gltf_load_floats(vlGltf *g, const vlGltfLocation *at, size_t index,
-                           uint32_t components, size_t count, size_t *read);
+float *vl_gltf_load_floats(const vlGltfLocation *at, size_t index, uint32_t components,
+                           size_t count, size_t *read);
 /* Adds to the bytes of geometry made so far. Reports an error when the sum is out of proportion
  * to the file's size. */
-bool vl_gltf_spend(vlGltf *g, const vlGltfLocation *at, uint64_t bytes);
+bool vl_gltf_spend(const vlGltfLocation *at, uint64_t bytes);
 
 /* ---- the tree (node.c, animation.c) ------------------------------------------------------ */
 
@@ -380,8 +382,8 @@ typedef struct vlGltfTextureUse {
 } vlGltfTextureUse;
 vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);
-bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *at, const char *key,
-                     const vlGltfTextureUse *use, vlTextureId *id);
+bool vl_gltf_texture(const vlGltfLocation *at, const char *key, const vlGltfTextureUse *use,
+                     vlTextureId *id);
 /* The bytes or the path of images[index]. */
 bool vl_gltf_read_image(vlGltf *g, size_t index);
 /* The uv set of a textureInfo; the one of KHR_texture_transform takes precedence. */

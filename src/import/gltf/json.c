@@ -5,8 +5,7 @@
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
-/* The import that reads the file. */
-static vlGltf *import_of(const vlGltfLocation *location) {
+vlGltf *vl_gltf_of(const vlGltfLocation *location) {
   while (location->up)
     location = location->up;
   return location->g;
@@ -48,7 +47,7 @@ static void write_message(const vlGltfLocation *location, const char *text,
 }
 
 bool vl_gltf_fail_code(vlResult code, const vlGltfLocation *location, const char *format, ...) {
-  const vlGltf *g = import_of(location);
+  const vlGltf *g = vl_gltf_of(location);
   char text[MESSAGE], message[MESSAGE];
   VL_FORMAT(text, format);
   write_message(location, text, message);
@@ -63,7 +62,7 @@ bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...) {
 }
 
 void vl_gltf_warn(vlLogLevel level, const vlGltfLocation *location, const char *format, ...) {
-  const vlGltf *g = import_of(location);
+  const vlGltf *g = vl_gltf_of(location);
   char text[MESSAGE], message[MESSAGE];
   VL_FORMAT(text, format);
   write_message(location, text, message);

@@ -34,7 +34,7 @@ static bool channel(const Reader *r, const char *factor_key, const char *texture
   }
   vlGltfTextureUse use = vl_gltf_use_channel(which, factor);
   *input = vl_float_input(factor);
-  return vl_gltf_texture(r->g, r->at, texture_key, &use, &input->texture);
+  return vl_gltf_texture(r->at, texture_key, &use, &input->texture);
 }
 
 static bool read_color(const Reader *r, const char *key, size_t count, float color[4]) {
@@ -53,7 +53,7 @@ static bool color_input(const Reader *r, const char *texture_key, const float co
   memcpy(use.tint, color, sizeof use.tint);
   use.colors = vertex_colors;
   *input = vl_spectrum_input(vl_spectrum_rgb(color[0], color[1], color[2]));
-  if (!vl_gltf_texture(r->g, r->at, texture_key, &use, &input->texture))
+  if (!vl_gltf_texture(r->at, texture_key, &use, &input->texture))
     return false;
   if (input->texture.index || !vertex_colors)
     return true;
@@ -76,7 +76,7 @@ static bool normal_input(const Reader *r, const char *key, vlTextureId *id, floa
   const vlGltfLocation *at = VL_GLTF_KEY(r->at, key);
   vlGltfTextureUse use = vl_gltf_use_color();
   use.srgb = false;
-  if (!vl_gltf_texture(r->g, r->at, key, &use, id) || !vl_gltf_float(at, "scale", scale))
+  if (!vl_gltf_texture(r->at, key, &use, id) || !vl_gltf_float(at, "scale", scale))
     return false;
   if (!id->index)
     return true;
@@ -108,7 +108,7 @@ static bool read_alpha(const Reader *r, const vlGltfLocation *at, const char *te
   if (mask)
     use.cutoff = cutoff;
   r->result->alpha.value = mask ? factor >= cutoff : factor > 1 ? 1 : factor;
-  if (!vl_gltf_texture(r->g, at, texture_key, &use, &r->result->alpha.texture))
+  if (!vl_gltf_texture(at, texture_key, &use, &r->result->alpha.texture))
     return false;
   if (r->result->alpha.texture.index || !r->colors)
     return true;
@@ -162,8 +162,7 @@ static bool read_specular_glossiness(const Reader *r, float base[4]) {
   vlGltfTextureUse use = vl_gltf_use_channel(3, -glossiness);
   use.srgb = true;
   use.bias = 1.0f;
-  return vl_gltf_texture(r->g, own.at, "specularGlossinessTexture", &use,
-                         &p->roughness.texture);
+  return vl_gltf_texture(own.at, "specularGlossinessTexture", &use, &p->roughness.texture);
 }
 
 /* ---- extensions -------------------------------------------------------------------------- */
@@ -198,7 +197,7 @@ static bool read_iridescence(const Reader *r, vlPrincipledDef *p) {
   p->iridescence_thickness = vl_float_input(most);
   vlGltfTextureUse use = vl_gltf_use_channel(1, most - least);
   use.bias = least;
-  return vl_gltf_texture(r->g, r->at, "iridescenceThicknessTexture", &use,
+  return vl_gltf_texture(r->at, "iridescenceThicknessTexture", &use,
                          &p->iridescence_thickness.texture);
 }
 
@@ -291,7 +290,7 @@ static bool add_emission(const Reader *r, const char *texture_key, const float c
   vlEmissionDef def = vl_default_emission_def();
   vlGltfTextureUse use = vl_gltf_use_color();
   memcpy(use.tint, color, sizeof use.tint);
-  if (!vl_gltf_texture(r->g, r->at, texture_key, &use, &def.texture))
+  if (!vl_gltf_texture(r->at, texture_key, &use, &def.texture))
     return false;
   def.source.file = r->g->path;
   def.radiance = vl_spectrum_rgb(color[0], color[1], color[2]);

@@ -23,7 +23,7 @@ static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uin
   if (a->matrix || a->components < least || a->components > components)
     return vl_gltf_fail(at, "accessors[%zu] has %u components, %u are needed", index,
                         a->components, components);
-  *out = vl_gltf_load_floats(g, at, index, components, vertices, NULL);
+  *out = vl_gltf_load_floats(at, index, components, vertices, NULL);
   return *out != NULL;
 }
 
@@ -66,7 +66,7 @@ static bool read_indices(vlGltf *g, const vlGltfLocation *up, size_t vertices,
   if (a && (a->components != 1 || a->type == VL_GLTF_FLOAT || a->type == VL_GLTF_BYTE ||
             a->type == VL_GLTF_SHORT))
     return vl_gltf_fail(at, "must be SCALAR of unsigned whole numbers");
-  if (!vl_gltf_spend(g, at, 4 * (uint64_t)*count))
+  if (!vl_gltf_spend(at, 4 * (uint64_t)*count))
     return false;
   if (!(*indices = vl_alloc_array(g->context, *count, sizeof **indices)))
     return vl_gltf_fail_memory(g);

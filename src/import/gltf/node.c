@@ -156,11 +156,11 @@ static bool read_instances(vlGltf *g, const vlGltfLocation *node_at, const json_
     if (!ok || index == VL_GLTF_NONE)
       continue;
     values[k] =
-        vl_gltf_load_floats(g, VL_GLTF_KEY(here, names[k]), index, sizes[k], *count, count);
+        vl_gltf_load_floats(VL_GLTF_KEY(here, names[k]), index, sizes[k], *count, count);
     ok = values[k] != NULL;
   }
   if (ok && *count) {
-    *poses = vl_gltf_spend(g, at, *count * sizeof **poses)
+    *poses = vl_gltf_spend(at, *count * sizeof **poses)
                  ? vl_alloc_array(g->context, *count, sizeof **poses)
                  : NULL;
     ok = *poses || vl_gltf_fail_memory(g);

@@ -21,7 +21,7 @@ bool vl_gltf_pose(vlGltf *g) {
   g->moves = both && g->close > g->open && g->animation_count > 0;
   if (!g->moves)
     return pose_at(g, g->open);
-  if (!vl_gltf_spend(g, &g->top, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys))
+  if (!vl_gltf_spend(&g->top, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys))
     return false;
   g->keys = vl_alloc_array(g->context, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
   if (!g->keys)

@@ -303,7 +303,7 @@ bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p) {
   if (!p->normals && !make_flat(g, p))
     return false;
   size_t corners = 3 * p->faces;
-  if (!vl_gltf_spend(g, &g->top, 40 * (uint64_t)corners))
+  if (!vl_gltf_spend(&g->top, 40 * (uint64_t)corners))
     return false;
   Maker m = {.p = p, .uvs = p->uvs[set]};
   m.welded = vl_alloc_array(g->context, p->vertices, sizeof *m.welded);

@@ -162,8 +162,9 @@ static bool read_transform(const vlGltfLocation *up, vlTextureDef *def) {
   return true;
 }
 
-bool vl_gltf_texture(vlGltf *g, const vlGltfLocation *up, const char *key,
-                     const vlGltfTextureUse *use, vlTextureId *id) {
+bool vl_gltf_texture(const vlGltfLocation *up, const char *key, const vlGltfTextureUse *use,
+                     vlTextureId *id) {
+  vlGltf *g = vl_gltf_of(up);
   const json_t *info;
   const vlGltfLocation *at = VL_GLTF_KEY(up, key);
   size_t texture, image;

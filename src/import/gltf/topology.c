@@ -34,7 +34,7 @@ static bool make_room(vlGltf *g, const vlGltfLocation *at, const vlGltfPrimitive
   memset(b, 0, sizeof *b);
   if (vertices > UINT32_MAX)
     return vl_gltf_fail(at, "too many points");
-  if (!vl_gltf_spend(g, at, 36 * (uint64_t)vertices + 12 * (uint64_t)faces))
+  if (!vl_gltf_spend(at, 36 * (uint64_t)vertices + 12 * (uint64_t)faces))
     return false;
   b->made.positions = vl_alloc_array(g->context, vertices, 3 * sizeof(float));
   b->made.indices = vl_alloc_array(g->context, faces, 3 * sizeof(uint32_t));
@@ -202,7 +202,7 @@ bool vl_gltf_triangles(vlGltf *g, const vlGltfLocation *at, uint32_t mode, uint3
     return true;
   }
   p->faces = count < 3 ? 0 : count - 2;
-  bool ok = vl_gltf_spend(g, at, 12 * (uint64_t)p->faces);
+  bool ok = vl_gltf_spend(at, 12 * (uint64_t)p->faces);
   if (ok && p->faces) {
     p->indices = vl_alloc_array(g->context, p->faces, 3 * sizeof *p->indices);
     ok = p->indices || vl_gltf_fail_memory(g);

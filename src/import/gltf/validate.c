@@ -60,7 +60,7 @@ static void check_accessor(Check *c, size_t index) {
     return;
   size_t count;
   const uint64_t spent = g->spent;
-  float *values = vl_gltf_load_floats(g, VL_GLTF_ITEM(&g->top, "accessors", index), index,
+  float *values = vl_gltf_load_floats(VL_GLTF_ITEM(&g->top, "accessors", index), index,
                                       a->components, 0, &count);
   if (values)
     check_bounds(c, index, values, count, a->components);

@@ -345,10 +345,9 @@ bool vl_import_may_gather(const vlImport *import, const vlShapeDef *def,
 bool vl_import_all_finite(const float *v, size_t count);
 /* Copy a small mesh or a whole sphere into a run. *taken is false when it must become a shape
  * of its own. */
-bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,
-                           bool *taken);
-bool vl_import_gather_sphere(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,
-                             bool *taken);
+typedef bool vlImportGather(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,
+                            bool *taken);
+vlImportGather vl_import_gather_mesh, vl_import_gather_sphere;
 /* Records the media of the current state for a shape ('s'), a light ('l') or the camera
  * ('c'). */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source);

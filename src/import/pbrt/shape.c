@@ -262,65 +262,71 @@ static bool note_media(vlImport *import, size_t first, vlSource source) {
   return true;
 }
 
-/* Reads the parameters except alpha and adds the shape. taken: the def's arrays have moved. */
-typedef bool EnterShape(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken);
+/* A shape that is read. */
+typedef struct Entry {
+  vlDict *dict;
+  vlShapeDef *def;
+  const vlShapeLink *link;
+  bool taken; /* the def's arrays have moved */
+} Entry;
 
-static bool enter(vlDict *dict, const vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  if (!vl_dict_done(dict))
+/* Reads the parameters except alpha and adds the shape. */
+typedef bool EnterShape(Entry *e);
+
+static bool enter(Entry *e) {
+  vlImport *import = e->dict->import;
+  if (!vl_dict_done(e->dict))
     return false;
-  *taken = true;
-  size_t before = dict->import->scene->shapes.count;
-  return add_shape(dict->import, def, link) && note_media(dict->import, before, dict->source);
+  e->taken = true;
+  size_t before = import->scene->shapes.count;
+  return add_shape(import, e->def, e->link) && note_media(import, before, e->dict->source);
 }
 
-static bool enter_triangles(vlDict *dict, vlShapeDef *def, const vlShapeLink *link,
-                            bool *taken) {
+/* Adds the shape to a run, or else by itself. */
+static bool gather(Entry *e, vlImportGather *function) {
   bool gathered = false;
-  if (!read_mesh(dict, def, 3) || !vl_dict_done(dict))
+  if (!vl_dict_done(e->dict) || !function(e->dict->import, e->def, e->link, &gathered))
     return false;
-  if (!vl_import_gather_mesh(dict->import, def, link, &gathered))
-    return false;
-  return gathered || enter(dict, def, link, taken);
+  return gathered || enter(e);
 }
 
-static bool enter_bilinear(vlDict *dict, vlShapeDef *def, const vlShapeLink *link,
-                           bool *taken) {
-  return read_mesh(dict, def, 4) && enter(dict, def, link, taken);
+static bool enter_triangles(Entry *e) {
+  return read_mesh(e->dict, e->def, 3) && gather(e, vl_import_gather_mesh);
 }
 
-static bool enter_sphere(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  bool gathered = false;
-  if (!read_quadric(dict, def) || !vl_dict_done(dict))
-    return false;
-  if (!vl_import_gather_sphere(dict->import, def, link, &gathered))
-    return false;
-  return gathered || enter(dict, def, link, taken);
+static bool enter_bilinear(Entry *e) {
+  return read_mesh(e->dict, e->def, 4) && enter(e);
+}
+
+static bool enter_sphere(Entry *e) {
+  return read_quadric(e->dict, e->def) && gather(e, vl_import_gather_sphere);
 }
 
 /* Adds a shape of any kind that its row describes completely. */
-static bool enter_row(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)def->kind);
+static bool enter_row(Entry *e) {
+  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)e->def->kind);
   bool quadric = row->traits & VL_SHAPE_TRAIT_QUADRIC;
-  if (!(quadric ? read_quadric(dict, def) : vl_import_parameters(dict, row, def, false, NULL)))
-    return false;
-  return enter(dict, def, link, taken);
+  return (quadric ? read_quadric(e->dict, e->def)
+                  : vl_import_parameters(e->dict, row, e->def, false, NULL)) &&
+         enter(e);
 }
 
 /* Reads curves. They are added later, together with their media. */
-static bool enter_curves(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  *taken = true;
-  return vl_import_curve(dict, def, link);
+static bool enter_curves(Entry *e) {
+  e->taken = true;
+  return vl_import_curve(e->dict, e->def, e->link);
 }
 
-static bool enter_loop(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  return read_loop(dict, def) && enter(dict, def, link, taken);
+static bool enter_loop(Entry *e) {
+  return read_loop(e->dict, e->def) && enter(e);
 }
 
-static bool enter_ply(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
-  vlShapeLink own = *link;
-  size_t before = dict->import->scene->shapes.count;
-  *taken = true;
-  return note_ply(dict, def, &own) && note_media(dict->import, before, dict->source);
+static bool enter_ply(Entry *e) {
+  vlShapeLink own = *e->link;
+  size_t before = e->dict->import->scene->shapes.count;
+  e->taken = true;
+  return note_ply(e->dict, e->def, &own) &&
+         note_media(e->dict->import, before, e->dict->source);
 }
 
 /* Rules that the rows do not express; null: enter_row. */
@@ -387,7 +393,7 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
                       .material_name = import->state.material_name,
                       .material_source = import->state.material_source};
   vlMat4 ctm = vl_mat4_identity();
-  bool moves = vl_import_moves(import), taken = false;
+  bool moves = vl_import_moves(import);
   def.source = s->source;
   def.group = import->object;
   def.reverse_orientation = import->state.reverse_orientation;
@@ -400,8 +406,9 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   drop_emission(import, s->source, moves, &def);
   if (kind != VL_SHAPE_CURVES && !vl_import_flush_curves(import))
     return false;
-  bool fine = function(&dict, &def, &link, &taken);
-  if (!taken)
+  Entry e = {.dict = &dict, .def = &def, .link = &link};
+  bool fine = function(&e);
+  if (!e.taken)
     free_arrays(import, &def);
   return fine;
 }

@@ -104,7 +104,7 @@ static uint32_t read_uint(const uint8_t *p, uint32_t type) {
 }
 
 static bool read_accessor(vlGltf *g, size_t index, vlGltfAccessor *a) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "accessors", index);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "accessors", index);
   const char *type = "";
   size_t view;
   size_t offset = 0, component = 0;

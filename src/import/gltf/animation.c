@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
@@ -20,8 +21,7 @@ typedef struct {
 } Track;
 
 static void free_track(vlContext *context, Track *t) {
-  vl_free(context, t->times);
-  vl_free(context, t->values);
+  VL_FREE(context, t->times, t->values);
 }
 
 static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components, Track *t) {
@@ -125,8 +125,7 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
     weights = NULL;
   }
   bool ok = values && node->weights;
-  vl_free(g->context, weights);
-  vl_free(g->context, values);
+  VL_FREE(g->context, weights, values);
   return ok || vl_gltf_fail_memory(g);
 }
 
@@ -205,7 +204,7 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
 }
 
 bool vl_gltf_apply_animation(vlGltf *g, size_t index) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "animations", index);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "animations", index);
   const json_t *animation = vl_gltf_item(g, "animations", index), *channels, *samplers;
   size_t count, sampler_count;
   if (!vl_gltf_array(at, "channels", &channels, &count) ||

@@ -77,7 +77,7 @@ static void set_pose(const vlMat4 *world, double m[16]) {
 }
 
 static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "cameras", camera);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "cameras", camera);
   const json_t *json = vl_gltf_item(g, "cameras", camera), *lens;
   static const char *const types[] = {"perspective", "orthographic"};
   int flat = 0;
@@ -132,7 +132,7 @@ bool vl_gltf_choose_camera(vlGltf *g) {
     const vlGltfNode *node = &g->nodes[i];
     if (!node->reached)
       continue;
-    if (!vl_gltf_index(VL_GLTF_ITEM(&g->top, "nodes", i), "camera", g->camera_count, &camera))
+    if (!vl_gltf_index(VL_GLTF_ROOT(g, "nodes", i), "camera", g->camera_count, &camera))
       return false;
     if (camera == VL_GLTF_NONE)
       continue;

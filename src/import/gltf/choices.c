@@ -51,7 +51,7 @@ static bool list_cameras(vlGltf *g) {
     size_t camera;
     if (!g->nodes[i].reached)
       continue;
-    if (!vl_gltf_index(VL_GLTF_ITEM(&g->top, "nodes", i), "camera", g->camera_count, &camera))
+    if (!vl_gltf_index(VL_GLTF_ROOT(g, "nodes", i), "camera", g->camera_count, &camera))
       return false;
     if (camera == VL_GLTF_NONE)
       continue;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "math/double3.h"
@@ -78,7 +79,7 @@ static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
 
 /* Computes the matrix world_from_mesh of each joint. */
 static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *count) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "skins", skin);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "skins", skin);
   const json_t *joints;
   size_t inverse;
   *matrices = NULL;
@@ -170,8 +171,7 @@ static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *join
         sums[12 * (i / 4) + (size_t)k] += w * matrices[joints[i]].m[k];
     }
   }
-  vl_free(g->context, joints);
-  vl_free(g->context, weights);
+  VL_FREE(g->context, joints, weights);
   *found = ok;
   return ok;
 }
@@ -234,7 +234,6 @@ bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node,
   }
   if (ok && !any && vl_gltf_once(g, VL_GLTF_REPORTED_SKIN))
     vl_gltf_warn(VL_LOG_WARNING, here, "has a skin, but neither joints nor weights");
-  vl_free(g->context, sums);
-  vl_free(g->context, matrices);
+  VL_FREE(g->context, sums, matrices);
   return ok;
 }

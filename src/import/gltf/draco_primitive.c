@@ -18,7 +18,7 @@ static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_
     return false;
   size_t wanted = id < 0 ? 3 * (size_t)vl_draco_faces(mesh) : vl_draco_points(mesh);
   if (a->count != wanted)
-    return vl_gltf_fail(VL_GLTF_ITEM(&g->top, "accessors", index),
+    return vl_gltf_fail(VL_GLTF_ROOT(g, "accessors", index),
                         "%zu elements, but the compressed mesh has %zu", a->count, wanted);
   uint32_t type = id < 0 ? VL_GLTF_UINT : a->type;
   size_t size = id < 0 || a->type == VL_GLTF_FLOAT ? 4

@@ -93,7 +93,7 @@ bool vl_gltf_check_extensions(vlGltf *g) {
     return false;
   for (size_t i = 0; i < required_count; i++) {
     const char *name = json_string_value(json_array_get(required, i));
-    const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "extensionsRequired", i);
+    const vlGltfLocation *at = VL_GLTF_ROOT(g, "extensionsRequired", i);
     if (!name)
       return vl_gltf_fail(at, "must be a string");
     if (is_in(name, known, known_count))
@@ -115,7 +115,7 @@ bool vl_gltf_check_extensions(vlGltf *g) {
   }
   for (size_t i = 0; i < used_count; i++) {
     const char *name = json_string_value(json_array_get(used, i));
-    const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "extensionsUsed", i);
+    const vlGltfLocation *at = VL_GLTF_ROOT(g, "extensionsUsed", i);
     if (!name)
       return vl_gltf_fail(at, "must be a string");
     if (!is_in(name, known, known_count) && !vl_gltf_passes_extension(name))

@@ -88,7 +88,7 @@ static bool count_items(vlGltf *g, const char *key, size_t *count) {
     return vl_gltf_fail(VL_GLTF_KEY(&g->top, key), "too many: %zu", *count);
   for (size_t i = 0; i < *count; i++)
     if (!json_is_object(json_array_get(array, i)))
-      return vl_gltf_fail(VL_GLTF_ITEM(&g->top, key, i), "must be an object");
+      return vl_gltf_fail(VL_GLTF_ROOT(g, key, i), "must be an object");
   return true;
 }
 
@@ -163,8 +163,7 @@ bool vl_gltf_open(vlGltf *g) {
 void vl_gltf_close(vlGltf *g) {
   json_decref(g->root);
   for (size_t i = 0; g->nodes && i < g->node_count; i++) {
-    vl_free(g->context, g->nodes[i].weights);
-    vl_free(g->context, g->nodes[i].weights_close);
+    VL_FREE(g->context, g->nodes[i].weights, g->nodes[i].weights_close);
   }
   vl_gltf_free_labels(g);
   for (size_t i = 0; i < g->blocks.count; i++)
@@ -269,7 +268,7 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfLocation *at, const char *uri, const uin
 /* ---- buffers ----------------------------------------------------------------------------- */
 
 static bool read_buffer(vlGltf *g, size_t i) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "buffers", i);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "buffers", i);
   vlGltfBuffer *b = &g->buffers[i];
   const char *uri = NULL, *path = NULL;
   size_t length = 0, size = 0;
@@ -308,7 +307,7 @@ static bool read_buffer(vlGltf *g, size_t i) {
 }
 
 static bool read_view(vlGltf *g, size_t i) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "bufferViews", i);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "bufferViews", i);
   const json_t *json = vl_gltf_item(g, "bufferViews", i);
   const json_t *packed = vl_gltf_extension(json, "EXT_meshopt_compression");
   size_t buffer;

@@ -25,6 +25,8 @@ typedef struct vlGltfLocation {
 } vlGltfLocation;
 #define VL_GLTF_KEY(up, key) (&(vlGltfLocation){(up), (key), SIZE_MAX, NULL})
 #define VL_GLTF_ITEM(up, key, index) (&(vlGltfLocation){(up), (key), (index), NULL})
+/* An element of one of the root's arrays. */
+#define VL_GLTF_ROOT(g, key, index) VL_GLTF_ITEM(&(g)->top, key, index)
 
 /* The index of nothing. */
 #define VL_GLTF_NONE SIZE_MAX

@@ -110,7 +110,7 @@ static void set_pose(const vlMat4 *world, vlLightDef *def) {
 }
 
 static bool add_lamp(vlGltf *g, size_t node) {
-  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(&g->top, "nodes", node), LAMPS);
+  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ROOT(g, "nodes", node), LAMPS);
   size_t index = VL_GLTF_NONE;
   double color[3] = {1, 1, 1}, multiplier = 1;
   if (!vl_gltf_index(at, "light", g->lamp_count, &index) ||
@@ -136,7 +136,7 @@ static bool add_lamp(vlGltf *g, size_t node) {
 }
 
 bool vl_gltf_add_lights(vlGltf *g, size_t node) {
-  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ITEM(&g->top, "nodes", node), PUNCTUAL);
+  const vlGltfLocation *at = VL_GLTF_KEY(VL_GLTF_ROOT(g, "nodes", node), PUNCTUAL);
   size_t light;
   return vl_gltf_index(at, "light", g->light_count, &light) &&
          (light == VL_GLTF_NONE || add_light(g, node, light)) && add_lamp(g, node);

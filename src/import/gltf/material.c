@@ -363,12 +363,9 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, size_t index, bool colors) {
   char location[40];
   snprintf(location, sizeof location, "materials[%zu]", index);
   Reader r = {
-      g,
-      VL_GLTF_ITEM(&g->top, "materials", index == VL_GLTF_NONE ? g->material_count : index),
-      json,
-      &def,
-      result,
-      colors};
+      g,      VL_GLTF_ROOT(g, "materials", index == VL_GLTF_NONE ? g->material_count : index),
+      json,   &def,
+      result, colors};
   def.source.file = g->path;
   if (!read_material(&r))
     return NULL;

@@ -124,8 +124,7 @@ static bool split_tangents(vlGltf *g, vlGltfPrimitive *p, float **signs) {
   float *three = vl_alloc_array(g->context, p->vertices, 3 * sizeof *three);
   *signs = vl_alloc_array(g->context, p->vertices, sizeof **signs);
   if (!three || !*signs) {
-    vl_free(g->context, three);
-    vl_free(g->context, *signs);
+    VL_FREE(g->context, three, *signs);
     *signs = NULL;
     return vl_gltf_fail_memory(g);
   }
@@ -223,8 +222,7 @@ static bool read_close(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
 /* A deforming mesh cannot emit light. An emissive mesh keeps its emission and loses its
  * deformation. */
 static void still(vlGltf *g, const vlGltfLocation *at, vlGltfPrimitive *p) {
-  vl_free(g->context, p->positions_close);
-  vl_free(g->context, p->normals_close);
+  VL_FREE(g->context, p->positions_close, p->normals_close);
   p->positions_close = p->normals_close = NULL;
   if (vl_gltf_once(g, VL_GLTF_REPORTED_MOTION))
     vl_gltf_warn(VL_LOG_INFO, at, "gives out light, and stays as it is when the shutter opens");
@@ -285,7 +283,7 @@ static bool label_last(vlGltf *g, const vlGltfLocation *at, size_t node, size_t 
 
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index,
                       vlGroupId group, vlMat4 pose) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "meshes", index);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
   if (!vl_gltf_array(at, "primitives", &primitives, &count))
@@ -330,7 +328,7 @@ static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mes
 
 bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double low[3],
                       double high[3]) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "meshes", index);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
   const uint64_t spent = g->spent; /* the arrays are freed again */

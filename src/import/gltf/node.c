@@ -28,7 +28,7 @@ vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const doubl
 }
 
 static bool read_node(vlGltf *g, size_t i) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "nodes", i);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "nodes", i);
   vlGltfNode *n = &g->nodes[i];
   double columns[16];
   const json_t *children;
@@ -74,7 +74,7 @@ bool vl_gltf_read_nodes(vlGltf *g) {
     for (uint32_t k = g->nodes[i].parent; k != UINT32_MAX && !g->nodes[k].reached;
          k = g->nodes[k].parent)
       if (++steps > g->node_count)
-        return vl_gltf_fail(VL_GLTF_ITEM(&g->top, "nodes", i), "is among its own children");
+        return vl_gltf_fail(VL_GLTF_ROOT(g, "nodes", i), "is among its own children");
     for (uint32_t k = (uint32_t)i; k != UINT32_MAX && !g->nodes[k].reached;
          k = g->nodes[k].parent)
       g->nodes[k].reached = true;
@@ -110,7 +110,7 @@ bool vl_gltf_pose_nodes(vlGltf *g) {
   vl_free(g->context, chain);
   for (size_t i = 0; i < g->node_count; i++)
     if (!vl_mat4_is_finite(g->nodes[i].world))
-      return vl_gltf_fail(VL_GLTF_ITEM(&g->top, "nodes", i),
+      return vl_gltf_fail(VL_GLTF_ROOT(g, "nodes", i),
                           "its transform to the world is not finite");
   return true;
 }
@@ -230,7 +230,7 @@ static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t n
       continue;
     if (vl_gltf_once(g, VL_GLTF_REPORTED_MOTION))
       vl_gltf_warn(
-          VL_LOG_WARNING, VL_GLTF_ITEM(&g->top, "nodes", node_index),
+          VL_LOG_WARNING, VL_GLTF_ROOT(g, "nodes", node_index),
           "no motion leads from pose to pose: it stays as it is when the shutter opens");
     return -1;
   }
@@ -259,8 +259,7 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
   g->scale = vl_mat4_scale_of(&pose);
   bool deforms = vl_gltf_deforms(g, node), flat = is_flat(pose);
   if (flat && vl_gltf_once(g, VL_GLTF_REPORTED_FLAT))
-    vl_gltf_warn(VL_LOG_INFO, VL_GLTF_ITEM(&g->top, "nodes", node_index),
-                 "its scale makes it flat");
+    vl_gltf_warn(VL_LOG_INFO, VL_GLTF_ROOT(g, "nodes", node_index), "its scale makes it flat");
   if (vl_gltf_node_moves(g, node) && !flat && !json_object_get(node->json, "skin")) {
     int done = place_moving(g, mesh, node, node_index, local, deforms);
     if (done >= 0)
@@ -276,7 +275,7 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
 }
 
 static bool draw_node(vlGltf *g, size_t i) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "nodes", i);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "nodes", i);
   const vlGltfNode *node = &g->nodes[i];
   size_t mesh;
   if (!vl_gltf_index(at, "mesh", g->mesh_count, &mesh) || !vl_gltf_add_lights(g, i))
@@ -359,7 +358,7 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
   for (size_t k = 0; k < count; k++) {
     size_t mesh;
     const vlGltfNode *node = &g->nodes[order[k]];
-    if (!vl_gltf_index(VL_GLTF_ITEM(&g->top, "nodes", order[k]), "mesh", g->mesh_count, &mesh))
+    if (!vl_gltf_index(VL_GLTF_ROOT(g, "nodes", order[k]), "mesh", g->mesh_count, &mesh))
       return false;
     if (mesh == VL_GLTF_NONE || vl_gltf_deforms(g, node))
       continue;
@@ -388,7 +387,7 @@ bool vl_gltf_draw(vlGltf *g) {
   if (chosen == SIZE_MAX)
     return vl_gltf_fail_choice(g, "scene", json_object_get(g->root, "scenes"), g->def->scene,
                                200);
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "scenes", chosen);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "scenes", chosen);
   const json_t *scene = g->scene_count ? vl_gltf_item(g, "scenes", chosen) : NULL,
                *roots = NULL;
   size_t root_count = 0, count = 0;

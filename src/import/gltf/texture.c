@@ -56,7 +56,7 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   vlGltfImage *image = &g->images[index];
   if (image->read)
     return true;
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "images", index);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "images", index);
   const char *uri = NULL;
   size_t view;
   if (!vl_gltf_text(at, "uri", &uri) || !vl_gltf_index(at, "bufferView", g->view_count, &view))
@@ -87,7 +87,7 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
 static bool choose_image(vlGltf *g, size_t texture, size_t *image) {
   static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds",
                                        "EXT_texture_avif"};
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "textures", texture);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "textures", texture);
   if (!vl_gltf_index(VL_GLTF_KEY(at, "extensions.EXT_texture_webp"), "source", g->image_count,
                      image))
     return false;
@@ -111,12 +111,12 @@ static vlWrap wrap_of(double code) {
 }
 
 static bool read_sampler(vlGltf *g, size_t texture, vlTextureDef *def) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "textures", texture);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "textures", texture);
   size_t index;
   if (!vl_gltf_index(at, "sampler", g->sampler_count, &index))
     return false;
   const vlGltfLocation *here =
-      VL_GLTF_ITEM(&g->top, "samplers", index == VL_GLTF_NONE ? g->sampler_count : index);
+      VL_GLTF_ROOT(g, "samplers", index == VL_GLTF_NONE ? g->sampler_count : index);
   double s = 10497, t = 10497, large = 9729;
   if (!vl_gltf_number(here, "wrapS", &s) || !vl_gltf_number(here, "wrapT", &t) ||
       !vl_gltf_number(here, "magFilter", &large))

@@ -33,7 +33,7 @@ static void check_bounds(Check *check, size_t index, const float *values, size_t
                                                          "ACCESSOR_MIN_MISMATCH",
                                                          "ACCESSOR_MAX_MISMATCH"};
   const vlGltf *g = check->g;
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "accessors", index);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "accessors", index);
   for (int k = 0; k < 2; k++) {
     const json_t *given = json_object_get(vl_gltf_item(g, "accessors", index), keys[k]);
     for (uint32_t c = 0; c < components && json_array_size(given) == components; c++) {
@@ -60,8 +60,8 @@ static void check_accessor(Check *c, size_t index) {
     return;
   size_t count;
   const uint64_t spent = g->spent;
-  float *values = vl_gltf_load_floats(VL_GLTF_ITEM(&g->top, "accessors", index), index,
-                                      a->components, 0, &count);
+  float *values =
+      vl_gltf_load_floats(VL_GLTF_ROOT(g, "accessors", index), index, a->components, 0, &count);
   if (values)
     check_bounds(c, index, values, count, a->components);
   vl_free(g->context, values);
@@ -97,7 +97,7 @@ static void mark_used(const vlGltf *g, uint8_t *used) {
 /* A node that no scene reaches, with its mesh as its skin and morph targets deform it, and its
  * light. */
 static bool read_node(vlGltf *g, size_t index) {
-  const vlGltfLocation *at = VL_GLTF_ITEM(&g->top, "nodes", index);
+  const vlGltfLocation *at = VL_GLTF_ROOT(g, "nodes", index);
   const vlGltfNode *node = &g->nodes[index];
   size_t mesh;
   return vl_gltf_index(at, "mesh", g->mesh_count, &mesh) && vl_gltf_add_lights(g, index) &&

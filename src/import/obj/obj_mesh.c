@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "import/far.h"
 #include "import/obj/obj.h"
 #include "math/approx_double.h"
@@ -237,7 +238,6 @@ bool vl_obj_add_shapes(vlObj *obj) {
   for (size_t i = 0; fine && i < obj->parts.count; i++)
     fine = vl_obj_label(obj, &names, i, &label) &&
            add_part(obj, &obj->parts.items[i], order, &label);
-  vl_free(obj->context, names.slots);
-  vl_free(obj->context, order);
+  VL_FREE(obj->context, names.slots, order);
   return fine;
 }

@@ -355,8 +355,7 @@ static vlResult finish(vlContext *context, Level *l, vlLoopMesh *mesh, vlError *
   float *limit = vl_alloc_array(context, l->vertices, 3 * sizeof *limit);
   float *normals = vl_alloc_zero(context, l->vertices, 3 * sizeof *normals);
   if (!limit || !normals) {
-    vl_free(context, limit);
-    vl_free(context, normals);
+    VL_FREE(context, limit, normals);
     return vl_fail_memory(error);
   }
   push_to_limit(l, limit);

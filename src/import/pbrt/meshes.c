@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "import/pbrt/builder.h"
 #include "import/ply/ply.h"
 #include "velo/shape_kinds.h"
@@ -194,7 +195,6 @@ bool vl_import_read_meshes(vlImport *import) {
   scene->shapes.items = NULL;
   scene->shapes.count = scene->shapes.capacity = 0;
   bool fine = place_shapes(import, old, count, first) && move_links(import, first);
-  vl_free(import->context, old);
-  vl_free(import->context, first);
+  VL_FREE(import->context, old, first);
   return fine;
 }

@@ -4,6 +4,7 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
@@ -99,8 +100,7 @@ static bool edit_parts(const vlOldStatement *s, vlOldSpan span, const char *pref
     snprintf(whole, size, "%.*s%s%.*s", prefix_length, prefix, text, suffix_length, suffix);
     fine = edit_text(s, span, whole);
   }
-  vl_free(context, whole);
-  vl_free(context, text);
+  VL_FREE(context, whole, text);
   return fine || vl_old_fail_memory(s->u);
 }
 

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "base/context.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "color/color.h"
 #include "import/pbrt/decimal.h"
@@ -84,8 +85,7 @@ static bool luminance(const vlOldStatement *s, const vlOldParam *p, double *fact
          unit = vl_spectrum_photometric(&one, &error);
   if (y > 0 && unit > 0)
     *factor = y / unit;
-  vl_free(s->u->context, wavelengths);
-  vl_free(s->u->context, values);
+  VL_FREE(s->u->context, wavelengths, values);
   return fine;
 }
 

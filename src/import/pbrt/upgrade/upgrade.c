@@ -121,8 +121,7 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
     vl_free(u->context, file.edits.items[i].text);
   VL_ARRAY_FREE(u->context, &file.edits);
   VL_ARRAY_FREE(u->context, &file.blocks);
-  vl_free(u->context, file.words);
-  vl_free(u->context, data);
+  VL_FREE(u->context, file.words, data);
   if (u->film_file == &file)
     u->film_file = NULL;
   return fine;
@@ -186,12 +185,10 @@ static void release(vlUpgrade *u) {
     VL_FREE(c, u->textures.items[i].name, u->textures.items[i].text, u->textures.items[i].copy);
   }
   for (size_t i = 0; i < u->names.count; i++) {
-    vl_free(c, u->names.items[i].old);
-    vl_free(c, u->names.items[i].name);
+    VL_FREE(c, u->names.items[i].old, u->names.items[i].name);
   }
   for (size_t i = 0; i < u->includes.count; i++) {
-    vl_free(c, u->includes.items[i].path);
-    vl_free(c, u->includes.items[i].name);
+    VL_FREE(c, u->includes.items[i].path, u->includes.items[i].name);
   }
   for (size_t i = 0; i < u->outputs.count; i++)
     vl_free(c, u->outputs.items[i]);

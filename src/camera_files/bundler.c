@@ -20,15 +20,15 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
   vlCameraLines lines = {.at = text, .end = text + size};
   double head[2] = {0.0, 0.0}, v[15];
   bool taken = false;
-  vlResult result = next_numbers(file, &lines, head, 2);
-  if (result == VL_OK && !(head[0] >= 1.0 && head[0] <= 1e7))
+  VL_TRY(next_numbers(file, &lines, head, 2));
+  if (!(head[0] >= 1.0 && head[0] <= 1e7))
     return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
   record->frames = 0;
-  for (uint32_t i = 0; result == VL_OK && i < (uint32_t)head[0]; i++) {
+  for (uint32_t i = 0; i < (uint32_t)head[0]; i++) {
     char name[16];
-    for (uint32_t row = 0; result == VL_OK && row < 5; row++)
-      result = next_numbers(file, &lines, v + 3 * row, 3);
-    if (result != VL_OK || v[0] == 0.0)
+    for (uint32_t row = 0; row < 5; row++)
+      VL_TRY(next_numbers(file, &lines, v + 3 * row, 3));
+    if (v[0] == 0.0)
       continue;
     snprintf(name, sizeof name, "%u", i);
     if (!taken && vl_camera_is_frame(file, record->frames, name)) {
@@ -42,14 +42,12 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
     }
     record->frames++;
   }
-  if (result != VL_OK)
-    return result;
   if (!taken)
     return vl_camera_no_frame(file, "camera", record->frames);
-  result = vl_camera_size_beside(file, (const char *const[]){NULL}, record);
+  VL_TRY(vl_camera_size_beside(file, (const char *const[]){NULL}, record));
   record->camera.cx = 0.5 * record->camera.width;
   record->camera.cy = 0.5 * record->camera.height;
-  return result;
+  return VL_OK;
 }
 
 static bool is_bundler(const char *text, size_t size) {

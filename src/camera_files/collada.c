@@ -126,11 +126,11 @@ static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool fl
                            double half[2]) {
   const char *const tags[2] = {flat ? "xmag" : "xfov", flat ? "ymag" : "yfov"};
   double aspect = VL_UNSET;
-  vlResult result = vl_camera_child_number(file, lens, "aspect_ratio", false, &aspect);
-  for (int i = 0; i < 2 && result == VL_OK; i++) {
+  VL_TRY(vl_camera_child_number(file, lens, "aspect_ratio", false, &aspect));
+  for (int i = 0; i < 2; i++) {
     half[i] = VL_UNSET;
-    result = vl_camera_child_number(file, lens, tags[i], false, &half[i]);
-    if (result != VL_OK || vl_is_unset(half[i]))
+    VL_TRY(vl_camera_child_number(file, lens, tags[i], false, &half[i]));
+    if (vl_is_unset(half[i]))
       continue;
     half[i] = fabs(half[i]);
     if (!(half[i] > 0.0) || (!flat && half[i] >= 180.0))
@@ -139,8 +139,6 @@ static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool fl
     if (!flat)
       half[i] = vl_precise_tan(0.5 * degree * half[i]);
   }
-  if (result != VL_OK)
-    return result;
   if (vl_is_unset(half[0]) && vl_is_unset(half[1]))
     return vl_camera_wrong_element(file, lens, "there is neither <%s> nor <%s>", tags[0],
                                    tags[1]);
@@ -227,8 +225,7 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
     d->projection = VL_PROJECTION_ORTHOGRAPHIC;
   d->fx = 0.5 * d->width / half[0];
   d->fy = 0.5 * d->height / half[1];
-  d->has_matrix = true;
-  vl_camera_flip_axes(world.m, d->world_from_camera);
+  vl_camera_set_flipped(d, world.m);
   vl_camera_name(record, s.name);
   return vl_camera_check_part(file, known, camera, record);
 }

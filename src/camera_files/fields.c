@@ -159,11 +159,8 @@ static Values values_of(const vlCamera *c) {
   vl_camera_get_pose(c, v.r, v.t);
   vl_rotation_to_vector(v.r, v.v);
   vl_camera_flip_axes(m, v.flipped);
-  for (int i = 0; i < 16; i++) {
-    const int other = 4 * (i % 4) + i / 4;
-    v.flipped_columns[i] = v.flipped[other];
-    v.view_columns[i] = c->camera_from_world[other];
-  }
+  vl_camera_transpose(v.flipped, v.flipped_columns);
+  vl_camera_transpose(c->camera_from_world, v.view_columns);
   for (int i = 0; i < 9; i++)
     v.axes[i] = m[4 * (i / 3) + i % 3];
   for (int i = 0; i < 3; i++)

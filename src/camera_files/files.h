@@ -255,6 +255,8 @@ void vl_camera_flip_axes(const double m[16], double result[16]);
 /* The same for other camera axes: multiplies columns x, y, z by the given factors, 1 or -1. */
 void vl_camera_flip_columns(const double m[16], double x, double y, double z,
                             double result[16]);
+/* Rows become columns. */
+void vl_camera_transpose(const double m[16], double result[16]);
 
 /* ---- dialects ---------------------------------------------------------------------------- */
 
@@ -321,61 +323,63 @@ typedef struct {
 vlResult vl_camera_check_name(const vlCameraFile *file, const char *known,
                               const vlCameraName *name, vlCameraRecord *record);
 
-/* X(dialect, format) for each dialect. */
+/* X(dialect, format) for each dialect, in the order in which they are tried on a parsed file
+ * (JSON, YAML or XML): a dialect that is recognised by fields of its own comes before one that
+ * is recognised by fields that several tools use. The last ones are recognised otherwise. */
 #define VL_CAMERA_FORMATS(X)                                    \
+  X(VL_CAMERA_DIALECT_REALITYCAPTURE, vl_format_realitycapture) \
+  X(VL_CAMERA_DIALECT_ARIA, vl_format_aria)                     \
+  X(VL_CAMERA_DIALECT_COLLADA, vl_format_collada)               \
+  X(VL_CAMERA_DIALECT_NERFSTUDIO, vl_format_nerfstudio)         \
+  X(VL_CAMERA_DIALECT_CALIBIO, vl_format_calibio)               \
+  X(VL_CAMERA_DIALECT_DEPTHAI, vl_format_depthai)               \
+  X(VL_CAMERA_DIALECT_KINECT, vl_format_kinect)                 \
+  X(VL_CAMERA_DIALECT_PANOPTIC, vl_format_panoptic)             \
+  X(VL_CAMERA_DIALECT_NUSCENES, vl_format_nuscenes)             \
+  X(VL_CAMERA_DIALECT_NERFIES, vl_format_nerfies)               \
+  X(VL_CAMERA_DIALECT_THREEJS, vl_format_threejs)               \
+  X(VL_CAMERA_DIALECT_POLYCAM, vl_format_polycam)               \
+  X(VL_CAMERA_DIALECT_RECORD3D, vl_format_record3d)             \
+  X(VL_CAMERA_DIALECT_SCANNER3D, vl_format_scanner3d)           \
+  X(VL_CAMERA_DIALECT_REALSENSE, vl_format_realsense)           \
+  X(VL_CAMERA_DIALECT_OPENMVG, vl_format_openmvg)               \
+  X(VL_CAMERA_DIALECT_METASHAPE, vl_format_metashape)           \
+  X(VL_CAMERA_DIALECT_VISP, vl_format_visp)                     \
   X(VL_CAMERA_DIALECT_VELO, vl_format_velo)                     \
-  X(VL_CAMERA_DIALECT_OPENCV, vl_format_opencv)                 \
-  X(VL_CAMERA_DIALECT_ROS, vl_format_ros)                       \
-  X(VL_CAMERA_DIALECT_COLMAP, vl_format_colmap)                 \
-  X(VL_CAMERA_DIALECT_NERF, vl_format_nerf)                     \
-  X(VL_CAMERA_DIALECT_KALIBR, vl_format_kalibr)                 \
-  X(VL_CAMERA_DIALECT_BLENDER, vl_format_blender)               \
-  X(VL_CAMERA_DIALECT_PBRT, vl_format_pbrt)                     \
   X(VL_CAMERA_DIALECT_GLTF, vl_format_gltf)                     \
   X(VL_CAMERA_DIALECT_OPENGL, vl_format_opengl)                 \
   X(VL_CAMERA_DIALECT_VULKAN, vl_format_vulkan)                 \
   X(VL_CAMERA_DIALECT_D3D, vl_format_d3d)                       \
-  X(VL_CAMERA_DIALECT_MITSUBA, vl_format_mitsuba)               \
-  X(VL_CAMERA_DIALECT_EXR, vl_format_exr)                       \
-  X(VL_CAMERA_DIALECT_USD, vl_format_usd)                       \
-  X(VL_CAMERA_DIALECT_EUROC, vl_format_euroc)                   \
-  X(VL_CAMERA_DIALECT_CAMODOCAL, vl_format_camodocal)           \
   X(VL_CAMERA_DIALECT_BASALT, vl_format_basalt)                 \
+  X(VL_CAMERA_DIALECT_MESHROOM, vl_format_meshroom)             \
+  X(VL_CAMERA_DIALECT_GAUSSIANS, vl_format_gaussians)           \
+  X(VL_CAMERA_DIALECT_OPENSFM, vl_format_opensfm)               \
+  X(VL_CAMERA_DIALECT_OPEN3D, vl_format_open3d)                 \
+  X(VL_CAMERA_DIALECT_BOP, vl_format_bop)                       \
+  X(VL_CAMERA_DIALECT_NERF, vl_format_nerf)                     \
+  X(VL_CAMERA_DIALECT_CAMODOCAL, vl_format_camodocal)           \
   X(VL_CAMERA_DIALECT_ORBSLAM, vl_format_orbslam)               \
   X(VL_CAMERA_DIALECT_OKVIS, vl_format_okvis)                   \
   X(VL_CAMERA_DIALECT_SVO, vl_format_svo)                       \
+  X(VL_CAMERA_DIALECT_EUROC, vl_format_euroc)                   \
+  X(VL_CAMERA_DIALECT_KALIBR, vl_format_kalibr)                 \
+  X(VL_CAMERA_DIALECT_ROS, vl_format_ros)                       \
+  X(VL_CAMERA_DIALECT_BLENDER, vl_format_blender)               \
+  X(VL_CAMERA_DIALECT_OPENCV, vl_format_opencv)                 \
+  X(VL_CAMERA_DIALECT_COLMAP, vl_format_colmap)                 \
+  X(VL_CAMERA_DIALECT_PBRT, vl_format_pbrt)                     \
+  X(VL_CAMERA_DIALECT_MITSUBA, vl_format_mitsuba)               \
+  X(VL_CAMERA_DIALECT_EXR, vl_format_exr)                       \
+  X(VL_CAMERA_DIALECT_USD, vl_format_usd)                       \
   X(VL_CAMERA_DIALECT_KITTI, vl_format_kitti)                   \
-  X(VL_CAMERA_DIALECT_BOP, vl_format_bop)                       \
-  X(VL_CAMERA_DIALECT_GAUSSIANS, vl_format_gaussians)           \
-  X(VL_CAMERA_DIALECT_METASHAPE, vl_format_metashape)           \
-  X(VL_CAMERA_DIALECT_MESHROOM, vl_format_meshroom)             \
-  X(VL_CAMERA_DIALECT_OPENSFM, vl_format_opensfm)               \
-  X(VL_CAMERA_DIALECT_OPEN3D, vl_format_open3d)                 \
-  X(VL_CAMERA_DIALECT_VISP, vl_format_visp)                     \
   X(VL_CAMERA_DIALECT_MIDDLEBURY, vl_format_middlebury)         \
   X(VL_CAMERA_DIALECT_MVSNET, vl_format_mvsnet)                 \
   X(VL_CAMERA_DIALECT_BUNDLER, vl_format_bundler)               \
-  X(VL_CAMERA_DIALECT_OPENMVG, vl_format_openmvg)               \
-  X(VL_CAMERA_DIALECT_REALITYCAPTURE, vl_format_realitycapture) \
-  X(VL_CAMERA_DIALECT_NERFSTUDIO, vl_format_nerfstudio)         \
   X(VL_CAMERA_DIALECT_VISUALSFM, vl_format_visualsfm)           \
   X(VL_CAMERA_DIALECT_ZED, vl_format_zed)                       \
-  X(VL_CAMERA_DIALECT_COLLADA, vl_format_collada)               \
   X(VL_CAMERA_DIALECT_DSO, vl_format_dso)                       \
   X(VL_CAMERA_DIALECT_LLFF, vl_format_llff)                     \
-  X(VL_CAMERA_DIALECT_RECORD3D, vl_format_record3d)             \
-  X(VL_CAMERA_DIALECT_POLYCAM, vl_format_polycam)               \
-  X(VL_CAMERA_DIALECT_SCANNER3D, vl_format_scanner3d)           \
-  X(VL_CAMERA_DIALECT_DEPTHAI, vl_format_depthai)               \
-  X(VL_CAMERA_DIALECT_KINECT, vl_format_kinect)                 \
-  X(VL_CAMERA_DIALECT_REALSENSE, vl_format_realsense)           \
-  X(VL_CAMERA_DIALECT_CALIBIO, vl_format_calibio)               \
-  X(VL_CAMERA_DIALECT_NUSCENES, vl_format_nuscenes)             \
-  X(VL_CAMERA_DIALECT_PANOPTIC, vl_format_panoptic)             \
-  X(VL_CAMERA_DIALECT_NERFIES, vl_format_nerfies)               \
-  X(VL_CAMERA_DIALECT_THREEJS, vl_format_threejs)               \
-  X(VL_CAMERA_DIALECT_MATRIX, vl_format_matrix)                 \
-  X(VL_CAMERA_DIALECT_ARIA, vl_format_aria)
+  X(VL_CAMERA_DIALECT_MATRIX, vl_format_matrix)
 #define VL_DECLARE_FORMAT(dialect, format) extern const vlCameraFormat format;
 VL_CAMERA_FORMATS(VL_DECLARE_FORMAT)
 

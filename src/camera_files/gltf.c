@@ -33,8 +33,7 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *node, vlMat
   *result = vl_mat4_identity();
   if (json_object_get(node, "matrix")) {
     VL_TRY(vl_camera_numbers(file, node, "matrix", m, 16, 16, NULL));
-    for (int i = 0; i < 16; i++)
-      result->m[i] = m[4 * (i % 4) + i / 4];
+    vl_camera_transpose(m, result->m);
     return VL_OK;
   }
   if (json_object_get(node, "translation"))
@@ -171,8 +170,7 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   if (extras)
     return read_extras(file, extras, pose, lens, record);
   VL_TRY(flat ? read_orthographic(file, lens, record) : read_perspective(file, lens, record));
-  d->has_matrix = true;
-  vl_camera_flip_axes(pose->m, d->world_from_camera);
+  vl_camera_set_flipped(d, pose->m);
   return VL_OK;
 }
 

@@ -27,8 +27,7 @@ static vlResult read_parameters(const vlCameraFile *file, const json_t *paramete
   VL_TRY(vl_camera_field(file, parameters, "intrinsic", &intrinsic));
   VL_TRY(read_intrinsic(file, intrinsic, record));
   VL_TRY(vl_camera_numbers(file, parameters, "extrinsic", by_columns, 16, 16, NULL));
-  for (int i = 0; i < 16; i++)
-    m[i] = by_columns[4 * (i % 4) + i / 4];
+  vl_camera_transpose(by_columns, m);
   if (!vl_camera_set_matrix(&record->camera, m, true))
     return vl_camera_wrong_in(file, parameters, "extrinsic",
                               "open3d: \"extrinsic\" is singular");
@@ -52,9 +51,7 @@ static vlResult read_open3d(const vlCameraFile *file, const json_t *tree,
   const json_t *chosen = vl_camera_choose(file, list, NULL, record);
   if (chosen)
     return read_parameters(file, chosen, record);
-  return vl_camera_wrong_in(file, tree, "parameters",
-                            "open3d: there is no camera \"%s\" among the %u",
-                            vl_camera_asked(file, "0").text, record->frames);
+  return vl_camera_none_in(file, tree, "parameters", "camera", record->frames);
 }
 
 /* Recognises a lone intrinsic_matrix. Open3D stores it by columns, so the principal point is in

@@ -91,14 +91,22 @@ static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraR
         "xcr:DistortionModel \"%s\" is no model of velo; there are perspective, brown3, "
         "brown4, brown3t2, brown4t2",
         vl_short_text(model).text);
-  VL_TRY(read_property(file, description, "xcr:FocalLength35mm", 1, true, &lens.f35));
-  VL_TRY(read_property(file, description, "xcr:PrincipalPointU", 1, false, &lens.center[0]));
-  VL_TRY(read_property(file, description, "xcr:PrincipalPointV", 1, false, &lens.center[1]));
-  VL_TRY(read_property(file, description, "xcr:AspectRatio", 1, false, &aspect));
-  VL_TRY(read_property(file, description, "xcr:Skew", 1, false, &skew));
-  VL_TRY(read_property(file, description, "xcr:DistortionCoeficients", 6, false, lens.k));
-  VL_TRY(read_property(file, description, "xcr:Rotation", 9, true, r));
-  VL_TRY(read_property(file, description, "xcr:Position", 3, true, c));
+  const struct {
+    const char *name;
+    uint32_t count;
+    bool needed;
+    double *values;
+  } properties[] = {{"xcr:FocalLength35mm", 1, true, &lens.f35},
+                    {"xcr:PrincipalPointU", 1, false, &lens.center[0]},
+                    {"xcr:PrincipalPointV", 1, false, &lens.center[1]},
+                    {"xcr:AspectRatio", 1, false, &aspect},
+                    {"xcr:Skew", 1, false, &skew},
+                    {"xcr:DistortionCoeficients", 6, false, lens.k},
+                    {"xcr:Rotation", 9, true, r},
+                    {"xcr:Position", 3, true, c}};
+  for (size_t i = 0; i < VL_LENGTH(properties); i++)
+    VL_TRY(read_property(file, description, properties[i].name, properties[i].count,
+                         properties[i].needed, properties[i].values));
   if (aspect != 1.0 || skew != 0.0)
     return vl_camera_wrong_element(file, description,
                                    "xcr:AspectRatio must be 1 and xcr:Skew 0");
@@ -123,33 +131,27 @@ static bool is_xmp(const json_t *tree) {
 static vlResult write_xmp(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   const double *k = fit->k;
-  const double side = c->width > c->height ? c->width : c->height, *m = c->camera_from_world,
-               *p = c->world_from_camera;
-  vl_camera_put(
-      text,
+  const double side = c->width > c->height ? c->width : c->height;
+  const double plane[3] = {36.0 * c->fx / side, (c->cx - 0.5 * c->width) / side,
+                           (c->cy - 0.5 * c->height) / side};
+  const double brown[6] = {k[0], k[1], k[4], 0.0, k[2], k[3]};
+  return VL_PUT_FORM(
+      text, fit,
       "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n"
       "  <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n"
       "    <rdf:Description xcr:Version=\"3\" xcr:PosePrior=\"initial\" "
       "xcr:Coordinates=\"absolute\"\n"
-      "       xcr:DistortionModel=\"%s\" xcr:FocalLength35mm=\"%.17g\" xcr:Skew=\"0\" "
+      "       xcr:DistortionModel=\"$model\" xcr:FocalLength35mm=\"$plane@0\" xcr:Skew=\"0\" "
       "xcr:AspectRatio=\"1\"\n"
-      "       xcr:PrincipalPointU=\"%.17g\" xcr:PrincipalPointV=\"%.17g\"\n"
-      "       xmlns:xcr=\"http://www.capturingreality.com/ns/xcr/1.1#\">\n",
-      c->distortion.steps == 0     ? "perspective"
-      : k[2] == 0.0 && k[3] == 0.0 ? "brown3"
-                                   : "brown3t2",
-      36.0 * c->fx / side, (c->cx - 0.5 * c->width) / side, (c->cy - 0.5 * c->height) / side);
-  vl_camera_put(text, "      <xcr:Rotation>");
-  for (int i = 0; i < 9; i++)
-    vl_camera_put(text, "%s%.17g", i ? " " : "", m[4 * (i / 3) + i % 3] + 0.0);
-  vl_camera_put(text, "</xcr:Rotation>\n      <xcr:Position>%.17g %.17g %.17g</xcr:Position>\n",
-                p[3], p[7], p[11]);
-  vl_camera_put(text,
-                "      <xcr:DistortionCoeficients>%.17g %.17g %.17g 0 %.17g "
-                "%.17g</xcr:DistortionCoeficients>\n",
-                k[0], k[1], k[4], k[2], k[3]);
-  vl_camera_put(text, "    </rdf:Description>\n  </rdf:RDF>\n</x:xmpmeta>\n");
-  return VL_OK;
+      "       xcr:PrincipalPointU=\"$plane@1\" xcr:PrincipalPointV=\"$plane@2\"\n"
+      "       xmlns:xcr=\"http://www.capturingreality.com/ns/xcr/1.1#\">\n"
+      "      <xcr:Rotation>$R:s</xcr:Rotation>\n      <xcr:Position>$centre:s</xcr:Position>\n"
+      "      <xcr:DistortionCoeficients>$brown:s</xcr:DistortionCoeficients>\n"
+      "    </rdf:Description>\n  </rdf:RDF>\n</x:xmpmeta>\n",
+      VL_WORD("model", c->distortion.steps == 0     ? "perspective"
+                       : k[2] == 0.0 && k[3] == 0.0 ? "brown3"
+                                                    : "brown3t2"),
+      VL_VALUES("plane", plane, 3), VL_VALUES("brown", brown, 6));
 }
 
 /* ---- CSV --------------------------------------------------------------------------------- */
@@ -248,8 +250,7 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
                        cp * cr};
   for (int i = 0; i < 9; i++)
     m[4 * (i / 3) + i % 3] = r[i];
-  record->camera.has_matrix = true;
-  vl_camera_flip_axes(m, record->camera.world_from_camera);
+  vl_camera_set_flipped(&record->camera, m);
   char folder[300];
   const char *name = record->name;
   snprintf(folder, sizeof folder, "images/%s", name);

@@ -101,6 +101,11 @@ void vl_camera_flip_columns(const double m[16], double x, double y, double z,
     result[i] = m[i] * sign[i % 4] + 0.0;
 }
 
+void vl_camera_transpose(const double m[16], double result[16]) {
+  for (int i = 0; i < 16; i++)
+    result[i] = m[4 * (i % 4) + i / 4];
+}
+
 void vl_camera_flip_axes(const double m[16], double result[16]) {
   vl_camera_flip_columns(m, 1.0, -1.0, -1.0, result);
 }

@@ -62,10 +62,8 @@ static vlResult read_threejs(const vlCameraFile *file, const json_t *tree,
   double c[16], m[16];
   VL_TRY(vl_camera_numbers(file, object, "matrix", c, 16, 16, NULL));
   VL_TRY(read_lens(file, object, record));
-  for (int i = 0; i < 16; i++)
-    m[i] = c[4 * (i % 4) + i / 4];
-  record->camera.has_matrix = true;
-  vl_camera_flip_axes(m, record->camera.world_from_camera);
+  vl_camera_transpose(c, m);
+  vl_camera_set_flipped(&record->camera, m);
   vl_camera_name(record, vl_camera_text(object, "name"));
   return VL_OK;
 }

@@ -43,8 +43,7 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
   size_t n = strcspn(kind, ":");
   if (n == 9 && strncmp(kind, "transform", n) == 0) {
     VL_TRY(op_numbers(op, key, v, 16));
-    for (int i = 0; i < 16; i++)
-      m->m[i] = v[4 * (i % 4) + i / 4];
+    vl_camera_transpose(v, m->m);
   } else if (n == 9 && strncmp(kind, "translate", n) == 0) {
     VL_TRY(op_numbers(op, key, v, 3));
     *m = vl_mat4_translate(v[0], v[1], v[2]);
@@ -137,26 +136,25 @@ static vlResult pose_of(Search *s) {
 static vlResult walk(Search *s, const json_t *prim) {
   const char *type = vl_camera_text(prim, "<");
   const json_t *child;
-  vlResult result = VL_OK;
   size_t i;
   if (vl_text_is(type, "Camera")) {
     bool wanted =
         !s->camera && vl_camera_is_frame(s->file, s->frames++, vl_camera_text(prim, "@"));
     if (wanted) {
       s->camera = prim;
-      result = pose_of(s);
+      VL_TRY(pose_of(s));
     }
   } else if (type && strncmp(type, "Render", 6) == 0 && !s->resolution) {
     s->resolution = json_object_get(prim, "resolution") ? prim : NULL;
   }
   json_array_foreach(json_object_get(prim, "/"), i, child) {
-    if (result != VL_OK || s->depth == 64)
+    if (s->depth == 64)
       break; /* the parser's depth is smaller */
     s->path[s->depth++] = child;
-    result = walk(s, child);
+    VL_TRY(walk(s, child));
     s->depth--;
   }
-  return result;
+  return VL_OK;
 }
 
 /* Fits the aperture to an image of another aspect ratio (UsdRenderSettingsBase,
@@ -255,7 +253,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   double focal = 50.0, across = 20.955, down = 15.2908, offset_x = 0.0, offset_y = 0.0,
          stop = 0.0, focus = 0.0;
   double range[2], exposure = 0.0, rate = 24.0;
-  vlResult result = VL_READ_FIELDS(
+  VL_TRY(VL_READ_FIELDS(
       file, prim, VL_FIELD_OPTIONAL("focalLength", &focal),
       VL_FIELD_OPTIONAL("horizontalAperture", &across),
       VL_FIELD_OPTIONAL("verticalAperture", &down),
@@ -263,33 +261,22 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
       VL_FIELD_OPTIONAL("verticalApertureOffset", &offset_y), VL_FIELD_OPTIONAL("fStop", &stop),
       VL_FIELD_OPTIONAL("focusDistance", &focus), VL_FIELD_OPTIONAL("exposure", &exposure),
       VL_FIELD_OPTIONAL("shutter:open", &d->shutter_open),
-      VL_FIELD_OPTIONAL("shutter:close", &d->shutter_close));
-  if (result == VL_OK)
-    result = vl_camera_optional(file, root, "timeCodesPerSecond", &rate);
-  if (result == VL_OK && json_object_get(prim, "clippingRange")) {
-    result = vl_camera_numbers(file, prim, "clippingRange", range, 2, 2, NULL);
-    if (result == VL_OK) {
-      d->near_plane = range[0];
-      d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
-    }
+      VL_FIELD_OPTIONAL("shutter:close", &d->shutter_close)));
+  VL_TRY(vl_camera_optional(file, root, "timeCodesPerSecond", &rate));
+  if (json_object_get(prim, "clippingRange")) {
+    VL_TRY(vl_camera_numbers(file, prim, "clippingRange", range, 2, 2, NULL));
+    d->near_plane = range[0];
+    d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
   }
-  if (result != VL_OK)
-    return result;
   bool flat = false;
-  result = read_projection(file, prim, &flat);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_projection(file, prim, &flat));
   if (!(focal > 0.0 && across > 0.0 && down > 0.0 && rate > 0.0))
     return vl_camera_wrong(
         file, "usd: focalLength, horizontalAperture and verticalAperture must be above zero");
   double pixel = 1.0;
-  result = read_settings(s, &pixel);
-  if (result == VL_OK)
-    result = read_resolution(s, across / down / pixel, record);
-  if (result == VL_OK)
-    result = conform(s, (double)d->width / d->height * pixel, &across, &down);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_settings(s, &pixel));
+  VL_TRY(read_resolution(s, across / down / pixel, record));
+  VL_TRY(conform(s, (double)d->width / d->height * pixel, &across, &down));
   double w = d->width, h = d->height;
   /* orthographic apertures are in tenths of a unit too */
   d->fx = flat ? 10.0 * (w / across) : focal * (w / across);
@@ -307,8 +294,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
     d->shutter_open /= rate;
   if (json_object_get(prim, "shutter:close"))
     d->shutter_close /= rate;
-  d->has_matrix = true;
-  vl_camera_flip_axes(s->pose.m, d->world_from_camera);
+  vl_camera_set_flipped(d, s->pose.m);
   vl_camera_name(record, vl_camera_text(prim, "@"));
   return check_attributes(file, prim, record);
 }

@@ -118,22 +118,22 @@ static vlResult write_visp(const vlFittedCamera *fit, vlCameraText *text) {
   bool bent = !fisheye && k[0] != 0.0;
   const char *name =
       fit->record->name[0] && !strpbrk(fit->record->name, "<>&") ? fit->record->name : "Camera";
-  VL_PUT_FORM(
+  static const char *const kannala[] = {"k1", "k2", "k3", "k4", "k5"};
+  const double inverse = -k[0];
+  return VL_PUT_FORM(
       text, fit,
       "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>$own</name>\n"
       "    <image_width>$width</image_width>\n    <image_height>$height</image_height>\n"
       "    <model>\n      <type>$type</type>\n      <px>$fx</px>\n      <py>$fy</py>\n"
-      "      <u0>$cx0</u0>\n      <v0>$cy0</v0>\n",
+      "      <u0>$cx0</u0>\n      <v0>$cy0</v0>\n$bent$lens"
+      "    </model>\n  </camera>\n</root>\n",
       VL_WORD("own", name),
       VL_WORD("type", fisheye ? kannala_brandt
                       : bent  ? with_distortion
-                              : without_distortion));
-  if (bent)
-    vl_camera_put(text, "      <kud>%.17g</kud>\n      <kdu>%.17g</kdu>\n", k[0], -k[0]);
-  for (int i = 0; i < 5 && fisheye; i++)
-    vl_camera_put(text, "      <k%d>%.17g</k%d>\n", i + 1, i < 4 ? k[i] + 0.0 : 0.0, i + 1);
-  vl_camera_put(text, "    </model>\n  </camera>\n</root>\n");
-  return VL_OK;
+                              : without_distortion),
+      VL_PART("bent", bent, "      <kud>$k@0</kud>\n      <kdu>$inverse</kdu>\n"),
+      VL_VALUES("k", k, 1), VL_VALUES("inverse", &inverse, 1),
+      VL_NAMED("lens", kannala, k, fisheye ? 5 : 0, "      <$item>$value</$item>\n"));
 }
 
 const vlCameraFormat vl_format_visp = {

@@ -14,11 +14,6 @@
 enum { MAX_DEPTH = 30 };
 static const double degree = 3.14159265358979323846 / 180.0;
 
-static bool has_tag(const json_t *element, const char *tag) {
-  const char *own = vl_camera_text(element, "<");
-  return vl_text_is(own, tag);
-}
-
 /* <lookat>: eye, the point that is looked at, up. */
 static bool look_at(const double v[9], vlMat4 *m) {
   double x[3], y[3], z[3], length = 0.0;
@@ -49,23 +44,23 @@ static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlM
   json_array_foreach(json_object_get(node, "/"), i, child) {
     vlMat4 step = vl_mat4_identity();
     double v[9];
-    if (has_tag(child, "matrix")) {
+    if (vl_camera_has_tag(child, "matrix")) {
       VL_TRY(vl_camera_element_numbers(file, child, step.m, 16));
-    } else if (has_tag(child, "translate")) {
+    } else if (vl_camera_has_tag(child, "translate")) {
       VL_TRY(vl_camera_element_numbers(file, child, v, 3));
       step = vl_mat4_translate(v[0], v[1], v[2]);
-    } else if (has_tag(child, "scale")) {
+    } else if (vl_camera_has_tag(child, "scale")) {
       VL_TRY(vl_camera_element_numbers(file, child, v, 3));
       step = vl_mat4_scale(v[0], v[1], v[2]);
-    } else if (has_tag(child, "rotate")) {
+    } else if (vl_camera_has_tag(child, "rotate")) {
       VL_TRY(vl_camera_element_numbers(file, child, v, 4));
       if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0)
         step = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
-    } else if (has_tag(child, "lookat")) {
+    } else if (vl_camera_has_tag(child, "lookat")) {
       VL_TRY(vl_camera_element_numbers(file, child, v, 9));
       if (!look_at(v, &step))
         return vl_camera_wrong_element(file, child, "<lookat> gives no direction");
-    } else if (has_tag(child, "skew")) {
+    } else if (vl_camera_has_tag(child, "skew")) {
       return vl_camera_wrong_element(file, child, "<skew> is not read");
     } else {
       continue;
@@ -94,15 +89,15 @@ static vlResult search(const vlCameraFile *file, const json_t *node, const json_
   if (!name)
     name = vl_camera_text(node, "id");
   json_array_foreach(json_object_get(node, "/"), i, child) {
-    if (has_tag(child, "instance_camera") && !s->camera &&
+    if (vl_camera_has_tag(child, "instance_camera") && !s->camera &&
         vl_camera_is_frame(file, s->count, name)) {
       s->camera = child;
       s->depth = depth + 1;
       s->name = name;
       memcpy(s->stops, stops, sizeof s->stops);
     }
-    s->count += has_tag(child, "instance_camera");
-    if (!has_tag(child, "node"))
+    s->count += vl_camera_has_tag(child, "instance_camera");
+    if (!vl_camera_has_tag(child, "node"))
       continue;
     VL_TRY(search(file, child, stops, depth + 1, s));
   }
@@ -114,7 +109,8 @@ static const json_t *find_camera(const json_t *tree, const char *url) {
   size_t i;
   json_array_foreach(json_object_get(library, "/"), i, camera) {
     const char *id = vl_camera_text(camera, "id");
-    if (has_tag(camera, "camera") && id && url && *url == '#' && vl_text_is(id, url + 1))
+    if (vl_camera_has_tag(camera, "camera") && id && url && *url == '#' &&
+        vl_text_is(id, url + 1))
       return camera;
   }
   return NULL;
@@ -181,7 +177,7 @@ static vlResult search_scenes(const vlCameraFile *file, const json_t *tree, Sear
   size_t i, k;
   json_array_foreach(json_object_get(scenes, "/"), i, scene) {
     json_array_foreach(json_object_get(scene, "/"), k, node) {
-      if (has_tag(node, "node"))
+      if (vl_camera_has_tag(node, "node"))
         VL_TRY(search(file, node, stops, 0, s));
     }
   }
@@ -231,7 +227,7 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
 }
 
 static bool is_collada(const json_t *tree) {
-  return has_tag(tree, "COLLADA");
+  return vl_camera_has_tag(tree, "COLLADA");
 }
 
 static vlResult write_collada(const vlFittedCamera *fit, vlCameraText *text) {

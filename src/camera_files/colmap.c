@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "camera_files/colmap.h"
+#include "camera_files/fields.h"
 #include "camera_files/trajectory.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
@@ -75,8 +76,7 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   double size[2], parameters[16];
   uint32_t count = 0;
   for (int i = 0; i < 2; i++)
-    if (!next_number(&rest, &size[i]) || !(size[i] >= 1.0 && size[i] <= 1 << 24) ||
-        size[i] != floor(size[i]))
+    if (!next_number(&rest, &size[i]) || !vl_camera_is_side(size[i]))
       return wrong_line(file, path, lines->line,
                         "after the model come width and height in whole pixels");
   for (rest += strspn(rest, " \t"); *rest; rest += strspn(rest, " \t")) {

@@ -103,9 +103,13 @@ vlResult vl_camera_read_lens(const vlCameraFile *file, const json_t *object,
                             vl_short_text(name).text, n, known);
 }
 
+bool vl_camera_is_side(double number) {
+  return number >= 1.0 && number <= 1 << 24 && number == floor(number);
+}
+
 bool vl_camera_set_sides(vlCameraDef *def, const double size[2]) {
   for (int i = 0; i < 2; i++)
-    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+    if (!vl_camera_is_side(size[i]))
       return false;
   def->width = (uint32_t)size[0];
   def->height = (uint32_t)size[1];

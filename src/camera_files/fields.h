@@ -69,7 +69,9 @@ void vl_camera_offer(const vlCameraFile *file, const json_t *camera, const char 
  * the format's word for a camera. */
 vlResult vl_camera_none_in(const vlCameraFile *file, const json_t *object, const char *key,
                            const char *what, uint32_t count);
-/* Sets the image's size. Returns false if it is not 1 to 16777216 whole pixels. */
+/* Whether a number is 1 to 16777216 whole pixels. */
+bool vl_camera_is_side(double number);
+/* Sets the image's size. Returns false if a side is none. */
 bool vl_camera_set_sides(vlCameraDef *def, const double size[2]);
 /* Reports an unknown word at object[key]. known: "there are A, B". */
 vlResult vl_camera_unknown(const vlCameraFile *file, const json_t *object, const char *key,

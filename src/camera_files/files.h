@@ -67,6 +67,8 @@ vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size,
 /* Gets the tag of the root element, after declaration and comments. Returns false if the text
  * is not XML. */
 bool vl_camera_xml_root(const char *text, char tag[64]);
+/* Whether the element has this tag. */
+bool vl_camera_has_tag(const json_t *element, const char *tag);
 /* Returns the first child element with this tag, or null. */
 const json_t *vl_camera_child(const json_t *element, const char *tag);
 /* Reports an error at an element. */
@@ -107,6 +109,8 @@ vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord 
  * ends the list. It is an error if there is neither. */
 vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *images,
                                vlCameraRecord *record);
+/* The same for the image whose name is the file's with another suffix. */
+vlResult vl_camera_size_of_image(const vlCameraFile *file, vlCameraRecord *record);
 /* Reads the image's size from two keys if both exist. Otherwise sets the size like
  * vl_camera_size_beside without images. */
 vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const char *width,

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static uint32_t big_endian(const unsigned char *b, int count) {
   uint32_t value = 0;
@@ -87,6 +87,14 @@ vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *imag
       images && *images ? " and its images are not there" : "");
 }
 
+vlResult vl_camera_size_of_image(const vlCameraFile *file, vlCameraRecord *record) {
+  char image[300];
+  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path;
+  const char *dot = strrchr(name, '.');
+  snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
+  return vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
+}
+
 vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const char *width,
                          const char *height, vlCameraRecord *record) {
   if (!json_object_get(object, width) && !json_object_get(object, height))
@@ -100,7 +108,7 @@ vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, con
   double size[2] = {0};
   VL_TRY(vl_camera_numbers(file, object, key, size, 2, 2, NULL));
   for (int i = 0; i < 2; i++)
-    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != (double)(uint32_t)size[i])
+    if (!vl_camera_is_side(size[i]))
       return vl_camera_wrong_in(file, object, key,
                                 "%s: \"%s\" is %g x %g; it must be whole pixels", file->dialect,
                                 key, size[0], size[1]);

@@ -122,7 +122,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree,
   VL_TRY(numbers(file, intrinsic, "height", &size[1], 1));
   VL_TRY(numbers(file, intrinsic, "principalPoint", c, 2));
   for (int i = 0; i < 2; i++)
-    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+    if (!vl_camera_is_side(size[i]))
       return vl_camera_wrong_in(file, intrinsic, i ? "height" : "width",
                                 "meshroom: the image is %g x %g; it must be whole pixels",
                                 size[0], size[1]);
@@ -191,9 +191,7 @@ static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree,
   }
   if (chosen)
     return read_view(file, tree, chosen, record);
-  return vl_camera_wrong_in(file, tree, "views",
-                            "meshroom: there is no view \"%s\" among the %u",
-                            vl_camera_asked(file, "0").text, record->frames);
+  return vl_camera_none_in(file, tree, "views", "view", record->frames);
 }
 
 static bool is_meshroom(const json_t *tree) {

@@ -60,7 +60,7 @@ static vlResult read_attribute(const vlCameraFile *file, const json_t *element,
   const char *text = vl_camera_text(element, name);
   char *end;
   double number = text ? vl_camera_parse(text, &end) : 0.0;
-  if (!(number >= 1.0 && number <= 1 << 24) || number != floor(number))
+  if (!vl_camera_is_side(number))
     return vl_camera_wrong_element(file, element, "\"%s\" must be a whole number of pixels",
                                    name);
   *value = (uint32_t)number;
@@ -95,7 +95,7 @@ static vlResult read_sensor(const vlCameraFile *file, const json_t *sensor,
   vlCameraDef *d = &record->camera;
   size_t i;
   json_array_foreach(json_object_get(sensor, "/"), i, child) {
-    if (!vl_text_is(vl_camera_text(child, "<"), "calibration"))
+    if (!vl_camera_has_tag(child, "calibration"))
       continue;
     const char *class = vl_camera_text(child, "class");
     if (!calibration || vl_text_is(class, "adjusted"))
@@ -188,7 +188,7 @@ static vlResult read_document(const vlCameraFile *file, const json_t *root,
 
 static vlResult read_metashape(const vlCameraFile *file, const json_t *root,
                                vlCameraRecord *record) {
-  bool calibration = vl_text_is(vl_camera_text(root, "<"), "calibration");
+  bool calibration = vl_camera_has_tag(root, "calibration");
   return calibration ? read_calibration(file, root, record) : read_document(file, root, record);
 }
 

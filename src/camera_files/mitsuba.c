@@ -55,7 +55,7 @@ static vlResult attribute(const Scene *scene, const json_t *element, const char 
     return VL_OK;
   json_array_foreach(json_object_get(scene->root, "/"), i, item) {
     const char *name = vl_camera_text(item, "name");
-    if (!vl_text_is(tag_of(item), "default") || !vl_text_is(name, *text + 1))
+    if (!vl_camera_has_tag(item, "default") || !vl_text_is(name, *text + 1))
       continue;
     *text = vl_camera_text(item, "value");
     if (*text)
@@ -220,8 +220,8 @@ static vlResult read_film(const Scene *scene, const json_t *sensor, double size[
   size_t i;
   size[0] = 768.0;
   size[1] = 576.0; /* Mitsuba's default */
-  json_array_foreach(json_object_get(sensor, "/"), i,
-                     item) if (vl_text_is(tag_of(item), "film")) film = item;
+  json_array_foreach(json_object_get(sensor, "/"), i, item) if (vl_camera_has_tag(item, "film"))
+      film = item;
   VL_TRY(number(scene, film, "width", &size[0]));
   VL_TRY(number(scene, film, "height", &size[1]));
   crop[0] = crop[1] = 0.0;
@@ -341,9 +341,9 @@ static vlResult check_sensor(const Scene *scene, const json_t *sensor, int kind,
   snprintf(known, sizeof known, "%s %s %s", common, kind < 2 ? fov : "", more[kind]);
   vlResult result = check_parameters(scene, sensor, known, record);
   json_array_foreach(json_object_get(sensor, "/"), i, item) {
-    if (result == VL_OK && vl_text_is(tag_of(item), "film"))
+    if (result == VL_OK && vl_camera_has_tag(item, "film"))
       result = check_parameters(scene, item, film, record);
-    if (vl_text_is(tag_of(item), "ref") && vl_text_is(vl_camera_text(item, "name"), "film"))
+    if (vl_camera_has_tag(item, "ref") && vl_text_is(vl_camera_text(item, "name"), "film"))
       result = vl_camera_wrong_at(scene->file, line_of(item), 0,
                                   "mitsuba: the film is a reference; write it into the sensor");
   }
@@ -411,13 +411,13 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
   Scene scene = {file, tree};
   const json_t *item, *chosen = NULL;
   size_t i;
-  bool root = vl_text_is(tag_of(tree), "sensor"), includes = false;
+  bool root = vl_camera_has_tag(tree, "sensor"), includes = false;
   record->frames = root;
   if (root)
     chosen = tree;
   json_array_foreach(json_object_get(tree, "/"), i, item) {
-    includes = includes || vl_text_is(tag_of(item), "include");
-    if (root || !vl_text_is(tag_of(item), "sensor"))
+    includes = includes || vl_camera_has_tag(item, "include");
+    if (root || !vl_camera_has_tag(item, "sensor"))
       continue;
     if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(item, "id")))
       chosen = item;

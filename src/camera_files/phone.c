@@ -8,10 +8,6 @@
 
 #include "camera_files/fields.h"
 
-static void set_arkit_pose(const double m[16], vlCameraDef *d) {
-  vl_camera_set_flipped(d, m);
-}
-
 /* ---- Record3D ---------------------------------------------------------------------------- */
 
 static vlResult read_record3d(const vlCameraFile *file, const json_t *tree,
@@ -50,7 +46,7 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree,
                               "record3d: the quaternion of \"poses\" is no rotation");
   const double m[16] = {r[0], r[1], r[2], v[4], r[3], r[4], r[5], v[5],
                         r[6], r[7], r[8], v[6], 0,    0,    0,    1};
-  set_arkit_pose(m, d);
+  vl_camera_set_flipped(d, m);
   d->fx = single ? f[0] : k[0];
   d->fy = single ? f[1] : k[4];
   d->cx = single ? f[2] : k[6];
@@ -86,7 +82,7 @@ static vlResult read_polycam(const vlCameraFile *file, const json_t *tree,
     const char key[] = {'t', '_', (char)('0' + i / 4), (char)('0' + i % 4), 0};
     VL_TRY(vl_camera_number(file, tree, key, &m[i]));
   }
-  set_arkit_pose(m, d);
+  vl_camera_set_flipped(d, m);
   return VL_OK;
 }
 
@@ -115,18 +111,14 @@ static vlResult read_scanner(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double m[16], k[9];
-  char image[300];
-  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
-             *dot = strrchr(name, '.');
   VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_LIST("cameraPoseARFrame", m, 16),
                         VL_FIELD_LIST("intrinsics", k, 9)));
-  snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
-  set_arkit_pose(m, d);
+  vl_camera_set_flipped(d, m);
   d->fx = k[0];
   d->fy = k[4];
   d->cx = k[2];
   d->cy = k[5];
-  return vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
+  return vl_camera_size_of_image(file, record);
 }
 
 const vlCameraFormat vl_format_scanner3d = {

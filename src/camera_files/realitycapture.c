@@ -42,8 +42,7 @@ static void set_lens(const Lens *lens, vlCameraDef *d) {
 /* ---- XMP --------------------------------------------------------------------------------- */
 
 static const json_t *description_of(const json_t *tree) {
-  const char *tag = vl_camera_text(tree, "<");
-  if (!vl_text_is(tag, "x:xmpmeta"))
+  if (!vl_camera_has_tag(tree, "x:xmpmeta"))
     return NULL;
   return vl_camera_child(vl_camera_child(tree, "rdf:RDF"), "rdf:Description");
 }
@@ -113,11 +112,7 @@ static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraR
   if (vl_text_is(model, models[0]))
     memset(lens.k, 0, sizeof lens.k);
   vl_camera_set_centre(&record->camera, r, c);
-  char image[300];
-  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
-             *dot = strrchr(name, '.');
-  snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
-  VL_TRY(vl_camera_size_beside(file, (const char *const[]){image, NULL}, record));
+  VL_TRY(vl_camera_size_of_image(file, record));
   set_lens(&lens, &record->camera);
   return VL_OK;
 }

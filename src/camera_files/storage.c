@@ -77,8 +77,7 @@ static json_t *convert(const vlCameraFile *file, const json_t *element, int dept
   if (json_array_size(children) == 0)
     return value_of(file, element, text ? text : "");
   bool list = true, failed = false;
-  json_array_foreach(children, i, child) list =
-      list && vl_text_is(vl_camera_text(child, "<"), "_");
+  json_array_foreach(children, i, child) list = list && vl_camera_has_tag(child, "_");
   json_t *value = list ? json_array() : json_object();
   json_array_foreach(children, i, child) {
     if (failed)
@@ -102,7 +101,7 @@ vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t si
   vlResult result = vl_camera_xml(file, text, size, NULL, &root);
   if (result != VL_OK)
     return result;
-  if (!vl_text_is(vl_camera_text(root, "<"), "opencv_storage")) {
+  if (!vl_camera_has_tag(root, "opencv_storage")) {
     *tree = root; /* a file of another tool: the elements hold their own lines in the file */
     return VL_OK;
   }

@@ -210,7 +210,7 @@ static vlResult read_resolution(const Search *s, double aspect, vlCameraRecord *
     return vl_camera_size(s->file, aspect, record);
   VL_TRY(vl_camera_numbers(s->file, s->resolution, "resolution", size, 2, 2, NULL));
   for (int i = 0; i < 2; i++)
-    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+    if (!vl_camera_is_side(size[i]))
       return vl_camera_wrong(
           s->file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels",
           size[i]);

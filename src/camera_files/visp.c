@@ -82,11 +82,11 @@ static vlResult read_visp(const vlCameraFile *file, const json_t *root,
   record->frames = 0;
   json_array_foreach(json_object_get(root, "/"), i, camera) {
     char name[64];
-    if (!vl_text_is(vl_camera_text(camera, "<"), "camera"))
+    if (!vl_camera_has_tag(camera, "camera"))
       continue;
     child_text(camera, "name", name);
     json_array_foreach(json_object_get(camera, "/"), k, model) {
-      if (!vl_text_is(vl_camera_text(model, "<"), "model"))
+      if (!vl_camera_has_tag(model, "model"))
         continue;
       if (!chosen && vl_camera_is_frame(file, record->frames, name)) {
         chosen = model;

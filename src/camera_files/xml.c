@@ -178,6 +178,10 @@ bool vl_camera_xml_root(const char *text, char tag[64]) {
   return true;
 }
 
+bool vl_camera_has_tag(const json_t *element, const char *tag) {
+  return vl_text_is(vl_camera_text(element, "<"), tag);
+}
+
 const json_t *vl_camera_child(const json_t *element, const char *tag) {
   size_t i;
   const json_t *child;

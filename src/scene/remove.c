@@ -223,6 +223,12 @@ static void own_row(Owned *owned, const vlKindRow *row, const void *def) {
   }
 }
 
+/* Frees these blocks, and what changes of the object have allocated. */
+static void free_owned(vlScene *scene, const void *array, uint32_t index, const Owned *owned) {
+  vl_scene_free_edits(scene, array, index, scene->edits.count);
+  vl_scene_free_blocks(scene, owned->items, owned->count);
+}
+
 /* Takes an image, which was added with its object, from the scene unless another object has
  * it. */
 static void free_image(vlScene *scene, const vlImage *image) {
@@ -257,8 +263,7 @@ static void remove_texture(vlScene *scene, uint32_t index) {
   *def = vl_default_texture_def(VL_TEXTURE_CONSTANT, old.spectrum);
   if (!data_is_used(scene, old.data))
     own(&owned, old.data);
-  vl_scene_free_edits(scene, &scene->textures, index, scene->edits.count);
-  vl_scene_free_blocks(scene, owned.items, owned.count);
+  free_owned(scene, &scene->textures, index, &owned);
   free_image(scene, old.image);
 }
 
@@ -269,8 +274,7 @@ static void remove_material(vlScene *scene, uint32_t index) {
   own(&owned, def->name);
   own(&owned, def->place);
   *def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
-  vl_scene_free_edits(scene, &scene->materials, index, scene->edits.count);
-  vl_scene_free_blocks(scene, owned.items, owned.count);
+  free_owned(scene, &scene->materials, index, &owned);
 }
 
 static void remove_medium(vlScene *scene, uint32_t index) {
@@ -283,8 +287,7 @@ static void remove_medium(vlScene *scene, uint32_t index) {
   for (size_t i = 0; i < sizeof grids / sizeof *grids; i++)
     own(&owned, grids[i]);
   *def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
-  vl_scene_free_edits(scene, &scene->media, index, scene->edits.count);
-  vl_scene_free_blocks(scene, owned.items, owned.count);
+  free_owned(scene, &scene->media, index, &owned);
 }
 
 static void remove_emission(vlScene *scene, uint32_t index) {
@@ -292,8 +295,7 @@ static void remove_emission(vlScene *scene, uint32_t index) {
   Owned owned = {.count = 0};
   own_row(&owned, vl_kind_row(&vl_emission_family, 0), def);
   *def = vl_default_emission_def();
-  vl_scene_free_edits(scene, &scene->emissions, index, scene->edits.count);
-  vl_scene_free_blocks(scene, owned.items, owned.count);
+  free_owned(scene, &scene->emissions, index, &owned);
 }
 
 static void remove_light(vlScene *scene, uint32_t index) {
@@ -302,8 +304,7 @@ static void remove_light(vlScene *scene, uint32_t index) {
   Owned owned = {.count = 0};
   own_row(&owned, vl_kind_row(&vl_light_family, (int)old.kind), &old);
   *def = vl_default_light_def(VL_LIGHT_POINT);
-  vl_scene_free_edits(scene, &scene->lights, index, scene->edits.count);
-  vl_scene_free_blocks(scene, owned.items, owned.count);
+  free_owned(scene, &scene->lights, index, &owned);
   free_image(scene, old.image);
 }
 

@@ -128,6 +128,7 @@ typedef void vlBsdfSample(uint32_t n, const vlBsdfParams *params, vlBsdfDirectio
 typedef struct vlBsdfKernels {
   vlBsdfEval *const *eval;
   vlBsdfSample *const *sample;
+  const char *const *names; /* for records of paths: "diffuse", "coat" */
 } vlBsdfKernels;
 VL_KERNEL_TABLE(vlBsdfKernels, vl_bsdf)
 

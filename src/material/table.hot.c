@@ -1,5 +1,5 @@
-/* material/table.hot.c: the tables of the BSDF kernels by kind, one table per instruction
- * set. */
+/* material/table.hot.c: the tables of the BSDF kernels and names by kind, one table per
+ * instruction set. */
 #include "material/kinds.row.h"
 #include "material/local.hot.h"
 
@@ -14,4 +14,7 @@ static vlBsdfEval *const evals[] = {VL_BSDF_KINDS(EVAL)};
 #define SAMPLE(kind, name, parameters, eval, sample) [kind] = sample,
 static vlBsdfSample *const samples[] = {VL_BSDF_KINDS(SAMPLE)};
 
-const vlBsdfKernels vl_bsdf_kernel_table = {evals, samples};
+#define NAME(kind, name, parameters, eval, sample) [kind] = name,
+static const char *const names[] = {VL_BSDF_KINDS(NAME)};
+
+const vlBsdfKernels vl_bsdf_kernel_table = {evals, samples, names};

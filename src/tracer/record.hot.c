@@ -1,12 +1,7 @@
 /* tracer/record.hot.c: see record.h. */
 #include "tracer/record.h"
-#include "material/kinds.row.h"
 #include "schema/schema.h"
 #include "velo/texture.h"
-
-#define NAME(kind, name, parameters, eval, sample) name,
-static const char *const bsdf_names[] = {VL_BSDF_KINDS(NAME)};
-#undef NAME
 
 static vlPathRecorder *recorder(const vlTracing *t) {
   return t->batch->recorder;
@@ -196,7 +191,7 @@ void vl_record_shaded(vlTracing *t, uint32_t n, const vlVertices *at) {
     if (!v)
       continue;
     const vlWorldMaterial *m = &t->world->materials.items[at->hits.material[i]];
-    v->bsdf = bsdf_names[m->bsdf];
+    v->bsdf = t->bsdf->names[m->bsdf];
     put3(v->shading, vl_lane3(at->surface.nx, at->surface.ny, at->surface.nz, i));
     put_texture(t->world, m->reflectance, v);
     for (int c = 0; c < 4; c++) {

@@ -390,6 +390,23 @@ static void instruction_sets(void **state) {
 }
 
 /* Names from files are shortened and made printable, whatever bytes the file holds. */
+static void words_of_a_list_are_found_whole(void **state) {
+  (void)state;
+  static const char words[] = "radius zmin zmax";
+  assert_true(vl_has_word(words, "radius"));
+  assert_true(vl_has_word(words, "zmin"));
+  assert_true(vl_has_word(words, "zmax"));
+  assert_false(vl_has_word(words, "zm"));
+  assert_false(vl_has_word(words, "min"));
+  assert_false(vl_has_word(words, "zmaxx"));
+  assert_false(vl_has_word(words, "radius zmin")); /* a name in a file may hold blanks */
+  assert_false(vl_has_word(words, ""));
+  assert_false(vl_has_word("", "radius"));
+  assert_false(vl_has_word("", ""));
+  assert_true(vl_has_word_of(words, "zmin*", 4));
+  assert_false(vl_has_word_of(words, "zmin", 3));
+}
+
 static void names_of_files_are_short(void **state) {
   (void)state;
   const struct {
@@ -470,6 +487,7 @@ int main(void) {
       cmocka_unit_test(gzip_is_unpacked),
       cmocka_unit_test(files_are_written_whole_or_not_at_all),
       cmocka_unit_test(pending_files_replace_by_their_commit),
+      cmocka_unit_test(words_of_a_list_are_found_whole),
       cmocka_unit_test(instruction_sets),
   };
   int result = cmocka_run_group_tests(tests, NULL, NULL);

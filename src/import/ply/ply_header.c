@@ -60,49 +60,35 @@ static bool next_line(vlPlyReader *r, Words *w) {
 }
 
 static bool find_type(const char *name, vlPlyType *type) {
-  static const char *const names[2][VL_PLY_TYPES] = {
-      {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"},
-      {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"}};
-  for (int i = 0; i < 2; i++)
-    for (int t = 0; t < VL_PLY_TYPES; t++)
-      if (vl_text_is(name, names[i][t])) {
-        *type = (vlPlyType)t;
-        return true;
-      }
+  static const char *const names[VL_PLY_TYPES] = {
+      "char int8", "uchar uint8", "short int16",   "ushort uint16",
+      "int int32", "uint uint32", "float float32", "double float64"};
+  for (int t = 0; t < VL_PLY_TYPES; t++)
+    if (vl_has_word(names[t], name)) {
+      *type = (vlPlyType)t;
+      return true;
+    }
   return false;
 }
 
 static vlPlyRole vertex_role(const char *name) {
-  static const struct {
-    const char *name;
-    vlPlyRole role;
-  } roles[] = {{"x", VL_PLY_X},
-               {"y", VL_PLY_Y},
-               {"z", VL_PLY_Z},
-               {"nx", VL_PLY_NX},
-               {"ny", VL_PLY_NY},
-               {"nz", VL_PLY_NZ},
-               {"u", VL_PLY_U},
-               {"v", VL_PLY_V},
-               {"s", VL_PLY_U},
-               {"t", VL_PLY_V},
-               {"texture_u", VL_PLY_U},
-               {"texture_v", VL_PLY_V},
-               {"texture_s", VL_PLY_U},
-               {"texture_t", VL_PLY_V},
-               {"red", VL_PLY_RED},
-               {"green", VL_PLY_GREEN},
-               {"blue", VL_PLY_BLUE},
-               {"alpha", VL_PLY_ALPHA},
-               {"r", VL_PLY_RED},
-               {"g", VL_PLY_GREEN},
-               {"b", VL_PLY_BLUE},
-               {"diffuse_red", VL_PLY_RED},
-               {"diffuse_green", VL_PLY_GREEN},
-               {"diffuse_blue", VL_PLY_BLUE}};
-  for (size_t i = 0; i < VL_LENGTH(roles); i++)
-    if (vl_text_is(name, roles[i].name))
-      return roles[i].role;
+  static const char *const names[VL_PLY_ROLES] = {[VL_PLY_NOTHING] = "",
+                                                  [VL_PLY_X] = "x",
+                                                  [VL_PLY_Y] = "y",
+                                                  [VL_PLY_Z] = "z",
+                                                  [VL_PLY_NX] = "nx",
+                                                  [VL_PLY_NY] = "ny",
+                                                  [VL_PLY_NZ] = "nz",
+                                                  [VL_PLY_U] = "u s texture_u texture_s",
+                                                  [VL_PLY_V] = "v t texture_v texture_t",
+                                                  [VL_PLY_RED] = "red r diffuse_red",
+                                                  [VL_PLY_GREEN] = "green g diffuse_green",
+                                                  [VL_PLY_BLUE] = "blue b diffuse_blue",
+                                                  [VL_PLY_ALPHA] = "alpha",
+                                                  [VL_PLY_INDICES] = ""};
+  for (int role = 0; role < VL_PLY_ROLES; role++)
+    if (vl_has_word(names[role], name))
+      return (vlPlyRole)role;
   return VL_PLY_NOTHING;
 }
 

@@ -184,9 +184,7 @@ static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, cons
   for (char *line; (line = next_entry(&lines));) {
     vlCameraRecord record;
     CameraId id;
-    memset(&record, 0, sizeof record);
-    record.camera = vl_default_camera_def(1, 1);
-    record.dialect = VL_CAMERA_DIALECT_COLMAP;
+    vl_trajectory_begin(VL_CAMERA_DIALECT_COLMAP, &record);
     if (!next_number(&line, &id.id))
       return wrong_line(file, path, lines.line, "a line begins with the camera's number");
     VL_TRY(read_camera_line(file, path, &lines, line, &record.camera));

@@ -68,6 +68,13 @@ vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file,
   return VL_OK;
 }
 
+/* Clears padding, too, because records are compared bytewise. */
+void vl_trajectory_begin(vlCameraDialect dialect, vlCameraRecord *record) {
+  memset(record, 0, sizeof *record);
+  record->camera = vl_default_camera_def(1, 1);
+  record->dialect = dialect;
+}
+
 vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file,
                                   const vlCameraRecord *record, int32_t *index) {
   if (t->cameras.count > 0) {

@@ -39,9 +39,7 @@ vlResult vl_trajectory_read_nerf(vlTrajectory *t, const vlCameraFile *from, cons
   for (uint32_t i = 0; i < count; i++) {
     const json_t *frame = json_array_get(frames, i), *time = json_object_get(frame, "time");
     vlCameraRecord record;
-    memset(&record, 0, sizeof record);
-    record.camera = vl_default_camera_def(1, 1);
-    record.dialect = VL_CAMERA_DIALECT_NERF;
+    vl_trajectory_begin(VL_CAMERA_DIALECT_NERF, &record);
     record.frames = count;
     vlFrameLocation location = {.frame = i, .name = vl_camera_text(frame, "file_path")};
     int32_t camera = 0;
@@ -83,9 +81,7 @@ vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *from,
       break;
     def.frame = key;
     vlCameraRecord record;
-    memset(&record, 0, sizeof record);
-    record.camera = vl_default_camera_def(1, 1);
-    record.dialect = VL_CAMERA_DIALECT_KALIBR;
+    vl_trajectory_begin(VL_CAMERA_DIALECT_KALIBR, &record);
     int32_t camera = 0;
     vlFrameLocation location = {.frame = i, .name = key};
     VL_TRY(vl_camera_read_kalibr(file, tree, &record));
@@ -103,9 +99,7 @@ vlResult vl_trajectory_read_opencv(vlTrajectory *t, const vlCameraFile *from,
   vlCameraFile copy = *from, *file = &copy;
   file->dialect = "opencv";
   vlCameraRecord record;
-  memset(&record, 0, sizeof record);
-  record.camera = vl_default_camera_def(1, 1);
-  record.dialect = VL_CAMERA_DIALECT_OPENCV;
+  vl_trajectory_begin(VL_CAMERA_DIALECT_OPENCV, &record);
   int32_t camera = 0;
   VL_TRY(vl_camera_read_opencv(file, tree, &record));
   VL_TRY(vl_trajectory_add_camera(t, file, &record, &camera));

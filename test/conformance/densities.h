@@ -19,7 +19,7 @@ static void point_in_box(uint32_t i, double p[3]) {
 }
 
 static vlMediumLight medium_at(const vlWorldMedium *m, const double p[3]) {
-  const float lambda[4] = {0, 0, 0, 0};
+  const float lambda[4] = {450, 500, 550, 600};
   const vlMediumLight whole = vl_medium_coefficients(m, lambda);
   const vlVec3 at = vl_vec3((float)p[0], (float)p[1], (float)p[2]);
   return m->uniform ? whole : vl_medium_at(m, &whole, lambda, at, true);
@@ -31,7 +31,7 @@ static double extinction_at(const vlWorldMedium *m, const double p[3]) {
 
 /* The majorant of the cell around a point of a medium whose space is the world's. */
 static double majorant_at(const vlWorldMedium *m, const double p[3]) {
-  const float lambda[4] = {0, 0, 0, 0};
+  const float lambda[4] = {450, 500, 550, 600};
   const vlMediumLight whole = vl_medium_coefficients(m, lambda);
   size_t at = 0;
   for (int k = 2; k >= 0; k--) {
@@ -45,14 +45,14 @@ static double majorant_at(const vlWorldMedium *m, const double p[3]) {
 }
 
 /* The world of a box of the medium. */
-static vlWorld *world_of_medium(const char *kind, const char *parameters) {
+static vlWorld *world_of_medium(const char *kind, const char *parameters, vlColorMode color) {
   static char text[TEXT];
   vlError error = {0};
   vlWorld *world;
   scene_text(text, medium_form, kind, parameters);
   vlScene *scene = need_scene(text);
   vlBuildDef def = vl_default_build_def();
-  def.color = VL_COLOR_RGB;
+  def.color = color;
   assert_int_equal(vl_world_build(scene, &def, &world, &error), VL_OK);
   assert_int_equal(world->media.count, 1);
   vl_scene_destroy(scene);
@@ -62,7 +62,8 @@ static vlWorld *world_of_medium(const char *kind, const char *parameters) {
 /* Two descriptions of one emission, in the middle of the box, where no grid fades. */
 static void check_emission_of_heat(const char *kind, const MediumCase *c) {
   enum { POINTS = 500 };
-  vlWorld *worlds[2] = {world_of_medium(kind, c->hot[0]), world_of_medium(kind, c->hot[1])};
+  vlWorld *worlds[2] = {world_of_medium(kind, c->hot[0], VL_COLOR_SPECTRAL),
+                        world_of_medium(kind, c->hot[1], VL_COLOR_SPECTRAL)};
   uint32_t wrong = 0;
   double sum = 0;
   for (uint32_t i = 0; i < POINTS; i++) {
@@ -89,7 +90,7 @@ static void check_densities(const char *kind, const char *parameters,
   uint32_t above = 0;
   double is = 0;
   double known = 0;
-  vlWorld *world = world_of_medium(kind, parameters);
+  vlWorld *world = world_of_medium(kind, parameters, VL_COLOR_RGB);
   const vlWorldMedium *m = &world->media.items[0];
   for (uint32_t i = 0; i < POINTS; i++) {
     double p[3];

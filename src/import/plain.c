@@ -159,8 +159,14 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load,
                   r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
     return vl_scene_result(scene, error);
   }
-  vlPlainMesh plain = {mesh.vertices, mesh.triangles, mesh.positions,   mesh.normals,
-                       mesh.uvs,      mesh.colors,    mesh.face_colors, mesh.triangle_indices};
+  vlPlainMesh plain = {.vertices = mesh.vertices,
+                       .triangles = mesh.triangles,
+                       .positions = mesh.positions,
+                       .normals = mesh.normals,
+                       .uvs = mesh.uvs,
+                       .colors = mesh.colors,
+                       .face_colors = mesh.face_colors,
+                       .indices = mesh.triangle_indices};
   memcpy(plain.origin, mesh.origin, sizeof plain.origin);
   return vl_import_plain_mesh(scene, path, load, &plain, error);
 }

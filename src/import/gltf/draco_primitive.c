@@ -5,8 +5,6 @@
 
 #include "import/gltf/gltf.h"
 
-static const char name[] = "KHR_draco_mesh_compression";
-
 #ifdef VELO_DRACO
 /* Fills an accessor. index: its number; id: of Draco's attribute, negative: the indices of the
  * faces. */
@@ -93,6 +91,8 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
   return ok;
 }
 #else
+static const char name[] = "KHR_draco_mesh_compression";
+
 bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
   size_t position;
   if (!vl_gltf_extension(vl_gltf_json(at), name))

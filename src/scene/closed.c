@@ -8,253 +8,12 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/faces.h"
+#include "scene/probe.h"
 #include "scene/turned.h"
 #include "velo/edit.h"
 #include "velo/shape_kinds.h"
 
-enum {
-  OUTSIDE = 160, /* rays from the eye */
-  POINTS = 7,    /* points near the middle */
-  AROUND = 48,   /* rays from each of them */
-  RAYS = OUTSIDE + POINTS * AROUND,
-  MAX_FACES = 8000000, /* larger models are taken as open */
-  MAX_PLACED = 20000,  /* instances of shapes that are looked at */
-  CONVEX = 400,        /* faces and vertices that are compared */
-  BLOCK = 32           /* faces in a row that have a box */
-};
-
-/* A mesh with its transform to the world. */
-typedef struct Placed {
-  const vlShapeDef *def;
-  const vlExtent *blocks; /* the shape's */
-  size_t shape;
-  vlMat4 to_shape;
-  bool flip, fixed; /* fixed: not an instance */
-  double low[3], high[3];
-} Placed;
-
-typedef struct Seen {
-  double t;
-  const Placed *placed; /* null: nothing */
-  bool back;
-} Seen;
-
-typedef struct Survey {
-  Placed *placed;
-  size_t count;
-  vlExtent **blocks; /* of each shape: the box of each BLOCK of its faces; null where they are
-                        not made */
-  double o[RAYS][3], d[RAYS][3];
-  Seen seen[RAYS];
-} Survey;
-
-static void corner(const vlShapeDef *d, size_t face, int k, double p[3]) {
-  const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)k];
-  for (int i = 0; i < 3; i++)
-    p[i] = v[i];
-}
-
-/* The normal as the order of the corners gives it; its length is twice the area. */
-static void face_normal(const double p[3][3], double n[3]) {
-  double a[3], b[3];
-  for (int i = 0; i < 3; i++) {
-    a[i] = p[1][i] - p[0][i];
-    b[i] = p[2][i] - p[0][i];
-  }
-  vl_cross3(a, b, n);
-}
-
-/* ---- rays -------------------------------------------------------------------------------- */
-
-static bool meets_box(const double low[3], const double high[3], const double o[3],
-                      const double d[3], double t_max) {
-  double t0 = 0, t1 = t_max;
-  for (int i = 0; i < 3; i++) {
-    double inverse = 1 / d[i], a = (low[i] - o[i]) * inverse, b = (high[i] - o[i]) * inverse;
-    if (a > b) {
-      double c = a;
-      a = b;
-      b = c;
-    }
-    t0 = a > t0 ? a : t0;
-    t1 = b < t1 ? b : t1; /* NaN: the plane of a face, which does not cut */
-  }
-  return t0 <= t1;
-}
-
-/* Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */
-static void meet_block(const Placed *p, size_t first, const double o[3], const double d[3],
-                       Seen *seen) {
-  size_t last = first + BLOCK < p->def->faces ? first + BLOCK : p->def->faces;
-  for (size_t face = first; face < last; face++) {
-    double c[3][3], n[3], q[3], r[3];
-    for (int k = 0; k < 3; k++)
-      corner(p->def, face, k, c[k]);
-    face_normal((const double(*)[3])c, n);
-    double along = vl_dot3(n, d);
-    for (int i = 0; i < 3; i++)
-      q[i] = o[i] - c[0][i];
-    double t = -vl_dot3(n, q) / along;
-    if (!(t > 0 && t < seen->t))
-      continue;
-    vl_cross3(q, d, r);
-    double u = 0, v = 0;
-    for (int i = 0; i < 3; i++) {
-      u -= (c[2][i] - c[0][i]) * r[i];
-      v += (c[1][i] - c[0][i]) * r[i];
-    }
-    u /= along;
-    v /= along;
-    if (!(u >= 0 && v >= 0 && u + v <= 1))
-      continue;
-    *seen = (Seen){.t = t, .placed = p, .back = (along > 0) != p->flip};
-  }
-}
-
-static void meet_faces(const Placed *p, const double world_o[3], const double world_d[3],
-                       Seen *seen) {
-  double o[3], d[3];
-  vl_mat4_point(&p->to_shape, world_o, o);
-  vl_mat4_vector(&p->to_shape, world_d, d);
-  for (size_t first = 0; first < p->def->faces; first += BLOCK) {
-    const vlExtent *block = &p->blocks[first / BLOCK];
-    if (meets_box(block->low, block->high, o, d, seen->t))
-      meet_block(p, first, o, d, seen);
-  }
-}
-
-static void cast(void *user, uint32_t ray, uint32_t worker) {
-  (void)worker;
-  Survey *s = user;
-  Seen *seen = &s->seen[ray];
-  *seen = (Seen){.t = INFINITY};
-  for (size_t i = 0; i < s->count; i++) {
-    const Placed *p = &s->placed[i];
-    if (meets_box(p->low, p->high, s->o[ray], s->d[ray], seen->t))
-      meet_faces(p, s->o[ray], s->d[ray], seen);
-  }
-}
-
-static double radical_inverse(uint32_t i, uint32_t base) {
-  double sum = 0, f = 1;
-  for (; i; i /= base) {
-    f /= base;
-    sum += f * (i % base);
-  }
-  return sum;
-}
-
-static void aim(Survey *s, const vlExtent *box, const double eye[3]) {
-  double size[3], middle[3];
-  for (int i = 0; i < 3; i++) {
-    size[i] = box->high[i] - box->low[i];
-    middle[i] = 0.5 * (box->low[i] + box->high[i]);
-  }
-  for (uint32_t k = 0; k < OUTSIDE; k++)
-    for (int i = 0; i < 3; i++) {
-      static const uint32_t bases[3] = {2, 3, 5};
-      s->o[k][i] = eye[i];
-      s->d[k][i] = box->low[i] + radical_inverse(k + 1, bases[i]) * size[i] - eye[i];
-    }
-  for (uint32_t k = OUTSIDE; k < RAYS; k++) {
-    /* the middle, and points towards the faces of the box */
-    uint32_t point = (k - OUTSIDE) / AROUND, i = (k - OUTSIDE) % AROUND;
-    double z = 1 - (2 * i + 1) / (double)AROUND, r = sqrt(1 - z * z),
-           turn = 2.399963229728653 * i + 0.3;
-    memcpy(s->o[k], middle, sizeof middle);
-    if (point)
-      s->o[k][(point - 1) / 2] += (point & 1 ? 0.23 : -0.23) * size[(point - 1) / 2];
-    s->d[k][0] = r * vl_precise_cos(turn);
-    s->d[k][1] = z;
-    s->d[k][2] = r * vl_precise_sin(turn);
-  }
-}
-
-/* ---- the meshes -------------------------------------------------------------------------- */
-
-/* Makes the boxes of a shape's blocks, a little larger than their faces. False: memory is
- * exhausted. */
-static bool make_blocks(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape) {
-  if (s->blocks[shape])
-    return true;
-  vlExtent *blocks = s->blocks[shape] =
-      vl_alloc_array(context, d->faces / BLOCK + 1, sizeof *blocks);
-  if (!blocks)
-    return false;
-  for (size_t first = 0; first < d->faces; first += BLOCK) {
-    vlExtent *b = &blocks[first / BLOCK];
-    *b = vl_extent_nothing;
-    for (size_t face = first; face < d->faces && face < first + BLOCK; face++)
-      for (int k = 0; k < 3; k++) {
-        double c[3];
-        corner(d, face, k, c);
-        vl_extent_grow(b, c);
-      }
-    double margin = 0;
-    for (int i = 0; i < 3; i++)
-      margin += 1e-6 * (b->high[i] - b->low[i]);
-    for (int i = 0; i < 3; i++) {
-      b->low[i] -= margin;
-      b->high[i] += margin;
-    }
-  }
-  return true;
-}
-
-static bool survey_mesh(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape,
-                        const vlMat4 *world_from_group, bool fixed) {
-  if (!make_blocks(context, s, d, shape))
-    return false;
-  vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
-  Placed *p = &s->placed[s->count];
-  if (!vl_mat4_inverse(m, &p->to_shape))
-    return true;
-  p->def = d;
-  p->blocks = s->blocks[shape];
-  p->shape = shape;
-  p->fixed = fixed;
-  p->flip = d->reverse_orientation; /* mirroring keeps the side: rays are met in shape space */
-  vlExtent box = vl_extent_nothing;
-  for (size_t i = 0; i < d->vertices; i++) {
-    double v[3] = {d->positions[3 * i], d->positions[3 * i + 1], d->positions[3 * i + 2]}, q[3];
-    vl_mat4_point(&m, v, q);
-    vl_extent_grow(&box, q);
-  }
-  memcpy(p->low, box.low, sizeof p->low);
-  memcpy(p->high, box.high, sizeof p->high);
-  return ++s->count < MAX_PLACED;
-}
-
-/* False: memory is exhausted, or the scene is too large. */
-static bool survey_meshes(const vlScene *scene, Survey *s) {
-  uint64_t faces = 0, count = scene->shapes.count + scene->instances.count;
-  for (size_t i = 0; i < scene->shapes.count; i++)
-    faces += scene->shapes.items[i].faces;
-  if (faces > MAX_FACES || count == 0)
-    return false;
-  s->placed = vl_alloc_array(scene->context, MAX_PLACED, sizeof *s->placed);
-  s->blocks = vl_alloc_zero(scene->context, scene->shapes.count, sizeof *s->blocks);
-  if (!s->placed || !s->blocks)
-    return false;
-  vlMat4 identity = vl_mat4_identity();
-  for (size_t i = 0; i < scene->shapes.count; i++) {
-    const vlShapeDef *d = &scene->shapes.items[i];
-    if (d->kind == VL_SHAPE_TRIANGLES && !d->group.index && d->faces &&
-        !survey_mesh(scene->context, s, d, i, &identity, true))
-      return false;
-  }
-  for (size_t k = 0; k < scene->instances.count; k++) {
-    vlMat4 m = vl_mat4_load(scene->instances.items[k].world_from_group);
-    for (size_t i = 0; i < scene->shapes.count; i++) {
-      const vlShapeDef *d = &scene->shapes.items[i];
-      bool member = d->group.index && d->group.index == scene->instances.items[k].group.index;
-      if (member && d->kind == VL_SHAPE_TRIANGLES && d->faces &&
-          !survey_mesh(scene->context, s, d, i, &m, false))
-        return false;
-    }
-  }
-  return s->count > 0;
-}
+enum { CONVEX = 400 }; /* faces and vertices that are compared */
 
 /* ---- the shell --------------------------------------------------------------------------- */
 
@@ -271,8 +30,8 @@ static bool is_convex(const vlShapeDef *d) {
   for (size_t face = 0; face < d->faces; face += step) {
     double c[3][3], n[3], low = 0, high = 0, length = 0;
     for (int k = 0; k < 3; k++)
-      corner(d, face, k, c[k]);
-    face_normal((const double(*)[3])c, n);
+      vl_mesh_corner(d, face, k, c[k]);
+    vl_mesh_face_normal((const double(*)[3])c, n);
     for (size_t i = 0; i < d->vertices; i += vertex_step) {
       double q[3] = {(double)d->positions[3 * i] - c[0][0],
                      (double)d->positions[3 * i + 1] - c[0][1],
@@ -290,7 +49,7 @@ static bool is_convex(const vlShapeDef *d) {
 
 /* Whether vertex normals look against the order of the corners: the object is whole, its
  * winding is wrong. */
-static bool normals_disagree(const Placed *p) {
+static bool normals_disagree(const vlProbeMesh *p) {
   const vlShapeDef *d = p->def;
   size_t against = 0, count = 0;
   if (!d->normals)
@@ -298,8 +57,8 @@ static bool normals_disagree(const Placed *p) {
   for (size_t face = 0; face < d->faces; face += d->faces / CONVEX + 1) {
     double c[3][3], n[3];
     for (int k = 0; k < 3; k++)
-      corner(d, face, k, c[k]);
-    face_normal((const double(*)[3])c, n);
+      vl_mesh_corner(d, face, k, c[k]);
+    vl_mesh_face_normal((const double(*)[3])c, n);
     const float *own = d->normals + 3 * (size_t)d->indices[3 * face];
     const double v[3] = {own[0], own[1], own[2]};
     against += vl_dot3(n, v) < 0;
@@ -310,20 +69,21 @@ static bool normals_disagree(const Placed *p) {
 
 /* The share of rays from the best point near the middle that meet something, and meet its
  * front. */
-static int best_point(const Survey *s, double *covered, double *front) {
+static int best_point(const vlProbe *s, double *covered, double *front) {
   int best = 0;
   *covered = *front = -1;
-  for (int point = 0; point < POINTS; point++) {
+  for (int point = 0; point < VL_PROBE_POINTS; point++) {
     double met = 0, faces = 0;
-    for (int i = 0; i < AROUND; i++) {
-      const Seen *seen = &s->seen[OUTSIDE + point * AROUND + i];
+    for (int i = 0; i < VL_PROBE_AROUND; i++) {
+      const vlSeen *seen = &s->seen[VL_PROBE_OUTSIDE + point * VL_PROBE_AROUND + i];
       met += seen->placed != NULL;
       faces += seen->placed && !seen->back;
     }
-    if (faces > AROUND * *front || (faces == AROUND * *front && met > AROUND * *covered)) {
+    if (faces > VL_PROBE_AROUND * *front ||
+        (faces == VL_PROBE_AROUND * *front && met > VL_PROBE_AROUND * *covered)) {
       best = point;
-      *covered = met / AROUND;
-      *front = faces / AROUND;
+      *covered = met / VL_PROBE_AROUND;
+      *front = faces / VL_PROBE_AROUND;
     }
   }
   return best;
@@ -344,10 +104,10 @@ typedef struct Backs {
   int whole;      /* by these, or by instances */
 } Backs;
 
-static Backs count_backs(const Survey *s, vlClosed *closed) {
+static Backs count_backs(const vlProbe *s, vlClosed *closed) {
   Backs backs = {.count = 0};
-  for (int i = 0; i < OUTSIDE; i++) {
-    const Seen *seen = &s->seen[i];
+  for (int i = 0; i < VL_PROBE_OUTSIDE; i++) {
+    const vlSeen *seen = &s->seen[i];
     backs.met += seen->placed != NULL;
     if (!seen->placed || !seen->back)
       continue;
@@ -380,7 +140,7 @@ static bool shows_something(const vlShapeDef *shape) {
 /* A shell whose faces look inwards: from outside one sees mostly backs, and from the middle
  * mostly fronts, of a room; or it is an object that is wound the wrong way. */
 static bool find_inward(const vlScene *scene, const vlExtent *box, const vlExtent *boxes,
-                        const Survey *s, bool objects, vlClosed *closed, double covered,
+                        const vlProbe *s, bool objects, vlClosed *closed, double covered,
                         double front) {
   const Backs backs = count_backs(s, closed);
   if (!(backs.count * 10 > backs.met * 6))
@@ -402,11 +162,11 @@ static bool find_inward(const vlScene *scene, const vlExtent *box, const vlExten
 }
 
 /* A convex shell of one shape that hides all others. */
-static bool find_outward(const vlScene *scene, const vlExtent *boxes, const Survey *s,
+static bool find_outward(const vlScene *scene, const vlExtent *boxes, const vlProbe *s,
                          vlClosed *closed, double covered) {
-  const Placed *shell = NULL;
-  for (int i = 0; i < OUTSIDE; i++) {
-    const Placed *p = s->seen[i].placed;
+  const vlProbeMesh *shell = NULL;
+  for (int i = 0; i < VL_PROBE_OUTSIDE; i++) {
+    const vlProbeMesh *p = s->seen[i].placed;
     if (p && shell && p != shell)
       return false;
     if (p)
@@ -469,14 +229,16 @@ static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *
       closed->kind = VL_CLOSED_ROOM;
 }
 
-static void free_survey(vlScene *scene, Survey *s) {
-  for (size_t i = 0; s && s->blocks && i < scene->shapes.count; i++)
-    vl_free(scene->context, s->blocks[i]);
-  if (s)
-    vl_free(scene->context, s->blocks);
-  if (s)
-    vl_free(scene->context, s->placed);
-  vl_free(scene->context, s);
+/* A room with thick walls; its shell is every mesh that has a place of its own. */
+static bool find_thick(const vlScene *scene, const vlProbe *s, const vlExtent *box,
+                       vlClosed *closed) {
+  if (!vl_thick_find(s, box, &closed->thick, closed->middle))
+    return false;
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *shape = &scene->shapes.items[i];
+    closed->shell[i] = shape->kind == VL_SHAPE_TRIANGLES && !shape->group.index && shape->faces;
+  }
+  return true;
 }
 
 bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
@@ -486,25 +248,29 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
     closed->middle[i] = 0.5 * (box->low[i] + box->high[i]);
   if (!(vl_extent_diagonal(box) > 0))
     return true;
-  Survey *s = vl_alloc_zero(scene->context, 1, sizeof *s);
+  vlProbe *s = vl_alloc_zero(scene->context, 1, sizeof *s);
   closed->shell = vl_alloc_zero(scene->context, scene->shapes.count + 1, sizeof *closed->shell);
   bool ok = s && closed->shell, found = false;
-  if (ok && survey_meshes(scene, s)) {
+  if (ok && vl_probe_make(scene, s)) {
     double covered, front;
-    aim(s, box, eye);
-    vl_parallel_for(scene->context, RAYS, cast, s);
+    vl_probe_aim(s, box, eye);
+    vl_probe_cast(scene, s, VL_PROBE_RAYS);
     int best = best_point(s, &covered, &front);
     found = closed->inward = find_inward(scene, box, boxes, s, objects, closed, covered, front);
-    found = found || find_outward(scene, boxes, s, closed, covered);
+    closed->walls = !found && find_thick(scene, s, box, closed);
+    found = found || (!closed->walls && find_outward(scene, boxes, s, closed, covered));
     if (found)
-      memcpy(closed->middle, s->o[OUTSIDE + best * AROUND], sizeof closed->middle);
+      memcpy(closed->middle, s->o[VL_PROBE_OUTSIDE + best * VL_PROBE_AROUND],
+             sizeof closed->middle);
   }
-  free_survey(scene, s);
+  vl_probe_free(scene, s);
   if (!ok)
     vl_scene_fail_memory(scene);
   if (found && closed->kind != VL_CLOSED_TURNED)
     classify(scene, box, boxes, closed);
-  if (!found) {
+  if (closed->walls)
+    closed->kind = VL_CLOSED_ROOM;
+  if (!found && !closed->walls) {
     vl_free(scene->context, closed->shell);
     closed->shell = NULL;
   }
@@ -513,19 +279,19 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
 
 bool vl_closed_reach(vlScene *scene, const double (*from)[3], const double (*toward)[3],
                      uint32_t count, double *reach) {
-  Survey *s = vl_alloc_zero(scene->context, 1, sizeof *s);
+  vlProbe *s = vl_alloc_zero(scene->context, 1, sizeof *s);
   for (uint32_t k = 0; k < count; k++)
     reach[k] = INFINITY;
-  if (s && survey_meshes(scene, s))
-    for (uint32_t first = 0; first < count; first += RAYS) {
-      const uint32_t n = count - first < RAYS ? count - first : RAYS;
+  if (s && vl_probe_make(scene, s))
+    for (uint32_t first = 0; first < count; first += VL_PROBE_RAYS) {
+      const uint32_t n = count - first < VL_PROBE_RAYS ? count - first : VL_PROBE_RAYS;
       memcpy(s->o, from + first, n * sizeof *s->o);
       memcpy(s->d, toward + first, n * sizeof *s->d);
-      vl_parallel_for(scene->context, n, cast, s);
+      vl_probe_cast(scene, s, n);
       for (uint32_t k = 0; k < n; k++)
         reach[first + k] = s->seen[k].t;
     }
-  free_survey(scene, s);
+  vl_probe_free(scene, s);
   if (!s)
     vl_scene_fail_memory(scene);
   return s != NULL;
@@ -539,10 +305,12 @@ static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face,
                            const vlClosed *closed, const double eye[3]) {
   double c[3][3], n[3], p[3], to_eye[3], to_middle[3];
   for (int k = 0; k < 3; k++) {
-    corner(d, face, k, p);
+    vl_mesh_corner(d, face, k, p);
     vl_mat4_point(m, p, c[k]);
   }
-  face_normal((const double(*)[3])c, n);
+  if (closed->walls)
+    return vl_thick_hides(&closed->thick, (const double(*)[3])c, eye);
+  vl_mesh_face_normal((const double(*)[3])c, n);
   for (int i = 0; i < 3; i++) {
     to_eye[i] = eye[i] - c[0][i];
     to_middle[i] = closed->middle[i] - c[0][i];

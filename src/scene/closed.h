@@ -3,7 +3,7 @@
 #ifndef SCENE_CLOSED_H
 #define SCENE_CLOSED_H
 
-#include "scene/extent.h"
+#include "scene/thick.h"
 
 typedef enum vlClosedKind {
   VL_CLOSED_NOT,   /* the model is seen from outside */
@@ -20,6 +20,8 @@ typedef struct vlClosed {
       *shell; /* for each shape: it is a part of the shell; null for NOT; the caller frees it */
   bool inward; /* the shell's faces look inwards */
   bool emits;  /* the shell emits light */
+  bool walls;  /* a room whose walls have an outside of their own: `thick` is set */
+  vlThick thick;
   double middle[3];
 } vlClosed;
 

@@ -83,6 +83,7 @@ typedef struct View {
   bool front_unknown;        /* the file does not say which side is its front */
   bool on_plain;             /* the model stands on a plain */
   vlExtent shown;            /* model and ground around it */
+  vlPlains plains;           /* the searches for them so far */
 } View;
 
 static double extent_along(const vlExtent *box, const double axis[3]) {
@@ -507,14 +508,14 @@ static bool find_own_view(const vlScene *scene, const vlExtent *box, View *v) {
 /* Finds the plain on which a model stands. *box becomes that of the model, and so do the
  * limits, down to the ground. */
 static void find_plain(const vlScene *scene, vlExtent *boxes, vlExtent *box, View *v) {
-  vlPlain plain;
   const int axis = upward_axis(v);
-  if (axis == 3 || !vl_plain_find(scene, boxes, axis, &plain))
+  const vlPlain *plain = axis < 3 ? vl_plain_search(scene, boxes, axis, &v->plains) : NULL;
+  if (!plain)
     return;
   v->on_plain = true;
-  v->shown = plain.shown;
-  *box = plain.model;
-  box->low[axis] = plain.shown.low[axis];
+  v->shown = plain->shown;
+  *box = plain->model;
+  box->low[axis] = plain->shown.low[axis];
   boxes[scene->groups.count] = *box;
   vl_log(scene->context, VL_LOG_DEBUG, NULL, "camera: the model stands on a wide flat ground");
 }
@@ -604,12 +605,13 @@ static bool find_boxes(vlScene *scene, bool camera, vlExtent **boxes) {
 }
 
 /* Where the direction upwards is to be found. False: the scene holds the error. */
-static bool choose_up(vlScene *scene, vlCompleteDef *done, bool camera, vlExtent **boxes) {
+static bool choose_up(vlScene *scene, vlCompleteDef *done, bool camera, vlExtent **boxes,
+                      vlPlains *plains) {
   if (!done->find_up)
     return true;
   if (!find_boxes(scene, camera, boxes))
     return false;
-  if (vl_upright_find(scene, *boxes, done->up, done->front))
+  if (vl_upright_find(scene, *boxes, plains, done->up, done->front))
     vl_log(scene->context, VL_LOG_DEBUG, NULL, "up: %s: the model stands on its base only so",
            done->up[2] != 0 ? "z" : "y");
   done->find_up = false;
@@ -643,7 +645,7 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
       done->environment != def.environment && done->environment == VL_ENVIRONMENT_STUDIO;
   View axes = {.front_unknown = def.find_up};
   vlExtent *boxes = NULL;
-  bool ok = choose_up(scene, done, camera, &boxes);
+  bool ok = choose_up(scene, done, camera, &boxes, &axes.plains);
   if (ok && !vl_scene_axes(done, axes.right, axes.up, axes.front)) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0},
                   "camera: the axes up and front make no sense");

@@ -35,7 +35,7 @@ static void visit(void *user, const vlThing *thing) {
     s->flat += surface;
 }
 
-bool vl_plain_find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain *plain) {
+static bool find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain *plain) {
   const double tenth = 0.1, most = 0.9, wide = 8, covered = 0.3, around = 0.25;
   vlExtent whole = vl_extent_nothing;
   if (scene->frame_points.count || !vl_things_are_few(scene))
@@ -67,4 +67,12 @@ bool vl_plain_find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlai
   return plain->shown.low[0] <= plain->shown.high[0] &&
          plain->shown.low[1] <= plain->shown.high[1] &&
          plain->shown.low[2] <= plain->shown.high[2];
+}
+
+const vlPlain *vl_plain_search(const vlScene *scene, const vlExtent *boxes, int axis,
+                               vlPlains *plains) {
+  if (!plains->searched[axis])
+    plains->found[axis] = find(scene, boxes, axis, &plains->plain[axis]);
+  plains->searched[axis] = true;
+  return plains->found[axis] ? &plains->plain[axis] : NULL;
 }

@@ -12,10 +12,16 @@ typedef struct vlPlain {
                      model's size to each side */
 } vlPlain;
 
-/* Whether the lowest tenth of the scene's height is a plain: nearly all of its surface lies
+/* What searches along the axes have found; all zero: none was made. */
+typedef struct vlPlains {
+  bool searched[3], found[3];
+  vlPlain plain[3];
+} vlPlains;
+/* The plain, if the lowest tenth of the scene's height is one: nearly all of its surface lies
  * flat, it has no large gaps, and it is eight times as long as all that rises above it is in
- * any direction. axis: that which is upwards. boxes: those of the groups, and the limits of
- * what counts. */
-bool vl_plain_find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain *plain);
+ * any direction. Else null. axis: that which is upwards. boxes: those of the groups, and the
+ * limits of what counts. Searches once along each axis of a scene that stays as it is. */
+const vlPlain *vl_plain_search(const vlScene *scene, const vlExtent *boxes, int axis,
+                               vlPlains *plains);
 
 #endif

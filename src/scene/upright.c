@@ -9,7 +9,6 @@
 #include "math/elementary.h"
 #include "scene/faces.h"
 #include "scene/facing.h"
-#include "scene/plain.h"
 #include "scene/posture.h"
 
 enum { DIRECTIONS = 24, LOW = 0, HIGH = 1, WHOLE = 2 };
@@ -128,9 +127,9 @@ static bool is_city(const vlScene *scene, const Ends *e, int axis) {
 
 /* Whether the model's ground, a plain or the plane of a city, is at right angles to the axis.
  */
-static bool has_ground(const vlScene *scene, const vlExtent *boxes, const Ends *e, int axis) {
-  vlPlain plain;
-  return vl_plain_find(scene, boxes, axis, &plain) || is_city(scene, e, axis);
+static bool has_ground(const vlScene *scene, const vlExtent *boxes, vlPlains *plains,
+                       const Ends *e, int axis) {
+  return vl_plain_search(scene, boxes, axis, plains) || is_city(scene, e, axis);
 }
 
 /* Whether the model is an open sheet that lies: terrain. */
@@ -328,16 +327,17 @@ static Guess guess_by_surface(const vlScene *scene, const Ends *e, int now, int 
   return change ? CHANGE : UNKNOWN;
 }
 
-bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, double up[3],
-                     double front[3]) {
+bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, vlPlains *plains,
+                     double up[3], double front[3]) {
   const int now = up[1] != 0 ? 1 : 2, other = 3 - now;
   Ends e;
-  if (!measure(scene, boxes, &e) || has_ground(scene, boxes, &e, now))
+  if (!measure(scene, boxes, &e) || has_ground(scene, boxes, plains, &e, now))
     return false;
   const Guess guess = guess_by_surface(scene, &e, now, other);
   if (guess == KEEP)
     return false;
-  if (guess == UNKNOWN && !has_ground(scene, boxes, &e, other) && !stands(&e, now, other))
+  if (guess == UNKNOWN && !has_ground(scene, boxes, plains, &e, other) &&
+      !stands(&e, now, other))
     return false;
   for (int i = 0; i < 3; i++) {
     up[i] = i == other;

@@ -3,7 +3,7 @@
 #ifndef SCENE_UPRIGHT_H
 #define SCENE_UPRIGHT_H
 
-#include "scene/extent.h"
+#include "scene/plain.h"
 
 /* Of y and z, one is `up` already. Takes the other, with its front (of z: -y, as modellers have
  * it), if the model stands on its lowest part only so: a bust on its plinth, a figure on its
@@ -11,8 +11,9 @@
  * (scene/plain.h), or the plane of a city; or if its surface is spread so: the same on both
  * sides along `up`, but above and below only along the other axis; terrain; a storey; a survey
  * in points; a chart that would look down. Otherwise up and front stay as they are, as of
- * models that lie either way. boxes: those of the groups. Returns whether they changed. */
-bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, double up[3],
-                     double front[3]);
+ * models that lie either way. boxes: those of the groups. *plains: gets the
+ * searches for plains. Returns whether they changed. */
+bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, vlPlains *plains,
+                     double up[3], double front[3]);
 
 #endif

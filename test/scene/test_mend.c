@@ -121,11 +121,71 @@ static void skies(void **state) {
   }
 }
 
+/* A room whose walls are .2 thick, of slabs or of a box in a box. */
+static void add_room(Model *m, bool slabs) {
+  const float low[3] = {0, 0, 0}, high[3] = {5, 3, 4};
+  const float inner_low[3] = {0.2f, 0.2f, 0.2f}, inner_high[3] = {4.8f, 2.8f, 3.8f};
+  if (!slabs) {
+    add_box(m, low, high, false, false);
+    add_box(m, inner_low, inner_high, true, false);
+    return;
+  }
+  for (int side = 0; side < 6; side++) {
+    float a[3], b[3];
+    for (int i = 0; i < 3; i++) {
+      a[i] = i > side / 2 ? inner_low[i] : low[i];
+      b[i] = i > side / 2 ? inner_high[i] : high[i];
+    }
+    if (side % 2)
+      a[side / 2] = inner_high[side / 2];
+    else
+      b[side / 2] = inner_low[side / 2];
+    add_box(m, a, b, false, false);
+  }
+}
+
+static size_t count_faces(const Model *m) {
+  size_t faces = 0;
+  for (size_t i = 0; i < m->scene->shapes.count; i++)
+    if (m->scene->shapes.items[i].kind == VL_SHAPE_TRIANGLES)
+      faces += m->scene->shapes.items[i].faces;
+  return faces;
+}
+
+/* The walls on the camera's side are hidden, with their outside, if there is something in the
+ * room. What is in it stays, and so do solid boxes. */
+static void thick_walls(void **state) {
+  (void)state;
+  const float furniture[3][2][3] = {{{1, 0.2f, 1}, {2, 1, 1.8f}},
+                                    {{3, 0.2f, 2.5f}, {4, 0.7f, 3.4f}},
+                                    {{0.3f, 0.2f, 3}, {0.8f, 2.2f, 3.7f}}};
+  const size_t in_room = 3 * 12;
+  for (int slabs = 0; slabs < 2; slabs++)
+    for (int furnished = 0; furnished < 2; furnished++) {
+      Model m = begin();
+      add_room(&m, slabs);
+      for (int k = 0; k < 3 && furnished; k++)
+        add_box(&m, furniture[k][0], furniture[k][1], false, false);
+      const size_t before = count_faces(&m);
+      vlCompleteDef def = first_image();
+      complete(&m, &def);
+      const size_t after = count_faces(&m);
+      if (furnished) {
+        /* three of the six walls */
+        assert_true(before - after >= 12);
+        assert_true(after >= in_room + 12);
+      } else if (slabs) {
+        assert_int_equal(after, before);
+      }
+      end(&m);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(invisible), cmocka_unit_test(complete_files_stay),
       cmocka_unit_test(outlines),  cmocka_unit_test(partly_inward),
-      cmocka_unit_test(skies),
+      cmocka_unit_test(skies),     cmocka_unit_test(thick_walls),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,7 +39,7 @@ MakeNamedMaterial "clay" "string type" "diffuse" "rgb reflectance" [0.46 0.17 0.
 MakeNamedMaterial "earth" "string type" "diffuse" "rgb reflectance" [0.06 0.04 0.03]
 MakeNamedMaterial "bark" "string type" "diffuse" "rgb reflectance" [0.14 0.09 0.06]
 MakeNamedMaterial "leaf" "string type" "diffusetransmission" "rgb reflectance" [0.05 0.13 0.04] "rgb transmittance" [0.12 0.22 0.03]
-MakeNamedMaterial "orange" "string type" "coateddiffuse" "rgb reflectance" [0.85 0.30 0.03] "float roughness" 0.3
+MakeNamedMaterial "orange" "string type" "coateddiffuse" "rgb reflectance" [0.95 0.44 0.05] "float roughness" 0.3
 
 """
 

@@ -334,6 +334,10 @@ static bool open_shape(vlScene *scene, vlShapeDef *d, const vlClosed *closed,
     memcpy(kept + 3 * (size_t)n++, d->indices + 3 * face, 3 * sizeof *kept);
   }
   *count += d->faces - n;
+  if (n == d->faces) {
+    vl_free(scene->context, kept);
+    return true;
+  }
   if (n == 0) {
     kept[0] = kept[1] = kept[2] = d->indices[0];
     n = 1;

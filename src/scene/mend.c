@@ -58,9 +58,8 @@ static void add_face(void *user, const vlShapeDef *shape, const vlFace *face) {
   vlExtent grown = first ? vl_extent_nothing : part->box;
   for (int k = 0; k < 3; k++)
     vl_extent_grow(&grown, face->corners[k]);
-  const double *before = first ? face->middle : part->box.low;
   for (int i = 0; i < 3; i++)
-    part->volume += part->sum[i] * (before[i] - grown.low[i]);
+    part->volume += part->sum[i] * (origin[i] - grown.low[i]);
   part->box = grown;
 }
 

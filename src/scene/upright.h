@@ -11,8 +11,8 @@
  * (scene/plain.h), or the plane of a city; or if its surface is spread so: the same on both
  * sides along `up`, but above and below only along the other axis; terrain; a storey; a survey
  * in points; a chart that would look down. Otherwise up and front stay as they are, as of
- * models that lie either way. boxes: those of the groups. *plains: gets the
- * searches for plains. Returns whether they changed. */
+ * models that lie either way. boxes: those of the groups. *plains: gets the searches for
+ * plains. Returns whether they changed. */
 bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, vlPlains *plains,
                      double up[3], double front[3]);
 

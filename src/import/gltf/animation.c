@@ -227,7 +227,7 @@ bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
   if (g->animation_count == 0)
     return true;
   size_t whole = wanted ? vl_gltf_find(g, "animations", wanted) : 0;
-  if (whole != SIZE_MAX)
+  if (whole != VL_GLTF_NONE)
     return visit(g, whole);
   bool all = vl_text_is(wanted, "all");
   for (size_t i = 0; all && i < g->animation_count; i++)
@@ -241,7 +241,7 @@ bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
     memcpy(name, from, n);
     name[n] = 0;
     size_t one = vl_gltf_find(g, "animations", name);
-    if (one == SIZE_MAX)
+    if (one == VL_GLTF_NONE)
       return fail_animation(g, name);
     if (!visit(g, one))
       return false;

@@ -12,7 +12,7 @@ size_t vl_gltf_find(const vlGltf *g, const char *array, const char *name) {
     if (vl_text_is(vl_gltf_name(json_array_get(items, i)), name))
       return i;
   unsigned long number = strtoul(name, &end, 10);
-  return *end || end == name || number >= json_array_size(items) ? SIZE_MAX : number;
+  return *end || end == name || number >= json_array_size(items) ? VL_GLTF_NONE : number;
 }
 
 bool vl_gltf_fail_choice(vlGltf *g, const char *what, const json_t *items, const char *name,

@@ -28,7 +28,7 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def,
               .scene = scene,
               .def = def ? def : &plain,
               .path = path,
-              .copy = SIZE_MAX};
+              .copy = VL_GLTF_NONE};
   g.top.g = &g;
   vl_import_plain_settings(scene);
   bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g);

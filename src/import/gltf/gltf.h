@@ -15,21 +15,21 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 
+/* The index of nothing. */
+#define VL_GLTF_NONE SIZE_MAX
+
 /* A location in the JSON: a key, and an index for an element of an array. Locations are linked
  * on the caller's stack, up to that of the whole file (vlGltf.top). */
 typedef struct vlGltfLocation {
   const struct vlGltfLocation *up; /* null: the whole file, which g reads */
   const char *key;
-  size_t index; /* SIZE_MAX: none */
+  size_t index; /* VL_GLTF_NONE: none */
   struct vlGltf *g;
 } vlGltfLocation;
-#define VL_GLTF_KEY(up, key) (&(vlGltfLocation){(up), (key), SIZE_MAX, NULL})
+#define VL_GLTF_KEY(up, key) (&(vlGltfLocation){(up), (key), VL_GLTF_NONE, NULL})
 #define VL_GLTF_ITEM(up, key, index) (&(vlGltfLocation){(up), (key), (index), NULL})
 /* An element of one of the root's arrays. */
 #define VL_GLTF_ROOT(g, key, index) VL_GLTF_ITEM(&(g)->top, key, index)
-
-/* The index of nothing. */
-#define VL_GLTF_NONE SIZE_MAX
 
 typedef struct vlGltfBuffer {
   const uint8_t *data;
@@ -148,7 +148,7 @@ typedef struct vlGltf {
   const char **material_labels; /* one per material */
   vlNameTable shape_names, instance_names, material_names;
   vlRepairs repairs;
-  size_t copy;       /* which of EXT_mesh_gpu_instancing's poses is placed; SIZE_MAX: none */
+  size_t copy; /* which of EXT_mesh_gpu_instancing's poses is placed; VL_GLTF_NONE: none */
   uint32_t reported; /* bit mask of warnings (VL_GLTF_REPORTED_*) that were given */
   size_t shapes_made, cameras_seen;
 } vlGltf;
@@ -294,8 +294,8 @@ bool vl_gltf_count_unread(vlGltf *g);
 /* choices.c: lists the file's scenes, cameras, animations and variants. Call after
  * vl_gltf_draw. */
 bool vl_gltf_list_choices(vlGltf *g);
-/* The index of the element of the root's array with this name, else of this number; SIZE_MAX:
- * none. */
+/* The index of the element of the root's array with this name, else of this number;
+ * VL_GLTF_NONE: none. */
 size_t vl_gltf_find(const vlGltf *g, const char *array, const char *name);
 /* Reports that there is none, with the names that are there, of `size` bytes at most, 300. */
 bool vl_gltf_fail_choice(vlGltf *g, const char *what, const json_t *items, const char *name,
@@ -338,7 +338,7 @@ void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
  * camera must be chosen. */
 double vl_gltf_point_radius(const vlGltf *g, const uint32_t *order, size_t count);
 
-/* Adds mesh `index` for a node. A null node, with node_index SIZE_MAX, adds the mesh to a
+/* Adds mesh `index` for a node. A null node, with node_index VL_GLTF_NONE, adds the mesh to a
  * group, in the mesh's own space. */
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index,
                       vlGroupId group, vlMat4 pose);

@@ -17,7 +17,7 @@ size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t
   size_t n = vl_gltf_write_location(location->up, text, size);
   if (n + 1 >= size)
     return n;
-  int wrote = location->index == SIZE_MAX
+  int wrote = location->index == VL_GLTF_NONE
                   ? snprintf(text + n, size - n, "%s%.60s", n ? "." : "", location->key)
                   : snprintf(text + n, size - n, "%s%.60s[%zu]", n ? "." : "", location->key,
                              location->index);
@@ -35,7 +35,7 @@ const json_t *vl_gltf_json(const vlGltfLocation *at) {
     key += sizeof within - 1;
   }
   value = json_object_get(value, key);
-  return at->index == SIZE_MAX ? value : json_array_get(value, at->index);
+  return at->index == VL_GLTF_NONE ? value : json_array_get(value, at->index);
 }
 
 enum { MESSAGE = 512 };

@@ -132,14 +132,15 @@ void vl_gltf_free_labels(vlGltf *g) {
 /* nodes[3], or nodes[3].copies[7] where EXT_mesh_gpu_instancing places the node several
  * times. */
 static int print_node(const vlGltf *g, size_t node, char *text, size_t size) {
-  return g->copy == SIZE_MAX ? snprintf(text, size, "nodes[%zu]", node)
-                             : snprintf(text, size, "nodes[%zu].copies[%zu]", node, g->copy);
+  return g->copy == VL_GLTF_NONE
+             ? snprintf(text, size, "nodes[%zu]", node)
+             : snprintf(text, size, "nodes[%zu].copies[%zu]", node, g->copy);
 }
 
 static void append_copy(const vlGltf *g, char name[VL_LABEL_SIZE]) {
   char number[24];
   snprintf(number, sizeof number, "%zu", g->copy);
-  if (g->copy != SIZE_MAX)
+  if (g->copy != VL_GLTF_NONE)
     vl_label_append(name, number);
 }
 
@@ -174,7 +175,7 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapeIndices *at, vlLabel *label
       at->material == VL_GLTF_NONE ? NULL : name_of(vl_gltf_item(g, "materials", at->material));
   size_t n = 0;
   snprintf(number, sizeof number, "meshes[%zu]", at->mesh);
-  if (at->node == SIZE_MAX) {
+  if (at->node == VL_GLTF_NONE) {
     vl_label_append(name, mesh ? mesh : number);
   } else {
     snprintf(name, sizeof name, "%s", g->node_labels[at->node]);
@@ -197,7 +198,7 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapeIndices *at, vlLabel *label
                     material && material_tells(primitives, at->primitive) ? material : number);
   *label = (vlLabel){.path = path, .place = location};
   return vl_label_make_unique(g->scene, &g->shape_names, name,
-                              at->node == SIZE_MAX ? at->mesh : at->node, &label->name) &&
+                              at->node == VL_GLTF_NONE ? at->mesh : at->node, &label->name) &&
          vl_scene_copy_string(g->scene, &label->path) &&
          vl_scene_copy_string(g->scene, &label->place);
 }

@@ -213,7 +213,7 @@ static bool group_mesh(vlGltf *g, size_t mesh) {
   const char *name = vl_gltf_name(vl_gltf_item(g, "meshes", mesh));
   m->group = vl_scene_add_group(g->scene, name ? name : "");
   m->grouped = true;
-  return vl_gltf_add_mesh(g, mesh, NULL, SIZE_MAX, m->group, vl_mat4_identity());
+  return vl_gltf_add_mesh(g, mesh, NULL, VL_GLTF_NONE, m->group, vl_mat4_identity());
 }
 
 /* Adds a moving instance. A deforming mesh gets a group of its own. Returns -1 when two
@@ -291,7 +291,7 @@ static bool draw_node(vlGltf *g, size_t i) {
     ok = place_mesh(g, mesh, node, i, vl_mat4_identity());
   for (g->copy = 0; ok && g->copy < count; g->copy++)
     ok = place_mesh(g, mesh, node, i, poses[g->copy]);
-  g->copy = SIZE_MAX;
+  g->copy = VL_GLTF_NONE;
   vl_free(g->context, poses);
   return ok;
 }
@@ -384,7 +384,7 @@ bool vl_gltf_draw(vlGltf *g) {
   size_t chosen = index == VL_GLTF_NONE ? 0 : index;
   if (g->def->scene)
     chosen = vl_gltf_find(g, "scenes", g->def->scene);
-  if (chosen == SIZE_MAX)
+  if (chosen == VL_GLTF_NONE)
     return vl_gltf_fail_choice(g, "scene", json_object_get(g->root, "scenes"), g->def->scene,
                                200);
   const vlGltfLocation *at = VL_GLTF_ROOT(g, "scenes", chosen);

@@ -128,7 +128,7 @@ static void read_unused(Check *c) {
     report_unused(c, "meshes", i);
     if (c->used[i] & HAS_NODE)
       continue; /* read with its node */
-    vl_gltf_add_mesh(g, i, NULL, SIZE_MAX, (vlGroupId){0}, vl_mat4_identity());
+    vl_gltf_add_mesh(g, i, NULL, VL_GLTF_NONE, (vlGroupId){0}, vl_mat4_identity());
     flush(c);
   }
   for (size_t i = 0; i < g->node_count; i++)

@@ -48,11 +48,8 @@ static vlResult set_header(Develop *d, const vlReceipt *receipt, vlError *error)
     return result; /* no command makes this image */
   vlReceipt *own = NULL;
   result = vl_receipt_of_image(receipt, spp, &own, NULL);
-  if (result == VL_OK) {
-    const vlAttribute made = {
-        .name = RECEIPT_ATTRIBUTE, .type = VL_ATTRIBUTE_STRING, .string = vl_receipt_text(own)};
-    result = vl_image_set_attribute(d->image, &made);
-  }
+  if (result == VL_OK)
+    result = attributes_set_text(d->image, RECEIPT_ATTRIBUTE, vl_receipt_text(own));
   vl_receipt_destroy(own);
   return result;
 }
@@ -108,9 +105,7 @@ static int run_develop(const Arguments *arguments, vlContext *context) {
   memset(&d, 0, sizeof d);
   d.context = context;
   Outputs *outputs = &d.outputs;
-  for (int i = 0; i < arguments->text_count; i++)
-    outputs->paths[i] = arguments->texts[i];
-  outputs->count = arguments->text_count;
+  outputs_take_names(outputs, arguments);
   outputs->half = v[DEVELOP_HALF].given;
   outputs->to_stdout = true;
   outputs->view = (vlView)option_count(&v[DEVELOP_VIEW], VL_VIEW_STANDARD);

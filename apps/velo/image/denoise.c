@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "image/image.h"
+#include "render/attributes.h"
 #include "render/job.h"
 #include "render/output_names.h"
 #include "render/progress.h"
@@ -28,13 +29,11 @@ static int run_denoise(const Arguments *arguments, vlContext *context) {
   report_setup(false, v[DENOISE_VERBOSE].given ? REPORT_VERBOSE : REPORT_NORMAL);
   if (!arguments->text_count)
     return report_usage("where to? -o FILE");
-  Outputs outputs = {.count = arguments->text_count,
-                     .to_stdout = true,
+  Outputs outputs = {.to_stdout = true,
                      .half = v[DENOISE_HALF].given,
                      .view = (vlView)option_count(&v[DENOISE_VIEW], VL_VIEW_STANDARD),
                      .exposure = (float)v[DENOISE_EXPOSURE].number};
-  for (int i = 0; i < arguments->text_count; i++)
-    outputs.paths[i] = arguments->texts[i];
+  outputs_take_names(&outputs, arguments);
   int status = outputs_check_names(&outputs);
   if (status < 0)
     status = outputs_check_folders(&outputs);
@@ -78,10 +77,8 @@ void denoise_report(const vlDenoiseStats *stats) {
 }
 
 vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {
-  const vlAttribute name = {.name = "velo.denoiser",
-                            .type = VL_ATTRIBUTE_STRING,
-                            .string = choice_name(denoiser_choices, (int)denoiser)};
-  return vl_image_set_attribute(clean, &name);
+  return attributes_set_text(clean, "velo.denoiser",
+                             choice_name(denoiser_choices, (int)denoiser));
 }
 
 static Option denoise_options[] = {

@@ -43,8 +43,8 @@ vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name,
   return result;
 }
 
-vlResult attributes_set_eye(vlImage *image, const char *view) {
-  const vlAttribute attribute = {.name = "view", .type = VL_ATTRIBUTE_STRING, .string = view};
+vlResult attributes_set_text(vlImage *image, const char *name, const char *text) {
+  const vlAttribute attribute = {.name = name, .type = VL_ATTRIBUTE_STRING, .string = text};
   return vl_image_set_attribute(image, &attribute);
 }
 
@@ -57,5 +57,5 @@ vlResult attributes_make(const Job *job, const char *eye, vlImage **image) {
   vlResult result = vl_image_create(job->context, &def, image);
   if (result == VL_OK)
     result = attributes_set(*image, job, job->defs->render.spp);
-  return result == VL_OK && eye ? attributes_set_eye(*image, eye) : result;
+  return result == VL_OK && eye ? attributes_set_text(*image, "view", eye) : result;
 }

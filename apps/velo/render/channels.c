@@ -269,10 +269,8 @@ vlResult channels_describe(const Channels *c, vlImage *image) {
 vlResult channels_describe_mode(const Channels *c, vlImage *image) {
   if (!c->bits)
     return VL_OK;
-  const vlAttribute mode = {.name = "velo.channels",
-                            .type = VL_ATTRIBUTE_STRING,
-                            .string = choice_name(channel_mode_choices, (int)c->mode)};
-  return vl_image_set_attribute(image, &mode);
+  return attributes_set_text(image, "velo.channels",
+                             choice_name(channel_mode_choices, (int)c->mode));
 }
 
 void channels_free(Channels *c) {

@@ -141,6 +141,28 @@ int child_finish(Child *child, bool abandon, ChildLine which, char *line, size_t
   return status;
 }
 
+int child_start_apart(pid_t *child, const char *program, char *const *words,
+                      const char *messages) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages, O_WRONLY | O_CREAT, 0600);
+  const int code = posix_spawn(child, program, &actions, NULL, words, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  return code;
+}
+
+void child_first_line(const char *messages, char *line, size_t size) {
+  FILE *file = fopen(messages, "r");
+  line[0] = 0;
+  if (file && !fgets(line, (int)size, file))
+    line[0] = 0;
+  if (file)
+    fclose(file);
+  line[strcspn(line, "\n")] = 0;
+}
+
 void child_end_text(int status, char *text, size_t size) {
   if (WIFSIGNALED(status))
     snprintf(text, size, "it was ended by signal %d", WTERMSIG(status));

@@ -35,6 +35,12 @@ bool child_write(const Child *child, const char *data, size_t size);
  * Returns the status of waitpid; -1: the child is not known. */
 typedef enum ChildLine { CHILD_FIRST_LINE, CHILD_LAST_LINE } ChildLine;
 int child_finish(Child *child, bool abandon, ChildLine which, char *line, size_t size);
+/* Starts a program that reads and writes nothing but its files. messages: the file of its
+ * standard error. Returns as child_start. */
+int child_start_apart(pid_t *child, const char *program, char *const *words,
+                      const char *messages);
+/* The first line of such a file; empty: there is none. */
+void child_first_line(const char *messages, char *line, size_t size);
 /* How it ended: "it ended with exit code 3". */
 void child_end_text(int status, char *text, size_t size);
 

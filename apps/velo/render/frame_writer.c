@@ -233,7 +233,7 @@ static int write_image(FrameWriter *w, FrameImage *p) {
     if (result == VL_OK && w->frames->trajectory)
       result = attributes_set_frame(p->images[v], p->frame.number, pose->name, pose->time);
     if (result == VL_OK && *w->frames->view_names[v])
-      result = attributes_set_eye(p->images[v], w->frames->view_names[v]);
+      result = attributes_set_text(p->images[v], "view", w->frames->view_names[v]);
     if (result == VL_OK)
       result = channels_describe(&p->channels[v], p->images[v]);
     const ReceiptImage which =

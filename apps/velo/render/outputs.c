@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/options.h"
 #include "cli/report.h"
 #include "image/display.h"
 #include "render/exposure.h"
@@ -95,6 +94,11 @@ static int fail_suffix(const char *path) {
   const char *near = dot ? did_you_mean(".", dot + 1, names, count) : "";
   return report_usage(
       "output \"%s\": the suffix must be .exr, .png, .jpg, .hdr, .pfm or .tga%s", path, near);
+}
+
+void outputs_take_names(Outputs *outputs, const Arguments *arguments) {
+  outputs->count = arguments->text_count;
+  memcpy(outputs->paths, arguments->texts, sizeof arguments->texts);
 }
 
 int outputs_check_names(const Outputs *outputs) {

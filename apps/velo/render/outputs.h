@@ -5,6 +5,7 @@
 #ifndef APP_RENDER_OUTPUTS_H
 #define APP_RENDER_OUTPUTS_H
 
+#include "cli/options.h"
 #include "velo/image.h"
 
 enum { MAX_OUTPUTS = 32 };
@@ -59,6 +60,8 @@ int output_check_drawing(const char *path);
 bool outputs_any(const Outputs *outputs, bool (*test)(const char *path));
 /* The largest width and height of the format. */
 uint32_t output_largest_side(const char *path);
+/* Takes the names that the command line gives. */
+void outputs_take_names(Outputs *outputs, const Arguments *arguments);
 /* Checks that every name has a suffix that velo writes and is given once. Does not access the
  * file system. Returns -1, or the exit code after reporting the error. */
 int outputs_check_names(const Outputs *outputs);

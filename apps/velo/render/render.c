@@ -173,9 +173,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given)
     return report_usage("--quiet and --verbose exclude each other");
   Outputs *outputs = &render->outputs;
-  for (int i = 0; i < arguments->text_count; i++)
-    outputs->paths[i] = arguments->texts[i];
-  outputs->count = arguments->text_count;
+  outputs_take_names(outputs, arguments);
   render->film_plan =
       (FilmPlan){.path = v[v[RENDER_FILM].given ? RENDER_FILM : RENDER_CONTINUE].text,
                  .from = render->resumed.path,

@@ -2,10 +2,8 @@
  * shares only the description of the scene with velo. It is a program of its own, started once
  * for each replicate, without a shell. */
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +13,7 @@
 
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "render/child.h"
 #include "render/job.h"
 #include "render/progress.h"
 #include "scene/verify.h"
@@ -75,10 +74,10 @@ int verify_reference_find(Verify *v, const Arguments *arguments, const OptionVal
 
 /* ---- one look ---------------------------------------------------------------------------- */
 
-typedef struct Child {
+typedef struct Replicate {
   pid_t pid;
   uint32_t replicate;
-} Child;
+} Replicate;
 
 typedef struct Look {
   Verify *v;
@@ -87,7 +86,7 @@ typedef struct Look {
   uint32_t spp, count, next; /* replicates, and the next one to start */
   double *rows;              /* means of the replicates; null: nothing is kept */
   char folder[32];           /* of the images: N.exr, and of what the program says: N.txt */
-  Child children[MAX_CHILDREN];
+  Replicate children[MAX_CHILDREN];
   uint32_t running;
   bool refused;
   vlError *error;
@@ -120,15 +119,9 @@ static vlResult start(Look *l) {
       "--color",    color,      "--resolution", size,       NULL};
   char *arguments[sizeof words / sizeof *words];
   memcpy(arguments, words, sizeof words);
-  Child *child = &l->children[l->running];
-  *child = (Child){.replicate = l->next};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, text, O_WRONLY | O_CREAT, 0600);
-  const int wrong = posix_spawn(&child->pid, v->reference, &actions, NULL, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
+  Replicate *child = &l->children[l->running];
+  *child = (Replicate){.replicate = l->next};
+  const int wrong = child_start_apart(&child->pid, v->reference, arguments, text);
   if (wrong)
     return fail(l, strerror(wrong));
   l->running++;
@@ -140,14 +133,7 @@ static vlResult start(Look *l) {
 static void read_text(const Look *l, uint32_t replicate, char *line, size_t size) {
   char path[64];
   name_file(l, replicate, "txt", path);
-  line[0] = 0;
-  FILE *file = fopen(path, "r");
-  if (!file)
-    return;
-  if (!fgets(line, (int)size, file))
-    line[0] = 0;
-  fclose(file);
-  line[strcspn(line, "\n")] = 0;
+  child_first_line(path, line, size);
   for (char *c = line; *c; c++)
     if ((unsigned char)*c < 0x20 || *c == 0x7f)
       *c = '?';
@@ -210,7 +196,7 @@ static vlResult finish(Look *l, uint32_t replicate, int status) {
 static vlResult collect(Look *l) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < l->running && result == VL_OK;) {
-    const Child child = l->children[i];
+    const Replicate child = l->children[i];
     int status;
     if (waitpid(child.pid, &status, WNOHANG) == 0) {
       i++;

@@ -8,6 +8,7 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/image.h"
+#include "render/attributes.h"
 #include "render/output_names.h"
 #include "render/pattern.h"
 #include "sensor/sensor.h"
@@ -124,10 +125,8 @@ static vlResult add_number(vlImage *image, const char *name, double value) {
 static vlResult describe(const Expose *e, const vlExposureDef *exposure) {
   const vlSensorDef *def = vl_sensor_def(e->sensor);
   char text[2 * VL_SENSOR_CELLS + 1];
-  vlAttribute pattern = {.name = "sensorPattern",
-                         .type = VL_ATTRIBUTE_STRING,
-                         .string = vl_sensor_pattern(def, text)};
-  vlResult result = vl_image_set_attribute(e->electrons, &pattern);
+  vlResult result =
+      attributes_set_text(e->electrons, "sensorPattern", vl_sensor_pattern(def, text));
   if (result == VL_OK)
     result = vl_exposure_write_window(exposure, e->electrons);
   if (result == VL_OK)

@@ -79,11 +79,11 @@ static bool render_colours(Engine *e, uint32_t scale) {
       !warps && !e->first_runs && engine_can_denoise(e, engine_pixels(e) / (scale * scale));
   if (!warps)
     engine_render_in_parts(&part, &render, e->coarse_seconds);
-  double start = engine_clock();
+  double start = monotonic_seconds();
   if (result == VL_OK)
     result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
   if (result == VL_OK) {
-    engine_note_speed(&e->coarse_seconds, stats.camera_rays, engine_clock() - start);
+    engine_note_speed(&e->coarse_seconds, stats.camera_rays, monotonic_seconds() - start);
     if (warps)
       publish_moved(e, film, scale);
     else if (!part.denoise || !engine_denoise(&part, def.crop[3] - def.crop[1]))
@@ -155,7 +155,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
     def.film = few;
     def.render = &render;
   }
-  double start = engine_clock();
+  double start = monotonic_seconds();
   if (result == VL_OK)
     result = vl_render_channels(e->model.world, &camera, &def, &floats, &ids, &error);
   vlImage *flow =
@@ -165,7 +165,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
     if (e->now.channel != CHANNEL_ERROR && !light)
       engine_note_speed(&e->channel_seconds,
                         (uint64_t)vl_image_width(image) * vl_image_height(image),
-                        engine_clock() - start);
+                        monotonic_seconds() - start);
     const FrameKind kind = {
         .format = FRAME_FLOAT,
         .channels = vl_image_channels(image) < 3 ? vl_image_channels(image) : 3,

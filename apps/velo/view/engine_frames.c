@@ -10,7 +10,7 @@
 #define PART_SECONDS 0.4
 
 void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
-  double start = engine_clock();
+  double start = monotonic_seconds();
   const uint32_t scale = kind->scale;
   const float *matrix = kind->format == FRAME_HALF && !kind->developed
                             ? frame_to_rec709(e->model.job.defs->film.space)
@@ -31,7 +31,7 @@ void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
   frame->moved = kind->moved;
   server_show(e->server, frame);
   frame_drop(frame);
-  e->published = engine_clock();
+  e->published = monotonic_seconds();
   e->publish_seconds = e->published - start;
   engine_warp_keep(e, image, kind);
 }
@@ -134,14 +134,14 @@ static void publish_colours(Engine *e, const vlFilm *film, uint32_t scale, uint3
 }
 
 void engine_publish_film(Engine *e, const vlFilm *film, uint32_t scale, uint32_t rows) {
-  double start = engine_clock(), used = engine_thread_seconds();
+  double start = monotonic_seconds(), used = engine_thread_seconds();
   if (e->now.channel == CHANNEL_LUMINANCE)
     publish_luminance(e, film, scale);
   else if (e->now.channel == CHANNEL_CAMERA)
     engine_publish_camera(e, film, scale);
   else
     publish_colours(e, film, scale, rows);
-  e->publish_seconds = engine_clock() - start;
+  e->publish_seconds = monotonic_seconds() - start;
   e->frame_seconds += engine_thread_seconds() - used;
 }
 

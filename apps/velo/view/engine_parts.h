@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 
+#include "render/progress.h"
 #include "velo/sensor_raw.h"
 #include "view/camera_edit.h"
 #include "view/engine.h"
@@ -204,7 +205,6 @@ void engine_set_tracer(vlRenderDef *render, ViewTracer tracer);
 /* The tracer of the image that is shown; takes the lock. */
 ViewTracer engine_shown(Engine *engine);
 
-double engine_clock(void);
 /* Seconds of processor time of the calling thread; of the whole program. */
 double engine_thread_seconds(void);
 double engine_program_seconds(void);

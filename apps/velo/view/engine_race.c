@@ -153,10 +153,10 @@ bool engine_race(Engine *e) {
   def.cancel = e->stop;
   e->racing = true;
   status_tell(e, false);
-  double start = engine_clock();
+  double start = monotonic_seconds();
   vlResult result = vl_choose_tracer(e->model.world, &e->now.camera.made, &defs.film, &def,
                                      kind == RACE_TRACERS, &choice, &error);
-  e->rendered += engine_clock() - start;
+  e->rendered += monotonic_seconds() - start;
   e->racing = false;
   if (result == VL_CANCELLED)
     return false;

@@ -27,10 +27,6 @@ static double read_clock(clockid_t clock) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-double engine_clock(void) {
-  return read_clock(CLOCK_MONOTONIC);
-}
-
 double engine_thread_seconds(void) {
   return read_clock(CLOCK_THREAD_CPUTIME_ID);
 }
@@ -62,7 +58,7 @@ void engine_interrupt(Engine *engine) {
   if (engine->first_runs && engine->clients && !engine->quit)
     return;
   if (engine->interrupted <= 0)
-    engine->interrupted = engine_clock();
+    engine->interrupted = monotonic_seconds();
   vl_cancel_request(engine->stop);
 }
 
@@ -122,7 +118,7 @@ static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most)
 static void publish_if_due(Engine *e) {
   if (engine_warp_stays(e) && e->now.channel == 0)
     return;
-  double now = engine_clock(), share = 0.25 / (1 + 2 * e->rendered);
+  double now = monotonic_seconds(), share = 0.25 / (1 + 2 * e->rendered);
   bool last = vl_film_spp(e->film) >= e->now.spp;
   if (share < publish_share)
     share = publish_share;
@@ -163,7 +159,7 @@ static bool denoise_film(Engine *e) {
 }
 
 static void tell_if_due(Engine *e, bool always) {
-  double now = engine_clock();
+  double now = monotonic_seconds();
   if (!always && now - e->reported < status_seconds)
     return;
   e->reported = now;
@@ -203,10 +199,10 @@ static bool render_pass(Engine *e) {
   if (first && !e->successor && e->now.channel == 0)
     engine_render_in_parts(&part, &render,
                            e->pixel_seconds > 0 ? e->pixel_seconds : e->coarse_seconds);
-  double start = engine_clock();
+  double start = monotonic_seconds();
   vlResult result =
       vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);
-  double seconds = engine_clock() - start;
+  double seconds = monotonic_seconds() - start;
   if (part.clean && result == VL_OK) /* parts of it are shown */
     engine_denoise(&part, part.crop[3] - part.crop[1]);
   engine_free_part(&part);
@@ -279,7 +275,7 @@ static bool take_wanted(Engine *e) {
   e->rendered = 0;
   e->noise = NAN;
   e->looked = 0;
-  e->begun = engine_clock();
+  e->begun = monotonic_seconds();
   return true;
 }
 
@@ -297,7 +293,7 @@ static bool has_work(const Engine *e) {
 static bool wait_for_work(Engine *e) {
   engine_lock(e);
   if (e->interrupted > 0)
-    e->stop_seconds = fmax(e->stop_seconds, engine_clock() - e->interrupted);
+    e->stop_seconds = fmax(e->stop_seconds, monotonic_seconds() - e->interrupted);
   e->interrupted = 0;
   while (!has_work(e))
     pthread_cond_wait(&e->wake, &e->lock);

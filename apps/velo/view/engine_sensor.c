@@ -344,7 +344,7 @@ static vlResult develop(Engine *e, vlImage **image, vlError *error) {
 }
 
 void engine_publish_camera(Engine *e, const vlFilm *film, uint32_t scale) {
-  const double start = engine_clock();
+  const double start = monotonic_seconds();
   vlError error = {0};
   vlImage *image = NULL;
   vlResult result = take_sensor(e, &error);
@@ -361,7 +361,7 @@ void engine_publish_camera(Engine *e, const vlFilm *film, uint32_t scale) {
                           .developed = true};
   if (result == VL_OK) {
     engine_publish(e, image, &kind);
-    engine_tell_exposure(e, engine_clock() - start);
+    engine_tell_exposure(e, monotonic_seconds() - start);
   } else {
     status_error(e, &error, result);
   }

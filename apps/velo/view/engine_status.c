@@ -78,13 +78,13 @@ static void estimate_noise(Engine *e) {
 }
 
 void status_tell(Engine *e, bool estimate) {
-  double now = engine_clock(), cost = now - e->looked;
+  double now = monotonic_seconds(), cost = now - e->looked;
   uint32_t spp = e->film ? vl_film_spp(e->film) : 0;
   const bool stale = isnan(e->noise) || e->noise_spp != spp;
   if (stale && (estimate || cost > 2 + 0.25 * e->rendered)) {
     estimate_noise(e);
     e->noise_spp = spp;
-    e->looked = engine_clock();
+    e->looked = monotonic_seconds();
   }
   Json *json = json_text_begin("status");
   if (!json)

@@ -2,10 +2,8 @@
  * without a shell, and compares the bytes of its image with those of the image that the page
  * showed. */
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +14,7 @@
 
 #include "cli/report.h"
 #include "cli/sha256.h"
+#include "render/child.h"
 #include "render/outputs.h"
 #include "view/engine_copied.h"
 #include "view/engine_status.h"
@@ -109,14 +108,7 @@ static int find_words(Verification *v, char *words[MAX_WORDS]) {
 static bool start(Verification *v, pid_t *child) {
   char *words[MAX_WORDS];
   find_words(v, words);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, v->report, O_WRONLY | O_CREAT,
-                                   0600);
-  const int wrong = posix_spawn(child, "/proc/self/exe", &actions, NULL, words, environ);
-  posix_spawn_file_actions_destroy(&actions);
+  const int wrong = child_start_apart(child, "/proc/self/exe", words, v->report);
   if (wrong)
     return fail(v, "the command cannot be started", strerror(wrong));
   setpriority(PRIO_PROCESS, (id_t)*child, niceness);
@@ -144,13 +136,8 @@ static bool wait_for(Verification *v, pid_t child) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == STATUS_OK)
     return true;
-  char line[200] = "";
-  FILE *report = fopen(v->report, "r");
-  if (report && !fgets(line, sizeof line, report))
-    line[0] = 0;
-  if (report)
-    fclose(report);
-  line[strcspn(line, "\n")] = 0;
+  char line[200];
+  child_first_line(v->report, line, sizeof line);
   return fail(v, "the command made no image", line[0] ? line : NULL);
 }
 

@@ -44,9 +44,11 @@ else
   skip read_only_file "root may write anything"
 fi
 
+# The second progress image is written after ten seconds.
+
 # ---- a folder that vanishes ------------------------------------------------------------------------------------------
 mkdir gone
-"$VELO" render scene.pbrt -o gone/a.exr -o stays.exr --time 14s 2>gone.txt &
+"$VELO" render scene.pbrt -o gone/a.exr -o stays.exr --time 12s --threads 1 2>gone.txt &
 process=$!
 wait_for gone/a.part.exr
 rm -r gone
@@ -62,7 +64,7 @@ expect_text vanished_folder_is_noticed 'progress image: cannot write gone/a.part
 if [ "$(id -u)" = 0 ] && mkdir small && mount -t tmpfs -o size=200k none small 2>/dev/null; then
   printf old >small/a.exr
   dd if=/dev/zero of=small/fill bs=1k count=190 2>/dev/null
-  "$VELO" render scene.pbrt -o small/a.exr --time 26s 2>full.txt &
+  "$VELO" render scene.pbrt -o small/a.exr --time 12s --threads 1 2>full.txt &
   process=$!
   sleep 4
   rm small/fill

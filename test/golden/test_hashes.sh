@@ -79,7 +79,7 @@ for set in sse4.2 avx; do
     skip "embree_$set" "this machine does not have it"
     continue
   fi
-  VELO_EMBREE=$set hashes <"$work/list.txt" >"$work/embree_$set.txt"
+  VELO_EMBREE=$set hashes <"$work/some.txt" >"$work/embree_$set.txt"
   against "embree_$set"
 done
 hashes --accelerator bvh <"$work/some.txt" >"$work/bvh.txt"

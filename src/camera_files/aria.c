@@ -59,8 +59,8 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *camera, vlCame
   const json_t *pose;
   double t[3], q[4], r[9];
   VL_TRY(vl_camera_field(file, camera, "T_Device_Camera", &pose));
-  VL_TRY(vl_camera_numbers(file, pose, "Translation", t, 3, 3, NULL));
-  VL_TRY(vl_camera_numbers(file, pose, "UnitQuaternion", q, 4, 4, NULL));
+  VL_TRY(vl_camera_list(file, pose, "Translation", t, 3));
+  VL_TRY(vl_camera_list(file, pose, "UnitQuaternion", q, 4));
   if (!vl_rotation_from_quaternion(q, r))
     return vl_camera_wrong_in(file, pose, "UnitQuaternion",
                               "aria: the quaternion \"UnitQuaternion\" is zero");

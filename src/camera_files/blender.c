@@ -18,8 +18,7 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
   bool flat = vl_text_is(type, "ORTHO");
   if (type && !flat && !vl_text_is(type, "PERSP"))
     return vl_camera_unknown(file, tree, "type", type, "there are PERSP, ORTHO");
-  if (fit && !vl_text_is(fit, "AUTO") && !vl_text_is(fit, "HORIZONTAL") &&
-      !vl_text_is(fit, "VERTICAL"))
+  if (fit && !vl_has_word("AUTO HORIZONTAL VERTICAL", fit))
     return vl_camera_unknown(file, tree, "sensor_fit", fit,
                              "there are AUTO, HORIZONTAL, VERTICAL");
   VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("resolution_x", &d->width),

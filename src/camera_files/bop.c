@@ -12,7 +12,7 @@ static vlResult read_image(const vlCameraFile *file, const json_t *image, const 
   vlCameraDef *d = &record->camera;
   double k[9], r[9], t[3];
   char files[3][64];
-  VL_TRY(vl_camera_numbers(file, image, "cam_K", k, 9, 9, NULL));
+  VL_TRY(vl_camera_list(file, image, "cam_K", k, 9));
   if (!vl_camera_set_intrinsics(d, k, false))
     return vl_camera_wrong_in(file, image, "cam_K",
                               "bop: \"cam_K\" must be [fx 0 cx; 0 fy cy; 0 0 1]");

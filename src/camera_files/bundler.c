@@ -58,13 +58,6 @@ static bool is_bundler(const char *text, size_t size) {
 static vlResult write_bundler(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   double r[9], t[3];
-  bool radial = fit->family == VL_LENS_PINHOLE || fit->family == VL_LENS_OPENCV;
-  for (uint32_t i = 2; i < 14 && radial; i++)
-    radial = fit->k[i] == 0.0;
-  if (!radial)
-    return vl_camera_no_model(fit->file, &fit->record->camera);
-  VL_TRY(vl_camera_refuse_off_centre(fit->file, c));
-  VL_TRY(vl_camera_refuse(fit->file, "fy", c->fx != c->fy));
   vl_camera_get_pose(c, r, t);
   vl_camera_put(text, "# Bundle file v0.3\n1 0\n%.17g %.17g %.17g\n", c->fx, fit->k[0],
                 fit->k[1]);
@@ -82,4 +75,9 @@ const vlCameraFormat vl_format_bundler = {.name = "bundler",
                                           .is_text = is_bundler,
                                           .read_text = read_bundler,
                                           .holds = VL_HOLDS_POSE,
+                                          .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,
+                                          .most = 14,
+                                          .terms = 2,
+                                          .centred = true,
+                                          .square = true,
                                           .write = write_bundler};

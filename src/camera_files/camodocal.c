@@ -51,7 +51,7 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *tree,
                             vlCameraRecord *record) {
   const char *name;
   VL_TRY(vl_camera_word(file, tree, "model_type", &name));
-  if (name && (vl_text_is(name, "SCARAMUZZA") || vl_text_is(name, "scaramuzza")))
+  if (name && vl_has_word("SCARAMUZZA scaramuzza", name))
     return vl_camera_wrong_in(
         file, tree, "model_type",
         "camodocal: SCARAMUZZA's polynomial is no projection of velo; calibrate as MEI or "
@@ -97,19 +97,16 @@ static vlResult read_named(const vlCameraFile *file, const json_t *tree, const c
 static vlResult read_pose(const vlCameraFile *file, const json_t *tree, uint32_t index,
                           vlCameraDef *d) {
   char key[32];
-  double m[16] = {[15] = 1.0}, r[9], t[3];
+  double m[16], r[9], t[3];
   snprintf(key, sizeof key, "body_T_cam%u", index);
   if (vl_camera_has(tree, key)) {
-    VL_TRY(vl_camera_numbers(file, tree, key, m, 16, 16, NULL));
+    VL_TRY(vl_camera_list(file, tree, key, m, 16));
+    vl_camera_set_matrix(d, m, false);
   } else if (index == 0 && vl_camera_has(tree, "extrinsicRotation")) {
     VL_TRY(VL_READ_FIELDS(file, tree, VL_FIELD_LIST("extrinsicRotation", r, 9),
                           VL_FIELD_LIST("extrinsicTranslation", t, 3)));
-    for (int i = 0; i < 12; i++)
-      m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : t[i / 4];
-  } else {
-    return VL_OK;
+    vl_camera_set_rigid(d, r, t);
   }
-  vl_camera_set_matrix(d, m, false);
   return VL_OK;
 }
 

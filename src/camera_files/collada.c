@@ -40,8 +40,7 @@ static bool look_at(const double v[9], vlMat4 *m) {
 /* Multiplies the node's transforms from the right. */
 static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlMat4 *world) {
   const json_t *child;
-  size_t i;
-  json_array_foreach(json_object_get(node, "/"), i, child) {
+  VL_EACH_CHILD(child, node) {
     vlMat4 step = vl_mat4_identity();
     double v[9];
     if (vl_camera_has_tag(child, "matrix")) {
@@ -81,14 +80,13 @@ typedef struct {
 static vlResult search(const vlCameraFile *file, const json_t *node, const json_t **stops,
                        int depth, Search *s) {
   const json_t *child;
-  size_t i;
   if (depth == MAX_DEPTH)
     return vl_camera_wrong_element(file, node, "nested too deeply for a camera");
   stops[depth] = node;
   const char *name = vl_camera_text(node, "name");
   if (!name)
     name = vl_camera_text(node, "id");
-  json_array_foreach(json_object_get(node, "/"), i, child) {
+  VL_EACH_CHILD(child, node) {
     if (vl_camera_has_tag(child, "instance_camera") && !s->camera &&
         vl_camera_is_frame(file, s->count, name)) {
       s->camera = child;
@@ -106,8 +104,7 @@ static vlResult search(const vlCameraFile *file, const json_t *node, const json_
 
 static const json_t *find_camera(const json_t *tree, const char *url) {
   const json_t *library = vl_camera_child(tree, "library_cameras"), *camera;
-  size_t i;
-  json_array_foreach(json_object_get(library, "/"), i, camera) {
+  VL_EACH_CHILD(camera, library) {
     const char *id = vl_camera_text(camera, "id");
     if (vl_camera_has_tag(camera, "camera") && id && url && *url == '#' &&
         vl_text_is(id, url + 1))
@@ -156,8 +153,7 @@ static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool fl
 enum { MAX_EXTRA = 8 };
 static vlResult refuse_shift(const vlCameraFile *file, const json_t *element, int depth) {
   const json_t *child;
-  size_t i;
-  json_array_foreach(json_object_get(element, "/"), i, child) {
+  VL_EACH_CHILD(child, element) {
     const char *tag = vl_camera_text(child, "<");
     double shift = 0.0;
     if (vl_text_is(tag, "shiftx") || vl_text_is(tag, "shifty"))
@@ -174,9 +170,9 @@ static vlResult refuse_shift(const vlCameraFile *file, const json_t *element, in
 static vlResult search_scenes(const vlCameraFile *file, const json_t *tree, Search *s) {
   const json_t *scenes = vl_camera_child(tree, "library_visual_scenes"), *scene, *node,
                *stops[MAX_DEPTH] = {NULL};
-  size_t i, k;
+  size_t i;
   json_array_foreach(json_object_get(scenes, "/"), i, scene) {
-    json_array_foreach(json_object_get(scene, "/"), k, node) {
+    VL_EACH_CHILD(node, scene) {
       if (vl_camera_has_tag(node, "node"))
         VL_TRY(search(file, node, stops, 0, s));
     }

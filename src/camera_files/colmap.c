@@ -342,11 +342,9 @@ static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, con
       p[(*count)++] = i < d->distortion_count ? c[i] : 0.0;
   } else {
     uint32_t n = 0;
-    if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n))
+    if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n) ||
+        !vl_camera_all_zero(k + 8, 6))
       return vl_camera_no_model(file, d);
-    for (int i = 8; i < 14; i++)
-      if (k[i] != 0.0)
-        return vl_camera_no_model(file, d);
     *model = n == 0 ? "PINHOLE" : n == 4 ? "OPENCV" : "FULL_OPENCV";
     *count = n == 0 ? 0 : n == 4 ? 4 : 8;
     memcpy(p, k, *count * sizeof *p);

@@ -93,9 +93,7 @@ static bool is_dso(const char *text, size_t size) {
     return false;
   if (numbers[0] == 5 && numbers[1] == 2)
     return true;
-  return vl_camera_next_line(&lines) &&
-         (vl_text_is(lines.text, "crop") || vl_text_is(lines.text, "full") ||
-          vl_text_is(lines.text, "none"));
+  return vl_camera_next_line(&lines) && vl_has_word("crop full none", lines.text);
 }
 
 const vlCameraFormat vl_format_dso = {

@@ -62,10 +62,10 @@ void vl_camera_offer(const vlCameraFile *file, const json_t *camera, const char 
 const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,
                                const char *name_key, vlCameraRecord *record) {
   const json_t *item, *chosen = NULL;
-  size_t i;
   record->frames = 0;
-  json_array_foreach(list, i, item) vl_camera_offer(
-      file, item, name_key ? vl_camera_text(item, name_key) : NULL, record, &chosen);
+  VL_EACH(item, list)
+    vl_camera_offer(file, item, name_key ? vl_camera_text(item, name_key) : NULL, record,
+                    &chosen);
   return chosen;
 }
 

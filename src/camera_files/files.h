@@ -125,11 +125,18 @@ vlResult vl_camera_size_pair(const vlCameraFile *file, const json_t *object, con
  * {rows, cols, data}. */
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
                            double *values, uint32_t least, uint32_t most, uint32_t *count);
+/* The same for exactly `count` numbers. */
+vlResult vl_camera_list(const vlCameraFile *file, const json_t *object, const char *key,
+                        double *values, uint32_t count);
 /* Parses the next number of a text, after blanks and commas. If there is no number, *end is
  * text. */
 double vl_camera_parse(const char *text, char **end);
 /* Returns the string at key, or null if it is missing or not a string. */
 const char *vl_camera_text(const json_t *object, const char *key);
+/* Goes through the items of a list, or through the child elements of an element of XML. */
+#define VL_EACH(item, list) \
+  for (size_t vl_each = 0; ((item) = json_array_get(list, vl_each)) != NULL; vl_each++)
+#define VL_EACH_CHILD(item, element) VL_EACH(item, json_object_get(element, "/"))
 /* Returns whether the camera or pose with this index and name is the requested one. The name
  * may be null. */
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name);
@@ -229,6 +236,8 @@ void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count);
 void vl_camera_set_shortest(vlCameraDef *def, const double *k, uint32_t count);
 /* Sets OpenCV's fisheye: k1 to k4. */
 void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]);
+/* Whether these coefficients have no effect. */
+bool vl_camera_all_zero(const double *k, uint32_t count);
 /* Sets the lens of a family, with its coefficients; a pinhole leaves the def as it is. */
 void vl_camera_set_lens(vlCameraDef *def, vlLensFamily family, const double *k, uint32_t count);
 /* The family of a camera's lens, with its coefficients. */
@@ -303,8 +312,9 @@ typedef struct vlCameraFormat {
   /* What the dialect can hold (vl_camera_fit). holds: VL_HOLDS_POSE, ... lenses: a bit for each
    * family (1 << VL_LENS_FOV); 0: the writer checks the lens. most: how many coefficients there
    * may be. plain, in place of lenses: perspective and orthographic cameras without distortion.
-   * centred, square: the principal point must be the image's centre; fx must be fy. */
-  uint32_t holds, lenses, most;
+   * terms: only so many of OpenCV's may differ from 0; 0: any. centred, square: the principal
+   * point must be the image's centre; fx must be fy. */
+  uint32_t holds, lenses, most, terms;
   bool plain, centred, square;
   /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
    * the lens, and $lens, its word. */

@@ -205,7 +205,9 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
     fit->count = 1;
   }
   const bool known = format->lenses >> fit->family & 1 && fit->count <= format->most;
-  if (!format->plain && format->lenses && !known)
+  const bool fits = fit->family == VL_LENS_FISHEYE || !format->terms ||
+                    vl_camera_all_zero(fit->k + format->terms, 14 - format->terms);
+  if (!format->plain && format->lenses && !(known && fits))
     return vl_camera_no_model(file, d);
   if (format->plain)
     VL_TRY(vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC));

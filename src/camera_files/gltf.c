@@ -32,16 +32,16 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *node, vlMat
   double m[16], t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1}, r[9];
   *result = vl_mat4_identity();
   if (json_object_get(node, "matrix")) {
-    VL_TRY(vl_camera_numbers(file, node, "matrix", m, 16, 16, NULL));
+    VL_TRY(vl_camera_list(file, node, "matrix", m, 16));
     vl_camera_transpose(m, result->m);
     return VL_OK;
   }
   if (json_object_get(node, "translation"))
-    VL_TRY(vl_camera_numbers(file, node, "translation", t, 3, 3, NULL));
+    VL_TRY(vl_camera_list(file, node, "translation", t, 3));
   if (json_object_get(node, "rotation"))
-    VL_TRY(vl_camera_numbers(file, node, "rotation", q, 4, 4, NULL));
+    VL_TRY(vl_camera_list(file, node, "rotation", q, 4));
   if (json_object_get(node, "scale"))
-    VL_TRY(vl_camera_numbers(file, node, "scale", s, 3, 3, NULL));
+    VL_TRY(vl_camera_list(file, node, "scale", s, 3));
   const double wxyz[4] = {q[3], q[0], q[1], q[2]};
   if (!vl_rotation_from_quaternion(wxyz, r))
     return vl_camera_wrong(file, "gltf: a node's \"rotation\" is no rotation");
@@ -70,12 +70,12 @@ static vlResult world_matrix(const vlCameraFile *file, const json_t *nodes,
 }
 
 static vlResult find_parents(const vlCameraFile *file, const json_t *nodes, int64_t *parents) {
-  size_t count = json_array_size(nodes), k;
+  size_t count = json_array_size(nodes);
   json_t *child;
   for (size_t i = 0; i < count; i++)
     parents[i] = -1;
   for (size_t i = 0; i < count; i++)
-    json_array_foreach(json_object_get(json_array_get(nodes, i), "children"), k, child) {
+    VL_EACH(child, json_object_get(json_array_get(nodes, i), "children")) {
       double at = json_number_value(child);
       if (!json_is_number(child) || !(at >= 0.0 && at < (double)count) || at != floor(at))
         return vl_camera_wrong(file, "gltf: node %zu has a child that does not exist", i);
@@ -246,16 +246,7 @@ static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
 }
 
 static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
-  const vlCameraDef *d = &fit->record->camera;
   const vlCamera *c = &fit->camera;
-  vlResult result =
-      vl_camera_refuse(fit->file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC);
-  if (result == VL_OK)
-    result = vl_camera_refuse(fit->file, "distortion", c->distortion.steps != 0);
-  if (result == VL_OK)
-    result = vl_camera_refuse_off_centre(fit->file, c);
-  if (result != VL_OK)
-    return result;
   Numbers n = numbers_of(c);
   const double *m = n.matrix;
   double dots[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
@@ -288,7 +279,7 @@ static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
       VL_VALUES("own", sides, 4), VL_VALUES("planes", planes, 2),
       VL_PART("end", !isinf(c->far_plane) || n.flat, ", \"zfar\": $planes@1"));
   vlCameraText whole = {.context = text->context};
-  result = vl_camera_write_velo(fit, &whole);
+  const vlResult result = vl_camera_write_velo(fit, &whole);
   vl_camera_put_text(text, &whole);
   VL_ARRAY_FREE(text->context, &whole.text);
   vl_camera_put(text, "}\n  }]\n}\n");
@@ -300,5 +291,7 @@ const vlCameraFormat vl_format_gltf = {
     .marks = {"asset"},
     .read = read_gltf,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES,
+    .plain = true,
+    .centred = true,
     .unnamed = "Camera",
     .write = write_gltf};

@@ -106,7 +106,7 @@ vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const c
 vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key,
                              vlCameraRecord *record) {
   double size[2] = {0};
-  VL_TRY(vl_camera_numbers(file, object, key, size, 2, 2, NULL));
+  VL_TRY(vl_camera_list(file, object, key, size, 2));
   for (int i = 0; i < 2; i++)
     if (!vl_camera_is_side(size[i]))
       return vl_camera_wrong_in(file, object, key,

@@ -60,8 +60,7 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
     return vl_camera_unknown(file, cam, "camera_model", name,
                              "there are pinhole, omni, eucm, ds");
   d->projection = model->projection;
-  VL_TRY(vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4,
-                           NULL));
+  VL_TRY(vl_camera_list(file, cam, "intrinsics", k, model->shapes + 4));
   VL_TRY(vl_camera_size_pair(file, cam, "resolution", record));
   for (uint32_t i = 0; i < model->shapes; i++)
     d->shape[i] = k[i];
@@ -114,7 +113,7 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree,
       vlMat4 step = vl_mat4_identity();
       bool inverse;
       const char *name = imu_key(cam, &inverse);
-      VL_TRY(vl_camera_numbers(file, cam, by_imu ? name : "T_cn_cnm1", step.m, 16, 16, NULL));
+      VL_TRY(vl_camera_list(file, cam, by_imu ? name : "T_cn_cnm1", step.m, 16));
       if (by_imu && inverse && !vl_mat4_inverse(step, &step))
         return vl_camera_wrong_in(file, cam, name, "kalibr: \"%s\" is singular", name);
       from_world = by_imu ? step : vl_mat4_multiply(step, from_world);
@@ -139,14 +138,11 @@ static vlResult write_kalibr(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   const bool fov = fit->family == VL_LENS_FOV, equi = fit->family == VL_LENS_FISHEYE;
   const uint32_t n = fov ? 1 : equi || d->distortion != VL_DISTORTION_NONE ? 4 : 0;
-  bool fits = fit->family != VL_LENS_OTHER;
   const Model *model = &models[0];
   for (int i = 0; i < MODELS; i++)
     if (d->projection == models[i].projection)
       model = &models[i];
-  for (int i = 4; i < 14; i++)
-    fits = fits && fit->k[i] == 0.0;
-  if (!fits)
+  if (fit->family == VL_LENS_OTHER || !vl_camera_all_zero(fit->k + 4, 10))
     return vl_camera_no_model(fit->file, d);
   bool posed = false;
   for (int i = 0; i < 16; i++)
@@ -169,11 +165,10 @@ static vlResult write_kalibr(const vlFittedCamera *fit, vlCameraText *text) {
                              : "none"),
       VL_VALUES("k", fit->k, n),
       VL_PART("imu", posed,
-              "  T_cam_imu:\n  - [$rows@0, $rows@1, $rows@2, $rows@3]\n"
-              "  - [$rows@4, $rows@5, $rows@6, $rows@7]\n"
-              "  - [$rows@8, $rows@9, $rows@10, $rows@11]\n"
-              "  - [$rows@12, $rows@13, $rows@14, $rows@15]\n"),
-      VL_VALUES("rows", c->camera_from_world, 16));
+              "  T_cam_imu:\n  - [$view@0, $view@1, $view@2, $view@3]\n"
+              "  - [$view@4, $view@5, $view@6, $view@7]\n"
+              "  - [$view@8, $view@9, $view@10, $view@11]\n"
+              "  - [$view@12, $view@13, $view@14, $view@15]\n"));
 }
 
 const vlCameraFormat vl_format_kalibr = {

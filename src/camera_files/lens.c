@@ -8,6 +8,13 @@
 #include "velo/distortion.h"
 #include "velo/projection.h"
 
+bool vl_camera_all_zero(const double *k, uint32_t count) {
+  for (uint32_t i = 0; i < count; i++)
+    if (k[i] != 0.0)
+      return false;
+  return true;
+}
+
 void vl_camera_set_centred(vlCameraDef *def, const double f[4]) {
   def->fx = f[0];
   def->fy = f[1];

@@ -28,13 +28,13 @@ static bool count_to(const json_t *node, const json_t *wanted, size_t *index) {
   ++*index;
   const char *key;
   json_t *child;
-  size_t i;
   if (json_is_object(node)) {
     json_object_foreach((json_t *)node, key,
                         child) if (count_to(child, wanted, index)) return true;
   } else {
-    json_array_foreach((json_t *)node, i,
-                       child) if (count_to(child, wanted, index)) return true;
+    VL_EACH(child, node)
+      if (count_to(child, wanted, index))
+        return true;
   }
   return false;
 }
@@ -83,14 +83,15 @@ vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, cons
 static const json_t *holder_of(const json_t *node, const char *key) {
   const char *other;
   json_t *child;
-  size_t i;
   const json_t *found = NULL;
   if (json_object_get(node, key))
     return node;
   if (json_is_object(node)) {
     json_object_foreach((json_t *)node, other, child) if (!found) found = holder_of(child, key);
   } else {
-    json_array_foreach((json_t *)node, i, child) if (!found) found = holder_of(child, key);
+    VL_EACH(child, node)
+      if (!found)
+        found = holder_of(child, key);
   }
   return found;
 }

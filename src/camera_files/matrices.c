@@ -55,7 +55,7 @@ static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const 
     if (count != 16 || text[strspn(text, " \t\r\n,;")] != 0)
       return vl_camera_wrong(file, "%s: \"%s\" must hold 16 numbers", file->dialect, key);
   } else {
-    VL_TRY(vl_camera_numbers(file, tree, key, m, 16, 16, NULL));
+    VL_TRY(vl_camera_list(file, tree, key, m, 16));
   }
   for (int i = 0; i < 16; i++) {
     matrix->m[i] = m[transposed ? 4 * (i % 4) + i / 4 : i];
@@ -171,7 +171,7 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
   if (json_object_get(tree, "clip_y"))
     VL_TRY(choice(&own, tree, "clip_y", "down", "up", &down));
   if (json_object_get(tree, "clip_z")) {
-    VL_TRY(vl_camera_numbers(&own, tree, "clip_z", z, 2, 2, NULL));
+    VL_TRY(vl_camera_list(&own, tree, "clip_z", z, 2));
     zero_to_one = z[0] == 0.0;
     if (!(z[1] == 1.0 && (z[0] == 0.0 || z[0] == -1.0)))
       return vl_camera_wrong(&own, "%s: \"clip_z\" must be [0, 1] or [-1, 1]", own.dialect);

@@ -138,8 +138,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree,
 /* Returns the item of a list with this id. Ids are text or numbers. */
 static const json_t *with_id(const json_t *list, const char *key, const json_t *id) {
   const json_t *item;
-  size_t i;
-  json_array_foreach(list, i, item) {
+  VL_EACH(item, list) {
     if (id && json_equal(json_object_get(item, key), id))
       return item;
   }
@@ -175,10 +174,9 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
 static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree,
                               vlCameraRecord *record) {
   const json_t *poses = json_object_get(tree, "poses"), *view, *chosen = NULL;
-  size_t i;
   bool posed = json_array_size(poses) > 0;
   record->frames = 0;
-  json_array_foreach(json_object_get(tree, "views"), i, view) {
+  VL_EACH(view, json_object_get(tree, "views")) {
     const char *path = vl_camera_text(view, "path"), *slash = path ? strrchr(path, '/') : NULL;
     if (posed && !with_id(poses, "poseId", json_object_get(view, "poseId")))
       continue;

@@ -40,10 +40,7 @@ static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration
   d->skew = b[1];
   d->cx = vl_is_unset(c[0]) ? 0.5 * d->width : offset * d->width + c[0];
   d->cy = vl_is_unset(c[1]) ? 0.5 * d->height : offset * d->height + c[1];
-  bool bent = false;
-  for (int i = 0; i < 6; i++)
-    bent = bent || k[i] != 0.0;
-  if (!bent)
+  if (vl_camera_all_zero(k, 6))
     return VL_OK;
   if (k[5] == 0.0 && d->projection == VL_PROJECTION_PERSPECTIVE) {
     vl_camera_set_opencv(d, k, 5);
@@ -71,7 +68,7 @@ static vlResult set_type(const vlCameraFile *file, const json_t *element, const 
                          vlCameraDef *d) {
   if (!type || vl_text_is(type, "frame"))
     return VL_OK;
-  if (vl_text_is(type, "fisheye") || vl_text_is(type, "equidistant_fisheye")) {
+  if (vl_has_word("fisheye equidistant_fisheye", type)) {
     d->projection = VL_PROJECTION_EQUIDISTANT;
   } else if (vl_text_is(type, "equisolid_fisheye")) {
     d->projection = VL_PROJECTION_EQUISOLID;
@@ -93,8 +90,7 @@ static vlResult read_sensor(const vlCameraFile *file, const json_t *sensor,
                             vlCameraRecord *record) {
   const json_t *child, *calibration = NULL, *size = vl_camera_child(sensor, "resolution");
   vlCameraDef *d = &record->camera;
-  size_t i;
-  json_array_foreach(json_object_get(sensor, "/"), i, child) {
+  VL_EACH_CHILD(child, sensor) {
     if (!vl_camera_has_tag(child, "calibration"))
       continue;
     const char *class = vl_camera_text(child, "class");
@@ -121,12 +117,11 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *chunk, const
   const char *id = vl_camera_text(camera, "sensor_id");
   const json_t *sensor;
   double m[16];
-  size_t i;
   VL_TRY(vl_camera_element_numbers(file, vl_camera_child(camera, "transform"), m, 16));
   if (!vl_camera_set_matrix(&record->camera, m, false))
     return vl_camera_wrong_element(file, camera, "no pose");
   vl_camera_name(record, vl_camera_text(camera, "label"));
-  json_array_foreach(json_object_get(vl_camera_child(chunk, "sensors"), "/"), i, sensor) {
+  VL_EACH_CHILD(sensor, vl_camera_child(chunk, "sensors")) {
     const char *own = vl_camera_text(sensor, "id");
     if (id && own && vl_text_is(id, own))
       return read_sensor(file, sensor, record);
@@ -144,8 +139,7 @@ typedef struct {
 /* Cameras may be in groups. A camera without <transform> was not aligned and is skipped. */
 static void search(Search *s, const json_t *list, int depth) {
   const json_t *camera;
-  size_t i;
-  json_array_foreach(json_object_get(list, "/"), i, camera) {
+  VL_EACH_CHILD(camera, list) {
     const char *tag = vl_camera_text(camera, "<");
     if (vl_text_is(tag, "group") && depth > 0)
       search(s, camera, depth - 1);

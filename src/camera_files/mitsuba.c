@@ -49,11 +49,10 @@ static bool same(const char *a, const char *b) {
 static vlResult attribute(const Scene *scene, const json_t *element, const char *key,
                           const char **text) {
   const json_t *item;
-  size_t i;
   *text = vl_camera_text(element, key);
   if (!*text || **text != '$')
     return VL_OK;
-  json_array_foreach(json_object_get(scene->root, "/"), i, item) {
+  VL_EACH_CHILD(item, scene->root) {
     const char *name = vl_camera_text(item, "name");
     if (!vl_camera_has_tag(item, "default") || !vl_text_is(name, *text + 1))
       continue;
@@ -99,9 +98,8 @@ static vlResult numbers(const Scene *scene, const json_t *element, const char *k
 
 /* Returns the parameter of a sensor or film with this name, or null. */
 static const json_t *parameter(const json_t *parent, const char *name) {
-  size_t i;
   const json_t *item;
-  json_array_foreach(json_object_get(parent, "/"), i, item) {
+  VL_EACH_CHILD(item, parent) {
     const char *own = vl_camera_text(item, "name");
     if (own && same(own, name))
       return item;
@@ -201,9 +199,8 @@ static vlResult operation(const Scene *scene, const json_t *op, vlMat4 *m) {
 
 static vlResult to_world(const Scene *scene, const json_t *sensor, vlMat4 *matrix) {
   const json_t *transform = parameter(sensor, "to_world"), *op;
-  size_t i;
   *matrix = vl_mat4_identity();
-  json_array_foreach(json_object_get(transform, "/"), i, op) {
+  VL_EACH_CHILD(op, transform) {
     vlMat4 m;
     VL_TRY(operation(scene, op, &m));
     *matrix = vl_mat4_multiply(m, *matrix);
@@ -217,10 +214,10 @@ static vlResult read_film(const Scene *scene, const json_t *sensor, double size[
   static const char *const names[] = {"crop_offset_x", "crop_offset_y", "crop_width",
                                       "crop_height"};
   const json_t *film = NULL, *item;
-  size_t i;
   size[0] = 768.0;
   size[1] = 576.0; /* Mitsuba's default */
-  json_array_foreach(json_object_get(sensor, "/"), i, item) if (vl_camera_has_tag(item, "film"))
+  VL_EACH_CHILD(item, sensor)
+    if (vl_camera_has_tag(item, "film"))
       film = item;
   VL_TRY(number(scene, film, "width", &size[0]));
   VL_TRY(number(scene, film, "height", &size[1]));
@@ -304,9 +301,8 @@ static void set_orthographic(double width, vlMat4 *m, vlCameraDef *d) {
 static vlResult check_parameters(const Scene *scene, const json_t *element, const char *known,
                                  vlCameraRecord *record) {
   const json_t *item;
-  size_t i;
   vlResult result = VL_OK;
-  json_array_foreach(json_object_get(element, "/"), i, item) {
+  VL_EACH_CHILD(item, element) {
     const char *name = vl_camera_text(item, "name"), *value = NULL;
     if (!name || result != VL_OK)
       continue;
@@ -336,11 +332,10 @@ static vlResult check_sensor(const Scene *scene, const json_t *sensor, int kind,
       "component_format componentFormat sample_border sampleBorder high_quality_edges "
       "highQualityEdges rfilter filter banner gamma attach_log attachLog";
   const json_t *item;
-  size_t i;
   char known[512];
   snprintf(known, sizeof known, "%s %s %s", common, kind < 2 ? fov : "", more[kind]);
   vlResult result = check_parameters(scene, sensor, known, record);
-  json_array_foreach(json_object_get(sensor, "/"), i, item) {
+  VL_EACH_CHILD(item, sensor) {
     if (result == VL_OK && vl_camera_has_tag(item, "film"))
       result = check_parameters(scene, item, film, record);
     if (vl_camera_has_tag(item, "ref") && vl_text_is(vl_camera_text(item, "name"), "film"))
@@ -410,12 +405,11 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
     return result;
   Scene scene = {file, tree};
   const json_t *item, *chosen = NULL;
-  size_t i;
   bool root = vl_camera_has_tag(tree, "sensor"), includes = false;
   record->frames = root;
   if (root)
     chosen = tree;
-  json_array_foreach(json_object_get(tree, "/"), i, item) {
+  VL_EACH_CHILD(item, tree) {
     includes = includes || vl_camera_has_tag(item, "include");
     if (root || !vl_camera_has_tag(item, "sensor"))
       continue;

@@ -22,8 +22,7 @@ static vlResult read_fisheye624(const vlCameraFile *file, const json_t *frame,
   d->projection = VL_PROJECTION_EQUIDISTANT;
   d->distortion = VL_DISTORTION_RAD_TAN_THIN_PRISM;
   d->distortion_count = 12;
-  return vl_camera_numbers(file, holder(frame, tree, key), key, d->distortion_coefficients, 12,
-                           12, NULL);
+  return vl_camera_list(file, holder(frame, tree, key), key, d->distortion_coefficients, 12);
 }
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const json_t *tree,
@@ -46,32 +45,24 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
                               "distortion_params",
                               "nerf: \"distortion_params\" is taken with the camera_model "
                               "FISHEYE624 only");
-  bool fisheye =
-      model && (vl_text_is(model, "OPENCV_FISHEYE") || vl_text_is(model, "RADIAL_FISHEYE"));
+  bool fisheye = model && vl_has_word("OPENCV_FISHEYE RADIAL_FISHEYE", model);
   fisheye = fisheye || json_is_true(json_object_get(tree, "is_fisheye"));
-  if (model && !fisheye && !vl_text_is(model, "OPENCV") && !vl_text_is(model, "PINHOLE") &&
-      !vl_text_is(model, "SIMPLE_PINHOLE") && !vl_text_is(model, "RADIAL") &&
-      !vl_text_is(model, "SIMPLE_RADIAL"))
+  if (model && !fisheye &&
+      !vl_has_word("OPENCV PINHOLE SIMPLE_PINHOLE RADIAL SIMPLE_RADIAL", model))
     return vl_camera_wrong_in(
         file, holder(frame, tree, "camera_model"), "camera_model",
         "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
         "RADIAL, OPENCV, OPENCV_FISHEYE, FISHEYE624",
         vl_short_text(model).text);
-  bool tangential = k[2] != 0.0 || k[3] != 0.0;
+  const bool tangential = !vl_camera_all_zero(k + 2, 2);
   if (fisheye && tangential)
     return vl_camera_wrong(file, "nerf: a fisheye has no \"p1\" and \"p2\"");
   if (!fisheye && k[5] != 0.0)
     return vl_camera_wrong(file, "nerf: \"k4\" is taken for fisheyes only");
   if (fisheye) {
-    const double radial[4] = {k[0], k[1], k[4], k[5]};
-    d->projection = VL_PROJECTION_EQUIDISTANT;
-    d->distortion = VL_DISTORTION_RADIAL;
-    d->distortion_count = 4;
-    memcpy(d->distortion_coefficients, radial, sizeof radial);
-  } else if (tangential || k[0] != 0.0 || k[1] != 0.0 || k[4] != 0.0) {
-    d->distortion = VL_DISTORTION_OPENCV;
-    d->distortion_count = k[4] != 0.0 ? 5 : 4;
-    memcpy(d->distortion_coefficients, k, 5 * sizeof *k);
+    vl_camera_set_fisheye(d, (double[]){k[0], k[1], k[4], k[5]});
+  } else if (!vl_camera_all_zero(k, 5)) {
+    vl_camera_set_opencv(d, k, k[4] != 0.0 ? 5 : 4);
   }
   return VL_OK;
 }
@@ -196,10 +187,7 @@ static vlResult write_nerf(const vlFittedCamera *fit, vlCameraText *text) {
   const bool aria = d->projection == VL_PROJECTION_EQUIDISTANT &&
                     d->distortion == VL_DISTORTION_RAD_TAN_THIN_PRISM;
   const bool fisheye = fit->family == VL_LENS_FISHEYE;
-  bool fits = aria || fit->family <= VL_LENS_FISHEYE;
-  for (int i = 5; i < 14; i++)
-    fits = fits && fit->k[i] == 0.0;
-  if (!fits)
+  if ((!aria && fit->family > VL_LENS_FISHEYE) || !vl_camera_all_zero(fit->k + 5, 9))
     return vl_camera_no_model(fit->file, d);
   return VL_PUT_FORM(
       text, fit,

@@ -36,7 +36,7 @@ static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree,
     return vl_camera_no_frame(file, "camera", record->frames);
   VL_TRY(vl_camera_sides(file, tree, "render_width", "render_height", record));
   VL_TRY(read_type(file, tree, d));
-  VL_TRY(vl_camera_numbers(file, camera, "camera_to_world", m, 16, 16, NULL));
+  VL_TRY(vl_camera_list(file, camera, "camera_to_world", m, 16));
   if (d->projection != VL_PROJECTION_EQUIRECTANGULAR)
     VL_TRY(vl_camera_number(file, camera, "fov", &fov));
   vl_camera_set_flipped(d, m);

@@ -12,18 +12,9 @@ enum { ENTRY = 46, LOCAL = 30, END = 22, MAX_NUMBERS = 64 };
 
 /* What calibrations save beside the camera and what says nothing about it: errors, the poses
  * and corners of the boards, the matrix of undistorted images. */
-static const char *const ignored[] = {"ret",
-                                      "rms",
-                                      "error",
-                                      "mean_error",
-                                      "reprojection_error",
-                                      "rvecs",
-                                      "tvecs",
-                                      "objpoints",
-                                      "imgpoints",
-                                      "newcameramtx",
-                                      "newCameraMtx",
-                                      "new_camera_matrix"};
+static const char ignored[] =
+    "ret rms error mean_error reprojection_error rvecs tvecs objpoints imgpoints newcameramtx "
+    "newCameraMtx new_camera_matrix";
 
 static uint32_t little_endian(const char *text, int bytes) {
   uint32_t value = 0;
@@ -99,9 +90,8 @@ static vlResult read_member(const vlCameraFile *file, const char *text, size_t s
   snprintf(name, sizeof name, "%.*s", (int)(length < 60 ? length : 60), entry + ENTRY);
   if (vl_ends_with(name, ".npy"))
     name[strlen(name) - 4] = 0;
-  for (size_t i = 0; i < VL_LENGTH(ignored); i++)
-    if (vl_text_is(name, ignored[i]))
-      return VL_OK;
+  if (vl_has_word(ignored, name))
+    return VL_OK;
   if (strncmp(name, "arr_", 4) == 0)
     return vl_camera_wrong(file,
                            "npz: the arrays have no names: np.savez(file, mtx=..., "
@@ -124,9 +114,10 @@ static vlResult read_member(const vlCameraFile *file, const char *text, size_t s
   if (!value)
     return vl_camera_wrong(
         file, "npz: \"%s\" must be an array of finite float64, float32 or whole numbers", name);
+  const json_t *number;
   if (vl_opencv_is_lens(name) && json_array_size(value) == 4)
-    for (size_t i = 0; i < 4; i++)
-      if (json_number_value(json_array_get(value, i)) != 0.0) {
+    VL_EACH(number, value)
+      if (json_number_value(number) != 0.0) {
         json_decref(value);
         return vl_camera_wrong(
             file,

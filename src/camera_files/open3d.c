@@ -9,7 +9,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *intrinsic
                                vlCameraRecord *record) {
   double k[9];
   VL_TRY(vl_camera_sides(file, intrinsic, "width", "height", record));
-  VL_TRY(vl_camera_numbers(file, intrinsic, "intrinsic_matrix", k, 9, 9, NULL));
+  VL_TRY(vl_camera_list(file, intrinsic, "intrinsic_matrix", k, 9));
   if (k[1] != 0.0 || k[2] != 0.0 || k[5] != 0.0 || k[8] != 1.0)
     return vl_camera_wrong_in(
         file, intrinsic, "intrinsic_matrix",
@@ -26,7 +26,7 @@ static vlResult read_parameters(const vlCameraFile *file, const json_t *paramete
   double by_columns[16], m[16];
   VL_TRY(vl_camera_field(file, parameters, "intrinsic", &intrinsic));
   VL_TRY(read_intrinsic(file, intrinsic, record));
-  VL_TRY(vl_camera_numbers(file, parameters, "extrinsic", by_columns, 16, 16, NULL));
+  VL_TRY(vl_camera_list(file, parameters, "extrinsic", by_columns, 16));
   vl_camera_transpose(by_columns, m);
   if (!vl_camera_set_matrix(&record->camera, m, true))
     return vl_camera_wrong_in(file, parameters, "extrinsic",

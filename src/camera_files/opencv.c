@@ -30,14 +30,10 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree,
                               "%s: unknown distortion_model \"%s\"%s", file->dialect,
                               vl_short_text(model).text, known);
   }
-  fisheye =
-      fisheye || (model && (vl_text_is(model, "fisheye") || vl_text_is(model, "equidistant")));
+  fisheye = fisheye || (model && vl_has_word("fisheye equidistant", model));
   double *k = d->distortion_coefficients;
   uint32_t n = 0;
   VL_TRY(vl_camera_numbers(file, tree, coefficients, k, 0, 14, &n));
-  bool zero = true;
-  for (uint32_t i = 0; i < n; i++)
-    zero = zero && k[i] == 0.0;
   if (fisheye) {
     if (n != 4 && n != 0)
       return vl_camera_wrong_in(file, tree, coefficients,
@@ -50,7 +46,7 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree,
       return vl_camera_wrong_in(file, tree, coefficients,
                                 "%s: \"%s\" holds %u numbers; there are 0, 4, 5, 8, 12 or 14",
                                 file->dialect, coefficients, n);
-    if (vl_text_is(model, "none") && !zero)
+    if (vl_text_is(model, "none") && !vl_camera_all_zero(k, n))
       return vl_camera_wrong_in(file, tree, coefficients,
                                 "%s: distortion_model is \"none\", but \"%s\" is not zero",
                                 file->dialect, coefficients);
@@ -63,7 +59,7 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree,
 vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, const char *key,
                                vlCameraDef *d) {
   double k[9];
-  VL_TRY(vl_camera_numbers(file, tree, key, k, 9, 9, NULL));
+  VL_TRY(vl_camera_list(file, tree, key, k, 9));
   if (!vl_camera_set_intrinsics(d, k, true))
     return vl_camera_wrong_in(file, tree, key, "%s: \"%s\" must be [fx 0 cx; 0 fy cy; 0 0 1]",
                               file->dialect, key);
@@ -107,10 +103,9 @@ vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree,
 static vlResult turn_y(const vlCameraFile *file, vlCameraDef *d) {
   if (!(d->fy < 0.0))
     return VL_OK;
-  for (uint32_t i = 0; i < d->distortion_count; i++)
-    if (d->distortion_coefficients[i] != 0.0)
-      return vl_camera_wrong(file, "%s: fy is %g; below zero it goes without distortion only",
-                             file->dialect, d->fy);
+  if (!vl_camera_all_zero(d->distortion_coefficients, d->distortion_count))
+    return vl_camera_wrong(file, "%s: fy is %g; below zero it goes without distortion only",
+                           file->dialect, d->fy);
   d->fy = -d->fy;
   for (int row = 0; row < 3; row++)
     d->world_from_camera[4 * row + 1] = 0.0 - d->world_from_camera[4 * row + 1];
@@ -123,9 +118,9 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, vlCamera
   bool any = json_object_get(tree, "rvec") || json_object_get(tree, "tvec");
   vlResult result = VL_OK;
   if (any)
-    result = vl_camera_numbers(file, tree, "rvec", v, 3, 3, NULL);
+    result = vl_camera_list(file, tree, "rvec", v, 3);
   if (any && result == VL_OK)
-    result = vl_camera_numbers(file, tree, "tvec", t, 3, 3, NULL);
+    result = vl_camera_list(file, tree, "tvec", t, 3);
   vl_rotation_from_vector(v, r);
   vl_camera_set_pose(d, r, t);
   return result;
@@ -199,13 +194,13 @@ bool vl_opencv_is_lens(const char *name) {
 }
 
 bool vl_opencv_is_field(const char *name) {
-  static const char *const others[] = {"R", "T", "rvec", "tvec", "xi"};
   bool matrix = AMONG(name, matrix_names);
   for (int i = 0; i < STEREO_NAMES; i++)
     matrix =
         matrix || vl_text_is(name, stereo_names[i][0]) || vl_text_is(name, stereo_names[i][2]);
   return matrix || vl_opencv_is_lens(name) || AMONG(name, width_names) ||
-         AMONG(name, height_names) || AMONG(name, size_names) || AMONG(name, others);
+         AMONG(name, height_names) || AMONG(name, size_names) ||
+         vl_has_word("R T rvec tvec xi", name);
 }
 
 static vlResult read_size(const vlCameraFile *file, const json_t *tree,
@@ -258,7 +253,7 @@ vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree,
   if (vl_camera_has(tree, "xi")) { /* xi marks the omnidirectional model */
     double xi = 0.0;
     bool list = !json_is_number(json_object_get(tree, "xi"));
-    VL_TRY(list ? vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL)
+    VL_TRY(list ? vl_camera_list(file, tree, "xi", &xi, 1)
                 : vl_camera_number(file, tree, "xi", &xi));
     d->projection = VL_PROJECTION_UNIFIED;
     d->shape[0] = xi;

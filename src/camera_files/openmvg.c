@@ -14,10 +14,10 @@ static double id_of(const json_t *object, const char *key) {
 
 /* The item of a list of {key, value} with this key, or null. */
 static const json_t *item_of(const json_t *list, double key) {
-  size_t i;
   json_t *item;
-  json_array_foreach((json_t *)list, i,
-                     item) if (key >= 0.0 && id_of(item, "key") == key) return item;
+  VL_EACH(item, list)
+    if (key >= 0.0 && id_of(item, "key") == key)
+      return item;
   return NULL;
 }
 
@@ -43,9 +43,8 @@ static uint32_t class_number(const json_t *value) {
  * number. */
 static const char *class_of(const json_t *list, const json_t *item) {
   const uint32_t id = class_number(json_object_get(item, "value"));
-  size_t i;
   json_t *other;
-  json_array_foreach((json_t *)list, i, other) {
+  VL_EACH(other, list) {
     const json_t *value = json_object_get(other, "value");
     const char *name = vl_camera_text(value, "polymorphic_name");
     if (name && class_number(value) == id)
@@ -70,8 +69,8 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *item, const ch
       continue;
     if (!models[i].field)
       return VL_OK;
-    VL_TRY(vl_camera_numbers(file, data_of(item, models[i].field), models[i].field, k,
-                             models[i].count, models[i].count, NULL));
+    VL_TRY(vl_camera_list(file, data_of(item, models[i].field), models[i].field, k,
+                          models[i].count));
     if (i == 4) {
       vl_camera_set_fisheye(d, k);
       return VL_OK;
@@ -130,10 +129,9 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
 static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   const json_t *extrinsics = json_object_get(tree, "extrinsics"), *chosen = NULL, *pose = NULL;
-  size_t i;
   json_t *item;
   record->frames = 0;
-  json_array_foreach(json_object_get(tree, "views"), i, item) {
+  VL_EACH(item, json_object_get(tree, "views")) {
     const json_t *view = data_of(item, "id_pose");
     const json_t *own = item_of(extrinsics, id_of(view, "id_pose"));
     if (!view || !own)

@@ -19,16 +19,15 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const 
   if (vl_text_is(type, "brown")) {
     VL_TRY(vl_camera_read_named(file, camera, brown, 5, true, k));
     vl_camera_set_opencv(d, k, 5);
-  } else if (vl_text_is(type, "perspective") || vl_text_is(type, "radial") ||
-             vl_text_is(type, "simple_radial")) {
+  } else if (vl_has_word("perspective radial simple_radial", type)) {
     VL_TRY(vl_camera_read_named(file, camera, brown, 2, true, k));
     vl_camera_set_opencv(d, k, 4);
-  } else if (vl_text_is(type, "fisheye") || vl_text_is(type, "fisheye_opencv")) {
+  } else if (vl_has_word("fisheye fisheye_opencv", type)) {
     VL_TRY(vl_camera_read_named(file, camera, fisheye, 4, true, k));
     if (type[7] == 0)
       k[2] = k[3] = 0.0;
     vl_camera_set_fisheye(d, k);
-  } else if (vl_text_is(type, "spherical") || vl_text_is(type, "equirectangular")) {
+  } else if (vl_has_word("spherical equirectangular", type)) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   } else {
     return vl_camera_wrong_in(

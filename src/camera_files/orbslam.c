@@ -37,7 +37,7 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, const cha
   char key[64];
   double f[4];
   bool fisheye = vl_text_is(type, "KannalaBrandt8");
-  if (type && !fisheye && !vl_text_is(type, "PinHole") && !vl_text_is(type, "Rectified"))
+  if (type && !vl_has_word("PinHole Rectified KannalaBrandt8", type))
     return vl_camera_unknown(file, tree, "Camera.type", type,
                              "there are PinHole, Rectified, KannalaBrandt8");
   for (int i = 0; i < 4; i++)

@@ -29,13 +29,13 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree,
       json_pack("{sO*sO*}", "poses", pose, "perFrameIntrinsicCoeffs", coefficients);
   if (!holder)
     return vl_fail_memory(file->error);
-  vlResult result = vl_camera_numbers(file, holder, "poses", v, 7, 7, NULL);
+  vlResult result = vl_camera_list(file, holder, "poses", v, 7);
   bool single = vl_camera_has(holder, "perFrameIntrinsicCoeffs");
   if (result == VL_OK && single)
-    result = vl_camera_numbers(file, holder, "perFrameIntrinsicCoeffs", f, 4, 4, NULL);
+    result = vl_camera_list(file, holder, "perFrameIntrinsicCoeffs", f, 4);
   json_decref(holder);
   if (result == VL_OK)
-    result = vl_camera_numbers(file, tree, "K", k, 9, 9, NULL);
+    result = vl_camera_list(file, tree, "K", k, 9);
   if (result == VL_OK)
     result = vl_camera_sides(file, tree, "w", "h", record);
   if (result != VL_OK)
@@ -44,9 +44,8 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree,
   if (!vl_rotation_from_quaternion(q, r))
     return vl_camera_wrong_in(file, pose, NULL,
                               "record3d: the quaternion of \"poses\" is no rotation");
-  const double m[16] = {r[0], r[1], r[2], v[4], r[3], r[4], r[5], v[5],
-                        r[6], r[7], r[8], v[6], 0,    0,    0,    1};
-  vl_camera_set_flipped(d, m);
+  vl_camera_set_rigid(d, r, v + 4);
+  vl_camera_set_flipped(d, d->world_from_camera);
   d->fx = single ? f[0] : k[0];
   d->fy = single ? f[1] : k[4];
   d->cx = single ? f[2] : k[6];

@@ -24,10 +24,7 @@ static void set_lens(const Lens *lens, vlCameraDef *d) {
   d->fx = d->fy = side * lens->f35 / 36.0;
   d->cx = 0.5 * d->width + side * lens->center[0];
   d->cy = 0.5 * d->height + side * lens->center[1];
-  bool bent = false;
-  for (int i = 0; i < 6; i++)
-    bent = bent || k[i] != 0.0;
-  if (!bent)
+  if (vl_camera_all_zero(k, 6))
     return;
   if (k[3] == 0.0) {
     vl_camera_set_opencv(d, (double[]){k[0], k[1], k[4], k[5], k[2]}, 5);
@@ -75,16 +72,11 @@ static vlResult read_property(const vlCameraFile *file, const json_t *descriptio
 }
 
 static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  static const char *const models[] = {"perspective", "brown3", "brown4", "brown3t2",
-                                       "brown4t2"};
   const json_t *description = description_of(tree);
   double r[9], c[3], aspect = 1.0, skew = 0.0;
   Lens lens = {.f35 = 0.0};
   const char *model = property(description, "xcr:DistortionModel");
-  bool known = !model;
-  for (size_t i = 0; i < VL_LENGTH(models) && !known; i++)
-    known = vl_text_is(model, models[i]);
-  if (!known)
+  if (model && !vl_has_word("perspective brown3 brown4 brown3t2 brown4t2", model))
     return vl_camera_wrong_element(
         file, description,
         "xcr:DistortionModel \"%s\" is no model of velo; there are perspective, brown3, "
@@ -109,7 +101,7 @@ static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraR
   if (aspect != 1.0 || skew != 0.0)
     return vl_camera_wrong_element(file, description,
                                    "xcr:AspectRatio must be 1 and xcr:Skew 0");
-  if (vl_text_is(model, models[0]))
+  if (vl_text_is(model, "perspective"))
     memset(lens.k, 0, sizeof lens.k);
   vl_camera_set_centre(&record->camera, r, c);
   VL_TRY(vl_camera_size_of_image(file, record));
@@ -226,7 +218,7 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
   }
   Lens lens = {.f35 = v[F], .center = {v[PX], v[PY]}};
   memcpy(lens.k, v + K1, sizeof lens.k);
-  double sine[3], cosine[3], m[16] = {[3] = v[X], [7] = v[Y], [11] = v[ALT], [15] = 1.0};
+  double sine[3], cosine[3];
   for (int i = 0; i < 3; i++) {
     double angle = (i ? v[HEADING + i] : -v[HEADING]) * (3.14159265358979323846 / 180.0);
     sine[i] = vl_precise_sin(angle);
@@ -243,9 +235,8 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
                        -cp * sr,
                        sp,
                        cp * cr};
-  for (int i = 0; i < 9; i++)
-    m[4 * (i / 3) + i % 3] = r[i];
-  vl_camera_set_flipped(&record->camera, m);
+  vl_camera_set_rigid(&record->camera, r, v + X);
+  vl_camera_set_flipped(&record->camera, record->camera.world_from_camera);
   char folder[300];
   const char *name = record->name;
   snprintf(folder, sizeof folder, "images/%s", name);

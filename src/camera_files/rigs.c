@@ -96,9 +96,8 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree,
   const json_t *list = json_object_get(tree, "[]"), *item, *chosen = NULL;
   vlCameraDef *d = &record->camera;
   double k[9], q[4], t[3], r[9];
-  size_t i;
   record->frames = 0;
-  json_array_foreach(list, i, item) {
+  VL_EACH(item, list) {
     if (json_array_size(json_object_get(item, "camera_intrinsic")) == 0)
       continue; /* lidar and radar */
     vl_camera_offer(file, item, vl_camera_text(item, "token"), record, &chosen);

@@ -88,7 +88,7 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
       snprintf(name, sizeof name, "%.*s", (int)strcspn(line + 1, "]"), line + 1);
       if (vl_text_is(name, "image"))
         side_line = ini.lines.number;
-      if (vl_text_is(name, "image") || vl_text_is(name, "externals"))
+      if (vl_has_word("image externals", name))
         continue;
       wanted = !found && vl_camera_is_frame(file, record->frames, name);
       if (wanted)
@@ -159,10 +159,8 @@ static const char yaml_form[] =
 static vlResult write_ros(const vlFittedCamera *fit, vlCameraText *text) {
   const bool fisheye = fit->family == VL_LENS_FISHEYE;
   const bool ini = vl_ends_with(fit->file->path, ".ini");
-  bool more = false; /* s1 to s4, tilt: ROS has no such coefficients */
-  for (int i = 8; i < 14; i++)
-    more = more || fit->k[i] != 0.0;
-  VL_TRY(vl_camera_refuse(fit->file, "distortion", more));
+  /* s1 to s4, tilt: ROS has no such coefficients */
+  VL_TRY(vl_camera_refuse(fit->file, "distortion", !vl_camera_all_zero(fit->k + 8, 6)));
   if (ini && fisheye)
     return vl_camera_no_model(fit->file, &fit->record->camera);
   const uint32_t n = fisheye ? 4 : fit->count > 5 ? 8 : 5;

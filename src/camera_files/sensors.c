@@ -10,13 +10,6 @@
 #include "camera_files/fields.h"
 #include "math/transform.h"
 
-static bool all_zero(const double *k, uint32_t count) {
-  for (uint32_t i = 0; i < count; i++)
-    if (k[i] != 0.0)
-      return false;
-  return true;
-}
-
 static vlMat4 rigid(const double r[9], const double t[3]) {
   vlMat4 m = vl_mat4_identity();
   for (int i = 0; i < 9; i++)
@@ -30,8 +23,7 @@ static vlMat4 rigid(const double r[9], const double t[3]) {
 
 static const json_t *depthai_camera(const json_t *list, double socket) {
   const json_t *pair;
-  size_t i;
-  json_array_foreach(list, i, pair) {
+  VL_EACH(pair, list) {
     const json_t *own = json_array_get(pair, 0);
     if (json_is_number(own) && json_number_value(own) == socket)
       return json_array_get(pair, 1);
@@ -50,7 +42,7 @@ static vlResult depthai_pose(const vlCameraFile *file, const json_t *list, const
     VL_TRY(vl_camera_optional(file, extrinsics, "toCameraSocket", &socket));
     if (socket < 0.0)
       return VL_OK;
-    VL_TRY(vl_camera_numbers(file, extrinsics, "rotationMatrix", r, 9, 9, NULL));
+    VL_TRY(vl_camera_list(file, extrinsics, "rotationMatrix", r, 9));
     VL_TRY(VL_READ_FIELDS(file, shift, VL_FIELD("x", &t[0]), VL_FIELD("y", &t[1]),
                           VL_FIELD("z", &t[2])));
     *world = vl_mat4_multiply(rigid(r, t), *world);
@@ -66,10 +58,9 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree,
   vlCameraDef *d = &record->camera;
   double k[9], lens[14] = {0.0}, type = 0.0;
   uint32_t count = 0;
-  size_t i;
   vlMat4 world;
   record->frames = 0;
-  json_array_foreach(list, i, pair) {
+  VL_EACH(pair, list) {
     const json_t *one = json_array_get(pair, 1);
     char name[32];
     if (json_number_value(json_object_get(one, "width")) < 1.0)
@@ -127,9 +118,8 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree,
                *one, *camera = NULL;
   vlCameraDef *d = &record->camera;
   double v[14], r[9], t[3];
-  size_t i;
   record->frames = 0;
-  json_array_foreach(list, i, one) {
+  VL_EACH(one, list) {
     const char *name = vl_camera_text(one, "Location");
     if (name && strncmp(name, "CALIBRATION_CameraLocation", 26) == 0)
       name += 26; /* D0, PV0 */
@@ -142,13 +132,13 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree,
                         VL_FIELD_SIDE("SensorHeight", &d->height)));
   VL_TRY(vl_camera_field(file, camera, "Intrinsics", &intrinsics));
   VL_TRY(vl_camera_field(file, camera, "Rt", &pose));
-  VL_TRY(vl_camera_numbers(file, intrinsics, "ModelParameters", v, 14, 14, NULL));
+  VL_TRY(vl_camera_list(file, intrinsics, "ModelParameters", v, 14));
   VL_TRY(VL_READ_FIELDS(file, pose, VL_FIELD_LIST("Rotation", r, 9),
                         VL_FIELD_LIST("Translation", t, 3)));
   const char *model = vl_camera_text(intrinsics, "ModelType");
   if (model && !strstr(model, "BrownConrady"))
     return vl_camera_unknown(file, intrinsics, "ModelType", model, "there is BrownConrady");
-  if (!all_zero(v + 10, 2))
+  if (!vl_camera_all_zero(v + 10, 2))
     return vl_camera_wrong_in(file, intrinsics, "ModelParameters",
                               "kinect: the centre of the distortion must be 0, 0");
   d->cx = v[0] * d->width;
@@ -202,12 +192,12 @@ static vlResult read_stream(const vlCameraFile *file, const json_t *stream,
                    : (char)(model[i] >= 'A' && model[i] <= 'Z' ? model[i] + 32 : model[i]);
   /* without coefficients the models of fisheyes are fisheyes */
   const bool fisheye = strstr(lower, "kannala") || strstr(lower, "theta");
-  if (all_zero(k, 5) && !fisheye)
+  if (vl_camera_all_zero(k, 5) && !fisheye)
     return VL_OK;
   if (strstr(lower, "kannala")) {
     vl_camera_set_fisheye(d, k);
   } else if (strstr(lower, "brown") && !strstr(lower, "inverse") &&
-             (!strstr(lower, "modified") || all_zero(k + 2, 2))) {
+             (!strstr(lower, "modified") || vl_camera_all_zero(k + 2, 2))) {
     vl_camera_set_shortest(d, k, 5);
   } else {
     return vl_camera_wrong_in(

@@ -71,15 +71,15 @@ static json_t *value_of(const vlCameraFile *file, const json_t *element, const c
 static json_t *convert(const vlCameraFile *file, const json_t *element, int depth) {
   const json_t *children = json_object_get(element, "/"), *child;
   const char *text = vl_camera_text(element, "$");
-  size_t i;
   if (!push_location(file, element) || depth == 0)
     return NULL;
   if (json_array_size(children) == 0)
     return value_of(file, element, text ? text : "");
   bool list = true, failed = false;
-  json_array_foreach(children, i, child) list = list && vl_camera_has_tag(child, "_");
+  VL_EACH(child, children)
+    list = list && vl_camera_has_tag(child, "_");
   json_t *value = list ? json_array() : json_object();
-  json_array_foreach(children, i, child) {
+  VL_EACH(child, children) {
     if (failed)
       break;
     json_t *item = convert(file, child, depth - 1);

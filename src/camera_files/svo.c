@@ -34,8 +34,7 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree,
     }
   } else {
     vl_camera_set_centred(d, f);
-    vl_camera_set_opencv(d, k,
-                         k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0 || k[3] != 0.0 ? 4 : 0);
+    vl_camera_set_opencv(d, k, vl_camera_all_zero(k, 4) ? 0 : 4);
   }
   return VL_OK;
 }
@@ -78,7 +77,7 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
                             d));
   vl_camera_set_origin(d);
   if (vl_camera_has(item, "T_B_C")) {
-    VL_TRY(vl_camera_numbers(file, item, "T_B_C", m, 16, 16, NULL));
+    VL_TRY(vl_camera_list(file, item, "T_B_C", m, 16));
     vl_camera_set_matrix(d, m, false);
   }
   vl_camera_name(record, vl_camera_text(camera, "label"));
@@ -90,10 +89,10 @@ static vlResult read_svo(const vlCameraFile *file, const json_t *tree, vlCameraR
   if (vl_camera_has(tree, "cam_model"))
     return read_first(file, tree, record);
   const json_t *item, *chosen = NULL;
-  size_t i;
   record->frames = 0;
-  json_array_foreach(cameras, i, item) vl_camera_offer(
-      file, item, vl_camera_text(json_object_get(item, "camera"), "label"), record, &chosen);
+  VL_EACH(item, cameras)
+    vl_camera_offer(file, item, vl_camera_text(json_object_get(item, "camera"), "label"),
+                    record, &chosen);
   return chosen ? read_rig_camera(file, chosen, record)
                 : vl_camera_none_in(file, tree, "cameras", "camera", record->frames);
 }

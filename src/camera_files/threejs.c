@@ -11,8 +11,7 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 static bool is_camera(const json_t *object) {
   const char *type = vl_camera_text(object, "type");
-  return type &&
-         (vl_text_is(type, "PerspectiveCamera") || vl_text_is(type, "OrthographicCamera"));
+  return type && vl_has_word("PerspectiveCamera OrthographicCamera", type);
 }
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *object,
@@ -60,7 +59,7 @@ static vlResult read_threejs(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   const json_t *object = json_object_get(tree, "object");
   double c[16], m[16];
-  VL_TRY(vl_camera_numbers(file, object, "matrix", c, 16, 16, NULL));
+  VL_TRY(vl_camera_list(file, object, "matrix", c, 16));
   VL_TRY(read_lens(file, object, record));
   vl_camera_transpose(c, m);
   vl_camera_set_flipped(&record->camera, m);

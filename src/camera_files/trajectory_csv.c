@@ -185,9 +185,7 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
     for (size_t k = 0; k < VL_LENGTH(aliases); k++)
       if (vl_text_is(aliases[k].alias, fields[i]))
         column = aliases[k].column;
-    bool lens = vl_text_is(fields[i], "fx") || vl_text_is(fields[i], "fy") ||
-                vl_text_is(fields[i], "cx") ||
-                vl_text_is(fields[i], "cy"); /* Stray Scanner's */
+    const bool lens = vl_has_word("fx fy cx cy", fields[i]); /* Stray Scanner's */
     if (lens && column == COLUMNS)
       vl_log(csv->file->context, VL_LOG_WARNING, NULL,
              "%s: the column \"%s\" is ignored: the file has poses only", csv->file->path,

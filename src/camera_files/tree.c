@@ -239,9 +239,8 @@ vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord 
 /* Appends the numbers of a list; nested lists to a depth of two. */
 static vlResult collect(const vlCameraFile *file, const json_t *list, const char *key,
                         int depth, double *values, uint32_t most, uint32_t *count) {
-  size_t i;
   json_t *item;
-  json_array_foreach((json_t *)list, i, item) {
+  VL_EACH(item, list) {
     if (json_is_array(item) && depth > 0) {
       VL_TRY(collect(file, item, key, depth - 1, values, most, count));
     } else {
@@ -279,6 +278,11 @@ vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const
   if (count)
     *count = found;
   return VL_OK;
+}
+
+vlResult vl_camera_list(const vlCameraFile *file, const json_t *object, const char *key,
+                        double *values, uint32_t count) {
+  return vl_camera_numbers(file, object, key, values, count, count, NULL);
 }
 
 const char *vl_camera_text(const json_t *object, const char *key) {

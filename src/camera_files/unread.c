@@ -21,16 +21,9 @@ static const char *const lenses[] = {"fisheye",  "ftheta",       "f-theta", "equ
                                      "ortho",    "orthographic", "omni",    "panoramic",
                                      "spherical"};
 /* Whole names that do. */
-static const char *const whole[] = {"roi", "xi", "cx", "cy"};
+static const char whole[] = "roi xi cx cy";
 /* Coefficients of lens models: a letter and a digit. */
 static const char coefficients[] = "kpsbdt";
-
-static bool is_among(const char *word, const char *const *words, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (vl_text_is(word, words[i]))
-      return true;
-  return false;
-}
 
 static bool names_geometry(const char *key) {
   char name[64];
@@ -40,7 +33,7 @@ static bool names_geometry(const char *key) {
   name[length] = 0;
   if (length == 2 && strchr(coefficients, name[0]) && isdigit((unsigned char)name[1]))
     return true;
-  if (is_among(name, whole, VL_LENGTH(whole)))
+  if (vl_has_word(whole, name))
     return true;
   if (strstr(name, "undistort")) /* says what was done, not what is to be done */
     return false;
@@ -51,10 +44,10 @@ static bool names_geometry(const char *key) {
 }
 
 static bool is_off_word(const char *text) {
-  static const char *const off[] = {"", "none", "None", "NONE", "false", "False"};
   char *end;
   const double number = vl_camera_parse(text, &end); /* numbers are texts in XML, and in .sfm */
-  return is_among(text, off, VL_LENGTH(off)) || (end != text && !*end && number == 0.0);
+  return !*text || vl_has_word("none None NONE false False", text) ||
+         (end != text && !*end && number == 0.0);
 }
 
 /* Whether a value says that the field has no effect: null, false, 0, "", "none", and lists and
@@ -62,15 +55,15 @@ static bool is_off_word(const char *text) {
 static bool is_off(const json_t *value, int depth) {
   const char *key;
   json_t *child;
-  size_t i;
   if (json_is_object(value)) {
     json_object_foreach((json_t *)value, key,
                         child) if (!depth || !is_off(child, depth - 1)) return false;
     return true;
   }
   if (json_is_array(value)) {
-    json_array_foreach((json_t *)value, i,
-                       child) if (!depth || !is_off(child, depth - 1)) return false;
+    VL_EACH(child, value)
+      if (!depth || !is_off(child, depth - 1))
+        return false;
     return true;
   }
   if (json_is_number(value))

@@ -24,7 +24,7 @@ typedef struct {
 
 static vlResult op_numbers(const Operation *op, const char *key, double *values,
                            uint32_t count) {
-  return vl_camera_numbers(op->file, op->prim, key, values, count, count, NULL);
+  return vl_camera_list(op->file, op->prim, key, values, count);
 }
 
 static vlMat4 turn(int axis, double degrees) {
@@ -76,10 +76,9 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
 static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat4 *m,
                              bool *reset) {
   const json_t *order = json_object_get(prim, "xformOpOrder"), *item;
-  size_t i;
   *reset = false;
   *m = vl_mat4_identity();
-  json_array_foreach(order, i, item) {
+  VL_EACH(item, order) {
     const char *name = json_string_value(item);
     if (vl_text_is(name, "!resetXformStack!")) {
       *reset = true;
@@ -136,7 +135,6 @@ static vlResult pose_of(Search *s) {
 static vlResult walk(Search *s, const json_t *prim) {
   const char *type = vl_camera_text(prim, "<");
   const json_t *child;
-  size_t i;
   if (vl_text_is(type, "Camera")) {
     bool wanted =
         !s->camera && vl_camera_is_frame(s->file, s->frames++, vl_camera_text(prim, "@"));
@@ -147,7 +145,7 @@ static vlResult walk(Search *s, const json_t *prim) {
   } else if (type && strncmp(type, "Render", 6) == 0 && !s->resolution) {
     s->resolution = json_object_get(prim, "resolution") ? prim : NULL;
   }
-  json_array_foreach(json_object_get(prim, "/"), i, child) {
+  VL_EACH_CHILD(child, prim) {
     if (s->depth == 64)
       break; /* the parser's depth is smaller */
     s->path[s->depth++] = child;
@@ -194,7 +192,7 @@ static vlResult read_settings(const Search *s, double *pixel) {
     return VL_OK;
   VL_TRY(vl_camera_optional(s->file, s->resolution, "pixelAspectRatio", pixel));
   if (json_object_get(s->resolution, "dataWindowNDC"))
-    VL_TRY(vl_camera_numbers(s->file, s->resolution, "dataWindowNDC", window, 4, 4, NULL));
+    VL_TRY(vl_camera_list(s->file, s->resolution, "dataWindowNDC", window, 4));
   if (window[0] != 0.0 || window[1] != 0.0 || window[2] != 1.0 || window[3] != 1.0)
     return vl_camera_wrong(s->file, "usd: a crop, \"dataWindowNDC\", is not taken");
   if (!(*pixel > 0.0))
@@ -208,7 +206,7 @@ static vlResult read_resolution(const Search *s, double aspect, vlCameraRecord *
   double size[2];
   if (!s->resolution)
     return vl_camera_size(s->file, aspect, record);
-  VL_TRY(vl_camera_numbers(s->file, s->resolution, "resolution", size, 2, 2, NULL));
+  VL_TRY(vl_camera_list(s->file, s->resolution, "resolution", size, 2));
   for (int i = 0; i < 2; i++)
     if (!vl_camera_is_side(size[i]))
       return vl_camera_wrong(
@@ -264,7 +262,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
       VL_FIELD_OPTIONAL("shutter:close", &d->shutter_close)));
   VL_TRY(vl_camera_optional(file, root, "timeCodesPerSecond", &rate));
   if (json_object_get(prim, "clippingRange")) {
-    VL_TRY(vl_camera_numbers(file, prim, "clippingRange", range, 2, 2, NULL));
+    VL_TRY(vl_camera_list(file, prim, "clippingRange", range, 2));
     d->near_plane = range[0];
     d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
   }

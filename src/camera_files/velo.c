@@ -261,7 +261,7 @@ static vlResult read_curve(const vlCameraFile *file, const json_t *tree, const F
 static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key,
                             bool *given, double *m) {
   *given = json_object_get(tree, key) != NULL;
-  return *given ? vl_camera_numbers(file, tree, key, m, 16, 16, NULL) : VL_OK;
+  return *given ? vl_camera_list(file, tree, key, m, 16) : VL_OK;
 }
 
 static vlResult read_pose(const vlCameraFile *file, const json_t *tree, const Field *field,

@@ -78,14 +78,14 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
 static vlResult read_visp(const vlCameraFile *file, const json_t *root,
                           vlCameraRecord *record) {
   const json_t *camera, *model, *chosen = NULL, *of = NULL;
-  size_t i, k;
+  size_t i;
   record->frames = 0;
   json_array_foreach(json_object_get(root, "/"), i, camera) {
     char name[64];
     if (!vl_camera_has_tag(camera, "camera"))
       continue;
     child_text(camera, "name", name);
-    json_array_foreach(json_object_get(camera, "/"), k, model) {
+    VL_EACH_CHILD(model, camera) {
       if (!vl_camera_has_tag(model, "model"))
         continue;
       if (!chosen && vl_camera_is_frame(file, record->frames, name)) {
@@ -109,12 +109,7 @@ static bool is_visp(const json_t *tree) {
 
 static vlResult write_visp(const vlFittedCamera *fit, vlCameraText *text) {
   const double *k = fit->k;
-  bool fits = VL_LENSES_COMMON >> fit->family & 1;
-  bool fisheye = fit->family == VL_LENS_FISHEYE;
-  for (int i = 1; i < 14 && !fisheye; i++)
-    fits = fits && k[i] == 0.0; /* ViSP's model has k1 only */
-  if (!fits)
-    return vl_camera_no_model(fit->file, &fit->record->camera);
+  const bool fisheye = fit->family == VL_LENS_FISHEYE;
   bool bent = !fisheye && k[0] != 0.0;
   const char *name =
       fit->record->name[0] && !strpbrk(fit->record->name, "<>&") ? fit->record->name : "Camera";
@@ -144,4 +139,7 @@ const vlCameraFormat vl_format_visp = {
         "full_height additional_information!",
     .is_tree = is_visp,
     .read = read_visp,
+    .lenses = VL_LENSES_COMMON,
+    .most = 14,
+    .terms = 1,
     .write = write_visp};

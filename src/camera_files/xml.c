@@ -183,9 +183,8 @@ bool vl_camera_has_tag(const json_t *element, const char *tag) {
 }
 
 const json_t *vl_camera_child(const json_t *element, const char *tag) {
-  size_t i;
   const json_t *child;
-  json_array_foreach(json_object_get(element, "/"), i, child) {
+  VL_EACH_CHILD(child, element) {
     if (vl_text_is(json_string_value(json_object_get(child, "<")), tag))
       return child;
   }

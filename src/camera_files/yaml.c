@@ -81,14 +81,14 @@ static vlResult locate_copy(const vlCameraFile *file, Builder *b, const json_t *
                             yaml_mark_t mark) {
   const char *key;
   json_t *child;
-  size_t i;
   if (++b->copies > MAX_COPIES)
     return wrong_at(file, mark, "the aliases make more than 100,000 values");
   VL_TRY(locate(file, mark));
   if (json_is_object(value)) {
     json_object_foreach((json_t *)value, key, child) VL_TRY(locate_copy(file, b, child, mark));
   } else {
-    json_array_foreach((json_t *)value, i, child) VL_TRY(locate_copy(file, b, child, mark));
+    VL_EACH(child, value)
+      VL_TRY(locate_copy(file, b, child, mark));
   }
   return VL_OK;
 }

@@ -124,10 +124,7 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
   d->width = modes[mode].width;
   d->height = modes[mode].height;
   vl_camera_set_centred(d, v);
-  bool bent = false;
-  for (int i = 4; i < 9; i++)
-    bent = bent || v[i] != 0.0;
-  vl_camera_set_opencv(d, v + 4, bent ? 5 : 0);
+  vl_camera_set_opencv(d, v + 4, vl_camera_all_zero(v + 4, 5) ? 0 : 5);
   vl_camera_name(record, section);
   vl_camera_set_origin(d);
   return right ? read_right(file, text, size, mode, d) : VL_OK;

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/manual.h"
 #include "cli/report.h"
 #include "cli/signals.h"
@@ -32,7 +33,7 @@ static const Command *const commands[] = {&render_command,         &view_command
                                           &film_develop_command,   &raw_develop_command,
                                           &raw_info_command,       &sensor_expose_command,
                                           &sensor_verify_command,  &light_info_command};
-enum { COMMANDS = sizeof commands / sizeof *commands };
+enum { COMMANDS = LENGTH(commands) };
 
 static void print_overview(void) {
   printf("velo, a photorealistic renderer\n\nusage: velo COMMAND ...\n\n");
@@ -98,7 +99,7 @@ static const char *command_for_file(const char *word) {
       {".yaml", "camera info"}, {".json", "camera info"}, {".dng", "raw info"},
       {".ies", "light info"},   {".ldt", "light info"}};
   const size_t length = strlen(word);
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+  for (size_t i = 0; i < LENGTH(kinds); i++) {
     const size_t n = strlen(kinds[i][0]);
     if (length > n && strcasecmp(word + length - n, kinds[i][0]) == 0)
       return kinds[i][1];
@@ -130,8 +131,7 @@ static int unknown_command(int argc, char **argv) {
   }
   char first_words[COMMANDS][40];
   for (int i = 0; i < COMMANDS; i++) {
-    snprintf(first_words[i], sizeof first_words[i], "%.*s",
-             (int)strcspn(commands[i]->name, " "), commands[i]->name);
+    text_set(first_words[i], "%.*s", (int)strcspn(commands[i]->name, " "), commands[i]->name);
     names[i] = first_words[i];
   }
   names[COMMANDS] = "help";
@@ -183,7 +183,7 @@ static int print_help(int argc, char **argv, bool all) {
     for (int i = 0; i < COMMANDS; i++) {
       if (strncmp(commands[i]->name, argv[0], strlen(argv[0])) != 0)
         continue;
-      if (count-- < (int)(sizeof names / sizeof *names))
+      if (count-- < (int)(LENGTH(names)))
         options_print_help(commands[i], all);
       if (count)
         printf("\n");
@@ -197,9 +197,7 @@ static int print_help(int argc, char **argv, bool all) {
 /* `velo help`, argv without these words. */
 static int help(int argc, char **argv) {
   static Arguments arguments;
-  int status = options_parse(&help_command, argc, argv, &arguments);
-  if (status >= 0)
-    return status;
+  TRY(options_parse(&help_command, argc, argv, &arguments));
   argc = arguments.operand_count; /* the operands now come first in argv */
   const OptionValue *v = arguments.values;
   if (v[HELP_MAN].given + v[HELP_COMPLETION].given + v[HELP_COMMANDS].given > 1)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "cli/vector.h"
@@ -67,9 +68,9 @@ void camera_note_unread(const char *path, const vlCameraRecord *record) {
   if (!record || record->unread == 0)
     return;
   if (record->unread_line)
-    snprintf(line, sizeof line, ":%u", record->unread_line);
+    text_set(line, ":%u", record->unread_line);
   if (record->unread > VL_UNREAD_NAMES)
-    snprintf(more, sizeof more, " and %u more", record->unread - VL_UNREAD_NAMES);
+    text_set(more, " and %u more", record->unread - VL_UNREAD_NAMES);
   report_note("%s%s: not understood and without effect: %s%s", path, line, record->unread_names,
               more);
 }
@@ -90,9 +91,7 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
     def.width = (uint32_t)taken->integers[0];
     def.height = (uint32_t)taken->integers[1];
   }
-  vlResult result = vl_camera_read(context, path, &def, record, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
+  TRY(report_error(&error, vl_camera_read(context, path, &def, record, &error), path));
   if (sized && (record->camera.width != def.width || record->camera.height != def.height))
     return report_usage(
         "%s says %u x %u pixels, --size %u x %u; --size is for files that have none", path,
@@ -111,10 +110,8 @@ int camera_load_made(vlContext *context, const char *path, const Arguments *argu
                      int frame_option, int size_option, vlCameraRecord *record,
                      vlCamera *camera) {
   const OptionValue *frame = &arguments->values[frame_option];
-  int status = camera_load(context, path, 0, frame->given ? frame->text : NULL,
-                           &arguments->values[size_option], NULL, record);
-  if (status >= 0)
-    return status;
+  TRY(camera_load(context, path, 0, frame->given ? frame->text : NULL,
+                  &arguments->values[size_option], NULL, record));
   const char *warning = NULL;
   vlError error = {0};
   vlResult result = vl_camera_make(&record->camera, camera, &warning, &error);

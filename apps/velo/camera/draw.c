@@ -9,6 +9,7 @@
 #include "camera/poses.h"
 #include "camera/scene_world.h"
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/lens_options.h"
@@ -52,7 +53,7 @@ static int parse_parts(const char *text, uint32_t *parts) {
 #define NAME(part, name) #name,
   static const char *const names[] = {VL_DRAWING_PARTS(NAME)};
 #undef NAME
-  enum { PARTS = sizeof names / sizeof *names };
+  enum { PARTS = LENGTH(names) };
   *parts = 0;
   while (*text) {
     size_t length = strcspn(text, ",");
@@ -108,11 +109,8 @@ static int read_options(State *s, const Arguments *arguments) {
   s->def = vl_default_drawing_def();
   if (v[DRAW_GRID].given)
     s->def.grid = (uint32_t)v[DRAW_GRID].integer;
-  if (v[DRAW_PARTS].given) {
-    int status = parse_parts(v[DRAW_PARTS].text, &s->def.parts);
-    if (status >= 0)
-      return status;
-  }
+  if (v[DRAW_PARTS].given)
+    TRY(parse_parts(v[DRAW_PARTS].text, &s->def.parts));
   for (int i = 0; i < arguments->text_count; i++)
     if (!parse_numbers(arguments->texts[i], 3, s->points + 3 * i))
       return report_usage("--point \"%s\": a point is x,y,z", arguments->texts[i]);
@@ -130,13 +128,12 @@ static int load(State *s, vlContext *context, const Arguments *arguments) {
   const char *path = arguments->operands[0];
   const OptionValue *v = arguments->values;
   vlError error = {0};
-  int status = scene_world_open(&s->in, context, arguments);
-  if (status >= 0)
-    return status;
+  TRY(scene_world_open(&s->in, context, arguments));
   if (v[RENDER_TRAJECTORY].given) {
-    vlResult result = poses_load(s->in.context, v[RENDER_TRAJECTORY].text, &s->in.job.camera,
-                                 &s->cameras, &s->count, &error);
-    return report_error(&error, result, v[RENDER_TRAJECTORY].text);
+    return report_error(&error,
+                        poses_load(s->in.context, v[RENDER_TRAJECTORY].text, &s->in.job.camera,
+                                   &s->cameras, &s->count, &error),
+                        v[RENDER_TRAJECTORY].text);
   }
   if (v[DRAW_NEAR].given)
     s->in.job.camera.near_plane = v[DRAW_NEAR].number;
@@ -199,13 +196,13 @@ static void choose_distances(State *s, const OptionValue *v) {
 
 static int draw(State *s, const OptionValue *v) {
   vlError error = {0};
-  vlResult result = draw_look(s->in.world, &s->cameras[0], &s->seen, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, s->in.job.path);
+  TRY(report_error(&error, draw_look(s->in.world, &s->cameras[0], &s->seen, &error),
+                   s->in.job.path));
   choose_distances(s, v);
   if (s->def.point_count == 0 && s->count == 1)
     choose_points(s);
-  result = vl_camera_outline(s->in.context, s->cameras, s->count, &s->def, &s->drawing, &error);
+  vlResult result =
+      vl_camera_outline(s->in.context, s->cameras, s->count, &s->def, &s->drawing, &error);
   if (result == VL_OK)
     result =
         draw_choose_view(&s->cameras[0], s->drawing, &s->seen, &s->view, &s->outside, &error);
@@ -221,7 +218,7 @@ static int draw(State *s, const OptionValue *v) {
     result = overlay_write(&overlay, s->in.context, v[DRAW_OUT].text, &error);
   }
   overlay_end(&overlay);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, v[DRAW_OUT].text);
+  return report_finish(&error, result, v[DRAW_OUT].text);
 }
 
 static int run_draw(const Arguments *arguments, vlContext *context) {

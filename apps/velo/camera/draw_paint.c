@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "camera/draw.h"
+#include "cli/macros.h"
 #include "cli/vector.h"
 
 /* How a part is drawn: width in units of the pen, opacity of its faces. */
@@ -267,7 +268,7 @@ void draw_paint(Overlay *overlay, const Outside *outside, const vlDrawing *drawi
       VL_DRAWING_FAR,    VL_DRAWING_FOCUS, VL_DRAWING_FILM,      VL_DRAWING_NEAR,
       VL_DRAWING_WINDOW, VL_DRAWING_GRID,  VL_DRAWING_VOLUME,    VL_DRAWING_DISTANCE,
       VL_DRAWING_PATH,   VL_DRAWING_AXES,  VL_DRAWING_PROJECTOR, VL_DRAWING_EYE};
-  enum { PARTS = sizeof order / sizeof *order };
+  enum { PARTS = LENGTH(order) };
   Canvas c = {.overlay = overlay,
               .outside = outside,
               .pen = fmax(1.0, 0.0011 * (overlay->width + overlay->height))};

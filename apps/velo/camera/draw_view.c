@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "camera/draw.h"
+#include "cli/macros.h"
 #include "cli/vector.h"
 #include "render/denoised.h"
 #include "render/exposure.h"
@@ -55,13 +56,11 @@ vlResult draw_look(const vlWorld *world, const vlCamera *camera, Seen *seen, vlE
   uint32_t w = camera->width, h = camera->height, most = w > h ? w : h;
   w = w * SIDE / most ? w * SIDE / most : 1;
   h = h * SIDE / most ? h * SIDE / most : 1;
-  vlResult result = vl_camera_resize(camera, w, h, &small);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(vl_camera_resize(camera, w, h, &small));
   vlChannelsDef def = vl_default_channels_def(w, h);
   def.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P;
   vlImage *floats = NULL;
-  result = vl_render_channels(world, &small, &def, &floats, NULL, error);
+  vlResult result = vl_render_channels(world, &small, &def, &floats, NULL, error);
   bool flat = camera->projection == VL_PROJECTION_PERSPECTIVE ||
               camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
   if (result == VL_OK)
@@ -248,10 +247,7 @@ static vlResult render_images(vlContext *context, const vlWorld *world, const vl
                               const OutsideDef *def, const vlCamera *of, Outside *outside,
                               vlError *error) {
   enum { SIDE = 320 };
-  vlResult result =
-      render_view(context, world, defs, def, &outside->camera, &outside->image, error);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(render_view(context, world, defs, def, &outside->camera, &outside->image, error));
   double ev =
       isnan(def->exposure) ? 0.8 + (double)exposure_meter(outside->image) : def->exposure;
   if (!isfinite(ev))
@@ -260,14 +256,12 @@ static vlResult render_images(vlContext *context, const vlWorld *world, const vl
   if (!def->own_image)
     return VL_OK;
   double scale = fmin(1.0, (double)SIDE / fmax(of->width, of->height));
-  result = vl_camera_resize(of, (uint32_t)fmax(1, scale * of->width),
-                            (uint32_t)fmax(1, scale * of->height), &outside->inside);
-  if (result == VL_OK)
-    result =
-        render_view(context, world, defs, def, &outside->inside, &outside->inside_image, error);
-  if (result == VL_OK)
-    put_on_paper(outside->inside_image, ev, 1.0);
-  return result;
+  TRY_RESULT(vl_camera_resize(of, (uint32_t)fmax(1, scale * of->width),
+                              (uint32_t)fmax(1, scale * of->height), &outside->inside));
+  TRY_RESULT(
+      render_view(context, world, defs, def, &outside->inside, &outside->inside_image, error));
+  put_on_paper(outside->inside_image, ev, 1.0);
+  return VL_OK;
 }
 
 static vlResult render_depth(const vlWorld *world, const OutsideDef *def, Outside *outside,
@@ -318,11 +312,9 @@ vlResult draw_render(vlContext *context, const vlWorld *world, const vlSceneDefs
   for (size_t i = 0; i < pixels; i++)
     outside->depth[i] = INFINITY;
   if (def->scene) {
-    vlResult result = render_depth(world, def, outside, error);
-    if (result == VL_OK)
-      result = cut(world, def, drawing, outside, error);
-    return result == VL_OK ? render_images(context, world, defs, def, of, outside, error)
-                           : result;
+    TRY_RESULT(render_depth(world, def, outside, error));
+    TRY_RESULT(cut(world, def, drawing, outside, error));
+    return render_images(context, world, defs, def, of, outside, error);
   }
   vlImageDef sheet = vl_default_image_def(def->width, def->height, 3);
   vlResult result = vl_image_create(context, &sheet, &outside->image);

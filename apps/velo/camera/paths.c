@@ -63,8 +63,7 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
                                 .first = first,
                                 .count = count,
                                 .by_sample = v[PATHS_SORT].given && v[PATHS_SORT].integer == 1};
-  vlResult result = paths_trace(&request, &s->traced, &error);
-  return report_error(&error, result, s->in.job.path);
+  return report_error(&error, paths_trace(&request, &s->traced, &error), s->in.job.path);
 }
 
 static int print(State *s, const OptionValue *v) {

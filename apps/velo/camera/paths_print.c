@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "camera/paths.h"
+#include "cli/macros.h"
 #include "velo/channels.h"
 #include "velo/tracer.h"
 
@@ -46,7 +47,7 @@ static const struct {
 } shown_channels[] = {{"depth", C_Z, 1},      {"distance", C_DISTANCE, 1}, {"position", C_P, 3},
                       {"normal", C_NG, 3},    {"shading", C_N, 3},         {"uv", C_UV, 2},
                       {"albedo", C_ALBEDO, 3}};
-enum { SHOWN_CHANNELS = sizeof shown_channels / sizeof *shown_channels };
+enum { SHOWN_CHANNELS = LENGTH(shown_channels) };
 static double channel_at(const PathsReport *r, uint32_t channel) {
   return (double)vl_image_get(r->traced->channels, 0, 0, channel);
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "camera/paths.h"
+#include "cli/macros.h"
 #include "velo/channels.h"
 
 /* A path to be put in order. */
@@ -53,12 +54,9 @@ vlResult paths_trace(const PathsRequest *r, TracedPaths *traced, vlError *error)
   vlFilmDef film = *r->film;
   const uint32_t whole[4] = {0, 0, film.width, film.height};
   memcpy(film.crop, whole, sizeof whole);
-  vlResult result = vl_trace_paths(r->world, r->camera, &film, r->render, r->pixel[0],
-                                   r->pixel[1], r->first, r->count, &traced->paths, error);
-  if (result == VL_OK)
-    result = see(r, traced, error);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(vl_trace_paths(r->world, r->camera, &film, r->render, r->pixel[0], r->pixel[1],
+                            r->first, r->count, &traced->paths, error));
+  TRY_RESULT(see(r, traced, error));
   traced->order = make_order(traced->paths, r->by_sample);
   return traced->order ? VL_OK : VL_ERROR_MEMORY;
 }

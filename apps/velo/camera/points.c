@@ -9,6 +9,7 @@
 
 #include "camera/camera.h"
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 
 enum { POINTS_CAMERA, POINTS_ORIGIN, POINTS_FRAME, POINTS_SIZE, POINTS_STRICT };
@@ -73,9 +74,7 @@ static int read_batch(Lines *lines, int columns, double *values, uint8_t *good, 
           ((*text >= 'a' && *text <= 'z') || *text == '"' || (*text >= 'A' && *text <= 'Z')) &&
           strncasecmp(text, "nan", 3) != 0 && strncasecmp(text, "inf", 3) != 0)
         continue;
-      int status = bad_line(lines, at, columns);
-      if (status >= 0)
-        return status;
+      TRY(bad_line(lines, at, columns));
       memset(row, 0, (size_t)columns * sizeof *row);
     }
     ++*count;
@@ -90,9 +89,7 @@ static int project_all(const vlCamera *camera, double shift, Lines *lines) {
   size_t count;
   printf("u,v,z,valid,inside\n");
   do {
-    int status = read_batch(lines, 3, points, good, &count);
-    if (status >= 0)
-      return status;
+    TRY(read_batch(lines, 3, points, good, &count));
     vl_camera_project_batch(camera, count, points, pixels, z, valid);
     for (size_t i = 0; i < count; i++) {
       double u = pixels[2 * i], v = pixels[2 * i + 1];
@@ -111,9 +108,7 @@ static int unproject_all(const vlCamera *camera, double shift, Lines *lines) {
   size_t count;
   printf("ox,oy,oz,dx,dy,dz,valid\n");
   do {
-    int status = read_batch(lines, 2, pixels, good, &count);
-    if (status >= 0)
-      return status;
+    TRY(read_batch(lines, 2, pixels, good, &count));
     for (size_t i = 0; i < 2 * count; i++)
       pixels[i] += shift;
     vl_camera_unproject_batch(camera, count, pixels, origins, directions, valid);

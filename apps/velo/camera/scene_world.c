@@ -1,6 +1,7 @@
 /* camera/scene_world.c: a scene's world and camera, made as `velo render` makes them. */
 #include "camera/scene_world.h"
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/lens_options.h"
 #include "render/needs.h"
@@ -9,27 +10,19 @@ int scene_world_open(SceneWorld *s, vlContext *context, const Arguments *argumen
   const char *path = arguments->operands[0];
   vlError error = {0};
   s->context = context;
-  int status = scene_open(context, path, arguments, &s->scene, &s->opening);
-  if (status < 0)
-    status = job_make(&s->job, context, s->scene, path, arguments);
+  TRY(scene_open(context, path, arguments, &s->scene, &s->opening));
+  TRY(job_make(&s->job, context, s->scene, path, arguments));
   const Needs needs = {.options = arguments->command->options,
                        .values = arguments->values,
                        .arguments = arguments,
                        .scene = s->scene,
                        .opening = &s->opening,
                        .job = &s->job};
-  if (status < 0)
-    status = needs_check_scene(&needs);
-  if (status >= 0)
-    return status;
+  TRY(needs_check_scene(&needs));
   vlBuildDef build = s->job.defs->build;
   build.previous = s->opening.metered;
-  vlResult result = vl_world_build(s->scene, &build, &s->world, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
-  status = needs_check_tracer(&needs, s->world);
-  if (status >= 0)
-    return status;
+  TRY(report_error(&error, vl_world_build(s->scene, &build, &s->world, &error), path));
+  TRY(needs_check_tracer(&needs, s->world));
   return lens_autofocus(&s->job, s->scene, s->world);
 }
 

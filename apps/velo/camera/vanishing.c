@@ -7,6 +7,7 @@
 #include "camera/camera.h"
 #include "cli/commands.h"
 #include "cli/json.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "cli/vector.h"
@@ -307,9 +308,8 @@ static int run_inverse(const Arguments *arguments, vlContext *context) {
   if (v[V_OUT].given) {
     vlCameraFileDef file = vl_default_camera_file_def();
     file.dialect = (vlCameraDialect)option_count(&v[V_TO], VL_CAMERA_DIALECT_AUTO);
-    result = vl_camera_write(context, v[V_OUT].text, &file, &record, &error);
-    if (result != VL_OK)
-      return report_error(&error, result, v[V_OUT].text);
+    TRY(report_error(&error, vl_camera_write(context, v[V_OUT].text, &file, &record, &error),
+                     v[V_OUT].text));
   }
   say_camera(&record.camera, v[V_JSON].given);
   return STATUS_OK;

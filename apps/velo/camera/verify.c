@@ -8,6 +8,7 @@
 #include "camera/camera.h"
 #include "camera/verify.h"
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 
 enum {
@@ -177,10 +178,8 @@ static int load_model(vlContext *context, const Arguments *arguments, const vlCa
   if (o[VERIFY_AGAINST].given) {
     vlCameraRecord record;
     path = o[VERIFY_AGAINST].text;
-    int status = camera_load_made(context, path, arguments, VERIFY_AGAINST_FRAME, VERIFY_SIZE,
-                                  &record, &v->model.camera);
-    if (status >= 0)
-      return status;
+    TRY(camera_load_made(context, path, arguments, VERIFY_AGAINST_FRAME, VERIFY_SIZE, &record,
+                         &v->model.camera));
     v->model.def = record.camera;
     make_pinhole(&v->model.camera);
     if (o[VERIFY_IGNORE_POSE].given)

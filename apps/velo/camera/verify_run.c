@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "camera/verify.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/output_names.h"
 #include "velo/filter_kinds.h"
@@ -276,7 +277,7 @@ static vlResult keep_image(vlContext *context, const char *folder, uint32_t inde
       vl_default_image_def((uint32_t)rendered->width, (uint32_t)rendered->height, 1);
   def.type = VL_PIXEL_F32;
   vlResult result = vl_image_create(context, &def, &image);
-  snprintf(path, sizeof path, "%s/pose_%03u.png", folder, index);
+  text_set(path, "%s/pose_%03u.png", folder, index);
   if (result == VL_OK) {
     memcpy(vl_image_pixels(image), rendered->pixels,
            (size_t)rendered->width * (size_t)rendered->height * sizeof *rendered->pixels);
@@ -325,9 +326,9 @@ static int check_kept(const Verification *v, vlContext *context) {
   OutputNames names = {0};
   for (uint32_t i = 0; i <= v->poses; i++) {
     if (i < v->poses)
-      snprintf(path, sizeof path, "%s/pose_%03u.png", v->keep, i);
+      text_set(path, "%s/pose_%03u.png", v->keep, i);
     else
-      snprintf(path, sizeof path, "%s/corners.csv", v->keep);
+      text_set(path, "%s/corners.csv", v->keep);
     output_names_add(&names, path, VL_OUTPUT_PLAIN);
   }
   return output_names_check(&names, context);
@@ -337,7 +338,7 @@ static int check_kept(const Verification *v, vlContext *context) {
 static int keep_table(vlContext *context, const char *folder, const char *text, size_t size) {
   char path[4096];
   vlError error = {0};
-  snprintf(path, sizeof path, "%s/corners.csv", folder);
+  text_set(path, "%s/corners.csv", folder);
   vlResult result = text ? vl_write_file(context, path, text, size, &error) : VL_ERROR_MEMORY;
   return report_error(&error, result, path);
 }

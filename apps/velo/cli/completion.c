@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
+
 const Choice shell_choices[] = {
     {"bash", SHELL_BASH}, {"zsh", SHELL_ZSH}, {"fish", SHELL_FISH}, {NULL, 0}};
 
@@ -23,7 +25,7 @@ static Values option_values(const Option *o) {
       return VALUES_FOLDERS;
     case OPTION_TEXT:
     case OPTION_TEXTS:
-      for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+      for (size_t i = 0; i < LENGTH(files); i++)
         if (strcmp(o->value, files[i]) == 0)
           return VALUES_FILES;
       return strcmp(o->value, "DIR") == 0 || strcmp(o->value, "FOLDER") == 0 ? VALUES_FOLDERS
@@ -390,9 +392,9 @@ static void print_fish(const Command *const *commands, int count, const Command 
     }
     if (!has_two_words(c))
       continue;
-    snprintf(condition, sizeof condition, "__velo_words_are %.*s", n, c->name);
+    text_set(condition, "__velo_words_are %.*s", n, c->name);
     fish_word(condition, 100, c->name + n + 1, c->summary);
-    snprintf(condition, sizeof condition, "__velo_words_are help %.*s", n, c->name);
+    text_set(condition, "__velo_words_are help %.*s", n, c->name);
     fish_word(condition, 100, c->name + n + 1, NULL);
   }
   for (int i = 0; i < count; i++) {

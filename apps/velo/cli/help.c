@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/options.h"
 
 enum { HELP_COLUMN = 30, HELP_WIDTH = 80 };
@@ -78,8 +79,8 @@ static void print_choices(const Choice *choices) {
 
 static void print_option(const Option *o) {
   char head[80];
-  int n = o->letter ? snprintf(head, sizeof head, "  -%c, --%s", o->letter, o->name)
-                    : snprintf(head, sizeof head, "      --%s", o->name);
+  int n = o->letter ? text_set(head, "  -%c, --%s", o->letter, o->name)
+                    : text_set(head, "      --%s", o->name);
   if (o->value)
     n += snprintf(head + n, sizeof head - (size_t)n, " %s", o->value);
   printf("%s", head);

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
+
 /* Length of the UTF-8 sequence at s; 0 when invalid (overlong forms and surrogates
  * included). */
 static size_t utf8_length(const unsigned char *s) {
@@ -89,7 +91,7 @@ void json_text(Json *json, const char *key, const char *text) {
 
 void format_number(char *text, size_t size, double number) {
   static const int digits[] = {6, 9, 15, 16, 17};
-  for (size_t i = 0; i < sizeof digits / sizeof *digits; i++) {
+  for (size_t i = 0; i < LENGTH(digits); i++) {
     snprintf(text, size, "%.*g", digits[i], number);
     double back = strtod(text, NULL);
     if (back == number || number != number)
@@ -141,7 +143,7 @@ void json_put_list(Json *json, const char *members, va_list values) {
   for (const char *at = members; *at;) {
     char key[40];
     const char *format = strchr(at, '%');
-    snprintf(key, sizeof key, "%.*s", (int)(format - at - 1), at);
+    text_set(key, "%.*s", (int)(format - at - 1), at);
     switch (format[1]) {
       case 's':
         json_text(json, key, va_arg(values, const char *));

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "cli/macros.h"
 #include "velo/camera_file.h"
 #include "velo/render.h"
 
@@ -19,7 +20,7 @@ static const struct {
   uint32_t first;
 } name_lists[] = {{"sensors", vl_sensor_name, 0},
                   {"dialects", dialect_name, VL_CAMERA_DIALECT_AUTO + 1}};
-enum { NAME_LISTS = sizeof name_lists / sizeof *name_lists };
+enum { NAME_LISTS = LENGTH(name_lists) };
 
 /* Null: it is a family. */
 static const Choice *listed_names(const char *list) {

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "cli/kinds.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 
 /* ---- the nearest name -------------------------------------------------------------------- */
@@ -22,7 +23,7 @@ const char *did_you_mean(const char *prefix, const char *wrong, const char *cons
   const char *near = vl_near_name(wrong, names, (size_t)count);
   text[0] = 0;
   if (near)
-    snprintf(text, sizeof text, "; did you mean \"%s%s\"?", prefix, near);
+    text_set(text, "; did you mean \"%s%s\"?", prefix, near);
   return text;
 }
 
@@ -41,7 +42,7 @@ static const char *const synonyms[][3] = {
     {"tonemap", "view", NULL}};
 
 static const Option *find_synonym(const Command *command, const char *name) {
-  for (size_t i = 0; i < sizeof synonyms / sizeof *synonyms; i++)
+  for (size_t i = 0; i < LENGTH(synonyms); i++)
     for (int k = 1; k < 3 && strcmp(synonyms[i][0], name) == 0; k++)
       for (const Option *o = command->options; o->name; o++)
         if (synonyms[i][k] && strcmp(o->name, synonyms[i][k]) == 0)
@@ -212,7 +213,7 @@ static const vlParameter *setting_of(const char *name) {
                                           VL_SETTING_CAMERA,   VL_SETTING_COMPLETE,
                                           VL_SETTING_CHANNELS, VL_SETTING_CONTEXT};
   const vlParameter *row = NULL;
-  for (size_t i = 0; i < sizeof groups / sizeof *groups && !row; i++)
+  for (size_t i = 0; i < LENGTH(groups) && !row; i++)
     row = vl_setting(groups[i], name);
   return row;
 }
@@ -259,11 +260,8 @@ static int read_size(const Option *option, const char *text, int64_t size[2]) {
   for (int i = 0; i < 2; i++) {
     char name[80];
     double number;
-    snprintf(name, sizeof name, "--%s WIDTHxHEIGHT: the %s", option->name,
-             i ? "height" : "width");
-    int status = option_number(name, side[i], &row, &number);
-    if (status >= 0)
-      return status;
+    text_set(name, "--%s WIDTHxHEIGHT: the %s", option->name, i ? "height" : "width");
+    TRY(option_number(name, side[i], &row, &number));
     size[i] = (int64_t)number;
   }
   return -1;
@@ -293,7 +291,7 @@ static int read_choice(const Option *option, const char *text, OptionValue *valu
     names[i] = choices[i].name;
   const vlParameter row = {.type = VL_PARAMETER_CHOICE, .choices = names};
   const vlGiven given = {.kind = VL_GIVEN_TEXT, .text = text};
-  snprintf(what, sizeof what, "--%s", option->name);
+  text_set(what, "--%s", option->name);
   if (!vl_given_check(&row, what, &given, &index, message))
     return report_usage("%s", message);
   value->integer = choices[(int)index].value;
@@ -304,7 +302,7 @@ static int read_choice(const Option *option, const char *text, OptionValue *valu
 static int read_row(const Option *option, const char *text, OptionValue *value) {
   const vlParameter row = row_of(option);
   char name[80];
-  snprintf(name, sizeof name, "--%s", option->name);
+  text_set(name, "--%s", option->name);
   int status = option_number(name, text, &row, &value->number);
   if (option->kind == OPTION_INTEGER)
     value->integer = (int64_t)value->number;
@@ -315,7 +313,7 @@ static int read_row(const Option *option, const char *text, OptionValue *value) 
 static int read_angle_row(const Option *option, const char *text, OptionValue *value) {
   const vlParameter row = row_of(option);
   char name[80], message[VL_GIVEN_MESSAGE];
-  snprintf(name, sizeof name, "--%s", option->name);
+  text_set(name, "--%s", option->name);
   if (!read_angle(text, NULL, &value->numbers[0]))
     return option_number(name, text, &row, &value->number);
   const vlGiven given = {.kind = VL_GIVEN_NUMBER,
@@ -477,7 +475,7 @@ static int parse_option(const Command *command, char ***rest, char **end,
   const Option *option = find_option(command, name, length, is_long ? 0 : *name);
   if (!option) {
     char plain[MAX_NAME + 1];
-    snprintf(plain, sizeof plain, "%.*s", (int)(is_long ? length : strlen(name)), name);
+    text_set(plain, "%.*s", (int)(is_long ? length : strlen(name)), name);
     return unknown_option(command, plain, is_long ? "--" : "-");
   }
   const char *value =

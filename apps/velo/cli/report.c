@@ -9,6 +9,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "cli/macros.h"
 #include "cli/signals.h"
 
 enum { MAX_LOGGED = 100 }; /* limit of warnings: an untrusted file may cause one per line */
@@ -94,7 +95,7 @@ static void put_line(const char *text) {
   char line[4096];
   size_t n = 0;
   if (state.line_shown)
-    n = (size_t)snprintf(line, sizeof line, "\r\033[K");
+    n = (size_t)text_set(line, "\r\033[K");
   state.line_shown = false;
   for (const char *s = text; *s && n + 2 < sizeof line; s++)
     line[n++] =
@@ -107,7 +108,7 @@ void report_status_line(const char *text) {
   if (!state.terminal || state.verbosity == REPORT_QUIET || (!text && !state.line_shown))
     return;
   char line[700];
-  int n = snprintf(line, sizeof line, "\r%s\033[K", text ? text : "");
+  int n = text_set(line, "\r%s\033[K", text ? text : "");
   put_bytes(line, n < (int)sizeof line ? (size_t)n : sizeof line - 1);
   state.line_shown = text != NULL;
 }
@@ -138,8 +139,8 @@ static void say(const char *kind, int status, const vlError *where, const char *
   uint32_t line = where && where->file[0] ? where->line : 0, column = line ? where->column : 0;
   if (state.listener) {
     vlError what = {.line = line, .column = column};
-    snprintf(what.file, sizeof what.file, "%s", file ? file : "");
-    snprintf(what.message, sizeof what.message, "%s", message);
+    text_set(what.file, "%s", file ? file : "");
+    text_set(what.message, "%s", message);
     state.listener(state.listener_user, kind, &what);
   }
   if (state.json) {
@@ -153,13 +154,12 @@ static void say(const char *kind, int status, const vlError *where, const char *
   }
   char location[700] = "", text[4096];
   if (file && column)
-    snprintf(location, sizeof location, "%s:%u:%u: ", file, line, column);
+    text_set(location, "%s:%u:%u: ", file, line, column);
   else if (file && line)
-    snprintf(location, sizeof location, "%s:%u: ", file, line);
+    text_set(location, "%s:%u: ", file, line);
   else if (file)
-    snprintf(location, sizeof location, "%s: ", file);
-  snprintf(text, sizeof text, "velo: %s%s%s%s", kind ? kind : "", kind ? ": " : "", location,
-           message);
+    text_set(location, "%s: ", file);
+  text_set(text, "velo: %s%s%s%s", kind ? kind : "", kind ? ": " : "", location, message);
   put_line(text);
 }
 
@@ -244,10 +244,9 @@ int report_error(const vlError *error, vlResult result, const char *file) {
     size_t peak;
     vl_context_memory(state.context, &peak);
     char bytes[32];
-    int n = snprintf(longer, sizeof longer, "%s", message);
+    int n = text_set(longer, "%s", message);
     if (peak)
-      n = snprintf(longer, sizeof longer, "%s; at most %s were held", message,
-                   bytes_text(bytes, peak));
+      n = text_set(longer, "%s; at most %s were held", message, bytes_text(bytes, peak));
     if (state.memory_limit && n > 0 && n < (int)sizeof longer)
       snprintf(longer + n, sizeof longer - (size_t)n, "%s --max-memory allows %s",
                peak ? "," : ";", bytes_text(bytes, state.memory_limit));
@@ -260,12 +259,16 @@ int report_error(const vlError *error, vlResult result, const char *file) {
   return status;
 }
 
+int report_finish(const vlError *error, vlResult result, const char *file) {
+  return result == VL_OK ? STATUS_OK : report_error(error, result, file);
+}
+
 int report_reason(vlResult result, const char *file, const char *what) {
   vlError error = {0};
   if (result == VL_ERROR_ARGUMENT)
-    snprintf(error.message, sizeof error.message, "%s", what);
+    text_set(error.message, "%s", what);
   else
-    snprintf(error.message, sizeof error.message, "%s: %s", what, vl_result_name(result));
+    text_set(error.message, "%s: %s", what, vl_result_name(result));
   return report_error(&error, result, file);
 }
 
@@ -279,7 +282,7 @@ void report_note(const char *format, ...) {
   if (state.verbosity == REPORT_QUIET || state.json)
     return;
   char line[2100];
-  snprintf(line, sizeof line, "velo: %s", text);
+  text_set(line, "velo: %s", text);
   put_line(line);
 }
 

@@ -43,6 +43,8 @@ const char *error_text(const vlError *error, vlResult result);
 /* Reports "velo: file:line:column: message". `file` is used when the library's error has no
  * location; may be null. VL_OK: nothing is reported, and -1 returned. */
 int report_error(const vlError *error, vlResult result, const char *file);
+/* The same at the end of a command: VL_OK is STATUS_OK. */
+int report_finish(const vlError *error, vlResult result, const char *file);
 /* Flushes stdout at the end of a command that prints text. Returns `status`, or STATUS_IO after
  * reporting that it cannot be written. A reader that has seen enough (velo help render | head)
  * is no error. */

@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/macros.h"
 #include "velo/film.h"
 
 enum { MAX_SIGNALS = 2 }; /* after this number of signals, the next one ends the program */
@@ -61,7 +62,7 @@ static void handle(int number) {
 void signals_install(void) {
   on_terminal = isatty(STDERR_FILENO) != 0;
   static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2};
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+  for (size_t i = 0; i < LENGTH(numbers); i++) {
     struct sigaction action, before;
     memset(&action, 0, sizeof action);
     sigemptyset(&action.sa_mask);

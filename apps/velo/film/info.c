@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/shard.h"
@@ -234,7 +235,7 @@ static void print_merge(const char *path, const char *stem, uint32_t count) {
   printf("velo film merge");
   text_shell_word(stdout, path);
   for (uint32_t i = 1; i <= count; i++) {
-    snprintf(name, sizeof name, "%s-missing-%u.film", stem, i);
+    text_set(name, "%s-missing-%u.film", stem, i);
     text_shell_word(stdout, name);
   }
   printf(" -o");
@@ -270,14 +271,14 @@ static int print_missing(const char *path, const vlFilmFile *file, const FilmPar
                           "%s: the film has no receipt: what made it is not known", path);
   if (length > 5 && strcmp(path + length - 5, ".film") == 0)
     length -= 5;
-  snprintf(stem, sizeof stem, "%.*s", (int)length, path);
+  text_set(stem, "%.*s", (int)length, path);
   for (uint32_t i = 0; i < parts->count; i++)
     for (uint32_t k = 0; k < parts->parts[i].samples.count; k++) {
       const FilmPart *p = &parts->parts[i];
       const vlSampleRange *r = &p->samples.ranges[k];
       if (noise > 0 && r->first)
         continue;
-      snprintf(name, sizeof name, "%s-missing-%u.film", stem, ++count);
+      text_set(name, "%s-missing-%u.film", stem, ++count);
       print_render(file, p, r, name);
     }
   if (count)

@@ -2,6 +2,7 @@
 #include <limits.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/output_names.h"
 #include "velo/film.h"
@@ -13,16 +14,15 @@ static int run_merge(const Arguments *arguments, vlContext *context) {
   if (!output->given)
     return report_usage("film merge: give the name of the result with -o");
   vlError error = {0};
-  int status = output_check(NULL, output->text, VL_OUTPUT_FILM);
-  if (status >= 0)
-    return status;
+  TRY(output_check(NULL, output->text, VL_OUTPUT_FILM));
   vl_remove_leftovers(output_opened(output->text));
   vlFilmMergeDef def = vl_default_film_merge_def();
   def.overwrite = arguments->values[MERGE_OVERWRITE].given;
-  vlResult result =
+  return report_finish(
+      &error,
       vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, &def,
-                    output_opened(output->text), &error);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, NULL);
+                    output_opened(output->text), &error),
+      NULL);
 }
 
 static Option merge_options[] = {

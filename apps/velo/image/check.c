@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/vector.h"
 #include "image/check.h"
@@ -63,7 +64,7 @@ static int find_parts(const vlImage *image, const char *name, const char *parts)
   char part[40];
   int first = -1;
   for (int k = 0; parts[k]; k++) {
-    snprintf(part, sizeof part, "%s%c", name, parts[k]);
+    text_set(part, "%s%c", name, parts[k]);
     int at = vl_image_find_channel(image, part);
     if (at < 0 || (k && at != first + k))
       return -1;
@@ -76,7 +77,7 @@ static int find_parts(const vlImage *image, const char *name, const char *parts)
 /* Index of the channel for ids and counts: NAME.Y, or NAME in older files. */
 static int find_whole(const vlImage *image, const char *name) {
   char visible[64];
-  snprintf(visible, sizeof visible, "%s.Y", name);
+  text_set(visible, "%s.Y", name);
   int at = vl_image_find_channel(image, visible);
   return at >= 0 ? at : vl_image_find_channel(image, name);
 }
@@ -110,7 +111,7 @@ static bool has_any(const Check *c) {
   const int all[] = {c->z,    c->distance, c->p,        c->n,         c->ng,
                      c->ray,  c->object,   c->material, c->primitive, c->uv,
                      c->film, c->error,    c->albedo,   c->flow[0],   c->flow[1]};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+  for (size_t i = 0; i < LENGTH(all); i++)
     if (all[i] >= 0)
       return true;
   return c->mattes[0].ranks || c->mattes[1].ranks || c->mattes[2].ranks;
@@ -133,7 +134,7 @@ static void read_header(Check *c) {
   if (vl_image_find_attribute(c->image, "velo.filter", &a) != VL_OK || !pinhole ||
       c->alpha < 0 || vl_image_stored_type(c->image, (uint32_t)c->alpha) != VL_PIXEL_F32)
     return;
-  for (size_t i = 0; i < sizeof positive / sizeof *positive; i++)
+  for (size_t i = 0; i < LENGTH(positive); i++)
     c->matte_is_alpha = c->matte_is_alpha || strcmp(a.string, positive[i]) == 0;
 }
 
@@ -158,13 +159,13 @@ static void check_types(Check *c) {
                      c->samples, c->hidden[0], c->hidden[1]};
   c->x = c->x0;
   c->y = c->y0;
-  for (size_t i = 0; i < sizeof ones / sizeof *ones; i++)
+  for (size_t i = 0; i < LENGTH(ones); i++)
     check_type(c, ones[i], 1, VL_PIXEL_F32);
-  for (size_t i = 0; i < sizeof twos / sizeof *twos; i++)
+  for (size_t i = 0; i < LENGTH(twos); i++)
     check_type(c, twos[i], 2, VL_PIXEL_F32);
-  for (size_t i = 0; i < sizeof threes / sizeof *threes; i++)
+  for (size_t i = 0; i < LENGTH(threes); i++)
     check_type(c, threes[i], 3, VL_PIXEL_F32);
-  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
+  for (size_t i = 0; i < LENGTH(ids); i++)
     check_whole_type(c, ids[i]);
   for (int k = 0; k < 3; k++)
     for (uint32_t r = 0; r < c->mattes[k].ranks; r++) {
@@ -248,15 +249,11 @@ static int load_other(Check *c, vlContext *context, const Arguments *arguments,
       return report_failure(STATUS_SCENE, "%s: has no channels %s.U, .V, .hidden", c->path,
                             i ? "backward" : "forward");
     c->which = i;
-    int status = image_load(context, path, image);
-    if (status >= 0)
-      return status;
+    TRY(image_load(context, path, image));
     if (vl_image_type(*image) != VL_PIXEL_F32)
       return report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", path);
-    status = header_camera(context, *image, path, &c->other_camera, &c->other_optics,
-                           &c->other_x0, &c->other_y0);
-    if (status >= 0)
-      return status;
+    TRY(header_camera(context, *image, path, &c->other_camera, &c->other_optics, &c->other_x0,
+                      &c->other_y0));
     vlCamera rolling;
     if (header_rows(*image, &c->other_camera, &rolling) == ROWS_EACH)
       c->other_camera = rolling;
@@ -271,23 +268,17 @@ static int load_other(Check *c, vlContext *context, const Arguments *arguments,
 /* Checks the preconditions of the pixel tests. */
 static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlImage **image,
                    vlImage **other) {
-  int status = image_load(context, c->path, image);
-  if (status >= 0)
-    return status;
+  TRY(image_load(context, c->path, image));
   c->image = *image;
   find_channels(c);
-  status = check_find_mattes(c);
-  if (status >= 0)
-    return status;
+  TRY(check_find_mattes(c));
   if (!has_any(c))
     return report_failure(STATUS_SCENE,
                           "%s: has no channel that could be checked (velo render --channels)",
                           c->path);
   if (vl_image_type(*image) != VL_PIXEL_F32)
     return report_failure(STATUS_SCENE, "%s: its channels are not 32-bit floats", c->path);
-  status = header_camera(context, *image, c->path, &c->camera, &c->optics, &c->x0, &c->y0);
-  if (status >= 0)
-    return status;
+  TRY(header_camera(context, *image, c->path, &c->camera, &c->optics, &c->x0, &c->y0));
   read_header(c);
   c->rows = header_rows(*image, &c->camera, &c->rolling);
   if (c->rows == ROWS_ONE)

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "image/check.h"
 #include "velo/channels.h"
@@ -79,14 +80,14 @@ static bool read_header(Check *c, Matte *m, const char *type) {
   vlAttribute attribute;
   char name[64];
   unsigned key = vl_cryptomatte_hash(type) >> 4;
-  for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) {
-    snprintf(name, sizeof name, "cryptomatte/%07x/%s", key, fixed[i].name);
+  for (size_t i = 0; i < LENGTH(fixed); i++) {
+    text_set(name, "cryptomatte/%07x/%s", key, fixed[i].name);
     if (vl_image_find_attribute(c->image, name, &attribute) != VL_OK ||
         attribute.type != VL_ATTRIBUTE_STRING ||
         strcmp(attribute.string, fixed[i].value ? fixed[i].value : type) != 0)
       return false;
   }
-  snprintf(name, sizeof name, "cryptomatte/%07x/manifest", key);
+  text_set(name, "cryptomatte/%07x/manifest", key);
   return vl_image_find_attribute(c->image, name, &attribute) == VL_OK &&
          attribute.type == VL_ATTRIBUTE_STRING && read_manifest(m, attribute.string);
 }
@@ -97,8 +98,7 @@ int check_find_mattes(Check *c) {
     for (; m->ranks < 32; m->ranks++) {
       char name[32];
       for (uint32_t part = 0; part < 2; part++) {
-        snprintf(name, sizeof name, "%s%02u.%c", types[k], m->ranks / 2,
-                 "RGBA"[m->ranks % 2 * 2 + part]);
+        text_set(name, "%s%02u.%c", types[k], m->ranks / 2, "RGBA"[m->ranks % 2 * 2 + part]);
         int at = vl_image_find_channel(c->image, name);
         if (at < 0)
           break;

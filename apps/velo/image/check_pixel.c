@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/vector.h"
 #include "image/check.h"
 
@@ -9,10 +10,10 @@ static void check_miss(Check *c, bool in_domain, const double direction[3]) {
   double wrong = 0, v[3];
   const int zeros[] = {c->object, c->material, c->primitive, c->instance},
             vectors[] = {c->p, c->n, c->ng};
-  for (size_t i = 0; i < sizeof zeros / sizeof *zeros; i++)
+  for (size_t i = 0; i < LENGTH(zeros); i++)
     if (zeros[i] >= 0 && c->pixel[zeros[i]] != 0)
       wrong = INFINITY;
-  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+  for (size_t i = 0; i < LENGTH(vectors); i++) {
     if (vectors[i] < 0)
       continue;
     check_load3(c, vectors[i], v);
@@ -151,7 +152,7 @@ void check_pixel(Check *c) {
     check_note(c, RULE_UNIT_NG, fabs(vector_length(v) - 1));
   }
   const int ids[] = {c->object, c->material, c->primitive, c->instance};
-  for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
+  for (size_t i = 0; i < LENGTH(ids); i++)
     if (ids[i] >= 0)
       check_id(c, c->pixel[ids[i]], ids[i] == c->instance ? 0 : 1);
 }

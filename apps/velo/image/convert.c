@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/job.h"
@@ -198,18 +199,13 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
                      .half = v[CONVERT_HALF].given,
                      .view = (vlView)option_count(&v[CONVERT_VIEW], VL_VIEW_STANDARD),
                      .exposure = (float)v[CONVERT_EXPOSURE].number};
-  int status = outputs_check_names(&outputs);
-  if (status < 0)
-    status = check_channel(arguments);
-  if (status < 0)
-    status = outputs_check_folders(&outputs);
-  if (status >= 0)
-    return status;
-
+  TRY(outputs_check_names(&outputs));
+  TRY(check_channel(arguments));
+  TRY(outputs_check_folders(&outputs));
   vlImage *image = NULL;
   const bool eight_bit = output_is_display(outputs.paths[0]),
              viewed = v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given;
-  status = image_load(context, arguments->operands[0], &image);
+  int status = image_load(context, arguments->operands[0], &image);
   if (status < 0)
     status = outputs_check_inputs(context, &outputs);
   if (status < 0)

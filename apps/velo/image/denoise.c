@@ -2,6 +2,7 @@
 
 #include "image/denoise.h"
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/attributes.h"
@@ -34,14 +35,11 @@ static int run_denoise(const Arguments *arguments, vlContext *context) {
                      .view = (vlView)option_count(&v[DENOISE_VIEW], VL_VIEW_STANDARD),
                      .exposure = (float)v[DENOISE_EXPOSURE].number};
   outputs_take_names(&outputs, arguments);
-  int status = outputs_check_names(&outputs);
-  if (status < 0)
-    status = outputs_check_folders(&outputs);
-  if (status >= 0)
-    return status;
+  TRY(outputs_check_names(&outputs));
+  TRY(outputs_check_folders(&outputs));
   vlImage *image = NULL, *clean = NULL;
   vlError error = {0};
-  status = image_load(context, path, &image);
+  int status = image_load(context, path, &image);
   if (status < 0)
     status = outputs_check_inputs(context, &outputs);
   vlDenoiseDef how = vl_default_denoise_def();

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/output_names.h"
@@ -46,7 +47,7 @@ static int read_threshold(const char *text, const Metric metrics[METRICS], int *
     names[i] = metrics[i].name;
   if (!equals || equals - text >= (long)sizeof name)
     return report_usage("--threshold \"%s\": must be NAME=VALUE, such as flip=0.05", text);
-  snprintf(name, sizeof name, "%.*s", (int)(equals - text), text);
+  text_set(name, "%.*s", (int)(equals - text), text);
   *index = -1;
   for (int i = 0; i < METRICS; i++)
     if (strcmp(names[i], name) == 0)
@@ -82,9 +83,7 @@ static int check_thresholds(const Arguments *arguments, const Metric metrics[MET
   for (int i = 0; i < arguments->text_count; i++) {
     int index;
     double limit;
-    int status = read_threshold(arguments->texts[i], metrics, &index, &limit);
-    if (status >= 0)
-      return status;
+    TRY(read_threshold(arguments->texts[i], metrics, &index, &limit));
     if (accepted(&metrics[index], limit))
       continue;
     result = report_failure(STATUS_OTHER, "%s is %g, the threshold is %g", metrics[index].name,
@@ -108,8 +107,7 @@ static void print_metrics(const Arguments *arguments, const Metric metrics[METRI
 
 static int write_heat(const vlImage *heat, const char *path) {
   vlError error = {0};
-  vlResult result = vl_image_write(heat, path, NULL, &error);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, path);
+  return report_finish(&error, vl_image_write(heat, path, NULL, &error), path);
 }
 
 static int run_diff(const Arguments *arguments, vlContext *context) {

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 
 /* CIE xy of red, green, blue and white of ITU-R BT.709. */
@@ -100,7 +101,7 @@ static vlResult to_rec709(vlContext *context, const vlImage *image, const int rg
 
 static vlShortText layer_name(const char *channel, const char *dot) {
   char layer[256];
-  snprintf(layer, sizeof layer, "%.*s", (int)(dot - channel), channel);
+  text_set(layer, "%.*s", (int)(dot - channel), channel);
   return vl_short_text(layer);
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
@@ -234,11 +235,8 @@ static void single(const vlImage *image, const char *name, vlAttributeType type,
 
 int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) {
   double whole[4], data[4], shutter[2], circle = 0.0;
-  int status = windows(image, path, whole, data);
-  if (status < 0)
-    status = read_def(image, path, whole, def);
-  if (status >= 0)
-    return status;
+  TRY(windows(image, path, whole, data));
+  TRY(read_def(image, path, whole, def));
   if (def->projection == VL_PROJECTION_OPTICS)
     return report_failure(
         STATUS_SCENE,

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/image.h"
@@ -11,8 +12,7 @@
 
 int image_load(vlContext *context, const char *path, vlImage **image) {
   vlError error = {0};
-  vlResult result = vl_image_read(context, path, image, &error);
-  return report_error(&error, result, path);
+  return report_error(&error, vl_image_read(context, path, image, &error), path);
 }
 
 /* The first bytes of formats. */
@@ -36,7 +36,7 @@ static const char *format_of(const char *path) {
   size_t n = file ? fread(b, 1, sizeof b - 1, file) : 0;
   if (file)
     fclose(file);
-  for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+  for (size_t i = 0; i < LENGTH(formats); i++)
     if (strncmp(b, formats[i].bytes, strlen(formats[i].bytes)) == 0)
       return formats[i].name;
   if (n >= 12 && memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WEBP", 4) == 0)
@@ -102,7 +102,7 @@ static double shown(const vlAttribute *a, int i) {
   char text[40];
   for (int digits = 6; digits <= 9; digits++) {
     double back;
-    snprintf(text, sizeof text, "%.*g", digits, a->numbers[i]);
+    text_set(text, "%.*g", digits, a->numbers[i]);
     if (sscanf(text, "%lf", &back) == 1 && (float)back == (float)a->numbers[i])
       return back;
   }
@@ -233,9 +233,9 @@ enum { INFO_JSON };
 static int run_info(const Arguments *arguments, vlContext *context) {
   vlImage *image = NULL;
   vlError error = {0};
-  vlResult result = vl_image_read_header(context, arguments->operands[0], &image, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, arguments->operands[0]);
+  TRY(report_error(&error,
+                   vl_image_read_header(context, arguments->operands[0], &image, &error),
+                   arguments->operands[0]));
   vlReceipt *receipt = NULL;
   vlAttribute attribute;
   if (vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) == VL_OK &&

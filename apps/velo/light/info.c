@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/lamp.h"
 
@@ -196,9 +197,7 @@ static int check_output(vlContext *context, const OptionValue *output) {
 /* Prints the lamp and writes its diagram. */
 static int show(vlContext *context, const char *path, const vlLamp *lamp,
                 const OptionValue *v) {
-  int status = check_output(context, &v[INFO_OUT]);
-  if (status >= 0)
-    return status;
+  TRY(check_output(context, &v[INFO_OUT]));
   vlLampInfo info;
   vl_lamp_info(lamp, &info);
   if (v[INFO_JSON].given)

@@ -1,5 +1,6 @@
 /* raw/develop.c: `velo raw develop`: develops a raw file into an image, step by step. */
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "raw/raw.h"
 #include "render/output_names.h"
@@ -16,9 +17,7 @@ static int write_outputs(const vlImage *image, const Arguments *arguments) {
   for (int i = 0; i < arguments->text_count; i++) {
     vlError error = {0};
     const char *path = output_opened(arguments->texts[i]);
-    vlResult result = vl_image_write(image, path, NULL, &error);
-    if (result != VL_OK)
-      return report_error(&error, result, path);
+    TRY(report_error(&error, vl_image_write(image, path, NULL, &error), path));
   }
   return STATUS_OK;
 }
@@ -32,8 +31,8 @@ static int check_names(const Arguments *arguments, Outputs *outputs) {
     outputs->paths[i] = arguments->texts[i];
   }
   outputs->count = arguments->text_count;
-  int status = outputs_check_names(outputs);
-  return status < 0 ? outputs_check_folders(outputs) : status;
+  TRY(outputs_check_names(outputs));
+  return outputs_check_folders(outputs);
 }
 
 static int run_develop(const Arguments *arguments, vlContext *context) {

@@ -3,13 +3,13 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "raw/raw.h"
 
 int raw_load(vlContext *context, const char *path, vlRaw **raw) {
   vlError error = {0};
-  vlResult result = vl_raw_read(context, path, raw, &error);
-  return report_error(&error, result, path);
+  return report_error(&error, vl_raw_read(context, path, raw, &error), path);
 }
 
 enum { INFO_JSON };
@@ -93,7 +93,7 @@ static double shown(float value) {
   double back = (double)value;
   for (int digits = 6; digits <= 9; digits++) {
     char text[40];
-    snprintf(text, sizeof text, "%.*g", digits, (double)value);
+    text_set(text, "%.*g", digits, (double)value);
     if (sscanf(text, "%lf", &back) == 1 && (float)back == value)
       break;
   }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/json.h"
+#include "cli/macros.h"
 #include "cli/options.h"
 #include "render/job.h"
 
@@ -128,7 +129,7 @@ bool added_replaces(int option) {
                             RENDER_FRAMING,
                             RENDER_WALLS,
                             RENDER_UP};
-  return option_is_in(option, all, sizeof all / sizeof *all);
+  return option_is_in(option, all, LENGTH(all));
 }
 
 bool added_has(const AddedOptions *added, int option, const char **text) {

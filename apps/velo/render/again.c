@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/receipt_repeat.h"
 
@@ -103,13 +104,11 @@ int again_open(Again *again, const Arguments **arguments) {
   vlImage *image = NULL;
   vlError error = {0};
   again->path = given->values[RENDER_AGAIN].text;
-  int status = context_open_one(&again->context);
-  if (status >= 0)
-    return status;
+  TRY(context_open_one(&again->context));
   vlResult result = vl_image_read_header(again->context, again->path, &image, &error);
-  status = result == VL_OK
-               ? receipt_of_image(again->context, image, again->path, &again->receipt)
-               : report_error(&error, result, again->path);
+  int status = result == VL_OK
+                   ? receipt_of_image(again->context, image, again->path, &again->receipt)
+                   : report_error(&error, result, again->path);
   vl_image_destroy(image);
   if (status < 0)
     status = check_own(again);
@@ -134,9 +133,8 @@ int again_check(const Again *again, const ReceiptPlan *plan, const Job *job,
   if (!again->path)
     return -1;
   vlReceipt *now = NULL;
-  vlResult result = receipt_make(plan, job, which, &now);
-  if (result != VL_OK)
-    return report_reason(result, again->path, "its receipt cannot be compared");
+  TRY(report_reason(receipt_make(plan, job, which, &now), again->path,
+                    "its receipt cannot be compared"));
   uint32_t parts = VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS |
                    VL_RECEIPT_SAMPLES | VL_RECEIPT_DEVELOP;
   if (with_camera)

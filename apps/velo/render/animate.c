@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/job.h"
@@ -84,7 +85,7 @@ static int check(const Arguments *arguments) {
     return report_usage("--animate and --at exclude each other");
   if (v[RENDER_TURNTABLE].given && v[RENDER_TURN].given)
     return report_usage("--turntable and --turn exclude each other");
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+  for (size_t i = 0; i < LENGTH(others); i++)
     if (v[others[i].id].given)
       return report_usage("%s does not go with %s", own, others[i].name);
   const OptionValue *denoise = &v[RENDER_DENOISE];
@@ -94,9 +95,7 @@ static int check(const Arguments *arguments) {
   if (!arguments->text_count)
     return report_usage("%s: give the files' name with -o, such as -o f%%04d.png", own);
   for (int i = 0; i < arguments->text_count; i++) {
-    int status = pattern_check(arguments->texts[i]);
-    if (status >= 0)
-      return status;
+    TRY(pattern_check(arguments->texts[i]));
     if (!pattern_has(arguments->texts[i], 'd'))
       return report_usage("output \"%s\": put %%04d, the frame's number, into the name",
                           arguments->texts[i]);
@@ -147,7 +146,7 @@ static int render_frame(Animator *x, uint32_t frame) {
   }
   const double angle = a->turns ? 360.0 * frame / a->count : 0, at = a->from + frame / a->fps;
   OptionValue *set = &one.values[a->turns ? RENDER_TURN : RENDER_AT];
-  snprintf(moment, sizeof moment, "%.10g", a->turns ? angle : at);
+  text_set(moment, "%.10g", a->turns ? angle : at);
   *set = (OptionValue){.given = true, .text = moment, .number = a->turns ? angle : at};
   one.values[RENDER_ANIMATE].given = one.values[RENDER_TURNTABLE].given =
       one.values[RENDER_FPS].given = false;
@@ -176,7 +175,7 @@ static vlResult between(void *user, uint32_t before, uint32_t now, const Job *jo
   char text[80];
   const double middle = v[RENDER_SHUTTER].given ? 0.5 * v[RENDER_SHUTTER].number : 0;
   const double from = a->from + before / a->fps + middle, to = a->from + now / a->fps + middle;
-  snprintf(text, sizeof text, "%.17g:%.17g", from, to);
+  text_set(text, "%.17g:%.17g", from, to);
   v[RENDER_AT] = (OptionValue){.given = true, .text = text, .number = from};
   v[RENDER_SHUTTER].given = false;
   v[RENDER_ANIMATE].given = false;
@@ -191,7 +190,7 @@ static vlResult between(void *user, uint32_t before, uint32_t now, const Job *jo
     build.previous = job->world;
     code = vl_world_build_last(scene, &build, result, error);
   } else {
-    snprintf(error->message, sizeof error->message,
+    text_set(error->message,
              "no flow from frame %u to frame %u: the model cannot be loaded for both", now,
              before);
   }
@@ -241,13 +240,9 @@ int animate_run(const Arguments *arguments, Videos *videos, AnimateRender *rende
                 .shared = {.exposure = NAN, .whole = arguments}};
   Animation *a = &x.animation;
   AnimateShared *shared = &x.shared;
-  int status = check(arguments);
-  if (status < 0)
-    status = read_animation(arguments, a);
-  if (status < 0)
-    status = choose_frames(arguments, a);
-  if (status >= 0)
-    return status;
+  TRY(check(arguments));
+  TRY(read_animation(arguments, a));
+  TRY(choose_frames(arguments, a));
   shared->still = a->turns;
   if (!a->turns) {
     shared->steady.between = between;
@@ -255,7 +250,7 @@ int animate_run(const Arguments *arguments, Videos *videos, AnimateRender *rende
   }
   if (videos)
     videos_range(videos, a->first, (a->last - a->first) / a->step + 1, a->step);
-  status = needs_first(arguments, a) ? prepare(&x) : STATUS_OK;
+  int status = needs_first(arguments, a) ? prepare(&x) : STATUS_OK;
   for (uint64_t i = a->first; i <= a->last && status == STATUS_OK; i += a->step) {
     if (videos)
       videos->number = (uint32_t)i;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "cli/macros.h"
 #include "render/receipt.h"
 #include "velo/header.h"
 
@@ -36,11 +37,10 @@ vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name,
       {.name = "velo.frameTime", .type = VL_ATTRIBUTE_DOUBLE, .numbers = {time + 0.0}},
       {.name = "velo.frameName", .type = VL_ATTRIBUTE_STRING, .string = name}};
   const bool has[3] = {true, !isnan(time), name && *name};
-  vlResult result = VL_OK;
-  for (int i = 0; i < 3 && result == VL_OK; i++)
+  for (int i = 0; i < 3; i++)
     if (has[i])
-      result = vl_image_set_attribute(image, &attributes[i]);
-  return result;
+      TRY_RESULT(vl_image_set_attribute(image, &attributes[i]));
+  return VL_OK;
 }
 
 vlResult attributes_set_text(vlImage *image, const char *name, const char *text) {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "cli/text.h"
@@ -57,8 +58,7 @@ static int check_options(const Arguments *arguments) {
     return report_usage("%s: --sandbox starts no other program, and Blender reads .blend files",
                         scene);
   for (const Option *option = render_options; option->name; option++)
-    if (v[option->id].given &&
-        !option_is_in(option->id, followed, sizeof followed / sizeof *followed))
+    if (v[option->id].given && !option_is_in(option->id, followed, LENGTH(followed)))
       return report_usage("%s: Blender renders it, and --%s cannot be passed on", scene,
                           option->name);
   if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given)
@@ -74,7 +74,7 @@ static int check_options(const Arguments *arguments) {
 static bool is_written(const char *path) {
   static const char *const suffixes[] = {".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tga"};
   const char *dot = output_dot(path);
-  for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes && dot; i++)
+  for (size_t i = 0; i < LENGTH(suffixes) && dot; i++)
     if (strcasecmp(dot, suffixes[i]) == 0)
       return true;
   return false;
@@ -88,9 +88,7 @@ static int check_output(const Blend *blend, const char *path) {
         "output \"%s\": of a .blend file there are .exr, .hdr, .png, .jpg, .tga", path);
   if (!blend->frames.many)
     return output_check(blend->context, path, VL_OUTPUT_PLAIN);
-  const int status = pattern_check(path);
-  if (status >= 0)
-    return status;
+  TRY(pattern_check(path));
   if (!pattern_has(path, 'd') || pattern_has(path, 'n') || pattern_has(path, 'c') ||
       pattern_has(path, 'v'))
     return report_usage(
@@ -104,8 +102,7 @@ static int check_output(const Blend *blend, const char *path) {
 static void choose_output(Blend *blend) {
   const char *scene = blend->arguments->operands[0], *slash = strrchr(scene, '/');
   const char *name = slash ? slash + 1 : scene;
-  snprintf(blend->default_output, sizeof blend->default_output, "%.*s.png",
-           (int)(strlen(name) - strlen(".blend")), name);
+  text_set(blend->default_output, "%.*s.png", (int)(strlen(name) - strlen(".blend")), name);
   blend->own.texts[blend->own.text_count++] = blend->default_output;
 }
 
@@ -170,11 +167,8 @@ static bool is_there(const Blend *blend, uint32_t frame) {
 
 static int commit(vlPendingFile *const *pending, int count) {
   vlError error = {0};
-  for (int i = 0; i < count; i++) {
-    const vlResult result = vl_pending_file_commit(pending[i], &error);
-    if (result != VL_OK)
-      return report_error(&error, result, NULL);
-  }
+  for (int i = 0; i < count; i++)
+    TRY(report_error(&error, vl_pending_file_commit(pending[i], &error), NULL));
   return -1;
 }
 

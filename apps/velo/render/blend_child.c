@@ -12,6 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/job.h"
@@ -71,7 +72,7 @@ static BlenderEvent take_line(Blender *b, char *line) {
   if (strcmp(kind, "progress") == 0 && b->shown)
     progress_show_frames(b->shown, b->number, strtod(line, NULL));
   if (strcmp(kind, "scene") == 0) {
-    snprintf(b->version, sizeof b->version, "%s", next_word(&line));
+    text_set(b->version, "%s", next_word(&line));
     b->first = next_number(&line);
     b->last = next_number(&line);
     b->current = next_number(&line);
@@ -101,7 +102,7 @@ static BlenderEvent take_lines(Blender *b) {
   while (event == EVENT_NONE && (end = memchr(b->held, '\n', b->held_count))) {
     *end = 0;
     char line[sizeof b->held];
-    snprintf(line, sizeof line, "%s", b->held);
+    text_set(line, "%s", b->held);
     b->held_count -= (size_t)(end + 1 - b->held);
     memmove(b->held, end + 1, b->held_count);
     event = take_line(b, line);
@@ -179,7 +180,7 @@ static void add_options(Words *words, const OptionValue *v) {
                  {RENDER_MAX_DEPTH, "max-depth"},
                  {RENDER_THREADS, "threads"}};
   const int64_t *crop = v[RENDER_CROP].integers, *size = v[RENDER_RESOLUTION].integers;
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+  for (size_t i = 0; i < LENGTH(numbers); i++)
     if (v[numbers[i].id].given)
       add_text(words, "%s=%lld", numbers[i].name, (long long)v[numbers[i].id].integer);
   if (v[RENDER_NOISE].given)
@@ -195,10 +196,8 @@ static void add_options(Words *words, const OptionValue *v) {
     add_word(words, "transparent=1");
   if (v[RENDER_HALF].given)
     add_word(words, "half=1");
-  snprintf(words->camera, sizeof words->camera, "camera=%s",
-           v[RENDER_CAMERA].given ? v[RENDER_CAMERA].text : "");
-  snprintf(words->frame, sizeof words->frame, "frame=%s",
-           v[RENDER_FRAME].given ? v[RENDER_FRAME].text : "");
+  text_set(words->camera, "camera=%s", v[RENDER_CAMERA].given ? v[RENDER_CAMERA].text : "");
+  text_set(words->frame, "frame=%s", v[RENDER_FRAME].given ? v[RENDER_FRAME].text : "");
   add_word(words, words->camera);
   add_word(words, words->frame);
 }
@@ -249,19 +248,19 @@ int blender_open(Blender *b, const char *scene, const Arguments *arguments) {
                                addons,
                                vl_version()->text,
                                scene};
-  for (size_t i = 0; i < sizeof first / sizeof *first; i++)
+  for (size_t i = 0; i < LENGTH(first); i++)
     add_word(&words, first[i]);
   add_outputs(&words, arguments);
   add_word(&words, "--");
   add_options(&words, arguments->values);
-  const int status = start(b, &words);
-  return status >= 0 ? status : wait_for(b, EVENT_SCENE);
+  TRY(start(b, &words));
+  return wait_for(b, EVENT_SCENE);
 }
 
 int blender_frame(Blender *b, const uint32_t *frame, const char *const *paths, int count) {
   char number[16] = "";
   if (frame)
-    snprintf(number, sizeof number, "%u", *frame);
+    text_set(number, "%u", *frame);
   bool taken = child_write(&b->child, number, strlen(number) + 1);
   for (int i = 0; i < count && taken; i++)
     taken = child_write(&b->child, paths[i], strlen(paths[i]) + 1);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "camera/camera.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/attributes.h"
@@ -31,7 +32,7 @@ static int read_one(const char *name, uint32_t *channels) {
   };
   const char *names[VL_CHANNEL_COUNT + 2];
   int count = 0;
-  for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
+  for (size_t i = 0; i < LENGTH(groups); i++) {
     names[count++] = groups[i].name;
     if (strcmp(name, groups[i].name) != 0)
       continue;
@@ -60,11 +61,8 @@ static int read_list(const char *list, uint32_t *channels) {
   for (const char *at = list;; at++) {
     size_t length = strcspn(at, ",");
     char name[64];
-    snprintf(name, sizeof name, "%.*s",
-             length < sizeof name ? (int)length : (int)sizeof name - 1, at);
-    int status = read_one(name, channels);
-    if (status >= 0)
-      return status;
+    text_set(name, "%.*s", length < sizeof name ? (int)length : (int)sizeof name - 1, at);
+    TRY(read_one(name, channels));
     at += length;
     if (!*at)
       return -1;
@@ -82,9 +80,7 @@ int channels_choose(Channels *c, const Arguments *arguments) {
   c->boxes = v[RENDER_BOXES].given;
   if (c->boxes)
     c->bits |= VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
-  int status = v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1;
-  if (status >= 0)
-    return status;
+  TRY(v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1);
   if (c->bits && c->mode != VL_CHANNEL_MODE_CENTRE)
     c->bits |= VL_CHANNEL_FILM; /* adds the film position, without which the point's sample is
                                    unknown */
@@ -114,9 +110,7 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
     if (!c->other_paths[i])
       continue;
     vlCameraRecord record;
-    int status = camera_load(context, c->other_paths[i], 0, NULL, NULL, NULL, &record);
-    if (status >= 0)
-      return status;
+    TRY(camera_load(context, c->other_paths[i], 0, NULL, NULL, NULL, &record));
     vlError error = {0};
     vlCamera camera;
     vlResult result = vl_camera_make(&record.camera, &camera, NULL, &error);
@@ -260,10 +254,10 @@ int channels_render(Channels *c, const Job *job, const vlFilm *film) {
 }
 
 vlResult channels_describe(const Channels *c, vlImage *image) {
-  vlResult result = channels_describe_mode(c, image);
-  for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++)
-    result = attributes_add_layer(image, c->layers[k]);
-  return result;
+  TRY_RESULT(channels_describe_mode(c, image));
+  for (int k = 0; k < CHANNEL_LAYERS; k++)
+    TRY_RESULT(attributes_add_layer(image, c->layers[k]));
+  return VL_OK;
 }
 
 vlResult channels_describe_mode(const Channels *c, vlImage *image) {

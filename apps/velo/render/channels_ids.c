@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/channels.h"
 #include "render/outputs.h"
@@ -60,7 +61,7 @@ static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind
   char key[16];
   if (vl_world_id_info(world, kind, id, &info) != VL_OK)
     return;
-  snprintf(key, sizeof key, "%u", id);
+  text_set(key, "%u", id);
   fputs(json->comma ? ",\n    " : "\n    ", json->out);
   json->comma = false;
   json_begin(json, key, '{');
@@ -101,7 +102,7 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
   Json json = {.out = file};
   json_begin(&json, NULL, '{');
   json_text(&json, "image", slash ? slash + 1 : path);
-  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+  for (size_t k = 0; k < LENGTH(kinds); k++) {
     if (vl_image_find_channel(ids, kinds[k].channel) < 0)
       continue;
     uint32_t count = vl_world_id_count(world, kinds[k].kind);
@@ -153,7 +154,7 @@ int channels_write_ids(const Channels *c, const Channels *right, const Job *job,
   vlResult result =
       good ? vl_write_file(job->context, target, text, size, &error) : VL_ERROR_MEMORY;
   free(text);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, target);
+  return report_finish(&error, result, target);
 }
 
 /* Ids and counts in a form that other programs display (docs/ground-truth.md, "In other
@@ -162,9 +163,7 @@ vlResult channels_make_visible(vlImage **ids) {
   if (!*ids)
     return VL_OK;
   vlImage *shown = NULL;
-  vlResult result = vl_image_show_ids(*ids, &shown);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(vl_image_show_ids(*ids, &shown));
   if (vl_image_type(shown) == VL_PIXEL_U32)
     report_note("ids of 2^24 and more are written as integers, which not every program shows");
   vl_image_destroy(*ids);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/pattern.h"
 #include "render/receipt.h"
@@ -52,17 +53,14 @@ int continue_open(Continue *c, const Arguments **arguments) {
   bool eyes = pattern_has(c->path, 'v');
   if (eyes && !pattern_expand(c->path, &left, first, sizeof first))
     return report_usage("--continue: the name is too long");
-  int status = context_open_one(&c->context);
-  if (status >= 0)
-    return status;
-  vlResult result = vl_film_file_open(c->context, eyes ? first : c->path, &c->file, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, NULL);
+  TRY(context_open_one(&c->context));
+  TRY(report_error(
+      &error, vl_film_file_open(c->context, eyes ? first : c->path, &c->file, &error), NULL));
   const vlReceipt *receipt = vl_film_file_receipt(c->file);
   if (!receipt)
     return report_failure(STATUS_SCENE,
                           "%s: the film has no receipt: what made it is not known", c->path);
-  status = receipt_parse_command(receipt, c->path, &c->arguments);
+  int status = receipt_parse_command(receipt, c->path, &c->arguments);
   if (status < 0)
     take_options(c, given, receipt);
   if (eyes && !given->values[RENDER_EYE].given)
@@ -143,9 +141,7 @@ static int take_extent(const Source *source, const Arguments *arguments, vlScene
   const OptionValue *v = arguments->values;
   uint32_t crop[4] = {0, 0, 0, 0};
   vlSampleRange range = {0, 0};
-  int status = find_extent(source, crop, &range);
-  if (status >= 0)
-    return status;
+  TRY(find_extent(source, crop, &range));
   bool tiles = v[RENDER_TILES].given || v[RENDER_SHARD_BY].given;
   if ((tiles || source->repeats) && memcmp(crop, defs->film.crop, sizeof crop) != 0)
     return refuse(source, STATUS_USAGE,
@@ -189,16 +185,15 @@ static bool has_all(const char *path, const char *other, vlContext *context) {
 static int take_film(Source *source, const Arguments *arguments, const vlReceipt *now,
                      vlContext *context, vlSceneDefs *defs, vlFilm **film) {
   vlError error = {0};
-  vlResult result = vl_film_file_open(context, source->path, &source->file, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, NULL);
+  TRY(report_error(&error, vl_film_file_open(context, source->path, &source->file, &error),
+                   NULL));
   int status = compare(source, now);
   if (status < 0)
     status = take_extent(source, arguments, defs);
   vl_film_file_close(source->file);
   if (status >= 0 || !film)
     return status;
-  result = vl_film_read(context, source->path, false, film, &error);
+  vlResult result = vl_film_read(context, source->path, false, film, &error);
   if (result == VL_ERROR_SCENE)
     return refuse(source, STATUS_SCENE, "%s", error.message);
   return report_error(&error, result, NULL);
@@ -214,9 +209,7 @@ int continue_film(const FilmClaim *claim, const Arguments *arguments, const vlRe
   /* --continue FROM --film FILE, which is there: repeated after FILE got more samples, or FILE
    * holds fewer */
   vlSceneDefs unused = *defs;
-  int status = take_film(&own, arguments, now, context, &unused, NULL);
-  if (status >= 0)
-    return status;
+  TRY(take_film(&own, arguments, now, context, &unused, NULL));
   if (has_all(own.path, from.path, context))
     return take_film(&own, arguments, now, context, defs, film);
   if (has_all(from.path, own.path, context))

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "image/denoise.h"
@@ -37,10 +38,10 @@ int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *imag
   d->outputs = *image;
   d->outputs.paths[0] = path;
   d->outputs.count = 1;
-  int status = outputs_check_names(&d->outputs);
-  if (status < 0 && v[RENDER_TRAJECTORY].given)
-    status = pattern_check(path);
-  return status < 0 ? outputs_check_folders(&d->outputs) : status;
+  TRY(outputs_check_names(&d->outputs));
+  if (v[RENDER_TRAJECTORY].given)
+    TRY(pattern_check(path));
+  return outputs_check_folders(&d->outputs);
 }
 
 void denoised_replace(Denoised *d, const Outputs *image) {
@@ -89,9 +90,7 @@ vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,
   vlImageDef def =
       vl_default_image_def(vl_image_width(parts[0]), vl_image_height(parts[0]), count);
   def.names = names;
-  vlResult result = vl_image_create(context, &def, joined);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(vl_image_create(context, &def, joined));
   float *to = vl_image_pixels(*joined);
   for (size_t i = 0; i < (size_t)def.width * def.height; i++)
     for (int k = 0; k < n; k++) {

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/channels.h"
 #include "velo/edit.h"
@@ -22,11 +23,10 @@ int exposure_parse(const OptionValue *value, float *ev, bool *meter) {
     return -1;
   }
   double number;
-  int status = option_number("--exposure (or auto)", value->text,
-                             vl_setting(VL_SETTING_PROGRAM, "exposure"), &number);
-  if (status < 0)
-    *ev = (float)number;
-  return status;
+  TRY(option_number("--exposure (or auto)", value->text,
+                    vl_setting(VL_SETTING_PROGRAM, "exposure"), &number));
+  *ev = (float)number;
+  return -1;
 }
 
 static double luminance(const vlImage *image, const int rgb[3], uint32_t x, uint32_t y) {
@@ -296,11 +296,11 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
   Metered m;
   vlError error = {0};
   *ev = 0;
-  vlResult result =
+  TRY(report_error(
+      &error,
       measure(context, scene, world, camera, defs, meter_small.what,
-              small_side(&meter_small, camera->width, camera->height), leave <= 0, &m, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, "metering");
+              small_side(&meter_small, camera->width, camera->height), leave <= 0, &m, &error),
+      "metering"));
   double stops = m.white > 0 ? log2(WHITE / m.white) : 0;
   stops = stops > 0 && stops > m.most_stops ? m.most_stops : stops;
   stops = without_glare(fabs(stops) <= leave ? 0 : stops, m.median);
@@ -323,10 +323,10 @@ int exposure_find_unlit(vlContext *context, const vlScene *scene, const vlWorld 
   Metered m;
   vlError error = {0};
   *unlit = false;
-  vlResult result = measure(context, scene, world, camera, defs, unlit_small.what,
-                            small_side(&unlit_small, size[0], size[1]), false, &m, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, "metering");
+  TRY(report_error(&error,
+                   measure(context, scene, world, camera, defs, unlit_small.what,
+                           small_side(&unlit_small, size[0], size[1]), false, &m, &error),
+                   "metering"));
   *unlit = m.pixels > 0 && (m.white < WHITE / 1024 || (m.white < WHITE / 32 && m.unlit > 0.5));
   return -1;
 }

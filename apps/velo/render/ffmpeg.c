@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/child.h"
@@ -91,8 +92,8 @@ static bool check_size(Run *run, const char *path, const char *data, size_t size
   if (width == run->width && height == run->height)
     return true;
   char text[120];
-  snprintf(text, sizeof text, "has %u x %u pixels, the first frame %u x %u", width, height,
-           run->width, run->height);
+  text_set(text, "has %u x %u pixels, the first frame %u x %u", width, height, run->width,
+           run->height);
   return fail(run, path, text);
 }
 
@@ -115,7 +116,7 @@ static bool feed(Run *run) {
   const uint32_t count = run->source->count;
   for (uint32_t i = 0; i < count; i++) {
     char text[200];
-    snprintf(text, sizeof text, "%.120s: frame %u of %u", run->source->name, i + 1, count);
+    text_set(text, "%.120s: frame %u of %u", run->source->name, i + 1, count);
     if (report_is_terminal() && !report_is_quiet())
       report_status_line(text);
     if (!feed_frame(run, i))
@@ -146,7 +147,7 @@ static bool run_ffmpeg(Run *run, const char *const *words, int output, int furth
 static bool make_mp4(Run *run, const char *fps, const char *to) {
   char filter[200];
   const uint32_t right = run->width % 2, below = run->height % 2;
-  snprintf(filter, sizeof filter,
+  text_set(filter,
            "format=gbrp,pad=iw+%u:ih+%u,fillborders=right=%u:bottom=%u:mode=smear,"
            "scale=out_color_matrix=bt709:out_range=limited:flags=accurate_rnd+full_chroma_int,"
            "format=yuv420p",
@@ -209,8 +210,8 @@ bool ffmpeg_make(const VideoSource *source, VideoKind kind, const char *to, uint
   char fps[40], output[PATH_SIZE + 100];
   Run run = {.source = source, .wrong = wrong, .size = size};
   wrong[0] = 0;
-  snprintf(fps, sizeof fps, "%.10g", source->fps);
-  snprintf(output, sizeof output, "file:%s", to);
+  text_set(fps, "%.10g", source->fps);
+  text_set(output, "file:%s", to);
   if (!feed_frame(&run, 0)) /* no process runs yet: it sets the size */
     return false;
   bool done = kind == VIDEO_MP4 ? make_mp4(&run, fps, output) : make_gif(&run, fps, output);

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "cli/kinds.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/tracer.h"
 
@@ -55,11 +56,9 @@ int film_claim(FilmClaim *claim, vlContext *context, const char *path, const cha
   vlError error = {0};
   struct stat info;
   memset(claim, 0, sizeof *claim);
-  snprintf(claim->path, sizeof claim->path, "%s", path);
-  snprintf(claim->from, sizeof claim->from, "%s", from);
-  vlResult result = vl_film_lock(context, path, &claim->lock, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
+  text_set(claim->path, "%s", path);
+  text_set(claim->from, "%s", from);
+  TRY(report_error(&error, vl_film_lock(context, path, &claim->lock, &error), path));
   if (!claim->lock)
     return report_usage("--film: another process is rendering into %s", path);
   if (stat(path, &info) != 0 || !S_ISREG(info.st_mode) || info.st_size == 0)
@@ -68,7 +67,7 @@ int film_claim(FilmClaim *claim, vlContext *context, const char *path, const cha
     return report_usage("--film: %s is not a film file, and is not replaced", path);
   if (overwrite || (*from && same_file(path, from)))
     return -1;
-  result = vl_film_file_open(context, path, &claim->earlier, &error);
+  vlResult result = vl_film_file_open(context, path, &claim->earlier, &error);
   if (result == VL_ERROR_SCENE || result == VL_ERROR_UNSUPPORTED)
     return film_claim_refuse("%s", error.message);
   return report_error(&error, result, NULL);
@@ -102,7 +101,7 @@ bool film_claim_take_tracer(const FilmClaim *claim, vlRenderDef *render) {
     return false;
   const char *name = word_after(receipt, "--tracer"),
              *paths = word_after(receipt, "--light-paths");
-  for (size_t i = 0; i < sizeof raced / sizeof *raced && name; i++)
+  for (size_t i = 0; i < LENGTH(raced) && name; i++)
     if (strcmp(name, kind_name("tracers", (int)raced[i])) == 0)
       render->tracer = raced[i];
   if (paths)

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/attributes.h"
 #include "render/progress.h"
@@ -43,7 +44,7 @@ int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, const Job *
     return -1;
   const OptionValue *every = &plan->receipt->arguments->values[RENDER_CHECKPOINT];
   const vlFilmDef *film = &plan->whole.film;
-  snprintf(k->path, sizeof k->path, "%s", claim->path);
+  text_set(k->path, "%s", claim->path);
   k->lock = claim->lock;
   k->stream = output_is_stream(claim->path);
   k->every = every->given ? every->number : EVERY;
@@ -125,7 +126,7 @@ int film_keeper_finish(FilmKeeper *k, const vlFilm *film) {
   vlResult result = begin_write(k, film);
   if (result == VL_OK)
     result = vl_film_write_end(k->writer, &k->error);
-  return result == VL_OK ? STATUS_OK : report_error(&k->error, result, k->path);
+  return report_finish(&k->error, result, k->path);
 }
 
 void film_keeper_free(FilmKeeper *k) {

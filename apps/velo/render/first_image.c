@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 
+#include "cli/macros.h"
 #include "render/added.h"
 #include "render/frames.h"
 
@@ -19,8 +20,7 @@ static const int harmless[] = {
     RENDER_DRY_RUN,     RENDER_QUIET,      RENDER_VERBOSE,     RENDER_LOG_JSON};
 
 static bool is_harmless(int option) {
-  return added_replaces(option) ||
-         option_is_in(option, harmless, sizeof harmless / sizeof *harmless);
+  return added_replaces(option) || option_is_in(option, harmless, LENGTH(harmless));
 }
 
 /* Whether the rule holds: the file is a model, velo adds its camera or its light, every output
@@ -48,7 +48,7 @@ void first_image_plan(Render *render, const Arguments *arguments) {
     return;
   Denoised *denoised = &render->denoised;
   render->job.defs->render.spp = FIRST_IMAGE_SPP;
-  snprintf(denoised->comment, sizeof denoised->comment,
+  text_set(denoised->comment,
            "%d samples per pixel, denoised by velo; --plain renders without denoising",
            FIRST_IMAGE_SPP);
   render->outputs.comment = denoised->comment;

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "image/display.h"
 #include "render/attributes.h"
@@ -53,11 +54,9 @@ static vlResult add_view(vlImage *image, const char *view, bool first) {
     char full[300];
     if (first && !dot)
       continue;
-    snprintf(full, sizeof full, "%.*s%s.%s", dot ? (int)(dot + 1 - name) : 0, name, view,
+    text_set(full, "%.*s%s.%s", dot ? (int)(dot + 1 - name) : 0, name, view,
              dot ? dot + 1 : name);
-    vlResult result = vl_image_rename_channel(image, i, full);
-    if (result != VL_OK)
-      return result;
+    TRY_RESULT(vl_image_rename_channel(image, i, full));
   }
   return VL_OK;
 }
@@ -70,7 +69,7 @@ static vlResult join(vlContext *context, vlImage *const images[2], const char *v
   char right[4][32];
   const char *names[8];
   for (int c = 0; c < 4; c++) {
-    snprintf(right[c], sizeof right[c], "%s.%s", view, plain[c]);
+    text_set(right[c], "%s.%s", view, plain[c]);
     names[c] = plain[c];
     names[4 + c] = right[c];
   }
@@ -111,7 +110,7 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path,
   char views[40];
   const char *const *names = w->frames->view_names;
   vlResult result = join(w->context, p->images, names[1], &both);
-  snprintf(views, sizeof views, "%s\n%s", names[0], names[1]);
+  text_set(views, "%s\n%s", names[0], names[1]);
   const vlAttribute multi = {
       .name = "multiView", .type = VL_ATTRIBUTE_STRINGS, .string = views};
   if (result == VL_OK)
@@ -222,7 +221,7 @@ static int write_clean(FrameWriter *w, FrameImage *p) {
   if (result == VL_OK)
     result = output_write_layers(&one, 1, path, def, &error);
   vl_image_destroy(display);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, path);
+  return report_finish(&error, result, path);
 }
 
 static int write_image(FrameWriter *w, FrameImage *p) {

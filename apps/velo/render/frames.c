@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "camera/camera.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/vector.h"
 #include "render/pattern.h"
@@ -56,11 +57,8 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
   if (outputs->count == 0)
     return report_usage(
         "--trajectory: give the files' name with -o, such as -o frame_%%04d.exr");
-  for (int i = 0; i < outputs->count; i++) {
-    int status = pattern_check(outputs->paths[i]);
-    if (status >= 0)
-      return status;
-  }
+  for (int i = 0; i < outputs->count; i++)
+    TRY(pattern_check(outputs->paths[i]));
   return -1;
 }
 
@@ -85,10 +83,8 @@ static int add_camera(Frames *frames, const Job *job, const Arguments *arguments
   FrameCamera *camera = &frames->cameras[frames->camera_count++];
   camera->job = *job;
   if (record) {
-    snprintf(camera->name, sizeof camera->name, "%s", record->name);
-    int status = job_take_camera(&camera->job, &camera->defs, &record->camera, path, arguments);
-    if (status >= 0)
-      return status;
+    text_set(camera->name, "%s", record->name);
+    TRY(job_take_camera(&camera->job, &camera->defs, &record->camera, path, arguments));
   }
   /* the frames' poses replace the camera's pose and motion */
   vlError error = {0};
@@ -110,7 +106,7 @@ static int add_camera(Frames *frames, const Job *job, const Arguments *arguments
   if (result == VL_OK)
     return make_film(frames, job->context, camera);
   vlError location = camera->job.camera_location;
-  snprintf(location.message, sizeof location.message, "%s", error.message);
+  text_set(location.message, "%s", error.message);
   return report_error(&location, result, path);
 }
 
@@ -125,9 +121,7 @@ static int load_file(vlContext *context, const char *path, const Arguments *argu
     def.width = (uint32_t)size->integers[0];
     def.height = (uint32_t)size->integers[1];
   }
-  vlResult result = vl_trajectory_load(context, path, &def, trajectory, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
+  TRY(report_error(&error, vl_trajectory_load(context, path, &def, trajectory, &error), path));
   camera_note_unread(path, vl_trajectory_camera(*trajectory, 0));
   return -1;
 }
@@ -143,12 +137,10 @@ static int add_rig(Frames *frames, const Job *job, const Arguments *arguments,
                             path);
     vlCameraRecord record = *vl_trajectory_camera(frames->rig, (uint32_t)frame.camera);
     if (*frame.name)
-      snprintf(record.name, sizeof record.name, "%s", frame.name);
+      text_set(record.name, "%s", frame.name);
     if (!record.name[0])
-      snprintf(record.name, sizeof record.name, "%u", i);
-    int status = add_camera(frames, job, arguments, &record, path);
-    if (status >= 0)
-      return status;
+      text_set(record.name, "%u", i);
+    TRY(add_camera(frames, job, arguments, &record, path));
     memcpy(frames->cameras[i].mount, frame.world_from_camera, sizeof frame.world_from_camera);
   }
   return -1;
@@ -385,20 +377,15 @@ int frames_check_names(const Frames *frames, const Outputs *outputs) {
           "output \"%s\": only .exr holds both eyes in one file; put %%v (left, right) into "
           "the name",
           pattern);
-    if (frames_count(frames) > 1) {
-      int status = check_twice(frames, pattern);
-      if (status >= 0)
-        return status;
-    }
+    if (frames_count(frames) > 1)
+      TRY(check_twice(frames, pattern));
     bool folders = slash && memchr(pattern, '%', (size_t)(slash - pattern));
     for (uint32_t k = 0; k < frames_count(frames) && folders; k++)
       for (int view = 0; view < (by_view ? frames->views : 1); view++) {
         Frame frame = frames_at(frames, k);
         if (!frames_path(frames, &frame, pattern, view, path, sizeof path))
           continue;
-        int status = make_folder(path);
-        if (status >= 0)
-          return status;
+        TRY(make_folder(path));
       }
   }
   return -1;

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/continue.h"
@@ -118,9 +119,8 @@ static int make_view(Run *run, const Frame *frame, int view, Job *job) {
   *job = frame->camera->job;
   job->world = run->world;
   frame_name(run, frame, name, sizeof name);
-  vlResult result = frames_camera(run->frames, frame, view, &job->camera, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, name);
+  TRY(report_error(&error, frames_camera(run->frames, frame, view, &job->camera, &error),
+                   name));
   return lens_autofocus(job, NULL, run->world);
 }
 
@@ -147,12 +147,10 @@ static int render_view(Run *run, const Frame *frame, int view, FrameImage *image
   vlFilm *own = NULL;
   Job *job = &image->jobs[view];
   frame_name(run, frame, name, sizeof name);
-  int status = make_view(run, frame, view, job);
-  if (status >= 0)
-    return status;
+  TRY(make_view(run, frame, view, job));
   job->defs->render.progress = on_progress;
   job->defs->render.progress_user = run;
-  status = open_film(run, frame, view, job, &own);
+  int status = open_film(run, frame, view, job, &own);
   if (status < 0)
     status = render_film(run, name, view, job, image);
   film_keeper_free(&run->keeper);

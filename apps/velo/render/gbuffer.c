@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "cli/vector.h"
@@ -43,7 +44,7 @@ enum {
   RELATIVE = 19,
   COUNT = 22
 };
-_Static_assert(sizeof names / sizeof *names == COUNT, "a name for each");
+_Static_assert(LENGTH(names) == COUNT, "a name for each");
 
 /* The images that the values come from, and the indices of their channels. */
 typedef struct Source {
@@ -211,5 +212,5 @@ int gbuffer_render(const Job *job, const vlFilm *film, vlImage **image) {
   vl_image_destroy(errors);
   if (result == VL_CANCELLED)
     return 128 + signals_pending();
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
+  return report_finish(&error, result, job->path);
 }

@@ -1,5 +1,6 @@
 /* render/job_make.c: see job.h. Makes the defs and the camera of a render from the scene's defs
  * and the command line. */
+#include "cli/macros.h"
 #include "render/job.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ static vlError camera_location(const vlSceneDefs *defs, const char *path) {
   vlSource source = defs->camera_source;
   vlError location = {.line = source.file ? source.line : 0,
                       .column = source.file ? source.column : 0};
-  snprintf(location.file, sizeof location.file, "%s", source.file ? source.file : path);
+  text_set(location.file, "%s", source.file ? source.file : path);
   return location;
 }
 
@@ -66,17 +67,15 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, con
                             const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlCameraRecord record;
-  int status = camera_load(context, path, 0, v[RENDER_FRAME].text, &v[RENDER_SIZE],
-                           &v[RENDER_RESOLUTION], &record);
-  if (status >= 0)
-    return status;
+  TRY(camera_load(context, path, 0, v[RENDER_FRAME].text, &v[RENDER_SIZE],
+                  &v[RENDER_RESOLUTION], &record));
   defs->camera = record.camera;
   defs->film.width = record.camera.width;
   defs->film.height = record.camera.height;
   const uint32_t whole[4] = {0, 0, defs->film.width, defs->film.height};
   memcpy(defs->film.crop, whole, sizeof whole);
   job->camera_location = (vlError){0};
-  snprintf(job->camera_location.file, sizeof job->camera_location.file, "%s", path);
+  text_set(job->camera_location.file, "%s", path);
   return -1;
 }
 
@@ -245,8 +244,7 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
   vlResult result = vl_camera_make(
       &def, &camera, NULL, &error); /* its warnings were reported when the camera was read */
   if (result != VL_OK) {
-    snprintf(job->camera_location.message, sizeof job->camera_location.message, "%s",
-             error_text(&error, result));
+    text_set(job->camera_location.message, "%s", error_text(&error, result));
     return report_error(error.file[0] ? &error : &job->camera_location, result, NULL);
   }
   if (camera.width == width && camera.height == height) {
@@ -263,8 +261,8 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
 int job_no_film(const Job *job, vlResult result) {
   const vlFilmDef *film = &job->defs->film;
   char what[200];
-  snprintf(what, sizeof what, "no film of %u x %u pixels with these settings is possible",
-           film->width, film->height);
+  text_set(what, "no film of %u x %u pixels with these settings is possible", film->width,
+           film->height);
   return report_reason(result, job->path, what);
 }
 
@@ -296,10 +294,9 @@ static int fit_camera(Job *job, vlSceneDefs *defs, const Arguments *arguments) {
   camera.stereo_eye = VL_EYE_BOTH;
   if (size->given)
     override_size(defs, (uint32_t)size->integers[0], (uint32_t)size->integers[1]);
-  int status = override_crop(defs, arguments);
-  if (status < 0)
-    status = make_camera(job, camera, defs->film.width, defs->film.height);
-  return status < 0 ? lens_focus_on(&job->camera, arguments) : status;
+  TRY(override_crop(defs, arguments));
+  TRY(make_camera(job, camera, defs->film.width, defs->film.height));
+  return lens_focus_on(&job->camera, arguments);
 }
 
 int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path,
@@ -313,10 +310,10 @@ int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const c
   const uint32_t whole[4] = {0, 0, def->width, def->height};
   memcpy(defs->film.crop, whole, sizeof whole);
   job->camera_location = (vlError){.line = 0};
-  snprintf(job->camera_location.file, sizeof job->camera_location.file, "%s", path);
+  text_set(job->camera_location.file, "%s", path);
   job->defs = defs;
-  int status = lens_override(NULL, defs, arguments);
-  return status < 0 ? fit_camera(job, defs, arguments) : status;
+  TRY(lens_override(NULL, defs, arguments));
+  return fit_camera(job, defs, arguments);
 }
 
 /* Parses "row", "open", "middle", "close" or seconds. */
@@ -385,15 +382,10 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,
     if (status >= 0)
       return status;
   }
-  int status = read_channels_time(job, arguments);
-  if (status < 0)
-    status = override_stereo(defs, arguments);
-  if (status < 0)
-    status = lens_override(scene, defs, arguments);
-  if (status < 0)
-    status = fit_camera(job, defs, arguments);
-  if (status >= 0)
-    return status;
+  TRY(read_channels_time(job, arguments));
+  TRY(override_stereo(defs, arguments));
+  TRY(lens_override(scene, defs, arguments));
+  TRY(fit_camera(job, defs, arguments));
   override_sampling(defs, arguments);
   defs->render.transparent = v[RENDER_TRANSPARENT].given;
   fix_sequence(&defs->render);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/focus.h"
 
@@ -29,7 +30,7 @@ static int refocus(vlScene *scene, const vlSceneDefs *defs, double distance) {
     return -1;
   const vlSource *source = &defs->camera_source;
   if (source->file) {
-    snprintf(error.file, sizeof error.file, "%s", source->file);
+    text_set(error.file, "%s", source->file);
     error.line = source->line;
     error.column = source->column;
   }
@@ -97,8 +98,7 @@ int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world) {
   vlError error = {0};
   vlResult result = vl_autofocus(world, camera, pixel[0], pixel[1], &distance, &error);
   if (result != VL_OK) {
-    snprintf(job->camera_location.message, sizeof job->camera_location.message, "%s",
-             error.message);
+    text_set(job->camera_location.message, "%s", error.message);
     return report_error(&job->camera_location,
                         result == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : result, NULL);
   }
@@ -110,16 +110,12 @@ int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world) {
     camera->focus_distance = distance;
     return -1;
   }
-  int status = refocus(scene, job->defs, distance);
-  if (status >= 0)
-    return status;
+  TRY(refocus(scene, job->defs, distance));
   vlCameraDef def = job->defs->camera;
   vlCamera made;
   def.width = camera->width;
   def.height = camera->height;
-  result = vl_camera_make(&def, &made, NULL, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, job->path);
+  TRY(report_error(&error, vl_camera_make(&def, &made, NULL, &error), job->path));
   camera->fx = made.fx;
   camera->fy = made.fy;
   camera->focus_distance = made.focus_distance;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/job.h"
 #include "render/outputs.h"
@@ -13,7 +14,7 @@ bool near_is_allowed(const Arguments *arguments) {
                              RENDER_FILM,     RENDER_CONTINUE, RENDER_AGAIN, RENDER_SHARD};
   const OptionValue *v = arguments->values;
   bool images_only = true;
-  for (size_t i = 0; i < sizeof data / sizeof *data; i++)
+  for (size_t i = 0; i < LENGTH(data); i++)
     images_only = images_only && !v[data[i]].given;
   for (int i = 0; i < arguments->text_count; i++)
     images_only = images_only && output_is_display(arguments->texts[i]);
@@ -57,9 +58,7 @@ int near_move(vlScene *scene, Near *near) {
   const double world_from_scene[16] = {1, 0, 0, -middle[0], 0, 1, 0, -middle[1],
                                        0, 0, 1, -middle[2], 0, 0, 0, 1};
   vlError error = {0};
-  const vlResult result = vl_scene_transform(scene, world_from_scene, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, near->path);
+  TRY(report_error(&error, vl_scene_transform(scene, world_from_scene, &error), near->path));
   move_camera(&vl_scene_defs(scene)->camera, middle);
   for (int i = 0; i < 3; i++) {
     near->low[i] -= middle[i];

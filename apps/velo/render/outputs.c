@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "image/display.h"
 #include "render/exposure.h"
@@ -42,7 +43,7 @@ const char *output_dot(const char *path) {
 
 static const struct Suffix *find_suffix(const char *path) {
   const char *dot = output_dot(path);
-  for (size_t i = 0; dot && i < sizeof suffixes / sizeof *suffixes; i++)
+  for (size_t i = 0; dot && i < LENGTH(suffixes); i++)
     if (strcasecmp(dot + 1, suffixes[i].name) == 0)
       return &suffixes[i];
   return NULL;
@@ -88,7 +89,7 @@ bool output_holds_layers(const char *path) {
 static int fail_suffix(const char *path) {
   const char *names[8];
   int count = 0;
-  for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++)
+  for (size_t i = 0; i < LENGTH(suffixes); i++)
     names[count++] = suffixes[i].name;
   const char *dot = output_dot(path);
   const char *near = dot ? did_you_mean(".", dot + 1, names, count) : "";
@@ -130,9 +131,7 @@ int outputs_check_folders(const Outputs *outputs) {
     const char *path = outputs->paths[i], *slash = strrchr(path, '/');
     if (outputs->patterns && slash && memchr(path, '%', (size_t)(slash - path)))
       continue; /* made later */
-    int status = output_check(NULL, path, VL_OUTPUT_PLAIN);
-    if (status >= 0)
-      return status;
+    TRY(output_check(NULL, path, VL_OUTPUT_PLAIN));
     if (!output_is_stream(path))
       vl_remove_leftovers(path);
   }
@@ -170,7 +169,7 @@ bool output_part_path(const char *path, char *part, size_t size) {
     path = target;
   const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
   size_t stem = dot ? (size_t)(dot - path) : strlen(path);
-  snprintf(tail, sizeof tail, ".part%.20s", dot ? dot : "");
+  text_set(tail, ".part%.20s", dot ? dot : "");
   return name_beside(path, stem, tail, part, size);
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 
 /* Parses the text after a percent sign: digits of the width, then a letter, which is returned.
@@ -85,11 +86,11 @@ bool pattern_expand(const char *pattern, const PatternValues *v, char *path, siz
     if (kind == 'c')
       clean(v->camera && *v->camera ? v->camera : "0", piece, sizeof piece);
     if (kind == 'v' && v->view)
-      snprintf(piece, sizeof piece, "%s", v->view);
+      text_set(piece, "%s", v->view);
     if (kind == '%')
-      snprintf(piece, sizeof piece, "%%");
+      text_set(piece, "%%");
     if (kind == 'd' || (kind == 'n' && !*piece))
-      snprintf(piece, sizeof piece, "%0*u", width, v->number);
+      text_set(piece, "%0*u", width, v->number);
     size_t n = strlen(piece);
     if (used + n >= size)
       return false;

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 
 double monotonic_seconds(void) {
@@ -75,7 +76,7 @@ static void describe(const vlProgress *now, double remaining, double rate, int r
   format_seconds(number, sizeof number, remaining);
   format_count(speed, sizeof speed, rate);
   if (isfinite(remaining))
-    snprintf(left, sizeof left, "  %s left", number);
+    text_set(left, "  %s left", number);
   int n = snprintf(text, size, "%u/%u spp  %s paths/s  %s elapsed%s", now->spp_done,
                    now->spp_total, speed, elapsed, left);
   if (n > room)
@@ -96,9 +97,8 @@ static void draw_bar(double fraction, const char *text) {
   for (int i = 0; i < width; i++)
     bar[i] = i < full ? '=' : i == full ? '>' : ' ';
   bar[width] = 0;
-  int n = width >= 8
-              ? snprintf(line, sizeof line, "[%s] %3.0f %%  %s", bar, 100 * fraction, text)
-              : snprintf(line, sizeof line, "%3.0f %%  %s", 100 * fraction, text);
+  int n = width >= 8 ? text_set(line, "[%s] %3.0f %%  %s", bar, 100 * fraction, text)
+                     : text_set(line, "%3.0f %%  %s", 100 * fraction, text);
   if (n >= columns && columns > 1 && columns < (int)sizeof line)
     line[columns - 1] = 0;
   report_status_line(line);
@@ -170,8 +170,7 @@ void progress_show_frames(FrameProgress *progress, uint32_t number, double part)
   const bool narrow = report_is_terminal() && report_terminal_columns() < 60;
   format_seconds(time, sizeof time, elapsed);
   format_seconds(left, sizeof left, remaining);
-  int n =
-      snprintf(text, sizeof text, "frame %u: %u/%u", number, progress->done, progress->count);
+  int n = text_set(text, "frame %u: %u/%u", number, progress->done, progress->count);
   if (!narrow)
     n += snprintf(text + n, sizeof text - (size_t)n, " frames  %s elapsed", time);
   if (isfinite(remaining))

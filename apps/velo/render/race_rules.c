@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "cli/kinds.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/tracer.h"
 
@@ -82,12 +83,12 @@ void race_line(RaceKind kind, const vlTracerChoice *choice, char *text, size_t s
     const vlTracerTrial *trial = &choice->trials[i];
     trial_name(trial, name, sizeof name);
     if (trial->tracer == choice->tracer && trial->light_paths == choice->light_paths)
-      snprintf(chosen, sizeof chosen, "%s", name);
+      text_set(chosen, "%s", name);
     n += (size_t)snprintf(trials + n, sizeof trials - n, "%s%s %.2g", i ? ", " : "", name,
                           trial->work);
   }
   if (kind == RACE_LIGHT_PATHS && choice->tracer == VL_TRACER_VOLPATH)
-    snprintf(chosen, sizeof chosen, "no light paths");
+    text_set(chosen, "no light paths");
   snprintf(text, size, "%s: %s (error x rays: %s)",
            kind == RACE_TRACERS ? "auto" : "bidirectional", chosen, trials);
 }

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "cli/kinds.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/added.h"
 #include "render/lens_options.h"
@@ -29,7 +30,7 @@ bool receipt_option_counts(const Arguments *arguments, int option) {
     return bits->given && bits->integer == VL_BITS_FAST;
   if (option == RENDER_VIEW || option == RENDER_EXPOSURE)
     return arguments->values[RENDER_NOISE].given;
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+  for (size_t i = 0; i < LENGTH(others); i++)
     if (option == others[i])
       return false;
   return true;
@@ -63,7 +64,7 @@ static const char *raced_value(Words *w, int option, const Job *job) {
     return kind_name("tracers", (int)render->tracer);
   if (option != RENDER_LIGHT_PATHS || render->light_paths == VL_AS_MANY_AS_PIXELS)
     return NULL;
-  snprintf(w->light_paths, sizeof w->light_paths, "%u", render->light_paths);
+  text_set(w->light_paths, "%u", render->light_paths);
   return w->light_paths;
 }
 
@@ -71,9 +72,9 @@ static void find_words(Words *w, const ReceiptPlan *plan, const Job *job,
                        const ReceiptImage *which) {
   const Arguments *arguments = plan->arguments;
   added_options(plan->opening, arguments, plan->opening->camera_added, &w->added);
-  snprintf(w->path, sizeof w->path, "%s%s", job->path[0] == '-' ? "./" : "", job->path);
-  snprintf(w->spp, sizeof w->spp, "%u", job->defs->render.spp);
-  snprintf(w->frame, sizeof w->frame, "%u", which->frame);
+  text_set(w->path, "%s%s", job->path[0] == '-' ? "./" : "", job->path);
+  text_set(w->spp, "%u", job->defs->render.spp);
+  text_set(w->frame, "%u", which->frame);
   w->count = 0;
   w->words[w->count++] = "velo";
   w->words[w->count++] = "render";
@@ -182,7 +183,7 @@ int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
       vl_receipt_parse(context, attribute.string, strlen(attribute.string), receipt, &error);
   if (result == VL_OK)
     return -1;
-  snprintf(error.file, sizeof error.file, "%s", path);
+  text_set(error.file, "%s", path);
   return report_error(&error, result, path);
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/receipt.h"
 
@@ -18,7 +19,7 @@ static int fail_command(const char *path, const char *why) {
 int receipt_parse_command(const vlReceipt *receipt, const char *path, Arguments *arguments) {
   char *words[2 * MAX_OPTIONS + 4];
   const char *word;
-  int count = 0, most = (int)(sizeof words / sizeof *words);
+  int count = 0, most = (int)(LENGTH(words));
   for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++) {
     if (i < 2 && strcmp(word, i ? "render" : "velo") != 0)
       return fail_command(path, "it is not velo render");
@@ -78,7 +79,7 @@ bool receipt_differences(const vlReceipt *then, const vlReceipt *now, uint32_t p
   vl_receipt_compare(then, now, parts, name_difference, &difference);
   char more[40] = "";
   if (difference.more)
-    snprintf(more, sizeof more, "; and %u more", difference.more);
+    text_set(more, "; and %u more", difference.more);
   snprintf(text, size, "%s%s", difference.text, more);
   return difference.count > 0;
 }

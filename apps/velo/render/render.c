@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/confine.h"
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/animate.h"
 #include "render/blend.h"
@@ -42,15 +43,14 @@ static void choose_output(Render *render, const char *scene_path, const char *as
   if (slash)
     asked = slash + 1;
   if (output_is_known(asked)) {
-    snprintf(render->default_output, sizeof render->default_output, "%s", asked);
+    text_set(render->default_output, "%s", asked);
   } else {
     slash = strrchr(scene_path, '/');
     const char *name = slash ? slash + 1 : scene_path, *end = strstr(name, ".pbrt");
     if (!end)
       end = strrchr(name, '.');
     int length = end && end > name ? (int)(end - name) : (int)strlen(name);
-    snprintf(render->default_output, sizeof render->default_output, "%.*s%s",
-             length > 500 ? 500 : length, name, suffix);
+    text_set(render->default_output, "%.*s%s", length > 500 ? 500 : length, name, suffix);
   }
   render->outputs.paths[0] = render->default_output;
   render->outputs.count = 1;
@@ -123,7 +123,7 @@ static int note_inputs(const Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   const char *const plain[] = {render->again.path, v[RENDER_DENOISER_LIBRARY].text};
   vlResult result = VL_OK;
-  for (size_t i = 0; i < sizeof plain / sizeof *plain && result != VL_ERROR_MEMORY; i++)
+  for (size_t i = 0; i < LENGTH(plain) && result != VL_ERROR_MEMORY; i++)
     if (plain[i])
       result = vl_note_input(render->context, plain[i], VL_OUTPUT_PLAIN);
   if (render->resumed.path && result != VL_ERROR_MEMORY)
@@ -141,7 +141,7 @@ static void confine(const Render *render, const Arguments *arguments) {
   confine_read(&c, arguments->operands[0]);
   confine_read(&c, render->again.path);
   confine_read(&c, v[RENDER_ENVIRONMENT].text);
-  for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
+  for (size_t i = 0; i < LENGTH(inputs); i++)
     confine_read_folder(&c, v[inputs[i]].text);
   for (int i = 0; i < render->outputs.count; i++)
     confine_write(&c, render->outputs.paths[i]);
@@ -426,34 +426,22 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   double start = monotonic_seconds();
   const bool kept = render->shared && render->shared->scene;
   start_receipt(render, arguments);
-  int status = open_scene(render, path, arguments);
-  if (status >= 0)
-    return status;
+  TRY(open_scene(render, path, arguments));
   double loaded = monotonic_seconds();
 
-  status = job_make(&render->job, render->context, render->scene, path, arguments);
-  if (status >= 0)
-    return status;
+  TRY(job_make(&render->job, render->context, render->scene, path, arguments));
   warn_of_alpha(render);
   if (render->outputs.count == 0 && !render->film_plan.path) {
     choose_output(render, path, render->job.defs->output, default_suffix(render, arguments));
     record_files(render, arguments);
-    status = outputs_check_folders(&render->outputs);
-    if (status >= 0)
-      return status;
+    TRY(outputs_check_folders(&render->outputs));
   }
   first_image_plan(render, arguments);
-  status = denoised_check(&render->denoised, render->context);
-  if (status >= 0)
-    return status;
-  status = check_sizes(render);
-  if (status >= 0)
-    return status;
+  TRY(denoised_check(&render->denoised, render->context));
+  TRY(check_sizes(render));
   channels_take(&render->channels, &render->job);
   warn_of_channels(render);
-  status = channels_load(&render->channels, render->context, &render->job);
-  if (status >= 0)
-    return status;
+  TRY(channels_load(&render->channels, render->context, &render->job));
   render->job.defs->film.errors =
       ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) &&
        (run_has_layers(render) || render->film_plan.path)) ||
@@ -462,9 +450,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   if (render->resumed.file && job_sequence_is_planned(&render->job, arguments))
     render->job.defs->render.sequence = vl_film_file_sequence(render->resumed.file);
   render->film_plan.whole = *render->job.defs;
-  status = shard_apply(arguments, &render->job.defs->film, &render->job.defs->render);
-  if (status >= 0)
-    return status;
+  TRY(shard_apply(arguments, &render->job.defs->film, &render->job.defs->render));
   render->many = frames_wanted(arguments, &render->job);
   if (render->many && render->videos && render->job.defs->camera.stereo.mode != VL_STEREO_NONE)
     return report_usage("output \"%s\": a video is of one eye", render->videos->paths[0]);
@@ -475,20 +461,13 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
       render->job.defs->camera.stereo.mode != VL_STEREO_NONE)
     return report_usage("--denoise does not go with two eyes; velo image denoise does");
   if (render->many) {
-    status = load_frames(render, arguments);
-    if (status >= 0)
-      return status;
+    TRY(load_frames(render, arguments));
     render->denoised.steady = &render->frames.steady;
   }
-  status = needs_check_render_scene(render, arguments);
-  if (status < 0)
-    status = claim_films(render, arguments);
-  if (status < 0)
-    status = race_plan(render, arguments);
-  if (status < 0)
-    status = build_world(render, path);
-  if (status >= 0)
-    return status;
+  TRY(needs_check_render_scene(render, arguments));
+  TRY(claim_films(render, arguments));
+  TRY(race_plan(render, arguments));
+  TRY(build_world(render, path));
   vl_context_record_files(render->context, false);
   if (arguments->values[RENDER_VERBOSE].given && !kept) {
     char bytes[32];
@@ -636,9 +615,7 @@ static int run_render(const Arguments *arguments, vlContext *unused) {
   Videos videos;
   Arguments frames;
   set_up_reports(arguments);
-  const int status = videos_plan(&videos, arguments, &frames);
-  if (status >= 0)
-    return status;
+  TRY(videos_plan(&videos, arguments, &frames));
   return videos_finish(&videos, arguments, render_all(&frames, &videos));
 }
 

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/options.h"
 #include "cli/report.h"
 #include "cli/signals.h"
@@ -14,9 +15,9 @@
 
 static void add_option(FILE *out, const Option *option, const char *value) {
   char name[40];
-  snprintf(name, sizeof name, "--%s", option->name);
+  text_set(name, "--%s", option->name);
   if (option->letter)
-    snprintf(name, sizeof name, "-%c", option->letter);
+    text_set(name, "-%c", option->letter);
   text_shell_word(out, name);
   if (option->kind != OPTION_FLAG)
     text_shell_word(out, value);
@@ -33,7 +34,7 @@ static bool plain_command(const Arguments *arguments, char *text, size_t size) {
   fputs("velo render", out);
   if (path[0] == '-') {
     char file[4200];
-    snprintf(file, sizeof file, "./%s", path);
+    text_set(file, "./%s", path);
     text_shell_word(out, file);
   } else {
     text_shell_word(out, path);
@@ -243,7 +244,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
   const bool first = render->denoised.replaces && render->denoised.written;
   char plain[6000] = "";
   if (first && !plain_command(render->receipt.arguments, plain, sizeof plain))
-    snprintf(plain, sizeof plain, "--plain");
+    text_set(plain, "--plain");
   if (report_is_json()) {
     char part[5000];
     Json *json = report_json_begin("result");

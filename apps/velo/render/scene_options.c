@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "cli/vector.h"
@@ -269,7 +270,7 @@ static int choose_unit(const OptionValue *value, double *metres) {
     double metres;
   } units[] = {{"m", 1},     {"cm", 0.01},   {"mm", 0.001},
                {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}};
-  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+  for (size_t i = 0; i < LENGTH(units); i++)
     if (strcmp(value->text, units[i].name) == 0) {
       *metres = units[i].metres;
       return -1;
@@ -284,12 +285,11 @@ static int choose_load(const char *path, const Arguments *arguments,
   load->cancel = opening->cancel;
   options_put(render_options, v, VL_SETTING_LOAD, load);
   load->camera = scene_camera_is_own(path, arguments) ? v[RENDER_CAMERA].text : NULL;
-  int status = choose_times(v, load);
-  if (status < 0)
-    status = check_completion(v);
-  if (status < 0 && v[RENDER_SCENE_UNIT].given)
-    status = choose_unit(&v[RENDER_SCENE_UNIT], &load->unit);
-  return status;
+  TRY(choose_times(v, load));
+  TRY(check_completion(v));
+  if (v[RENDER_SCENE_UNIT].given)
+    TRY(choose_unit(&v[RENDER_SCENE_UNIT], &load->unit));
+  return -1;
 }
 
 /* Moves a model far from the origin, where its images gain by that. */
@@ -331,9 +331,7 @@ static int load_and_complete(vlContext *context, const char *path, const Argumen
   vl_scene_bounds(*scene, opening->low, opening->high);
   if (v[RENDER_CAMERA].given && !load->camera)
     leave_camera(v, &complete);
-  result = vl_scene_complete(*scene, &complete, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
+  TRY(report_error(&error, vl_scene_complete(*scene, &complete, &error), path));
   opening->complete = vl_scene_completed(*scene);
   vl_scene_framed(*scene, opening->low, opening->high);
   opening->environment = opening->complete.environment;
@@ -379,9 +377,7 @@ static int find_unlit(vlContext *context, const char *path, vlScene *scene,
     return -1; /* a camera that cannot be is reported later */
   vlBuildDef build = defs->build;
   build.cancel = opening->cancel;
-  vlResult result = vl_world_build(scene, &build, &opening->metered, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
+  TRY(report_error(&error, vl_world_build(scene, &build, &opening->metered, &error), path));
   const OptionValue *resolution = &arguments->values[RENDER_RESOLUTION];
   const uint32_t size[2] = {
       resolution->given ? (uint32_t)resolution->integers[0] : camera.width,

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 
 /* Features: albedo, normal, disparity. */
@@ -71,9 +72,7 @@ static vlResult copy_features(vlContext *context, const vlImage *from, vlImage *
       "feature.N.Y",      "feature.N.Z",      "feature.disparity.Y"};
   vlImageDef named = def;
   named.names = names;
-  const vlResult result = vl_image_create(context, &named, to);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(vl_image_create(context, &named, to));
   const size_t stride = vl_image_channels(from);
   for (int k = 0; k < FEATURES; k++) {
     const float *value =
@@ -250,13 +249,11 @@ static vlResult find_flow(const Steady *s, const SteadyFrame *before, const Job 
   if (!s->between)
     return vl_render_channels(job->world, &job->camera, &def, floats, ids, error);
   vlWorld *between = NULL;
-  vlResult result =
-      s->between(s->between_user, before->number, s->number, job, &between, &def.time, error);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(
+      s->between(s->between_user, before->number, s->number, job, &between, &def.time, error));
   const vlCamera now = camera_at(&job->camera, def.time), then = camera_at(&before->camera, 0);
   def.backward = &then;
-  result = vl_render_channels(between, &now, &def, floats, ids, error);
+  vlResult result = vl_render_channels(between, &now, &def, floats, ids, error);
   vl_world_destroy(between);
   return result;
 }
@@ -294,12 +291,10 @@ static void warp_frame(const SteadyFrame *now, const SteadyFrame *before, const 
 static vlResult add_frame(const Steady *s, const SteadyFrame *now, const SteadyFrame *before,
                           const Job *job, int *signals, float *sums, vlError *error) {
   vlImage *floats = NULL, *ids = NULL, *warped = NULL;
-  vlResult result = find_flow(s, before, job, signals, &floats, &ids, error);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(find_flow(s, before, job, signals, &floats, &ids, error));
   const uint32_t size[2] = {vl_image_width(floats), vl_image_height(floats)};
   const vlImageDef def = vl_default_image_def(size[0], size[1], 4);
-  result = vl_image_create(job->context, &def, &warped);
+  vlResult result = vl_image_create(job->context, &def, &warped);
   if (result == VL_OK) {
     warp_frame(now, before, floats, ids, vl_image_pixels(warped));
     add_warped(vl_image_const_pixels(warped), size, sums);

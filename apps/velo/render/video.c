@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/child.h"
@@ -57,7 +58,7 @@ static int check_options(const Videos *videos, const Arguments *arguments) {
   if (!v[RENDER_ANIMATE].given && !v[RENDER_TURNTABLE].given && !v[RENDER_TRAJECTORY].given)
     return report_usage(
         "output \"%s\": a video goes with --animate, --turntable or --trajectory", path);
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+  for (size_t i = 0; i < LENGTH(others); i++)
     if (v[others[i].id].given || (others[i].id == RENDER_SANDBOX && arguments->folder_count))
       return report_usage("output \"%s\": %s; render the frames: -o %s", path, others[i].why,
                           videos->frames);
@@ -78,9 +79,7 @@ static int check_video(const Videos *videos, int i) {
   if (!is_mp4(path) && videos->fps > MAX_GIF)
     return report_usage("output \"%s\": a .gif has at most %d frames per second (--fps)", path,
                         MAX_GIF);
-  const int status = output_check(NULL, path, VL_OUTPUT_PLAIN);
-  if (status >= 0)
-    return status;
+  TRY(output_check(NULL, path, VL_OUTPUT_PLAIN));
   vl_remove_leftovers(path);
   vl_file_id(path, &own);
   for (int k = 0; k < i; k++)
@@ -101,7 +100,7 @@ static bool name_frames(Videos *videos, const char *part) {
   const int stem = (int)(output_dot(path) - path);
   const char *slash = strrchr(path, '/');
   const size_t longest = MAX_NAME - strlen(".part_1000000.part.png");
-  return snprintf(videos->frames, sizeof videos->frames, "%.*s%s_%%04d.png", stem, path, part) <
+  return text_set(videos->frames, "%.*s%s_%%04d.png", stem, path, part) <
              (int)sizeof videos->frames &&
          (size_t)(path + stem - (slash ? slash + 1 : path)) <= longest;
 }
@@ -124,11 +123,9 @@ int videos_plan(Videos *videos, const Arguments *arguments, Arguments *frames) {
     frames->texts[frames->text_count++] = path;
   }
   const bool fits = name_frames(videos, "");
-  int status = check_options(videos, arguments);
-  for (int i = 0; i < videos->count && status < 0; i++)
-    status = check_video(videos, i);
-  if (status >= 0)
-    return status;
+  TRY(check_options(videos, arguments));
+  for (int i = 0; i < videos->count; i++)
+    TRY(check_video(videos, i));
   if (!fits)
     return report_failure(STATUS_IO, "%s: the file's name is too long", videos->paths[0]);
   if (!child_find(videos->programs, "ffmpeg", program, sizeof program))
@@ -138,7 +135,7 @@ int videos_plan(Videos *videos, const Arguments *arguments, Arguments *frames) {
                           videos->paths[0], videos->frames);
   videos->own_frames = !named;
   if (named)
-    snprintf(videos->frames, sizeof videos->frames, "%s", named);
+    text_set(videos->frames, "%s", named);
   else if (!name_frames(videos, ".part"))
     return report_failure(STATUS_IO, "%s: the file's name is too long", videos->paths[0]);
   if (!named)
@@ -188,15 +185,13 @@ static int make_one(Videos *videos, vlContext *context, const char *program, con
   vlError error = {0};
   char wrong[600];
   uint32_t width = 0, height = 0;
-  vlResult result = vl_pending_file_create(context, path, &pending, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
+  TRY(report_error(&error, vl_pending_file_create(context, path, &pending, &error), path));
   int status = STATUS_OK;
   const bool made =
       ffmpeg_make(&source, is_mp4(path) ? VIDEO_MP4 : VIDEO_GIF, vl_pending_file_path(pending),
                   &width, &height, wrong, sizeof wrong);
   if (made && vl_pending_file_commit(pending, &error) != VL_OK)
-    snprintf(wrong, sizeof wrong, "%s", error.message);
+    text_set(wrong, "%s", error.message);
   vl_pending_file_destroy(pending);
   if (wrong[0])
     status = report_failure(STATUS_IO, "%s is not written: %s; the frames are in %s", path,

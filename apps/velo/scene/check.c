@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "scene/scene.h"
@@ -41,8 +42,8 @@ static void add(List *list, vlFindingKind kind, vlSeverity severity, vlResult co
   Entry *e = &list->items[list->count++];
   *e =
       (Entry){.kind = kind, .severity = severity, .code = code, .line = line, .column = column};
-  snprintf(e->file, sizeof e->file, "%s", file ? file : "");
-  snprintf(e->message, sizeof e->message, "%s", message);
+  text_set(e->file, "%s", file ? file : "");
+  text_set(e->message, "%s", message);
 }
 
 static void report_message(void *user, const vlError *e) {

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/kinds.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/progress.h"
@@ -212,7 +213,7 @@ static void put_source(Json *json, const vlSource *source) {
 static void json_kinds(Json *json, const Facts *f) {
   static const char *const families[] = {"shapes", "textures", "materials", "media"};
   json_begin(json, "kinds", '{');
-  for (size_t k = 0; k < sizeof families / sizeof *families; k++) {
+  for (size_t k = 0; k < LENGTH(families); k++) {
     const vlKindFamily *family = vl_kind_family_find(families[k]);
     json_begin(json, families[k], '{');
     for (uint32_t i = 0; i < family->kind_count; i++) {
@@ -312,7 +313,7 @@ static void print_json(const Facts *f) {
                 {"materials", f->info.materials},
                 {"media", f->info.media},
                 {"bytes", f->bytes}};
-  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+  for (size_t i = 0; i < LENGTH(counts); i++)
     json_integer(json, counts[i].name, (int64_t)counts[i].n);
   json_number(json, "seconds", f->seconds);
   json_begin(json, "bounds", '[');

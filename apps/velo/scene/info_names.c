@@ -2,6 +2,7 @@
  * info`. */
 #include <stdio.h>
 
+#include "cli/macros.h"
 #include "cli/text.h"
 #include "scene/scene.h"
 #include "velo/check.h"
@@ -13,7 +14,7 @@ static const struct {
   vlIdKind kind;
 } id_kinds[] = {
     {"shape", VL_ID_OBJECT}, {"material", VL_ID_MATERIAL}, {"instance", VL_ID_INSTANCE}};
-enum { ID_KINDS = sizeof id_kinds / sizeof *id_kinds };
+enum { ID_KINDS = LENGTH(id_kinds) };
 static const struct {
   const char *key;
   vlChoiceKind kind;
@@ -21,7 +22,7 @@ static const struct {
                     {"cameras", VL_CHOICE_CAMERA},
                     {"animations", VL_CHOICE_ANIMATION},
                     {"variants", VL_CHOICE_VARIANT}};
-enum { CHOICE_KINDS = sizeof choice_kinds / sizeof *choice_kinds };
+enum { CHOICE_KINDS = LENGTH(choice_kinds) };
 
 /* Named shapes, materials and instances with their ids: "  shape 3     Hall/Chair
  * nodes[3].meshes[1].primitives[0]". */

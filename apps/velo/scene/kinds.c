@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/setting.h"
 
@@ -186,10 +187,10 @@ static void print_words(const vlKindFamily *family) {
     for (uint32_t k = 0; k < row->parameter_count; k++) {
       const vlParameter *p = &row->parameters[k];
       char type[32];
-      snprintf(type, sizeof type, "%s", type_name(p));
+      text_set(type, "%s", type_name(p));
       type[strcspn(type, ", ")] = 0;
       if (p->type == VL_PARAMETER_EITHER_INPUT)
-        snprintf(type, sizeof type, "float");
+        text_set(type, "float");
       print_word(type, p->name);
       print_word(type, p->alias);
       for (int c = 0; p->name && p->choices && p->choices[c]; c++)

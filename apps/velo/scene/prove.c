@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "scene/scene.h"
@@ -43,9 +44,7 @@ static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlErr
   vlCompleteDef complete = vl_default_complete_def();
   if (alone)
     complete.environment = VL_ENVIRONMENT_NONE;
-  vlResult r = vl_scene_complete(shot->scene, &complete, error);
-  if (r != VL_OK)
-    return r;
+  TRY_RESULT(vl_scene_complete(shot->scene, &complete, error));
   const double most = fmax(defs->film.width, defs->film.height),
                k = most > SIDE ? SIDE / most : 1;
   vlFilmDef film_def = vl_default_film_def((uint32_t)fmax(1, k * defs->film.width + 0.5),
@@ -53,7 +52,7 @@ static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlErr
   vlRenderDef render = defs->render;
   vlDevelopDef develop = vl_default_develop_def();
   render.spp = SPP;
-  r = vl_world_build(shot->scene, &defs->build, &shot->world, error);
+  vlResult r = vl_world_build(shot->scene, &defs->build, &shot->world, error);
   if (r == VL_OK)
     r = vl_camera_make(&defs->camera, &whole, NULL, error);
   if (r == VL_OK)

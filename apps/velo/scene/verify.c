@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/confine.h"
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/lens_options.h"
@@ -43,27 +44,21 @@ static int open_scene(Verify *v, const Arguments *arguments) {
   if (o[RENDER_CAMERA].given)
     confine_read_folder(&confine, o[RENDER_CAMERA].text);
   confine_apply(&confine, arguments);
-  int status = context_open(&def, &v->context);
-  if (status < 0)
-    status = scene_open(v->context, v->path, arguments, &v->scene, &v->opening);
-  if (status < 0)
-    status = job_make(&v->job, v->context, v->scene, v->path, arguments);
-  if (status >= 0)
-    return status;
+  TRY(context_open(&def, &v->context));
+  TRY(scene_open(v->context, v->path, arguments, &v->scene, &v->opening));
+  TRY(job_make(&v->job, v->context, v->scene, v->path, arguments));
   const Needs needs = {.options = arguments->command->options,
                        .values = o,
                        .arguments = arguments,
                        .scene = v->scene,
                        .opening = &v->opening,
                        .job = &v->job};
-  status = needs_check_scene(&needs);
-  if (status >= 0)
-    return status;
+  TRY(needs_check_scene(&needs));
   vlBuildDef build = v->job.defs->build;
   build.previous = v->opening.metered;
   vlResult result = vl_world_build(v->scene, &build, &world, &error);
-  status = result == VL_OK ? lens_autofocus(&v->job, v->scene, world)
-                           : report_error(&error, result, v->path);
+  int status = result == VL_OK ? lens_autofocus(&v->job, v->scene, world)
+                               : report_error(&error, result, v->path);
   vl_world_destroy(world);
   return status;
 }

@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/child.h"
@@ -54,7 +55,7 @@ int verify_reference_find(Verify *v, const Arguments *arguments, const OptionVal
              *why = other_scene(arguments);
   const size_t size = sizeof v->reference;
   if (why) {
-    snprintf(v->unreferenced, sizeof v->unreferenced, "%s", why);
+    text_set(v->unreferenced, "%s", why);
   } else if (named && named[0]) {
     if (strlen(named) >= size || access(named, X_OK) != 0)
       return report_failure(errno == ENOENT ? STATUS_MISSING : STATUS_IO,
@@ -66,8 +67,7 @@ int verify_reference_find(Verify *v, const Arguments *arguments, const OptionVal
     if (v->reference[0] && access(v->reference, X_OK) == 0)
       return -1;
     v->reference[0] = 0;
-    snprintf(v->unreferenced, sizeof v->unreferenced,
-             "velo-reference is not beside velo (--reference names it)");
+    text_set(v->unreferenced, "velo-reference is not beside velo (--reference names it)");
   }
   return -1;
 }
@@ -98,8 +98,7 @@ static void name_file(const Look *l, uint32_t replicate, const char *end, char p
 
 static vlResult fail(const Look *l, const char *what) {
   *l->error = (vlError){.code = VL_ERROR_IO};
-  snprintf(l->error->message, sizeof l->error->message, "the reference renderer %.100s: %s",
-           l->v->reference, what);
+  text_set(l->error->message, "the reference renderer %.100s: %s", l->v->reference, what);
   return VL_ERROR_IO;
 }
 
@@ -108,16 +107,16 @@ static vlResult start(Look *l) {
   char image[64], text[64], spp[16], seed[16], depth[16], size[32];
   name_file(l, l->next, "exr", image);
   name_file(l, l->next, "txt", text);
-  snprintf(spp, sizeof spp, "%u", l->spp);
-  snprintf(seed, sizeof seed, "%u", verify_seed(v, l->look, l->next));
-  snprintf(depth, sizeof depth, "%u", v->job.defs->render.max_depth);
-  snprintf(size, sizeof size, "%ux%u", v->width, v->height);
+  text_set(spp, "%u", l->spp);
+  text_set(seed, "%u", verify_seed(v, l->look, l->next));
+  text_set(depth, "%u", v->job.defs->render.max_depth);
+  text_set(size, "%ux%u", v->width, v->height);
   const char *color = v->job.defs->build.color == VL_COLOR_RGB ? "rgb" : "spectral";
   const char *const words[] = {
       v->reference, v->path,    "-o",           image,      "--spp", spp,           "--seed",
       seed,         "--tracer", "volpath",      "--filter", "box",   "--max-depth", depth,
       "--color",    color,      "--resolution", size,       NULL};
-  char *arguments[sizeof words / sizeof *words];
+  char *arguments[LENGTH(words)];
   memcpy(arguments, words, sizeof words);
   Replicate *child = &l->children[l->running];
   *child = (Replicate){.replicate = l->next};
@@ -181,14 +180,14 @@ static vlResult finish(Look *l, uint32_t replicate, int status) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == STATUS_SCENE) {
     if (!l->refused)
-      snprintf(l->v->unreferenced, sizeof l->v->unreferenced, "%s", line);
+      text_set(l->v->unreferenced, "%s", line);
     l->refused = true;
     return VL_OK;
   }
   if (WIFSIGNALED(status))
-    snprintf(line, sizeof line, "it was ended by signal %d", WTERMSIG(status));
+    text_set(line, "it was ended by signal %d", WTERMSIG(status));
   if (!line[0])
-    snprintf(line, sizeof line, "it ended with exit code %d", WEXITSTATUS(status));
+    text_set(line, "it ended with exit code %d", WEXITSTATUS(status));
   return fail(l, line);
 }
 
@@ -241,8 +240,7 @@ static vlResult render_all(Look *l, double limit) {
     if (result == VL_OK && signals_pending())
       result = VL_CANCELLED;
     if (result == VL_OK && monotonic_seconds() > end) {
-      snprintf(l->v->unreferenced, sizeof l->v->unreferenced, "it takes longer than %.0f s",
-               limit);
+      text_set(l->v->unreferenced, "it takes longer than %.0f s", limit);
       l->refused = true;
     }
     nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
@@ -251,7 +249,7 @@ static vlResult render_all(Look *l, double limit) {
 }
 
 static vlResult run_look(Look *l, double limit) {
-  snprintf(l->folder, sizeof l->folder, "/tmp/velo-verify-XXXXXX");
+  text_set(l->folder, "/tmp/velo-verify-XXXXXX");
   if (!mkdtemp(l->folder))
     return fail(l, "no folder for its images can be made in /tmp");
   const vlResult result = render_all(l, limit);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/signals.h"
 #include "cli/vector.h"
 #include "scene/verify.h"
@@ -128,14 +129,10 @@ static vlResult build_set(Verify *v, const VerifyRun *run, Set *set, vlError *er
   build.regularize = false; /* it changes the materials, and not all tracers know it */
   vl_world_destroy(set->world);
   *set = (Set){.pose = run->pose, .lights = run->lights, .evenly = run->evenly};
-  vlResult result = move_scene(v, run->pose, error);
-  if (result == VL_OK)
-    result = choose_lights(v, run->lights, error);
-  if (result == VL_OK)
-    result = move_camera(v, run->pose, &set->camera, error);
-  if (result == VL_OK)
-    result = vl_world_build(v->scene, &build, &set->world, error);
-  return result;
+  TRY_RESULT(move_scene(v, run->pose, error));
+  TRY_RESULT(choose_lights(v, run->lights, error));
+  TRY_RESULT(move_camera(v, run->pose, &set->camera, error));
+  return vl_world_build(v->scene, &build, &set->world, error);
 }
 
 /* ---- cells ------------------------------------------------------------------------------- */
@@ -387,9 +384,7 @@ static vlResult go(Verify *v, VerifyRun *run, Set *set, vlFilm *film, int look,
   if (run->reference)
     return look == VERIFY_TRIAL ? verify_reference_try(v, run, error)
                                 : verify_reference(v, run, look, error);
-  vlResult result = build_set(v, run, set, error);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(build_set(v, run, set, error));
   return look == VERIFY_TRIAL ? count_rays(v, run, set, film, error)
                               : render_run(v, run, set, film, look, error);
 }

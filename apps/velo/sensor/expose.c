@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/image.h"
@@ -87,9 +88,7 @@ static int check_outputs(const Expose *e) {
           "output \"%s\": the suffix must be .dng (a raw file), .tif or .png (numbers, 16 bits) or "
           ".exr (electrons)",
           path);
-    int status = pattern_check(path);
-    if (status >= 0)
-      return status;
+    TRY(pattern_check(path));
     if (e->frames > 1 && !pattern_has(path, 'd'))
       return report_usage("output \"%s\": the name of several frames needs %%d", path);
   }
@@ -125,31 +124,22 @@ static vlResult add_number(vlImage *image, const char *name, double value) {
 static vlResult describe(const Expose *e, const vlExposureDef *exposure) {
   const vlSensorDef *def = vl_sensor_def(e->sensor);
   char text[2 * VL_SENSOR_CELLS + 1];
-  vlResult result =
-      attributes_set_text(e->electrons, "sensorPattern", vl_sensor_pattern(def, text));
-  if (result == VL_OK)
-    result = vl_exposure_write_window(exposure, e->electrons);
-  if (result == VL_OK)
-    result = add_number(e->electrons, "exposureTime", exposure->time);
-  if (result == VL_OK)
-    result = add_number(e->electrons, "exposureStops", exposure->stops);
-  if (result == VL_OK)
-    result = add_number(e->electrons, "fNumber", exposure->f_number);
-  if (result == VL_OK)
-    result = add_number(e->electrons, "sensorFullWell", def->full_well);
-  return result;
+  TRY_RESULT(attributes_set_text(e->electrons, "sensorPattern", vl_sensor_pattern(def, text)));
+  TRY_RESULT(vl_exposure_write_window(exposure, e->electrons));
+  TRY_RESULT(add_number(e->electrons, "exposureTime", exposure->time));
+  TRY_RESULT(add_number(e->electrons, "exposureStops", exposure->stops));
+  TRY_RESULT(add_number(e->electrons, "fNumber", exposure->f_number));
+  return add_number(e->electrons, "sensorFullWell", def->full_well);
 }
 
 static vlResult write_raw(const Expose *e, const char *path, const vlExposureDef *exposure,
                           vlError *error) {
   vlRaw *raw = NULL;
   uint32_t width = vl_image_width(e->numbers), height = vl_image_height(e->numbers);
-  vlResult result = vl_sensor_raw(e->sensor, exposure, e->light, width, height, &raw, error);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(vl_sensor_raw(e->sensor, exposure, e->light, width, height, &raw, error));
   memcpy(vl_raw_numbers(raw), vl_image_const_pixels(e->numbers),
          sizeof(uint16_t) * width * height);
-  result = vl_raw_write(raw, path, error);
+  vlResult result = vl_raw_write(raw, path, error);
   vl_raw_destroy(raw);
   return result;
 }
@@ -275,9 +265,7 @@ static int expose(Expose *e) {
     if (result != VL_OK)
       return report_error(&error, result, NULL);
     tell(e, f, &out);
-    int status = write_frame(e, f, &exposure);
-    if (status >= 0)
-      return status;
+    TRY(write_frame(e, f, &exposure));
   }
   return STATUS_OK;
 }
@@ -307,17 +295,12 @@ static int run(const Arguments *arguments, vlContext *context) {
               .exposure = vl_default_exposure_def(),
               .paths = arguments->texts,
               .count = arguments->text_count};
-  int status = exposure_options(arguments, &e.exposure);
-  if (status < 0)
-    status = parse_bracket(&e, &v[EXPOSE_BRACKET]);
-  if (status < 0)
-    status = read_white(&e, &v[EXPOSE_WHITE]);
-  if (status < 0)
-    status = check_outputs(&e);
-  if (status >= 0)
-    return status;
-  status = sensor_open(e.context, "--sensor",
-                       v[EXPOSE_SENSOR].given ? v[EXPOSE_SENSOR].text : "ideal", &e.sensor);
+  TRY(exposure_options(arguments, &e.exposure));
+  TRY(parse_bracket(&e, &v[EXPOSE_BRACKET]));
+  TRY(read_white(&e, &v[EXPOSE_WHITE]));
+  TRY(check_outputs(&e));
+  int status = sensor_open(e.context, "--sensor",
+                           v[EXPOSE_SENSOR].given ? v[EXPOSE_SENSOR].text : "ideal", &e.sensor);
   if (status < 0)
     status = image_load(e.context, e.path, &e.image);
   if (status < 0)

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/setting.h"
 
@@ -33,10 +34,8 @@ int exposure_options(const Arguments *arguments, vlExposureDef *exposure) {
     double number;
     if (!row)
       continue;
-    snprintf(name, sizeof name, "--%s", o->name);
-    int status = option_number(name, value->text, row, &number);
-    if (status >= 0)
-      return status;
+    text_set(name, "--%s", o->name);
+    TRY(option_number(name, value->text, row, &number));
     vl_given_put(row, number, exposure);
   }
   return -1;

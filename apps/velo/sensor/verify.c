@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "sensor/sensor.h"
 
@@ -65,7 +66,7 @@ static void print_rows(const Verify *v) {
   for (int i = 0; i < v->count; i++) {
     const VerifyRow *row = &v->rows[i];
     char name[64];
-    snprintf(name, sizeof name, "%s, %s", row->name, row->unit);
+    text_set(name, "%s, %s", row->name, row->unit);
     if (row->skip)
       printf("%-24s %s\n", name, row->skip);
     else if (isnan(row->expected))
@@ -92,19 +93,14 @@ static int verify(Verify *v, const OptionValue *plot) {
   plan(v);
   if (!v->stack)
     plan_stack(v);
-  int status = allocate(v);
-  if (status < 0)
-    status = verify_frames(v);
-  if (status < 0)
-    verify_parameters(v);
-  if (status < 0)
-    status = verify_edge(v);
-  if (status < 0 && plot->given)
-    status = verify_plot(v, plot->text);
-  if (status >= 0)
-    return status;
+  TRY(allocate(v));
+  TRY(verify_frames(v));
+  verify_parameters(v);
+  TRY(verify_edge(v));
+  if (plot->given)
+    TRY(verify_plot(v, plot->text));
   print_rows(v);
-  status = STATUS_OK;
+  int status = STATUS_OK;
   for (int i = 0; i < v->count; i++)
     if (!verify_passes(&v->rows[i]))
       status = STATUS_OTHER;
@@ -114,13 +110,11 @@ static int verify(Verify *v, const OptionValue *plot) {
 static int run(const Arguments *arguments, vlContext *context) {
   const OptionValue *values = arguments->values;
   Verify v = {.context = context, .exposure = vl_default_exposure_def(), .size = 512};
-  int status = exposure_options(arguments, &v.exposure);
-  if (status >= 0)
-    return status;
+  TRY(exposure_options(arguments, &v.exposure));
   v.size = option_count(&values[VERIFY_SIZE], v.size);
   v.stack = option_count(&values[VERIFY_STACK], v.stack);
   v.folder = values[VERIFY_FRAMES].text;
-  status = sensor_open(v.context, "sensor verify", arguments->operands[0], &v.sensor);
+  int status = sensor_open(v.context, "sensor verify", arguments->operands[0], &v.sensor);
   if (status < 0)
     status = verify(&v, &values[VERIFY_PLOT]);
   verify_folder_close(&v);

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "sensor/verify.h"
 
@@ -12,7 +13,7 @@ int verify_folder_open(Verify *v) {
   char path[4096];
   if (!v->folder)
     return -1;
-  int length = snprintf(path, sizeof path, "%s/EMVA1288_Data.txt", v->folder);
+  int length = text_set(path, "%s/EMVA1288_Data.txt", v->folder);
   if (length >= (int)sizeof path)
     return report_usage("--frames: the name is too long");
   mkdir(v->folder, 0777);
@@ -43,8 +44,8 @@ int verify_folder_frame(Verify *v, int which) {
   vlImage *image = NULL;
   if (!v->descriptor)
     return -1;
-  snprintf(name, sizeof name, "frame_%04u.png", v->frame - 1);
-  if (snprintf(path, sizeof path, "%s/%s", v->folder, name) >= (int)sizeof path)
+  text_set(name, "frame_%04u.png", v->frame - 1);
+  if (text_set(path, "%s/%s", v->folder, name) >= (int)sizeof path)
     return report_usage("--frames: the name is too long");
   vlImageDef def = vl_default_image_def(v->size, v->size, 1);
   def.type = VL_PIXEL_U16;

@@ -3,6 +3,7 @@
  * and stacks of both at half of the saturation. */
 #include <stdlib.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "sensor/verify.h"
 
@@ -16,10 +17,10 @@ static int expose_all(Verify *v, double electrons, double time, int which) {
   exposure.frame = v->frame++;
   vlSensorOutput out = {.numbers = v->frames[which]};
   vlError error = {0};
-  vlResult result =
-      vl_sensor_read_out(v->sensor, v->size, v->size, v->means, &exposure, &out, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, NULL);
+  TRY(report_error(
+      &error,
+      vl_sensor_read_out(v->sensor, v->size, v->size, v->means, &exposure, &out, &error),
+      NULL));
   return verify_folder_frame(v, which);
 }
 

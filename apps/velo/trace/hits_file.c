@@ -4,6 +4,8 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "cli/macros.h"
+
 /* ---- .csv -------------------------------------------------------------------------------- */
 
 static void put_row(const vlCastHits *h, uint64_t k, FILE *out) {
@@ -42,8 +44,8 @@ void hits_write_csv(const HitsFile *h, FILE *out) {
 
 size_t hits_npy_start(char start[HITS_NPY_START], const char *type, const char *shape) {
   char header[HITS_NPY_START / 2];
-  int length = snprintf(header, sizeof header,
-                        "{'descr': %s, 'fortran_order': False, 'shape': (%s), }", type, shape);
+  int length =
+      text_set(header, "{'descr': %s, 'fortran_order': False, 'shape': (%s), }", type, shape);
   const size_t before = 10, total = (before + (size_t)length + 1 + 63) / 64 * 64,
                size = total - before;
   memcpy(start, "\x93NUMPY\1\0", 8);
@@ -76,9 +78,9 @@ static void put_record(const vlCastHits *h, uint64_t k, FILE *out) {
 void hits_write_npy(const HitsFile *h, FILE *out) {
   char shape[64];
   if (h->hits > 1 && !h->occluded)
-    snprintf(shape, sizeof shape, "%" PRIu64 ", %u", h->count, h->hits);
+    text_set(shape, "%" PRIu64 ", %u", h->count, h->hits);
   else
-    snprintf(shape, sizeof shape, "%" PRIu64 ",", h->count);
+    text_set(shape, "%" PRIu64 ",", h->count);
   if (h->occluded) {
     put_start(out, "'|b1'", shape);
     fwrite(h->occluded, 1, h->count, out);

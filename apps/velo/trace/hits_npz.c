@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "trace/hits_file.h"
 
 enum { FIELDS = 12, NAME = 32, LOCAL = 30, CENTRAL = 46, END = 22 };
@@ -148,10 +149,10 @@ void hits_write_npz(const HitsFile *h, FILE *out) {
     Member *m = &members[i];
     char shape[64], hits[16] = "", columns[16] = "";
     if (several)
-      snprintf(hits, sizeof hits, " %u,", h->hits);
+      text_set(hits, " %u,", h->hits);
     if (m->columns)
-      snprintf(columns, sizeof columns, " %u,", m->columns);
-    snprintf(shape, sizeof shape, "%" PRIu64 ",%s%s", h->count, hits, columns);
+      text_set(columns, " %u,", m->columns);
+    text_set(shape, "%" PRIu64 ",%s%s", h->count, hits, columns);
     m->start_length = hits_npy_start(m->start, m->type, shape);
     put_member(&a, m, (size_t)h->count * (several ? h->hits : 1) * m->size);
   }

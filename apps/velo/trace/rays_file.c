@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/options.h"
 #include "cli/report.h"
 #include "cli/text.h"
@@ -58,7 +59,7 @@ static int read_header(Reader *r, const char *text) {
     text += quoted;
     size_t length = strcspn(text, quoted ? "\"\r\n" : ", \t\r\n");
     char word[40];
-    snprintf(word, sizeof word, "%.*s", (int)(length < 39 ? length : 39), text);
+    text_set(word, "%.*s", (int)(length < 39 ? length : 39), text);
     int k = 0;
     while (k < NAMES && strcmp(word, names[k]) != 0)
       k++;
@@ -120,9 +121,7 @@ static int add_row(Reader *r, double **row) {
 
 static int read_row(Reader *r, const char *text) {
   double *row = NULL;
-  int status = add_row(r, &row);
-  if (status >= 0)
-    return status;
+  TRY(add_row(r, &row));
   for (int i = 0; i < r->columns; i++) {
     char *end;
     double value = strtod(text, &end);

@@ -1,0 +1,28 @@
+/* cli/macros.h: steps that may fail, texts in arrays. */
+#ifndef APP_CLI_MACROS_H
+#define APP_CLI_MACROS_H
+
+#include <stdio.h>
+
+/* Takes a step that returns -1, or an exit code after reporting the error. With an exit code
+ * the function that holds the line returns it at once; so it must have nothing to free. */
+#define TRY(...)                    \
+  do {                              \
+    const int tried_ = __VA_ARGS__; \
+    if (tried_ >= 0)                \
+      return tried_;                \
+  } while (0)
+/* The same in a function that returns a vlResult, of a call that returns one. */
+#define TRY_RESULT(...)                  \
+  do {                                   \
+    const vlResult tried_ = __VA_ARGS__; \
+    if (tried_ != VL_OK)                 \
+      return tried_;                     \
+  } while (0)
+
+/* The number of an array's elements. */
+#define LENGTH(array) (sizeof(array) / sizeof *(array))
+/* Writes a text into an array of characters, as snprintf does. */
+#define text_set(array, ...) snprintf(array, sizeof(array), __VA_ARGS__)
+
+#endif

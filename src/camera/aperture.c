@@ -199,12 +199,19 @@ void vl_aperture_destroy(vlAperture *a) {
 
 /* ---- pbrt's names ------------------------------------------------------------------------ */
 
+enum { GAUSSIAN, SQUARE, PENTAGON, STAR, NAMES };
+
+typedef struct Polygon {
+  int count;
+  double corners[10][2];
+} Polygon;
+
 /* Whether the point is inside the polygon (even-odd rule). */
-static bool inside(const double (*corners)[2], int count, double x, double y) {
+static bool is_inside(const Polygon *polygon, double x, double y) {
   bool in = false;
-  for (int i = 0, k = count - 1; i < count; k = i++) {
-    double ax = corners[i][0], ay = corners[i][1], bx = corners[k][0], by = corners[k][1];
-    if ((ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay))
+  for (int i = 0, k = polygon->count - 1; i < polygon->count; k = i++) {
+    const double *a = polygon->corners[i], *b = polygon->corners[k];
+    if ((a[1] > y) != (b[1] > y) && x < a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]))
       in = !in;
   }
   return in;
@@ -213,36 +220,42 @@ static bool inside(const double (*corners)[2], int count, double x, double y) {
 /* The shapes and sizes are those of pbrt-v4; y points up here. The pentagon has radius 0.8, and
  * one of its sides is at the bottom. The star's inner corners are the intersections of its
  * outer pentagon's diagonals; one of them is on the right. */
-static double named_value(int name, double x, double y) {
-  double corners[10][2];
-  if (name == 0)
-    return fmax(0.0, vl_precise_exp(-(x * x + y * y)) - vl_precise_exp(-1.0));
-  if (name == 1)
-    return 1.0;
-  int count = name == 2 ? 5 : 10;
-  for (int i = 0; i < count; i++) {
-    double angle = name == 2 ? 0.5 * pi + 0.4 * pi * i : 0.2 * pi * i;
-    double radius = name == 2 ? 0.8
-                    : i & 1   ? 1.0
-                              : vl_precise_cos(0.4 * pi) / vl_precise_cos(0.2 * pi);
-    corners[i][0] = radius * vl_precise_cos(angle);
-    corners[i][1] = radius * vl_precise_sin(angle);
+static Polygon named_polygon(int name) {
+  Polygon polygon = {.count = name == PENTAGON ? 5 : 10};
+  const double inner = vl_precise_cos(0.4 * pi) / vl_precise_cos(0.2 * pi);
+  for (int i = 0; i < polygon.count; i++) {
+    double angle = 0.2 * pi * i;
+    double radius = i & 1 ? 1.0 : inner;
+    if (name == PENTAGON) {
+      angle = 0.5 * pi + 0.4 * pi * i;
+      radius = 0.8;
+    }
+    polygon.corners[i][0] = radius * vl_precise_cos(angle);
+    polygon.corners[i][1] = radius * vl_precise_sin(angle);
   }
-  return inside((const double(*)[2])corners, count, x, y) ? 1.0 : 0.0;
+  return polygon;
+}
+
+static double named_value(int name, const Polygon *polygon, double x, double y) {
+  if (name == GAUSSIAN)
+    return fmax(0.0, vl_precise_exp(-(x * x + y * y)) - vl_precise_exp(-1.0));
+  if (name == SQUARE)
+    return 1.0;
+  return is_inside(polygon, x, y) ? 1.0 : 0.0;
 }
 
 vlResult vl_aperture_create_named(vlContext *context, const char *name, vlAperture **aperture,
                                   vlError *error) {
-  static const char *const names[] = {"gaussian", "square", "pentagon", "star"};
+  static const char *const names[NAMES] = {"gaussian", "square", "pentagon", "star"};
   vl_error_clear(error);
   if (!context || !name || !aperture)
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context, name or aperture is null");
   *aperture = NULL;
   int kind = 0;
-  while (kind < 4 && !vl_text_is(name, names[kind]))
+  while (kind < NAMES && !vl_text_is(name, names[kind]))
     kind++;
-  if (kind == 4) {
-    const char *near = vl_nearest_name(name, names, 4);
+  if (kind == NAMES) {
+    const char *near = vl_nearest_name(name, names, NAMES);
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s",
                    vl_argument_text(name).text,
                    near ? "; did you mean \"" : " (known: gaussian, square, pentagon, star)",
@@ -251,8 +264,9 @@ vlResult vl_aperture_create_named(vlContext *context, const char *name, vlApertu
   float *values = vl_alloc_array(context, (size_t)NAMED * NAMED, sizeof *values);
   if (!values)
     return vl_fail_memory(error);
+  const Polygon polygon = named_polygon(kind);
   for (int i = 0; i < NAMED * NAMED; i++)
-    values[i] = (float)named_value(kind, (i % NAMED + 0.5) * 2.0 / NAMED - 1.0,
+    values[i] = (float)named_value(kind, &polygon, (i % NAMED + 0.5) * 2.0 / NAMED - 1.0,
                                    1.0 - (double)(i / NAMED + 0.5) * 2.0 / NAMED);
   vlResult result = vl_aperture_create(context, NAMED, NAMED, values, aperture, error);
   vl_free(context, values);

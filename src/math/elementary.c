@@ -70,6 +70,81 @@ static Pair one(double x) {
   return (Pair){x, 0.0};
 }
 
+/* ---- coefficients of power series -------------------------------------------------------- */
+
+enum { FACTORIALS = 30, ODD = 25 };
+
+/* 1 / n! */
+static const Pair factorials[FACTORIALS] = {
+    {0x1p+0, 0.0},
+    {0x1p+0, 0.0},
+    {0x1p-1, 0.0},
+    {0x1.5555555555555p-3, 0x1.5555555555555p-57},
+    {0x1.5555555555555p-5, 0x1.5555555555555p-59},
+    {0x1.1111111111111p-7, 0x1.1111111111111p-63},
+    {0x1.6c16c16c16c17p-10, -0x1.f49f49f49f49fp-65},
+    {0x1.a01a01a01a01ap-13, 0x1.a01a01a01a01ap-73},
+    {0x1.a01a01a01a01ap-16, 0x1.a01a01a01a01ap-76},
+    {0x1.71de3a556c734p-19, -0x1.c154f8ddc6c00p-73},
+    {0x1.27e4fb7789f5cp-22, 0x1.cbbc05b4fa99ap-76},
+    {0x1.ae64567f544e4p-26, -0x1.c062e06d1f209p-80},
+    {0x1.1eed8eff8d898p-29, -0x1.2aec959e14c06p-83},
+    {0x1.6124613a86d09p-33, 0x1.f28e0cc748ebep-87},
+    {0x1.93974a8c07c9dp-37, 0x1.05d6f8a2efd1fp-92},
+    {0x1.ae7f3e733b81fp-41, 0x1.1d8656b0ee8cbp-97},
+    {0x1.ae7f3e733b81fp-45, 0x1.1d8656b0ee8cbp-101},
+    {0x1.952c77030ad4ap-49, 0x1.ac981465ddc6cp-103},
+    {0x1.6827863b97d97p-53, 0x1.eec01221a8b0bp-107},
+    {0x1.2f49b46814157p-57, 0x1.2650f61dbdcb4p-112},
+    {0x1.e542ba4020225p-62, 0x1.ea72b4afe3c2fp-120},
+    {0x1.71b8ef6dcf572p-66, -0x1.d043ae40c4647p-120},
+    {0x1.0ce396db7f853p-70, -0x1.aebcdbd20331cp-124},
+    {0x1.761b41316381ap-75, -0x1.3423c7d91404fp-130},
+    {0x1.f2cf01972f578p-80, -0x1.9ada5fcc1ab14p-135},
+    {0x1.3f3ccdd165fa9p-84, -0x1.58ddadf344487p-139},
+    {0x1.88e85fc6a4e5ap-89, -0x1.71c37ebd16540p-143},
+    {0x1.d1ab1c2dccea3p-94, 0x1.054d0c78aea14p-149},
+    {0x1.0a18a2635085dp-98, 0x1.b9e2e28e1aa54p-153},
+    {0x1.259f98b4358adp-103, 0x1.eaf8c39dd9bc5p-157},
+};
+
+/* 1 / (2 k + 1) */
+static const Pair odd_reciprocals[ODD] = {
+    {0x1p+0, 0.0},
+    {0x1.5555555555555p-2, 0x1.5555555555555p-56},
+    {0x1.999999999999ap-3, -0x1.999999999999ap-57},
+    {0x1.2492492492492p-3, 0x1.2492492492492p-57},
+    {0x1.c71c71c71c71cp-4, 0x1.c71c71c71c71cp-58},
+    {0x1.745d1745d1746p-4, -0x1.745d1745d1746p-59},
+    {0x1.3b13b13b13b14p-4, -0x1.3b13b13b13b14p-58},
+    {0x1.1111111111111p-4, 0x1.1111111111111p-60},
+    {0x1.e1e1e1e1e1e1ep-5, 0x1.e1e1e1e1e1e1ep-61},
+    {0x1.af286bca1af28p-5, 0x1.af286bca1af28p-59},
+    {0x1.8618618618618p-5, 0x1.8618618618618p-59},
+    {0x1.642c8590b2164p-5, 0x1.642c8590b2164p-60},
+    {0x1.47ae147ae147bp-5, -0x1.eb851eb851eb8p-61},
+    {0x1.2f684bda12f68p-5, 0x1.2f684bda12f68p-59},
+    {0x1.1a7b9611a7b96p-5, 0x1.1a7b9611a7b96p-61},
+    {0x1.0842108421084p-5, 0x1.0842108421084p-60},
+    {0x1.f07c1f07c1f08p-6, -0x1.f07c1f07c1f08p-61},
+    {0x1.d41d41d41d41dp-6, 0x1.0750750750750p-60},
+    {0x1.bacf914c1bad0p-6, -0x1.bacf914c1bad0p-60},
+    {0x1.a41a41a41a41ap-6, 0x1.0690690690690p-60},
+    {0x1.8f9c18f9c18fap-6, -0x1.f3831f3831f38p-61},
+    {0x1.7d05f417d05f4p-6, 0x1.7d05f417d05f4p-62},
+    {0x1.6c16c16c16c17p-6, -0x1.f49f49f49f49fp-61},
+    {0x1.5c9882b931057p-6, 0x1.310572620ae4cp-61},
+    {0x1.4e5e0a72f0539p-6, 0x1.e0a72f0539783p-60},
+};
+
+/* Sum of coefficients[i * step] x^i over `terms` terms, by Horner's rule. */
+static Pair series(Pair x, const Pair *coefficients, int step, int terms) {
+  Pair s = coefficients[step * (terms - 1)];
+  for (int i = terms - 2; i >= 0; i--)
+    s = add(coefficients[step * i], multiply(x, s));
+  return s;
+}
+
 /* ---- exponential and logarithm ----------------------------------------------------------- */
 
 /* ln 2 as the sum of three parts. The first two have 40 bits, so their products with integers
@@ -82,10 +157,7 @@ static Pair times_ln2(double whole) {
 
 /* (exp(x) - 1) / x, by the first `terms` terms of its power series. */
 static Pair exp_series(Pair x, int terms) {
-  Pair s = one(1.0);
-  for (int k = terms; k > 1; k--)
-    s = add(one(1.0), divide(multiply(x, s), one(k)));
-  return s;
+  return series(x, factorials + 1, 1, terms);
 }
 
 /* exp(x) = result * 2^*exponent. Requires |x| < 2^12. */
@@ -123,10 +195,9 @@ static Pair log_pair(double x) {
     m *= 2.0;
     exponent--;
   }
-  Pair s = divide(one(m - 1.0), sum(m, 1.0)), z = multiply(s, s), t = one(0.0);
-  for (int k = 24; k >= 0; k--)
-    t = add(multiply(t, z), divide(one(2.0), one(2 * k + 1)));
-  return add(times_ln2(exponent), multiply(s, t));
+  Pair s = divide(one(m - 1.0), sum(m, 1.0));
+  Pair t = series(multiply(s, s), odd_reciprocals, 1, ODD);
+  return add(times_ln2(exponent), multiply(add(s, s), t));
 }
 
 /* Returns whether the logarithm of x is infinite or NaN, and then sets *value to it. */
@@ -197,7 +268,7 @@ double vl_precise_pow(double x, double y) {
 double vl_precise_cbrt(double x) {
   if (x == 0.0 || !isfinite(x))
     return x;
-  return copysign(exp_of(divide(log_pair(fabs(x)), one(3.0))), x);
+  return copysign(exp_of(multiply(log_pair(fabs(x)), odd_reciprocals[1])), x);
 }
 
 double vl_precise_hypot(double x, double y) {
@@ -211,57 +282,60 @@ double vl_precise_hypot(double x, double y) {
 static const double half_pi[4] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69,
                                   0x1.b839a252049c1p-104};
 
-typedef struct SinCos {
-  Pair sin, cos;
-} SinCos;
+/* rest + quarters pi / 2 */
+typedef struct Angle {
+  Pair rest;
+  int quarters; /* 0 to 3 */
+} Angle;
 
-static SinCos sincos_pair(double x) {
+static Angle reduce(double x) {
   double n = floor(x * 0.63661977236758134308 + 0.5);
   Pair r = add(one(x), one(-n * half_pi[0]));
   for (int k = 1; k < 4; k++)
     r = add(r, one(-n * half_pi[k]));
-  Pair z = negate(multiply(r, r)), s = one(1.0), c = one(1.0);
-  for (int k = 28; k > 1; k -= 2) {
-    s = add(one(1.0), divide(multiply(z, s), one((double)k * (k + 1))));
-    c = add(one(1.0), divide(multiply(z, c), one((double)k * (k - 1))));
-  }
-  s = multiply(r, s);
-  switch ((int)(n - 4.0 * floor(0.25 * n))) {
-    case 0:
-      return (SinCos){s, c};
-    case 1:
-      return (SinCos){c, negate(s)};
-    case 2:
-      return (SinCos){negate(s), negate(c)};
-    default:
-      return (SinCos){negate(c), s};
-  }
+  return (Angle){r, (int)(n - 4.0 * floor(0.25 * n))};
+}
+
+static Pair sine(Angle a) {
+  enum { TERMS = 15 };
+  Pair z = negate(multiply(a.rest, a.rest)), s;
+  if (a.quarters & 1)
+    s = series(z, factorials, 2, TERMS); /* the cosine of the rest: terms z^k / (2 k)! */
+  else
+    s = multiply(a.rest, series(z, factorials + 1, 2, TERMS)); /* z^k / (2 k + 1)! */
+  return a.quarters & 2 ? negate(s) : s;
+}
+
+static Pair cosine(Angle a) {
+  a.quarters++;
+  return sine(a);
 }
 
 double vl_precise_sin(double x) {
   if (x == 0.0 || !isfinite(x))
     return x == 0.0 ? x : NAN;
-  return sincos_pair(x).sin.high;
+  return sine(reduce(x)).high;
 }
 
 double vl_precise_cos(double x) {
-  return isfinite(x) ? sincos_pair(x).cos.high : NAN;
+  return isfinite(x) ? cosine(reduce(x)).high : NAN;
 }
 
 double vl_precise_tan(double x) {
   if (x == 0.0 || !isfinite(x))
     return x == 0.0 ? x : NAN;
-  SinCos s = sincos_pair(x);
-  return divide(s.sin, s.cos).high;
+  Angle a = reduce(x);
+  return divide(sine(a), cosine(a)).high;
 }
 
 /* Angle of (x, y). One step refines the angle a, which is accurate up to its last bits: the
  * remaining angle is (y cos a - x sin a) / (x cos a + y sin a). */
 static double angle_of(Pair y, Pair x) {
   double a = vl_atan2_double(y.high, x.high);
-  SinCos s = sincos_pair(a);
-  Pair over = add(multiply(y, s.cos), negate(multiply(x, s.sin)));
-  Pair under = add(multiply(x, s.cos), multiply(y, s.sin));
+  Angle angle = reduce(a);
+  Pair s = sine(angle), c = cosine(angle);
+  Pair over = add(multiply(y, c), negate(multiply(x, s)));
+  Pair under = add(multiply(x, c), multiply(y, s));
   return add(one(a), divide(over, under)).high;
 }
 

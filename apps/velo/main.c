@@ -3,7 +3,6 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
@@ -13,6 +12,7 @@
 #include "cli/manual.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "cli/text.h"
 
 /* The git commit of the source; empty when unknown. Written by cmake/commit.cmake. */
 extern const char velo_commit[];
@@ -81,8 +81,7 @@ static bool is_second_word(const char *word, char *list, size_t size) {
     const char *space = strchr(commands[i]->name, ' ');
     if (!space || strcmp(space + 1, word) != 0)
       continue;
-    size_t n = strlen(list);
-    snprintf(list + n, size - n, "%s\"velo %s\"", n ? " or " : "", commands[i]->name);
+    text_add(list, size, "%s\"velo %s\"", list[0] ? " or " : "", commands[i]->name);
   }
   return list[0];
 }
@@ -98,12 +97,9 @@ static const char *command_for_file(const char *word) {
       {".ply.gz", "render"},    {".stl.gz", "render"},    {".off.gz", "render"},
       {".yaml", "camera info"}, {".json", "camera info"}, {".dng", "raw info"},
       {".ies", "light info"},   {".ldt", "light info"}};
-  const size_t length = strlen(word);
-  for (size_t i = 0; i < LENGTH(kinds); i++) {
-    const size_t n = strlen(kinds[i][0]);
-    if (length > n && strcasecmp(word + length - n, kinds[i][0]) == 0)
+  for (size_t i = 0; i < LENGTH(kinds); i++)
+    if (strlen(word) > strlen(kinds[i][0]) && text_ends_with(word, kinds[i][0]))
       return kinds[i][1];
-  }
   return NULL;
 }
 
@@ -117,11 +113,8 @@ static int unknown_command(int argc, char **argv) {
   if (is_second_word(argv[0], whole, sizeof whole))
     return report_usage("unknown command \"%s\"; did you mean %s?", argv[0], whole);
   if (is_family(argv[0], names, &count)) {
-    char list[200] = "";
-    for (int i = 0; i < count; i++) {
-      size_t n = strlen(list);
-      snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
-    }
+    char list[200];
+    text_list(list, sizeof list, names, count);
     if (argc < 2)
       return report_usage("%s: which of %s?", argv[0], list);
     const char *near = did_you_mean("", argv[1], names, count);

@@ -5,6 +5,7 @@
 
 #include "cli/macros.h"
 #include "cli/options.h"
+#include "cli/text.h"
 
 enum { HELP_COLUMN = 30, HELP_WIDTH = 80 };
 
@@ -64,14 +65,11 @@ void options_print_exit_statuses(void) {
 static void print_choices(const Choice *choices) {
   char list[1200] = "";
   for (const Choice *c = choices; c->name;) {
-    size_t n = strlen(list);
     const Choice *alias = c + 1;
-    n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", n ? " " : "", c->name);
+    text_add(list, sizeof list, "%s%s", list[0] ? " " : "", c->name);
     for (; alias->name && alias->value == c->value; alias++)
-      n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", alias == c + 1 ? " (or " : ", ",
-                            alias->name);
-    snprintf(list + n, sizeof list - n, "%s%s", alias > c + 1 ? ")" : "",
-             alias->name ? "," : "");
+      text_add(list, sizeof list, "%s%s", alias == c + 1 ? " (or " : ", ", alias->name);
+    text_add(list, sizeof list, "%s%s", alias > c + 1 ? ")" : "", alias->name ? "," : "");
     c = alias;
   }
   print_wrapped(list, HELP_COLUMN, 0);

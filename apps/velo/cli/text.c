@@ -2,6 +2,7 @@
 #include "cli/text.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -9,6 +10,20 @@
 bool text_ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);
   return n >= m && strcasecmp(text + n - m, suffix) == 0;
+}
+
+void text_add(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list values;
+  va_start(values, format);
+  vsnprintf(text + used, size - used, format, values);
+  va_end(values);
+}
+
+void text_list(char *text, size_t size, const char *const *words, int count) {
+  text[0] = 0;
+  for (int i = 0; i < count; i++)
+    text_add(text, size, "%s%s", i ? ", " : "", words[i]);
 }
 
 void text_print_plain(const char *text) {

@@ -7,6 +7,11 @@
 
 /* In upper case or lower. */
 bool text_ends_with(const char *text, const char *suffix);
+/* Adds to a text in an array of so many bytes; what does not fit is cut. */
+void text_add(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Makes a list: "a, b, c". */
+void text_list(char *text, size_t size, const char *const *words, int count);
 /* Prints a string of a file to stdout, with ? for control characters. */
 void text_print_plain(const char *text);
 /* Writes a space and a word, quoted so that a POSIX shell reads it as one. No control

@@ -62,16 +62,14 @@ static int run_denoise(const Arguments *arguments, vlContext *context) {
 }
 
 void denoise_report(const vlDenoiseStats *stats) {
-  char time[32];
   if (stats->not_finite)
     report_warning(
         "%llu pixels are not finite; the denoised image has their neighbours' light there",
         (unsigned long long)stats->not_finite);
   if (!stats->features)
     report_note("the image has no channels of features (--channels features): edges may blur");
-  format_seconds(time, sizeof time, stats->seconds);
   if (report_is_verbose())
-    report_note("denoised in %s", time);
+    report_note("denoised in %s", format_seconds(stats->seconds).text);
 }
 
 vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {

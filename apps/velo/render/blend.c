@@ -232,7 +232,6 @@ static void report_made(const Blend *blend) {
   const Blender *b = &blend->blender;
   const double seconds = monotonic_seconds() - blend->shown.start;
   const char *name = blend->own.texts[0];
-  char time[32];
   if (report_is_json()) {
     Json *json = report_json_begin("result");
     json_put(json, "status %d, frames %u, written %u, spp %lld, seconds %g", STATUS_OK,
@@ -240,12 +239,12 @@ static void report_made(const Blend *blend) {
     report_json_end(json);
     return;
   }
-  format_seconds(time, sizeof time, seconds);
   if (!blend->written)
     report_note("nothing to render: %s is there", name);
   else
     report_note("%u of %u images of %ld x %ld in %s, %ld spp at most; wrote %s%s",
-                blend->written, blend->shown.count, b->width, b->height, time, b->spp, name,
+                blend->written, blend->shown.count, b->width, b->height,
+                format_seconds(seconds).text, b->spp, name,
                 blend->own.text_count > 1 ? ", ..." : "");
 }
 

@@ -10,6 +10,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "cli/text.h"
 #include "render/attributes.h"
 #include "render/gbuffer.h"
 
@@ -49,11 +50,8 @@ static int read_one(const char *name, uint32_t *channels) {
   const char *near = did_you_mean("", name, names, count);
   if (*near)
     return report_usage("--channels: unknown name \"%s\"%s", name, near);
-  char list[400] = "";
-  for (int i = 0; i < count; i++) {
-    size_t n = strlen(list);
-    snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
-  }
+  char list[400];
+  text_list(list, sizeof list, names, count);
   return report_usage("--channels: unknown name \"%s\"; accepted are %s", name, list);
 }
 

@@ -83,19 +83,16 @@ void job_describe(const Job *job, const vlScene *scene, bool denoised,
   const vlCamera *c = &job->camera;
   const vlRenderDef *render = &job->defs->render;
   const uint32_t *crop = job->defs->film.crop;
-  char triangles[32], bytes[32], build[32];
-  format_count(triangles, sizeof triangles, (double)f.world.triangles);
-  format_count(bytes, sizeof bytes, (double)f.world.bytes);
-  format_seconds(build, sizeof build, f.world.build_seconds);
   printf("scene     %s: %llu shapes, %llu materials, %llu textures, %llu instances\n",
          job->path, (unsigned long long)f.scene.shapes, (unsigned long long)f.scene.materials,
          (unsigned long long)f.scene.textures, (unsigned long long)f.scene.instances);
   printf("world     %s triangles, other primitives %llu, lights %llu, %sB; built in %s\n",
-         triangles,
+         format_count((double)f.world.triangles).text,
          (unsigned long long)(f.world.primitives > f.world.triangles
                                   ? f.world.primitives - f.world.triangles
                                   : 0),
-         (unsigned long long)f.world.lights, bytes, build);
+         (unsigned long long)f.world.lights, format_count((double)f.world.bytes).text,
+         format_seconds(f.world.build_seconds).text);
   printf("camera    %s", f.projection);
   if (c->projection == VL_PROJECTION_PERSPECTIVE)
     printf(", field of view %.4g x %.4g degrees", f.fov_x, f.fov_y);

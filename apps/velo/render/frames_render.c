@@ -227,13 +227,11 @@ static void report_end(const Run *run, uint32_t written, int status) {
     report_json_end(json);
     return;
   }
-  char time[32], speed[32];
-  format_seconds(time, sizeof time, seconds);
-  format_count(speed, sizeof speed, seconds > 0 ? (double)t->paths / seconds : 0);
   const char *video = run->outputs->video;
   const bool images = run->outputs->count && written && !video;
   report_note("%u of %u frames%s in %s, %u spp, %s paths/s; %s%s%s", written, run->shown.count,
-              run->frames->views == 2 ? " (two eyes)" : "", time, t->spp, speed,
+              run->frames->views == 2 ? " (two eyes)" : "", format_seconds(seconds).text,
+              t->spp, format_count(seconds > 0 ? (double)t->paths / seconds : 0).text,
               images                ? "wrote "
               : video               ? "for "
               : run->outputs->count ? "no image is written"

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/report.h"
+#include "cli/text.h"
 #include "render/progress.h"
 #include "velo/tracer.h"
 
@@ -113,21 +114,17 @@ void memory_plan(MemoryPlan *plan, const Job *job, const Outputs *outputs,
 
 void memory_list(const MemoryPlan *plan, char *text, size_t size) {
   text[0] = 0;
-  for (int i = 0; i < plan->count; i++) {
-    char bytes[32];
-    size_t n = strlen(text);
-    format_count(bytes, sizeof bytes, (double)plan->needs[i].bytes);
-    snprintf(text + n, size - n, "%s%s %sB", i ? ", " : "", plan->needs[i].what, bytes);
-  }
+  for (int i = 0; i < plan->count; i++)
+    text_add(text, size, "%s%s %sB", i ? ", " : "", plan->needs[i].what,
+             format_count((double)plan->needs[i].bytes).text);
 }
 
 static int too_much(const MemoryPlan *plan, uint64_t limit, const char *who) {
-  char list[400], needed[32], most[32];
+  char list[400];
   memory_list(plan, list, sizeof list);
-  format_count(needed, sizeof needed, (double)plan->total);
-  format_count(most, sizeof most, (double)limit);
-  return report_failure(STATUS_OTHER, "out of memory: this needs %sB, and %s %sB: %s", needed,
-                        who, most, list);
+  return report_failure(STATUS_OTHER, "out of memory: this needs %sB, and %s %sB: %s",
+                        format_count((double)plan->total).text, who,
+                        format_count((double)limit).text, list);
 }
 
 int memory_check(const MemoryPlan *plan, uint64_t limit) {

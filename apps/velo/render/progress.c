@@ -15,37 +15,30 @@ double monotonic_seconds(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void format_count(char *text, size_t size, double count) {
+NumberText format_count(double count) {
   static const char *const units[] = {"", " k", " M", " G", " T"};
+  NumberText result;
   int unit = 0;
   while (count >= 999.5 && unit < 4) {
     count /= 1000;
     unit++;
   }
-  if (unit == 0)
-    snprintf(text, size, "%.0f", count);
-  else
-    snprintf(text, size, "%.*f%s",
-             count < 9.995   ? 2
-             : count < 99.95 ? 1
-                             : 0,
-             count, units[unit]);
+  const int digits = unit == 0 || count >= 99.95 ? 0 : count < 9.995 ? 2 : 1;
+  text_set(result.text, "%.*f%s", digits, count, units[unit]);
+  return result;
 }
 
-void format_seconds(char *text, size_t size, double seconds) {
-  if (!(seconds >= 0) || seconds > 1e9) {
-    snprintf(text, size, "?");
-  } else if (seconds < 9.995) {
-    snprintf(text, size, "%.2f s", seconds);
-  } else if (seconds < 59.95) {
-    snprintf(text, size, "%.1f s", seconds);
-  } else {
-    unsigned long s = (unsigned long)(seconds + 0.5);
-    if (s < 3600)
-      snprintf(text, size, "%lu:%02lu", s / 60, s % 60);
-    else
-      snprintf(text, size, "%lu:%02lu:%02lu", s / 3600, s / 60 % 60, s % 60);
-  }
+NumberText format_seconds(double seconds) {
+  NumberText result = {"?"};
+  const bool known = seconds >= 0 && seconds <= 1e9;
+  const unsigned long s = known ? (unsigned long)(seconds + 0.5) : 0;
+  if (known && seconds < 59.95)
+    text_set(result.text, "%.*f s", seconds < 9.995 ? 2 : 1, seconds);
+  else if (known && s < 3600)
+    text_set(result.text, "%lu:%02lu", s / 60, s % 60);
+  else if (known)
+    text_set(result.text, "%lu:%02lu:%02lu", s / 3600, s / 60 % 60, s % 60);
+  return result;
 }
 
 void progress_start(Progress *progress, double time_limit) {
@@ -71,17 +64,15 @@ static void estimate(const Progress *progress, const vlProgress *now, double *fr
 /* The longest text that fits the line. The remaining time is dropped last. */
 static void describe(const vlProgress *now, double remaining, double rate, int room, char *text,
                      size_t size) {
-  char elapsed[32], left[40] = "", speed[32], number[32];
-  format_seconds(elapsed, sizeof elapsed, now->elapsed);
-  format_seconds(number, sizeof number, remaining);
-  format_count(speed, sizeof speed, rate);
+  char left[40] = "";
+  const NumberText elapsed = format_seconds(now->elapsed);
   if (isfinite(remaining))
-    text_set(left, "  %s left", number);
+    text_set(left, "  %s left", format_seconds(remaining).text);
   int n = snprintf(text, size, "%u/%u spp  %s paths/s  %s elapsed%s", now->spp_done,
-                   now->spp_total, speed, elapsed, left);
+                   now->spp_total, format_count(rate).text, elapsed.text, left);
   if (n > room)
-    n = snprintf(text, size, "%u/%u spp  %s elapsed%s", now->spp_done, now->spp_total, elapsed,
-                 left);
+    n = snprintf(text, size, "%u/%u spp  %s elapsed%s", now->spp_done, now->spp_total,
+                 elapsed.text, left);
   if (n > room)
     n = snprintf(text, size, "%u/%u spp%s", now->spp_done, now->spp_total, left);
   if (n > room)
@@ -166,15 +157,14 @@ void progress_show_frames(FrameProgress *progress, uint32_t number, double part)
     report_json_end(json);
     return;
   }
-  char text[200], time[32], left[32];
+  char text[200];
   const bool narrow = report_is_terminal() && report_terminal_columns() < 60;
-  format_seconds(time, sizeof time, elapsed);
-  format_seconds(left, sizeof left, remaining);
   int n = text_set(text, "frame %u: %u/%u", number, progress->done, progress->count);
   if (!narrow)
-    n += snprintf(text + n, sizeof text - (size_t)n, " frames  %s elapsed", time);
+    n += snprintf(text + n, sizeof text - (size_t)n, " frames  %s elapsed",
+                  format_seconds(elapsed).text);
   if (isfinite(remaining))
-    snprintf(text + n, sizeof text - (size_t)n, "  %s left", left);
+    snprintf(text + n, sizeof text - (size_t)n, "  %s left", format_seconds(remaining).text);
   if (report_is_terminal())
     draw_bar(done / progress->count, text);
   else if (progress->done)

@@ -25,10 +25,14 @@ FrameProgress progress_frames(uint32_t count);
  * finished share. */
 void progress_show_frames(FrameProgress *progress, uint32_t number, double part);
 
-/* Formats a count: "1.27 M", "950", "3.4 G". */
-void format_count(char *text, size_t size, double count);
-/* Formats seconds: "4.2 s", "1:05", "2:03:20". */
-void format_seconds(char *text, size_t size, double seconds);
+/* A number in few digits. */
+typedef struct NumberText {
+  char text[32];
+} NumberText;
+/* A count: "1.27 M", "950", "3.4 G". */
+NumberText format_count(double count);
+/* Seconds: "4.2 s", "1:05", "2:03:20". */
+NumberText format_seconds(double seconds);
 /* Seconds of a clock that is never set back; its zero is arbitrary. */
 double monotonic_seconds(void);
 

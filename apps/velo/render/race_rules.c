@@ -7,6 +7,7 @@
 #include "cli/kinds.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "velo/tracer.h"
 
 /* The race is planned for at most MAX_SAMPLES, so that all longer renders of an image have the
@@ -72,8 +73,7 @@ static void trial_name(const vlTracerTrial *trial, char *text, size_t size) {
 }
 
 void race_line(RaceKind kind, const vlTracerChoice *choice, char *text, size_t size) {
-  char name[80], trials[400], chosen[80] = "";
-  size_t n = 0;
+  char name[80], trials[400] = "", chosen[80] = "";
   if (!choice->count) {
     snprintf(text, size, "auto: %s (no race: docs/tracers.md says when)",
              kind_name("tracers", (int)choice->tracer));
@@ -84,8 +84,7 @@ void race_line(RaceKind kind, const vlTracerChoice *choice, char *text, size_t s
     trial_name(trial, name, sizeof name);
     if (trial->tracer == choice->tracer && trial->light_paths == choice->light_paths)
       text_set(chosen, "%s", name);
-    n += (size_t)snprintf(trials + n, sizeof trials - n, "%s%s %.2g", i ? ", " : "", name,
-                          trial->work);
+    text_add(trials, sizeof trials, "%s%s %.2g", i ? ", " : "", name, trial->work);
   }
   if (kind == RACE_LIGHT_PATHS && choice->tracer == VL_TRACER_VOLPATH)
     text_set(chosen, "no light paths");

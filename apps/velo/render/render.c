@@ -469,13 +469,11 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   TRY(race_plan(render, arguments));
   TRY(build_world(render, path));
   vl_context_record_files(render->context, false);
-  if (arguments->values[RENDER_VERBOSE].given && !kept) {
-    char bytes[32];
-    format_count(bytes, sizeof bytes, (double)vl_context_memory(render->context, NULL));
+  if (arguments->values[RENDER_VERBOSE].given && !kept)
     report_note("loaded in %.3f s, built in %.3f s, %sB held; %u threads, %s", loaded - start,
-                monotonic_seconds() - loaded, bytes, vl_context_threads(render->context),
-                context_isa_name(render->context));
-  }
+                monotonic_seconds() - loaded,
+                format_count((double)vl_context_memory(render->context, NULL)).text,
+                vl_context_threads(render->context), context_isa_name(render->context));
   return -1;
 }
 
@@ -492,10 +490,10 @@ static int reckon_memory(Render *render, const Arguments *arguments) {
   if (report_is_json())
     memory_report_json(&render->memory, most);
   if (arguments->values[RENDER_VERBOSE].given) {
-    char list[400], total[32];
+    char list[400];
     memory_list(&render->memory, list, sizeof list);
-    format_count(total, sizeof total, (double)render->memory.total);
-    report_note("memory: %sB are needed: %s", total, list);
+    report_note("memory: %sB are needed: %s", format_count((double)render->memory.total).text,
+                list);
   }
   return memory_check(&render->memory, most);
 }

@@ -94,17 +94,13 @@ bool run_has_layers(const Render *render) {
 static void list_files(const Render *render, OutputStage stage, char *text, size_t size) {
   char part[5000];
   text[0] = 0;
-  for (int i = 0; i < render->outputs.count; i++) {
-    size_t n = strlen(text);
-    snprintf(text + n, size - n, "%s%s", i ? ", " : "",
+  for (int i = 0; i < render->outputs.count; i++)
+    text_add(text, size, "%s%s", i ? ", " : "",
              output_written(&render->outputs, i, stage, part, sizeof part));
-  }
   if (render->denoised.written && denoised_is_copy(&render->denoised) &&
-      stage != OUTPUT_PROGRESS) {
-    size_t n = strlen(text);
-    snprintf(text + n, size - n, ", %s",
+      stage != OUTPUT_PROGRESS)
+    text_add(text, size, ", %s",
              output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
-  }
 }
 
 /* Reported once, when the render outlasts its first progress images. */
@@ -229,11 +225,10 @@ void report_not_finite(const vlRenderStats *stats) {
 }
 
 static void report_memory(const Render *render) {
-  char peak[32], needed[32];
-  format_count(peak, sizeof peak, (double)memory_peak());
-  format_count(needed, sizeof needed, (double)render->memory.total);
   if (report_is_verbose())
-    report_note("memory: %sB at most, %sB were reckoned", peak, needed);
+    report_note("memory: %sB at most, %sB were reckoned",
+                format_count((double)memory_peak()).text,
+                format_count((double)render->memory.total).text);
 }
 
 static void report_result(const Render *render, const vlRenderStats *stats, OutputStage stage,
@@ -271,14 +266,12 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
   }
   if (render->videos)
     return; /* the video is reported */
-  char time[32], speed[32], ray_count[32], files[1200];
-  format_seconds(time, sizeof time, stats->seconds);
-  format_count(speed, sizeof speed,
-               stats->seconds > 0 ? (double)stats->paths / stats->seconds : 0);
-  format_count(ray_count, sizeof ray_count, (double)rays);
+  char files[1200];
   list_files(render, stage, files, sizeof files);
   report_note("%u spp%s in %s, %s paths/s, %s rays; wrote %s%s%s%s%s", spp,
-              first ? ", denoised," : "", time, speed, ray_count, files,
+              first ? ", denoised," : "", format_seconds(stats->seconds).text,
+              format_count(stats->seconds > 0 ? (double)stats->paths / stats->seconds : 0).text,
+              format_count((double)rays).text, files,
               *files && render->film_plan.path ? ", " : "",
               render->film_plan.path ? render->film_plan.path : "",
               first ? "; without denoising: " : "", plain);
@@ -288,14 +281,11 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
 /* The first pass, with --denoise the second one too, is always completed. */
 static void report_late(const Render *render, uint32_t spp) {
   double elapsed = monotonic_seconds() - render->start;
-  char wanted[32], taken[32];
   if (!(render->time_limit > 0) || spp > render->begun_spp + least_samples(render) ||
       elapsed < 1.05 * render->time_limit || signals_pending())
     return;
-  format_seconds(wanted, sizeof wanted, render->time_limit);
-  format_seconds(taken, sizeof taken, elapsed);
-  report_warning("%u spp and writing it took %s, --time was %s", spp - render->begun_spp, taken,
-                 wanted);
+  report_warning("%u spp and writing it took %s, --time was %s", spp - render->begun_spp,
+                 format_seconds(elapsed).text, format_seconds(render->time_limit).text);
 }
 
 /* The image of a stopped render is not denoised, nor is one whose denoiser is stopped. */

@@ -168,10 +168,9 @@ static void report_made(const Videos *videos, const char *path, uint32_t width,
     report_json_end(json);
     return;
   }
-  char time[32];
-  format_seconds(time, sizeof time, monotonic_seconds() - videos->shown.start);
   report_note("%u frames of %u x %u in %s; wrote %s, %.5g s at %.5g frames per second", count,
-              width, height, time, path, count / videos->fps, videos->fps);
+              width, height, format_seconds(monotonic_seconds() - videos->shown.start).text,
+              path, count / videos->fps, videos->fps);
 }
 
 static int make_one(Videos *videos, vlContext *context, const char *program, const char *path) {

@@ -41,13 +41,13 @@ static void move_camera(vlCameraDef *camera, const double middle[3]) {
   }
 }
 
-int near_move(vlScene *scene, Near *near) {
+int near_move(vlScene *scene, const char *path, SceneOpening *opening) {
   const double far = 100, single = 1.0 / 16777216; /* of a number, which a float loses */
   double middle[3];
-  const double away = find_middle(near->low, near->high, middle);
+  const double away = find_middle(opening->low, opening->high, middle);
   if (!(away > far))
     return -1;
-  if (!near->images_only) {
+  if (!opening->images_only) {
     const double most = fmax(fabs(middle[0]), fmax(fabs(middle[1]), fabs(middle[2])));
     report_note(
         "the model lies %.3g times its size from the origin: its positions are rounded to "
@@ -58,14 +58,14 @@ int near_move(vlScene *scene, Near *near) {
   const double world_from_scene[16] = {1, 0, 0, -middle[0], 0, 1, 0, -middle[1],
                                        0, 0, 1, -middle[2], 0, 0, 0, 1};
   vlError error = {0};
-  TRY(report_error(&error, vl_scene_transform(scene, world_from_scene, &error), near->path));
+  TRY(report_error(&error, vl_scene_transform(scene, world_from_scene, &error), path));
   move_camera(&vl_scene_defs(scene)->camera, middle);
   for (int i = 0; i < 3; i++) {
-    near->low[i] -= middle[i];
-    near->high[i] -= middle[i];
-    near->moved[i] = middle[i];
+    opening->low[i] -= middle[i];
+    opening->high[i] -= middle[i];
+    opening->moved[i] = middle[i];
   }
-  if (!near->silent)
+  if (!opening->silent)
     report_note(
         "the model lies %.3g times its size from the origin: it is rendered about "
         "(%.12g, %.12g, %.12g)",

@@ -292,18 +292,6 @@ static int choose_load(const char *path, const Arguments *arguments,
   return -1;
 }
 
-/* Moves a model far from the origin, where its images gain by that. */
-static int bring_near(vlScene *scene, const char *path, SceneOpening *opening) {
-  Near near = {.path = path, .images_only = opening->images_only, .silent = opening->silent};
-  memcpy(near.low, opening->low, sizeof near.low);
-  memcpy(near.high, opening->high, sizeof near.high);
-  const int status = near_move(scene, &near);
-  memcpy(opening->low, near.low, sizeof near.low);
-  memcpy(opening->high, near.high, sizeof near.high);
-  memcpy(opening->moved, near.moved, sizeof near.moved);
-  return status;
-}
-
 /* Loads the scene and adds what it lacks. lit_inside: with lamps. */
 static int load_and_complete(vlContext *context, const char *path, const Arguments *arguments,
                              bool lit_inside, vlScene **scene, SceneOpening *opening) {
@@ -342,7 +330,7 @@ static int load_and_complete(vlContext *context, const char *path, const Argumen
                       complete.environment == VL_ENVIRONMENT_AUTO &&
                       opening->environment == VL_ENVIRONMENT_NONE;
   opening->camera_added = camera;
-  const int status = camera && opening->model ? bring_near(*scene, path, opening) : -1;
+  const int status = camera && opening->model ? near_move(*scene, path, opening) : -1;
   opening->camera = defs->camera;
   return status;
 }

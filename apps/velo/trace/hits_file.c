@@ -2,9 +2,35 @@
 #include "trace/hits_file.h"
 
 #include <inttypes.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "cli/macros.h"
+#include "cli/text.h"
+
+const HitsField hits_fields[HITS_FIELDS] = {
+    {"valid", "|b1", 0, offsetof(vlCastHits, valid)},
+    {"t", "<f8", 0, offsetof(vlCastHits, t)},
+    {"distance", "<f8", 0, offsetof(vlCastHits, distance)},
+    {"position", "<f8", 3, offsetof(vlCastHits, position)},
+    {"normal", "<f4", 3, offsetof(vlCastHits, normal)},
+    {"shading_normal", "<f4", 3, offsetof(vlCastHits, shading_normal)},
+    {"uv", "<f4", 2, offsetof(vlCastHits, uv)},
+    {"velocity", "<f8", 3, offsetof(vlCastHits, velocity)},
+    {"object_id", "<u4", 0, offsetof(vlCastHits, object)},
+    {"instance_id", "<u4", 0, offsetof(vlCastHits, instance)},
+    {"primitive_id", "<u4", 0, offsetof(vlCastHits, primitive)},
+    {"material_id", "<u4", 0, offsetof(vlCastHits, material)}};
+
+size_t hits_field_size(const HitsField *field) {
+  return (size_t)(field->type[2] - '0') * (field->columns ? field->columns : 1);
+}
+
+const char *hits_field_rows(const vlCastHits *hits, const HitsField *field) {
+  const char *rows;
+  memcpy(&rows, (const char *)hits + field->offset, sizeof rows);
+  return rows;
+}
 
 /* ---- .csv -------------------------------------------------------------------------------- */
 
@@ -61,22 +87,25 @@ static void put_start(FILE *out, const char *type, const char *shape) {
 }
 
 static void put_record(const vlCastHits *h, uint64_t k, FILE *out) {
-  fwrite(h->valid + k, 1, 1, out);
-  fwrite(h->t + k, sizeof(double), 1, out);
-  fwrite(h->distance + k, sizeof(double), 1, out);
-  fwrite(h->position + 3 * k, sizeof(double), 3, out);
-  fwrite(h->normal + 3 * k, sizeof(float), 3, out);
-  fwrite(h->shading_normal + 3 * k, sizeof(float), 3, out);
-  fwrite(h->uv + 2 * k, sizeof(float), 2, out);
-  fwrite(h->velocity + 3 * k, sizeof(double), 3, out);
-  fwrite(h->object + k, sizeof(uint32_t), 1, out);
-  fwrite(h->instance + k, sizeof(uint32_t), 1, out);
-  fwrite(h->primitive + k, sizeof(uint32_t), 1, out);
-  fwrite(h->material + k, sizeof(uint32_t), 1, out);
+  for (const HitsField *f = hits_fields; f < hits_fields + HITS_FIELDS; f++)
+    fwrite(hits_field_rows(h, f) + k * hits_field_size(f), hits_field_size(f), 1, out);
+}
+
+/* "[('valid', '|b1'), ('position', '<f8', (3,)), ...]" */
+static void name_fields(char type[HITS_NPY_START / 2]) {
+  type[0] = 0;
+  for (int i = 0; i < HITS_FIELDS; i++) {
+    const HitsField *f = &hits_fields[i];
+    text_add(type, HITS_NPY_START / 2, "%s('%s', '%s'", i ? ", " : "[", f->name, f->type);
+    if (f->columns)
+      text_add(type, HITS_NPY_START / 2, ", (%u,)", f->columns);
+    text_add(type, HITS_NPY_START / 2, ")");
+  }
+  text_add(type, HITS_NPY_START / 2, "]");
 }
 
 void hits_write_npy(const HitsFile *h, FILE *out) {
-  char shape[64];
+  char shape[64], type[HITS_NPY_START / 2];
   if (h->hits > 1 && !h->occluded)
     text_set(shape, "%" PRIu64 ", %u", h->count, h->hits);
   else
@@ -86,12 +115,8 @@ void hits_write_npy(const HitsFile *h, FILE *out) {
     fwrite(h->occluded, 1, h->count, out);
     return;
   }
-  put_start(out,
-            "[('valid', '|b1'), ('t', '<f8'), ('distance', '<f8'), ('position', '<f8', (3,)), "
-            "('normal', '<f4', (3,)), ('shading_normal', '<f4', (3,)), ('uv', '<f4', (2,)), "
-            "('velocity', '<f8', (3,)), ('object_id', '<u4'), ('instance_id', '<u4'), "
-            "('primitive_id', '<u4'), ('material_id', '<u4')]",
-            shape);
+  name_fields(type);
+  put_start(out, type, shape);
   for (uint64_t k = 0; k < h->count * h->hits && !ferror(out); k++)
     put_record(&h->rows, k, out);
 }

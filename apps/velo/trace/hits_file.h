@@ -14,6 +14,23 @@ typedef struct HitsFile {
   const uint8_t *occluded; /* null: hits */
 } HitsFile;
 
+/* The arrays of vlCastHits, in the order of velo.RayHits. */
+typedef struct HitsField {
+  const char *name, *type; /* in Python; the type's last digit: bytes of a number */
+  uint32_t
+      columns; /* numbers of a row; 0: the row is one number, without a dimension of its own */
+  size_t offset; /* in vlCastHits */
+} HitsField;
+enum {
+  HITS_FIELDS = 12,
+  HITS_ROW = 3 * 24 + 2 * 8 + 4 * 4 + 2 * 12 + 8 + 1 /* bytes of a row in all of them */
+};
+extern const HitsField hits_fields[HITS_FIELDS];
+/* Bytes of a field's row. */
+size_t hits_field_size(const HitsField *field);
+/* The field's array. */
+const char *hits_field_rows(const vlCastHits *hits, const HitsField *field);
+
 /* Writes lines below a header: a line for each hit, and one for each ray without a hit. */
 void hits_write_csv(const HitsFile *h, FILE *out);
 /* Writes an array of NumPy: of records with the fields of velo.RayHits, n x hits where hits is

@@ -5,17 +5,14 @@
 #include <string.h>
 
 #include "cli/macros.h"
+#include "cli/text.h"
 #include "trace/hits_file.h"
 
-enum { FIELDS = 12, NAME = 32, LOCAL = 30, CENTRAL = 46, END = 22 };
+enum { NAME = 32, LOCAL = 30, CENTRAL = 46, END = 22 };
 
-/* An array of the archive: `size` bytes in each of its rows. */
+/* An array of the archive. */
 typedef struct Member {
-  const char *name, *type;
-  const void *rows;
-  size_t size;
-  uint32_t
-      columns; /* numbers of a row; 0: the row is one number, without a dimension of its own */
+  char name[NAME]; /* of its file */
   char start[HITS_NPY_START];
   size_t start_length;
   uint32_t crc, bytes, offset; /* of the whole array's file; where its header begins */
@@ -73,16 +70,16 @@ static void put_common(Archive *a, const Member *m) {
   put_number(a, 0, 2); /* no extra field */
 }
 
-static void put_member(Archive *a, Member *m, size_t bytes) {
+static void put_member(Archive *a, Member *m, const void *rows, size_t bytes) {
   m->offset = a->length;
   m->crc = crc_of(a->table, 0, m->start, m->start_length);
-  m->crc = crc_of(a->table, m->crc, m->rows, bytes);
+  m->crc = crc_of(a->table, m->crc, rows, bytes);
   m->bytes = (uint32_t)(m->start_length + bytes);
   put_number(a, 0x04034b50, 4);
   put_common(a, m);
   put(a, m->name, strlen(m->name));
   put(a, m->start, m->start_length);
-  put(a, m->rows, bytes);
+  put(a, rows, bytes);
 }
 
 static void put_directory(Archive *a, const Member *members, uint32_t count) {
@@ -109,52 +106,33 @@ static void put_directory(Archive *a, const Member *members, uint32_t count) {
   put_number(a, 0, 2); /* no comment */
 }
 
-static uint32_t list_members(const HitsFile *h, Member members[FIELDS]) {
-  const vlCastHits *r = &h->rows;
-  if (h->occluded) {
-    members[0] = (Member){"occluded.npy", "'|b1'", h->occluded, .size = 1};
-    return 1;
-  }
-  const Member all[FIELDS] = {
-      {"valid.npy", "'|b1'", r->valid, .size = 1},
-      {"t.npy", "'<f8'", r->t, .size = 8},
-      {"distance.npy", "'<f8'", r->distance, .size = 8},
-      {"position.npy", "'<f8'", r->position, .size = 24, .columns = 3},
-      {"normal.npy", "'<f4'", r->normal, .size = 12, .columns = 3},
-      {"shading_normal.npy", "'<f4'", r->shading_normal, .size = 12, .columns = 3},
-      {"uv.npy", "'<f4'", r->uv, .size = 8, .columns = 2},
-      {"velocity.npy", "'<f8'", r->velocity, .size = 24, .columns = 3},
-      {"object_id.npy", "'<u4'", r->object, .size = 4},
-      {"instance_id.npy", "'<u4'", r->instance, .size = 4},
-      {"primitive_id.npy", "'<u4'", r->primitive, .size = 4},
-      {"material_id.npy", "'<u4'", r->material, .size = 4}};
-  memcpy(members, all, sizeof all);
-  return FIELDS;
-}
-
 bool hits_fit_npz(const HitsFile *h) {
-  const uint64_t row = 3 * 24 + 2 * 8 + 4 * 4 + 2 * 12 + 8 + 1,
-                 others = FIELDS * (HITS_NPY_START + LOCAL + CENTRAL + 2 * NAME) + END;
+  const uint64_t others = HITS_FIELDS * (HITS_NPY_START + LOCAL + CENTRAL + 2 * NAME) + END;
   const uint64_t rows = h->count * (h->occluded ? 1 : h->hits);
-  return rows <= (UINT32_MAX - others) / (h->occluded ? 1 : row);
+  return rows <= (UINT32_MAX - others) / (h->occluded ? 1 : HITS_ROW);
 }
 
 void hits_write_npz(const HitsFile *h, FILE *out) {
+  static const HitsField occluded = {"occluded", "|b1", 0, 0};
   Archive a = {.out = out};
-  Member members[FIELDS];
-  const uint32_t count = list_members(h, members);
+  Member members[HITS_FIELDS];
+  const uint32_t count = h->occluded ? 1 : HITS_FIELDS;
   const bool several = h->hits > 1 && !h->occluded;
   make_table(a.table);
   for (uint32_t i = 0; i < count && !ferror(out); i++) {
+    const HitsField *f = h->occluded ? &occluded : &hits_fields[i];
+    const void *rows = h->occluded ? (const void *)h->occluded : hits_field_rows(&h->rows, f);
     Member *m = &members[i];
-    char shape[64], hits[16] = "", columns[16] = "";
+    char shape[64], type[16];
+    text_set(m->name, "%s.npy", f->name);
+    text_set(type, "'%s'", f->type);
+    text_set(shape, "%" PRIu64 ",", h->count);
     if (several)
-      text_set(hits, " %u,", h->hits);
-    if (m->columns)
-      text_set(columns, " %u,", m->columns);
-    text_set(shape, "%" PRIu64 ",%s%s", h->count, hits, columns);
-    m->start_length = hits_npy_start(m->start, m->type, shape);
-    put_member(&a, m, (size_t)h->count * (several ? h->hits : 1) * m->size);
+      text_add(shape, sizeof shape, " %u,", h->hits);
+    if (f->columns)
+      text_add(shape, sizeof shape, " %u,", f->columns);
+    m->start_length = hits_npy_start(m->start, type, shape);
+    put_member(&a, m, rows, (size_t)h->count * (several ? h->hits : 1) * hits_field_size(f));
   }
   put_directory(&a, members, count);
 }

@@ -32,21 +32,13 @@ static bool ends_with(const State *s, const char *suffix) {
 
 /* ---- tracing ----------------------------------------------------------------------------- */
 
-/* Takes the next `size` bytes per row of a block, on a multiple of 8. */
-static void *take(char **at, uint64_t rows, size_t size) {
-  char *from = *at;
-  if (from)
-    *at += (rows * size + 7) / 8 * 8;
-  return from;
-}
-
+/* Each array begins at a multiple of 8 bytes. */
 static int make_room(State *s, bool occluded) {
-  enum { ROW = 3 * 24 + 2 * 8 + 4 * 4 + 2 * 12 + 8 + 1 };
   HitsFile *h = &s->results;
   uint64_t rows = s->rays.count * (occluded ? 1 : h->hits);
-  if (rows > SIZE_MAX / 2 / ROW)
+  if (rows > SIZE_MAX / 2 / HITS_ROW)
     return report_failure(STATUS_OTHER, "out of memory: %llu hits", (unsigned long long)rows);
-  size_t bytes = (size_t)rows * (occluded ? 1 : ROW) + 128;
+  size_t bytes = (size_t)rows * (occluded ? 1 : HITS_ROW) + 128;
   char *at = s->memory = malloc(bytes);
   if (!at)
     return report_failure(STATUS_OTHER, "out of memory: %llu hits need %.1f GB",
@@ -59,18 +51,10 @@ static int make_room(State *s, bool occluded) {
         s->output, (unsigned long long)rows);
   if (occluded)
     return -1;
-  h->rows.t = take(&at, rows, sizeof(double));
-  h->rows.distance = take(&at, rows, sizeof(double));
-  h->rows.position = take(&at, rows, 3 * sizeof(double));
-  h->rows.velocity = take(&at, rows, 3 * sizeof(double));
-  h->rows.normal = take(&at, rows, 3 * sizeof(float));
-  h->rows.shading_normal = take(&at, rows, 3 * sizeof(float));
-  h->rows.uv = take(&at, rows, 2 * sizeof(float));
-  h->rows.object = take(&at, rows, sizeof(uint32_t));
-  h->rows.instance = take(&at, rows, sizeof(uint32_t));
-  h->rows.primitive = take(&at, rows, sizeof(uint32_t));
-  h->rows.material = take(&at, rows, sizeof(uint32_t));
-  h->rows.valid = take(&at, rows, 1);
+  for (const HitsField *f = hits_fields; f < hits_fields + HITS_FIELDS; f++) {
+    memcpy((char *)&h->rows + f->offset, &at, sizeof at);
+    at += (rows * hits_field_size(f) + 7) / 8 * 8;
+  }
   return -1;
 }
 

@@ -2,6 +2,7 @@
 #ifndef APP_CLI_MACROS_H
 #define APP_CLI_MACROS_H
 
+#include <stdarg.h>
 #include <stdio.h>
 
 /* Takes a step that returns -1, or an exit code after reporting the error. With an exit code
@@ -24,5 +25,15 @@
 #define LENGTH(array) (sizeof(array) / sizeof *(array))
 /* Writes a text into an array of characters, as snprintf does. */
 #define text_set(array, ...) snprintf(array, sizeof(array), __VA_ARGS__)
+
+/* In a function of a format and its values: makes the text, an array. */
+#define FORMATTED(text, format)                 \
+  char text[2048];                              \
+  do {                                          \
+    va_list args;                               \
+    va_start(args, format);                     \
+    vsnprintf(text, sizeof text, format, args); \
+    va_end(args);                               \
+  } while (0)
 
 #endif

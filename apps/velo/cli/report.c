@@ -163,15 +163,6 @@ static void say(const char *kind, int status, const vlError *where, const char *
   put_line(text);
 }
 
-#define FORMATTED(text, format)                 \
-  char text[2048];                              \
-  do {                                          \
-    va_list args;                               \
-    va_start(args, format);                     \
-    vsnprintf(text, sizeof text, format, args); \
-    va_end(args);                               \
-  } while (0)
-
 void report_usage_of(const char *file) {
   state.usage_file = file;
 }

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/attributes.h"
 #include "render/exposure.h"
@@ -35,19 +36,16 @@ static vlResult set_header(Develop *d, const vlReceipt *receipt, vlError *error)
   uint32_t spp = vl_film_spp(d->film);
   const vlAttribute samples = {
       .name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
-  vlResult result = take_attributes(d, error);
-  if (result == VL_OK)
-    result = vl_image_set_attribute(d->image, &samples);
-  if (result == VL_OK)
-    result = attributes_add_layer(d->image, d->errors);
-  if (result == VL_OK)
-    result = attributes_add_layer(d->image, d->spectrum);
-  if (!receipt || !spp || result != VL_OK)
-    return result;
+  TRY_RESULT(take_attributes(d, error));
+  TRY_RESULT(vl_image_set_attribute(d->image, &samples));
+  TRY_RESULT(attributes_add_layer(d->image, d->errors));
+  TRY_RESULT(attributes_add_layer(d->image, d->spectrum));
+  if (!receipt || !spp)
+    return VL_OK;
   if (d->uneven && !(vl_receipt_noise(receipt) > 0))
-    return result; /* no command makes this image */
+    return VL_OK; /* no command makes this image */
   vlReceipt *own = NULL;
-  result = vl_receipt_of_image(receipt, spp, &own, NULL);
+  vlResult result = vl_receipt_of_image(receipt, spp, &own, NULL);
   if (result == VL_OK)
     result = attributes_set_text(d->image, RECEIPT_ATTRIBUTE, vl_receipt_text(own));
   vl_receipt_destroy(own);

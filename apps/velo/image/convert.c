@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #include "cli/commands.h"
 #include "cli/macros.h"
@@ -178,13 +177,11 @@ static int take_channel(vlContext *context, const Arguments *arguments, vlImage 
 
 static int check_channel(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  const char *path = arguments->operands[1], *dot = strrchr(path, '.');
-  bool png = dot && strcasecmp(dot, ".png") == 0;
   if (!v[CONVERT_SCALE].given)
     return -1;
   if (!v[CONVERT_CHANNEL].given)
     return report_usage("--scale goes with --channel");
-  if (!png)
+  if (!output_has_suffix(arguments->operands[1], ".png"))
     return report_usage("--scale makes 16-bit whole numbers; the result must be a .png");
   if (v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given)
     return report_usage("--scale keeps numbers; it does not go with --view and --exposure");

@@ -1,6 +1,7 @@
 /* raw/info.c: `velo raw info`: what a raw file says of its numbers. Also functions shared by
  * the raw commands. */
 #include <stdio.h>
+#include <string.h>
 
 #include "cli/commands.h"
 #include "cli/macros.h"
@@ -39,15 +40,31 @@ static bool is_known(const float *values, uint32_t count) {
   return false;
 }
 
-/* A line of numbers, if they are known. Each has the 7 digits of a float. */
-static void print_numbers(const char *name, const char *unit, const float *values,
-                          uint32_t count) {
-  if (!is_known(values, count))
-    return;
-  printf("%-18s", name);
-  for (uint32_t i = 0; i < count; i++)
-    printf(" %.7g", (double)values[i]);
-  printf("%s%s\n", *unit ? " " : "", unit);
+/* What is told of a file where it is known: as a line of text and as a member of JSON. */
+typedef struct Fact {
+  const char *name, *key, *unit;
+  const float *values;
+  uint32_t count;
+} Fact;
+enum { FACTS = 10 };
+
+/* iso: room for a float. */
+static void list_facts(const vlRawDef *def, float *iso, Fact facts[FACTS]) {
+  uint8_t colors[VL_RAW_MAX_COLORS];
+  const uint32_t count = vl_raw_colors(def, colors);
+  *iso = (float)def->iso;
+  const Fact list[FACTS] = {
+      {"exposure time", "exposure_time", " s", &def->exposure_time, 1},
+      {"f-number", "f_number", "", &def->f_number, 1},
+      {"focal length", "focal_length", " m", &def->focal_length, 1},
+      {"ISO", "iso", "", iso, 1},
+      {"gain", "gain", " numbers per electron", &def->gain, 1},
+      {"read noise", "read_noise", " electrons", &def->read_noise, 1},
+      {"baseline exposure", "baseline_exposure", " EV", &def->baseline_exposure, 1},
+      {"neutral", "neutral", "", def->neutral, count},
+      {"matrix A", "matrix_a", "", def->matrices[0], 3 * count},
+      {"matrix D65", "matrix_d65", "", def->matrices[1], 3 * count}};
+  memcpy(facts, list, sizeof list);
 }
 
 static void print_levels(const vlRawDef *def) {
@@ -64,9 +81,8 @@ static void print_levels(const vlRawDef *def) {
 static void print_text(const char *path, const vlRaw *raw) {
   const vlRawDef *def = vl_raw_def(raw);
   const Range range = range_of(raw);
-  uint8_t colors[VL_RAW_MAX_COLORS];
-  uint32_t count = vl_raw_colors(def, colors);
-  float iso = (float)def->iso;
+  Fact facts[FACTS];
+  float iso;
   char pattern[80];
   vl_raw_pattern_text(def, pattern);
   printf("%-18s %s\n%-18s %u x %u\n%-18s %u\n%-18s %s\n", "file", path, "size", def->width,
@@ -76,16 +92,15 @@ static void print_text(const char *path, const vlRaw *raw) {
          (unsigned long long)range.saturated);
   if (def->camera[0])
     printf("%-18s %s\n", "camera", def->camera);
-  print_numbers("exposure time", "s", &def->exposure_time, 1);
-  print_numbers("f-number", "", &def->f_number, 1);
-  print_numbers("focal length", "m", &def->focal_length, 1);
-  print_numbers("ISO", "", &iso, 1);
-  print_numbers("gain", "numbers per electron", &def->gain, 1);
-  print_numbers("read noise", "electrons", &def->read_noise, 1);
-  print_numbers("baseline exposure", "EV", &def->baseline_exposure, 1);
-  print_numbers("neutral", "", def->neutral, count);
-  print_numbers("matrix A", "", def->matrices[0], 3 * count);
-  print_numbers("matrix D65", "", def->matrices[1], 3 * count);
+  list_facts(def, &iso, facts);
+  for (const Fact *f = facts; f < facts + FACTS; f++) {
+    if (!is_known(f->values, f->count))
+      continue;
+    printf("%-18s", f->name);
+    for (uint32_t i = 0; i < f->count; i++)
+      printf(" %.7g", (double)f->values[i]); /* the digits of a float */
+    printf("%s\n", f->unit);
+  }
 }
 
 /* The decimal of the least digits that reads back as the same float. */
@@ -100,25 +115,11 @@ static double shown(float value) {
   return back;
 }
 
-static void put_numbers(Json *json, const char *key, const float *values, uint32_t count) {
-  if (!is_known(values, count))
-    return;
-  json_begin(json, key, '[');
-  for (uint32_t i = 0; i < count; i++)
-    json_number(json, NULL, shown(values[i]));
-  json_end(json, ']');
-}
-
-static void put_number(Json *json, const char *key, float value) {
-  if (value != 0.0f)
-    json_number(json, key, shown(value));
-}
-
 static void print_json(const char *path, const vlRaw *raw) {
   const vlRawDef *def = vl_raw_def(raw);
   const Range range = range_of(raw);
-  uint8_t colors[VL_RAW_MAX_COLORS];
-  uint32_t count = vl_raw_colors(def, colors);
+  Fact facts[FACTS];
+  float iso;
   char pattern[80];
   Json *json = json_open();
   vl_raw_pattern_text(def, pattern);
@@ -130,16 +131,18 @@ static void print_json(const char *path, const vlRaw *raw) {
   json_end(json, ']');
   json_put(json, "white %u, least %u, greatest %u, saturated %lld, camera %s", def->white,
            range.least, range.greatest, (long long)range.saturated, def->camera);
-  put_number(json, "exposure_time", def->exposure_time);
-  put_number(json, "f_number", def->f_number);
-  put_number(json, "focal_length", def->focal_length);
-  put_number(json, "iso", (float)def->iso);
-  put_number(json, "gain", def->gain);
-  put_number(json, "read_noise", def->read_noise);
-  put_number(json, "baseline_exposure", def->baseline_exposure);
-  put_numbers(json, "neutral", def->neutral, count);
-  put_numbers(json, "matrix_a", def->matrices[0], 3 * count);
-  put_numbers(json, "matrix_d65", def->matrices[1], 3 * count);
+  list_facts(def, &iso, facts);
+  for (const Fact *f = facts; f < facts + FACTS; f++) {
+    double values[3 * VL_RAW_MAX_COLORS];
+    for (uint32_t i = 0; i < f->count; i++)
+      values[i] = shown(f->values[i]);
+    if (!is_known(f->values, f->count))
+      continue;
+    if (f->values == def->neutral || f->count > 1)
+      json_numbers(json, f->key, values, f->count);
+    else
+      json_number(json, f->key, values[0]);
+  }
   json_close(json);
 }
 

@@ -110,22 +110,16 @@ int again_open(Again *again, const Arguments **arguments) {
                    ? receipt_of_image(again->context, image, again->path, &again->receipt)
                    : report_error(&error, result, again->path);
   vl_image_destroy(image);
-  if (status < 0)
-    status = check_own(again);
-  if (status < 0)
-    status = receipt_parse_command(again->receipt, again->path, &again->arguments);
-  if (status < 0)
-    status = check_samples(again);
-  if (status < 0)
-    status = take_options(again, given);
-  if (status < 0)
-    status = take_scene(again, given);
-  if (status < 0)
-    status = take_camera(again);
-  if (status < 0)
-    tell_version(again);
+  TRY(status);
+  TRY(check_own(again));
+  TRY(receipt_parse_command(again->receipt, again->path, &again->arguments));
+  TRY(check_samples(again));
+  TRY(take_options(again, given));
+  TRY(take_scene(again, given));
+  TRY(take_camera(again));
+  tell_version(again);
   *arguments = &again->arguments;
-  return status;
+  return -1;
 }
 
 int again_check(const Again *again, const ReceiptPlan *plan, const Job *job,

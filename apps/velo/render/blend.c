@@ -3,7 +3,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #include "cli/context.h"
@@ -72,12 +71,7 @@ static int check_options(const Arguments *arguments) {
 
 /* Blender writes these. */
 static bool is_written(const char *path) {
-  static const char *const suffixes[] = {".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tga"};
-  const char *dot = output_dot(path);
-  for (size_t i = 0; i < LENGTH(suffixes) && dot; i++)
-    if (strcasecmp(dot, suffixes[i]) == 0)
-      return true;
-  return false;
+  return output_is_known(path) && !output_has_suffix(path, ".pfm");
 }
 
 static int check_output(const Blend *blend, const char *path) {
@@ -125,23 +119,19 @@ static int take_frames(Blend *blend) {
 }
 
 static int prepare(Blend *blend) {
-  int status = check_options(blend->arguments);
-  if (status < 0 && blend->own.text_count == 0)
+  TRY(check_options(blend->arguments));
+  if (blend->own.text_count == 0)
     choose_output(blend);
-  if (status < 0)
-    status = take_frames(blend);
-  if (status < 0)
-    status = context_open_one(&blend->context);
-  if (status >= 0)
-    return status;
+  TRY(take_frames(blend));
+  TRY(context_open_one(&blend->context));
   const char *scene = blend->arguments->operands[0];
   if (access(scene, R_OK) != 0)
     return report_failure(STATUS_MISSING, "%s: there is no such file that can be read", scene);
   if (vl_note_input(blend->context, scene, VL_OUTPUT_PLAIN) != VL_OK)
     return report_failure(STATUS_MISSING, "%s: it cannot be read", scene);
-  for (int i = 0; i < blend->own.text_count && status < 0; i++)
-    status = check_output(blend, blend->own.texts[i]);
-  return status;
+  for (int i = 0; i < blend->own.text_count; i++)
+    TRY(check_output(blend, blend->own.texts[i]));
+  return -1;
 }
 
 /* ---- the frames -------------------------------------------------------------------------- */

@@ -1,7 +1,6 @@
 /* render/continue.c: see continue.h. */
 #include "render/continue.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -60,15 +59,13 @@ int continue_open(Continue *c, const Arguments **arguments) {
   if (!receipt)
     return report_failure(STATUS_SCENE,
                           "%s: the film has no receipt: what made it is not known", c->path);
-  int status = receipt_parse_command(receipt, c->path, &c->arguments);
-  if (status < 0)
-    take_options(c, given, receipt);
+  TRY(receipt_parse_command(receipt, c->path, &c->arguments));
+  take_options(c, given, receipt);
   if (eyes && !given->values[RENDER_EYE].given)
     c->arguments.values[RENDER_EYE].given = false;
-  if (status < 0)
-    status = take_scene(c, given);
+  TRY(take_scene(c, given));
   *arguments = &c->arguments;
-  return status;
+  return -1;
 }
 
 /* A film whose samples a render takes up. */
@@ -81,11 +78,7 @@ typedef struct Source {
 static int refuse(const Source *source, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static int refuse(const Source *source, int status, const char *format, ...) {
-  char text[1400];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(text, sizeof text, format, list);
-  va_end(list);
+  FORMATTED(text, format);
   if (source->repeats)
     return film_claim_refuse("%s", text);
   return status == STATUS_USAGE ? report_usage("%s", text) : report_failure(status, "%s", text);

@@ -1,7 +1,6 @@
 /* render/film_claim.c: see film_claim.h. */
 #include "render/film_claim.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +12,7 @@
 #include "velo/tracer.h"
 
 int film_claim_refuse(const char *format, ...) {
-  char text[1400];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(text, sizeof text, format, list);
-  va_end(list);
+  FORMATTED(text, format);
   return report_usage("--film: %s; --overwrite replaces it", text);
 }
 

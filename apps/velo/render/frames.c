@@ -191,16 +191,13 @@ int frames_load(Frames *frames, const Job *job, const Arguments *arguments) {
     frames->eyes[i] = both ? (i ? VL_EYE_RIGHT : VL_EYE_LEFT) : def->stereo_eye;
   for (int i = 0; i < 2; i++)
     frames->view_names[i] = stereo ? names[frames->eyes[i] == VL_EYE_RIGHT] : "";
-  int status = -1;
   const char *path = v[RENDER_TRAJECTORY].text, *rig = v[RENDER_RIG].text;
   if (v[RENDER_TRAJECTORY].given)
-    status = load_file(job->context, path, arguments, &frames->trajectory);
-  if (status < 0 && v[RENDER_RIG].given)
-    status = load_file(job->context, rig, arguments, &frames->rig);
-  if (status < 0 && frames->trajectory)
-    status = choose_frames(frames, arguments);
-  if (status >= 0)
-    return status;
+    TRY(load_file(job->context, path, arguments, &frames->trajectory));
+  if (v[RENDER_RIG].given)
+    TRY(load_file(job->context, rig, arguments, &frames->rig));
+  if (frames->trajectory)
+    TRY(choose_frames(frames, arguments));
   uint32_t count = frames->rig ? vl_trajectory_frames(frames->rig)
                                : vl_trajectory_cameras(frames->trajectory);
   frames->cameras = calloc(count ? count : 1, sizeof *frames->cameras);
@@ -210,10 +207,9 @@ int frames_load(Frames *frames, const Job *job, const Arguments *arguments) {
     return add_rig(frames, job, arguments, rig);
   if (count == 0)
     return add_camera(frames, job, arguments, NULL, NULL);
-  for (uint32_t i = 0; i < count && status < 0; i++)
-    status =
-        add_camera(frames, job, arguments, vl_trajectory_camera(frames->trajectory, i), path);
-  return status;
+  for (uint32_t i = 0; i < count; i++)
+    TRY(add_camera(frames, job, arguments, vl_trajectory_camera(frames->trajectory, i), path));
+  return -1;
 }
 
 void frames_free(Frames *frames) {

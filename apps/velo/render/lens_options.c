@@ -3,24 +3,16 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "velo/focus.h"
 
 /* Parses "X,Y", decimal numbers. */
 static bool read_point(const char *text, double point[2]) {
-  char *end;
-  if (strspn(text, "0123456789+-.eE,") != strlen(text))
-    return false;
-  point[0] = strtod(text, &end);
-  if (end == text || *end != ',')
-    return false;
-  const char *second = end + 1;
-  point[1] = strtod(second, &end);
-  return end != second && *end == 0 && isfinite(point[0]) && isfinite(point[1]);
+  return strspn(text, "0123456789+-.eE,") == strlen(text) && parse_numbers(text, 2, point);
 }
 
 static int refocus(vlScene *scene, const vlSceneDefs *defs, double distance) {

@@ -76,14 +76,17 @@ uint32_t output_largest_side(const char *path) {
   return suffix ? suffix->largest : UINT32_MAX;
 }
 
-bool output_holds_alpha(const char *path) {
+bool output_has_suffix(const char *path, const char *suffix) {
   const char *dot = output_dot(path);
-  return output_holds_layers(path) || (dot && strcasecmp(dot, ".png") == 0);
+  return dot && strcasecmp(dot, suffix) == 0;
+}
+
+bool output_holds_alpha(const char *path) {
+  return output_holds_layers(path) || output_has_suffix(path, ".png");
 }
 
 bool output_holds_layers(const char *path) {
-  const char *dot = output_dot(path);
-  return dot && strcasecmp(dot, ".exr") == 0;
+  return output_has_suffix(path, ".exr");
 }
 
 static int fail_suffix(const char *path) {

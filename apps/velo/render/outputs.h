@@ -50,6 +50,8 @@ bool output_holds_layers(const char *path);
 bool output_holds_alpha(const char *path);
 /* The suffix of the name, from its dot on; null: it has none. */
 const char *output_dot(const char *path);
+/* Whether it is the suffix of the name: ".png"; in upper case or lower. */
+bool output_has_suffix(const char *path, const char *suffix);
 /* Whether velo writes files with this suffix; and whether the format holds display values. */
 bool output_is_known(const char *path);
 bool output_is_display(const char *path);

@@ -155,17 +155,13 @@ static void confine(const Render *render, const Arguments *arguments) {
 }
 
 static int make_context(Render *render, const Arguments *arguments) {
-  int status = -1;
   vlContextDef def = scene_context_def(arguments);
   if (!render->context) {
     confine(render, arguments);
-    status = context_open(&def, &render->context);
+    TRY(context_open(&def, &render->context));
   }
-  if (status < 0)
-    report_memory_of(render->context, def.max_memory);
-  if (status < 0)
-    status = note_inputs(render, arguments);
-  return status;
+  report_memory_of(render->context, def.max_memory);
+  return note_inputs(render, arguments);
 }
 
 static int prepare(Render *render, const Arguments *arguments) {
@@ -187,36 +183,22 @@ static int prepare(Render *render, const Arguments *arguments) {
   outputs->half = v[RENDER_HALF].given;
   outputs->transparent = v[RENDER_TRANSPARENT].given;
   outputs->view = (vlView)option_count(&v[RENDER_VIEW], VL_VIEW_STANDARD);
-  int status = exposure_parse(&v[RENDER_EXPOSURE], &outputs->exposure, &outputs->meter);
-  if (status < 0)
-    status = channels_choose(&render->channels, arguments);
-  if (status < 0)
-    status = outputs_check_names(outputs);
-  if (status < 0)
-    status = shard_check(arguments);
-  if (status < 0)
-    status = noise_check(arguments);
-  if (status < 0)
-    status = race_check(render, arguments);
-  if (status < 0)
-    status = frames_check(arguments, outputs);
-  if (status < 0)
-    status = denoised_choose(&render->denoised, arguments, outputs);
+  TRY(exposure_parse(&v[RENDER_EXPOSURE], &outputs->exposure, &outputs->meter));
+  TRY(channels_choose(&render->channels, arguments));
+  TRY(outputs_check_names(outputs));
+  TRY(shard_check(arguments));
+  TRY(noise_check(arguments));
+  TRY(race_check(render, arguments));
+  TRY(frames_check(arguments, outputs));
+  TRY(denoised_choose(&render->denoised, arguments, outputs));
   if (render->shared && v[RENDER_DENOISE].given)
     render->denoised.steady = &render->shared->steady;
-  if (status < 0)
-    status = outputs_check_folders(outputs);
-  if (status < 0)
-    status = film_claim_check(v[RENDER_OVERWRITE].given, v[RENDER_FILM].text,
-                              render->film_plan.from);
+  TRY(outputs_check_folders(outputs));
+  TRY(film_claim_check(v[RENDER_OVERWRITE].given, v[RENDER_FILM].text, render->film_plan.from));
   const Outputs film = {.paths = {render->film_plan.path},
                         .count = render->film_plan.path ? 1 : 0,
                         .patterns = outputs->patterns};
-  if (status < 0)
-    status = outputs_check_folders(&film);
-  if (status >= 0)
-    return status;
-
+  TRY(outputs_check_folders(&film));
   return make_context(render, arguments);
 }
 
@@ -407,19 +389,15 @@ static int claim_films(Render *render, const Arguments *arguments) {
 
 static int load_frames(Render *render, const Arguments *arguments) {
   render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
-  int status = frames_load(&render->frames, &render->job, arguments);
+  TRY(frames_load(&render->frames, &render->job, arguments));
   const Frames *frames = &render->frames;
-  if (status < 0 && render->videos)
+  const Outputs *denoised = &render->denoised.outputs;
+  if (render->videos)
     videos_range(render->videos, frames->first, frames_count(frames), frames->step);
-  if (status < 0)
-    status = frames_check_names(&render->frames, &render->outputs);
-  if (status < 0)
-    status = frames_check_names(&render->frames, &render->denoised.outputs);
-  if (status < 0)
-    status = check_metering(&render->outputs, arguments);
-  if (status < 0 && render->denoised.outputs.count)
-    status = check_metering(&render->denoised.outputs, arguments);
-  return status;
+  TRY(frames_check_names(frames, &render->outputs));
+  TRY(frames_check_names(frames, denoised));
+  TRY(check_metering(&render->outputs, arguments));
+  return denoised->count ? check_metering(denoised, arguments) : -1;
 }
 
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
@@ -540,6 +518,39 @@ static void free_render(Render *render) {
   continue_close(&render->resumed);
 }
 
+/* Loads the scene, checks the outputs, and renders. Returns the exit code. */
+static int load_and_render(Render *render, const Arguments *arguments) {
+  const AnimateShared *shared = render->shared;
+  Outputs *outputs = &render->outputs;
+  Job *job = &render->job;
+  if (arguments->operand_count == 0)
+    return options_too_few(arguments->command);
+  TRY(prepare(render, arguments));
+  TRY(load_and_build(render, arguments->operands[0], arguments));
+  TRY(check_outputs(render));
+  if (!render->many)
+    TRY(lens_autofocus(job, render->scene, render->world));
+  TRY(race_run(render, arguments));
+  TRY(needs_check_render_tracer(render, arguments));
+  TRY(reckon_memory(render, arguments));
+  TRY(meter_model(render, arguments));
+  if (shared && shared->preparing)
+    return STATUS_OK;
+  TRY(noise_expose(outputs, render->many, &job->defs->render, &render->film_plan.whole.render));
+  if (render->again.receipt)
+    TRY(check_again(render));
+  const uint32_t count = render->many ? frames_count(&render->frames) : 1;
+  if (arguments->values[RENDER_DRY_RUN].given) {
+    job_describe(job, render->scene, render->denoised.replaces, outputs->paths, outputs->count);
+    if (count > 1)
+      report_note("%u frames%s", count, render->frames.views == 2 ? ", two eyes each" : "");
+    return STATUS_OK;
+  }
+  return render->many ? frames_render(&render->frames, render->context, render->world, outputs,
+                                      &render->channels, &render->denoised)
+                      : run_image(render);
+}
+
 /* shared: what the frames of an animation have in common; null: this is one image. videos: what
  * becomes of the frames; may be null. */
 static int render_once(const Arguments *arguments, AnimateShared *shared, Videos *videos) {
@@ -554,44 +565,8 @@ static int render_once(const Arguments *arguments, AnimateShared *shared, Videos
   int status = again_open(&render.again, &arguments);
   if (status < 0)
     status = continue_open(&render.resumed, &arguments);
-  if (status < 0 && arguments->operand_count == 0)
-    status = options_too_few(arguments->command);
   if (status < 0)
-    status = prepare(&render, arguments);
-  if (status < 0)
-    status = load_and_build(&render, arguments->operands[0], arguments);
-  if (status < 0)
-    status = check_outputs(&render);
-  if (status < 0 && !render.many)
-    status = lens_autofocus(&render.job, render.scene, render.world);
-  if (status < 0)
-    status = race_run(&render, arguments);
-  if (status < 0)
-    status = needs_check_render_tracer(&render, arguments);
-  if (status < 0)
-    status = reckon_memory(&render, arguments);
-  if (status < 0)
-    status = meter_model(&render, arguments);
-  if (status < 0 && shared && shared->preparing)
-    status = STATUS_OK;
-  if (status < 0)
-    status = noise_expose(&render.outputs, render.many, &render.job.defs->render,
-                          &render.film_plan.whole.render);
-  if (status < 0 && render.again.receipt)
-    status = check_again(&render);
-  if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
-    job_describe(&render.job, render.scene, render.denoised.replaces, render.outputs.paths,
-                 render.outputs.count);
-    if (render.many && frames_count(&render.frames) > 1)
-      report_note("%u frames%s", frames_count(&render.frames),
-                  render.frames.views == 2 ? ", two eyes each" : "");
-    status = STATUS_OK;
-  }
-  if (status < 0 && render.many)
-    status = frames_render(&render.frames, render.context, render.world, &render.outputs,
-                           &render.channels, &render.denoised);
-  if (status < 0)
-    status = run_image(&render);
+    status = load_and_render(&render, arguments);
   free_render(&render);
   return status;
 }

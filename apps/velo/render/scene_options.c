@@ -383,21 +383,18 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   const OptionValue *v = arguments->values;
   bool unlit = false;
   opening->load = vl_default_load_def();
-  int status = choose_load(path, arguments, opening, &opening->load);
-  if (status < 0)
-    status = load_and_complete(context, path, arguments, false, scene, opening);
-  if (status < 0)
-    status = find_unlit(context, path, *scene, arguments, opening, &unlit);
-  if (status < 0 && unlit) {
+  TRY(choose_load(path, arguments, opening, &opening->load));
+  TRY(load_and_complete(context, path, arguments, false, scene, opening));
+  TRY(find_unlit(context, path, *scene, arguments, opening, &unlit));
+  if (unlit) {
     vl_scene_destroy(*scene);
     *scene = NULL;
-    status = load_and_complete(context, path, arguments, true, scene, opening);
+    const int status = load_and_complete(context, path, arguments, true, scene, opening);
     report_note(
         "the model is dark inside: lamps are added around its camera "
         "(--environment lamps; --environment studio leaves them out)");
+    TRY(status);
   }
-  if (status >= 0)
-    return status;
   if (v[RENDER_TURN].given && v[RENDER_CAMERA].given && !opening->load.camera)
     return report_usage(
         "--turn turns the scene's own camera: it does not go with --camera FILE");

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #include "cli/context.h"
@@ -19,17 +18,12 @@
 
 enum { PATH_SIZE = 4096, MAX_NAME = 255 };
 
-static bool has_suffix(const char *path, const char *suffix) {
-  const char *dot = output_dot(path);
-  return dot && strcasecmp(dot, suffix) == 0;
-}
-
 static bool is_mp4(const char *path) {
-  return has_suffix(path, ".mp4");
+  return output_has_suffix(path, ".mp4");
 }
 
 static bool is_video(const char *path) {
-  return is_mp4(path) || has_suffix(path, ".gif");
+  return is_mp4(path) || output_has_suffix(path, ".gif");
 }
 
 bool videos_wanted(const Arguments *arguments) {
@@ -90,7 +84,7 @@ static int check_video(const Videos *videos, int i) {
 
 /* Whether frames of these names can be found by their numbers. */
 static bool is_frames(const char *path) {
-  return has_suffix(path, ".png") && pattern_has(path, 'd') && !pattern_has(path, 'n') &&
+  return output_has_suffix(path, ".png") && pattern_has(path, 'd') && !pattern_has(path, 'n') &&
          !pattern_has(path, 'c') && !pattern_has(path, 'v');
 }
 

@@ -116,26 +116,25 @@ static int add(Verify *v, VerifyRun run) {
   return v->run_count++;
 }
 
+/* A run of the whole scene in its own pose. against: the run that it must agree with; -1: none.
+ */
+static int add_tracer(Verify *v, const char *name, vlTracer tracer, VerifyLights lights,
+                      int against) {
+  return add(v,
+             (VerifyRun){.name = name, .tracer = tracer, .lights = lights, .against = against});
+}
+
 /* Tracers that must agree with volpath, which is run `against`, under the same lights. */
 static void add_tracers(Verify *v, const Features *f, VerifyLights lights, int against) {
   const bool small = f->small && lights == VERIFY_ALL;
-  add(v, (VerifyRun){.name = "bidirectional",
-                     .tracer = VL_TRACER_BIDIRECTIONAL,
-                     .lights = lights,
-                     .against = against});
+  add_tracer(v, "bidirectional", VL_TRACER_BIDIRECTIONAL, lights, against);
   if (f->smooth)
     verify_note(
         v, "lightpath and randomwalk are not compared: smooth surfaces are black with them");
   else
-    add(v, (VerifyRun){.name = "lightpath",
-                       .tracer = VL_TRACER_LIGHT_PATH,
-                       .lights = lights,
-                       .against = against});
+    add_tracer(v, "lightpath", VL_TRACER_LIGHT_PATH, lights, against);
   if (!f->smooth && !f->media && !f->narrow && !small)
-    add(v, (VerifyRun){.name = "randomwalk",
-                       .tracer = VL_TRACER_RANDOM_WALK,
-                       .lights = lights,
-                       .against = against});
+    add_tracer(v, "randomwalk", VL_TRACER_RANDOM_WALK, lights, against);
   add(v, (VerifyRun){.name = "merging",
                      .tracer = VL_TRACER_MERGING,
                      .lights = lights,
@@ -146,13 +145,14 @@ static void add_tracers(Verify *v, const Features *f, VerifyLights lights, int a
 /* Two tracers under a part of the lights. */
 static void add_lights(Verify *v, VerifyLights lights, const char *volpath,
                        const char *bidirectional) {
-  const int against = add(
-      v, (VerifyRun){
-             .name = volpath, .tracer = VL_TRACER_VOLPATH, .lights = lights, .against = -1});
-  add(v, (VerifyRun){.name = bidirectional,
-                     .tracer = VL_TRACER_BIDIRECTIONAL,
-                     .lights = lights,
-                     .against = against});
+  const int against = add_tracer(v, volpath, VL_TRACER_VOLPATH, lights, -1);
+  add_tracer(v, bidirectional, VL_TRACER_BIDIRECTIONAL, lights, against);
+}
+
+/* A run in another pose. */
+static void add_pose(Verify *v, const char *name, vlTracer tracer, VerifyPose pose,
+                     int against) {
+  add(v, (VerifyRun){.name = name, .tracer = tracer, .pose = pose, .against = against});
 }
 
 /* The reference renderer does not filter textures by the pixel's footprint. */
@@ -173,8 +173,7 @@ static void add_reference(Verify *v, const Features *f, int volpath) {
 
 void verify_plan(Verify *v) {
   const Features f = find_features(v);
-  const int volpath =
-      add(v, (VerifyRun){.name = "volpath", .tracer = VL_TRACER_VOLPATH, .against = -1});
+  const int volpath = add_tracer(v, "volpath", VL_TRACER_VOLPATH, VERIFY_ALL, -1);
   add_reference(v, &f, volpath);
   /* Behind a smooth surface only light paths find a small light. */
   const bool caustics = f.small && f.smooth;
@@ -186,10 +185,8 @@ void verify_plan(Verify *v) {
                 "between tracers, point, spot, distant and similar lights are not compared: %s",
                 "only light paths find them through smooth surfaces");
     if (f.sky || f.surfaces) {
-      const int others = add(v, (VerifyRun){.name = "volpath, without small lights",
-                                            .tracer = VL_TRACER_VOLPATH,
-                                            .lights = VERIFY_NOT_SMALL,
-                                            .against = -1});
+      const int others = add_tracer(v, "volpath, without small lights", VL_TRACER_VOLPATH,
+                                    VERIFY_NOT_SMALL, -1);
       add_tracers(v, &f, VERIFY_NOT_SMALL, others);
     }
   }
@@ -206,24 +203,11 @@ void verify_plan(Verify *v) {
                        .tracer = VL_TRACER_VOLPATH,
                        .evenly = true,
                        .against = volpath});
-  add(v, (VerifyRun){.name = "volpath, shifted",
-                     .tracer = VL_TRACER_VOLPATH,
-                     .pose = VERIFY_SHIFTED,
-                     .against = volpath});
-  add(v, (VerifyRun){.name = "volpath, turned",
-                     .tracer = VL_TRACER_VOLPATH,
-                     .pose = VERIFY_TURNED,
-                     .against = volpath});
-  add(v, (VerifyRun){.name = "volpath, scaled",
-                     .tracer = VL_TRACER_VOLPATH,
-                     .pose = VERIFY_SCALED,
-                     .against = volpath});
-  const int both = caustics ? add(v, (VerifyRun){.name = "bidirectional, all lights",
-                                                 .tracer = VL_TRACER_BIDIRECTIONAL,
-                                                 .against = -1})
+  add_pose(v, "volpath, shifted", VL_TRACER_VOLPATH, VERIFY_SHIFTED, volpath);
+  add_pose(v, "volpath, turned", VL_TRACER_VOLPATH, VERIFY_TURNED, volpath);
+  add_pose(v, "volpath, scaled", VL_TRACER_VOLPATH, VERIFY_SCALED, volpath);
+  const int both = caustics ? add_tracer(v, "bidirectional, all lights",
+                                         VL_TRACER_BIDIRECTIONAL, VERIFY_ALL, -1)
                             : first;
-  add(v, (VerifyRun){.name = "bidirectional, moved",
-                     .tracer = VL_TRACER_BIDIRECTIONAL,
-                     .pose = VERIFY_MOVED,
-                     .against = both});
+  add_pose(v, "bidirectional, moved", VL_TRACER_BIDIRECTIONAL, VERIFY_MOVED, both);
 }

@@ -16,7 +16,7 @@ extern "C" {
 
 /* The lists of kinds are VL_MATERIAL_KINDS and the like (velo/scene.h): LIST(X) expands X(kind,
  * name) once per kind, in the order of the enum: its constant and the end of it in lower
- * letters. Where there is a third, it is the kind's row inside the library. */
+ * letters. What follows is of the library: the kind's row, its functions. */
 
 /** How a parameter is stored in its def. */
 typedef enum vlParameterType {

@@ -11,31 +11,36 @@
 extern "C" {
 #endif
 
-/** X(kind, name, row) for each kind of texture. velo/schema.h describes the kinds and their
- * parameters. */
-#define VL_TEXTURE_KINDS(X)                                                                   \
-  X(VL_TEXTURE_CONSTANT, constant, vl_texture_row_constant)                                   \
-  X(VL_TEXTURE_SCALE, scale, vl_texture_row_scale)                                            \
-  X(VL_TEXTURE_MIX, mix, vl_texture_row_mix)                                                  \
-  X(VL_TEXTURE_CHECKERBOARD, checkerboard, vl_texture_row_checkerboard)                       \
-  X(VL_TEXTURE_IMAGE, image, vl_texture_row_image)                                            \
-  X(VL_TEXTURE_DIRECTION_MIX, direction_mix, vl_texture_row_direction_mix)                    \
-  X(VL_TEXTURE_BILERP, bilerp, vl_texture_row_bilerp)                                         \
-  X(VL_TEXTURE_FBM, fbm,                                                                      \
-    vl_texture_row_fbm) /* float: octaves of noise in texture space (texture_from_world) */   \
-  X(VL_TEXTURE_WRINKLED, wrinkled,                                                            \
-    vl_texture_row_wrinkled) /* float: octaves of the noise's absolute value */               \
-  X(VL_TEXTURE_WINDY, windy,                                                                  \
-    vl_texture_row_windy) /* float: wind waves; octaves and roughness are fixed */            \
-  X(VL_TEXTURE_MARBLE, marble,                                                                \
-    vl_texture_row_marble) /* colour: veins with a scale and a variation */                   \
-  X(VL_TEXTURE_DOTS, dots, vl_texture_row_dots) /* b in the dots, a between them */           \
-  X(VL_TEXTURE_VERTEX_COLOR, vertex_color,                                                    \
-    vl_texture_row_vertex_color) /* the shape's vertex colours; has an image's tint, channel, \
-                                    bias, cutoff */
+/** X(kind, name, row, gives, function) for each kind of texture. velo/schema.h describes the
+ * kinds and their parameters. function: how a compiled texture is evaluated at a point. It
+ * gives FLOAT: a number; COLOR: linear RGB; SHARE: the weight of the second of two inputs,
+ * which are numbers or spectra. OTHER: the evaluators have code for the kind. */
+#define VL_TEXTURE_KINDS(X)                                                                \
+  X(VL_TEXTURE_CONSTANT, constant, vl_texture_row_constant, OTHER, NULL)                   \
+  X(VL_TEXTURE_SCALE, scale, vl_texture_row_scale, OTHER, vl_node_scale)                   \
+  X(VL_TEXTURE_MIX, mix, vl_texture_row_mix, OTHER, vl_node_mix)                           \
+  X(VL_TEXTURE_CHECKERBOARD, checkerboard, vl_texture_row_checkerboard, SHARE,             \
+    vl_node_checkerboard)                                                                  \
+  X(VL_TEXTURE_IMAGE, image, vl_texture_row_image, OTHER, vl_node_image_rgb)               \
+  X(VL_TEXTURE_DIRECTION_MIX, direction_mix, vl_texture_row_direction_mix, SHARE,          \
+    vl_node_direction_mix)                                                                 \
+  X(VL_TEXTURE_BILERP, bilerp, vl_texture_row_bilerp, OTHER, vl_node_bilerp)               \
+  X(VL_TEXTURE_FBM, fbm, vl_texture_row_fbm, FLOAT,                                        \
+    vl_node_fbm) /* float: octaves of noise in texture space (texture_from_world) */       \
+  X(VL_TEXTURE_WRINKLED, wrinkled, vl_texture_row_wrinkled, FLOAT,                         \
+    vl_node_wrinkled) /* float: octaves of the noise's absolute value */                   \
+  X(VL_TEXTURE_WINDY, windy, vl_texture_row_windy, FLOAT,                                  \
+    vl_node_windy) /* float: wind waves; octaves and roughness are fixed */                \
+  X(VL_TEXTURE_MARBLE, marble, vl_texture_row_marble, COLOR,                               \
+    vl_node_marble) /* colour: veins with a scale and a variation */                       \
+  X(VL_TEXTURE_DOTS, dots, vl_texture_row_dots, SHARE,                                     \
+    vl_node_dots) /* b in the dots, a between them */                                      \
+  X(VL_TEXTURE_VERTEX_COLOR, vertex_color, vl_texture_row_vertex_color, OTHER,             \
+    vl_node_vertex_color_rgb) /* the shape's vertex colours; has an image's tint, channel, \
+                                 bias, cutoff */
 /** The kinds of textures: VL_TEXTURE_CONSTANT and so on, from VL_TEXTURE_KINDS. */
 typedef enum vlTextureKind {
-#define VL_KIND(kind, name, row) kind,
+#define VL_KIND(kind, ...) kind,
   VL_TEXTURE_KINDS(VL_KIND)
 #undef VL_KIND
 } vlTextureKind;

@@ -181,24 +181,9 @@ static inline __attribute__((always_inline)) const float *point_share(vlTextureR
   return share;
 }
 
-/* Cases of the switches below. */
-#define NODE_CASE(kind, value, set) case kind:
-#define FLOAT_CASE(kind, value, set) \
-  case kind:                         \
-    each_lane(r, node, value, out);  \
-    break;
-#define MIX_FLOATS_CASE(kind, value, set)                  \
-  case kind:                                               \
-    mix_floats(r, node, point_share(r, node, value), out); \
-    break;
-#define COLOR_CASE(kind, value, set) \
-  case kind:                         \
-    each_color(r, node, value, out); \
-    break;
-#define MIX_SPECTRA_CASE(kind, value, set)                  \
-  case kind:                                                \
-    mix_spectra(r, node, point_share(r, node, value), out); \
-    break;
+/* A case of the switches below, by what the function of the kind gives (VL_TEXTURE_KINDS). */
+#define CASE(kind, name, row, gives, function) gives(kind, function)
+#define OTHER(kind, function)
 
 /* ---- floats ------------------------------------------------------------------------------ */
 
@@ -247,6 +232,19 @@ static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float
   }
 }
 
+#define FLOAT(kind, function)          \
+  case kind:                           \
+    each_lane(r, node, function, out); \
+    break;
+#define SHARE(kind, function)                                 \
+  case kind:                                                  \
+    mix_floats(r, node, point_share(r, node, function), out); \
+    break;
+/* vl_scene_add_texture refuses them here. */
+#define COLOR(kind, function)         \
+  case kind:                          \
+    fill(r, __builtin_nanf(""), out); \
+    break;
 void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
@@ -260,7 +258,6 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
     case VL_TEXTURE_VERTEX_COLOR:
       each_lane(r, node, vl_node_vertex_color_float, out);
       break;
-      VL_FLOAT_NODES(FLOAT_CASE)
     case VL_TEXTURE_SCALE:
       scale_floats(r, node, out);
       break;
@@ -270,13 +267,14 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
     case VL_TEXTURE_MIX:
       mix_floats(r, node, amount_share(r, node), out);
       break;
-      VL_SHARE_NODES(MIX_FLOATS_CASE)
-      VL_COLOR_NODES(NODE_CASE)
-      fill(r, __builtin_nanf(""), out);
-      break; /* colours; vl_scene_add_texture refuses them here */
+      VL_TEXTURE_KINDS(CASE)
   }
   r->top = top;
 }
+
+#undef FLOAT
+#undef SHARE
+#undef COLOR
 
 /* ---- spectra ----------------------------------------------------------------------------- */
 
@@ -457,6 +455,18 @@ static void no_color(const vlTextureRun *r, float *const out[4]) {
     fill(r, __builtin_nanf(""), out[c]);
 }
 
+#define COLOR(kind, function)           \
+  case kind:                            \
+    each_color(r, node, function, out); \
+    break;
+#define SHARE(kind, function)                                  \
+  case kind:                                                   \
+    mix_spectra(r, node, point_share(r, node, function), out); \
+    break;
+#define FLOAT(kind, function) \
+  case kind:                  \
+    no_color(r, out);         \
+    break;
 static void lane_spectra(vlTextureRun *r, int32_t index, float *const out[4]) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
@@ -473,7 +483,6 @@ static void lane_spectra(vlTextureRun *r, int32_t index, float *const out[4]) {
     case VL_TEXTURE_VERTEX_COLOR:
       vertex_color_spectrum(r, node, out);
       break;
-      VL_COLOR_NODES(COLOR_CASE)
     case VL_TEXTURE_SCALE:
       scale_spectra(r, node, out);
       break;
@@ -483,10 +492,7 @@ static void lane_spectra(vlTextureRun *r, int32_t index, float *const out[4]) {
     case VL_TEXTURE_MIX:
       mix_spectra(r, node, amount_share(r, node), out);
       break;
-      VL_SHARE_NODES(MIX_SPECTRA_CASE)
-      VL_FLOAT_NODES(NODE_CASE)
-      no_color(r, out);
-      break;
+      VL_TEXTURE_KINDS(CASE)
   }
   r->top = top;
 }

@@ -9,7 +9,7 @@
 /* Weight of the second input, 0 or 1. The pattern is not filtered; the samples of a pixel
  * antialias it. (pbrt filters it by ray differentials.) */
 static inline float vl_node_checkerboard(const vlTextureNode *node, vlTexturePoint at) {
-  if (node->dimension == 3) {
+  if (node->def->dimension == 3) {
     vlVec3 q = vl_texture_space(node, at.p);
     int64_t sum = (int64_t)__builtin_floorf(q.x) + (int64_t)__builtin_floorf(q.y) +
                   (int64_t)__builtin_floorf(q.z);
@@ -18,10 +18,6 @@ static inline float vl_node_checkerboard(const vlTextureNode *node, vlTexturePoi
   vlVec2 st = vl_texture_st(node, at);
   int64_t sum = (int64_t)__builtin_floorf(st.x) + (int64_t)__builtin_floorf(st.y);
   return sum & 1 ? 1.0f : 0.0f;
-}
-
-static inline void vl_node_set_checkerboard(vlTextureNode *node, const vlTextureDef *def) {
-  node->dimension = def->dimension;
 }
 
 #endif

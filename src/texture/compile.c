@@ -110,7 +110,17 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
   return def->spectrum ? compile_spectrum(c, s, role, nesting) : compile_float(c, f, nesting);
 }
 
-#define NODE_CASE(kind, value, set) case kind:
+/* A case of the switch below, by what the function of the kind gives (VL_TEXTURE_KINDS). */
+#define CASE(kind, name, row, gives, function) gives(kind)
+#define SHARE(kind)                  \
+  case kind:                         \
+    own = node->is_spectrum ? 5 : 2; \
+    break;
+#define FLOAT(kind) \
+  case kind:        \
+    break;
+#define COLOR(kind) FLOAT(kind)
+#define OTHER(kind)
 
 /* Computes the scratch rows of a node, its own (as in texture/batch.hot.c) and those of the
  * input that needs most, and the number of nodes visited for it. False: too many. */
@@ -120,7 +130,6 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
     case VL_TEXTURE_SCALE:
       own = 1;
       break;
-      VL_SHARE_NODES(NODE_CASE)
     case VL_TEXTURE_MIX:
       own = node->is_spectrum ? 5 : 2;
       break;
@@ -130,9 +139,8 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
     case VL_TEXTURE_CONSTANT:
     case VL_TEXTURE_IMAGE:
     case VL_TEXTURE_VERTEX_COLOR:
-      VL_FLOAT_NODES(NODE_CASE)
-      VL_COLOR_NODES(NODE_CASE)
       break; /* no inputs */
+      VL_TEXTURE_KINDS(CASE)
   }
   const int32_t input[5] = {node->a, node->b, node->c, node->d, node->amount};
   for (int i = 0; i < 5; i++) {
@@ -149,11 +157,12 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
   return true;
 }
 
-/* The kinds that give an RGB colour, which is converted to wavelengths where it is
- * used. */
-#define GIVES_RGB(kind, value, set) [kind] = true,
-static const bool gives_rgb[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
-    [VL_TEXTURE_IMAGE] = true, [VL_TEXTURE_VERTEX_COLOR] = true, VL_COLOR_NODES(GIVES_RGB)};
+/* Whether the node gives an RGB colour, which is converted to wavelengths where it is used. */
+static bool gives_rgb(const vlTextureNode *node) {
+  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)node->kind);
+  return node->kind == VL_TEXTURE_IMAGE || node->kind == VL_TEXTURE_VERTEX_COLOR ||
+         (row->traits & VL_TEXTURE_COLOR_ONLY);
+}
 
 static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
   node->spectrum.scale = 1;
@@ -170,7 +179,7 @@ typedef enum Colors { COLORS_OTHER, COLORS_GREY, COLORS_RGB } Colors;
 static Colors colors_of(const vlWorld *world, int32_t index) {
   const vlTextureNode *node = &world->nodes.items[index];
   const vlSpectral *s = &node->spectrum;
-  if (gives_rgb[node->kind])
+  if (gives_rgb(node))
     return node->space == VL_SPACE_SRGB && node->role == VL_ROLE_ALBEDO ? COLORS_RGB
                                                                         : COLORS_OTHER;
   bool constant = node->kind == VL_TEXTURE_CONSTANT && node->is_spectrum;
@@ -216,11 +225,20 @@ static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
       !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
 }
 
-/* The numbers that only some kinds have. Null: none. */
-typedef void SetNumbers(vlTextureNode *node, const vlTextureDef *def);
-#define SET_NUMBERS(kind, value, set) [kind] = set,
-static SetNumbers *const set_numbers[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
-    VL_FLOAT_NODES(SET_NUMBERS) VL_COLOR_NODES(SET_NUMBERS) VL_SHARE_NODES(SET_NUMBERS)};
+/* The def's numbers, for the functions of the kinds; what belongs to the scene is left out.
+ * Null: no memory. */
+static const vlTextureDef *keep_numbers(vlWorld *world, const vlTextureDef *def) {
+  vlTextureDef *kept = vl_world_block(world, 1, sizeof *kept);
+  if (!kept)
+    return NULL;
+  *kept = *def;
+  kept->name = kept->path = kept->source.file = NULL;
+  kept->image = NULL;
+  kept->data = NULL;
+  kept->spectrum_a = kept->spectrum_b = kept->spectrum_c = kept->spectrum_d =
+      (vlSpectrumInput){0};
+  return kept;
+}
 
 /* Compiles the inputs that the kind's row describes, in the order of the row, into a, b, c, d
  * and the amount. A negative result is an error. */
@@ -274,8 +292,10 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     return n;
   }
   node.kind = def->kind;
-  if (set_numbers[node.kind])
-    set_numbers[node.kind](&node, def);
+  if (!(node.def = keep_numbers(c->world, def))) {
+    vl_fail_memory(c->error);
+    return VL_TEXTURE_NO_MEMORY;
+  }
   int32_t failed = compile_inputs(c, def, role, nesting, &node);
   if (failed < 0)
     return failed;
@@ -286,8 +306,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     if (mip->space_given)
       node.space = mip->space;
   }
-  if (def->spectrum && gives_rgb[node.kind] &&
-      image_spectrum(c->world, &node, c->error) != VL_OK)
+  if (def->spectrum && gives_rgb(&node) && image_spectrum(c->world, &node, c->error) != VL_OK)
     return -1;
   if (!weigh(c->world, &node)) {
     vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,

@@ -8,13 +8,8 @@
 /* Weight of the second input. The weight of the first is the cosine between the normal and the
  * node's direction. */
 static inline float vl_node_direction_mix(const vlTextureNode *node, vlTexturePoint at) {
-  return 1.0f - vl_abs(vl_dot(
-                    at.n, vl_vec3(node->direction[0], node->direction[1], node->direction[2])));
-}
-
-static inline void vl_node_set_direction_mix(vlTextureNode *node, const vlTextureDef *def) {
-  for (int i = 0; i < 3; i++)
-    node->direction[i] = def->direction[i];
+  const float *d = node->def->direction;
+  return 1.0f - vl_abs(vl_dot(at.n, vl_vec3(d[0], d[1], d[2])));
 }
 
 #endif

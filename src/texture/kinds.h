@@ -1,7 +1,7 @@
-/* texture/kinds.h: the kinds of textures whose value is one function of the point, and the
- * functions of all kinds. They are inline and take values. Two evaluators share them and thus
- * agree to the bit: batch.hot.c over a batch, point.c at a single point. Both switch over
- * vlTextureKind without a default, so that a missing kind is a compile error. */
+/* texture/kinds.h: the functions of all kinds of textures (VL_TEXTURE_KINDS). They are inline
+ * and take values. Two evaluators share them and thus agree to the bit: batch.hot.c over a
+ * batch, point.c at a single point. Both switch over vlTextureKind without a default, so that a
+ * missing kind is a compile error. */
 #ifndef TEXTURE_KINDS_H
 #define TEXTURE_KINDS_H
 
@@ -18,28 +18,6 @@
 #include "texture/wrinkled.h"
 #include "velo/texture.h"
 #include "world/world.h"
-
-/* X(kind, value, set) for each kind of texture whose value is one function of the point, by the
- * type of the value. value(node, at): the function. set(node, def): stores the numbers of the
- * texture that only such kinds have. The evaluators treat the other kinds separately. */
-/* A float. */
-#define VL_FLOAT_NODES(X)                                     \
-  X(VL_TEXTURE_FBM, vl_node_fbm, vl_node_set_noise)           \
-  X(VL_TEXTURE_WRINKLED, vl_node_wrinkled, vl_node_set_noise) \
-  X(VL_TEXTURE_WINDY, vl_node_windy, vl_node_set_nothing)
-/* A colour, linear RGB (vlVec3). */
-#define VL_COLOR_NODES(X) X(VL_TEXTURE_MARBLE, vl_node_marble, vl_node_set_marble)
-/* The weight of the second of two inputs, which are floats or spectra. */
-#define VL_SHARE_NODES(X)                                                    \
-  X(VL_TEXTURE_CHECKERBOARD, vl_node_checkerboard, vl_node_set_checkerboard) \
-  X(VL_TEXTURE_DOTS, vl_node_dots, vl_node_set_nothing)                      \
-  X(VL_TEXTURE_DIRECTION_MIX, vl_node_direction_mix, vl_node_set_direction_mix)
-
-/* For kinds without numbers of their own. */
-static inline void vl_node_set_nothing(vlTextureNode *node, const vlTextureDef *def) {
-  (void)node;
-  (void)def;
-}
 
 /* ---- what both evaluators do for each kind ----------------------------------------------- */
 

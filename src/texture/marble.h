@@ -12,7 +12,8 @@ static inline vlVec3 vl_node_marble(const vlTextureNode *node, vlTexturePoint at
   enum { SEGMENTS = 6 };
   vlVec3 p = vl_mul(vl_texture_space(node, at.p), node->scale);
   float width = vl_abs(node->scale) * vl_texture_space_width(node, at);
-  float vein = p.y + node->variation * vl_fractal_noise(p, width, node->omega, node->octaves);
+  float vein = p.y + node->def->variation *
+                         vl_fractal_noise(p, width, node->def->omega, vl_node_octaves(node));
   float t = 0.5f + 0.5f * vl_sincos(vl_clamp(vein, -1e4f, 1e4f)).sin;
   float s = vl_clamp(t, 0.0f, 1.0f) * SEGMENTS;
   int first = (int)s < SEGMENTS - 1 ? (int)s : SEGMENTS - 1;
@@ -26,11 +27,6 @@ static inline vlVec3 vl_node_marble(const vlTextureNode *node, vlTexturePoint at
         1.5f * (r * r * r * a + 3.0f * r * r * s * b + 3.0f * r * s * s * c + s * s * s * d);
   }
   return vl_vec3(out[0], out[1], out[2]);
-}
-
-static inline void vl_node_set_marble(vlTextureNode *node, const vlTextureDef *def) {
-  vl_node_set_noise(node, def);
-  node->variation = def->variation;
 }
 
 #endif

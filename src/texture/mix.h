@@ -5,7 +5,7 @@
 #include "texture/node.h"
 
 /* share: weight of the second input. Also of the other kinds that mix two inputs
- * (VL_SHARE_NODES). */
+ * (SHARE in VL_TEXTURE_KINDS). */
 static inline float vl_node_mix(float a, float b, float share) {
   return (1 - share) * a + share * b;
 }

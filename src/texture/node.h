@@ -59,13 +59,11 @@ typedef struct vlTextureNode {
   vlSpectral spectrum;        /* of a constant spectrum; of VL_TEXTURE_IMAGE for the role of an
                                  illuminant:        dense is the colour space's illuminant */
   int32_t a, b, c, d, amount; /* node indices of the inputs; -1: none */
-  float direction[3];
-  uint32_t dimension, octaves;
-  float omega, variation; /* parameters of noise textures */
-  float own[4];          /* numbers that one kind alone has, set by its vl_node_set_ function */
-  int32_t image;         /* index in world->images; -1: the node has no image */
-  uint32_t wrap, wrap_t; /* vlWrap */
-  uint32_t filter;       /* vlTextureFilter */
+  const struct vlTextureDef *def; /* the numbers that some kinds alone have; without its
+                                     inputs, names and data. Null: the texture has no def */
+  int32_t image;                  /* index in world->images; -1: the node has no image */
+  uint32_t wrap, wrap_t;          /* vlWrap */
+  uint32_t filter;                /* vlTextureFilter */
   float scale;
   bool invert;
   /* plain: tint, bias, cutoff and vertex colours have no effect. channel: the channel that a

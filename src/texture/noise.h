@@ -17,9 +17,8 @@ static inline float vl_texture_space_width(const vlTextureNode *node, vlTextureP
   return at.width * __builtin_sqrtf(vl_max(x, vl_max(y, z)));
 }
 
-static inline void vl_node_set_noise(vlTextureNode *node, const vlTextureDef *def) {
-  node->octaves = def->octaves < 64 ? def->octaves : 64;
-  node->omega = def->omega;
+static inline uint32_t vl_node_octaves(const vlTextureNode *node) {
+  return node->def->octaves < 64 ? node->def->octaves : 64;
 }
 
 #endif

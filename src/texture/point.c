@@ -5,8 +5,6 @@
 #include "texture/kinds.h"
 #include "world/world.h"
 
-#define NODE_CASE(kind, value, set) case kind:
-
 /* The texture point for a node: its uv set, the vertex colour, the normal if the node reads it.
  * No footprint. */
 static vlTexturePoint point_of(const vlTextureNode *node, const vlTextureQuery *q) {
@@ -17,6 +15,21 @@ static vlTexturePoint point_of(const vlTextureNode *node, const vlTextureQuery *
     at.n = vl_normalize(q->n);
   return at;
 }
+
+/* A case of the switch below, by what the function of the kind gives (VL_TEXTURE_KINDS). */
+#define CASE(kind, name, row, gives, function) gives(kind, function)
+#define FLOAT(kind, function) \
+  case kind:                  \
+    return function(node, at);
+#define SHARE(kind, function)   \
+  case kind:                    \
+    share = function(node, at); \
+    break;
+/* vl_scene_add_texture refuses them where a float is wanted. */
+#define COLOR(kind, function) \
+  case kind:                  \
+    return NAN;
+#define OTHER(kind, function)
 
 float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQuery *q) {
   const vlTextureNode *node = &world->nodes.items[index];
@@ -29,10 +42,6 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
       return vl_node_image_float(node, world->images.items[node->image].mipmap, at);
     case VL_TEXTURE_VERTEX_COLOR:
       return vl_node_vertex_color_float(node, at);
-#define FLOAT_CASE(kind, value, set) \
-  case kind:                         \
-    return value(node, at);
-      VL_FLOAT_NODES(FLOAT_CASE)
     case VL_TEXTURE_SCALE:
       return vl_node_scale(vl_texture_float_at(world, node->a, q),
                            vl_texture_float_at(world, node->amount, q));
@@ -47,13 +56,7 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
     case VL_TEXTURE_MIX:
       share = vl_texture_float_at(world, node->amount, q);
       break;
-#define SHARE_CASE(kind, value, set) \
-  case kind:                         \
-    share = value(node, at);         \
-    break;
-      VL_SHARE_NODES(SHARE_CASE)
-      VL_COLOR_NODES(NODE_CASE)
-      return NAN; /* colours: vl_scene_add_texture refuses them where a float is wanted */
+      VL_TEXTURE_KINDS(CASE)
   }
   return vl_node_mix(vl_texture_float_at(world, node->a, q),
                      vl_texture_float_at(world, node->b, q), share);

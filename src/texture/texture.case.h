@@ -43,7 +43,7 @@ typedef struct TextureCase {
 } TextureCase;
 
 /* Declares the case of each kind, which is in the file of the kind: texture/NAME.case.c. */
-#define TEXTURE_CASE(kind, name, row) extern const TextureCase name##_texture;
+#define TEXTURE_CASE(kind, name, ...) extern const TextureCase name##_texture;
 VL_TEXTURE_KINDS(TEXTURE_CASE)
 #undef TEXTURE_CASE
 

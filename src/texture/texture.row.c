@@ -4,7 +4,7 @@
 
 const char *const vl_texture_mappings[] = {"uv", "spherical", "cylindrical", "planar", NULL};
 
-#define ROW(kind, name, row) [kind] = &row,
+#define ROW(kind, name, row, ...) [kind] = &row,
 static const vlKindRow *const rows[] = {VL_TEXTURE_KINDS(ROW)};
 const vlKindFamily vl_texture_family =
     VL_KIND_FAMILY(rows, VL_TEXTURE_KINDS, "textures", "texture", "Texture");

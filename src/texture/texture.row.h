@@ -7,7 +7,7 @@
 #include "velo/texture.h"
 
 /* Declares the row of each kind, which is in the file of the kind: texture/NAME.row.c. */
-#define VL_TEXTURE_ROW(kind, name, row) extern const vlKindRow row;
+#define VL_TEXTURE_ROW(kind, name, row, ...) extern const vlKindRow row;
 VL_TEXTURE_KINDS(VL_TEXTURE_ROW)
 #undef VL_TEXTURE_ROW
 

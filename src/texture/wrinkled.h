@@ -6,7 +6,7 @@
 
 static inline float vl_node_wrinkled(const vlTextureNode *node, vlTexturePoint at) {
   return vl_turbulence(vl_texture_space(node, at.p), vl_texture_space_width(node, at),
-                       node->omega, node->octaves);
+                       node->def->omega, vl_node_octaves(node));
 }
 
 #endif

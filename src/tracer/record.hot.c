@@ -173,7 +173,7 @@ static const char *image_of(const vlWorld *world, int32_t node) {
 }
 
 static void put_texture(const vlWorld *world, int32_t node, vlPathVertex *v) {
-#define NAME(kind, name, row) [kind] = #name,
+#define NAME(kind, name, ...) [kind] = #name,
   static const char *const names[] = {VL_TEXTURE_KINDS(NAME)};
 #undef NAME
   if (node < 0)

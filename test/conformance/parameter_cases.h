@@ -13,7 +13,7 @@
 #include "texture/texture.case.h"
 #include "velo/shape_kinds.h"
 
-#define TEXTURE_CASE(kind, name, row) &name##_texture,
+#define TEXTURE_CASE(kind, name, ...) &name##_texture,
 static const TextureCase *const texture_cases[] = {VL_TEXTURE_KINDS(TEXTURE_CASE)};
 #define LIGHT_CASE(kind, name) &name##_light,
 static const LightCase *const light_cases[] = {VL_LIGHT_KINDS(LIGHT_CASE)};

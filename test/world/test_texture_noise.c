@@ -73,13 +73,12 @@ static void sums(void **state) {
   }
 }
 
-static vlTextureNode node_of(vlTextureKind kind) {
+static vlTextureNode node_of(vlTextureKind kind, const vlTextureDef *def) {
   vlTextureNode node;
   memset(&node, 0, sizeof node);
   node.kind = kind;
   node.su = node.sv = node.scale = 1;
-  node.omega = 0.5f;
-  node.octaves = 8;
+  node.def = def;
   for (int i = 0; i < 3; i++)
     node.texture_from_world[5 * i] = 1;
   return node;
@@ -94,7 +93,7 @@ static bool plain_dot(double s, double t, double middle[2]) {
 
 static void dots(void **state) {
   (void)state;
-  vlTextureNode node = node_of(VL_TEXTURE_DOTS);
+  vlTextureNode node = node_of(VL_TEXTURE_DOTS, NULL);
   int with = 0;
   enum { N = 50 };
   for (int cell = 0; cell < 400; cell++) {
@@ -132,7 +131,8 @@ static void dots(void **state) {
 
 static void marble(void **state) {
   (void)state;
-  vlTextureNode node = node_of(VL_TEXTURE_MARBLE);
+  vlTextureDef def = {.kind = VL_TEXTURE_MARBLE, .omega = 0.5f, .octaves = 8};
+  vlTextureNode node = node_of(def.kind, &def);
   for (int k = 0; k < 2; k++) { /* a vein's both ends, where the sine is -1 and 1 */
     vlTexturePoint at = {.p = vl_vec3(7, (float)(3.14159265 * (k - 0.5)), 5),
                          .n = vl_vec3(0, 0, 1),
@@ -142,7 +142,7 @@ static void marble(void **state) {
     assert_true(fabs(c.x - want[0]) < 2e-3 && fabs(c.y - want[0]) < 2e-3 &&
                 fabs(c.z - want[1]) < 2e-3);
   }
-  node.variation = 0.2f;
+  def.variation = 0.2f;
   double low = 2, high = 0;
   for (int i = 0; i < 5000; i++) {
     vlTexturePoint at = {

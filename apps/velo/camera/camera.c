@@ -78,7 +78,6 @@ void camera_note_unread(const char *path, const vlCameraRecord *record) {
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame,
                 const OptionValue *size, const OptionValue *fallback, vlCameraRecord *record) {
   bool sized = size && size->given;
-  const OptionValue *taken = sized ? size : fallback && fallback->given ? fallback : NULL;
   if (dialect == VL_CAMERA_DIALECT_EXR || (!dialect && text_ends_with(path, ".exr")))
     return sized ? has_size(path) : load_image_camera(context, path, record);
   if (dialect == VL_CAMERA_DIALECT_PBRT || (!dialect && camera_is_scene(path)))
@@ -87,10 +86,10 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = (vlCameraDialect)dialect;
   def.frame = frame;
-  if (taken) {
-    def.width = (uint32_t)taken->integers[0];
-    def.height = (uint32_t)taken->integers[1];
-  }
+  if (fallback)
+    option_size(fallback, &def.width, &def.height);
+  if (size)
+    option_size(size, &def.width, &def.height);
   TRY(report_error(&error, vl_camera_read(context, path, &def, record, &error), path));
   if (sized && (record->camera.width != def.width || record->camera.height != def.height))
     return report_usage(

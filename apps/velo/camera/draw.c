@@ -79,18 +79,13 @@ static int read_options(State *s, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (!v[DRAW_OUT].given)
     return report_usage("-o FILE is needed");
-  const int written = output_check_drawing(v[DRAW_OUT].text);
-  if (written >= 0)
-    return written;
+  TRY(output_check_drawing(v[DRAW_OUT].text));
   s->view = (OutsideDef){
       .azimuth = 130, .elevation = 20, .zoom = 1, .width = 960, .height = 640, .spp = 32};
   s->view.exposure = VL_UNSET;
   s->view.scene = !v[DRAW_EMPTY].given;
   s->view.own_image = s->view.scene && !v[DRAW_BLANK].given && !v[RENDER_TRAJECTORY].given;
-  if (v[DRAW_SIZE].given) {
-    s->view.width = (uint32_t)v[DRAW_SIZE].integers[0];
-    s->view.height = (uint32_t)v[DRAW_SIZE].integers[1];
-  }
+  option_size(&v[DRAW_SIZE], &s->view.width, &s->view.height);
   double from[2];
   if (v[DRAW_FROM].given) {
     if (!parse_numbers(v[DRAW_FROM].text, 2, from) || fabs(from[0]) > 360 || fabs(from[1]) > 89)
@@ -102,13 +97,11 @@ static int read_options(State *s, const Arguments *arguments) {
   }
   if (v[DRAW_ZOOM].given)
     s->view.zoom = v[DRAW_ZOOM].number;
-  if (v[RENDER_SPP].given)
-    s->view.spp = (uint32_t)v[RENDER_SPP].integer;
+  s->view.spp = option_count(&v[RENDER_SPP], s->view.spp);
   if (v[RENDER_EXPOSURE].given && !parse_numbers(v[RENDER_EXPOSURE].text, 1, &s->view.exposure))
     return report_usage("--exposure \"%s\": must be a number", v[RENDER_EXPOSURE].text);
   s->def = vl_default_drawing_def();
-  if (v[DRAW_GRID].given)
-    s->def.grid = (uint32_t)v[DRAW_GRID].integer;
+  s->def.grid = option_count(&v[DRAW_GRID], s->def.grid);
   if (v[DRAW_PARTS].given)
     TRY(parse_parts(v[DRAW_PARTS].text, &s->def.parts));
   for (int i = 0; i < arguments->text_count; i++)

@@ -208,9 +208,9 @@ static int run_verify(const Arguments *arguments, vlContext *context) {
   vlCameraRecord record;
   double threshold = o[VERIFY_THRESHOLD].given ? o[VERIFY_THRESHOLD].number : default_threshold;
   v.target.charuco = o[VERIFY_TARGET].given && o[VERIFY_TARGET].integer == 1;
-  v.poses = option_count(&o[VERIFY_POSE_COUNT], 16);
-  v.spp = option_count(&o[VERIFY_SPP], 144);
-  v.seed = o[VERIFY_SEED].given ? (uint64_t)o[VERIFY_SEED].integer : 1;
+  v.poses = option_count(&o[VERIFY_POSE_COUNT], DEFAULT_POSES);
+  v.spp = option_count(&o[VERIFY_SPP], DEFAULT_SPP);
+  v.seed = option_count(&o[VERIFY_SEED], 1);
   v.keep = o[VERIFY_KEEP].text;
   int status =
       camera_load_made(context, path, arguments, VERIFY_FRAME, VERIFY_SIZE, &record, &v.camera);

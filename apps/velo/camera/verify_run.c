@@ -275,7 +275,6 @@ static vlResult keep_image(vlContext *context, const char *folder, uint32_t inde
   vlImage *image = NULL;
   vlImageDef def =
       vl_default_image_def((uint32_t)rendered->width, (uint32_t)rendered->height, 1);
-  def.type = VL_PIXEL_F32;
   vlResult result = vl_image_create(context, &def, &image);
   text_set(path, "%s/pose_%03u.png", folder, index);
   if (result == VL_OK) {

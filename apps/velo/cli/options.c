@@ -355,6 +355,11 @@ uint32_t option_count(const OptionValue *value, uint32_t otherwise) {
   return value->given ? (uint32_t)value->integer : otherwise;
 }
 
+void option_size(const OptionValue *value, uint32_t *width, uint32_t *height) {
+  *width = value->given ? (uint32_t)value->integers[0] : *width;
+  *height = value->given ? (uint32_t)value->integers[1] : *height;
+}
+
 /* Reads x0,y0,x1,y1. */
 static int read_crop(const Option *option, const char *text, int64_t *crop) {
   if (read_list(text, 4, crop, NULL, false) && crop[0] >= 0 && crop[1] >= 0 &&

@@ -112,7 +112,6 @@ static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t 
                               double scale, vlImage **result, uint64_t *too_large) {
   vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), 1);
   def.type = VL_PIXEL_U16;
-  def.encoding = VL_ENCODING_LINEAR;
   vlResult status = vl_image_create(context, &def, result);
   uint16_t *pixel = status == VL_OK ? vl_image_pixels(*result) : NULL;
   *too_large = 0;

@@ -83,7 +83,6 @@ static bool rec709_matrix(const vlImage *image, double m[9]) {
 static vlResult to_rec709(vlContext *context, const vlImage *image, const int rgb[3],
                           const double m[9], vlImage **result) {
   vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), 3);
-  def.type = VL_PIXEL_F32;
   vlResult status = vl_image_create(context, &def, result);
   if (status != VL_OK)
     return status;
@@ -138,7 +137,6 @@ static vlResult display_colors(vlContext *context, const vlImage *image, vlView 
 /* R G B divided by alpha: the colour of what covers the pixel. */
 static vlResult divide_by_alpha(vlContext *context, const vlImage *image, vlImage **result) {
   vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), 3);
-  def.type = VL_PIXEL_F32;
   vlAttribute attribute;
   vlResult status = vl_image_create(context, &def, result);
   if (status != VL_OK)

@@ -10,27 +10,34 @@
 #include "velo/distortion.h"
 #include "velo/projection.h"
 
-static bool number(const vlImage *image, const char *name, double *value) {
+/* Whether the image has an attribute of that name and type. */
+static bool find(const vlImage *image, const char *name, vlAttributeType type, vlAttribute *a) {
+  return vl_image_find_attribute(image, name, a) == VL_OK && a->type == type &&
+         (type != VL_ATTRIBUTE_STRING || a->string);
+}
+
+/* Takes numbers of an attribute; where there is none, *values stay. */
+static bool take(const vlImage *image, const char *name, vlAttributeType type, double *values,
+                 size_t count) {
   vlAttribute a;
-  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_DOUBLE)
+  if (!find(image, name, type, &a))
     return false;
-  *value = a.numbers[0];
+  memcpy(values, a.numbers, count * sizeof *values);
   return true;
+}
+
+static bool number(const vlImage *image, const char *name, double *value) {
+  return take(image, name, VL_ATTRIBUTE_DOUBLE, value, 1);
 }
 
 /* Reads corner pixels, inclusive. False when the attribute is missing or impossible. */
 static bool window(const vlImage *image, const char *name, double box[4]) {
-  vlAttribute a;
-  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_BOX2I)
-    return false;
-  memcpy(box, a.numbers, 4 * sizeof *box);
-  return box[2] >= box[0] && box[3] >= box[1];
+  return take(image, name, VL_ATTRIBUTE_BOX2I, box, 4) && box[2] >= box[0] && box[3] >= box[1];
 }
 
 static bool text(const vlImage *image, const char *name, const char **value) {
   vlAttribute a;
-  if (vl_image_find_attribute(image, name, &a) != VL_OK || a.type != VL_ATTRIBUTE_STRING ||
-      !a.string)
+  if (!find(image, name, VL_ATTRIBUTE_STRING, &a))
     return false;
   *value = a.string;
   return true;
@@ -88,17 +95,16 @@ static int windows(const vlImage *image, const char *path, double whole[4], doub
 static int read_def(const vlImage *image, const char *path, const double whole[4],
                     vlCameraDef *def) {
   *def = vl_default_camera_def((uint32_t)whole[2] + 1, (uint32_t)whole[3] + 1);
-  vlAttribute matrix, projection;
+  vlAttribute matrix;
+  const char *projection;
   bool found = number(image, "velo.fx", &def->fx) && number(image, "velo.fy", &def->fy) &&
                number(image, "velo.skew", &def->skew) && number(image, "velo.cx", &def->cx) &&
                number(image, "velo.cy", &def->cy) &&
-               vl_image_find_attribute(image, "velo.worldFromCamera", &matrix) == VL_OK &&
-               matrix.type == VL_ATTRIBUTE_M44D &&
-               vl_image_find_attribute(image, "velo.projection", &projection) == VL_OK &&
-               projection.type == VL_ATTRIBUTE_STRING && projection.string;
+               find(image, "velo.worldFromCamera", VL_ATTRIBUTE_M44D, &matrix) &&
+               text(image, "velo.projection", &projection);
   if (!found)
     return report_failure(STATUS_SCENE, "%s: has no camera in its header", path);
-  if (!read_model(image, projection.string, def))
+  if (!read_model(image, projection, def))
     return report_failure(STATUS_SCENE,
                           "%s: the camera in its header is of a kind that is not known", path);
   def->has_matrix = true; /* OpenEXR's matrices act on row vectors */
@@ -181,16 +187,13 @@ static bool read_motion(const vlImage *image, double poses[2][16], double times[
   static const char *const names[2] = {"velo.worldFromCameraOpen", "velo.worldFromCameraClose"};
   vlAttribute a;
   for (int k = 0; k < 2; k++) {
-    if (vl_image_find_attribute(image, names[k], &a) != VL_OK || a.type != VL_ATTRIBUTE_M44D)
+    if (!find(image, names[k], VL_ATTRIBUTE_M44D, &a))
       return false;
     for (int i = 0; i < 16; i++)
       poses[k][i] = a.numbers[i % 4 * 4 + i / 4];
   }
-  if (vl_image_find_attribute(image, "velo.poseTimes", &a) != VL_OK ||
-      a.type != VL_ATTRIBUTE_V2F)
+  if (!take(image, "velo.poseTimes", VL_ATTRIBUTE_V2F, times, 2))
     return false;
-  times[0] = a.numbers[0];
-  times[1] = a.numbers[1];
   number(image, "velo.poseOpen", &times[0]);
   number(image, "velo.poseClose", &times[1]);
   return true;
@@ -200,7 +203,7 @@ HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *r
   static const char *const directions[] = {"down", "up", "right", "left"};
   double readout = 0.0, poses[2][16], times[2], first;
   const char *direction, *given = NULL;
-  vlAttribute shutter;
+  double shutter[2];
   if (!number(image, "velo.readout", &readout) || !(readout > 0.0) ||
       !text(image, "velo.readoutDirection", &direction) || !read_motion(image, poses, times) ||
       vl_camera_travel(camera, poses[0], poses[1], times, rolling, NULL) != VL_OK)
@@ -209,10 +212,8 @@ HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *r
   for (int i = 0; i < 4; i++)
     if (strcmp(direction, directions[i]) == 0)
       rolling->readout_direction = (vlReadout)i;
-  if (vl_image_find_attribute(image, "velo.shutter", &shutter) == VL_OK &&
-      shutter.type == VL_ATTRIBUTE_V2F)
-    rolling->shutter_open = rolling->shutter_close =
-        0.5 * (shutter.numbers[0] + shutter.numbers[1]);
+  if (take(image, "velo.shutter", VL_ATTRIBUTE_V2F, shutter, 2))
+    rolling->shutter_open = rolling->shutter_close = 0.5 * (shutter[0] + shutter[1]);
   if (number(image, "velo.firstRowTime", &first))
     rolling->shutter_open = rolling->shutter_close = first;
   if (!text(image, "velo.channelsTime", &given))
@@ -224,13 +225,6 @@ void header_row_camera(const vlCamera *rolling, uint32_t x, uint32_t y, vlCamera
   double seconds = vl_camera_time(rolling, x + 0.5, y + 0.5, 0.5);
   if (vl_camera_at(rolling, seconds, camera) != VL_OK)
     *camera = *rolling;
-}
-
-static void single(const vlImage *image, const char *name, vlAttributeType type, double *values,
-                   int count) {
-  vlAttribute a;
-  if (vl_image_find_attribute(image, name, &a) == VL_OK && a.type == type)
-    memcpy(values, a.numbers, (size_t)count * sizeof *values);
 }
 
 int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) {
@@ -246,10 +240,10 @@ int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) 
         STATUS_SCENE, "%s: one eye of an omnidirectional image is no camera of its own", path);
   shutter[0] = def->shutter_open;
   shutter[1] = def->shutter_close;
-  single(image, "velo.lensRadius", VL_ATTRIBUTE_FLOAT, &def->lens_radius, 1);
-  single(image, "focus", VL_ATTRIBUTE_FLOAT, &def->focus_distance, 1);
-  single(image, "velo.shutter", VL_ATTRIBUTE_V2F, shutter, 2);
-  single(image, "velo.exposureTime", VL_ATTRIBUTE_FLOAT, &def->exposure_time, 1);
+  take(image, "velo.lensRadius", VL_ATTRIBUTE_FLOAT, &def->lens_radius, 1);
+  take(image, "focus", VL_ATTRIBUTE_FLOAT, &def->focus_distance, 1);
+  take(image, "velo.shutter", VL_ATTRIBUTE_V2F, shutter, 2);
+  take(image, "velo.exposureTime", VL_ATTRIBUTE_FLOAT, &def->exposure_time, 1);
   def->shutter_open = shutter[0];
   def->shutter_close = shutter[1];
   return -1;

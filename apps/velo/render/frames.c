@@ -114,13 +114,8 @@ static int load_file(vlContext *context, const char *path, const Arguments *argu
                      vlTrajectory **trajectory) {
   vlError error = {0};
   vlCameraFileDef def = vl_default_camera_file_def();
-  const OptionValue *size =
-      &arguments
-           ->values[arguments->values[RENDER_SIZE].given ? RENDER_SIZE : RENDER_RESOLUTION];
-  if (size->given) {
-    def.width = (uint32_t)size->integers[0];
-    def.height = (uint32_t)size->integers[1];
-  }
+  option_size(&arguments->values[RENDER_RESOLUTION], &def.width, &def.height);
+  option_size(&arguments->values[RENDER_SIZE], &def.width, &def.height);
   TRY(report_error(&error, vl_trajectory_load(context, path, &def, trajectory, &error), path));
   camera_note_unread(path, vl_trajectory_camera(*trajectory, 0));
   return -1;

@@ -177,8 +177,6 @@ int gbuffer_render(const Job *job, const vlFilm *film, vlImage **image) {
     vlImageDef def =
         vl_default_image_def(vl_image_width(geometry), vl_image_height(geometry), COUNT);
     def.names = names;
-    def.type = VL_PIXEL_F32;
-    def.encoding = VL_ENCODING_LINEAR;
     result = vl_image_create(job->context, &def, image);
   }
   if (result == VL_OK) {

@@ -51,6 +51,20 @@ const Choice isa_choices[] = {
 
 /* ---- overrides --------------------------------------------------------------------------- */
 
+/* Sets the size of the film, which is rendered whole. */
+static void set_size(vlFilmDef *film, uint32_t width, uint32_t height) {
+  const uint32_t whole[4] = {0, 0, width, height};
+  film->width = width;
+  film->height = height;
+  memcpy(film->crop, whole, sizeof whole);
+}
+
+/* The camera is that of a file, without a line. */
+static void set_location(Job *job, const char *path) {
+  job->camera_location = (vlError){0};
+  text_set(job->camera_location.file, "%s", path);
+}
+
 /* File, line and column of the camera. The name is copied, since the scene's string ends with
  * the scene. */
 static vlError camera_location(const vlSceneDefs *defs, const char *path) {
@@ -70,20 +84,15 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, con
   TRY(camera_load(context, path, 0, v[RENDER_FRAME].text, &v[RENDER_SIZE],
                   &v[RENDER_RESOLUTION], &record));
   defs->camera = record.camera;
-  defs->film.width = record.camera.width;
-  defs->film.height = record.camera.height;
-  const uint32_t whole[4] = {0, 0, defs->film.width, defs->film.height};
-  memcpy(defs->film.crop, whole, sizeof whole);
-  job->camera_location = (vlError){0};
-  text_set(job->camera_location.file, "%s", path);
+  set_size(&defs->film, record.camera.width, record.camera.height);
+  set_location(job, path);
   return -1;
 }
 
 static void take_receipt_camera(Job *job, vlSceneDefs *defs) {
   const ReceiptCamera *camera = job->receipt_camera;
   defs->camera = camera->def;
-  defs->film.width = camera->size[0];
-  defs->film.height = camera->size[1];
+  set_size(&defs->film, camera->size[0], camera->size[1]);
   memcpy(defs->film.crop, camera->crop, sizeof camera->crop);
 }
 
@@ -305,12 +314,8 @@ int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const c
   *defs = *job->defs;
   defs->camera = *def;
   defs->camera.stereo = stereo;
-  defs->film.width = def->width;
-  defs->film.height = def->height;
-  const uint32_t whole[4] = {0, 0, def->width, def->height};
-  memcpy(defs->film.crop, whole, sizeof whole);
-  job->camera_location = (vlError){.line = 0};
-  text_set(job->camera_location.file, "%s", path);
+  set_size(&defs->film, def->width, def->height);
+  set_location(job, path);
   job->defs = defs;
   TRY(lens_override(NULL, defs, arguments));
   return fit_camera(job, defs, arguments);

@@ -235,10 +235,7 @@ static int check_completion(const OptionValue *v) {
 static void choose_completion(const char *path, const Arguments *arguments, bool model,
                               vlCompleteDef *complete) {
   const OptionValue *v = arguments->values;
-  if (v[RENDER_RESOLUTION].given) {
-    complete->width = (uint32_t)v[RENDER_RESOLUTION].integers[0];
-    complete->height = (uint32_t)v[RENDER_RESOLUTION].integers[1];
-  }
+  option_size(&v[RENDER_RESOLUTION], &complete->width, &complete->height);
   if (v[RENDER_ENVIRONMENT].given)
     choose_environment(v[RENDER_ENVIRONMENT].text, complete);
   options_put(render_options, v, VL_SETTING_COMPLETE, complete);
@@ -366,10 +363,8 @@ static int find_unlit(vlContext *context, const char *path, vlScene *scene,
   vlBuildDef build = defs->build;
   build.cancel = opening->cancel;
   TRY(report_error(&error, vl_world_build(scene, &build, &opening->metered, &error), path));
-  const OptionValue *resolution = &arguments->values[RENDER_RESOLUTION];
-  const uint32_t size[2] = {
-      resolution->given ? (uint32_t)resolution->integers[0] : camera.width,
-      resolution->given ? (uint32_t)resolution->integers[1] : camera.height};
+  uint32_t size[2] = {camera.width, camera.height};
+  option_size(&arguments->values[RENDER_RESOLUTION], &size[0], &size[1]);
   return exposure_find_unlit(context, scene, opening->metered, &camera, defs, size, unlit);
 }
 

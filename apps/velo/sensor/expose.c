@@ -275,7 +275,6 @@ static int make_frames(Expose *e) {
   uint32_t height = vl_image_height(e->image);
   vlImageDef def = vl_default_image_def(width, height, 1);
   def.type = VL_PIXEL_U16;
-  def.encoding = VL_ENCODING_LINEAR;
   vlResult result = vl_image_create(e->context, &def, &e->numbers);
   static const char *const name[1] = {"electrons"};
   def = vl_default_image_def(width, height, 1);

@@ -49,7 +49,6 @@ int verify_folder_frame(Verify *v, int which) {
     return report_usage("--frames: the name is too long");
   vlImageDef def = vl_default_image_def(v->size, v->size, 1);
   def.type = VL_PIXEL_U16;
-  def.encoding = VL_ENCODING_LINEAR;
   vlResult result = vl_image_create(v->context, &def, &image);
   if (result == VL_OK) {
     memcpy(vl_image_pixels(image), v->frames[which],

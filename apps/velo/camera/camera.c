@@ -16,7 +16,7 @@
 #include "velo/load.h"
 #include "velo/render.h"
 
-const Choice dialects[] = {{"dialects", 0}, {NULL, 0}};
+const Choice dialects[] = {{"dialects", 0}, {0}};
 
 bool camera_is_scene(const char *path) {
   return text_ends_with(path, ".pbrt") || text_ends_with(path, ".pbrt.gz");

@@ -284,7 +284,7 @@ static Option draw_options[] = {
 static const Section draw_sections[] = {{DRAW_OUT, "the drawing"},
                                         {DRAW_PARTS, "what is drawn"},
                                         {RENDER_SPP, "scene and camera"},
-                                        {0, NULL}};
+                                        {0}};
 
 const Command camera_draw_command = {
     .name = "camera draw",

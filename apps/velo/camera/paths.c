@@ -102,8 +102,8 @@ static int run_paths(const Arguments *arguments, vlContext *context) {
   return status;
 }
 
-static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}};
-static const Choice sort_choices[] = {{"contribution", 0}, {"sample", 1}, {NULL, 0}};
+static const Choice tracers[] = {{"tracers", 0}, {0}};
+static const Choice sort_choices[] = {{"contribution", 0}, {"sample", 1}, {0}};
 
 static Option paths_options[] = {
     {PATHS_PIXEL, "pixel", "the pixel; 0,0 is at the top left", OPTION_TEXT, "x,y"},
@@ -137,9 +137,8 @@ static Option paths_options[] = {
     STRICT_OPTIONS_OPTION,
     {0}};
 
-static const Section paths_sections[] = {{PATHS_PIXEL, "what is printed"},
-                                         {RENDER_SPP, "the image, as in `velo render`"},
-                                         {0, NULL}};
+static const Section paths_sections[] = {
+    {PATHS_PIXEL, "what is printed"}, {RENDER_SPP, "the image, as in `velo render`"}, {0}};
 
 const Command camera_paths_command = {
     .name = "camera paths",

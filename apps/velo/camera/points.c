@@ -15,7 +15,7 @@
 enum { POINTS_CAMERA, POINTS_ORIGIN, POINTS_FRAME, POINTS_SIZE, POINTS_STRICT };
 enum { BATCH = 4096 };
 
-static const Choice origin_choices[] = {{"corner", 0}, {"center", 1}, {NULL, 0}};
+static const Choice origin_choices[] = {{"corner", 0}, {"center", 1}, {0}};
 
 typedef struct Lines {
   FILE *file;

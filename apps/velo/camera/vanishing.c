@@ -403,7 +403,6 @@ const Command camera_vanishing_command = {
         "velo camera vanishing room.pbrt\n"
         "velo camera vanishing --from 10,200 900,210 --size 640x480",
     .options = vanishing_options,
-    .min_operands = 0,
     .max_operands = 2,
     .context = CONTEXT_ONE,
     .run = run_vanishing,

@@ -35,7 +35,7 @@ enum {
 static const double default_threshold = 0.05; /* pixels */
 static const double least_found = 0.9;        /* share of the corners that should be found */
 
-static const Choice target_choices[] = {{"chessboard", 0}, {"charuco", 1}, {NULL, 0}};
+static const Choice target_choices[] = {{"chessboard", 0}, {"charuco", 1}, {0}};
 
 /* Only projection is verified: lens, focus, motion and clipping planes are removed. */
 static void make_pinhole(vlCamera *c) {
@@ -277,7 +277,6 @@ const Command camera_verify_command = {
     .examples =
         "velo camera verify --camera camera.yaml\nvelo camera verify --camera room.pbrt",
     .options = verify_options,
-    .min_operands = 0,
     .max_operands = 0,
     .context = CONTEXT_ALL,
     .run = run_verify,

@@ -7,7 +7,7 @@
 #include "cli/macros.h"
 
 const Choice shell_choices[] = {
-    {"bash", SHELL_BASH}, {"zsh", SHELL_ZSH}, {"fish", SHELL_FISH}, {NULL, 0}};
+    {"bash", SHELL_BASH}, {"zsh", SHELL_ZSH}, {"fish", SHELL_FISH}, {0}};
 
 /* ---- what completes a value -------------------------------------------------------------- */
 

@@ -53,7 +53,7 @@ const ExitStatus exit_statuses[] = {
     {"128 + signal",
      "stopped by it: 129 SIGHUP, 130 Ctrl-C, 138 SIGUSR1, 140 SIGUSR2, 143 SIGTERM, 152 "
      "SIGXCPU"},
-    {NULL, NULL}};
+    {0}};
 
 void options_print_exit_statuses(void) {
   printf("exit codes:\n");

@@ -21,8 +21,7 @@ enum {
   DENOISE_VERBOSE
 };
 
-const Choice denoiser_choices[] = {
-    {"velo", VL_DENOISER_VELO}, {"oidn", VL_DENOISER_OIDN}, {NULL, 0}};
+const Choice denoiser_choices[] = {{"velo", VL_DENOISER_VELO}, {"oidn", VL_DENOISER_OIDN}, {0}};
 
 static int run_denoise(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;

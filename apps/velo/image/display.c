@@ -7,6 +7,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "image/image.h"
 
 /* CIE xy of red, green, blue and white of ITU-R BT.709. */
 static const double rec709[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
@@ -120,11 +121,10 @@ static void tell_shown(const vlImage *image) {
 
 static vlResult display_colors(vlContext *context, const vlImage *image, vlView view,
                                float exposure, vlImage **result) {
-  const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
-                      vl_image_find_channel(image, "B")};
+  int rgb[3];
   double m[9];
   tell_shown(image);
-  if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0 || !rec709_matrix(image, m))
+  if (!image_find_rgb(image, "", rgb) || !rec709_matrix(image, m))
     return vl_image_view(image, view, exposure, NULL, result);
   vlImage *converted = NULL;
   vlResult status = to_rec709(context, image, rgb, m, &converted);

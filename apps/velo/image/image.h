@@ -6,5 +6,8 @@
 
 /* Reads an image. Returns -1, or the exit code after reporting the error. */
 int image_load(vlContext *context, const char *path, vlImage **image);
+/* Finds the channels "R", "G", "B" behind a prefix such as "albedo."; -1: it is not there.
+ * Returns whether all are. */
+bool image_find_rgb(const vlImage *image, const char *prefix, int rgb[3]);
 
 #endif

@@ -15,6 +15,15 @@ int image_load(vlContext *context, const char *path, vlImage **image) {
   return report_error(&error, vl_image_read(context, path, image, &error), path);
 }
 
+bool image_find_rgb(const vlImage *image, const char *prefix, int rgb[3]) {
+  char name[32];
+  for (int c = 0; c < 3; c++) {
+    text_set(name, "%s%c", prefix, "RGB"[c]);
+    rgb[c] = vl_image_find_channel(image, name);
+  }
+  return rgb[0] >= 0 && rgb[1] >= 0 && rgb[2] >= 0;
+}
+
 /* The first bytes of formats. */
 static const struct {
   const char *bytes, *name;

@@ -18,8 +18,9 @@
 enum { PATH_SIZE = 4096, MAX_FRAMES = 1000000 };
 
 typedef struct Animation {
-  double from, fps;                  /* seconds, frames per second */
-  uint32_t count, first, last, step; /* frames of the animation; those that are rendered */
+  double from, fps; /* seconds, frames per second */
+  uint32_t count;   /* frames of the animation */
+  FrameRange range; /* those that are rendered */
   bool turns;
 } Animation;
 
@@ -46,24 +47,6 @@ static int read_animation(const Arguments *arguments, Animation *a) {
   if (count > MAX_FRAMES)
     return report_usage("--animate \"%s\": %.0f frames are too many", span->text, count);
   a->count = count >= 1 ? (uint32_t)count : 1;
-  return -1;
-}
-
-static int choose_frames(const Arguments *arguments, Animation *a) {
-  const OptionValue *range = &arguments->values[RENDER_FRAMES];
-  a->first = 0;
-  a->last = a->count - 1;
-  a->step = 1;
-  if (!range->given)
-    return -1;
-  if (!pattern_range(range->text, &a->first, &a->last, &a->step))
-    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0",
-                        range->text);
-  if (a->first >= a->count || (a->last != UINT32_MAX && a->last >= a->count))
-    return report_usage("--frames \"%s\": the animation has %u frames, numbered from 0",
-                        range->text, a->count);
-  if (a->last >= a->count)
-    a->last = a->count - 1;
   return -1;
 }
 
@@ -222,7 +205,7 @@ static bool needs_first(const Arguments *arguments, const Animation *a) {
   const OptionValue *v = arguments->values;
   bool tracer = v[RENDER_TRACER].given && v[RENDER_TRACER].integer != TRACER_AUTO;
   bool exposure = v[RENDER_EXPOSURE].given && strcmp(v[RENDER_EXPOSURE].text, "auto") != 0;
-  return (a->first > 0 || v[RENDER_SKIP_EXISTING].given || v[RENDER_DENOISE].given) &&
+  return (a->range.first > 0 || v[RENDER_SKIP_EXISTING].given || v[RENDER_DENOISE].given) &&
          !(tracer && exposure) && !v[RENDER_DRY_RUN].given;
 }
 
@@ -242,16 +225,17 @@ int animate_run(const Arguments *arguments, Videos *videos, AnimateRender *rende
   AnimateShared *shared = &x.shared;
   TRY(check(arguments));
   TRY(read_animation(arguments, a));
-  TRY(choose_frames(arguments, a));
+  TRY(pattern_choose(arguments->values[RENDER_FRAMES].text, a->count, "animation", &a->range));
   shared->still = a->turns;
   if (!a->turns) {
     shared->steady.between = between;
     shared->steady.between_user = &x;
   }
   if (videos)
-    videos_range(videos, a->first, (a->last - a->first) / a->step + 1, a->step);
+    videos_range(videos, &a->range);
   int status = needs_first(arguments, a) ? prepare(&x) : STATUS_OK;
-  for (uint64_t i = a->first; i <= a->last && status == STATUS_OK; i += a->step) {
+  for (uint64_t i = a->range.first; i <= a->range.last && status == STATUS_OK;
+       i += a->range.step) {
     if (videos)
       videos->number = (uint32_t)i;
     status = render_frame(&x, (uint32_t)i);
@@ -261,7 +245,7 @@ int animate_run(const Arguments *arguments, Videos *videos, AnimateRender *rende
       break;
   }
   if (status == STATUS_OK && arguments->values[RENDER_DRY_RUN].given)
-    report_note("%u frames", (a->last - a->first) / a->step + 1);
+    report_note("%u frames", pattern_count(&a->range));
   steady_free(&shared->steady);
   vl_world_destroy(shared->world);
   vl_scene_destroy(shared->scene);

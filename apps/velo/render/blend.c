@@ -22,7 +22,7 @@ enum { PATH_SIZE = 4096 };
 typedef struct BlendFrames {
   bool many; /* their numbers are in the names; else this is one image */
   bool given;
-  uint32_t first, last, step;
+  FrameRange range;
 } BlendFrames;
 
 /* A render by Blender. */
@@ -104,13 +104,12 @@ static int take_frames(Blend *blend) {
   const OptionValue *frames = &blend->arguments->values[RENDER_FRAMES];
   BlendFrames *f = &blend->frames;
   f->given = frames->given;
-  f->step = 1;
-  if (frames->given && !pattern_range(frames->text, &f->first, &f->last, &f->step))
-    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0",
-                        frames->text);
+  f->range.step = 1;
+  if (frames->given)
+    TRY(pattern_range(frames->text, &f->range));
   for (int i = 0; i < blend->own.text_count; i++)
     f->many |= strchr(blend->own.texts[i], '%') != NULL;
-  if (f->many || !frames->given || f->first == f->last)
+  if (f->many || !frames->given || f->range.first == f->range.last)
     return -1;
   return report_usage(
       "--frames %s are several images: give a name with the frame's number, "
@@ -196,18 +195,18 @@ static int render_frames(Blend *blend) {
   const Blender *b = &blend->blender;
   const uint32_t end = b->last > 0 ? (uint32_t)b->last : 0;
   if (!f->given)
-    f->first = f->many && b->first > 0 ? (uint32_t)b->first : 0;
+    f->range.first = f->many && b->first > 0 ? (uint32_t)b->first : 0;
   if (!f->many) /* without --frames it is the file's own frame, whatever its number */
-    f->last = f->first;
-  else if (!f->given || f->last == UINT32_MAX)
-    f->last = end;
-  if (f->last < f->first)
+    f->range.last = f->range.first;
+  else if (!f->given || f->range.last == UINT32_MAX)
+    f->range.last = end;
+  if (f->range.last < f->range.first)
     return report_usage("--frames: the scene's last frame is %u", end);
-  blend->shown = progress_frames((f->last - f->first) / f->step + 1);
+  blend->shown = progress_frames(pattern_count(&f->range));
   blend->blender.shown = &blend->shown;
   int status = -1;
   for (uint32_t k = 0; k < blend->shown.count && status < 0; k++) {
-    const uint32_t frame = f->first + k * f->step;
+    const uint32_t frame = f->range.first + k * f->range.step;
     if (is_there(blend, frame))
       blend->shown.done++;
     else

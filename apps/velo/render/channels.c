@@ -18,7 +18,7 @@ const Choice channel_mode_choices[] = {{"centre", VL_CHANNEL_MODE_CENTRE},
                                        {"center", VL_CHANNEL_MODE_CENTRE},
                                        {"nearest", VL_CHANNEL_MODE_NEAREST},
                                        {"coverage", VL_CHANNEL_MODE_COVERAGE},
-                                       {NULL, 0}};
+                                       {0}};
 
 /* ---- which ------------------------------------------------------------------------------- */
 

@@ -8,6 +8,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "image/image.h"
 #include "velo/channels.h"
 #include "velo/edit.h"
 #include "velo/material.h"
@@ -38,10 +39,9 @@ static double luminance(const vlImage *image, const int rgb[3], uint32_t x, uint
 }
 
 float exposure_meter(const vlImage *image) {
-  const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
-                      vl_image_find_channel(image, "B")};
+  int rgb[3];
   int alpha = vl_image_find_channel(image, "A");
-  if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0)
+  if (!image_find_rgb(image, "", rgb))
     return 0;
   uint32_t width = vl_image_width(image), height = vl_image_height(image);
   double total = 0, logs = 0, weights = 0;
@@ -164,11 +164,9 @@ static size_t gather(ModelLight *light, const vlScene *scene, Counted counted,
   size_t seen = 0;
   light->count = light->all_count = 0;
   const vlImage *image = small->color;
-  const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
-                      vl_image_find_channel(image, "B")},
-            own[3] = {vl_image_find_channel(small->albedos, "albedo.R"),
-                      vl_image_find_channel(small->albedos, "albedo.G"),
-                      vl_image_find_channel(small->albedos, "albedo.B")};
+  int rgb[3], own[3];
+  image_find_rgb(image, "", rgb);
+  image_find_rgb(small->albedos, "albedo.", own);
   int alpha = vl_image_find_channel(image, "A");
   const uint32_t *id = vl_image_const_pixels(small->ids);
   for (uint32_t y = 0; y < vl_image_height(image); y++)

@@ -30,7 +30,7 @@ bool frames_wanted(const Arguments *arguments, const Job *job) {
 int frames_check(const Arguments *arguments, Outputs *outputs) {
   const OptionValue *v = arguments->values;
   bool trajectory = v[RENDER_TRAJECTORY].given;
-  uint32_t unused;
+  FrameRange unused;
   outputs->patterns = trajectory || v[RENDER_STEREO].given;
   if (v[RENDER_RIG].given && !trajectory)
     return report_usage("--rig FILE: the poses are missing; give --trajectory");
@@ -42,10 +42,8 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
     return report_usage(
         trajectory ? "--frame goes with --camera; a trajectory's are chosen by --frames"
                    : "--frame NAME says which camera of --camera FILE");
-  if (v[RENDER_FRAMES].given &&
-      !pattern_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
-    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0",
-                        v[RENDER_FRAMES].text);
+  if (v[RENDER_FRAMES].given)
+    TRY(pattern_range(v[RENDER_FRAMES].text, &unused));
   if (trajectory && (v[RENDER_FLOW_CAMERA].given || v[RENDER_FLOW_CAMERA_BEFORE].given))
     return report_usage("--flow-camera is of one image: it does not go with --trajectory");
   if (trajectory && (v[RENDER_FILM].given || v[RENDER_CONTINUE].given))
@@ -143,31 +141,16 @@ static int add_rig(Frames *frames, const Job *job, const Arguments *arguments,
 
 /* --shard I/N: every N-th of these frames. */
 static int choose_shard(Frames *frames, const Arguments *arguments) {
-  uint32_t index, count, all = (frames->last - frames->first) / frames->step + 1;
+  FrameRange *range = &frames->range;
+  uint32_t index, count, all = pattern_count(range);
   if (!arguments->values[RENDER_SHARD].given)
     return -1;
   shard_read(arguments, &index, &count);
   if (count > all)
     return report_usage("--shard %u/%u: there are %u frames", index, count, all);
-  frames->first += (index - 1) * frames->step;
-  frames->step *= count; /* at most last + step, no overflow since count <= all */
+  range->first += (index - 1) * range->step;
+  range->step *= count; /* at most last + step, no overflow since count <= all */
   return -1;
-}
-
-static int choose_frames(Frames *frames, const Arguments *arguments) {
-  const OptionValue *range = &arguments->values[RENDER_FRAMES];
-  uint32_t count = vl_trajectory_frames(frames->trajectory);
-  frames->first = 0;
-  frames->last = count - 1;
-  frames->step = 1;
-  if (range->given)
-    pattern_range(range->text, &frames->first, &frames->last, &frames->step);
-  if (frames->first >= count || (frames->last != UINT32_MAX && frames->last >= count))
-    return report_usage("--frames \"%s\": the trajectory has %u frames, numbered from 0",
-                        range->text, count);
-  if (frames->last >= count)
-    frames->last = count - 1;
-  return choose_shard(frames, arguments);
 }
 
 int frames_load(Frames *frames, const Job *job, const Arguments *arguments) {
@@ -179,7 +162,7 @@ int frames_load(Frames *frames, const Job *job, const Arguments *arguments) {
        both = stereo && def->stereo_eye == VL_EYE_BOTH;
   memset(frames, 0, sizeof *frames);
   frames->films = films;
-  frames->step = 1;
+  frames->range.step = 1;
   frames->skip_existing = v[RENDER_SKIP_EXISTING].given;
   frames->views = both ? 2 : 1;
   for (int i = 0; i < 2; i++)
@@ -191,8 +174,11 @@ int frames_load(Frames *frames, const Job *job, const Arguments *arguments) {
     TRY(load_file(job->context, path, arguments, &frames->trajectory));
   if (v[RENDER_RIG].given)
     TRY(load_file(job->context, rig, arguments, &frames->rig));
-  if (frames->trajectory)
-    TRY(choose_frames(frames, arguments));
+  if (frames->trajectory) {
+    const uint32_t poses = vl_trajectory_frames(frames->trajectory);
+    TRY(pattern_choose(v[RENDER_FRAMES].text, poses, "trajectory", &frames->range));
+    TRY(choose_shard(frames, arguments));
+  }
   uint32_t count = frames->rig ? vl_trajectory_frames(frames->rig)
                                : vl_trajectory_cameras(frames->trajectory);
   frames->cameras = calloc(count ? count : 1, sizeof *frames->cameras);
@@ -220,7 +206,7 @@ void frames_free(Frames *frames) {
 /* ---- one after the other ----------------------------------------------------------------- */
 
 uint32_t frames_count(const Frames *frames) {
-  uint32_t poses = (frames->last - frames->first) / frames->step + 1;
+  uint32_t poses = pattern_count(&frames->range);
   return frames->rig ? poses * frames->camera_count : poses;
 }
 
@@ -238,7 +224,8 @@ static Frame make_frame(const Frames *frames, uint32_t number, uint32_t which) {
 
 Frame frames_at(const Frames *frames, uint32_t index) {
   uint32_t cameras = frames->rig ? frames->camera_count : 1;
-  return make_frame(frames, frames->first + index / cameras * frames->step, index % cameras);
+  return make_frame(frames, frames->range.first + index / cameras * frames->range.step,
+                    index % cameras);
 }
 
 Frame frames_first(const Frames *frames) {

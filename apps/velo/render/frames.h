@@ -9,6 +9,7 @@
 #include "render/film_keeper.h"
 #include "render/job.h"
 #include "render/outputs.h"
+#include "render/pattern.h"
 #include "velo/trajectory.h"
 
 /* A camera relative to a frame, before the frame's pose is applied. */
@@ -27,9 +28,9 @@ typedef struct Frames {
   vlTrajectory *trajectory, *rig; /* null: none */
   FrameCamera *cameras;
   uint32_t camera_count;
-  uint32_t first, last, step; /* range of pose numbers */
-  bool skip_existing;         /* skip frames whose files all exist */
-  int views;                  /* 1 or 2 */
+  FrameRange range;   /* of pose numbers */
+  bool skip_existing; /* skip frames whose files all exist */
+  int views;          /* 1 or 2 */
   vlEye eyes[2];
   const char *view_names[2];
   const FilmPlan *films; /* film settings for two eyes; null: no film files */

@@ -18,36 +18,34 @@
 #include "velo/sampler.h"
 #include "velo/tracer.h"
 
-const Choice sensor_choices[] = {{"sensors", 0}, {NULL, 0}};
+const Choice sensor_choices[] = {{"sensors", 0}, {0}};
 const Choice light_sampler_choices[] = {{"bvh", VL_LIGHT_SAMPLER_BVH},
                                         {"power", VL_LIGHT_SAMPLER_POWER},
                                         {"uniform", VL_LIGHT_SAMPLER_UNIFORM},
-                                        {NULL, 0}};
-const Choice filter_samples_choices[] = {{"own", 0}, {"shared", 1}, {NULL, 0}};
-const Choice regularize_choices[] = {{"off", 0}, {"on", 1}, {NULL, 0}};
-const Choice color_choices[] = {
-    {"spectral", VL_COLOR_SPECTRAL}, {"rgb", VL_COLOR_RGB}, {NULL, 0}};
+                                        {0}};
+const Choice filter_samples_choices[] = {{"own", 0}, {"shared", 1}, {0}};
+const Choice regularize_choices[] = {{"off", 0}, {"on", 1}, {0}};
+const Choice color_choices[] = {{"spectral", VL_COLOR_SPECTRAL}, {"rgb", VL_COLOR_RGB}, {0}};
 const Choice view_choices[] = {{"standard", VL_VIEW_STANDARD},
                                {"neutral", VL_VIEW_KHRONOS_NEUTRAL},
                                {"agx", VL_VIEW_AGX},
                                {"raw", VL_VIEW_RAW},
-                               {NULL, 0}};
+                               {0}};
 const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
                                  {"parallel", VL_STEREO_PARALLEL},
                                  {"off-axis", VL_STEREO_OFF_AXIS},
                                  {"toe-in", VL_STEREO_TOE_IN},
                                  {"omnidirectional", VL_STEREO_OMNIDIRECTIONAL},
                                  {"ods", VL_STEREO_OMNIDIRECTIONAL},
-                                 {NULL, 0}};
+                                 {0}};
 const Choice eye_choices[] = {
-    {"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
-const Choice bits_choices[] = {
-    {"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {NULL, 0}};
+    {"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {0}};
+const Choice bits_choices[] = {{"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {0}};
 const Choice accelerator_choices[] = {
-    {"embree", VL_ACCELERATOR_EMBREE}, {"bvh", VL_ACCELERATOR_BVH}, {NULL, 0}};
-const Choice shard_choices[] = {{"samples", 0}, {"tiles", 1}, {NULL, 0}};
+    {"embree", VL_ACCELERATOR_EMBREE}, {"bvh", VL_ACCELERATOR_BVH}, {0}};
+const Choice shard_choices[] = {{"samples", 0}, {"tiles", 1}, {0}};
 const Choice isa_choices[] = {
-    {"base", VL_ISA_BASE}, {"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
+    {"base", VL_ISA_BASE}, {"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {0}};
 
 /* ---- overrides --------------------------------------------------------------------------- */
 

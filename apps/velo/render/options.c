@@ -6,9 +6,8 @@
 #include "render/lens_options.h"
 
 /* The first is a family of velo/schema.h; others are further names. */
-static const Choice tracers[] = {{"tracers", 0}, {"auto", TRACER_AUTO}, {NULL, 0}},
-                    samplers[] = {{"samplers", 0}, {NULL, 0}},
-                    filters[] = {{"filters", 0}, {NULL, 0}};
+static const Choice tracers[] = {{"tracers", 0}, {"auto", TRACER_AUTO}, {0}},
+                    samplers[] = {{"samplers", 0}, {0}}, filters[] = {{"filters", 0}, {0}};
 
 Option render_options[] = {
     {RENDER_OUTPUT, "output",
@@ -367,4 +366,4 @@ const Section render_sections[] = {
     {RENDER_CHANNELS, "ground truth beside the image (.exr)"},
     {RENDER_THREADS, "threads, processor, memory"},
     {RENDER_PERMISSIVE, "reading the scene, and messages"},
-    {0, NULL}};
+    {0}};

@@ -104,7 +104,7 @@ bool pattern_expand(const char *pattern, const PatternValues *v, char *path, siz
   return true;
 }
 
-bool pattern_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step) {
+static bool read_range(const char *text, FrameRange *range) {
   char *end;
   const char *at = text;
   unsigned long long numbers[3] = {0, UINT32_MAX, 1};
@@ -123,8 +123,28 @@ bool pattern_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *
     numbers[2] = strtoull(end + 1, &end, 10);
   if (*end || numbers[0] > UINT32_MAX || numbers[1] > UINT32_MAX || numbers[2] > UINT32_MAX)
     return false;
-  *first = (uint32_t)numbers[0];
-  *last = (uint32_t)numbers[1];
-  *step = (uint32_t)numbers[2];
-  return *first <= *last && *step > 0;
+  *range = (FrameRange){(uint32_t)numbers[0], (uint32_t)numbers[1], (uint32_t)numbers[2]};
+  return range->first <= range->last && range->step > 0;
+}
+
+int pattern_range(const char *text, FrameRange *range) {
+  if (read_range(text, range))
+    return -1;
+  return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", text);
+}
+
+int pattern_choose(const char *text, uint32_t count, const char *of, FrameRange *range) {
+  *range = (FrameRange){0, count - 1, 1};
+  if (text)
+    TRY(pattern_range(text, range));
+  if (range->first >= count || (range->last != UINT32_MAX && range->last >= count))
+    return report_usage("--frames \"%s\": the %s has %u frames, numbered from 0", text, of,
+                        count);
+  if (range->last >= count)
+    range->last = count - 1;
+  return -1;
+}
+
+uint32_t pattern_count(const FrameRange *range) {
+  return (range->last - range->first) / range->step + 1;
 }

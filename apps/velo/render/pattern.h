@@ -24,7 +24,17 @@ bool pattern_has(const char *pattern, char kind);
 /* False: too long. */
 bool pattern_expand(const char *pattern, const PatternValues *values, char *path, size_t size);
 
-/* Parses the value of --frames: "3", "0-99", "10-" (last: UINT32_MAX) or "0-100:10". */
-bool pattern_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step);
+/* Numbers of frames: first, first + step, ... up to last. */
+typedef struct FrameRange {
+  uint32_t first, last, step;
+} FrameRange;
+/* Reads the value of --frames: "3", "0-99", "10-" (last: UINT32_MAX) or "0-100:10". Returns -1,
+ * or the exit code after reporting the error. */
+int pattern_range(const char *text, FrameRange *range);
+/* The frames of --frames (null: all) among `count`. of: what has them, for the message. Returns
+ * as pattern_range. */
+int pattern_choose(const char *text, uint32_t count, const char *of, FrameRange *range);
+/* The number of frames. */
+uint32_t pattern_count(const FrameRange *range);
 
 #endif

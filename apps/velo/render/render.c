@@ -393,7 +393,7 @@ static int load_frames(Render *render, const Arguments *arguments) {
   const Frames *frames = &render->frames;
   const Outputs *denoised = &render->denoised.outputs;
   if (render->videos)
-    videos_range(render->videos, frames->first, frames_count(frames), frames->step);
+    videos_range(render->videos, &frames->range);
   TRY(frames_check_names(frames, &render->outputs));
   TRY(frames_check_names(frames, denoised));
   TRY(check_metering(&render->outputs, arguments));

@@ -145,13 +145,11 @@ static void choose_environment(const char *text, vlCompleteDef *def) {
     def->path = text;
 }
 
-const Choice framing_choices[] = {{"auto", VL_FRAMING_AUTO},
-                                  {"corner", VL_FRAMING_CORNER},
-                                  {"front", VL_FRAMING_FRONT},
-                                  {NULL, 0}};
+const Choice framing_choices[] = {
+    {"auto", VL_FRAMING_AUTO}, {"corner", VL_FRAMING_CORNER}, {"front", VL_FRAMING_FRONT}, {0}};
 const Choice walls_choices[] = {
-    {"hide", WALLS_HIDE}, {"keep", WALLS_KEEP}, {"both-sides", WALLS_BOTH_SIDES}, {NULL, 0}};
-const Choice up_choices[] = {{"x", 0}, {"y", 1}, {"z", 2}, {NULL, 0}};
+    {"hide", WALLS_HIDE}, {"keep", WALLS_KEEP}, {"both-sides", WALLS_BOTH_SIDES}, {0}};
+const Choice up_choices[] = {{"x", 0}, {"y", 1}, {"z", 2}, {0}};
 
 /* The front is +z, for z upwards -y, as modellers have it. */
 void scene_choose_up(int axis, vlCompleteDef *def) {

@@ -137,10 +137,10 @@ int videos_plan(Videos *videos, const Arguments *arguments, Arguments *frames) {
   return -1;
 }
 
-void videos_range(Videos *videos, uint32_t first, uint32_t count, uint32_t step) {
-  videos->shown = progress_frames(count);
-  videos->first = videos->number = first;
-  videos->step = step;
+void videos_range(Videos *videos, const FrameRange *range) {
+  videos->shown = progress_frames(pattern_count(range));
+  videos->range = *range;
+  videos->number = range->first;
   videos->ranged = true;
 }
 
@@ -148,7 +148,7 @@ void videos_range(Videos *videos, uint32_t first, uint32_t count, uint32_t step)
 
 static bool frame_path(void *user, uint32_t i, char *path, size_t size) {
   const Videos *videos = user;
-  const PatternValues values = {.number = videos->first + i * videos->step};
+  const PatternValues values = {.number = videos->range.first + i * videos->range.step};
   return pattern_expand(videos->frames, &values, path, size);
 }
 

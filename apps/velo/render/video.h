@@ -7,6 +7,7 @@
 
 #include "cli/options.h"
 #include "render/outputs.h"
+#include "render/pattern.h"
 #include "render/progress.h"
 
 typedef struct Videos {
@@ -17,9 +18,9 @@ typedef struct Videos {
   double fps;           /* frames per second */
   const char *programs; /* the folders in which ffmpeg is looked for */
   FrameProgress shown;
-  uint32_t first, step, number; /* of the frames: the first, every which; the one that is
-                                   rendered */
-  bool ranged;                  /* these are known: the frames were begun */
+  FrameRange range; /* of the frames */
+  uint32_t number;  /* of the one that is rendered */
+  bool ranged;      /* these are known: the frames were begun */
 } Videos;
 
 /* Whether a name of -o is that of a video. */
@@ -27,8 +28,8 @@ bool videos_wanted(const Arguments *arguments);
 /* Takes the videos out of the command line: *frames is the one that renders the frames. Finds
  * ffmpeg. Returns -1, or the exit code after reporting the error. */
 int videos_plan(Videos *videos, const Arguments *arguments, Arguments *frames);
-/* The frames of this render: `count` numbers from `first` on. */
-void videos_range(Videos *videos, uint32_t first, uint32_t count, uint32_t step);
+/* The frames of this render. */
+void videos_range(Videos *videos, const FrameRange *range);
 /* Makes the videos. status: exit code of the render of the frames. Returns the exit code. */
 int videos_finish(Videos *videos, const Arguments *arguments, int status);
 

@@ -234,7 +234,6 @@ const Command scene_kinds_command = {
         "table of parameters for each kind of that family.",
     .examples = "velo scene kinds\nvelo scene kinds lights",
     .options = options,
-    .min_operands = 0,
     .max_operands = 1,
     .run = run,
 };

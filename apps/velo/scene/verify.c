@@ -180,9 +180,8 @@ static Option options[] = {
     STRICT_OPTIONS_OPTION,
     {0}};
 
-static const Section sections[] = {{VERIFY_RAYS, "the check"},
-                                   {RENDER_RESOLUTION, "the image, as in `velo render`"},
-                                   {0, NULL}};
+static const Section sections[] = {
+    {VERIFY_RAYS, "the check"}, {RENDER_RESOLUTION, "the image, as in `velo render`"}, {0}};
 
 const Command scene_verify_command = {
     .name = "scene verify",

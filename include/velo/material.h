@@ -9,27 +9,35 @@
 extern "C" {
 #endif
 
-/** X(kind, name) for each kind of material. velo/schema.h describes the kinds and their
- * parameters. */
+/** X(kind, name, row, compile) for each kind of material. velo/schema.h describes the kinds and
+ * their parameters. compile: the function of the library that chooses the BSDF. */
 #define VL_MATERIAL_KINDS(X)                                                                 \
-  X(VL_MATERIAL_DIFFUSE, diffuse)                                                            \
-  X(VL_MATERIAL_COATED_DIFFUSE, coated_diffuse)                                              \
-  X(VL_MATERIAL_CONDUCTOR, conductor)                                                        \
-  X(VL_MATERIAL_DIELECTRIC, dielectric)                                                      \
-  X(VL_MATERIAL_THIN_DIELECTRIC, thin_dielectric)                                            \
-  X(VL_MATERIAL_MIX, mix)                                                                    \
-  X(VL_MATERIAL_PRINCIPLED,                                                                  \
-    principled) /* layered: glTF's metallic-roughness with its extensions */                 \
-  X(VL_MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission)                                  \
-  X(VL_MATERIAL_COATED_CONDUCTOR, coated_conductor)                                          \
-  X(VL_MATERIAL_HAIR, hair)                                                                  \
-  X(VL_MATERIAL_MEASURED, measured) /* a BRDF from a file */                                 \
-  X(VL_MATERIAL_SUBSURFACE,                                                                  \
-    subsurface) /* a solid that scatters light inside: VL_TRACER_VOLPATH only; else glass */ \
-  X(VL_MATERIAL_INTERFACE, interface)
+  X(VL_MATERIAL_DIFFUSE, diffuse, vl_material_row_diffuse, vl_compile_diffuse_material)      \
+  X(VL_MATERIAL_COATED_DIFFUSE, coated_diffuse, vl_material_row_coated_diffuse,              \
+    vl_compile_coated_diffuse_material)                                                      \
+  X(VL_MATERIAL_CONDUCTOR, conductor, vl_material_row_conductor,                             \
+    vl_compile_conductor_material)                                                           \
+  X(VL_MATERIAL_DIELECTRIC, dielectric, vl_material_row_dielectric,                          \
+    vl_compile_dielectric_material)                                                          \
+  X(VL_MATERIAL_THIN_DIELECTRIC, thin_dielectric, vl_material_row_thin_dielectric,           \
+    vl_compile_thin_dielectric_material)                                                     \
+  X(VL_MATERIAL_MIX, mix, vl_material_row_mix, vl_compile_mix_material)                      \
+  X(VL_MATERIAL_PRINCIPLED, principled, vl_material_row_principled,                          \
+    vl_compile_principled_material) /* layers: glTF's material with its extensions */        \
+  X(VL_MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission,                                  \
+    vl_material_row_diffuse_transmission, vl_compile_diffuse_transmission_material)          \
+  X(VL_MATERIAL_COATED_CONDUCTOR, coated_conductor, vl_material_row_coated_conductor,        \
+    vl_compile_coated_conductor_material)                                                    \
+  X(VL_MATERIAL_HAIR, hair, vl_material_row_hair, vl_compile_hair_material)                  \
+  X(VL_MATERIAL_MEASURED, measured, vl_material_row_measured,                                \
+    vl_compile_measured_material) /* a BRDF from a file */                                   \
+  X(VL_MATERIAL_SUBSURFACE, subsurface, vl_material_row_subsurface,                          \
+    vl_compile_subsurface_material) /* a solid that scatters light inside: VL_TRACER_VOLPATH \
+                                       only; else glass */                                   \
+  X(VL_MATERIAL_INTERFACE, interface, vl_material_row_interface, vl_compile_interface_material)
 /** The kinds of materials: VL_MATERIAL_DIFFUSE and so on, from VL_MATERIAL_KINDS. */
 typedef enum vlMaterialKind {
-#define VL_KIND(kind, name) kind,
+#define VL_KIND(kind, ...) kind,
   VL_MATERIAL_KINDS(VL_KIND)
 #undef VL_KIND
 } vlMaterialKind;

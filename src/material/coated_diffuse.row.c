@@ -5,7 +5,9 @@ const vlKindRow vl_material_row_coated_diffuse = {
     .name = "coateddiffuse",
     .description = "a dielectric coat over a diffuse base",
     .traits = VL_MATERIAL_OPAQUE | VL_MATERIAL_ROUGH,
-    VL_PARAMETERS(REFLECTANCE(0.5, "reflectance of the base"), ROUGHNESS,
+    VL_PARAMETERS(SPECTRUM("reflectance", reflectance, "reflectance of the base",
+                           VL_DEFAULT(0.5), ALBEDO),
+                  ROUGHNESS,
                   SPECTRUM("eta", eta, "index of refraction of the coat", ETA_DIELECTRIC),
                   LAYERS, BUMPS),
 };

@@ -353,10 +353,10 @@ vlResult vl_compile_interface_material(const vlMaterialBuild *b) {
 
 static vlResult compile_kind(const vlMaterialBuild *b) {
   switch (b->def->kind) {
-#define COMPILE(kind, row, compile) \
-  case kind:                        \
+#define COMPILE(kind, name, row, compile) \
+  case kind:                              \
     return compile(b);
-    VL_MATERIAL_FUNCTIONS(COMPILE)
+    VL_MATERIAL_KINDS(COMPILE)
 #undef COMPILE
   }
   return VL_ERROR_ARGUMENT;

@@ -19,8 +19,8 @@ typedef struct vlMaterialBuild {
 } vlMaterialBuild;
 
 typedef vlResult vlCompileMaterial(const vlMaterialBuild *b);
-#define VL_DECLARE_COMPILE(kind, row, compile) vlCompileMaterial compile;
-VL_MATERIAL_FUNCTIONS(VL_DECLARE_COMPILE)
+#define VL_DECLARE_COMPILE(kind, name, row, compile) vlCompileMaterial compile;
+VL_MATERIAL_KINDS(VL_DECLARE_COMPILE)
 #undef VL_DECLARE_COMPILE
 
 /* Compiles an input into a texture node. */

@@ -5,5 +5,7 @@ const vlKindRow vl_material_row_diffuse = {
     .name = "diffuse",
     .description = "Lambertian reflection",
     .traits = VL_MATERIAL_OPAQUE,
-    VL_PARAMETERS(REFLECTANCE(0.5, "fraction of light that is reflected"), BUMPS),
+    VL_PARAMETERS(SPECTRUM("reflectance", reflectance, "fraction of light that is reflected",
+                           VL_DEFAULT(0.5), ALBEDO),
+                  BUMPS),
 };

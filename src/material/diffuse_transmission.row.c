@@ -5,7 +5,8 @@
 const vlKindRow vl_material_row_diffuse_transmission = {
     .name = "diffusetransmission",
     .description = "Lambertian reflection and transmission, as of leaves and paper",
-    VL_PARAMETERS(REFLECTANCE(0.25, "fraction of light that is reflected"),
+    VL_PARAMETERS(SPECTRUM("reflectance", reflectance, "fraction of light that is reflected",
+                           VL_DEFAULT(0.25), ALBEDO),
                   SPECTRUM("transmittance", transmittance,
                            "fraction of light that is transmitted", VL_DEFAULT(0.25), ALBEDO),
                   FLOAT("scale", scale, "factor on reflectance and transmittance",

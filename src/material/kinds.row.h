@@ -1,29 +1,8 @@
-/* material/kinds.row.h: what each kind of material and each kind of BSDF has, by its full
- * names. A material consists of a row (the file NAME.row.c) and a compile function, which
- * chooses the BSDF; a BSDF of a function that evaluates its parameters for a run of lanes, and
- * of two kernels (NAME.hot.c). */
+/* material/kinds.row.h: what each kind of BSDF has, by its full names: a function that
+ * evaluates its parameters for a run of lanes, and two kernels (NAME.hot.c). The compile
+ * function of a material (VL_MATERIAL_KINDS) chooses the BSDF. */
 #ifndef MATERIAL_KINDS_ROW_H
 #define MATERIAL_KINDS_ROW_H
-
-/* X(kind, row, compile) */
-#define VL_MATERIAL_FUNCTIONS(X)                                                        \
-  X(VL_MATERIAL_DIFFUSE, vl_material_row_diffuse, vl_compile_diffuse_material)          \
-  X(VL_MATERIAL_COATED_DIFFUSE, vl_material_row_coated_diffuse,                         \
-    vl_compile_coated_diffuse_material)                                                 \
-  X(VL_MATERIAL_CONDUCTOR, vl_material_row_conductor, vl_compile_conductor_material)    \
-  X(VL_MATERIAL_DIELECTRIC, vl_material_row_dielectric, vl_compile_dielectric_material) \
-  X(VL_MATERIAL_THIN_DIELECTRIC, vl_material_row_thin_dielectric,                       \
-    vl_compile_thin_dielectric_material)                                                \
-  X(VL_MATERIAL_MIX, vl_material_row_mix, vl_compile_mix_material)                      \
-  X(VL_MATERIAL_PRINCIPLED, vl_material_row_principled, vl_compile_principled_material) \
-  X(VL_MATERIAL_DIFFUSE_TRANSMISSION, vl_material_row_diffuse_transmission,             \
-    vl_compile_diffuse_transmission_material)                                           \
-  X(VL_MATERIAL_COATED_CONDUCTOR, vl_material_row_coated_conductor,                     \
-    vl_compile_coated_conductor_material)                                               \
-  X(VL_MATERIAL_HAIR, vl_material_row_hair, vl_compile_hair_material)                   \
-  X(VL_MATERIAL_MEASURED, vl_material_row_measured, vl_compile_measured_material)       \
-  X(VL_MATERIAL_INTERFACE, vl_material_row_interface, vl_compile_interface_material)    \
-  X(VL_MATERIAL_SUBSURFACE, vl_material_row_subsurface, vl_compile_subsurface_material)
 
 /* X(kind, name, parameters, eval, sample)
  *

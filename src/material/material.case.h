@@ -28,7 +28,7 @@ typedef struct MaterialCase {
 } MaterialCase;
 
 /* Declares the case of each kind, which is in the file of the kind: material/NAME.case.c. */
-#define MATERIAL_CASE(kind, name) extern const MaterialCase name##_material;
+#define MATERIAL_CASE(kind, name, ...) extern const MaterialCase name##_material;
 VL_MATERIAL_KINDS(MATERIAL_CASE)
 #undef MATERIAL_CASE
 

@@ -3,10 +3,11 @@
 #include "material/material.row.h"
 
 #include "base/cookie.h"
-#include "material/kinds.row.h"
 
-VL_MATERIAL_FUNCTIONS(VL_DECLARE_ROW)
-static const vlKindRow *const rows[] = {VL_MATERIAL_FUNCTIONS(VL_LIST_ROW)};
+#define DECLARE(kind, name, row, compile) extern const vlKindRow row;
+VL_MATERIAL_KINDS(DECLARE)
+#define ROW(kind, name, row, compile) [kind] = &row,
+static const vlKindRow *const rows[] = {VL_MATERIAL_KINDS(ROW)};
 const vlKindFamily vl_material_family =
     VL_KIND_FAMILY(rows, VL_MATERIAL_KINDS, "materials", "material", "Material");
 

@@ -29,8 +29,6 @@
       FILE_NAME("normalmap", normal_map,                                                \
                 "normal map: an image of tangent-space normals, linear", .flags = (own))
 #define BUMPS BUMPS_(0)
-#define REFLECTANCE(value, text) \
-  SPECTRUM("reflectance", reflectance, text, VL_DEFAULT(value), ALBEDO)
 #define REMAP                                                                            \
   BOOL("remaproughness", remap_roughness,                                                \
        "true: alpha is the square root of the roughness; false: alpha is the roughness", \

@@ -10,7 +10,7 @@
 #include "unit.h"
 #include "velo/schema.h"
 
-#define MATERIAL_CASE(kind, name) &name##_material,
+#define MATERIAL_CASE(kind, name, ...) &name##_material,
 static const MaterialCase *const material_cases[] = {VL_MATERIAL_KINDS(MATERIAL_CASE)};
 
 /* ---- asking ------------------------------------------------------------------------------ */

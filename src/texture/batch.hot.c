@@ -167,55 +167,7 @@ static void look_up(const vlTextureRun *r, const vlTextureNode *node, const vlMi
   }
 }
 
-/* The shares of the second input, as a row of the stack. */
-static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
-  float *share = vl_texture_row(r);
-  vl_texture_float(r, node->amount, share);
-  return share;
-}
-static inline __attribute__((always_inline)) const float *point_share(vlTextureRun *r,
-                                                                      const vlTextureNode *node,
-                                                                      PointFloat *f) {
-  float *share = vl_texture_row(r);
-  each_lane(r, node, f, share);
-  return share;
-}
-
-/* A case of the switches below, by what the function of the kind gives (VL_TEXTURE_KINDS). */
-#define CASE(kind, name, row, gives, function) gives(kind, function)
-#define OTHER(kind, function)
-
 /* ---- floats ------------------------------------------------------------------------------ */
-
-/* Mixes the two inputs of a node by the share of the second. */
-static void mix_floats(vlTextureRun *r, const vlTextureNode *node, const float *share,
-                       float *out) {
-  float *b = vl_texture_row(r);
-  vl_texture_float(r, node->a, out);
-  vl_texture_float(r, node->b, b);
-  for (uint32_t i = r->first; i < r->last; i++)
-    out[i] = vl_node_mix(out[i], b[i], share[i]);
-}
-
-static void scale_floats(vlTextureRun *r, const vlTextureNode *node, float *out) {
-  float *w = vl_texture_row(r);
-  vl_texture_float(r, node->a, out);
-  vl_texture_float(r, node->amount, w);
-  for (uint32_t i = r->first; i < r->last; i++)
-    out[i] = vl_node_scale(out[i], w[i]);
-}
-
-static void bilerp_floats(vlTextureRun *r, const vlTextureNode *node, float *out) {
-  float *w[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)},
-        *x = vl_texture_row(r);
-  bilerp_weights(r, node, w);
-  const int32_t inputs[4] = {node->a, node->b, node->c, node->d};
-  for (int k = 0; k < 4; k++) {
-    vl_texture_float(r, inputs[k], x);
-    for (uint32_t i = r->first; i < r->last; i++)
-      out[i] = vl_node_bilerp_add(k ? out[i] : 0.0f, w[k][i], x[i]);
-  }
-}
 
 static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float *out) {
   const vlMipmap *mip = r->world->images.items[node->image].mipmap;
@@ -231,50 +183,6 @@ static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float
       out[first + k] = vl_plain_float(mip, value_of(node, mip, &l, k));
   }
 }
-
-#define FLOAT(kind, function)          \
-  case kind:                           \
-    each_lane(r, node, function, out); \
-    break;
-#define SHARE(kind, function)                                 \
-  case kind:                                                  \
-    mix_floats(r, node, point_share(r, node, function), out); \
-    break;
-/* vl_scene_add_texture refuses them here. */
-#define COLOR(kind, function)         \
-  case kind:                          \
-    fill(r, __builtin_nanf(""), out); \
-    break;
-void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
-  const vlTextureNode *node = &r->world->nodes.items[index];
-  uint32_t top = r->top;
-  switch ((vlTextureKind)node->kind) {
-    case VL_TEXTURE_CONSTANT:
-      fill(r, node->is_spectrum ? __builtin_nanf("") : node->value, out);
-      break;
-    case VL_TEXTURE_IMAGE:
-      image_floats(r, node, out);
-      break;
-    case VL_TEXTURE_VERTEX_COLOR:
-      each_lane(r, node, vl_node_vertex_color_float, out);
-      break;
-    case VL_TEXTURE_SCALE:
-      scale_floats(r, node, out);
-      break;
-    case VL_TEXTURE_BILERP:
-      bilerp_floats(r, node, out);
-      break;
-    case VL_TEXTURE_MIX:
-      mix_floats(r, node, amount_share(r, node), out);
-      break;
-      VL_TEXTURE_KINDS(CASE)
-  }
-  r->top = top;
-}
-
-#undef FLOAT
-#undef SHARE
-#undef COLOR
 
 /* ---- spectra ----------------------------------------------------------------------------- */
 
@@ -397,13 +305,6 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node,
   }
 }
 
-static void vertex_color_spectrum(const vlTextureRun *r, const vlTextureNode *node,
-                                  float *const out[4]) {
-  Upsampling up = upsampling_of(r, node);
-  for (uint32_t i = r->first; i < r->last; i++)
-    upsample(r, &up, vl_node_vertex_color_rgb(node, point_of(r, node, i)), i, out);
-}
-
 typedef vlVec3 PointColor(const vlTextureNode *node, vlTexturePoint at);
 static inline __attribute__((always_inline)) void each_color(const vlTextureRun *r,
                                                              const vlTextureNode *node,
@@ -414,92 +315,141 @@ static inline __attribute__((always_inline)) void each_color(const vlTextureRun 
     upsample(r, &up, f(node, point_of(r, node, i)), i, out);
 }
 
-static void lane_spectra(vlTextureRun *r, int32_t index, float *const out[4]);
+/* ---- numbers and spectra ----------------------------------------------------------------- */
 
-/* As mix_floats, scale_floats and bilerp_floats. */
-static void mix_spectra(vlTextureRun *r, const vlTextureNode *node, const float *share,
-                        float *const out[4]) {
-  float *b[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)};
-  lane_spectra(r, node->a, out);
-  lane_spectra(r, node->b, b);
-  for (int c = 0; c < 4; c++)
+/* Evaluates a node to `count` rows: 1, of a number, or 4, of a spectrum. */
+static void evaluate(vlTextureRun *r, int32_t index, int count, float *const *out);
+
+static void take_rows(vlTextureRun *r, int count, float *rows[4]) {
+  for (int c = 0; c < count; c++)
+    rows[c] = vl_texture_row(r);
+}
+
+/* The shares of the second input, as a row of the stack. */
+static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
+  float *share = vl_texture_row(r);
+  vl_texture_float(r, node->amount, share);
+  return share;
+}
+static inline __attribute__((always_inline)) const float *point_share(vlTextureRun *r,
+                                                                      const vlTextureNode *node,
+                                                                      PointFloat *f) {
+  float *share = vl_texture_row(r);
+  each_lane(r, node, f, share);
+  return share;
+}
+
+/* Mixes the two inputs of a node by the share of the second. */
+static void mix(vlTextureRun *r, const vlTextureNode *node, const float *share, int count,
+                float *const *out) {
+  float *b[4];
+  take_rows(r, count, b);
+  evaluate(r, node->a, count, out);
+  evaluate(r, node->b, count, b);
+  for (int c = 0; c < count; c++)
     for (uint32_t i = r->first; i < r->last; i++)
       out[c][i] = vl_node_mix(out[c][i], b[c][i], share[i]);
 }
 
-static void scale_spectra(vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
+static void scale(vlTextureRun *r, const vlTextureNode *node, int count, float *const *out) {
   float *w = vl_texture_row(r);
-  lane_spectra(r, node->a, out);
+  evaluate(r, node->a, count, out);
   vl_texture_float(r, node->amount, w);
-  for (int c = 0; c < 4; c++)
+  for (int c = 0; c < count; c++)
     for (uint32_t i = r->first; i < r->last; i++)
       out[c][i] = vl_node_scale(out[c][i], w[i]);
 }
 
-static void bilerp_spectra(vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
-  float *w[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)};
-  float *x[4] = {vl_texture_row(r), vl_texture_row(r), vl_texture_row(r), vl_texture_row(r)};
+static void bilerp(vlTextureRun *r, const vlTextureNode *node, int count, float *const *out) {
+  float *w[4], *x[4];
+  take_rows(r, 4, w);
+  take_rows(r, count, x);
   bilerp_weights(r, node, w);
   const int32_t inputs[4] = {node->a, node->b, node->c, node->d};
   for (int k = 0; k < 4; k++) {
-    lane_spectra(r, inputs[k], x);
-    for (int c = 0; c < 4; c++)
+    evaluate(r, inputs[k], count, x);
+    for (int c = 0; c < count; c++)
       for (uint32_t i = r->first; i < r->last; i++)
         out[c][i] = vl_node_bilerp_add(k ? out[c][i] : 0.0f, w[k][i], x[c][i]);
   }
 }
 
-/* Of float textures, which vl_scene_add_texture refuses as colours. */
-static void no_color(const vlTextureRun *r, float *const out[4]) {
-  for (int c = 0; c < 4; c++)
+/* A number where a spectrum is wanted, or a spectrum where a number is: vl_scene_add_texture
+ * refuses them. */
+static void undefined(const vlTextureRun *r, int count, float *const *out) {
+  for (int c = 0; c < count; c++)
     fill(r, __builtin_nanf(""), out[c]);
 }
 
-#define COLOR(kind, function)           \
-  case kind:                            \
-    each_color(r, node, function, out); \
+/* A case of the switch below, by what the function of the kind gives (VL_TEXTURE_KINDS). */
+#define CASE(kind, name, row, gives, function) gives(kind, function)
+#define FLOAT(kind, function)               \
+  case kind:                                \
+    if (number)                             \
+      each_lane(r, node, function, out[0]); \
+    else                                    \
+      undefined(r, count, out);             \
     break;
-#define SHARE(kind, function)                                  \
-  case kind:                                                   \
-    mix_spectra(r, node, point_share(r, node, function), out); \
+#define COLOR(kind, function)             \
+  case kind:                              \
+    if (number)                           \
+      undefined(r, count, out);           \
+    else                                  \
+      each_color(r, node, function, out); \
     break;
-#define FLOAT(kind, function) \
-  case kind:                  \
-    no_color(r, out);         \
+#define SHARE(kind, function)                                 \
+  case kind:                                                  \
+    mix(r, node, point_share(r, node, function), count, out); \
     break;
-static void lane_spectra(vlTextureRun *r, int32_t index, float *const out[4]) {
+#define OTHER(kind, function)
+
+static void evaluate(vlTextureRun *r, int32_t index, int count, float *const *out) {
   const vlTextureNode *node = &r->world->nodes.items[index];
+  const bool number = count == 1;
   uint32_t top = r->top;
   switch ((vlTextureKind)node->kind) {
     case VL_TEXTURE_CONSTANT:
-      if (node->is_spectrum)
-        constant_spectrum(r, &node->spectrum, out);
+      if (node->is_spectrum == number)
+        undefined(r, count, out);
+      else if (number)
+        fill(r, node->value, out[0]);
       else
-        no_color(r, out);
+        constant_spectrum(r, &node->spectrum, out);
       break;
     case VL_TEXTURE_IMAGE:
-      image_spectrum(r, node, out);
+      if (number)
+        image_floats(r, node, out[0]);
+      else
+        image_spectrum(r, node, out);
       break;
     case VL_TEXTURE_VERTEX_COLOR:
-      vertex_color_spectrum(r, node, out);
+      if (number)
+        each_lane(r, node, vl_node_vertex_color_float, out[0]);
+      else
+        each_color(r, node, vl_node_vertex_color_rgb, out);
       break;
     case VL_TEXTURE_SCALE:
-      scale_spectra(r, node, out);
+      scale(r, node, count, out);
       break;
     case VL_TEXTURE_BILERP:
-      bilerp_spectra(r, node, out);
+      bilerp(r, node, count, out);
       break;
     case VL_TEXTURE_MIX:
-      mix_spectra(r, node, amount_share(r, node), out);
+      mix(r, node, amount_share(r, node), count, out);
       break;
       VL_TEXTURE_KINDS(CASE)
   }
   r->top = top;
 }
 
+void vl_texture_float(vlTextureRun *r, int32_t node, float *row) {
+  float *const out[1] = {row};
+  evaluate(r, node, 1, out);
+}
+
 void vl_texture_spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {
   float *const out[4] = {rows[0], rows[1], rows[2], rows[3]};
-  lane_spectra(r, node, out);
+  evaluate(r, node, 4, out);
 }
 
 void vl_texture_albedo(vlTextureRun *r, int32_t node, float scale, float rows[][VL_ROW_SIZE]) {

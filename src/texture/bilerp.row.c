@@ -1,7 +1,7 @@
 /* texture/bilerp.row.c: the name and the parameters of the texture bilerp. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_bilerp = {
+VL_TEXTURE_ROW(vl_texture_row_bilerp) = {
     .name = "bilerp",
     .description = "bilinear interpolation between the values at four corners",
     VL_PARAMETERS(INPUT("v00", a, "value at (s, t) = (0, 0)", 0),

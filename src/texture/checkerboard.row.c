@@ -1,7 +1,7 @@
 /* texture/checkerboard.row.c: the name and the parameters of the texture checkerboard. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_checkerboard = {
+VL_TEXTURE_ROW(vl_texture_row_checkerboard) = {
     .name = "checkerboard",
     .description = "a checkerboard of two textures",
     VL_PARAMETERS(INPUT("tex1", a, "texture of the cell at the origin", 1),

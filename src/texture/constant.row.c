@@ -1,7 +1,7 @@
 /* texture/constant.row.c: the name and the parameters of the texture constant. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_constant = {
+VL_TEXTURE_ROW(vl_texture_row_constant) = {
     .name = "constant",
     .description = "the same value everywhere",
     VL_PARAMETERS(INPUT("value", a, "the texture's value", 1)),

@@ -1,7 +1,7 @@
 /* texture/direction_mix.row.c: the name and the parameters of the texture direction mix. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_direction_mix = {
+VL_TEXTURE_ROW(vl_texture_row_direction_mix) = {
     .name = "directionmix",
     .description = "interpolation between two textures by |n . dir|, n the surface normal",
     VL_PARAMETERS(

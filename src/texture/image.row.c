@@ -41,7 +41,7 @@ static const vlParameter parameters[] = {
     CHANNELS,
     MAPPING,
 };
-const vlKindRow vl_texture_row_image = {
+VL_TEXTURE_ROW(vl_texture_row_image) = {
     .name = "imagemap",
     .description = "an image, mapped to the surface",
     VL_ROW_PARAMETERS(parameters),

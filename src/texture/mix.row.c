@@ -1,7 +1,7 @@
 /* texture/mix.row.c: the name and the parameters of the texture mix. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_mix = {
+VL_TEXTURE_ROW(vl_texture_row_mix) = {
     .name = "mix",
     .description = "linear interpolation between two textures",
     VL_PARAMETERS(INPUT("tex1", a, "the first texture", 0),

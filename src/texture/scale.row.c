@@ -1,7 +1,7 @@
 /* texture/scale.row.c: the name and the parameters of the texture scale. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_scale = {
+VL_TEXTURE_ROW(vl_texture_row_scale) = {
     .name = "scale",
     .description = "a texture multiplied by a number",
     VL_PARAMETERS(INPUT("tex", a, "the texture that is scaled", 1),

@@ -7,9 +7,11 @@
 #include "velo/texture.h"
 
 /* Declares the row of each kind, which is in the file of the kind: texture/NAME.row.c. */
-#define VL_TEXTURE_ROW(kind, name, row, ...) extern const vlKindRow row;
-VL_TEXTURE_KINDS(VL_TEXTURE_ROW)
-#undef VL_TEXTURE_ROW
+#define DECLARE(kind, name, row, ...) extern const vlKindRow row;
+VL_TEXTURE_KINDS(DECLARE)
+#undef DECLARE
+/* Defines a row; one of a kind that is not in the list does not compile. */
+#define VL_TEXTURE_ROW(row) const __typeof__(row) row
 
 #define BOOL(...) VL_PARAMETER(BOOL, vlTextureDef, __VA_ARGS__)
 #define COUNT(...) VL_PARAMETER(COUNT, vlTextureDef, __VA_ARGS__)

@@ -1,7 +1,7 @@
 /* texture/vertex_color.row.c: the name and the parameters of the texture vertex color. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_vertex_color = {
+VL_TEXTURE_ROW(vl_texture_row_vertex_color) = {
     .description = "the colours of the shape's vertices",
     VL_PARAMETERS(CHANNELS),
 };

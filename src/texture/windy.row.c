@@ -1,7 +1,7 @@
 /* texture/windy.row.c: the name and the parameters of the texture windy. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_windy = {
+VL_TEXTURE_ROW(vl_texture_row_windy) = {
     .name = "windy",
     .description = "waves on windy water, from noise",
     .traits = VL_TEXTURE_FLOAT_ONLY,

@@ -1,7 +1,7 @@
 /* texture/wrinkled.row.c: the name and the parameters of the texture wrinkled. */
 #include "texture/texture.row.h"
 
-const vlKindRow vl_texture_row_wrinkled = {
+VL_TEXTURE_ROW(vl_texture_row_wrinkled) = {
     .name = "wrinkled",
     .description = "turbulence: a sum of octaves of the absolute value of noise",
     .traits = VL_TEXTURE_FLOAT_ONLY,

@@ -164,14 +164,12 @@ static bool gives_rgb(const vlTextureNode *node) {
          (row->traits & VL_TEXTURE_COLOR_ONLY);
 }
 
-static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *error) {
+static void image_spectrum(const vlWorld *world, vlTextureNode *node) {
   node->spectrum.scale = 1;
   if (node->role != VL_ROLE_ILLUMINANT || world->def.color == VL_COLOR_RGB)
-    return VL_OK;
+    return;
   node->spectrum.kind = VL_SPECTRAL_DENSE;
   node->spectrum.dense = vl_space_illuminant(node->space);
-  (void)error;
-  return VL_OK;
 }
 
 typedef enum Colors { COLORS_OTHER, COLORS_GREY, COLORS_RGB } Colors;
@@ -306,8 +304,8 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
     if (mip->space_given)
       node.space = mip->space;
   }
-  if (def->spectrum && gives_rgb(&node) && image_spectrum(c->world, &node, c->error) != VL_OK)
-    return -1;
+  if (def->spectrum && gives_rgb(&node))
+    image_spectrum(c->world, &node);
   if (!weigh(c->world, &node)) {
     vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
                "textures are nested too deep");
@@ -334,30 +332,33 @@ static vlResult with_compile(vlWorld *world, const vlScene *scene, Compile *c, v
   return VL_OK;
 }
 
-vlResult vl_world_float_node(vlWorld *world, const vlScene *scene, vlFloatInput input,
+/* Compiles an input: a number or, if there is none, a spectrum for its role. */
+static vlResult compile_node(vlWorld *world, const vlScene *scene, const vlFloatInput *number,
+                             const vlSpectrumInput *spectrum, vlSpectrumRole role,
                              int32_t *node, vlError *error) {
   Compile c;
   vlError inner;
   vl_error_clear(&inner);
   vlResult r = with_compile(world, scene, &c, &inner);
-  if (r == VL_OK && (*node = compile_float(&c, input, 0)) < 0)
-    r = inner.code ? inner.code : VL_ERROR_SCENE;
+  if (r == VL_OK) {
+    *node =
+        number ? compile_float(&c, *number, 0) : compile_spectrum(&c, *spectrum, (int)role, 0);
+    if (*node < 0)
+      r = inner.code ? inner.code : VL_ERROR_SCENE;
+  }
   if (r != VL_OK && error)
     *error = inner;
   return r;
 }
 
+vlResult vl_world_float_node(vlWorld *world, const vlScene *scene, vlFloatInput input,
+                             int32_t *node, vlError *error) {
+  return compile_node(world, scene, &input, NULL, VL_ROLE_UNBOUNDED, node, error);
+}
+
 vlResult vl_world_spectrum_node(vlWorld *world, const vlScene *scene, vlSpectrumInput input,
                                 vlSpectrumRole role, int32_t *node, vlError *error) {
-  Compile c;
-  vlError inner;
-  vl_error_clear(&inner);
-  vlResult r = with_compile(world, scene, &c, &inner);
-  if (r == VL_OK && (*node = compile_spectrum(&c, input, (int)role, 0)) < 0)
-    r = inner.code ? inner.code : VL_ERROR_SCENE;
-  if (r != VL_OK && error)
-    *error = inner;
-  return r;
+  return compile_node(world, scene, NULL, &input, role, node, error);
 }
 
 vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node,

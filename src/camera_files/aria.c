@@ -33,10 +33,7 @@ static vlResult read_projection(const vlCameraFile *file, const json_t *camera,
   VL_TRY(vl_camera_field(file, camera, "Projection", &projection));
   VL_TRY(vl_camera_field(file, projection, "Name", &name));
   VL_TRY(vl_camera_numbers(file, projection, "Params", p, 0, VL_LENGTH(p), &count));
-  const Model *model = NULL;
-  for (size_t i = 0; i < VL_LENGTH(models); i++)
-    if (vl_text_is(json_string_value(name), models[i].name))
-      model = &models[i];
+  const Model *model = VL_CAMERA_ROW(models, json_string_value(name));
   if (!model)
     return vl_camera_unknown(file, projection, "Name", json_string_value(name),
                              "there are Linear, Spherical, KannalaBrandtK3, "

@@ -30,10 +30,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
   double f[4], k[8] = {0.0};
   VL_TRY(vl_camera_word(file, camera, "camera_type", &name));
   VL_TRY(vl_camera_field(file, camera, "intrinsics", &values));
-  const Model *model = NULL;
-  for (int i = 0; i < MODELS; i++)
-    if (vl_text_is(name, models[i].name))
-      model = &models[i];
+  const Model *model = VL_CAMERA_ROW(models, name);
   if (!model)
     return vl_camera_unknown(file, camera, "camera_type", name,
                              "there are pinhole, pinhole-radtan8, kb4, ds, eucm, ucm, fov");

@@ -9,10 +9,9 @@
 
 static vlResult next_numbers(const vlCameraFile *file, vlCameraLines *lines, double *values,
                              uint32_t count) {
-  uint32_t read;
   if (!vl_camera_next_line(lines))
     return vl_camera_wrong(file, "bundler: the file ends within a camera");
-  return vl_camera_line_numbers(file, lines, lines->text, values, count, count, &read);
+  return vl_camera_line_numbers(file, lines, lines->text, values, count, count, NULL);
 }
 
 static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t size,

@@ -56,17 +56,15 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *tree,
         file, tree, "model_type",
         "camodocal: SCARAMUZZA's polynomial is no projection of velo; calibrate as MEI or "
         "KANNALA_BRANDT");
-  for (int i = 0; i < MODELS; i++) {
-    if (!vl_text_is(name, models[i].name))
-      continue;
-    VL_TRY(vl_camera_sides(file, tree, "image_width", "image_height", record));
-    VL_TRY(read_model(file, tree, &models[i], &record->camera));
-    vl_camera_set_origin(&record->camera);
-    vl_camera_name(record, vl_camera_text(tree, "camera_name"));
-    return VL_OK;
-  }
-  return vl_camera_unknown(file, tree, "model_type", name,
-                           "there are PINHOLE, PINHOLE_FULL, MEI, KANNALA_BRANDT");
+  const Model *model = VL_CAMERA_ROW(models, name);
+  if (!model)
+    return vl_camera_unknown(file, tree, "model_type", name,
+                             "there are PINHOLE, PINHOLE_FULL, MEI, KANNALA_BRANDT");
+  VL_TRY(vl_camera_sides(file, tree, "image_width", "image_height", record));
+  VL_TRY(read_model(file, tree, model, &record->camera));
+  vl_camera_set_origin(&record->camera);
+  vl_camera_name(record, vl_camera_text(tree, "camera_name"));
+  return VL_OK;
 }
 
 /* Reads the camera file whose name is in a configuration file. */

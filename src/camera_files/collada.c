@@ -12,7 +12,6 @@
 #include "math/transform.h"
 
 enum { MAX_DEPTH = 30 };
-static const double degree = 3.14159265358979323846 / 180.0;
 
 /* <lookat>: eye, the point that is looked at, up. */
 static bool look_at(const double v[9], vlMat4 *m) {
@@ -54,7 +53,7 @@ static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlM
     } else if (vl_camera_has_tag(child, "rotate")) {
       VL_TRY(vl_camera_element_numbers(file, child, v, 4));
       if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0)
-        step = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
+        step = vl_mat4_rotate(v[3] * VL_DEGREE, v[0], v[1], v[2]);
     } else if (vl_camera_has_tag(child, "lookat")) {
       VL_TRY(vl_camera_element_numbers(file, child, v, 9));
       if (!look_at(v, &step))
@@ -130,7 +129,7 @@ static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool fl
       return vl_camera_wrong_element(file, vl_camera_child(lens, tags[i]),
                                      "<%s> gives no image", tags[i]);
     if (!flat)
-      half[i] = vl_precise_tan(0.5 * degree * half[i]);
+      half[i] = vl_precise_tan(0.5 * VL_DEGREE * half[i]);
   }
   if (vl_is_unset(half[0]) && vl_is_unset(half[1]))
     return vl_camera_wrong_element(file, lens, "there is neither <%s> nor <%s>", tags[0],
@@ -235,8 +234,8 @@ static vlResult write_collada(const vlFittedCamera *fit, vlCameraText *text) {
   double x = 0.5 * c->width / c->fx, y = 0.5 * c->height / c->fy;
   const char *kind = flat ? "orthographic" : "perspective", *side = flat ? "mag" : "fov";
   if (!flat) {
-    x = 2.0 / degree * vl_precise_atan(x);
-    y = 2.0 / degree * vl_precise_atan(y);
+    x = 2.0 / VL_DEGREE * vl_precise_atan(x);
+    y = 2.0 / VL_DEGREE * vl_precise_atan(y);
   }
   const double planes[2] = {c->near_plane > 0.0 || flat ? c->near_plane : 0.01,
                             isinf(c->far_plane) ? 10000.0 : c->far_plane};

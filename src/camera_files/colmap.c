@@ -310,56 +310,41 @@ vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record)
     VL_TRY(read_images(file, images, &id, record));
     return read_cameras(file, cameras, &id, record);
   }
-  const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, none[3] = {0, 0, 0};
-  vl_camera_set_pose(&record->camera, identity, none);
+  vl_camera_set_origin(&record->camera);
   return read_cameras(file, cameras, NULL, record);
 }
 
 /* ---- writing ----------------------------------------------------------------------------- */
 
-static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, const char **model,
-                             double p[12], uint32_t *count) {
-  double k[14] = {0};
-  const double *c = d->distortion_coefficients;
-  *count = 0;
-  if (d->projection == VL_PROJECTION_FOV && d->distortion == VL_DISTORTION_NONE) {
-    *model = "FOV";
-    p[(*count)++] = d->shape[0];
-  } else if (d->projection == VL_PROJECTION_EQUIDISTANT &&
-             d->distortion == VL_DISTORTION_THIN_PRISM) {
-    *model = "THIN_PRISM_FISHEYE";
-    for (int i = 0; i < 8; i++)
-      p[(*count)++] = c[i];
-  } else if (d->projection == VL_PROJECTION_EQUIDISTANT &&
-             d->distortion == VL_DISTORTION_RAD_TAN_THIN_PRISM) {
-    *model = "RAD_TAN_THIN_PRISM_FISHEYE";
-    for (int i = 0; i < 12; i++)
-      p[(*count)++] = c[i];
-  } else if (d->projection == VL_PROJECTION_EQUIDISTANT &&
-             d->distortion != VL_DISTORTION_OPENCV) {
-    *model = "OPENCV_FISHEYE";
-    for (uint32_t i = 0; i < 4; i++)
-      p[(*count)++] = i < d->distortion_count ? c[i] : 0.0;
-  } else {
-    uint32_t n = 0;
-    if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n) ||
-        !vl_camera_all_zero(k + 8, 6))
-      return vl_camera_no_model(file, d);
-    *model = n == 0 ? "PINHOLE" : n == 4 ? "OPENCV" : "FULL_OPENCV";
-    *count = n == 0 ? 0 : n == 4 ? 4 : 8;
-    memcpy(p, k, *count * sizeof *p);
+static vlResult choose_model(const vlFittedCamera *fit, vlColmapRecord *out) {
+  static const char *const names[VL_LENS_OTHER] = {"PINHOLE", "OPENCV", "OPENCV_FISHEYE",
+                                                   "FOV"};
+  static const struct {
+    const char *name;
+    vlDistortion distortion;
+    uint32_t count;
+  } prisms[] = {{"THIN_PRISM_FISHEYE", VL_DISTORTION_THIN_PRISM, 8},
+                {"RAD_TAN_THIN_PRISM_FISHEYE", VL_DISTORTION_RAD_TAN_THIN_PRISM, 12}};
+  const vlCameraDef *d = &fit->record->camera;
+  const double *k = fit->k;
+  uint32_t count = fit->count;
+  if (fit->family < VL_LENS_OTHER)
+    out->model = names[fit->family];
+  if (fit->family == VL_LENS_OPENCV && count > 4) {
+    out->model = "FULL_OPENCV";
+    count = 8;
   }
+  for (size_t i = 0; i < VL_LENGTH(prisms); i++)
+    if (d->projection == VL_PROJECTION_EQUIDISTANT && d->distortion == prisms[i].distortion) {
+      out->model = prisms[i].name;
+      k = d->distortion_coefficients;
+      count = prisms[i].count;
+    }
+  if (!out->model || !vl_camera_all_zero(fit->k + 8, 6))
+    return vl_camera_no_model(fit->file, d);
+  memcpy(out->parameters + 4, k, count * sizeof *k);
+  out->count = 4 + count;
   return VL_OK;
-}
-
-static vlResult write_text(const vlCameraFile *file, const char *path,
-                           const vlCameraText *text) {
-  vlFileWriter writer;
-  if (text->failed)
-    return vl_fail_memory(file->error);
-  VL_TRY(vl_file_open_write(&writer, file->context, path, VL_OUTPUT_PLAIN, file->error));
-  vl_file_write(&writer, text->text.items, text->text.count);
-  return vl_file_commit(&writer, file->error);
 }
 
 static void put_lines(vlCameraText *cameras, vlCameraText *images, const vlColmapRecord *r) {
@@ -383,14 +368,10 @@ static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *reco
   char cameras[4096], images[4096];
   vlFittedCamera fit;
   const vlCamera *c = &fit.camera;
-  double p[12], r[9];
-  uint32_t count = 0;
+  double r[9];
   vlColmapRecord out = {.name = record->name[0] ? record->name : "camera"};
-  vlResult result = vl_camera_fit(file, record, &vl_format_colmap, &fit);
-  if (result == VL_OK)
-    result = choose_model(file, &record->camera, &out.model, p, &count);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_fit(file, record, &vl_format_colmap, &fit));
+  VL_TRY(choose_model(&fit, &out));
   if (!find_files(file->path, false, cameras, images))
     return vl_camera_wrong(file, "colmap: the name is too long");
   if (is_folder(file->path) && mkdir(file->path, 0777) != 0 && errno != EEXIST)
@@ -400,8 +381,6 @@ static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *reco
   out.height = c->height;
   const double intrinsics[4] = {c->fx, c->fy, c->cx, c->cy};
   memcpy(out.parameters, intrinsics, sizeof intrinsics);
-  memcpy(out.parameters + 4, p, count * sizeof *p);
-  out.count = 4 + count;
   vl_camera_get_pose(c, r, out.translation);
   vl_rotation_to_quaternion(r, out.quaternion);
   vlCameraText text = {.context = file->context}, poses = {.context = file->context};
@@ -409,9 +388,9 @@ static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *reco
     vl_colmap_put_bin(&text, &poses, &out);
   else
     put_lines(&text, &poses, &out);
-  result = write_text(file, cameras, &text);
+  vlResult result = vl_camera_write_text(file, cameras, &text);
   if (result == VL_OK)
-    result = write_text(file, images, &poses);
+    result = vl_camera_write_text(file, images, &poses);
   VL_ARRAY_FREE(file->context, &text.text);
   VL_ARRAY_FREE(file->context, &poses.text);
   return result;

@@ -3,6 +3,7 @@
  * with 17 digits, which keeps all bits. */
 #include "camera_files/colmap.h"
 
+#include "base/bytes.h"
 #include "base/file.h"
 #include "base/text.h"
 
@@ -36,15 +37,12 @@ typedef struct {
 } Bytes;
 
 static uint64_t whole(Bytes *bytes, uint32_t count) {
-  uint64_t value = 0;
   if ((size_t)(bytes->end - bytes->at) < count) {
     bytes->cut = true;
     return 0;
   }
-  for (uint32_t i = 0; i < count; i++)
-    value |= (uint64_t)bytes->at[i] << (8 * i);
   bytes->at += count;
-  return value;
+  return vl_little(bytes->at - count, count);
 }
 
 static double real(Bytes *bytes) {

@@ -22,7 +22,7 @@ static vlResult read_field(const vlCameraFile *file, const json_t *object,
     return VL_OK;
   if (!row->count)
     return vl_camera_number(file, object, row->key, row->values);
-  return vl_camera_numbers(file, object, row->key, row->values, row->optional ? 0 : row->count,
+  return vl_camera_numbers(file, object, row->key, row->values, row->shorter ? 0 : row->count,
                            row->count, row->found);
 }
 
@@ -153,13 +153,13 @@ typedef struct {
 } Values;
 
 static Values values_of(const vlCamera *c) {
-  const double degree = 3.14159265358979323846 / 180.0, *m = c->world_from_camera;
+  const double *m = c->world_from_camera;
   Values v = {.sides = {c->width, c->height},
               .k = {c->fx, c->skew, c->cx - 0.5, 0, c->fy, c->cy - 0.5, 0, 0, 1},
               .offset = {c->cx - 0.5, c->cy - 0.5},
               .aspect = c->fy / c->fx,
               .ratio = (double)c->width / c->height,
-              .yfov = 2.0 / degree * vl_precise_atan(0.5 * c->height / c->fy)};
+              .yfov = 2.0 / VL_DEGREE * vl_precise_atan(0.5 * c->height / c->fy)};
   vl_camera_get_pose(c, v.r, v.t);
   vl_rotation_to_vector(v.r, v.v);
   vl_camera_flip_axes(m, v.flipped);
@@ -295,6 +295,12 @@ vlResult vl_camera_put_form(vlCameraText *text, const vlFittedCamera *fit,
       put_value(text, fit, own, value, &key);
   }
   return VL_OK;
+}
+
+const char *vl_camera_name_without(const vlFittedCamera *fit, const char *without,
+                                   const char *otherwise) {
+  const char *name = fit->record->name;
+  return *name && !strpbrk(name, without) ? name : otherwise;
 }
 
 vlResult vl_camera_write_form(const vlCameraFormat *format, const vlFittedCamera *fit,

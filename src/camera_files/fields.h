@@ -10,7 +10,8 @@ typedef struct vlCameraField {
   const char *key;
   double *values;
   uint32_t count;  /* the field is a list of so many numbers; 0: it is a number */
-  bool optional;   /* without the field the variable keeps its value; a list may be shorter */
+  bool optional;   /* without the field the variable keeps its value */
+  bool shorter;    /* a list may have fewer numbers */
   uint32_t *found; /* receives how many numbers an optional list has; may be null */
   uint32_t *side;  /* in place of values: a side of the image */
 } vlCameraField;
@@ -20,8 +21,13 @@ typedef struct vlCameraField {
   { .key = name, .values = pointer, .optional = true }
 #define VL_FIELD_LIST(name, pointer, length) \
   { .key = name, .values = pointer, .count = length }
-#define VL_FIELD_LIST_OPTIONAL(name, pointer, most, number) \
-  { .key = name, .values = pointer, .count = most, .optional = true, .found = number }
+#define VL_FIELD_LIST_OPTIONAL(name, pointer, most, number)                           \
+  {                                                                                   \
+    .key = name, .values = pointer, .count = most, .optional = true, .shorter = true, \
+    .found = number                                                                   \
+  }
+#define VL_FIELD_LIST_IF_THERE(name, pointer, length) \
+  { .key = name, .values = pointer, .count = length, .optional = true }
 #define VL_FIELD_SIDE(name, pointer) \
   { .key = name, .side = pointer }
 
@@ -122,6 +128,9 @@ vlResult vl_camera_put_form(vlCameraText *text, const vlFittedCamera *fit,
                             const vlCameraValue *own, const char *form);
 #define VL_PUT_FORM(text, fit, form, ...) \
   vl_camera_put_form(text, fit, (const vlCameraValue[]){__VA_ARGS__, {.key = NULL}}, form)
+/* The camera's name; `otherwise` if it has none or a character of `without`. */
+const char *vl_camera_name_without(const vlFittedCamera *fit, const char *without,
+                                   const char *otherwise);
 /* Writes a camera by the form of its dialect's row. */
 vlResult vl_camera_write_form(const vlCameraFormat *format, const vlFittedCamera *fit,
                               vlCameraText *text);

@@ -254,23 +254,33 @@ vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFile
   return result;
 }
 
+vlResult vl_camera_write_text(const vlCameraFile *file, const char *path,
+                              const vlCameraText *text) {
+  vlFileWriter writer;
+  if (text->failed)
+    return vl_fail_memory(file->error);
+  VL_TRY(vl_file_open_write(&writer, file->context, path, VL_OUTPUT_PLAIN, file->error));
+  vl_file_write(&writer, text->text.items, text->text.count);
+  return vl_file_commit(&writer, file->error);
+}
+
 static vlCameraDialect dialect_of_name(const char *path) {
+  static const struct {
+    const char *end;
+    vlCameraDialect dialect;
+  } ends[] = {{"transforms.json", VL_CAMERA_DIALECT_NERF},
+              {".json", VL_CAMERA_DIALECT_VELO},
+              {".yaml", VL_CAMERA_DIALECT_OPENCV},
+              {".yml", VL_CAMERA_DIALECT_OPENCV},
+              {".pbrt", VL_CAMERA_DIALECT_PBRT},
+              {".gltf", VL_CAMERA_DIALECT_GLTF},
+              {".usda", VL_CAMERA_DIALECT_USD},
+              {".xml", VL_CAMERA_DIALECT_MITSUBA}};
   if (vl_colmap_is_name(path) || is_folder(path))
     return VL_CAMERA_DIALECT_COLMAP;
-  if (vl_ends_with(path, "transforms.json"))
-    return VL_CAMERA_DIALECT_NERF;
-  if (vl_ends_with(path, ".json"))
-    return VL_CAMERA_DIALECT_VELO;
-  if (vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml"))
-    return VL_CAMERA_DIALECT_OPENCV;
-  if (vl_ends_with(path, ".pbrt"))
-    return VL_CAMERA_DIALECT_PBRT;
-  if (vl_ends_with(path, ".gltf"))
-    return VL_CAMERA_DIALECT_GLTF;
-  if (vl_ends_with(path, ".usda"))
-    return VL_CAMERA_DIALECT_USD;
-  if (vl_ends_with(path, ".xml"))
-    return VL_CAMERA_DIALECT_MITSUBA;
+  for (size_t i = 0; i < VL_LENGTH(ends); i++)
+    if (vl_ends_with(path, ends[i].end))
+      return ends[i].dialect;
   return VL_CAMERA_DIALECT_AUTO;
 }
 
@@ -285,16 +295,12 @@ bool vl_camera_writes_folder(const char *path, vlCameraDialect dialect) {
 static vlResult write_plainly(vlContext *context, const char *path, const vlCameraFileDef *def,
                               const vlCameraRecord *record, vlError *error) {
   vlCameraFileDef standard;
-  vlResult result = begin(context, path, record, &def, &standard, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(begin(context, path, record, &def, &standard, error));
   if (record->camera.own)
     return vl_fail(error, VL_ERROR_UNSUPPORTED,
                    "camera file: none can hold a camera of one's own, \"%s\"",
                    vl_short_text(record->camera.own->name).text);
-  result = vl_camera_check_drop(def, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_check_drop(def, error));
   vlCameraDialect dialect = def->dialect ? def->dialect : dialect_of_name(path);
   if (!dialect)
     return vl_fail(error, VL_ERROR_ARGUMENT,
@@ -310,19 +316,12 @@ static vlResult write_plainly(vlContext *context, const char *path, const vlCame
                    format->name, format->not_written);
   vlCameraText text = {.context = context};
   vlFittedCamera fit;
-  result = vl_camera_fit(&file, record, format, &fit);
+  vlResult result = vl_camera_fit(&file, record, format, &fit);
   if (result == VL_OK)
     result =
         format->form ? vl_camera_write_form(format, &fit, &text) : format->write(&fit, &text);
-  if (result == VL_OK && text.failed)
-    result = vl_fail_memory(error);
-  vlFileWriter writer;
   if (result == VL_OK)
-    result = vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error);
-  if (result == VL_OK) {
-    vl_file_write(&writer, text.text.items, text.text.count);
-    result = vl_file_commit(&writer, error);
-  }
+    result = vl_camera_write_text(&file, path, &text);
   VL_ARRAY_FREE(context, &text.text);
   return result;
 }

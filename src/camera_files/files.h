@@ -133,6 +133,10 @@ vlResult vl_camera_list(const vlCameraFile *file, const json_t *object, const ch
 double vl_camera_parse(const char *text, char **end);
 /* Returns the string at key, or null if it is missing or not a string. */
 const char *vl_camera_text(const json_t *object, const char *key);
+/* The row of a table with this name, which is the row's first member and may be null where it
+ * is looked for. Returns null if there is none. */
+const void *vl_camera_row(const void *rows, size_t count, size_t size, const char *name);
+#define VL_CAMERA_ROW(rows, name) vl_camera_row(rows, VL_LENGTH(rows), sizeof *(rows), name)
 /* Goes through the items of a list, or through the child elements of an element of XML. */
 #define VL_EACH(item, list) \
   for (size_t vl_each = 0; ((item) = json_array_get(list, vl_each)) != NULL; vl_each++)
@@ -174,6 +178,9 @@ enum {
 void vl_camera_put(vlCameraText *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count);
+/* Writes a text as a whole file. */
+vlResult vl_camera_write_text(const vlCameraFile *file, const char *path,
+                              const vlCameraText *text);
 /* Appends all of another text. */
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other);
 /* Appends a quoted string, for JSON and YAML. */
@@ -242,6 +249,9 @@ bool vl_camera_all_zero(const double *k, uint32_t count);
 void vl_camera_set_lens(vlCameraDef *def, vlLensFamily family, const double *k, uint32_t count);
 /* The family of a camera's lens, with its coefficients. */
 vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_t *count);
+
+/* A degree in radians. */
+#define VL_DEGREE (3.14159265358979323846 / 180.0)
 
 /* ---- rotations: row-major 3 x 3 ---------------------------------------------------------- */
 

@@ -31,17 +31,14 @@ static Numbers numbers_of(const vlCamera *c) {
 static vlResult local_matrix(const vlCameraFile *file, const json_t *node, vlMat4 *result) {
   double m[16], t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1}, r[9];
   *result = vl_mat4_identity();
-  if (json_object_get(node, "matrix")) {
+  if (vl_camera_has(node, "matrix")) {
     VL_TRY(vl_camera_list(file, node, "matrix", m, 16));
     vl_camera_transpose(m, result->m);
     return VL_OK;
   }
-  if (json_object_get(node, "translation"))
-    VL_TRY(vl_camera_list(file, node, "translation", t, 3));
-  if (json_object_get(node, "rotation"))
-    VL_TRY(vl_camera_list(file, node, "rotation", q, 4));
-  if (json_object_get(node, "scale"))
-    VL_TRY(vl_camera_list(file, node, "scale", s, 3));
+  VL_TRY(VL_READ_FIELDS(file, node, VL_FIELD_LIST_IF_THERE("translation", t, 3),
+                        VL_FIELD_LIST_IF_THERE("rotation", q, 4),
+                        VL_FIELD_LIST_IF_THERE("scale", s, 3)));
   const double wxyz[4] = {q[3], q[0], q[1], q[2]};
   if (!vl_rotation_from_quaternion(wxyz, r))
     return vl_camera_wrong(file, "gltf: a node's \"rotation\" is no rotation");

@@ -3,15 +3,9 @@
  * JPEG. */
 #include <stdio.h>
 
+#include "base/bytes.h"
 #include "base/text.h"
 #include "camera_files/fields.h"
-
-static uint32_t big_endian(const unsigned char *b, int count) {
-  uint32_t value = 0;
-  for (int i = 0; i < count; i++)
-    value = value << 8 | b[i];
-  return value;
-}
 
 /* Skips the segments of a JPEG up to the frame header, which holds the size. */
 static bool jpeg_size(FILE *file, uint32_t size[2]) {
@@ -21,15 +15,15 @@ static bool jpeg_size(FILE *file, uint32_t size[2]) {
   for (int segments = 0; segments < 1000; segments++) {
     if (fread(b, 1, 4, file) != 4 || b[0] != 0xff)
       return false;
-    uint32_t length = big_endian(b + 2, 2);
+    uint32_t length = (uint32_t)vl_big(b + 2, 2);
     bool frame = b[1] >= 0xc0 && b[1] <= 0xcf && b[1] != 0xc4 && b[1] != 0xc8 && b[1] != 0xcc;
     if (length < 2)
       return false;
     if (frame) {
       if (fread(b, 1, 5, file) != 5)
         return false;
-      size[0] = big_endian(b + 3, 2);
-      size[1] = big_endian(b + 1, 2);
+      size[0] = (uint32_t)vl_big(b + 3, 2);
+      size[1] = (uint32_t)vl_big(b + 1, 2);
       return true;
     }
     if (fseek(file, (long)length - 2, SEEK_CUR) != 0)
@@ -46,8 +40,8 @@ static bool size_of(vlContext *context, const char *path, uint32_t size[2]) {
   bool found = false;
   if (fread(b, 1, sizeof b, file) == sizeof b) {
     if (memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0) {
-      size[0] = big_endian(b + 16, 4);
-      size[1] = big_endian(b + 20, 4);
+      size[0] = (uint32_t)vl_big(b + 16, 4);
+      size[1] = (uint32_t)vl_big(b + 20, 4);
       found = true;
     } else if (b[0] == 0xff && b[1] == 0xd8) {
       found = jpeg_size(file, size);

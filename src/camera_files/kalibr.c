@@ -52,10 +52,7 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
   const char *name;
   double k[6] = {0};
   VL_TRY(vl_camera_word(file, cam, "camera_model", &name));
-  const Model *model = NULL;
-  for (int i = 0; i < MODELS; i++)
-    if (vl_text_is(name, models[i].name))
-      model = &models[i];
+  const Model *model = VL_CAMERA_ROW(models, name);
   if (!model)
     return vl_camera_unknown(file, cam, "camera_model", name,
                              "there are pinhole, omni, eucm, ds");

@@ -12,7 +12,6 @@
 typedef struct {
   char key[16];
   double values[12];
-  uint32_t count;
   vlCameraLines line;
 } Row;
 
@@ -27,7 +26,7 @@ static vlResult find_row(const vlCameraFile *file, const char *text, size_t size
       continue;
     *found = true;
     return vl_camera_line_numbers(file, &row->line, line + length + 1, row->values, least,
-                                  least, &row->count);
+                                  least, NULL);
   }
   return VL_OK;
 }
@@ -85,12 +84,12 @@ static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size
 
 static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t size,
                            vlCameraRecord *record) {
-  Row chosen = {.count = 0};
+  Row chosen = {.key = ""};
   uint32_t taken = UINT32_MAX;
   bool raw = false;
   record->frames = 0;
   for (uint32_t i = 0; i < 100; i++) {
-    Row row = {.count = 0};
+    Row row = {.key = ""};
     bool found = false, unrectified = false;
     snprintf(row.key, sizeof row.key, "K_%02u", i);
     VL_TRY(find_row(file, text, size, &row, 9, &unrectified));

@@ -7,76 +7,32 @@
 #include <string.h>
 
 #include "camera_files/fields.h"
+#include "camera_files/numpy.h"
 
 enum { NUMBERS = 17 };
 
-typedef struct {
-  const unsigned char *data;
-  size_t rows, bytes; /* bytes: of a number, 4 or 8 */
-  bool by_columns;    /* Fortran's order */
-} Array;
-
-/* Reads NumPy's header. False: it is not an array of N x 17 little-endian floating-point
- * numbers. */
-static bool read_header(const char *text, size_t size, Array *array) {
-  const unsigned char *b = (const unsigned char *)text;
-  char header[512];
-  if (size < 12 || memcmp(b, "\x93NUMPY", 6) != 0)
-    return false;
-  /* format 1 gives the length of the header in 2 bytes, later formats in 4 */
-  const size_t start = b[6] == 1 ? 10 : 12;
-  size_t length = (size_t)b[8] | (size_t)b[9] << 8;
-  if (start == 12)
-    length |= (size_t)b[10] << 16 | (size_t)b[11] << 24;
-  if (length >= sizeof header || start + length > size)
-    return false;
-  memcpy(header, b + start, length);
-  header[length] = 0;
-  const char *shape = strstr(header, "'shape': ("), *type = strstr(header, "'descr': '<f");
-  unsigned long rows = 0, columns = 0;
-  if (!shape || !type || sscanf(shape + 10, "%lu, %lu)", &rows, &columns) != 2 ||
-      columns != NUMBERS)
-    return false;
-  array->bytes = type[12] == '4' ? 4 : 8;
-  array->by_columns = strstr(header, "'fortran_order': True") != NULL;
-  array->rows = rows;
-  array->data = b + start + length;
-  return rows >= 1 && rows <= (size - start - length) / NUMBERS / array->bytes;
-}
-
-static double number_at(const Array *array, size_t row, size_t column) {
-  size_t at = array->by_columns ? column * array->rows + row : row * NUMBERS + column;
-  const unsigned char *b = array->data + at * array->bytes;
-  uint64_t bits = 0;
-  for (size_t i = 0; i < array->bytes; i++)
-    bits |= (uint64_t)b[i] << 8 * i;
-  if (array->bytes == 4) {
-    const uint32_t float_bits = (uint32_t)bits;
-    float number;
-    memcpy(&number, &float_bits, sizeof number);
-    return (double)number;
-  }
-  double number;
-  memcpy(&number, &bits, sizeof number);
-  return number;
+/* N x 17 numbers. */
+static bool open_poses(const char *text, size_t size, vlNumpyArray *array) {
+  return vl_numpy_open(text, size, array) && array->dimensions == 2 &&
+         array->sides[1] == NUMBERS && !array->whole;
 }
 
 static vlResult read_llff(const vlCameraFile *file, const char *text, size_t size,
                           vlCameraRecord *record) {
-  Array array;
+  vlNumpyArray array;
   vlCameraDef *d = &record->camera;
   uint32_t chosen = UINT32_MAX;
   double v[NUMBERS], m[16] = {[15] = 1.0};
-  if (!read_header(text, size, &array))
+  if (!open_poses(text, size, &array))
     return vl_camera_wrong(file, "llff: the array must have N x 17 numbers");
-  record->frames = array.rows < UINT32_MAX ? (uint32_t)array.rows : UINT32_MAX;
+  record->frames = array.sides[0] < UINT32_MAX ? (uint32_t)array.sides[0] : UINT32_MAX;
   for (uint32_t i = 0; i < record->frames && chosen == UINT32_MAX; i++)
     if (vl_camera_is_frame(file, i, NULL))
       chosen = i;
   if (chosen == UINT32_MAX)
     return vl_camera_no_frame(file, "camera", record->frames);
-  for (int i = 0; i < NUMBERS; i++)
-    v[i] = number_at(&array, chosen, (size_t)i);
+  for (size_t i = 0; i < NUMBERS; i++)
+    v[i] = vl_numpy_at(&array, (size_t)chosen * NUMBERS + i);
   const double height = v[4], width = v[9], sides[2] = {width, height};
   for (int i = 0; i < 15; i++)
     if (!isfinite(v[i]))
@@ -99,8 +55,8 @@ static vlResult read_llff(const vlCameraFile *file, const char *text, size_t siz
 }
 
 static bool is_llff(const char *text, size_t size) {
-  Array array;
-  return read_header(text, size, &array);
+  vlNumpyArray array;
+  return open_poses(text, size, &array);
 }
 
 const vlCameraFormat vl_format_llff = {

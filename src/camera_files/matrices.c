@@ -147,10 +147,7 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree,
   vlCameraDef *d = &record->camera;
   const char *word;
   VL_TRY(vl_camera_word(file, tree, "graphics_api", &word));
-  const Api *api = NULL;
-  for (int i = 0; i < API_COUNT && word; i++)
-    if (vl_text_is(apis[i].name, word))
-      api = &apis[i];
+  const Api *api = VL_CAMERA_ROW(apis, word);
   if (!api) {
     char known[300];
     vl_tell_names(known, sizeof known, word ? word : "", names, API_COUNT);
@@ -234,11 +231,8 @@ static void put_matrix(vlCameraText *text, const char *name, const vlMat4 *m, bo
 }
 
 static vlResult write_matrices(const vlFittedCamera *fit, vlCameraText *text) {
-  const Api *api = &apis[0];
+  const Api *api = VL_CAMERA_ROW(apis, fit->file->dialect);
   const vlCamera *c = &fit->camera;
-  for (int i = 0; i < API_COUNT; i++)
-    if (vl_text_is(apis[i].name, fit->file->dialect))
-      api = &apis[i];
   vlMat4 projection = projection_of(c, api), view = vl_mat4_load(c->camera_from_world);
   for (int i = 4; i < 12; i++)
     view.m[i] = 0.0 - view.m[i];

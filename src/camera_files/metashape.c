@@ -210,9 +210,7 @@ static vlResult write_metashape(const vlFittedCamera *fit, vlCameraText *text) {
              fit->count > 5) {
     return vl_camera_no_model(fit->file, d);
   }
-  const char *name = fit->record->name[0] && !strpbrk(fit->record->name, "<>&\"")
-                         ? fit->record->name
-                         : "camera";
+  const char *name = vl_camera_name_without(fit, "<>&\"", "camera");
   const double plane[4] = {c->cx - 0.5 * c->width, c->cy - 0.5 * c->height, c->fx - c->fy,
                            c->skew};
   return VL_PUT_FORM(

@@ -21,12 +21,11 @@ static const char *find(const char *text, size_t size, const char *key, vlCamera
 static vlResult read_number(const vlCameraFile *file, const char *text, size_t size,
                             const char *key, double *value, bool *found) {
   vlCameraLines line;
-  uint32_t count;
   const char *at = find(text, size, key, &line);
   if (found)
     *found = at != NULL;
   if (at)
-    return vl_camera_line_numbers(file, &line, at, value, 1, 1, &count);
+    return vl_camera_line_numbers(file, &line, at, value, 1, 1, NULL);
   return found ? VL_OK
                : vl_camera_wrong_at(file, 1, 1, "middlebury: the line \"%s=\" is missing", key);
 }

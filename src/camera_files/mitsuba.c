@@ -13,8 +13,6 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 
-static const double degree = 3.14159265358979323846 / 180.0;
-
 /* ---- reading ----------------------------------------------------------------------------- */
 
 typedef struct {
@@ -184,7 +182,7 @@ static vlResult operation(const Scene *scene, const json_t *op, vlMat4 *m) {
     VL_TRY(numbers(scene, op, "angle", 1, &v[3], NULL));
     if (v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0)
       return vl_camera_wrong_at(scene->file, line_of(op), 0, "mitsuba: <rotate> has no axis");
-    *m = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
+    *m = vl_mat4_rotate(v[3] * VL_DEGREE, v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "matrix")) {
     VL_TRY(numbers(scene, op, "value", 16, v, NULL));
     *m = vl_mat4_load(v);
@@ -267,7 +265,7 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
                               "mitsuba: fov is %g degrees; it must lie between 0 and 180", fov);
   for (int i = 0; i < 5; i++)
     if (vl_text_is(axis, names[i])) {
-      *f = 0.5 * sides[i] / vl_precise_tan(0.5 * fov * degree);
+      *f = 0.5 * sides[i] / vl_precise_tan(0.5 * fov * VL_DEGREE);
       return VL_OK;
     }
   return vl_camera_wrong_at(
@@ -458,7 +456,7 @@ static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
     m[i] *= 0.5 * c->width / c->fx;
     m[i + 1] *= 0.5 * c->width / c->fy;
   }
-  const double fov = 2.0 * vl_precise_atan(0.5 * c->width / c->fx) / degree;
+  const double fov = 2.0 * vl_precise_atan(0.5 * c->width / c->fx) / VL_DEGREE;
   const double offset[2] = {0.5 - c->cx / c->width, 0.5 - c->cy / c->height};
   const bool focused =
       !isinf(c->focus_distance) && !vl_camera_drops(fit->file, "focus_distance");

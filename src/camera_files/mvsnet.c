@@ -11,10 +11,9 @@ static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, cons
   if (!vl_camera_next_line(lines) || !vl_text_is(lines->text, word))
     return vl_camera_wrong(file, "mvsnet: \"%s\" is missing", word);
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t count;
     if (!vl_camera_next_line(lines))
       return vl_camera_wrong(file, "mvsnet: \"%s\" must have %u rows", word, n);
-    VL_TRY(vl_camera_line_numbers(file, lines, lines->text, m + (size_t)n * i, n, n, &count));
+    VL_TRY(vl_camera_line_numbers(file, lines, lines->text, m + (size_t)n * i, n, n, NULL));
   }
   return VL_OK;
 }

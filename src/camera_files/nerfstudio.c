@@ -7,8 +7,6 @@
 #include "math/elementary.h"
 #include "velo/projection.h"
 
-static const double degree = 3.14159265358979323846 / 180.0;
-
 static vlResult read_type(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
   const char *type = vl_camera_text(tree, "camera_type");
   if (!type || vl_text_is(type, "perspective"))
@@ -46,7 +44,7 @@ static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree,
     return vl_camera_wrong_in(file, camera, "fov",
                               "nerfstudio: \"fov\" is %g; it must be between 0 and 180 degrees",
                               fov);
-  d->fx = d->fy = 0.5 * d->height / vl_precise_tan(0.5 * degree * fov);
+  d->fx = d->fy = 0.5 * d->height / vl_precise_tan(0.5 * VL_DEGREE * fov);
   return VL_OK;
 }
 

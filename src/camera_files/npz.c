@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <zlib.h>
 
+#include "base/bytes.h"
 #include "base/text.h"
+#include "camera_files/numpy.h"
 #include "camera_files/opencv.h"
 
 enum { ENTRY = 46, LOCAL = 30, END = 22, MAX_NUMBERS = 64 };
@@ -16,65 +18,20 @@ static const char ignored[] =
     "ret rms error mean_error reprojection_error rvecs tvecs objpoints imgpoints newcameramtx "
     "newCameraMtx new_camera_matrix";
 
-static uint32_t little_endian(const char *text, int bytes) {
-  uint32_t value = 0;
-  for (int i = bytes; i-- > 0;)
-    value = value << 8 | (unsigned char)text[i];
-  return value;
-}
-
-static double number_at(const char *at, bool whole, int bytes) {
-  uint32_t low = little_endian(at, 4);
-  uint64_t bits = bytes == 8 ? (uint64_t)little_endian(at + 4, 4) << 32 | low : low;
-  float narrow;
-  double value;
-  memcpy(&narrow, &low, sizeof narrow);
-  memcpy(&value, &bits, sizeof value);
-  if (whole)
-    return bytes == 8 ? (double)(int64_t)bits : (double)(int32_t)low;
-  return bytes == 8 ? value : (double)narrow;
-}
-
 /* Reads an array of at most MAX_NUMBERS numbers by rows as a list; without dimensions, a
  * number. Null: it is another one. */
 static json_t *read_array(const char *text, size_t size) {
-  char header[272] = "";
-  if (size < 10 || memcmp(text, "\x93NUMPY\1", 7) != 0)
+  vlNumpyArray array;
+  if (!vl_numpy_open(text, size, &array) || array.count > MAX_NUMBERS)
     return NULL;
-  size_t length = little_endian(text + 8, 2), left = size - 10;
-  if (length >= 256 || length > left)
-    return NULL;
-  memcpy(header, text + 10, length);
-  left -= length;
-  const char *shape = strstr(header, "'shape': ("), *type = strstr(header, "'descr': '<");
-  bool columns = strstr(header, "'fortran_order': True") != NULL;
-  if (!shape || !type)
-    return NULL;
-  bool whole = type[11] == 'i';
-  int bytes = type[12] == '8' ? 8 : 4;
-  if ((!whole && type[11] != 'f') || (type[12] != '8' && type[12] != '4') || type[13] != '\'')
-    return NULL;
-  unsigned long sides[2] = {1, 1}, count = 1;
-  int dimensions = 0;
-  for (char *at = (char *)shape + 10, *end; *at != ')'; dimensions++) {
-    unsigned long side = strtoul(at, &end, 10);
-    if (end == at || side < 1 || side > MAX_NUMBERS || (count *= side) > MAX_NUMBERS)
-      return NULL;
-    if (dimensions < 2)
-      sides[dimensions] = side;
-    at = end + strspn(end, ", ");
-  }
-  if (count * (size_t)bytes > left || (columns && dimensions > 2))
-    return NULL;
+  if (array.dimensions == 0)
+    return json_real(vl_numpy_at(&array, 0));
   json_t *list = json_array();
-  for (unsigned long i = 0; i < count; i++) {
-    unsigned long k = columns ? i % sides[1] * sides[0] + i / sides[1] : i;
-    const char *at = text + 10 + length + k * (size_t)bytes;
-    double value = number_at(at, whole, bytes);
-    json_t *item = json_real(value); /* null if it is not finite */
-    if (!item || (dimensions == 0 && list)) {
+  for (size_t i = 0; i < array.count; i++) {
+    json_t *item = json_real(vl_numpy_at(&array, i)); /* null if it is not finite */
+    if (!item) {
       json_decref(list);
-      return item;
+      return NULL;
     }
     json_array_append_new(list, item);
   }
@@ -85,8 +42,8 @@ static json_t *read_array(const char *text, size_t size) {
 static vlResult read_member(const vlCameraFile *file, const char *text, size_t size,
                             const char *entry, json_t *tree) {
   char name[64];
-  size_t length = little_endian(entry + 28, 2), bytes = little_endian(entry + 20, 4),
-         at = little_endian(entry + 42, 4);
+  size_t length = vl_little(entry + 28, 2), bytes = vl_little(entry + 20, 4),
+         at = vl_little(entry + 42, 4);
   snprintf(name, sizeof name, "%.*s", (int)(length < 60 ? length : 60), entry + ENTRY);
   if (vl_ends_with(name, ".npy"))
     name[strlen(name) - 4] = 0;
@@ -100,15 +57,15 @@ static vlResult read_member(const vlCameraFile *file, const char *text, size_t s
     return vl_camera_wrong(
         file, "npz: \"%s\" is no field of OpenCV's cameras; there are mtx, dist, image_size",
         vl_short_text(name).text);
-  if (little_endian(entry + 10, 2) != 0)
+  if (vl_little(entry + 10, 2) != 0)
     return vl_camera_wrong(file, "npz: \"%s\" is compressed; np.savez writes it as it is",
                            name);
   if (at > size || size - at < LOCAL || memcmp(text + at, "PK\3\4", 4) != 0)
     return vl_camera_wrong(file, "npz: \"%s\" is cut off", name);
-  at += LOCAL + little_endian(text + at + 26, 2) + little_endian(text + at + 28, 2);
+  at += LOCAL + vl_little(text + at + 26, 2) + vl_little(text + at + 28, 2);
   if (at > size || size - at < bytes)
     return vl_camera_wrong(file, "npz: \"%s\" is cut off", name);
-  if (crc32_z(0, (const unsigned char *)text + at, bytes) != little_endian(entry + 16, 4))
+  if (crc32_z(0, (const unsigned char *)text + at, bytes) != vl_little(entry + 16, 4))
     return vl_camera_wrong(file, "npz: \"%s\" is damaged: its CRC is another", name);
   json_t *value = read_array(text + at, bytes);
   if (!value)
@@ -129,9 +86,9 @@ static vlResult read_member(const vlCameraFile *file, const char *text, size_t s
 }
 
 bool vl_npz_is(const char *text, size_t size) {
-  return size > LOCAL + END && memcmp(text, "PK\3\4", 4) == 0 &&
-         little_endian(text + 26, 2) > 4 && LOCAL + little_endian(text + 26, 2) < size &&
-         memcmp(text + LOCAL + little_endian(text + 26, 2) - 4, ".npy", 4) == 0;
+  return size > LOCAL + END && memcmp(text, "PK\3\4", 4) == 0 && vl_little(text + 26, 2) > 4 &&
+         LOCAL + vl_little(text + 26, 2) < size &&
+         memcmp(text + LOCAL + vl_little(text + 26, 2) - 4, ".npy", 4) == 0;
 }
 
 vlResult vl_npz_read(const vlCameraFile *file, const char *text, size_t size,
@@ -139,8 +96,8 @@ vlResult vl_npz_read(const vlCameraFile *file, const char *text, size_t size,
   size_t end = size - END;
   while (end > 0 && memcmp(text + end, "PK\5\6", 4) != 0)
     end--;
-  size_t at = end ? little_endian(text + end + 16, 4) : size;
-  uint32_t count = end ? little_endian(text + end + 10, 2) : 0;
+  size_t at = end ? vl_little(text + end + 16, 4) : size;
+  uint32_t count = end ? (uint32_t)vl_little(text + end + 10, 2) : 0;
   json_t *tree = json_object();
   vlResult result = !tree       ? vl_fail_memory(file->error)
                     : count > 0 ? VL_OK
@@ -149,8 +106,8 @@ vlResult vl_npz_read(const vlCameraFile *file, const char *text, size_t size,
     size_t length = 0;
     bool there = at <= size && size - at >= ENTRY && memcmp(text + at, "PK\1\2", 4) == 0;
     if (there)
-      length = ENTRY + little_endian(text + at + 28, 2) + little_endian(text + at + 30, 2) +
-               little_endian(text + at + 32, 2);
+      length = ENTRY + vl_little(text + at + 28, 2) + vl_little(text + at + 30, 2) +
+               vl_little(text + at + 32, 2);
     if (!there || size - at < length)
       result = vl_camera_wrong(file, "npz: the archive's directory is cut off");
     else

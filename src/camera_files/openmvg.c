@@ -55,34 +55,31 @@ static const char *class_of(const json_t *list, const json_t *item) {
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *item, const char *name,
                           vlCameraDef *d) {
-  static const struct {
+  typedef struct {
     const char *name, *field;
     uint32_t count;
-  } models[] = {{"pinhole", NULL, 0},
-                {"pinhole_radial_k1", "disto_k1", 1},
-                {"pinhole_radial_k3", "disto_k3", 3},
-                {"pinhole_brown_t2", "disto_t2", 5},
-                {"fisheye", "fisheye", 4}};
+  } Model;
+  static const Model models[] = {{"pinhole", NULL, 0},
+                                 {"pinhole_radial_k1", "disto_k1", 1},
+                                 {"pinhole_radial_k3", "disto_k3", 3},
+                                 {"pinhole_brown_t2", "disto_t2", 5},
+                                 {"fisheye", "fisheye", 4}};
+  const Model *model = VL_CAMERA_ROW(models, name);
   double k[5] = {0};
-  for (size_t i = 0; i < VL_LENGTH(models); i++) {
-    if (!vl_text_is(models[i].name, name))
-      continue;
-    if (!models[i].field)
-      return VL_OK;
-    VL_TRY(vl_camera_list(file, data_of(item, models[i].field), models[i].field, k,
-                          models[i].count));
-    if (i == 4) {
-      vl_camera_set_fisheye(d, k);
-      return VL_OK;
-    }
-    vl_camera_set_opencv(d, (double[]){k[0], k[1], k[3], k[4], k[2]}, 5); /* k1 k2 k3 t1 t2 */
+  if (!model)
+    return vl_camera_wrong_in(
+        file, item, NULL,
+        "openmvg: \"%s\" is no model of velo; there are pinhole, pinhole_radial_k1, "
+        "pinhole_radial_k3, pinhole_brown_t2, fisheye, spherical",
+        vl_short_text(name).text);
+  if (!model->field)
     return VL_OK;
-  }
-  return vl_camera_wrong_in(
-      file, item, NULL,
-      "openmvg: \"%s\" is no model of velo; there are pinhole, pinhole_radial_k1, "
-      "pinhole_radial_k3, pinhole_brown_t2, fisheye, spherical",
-      vl_short_text(name).text);
+  VL_TRY(vl_camera_list(file, data_of(item, model->field), model->field, k, model->count));
+  if (model->count == 4)
+    vl_camera_set_fisheye(d, k);
+  else
+    vl_camera_set_opencv(d, (double[]){k[0], k[1], k[3], k[4], k[2]}, 5); /* k1 k2 k3 t1 t2 */
+  return VL_OK;
 }
 
 static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, const json_t *item,

@@ -220,7 +220,7 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
   memcpy(lens.k, v + K1, sizeof lens.k);
   double sine[3], cosine[3];
   for (int i = 0; i < 3; i++) {
-    double angle = (i ? v[HEADING + i] : -v[HEADING]) * (3.14159265358979323846 / 180.0);
+    double angle = (i ? v[HEADING + i] : -v[HEADING]) * VL_DEGREE;
     sine[i] = vl_precise_sin(angle);
     cosine[i] = vl_precise_cos(angle);
   }

@@ -7,8 +7,6 @@
 #include "camera_files/fields.h"
 #include "math/elementary.h"
 
-static const double degree = 3.14159265358979323846 / 180.0;
-
 static bool is_camera(const json_t *object) {
   const char *type = vl_camera_text(object, "type");
   return type && vl_has_word("PerspectiveCamera OrthographicCamera", type);
@@ -49,7 +47,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *object,
     d->cx = 0.5 * d->width - 0.5 * d->fx * (s[0] + s[1]);
     d->cy = 0.5 * d->height + 0.5 * d->fy * (s[2] + s[3]);
   } else {
-    d->fy = 0.5 * d->height * zoom / vl_precise_tan(0.5 * degree * fov);
+    d->fy = 0.5 * d->height * zoom / vl_precise_tan(0.5 * VL_DEGREE * fov);
     d->fx = d->fy * d->width / (aspect * d->height);
   }
   return VL_OK;

@@ -66,9 +66,12 @@ typedef struct Csv {
   double time_unit; /* seconds */
 } Csv;
 
-static vlResult wrong(const Csv *csv, uint32_t column, const char *format, const char *word) {
-  return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, column + 1,
-                    format, word);
+static vlResult wrong(const Csv *csv, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static vlResult wrong(const Csv *csv, const char *format, ...) {
+  char message[400];
+  VL_FORMAT(message, format);
+  return vl_camera_wrong_at(csv->file, csv->line, 1, "%s", message);
 }
 
 /* Splits a line in place; removes surrounding blanks and quotes. Returns the number of fields;
@@ -134,17 +137,12 @@ static bool take_comment(Csv *csv, const char *comment) {
   return true;
 }
 
-static bool whole(const Csv *csv, int first, int last) {
+/* How many of these columns there are. */
+static int count_of(const Csv *csv, int first, int last) {
+  int count = 0;
   for (int i = first; i <= last; i++)
-    if (!csv->has[i])
-      return false;
-  return true;
-}
-static bool any(const Csv *csv, int first, int last) {
-  for (int i = first; i <= last; i++)
-    if (csv->has[i])
-      return true;
-  return false;
+    count += csv->has[i];
+  return count;
 }
 
 /* Checks that exactly one representation of the pose is given, and completely. */
@@ -152,23 +150,22 @@ static vlResult check_columns(const Csv *csv) {
   static const struct { int first, last; } ways[] = {{TX, QW}, {EYE_X, LOOKAT_Z}, {M00, M23}};
   int found = 0;
   for (int i = 0; i < 3; i++) {
-    if (!any(csv, ways[i].first, ways[i].last))
+    if (!count_of(csv, ways[i].first, ways[i].last))
       continue;
     for (int k = ways[i].first; k <= ways[i].last; k++)
       if (!csv->has[k])
-        return wrong(csv, 0, "the column \"%s\" is missing", names[k]);
+        return wrong(csv, "the column \"%s\" is missing", names[k]);
     found++;
   }
   if (found != 1)
-    return wrong(csv, 0,
-                 found ? "the columns say a pose in two ways%s"
+    return wrong(csv, "%s",
+                 found ? "the columns say a pose in two ways"
                        : "the columns say no pose: tx ty tz qx qy qz qw, or eye_x eye_y "
-                         "eye_z lookat_x lookat_y lookat_z, or m00 to m23%s",
-                 "");
-  if (any(csv, UP_X, UP_Z) && !whole(csv, UP_X, UP_Z))
-    return wrong(csv, 0, "\"up\" has not all of its columns%s", "");
-  if (any(csv, UP_X, ROLL) && !csv->has[EYE_X])
-    return wrong(csv, 0, "\"up\" and \"roll\" go with eye and lookat only%s", "");
+                         "eye_z lookat_x lookat_y lookat_z, or m00 to m23");
+  if (count_of(csv, UP_X, UP_Z) % 3 != 0)
+    return wrong(csv, "\"up\" has not all of its columns");
+  if (count_of(csv, UP_X, ROLL) > 0 && !csv->has[EYE_X])
+    return wrong(csv, "\"up\" and \"roll\" go with eye and lookat only");
   return VL_OK;
 }
 
@@ -196,12 +193,11 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
     }
     if (column == COLUMNS) {
       const char *near = vl_nearest_name(fields[i], names, COLUMNS);
-      return vl_fail_at(csv->file->error, VL_ERROR_SCENE, csv->file->path, csv->line, 1,
-                        "unknown column \"%s\"%s%s%s", vl_short_text(fields[i]).text,
-                        near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
+      return wrong(csv, "unknown column \"%s\"%s%s%s", vl_short_text(fields[i]).text,
+                   near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
     }
     if (csv->has[column])
-      return wrong(csv, 0, "the column \"%s\" stands twice", names[column]);
+      return wrong(csv, "the column \"%s\" stands twice", names[column]);
     csv->has[column] = true;
     csv->of[i] = column;
   }
@@ -217,7 +213,7 @@ static vlResult read_euroc_header(Csv *csv, char *line) {
   csv->time_unit = 1e-9;
   int count = split(line, csv->separator, fields);
   if (count > MAX_COLUMNS)
-    return wrong(csv, 0, "more than 64 columns%s", "");
+    return wrong(csv, "more than 64 columns");
   for (int i = 0; i < count; i++)
     fields[i][strcspn(fields[i], " [")] = 0; /* the unit */
   return read_header(csv, fields, count);
@@ -304,7 +300,7 @@ static vlResult read_line(Csv *csv, char *line) {
                                           : 0;
   int count = split(line, csv->separator, fields);
   if (count > MAX_COLUMNS)
-    return wrong(csv, 0, "more than 64 columns%s", "");
+    return wrong(csv, "more than 64 columns");
   double v[COLUMNS] = {0}, m[16], unused;
   if (!csv->header) {
     bool numbers = true;
@@ -314,11 +310,10 @@ static vlResult read_line(Csv *csv, char *line) {
       return read_header(csv, fields, count);
     if (!headless(csv, count))
       return wrong(
-          csv, 0,
-          "%snumbers without a header: lists of TUM have 8 in a line (seconds, tx ty tz, "
+          csv,
+          "numbers without a header: lists of TUM have 8 in a line (seconds, tx ty tz, "
           "qx qy qz qw), those of "
-          "KITTI 12 (three rows of a matrix), those of Replica 16 (four rows)",
-          "");
+          "KITTI 12 (three rows of a matrix), those of Replica 16 (four rows)");
   }
   vlFrameLocation location = {NULL, csv->line, (uint32_t)csv->trajectory->frames.count, NULL};
   if (count != csv->columns)
@@ -359,7 +354,7 @@ vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char 
     } else if (*first == '#') {
       if (!take_comment(&csv, first))
         return wrong(
-            &csv, 0,
+            &csv,
             "\"%s\": axes are opencv or opengl, poses world_from_camera or camera_from_world",
             vl_short_text(first).text);
     } else if (*first) {

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/bytes.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "camera_files/files.h"
@@ -81,8 +82,7 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
   /* .glb: a header of 12 bytes, then a JSON chunk, which consists of its length, "JSON" and the
    * text */
   if (size >= 20 && memcmp(text, "glTF", 4) == 0 && memcmp(text + 16, "JSON", 4) == 0) {
-    const unsigned char *b = (const unsigned char *)text + 12;
-    size_t length = (size_t)b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;
+    const size_t length = vl_little32(text + 12);
     if (length > size - 20)
       return vl_camera_wrong(file, "not glTF: the file is cut off");
     text += 20;
@@ -287,6 +287,13 @@ vlResult vl_camera_list(const vlCameraFile *file, const json_t *object, const ch
 
 const char *vl_camera_text(const json_t *object, const char *key) {
   return json_string_value(json_object_get(object, key));
+}
+
+const void *vl_camera_row(const void *rows, size_t count, size_t size, const char *name) {
+  for (const char *row = rows; count > 0; row += size, count--)
+    if (vl_text_is(name, *(const char *const *)(const void *)row))
+      return row;
+  return NULL;
 }
 
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name) {

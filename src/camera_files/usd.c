@@ -11,8 +11,6 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 
-static const double degree = 3.14159265358979323846 / 180.0;
-
 /* Transforms: matrices for column vectors; the first operation of an order is the
  * outermost. */
 
@@ -28,7 +26,7 @@ static vlResult op_numbers(const Operation *op, const char *key, double *values,
 }
 
 static vlMat4 turn(int axis, double degrees) {
-  return vl_mat4_rotate(degrees * degree, axis == 0, axis == 1, axis == 2);
+  return vl_mat4_rotate(degrees * VL_DEGREE, axis == 0, axis == 1, axis == 2);
 }
 
 /* Applies xformOp:kind[:suffix], optionally after !invert!. */
@@ -190,9 +188,8 @@ static vlResult read_settings(const Search *s, double *pixel) {
   *pixel = 1.0;
   if (!s->resolution)
     return VL_OK;
-  VL_TRY(vl_camera_optional(s->file, s->resolution, "pixelAspectRatio", pixel));
-  if (json_object_get(s->resolution, "dataWindowNDC"))
-    VL_TRY(vl_camera_list(s->file, s->resolution, "dataWindowNDC", window, 4));
+  VL_TRY(VL_READ_FIELDS(s->file, s->resolution, VL_FIELD_OPTIONAL("pixelAspectRatio", pixel),
+                        VL_FIELD_LIST_IF_THERE("dataWindowNDC", window, 4)));
   if (window[0] != 0.0 || window[1] != 0.0 || window[2] != 1.0 || window[3] != 1.0)
     return vl_camera_wrong(s->file, "usd: a crop, \"dataWindowNDC\", is not taken");
   if (!(*pixel > 0.0))
@@ -250,7 +247,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   vlCameraDef *d = &record->camera;
   double focal = 50.0, across = 20.955, down = 15.2908, offset_x = 0.0, offset_y = 0.0,
          stop = 0.0, focus = 0.0;
-  double range[2], exposure = 0.0, rate = 24.0;
+  double range[2] = {d->near_plane, d->far_plane}, exposure = 0.0, rate = 24.0;
   VL_TRY(VL_READ_FIELDS(
       file, prim, VL_FIELD_OPTIONAL("focalLength", &focal),
       VL_FIELD_OPTIONAL("horizontalAperture", &across),
@@ -261,11 +258,9 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
       VL_FIELD_OPTIONAL("shutter:open", &d->shutter_open),
       VL_FIELD_OPTIONAL("shutter:close", &d->shutter_close)));
   VL_TRY(vl_camera_optional(file, root, "timeCodesPerSecond", &rate));
-  if (json_object_get(prim, "clippingRange")) {
-    VL_TRY(vl_camera_list(file, prim, "clippingRange", range, 2));
-    d->near_plane = range[0];
-    d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
-  }
+  VL_TRY(VL_READ_FIELDS(file, prim, VL_FIELD_LIST_IF_THERE("clippingRange", range, 2)));
+  d->near_plane = range[0];
+  d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
   bool flat = false;
   VL_TRY(read_projection(file, prim, &flat));
   if (!(focal > 0.0 && across > 0.0 && down > 0.0 && rate > 0.0))

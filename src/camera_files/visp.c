@@ -111,8 +111,7 @@ static vlResult write_visp(const vlFittedCamera *fit, vlCameraText *text) {
   const double *k = fit->k;
   const bool fisheye = fit->family == VL_LENS_FISHEYE;
   bool bent = !fisheye && k[0] != 0.0;
-  const char *name =
-      fit->record->name[0] && !strpbrk(fit->record->name, "<>&") ? fit->record->name : "Camera";
+  const char *name = vl_camera_name_without(fit, "<>&", "Camera");
   static const char *const kannala[] = {"k1", "k2", "k3", "k4", "k5"};
   const double inverse = -k[0];
   return VL_PUT_FORM(

@@ -29,13 +29,6 @@ static void set_distortion(double r, vlCameraDef *d) {
   vl_camera_set_opencv(d, k, 8);
 }
 
-/* A camera's line: the name is in front of the last ten numbers. */
-static vlResult read_camera(const vlCameraFile *file, const vlCameraLines *lines, size_t name,
-                            double v[10]) {
-  uint32_t count;
-  return vl_camera_line_numbers(file, lines, lines->text + name, v, 10, 10, &count);
-}
-
 /* The length of the name: up to the tab, or to the first blank after a possible quotation
  * mark. */
 static size_t name_length(const char *line) {
@@ -51,15 +44,14 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
   vlCameraLines lines = {.at = text, .end = text + size};
   vlCameraDef *d = &record->camera;
   double fixed[5] = {0.0}, count = 0.0, v[10], r[9];
-  uint32_t n = 0;
   bool taken = false;
   vl_camera_next_line(&lines);
   const char *k = strstr(lines.text, "FixedK");
   if (k)
-    VL_TRY(vl_camera_line_numbers(file, &lines, k + 6, fixed, 4, 5, &n));
+    VL_TRY(vl_camera_line_numbers(file, &lines, k + 6, fixed, 4, 5, NULL));
   if (!vl_camera_next_line(&lines))
     return vl_camera_wrong(file, "visualsfm: the file has no camera");
-  VL_TRY(vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1, &n));
+  VL_TRY(vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1, NULL));
   if (!(count >= 1.0 && count <= 1e7))
     return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
   record->frames = (uint32_t)count;
@@ -75,7 +67,8 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
     taken = vl_camera_is_frame(file, i, name);
     if (!taken)
       continue;
-    VL_TRY(read_camera(file, &lines, length, v));
+    /* the name is in front of the last ten numbers */
+    VL_TRY(vl_camera_line_numbers(file, &lines, lines.text + length, v, 10, 10, NULL));
     vl_camera_name(record, name);
   }
   if (!taken)
@@ -107,9 +100,7 @@ static vlResult write_visualsfm(const vlFittedCamera *fit, vlCameraText *text) {
   double r[9], t[3], q[4];
   vl_camera_get_pose(c, r, t);
   vl_rotation_to_quaternion(r, q);
-  const char *name = fit->record->name[0] && !strpbrk(fit->record->name, "\"\n")
-                         ? fit->record->name
-                         : "image.jpg";
+  const char *name = vl_camera_name_without(fit, "\"\n", "image.jpg");
   return VL_PUT_FORM(
       text, fit,
       "NVM_V3 FixedK $fx $cx $fy $cy 0\n\n1\n\"$own\"\t$fx $q:s $centre:s 0 0\n\n0\n",

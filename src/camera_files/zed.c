@@ -9,23 +9,21 @@
 #include "base/text.h"
 #include "camera_files/lines.h"
 
-static const struct {
+typedef struct {
   const char *name;
   uint32_t width, height;
-} modes[] = {{"2K", 2208, 1242},      {"FHD1200", 1920, 1200}, {"FHD", 1920, 1080},
-             {"QHDPLUS", 3200, 1800}, {"4K", 3840, 2160},      {"HD1200", 1920, 1200},
-             {"HD", 1280, 720},       {"SVGA", 960, 600},      {"VGA", 672, 376}};
+} Mode;
+static const Mode modes[] = {
+    {"2K", 2208, 1242},      {"FHD1200", 1920, 1200}, {"FHD", 1920, 1080},
+    {"QHDPLUS", 3200, 1800}, {"4K", 3840, 2160},      {"HD1200", 1920, 1200},
+    {"HD", 1280, 720},       {"SVGA", 960, 600},      {"VGA", 672, 376}};
 
-/* Returns the number of the section's resolution; -1: it is no camera. */
-static int mode_of(const char *section, bool *right) {
+/* Returns the section's resolution; null: it is no camera. */
+static const Mode *mode_of(const char *section, bool *right) {
   *right = strncmp(section, "RIGHT_CAM_", 10) == 0;
   if (!*right && strncmp(section, "LEFT_CAM_", 9) != 0)
-    return -1;
-  const char *name = section + (*right ? 10 : 9);
-  for (size_t i = 0; i < VL_LENGTH(modes); i++)
-    if (vl_text_is(name, modes[i].name))
-      return (int)i;
-  return -1;
+    return NULL;
+  return VL_CAMERA_ROW(modes, section + (*right ? 10 : 9));
 }
 
 /* Reads [NAME]; false: the line is another one. */
@@ -54,7 +52,6 @@ static vlResult find_value(const vlCameraFile *file, const char *text, size_t si
   vlCameraLines lines = {.at = text, .end = text + size};
   char name[64] = "";
   size_t length = strlen(key);
-  uint32_t count;
   *found = false;
   while (vl_camera_next_line(&lines)) {
     if (is_section(lines.text, name) || !vl_text_is(name, section))
@@ -65,13 +62,13 @@ static vlResult find_value(const vlCameraFile *file, const char *text, size_t si
     if (*sign != '=')
       continue;
     *found = true;
-    return vl_camera_line_numbers(file, &lines, sign + 1, value, 1, 1, &count);
+    return vl_camera_line_numbers(file, &lines, sign + 1, value, 1, 1, NULL);
   }
   return VL_OK;
 }
 
-static vlResult read_right(const vlCameraFile *file, const char *text, size_t size, int mode,
-                           vlCameraDef *d) {
+static vlResult read_right(const vlCameraFile *file, const char *text, size_t size,
+                           const Mode *mode, vlCameraDef *d) {
   static const char *const shifts[] = {"Baseline", "TY", "TZ"}, *const turns[] = {"RX", "CV",
                                                                                   "RZ"};
   double t[3] = {0.0}, v[3] = {0.0}, r[9];
@@ -81,7 +78,7 @@ static vlResult read_right(const vlCameraFile *file, const char *text, size_t si
     VL_TRY(find_value(file, text, size, "STEREO", shifts[i], &t[i], &found));
     if (i == 0 && !found)
       return vl_camera_wrong(file, "zed: [STEREO] has no Baseline");
-    snprintf(key, sizeof key, "%s_%s", turns[i], modes[mode].name);
+    snprintf(key, sizeof key, "%s_%s", turns[i], mode->name);
     VL_TRY(find_value(file, text, size, "STEREO", key, &v[i], &found));
     t[i] = 0.0 - t[i];
   }
@@ -97,20 +94,20 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
   vlCameraDef *d = &record->camera;
   char name[64], section[64] = "";
   bool right = false, other;
-  int mode = -1, found;
+  const Mode *mode = NULL, *found;
   double v[9] = {0.0};
   record->frames = 0;
   while (vl_camera_next_line(&lines)) {
-    if (!is_section(lines.text, name) || (found = mode_of(name, &other)) < 0)
+    if (!is_section(lines.text, name) || !(found = mode_of(name, &other)))
       continue;
-    if (mode < 0 && vl_camera_is_frame(file, record->frames, name)) {
+    if (!mode && vl_camera_is_frame(file, record->frames, name)) {
       mode = found;
       right = other;
       memcpy(section, name, sizeof section);
     }
     record->frames++;
   }
-  if (mode < 0)
+  if (!mode)
     return vl_camera_no_frame(file, "camera", record->frames);
   if (has_section(text, size, right ? "RIGHT_DISTO" : "LEFT_DISTO"))
     return vl_camera_wrong(file, "zed: the lens of [%s] is not taken",
@@ -121,8 +118,8 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
     if (!there && i < 4)
       return vl_camera_wrong(file, "zed: [%s] has no %s", section, keys[i]);
   }
-  d->width = modes[mode].width;
-  d->height = modes[mode].height;
+  d->width = mode->width;
+  d->height = mode->height;
   vl_camera_set_centred(d, v);
   vl_camera_set_opencv(d, v + 4, vl_camera_all_zero(v + 4, 5) ? 0 : 5);
   vl_camera_name(record, section);
@@ -135,7 +132,7 @@ static bool is_zed(const char *text, size_t size) {
   char name[64];
   bool right;
   while (vl_camera_next_line(&lines))
-    if (is_section(lines.text, name) && mode_of(name, &right) >= 0)
+    if (is_section(lines.text, name) && mode_of(name, &right))
       return true;
   return false;
 }

@@ -9,6 +9,7 @@
 #include "camera_files/fields.h"
 #include "distortion/distortion.row.h"
 #include "projection/properties.row.h"
+#include "schema/schema.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
 #include "velo/setting.h"
@@ -27,9 +28,8 @@ typedef struct Field Field;
 typedef void Put(vlCameraText *text, const Field *field, const vlCameraDef *def);
 typedef vlResult Read(const vlCameraFile *file, const json_t *tree, const Field *field,
                       vlCameraDef *def);
-static Put put_fov_axis, put_curve, put_shape, put_distortion, put_vector, put_pose,
-    put_pose_close;
-static Read read_curve, read_shape, read_distortion, read_pose, read_pose_close;
+static Put put_fov_axis, put_curve, put_shape, put_distortion, put_vector, put_pose;
+static Read read_curve, read_shape, read_distortion, read_pose;
 
 /* How the file holds a parameter. */
 typedef enum Form { NOT_HELD, NUMBERS, COUNT, CHOICE, BOOL } Form;
@@ -40,6 +40,7 @@ struct Field {
   const char *member;     /* of the row's parameter; null: no row holds it */
   const char *name;       /* in the file; null: the last word of member */
   size_t offset;          /* of numbers that no row holds */
+  size_t given;           /* of the flag that says whether a matrix is given */
   uint32_t count;         /* how many; more than one is a list, in which null is unset */
   Put *put;               /* null: by type */
   Read *read;             /* null: by type */
@@ -59,6 +60,11 @@ struct Field {
   { .member = path, .put = putter }
 #define RULE(file_name, putter, reader) \
   { .name = file_name, .put = putter, .read = reader }
+#define POSE(file_name, matrix, flag)                                        \
+  {                                                                          \
+    .name = file_name, .offset = offsetof(vlCameraDef, matrix),              \
+    .given = offsetof(vlCameraDef, flag), .put = put_pose, .read = read_pose \
+  }
 
 /* The fields in the order in which they are written. Parameters of the rows that are not here
  * follow by themselves. */
@@ -87,8 +93,16 @@ static const Field known_fields[] = {
     FIELD_AS("stereo.mode", "stereo"), FIELD("stereo_eye"),
     RULE("shape", put_shape, read_shape), RULE("distortion", put_distortion, read_distortion),
     FIELD_BY("eye", put_vector), FIELD_BY("lookat", put_vector), FIELD_BY("up", put_vector),
-    RULE("world_from_camera", put_pose, read_pose),
-    RULE("world_from_camera_close", put_pose_close, read_pose_close)};
+    POSE("world_from_camera", world_from_camera, has_matrix),
+    POSE("world_from_camera_close", world_from_camera_close, has_matrix_close)};
+
+/* The numbers of a field in a def. */
+static double *numbers_of(vlCameraDef *def, const Field *field) {
+  return (double *)(void *)((char *)def + field->offset);
+}
+static const double *const_numbers_of(const vlCameraDef *def, const Field *field) {
+  return (const double *)(const void *)((const char *)def + field->offset);
+}
 
 enum { MAX_FIELDS = 128 };
 typedef struct {
@@ -98,31 +112,14 @@ typedef struct {
 
 /* Functions write and read blocks and the list `shape`. */
 static Form form_of(const vlParameter *p) {
-  if (p->flags & VL_PARAMETER_SHORTHAND || strncmp(p->member, "shape[", 6) == 0)
-    return NOT_HELD;
-  switch (p->type) {
-    case VL_PARAMETER_BOOL:
-      return BOOL;
-    case VL_PARAMETER_COUNT:
-      return COUNT;
-    case VL_PARAMETER_CHOICE:
-      return CHOICE;
-    case VL_PARAMETER_DOUBLE:
-    case VL_PARAMETER_DOUBLE3:
-      return NUMBERS;
-    case VL_PARAMETER_FLOAT:
-    case VL_PARAMETER_FLOAT3:
-    case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE:
-    case VL_PARAMETER_SPECTRUM:
-    case VL_PARAMETER_FLOAT_INPUT:
-    case VL_PARAMETER_SPECTRUM_INPUT:
-    case VL_PARAMETER_EITHER_INPUT:
-    case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK:
-      return NOT_HELD;
-  }
-  return NOT_HELD;
+  static const Form forms[] = {[VL_PARAMETER_BOOL] = BOOL,
+                               [VL_PARAMETER_COUNT] = COUNT,
+                               [VL_PARAMETER_CHOICE] = CHOICE,
+                               [VL_PARAMETER_DOUBLE] = NUMBERS,
+                               [VL_PARAMETER_DOUBLE3] = NUMBERS};
+  const bool held = !(p->flags & VL_PARAMETER_SHORTHAND) &&
+                    strncmp(p->member, "shape[", 6) != 0 && p->type < VL_LENGTH(forms);
+  return held ? forms[p->type] : NOT_HELD;
 }
 
 static void add_parameter(Fields *fields, const vlParameter *p) {
@@ -258,20 +255,11 @@ static vlResult read_curve(const vlCameraFile *file, const json_t *tree, const F
   return VL_OK;
 }
 
-static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key,
-                            bool *given, double *m) {
-  *given = json_object_get(tree, key) != NULL;
-  return *given ? vl_camera_list(file, tree, key, m, 16) : VL_OK;
-}
-
 static vlResult read_pose(const vlCameraFile *file, const json_t *tree, const Field *field,
                           vlCameraDef *d) {
-  return read_matrix(file, tree, field->name, &d->has_matrix, d->world_from_camera);
-}
-
-static vlResult read_pose_close(const vlCameraFile *file, const json_t *tree,
-                                const Field *field, vlCameraDef *d) {
-  return read_matrix(file, tree, field->name, &d->has_matrix_close, d->world_from_camera_close);
+  bool *given = (bool *)((char *)d + field->given);
+  *given = vl_camera_has(tree, field->name);
+  return *given ? vl_camera_list(file, tree, field->name, numbers_of(d, field), 16) : VL_OK;
 }
 
 /* Checks one value by the field's row, or a finite number where no row holds it; null is
@@ -310,7 +298,7 @@ static vlResult read_field(const vlCameraFile *file, const json_t *tree, const F
   if (!value)
     return VL_OK;
   if (field->form == NUMBERS)
-    return read_numbers(file, value, field, (double *)(void *)((char *)def + field->offset));
+    return read_numbers(file, value, field, numbers_of(def, field));
   double number;
   VL_TRY(read_item(file, value, field, &number));
   vl_given_put(field->row, number, def);
@@ -362,110 +350,94 @@ static void put_curve(vlCameraText *text, const Field *field, const vlCameraDef 
     vl_camera_put(text, "]");
 }
 
+/* Appends numbers in brackets; null: unset. */
 static void put_list(vlCameraText *text, const double *values, uint32_t count) {
   for (uint32_t i = 0; i < count; i++) {
-    if (i)
-      vl_camera_put(text, ", ");
+    vl_camera_put(text, i ? ", " : "[");
     vl_camera_put(text, vl_is_unset(values[i]) ? "null" : "%.17g", values[i]);
   }
+  vl_camera_put(text, count ? "]" : "[]");
+}
+
+static void put_key(vlCameraText *text, const Field *field) {
+  vl_camera_put(text, ",\n  \"%s\": ", field->name);
 }
 
 static void put_shape(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  uint32_t count = vl_is_unset(d->shape[0]) ? 0 : vl_is_unset(d->shape[1]) ? 1 : 2;
-  if (!count)
+  if (vl_is_unset(d->shape[0]))
     return;
-  vl_camera_put(text, ",\n  \"%s\": [", field->name);
-  put_list(text, d->shape, count);
-  vl_camera_put(text, "]");
+  put_key(text, field);
+  put_list(text, d->shape, vl_is_unset(d->shape[1]) ? 1 : 2);
 }
 
 static void put_distortion(vlCameraText *text, const Field *field, const vlCameraDef *d) {
   if (d->distortion == VL_DISTORTION_NONE)
     return;
-  vl_camera_put(text, ",\n  \"%s\": {\"model\": \"%s\", \"coefficients\": [", field->name,
-                vl_distortion_row(d->distortion)->key);
+  put_key(text, field);
+  vl_camera_put(
+      text, "{\"model\": \"%s\", \"coefficients\": ", vl_distortion_row(d->distortion)->key);
   put_list(text, d->distortion_coefficients, d->distortion_count);
-  vl_camera_put(text, "]}");
+  vl_camera_put(text, "}");
 }
 
 /* A vector of the pose, also where it is the default; not beside a matrix. */
 static void put_vector(vlCameraText *text, const Field *field, const vlCameraDef *d) {
   if (d->has_matrix)
     return;
-  vl_camera_put(text, ",\n  \"%s\": [", field->name);
-  put_list(text, (const double *)(const void *)((const char *)d + field->offset), 3);
-  vl_camera_put(text, "]");
+  put_key(text, field);
+  put_list(text, const_numbers_of(d, field), 3);
 }
 
-static void put_matrix(vlCameraText *text, const char *name, const double m[16]) {
-  vl_camera_put(text, ",\n  \"%s\": [", name);
-  for (int i = 0; i < 16; i++) {
-    vl_camera_put(text, "%s%.17g", i % 4 ? ", " : "\n    [", m[i]);
-    if (i % 4 == 3)
-      vl_camera_put(text, i < 15 ? "]," : "]");
+static void put_pose(vlCameraText *text, const Field *field, const vlCameraDef *d) {
+  const double *m = const_numbers_of(d, field);
+  if (!*((const bool *)(const void *)((const char *)d + field->given)))
+    return;
+  put_key(text, field);
+  for (int i = 0; i < 16; i += 4) {
+    vl_camera_put(text, i ? ",\n    " : "[\n    ");
+    put_list(text, m + i, 4);
   }
   vl_camera_put(text, "\n  ]");
 }
 
-static void put_pose(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  if (d->has_matrix)
-    put_matrix(text, field->name, d->world_from_camera);
-}
-
-static void put_pose_close(vlCameraText *text, const Field *field, const vlCameraDef *d) {
-  if (d->has_matrix_close)
-    put_matrix(text, field->name, d->world_from_camera_close);
-}
-
 static double default_of(const Field *field, const vlCameraDef *standard, uint32_t i) {
   if (!field->row)
-    return ((const double *)(const void *)((const char *)standard + field->offset))[i];
+    return const_numbers_of(standard, field)[i];
   return field->row->flags & VL_PARAMETER_UNSET ? VL_UNSET : field->row->value[i];
 }
 
-static void put_numbers(vlCameraText *text, const Field *field, const double *values,
+static void put_numbers(vlCameraText *text, const Field *field, const vlCameraDef *def,
                         const vlCameraDef *standard) {
+  const double *values = const_numbers_of(def, field);
   bool differs = false;
   for (uint32_t i = 0; i < field->count; i++)
     differs = differs || (!vl_is_unset(values[i]) && !isinf(values[i]) &&
                           values[i] != default_of(field, standard, i));
   if (!differs)
     return;
-  vl_camera_put(text, field->count > 1 ? ",\n  \"%s\": [" : ",\n  \"%s\": ", field->name);
-  put_list(text, values, field->count);
+  put_key(text, field);
   if (field->count > 1)
-    vl_camera_put(text, "]");
+    put_list(text, values, field->count);
+  else
+    vl_camera_put(text, "%.17g", *values);
 }
 
 /* Writes a field if it differs from its default. */
 static void put_field(vlCameraText *text, const Field *field, const vlCameraDef *def,
                       const vlCameraDef *standard) {
-  const void *at = (const char *)def + field->offset;
+  double number;
   if (field->put) {
     field->put(text, field, def);
-    return;
-  }
-  double usual = field->row ? field->row->value[0] : 0.0;
-  switch (field->form) {
-    case NUMBERS:
-      put_numbers(text, field, at, standard);
-      break;
-    case COUNT:
-      if (*(const uint32_t *)at != (uint32_t)usual)
-        vl_camera_put(text, ",\n  \"%s\": %u", field->name, *(const uint32_t *)at);
-      break;
-    case BOOL:
-      if (*(const bool *)at != (usual != 0))
-        vl_camera_put(text, ",\n  \"%s\": %s", field->name,
-                      *(const bool *)at ? "true" : "false");
-      break;
-    case CHOICE:
-      if (*(const int *)at != (int)usual)
-        vl_camera_put(text, ",\n  \"%s\": \"%s\"", field->name,
-                      field->row->choices[*(const int *)at]);
-      break;
-    case NOT_HELD:
-      break;
+  } else if (field->form == NUMBERS) {
+    put_numbers(text, field, def, standard);
+  } else if (vl_parameter_number(field->row, def, &number) && number != field->row->value[0]) {
+    put_key(text, field);
+    if (field->form == COUNT)
+      vl_camera_put(text, "%u", (uint32_t)number);
+    else if (field->form == BOOL)
+      vl_camera_put(text, "%s", number != 0.0 ? "true" : "false");
+    else
+      vl_camera_put(text, "\"%s\"", field->row->choices[(int)number]);
   }
 }
 

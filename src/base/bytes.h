@@ -5,6 +5,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* The 16-bit number whose least byte is the first. */
+static inline uint32_t vl_little16(const void *at) {
+  const uint8_t *b = (const uint8_t *)at;
+  return b[0] | (uint32_t)b[1] << 8;
+}
+
 /* The 32-bit number whose least byte is the first. */
 static inline uint32_t vl_little32(const void *at) {
   const uint8_t *b = (const uint8_t *)at;

@@ -11,7 +11,7 @@ static const vlCodec codecs[] = {
     {"OpenEXR", {".exr"}, vl_exr_probe, vl_exr_read, vl_exr_write},
     {"PNG", {".png"}, vl_png_probe, vl_png_read, vl_png_write},
     {"JPEG", {".jpg", ".jpeg"}, vl_jpeg_probe, vl_jpeg_read, vl_jpeg_write},
-    {"Radiance HDR", {".hdr"}, vl_hdr_probe, vl_hdr_read, vl_hdr_write},
+    {"HDR", {".hdr"}, vl_hdr_probe, vl_hdr_read, vl_hdr_write},
     {"PFM", {".pfm"}, vl_pfm_probe, vl_pfm_read, vl_pfm_write},
     {"PNM", {NULL}, vl_pnm_probe, vl_pnm_read, NULL},
     {"BMP", {NULL}, vl_bmp_probe, vl_bmp_read, NULL},
@@ -21,14 +21,14 @@ static const vlCodec codecs[] = {
     {"TGA", {".tga"}, vl_tga_probe, vl_tga_read, vl_tga_write},
 };
 
-vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what) {
-  return vl_fail(file->error, VL_ERROR_SCENE, "%s: broken %s file: %s", file->name, format,
-                 what);
+vlResult vl_codec_broken(const vlImageFile *file, const char *what) {
+  return vl_fail(file->error, VL_ERROR_SCENE, "%s: broken %s file: %s", file->name,
+                 file->format, what);
 }
 
-vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what) {
+vlResult vl_codec_unsupported(const vlImageFile *file, const char *what) {
   return vl_fail(file->error, VL_ERROR_UNSUPPORTED, "%s: %s file with %s is not supported",
-                 file->name, format, what);
+                 file->name, file->format, what);
 }
 
 vlResult vl_codec_step(const vlImageFile *file) {
@@ -36,16 +36,17 @@ vlResult vl_codec_step(const vlImageFile *file) {
                                               : VL_OK;
 }
 
-vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width,
-                          uint64_t height, double need, double ratio) {
+vlResult vl_codec_promise(const vlImageFile *file, uint64_t width, uint64_t height, double need,
+                          double ratio) {
   if (width == 0 || height == 0)
-    return vl_codec_broken(file, format, "its image is empty");
+    return vl_codec_broken(file, "its image is empty");
   if (need <= ratio * (double)file->size)
     return VL_OK;
   return vl_fail(
       file->error, VL_ERROR_SCENE,
       "%s: broken %s file: promises %llux%llu pixels, more than its %zu bytes can hold",
-      file->name, format, (unsigned long long)width, (unsigned long long)height, file->size);
+      file->name, file->format, (unsigned long long)width, (unsigned long long)height,
+      file->size);
 }
 
 vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t height,
@@ -130,6 +131,7 @@ static vlResult read_memory(const vlImageFile *f, vlImage **image) {
   for (uint32_t i = 0; i < VL_LENGTH(codecs); i++) {
     if (!codecs[i].probe(file.data, size))
       continue;
+    file.format = codecs[i].name;
     vlResult result = codecs[i].read(&file, image);
     if (file.header && *file.header) {
       *image = *file.header;
@@ -172,10 +174,8 @@ vlResult vl_image_read_named(vlContext *context, vlTask *task, const char *path,
   *image = NULL;
   char *data;
   size_t size;
-  vlResult result = vl_file_read(context, path, false, &data, &size, error);
-  if (result != VL_OK)
-    return result;
-  result = vl_image_decode(context, task, path, data, size, image, error);
+  VL_TRY(vl_file_read(context, path, false, &data, &size, error));
+  vlResult result = vl_image_decode(context, task, path, data, size, image, error);
   vl_free(context, data);
   return result;
 }
@@ -213,9 +213,7 @@ static vlResult read_file(vlContext *context, const char *path, const char *cons
   vl_error_clear(error);
   char *data;
   size_t size;
-  vlResult result = vl_file_read_given(context, path, false, &data, &size, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_file_read_given(context, path, false, &data, &size, error));
   vlImageFile file = {.context = context,
                       .name = path,
                       .data = (const uint8_t *)data,
@@ -223,7 +221,7 @@ static vlResult read_file(vlContext *context, const char *path, const char *cons
                       .error = error,
                       .wanted = wanted,
                       .wanted_count = count};
-  result = read_memory(&file, image);
+  vlResult result = read_memory(&file, image);
   vl_free(context, data);
   return result;
 }
@@ -312,16 +310,12 @@ static const vlCodec *find_codec(const char *path, vlError *error) {
 vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write,
                         vlError *error) {
   vlWriteDef def = write ? *write : vl_default_write_def();
-  vlResult result = check_write(image, path, &def, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check_write(image, path, &def, error));
   const vlCodec *codec = find_codec(def.format ? def.format : path, error);
   if (!codec)
     return VL_ERROR_ARGUMENT;
   vlFileWriter writer;
-  result = vl_file_open_write(&writer, image->context, path, VL_OUTPUT_PLAIN, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_file_open_write(&writer, image->context, path, VL_OUTPUT_PLAIN, error));
   return finish_write(&writer, codec->write(image, &def, &writer, error), error);
 }
 
@@ -333,15 +327,13 @@ vlResult vl_image_write_memory(const vlImage *image, const char *suffix,
   *data = NULL;
   *size = 0;
   vlWriteDef def = write ? *write : vl_default_write_def();
-  vlResult result = check_write(image, suffix, &def, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check_write(image, suffix, &def, error));
   const vlCodec *codec = find_codec(suffix, error);
   if (!codec)
     return VL_ERROR_ARGUMENT;
   vlFileWriter writer;
   vl_file_open_memory(&writer, image->context, suffix);
-  result = codec->write(image, &def, &writer, error);
+  vlResult result = codec->write(image, &def, &writer, error);
   if (writer.failed_errno)
     result = vl_fail_memory(error);
   if (result != VL_OK) {
@@ -376,18 +368,13 @@ vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, con
   vlWriteDef def = write ? *write : vl_default_write_def();
   if (!images || count == 0 || count > 64)
     return vl_fail(error, VL_ERROR_ARGUMENT, "image: needs 1 to 64 images");
-  vlResult result = check_write(images[0], path, &def, error);
-  if (result == VL_OK)
-    result = check_layers(images, count, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check_write(images[0], path, &def, error));
+  VL_TRY(check_layers(images, count, error));
   const vlCodec *codec = codec_of_suffix(def.format ? def.format : path);
   if (!codec || codec->write != vl_exr_write)
     return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write layers to %s: only .exr holds them",
                    path);
   vlFileWriter writer;
-  result = vl_file_open_write(&writer, images[0]->context, path, VL_OUTPUT_PLAIN, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_file_open_write(&writer, images[0]->context, path, VL_OUTPUT_PLAIN, error));
   return finish_write(&writer, vl_exr_write_layers(images, count, &def, &writer, error), error);
 }

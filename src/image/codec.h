@@ -13,6 +13,7 @@
 typedef struct vlImageFile {
   vlContext *context;
   const char *name;
+  const char *format;  /* of the codec that reads it, for messages */
   const uint8_t *data; /* the file's bytes, followed by a zero byte */
   size_t size;
   vlError *error;
@@ -44,9 +45,9 @@ typedef struct vlCodec {
 } vlCodec;
 
 /* Reports a SCENE error: "name: broken PNG file: <what>". */
-vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what);
+vlResult vl_codec_broken(const vlImageFile *file, const char *what);
 /* Reports an UNSUPPORTED error: "name: PNG file with <what> is not supported". */
-vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what);
+vlResult vl_codec_unsupported(const vlImageFile *file, const char *what);
 /* CANCELLED, reported, if the load or the build must stop; decoders call it for each row or
  * chunk. */
 vlResult vl_codec_step(const vlImageFile *file);
@@ -54,8 +55,8 @@ vlResult vl_codec_step(const vlImageFile *file);
  * largest number of these bytes that one byte of the file can encode. The result is a SCENE
  * error when the file is too small ("promises WxH pixels, more than its N bytes can hold") or
  * the image is empty. */
-vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width,
-                          uint64_t height, double need, double ratio);
+vlResult vl_codec_promise(const vlImageFile *file, uint64_t width, uint64_t height, double need,
+                          double ratio);
 /* Makes an image with default channel names and reports errors. Returns CANCELLED when only the
  * header is read; the decoder then stops. */
 vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t height,

@@ -87,9 +87,7 @@ static vlResult false_color(const Pair *p, vlImage **heat) {
   vlImageDef def = vl_default_image_def(p->image->width, p->image->height, 3);
   def.type = VL_PIXEL_U8;
   def.encoding = VL_ENCODING_SRGB;
-  vlResult result = vl_image_create(p->image->context, &def, heat);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_image_create(p->image->context, &def, heat));
   uint8_t *out = (*heat)->pixels;
   for (size_t n = 0; n < p->count; n++, out += 3) {
     magma(p->flip[n], out);
@@ -104,19 +102,14 @@ static vlResult false_color(const Pair *p, vlImage **heat) {
 static vlResult compare(Pair *p, const vlImage *a, const vlImage *b, vlImageDiff *diff,
                         vlImage **heat) {
   vlContext *context = a->context;
-  vlResult result = load(a, &p->a);
-  if (result == VL_OK)
-    result = load(b, &p->b);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(load(a, &p->a));
+  VL_TRY(load(b, &p->b));
   p->flip = vl_alloc_array(context, p->count, sizeof *p->flip);
   p->skip = vl_alloc_zero(context, p->count, 1);
   if (!p->flip || !p->skip)
     return VL_ERROR_MEMORY;
   numbers(p, diff);
-  result = vl_flip(context, a->width, a->height, p->a, p->b, p->flip);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_flip(context, a->width, a->height, p->a, p->b, p->flip));
   double sum = 0.0;
   for (size_t n = 0; n < p->count; n++)
     sum += p->skip[n] ? 0.0 : p->flip[n];

@@ -9,6 +9,7 @@
 
 #include <zlib.h>
 
+#include "base/bytes.h"
 #include "base/free.h"
 #include "base/text.h"
 #include "image/exr_huffman.h"
@@ -80,13 +81,6 @@ static void dct_inverse(float block[64], const float matrix[8][8]) {
         sum += matrix[n][k] * rows[8 * k + x];
       block[8 * n + x] = sum;
     }
-}
-
-static uint64_t le64(const uint8_t *p) {
-  uint64_t v = 0;
-  for (int i = 7; i >= 0; i--)
-    v = v << 8 | p[i];
-  return v;
 }
 
 static size_t type_size(int type) {
@@ -428,7 +422,7 @@ static vlResult unpack(Dwa *d, const uint8_t *packed, size_t size) {
   if (size < HEAD_WORDS * 8)
     return VL_ERROR_SCENE;
   for (int i = 0; i < HEAD_WORDS; i++)
-    head[i] = le64(packed + 8 * i);
+    head[i] = vl_little(packed + 8 * i, 8);
   size_t at = HEAD_WORDS * 8;
   if (head[0] > 2)
     return VL_ERROR_SCENE;
@@ -436,7 +430,7 @@ static vlResult unpack(Dwa *d, const uint8_t *packed, size_t size) {
     legacy_rules(d);
   } else {
     size_t rules = size - at >= 2
-                       ? packed[at] | (size_t)packed[at + 1] << 8
+                       ? vl_little16(packed + at)
                        : 0; /* size of the rules, including the two bytes of the size itself */
     if (rules < 2 || rules > size - at || !read_rules(d, packed + at + 2, rules - 2))
       return VL_ERROR_SCENE;

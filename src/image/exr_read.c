@@ -114,8 +114,7 @@ static vlResult fail(Reader *r, exr_result_t code) {
   if ((code == EXR_ERR_OUT_OF_MEMORY && !damaged) || refused)
     return vl_fail_memory(r->base.file->error);
   return vl_codec_broken(
-      r->base.file, "OpenEXR",
-      r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
+      r->base.file, r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
 }
 
 /* Sort key of a channel: colours first. */
@@ -158,15 +157,15 @@ static vlResult read_storage(Reader *r) {
   if (code != EXR_ERR_SUCCESS)
     return fail(r, code);
   if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
-    return vl_codec_unsupported(file, "OpenEXR", "deep pixels");
+    return vl_codec_unsupported(file, "deep pixels");
   r->tiled = storage == EXR_STORAGE_TILED;
   if ((unsigned)r->compression >= EXR_COMPRESSION_LAST_TYPE)
-    return vl_codec_broken(file, "OpenEXR", "unknown compression");
+    return vl_codec_broken(file, "unknown compression");
   r->dwa = r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB;
   if (r->list->num_channels < 1)
-    return vl_codec_broken(file, "OpenEXR", "no channels");
+    return vl_codec_broken(file, "no channels");
   if (r->list->num_channels > 1024)
-    return vl_codec_unsupported(file, "OpenEXR", "more than 1024 channels");
+    return vl_codec_unsupported(file, "more than 1024 channels");
   return VL_OK;
 }
 
@@ -179,11 +178,11 @@ static vlResult read_channels(Reader *r, uint32_t *bytes) {
   for (uint32_t i = 0; i < count; i++) {
     const exr_attr_chlist_entry_t *c = &r->list->entries[i];
     if (c->x_sampling != 1 || c->y_sampling != 1)
-      return vl_codec_unsupported(file, "OpenEXR", "subsampled channels");
+      return vl_codec_unsupported(file, "subsampled channels");
     if (!c->name.str || !c->name.str[0] || c->name.length > 255)
-      return vl_codec_broken(file, "OpenEXR", "a channel without a name");
+      return vl_codec_broken(file, "a channel without a name");
     if ((unsigned)c->pixel_type >= EXR_PIXEL_LAST_TYPE)
-      return vl_codec_broken(file, "OpenEXR", "unknown pixel type");
+      return vl_codec_broken(file, "unknown pixel type");
     *bytes += c->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
     if (!is_wanted(file, c->name.str))
       continue;
@@ -211,7 +210,7 @@ static vlResult read_chunks(Reader *r) {
   if (code != EXR_ERR_SUCCESS)
     return fail(r, code);
   if (chunks < 1 || (uint64_t)chunks * 8 > file->size)
-    return vl_codec_promise(file, "OpenEXR", r->width, r->height, 8.0 * chunks, 0.0);
+    return vl_codec_promise(file, r->width, r->height, 8.0 * chunks, 0.0);
   if (r->tiled)
     code = exr_get_tile_sizes(r->exr, 0, 0, 0, &r->tile_width, &r->tile_height);
   else
@@ -219,30 +218,25 @@ static vlResult read_chunks(Reader *r) {
   if (code != EXR_ERR_SUCCESS)
     return fail(r, code);
   if (r->tiled ? r->tile_width < 1 || r->tile_height < 1 : r->lines < 1)
-    return vl_codec_broken(file, "OpenEXR", "empty chunks");
+    return vl_codec_broken(file, "empty chunks");
   return VL_OK;
 }
 
 static vlResult layout(Reader *r) {
   const vlImageFile *file = r->base.file;
   uint32_t bytes;
-  vlResult result = read_storage(r);
-  if (result == VL_OK)
-    result = read_channels(r, &bytes);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(read_storage(r));
+  VL_TRY(read_channels(r, &bytes));
   int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1,
           height = (int64_t)r->window.max.y - r->window.min.y + 1;
   if (width < 1 || height < 1)
-    return vl_codec_broken(file, "OpenEXR", "its data window is empty");
+    return vl_codec_broken(file, "its data window is empty");
   if (width > INT32_MAX / (r->user_size * (int64_t)r->list->num_channels) || height > INT32_MAX)
-    return vl_codec_unsupported(file, "OpenEXR", "rows of more than 2^31 bytes");
+    return vl_codec_unsupported(file, "rows of more than 2^31 bytes");
   /* Best compression ratios: 1032:1 for deflate; for DWA one value per block of 64 and run
    * lengths. Each chunk is checked below, too. */
-  result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height,
-                            (double)width * (double)height * bytes, ratio(r));
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_promise(file, (uint64_t)width, (uint64_t)height,
+                          (double)width * (double)height * bytes, ratio(r)));
   r->width = (uint32_t)width;
   r->height = (uint32_t)height;
   return read_chunks(r);
@@ -260,13 +254,13 @@ static vlResult find_chunk(Reader *r, uint32_t column, uint32_t row, exr_chunk_i
   const vlImageFile *file = r->base.file;
   if (chunk->data_offset > file->size || chunk->packed_size > file->size - chunk->data_offset ||
       chunk->packed_size == 0)
-    return vl_codec_broken(file, "OpenEXR", "a chunk lies outside the file");
+    return vl_codec_broken(file, "a chunk lies outside the file");
   if ((double)chunk->unpacked_size > (double)chunk->packed_size * ratio(r) + 64.0)
-    return vl_codec_broken(file, "OpenEXR", "a chunk is too small for its pixels");
+    return vl_codec_broken(file, "a chunk is too small for its pixels");
   int64_t left = (int64_t)r->width - (r->tiled ? (int64_t)column * r->tile_width : 0);
   int64_t below = (int64_t)r->height - (int64_t)row * (r->tiled ? r->tile_height : r->lines);
   if (chunk->width < 1 || chunk->width > left || chunk->height < 1 || chunk->height > below)
-    return vl_codec_broken(file, "OpenEXR", "a chunk of the wrong size");
+    return vl_codec_broken(file, "a chunk of the wrong size");
   return VL_OK;
 }
 
@@ -323,7 +317,7 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
     line += (size_t)chunk->width * (r->dwa_channels[i].type == EXR_PIXEL_HALF ? 2u : 4u);
   size_t size = line * (size_t)chunk->height;
   if (size != chunk->unpacked_size)
-    return vl_codec_broken(file, "OpenEXR", "a chunk of the wrong size");
+    return vl_codec_broken(file, "a chunk of the wrong size");
   if (!grow(r, &r->packed, &r->packed_size, (size_t)chunk->packed_size) ||
       !grow(r, &r->unpacked, &r->unpacked_size, size))
     return vl_fail_memory(file->error);
@@ -340,7 +334,7 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
   if (result == VL_ERROR_MEMORY)
     return vl_fail_memory(file->error);
   if (result != VL_OK)
-    return vl_codec_broken(file, "OpenEXR", "a DWA chunk is damaged");
+    return vl_codec_broken(file, "a DWA chunk is damaged");
   const uint8_t *from = r->unpacked;
   size_t pixel = (size_t)r->user_size * r->count;
   for (int32_t y = 0; y < chunk->height; y++)
@@ -359,11 +353,8 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
 
 static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
   exr_chunk_info_t chunk;
-  vlResult result = vl_codec_step(r->base.file);
-  if (result == VL_OK)
-    result = find_chunk(r, column, row, &chunk);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_step(r->base.file));
+  VL_TRY(find_chunk(r, column, row, &chunk));
   size_t pixel = (size_t)r->user_size * r->image->channels, line = pixel * r->width;
   char *origin =
       (char *)r->image->pixels +
@@ -445,9 +436,8 @@ static vlResult create(Reader *r) {
   }
   if (result == VL_ERROR_MEMORY)
     return vl_fail_memory(r->base.file->error);
-  return result == VL_OK
-             ? VL_OK
-             : vl_codec_broken(r->base.file, "OpenEXR", "its channels are not possible");
+  return result == VL_OK ? VL_OK
+                         : vl_codec_broken(r->base.file, "its channels are not possible");
 }
 
 static vlResult read_all(Reader *r) {
@@ -470,7 +460,7 @@ static vlResult read_all(Reader *r) {
 
 vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
   if (!headers_fit(file))
-    return vl_codec_broken(file, "OpenEXR", "ends in its header, or the header is damaged");
+    return vl_codec_broken(file, "ends in its header, or the header is damaged");
   Reader r;
   memset(&r, 0, sizeof r);
   r.base.file = file;

@@ -136,9 +136,7 @@ static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
   }
   if (code != EXR_ERR_SUCCESS)
     return fail(w, code, error);
-  vlResult result = vl_exr_attributes_out(w->exr, image, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_exr_attributes_out(w->exr, image, error));
   code = exr_write_header(w->exr);
   if (code == EXR_ERR_SUCCESS)
     code = exr_get_scanlines_per_chunk(w->exr, 0, &w->lines_per_chunk);
@@ -249,9 +247,7 @@ static vlResult write_chunks(Writer *w, vlError *error) {
 }
 
 static vlResult write_all(Writer *w, const vlWriteDef *def, vlError *error) {
-  vlResult result = header(w, def, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(header(w, def, error));
   const vlImage *image = w->image;
   exr_attr_box2i_t window;
   exr_result_t code = exr_get_data_window(w->exr, 0, &window);

@@ -3,6 +3,7 @@
  * strings; each string is an earlier string and one more byte. */
 #include <string.h>
 
+#include "base/bytes.h"
 #include "image/codec.h"
 
 enum { CODES = 4096 };
@@ -27,10 +28,6 @@ typedef struct Lzw {
 
 bool vl_gif_probe(const uint8_t *data, size_t size) {
   return size >= 13 && (memcmp(data, "GIF87a", 6) == 0 || memcmp(data, "GIF89a", 6) == 0);
-}
-
-static uint32_t le16(const uint8_t *p) {
-  return p[0] | (uint32_t)p[1] << 8;
 }
 
 static bool next_code(Gif *g, uint32_t size, uint32_t *code) {
@@ -83,7 +80,7 @@ static bool put(const Gif *g, vlImage *image, size_t index, uint32_t color) {
 static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
   uint32_t least = g->file->data[g->at++];
   if (least < 1 || least > 8)
-    return vl_codec_broken(g->file, "GIF", "its code size is not possible");
+    return vl_codec_broken(g->file, "its code size is not possible");
   uint32_t clear = 1u << least, end = clear + 1, next = end + 1, size = least + 1, old = CODES,
            code;
   for (uint32_t i = 0; i < clear; i++)
@@ -91,7 +88,7 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
   size_t done = 0, count = (size_t)g->width * g->height;
   while (done < count) {
     if (!next_code(g, size, &code))
-      return vl_codec_broken(g->file, "GIF", "ends too early");
+      return vl_codec_broken(g->file, "ends too early");
     if (code == clear) {
       next = end + 1;
       size = least + 1;
@@ -99,12 +96,12 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
       continue;
     }
     if (code == end)
-      return vl_codec_broken(g->file, "GIF", "ends too early");
+      return vl_codec_broken(g->file, "ends too early");
     if (code > next ||
         (code == next &&
          (old == CODES ||
           next == CODES))) /* the code `next` stands for the string that is being defined */
-      return vl_codec_broken(g->file, "GIF", "a code that is not defined");
+      return vl_codec_broken(g->file, "a code that is not defined");
     if (old != CODES && next < CODES) {
       z->before[next] = (uint16_t)old;
       z->first[next] = z->first[old];
@@ -120,7 +117,7 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
     }
     while (n && done < count)
       if (!put(g, image, done++, z->text[--n]))
-        return vl_codec_broken(g->file, "GIF", "a colour outside its palette");
+        return vl_codec_broken(g->file, "a colour outside its palette");
     old = code;
   }
   return VL_OK;
@@ -142,10 +139,10 @@ static bool find_frame(Gif *g) {
       if (g->at > size || size - g->at < 10)
         return false;
       const uint8_t *p = d + g->at;
-      g->left = le16(p);
-      g->top = le16(p + 2);
-      g->width = le16(p + 4);
-      g->height = le16(p + 6);
+      g->left = vl_little16(p);
+      g->top = vl_little16(p + 2);
+      g->width = vl_little16(p + 4);
+      g->height = vl_little16(p + 6);
       g->interlaced = p[8] & 0x40;
       g->at += 9;
       if (p[8] & 0x80) {
@@ -175,23 +172,19 @@ static bool find_frame(Gif *g) {
 vlResult vl_gif_read(const vlImageFile *file, vlImage **image) {
   Gif g = {.file = file, .transparent = -1};
   if (!find_frame(&g))
-    return vl_codec_broken(file, "GIF", "no image in it");
-  uint32_t width = le16(file->data + 6), height = le16(file->data + 8);
+    return vl_codec_broken(file, "no image in it");
+  uint32_t width = vl_little16(file->data + 6), height = vl_little16(file->data + 8);
   if (width == 0 || height == 0) { /* some writers leave the screen's size 0 */
     width = g.left + g.width;
     height = g.top + g.height;
   }
   /* A code of 12 bits stands for at most 4094 bytes. */
-  vlResult result =
-      vl_codec_promise(file, "GIF", g.width, g.height, (double)g.width * g.height, 2730.0);
-  if (result == VL_OK)
-    result = vl_codec_promise(file, "GIF", width, height, (double)width * height, 2730.0);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_promise(file, g.width, g.height, (double)g.width * g.height, 2730.0));
+  VL_TRY(vl_codec_promise(file, width, height, (double)width * height, 2730.0));
   bool covers = g.left == 0 && g.top == 0 && g.width >= width && g.height >= height;
   uint32_t channels = g.transparent >= 0 || !covers ? 4 : 3;
   Lzw *z = vl_alloc_zero(file->context, 1, sizeof *z);
-  result =
+  vlResult result =
       z ? vl_codec_create(file, width, height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB, image)
         : vl_fail_memory(file->error);
   if (result == VL_OK)

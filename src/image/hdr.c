@@ -132,19 +132,16 @@ static size_t read_pixels(const uint8_t *p, size_t size, uint32_t width, uint8_t
 vlResult vl_hdr_read(const vlImageFile *file, vlImage **image) {
   Header h;
   if (!parse_header(file, &h))
-    return vl_codec_broken(file, "HDR", "its header is not understood");
+    return vl_codec_broken(file, "its header is not understood");
   if (h.xyze)
-    return vl_codec_unsupported(file, "HDR", "XYZ colours");
+    return vl_codec_unsupported(file, "XYZ colours");
   if (h.other_order)
-    return vl_codec_unsupported(file, "HDR", "columns before rows, or rows from the right");
+    return vl_codec_unsupported(file, "columns before rows, or rows from the right");
   /* The new encoding holds 127 pixels in 8 bytes, the old one 255 in 4 (more only by
    * consecutive repeats). */
-  vlResult result =
-      vl_codec_promise(file, "HDR", h.width, h.height, (double)h.width * h.height, 512.0);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_promise(file, h.width, h.height, (double)h.width * h.height, 512.0));
   uint8_t *row = vl_alloc_array(file->context, h.width, 4);
-  result =
+  vlResult result =
       row ? vl_codec_create(file, h.width, h.height, 3, VL_PIXEL_F32, VL_ENCODING_LINEAR, image)
           : vl_fail_memory(file->error);
   size_t at = h.pixels;
@@ -161,7 +158,7 @@ vlResult vl_hdr_read(const vlImageFile *file, vlImage **image) {
     else
       used = read_pixels(p, left, h.width, row);
     if (!used) {
-      result = vl_codec_broken(file, "HDR", "its pixels end too early or do not fit");
+      result = vl_codec_broken(file, "its pixels end too early or do not fit");
       break;
     }
     at += used;

@@ -109,7 +109,7 @@ static vlResult decode(Jpeg *j, struct jpeg_decompress_struct *d, const vlImageF
   if (setjmp(j->jump))
     return j->stopped                      ? VL_CANCELLED
            : j->code == JERR_OUT_OF_MEMORY ? vl_fail_memory(file->error)
-                                           : vl_codec_broken(file, "JPEG", j->message);
+                                           : vl_codec_broken(file, j->message);
   jpeg_create_decompress(d);
   d->progress = &j->progress;
   j->source = (struct jpeg_source_mgr){.next_input_byte = file->data,
@@ -122,9 +122,9 @@ static vlResult decode(Jpeg *j, struct jpeg_decompress_struct *d, const vlImageF
   d->src = &j->source;
   jpeg_read_header(d, TRUE);
   if (d->num_components != 1 && d->num_components != 3 && d->num_components != 4)
-    return vl_codec_unsupported(file, "JPEG", "this number of components");
+    return vl_codec_unsupported(file, "this number of components");
   if (d->arith_code)
-    return vl_codec_unsupported(file, "JPEG", "arithmetic coding");
+    return vl_codec_unsupported(file, "arithmetic coding");
   bool cmyk = d->num_components == 4;
   d->out_color_space = cmyk ? JCS_CMYK : d->num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
   d->dct_method = JDCT_ISLOW;
@@ -132,18 +132,13 @@ static vlResult decode(Jpeg *j, struct jpeg_decompress_struct *d, const vlImageF
   /* Each 8x8 block takes at least one bit, and an MCU of 10 blocks covers at most 32x32 pixels
    * of 3 components. */
   double need = (double)d->image_width * d->image_height * channels;
-  vlResult result =
-      vl_codec_promise(file, "JPEG", d->image_width, d->image_height, need, 2500.0);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_promise(file, d->image_width, d->image_height, need, 2500.0));
   if (file->header) /* jpeg_start_decompress may read all of a progressive file */
     return vl_codec_create(file, d->image_width, d->image_height, channels, VL_PIXEL_U8,
                            VL_ENCODING_SRGB, &j->image);
   jpeg_start_decompress(d);
-  result = vl_codec_create(file, d->output_width, d->output_height, channels, VL_PIXEL_U8,
-                           VL_ENCODING_SRGB, &j->image);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_create(file, d->output_width, d->output_height, channels, VL_PIXEL_U8,
+                         VL_ENCODING_SRGB, &j->image));
   if (cmyk && !(j->line = vl_alloc_array(file->context, d->output_width, 4)))
     return vl_fail_memory(file->error);
   while (d->output_scanline < d->output_height) {

@@ -61,16 +61,13 @@ vlResult vl_pfm_read(const vlImageFile *file, vlImage **image) {
   if (!next_word(file, &at, word, sizeof word) || !parse_size(word, &width) ||
       !next_word(file, &at, word, sizeof word) || !parse_size(word, &height) ||
       !next_word(file, &at, word, sizeof word))
-    return vl_codec_broken(file, "PFM", "its header is not understood");
+    return vl_codec_broken(file, "its header is not understood");
   if (!parse_scale(word, &little_endian))
-    return vl_codec_broken(file, "PFM", "its scale is not a number other than 0");
+    return vl_codec_broken(file, "its scale is not a number other than 0");
   double need = 4.0 * channels * width * (double)height;
-  vlResult result = vl_codec_promise(file, "PFM", width, height, need + (double)at, 1.0);
-  if (result == VL_OK)
-    result =
-        vl_codec_create(file, width, height, channels, VL_PIXEL_F32, VL_ENCODING_LINEAR, image);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_promise(file, width, height, need + (double)at, 1.0));
+  VL_TRY(
+      vl_codec_create(file, width, height, channels, VL_PIXEL_F32, VL_ENCODING_LINEAR, image));
   size_t row = vl_image_row_size(*image);
   for (uint32_t y = 0; y < height; y++) {
     uint32_t *out = vl_image_row(*image, height - 1 - y);

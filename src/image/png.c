@@ -5,6 +5,7 @@
 #include <setjmp.h>
 #include <string.h>
 
+#include "base/bytes.h"
 #include "image/codec.h"
 
 typedef struct Png {
@@ -80,7 +81,7 @@ static bool says_linear(Png *p) {
 static const char *check_chunks(const vlImageFile *file) {
   for (size_t at = 8; at + 12 <= file->size;) {
     const uint8_t *c = file->data + at;
-    uint64_t length = (uint64_t)c[0] << 24 | (uint64_t)c[1] << 16 | (uint64_t)c[2] << 8 | c[3];
+    const uint64_t length = vl_big(c, 4);
     if (memcmp(c + 4, "IDAT", 4) == 0 || memcmp(c + 4, "IEND", 4) == 0)
       return NULL;
     if (length > file->size - at - 12)
@@ -102,11 +103,11 @@ static vlResult decode(Png *p) {
   const vlImageFile *file = p->file;
   const char *broken = check_chunks(file);
   if (broken)
-    return vl_codec_broken(file, "PNG", broken);
+    return vl_codec_broken(file, broken);
   if (setjmp(png_jmpbuf(p->png)))
     return p->stopped  ? VL_CANCELLED
            : p->memory ? vl_fail_memory(file->error)
-                       : vl_codec_broken(file, "PNG", p->message);
+                       : vl_codec_broken(file, p->message);
   png_set_read_fn(p->png, p, on_read);
   png_set_user_limits(p->png, 0x7fffffff,
                       0x7fffffff); /* the size is checked below against the file's size */
@@ -120,9 +121,7 @@ static vlResult decode(Png *p) {
   bool alpha = (kind & PNG_COLOR_MASK_ALPHA) || png_get_valid(p->png, p->info, PNG_INFO_tRNS);
   /* Deflate expands by at most 1032:1. */
   double stored = ((double)png_get_rowbytes(p->png, p->info) + 1.0) * height;
-  vlResult result = vl_codec_promise(file, "PNG", width, height, stored, 1032.0);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_promise(file, width, height, stored, 1032.0));
 
   png_set_expand(p->png);
   if (depth == 16)
@@ -130,13 +129,11 @@ static vlResult decode(Png *p) {
   int passes = png_set_interlace_handling(p->png);
   png_read_update_info(p->png, p->info);
   uint32_t channels = (kind & PNG_COLOR_MASK_COLOR ? 3u : 1u) + (alpha ? 1u : 0u);
-  result =
-      vl_codec_create(file, width, height, channels, depth == 16 ? VL_PIXEL_U16 : VL_PIXEL_U8,
-                      says_linear(p) ? VL_ENCODING_LINEAR : VL_ENCODING_SRGB, &p->image);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_create(file, width, height, channels,
+                         depth == 16 ? VL_PIXEL_U16 : VL_PIXEL_U8,
+                         says_linear(p) ? VL_ENCODING_LINEAR : VL_ENCODING_SRGB, &p->image));
   if (png_get_rowbytes(p->png, p->info) != vl_image_row_size(p->image))
-    return vl_codec_broken(file, "PNG", "odd rows");
+    return vl_codec_broken(file, "odd rows");
   if (passes == 1) {
     for (uint32_t y = 0; y < height; y++)
       png_read_row(p->png, vl_image_row(p->image, y), NULL);

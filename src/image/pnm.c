@@ -62,19 +62,16 @@ vlResult vl_pnm_read(const vlImageFile *file, vlImage **image) {
   uint32_t channels = kind == 3 || kind == 6 ? 3 : 1;
   if (!number(&p, 0x7fffffffu, &width) || !number(&p, 0x7fffffffu, &height) ||
       (!bits && !number(&p, 65535, &limit)) || limit == 0)
-    return vl_codec_broken(file, "PNM", "its header is not understood");
+    return vl_codec_broken(file, "its header is not understood");
   if (!text)
     p.at++; /* the white-space byte before the pixels */
   double values = (double)width * height * channels;
   double need = bits && !text ? (double)((width + 7) / 8) * height
                 : text        ? values
                               : values * (limit > 255 ? 2 : 1);
-  vlResult result = vl_codec_promise(file, "PNM", width, height, need + (double)p.at, 1.0);
-  if (result == VL_OK)
-    result = vl_codec_create(file, width, height, channels,
-                             limit > 255 ? VL_PIXEL_U16 : VL_PIXEL_U8, VL_ENCODING_SRGB, image);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_promise(file, width, height, need + (double)p.at, 1.0));
+  VL_TRY(vl_codec_create(file, width, height, channels,
+                         limit > 255 ? VL_PIXEL_U16 : VL_PIXEL_U8, VL_ENCODING_SRGB, image));
   size_t count = (size_t)width * height * channels, row = ((size_t)width + 7) / 8;
   for (size_t i = 0; i < count; i++) {
     uint32_t v = 0;
@@ -90,7 +87,7 @@ vlResult vl_pnm_read(const vlImageFile *file, vlImage **image) {
     else
       v = file->data[p.at + i];
     if (!ok || v > limit)
-      return vl_codec_broken(file, "PNM", ok ? "a value above its limit" : "ends too early");
+      return vl_codec_broken(file, ok ? "a value above its limit" : "ends too early");
     store(*image, i, bits ? 1 - v : v, limit); /* 1 is black in bitmaps */
   }
   return VL_OK;

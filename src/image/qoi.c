@@ -1,22 +1,20 @@
 /* image/qoi.c: reads the Quite OK Image format (Szablewski, qoiformat.org). */
 #include <string.h>
 
+#include "base/bytes.h"
 #include "image/codec.h"
 
 bool vl_qoi_probe(const uint8_t *data, size_t size) {
   return size >= 14 && memcmp(data, "qoif", 4) == 0;
 }
 
-static uint32_t be32(const uint8_t *p) {
-  return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
-}
-
 vlResult vl_qoi_read(const vlImageFile *file, vlImage **image) {
   const uint8_t *d = file->data;
-  uint32_t width = be32(d + 4), height = be32(d + 8), channels = d[12];
+  const uint32_t width = (uint32_t)vl_big(d + 4, 4), height = (uint32_t)vl_big(d + 8, 4),
+                 channels = d[12];
   if (channels != 3 && channels != 4)
-    return vl_codec_broken(file, "QOI", "neither 3 nor 4 channels");
-  vlResult result = vl_codec_promise(file, "QOI", width, height, (double)width * height,
+    return vl_codec_broken(file, "neither 3 nor 4 channels");
+  vlResult result = vl_codec_promise(file, width, height, (double)width * height,
                                      62.0); /* one byte encodes a run of up to 62 pixels */
   vlEncoding encoding = d[13] == 1 ? VL_ENCODING_LINEAR : VL_ENCODING_SRGB;
   if (result == VL_OK)
@@ -32,11 +30,11 @@ vlResult vl_qoi_read(const vlImageFile *file, vlImage **image) {
       run--;
     } else {
       if (at >= file->size)
-        return vl_codec_broken(file, "QOI", "ends too early");
+        return vl_codec_broken(file, "ends too early");
       uint8_t b = d[at++];
       uint32_t more = b == 0xfe ? 3 : b == 0xff ? 4 : b >> 6 == 2 ? 1 : 0;
       if (more > file->size - at)
-        return vl_codec_broken(file, "QOI", "ends too early");
+        return vl_codec_broken(file, "ends too early");
       if (b >= 0xfe) {
         memcpy(pixel, d + at, more);
       } else if (b >> 6 == 0) {

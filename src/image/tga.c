@@ -3,6 +3,7 @@
  * The format has no signature: the probe checks the header for plausibility. */
 #include <string.h>
 
+#include "base/bytes.h"
 #include "image/codec.h"
 
 enum {
@@ -23,10 +24,6 @@ typedef struct Tga {
   size_t palette_at, pixels_at;
 } Tga;
 
-static uint32_t le16(const uint8_t *p) {
-  return p[0] | (uint32_t)p[1] << 8;
-}
-
 static bool depth_ok(uint32_t depth) {
   return depth == 15 || depth == 16 || depth == 24 || depth == 32;
 }
@@ -37,11 +34,11 @@ static bool parse(const uint8_t *d, size_t size, Tga *t) {
   uint32_t has_palette = d[1];
   t->kind = d[2] & ~(uint32_t)RLE;
   t->rle = (d[2] & RLE) != 0;
-  t->palette_first = le16(d + 3);
-  t->palette_count = has_palette ? le16(d + 5) : 0;
+  t->palette_first = vl_little16(d + 3);
+  t->palette_count = has_palette ? vl_little16(d + 5) : 0;
   t->palette_depth = d[7];
-  t->width = le16(d + 12);
-  t->height = le16(d + 14);
+  t->width = vl_little16(d + 12);
+  t->height = vl_little16(d + 14);
   t->depth = d[16];
   t->flags = d[17];
   if (has_palette > 1 || t->kind < PALETTE || t->kind > GREY || (t->flags & 0xc0))
@@ -68,7 +65,7 @@ bool vl_tga_probe(const uint8_t *data, size_t size) {
  * 16-bit colours is ignored, since it is unreliable. */
 static void color_out(const uint8_t *p, uint32_t depth, uint8_t *out) {
   if (depth <= 16) {
-    uint32_t v = le16(p);
+    uint32_t v = vl_little16(p);
     out[0] = (uint8_t)((v >> 10 & 31) * 255 / 31);
     out[1] = (uint8_t)((v >> 5 & 31) * 255 / 31);
     out[2] = (uint8_t)((v & 31) * 255 / 31);
@@ -108,7 +105,7 @@ static vlResult read_pixels(const vlImageFile *file, const Tga *t, vlImage *imag
       if (t->rle) {
         if (run == 0) {
           if (at >= file->size)
-            return vl_codec_broken(file, "TGA", "ends too early");
+            return vl_codec_broken(file, "ends too early");
           repeat = file->data[at] & 0x80;
           run = (file->data[at++] & 0x7fu) + 1;
         } else {
@@ -118,9 +115,9 @@ static vlResult read_pixels(const vlImageFile *file, const Tga *t, vlImage *imag
       }
       if (fresh) {
         if (bytes > file->size || at > file->size - bytes)
-          return vl_codec_broken(file, "TGA", "ends too early");
+          return vl_codec_broken(file, "ends too early");
         if (!pixel_out(file, t, file->data + at, value))
-          return vl_codec_broken(file, "TGA", "a colour outside its palette");
+          return vl_codec_broken(file, "a colour outside its palette");
         at += bytes;
       }
       memcpy(row + (t->flags & FROM_RIGHT ? t->width - 1 - x : x) * channels, value, channels);
@@ -143,15 +140,14 @@ static bool alpha_is_empty(const Tga *t, const vlImage *image) {
 vlResult vl_tga_read(const vlImageFile *file, vlImage **image) {
   Tga t;
   if (!parse(file->data, file->size, &t))
-    return vl_codec_broken(file, "TGA", "its header is not understood");
+    return vl_codec_broken(file, "its header is not understood");
   if (t.pixels_at > file->size)
-    return vl_codec_broken(file, "TGA", "ends in its palette");
+    return vl_codec_broken(file, "ends in its palette");
   uint32_t depth = t.kind == PALETTE ? t.palette_depth : t.depth;
   uint32_t channels = t.kind == GREY ? depth / 8 : depth == 32 ? 4 : 3;
   double stored = (double)t.width * t.height *
                   ((t.depth + 7) / 8); /* a run: 128 pixels from a count byte and one pixel */
-  vlResult result =
-      vl_codec_promise(file, "TGA", t.width, t.height, stored, t.rle ? 128.0 : 1.0);
+  vlResult result = vl_codec_promise(file, t.width, t.height, stored, t.rle ? 128.0 : 1.0);
   if (result == VL_OK)
     result = vl_codec_create(file, t.width, t.height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB,
                              image);
@@ -160,9 +156,7 @@ vlResult vl_tga_read(const vlImageFile *file, vlImage **image) {
   if (result != VL_OK || channels != 4 || !alpha_is_empty(&t, *image))
     return result;
   vlImage *opaque;
-  result = vl_codec_create(file, t.width, t.height, 3, VL_PIXEL_U8, VL_ENCODING_SRGB, &opaque);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_codec_create(file, t.width, t.height, 3, VL_PIXEL_U8, VL_ENCODING_SRGB, &opaque));
   const uint8_t *from = (*image)->pixels;
   uint8_t *to = opaque->pixels;
   for (size_t i = 0, n = (size_t)t.width * t.height; i < n; i++)

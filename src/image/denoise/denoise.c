@@ -453,9 +453,7 @@ static vlResult correct_widely(Denoise *d) {
   for_each(d, height, lattice_row);
   mirror_planes(lattice);
   fit(d);
-  vlResult result = correct_widely(d);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(correct_widely(d));
   d->level = level;
   for_each(d, height, finish_lattice_row);
   extend_lattice(lattice);
@@ -562,12 +560,9 @@ vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **cle
         error, VL_ERROR_ARGUMENT,
         "denoise: def.cookie or def.denoiser is not that of a default def of this version");
   Denoise work = {.image = image, .context = image->context, .cancel = def->cancel};
-  vlResult result =
-      find_channels(image, def->denoiser == VL_DENOISER_VELO, &work.channels, error);
-  if (result != VL_OK)
-    return result;
-  result = make_clean(image, work.channels.alpha,
-                      def->errors && def->denoiser == VL_DENOISER_VELO, clean);
+  VL_TRY(find_channels(image, def->denoiser == VL_DENOISER_VELO, &work.channels, error));
+  vlResult result = make_clean(image, work.channels.alpha,
+                               def->errors && def->denoiser == VL_DENOISER_VELO, clean);
   if (result != VL_OK)
     vl_fail_memory(error);
   else if (def->denoiser == VL_DENOISER_OIDN)

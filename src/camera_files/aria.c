@@ -96,7 +96,7 @@ static vlResult read_aria(const vlCameraFile *file, const json_t *tree,
   const json_t *list = json_object_get(tree, "CameraCalibrations");
   const json_t *camera = vl_camera_choose(file, list, "Label", record);
   if (!camera)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   uint32_t index = 0;
   while (json_array_get(list, index) != camera)
     index++;

@@ -63,7 +63,7 @@ static vlResult read_basalt(const vlCameraFile *file, const json_t *tree,
   VL_TRY(vl_camera_field(file, root, "intrinsics", &cameras));
   const json_t *camera = vl_camera_choose(file, cameras, NULL, record);
   if (!camera)
-    return vl_camera_none_in(file, root, "intrinsics", "camera", record->frames);
+    return vl_camera_none_in(file, root, "intrinsics", "camera", record);
   size_t index = 0;
   while (json_array_get(cameras, index) != camera)
     index++;

@@ -58,7 +58,7 @@ static vlResult read_bop(const vlCameraFile *file, const json_t *tree, vlCameraR
     record->frames++;
   }
   if (!chosen)
-    return vl_camera_no_frame(file, "image", record->frames);
+    return vl_camera_no_frame(file, "image", record);
   vl_camera_name(record, chosen);
   return read_image(file, json_object_get(tree, chosen), chosen, record);
 }

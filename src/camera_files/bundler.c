@@ -42,7 +42,7 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
     record->frames++;
   }
   if (!taken)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   VL_TRY(vl_camera_size_beside(file, (const char *const[]){NULL}, record));
   record->camera.cx = 0.5 * record->camera.width;
   record->camera.cy = 0.5 * record->camera.height;

@@ -135,7 +135,7 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
     record->frames++;
   }
   if (found == UINT32_MAX)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   snprintf(key, sizeof key, "cam%u_calib", found);
   uint32_t frames = record->frames;
   VL_TRY(read_named(file, tree, key, record));

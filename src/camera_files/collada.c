@@ -192,7 +192,7 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
   VL_TRY(search_scenes(file, tree, &s));
   record->frames = s.count;
   if (!s.camera)
-    return vl_camera_no_frame(file, "camera", s.count);
+    return vl_camera_no_frame(file, "camera", record);
   const json_t *camera = find_camera(tree, vl_camera_text(s.camera, "url"));
   if (!camera)
     return vl_camera_wrong_element(file, s.camera,

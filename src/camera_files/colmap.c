@@ -160,7 +160,7 @@ static vlResult read_images(const vlCameraFile *file, const char *path, double *
     next_line(&lines); /* skip the line of points */
   }
   if (result == VL_OK && !taken)
-    result = vl_camera_no_frame(file, "image", record->frames);
+    result = vl_camera_no_frame(file, "image", record);
   vl_free(file->context, text);
   return result;
 }

@@ -70,9 +70,10 @@ const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,
 }
 
 vlResult vl_camera_none_in(const vlCameraFile *file, const json_t *object, const char *key,
-                           const char *what, uint32_t count) {
+                           const char *what, const vlCameraRecord *record) {
   return vl_camera_wrong_in(file, object, key, "%s: there is no %s \"%s\" among the %u",
-                            file->dialect, what, vl_camera_asked(file, "0").text, count);
+                            file->dialect, what, vl_camera_asked(file, "0").text,
+                            record->frames);
 }
 
 vlResult vl_camera_read_lens(const vlCameraFile *file, const json_t *object,

@@ -74,7 +74,7 @@ void vl_camera_offer(const vlCameraFile *file, const json_t *camera, const char 
 /* Reports that the camera that the caller asked for is not in the list at object[key]. what:
  * the format's word for a camera. */
 vlResult vl_camera_none_in(const vlCameraFile *file, const json_t *object, const char *key,
-                           const char *what, uint32_t count);
+                           const char *what, const vlCameraRecord *record);
 /* Whether a number is 1 to 16777216 whole pixels. */
 bool vl_camera_is_side(double number);
 /* Sets the image's size. Returns false if a side is none. */

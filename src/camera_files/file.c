@@ -94,7 +94,7 @@ static vlResult check_frame(const vlCameraFile *file, bool looked,
   if (looked || !file->def->frame || record->frames > 1 ||
       vl_camera_is_frame(file, 0, record->name))
     return VL_OK;
-  return vl_camera_no_frame(file, "camera", 1);
+  return vl_camera_no_frame(file, "camera", record);
 }
 
 /* Reads one camera, or all cameras if there is a sink. */

@@ -147,9 +147,10 @@ bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *na
 void vl_camera_name(vlCameraRecord *record, const char *name);
 /* The camera that the caller asked for, as messages show it; `otherwise` if none was. */
 vlArgumentText vl_camera_asked(const vlCameraFile *file, const char *otherwise);
-/* Reports that the requested camera is not among the `count` cameras of the file. what: the
- * format's word for one. */
-vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t count);
+/* Reports that the requested camera is not among the record->frames cameras of the file. what:
+ * the format's word for one. */
+vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what,
+                            const vlCameraRecord *record);
 /* Sets fx, fy, cx, cy and skew from a matrix by rows, for which the centre of the first pixel
  * is (0, 0). It is an error at object[key] if the matrix is not fx skew cx, 0 fy cy, 0 0 1. */
 vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key,

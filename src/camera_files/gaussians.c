@@ -11,7 +11,7 @@ static vlResult read_gaussians(const vlCameraFile *file, const json_t *tree,
   vlCameraDef *d = &record->camera;
   double p[3], r[9];
   if (!camera)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
                         VL_FIELD_SIDE("height", &d->height), VL_FIELD("fx", &d->fx),
                         VL_FIELD("fy", &d->fy), VL_FIELD_LIST("position", p, 3),

@@ -231,7 +231,7 @@ static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
     return vl_camera_wrong(file, "gltf: no node holds a camera (\"cameras\" has %zu)",
                            json_array_size(cameras));
   if (result == VL_OK && !chosen)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   if (result != VL_OK)
     return result;
   char name[sizeof record->name];

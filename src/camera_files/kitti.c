@@ -111,7 +111,7 @@ static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t si
   if (!record->frames)
     return missing(file, "P0");
   if (taken == UINT32_MAX)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   return raw ? read_raw(file, text, size, taken, record)
              : read_projection(file, &chosen, taken, record);
 }

@@ -30,7 +30,7 @@ static vlResult read_llff(const vlCameraFile *file, const char *text, size_t siz
     if (vl_camera_is_frame(file, i, NULL))
       chosen = i;
   if (chosen == UINT32_MAX)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   for (size_t i = 0; i < NUMBERS; i++)
     v[i] = vl_numpy_at(&array, (size_t)chosen * NUMBERS + i);
   const double height = v[4], width = v[9], sides[2] = {width, height};

@@ -189,7 +189,7 @@ static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree,
   }
   if (chosen)
     return read_view(file, tree, chosen, record);
-  return vl_camera_none_in(file, tree, "views", "view", record->frames);
+  return vl_camera_none_in(file, tree, "views", "view", record);
 }
 
 static bool is_meshroom(const json_t *tree) {

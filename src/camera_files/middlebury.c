@@ -59,7 +59,7 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
     record->frames++;
   }
   if (chosen < 0)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   const char *at = find(text, size, names[chosen], &line);
   double k[9];
   for (int i = 0; i < 9; i++) {

@@ -28,6 +28,14 @@ static uint32_t line_of(const json_t *element) {
   return (uint32_t)json_number_value(json_object_get(element, "#"));
 }
 
+static vlResult wrong(const Scene *scene, const json_t *element, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static vlResult wrong(const Scene *scene, const json_t *element, const char *format, ...) {
+  char message[400];
+  VL_FORMAT(message, format);
+  return vl_camera_wrong_at(scene->file, line_of(element), 0, "mitsuba: %s", message);
+}
+
 /* Returns whether two names are equal except for case and underscores. */
 static bool same(const char *a, const char *b) {
   for (;; a++, b++) {
@@ -59,9 +67,8 @@ static vlResult attribute(const Scene *scene, const json_t *element, const char 
       return VL_OK;
     break;
   }
-  return vl_camera_wrong_at(scene->file, line_of(element), 0,
-                            "mitsuba: \"%s\" has no <default>",
-                            vl_short_text(vl_camera_text(element, key)).text);
+  return wrong(scene, element, "\"%s\" has no <default>",
+               vl_short_text(vl_camera_text(element, key)).text);
 }
 
 /* `count` numbers, or one that is used for all. *found: whether the attribute exists (null: it
@@ -89,9 +96,8 @@ static vlResult numbers(const Scene *scene, const json_t *element, const char *k
       values[n] = values[0];
   if (whole && n == count)
     return VL_OK;
-  return vl_camera_wrong_at(scene->file, line_of(element), 0,
-                            "mitsuba: \"%s\" of <%s> must hold %u finite number%s", key,
-                            vl_short_text(tag_of(element)).text, count, count > 1 ? "s" : "");
+  return wrong(scene, element, "\"%s\" of <%s> must hold %u finite number%s", key,
+               vl_short_text(tag_of(element)).text, count, count > 1 ? "s" : "");
 }
 
 /* Returns the parameter of a sensor or film with this name, or null. */
@@ -119,8 +125,7 @@ static vlResult word(const Scene *scene, const json_t *parent, const char *name,
     return VL_OK;
   VL_TRY(attribute(scene, item, "value", text));
   if (!*text)
-    return vl_camera_wrong_at(scene->file, line_of(item), 0, "mitsuba: \"%s\" has no value",
-                              name);
+    return wrong(scene, item, "\"%s\" has no value", name);
   return VL_OK;
 }
 
@@ -149,9 +154,8 @@ static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
   vl_cross3(up, z, x); /* left */
   double across = vl_norm3(x);
   if (!(length > 0.0 && across > 1e-9 * vl_norm3(up)))
-    return vl_camera_wrong_at(scene->file, line_of(op), 0,
-                              "mitsuba: origin, target and up of <%s> give no direction",
-                              vl_short_text(tag_of(op)).text);
+    return wrong(scene, op, "origin, target and up of <%s> give no direction",
+                 vl_short_text(tag_of(op)).text);
   *m = vl_mat4_identity();
   for (int i = 0; i < 3; i++)
     x[i] /= across;
@@ -181,16 +185,15 @@ static vlResult operation(const Scene *scene, const json_t *op, vlMat4 *m) {
     VL_TRY(triple(scene, op, 0.0, v));
     VL_TRY(numbers(scene, op, "angle", 1, &v[3], NULL));
     if (v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0)
-      return vl_camera_wrong_at(scene->file, line_of(op), 0, "mitsuba: <rotate> has no axis");
+      return wrong(scene, op, "<rotate> has no axis");
     *m = vl_mat4_rotate(v[3] * VL_DEGREE, v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "matrix")) {
     VL_TRY(numbers(scene, op, "value", 16, v, NULL));
     *m = vl_mat4_load(v);
   } else {
-    return vl_camera_wrong_at(
-        scene->file, line_of(op), 0,
-        "mitsuba: unknown transform <%s>; there are translate, rotate, scale, lookat, matrix",
-        vl_short_text(tag).text);
+    return wrong(scene, op,
+                 "unknown transform <%s>; there are translate, rotate, scale, lookat, matrix",
+                 vl_short_text(tag).text);
   }
   return VL_OK;
 }
@@ -229,9 +232,8 @@ static vlResult read_film(const Scene *scene, const json_t *sensor, double size[
           crop[k] + crop[2 + k] <= size[k]) ||
         size[k] != floor(size[k]) || crop[k] != floor(crop[k]) ||
         crop[2 + k] != floor(crop[2 + k]))
-      return vl_camera_wrong_at(
-          scene->file, line_of(film ? film : sensor), 0,
-          "mitsuba: the film's sides and crop must be whole pixels, sides 1 to 16777216");
+      return wrong(scene, film ? film : sensor,
+                   "the film's sides and crop must be whole pixels, sides 1 to 16777216");
   return VL_OK;
 }
 
@@ -245,33 +247,28 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
   VL_TRY(number(scene, sensor, "fov", &fov));
   VL_TRY(word(scene, sensor, "fov_axis", &axis));
   VL_TRY(word(scene, sensor, "focal_length", &focal));
-  uint32_t line = line_of(sensor);
   if (!vl_is_unset(fov) && focal)
-    return vl_camera_wrong_at(scene->file, line, 0,
-                              "mitsuba: fov and focal_length are given; there is room for one");
+    return wrong(scene, sensor, "fov and focal_length are given; there is room for one");
   if (vl_is_unset(fov)) { /* 35 mm equivalent, by the film's diagonal */
     char *end = NULL;
     double mm = focal ? vl_camera_parse(focal, &end) : 50.0;
     if (!(mm > 0.0) || isinf(mm) ||
         (focal && (end == focal || (*end && !vl_text_is(end, "mm")))))
-      return vl_camera_wrong_at(scene->file, line, 0,
-                                "mitsuba: focal_length \"%s\" must be like \"50mm\"",
-                                vl_short_text(focal).text);
+      return wrong(scene, sensor, "focal_length \"%s\" must be like \"50mm\"",
+                   vl_short_text(focal).text);
     *f = mm * diagonal / sqrt(36.0 * 36.0 + 24.0 * 24.0);
     return VL_OK;
   }
   if (!(fov > 0.0 && fov < 180.0))
-    return vl_camera_wrong_at(scene->file, line, 0,
-                              "mitsuba: fov is %g degrees; it must lie between 0 and 180", fov);
+    return wrong(scene, sensor, "fov is %g degrees; it must lie between 0 and 180", fov);
   for (int i = 0; i < 5; i++)
     if (vl_text_is(axis, names[i])) {
       *f = 0.5 * sides[i] / vl_precise_tan(0.5 * fov * VL_DEGREE);
       return VL_OK;
     }
-  return vl_camera_wrong_at(
-      scene->file, line, 0,
-      "mitsuba: unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
-      vl_short_text(axis).text);
+  return wrong(scene, sensor,
+               "unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
+               vl_short_text(axis).text);
 }
 
 /* The numbers of a sensor, each optional. */
@@ -337,15 +334,13 @@ static vlResult check_sensor(const Scene *scene, const json_t *sensor, int kind,
     if (result == VL_OK && vl_camera_has_tag(item, "film"))
       result = check_parameters(scene, item, film, record);
     if (vl_camera_has_tag(item, "ref") && vl_text_is(vl_camera_text(item, "name"), "film"))
-      result = vl_camera_wrong_at(scene->file, line_of(item), 0,
-                                  "mitsuba: the film is a reference; write it into the sensor");
+      result = wrong(scene, item, "the film is a reference; write it into the sensor");
   }
   return result;
 }
 
 static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRecord *record) {
   static const char *const types[] = {"perspective", "thinlens", "orthographic"};
-  const vlCameraFile *file = scene->file;
   vlCameraDef *d = &record->camera;
   const char *type = NULL;
   VL_TRY(attribute(scene, sensor, "type", &type));
@@ -355,8 +350,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRe
   if (kind == 3) {
     char known[300];
     vl_tell_names(known, sizeof known, type ? type : "", types, 3);
-    return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: unknown sensor \"%s\"%s",
-                              vl_short_text(type).text, known);
+    return wrong(scene, sensor, "unknown sensor \"%s\"%s", vl_short_text(type).text, known);
   }
   double size[2], crop[4], offset[2] = {0, 0}, f = 1.0;
   vlMat4 m;
@@ -378,8 +372,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRe
   if (kind == 1)
     VL_TRY(number(scene, sensor, "aperture_radius", &d->lens_radius));
   if (kind == 1 && !parameter(sensor, "aperture_radius"))
-    return vl_camera_wrong_at(file, line_of(sensor), 0,
-                              "mitsuba: a thinlens needs its aperture_radius");
+    return wrong(scene, sensor, "a thinlens needs its aperture_radius");
   if (kind == 1 && vl_is_unset(d->focus_distance))
     d->focus_distance = isinf(d->far_plane) ? 1e4 : d->far_plane;
   d->fx = d->fy = f;
@@ -419,7 +412,7 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
     vl_camera_name(record, vl_camera_text(chosen, "id"));
     result = read_sensor(&scene, chosen, record);
   } else if (record->frames) {
-    result = vl_camera_no_frame(file, "sensor", record->frames);
+    result = vl_camera_no_frame(file, "sensor", record);
   } else {
     result = vl_camera_wrong(file, "mitsuba: <%s> holds no <sensor>%s",
                              vl_short_text(tag_of(tree)).text,

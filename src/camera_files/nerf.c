@@ -177,7 +177,7 @@ static vlResult read_nerf(const vlCameraFile *file, const json_t *tree,
     if (vl_camera_is_frame(file, i, vl_camera_text(frame, "file_path")))
       return vl_camera_read_nerf_frame(file, frame, tree, record);
   }
-  return vl_camera_no_frame(file, "frame", record->frames);
+  return vl_camera_no_frame(file, "frame", record);
 }
 
 static vlResult write_nerf(const vlFittedCamera *fit, vlCameraText *text) {

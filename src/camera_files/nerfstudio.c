@@ -31,7 +31,7 @@ static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree,
   vlCameraDef *d = &record->camera;
   double m[16], fov = 0.0;
   if (!camera)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   VL_TRY(vl_camera_sides(file, tree, "render_width", "render_height", record));
   VL_TRY(read_type(file, tree, d));
   VL_TRY(vl_camera_list(file, camera, "camera_to_world", m, 16));

@@ -17,7 +17,7 @@ static vlResult read_okvis(const vlCameraFile *file, const json_t *tree,
   double m[16], f[4];
   const json_t *name;
   if (!camera)
-    return vl_camera_none_in(file, tree, "cameras", "camera", record->frames);
+    return vl_camera_none_in(file, tree, "cameras", "camera", record);
   VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_LIST("T_SC", m, 16),
                         VL_FIELD_LIST("focal_length", f, 2),
                         VL_FIELD_LIST("principal_point", f + 2, 2)));

@@ -51,7 +51,7 @@ static vlResult read_open3d(const vlCameraFile *file, const json_t *tree,
   const json_t *chosen = vl_camera_choose(file, list, NULL, record);
   if (chosen)
     return read_parameters(file, chosen, record);
-  return vl_camera_none_in(file, tree, "parameters", "camera", record->frames);
+  return vl_camera_none_in(file, tree, "parameters", "camera", record);
 }
 
 /* Recognises a lone intrinsic_matrix. Open3D stores it by columns, so the principal point is in

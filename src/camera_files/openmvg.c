@@ -142,7 +142,7 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree,
   if (chosen)
     return read_view(file, tree, chosen, pose, record);
   if (record->frames || !json_array_size(json_object_get(tree, "intrinsics")))
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   record->frames = 1; /* before the reconstruction: the first intrinsic, at the origin */
   vl_camera_set_origin(&record->camera);
   return read_intrinsic(file, json_object_get(tree, "intrinsics"),

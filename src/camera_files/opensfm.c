@@ -90,7 +90,7 @@ static vlResult read_models(const vlCameraFile *file, const json_t *cameras,
   json_object_foreach((json_t *)cameras, name, camera)
       vl_camera_offer(file, camera, name, record, &chosen);
   if (!chosen)
-    return vl_camera_none_in(file, cameras, NULL, "camera", record->frames);
+    return vl_camera_none_in(file, cameras, NULL, "camera", record);
   vl_camera_set_origin(&record->camera);
   return read_camera(file, chosen, record);
 }
@@ -119,7 +119,7 @@ static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree,
     }
   }
   if (!chosen)
-    return vl_camera_no_frame(file, "shot", record->frames);
+    return vl_camera_no_frame(file, "shot", record);
   return read_shot(file, chosen, of, chosen_name, record);
 }
 

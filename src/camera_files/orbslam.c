@@ -55,7 +55,7 @@ static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree,
   record->frames = pair ? 2 : 1;
   uint32_t index = vl_camera_is_frame(file, 0, "Camera1") ? 0 : 1;
   if (index == 1 && !(pair && vl_camera_is_frame(file, 1, "Camera2")))
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   if (numbered || index == 1)
     snprintf(prefix, sizeof prefix, "Camera%u", index + 1);
   VL_TRY(read_one(file, tree, prefix, record));

@@ -24,7 +24,7 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree,
       coefficients = json_array_get(own, i);
     }
   if (!pose)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   json_t *holder =
       json_pack("{sO*sO*}", "poses", pose, "perFrameIntrinsicCoeffs", coefficients);
   if (!holder)

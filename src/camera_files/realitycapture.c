@@ -287,7 +287,7 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
     copy_row(&chosen, &row);
   }
   if (!chosen.count)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   VL_TRY(check_columns(file, &header, &chosen, record));
   return read_row(file, &chosen, of, record);
 }

@@ -45,7 +45,7 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree,
   vlCameraDef *d = &record->camera;
   double f[4] = {0.0}, aspect = 1.0, k[14] = {0.0};
   if (!camera)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   const json_t *model, *parameters;
   VL_TRY(vl_camera_field(file, camera, "model", &model));
   const char *name = vl_camera_text(model, "polymorphic_name");
@@ -103,7 +103,7 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree,
     vl_camera_offer(file, item, vl_camera_text(item, "token"), record, &chosen);
   }
   if (!chosen)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   VL_TRY(VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("camera_intrinsic", k, 9),
                         VL_FIELD_LIST("rotation", q, 4), VL_FIELD_LIST("translation", t, 3)));
   VL_TRY(vl_camera_set_k(file, chosen, "camera_intrinsic", k, d));
@@ -133,7 +133,7 @@ static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree,
   vlCameraDef *d = &record->camera;
   double k[9], lens[5], r[9], t[3];
   if (!chosen)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   VL_TRY(vl_camera_side_pair(file, chosen, "resolution", record));
   VL_TRY(VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("K", k, 9),
                         VL_FIELD_LIST("distCoef", lens, 5), VL_FIELD_LIST("R", r, 9),

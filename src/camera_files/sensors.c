@@ -69,7 +69,7 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree,
     vl_camera_offer(file, one, name, record, &camera);
   }
   if (!camera)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width),
                         VL_FIELD_SIDE("height", &d->height),
                         VL_FIELD_LIST("intrinsicMatrix", k, 9),
@@ -126,7 +126,7 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree,
     vl_camera_offer(file, one, name, record, &camera);
   }
   if (!camera)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   const json_t *intrinsics, *pose;
   VL_TRY(VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("SensorWidth", &d->width),
                         VL_FIELD_SIDE("SensorHeight", &d->height)));
@@ -223,7 +223,7 @@ static vlResult read_realsense(const vlCameraFile *file, const json_t *tree,
       vl_camera_offer(file, stream, name, record, &chosen);
   }
   return chosen ? read_stream(file, chosen, record)
-                : vl_camera_no_frame(file, "camera", record->frames);
+                : vl_camera_no_frame(file, "camera", record);
 }
 
 static bool is_realsense(const json_t *tree) {

@@ -94,7 +94,7 @@ static vlResult read_svo(const vlCameraFile *file, const json_t *tree, vlCameraR
     vl_camera_offer(file, item, vl_camera_text(json_object_get(item, "camera"), "label"),
                     record, &chosen);
   return chosen ? read_rig_camera(file, chosen, record)
-                : vl_camera_none_in(file, tree, "cameras", "camera", record->frames);
+                : vl_camera_none_in(file, tree, "cameras", "camera", record);
 }
 
 static bool is_svo(const json_t *tree) {

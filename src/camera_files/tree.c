@@ -319,9 +319,10 @@ vlArgumentText vl_camera_asked(const vlCameraFile *file, const char *otherwise) 
   return vl_argument_text(file->def->frame ? file->def->frame : otherwise);
 }
 
-vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t count) {
+vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what,
+                            const vlCameraRecord *record) {
   return vl_camera_wrong(file, "%s: there is no %s \"%s\" among the %u", file->dialect, what,
-                         vl_camera_asked(file, "0").text, count);
+                         vl_camera_asked(file, "0").text, record->frames);
 }
 
 vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key,

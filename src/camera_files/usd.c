@@ -305,7 +305,7 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
     result = vl_camera_wrong(
         file, "usd: the file holds no Camera (references and payloads are not followed)");
   else if (result == VL_OK && !search.camera)
-    result = vl_camera_no_frame(file, "Camera", search.frames);
+    result = vl_camera_no_frame(file, "Camera", record);
   else if (result == VL_OK)
     result = read_camera(&search, tree, record);
   /* an error without a line gets the line of the chosen camera, or 1 */

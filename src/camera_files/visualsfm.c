@@ -72,7 +72,7 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
     vl_camera_name(record, name);
   }
   if (!taken)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   if (!vl_rotation_from_quaternion(v + 1, r))
     return vl_camera_wrong_line(file, &lines, lines.text, "the quaternion is no rotation");
   vl_camera_set_centre(d, r, v + 5);

@@ -108,7 +108,7 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
     record->frames++;
   }
   if (!mode)
-    return vl_camera_no_frame(file, "camera", record->frames);
+    return vl_camera_no_frame(file, "camera", record);
   if (has_section(text, size, right ? "RIGHT_DISTO" : "LEFT_DISTO"))
     return vl_camera_wrong(file, "zed: the lens of [%s] is not taken",
                            right ? "RIGHT_DISTO" : "LEFT_DISTO");

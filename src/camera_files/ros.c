@@ -41,8 +41,9 @@ typedef struct {
 static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t least,
                             uint32_t most, uint32_t *count) {
   uint32_t line = ini->lines.number;
+  bool more = true;
   *count = 0;
-  while (*count < most) {
+  while (more && *count < most) {
     vlCameraLines ahead = ini->lines;
     if (!vl_camera_next_line(&ahead))
       break;
@@ -53,8 +54,10 @@ static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t 
       double value = vl_camera_parse(at, &end);
       if (end == at && *count == 0)
         return vl_camera_wrong_line(ini->file, &ahead, at, "\"%s\" needs numbers", key);
-      if (end == at)
-        return VL_OK; /* the next key */
+      if (end == at) {
+        more = false; /* the next key */
+        break;
+      }
       if (*count == most)
         return vl_camera_wrong_line(ini->file, &ahead, at, "more than %u numbers", most);
       if (!isfinite(value))
@@ -62,7 +65,8 @@ static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t 
       values[(*count)++] = value;
       end += strspn(end, " \t");
     }
-    ini->lines = ahead;
+    if (more)
+      ini->lines = ahead;
   }
   if (*count >= least)
     return VL_OK;

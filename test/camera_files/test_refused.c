@@ -170,6 +170,8 @@ static const Row rows[] = {
     {"opencv.yaml", "camera_matrix:", "binning_x: 2\ncamera_matrix:", 5, 12,
      "binning of 2 x 0 pixels is not taken"},
     {"ros.ini", "640\n", "640.5\n", 9, 1, "[image] needs width and height in whole pixels"},
+    {"ros.ini", "0.0 0.0 1.0\n", "0.0 0.0\n", 14, 1,
+     "\"camera matrix\" holds 8 numbers; it must hold 9"},
     {"openmvg.json", "pinhole_brown_t2", "pinhole_brown_t3", 69, 3,
      "\"pinhole_brow…\" is no model of velo; there are pinhole,"},
     {"openmvg.json", "\"polymorphic_id\": 1,", "\"polymorphic_id\": 2,", 69, 3,

@@ -5,10 +5,11 @@
 
 #include <math.h>
 
+#include "velo/filter.h"
 #include "velo/filter_kinds.h"
 
-/* x: distance from the centre, pixels, at the default parameters. Any factor. */
-typedef double FilterShape(double x, double radius);
+/* x: distance from the centre, pixels, along an axis with this radius. Any factor. */
+typedef double FilterShape(const vlPixelFilter *filter, double x, double radius);
 
 /* Declares the formula of each kind, which is in the file of the kind: filter/NAME.case.c. */
 #define FILTER_CASE(kind, name) extern FilterShape name##_filter;

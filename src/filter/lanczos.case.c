@@ -7,7 +7,7 @@ static double sinc_of(double x) {
   return x == 0 ? 1 : sin(CASE_PI * x) / (CASE_PI * x);
 }
 
-double lanczos_filter(double x, double radius) {
+double lanczos_filter(const vlPixelFilter *filter, double x, double radius) {
   (void)radius;
-  return sinc_of(x) * sinc_of(x / 3);
+  return sinc_of(x) * sinc_of(x / (double)filter->tau);
 }

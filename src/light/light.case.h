@@ -23,8 +23,9 @@ typedef struct LightVariant {
   uint32_t known_count;
   double rim[4][2]; /* x and z of points of the floor at the end of what the light reaches; all
                        0: none are known */
+  void (*change)(vlLightDef *def); /* sets what the format cannot say; null: nothing */
   bool compensated; /* directions darker than the mean are not sampled: BSDF samples find their
-                       light */
+        light */
 } LightVariant;
 
 enum { LIGHT_VARIANTS = 4 };

@@ -1,8 +1,13 @@
 /* light/spot.case.c: what tests know of spot lights. */
 #include "light/light.case.h"
 
+static void square(vlLightDef *def) {
+  def->cone_squared = true;
+}
+
 /* Between the cosines of 40 and of 20 degrees t runs from 0 to 1; the falloff is 3 t^2 - 2 t^3,
- * here of t = .5 and of .1955 (36.87 degrees), over the squared distance. */
+ * here of t = .4994 and of .1955 (36.87 degrees), over the squared distance; t^2 where it is
+ * squared. */
 const LightCase spot_light = {
     .variants =
         {
@@ -13,6 +18,16 @@ const LightCase spot_light = {
              .known = {{0, 0, {1, 1, 1}},
                        {.612460, 0, {.363607, .363607, .363607}},
                        {.75, 0, {.063842, .063842, .063842}},
+                       {1, 0, {0, 0, 0}}},
+             .known_count = 4},
+            {.parameters =
+                 "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float "
+                 "coneangle\" 40 \"float "
+                 "conedeltaangle\" 20",
+             .change = square,
+             .known = {{0, 0, {1, 1, 1}},
+                       {.612460, 0, {.181390, .181390, .181390}},
+                       {.75, 0, {.024472, .024472, .024472}},
                        {1, 0, {0, 0, 0}}},
              .known_count = 4},
             {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [1 0 0] \"rgb I\" [1 2 4]",

@@ -14,7 +14,9 @@
 #include <string.h>
 
 #include "unit.h"
+#include "velo/edit.h"
 #include "velo/filter_kinds.h"
+#include "velo/light.h"
 #include "velo/load.h"
 #include "velo/material.h"
 #include "velo/render.h"
@@ -76,15 +78,25 @@ static void scene_text(char text[TEXT], const char *form, const char *kind,
 
 /* ---- images ------------------------------------------------------------------------------ */
 
+/* Changes the first light of each scene that is loaded, while a law sets it. */
+static void (*change_light)(vlLightDef *def);
+
 static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(in, &scene), VL_OK);
   char name[100]; /* relative paths are relative to its folder */
   snprintf(name, sizeof name, "%s/scene.pbrt", folder);
-  if (vl_scene_load_memory(scene, name, text, strlen(text), NULL, error) == VL_OK)
-    return scene;
-  vl_scene_destroy(scene);
-  return NULL;
+  if (vl_scene_load_memory(scene, name, text, strlen(text), NULL, error) != VL_OK) {
+    vl_scene_destroy(scene);
+    return NULL;
+  }
+  if (change_light) {
+    const vlLightId first = {1};
+    vlLightDef light = *vl_scene_light(scene, first);
+    change_light(&light);
+    assert_int_equal(vl_scene_set_light(scene, first, &light, error), VL_OK);
+  }
+  return scene;
 }
 
 /* Renders a scene by its settings and destroys it. Null, and the reason: it cannot be

@@ -199,8 +199,11 @@ static void for_each_light(const char *floor, LightCheck *check) {
     snprintf(form, sizeof form,
              HEAD "WorldBegin %sAttributeBegin %s LightSource %%s AttributeEnd\n", floor,
              c->before ? c->before : "");
-    for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++)
+    for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++) {
+      change_light = c->variants[i].change;
       check(family->rows[k], &c->variants[i], form);
+      change_light = NULL;
+    }
   }
 }
 

@@ -365,7 +365,7 @@ static void samplers_of_neighbours(void **state) {
 #define FILTER_CASE(kind, name) name##_filter,
 static FilterShape *const filter_shapes[] = {VL_PIXEL_FILTER_KINDS(FILTER_CASE)};
 
-enum { FILTERED = 16 };
+enum { FILTERED = 16, RADII_ALONE = 2 };
 
 /* Light through the pixel in the middle alone, seen by an orthographic camera of one unit per
  * pixel. */
@@ -382,20 +382,21 @@ static void light_middle(void *user, vlTrace *trace, const vlOwnPaths *paths) {
 }
 
 /* The share of the light of a pixel that one `far` pixels away gets, along one axis. */
-static double filtered_share(FilterShape *shape, double radius, int far) {
+static double filtered_share(const vlPixelFilter *filter, double radius, int far) {
+  FilterShape *shape = filter_shapes[filter->kind];
   enum { STEPS = 4000 };
   double whole = 0;
   double part = 0;
   for (int i = 0; i < STEPS; i++) {
     double across = ((i + 0.5) / STEPS * 2 - 1) * radius;
-    double value = shape(fabs(across), radius);
+    double value = shape(filter, fabs(across), radius);
     whole += value;
     part += fabs(across - far) < 0.5 ? value : 0;
   }
   return part / whole;
 }
 
-static void check_filter(vlPixelFilterKind kind, const char *name, bool share) {
+static void check_filter(const vlPixelFilter *filter, const char *name, bool share) {
   vlError error = {0};
   vlScene *scene = load_text(context, HEAD "WorldBegin LightSource \"infinite\"", &error);
   assert_non_null(scene);
@@ -405,15 +406,14 @@ static void check_filter(vlPixelFilterKind kind, const char *name, bool share) {
   defs->camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
   defs->camera.fx = defs->camera.fy = 1;
   defs->film = vl_default_film_def(FILTERED + 1, FILTERED + 1);
-  defs->film.filter = vl_default_pixel_filter(kind);
+  defs->film.filter = *filter;
   defs->build.color = VL_COLOR_RGB;
   defs->render.spp = 1024;
   defs->render.sampler = VL_SAMPLER_ZSOBOL;
   defs->render.share_samples = share;
   defs->render.own_tracer = &tracer;
-  double radius = (double)defs->film.filter.radius_x;
-  double radius_y = 0.75 * radius;
-  defs->film.filter.radius_y = (float)radius_y;
+  double radius = (double)filter->radius_x;
+  double radius_y = (double)filter->radius_y;
   vlImage *image = render_scene(context, scene, &error);
   if (!image)
     fail_msg("%s", error.message);
@@ -422,8 +422,8 @@ static void check_filter(vlPixelFilterKind kind, const char *name, bool share) {
   double across[2 * FILTERED];
   double down[2 * FILTERED];
   for (int k = 0; k < 2 * FILTERED; k++) {
-    across[k] = filtered_share(filter_shapes[kind], radius, k - FILTERED / 2);
-    down[k] = filtered_share(filter_shapes[kind], radius_y, k - FILTERED / 2);
+    across[k] = filtered_share(filter, radius, k - FILTERED / 2);
+    down[k] = filtered_share(filter, radius_y, k - FILTERED / 2);
   }
   for (uint32_t y = 0; y <= FILTERED; y++)
     for (uint32_t x = 0; x <= FILTERED; x++) {
@@ -442,8 +442,17 @@ static void laws_of_filters(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("filters");
   for (uint32_t k = 0; k < family->kind_count; k++)
-    for (int share = 0; share < 2; share++)
-      check_filter((vlPixelFilterKind)k, family->rows[k]->name, share == 1);
+    for (int share = 0; share < 2; share++) {
+      vlPixelFilter filter = vl_default_pixel_filter((vlPixelFilterKind)k);
+      filter.radius_y = 0.75f * filter.radius_x;
+      check_filter(&filter, family->rows[k]->name, share == 1);
+      filter.sigma *= 0.6f;
+      filter.tau *= 0.6f;
+      filter.b *= 0.6f;
+      filter.c *= 0.1f;
+      if (family->rows[k]->parameter_count > RADII_ALONE)
+        check_filter(&filter, family->rows[k]->name, share == 1);
+    }
   expect_no_failures();
 }
 

@@ -30,6 +30,14 @@ const LightCase spot_light = {
                        {.75, 0, {.024472, .024472, .024472}},
                        {1, 0, {0, 0, 0}}},
              .known_count = 4},
+            /* a power of 10 over 2 pi (1 - cos 20 + (cos 20 - cos 40) / 3) */
+            {.parameters =
+                 "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float "
+                 "power\" 10 \"float coneangle\" 40 \"float conedeltaangle\" 20",
+             .change = square,
+             .known = {{0, 0, {13.46601, 13.46601, 13.46601}},
+                       {.612460, 0, {2.442599, 2.442599, 2.442599}}},
+             .known_count = 2},
             {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [1 0 0] \"rgb I\" [1 2 4]",
              .known = {{1, 0, {.5, 1, 2}}},
              .known_count = 1},

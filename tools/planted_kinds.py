@@ -921,6 +921,10 @@ MISTAKES = [
      r"samplers stratified:", "src/sampler/stratified.hot.c",
      "vl_grid_2d(1,",
      "vl_grid_2d(0,"),
+    ("projected images: skewed frames have the cone of straight ones", "lights:projection",
+     r"lights projection:", "src/light/goniometric.c",
+     "static double image_cone(const ImageFrame *frame, const float axis[3], const float half[2]) {\n  if (!frame->is_skewed)",
+     "static double image_cone(const ImageFrame *frame, const float axis[3], const float half[2]) {\n  if (axis)"),
     ]
 
 

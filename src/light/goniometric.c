@@ -69,6 +69,61 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
   return r;
 }
 
+/* How a projection light's frame lies in the world. */
+typedef struct ImageFrame {
+  vlMat4 world_from_light;
+  bool is_skewed; /* not a rotation, mirroring and scaling by one number, to rounding */
+} ImageFrame;
+
+static ImageFrame image_frame(const vlLightDef *def) {
+  ImageFrame frame = {.world_from_light = vl_mat4_load(def->world_from_light)};
+  double axes[3][3];
+  for (int i = 0; i < 3; i++) {
+    const double unit[3] = {i == 0, i == 1, i == 2};
+    vl_mat4_vector(&frame.world_from_light, unit, axes[i]);
+  }
+  const double length2 = vl_dot3(axes[0], axes[0]);
+  for (int i = 0; i < 3; i++) {
+    const double own = vl_dot3(axes[i], axes[i]), skew = vl_dot3(axes[i], axes[(i + 1) % 3]);
+    if (fabs(own - length2) > 1e-4 * length2 || fabs(skew) > 1e-4 * length2)
+      frame.is_skewed = true;
+  }
+  return frame;
+}
+
+/* The direction, not normalized, of a point of the plane z = 1. The image's y points down. */
+static void image_direction(const ImageFrame *frame, double x, double y, double direction[3]) {
+  const double at[3] = {x, -y, 1};
+  vl_mat4_vector(&frame->world_from_light, at, direction);
+}
+
+/* An area of the plane z = 1 around a point, over its solid angle. */
+static double image_area(const ImageFrame *frame, double x, double y) {
+  double q = 1 + x * x + y * y;
+  if (!frame->is_skewed)
+    return q * sqrt(q);
+  double direction[3];
+  image_direction(frame, x, y, direction);
+  const double length = vl_norm3(direction);
+  return length * length * length / fabs(vl_mat4_determinant3(frame->world_from_light));
+}
+
+/* Cosine of the widest angle between the axis (unit) and what the image covers; -1 where a
+ * corner is at more than a right angle. */
+static double image_cone(const ImageFrame *frame, const float axis[3], const float half[2]) {
+  if (!frame->is_skewed)
+    return 1 / sqrt(1 + half[0] * half[0] + half[1] * half[1]);
+  double least = 1;
+  for (int i = 0; i < 4; i++) {
+    double to[3], along = 0;
+    image_direction(frame, i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], to);
+    for (int k = 0; k < 3; k++)
+      along += to[k] * axis[k];
+    least = fmin(least, along / vl_norm3(to));
+  }
+  return least > 0 ? least : -1;
+}
+
 static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMipmap *mip,
                                vlWorldLight *light, vlEmitted *e, vlError *error) {
   static const int order[3] = {0, 1, 2};
@@ -79,6 +134,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   double aspect = (double)w / h, tangent = vl_precise_tan(0.5 * def->fov);
   light->own[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
   light->own[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));
+  const ImageFrame frame = image_frame(def);
   double sum = 0;
   for (uint32_t y = 0; y < h; y++)
     for (uint32_t x = 0; x < w; x++) {
@@ -88,8 +144,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
           vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
       if (!isfinite(value))
         return bad_pixel(def, x, y, error);
-      double q = 1 + a * a + b * b; /* q^(-3/2): solid angle of an area of the plane z = 1 */
-      sum += value > 0 ? value / (q * sqrt(q)) : 0;
+      sum += value > 0 ? value / image_area(&frame, a, b) : 0;
     }
   double flux = sum / ((double)w * h) * 4 * light->own[0] * light->own[1], factor = def->scale;
   if (def->power == def->power)
@@ -97,14 +152,12 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   e->image = (int32_t)light->image;
   vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), (float)factor,
                        e);
-  double forward[3] = {0, 0, 1}, axis[3];
-  vlMat4 m = vl_mat4_load(def->world_from_light);
-  vl_mat4_vector(&m, forward, axis);
+  double axis[3];
+  image_direction(&frame, 0, 0, axis);
   double l = vl_norm3(axis);
   for (int i = 0; i < 3; i++)
     light->direction[i] = (float)(axis[i] / l);
-  light->cos_end = light->cos_start =
-      (float)(1 / sqrt(1 + light->own[0] * light->own[0] + light->own[1] * light->own[1]));
+  light->cos_end = light->cos_start = (float)image_cone(&frame, light->direction, light->own);
   light->power = (float)(flux * factor / (2 * M_PI * (1 - light->cos_end)) * 4 *
                          M_PI); /* as for a spot light */
   return VL_OK;

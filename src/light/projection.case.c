@@ -12,6 +12,15 @@ const LightCase projection_light = {
                        {1.2, 0, {0, 0, 0}}},
              .known_count = 4,
              .rim = {{.97, .97}, {-.97, .97}, {.97, -.97}, {-.97, -.97}}},
+            /* x goes along with y: the square becomes a parallelogram */
+            {.parameters = "\"string filename\" \"quarters.pfm\" \"float fov\" 90",
+             .before = "ConcatTransform [1 0 0 0 .3 1 0 0 0 0 1 0 0 0 0 1]",
+             .known = {{.65, .5, {.4 / 1.6725, .4 / 1.6725, .4 / 1.6725}},
+                       {-.35, .5, {.2 / 1.3725, .2 / 1.3725, .2 / 1.3725}},
+                       {.35, -.5, {.8 / 1.3725, .8 / 1.3725, .8 / 1.3725}},
+                       {1.5, .5, {0, 0, 0}}},
+             .known_count = 4,
+             .rim = {{1.261, .97}, {-.679, .97}, {.679, -.97}, {-1.261, -.97}}},
         },
     .parameters = {{.base = "\"string filename\" \"sky.pfm\""}},
 };

@@ -21,18 +21,8 @@ static float image_point(const vlWorldLight *light, vlVec3 d, vlVec2 *st) {
   return 1.0f;
 }
 
-/* Returns 1 - cosine of the half angle of a cone around the image, or 2 (the whole sphere) if
- * the light's frame is skewed. */
+/* 1 - cosine of the half angle of a cone around the image. */
 static float image_span(const vlWorldLight *light) {
-  const float *m = light->corners;
-  float length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
-  for (int i = 0; i < 3; i++) {
-    const float *a = m + 3 * i, *b = m + 3 * ((i + 1) % 3);
-    float own = a[0] * a[0] + a[1] * a[1] + a[2] * a[2],
-          skew = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    if (vl_abs(own - length2) > 1e-4f * length2 || vl_abs(skew) > 1e-4f * length2)
-      return 2.0f; /* more than rounding */
-  }
   return vl_min(1.001f * (1.0f - light->cos_end), 2.0f);
 }
 

@@ -196,12 +196,13 @@ static void for_each_light(const char *floor, LightCheck *check) {
   for (uint32_t k = 0; k < family->kind_count; k++) {
     const LightCase *c = light_cases[k];
     assert_non_null(c->variants[0].parameters);
-    snprintf(form, sizeof form,
-             HEAD "WorldBegin %sAttributeBegin %s LightSource %%s AttributeEnd\n", floor,
-             c->before ? c->before : "");
     for (int i = 0; i < LIGHT_VARIANTS && c->variants[i].parameters; i++) {
-      change_light = c->variants[i].change;
-      check(family->rows[k], &c->variants[i], form);
+      const LightVariant *v = &c->variants[i];
+      snprintf(form, sizeof form,
+               HEAD "WorldBegin %sAttributeBegin %s %s LightSource %%s AttributeEnd\n", floor,
+               c->before ? c->before : "", v->before ? v->before : "");
+      change_light = v->change;
+      check(family->rows[k], v, form);
       change_light = NULL;
     }
   }

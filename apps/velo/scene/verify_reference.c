@@ -98,7 +98,7 @@ static void name_file(const Look *l, uint32_t replicate, const char *end, char p
 
 static vlResult fail(const Look *l, const char *what) {
   *l->error = (vlError){.code = VL_ERROR_IO};
-  text_set(l->error->message, "the reference renderer %.100s: %s", l->v->reference, what);
+  text_set(l->error->message, "the reference renderer %.80s: %s", l->v->reference, what);
   return VL_ERROR_IO;
 }
 

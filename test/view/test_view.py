@@ -90,6 +90,8 @@ def test_camera(page):
     camera = state["camera"]
     check("spelled", camera["spelled"] == "lecture", camera["spelled"])
     d = camera["d"]
+    for step in ("undo", "redo"):
+        check(step + "_of_nothing", near(state_after(page, type=step)["camera"]["d"], d))
     new = edit(page, d=2 * d)["camera"]
     check("d_changes_fx", near(new["fx"], 2 * camera["fx"]) and near(new["d"], 2 * d), new["fx"])
     check("d_changes_focal_mm", near(new["focal_mm"], 2 * camera["focal_mm"]))

@@ -117,20 +117,21 @@ static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
     engine_post(e, client, "warning", "message %s", warning);
 }
 
+/* Each is answered with the state, also where there is nothing to step to. */
 static void step_history(Engine *e, const ViewMessage *m) {
   History *h = &e->history;
-  if (m->kind == MESSAGE_RESET) {
+  const uint32_t before = h->at;
+  if (m->kind == MESSAGE_RESET)
     engine_remember(e, &e->scene_camera, 0);
-  } else if (m->kind == MESSAGE_UNDO && h->at > 0) {
+  else if (m->kind == MESSAGE_UNDO && h->at > 0)
     h->at--;
-  } else if (m->kind == MESSAGE_REDO && h->at + 1 < h->count) {
+  else if (m->kind == MESSAGE_REDO && h->at + 1 < h->count)
     h->at++;
-  } else {
-    return;
-  }
-  h->gesture = 0;
   e->wanted.change = m->change;
-  show_camera(e, &h->cameras[h->at]);
+  if (m->kind == MESSAGE_RESET || h->at != before) {
+    h->gesture = 0;
+    show_camera(e, &h->cameras[h->at]);
+  }
   engine_post_state(e, 0);
 }
 

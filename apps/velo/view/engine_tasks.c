@@ -104,14 +104,17 @@ static void focus(Engine *e, const Task *task) {
   vlError error = {0};
   double distance;
   vlResult result = vl_autofocus(e->model.world, &camera.made, m->x, m->y, &distance, &error);
+  engine_lock(e);
+  /* an edit may have come meanwhile: it keeps all but the distance, and its change number */
   if (result == VL_OK)
-    result = camera_set_focus(&camera, distance, &next, &error);
+    result = camera_set_focus(&e->wanted.camera, distance, &next, &error);
   if (result != VL_OK) {
+    engine_unlock(e);
     engine_refuse(e, task, error.message);
     return;
   }
-  engine_lock(e);
-  e->wanted.change = m->change;
+  if (e->wanted.change < m->change)
+    e->wanted.change = m->change;
   engine_remember(e, &next, 0);
   e->wanted.camera = next;
   e->wanted.generation++;

@@ -71,7 +71,8 @@ export class Outside {
       this.asked = false;
       if (answer.type === "outline") {
         this.drawing = answer;
-        this.scale = answer.plane / d;
+        // d of the camera that was drawn: the page's may be ahead of it while it is dragged
+        if (set.plane !== answer.plane) this.scale = answer.plane / (answer.d > 0 ? answer.d : d);
         this.projection = projection;
         this.draw();
       }

@@ -82,6 +82,7 @@ void engine_outline(Engine *e, const Task *task) {
   if (json) {
     if (result == VL_OK) {
       json_number(json, "plane", def.plane);
+      json_number(json, "d", camera.def.view_distance);
       put_drawing(json, drawing);
     } else {
       json_text(json, "message", error.message);

@@ -2,7 +2,7 @@
 #ifndef IMPORT_PLAIN_H
 #define IMPORT_PLAIN_H
 
-#include "import/points.h"
+#include "import/mesh.h"
 #include "scene/scene.h"
 
 /* Marks camera and lights as missing, so that vl_scene_complete adds them. */
@@ -13,11 +13,11 @@ void vl_import_plain_settings(vlScene *scene);
 bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const char **at,
                           const char **end);
 
-/* Adds the mesh to the scene. Without triangles its vertices are points: discs across their
- * normals; without normals small balls. The median distance to the fourth neighbour is their
- * radius, within 1/2000 and 1/50 of the diagonal. load: its permissive repairs normals and uvs;
- * may be null. Returns vl_scene_result. */
+/* Adds the mesh, whose arrays it takes, to the scene. Without triangles its vertices are
+ * points: discs across their normals; without normals small balls. The median distance to the
+ * fourth neighbour is their radius, within 1/2000 and 1/50 of the diagonal. load: its
+ * permissive repairs normals and uvs; may be null. Returns vl_scene_result. */
 vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load,
-                              vlPlainMesh *mesh, vlError *error);
+                              vlMesh *mesh, vlError *error);
 
 #endif

@@ -1,6 +1,5 @@
 /* import/points.c: see points.h. */
 #include "import/points.h"
-#include "base/free.h"
 #include "math/axis.h"
 #include "math/double3.h"
 
@@ -29,7 +28,7 @@ static double distance2(const float *a, const float *b) {
   return sum;
 }
 
-static double diagonal(const vlPlainMesh *m) {
+static double diagonal(const vlMesh *m) {
   float low[3], high[3];
   memcpy(low, m->positions, sizeof low);
   memcpy(high, m->positions, sizeof high);
@@ -42,7 +41,7 @@ static double diagonal(const vlPlainMesh *m) {
 
 /* The median distance of a point to its fourth neighbour, which in grids and in random surfaces
  * is that of points side by side; equal points are no neighbours. */
-static double spacing(const vlPlainMesh *m) {
+static double spacing(const vlMesh *m) {
   double nearest[PROBES];
   size_t n = 0, step = m->vertices / PROBES + 1, others = m->vertices / MAX_POINTS + 1;
   for (size_t i = 0; i < m->vertices && n < PROBES; i += step) {
@@ -93,59 +92,61 @@ static void ball(float radius, float corners[CORNERS][3]) {
       corners[k][i] = i == k / 2 ? (k & 1 ? -radius : radius) : 0;
 }
 
-/* Writes the corners and faces of point i. */
-static void put_point(const vlPlainMesh *m, size_t i, float radius, vlPlainMesh *made) {
+/* Moves the vertices of point i, which are equal, apart, and joins them by faces. */
+static bool put_point(vlContext *context, vlMesh *m, size_t i, float radius, bool discs) {
   static const uint32_t disc_faces[DISC_FACES][3] = {
       {0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
   static const uint32_t ball_faces[BALL_FACES][3] = {
       {0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  size_t faces = m->normals ? DISC_FACES : BALL_FACES;
+  const size_t first = i * CORNERS;
   float corners[CORNERS][3];
-  if (m->normals)
-    disc(m->normals + 3 * i, radius, corners);
+  if (discs)
+    disc(m->normals + 3 * first, radius, corners);
   else
     ball(radius, corners);
-  for (size_t k = 0; k < CORNERS; k++) {
-    size_t at = i * CORNERS + k;
+  for (size_t k = 0; k < CORNERS; k++)
     for (size_t c = 0; c < 3; c++) {
-      made->positions[3 * at + c] = m->positions[3 * i + c] + corners[k][c];
-      made->normals[3 * at + c] = m->normals ? m->normals[3 * i + c] : corners[k][c];
+      m->positions[3 * (first + k) + c] += corners[k][c];
+      if (!discs)
+        m->normals[3 * (first + k) + c] = corners[k][c];
     }
-    if (m->colors)
-      memcpy(made->colors + 4 * at, m->colors + 4 * i, 4 * sizeof(float));
+  bool ok = true;
+  for (int f = 0; ok && f < (discs ? DISC_FACES : BALL_FACES); f++) {
+    const uint32_t *face = discs ? disc_faces[f] : ball_faces[f], from = (uint32_t)first;
+    ok = vl_mesh_add_triangle(context, m, from + face[0], from + face[1], from + face[2]);
   }
-  for (size_t f = 0; f < faces; f++)
-    for (size_t k = 0; k < 3; k++)
-      made->indices[3 * (i * faces + f) + k] =
-          (uint32_t)(i * CORNERS) + (m->normals ? disc_faces[f][k] : ball_faces[f][k]);
+  return ok;
 }
 
-bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
-  size_t faces = m->normals ? DISC_FACES : BALL_FACES, count = m->vertices;
+/* Makes the vertices of all points, still at their places. */
+static bool repeat_points(vlContext *context, vlMesh *m, bool discs) {
+  const size_t count = m->vertices * CORNERS;
+  uint32_t *order = vl_alloc_array(context, count, sizeof *order);
+  for (size_t i = 0; order && i < count; i++)
+    order[i] = (uint32_t)(i / CORNERS);
+  vl_mesh_drop(context, m, VL_MESH_UVS);
+  bool ok = order && vl_mesh_reorder(context, m, order, count) &&
+            (discs || vl_mesh_add_attributes(context, m, VL_MESH_NORMALS));
+  vl_free(context, order);
+  return ok;
+}
+
+bool vl_import_points(vlContext *context, const char *path, vlMesh *m) {
+  const size_t count = m->vertices;
+  const bool discs = m->normals;
   if (count * BALL_FACES > 0x3fffffff)
     return false;
   double size = diagonal(m), radius = spacing(m);
   radius = fmin(fmax(radius, size / 2000), size / 50);
   radius = radius > 0 ? radius : 1;
-  vlPlainMesh made = {.vertices = (uint32_t)(count * CORNERS),
-                      .triangles = (uint32_t)(count * faces)};
-  made.positions = vl_alloc_array(context, count * CORNERS, 3 * sizeof(float));
-  made.normals = vl_alloc_array(context, count * CORNERS, 3 * sizeof(float));
-  made.indices = vl_alloc_array(context, count * faces, 3 * sizeof(uint32_t));
-  if (m->colors)
-    made.colors = vl_alloc_array(context, count * CORNERS, 4 * sizeof(float));
-  if (!made.positions || !made.normals || !made.indices || (m->colors && !made.colors)) {
-    VL_FREE(context, made.positions, made.normals, made.indices, made.colors);
-    return false;
-  }
-  for (size_t i = 0; i < count; i++)
-    put_point(m, i, (float)radius, &made);
-  VL_FREE(context, m->positions, m->normals, m->uvs, m->colors, m->indices);
-  made.face_colors = m->face_colors;
-  *m = made;
+  bool ok = repeat_points(context, m, discs);
+  for (size_t i = 0; ok && i < count; i++)
+    ok = put_point(context, m, i, (float)radius, discs);
   vlError where = {0};
   strncpy(where.file, path, sizeof where.file - 1);
-  vl_log(context, VL_LOG_INFO, &where, "it has no faces: its %zu points are %s of radius %.4g",
-         count, faces == DISC_FACES ? "discs" : "balls", radius);
-  return true;
+  if (ok)
+    vl_log(context, VL_LOG_INFO, &where,
+           "it has no faces: its %zu points are %s of radius %.4g", count,
+           discs ? "discs" : "balls", radius);
+  return ok;
 }

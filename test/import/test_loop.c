@@ -16,14 +16,14 @@ static int close_context(void **state) {
   return left != 0;
 }
 
-static void free_mesh(vlLoopMesh *m) {
+static void free_mesh(vlMesh *m) {
   vl_free(context, m->positions);
   vl_free(context, m->normals);
   vl_free(context, m->indices);
 }
 
 static void subdivide(uint32_t vertices, const float *p, uint32_t faces, const uint32_t *v,
-                      uint32_t levels, vlLoopMesh *m) {
+                      uint32_t levels, vlMesh *m) {
   vlError error;
   vlResult result = vl_loop_subdivide(context, vertices, p, faces, v, levels, m, &error);
   if (result != VL_OK)
@@ -41,10 +41,10 @@ static void closed(void **state) {
   (void)state;
   float first = 0;
   for (uint32_t levels = 0; levels <= 5; levels++) {
-    vlLoopMesh m;
+    vlMesh m;
     subdivide(6, octahedron, 8, octahedron_faces, levels, &m);
-    assert_int_equal(m.faces, 8u << 2 * levels);
-    assert_int_equal(m.vertices, 2 + m.faces / 2);
+    assert_int_equal(m.triangles, 8u << 2 * levels);
+    assert_int_equal(m.vertices, 2 + m.triangles / 2);
     if (levels == 0)
       first = m.positions[0];
     for (uint32_t i = 0; i < 6; i++)
@@ -55,7 +55,7 @@ static void closed(void **state) {
       assert_true(p[0] * n[0] + p[1] * n[1] + p[2] * n[2] <
                   0); /* against the winding, as pbrt has them */
     }
-    for (uint32_t i = 0; i < 3 * m.faces; i++)
+    for (uint32_t i = 0; i < 3 * m.triangles; i++)
       assert_true(m.indices[i] < m.vertices);
     free_mesh(&m);
   }
@@ -85,7 +85,7 @@ static void flat(void **state) {
       memcpy(v + n, quad, sizeof quad);
       n += 6;
     }
-  vlLoopMesh m;
+  vlMesh m;
   subdivide((N + 1) * (N + 1), p, 2 * N * N, v, 3, &m);
   double area = 0;
   for (uint32_t i = 0; i < m.vertices; i++) {
@@ -94,7 +94,7 @@ static void flat(void **state) {
     const float *k = &m.normals[3 * i];
     assert_true(k[2] < 0 && fabsf(k[0]) < -1e-4f * k[2] && fabsf(k[1]) < -1e-4f * k[2]);
   }
-  for (uint32_t f = 0; f < m.faces; f++) {
+  for (uint32_t f = 0; f < m.triangles; f++) {
     const float *a = &m.positions[3 * m.indices[3 * f]],
                 *b = &m.positions[3 * m.indices[3 * f + 1]],
                 *c = &m.positions[3 * m.indices[3 * f + 2]];
@@ -124,7 +124,7 @@ static void regular_vertex(void **state) {
     memcpy(v + 3 * i, face, sizeof face);
   }
   for (uint32_t levels = 0; levels < 4; levels++) {
-    vlLoopMesh m;
+    vlMesh m;
     subdivide(7, p, 6, v, levels, &m);
     assert_near(m.positions[0], 0.5 * 0.1 + x / 12, 2e-6);
     assert_near(m.positions[1], 0.5 * 0.2 + y / 12, 2e-6);
@@ -137,7 +137,7 @@ static void refused(void **state) {
   (void)state;
   const float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1};
   const uint32_t twice[] = {0, 1, 1}, same_way[] = {0, 1, 2, 0, 1, 3};
-  vlLoopMesh m;
+  vlMesh m;
   vlError error;
   assert_int_equal(vl_loop_subdivide(context, 5, p, 1, twice, 1, &m, &error), VL_ERROR_SCENE);
   assert_string_equal(error.message, "face 0 names vertex 1 twice");

@@ -84,10 +84,10 @@ static void scene(void **state) {
 
 static vlResult read_ply(vlContext *context, void *user) {
   (void)user;
-  vlPlyMesh mesh;
+  vlMesh mesh;
   vlResult result = vl_ply_parse(context, "p.ply", ply_text, sizeof ply_text - 1, &mesh, NULL);
   if (result == VL_OK)
-    vl_ply_free(context, &mesh);
+    vl_mesh_free(context, &mesh);
   return result;
 }
 

@@ -143,6 +143,35 @@ static void strips(void **state) {
           "4") "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" SQUARE
                "3 0 1 4\n",
       14, "names vertex 4");
+  /* before faces, which follow them */
+  l = load_lines(
+      "c.ply",
+      VERTICES("4") "element tristrips 1\nproperty list int int vertex_indices\n"
+                    "element face 1\nproperty list uchar int vertex_indices\nend_header\n" SQUARE
+                    "3 0 1 2\n3 1 3 2\n");
+  d = shape(&l);
+  assert_int_equal(d->faces, 2);
+  assert_int_equal(d->indices[0], 0);
+  assert_int_equal(d->indices[3], 1);
+  end_load(&l);
+}
+
+/* Far from the origin the transform has what single precision would lose, also where the
+ * vertices are made anew: of faces with colours, and of points. */
+static void far_meshes(void **state) {
+  (void)state;
+  static const struct {
+    const char *name, *text;
+  } files[] = {
+      {"a.off", "OFF\n3 1 0\n5000000 0 0\n5000001 0 0\n5000000 1 0\n3 0 1 2 255 0 0\n"},
+      {"b.ply", VERTICES("2") "end_header\n5000000 0 0\n5000001 0 0\n"}};
+  for (size_t i = 0; i < 2; i++) {
+    Loaded l = load_lines(files[i].name, files[i].text);
+    const vlShapeDef *d = shape(&l);
+    assert_near(d->group_from_shape[3], 5e6, 1);
+    assert_near(d->positions[0] + (float)(d->group_from_shape[3] - 5e6), 0, 0.1);
+    end_load(&l);
+  }
 }
 
 static void face_colors(void **state) {
@@ -196,8 +225,8 @@ static void clouds(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(stl), cmocka_unit_test(off),
-                                     cmocka_unit_test(strips), cmocka_unit_test(face_colors),
-                                     cmocka_unit_test(clouds)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(stl),        cmocka_unit_test(off),         cmocka_unit_test(strips),
+      cmocka_unit_test(far_meshes), cmocka_unit_test(face_colors), cmocka_unit_test(clouds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,7 +129,7 @@ static void write_pyramid(Buffer *b, int format, const char *real, const char *i
 }
 
 static void check_pyramid(const Buffer *b, bool rich) {
-  vlPlyMesh m;
+  vlMesh m;
   vlError error;
   vlResult result = vl_ply_parse(context, "p.ply", b->data, b->size, &m, &error);
   if (result != VL_OK)
@@ -141,18 +141,18 @@ static void check_pyramid(const Buffer *b, bool rich) {
   const uint32_t quad[] = {0, 1, 3, 2}; /* p00 p10 p01 p11 */
   assert_memory_equal(m.quad_indices, quad, sizeof quad);
   const uint32_t triangles[] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 0, 1, 2, 0, 2, 3, 0, 3, 4};
-  assert_memory_equal(m.triangle_indices, triangles, sizeof triangles);
+  assert_memory_equal(m.indices, triangles, sizeof triangles);
   assert_near(m.positions[14], 1, 0);
   assert_near(m.positions[9], 0, 0);
   assert_near(m.positions[10], 1, 0);
   assert_int_equal(m.normals != NULL, rich);
-  assert_int_equal(m.uvs != NULL, rich);
+  assert_int_equal(m.uvs[0] != NULL, rich);
   if (rich) {
     assert_near(m.normals[5], 1, 0);
-    assert_near(m.uvs[8], 1, 0);
-    assert_near(m.uvs[9], 0.5, 0);
+    assert_near(m.uvs[0][8], 1, 0);
+    assert_near(m.uvs[0][9], 0.5, 0);
   }
-  vl_ply_free(context, &m);
+  vl_mesh_free(context, &m);
 }
 
 static void every_format_and_type(void **state) {
@@ -182,14 +182,14 @@ static void cut_short(void **state) {
       char *copy = malloc(n + 1);
       memcpy(copy, b.data, n);
       copy[n] = 0;
-      vlPlyMesh m;
+      vlMesh m;
       vlError error;
       vlResult result = vl_ply_parse(context, "p.ply", copy, n, &m, &error);
       if (result == VL_OK)
         assert_true(f == 0 && n + 3 > b.size);
       else
         assert_int_equal(result, VL_ERROR_SCENE);
-      vl_ply_free(context, &m);
+      vl_mesh_free(context, &m);
       free(copy);
     }
   }
@@ -271,7 +271,7 @@ static void bad_files(void **state) {
   (void)state;
   size_t wrong = 0;
   for (size_t i = 0; i < sizeof mistakes / sizeof *mistakes; i++) {
-    vlPlyMesh m;
+    vlMesh m;
     vlError error;
     char said[1200];
     size_t before, peak;
@@ -295,7 +295,7 @@ static void bad_files(void **state) {
 static void promises_are_refused_at_once(void **state) {
   (void)state;
   const char *text = mistakes[sizeof mistakes / sizeof *mistakes - 2].text;
-  vlPlyMesh m;
+  vlMesh m;
   struct timespec a, b;
   clock_gettime(CLOCK_MONOTONIC, &a);
   for (int i = 0; i < 1000; i++)
@@ -321,10 +321,10 @@ static void damaged(void **state) {
         random = random * 6364136223846793005ull + 1442695040888963407ull;
         copy[(random >> 33) % b.size] = (char)(random >> 17);
       }
-      vlPlyMesh m;
+      vlMesh m;
       vlError error;
       if (vl_ply_parse(context, "p.ply", copy, b.size, &m, &error) == VL_OK)
-        vl_ply_free(context, &m);
+        vl_mesh_free(context, &m);
       free(copy);
     }
   }
@@ -384,7 +384,7 @@ static void a_file_stops(void **state) {
   fclose(f);
   vlCancel *cancel;
   vlTask task;
-  vlPlyMesh mesh;
+  vlMesh mesh;
   vlError error;
   assert_int_equal(vl_cancel_create(context, &cancel), VL_OK);
   vl_task_start(&task, cancel, request, cancel);
@@ -394,7 +394,7 @@ static void a_file_stops(void **state) {
   vl_task_start(&task, cancel, NULL, NULL);
   assert_int_equal(vl_ply_read(context, &task, path, false, &mesh, &error), VL_OK);
   assert_int_equal(mesh.vertices, 20000);
-  vl_ply_free(context, &mesh);
+  vl_mesh_free(context, &mesh);
   vl_cancel_destroy(cancel);
   unlink(path);
 }

@@ -115,7 +115,7 @@ static void all_meshes(void **state) {
       continue;
     for (struct dirent *model; (model = readdir(models));) {
       char path[1400];
-      vlPlyMesh mesh;
+      vlMesh mesh;
       vlError error;
       if (!vl_ends_with(model->d_name, ".ply"))
         continue;
@@ -125,7 +125,7 @@ static void all_meshes(void **state) {
         print_message("%s: %s\n", path, error.message);
       assert_int_equal(result, VL_OK);
       assert_true(mesh.vertices > 0 && mesh.triangles + mesh.quads > 0);
-      vl_ply_free(context, &mesh);
+      vl_mesh_free(context, &mesh);
       meshes++;
     }
     closedir(models);

@@ -38,7 +38,7 @@ static bool add_target(vlGltf *g, const vlGltfLocation *at, const Morphed *m, fl
 }
 
 bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                   const vlGltfNode *node, vlGltfPrimitive *p) {
+                   const vlGltfNode *node, vlMesh *p) {
   const Morphed rows[] = {
       {"POSITION", 3, 3, 1, p->positions}, {"NORMAL", 3, 3, 1, p->normals},
       {"TANGENT", 3, 4, 1, p->tangents},   {"TEXCOORD_0", 2, 2, -1, p->uvs[0]},
@@ -195,8 +195,7 @@ static void turn(const double *m, bool normal, float *v) {
     v[i] = l > 0 ? (float)(r[i] / l) : v[i];
 }
 
-bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node,
-                  vlGltfPrimitive *p) {
+bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node, vlMesh *p) {
   static const char *const joints[] = {"JOINTS_0", "JOINTS_1", "JOINTS_2", "JOINTS_3"};
   static const char *const weights[] = {"WEIGHTS_0", "WEIGHTS_1", "WEIGHTS_2", "WEIGHTS_3"};
   size_t skin;

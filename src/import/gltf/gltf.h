@@ -10,6 +10,7 @@
 
 #include <jansson.h>
 
+#include "import/mesh.h"
 #include "import/names.h"
 #include "import/repair.h"
 #include "math/transform.h"
@@ -282,6 +283,8 @@ bool vl_gltf_frame_animation(vlGltf *g);
 bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
 /* Adds the chosen scene's meshes, lights and camera. */
 bool vl_gltf_draw(vlGltf *g);
+/* Whether the matrix cannot be the transform of a shape: it is singular. */
+bool vl_gltf_is_flat(const vlMat4 *m);
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]);
 
 /* validate.c: reads what the scene does not use, and reports what is wrong there by the log.
@@ -320,18 +323,6 @@ void vl_gltf_label_instance(vlGltf *g, size_t node);
 
 /* ---- meshes ------------------------------------------------------------------------------ */
 
-/* A primitive as triangles. Its arrays are blocks of the context. */
-typedef struct vlGltfPrimitive {
-  size_t vertices, faces;
-  float *positions, *normals,
-      *tangents; /* 3, 3, 4 per vertex; all but the positions may be null */
-  float *colors; /* 4 per vertex, linear */
-  float *uvs[4]; /* 2 per vertex, v upwards */
-  float *positions_close, *normals_close; /* when the shutter closes; null: no deformation */
-  uint32_t *indices;
-} vlGltfPrimitive;
-void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
-
 /* The radius of points and lines: one pixel of an image of 720 rows, at the centre of the box
  * around the meshes of these nodes. Without a camera in the file, 0.15 % of the box's diagonal,
  * which is about a pixel of an image that shows the whole box. 0: no accessor has bounds. The
@@ -352,18 +343,17 @@ bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node);
 /* topology.c: turns the primitive's indices (0, 1, 2, ... if it has none) into triangles,
  * according to its mode. Points and lines become small solids with new vertices. */
 bool vl_gltf_triangles(vlGltf *g, const vlGltfLocation *at, uint32_t mode, uint32_t *indices,
-                       size_t count, vlGltfPrimitive *p);
+                       size_t count, vlMesh *p);
 /* Removes the vertices that no face uses. */
-bool vl_gltf_compact(vlGltf *g, vlGltfPrimitive *p);
+bool vl_gltf_compact(vlGltf *g, vlMesh *p);
 /* deform.c: applies morph targets and skins. */
 bool vl_gltf_morph(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                   const vlGltfNode *node, vlGltfPrimitive *p);
+                   const vlGltfNode *node, vlMesh *p);
 /* Transforms the positions to world space. */
-bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node,
-                  vlGltfPrimitive *p);
+bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node, vlMesh *p);
 /* tangent.c: MikkTSpace tangents for uv set `set`, and flat normals where the primitive has
  * none. Vertices are split where tangents differ. */
-bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p);
+bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlMesh *p);
 
 /* ---- materials --------------------------------------------------------------------------- */
 

@@ -27,8 +27,7 @@ static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uin
   return *out != NULL;
 }
 
-static bool read_attributes(vlGltf *g, const vlGltfLocation *up, size_t position,
-                            vlGltfPrimitive *p) {
+static bool read_attributes(vlGltf *g, const vlGltfLocation *up, size_t position, vlMesh *p) {
   static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
   const vlGltfLocation *at = VL_GLTF_KEY(up, "attributes"),
                        *at_position = VL_GLTF_KEY(at, "POSITION");
@@ -106,39 +105,35 @@ static bool choose_material(vlGltf *g, const vlGltfLocation *at, size_t *materia
 /* ---- the shape --------------------------------------------------------------------------- */
 
 /* Applies a singular pose to the vertices, since it cannot be a transform of the scene. */
-static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {
+static void bake(vlMesh *p, vlMat4 pose, vlContext *context) {
   for (size_t i = 0; i < p->vertices; i++) {
     double q[3] = {p->positions[3 * i], p->positions[3 * i + 1], p->positions[3 * i + 2]}, w[3];
     vl_mat4_point(&pose, q, w);
     for (int k = 0; k < 3; k++)
       p->positions[3 * i + (size_t)k] = (float)w[k];
   }
-  VL_FREE(context, p->normals, p->tangents, p->positions_close, p->normals_close);
-  p->normals = p->tangents = p->positions_close = p->normals_close = NULL;
+  vl_mesh_drop(
+      context, p,
+      VL_MESH_NORMALS | VL_MESH_TANGENTS | VL_MESH_POSITIONS_CLOSE | VL_MESH_NORMALS_CLOSE);
 }
 
-static bool split_tangents(vlGltf *g, vlGltfPrimitive *p, float **signs) {
+/* Moves the signs of the bitangents, the fourth numbers of tangents, to an array of their
+ * own. */
+static bool split_tangents(vlGltf *g, vlMesh *p, float **signs) {
   *signs = NULL;
   if (!p->tangents)
     return true;
-  float *three = vl_alloc_array(g->context, p->vertices, 3 * sizeof *three);
-  *signs = vl_alloc_array(g->context, p->vertices, sizeof **signs);
-  if (!three || !*signs) {
-    VL_FREE(g->context, three, *signs);
-    *signs = NULL;
+  if (!(*signs = vl_alloc_array(g->context, p->vertices, sizeof **signs)))
     return vl_gltf_fail_memory(g);
-  }
   for (size_t i = 0; i < p->vertices; i++) {
-    memcpy(three + 3 * i, p->tangents + 4 * i, 3 * sizeof *three);
     (*signs)[i] = p->tangents[4 * i + 3] < 0 ? -1.0f : 1.0f;
+    memmove(p->tangents + 3 * i, p->tangents + 4 * i, 3 * sizeof *p->tangents);
   }
-  vl_free(g->context, p->tangents);
-  p->tangents = three;
   return true;
 }
 
 /* Adds the shape; the arrays move to the scene. */
-static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vlGroupId group,
+static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlMesh *p, vlGroupId group,
                       vlMat4 pose) {
   float *signs;
   if (!split_tangents(g, p, &signs))
@@ -152,60 +147,39 @@ static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vl
   def.emission = m->emission;
   def.inside = m->inside;
   def.one_sided = !m->double_sided;
-  def.vertices = (uint32_t)p->vertices;
-  def.faces = (uint32_t)p->faces;
-  def.positions = p->positions;
-  def.normals = p->normals;
+  vl_mesh_to_shape(p, &def);
   def.tangents = p->tangents;
-  def.uvs = p->uvs[0];
   def.tangent_signs = signs;
-  def.colors = p->colors;
-  def.indices = p->indices;
-  for (int k = 0; k < 3; k++)
-    def.more_uvs[k] = p->uvs[k + 1];
-  def.positions_close = p->positions_close;
-  def.normals_close = p->normals_close;
   def.times[1] = p->positions_close ? g->close - g->open : def.times[1];
   if (g->def->permissive)
     vl_repair_mesh(g->context, &g->repairs, &def); /* out of memory: the scene checks it */
   vlShapeId id = vl_scene_adopt_shape(g->scene, &def);
-  memset(p, 0, sizeof *p);
+  *p = (vlMesh){0};
   g->shapes_made++;
   return id.index != 0;
 }
 
-static bool finish_primitive(vlGltf *g, const vlGltfLocation *at, const vlGltfMaterial *m,
-                             vlGltfPrimitive *p, vlGroupId group, vlMat4 pose, bool posed) {
+static bool finish_primitive(vlGltf *g, const vlGltfMaterial *m, vlMesh *p, vlGroupId group,
+                             vlMat4 pose, bool posed) {
   if (!vl_gltf_compact(g, p))
     return false;
-  double det = vl_mat4_determinant3(pose), l = 0;
-  for (int i = 0; i < 12; i++)
-    l += i % 4 == 3 ? 0 : pose.m[i] * pose.m[i];
-  if (posed || !(fabs(det) > 1e-12 * l * sqrt(l))) {
-    if (!posed)
-      bake(p, pose, g->context);
+  const bool flat = vl_gltf_is_flat(&pose);
+  if (flat && !posed)
+    bake(p, pose, g->context);
+  if (flat || posed)
     pose = vl_mat4_identity();
-  }
-  if (!p->normals) {
-    vl_free(g->context, p->tangents);
-    p->tangents = NULL;
-  }
-  if (!m->needs_tangents) {
-    vl_free(g->context, p->tangents);
-    p->tangents = NULL;
-  } else if (!p->tangents && p->uvs[m->tangent_set]) {
-    if (!vl_gltf_make_tangents(g, m->tangent_set, p))
-      return false;
-  }
-  (void)at;
+  if (!p->normals || !m->needs_tangents)
+    vl_mesh_drop(g->context, p, VL_MESH_TANGENTS);
+  if (m->needs_tangents && !p->tangents && p->uvs[m->tangent_set] &&
+      !vl_gltf_make_tangents(g, m->tangent_set, p))
+    return false;
   return add_shape(g, m, p, group, pose);
 }
 
 /* The vertices as deformed at shutter close. */
 static bool read_close(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                       const vlGltfNode *node, size_t position, bool skinned,
-                       vlGltfPrimitive *p) {
-  vlGltfPrimitive q = {0};
+                       const vlGltfNode *node, size_t position, bool skinned, vlMesh *p) {
+  vlMesh q = {0};
   g->closing = true;
   bool ok = read_attributes(g, at, position, &q) && vl_gltf_morph(g, at, mesh, node, &q) &&
             (!skinned || vl_gltf_skin(g, at, node, &q));
@@ -215,22 +189,20 @@ static bool read_close(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
     p->normals_close = q.normals;
     q.positions = q.normals = NULL;
   }
-  vl_gltf_free_primitive(g->context, &q);
+  vl_mesh_free(g->context, &q);
   return ok;
 }
 
 /* A deforming mesh cannot emit light. An emissive mesh keeps its emission and loses its
  * deformation. */
-static void still(vlGltf *g, const vlGltfLocation *at, vlGltfPrimitive *p) {
-  VL_FREE(g->context, p->positions_close, p->normals_close);
-  p->positions_close = p->normals_close = NULL;
+static void still(vlGltf *g, const vlGltfLocation *at, vlMesh *p) {
+  vl_mesh_drop(g->context, p, VL_MESH_POSITIONS_CLOSE | VL_MESH_NORMALS_CLOSE);
   if (vl_gltf_once(g, VL_GLTF_REPORTED_MOTION))
     vl_gltf_warn(VL_LOG_INFO, at, "gives out light, and stays as it is when the shutter opens");
 }
 
 static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                          const vlGltfNode *node, vlGroupId group, vlMat4 pose,
-                          vlGltfPrimitive *p) {
+                          const vlGltfNode *node, vlGroupId group, vlMat4 pose, vlMesh *p) {
   const json_t *attributes;
   size_t position, material;
   size_t mode = 4, count = 0;
@@ -260,12 +232,12 @@ static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mes
   }
   if (!vl_gltf_triangles(g, at, (uint32_t)mode, indices, count, p))
     return false;
-  if (p->faces == 0)
+  if (p->triangles == 0)
     return true;
   const vlGltfMaterial *m = vl_gltf_material(g, material, p->colors != NULL);
   if (m && p->positions_close && m->emission.index)
     still(g, at, p);
-  return m && finish_primitive(g, at, m, p, group, pose, skinned);
+  return m && finish_primitive(g, m, p, group, pose, skinned);
 }
 
 static void count_deformed(vlGltf *g, const json_t *primitive, bool skinned) {
@@ -293,10 +265,10 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
     const vlGltfLocation *here = VL_GLTF_ITEM(at, "primitives", i);
     if (!json_is_object(primitive))
       return vl_gltf_fail(here, "must be an object");
-    vlGltfPrimitive p = {0};
+    vlMesh p = {0};
     const size_t before = g->scene->shapes.count;
     bool ok = add_primitive(g, here, mesh, node, group, pose, &p);
-    vl_gltf_free_primitive(g->context, &p);
+    vl_mesh_free(g->context, &p);
     if (!ok || (g->scene->shapes.count > before && !label_last(g, here, node_index, index, i)))
       return false;
     count_deformed(g, primitive, node && json_object_get(node->json, "skin"));
@@ -310,7 +282,7 @@ static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mes
                           const vlGltfNode *node, double low[3], double high[3]) {
   const bool skinned = json_object_get(node->json, "skin") != NULL;
   size_t position;
-  vlGltfPrimitive p = {0};
+  vlMesh p = {0};
   if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count, &position))
     return false;
   if (position == VL_GLTF_NONE)
@@ -322,7 +294,7 @@ static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mes
       low[k] = fmin(low[k], (double)p.positions[3 * i + k]);
       high[k] = fmax(high[k], (double)p.positions[3 * i + k]);
     }
-  vl_gltf_free_primitive(g->context, &p);
+  vl_mesh_free(g->context, &p);
   return ok;
 }
 

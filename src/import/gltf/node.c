@@ -199,11 +199,11 @@ static size_t instance_count(vlGltf *g, const json_t *node) {
   return count;
 }
 
-static bool is_flat(vlMat4 m) {
+bool vl_gltf_is_flat(const vlMat4 *m) {
   double l = 0;
   for (int i = 0; i < 12; i++)
-    l += i % 4 == 3 ? 0 : m.m[i] * m.m[i];
-  return !(fabs(vl_mat4_determinant3(m)) > 1e-12 * l * sqrt(l)) || l == 0;
+    l += i % 4 == 3 ? 0 : m->m[i] * m->m[i];
+  return !(fabs(vl_mat4_determinant3(*m)) > 1e-12 * l * sqrt(l));
 }
 
 static bool group_mesh(vlGltf *g, size_t mesh) {
@@ -257,7 +257,7 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
   vlMat4 pose = vl_mat4_multiply(node->world, local);
   vlGltfMesh *m = &g->meshes[mesh];
   g->scale = vl_mat4_scale_of(&pose);
-  bool deforms = vl_gltf_deforms(g, node), flat = is_flat(pose);
+  bool deforms = vl_gltf_deforms(g, node), flat = vl_gltf_is_flat(&pose);
   if (flat && vl_gltf_once(g, VL_GLTF_REPORTED_FLAT))
     vl_gltf_warn(VL_LOG_INFO, VL_GLTF_ROOT(g, "nodes", node_index), "its scale makes it flat");
   if (vl_gltf_node_moves(g, node) && !flat && !json_object_get(node->json, "skin")) {

@@ -18,7 +18,7 @@
 #include "math/hash.h"
 
 typedef struct Maker {
-  const vlGltfPrimitive *p;
+  const vlMesh *p;
   const float *uvs;
   uint32_t *welded; /* vertex -> the first vertex equal to it */
   uint32_t *group;  /* corner -> a corner of its group (a union-find forest) */
@@ -37,7 +37,7 @@ static uint32_t hash_floats(uint32_t h, const float *v, int n) {
 }
 
 static bool alike(const Maker *m, uint32_t a, uint32_t b) {
-  const vlGltfPrimitive *p = m->p;
+  const vlMesh *p = m->p;
   for (size_t i = 0; i < 3; i++)
     if (p->positions[3 * (size_t)a + i] != p->positions[3 * (size_t)b + i] ||
         p->normals[3 * (size_t)a + i] != p->normals[3 * (size_t)b + i])
@@ -67,8 +67,8 @@ static bool weld(vlContext *context, Maker *m) {
 }
 
 static void face_directions(Maker *m) {
-  const vlGltfPrimitive *p = m->p;
-  for (size_t f = 0; f < p->faces; f++) {
+  const vlMesh *p = m->p;
+  for (size_t f = 0; f < p->triangles; f++) {
     const uint32_t *k = p->indices + 3 * f;
     double e1[3], e2[3], t[3];
     for (int i = 0; i < 3; i++) {
@@ -115,7 +115,7 @@ enum { MAX_PROBES = 200 };
  * directions. Of more than two faces the first matching pairs are joined. A degenerate face
  * joins either orientation. */
 static bool join_edges(vlContext *context, Maker *m) {
-  size_t corners = 3 * m->p->faces, size = vl_table_size(corners);
+  size_t corners = 3 * m->p->triangles, size = vl_table_size(corners);
   uint32_t *table = vl_alloc_zero(context, size, sizeof *table);
   if (!table)
     return false;
@@ -166,7 +166,7 @@ static bool project(const float *v, const float *n, double out[3]) {
 
 /* sums: 3 per corner, kept at the corner that represents the group. */
 static void add_corner(const Maker *m, uint32_t c, double *sums) {
-  const vlGltfPrimitive *p = m->p;
+  const vlMesh *p = m->p;
   uint32_t f = c / 3;
   if (!m->sign[f])
     return;
@@ -192,41 +192,6 @@ static void add_corner(const Maker *m, uint32_t c, double *sums) {
 
 /* ---- the new vertices -------------------------------------------------------------------- */
 
-static float *gather(vlContext *context, const float *rows, size_t width, const uint32_t *from,
-                     size_t count, bool *ok) {
-  if (!rows || !*ok)
-    return NULL;
-  float *out = vl_alloc_array(context, count, width * sizeof *out);
-  if (!out)
-    *ok = false;
-  for (size_t i = 0; out && i < count; i++)
-    memcpy(out + i * width, rows + (size_t)from[i] * width, width * sizeof *out);
-  return out;
-}
-
-/* Makes the vertices anew: vertex i is a copy of vertex from[i] of p. */
-static bool rebuild(vlGltf *g, vlGltfPrimitive *p, const uint32_t *from, size_t count,
-                    const uint32_t *indices) {
-  vlGltfPrimitive q = {.vertices = count, .faces = p->faces};
-  bool ok = true;
-  q.positions = gather(g->context, p->positions, 3, from, count, &ok);
-  q.normals = gather(g->context, p->normals, 3, from, count, &ok);
-  q.positions_close = gather(g->context, p->positions_close, 3, from, count, &ok);
-  q.normals_close = gather(g->context, p->normals_close, 3, from, count, &ok);
-  q.colors = gather(g->context, p->colors, 4, from, count, &ok);
-  for (int k = 0; k < 4; k++)
-    q.uvs[k] = gather(g->context, p->uvs[k], 2, from, count, &ok);
-  if (ok && (q.indices = vl_alloc_array(g->context, 3 * p->faces, sizeof *q.indices)))
-    memcpy(q.indices, indices, 3 * p->faces * sizeof *indices);
-  if (!ok || !q.indices) {
-    vl_gltf_free_primitive(g->context, &q);
-    return vl_gltf_fail_memory(g);
-  }
-  vl_gltf_free_primitive(g->context, p);
-  *p = q;
-  return true;
-}
-
 /* Flat normals of faces that share no vertices. */
 static float *flat_normals(vlGltf *g, const float *positions, size_t faces) {
   float *normals = vl_alloc_zero(g->context, 3 * faces, 3 * sizeof *normals);
@@ -243,25 +208,19 @@ static float *flat_normals(vlGltf *g, const float *positions, size_t faces) {
 
 /* Gives each face its own vertices and its flat normal (specification: flat normals when none
  * are given). */
-static bool make_flat(vlGltf *g, vlGltfPrimitive *p) {
-  size_t corners = 3 * p->faces;
-  uint32_t *order = vl_alloc_array(g->context, corners, sizeof *order);
-  bool ok = order || vl_gltf_fail_memory(g);
-  for (size_t i = 0; ok && i < corners; i++)
-    order[i] = (uint32_t)i;
-  ok = ok && rebuild(g, p, p->indices, corners, order);
-  vl_free(g->context, order);
-  if (!ok)
-    return false;
-  p->normals = flat_normals(g, p->positions, p->faces);
+static bool make_flat(vlGltf *g, vlMesh *p) {
+  if (!vl_mesh_separate(g->context, p))
+    return vl_gltf_fail_memory(g);
+  vl_mesh_drop(g->context, p, VL_MESH_NORMALS_CLOSE);
+  p->normals = flat_normals(g, p->positions, p->triangles);
   if (p->positions_close)
-    p->normals_close = flat_normals(g, p->positions_close, p->faces);
+    p->normals_close = flat_normals(g, p->positions_close, p->triangles);
   return (p->normals && (p->normals_close || !p->positions_close)) || vl_gltf_fail_memory(g);
 }
 
 /* Makes one vertex for each pair of a vertex and a group. */
-static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *sums) {
-  size_t corners = 3 * p->faces, size = vl_table_size(corners), count = 0;
+static bool split(vlGltf *g, vlMesh *p, const Maker *m, const double *sums) {
+  size_t corners = 3 * p->triangles, size = vl_table_size(corners), count = 0;
   uint32_t *table = vl_alloc_zero(g->context, size, sizeof *table);
   uint32_t *from = vl_alloc_array(g->context, corners, sizeof *from);
   uint32_t *group = vl_alloc_array(g->context, corners, sizeof *group);
@@ -283,11 +242,10 @@ static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *s
     if (m->sign[c / 3])
       signs[indices[c]] = m->sign[c / 3];
   }
-  ok = (ok || vl_gltf_fail_memory(g)) && rebuild(g, p, from, count, indices);
-  if (ok) {
-    p->tangents = vl_alloc_array(g->context, count, 4 * sizeof(float));
-    ok = p->tangents || vl_gltf_fail_memory(g);
-  }
+  ok = ok && vl_mesh_reorder(g->context, p, from, count) &&
+       vl_mesh_add_attributes(g->context, p, VL_MESH_TANGENTS);
+  if (ok)
+    memcpy(p->indices, indices, corners * sizeof *indices);
   for (size_t i = 0; ok && i < count; i++) {
     const double *s = sums + 3 * (size_t)group[i];
     double l = vl_norm3(s);
@@ -296,20 +254,20 @@ static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *s
     p->tangents[4 * i + 3] = signs[i] < 0 ? -1.0f : 1.0f;
   }
   VL_FREE(g->context, table, from, group, indices, signs);
-  return ok;
+  return ok || vl_gltf_fail_memory(g);
 }
 
-bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p) {
+bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlMesh *p) {
   if (!p->normals && !make_flat(g, p))
     return false;
-  size_t corners = 3 * p->faces;
+  size_t corners = 3 * p->triangles;
   if (!vl_gltf_spend(&g->top, 40 * (uint64_t)corners))
     return false;
   Maker m = {.p = p, .uvs = p->uvs[set]};
   m.welded = vl_alloc_array(g->context, p->vertices, sizeof *m.welded);
   m.group = vl_alloc_array(g->context, corners, sizeof *m.group);
-  m.direction = vl_alloc_array(g->context, p->faces, 3 * sizeof *m.direction);
-  m.sign = vl_alloc_array(g->context, p->faces, 1);
+  m.direction = vl_alloc_array(g->context, p->triangles, 3 * sizeof *m.direction);
+  m.sign = vl_alloc_array(g->context, p->triangles, 1);
   double *sums = vl_alloc_zero(g->context, corners, 3 * sizeof *sums);
   bool ok = m.welded && m.group && m.direction && m.sign && sums && weld(g->context, &m);
   for (uint32_t c = 0; ok && c < corners; c++)

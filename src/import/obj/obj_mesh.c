@@ -5,6 +5,7 @@
 
 #include "base/free.h"
 #include "import/far.h"
+#include "import/mesh.h"
 #include "import/obj/obj.h"
 #include "math/approx_double.h"
 #include "math/double3.h"
@@ -142,14 +143,14 @@ static bool sort_by_part(vlObj *obj, uint32_t **order) {
   return true;
 }
 
-/* indices: 3 per triangle. kept: the corners that remain as vertices. Both are new blocks. */
-static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint32_t **indices,
-                 vlObjCorner **kept, uint32_t *vertices) {
+/* Makes the indices of the mesh. kept: the corners that remain as vertices, a new block. */
+static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, vlMesh *m,
+                 vlObjCorner **kept) {
   size_t count = 3 * (size_t)part->triangles, size = vl_table_size(count), n = 0;
-  *indices = vl_alloc_array(obj->context, count, sizeof **indices);
+  m->indices = vl_alloc_array(obj->context, count, sizeof *m->indices);
   *kept = vl_alloc_array(obj->context, count, sizeof **kept);
   uint32_t *table = vl_alloc_zero(obj->context, size, sizeof *table);
-  if (!*indices || !*kept || !table) {
+  if (!m->indices || !*kept || !table) {
     vl_free(obj->context, table);
     return vl_obj_fail_memory(obj);
   }
@@ -167,12 +168,36 @@ static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint3
       if (k->v == c.v && k->vt == c.vt && k->vn == c.vn)
         break;
     }
-    (*indices)[i] = table[slot] - 1;
+    m->indices[i] = table[slot] - 1;
     fine = !stopped(obj, i);
   }
   vl_free(obj->context, table);
-  *vertices = (uint32_t)n;
+  m->vertices = n;
   return fine;
+}
+
+/* The vertices of the corners. */
+static bool fill_mesh(vlObj *obj, const vlObjPart *part, const vlObjCorner *corners,
+                      vlMesh *m) {
+  const uint32_t attributes = VL_MESH_POSITIONS | (part->normals ? VL_MESH_NORMALS : 0) |
+                              (part->uvs ? VL_MESH_UVS : 0) |
+                              (obj->colors.count ? VL_MESH_COLORS : 0);
+  if (!vl_mesh_add_attributes(obj->context, m, attributes))
+    return vl_obj_fail_memory(obj);
+  for (size_t i = 0; i < m->vertices; i++) {
+    vlObjCorner c = corners[i];
+    memcpy(m->positions + 3 * i, vl_obj_position(obj, c.v), 3 * sizeof(float));
+    if (m->normals)
+      memcpy(m->normals + 3 * i, obj->normals.items + 3 * (size_t)(c.vn - 1),
+             3 * sizeof(float));
+    if (m->uvs[0] && c.vt)
+      memcpy(m->uvs[0] + 2 * i, obj->uvs.items + 2 * (size_t)(c.vt - 1), 2 * sizeof(float));
+    for (size_t k = 0; m->colors && k < 4; k++) {
+      size_t at = 3 * (size_t)(c.v - 1) + k;
+      m->colors[4 * i + k] = k < 3 && at < obj->colors.count ? obj->colors.items[at] : 1.0f;
+    }
+  }
+  return true;
 }
 
 static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order,
@@ -180,35 +205,12 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order,
   vlObjMaterial *m = &obj->materials.items[part->material];
   if (!vl_obj_make_material(obj, m))
     return false;
-  uint32_t *indices = NULL, n = 0;
+  vlMesh mesh = {.triangles = part->triangles};
   vlObjCorner *kept = NULL;
-  float *arrays[4] = {NULL, NULL, NULL, NULL};
-  const bool wanted[4] = {true, part->normals, part->uvs, obj->colors.count > 0};
-  static const size_t sizes[4] = {3, 3, 2, 4};
-  bool fine = weld(obj, part, order, &indices, &kept, &n);
-  for (int k = 0; fine && k < 4; k++) {
-    if (!wanted[k])
-      continue;
-    arrays[k] = vl_alloc_zero(obj->context, n, sizes[k] * sizeof(float));
-    fine = arrays[k] || vl_obj_fail_memory(obj);
-  }
-  for (size_t i = 0; fine && i < n; i++) {
-    vlObjCorner c = kept[i];
-    memcpy(arrays[0] + 3 * i, vl_obj_position(obj, c.v), 3 * sizeof(float));
-    if (arrays[1])
-      memcpy(arrays[1] + 3 * i, obj->normals.items + 3 * (size_t)(c.vn - 1), 3 * sizeof(float));
-    if (arrays[2] && c.vt)
-      memcpy(arrays[2] + 2 * i, obj->uvs.items + 2 * (size_t)(c.vt - 1), 2 * sizeof(float));
-    for (size_t k = 0; arrays[3] && k < 4; k++) {
-      size_t at = 3 * (size_t)(c.v - 1) + k;
-      arrays[3][4 * i + k] = k < 3 && at < obj->colors.count ? obj->colors.items[at] : 1.0f;
-    }
-  }
+  bool fine = weld(obj, part, order, &mesh, &kept) && fill_mesh(obj, part, kept, &mesh);
   vl_free(obj->context, kept);
   if (!fine) {
-    for (int k = 0; k < 4; k++)
-      vl_free(obj->context, arrays[k]);
-    vl_free(obj->context, indices);
+    vl_mesh_free(obj->context, &mesh);
     return false;
   }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
@@ -217,13 +219,7 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order,
   def.material = m->material;
   def.emission = m->emission;
   def.alpha = m->alpha;
-  def.vertices = n;
-  def.faces = part->triangles;
-  def.positions = arrays[0];
-  def.normals = arrays[1];
-  def.uvs = arrays[2];
-  def.colors = arrays[3];
-  def.indices = indices;
+  vl_mesh_to_shape(&mesh, &def);
   vl_far_place(obj->origin, &def);
   if (obj->permissive)
     vl_repair_mesh(obj->context, &obj->repairs, &def); /* out of memory: the scene checks it */

@@ -5,7 +5,6 @@
 
 #include "base/array.h"
 #include "base/file.h"
-#include "base/free.h"
 #include "base/text.h"
 #include "image/pixel.h"
 #include "import/far.h"
@@ -19,9 +18,8 @@ typedef struct Off {
   uint32_t line;
   bool normals, colors, uvs;
   bool integers; /* the last row of numbers had integers only */
-  vlPlainMesh mesh;
-  VL_ARRAY(uint32_t) indices, corners;
-  VL_ARRAY(float) face_colors;
+  vlMesh mesh;
+  VL_ARRAY(uint32_t) corners;
 } Off;
 
 static bool fail(Off *s, const char *what, const char *word) {
@@ -70,7 +68,7 @@ static bool number(Off *s, double *value) {
   return true;
 }
 
-static bool count(Off *s, uint64_t bytes, uint32_t *n) {
+static bool count(Off *s, uint64_t bytes, size_t *n) {
   double value = 0;
   if (!number(s, &value))
     return false;
@@ -78,7 +76,7 @@ static bool count(Off *s, uint64_t bytes, uint32_t *n) {
     return fail(s, "a count makes no sense", NULL);
   if (value * (double)bytes > (double)(s->end - s->at) + 1)
     return fail(s, "the file is too short for its counts", NULL);
-  *n = (uint32_t)value;
+  *n = (size_t)value;
   return true;
 }
 
@@ -141,24 +139,14 @@ static bool read_header(Off *s) {
 }
 
 static bool make_arrays(Off *s) {
-  vlPlainMesh *m = &s->mesh;
-  vlContext *context = s->scene->context;
-  m->positions = vl_alloc_array(context, m->vertices + 1u, 3 * sizeof(float));
-  if (s->normals)
-    m->normals = vl_alloc_array(context, m->vertices + 1u, 3 * sizeof(float));
-  if (s->uvs)
-    m->uvs = vl_alloc_array(context, m->vertices + 1u, 2 * sizeof(float));
-  if (s->colors)
-    m->colors = vl_alloc_array(context, m->vertices + 1u, 4 * sizeof(float));
-  if (!m->positions || (s->normals && !m->normals) || (s->uvs && !m->uvs) ||
-      (s->colors && !m->colors))
-    return fail_memory(s);
-  return true;
+  const uint32_t attributes = VL_MESH_POSITIONS | (s->normals ? VL_MESH_NORMALS : 0) |
+                              (s->uvs ? VL_MESH_UVS : 0) | (s->colors ? VL_MESH_COLORS : 0);
+  return vl_mesh_add_attributes(s->scene->context, &s->mesh, attributes) || fail_memory(s);
 }
 
 /* Reads all rows of vertices, about the mesh's origin. */
 static bool read_rows(Off *s) {
-  vlPlainMesh *m = &s->mesh;
+  vlMesh *m = &s->mesh;
   for (size_t i = 0; i < m->vertices; i++) {
     double v[3], rest[8] = {0}, color[4] = {0, 0, 0, 0};
     int n;
@@ -185,23 +173,9 @@ static bool read_rows(Off *s) {
     for (int k = 0; s->uvs && k < 2; k++) {
       if (n < 2)
         return fail(s, "a vertex has no texture coordinates", NULL);
-      m->uvs[2 * i + (size_t)k] = (float)rest[n - 2 + k];
+      m->uvs[0][2 * i + (size_t)k] = (float)rest[n - 2 + k];
     }
   }
-  return true;
-}
-
-static bool add_triangle(Off *s, uint32_t a, uint32_t b, uint32_t c, const float color[4]) {
-  if (!VL_RESERVE(s->scene->context, &s->indices, 3) ||
-      !VL_RESERVE(s->scene->context, &s->face_colors, 3))
-    return fail_memory(s);
-  uint32_t *t = s->indices.items + s->indices.count;
-  t[0] = a;
-  t[1] = b;
-  t[2] = c;
-  memcpy(s->face_colors.items + s->face_colors.count, color, 3 * sizeof *color);
-  s->indices.count += 3;
-  s->face_colors.count += 3;
   return true;
 }
 
@@ -219,17 +193,20 @@ static bool read_vertices(Off *s) {
 
 /* Polygons become fans. *colored: the face has a colour. */
 static bool read_face(Off *s, bool *colored) {
-  uint32_t n = 0;
+  vlContext *context = s->scene->context;
+  vlMesh *m = &s->mesh;
+  size_t n = 0;
+  const size_t first = m->triangles;
   double rest[8] = {0}, value = 0;
   int more;
   if (!count(s, 2, &n))
     return false;
-  if (!VL_RESERVE(s->scene->context, &s->corners, (size_t)n + 1))
+  if (!VL_RESERVE(context, &s->corners, n + 1))
     return fail_memory(s);
-  for (uint32_t k = 0; k < n; k++) {
+  for (size_t k = 0; k < n; k++) {
     if (!number(s, &value))
       return false;
-    if (!(value >= 0 && value < (double)s->mesh.vertices))
+    if (!(value >= 0 && value < (double)m->vertices))
       return fail(s, "a face names a vertex that is not there", NULL);
     s->corners.items[k] = (uint32_t)value;
   }
@@ -240,15 +217,15 @@ static bool read_face(Off *s, bool *colored) {
   if (more >= 3)
     to_linear(color, s->integers, linear);
   *colored = *colored || more >= 3;
-  for (uint32_t k = 2; k < n; k++)
-    if (!add_triangle(s, s->corners.items[0], s->corners.items[k - 1], s->corners.items[k],
-                      linear))
-      return false;
-  return true;
+  const uint32_t *v = s->corners.items;
+  for (size_t k = 2; k < n; k++)
+    if (!vl_mesh_add_triangle(context, m, v[0], v[k - 1], v[k]))
+      return fail_memory(s);
+  return vl_mesh_color_triangles(context, m, first, linear) || fail_memory(s);
 }
 
 static bool read(Off *s) {
-  uint32_t faces = 0;
+  size_t faces = 0;
   bool colored = false;
   double rest[8];
   int n;
@@ -256,18 +233,15 @@ static bool read(Off *s) {
     return false;
   if (!rest_of_line(s, rest, &n) || !read_vertices(s))
     return false;
-  for (uint32_t i = 0; i < faces; i++)
+  for (size_t i = 0; i < faces; i++)
     if (!read_face(s, &colored))
       return false;
-  if (s->indices.count / 3 > 0x2aaaaaaa)
+  if (s->mesh.triangles > 0x2aaaaaaa)
     return fail(s, "too many faces", NULL);
-  s->mesh.triangles = (uint32_t)(s->indices.count / 3);
-  s->mesh.indices = s->indices.items;
-  s->indices.items = NULL;
   if (colored)
-    s->mesh.face_colors = s->face_colors.items;
-  if (colored)
-    s->face_colors.items = NULL;
+    return true;
+  vl_free(s->scene->context, s->mesh.face_colors);
+  s->mesh.face_colors = NULL;
   return true;
 }
 
@@ -278,11 +252,9 @@ vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load,
   char *data = NULL;
   bool ok = vl_import_plain_read(scene, path, &data, &s.at, &s.end) && read(&s);
   vl_free(context, data);
-  VL_ARRAY_FREE(context, &s.indices);
   VL_ARRAY_FREE(context, &s.corners);
-  VL_ARRAY_FREE(context, &s.face_colors);
   if (ok)
     return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
-  VL_FREE(context, s.mesh.positions, s.mesh.normals, s.mesh.uvs, s.mesh.colors);
+  vl_mesh_free(context, &s.mesh);
   return vl_scene_result(scene, error);
 }

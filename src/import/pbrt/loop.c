@@ -351,7 +351,7 @@ static void tangents(const Level *l, uint32_t vertex, float s[3], float t[3]) {
     add(t, n == 2 || n == 4 ? -2.0f : n == 3 ? -1.0f : 0.0f, p);
 }
 
-static vlResult finish(vlContext *context, Level *l, vlLoopMesh *mesh, vlError *error) {
+static vlResult finish(vlContext *context, Level *l, vlMesh *mesh, vlError *error) {
   float *limit = vl_alloc_array(context, l->vertices, 3 * sizeof *limit);
   float *normals = vl_alloc_zero(context, l->vertices, 3 * sizeof *normals);
   if (!limit || !normals) {
@@ -370,7 +370,9 @@ static vlResult finish(vlContext *context, Level *l, vlLoopMesh *mesh, vlError *
     n[1] = s[2] * t[0] - s[0] * t[2];
     n[2] = s[0] * t[1] - s[1] * t[0];
   }
-  *mesh = (vlLoopMesh){l->vertices, l->faces, l->p, normals, l->v};
+  *mesh = (vlMesh){.vertices = l->vertices, .triangles = l->faces, .indices = l->v};
+  mesh->positions = l->p;
+  mesh->normals = normals;
   l->p = NULL;
   l->v = NULL;
   return VL_OK;
@@ -378,8 +380,8 @@ static vlResult finish(vlContext *context, Level *l, vlLoopMesh *mesh, vlError *
 
 vlResult vl_loop_subdivide(vlContext *context, uint32_t vertices, const float *positions,
                            uint32_t faces, const uint32_t *indices, uint32_t levels,
-                           vlLoopMesh *mesh, vlError *error) {
-  *mesh = (vlLoopMesh){0};
+                           vlMesh *mesh, vlError *error) {
+  *mesh = (vlMesh){0};
   uint64_t total = faces;
   for (uint32_t i = 0; i < levels && total <= MAX_FACES; i++)
     total *= 4;

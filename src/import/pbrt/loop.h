@@ -4,20 +4,14 @@
 #ifndef IMPORT_PBRT_LOOP_H
 #define IMPORT_PBRT_LOOP_H
 
-#include "base/context.h"
+#include "import/mesh.h"
 
-typedef struct vlLoopMesh {
-  uint32_t vertices, faces;
-  float *positions, *normals; /* 3 per vertex, on the limit surface. As in pbrt, normals are
-                                 opposite to the winding and not normalised */
-  uint32_t *indices;          /* 3 per face */
-} vlLoopMesh;
-
-/* Subdivides `levels` times. Indices must be in range. The result's arrays are blocks of the
- * context. Errors: MEMORY; SCENE, with a message in `error`, for a mesh that is not a surface
- * or has too many faces. */
+/* Subdivides `levels` times. Indices must be in range. The result has positions and normals on
+ * the limit surface; as in pbrt, normals are opposite to the winding and not normalised.
+ * Errors: MEMORY; SCENE, with a message in `error`, for a mesh that is not a surface or has too
+ * many faces. */
 vlResult vl_loop_subdivide(vlContext *context, uint32_t vertices, const float *positions,
                            uint32_t faces, const uint32_t *indices, uint32_t levels,
-                           vlLoopMesh *mesh, vlError *error);
+                           vlMesh *mesh, vlError *error);
 
 #endif

@@ -11,7 +11,7 @@
 #include "velo/shape_kinds.h"
 
 typedef struct Job {
-  vlPlyMesh mesh;
+  vlMesh mesh;
   vlError error;
   vlResult result;
 } Job;
@@ -67,23 +67,20 @@ static bool repair(vlImport *import, const vlMeshFile *file, const vlShapeDef *d
 /* A file with triangles and patches becomes two shapes without shared arrays: the patches come
  * first and are copied. */
 static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
-  vlPlyMesh *mesh = &job->mesh;
+  vlMesh *mesh = &job->mesh;
   if (job->result != VL_OK) {
     vlSource inside = {job->error.file, job->error.line, job->error.column};
     return vl_import_fail(import, job->result, job->error.file[0] ? inside : file->source, "%s",
                           job->error.message);
   }
   vlShapeDef def = file->def;
-  if (file->link.displacement && !vl_ply_split_quads(import->context, mesh))
+  if (file->link.displacement && !vl_mesh_split_quads(import->context, mesh))
     return vl_import_fail_memory(import); /* only triangles can be displaced */
-  def.vertices = mesh->vertices;
-  def.positions = mesh->positions;
-  def.normals = mesh->normals;
-  def.uvs = mesh->uvs;
+  vl_mesh_to_shape(mesh, &def);
   if (mesh->triangles && mesh->quads) {
     vlShapeDef copy = def;
     copy.kind = VL_SHAPE_BILINEAR;
-    copy.faces = mesh->quads;
+    copy.faces = (uint32_t)mesh->quads;
     copy.indices = mesh->quad_indices;
     if (!repair(import, file, &copy))
       return false;
@@ -92,12 +89,15 @@ static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
     vl_free(import->context, mesh->quad_indices);
     mesh->quad_indices = NULL;
   }
-  def.kind = mesh->triangles ? VL_SHAPE_TRIANGLES : VL_SHAPE_BILINEAR;
-  def.faces = mesh->triangles ? mesh->triangles : mesh->quads;
-  def.indices = mesh->triangles ? mesh->triangle_indices : mesh->quad_indices;
+  def.kind = VL_SHAPE_TRIANGLES;
+  if (!mesh->triangles) {
+    def.kind = VL_SHAPE_BILINEAR;
+    def.faces = (uint32_t)mesh->quads;
+    def.indices = mesh->quad_indices;
+  }
   if (!repair(import, file, &def))
     return false;
-  *mesh = (vlPlyMesh){0}; /* the arrays have moved, also on failure */
+  *mesh = (vlMesh){0}; /* the arrays have moved, also on failure */
   return vl_scene_adopt_shape(import->scene, &def).index != 0;
 }
 
@@ -178,7 +178,7 @@ static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count,
   }
   first[count] = (uint32_t)scene->shapes.count;
   for (uint32_t k = from; k < read; k++)
-    vl_ply_free(import->context, &jobs[k - from].mesh);
+    vl_mesh_free(import->context, &jobs[k - from].mesh);
   vl_free(import->context, jobs);
   return fine;
 }

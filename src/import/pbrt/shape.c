@@ -131,19 +131,15 @@ static bool read_loop(vlDict *dict, vlShapeDef *def) {
   vl_dict_string(dict, "scheme", &scheme); /* accepted: pbrt knows one scheme only */
   if (!read_mesh(dict, def, 3))
     return false;
-  vlLoopMesh mesh;
+  vlMesh mesh;
   vlError error = {0};
   vlResult result = vl_loop_subdivide(import->context, def->vertices, def->positions,
                                       def->faces, def->indices, levels, &mesh, &error);
   if (result != VL_OK)
     return vl_import_fail(import, result, dict->source, "%s: %s", dict->what, error.message);
   free_arrays(import, def);
-  def->uvs = def->tangents = NULL;
-  def->vertices = mesh.vertices;
-  def->faces = mesh.faces;
-  def->positions = mesh.positions;
-  def->normals = mesh.normals;
-  def->indices = mesh.indices;
+  def->tangents = NULL;
+  vl_mesh_to_shape(&mesh, def);
   return true;
 }
 

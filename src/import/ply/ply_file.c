@@ -159,75 +159,30 @@ static bool read_body(vlPlyReader *r) {
 static bool check_indices(vlPlyReader *r, const uint32_t *indices, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (indices[i] >= r->mesh->vertices)
-      return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices", indices[i],
+      return vl_ply_fail(r, "a face names vertex %u, but there are %zu vertices", indices[i],
                          r->mesh->vertices);
   return true;
 }
 
 /* Checks the faces that were read before the vertices. */
 static bool check(vlPlyReader *r) {
-  const vlPlyMesh *m = r->mesh;
+  const vlMesh *m = r->mesh;
   r->line = 0;
   if (!r->has_vertices || m->vertices == 0)
     return vl_ply_fail(r, "the mesh has no vertices");
   if (m->triangles == 0 && m->quads == 0 && !r->alone)
     return vl_ply_fail(r, "the mesh has no faces");
-  return check_indices(r, m->triangle_indices, 3 * (size_t)m->triangles) &&
-         check_indices(r, m->quad_indices, 4 * (size_t)m->quads);
-}
-
-/* Shrinks arrays to their size; empty ones become null. */
-static bool fit(vlPlyReader *r, uint32_t **items, size_t capacity, size_t count) {
-  if (count == 0) {
-    vl_free(r->context, *items);
-    *items = NULL;
-    return true;
-  }
-  if (count == capacity)
-    return true;
-  uint32_t *fresh = vl_realloc_array(r->context, *items, count, sizeof *fresh);
-  if (!fresh)
-    return vl_ply_fail_memory(r);
-  *items = fresh;
-  return true;
-}
-
-void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
-  VL_FREE(context, mesh->positions, mesh->normals, mesh->uvs, mesh->colors, mesh->face_colors,
-          mesh->triangle_indices, mesh->quad_indices);
-  *mesh = (vlPlyMesh){0};
-}
-
-bool vl_ply_split_quads(vlContext *context, vlPlyMesh *m) {
-  if (!m->quads)
-    return true;
-  size_t count = (size_t)m->triangles + 2 * (size_t)m->quads;
-  if (count > 0x7fffffff)
-    return false;
-  uint32_t *fresh = vl_realloc_array(context, m->triangle_indices, 3 * count, sizeof *fresh);
-  if (!fresh)
-    return false;
-  m->triangle_indices = fresh;
-  uint32_t *to = fresh + 3 * (size_t)m->triangles;
-  for (size_t i = 0; i < m->quads; i++, to += 6) {
-    const uint32_t *q = m->quad_indices + 4 * i; /* p00 p10 p01 p11 */
-    const uint32_t two[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
-    memcpy(to, two, sizeof two);
-  }
-  m->triangles = (uint32_t)count;
-  vl_free(context, m->quad_indices);
-  m->quad_indices = NULL;
-  m->quads = 0;
-  return true;
+  return check_indices(r, m->indices, 3 * m->triangles) &&
+         check_indices(r, m->quad_indices, 4 * m->quads);
 }
 
 static vlResult parse(vlContext *context, vlTask *task, const char *name, const char *data,
-                      size_t size, bool alone, bool broken, vlPlyMesh *mesh, vlError *error) {
+                      size_t size, bool alone, bool broken, vlMesh *mesh, vlError *error) {
   vlError local;
   if (!error)
     error = &local;
   vl_error_clear(error);
-  *mesh = (vlPlyMesh){0};
+  *mesh = (vlMesh){0};
   vlPlyReader r = {.context = context,
                    .task = task,
                    .name = name,
@@ -240,25 +195,24 @@ static vlResult parse(vlContext *context, vlTask *task, const char *name, const 
   r.elements = vl_alloc_array(context, VL_PLY_MAX_ELEMENTS, sizeof *r.elements);
   bool fine = r.elements ? true : vl_ply_fail_memory(&r);
   fine = fine && vl_ply_read_header(&r) && read_body(&r) && check(&r) &&
-         fit(&r, &mesh->triangle_indices, r.triangle_capacity, 3 * (size_t)mesh->triangles) &&
-         fit(&r, &mesh->quad_indices, r.quad_capacity, 4 * (size_t)mesh->quads);
+         (vl_mesh_fit(context, mesh) || vl_ply_fail_memory(&r));
   vl_free(context, r.elements);
   VL_ARRAY_FREE(context, &r.face);
   if (!fine)
-    vl_ply_free(context, mesh);
+    vl_mesh_free(context, mesh);
   return fine ? VL_OK : error->code;
 }
 
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size,
-                      vlPlyMesh *mesh, vlError *error) {
+                      vlMesh *mesh, vlError *error) {
   return parse(context, NULL, name, data, size, false, false, mesh, error);
 }
 
 static vlResult read_file(vlContext *context, vlTask *task, const char *path, bool given,
-                          bool broken, vlPlyMesh *mesh, vlError *error) {
+                          bool broken, vlMesh *mesh, vlError *error) {
   char *data;
   size_t size;
-  *mesh = (vlPlyMesh){0};
+  *mesh = (vlMesh){0};
   vlResult result = given ? vl_file_read_given(context, path, true, &data, &size, error)
                           : vl_file_read(context, path, true, &data, &size, error);
   if (result != VL_OK)
@@ -269,14 +223,13 @@ static vlResult read_file(vlContext *context, vlTask *task, const char *path, bo
 }
 
 vlResult vl_ply_read_given(vlContext *context, vlTask *task, const char *path, bool broken,
-                           vlPlyMesh *mesh, vlError *error) {
+                           vlMesh *mesh, vlError *error) {
   return read_file(context, task, path, true, broken, mesh, error);
 }
 
 vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool broken,
-                     vlPlyMesh *mesh, vlError *error) {
+                     vlMesh *mesh, vlError *error) {
   vlResult result = read_file(context, task, path, false, broken, mesh, error);
-  vl_free(context, mesh->colors);
-  mesh->colors = NULL;
+  vl_mesh_drop(context, mesh, VL_MESH_COLORS);
   return result;
 }

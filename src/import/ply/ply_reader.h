@@ -76,12 +76,10 @@ typedef struct vlPlyReader {
   vlPlyFormat format;
   vlPlyElement *elements;
   uint32_t element_count;
-  vlPlyMesh *mesh;
-  bool has_vertices;
-  bool broken; /* normals and uvs may be not finite */
+  vlMesh *mesh;
+  bool has_vertices, face_colors; /* face_colors: faces have colours */
+  bool broken;                    /* normals and uvs may be not finite */
   bool alone; /* the file is a scene: colours of faces are read, and it may have points alone */
-  size_t triangle_capacity, quad_capacity; /* numbers of indices */
-  size_t color_capacity;                   /* number of triangles with colours */
   VL_ARRAY(uint32_t) face;
   vlError *error;
 } vlPlyReader;

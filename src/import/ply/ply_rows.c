@@ -9,6 +9,8 @@
 #include "image/pixel.h"
 #include "import/far.h"
 
+enum { MAX_FACES = 0x3fffffff };
+
 static bool has_roles(const vlPlyElement *e, vlPlyRole first, int count) {
   for (int i = 0; i < count; i++) {
     bool found = false;
@@ -56,7 +58,7 @@ static bool all_finite(const float *v, size_t count) {
 /* Fast path: rows without lists whose coordinates are floats in native byte order. False when
  * the layout is another or a value is not finite: the general path then reports it. */
 static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
-  vlPlyMesh *m = r->mesh;
+  vlMesh *m = r->mesh;
   size_t offsets[8] = {0}, at = 0, row = (size_t)e->row_size;
   if (r->format != VL_PLY_LITTLE || !is_little_endian() || e->has_list || m->colors)
     return false;
@@ -75,13 +77,13 @@ static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
       memcpy(&m->positions[3 * i + (size_t)k], from + offsets[k], 4);
     for (int k = 0; m->normals && k < 3; k++)
       memcpy(&m->normals[3 * i + (size_t)k], from + offsets[3 + k], 4);
-    for (int k = 0; m->uvs && k < 2; k++)
-      memcpy(&m->uvs[2 * i + (size_t)k], from + offsets[6 + k], 4);
+    for (int k = 0; m->uvs[0] && k < 2; k++)
+      memcpy(&m->uvs[0][2 * i + (size_t)k], from + offsets[6 + k], 4);
   }
   size_t n = m->vertices;
   if (!all_finite(m->positions, 3 * n))
     return false;
-  if (!r->broken && (!all_finite(m->normals, 3 * n) || !all_finite(m->uvs, 2 * n)))
+  if (!r->broken && (!all_finite(m->normals, 3 * n) || !all_finite(m->uvs[0], 2 * n)))
     return false;
   r->at = from;
   return true;
@@ -97,9 +99,18 @@ static bool has_finer_rows(const vlPlyReader *r, const vlPlyElement *e) {
   return finer;
 }
 
+/* The vertex's number of this role; null: the mesh has none. */
+static float *member(const vlMesh *m, size_t vertex, vlPlyRole role) {
+  const int color = role >= VL_PLY_RED, uv = !color && role >= VL_PLY_U,
+            normal = !color && !uv && role >= VL_PLY_NX;
+  const vlPlyRole first = color ? VL_PLY_RED : uv ? VL_PLY_U : normal ? VL_PLY_NX : VL_PLY_X;
+  float *row = color ? m->colors : uv ? m->uvs[0] : normal ? m->normals : m->positions;
+  return row ? row + (color ? 4 : uv ? 2 : 3) * vertex + (role - first) : NULL;
+}
+
 /* Reads all rows of vertices, about the mesh's origin. */
 static bool read_vertex_rows(vlPlyReader *r, const vlPlyElement *e) {
-  vlPlyMesh *m = r->mesh;
+  vlMesh *m = r->mesh;
   for (uint64_t i = 0; i < e->count; i++) {
     if (!vl_ply_goes_on(r, i))
       return false;
@@ -110,12 +121,7 @@ static bool read_vertex_rows(vlPlyReader *r, const vlPlyElement *e) {
         return false;
       if (p->role == VL_PLY_NOTHING)
         continue;
-      float *to = p->role <= VL_PLY_Z ? &m->positions[3 * i + (p->role - VL_PLY_X)]
-                  : p->role <= VL_PLY_NZ
-                      ? (m->normals ? &m->normals[3 * i + (p->role - VL_PLY_NX)] : NULL)
-                  : p->role <= VL_PLY_V
-                      ? (m->uvs ? &m->uvs[2 * i + (p->role - VL_PLY_U)] : NULL)
-                      : (m->colors ? &m->colors[4 * i + (p->role - VL_PLY_RED)] : NULL);
+      float *to = member(m, i, p->role);
       if (!to)
         continue;
       if (p->role <= VL_PLY_Z)
@@ -131,22 +137,19 @@ static bool read_vertex_rows(vlPlyReader *r, const vlPlyElement *e) {
 }
 
 bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
-  vlPlyMesh *m = r->mesh;
+  vlMesh *m = r->mesh;
   if (!has_roles(e, VL_PLY_X, 3))
     return vl_ply_fail(r, "vertices have no x, y and z");
   if (e->count > 0x7fffffff)
     return vl_ply_fail(r, "too many vertices");
-  bool normals = has_roles(e, VL_PLY_NX, 3), uvs = has_roles(e, VL_PLY_U, 2),
-       colors = has_roles(e, VL_PLY_RED, 3);
-  m->vertices = (uint32_t)e->count;
-  m->positions = vl_alloc_array(r->context, e->count, 3 * sizeof(float));
-  if (normals)
-    m->normals = vl_alloc_array(r->context, e->count, 3 * sizeof(float));
-  if (uvs)
-    m->uvs = vl_alloc_array(r->context, e->count, 2 * sizeof(float));
-  if (colors)
-    m->colors = vl_alloc_array(r->context, e->count, 4 * sizeof(float));
-  if (!m->positions || (normals && !m->normals) || (uvs && !m->uvs) || (colors && !m->colors))
+  const bool colors = has_roles(e, VL_PLY_RED, 3);
+  m->vertices = e->count;
+  uint32_t attributes = VL_MESH_POSITIONS | (colors ? VL_MESH_COLORS : 0);
+  if (has_roles(e, VL_PLY_NX, 3))
+    attributes |= VL_MESH_NORMALS;
+  if (has_roles(e, VL_PLY_U, 2))
+    attributes |= VL_MESH_UVS;
+  if (!vl_mesh_add_attributes(r->context, m, attributes))
     return vl_ply_fail_memory(r);
   for (uint64_t i = 0; colors && i < e->count; i++)
     m->colors[4 * i + 3] = 1.0f;
@@ -165,66 +168,23 @@ bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
   return read_vertex_rows(r, e);
 }
 
-static bool grow(vlPlyReader *r, uint32_t **items, size_t *capacity, size_t count) {
-  if (count <= *capacity)
-    return true;
-  size_t wanted = *capacity + *capacity / 2 + 1024;
-  uint32_t *fresh = vl_realloc_array(r->context, *items, wanted, sizeof *fresh);
-  if (!fresh)
-    return vl_ply_fail_memory(r);
-  *items = fresh;
-  *capacity = wanted;
-  return true;
-}
-
 static bool add_triangle(vlPlyReader *r, uint32_t a, uint32_t b, uint32_t c) {
-  vlPlyMesh *m = r->mesh;
-  if (m->triangles == 0x3fffffff)
+  if (r->mesh->triangles == MAX_FACES)
     return vl_ply_fail(r, "too many faces");
-  if (!grow(r, &m->triangle_indices, &r->triangle_capacity, 3 * ((size_t)m->triangles + 1)))
-    return false;
-  uint32_t *t = m->triangle_indices + 3 * (size_t)m->triangles++;
-  t[0] = a;
-  t[1] = b;
-  t[2] = c;
-  return true;
+  return vl_mesh_add_triangle(r->context, r->mesh, a, b, c) || vl_ply_fail_memory(r);
 }
 
+/* Faces of fewer than three corners, points and lines, have no area. */
 static bool add_face(vlPlyReader *r, const uint32_t *v, uint64_t n) {
-  vlPlyMesh *m = r->mesh;
-  if (n < 3)
-    return true; /* points and lines have no area */
-  if (n == 4 && !m->face_colors) {
-    if (m->quads == 0x3fffffff)
+  vlMesh *m = r->mesh;
+  if (n == 4 && !r->face_colors) {
+    if (m->quads == MAX_FACES)
       return vl_ply_fail(r, "too many faces");
-    if (!grow(r, &m->quad_indices, &r->quad_capacity, 4 * ((size_t)m->quads + 1)))
-      return false;
-    uint32_t *q = m->quad_indices + 4 * (size_t)m->quads++;
-    q[0] = v[0];
-    q[1] = v[1];
-    q[2] = v[3];
-    q[3] = v[2]; /* order around the face to p00 p10 p01 p11 */
-    return true;
+    return vl_mesh_add_quad(r->context, m, v) || vl_ply_fail_memory(r);
   }
   for (uint64_t i = 2; i < n; i++)
     if (!add_triangle(r, v[0], v[i - 1], v[i]))
       return false;
-  return true;
-}
-
-/* Gives the triangles from `first` on a colour. */
-static bool add_colors(vlPlyReader *r, uint32_t first, const float color[3]) {
-  vlPlyMesh *m = r->mesh;
-  if (m->triangles > r->color_capacity) {
-    size_t wanted = (size_t)m->triangles + m->triangles / 2 + 1024;
-    float *fresh = vl_realloc_array(r->context, m->face_colors, wanted, 3 * sizeof *fresh);
-    if (!fresh)
-      return vl_ply_fail_memory(r);
-    m->face_colors = fresh;
-    r->color_capacity = wanted;
-  }
-  for (size_t i = first; i < m->triangles; i++)
-    memcpy(m->face_colors + 3 * i, color, 3 * sizeof *color);
   return true;
 }
 
@@ -241,7 +201,7 @@ static bool read_corners(vlPlyReader *r, const vlPlyProperty *p, uint64_t face) 
       return false;
     if (!(value >= 0.0 && value < 4294967296.0) ||
         (r->has_vertices && value >= (double)r->mesh->vertices))
-      return vl_ply_fail(r, "face %llu names vertex %.0f, but there are %u vertices",
+      return vl_ply_fail(r, "face %llu names vertex %.0f, but there are %zu vertices",
                          (unsigned long long)face, value, r->mesh->vertices);
     r->face.items[k] = (uint32_t)value;
   }
@@ -267,23 +227,23 @@ static bool read_face_row(vlPlyReader *r, const vlPlyElement *e, const vlPlyProp
 /* Fast path: rows that hold only a triangle: a byte 3 and three 32-bit indices. Reads as many
  * as follow each other and returns the first face of another form. */
 static uint64_t copy_triangles(vlPlyReader *r, const vlPlyElement *e) {
-  vlPlyMesh *m = r->mesh;
+  vlMesh *m = r->mesh;
   const vlPlyProperty *p = &e->properties[0];
   bool plain = r->format == VL_PLY_LITTLE && is_little_endian() && e->property_count == 1 &&
                p->is_list && r->has_vertices && vl_ply_type_size(p->count_type) == 1 &&
-               (p->type == VL_PLY_I32 || p->type == VL_PLY_U32);
-  uint64_t room = r->triangle_capacity / 3, left = (uint64_t)(r->end - r->at) / 13, i = 0;
+               (p->type == VL_PLY_I32 || p->type == VL_PLY_U32) && !m->triangles;
+  uint64_t room = m->index_capacity / 3, left = (uint64_t)(r->end - r->at) / 13, i = 0;
   uint64_t most = e->count < room ? e->count : room;
   most = most < left ? most : left;
-  most = most < 0x3fffffff ? most : 0x3fffffff;
+  most = most < MAX_FACES ? most : MAX_FACES;
   for (; plain && i < most && *r->at == 3; i++) {
-    uint32_t *to = m->triangle_indices + 3 * i;
+    uint32_t *to = m->indices + 3 * i;
     memcpy(to, r->at + 1, 12);
     if (to[0] >= m->vertices || to[1] >= m->vertices || to[2] >= m->vertices)
       break;
     r->at += 13;
   }
-  m->triangles = (uint32_t)i;
+  m->triangles += i;
   return i;
 }
 
@@ -300,30 +260,22 @@ bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e) {
   uint64_t likely = (uint64_t)(r->end - r->at) / row;
   if (likely > e->count)
     likely = e->count;
-  if (!grow(r, &r->mesh->triangle_indices, &r->triangle_capacity, 1))
-    return false;
-  if (likely * 3 > r->triangle_capacity) {
-    r->triangle_capacity = likely * 3;
-    vl_free(r->context, r->mesh->triangle_indices);
-    r->mesh->triangle_indices =
-        vl_alloc_array(r->context, r->triangle_capacity, sizeof(uint32_t));
-    if (!r->mesh->triangle_indices)
-      return vl_ply_fail_memory(r);
-  }
-  bool colors = has_roles(e, VL_PLY_RED, 3);
-  if (colors && r->mesh->triangles)
-    return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
-  if (colors && !(r->mesh->face_colors = vl_alloc_array(r->context, 1024, 3 * sizeof(float))))
+  vlMesh *m = r->mesh;
+  if (!vl_array_grow(r->context, (void **)&m->indices, &m->index_capacity, 3 * m->triangles,
+                     sizeof *m->indices, 3 * likely))
     return vl_ply_fail_memory(r);
-  if (colors)
-    r->color_capacity = 1024;
+  r->face_colors = has_roles(e, VL_PLY_RED, 3);
+  if (r->face_colors && m->triangles)
+    return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
   for (uint64_t i = copy_triangles(r, e); i < e->count; i++) {
     float color[4] = {0, 0, 0, 1};
-    uint32_t first = r->mesh->triangles;
+    const size_t first = m->triangles;
     if (!vl_ply_goes_on(r, i))
       return false;
-    if (!read_face_row(r, e, indices, i, color) || (colors && !add_colors(r, first, color)))
+    if (!read_face_row(r, e, indices, i, color))
       return false;
+    if (r->face_colors && !vl_mesh_color_triangles(r->context, m, first, color))
+      return vl_ply_fail_memory(r);
   }
   return true;
 }
@@ -345,7 +297,7 @@ static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
     }
     if (!(value >= 0 && value < 4294967295.0) ||
         (r->has_vertices && value >= (double)r->mesh->vertices))
-      return vl_ply_fail(r, "a strip names vertex %.0f, but there are %u vertices", value,
+      return vl_ply_fail(r, "a strip names vertex %.0f, but there are %zu vertices", value,
                          r->mesh->vertices);
     uint32_t v = (uint32_t)value;
     if (run >= 2 && !(run & 1 ? add_triangle(r, last[1], last[0], v)
@@ -359,7 +311,7 @@ static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
 }
 
 bool vl_ply_read_strips(vlPlyReader *r, const vlPlyElement *e) {
-  if (r->mesh->face_colors)
+  if (r->face_colors)
     return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
   double ignored;
   for (uint64_t i = 0; i < e->count; i++)

@@ -19,8 +19,8 @@ typedef struct Stl {
   vlScene *scene;
   const char *path, *at, *end;
   uint32_t line;
-  VL_ARRAY(float) positions; /* about `origin` */
-  double origin[3];
+  vlMesh mesh;
+  VL_ARRAY(float) positions; /* about the mesh's origin */
 } Stl;
 
 static bool fail(Stl *s, vlResult code, const char *what, const char *word) {
@@ -85,7 +85,7 @@ static bool read_vertex(Stl *s) {
     if (!vl_number_scan(&p, s->end, &value) || p != s->at || !isfinite((float)value))
       return fail(s, VL_ERROR_SCENE, "expected a coordinate, found",
                   vl_short_text_of(word, length).text);
-    s->positions.items[s->positions.count++] = (float)(value - s->origin[k]);
+    s->positions.items[s->positions.count++] = (float)(value - s->mesh.origin[k]);
   }
   return true;
 }
@@ -119,7 +119,7 @@ static bool read_near_text(Stl *s) {
   const char *start = s->at;
   if (!read_text(s))
     return false;
-  if (!vl_far_vertices(s->positions.items, s->positions.count / 3, s->origin))
+  if (!vl_far_vertices(s->positions.items, s->positions.count / 3, s->mesh.origin))
     return true;
   s->at = start;
   s->positions.count = 0;
@@ -145,26 +145,29 @@ static bool read(Stl *s) {
   return read_binary(s, count); /* with something after the facets */
 }
 
+/* Each triangle has vertices of its own. */
+static bool number_vertices(Stl *s) {
+  const size_t count = s->positions.count / 3;
+  s->mesh.indices = vl_alloc_array(s->scene->context, count + 1, sizeof *s->mesh.indices);
+  if (!s->mesh.indices)
+    return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
+  for (size_t i = 0; i < count; i++)
+    s->mesh.indices[i] = (uint32_t)i;
+  s->mesh.vertices = count;
+  s->mesh.triangles = count / 3;
+  return true;
+}
+
 vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load,
                        vlError *error) {
   Stl s = {.scene = scene, .path = path};
   char *data = NULL;
-  bool ok = vl_import_plain_read(scene, path, &data, &s.at, &s.end) && read(&s);
+  bool ok = vl_import_plain_read(scene, path, &data, &s.at, &s.end) && read(&s) &&
+            number_vertices(&s);
   vl_free(scene->context, data);
-  size_t vertices = s.positions.count / 3;
-  uint32_t *indices = ok ? vl_alloc_array(scene->context, vertices + 1, sizeof *indices) : NULL;
-  if (ok && !indices)
-    ok = fail(&s, VL_ERROR_MEMORY, "out of memory", NULL);
-  if (!ok) {
-    VL_ARRAY_FREE(scene->context, &s.positions);
-    return vl_scene_result(scene, error);
-  }
-  for (size_t i = 0; i < vertices; i++)
-    indices[i] = (uint32_t)i;
-  vlPlainMesh mesh = {.vertices = (uint32_t)vertices,
-                      .triangles = (uint32_t)(vertices / 3),
-                      .positions = s.positions.items,
-                      .indices = indices};
-  memcpy(mesh.origin, s.origin, sizeof mesh.origin);
-  return vl_import_plain_mesh(scene, path, load, &mesh, error);
+  s.mesh.positions = s.positions.items;
+  if (ok)
+    return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
+  vl_mesh_free(scene->context, &s.mesh);
+  return vl_scene_result(scene, error);
 }

@@ -240,7 +240,7 @@ kept() {
 }
 if is_plain_build; then
   kept time_is_kept
-  kept time_is_kept_both_ways --tracer bidirectional
+  kept time_is_kept_both_ways --tracer bidirectional --threads 1
 fi
 # A first pass that does not fit is done and reported, also with --quiet. A denoiser gets its two samples.
 late() {
@@ -249,9 +249,9 @@ late() {
   run "$V" render "$@" --time 0.1s --quiet -o late.exr
   [ "$code" = 0 ] && [[ $err == *"warning: $samples spp and writing it took "*", --time was 0.10 s"* ]] && pass "$name" || { fail "$name"; show late; }
 }
-late late_is_reported 1 scene.pbrt --resolution 1600x1200
+late late_is_reported 1 scene.pbrt --resolution 800x600
 late late_with_denoise 2 scene.pbrt --resolution 640x480 --denoise clean.exr
-check late_film "$V" render scene.pbrt --resolution 1600x1200 --spp 1 --tracer raycast --quiet --film late.film
+check late_film "$V" render scene.pbrt --resolution 800x600 --spp 1 --tracer raycast --quiet --film late.film
 late late_continue 1 --continue late.film --spp 1000000
 
 # PNG files of 57 bytes whose chunks promise a gigabyte: the memory is not taken.

@@ -44,7 +44,12 @@ else
   skip read_only_file "root may write anything"
 fi
 
-# The second progress image is written after ten seconds.
+# The second progress image is written after ten seconds. A stopped program lets time pass and needs no processor.
+stand_still() {
+  kill -STOP $process
+  sleep "$1"
+  kill -CONT $process
+}
 
 # ---- a folder that vanishes ------------------------------------------------------------------------------------------
 mkdir gone
@@ -52,6 +57,7 @@ mkdir gone
 process=$!
 wait_for gone/a.part.exr
 rm -r gone
+stand_still 9
 wait $process
 code=$?
 out=
@@ -66,8 +72,9 @@ if [ "$(id -u)" = 0 ] && mkdir small && mount -t tmpfs -o size=200k none small 2
   dd if=/dev/zero of=small/fill bs=1k count=190 2>/dev/null
   "$VELO" render scene.pbrt -o small/a.exr --time 12s --threads 1 2>full.txt &
   process=$!
-  sleep 4
+  sleep 2
   rm small/fill
+  stand_still 8
   wait_for small/a.part.exr && pass later_writes_go_on || { fail later_writes_go_on; cat full.txt; }
   wait $process
   [ $? = 0 ] && [ "$(stat -c %s small/a.exr)" -gt 3 ] && pass full_for_a_moment || { fail full_for_a_moment; cat full.txt; }

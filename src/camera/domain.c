@@ -1,6 +1,7 @@
 /* camera/domain.c: the domain of a camera: the disc of the plane within which its distortion
  * does not fold and its projection is defined; the number of Newton steps that invert the
  * distortion there; and the share of the image that lies outside. */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +13,7 @@
 #include "math/elementary.h"
 #include "projection/properties.row.h"
 
-enum { RADIAL_TERMS = 6, DEGREE = 10, MAX_STEPS = 48, DIRECTIONS = 64, GRID = 48 };
+enum { RADIAL_TERMS = 6, DEGREE = 10, MAX_STEPS = 48, DIRECTIONS = 64, RINGS = 40, GRID = 48 };
 static const double pi = 3.14159265358979323846;
 
 /* ---- where a radial distortion folds: the first root of a polynomial --------------------- */
@@ -155,11 +156,15 @@ static double needed_radius(const vlCamera *c) {
     if (p.valid > 0.0)
       corner = fmax(corner, vl_length2(p.x, p.y));
   }
+  double cosine[8], sine[8];
+  for (int i = 0; i < 8; i++) {
+    cosine[i] = vl_precise_cos(0.25 * pi * i);
+    sine[i] = vl_precise_sin(0.25 * pi * i);
+  }
   for (double r = 1e-3; r < m->radius && r < 1e6; r *= 1.05) {
     double least = INFINITY;
     for (int i = 0; i < 8; i++) {
-      vlDistorted d =
-          vl_distort(m, r * vl_precise_cos(0.25 * pi * i), r * vl_precise_sin(0.25 * pi * i));
+      vlDistorted d = vl_distort(m, r * cosine[i], r * sine[i]);
       least = fmin(least, vl_length2(d.u, d.v));
     }
     if (least > 1.5 * corner)
@@ -172,15 +177,21 @@ static uint32_t steps_everywhere(const vlCamera *c) {
   const vlDistortionMap *m = &c->distortion;
   double most = needed_radius(c);
   uint32_t steps = 1;
-  for (int i = 0; i < 24; i++)
-    for (int k = 1; k <= 40; k++) {
-      /* the points get denser towards the edge, because Newton's method is slow near a fold */
-      double share = k <= 32 ? k / 33.0 : 1.0 - vl_precise_pow(10.0, 30.5 - k);
-      double r = most * share, angle = 2.0 * pi * (i + 0.3) / 24;
-      uint32_t here = steps_for(m, r * vl_precise_cos(angle), r * vl_precise_sin(angle));
+  double radius[RINGS];
+  for (int k = 0; k < RINGS; k++) {
+    /* the points get denser towards the edge, because Newton's method is slow near a fold */
+    double share = k < 32 ? (k + 1) / 33.0 : 1.0 - vl_precise_pow(10.0, 29.5 - k);
+    radius[k] = most * share;
+  }
+  for (int i = 0; i < 24; i++) {
+    double angle = 2.0 * pi * (i + 0.3) / 24;
+    double cosine = vl_precise_cos(angle), sine = vl_precise_sin(angle);
+    for (int k = 0; k < RINGS; k++) {
+      uint32_t here = steps_for(m, radius[k] * cosine, radius[k] * sine);
       if (here <= MAX_STEPS && here > steps)
         steps = here;
     }
+  }
   return steps + 1;
 }
 
@@ -199,6 +210,22 @@ static double dark_share(const vlCamera *camera, const vlCameraCompiled *c) {
   return dark / (double)(GRID * GRID);
 }
 
+/* Returns how many points of row `row` of the grid have no direction. */
+static uint32_t outside_in_row(const vlCamera *camera, const vlCameraCompiled *c, int row) {
+  static_assert((int)GRID <= (int)VL_CAMERA_CHUNK, "a row is one batch");
+  vlCameraPixels pixels = {0};
+  vlCameraPoints points;
+  for (int i = 0; i < GRID; i++) {
+    pixels.x[i] = camera->width * (i + 0.5) / GRID;
+    pixels.y[i] = camera->height * (row + 0.5) / GRID;
+  }
+  vl_camera_best_kernels()->unproject(c, GRID, &pixels, &points);
+  uint32_t outside = 0;
+  for (int i = 0; i < GRID; i++)
+    outside += points.valid[i] == 0.0;
+  return outside;
+}
+
 static double share_outside(const vlCamera *camera) {
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
@@ -209,11 +236,8 @@ static double share_outside(const vlCamera *camera) {
   if (c.own)
     return vl_own_outside(camera);
   uint32_t outside = 0;
-  for (int i = 0; i < GRID * GRID; i++) {
-    double x = camera->width * (i % GRID + 0.5) / GRID,
-           y = camera->height * (i / GRID + 0.5) / GRID;
-    outside += vl_camera_direction(&c, x - c.cx, y - c.cy).valid == 0.0;
-  }
+  for (int row = 0; row < GRID; row++)
+    outside += outside_in_row(camera, &c, row);
   if (outside > 0)
     return outside / (double)(GRID * GRID);
   /* the corner pixels, which the grid may miss */

@@ -4,6 +4,7 @@
 #define CAMERA_PARTS_H
 
 #include "base/unset.h"
+#include "camera/rays.h"
 #include "velo/camera.h"
 
 /* Sets shape, and the distortion's coefficients and tilt. Checks their ranges and counts. */
@@ -14,6 +15,8 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
                           vlError *error);
 /* Sets distortion.steps and outside, which also depend on the image's size. */
 void vl_camera_measure(vlCamera *camera);
+/* The batches for the best instruction set of this processor. */
+const vlCameraKernels *vl_camera_best_kernels(void);
 /* Whether the rays of the image's centre and corners have finite origins in single precision
  * and directions that can be normalised. True for a camera of one's own, whose rays are checked
  * one by one while it renders. */

@@ -116,7 +116,7 @@ bool vl_camera_project(const vlCamera *camera, const double point[3], double pix
   return project_one(&c, point, pixel, z);
 }
 
-static const vlCameraKernels *kernels(void) {
+const vlCameraKernels *vl_camera_best_kernels(void) {
   vlIsa isa;
   return vl_camera_kernels(vl_isa_choose(VL_ISA_AUTO, &isa) == VL_OK ? isa : VL_ISA_BASE);
 }
@@ -183,7 +183,7 @@ void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const doubl
     unproject_rows(&c, count, pixels, origins, directions, valid);
     return;
   }
-  const vlCameraKernels *k = kernels();
+  const vlCameraKernels *k = vl_camera_best_kernels();
   for (size_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
     uint32_t n = count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
     for (uint32_t i = 0; i < VL_PAD(n); i++) {
@@ -221,7 +221,7 @@ void vl_camera_project_batch(const vlCamera *camera, size_t count, const double 
     project_rows(&c, count, points, pixels, z, valid);
     return;
   }
-  const vlCameraKernels *k = kernels();
+  const vlCameraKernels *k = vl_camera_best_kernels();
   for (size_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
     uint32_t n = count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
     for (uint32_t i = 0; i < VL_PAD(n); i++) {

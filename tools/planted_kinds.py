@@ -925,6 +925,14 @@ MISTAKES = [
      r"lights projection:", "src/light/goniometric.c",
      "static double image_cone(const ImageFrame *frame, const float axis[3], const float half[2]) {\n  if (!frame->is_skewed)",
      "static double image_cone(const ImageFrame *frame, const float axis[3], const float half[2]) {\n  if (axis)"),
+    ("marble: a mirrored scale lets wide rays see all octaves", "textures:marble",
+     r"textures marble:.*wide", "src/texture/marble.h",
+     "float width = vl_abs(node->scale) *",
+     "float width = node->scale *"),
+    ("windy: wide rays do not see the wind", "textures:windy",
+     r"textures windy:.*wide", "src/texture/windy.h",
+     "vl_mul(p, 0.1f), 0.1f * width, 0.5f, 3)",
+     "vl_mul(p, 0.1f), width, 0.5f, 3)"),
     ]
 
 

@@ -8,34 +8,45 @@
 
 typedef double PlainNoise(double x, double y, double z);
 
-/* The sum of whole octaves: each has 1.99 times the frequency and omega times the amplitude of
- * the one before. `strength` receives the amplitude that the next would have. */
-static inline double plain_octaves(PlainNoise *noise, const double p[3], double omega,
-                                   int octaves, int absolute, double *strength) {
-  double sum = 0;
-  double size = 1;
-  *strength = 1;
-  for (int i = 0; i < octaves; i++) {
-    const double value = noise(size * p[0], size * p[1], size * p[2]);
-    sum += *strength * (absolute ? fabs(value) : value);
-    size *= 1.99;
-    *strength *= omega;
-  }
+/* What a ray of a width in the space of the noise sees of octaves: -1 - log2 of the width are
+ * whole, and of the next as much as a smooth step from .3 to .7 gives of the rest. */
+typedef struct PlainSight {
+  int whole;
+  double part;
+} PlainSight;
+static inline PlainSight plain_sight(double width, int octaves) {
+  const double seen = fmin(fmax(-1 - log2(width), 0), octaves);
+  const double rest = fmin(fmax((seen - floor(seen) - 0.3) / 0.4, 0), 1);
+  return (PlainSight){(int)seen, rest * rest * (3 - 2 * rest)};
+}
+
+/* Octave i has 1.99 times the frequency and omega times the amplitude of the one before. */
+static inline double plain_octave(PlainNoise *noise, const double p[3], int i) {
+  const double size = pow(1.99, i);
+  return noise(size * p[0], size * p[1], size * p[2]);
+}
+
+static inline double plain_fractal(PlainNoise *noise, const double p[3], double width,
+                                   double omega, int octaves) {
+  const PlainSight sight = plain_sight(width, octaves);
+  double sum = pow(omega, sight.whole) * sight.part * plain_octave(noise, p, sight.whole);
+  for (int i = 0; i < sight.whole; i++)
+    sum += pow(omega, i) * plain_octave(noise, p, i);
   return sum;
 }
 
-static inline double plain_fractal(PlainNoise *noise, const double p[3], double omega,
-                                   int octaves) {
-  double next;
-  return plain_octaves(noise, p, omega, octaves, 0, &next);
-}
-
-/* pbrt's turbulence: what is finer than the octaves counts with a fifth of the next one. */
-static inline double plain_turbulence(PlainNoise *noise, const double p[3], double omega,
-                                      int octaves) {
-  double next;
-  const double sum = plain_octaves(noise, p, omega, octaves, 1, &next);
-  return sum + 0.2 * next;
+/* pbrt's turbulence: without the signs. What the ray does not see counts with a fifth, and so
+ * does one octave that is finer than all. */
+static inline double plain_turbulence(PlainNoise *noise, const double p[3], double width,
+                                      double omega, int octaves) {
+  const PlainSight sight = plain_sight(width, octaves);
+  const double next = fabs(plain_octave(noise, p, sight.whole));
+  double sum = pow(omega, sight.whole) * (sight.part * next + (1 - sight.part) * 0.2);
+  for (int i = 0; i < sight.whole; i++)
+    sum += pow(omega, i) * fabs(plain_octave(noise, p, i));
+  for (int i = sight.whole; i < octaves; i++)
+    sum += pow(omega, i) * 0.2;
+  return sum;
 }
 
 #endif

@@ -24,7 +24,7 @@ static double density(const double p[3], PlainNoise *noise) {
     for (int k = 0; k < 3; k++)
       q[k] += (i ? 0.025 : 0.05) * d[k];
   }
-  const double sum = 0.5 * plain_fractal(noise, q, 0.5, 5);
+  const double sum = 0.5 * plain_fractal(noise, q, 0, 0.5, 5);
   const double thin = fmin(fmax((1 - p[1]) * 4.5 * 3 * sum, 0), 1);
   return fmin(thin + 2 * fmax(0, 0.5 - p[1]), 1);
 }

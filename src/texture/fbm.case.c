@@ -3,7 +3,7 @@
 
 /* pbrt (3rd edition, 10.6.3): the sum of its octaves. */
 static void formula(const TextureAt *at, double rgb[3]) {
-  rgb[0] = rgb[1] = rgb[2] = plain_fractal(at->noise, at->p, 0.4, 3);
+  rgb[0] = rgb[1] = rgb[2] = plain_fractal(at->noise, at->p, at->width, 0.4, 3);
 }
 
 /* The noise is 0 at points of the lattice: here at uv = (.5, .5), which is the origin. */

@@ -8,7 +8,8 @@ static void marble_of(const TextureAt *at, double scale, double rgb[3]) {
                                       {.5, .5, .5},   {.6, .59, .58}, {.58, .58, .6},
                                       {.58, .58, .6}, {.2, .2, .33},  {.58, .58, .6}};
   const double p[3] = {scale * at->p[0], scale * at->p[1], scale * at->p[2]};
-  const double vein = p[1] + 0.4 * plain_fractal(at->noise, p, 0.5, 8);
+  const double width = fabs(scale) * at->width;
+  const double vein = p[1] + 0.4 * plain_fractal(at->noise, p, width, 0.5, 8);
   const double along = 6 * (0.5 + 0.5 * sin(vein));
   const int first = along < 5 ? (int)along : 5;
   const double t = along - first;

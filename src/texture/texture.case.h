@@ -18,9 +18,9 @@ typedef struct TextureKnown {
   double rgb[3];
 } TextureKnown;
 
-/* A point at which a texture is asked: uv, and its place in texture space. */
+/* Where a texture is asked: uv, a place in texture space, and there the width of the ray. */
 typedef struct TextureAt {
-  double u, v, p[3];
+  double u, v, p[3], width;
   PlainNoise *noise;
 } TextureAt;
 typedef void TextureFormula(const TextureAt *at, double rgb[3]);

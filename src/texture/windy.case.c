@@ -5,8 +5,9 @@
  * octaves of a tenth of the frequency give, without their sign. */
 static void formula(const TextureAt *at, double rgb[3]) {
   const double slow[3] = {0.1 * at->p[0], 0.1 * at->p[1], 0.1 * at->p[2]};
-  const double wind = plain_fractal(at->noise, slow, 0.5, 3);
-  rgb[0] = rgb[1] = rgb[2] = fabs(wind) * plain_fractal(at->noise, at->p, 0.5, 6);
+  const double wind = plain_fractal(at->noise, slow, 0.1 * at->width, 0.5, 3);
+  const double waves = plain_fractal(at->noise, at->p, at->width, 0.5, 6);
+  rgb[0] = rgb[1] = rgb[2] = fabs(wind) * waves;
 }
 
 const TextureCase windy_texture = {

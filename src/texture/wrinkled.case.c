@@ -3,7 +3,7 @@
 
 /* pbrt (3rd edition, 10.6.4): the sum of its octaves without their signs. */
 static void formula(const TextureAt *at, double rgb[3]) {
-  rgb[0] = rgb[1] = rgb[2] = plain_turbulence(at->noise, at->p, 0.3, 3);
+  rgb[0] = rgb[1] = rgb[2] = plain_turbulence(at->noise, at->p, at->width, 0.3, 3);
 }
 
 const TextureCase wrinkled_texture = {

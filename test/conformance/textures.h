@@ -44,10 +44,10 @@ static void compare_formula(const TextureLaws *t, uint32_t i, const TextureAt *a
   f->points++;
   f->wrong += wrong;
 }
-static void judge_formula(const TextureLaws *t, const Formulas *f) {
+static void judge_formula(const TextureLaws *t, const char *what, const Formulas *f) {
   if (f->wrong > f->points / 50)
-    broken("textures", t->kind, "%s: %u of %u values, such as %.4f, not %.4f",
-           t->variant->parameters, f->wrong, f->points, f->is, f->not );
+    broken("textures", t->kind, "%s: %s%u of %u values, such as %.4f, not %.4f",
+           t->variant->parameters, what, f->wrong, f->points, f->is, f->not );
 }
 
 /* The square spans -1 to 1; its texture coordinates are 0 to 1. */
@@ -87,10 +87,10 @@ static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   for (uint32_t i = 0; v->formula && i < VL_OWN_BATCH; i++) {
     double x = (double)t->rays->origin[0][i];
     double y = (double)t->rays->origin[1][i];
-    const TextureAt at = {0.5 * (x + 1), 0.5 * (y + 1), {x, y, 0}, plain_noise};
+    const TextureAt at = {0.5 * (x + 1), 0.5 * (y + 1), {x, y, 0}, 0, plain_noise};
     compare_formula(t, i, &at, &formulas);
   }
-  judge_formula(t, &formulas);
+  judge_formula(t, "", &formulas);
   if (!v->even && !((double)(high - low) > 0.02))
     broken("textures", t->kind, "%s: no pattern", v->parameters);
 }
@@ -103,27 +103,28 @@ static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
 
 /* ---- on a ball --------------------------------------------------------------------------- */
 
-/* The colours of the unit sphere at `count` points. */
+/* The colours of the unit sphere at some points, for rays of a width. */
 static void look_at_ball(vlTrace *trace, TextureLaws *t, const double (*points)[3],
-                         uint32_t count) {
+                         double width) {
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-    const double *p = points[i % count];
+    const double *p = points[i];
     const double origin[3] = {2 * p[0], 2 * p[1], 2 * p[2]};
     const double inwards[3] = {-p[0], -p[1], -p[2]};
     set_ray(t->rays, i, origin, inwards);
+    t->rays->width[i] = (float)width;
   }
   vl_world_trace(trace, t->rays, t->hits);
 }
 
-/* Compares those of a kind of texture space, where it has a formula. */
-static void check_ball_formula(const TextureLaws *t, const double (*points)[3]) {
+/* Compares those of a kind of texture space, where it has a formula. points, width: there. */
+static void check_ball_formula(const TextureLaws *t, const double (*points)[3], double width) {
   Formulas formulas = {0};
   for (uint32_t i = 0; t->variant->formula && i < VL_OWN_BATCH; i++) {
-    TextureAt at = {.noise = plain_noise};
+    TextureAt at = {.width = width, .noise = plain_noise};
     memcpy(at.p, points[i], sizeof at.p);
     compare_formula(t, i, &at, &formulas);
   }
-  judge_formula(t, &formulas);
+  judge_formula(t, width > 0 ? "wide rays, " : "", &formulas);
 }
 
 /* The second half of the points mirrors the first. */
@@ -139,19 +140,50 @@ static void ask_along_axes(Probe *probe, vlTrace *trace, const vlOwnPaths *paths
       memcpy(points[HALF + i], points[i], sizeof points[i]);
       points[HALF + i][axis] *= -1;
     }
-    look_at_ball(trace, t, points, VL_OWN_BATCH);
+    look_at_ball(trace, t, points, 0);
     for (uint32_t i = 0; i < HALF; i++)
       differ += fabsf(t->hits->reflectance[1][i] - t->hits->reflectance[1][HALF + i]) > 0.005f;
-    check_ball_formula(t, points);
+    check_ball_formula(t, points, 0);
     if (differ < HALF / 10)
       broken("textures", t->kind, "%s: does not vary along %c", t->variant->parameters,
              "xyz"[axis]);
   }
 }
 
-/* Looks at the ball of a scene. */
-static void ask_textured_ball(const char *text, TextureLaws *t,
-                              void (*ask)(Probe *, vlTrace *, const vlOwnPaths *)) {
+/* Texture space is the world, stretched by 5 along z, and turned. */
+static void stretched(const double p[3], double q[3]) {
+  const double turn = PI / 6;
+  const double z = 5 * p[2];
+  q[0] = p[0];
+  q[1] = cos(turn) * p[1] + sin(turn) * z;
+  q[2] = cos(turn) * z - sin(turn) * p[1];
+}
+
+/* Compares what rays of a width see with the formula. The width in texture space is that by the
+ * largest stretch. */
+static void ask_width(vlTrace *trace, TextureLaws *t, double width) {
+  static double points[VL_OWN_BATCH][3];
+  static double at[VL_OWN_BATCH][3];
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    even_direction(i, VL_OWN_BATCH, 0.3, points[i]);
+    stretched(points[i], at[i]);
+  }
+  look_at_ball(trace, t, points, width);
+  check_ball_formula(t, at, 5 * width);
+}
+
+/* Rays so wide that of an octave of noise they see a half, of two the finer, and of many those
+ * that are not too fine. */
+static void ask_wide_rays(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  static const double octaves[] = {0.5, 1.55, 2.4, 4.5};
+  (void)paths;
+  for (size_t i = 0; i < sizeof octaves / sizeof *octaves; i++)
+    ask_width(trace, probe->user, exp2(-1 - octaves[i]) / 5);
+}
+
+/* Asks a world, by rays and hits that live as long as that. */
+static void ask_textured(const char *text, TextureLaws *t,
+                         void (*ask)(Probe *, vlTrace *, const vlOwnPaths *)) {
   Probe probe = {.ask = ask, .user = t};
   t->rays = new_rays();
   t->hits = calloc(1, sizeof *t->hits);
@@ -159,75 +191,6 @@ static void ask_textured_ball(const char *text, TextureLaws *t,
   probe_world(text, &probe, 1);
   free(t->rays);
   free(t->hits);
-}
-
-/* What a ray sees that resolves one and a half of eight octaves, each .4 of the one before. */
-static double seen_by_wide(const char *kind, const double q[3]) {
-  const double first = plain_noise(q[0], q[1], q[2]);
-  const double second = plain_noise(1.99 * q[0], 1.99 * q[1], 1.99 * q[2]);
-  if (strcmp(kind, "fbm") == 0)
-    return first + 0.5 * 0.4 * second;
-  double sum = fabs(first) + 0.4 * (0.5 * 0.2 + 0.5 * fabs(second));
-  for (int octave = 1; octave < 8; octave++)
-    sum += 0.2 * pow(0.4, octave);
-  return sum;
-}
-
-/* Of a noise of many octaves a wide ray sees those that it resolves (pbrt, 3rd edition, 10.6):
- * n = -1 - log2 of its width in texture space, and of the next as much as a smooth step from .3
- * to .7 gives of the rest. What turbulence does not resolve counts with a fifth. Texture space
- * is the world, stretched by 5 along z, and turned. The width is such that n is 1.5. */
-static void ask_wide_rays(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
-  TextureLaws *t = probe->user;
-  uint32_t wrong = 0;
-  double is = 0;
-  double known = 0;
-  (void)paths;
-  const double turn = PI / 6;
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-    double p[3];
-    even_direction(i, VL_OWN_BATCH, 0.3, p);
-    const double origin[3] = {2 * p[0], 2 * p[1], 2 * p[2]};
-    const double inwards[3] = {-p[0], -p[1], -p[2]};
-    set_ray(t->rays, i, origin, inwards);
-    t->rays->width[i] = (float)(exp2(-2.5) / 5);
-  }
-  vl_world_trace(trace, t->rays, t->hits);
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-    double p[3];
-    even_direction(i, VL_OWN_BATCH, 0.3, p);
-    const double z = 5 * p[2];
-    const double q[3] = {p[0], cos(turn) * p[1] + sin(turn) * z,
-                         cos(turn) * z - sin(turn) * p[1]};
-    const double value = seen_by_wide(t->kind, q);
-    const double seen = (double)t->hits->reflectance[1][i];
-    if (fabs(seen - fmin(fmax(value, 0), 1)) <= 3e-3)
-      continue;
-    wrong++;
-    is = seen;
-    known = value;
-  }
-  if (wrong > VL_OWN_BATCH / 50)
-    broken("textures", t->kind, "wide rays: %u of %u values, such as %.4f, not %.4f", wrong,
-           VL_OWN_BATCH, is, known);
-}
-
-static void laws_of_footprints(void **state) {
-  (void)state;
-  static const char *const kinds[] = {"fbm", "wrinkled"};
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-    char text[TEXT];
-    TextureLaws t = {.kind = kinds[i]};
-    snprintf(text, sizeof text,
-             HEAD
-             "WorldBegin LightSource \"infinite\" AttributeBegin Scale 1 1 .2 Rotate 30 1 0 0\n"
-             "Texture \"f\" \"float\" \"%s\" \"float roughness\" .4 Texture \"t\" \"spectrum\" "
-             "\"scale\" \"rgb tex\" [1 1 1] \"texture scale\" \"f\"\n"
-             "AttributeEnd Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"",
-             kinds[i]);
-    ask_textured_ball(text, &t, ask_wide_rays);
-  }
-  expect_no_failures();
 }
 
 /* A mapping with its formula. q: a point of texture space. */
@@ -267,7 +230,7 @@ static void ask_mapping(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   (void)paths;
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
     even_direction(i, VL_OWN_BATCH, 0.1, points[i]);
-  look_at_ball(trace, t, points, VL_OWN_BATCH);
+  look_at_ball(trace, t, points, 0);
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     const double q[3] = {points[i][0] / 2, points[i][1], points[i][2] * 2};
     double st[2];
@@ -296,46 +259,70 @@ static void laws_of_mappings(void **state) {
              "AttributeEnd Material \"diffuse\" \"texture reflectance\" \"t\" "
              "Shape \"sphere\"",
              mappings[i].name, mappings[i].parameters);
-    ask_textured_ball(text, &t, ask_mapping);
+    ask_textured(text, &t, ask_mapping);
   }
   expect_no_failures();
 }
 
 /* ---- all --------------------------------------------------------------------------------- */
 
-static void laws_of_textures(void **state) {
-  (void)state;
-  static char text[TEXT];
+typedef void TextureLaw(const vlKindRow *row, const TextureVariant *variant);
+
+static void each_texture(TextureLaw *law) {
   const vlKindFamily *family = vl_kind_family_find("textures");
   for (uint32_t k = 0; k < family->kind_count; k++) {
     const vlKindRow *row = family->rows[k];
-    const TextureCase *c = texture_cases[k];
-    assert_true(!row->name || c->variants[0].parameters);
-    const char *form =
-        row->traits & VL_TEXTURE_FLOAT_ONLY ? HEAD
-            "WorldBegin LightSource \"infinite\" Texture \"f\" \"float\" %s Texture \"t\" "
-            "\"spectrum\" \"scale\" \"rgb tex\" [1 1 1] \"texture scale\" \"f\" "
-            "Material \"diffuse\" \"texture reflectance\" \"t\" "
-                                            : HEAD
-            "WorldBegin LightSource \"infinite\" " HALVES
-            "Texture \"t\" \"spectrum\" %s "
-            "Material \"diffuse\" \"texture reflectance\" \"t\" ";
-    for (int i = 0; i < TEXTURE_VARIANTS && row->name && c->variants[i].parameters; i++) {
-      TextureLaws t = {.kind = row->name, .variant = &c->variants[i], .rays = new_rays()};
-      t.hits = calloc(1, sizeof *t.hits);
-      Probe probe = {.ask = ask_texture, .user = &t};
-      scene_text(text, form, row->name, c->variants[i].parameters);
-      size_t length = strlen(text);
-      strcat(text, SQUARE_UP);
-      probe_world(text, &probe, 1);
-      free(t.rays);
-      free(t.hits);
-      strcpy(text + length, "Shape \"sphere\"");
-      if (c->variants[i].of_space)
-        ask_textured_ball(text, &t, ask_along_axes);
-    }
+    const TextureVariant *variants = texture_cases[k]->variants;
+    assert_true(!row->name || variants[0].parameters);
+    for (int i = 0; i < TEXTURE_VARIANTS && row->name && variants[i].parameters; i++)
+      law(row, &variants[i]);
   }
   expect_no_failures();
+}
+
+/* A scene of one shape whose reflectance is the texture. space: its transform. */
+static void textured_text(char text[TEXT], const vlKindRow *row, const TextureVariant *variant,
+                          const char *space, const char *shape) {
+  static const char head[] = HEAD "WorldBegin LightSource \"infinite\" " HALVES;
+  static const char number[] =
+      "Texture \"f\" \"float\" %s Texture \"t\" \"spectrum\" "
+      "\"scale\" \"rgb tex\" [1 1 1] \"texture scale\" \"f\"\n";
+  static const char color[] = "Texture \"t\" \"spectrum\" %s\n";
+  char form[TEXT];
+  snprintf(form, sizeof form,
+           "%sAttributeBegin %s %sAttributeEnd Material \"diffuse\" \"texture reflectance\" "
+           "\"t\" %s",
+           head, space, row->traits & VL_TEXTURE_FLOAT_ONLY ? number : color, shape);
+  scene_text(text, form, row->name, variant->parameters);
+}
+
+static void check_values(const vlKindRow *row, const TextureVariant *variant) {
+  static char text[TEXT];
+  TextureLaws t = {.kind = row->name, .variant = variant};
+  textured_text(text, row, variant, "", SQUARE_UP);
+  ask_textured(text, &t, ask_texture);
+  textured_text(text, row, variant, "", "Shape \"sphere\"");
+  if (variant->of_space)
+    ask_textured(text, &t, ask_along_axes);
+}
+
+static void check_wide_rays(const vlKindRow *row, const TextureVariant *variant) {
+  static char text[TEXT];
+  TextureLaws t = {.kind = row->name, .variant = variant};
+  if (!variant->of_space)
+    return;
+  textured_text(text, row, variant, "Scale 1 1 .2 Rotate 30 1 0 0", "Shape \"sphere\"");
+  ask_textured(text, &t, ask_wide_rays);
+}
+
+static void laws_of_textures(void **state) {
+  (void)state;
+  each_texture(check_values);
+}
+
+static void laws_of_footprints(void **state) {
+  (void)state;
+  each_texture(check_wide_rays);
 }
 
 #endif

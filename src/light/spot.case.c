@@ -5,25 +5,24 @@ static void square(vlLightDef *def) {
   def->cone_squared = true;
 }
 
+/* Straight down, from a height of 1. */
+#define CONE                                                                      \
+  "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"float coneangle\" 40 \"float " \
+  "conedeltaangle\" 20 "
+
 /* Between the cosines of 40 and of 20 degrees t runs from 0 to 1; the falloff is 3 t^2 - 2 t^3,
  * here of t = .4994 and of .1955 (36.87 degrees), over the squared distance; t^2 where it is
  * squared. */
 const LightCase spot_light = {
     .variants =
         {
-            {.parameters =
-                 "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float "
-                 "coneangle\" 40 \"float "
-                 "conedeltaangle\" 20",
+            {.parameters = CONE "\"rgb I\" [1 1 1]",
              .known = {{0, 0, {1, 1, 1}},
                        {.612460, 0, {.363607, .363607, .363607}},
                        {.75, 0, {.063842, .063842, .063842}},
                        {1, 0, {0, 0, 0}}},
              .known_count = 4},
-            {.parameters =
-                 "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float "
-                 "coneangle\" 40 \"float "
-                 "conedeltaangle\" 20",
+            {.parameters = CONE "\"rgb I\" [1 1 1]",
              .change = square,
              .known = {{0, 0, {1, 1, 1}},
                        {.612460, 0, {.181390, .181390, .181390}},
@@ -31,9 +30,7 @@ const LightCase spot_light = {
                        {1, 0, {0, 0, 0}}},
              .known_count = 4},
             /* a power of 10 over 2 pi (1 - cos 20 + (cos 20 - cos 40) / 3) */
-            {.parameters =
-                 "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float "
-                 "power\" 10 \"float coneangle\" 40 \"float conedeltaangle\" 20",
+            {.parameters = CONE "\"rgb I\" [1 1 1] \"float power\" 10",
              .change = square,
              .known = {{0, 0, {13.46601, 13.46601, 13.46601}},
                        {.612460, 0, {2.442599, 2.442599, 2.442599}}},

@@ -19,6 +19,11 @@ const TextureCase image_texture = {
              .high = .9,
              .known = {{.25, .25, {.7, .7, .7}}, {.75, .75, {.8, .8, .8}}},
              .known_count = 2},
+            {.parameters = "\"string filename\" \"grain.pfm\" \"string filter\" \"trilinear\" "
+                           "\"float uscale\" 2 \"float vscale\" .7",
+             .low = 0,
+             .high = 1,
+             .filtered = true},
         },
     .parameters =
         {{.base = "\"string filename\" \"a.pfm\""},

@@ -30,6 +30,7 @@ typedef struct TextureVariant {
   double low, high;        /* of all values */
   bool even;               /* the same value everywhere */
   bool of_space;           /* varies along each axis of texture space */
+  bool filtered;           /* what wide rays see is about the mean over their footprint */
   TextureFormula *formula; /* its value everywhere, but on 2 % of the points (edges); null: not
                               known */
   TextureKnown known[5];

@@ -43,6 +43,19 @@ static bool write_image(const char *name, float phase) {
   return write_square(name, 8, pixels);
 }
 
+/* An image of 64 x 64 pixels: waves, and on them a grain of single pixels. */
+static bool write_grain(const char *name) {
+  static float pixels[3 * 64 * 64];
+  for (int i = 0; i < 3 * 64 * 64; i++) {
+    const int x = i / 3 % 64;
+    const int y = i / 192;
+    const double wave = sin(2 * PI * 3 * x / 64) * cos(2 * PI * (x + 4 * y) / 64);
+    const double grain = fmod(i * 0.6180339887498949 + i % 7 * 0.41, 1.0) - 0.5;
+    pixels[i] = (float)(0.5 + 0.25 * wave + 0.4 * grain);
+  }
+  return write_square(name, 64, pixels);
+}
+
 /* An image of 8 x 8 pixels with .2 and .4 in the left and right half of its upper rows, .6 and
  * .8 of the lower. */
 static bool write_quarters(const char *name) {
@@ -137,7 +150,7 @@ static bool write_files(void) {
   bool done = write_image("a.pfm", 0) && write_image("b.pfm", 1) && write_image("sky.pfm", 2) &&
               write_image("other.pfm", 3) && write_image("normals.pfm", 4) &&
               write_image("a.tga", 5) && write_quarters("quarters.pfm") &&
-              write_tilted("tilted.pfm") && write_lamp("lamp.ies");
+              write_grain("grain.pfm") && write_tilted("tilted.pfm") && write_lamp("lamp.ies");
   done = done && write_bytes("a.ply", ply, sizeof ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&
          write_nanovdb("a.nvdb", 0) && write_nanovdb("b.nvdb", 1) &&

@@ -4,6 +4,7 @@
 #include "conformance.h"
 #include "densities.h"
 #include "files.h"
+#include "footprints.h"
 #include "hostile.h"
 #include "lamps.h"
 #include "layers.h"
@@ -61,6 +62,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_surfaces),
       cmocka_unit_test(laws_of_textures),
       cmocka_unit_test(laws_of_footprints),
+      cmocka_unit_test(laws_of_means),
       cmocka_unit_test(laws_of_mappings),
       cmocka_unit_test(laws_of_texels),
       cmocka_unit_test(laws_of_projections),

@@ -8,6 +8,7 @@
 #include "../world/plain_noise.h"
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "materials.h"
 #include "unit.h"
 
 /* ---- asking ------------------------------------------------------------------------------ */

@@ -10,14 +10,14 @@ typedef double PlainNoise(double x, double y, double z);
 
 /* What a ray of a width in the space of the noise sees of octaves: -1 - log2 of the width are
  * whole, and of the next as much as a smooth step from .3 to .7 gives of the rest. */
-typedef struct PlainSight {
+typedef struct PlainOctaves {
   int whole;
   double part;
-} PlainSight;
-static inline PlainSight plain_sight(double width, int octaves) {
+} PlainOctaves;
+static inline PlainOctaves plain_resolved(double width, int octaves) {
   const double seen = fmin(fmax(-1 - log2(width), 0), octaves);
   const double rest = fmin(fmax((seen - floor(seen) - 0.3) / 0.4, 0), 1);
-  return (PlainSight){(int)seen, rest * rest * (3 - 2 * rest)};
+  return (PlainOctaves){(int)seen, rest * rest * (3 - 2 * rest)};
 }
 
 /* Octave i has 1.99 times the frequency and omega times the amplitude of the one before. */
@@ -28,9 +28,9 @@ static inline double plain_octave(PlainNoise *noise, const double p[3], int i) {
 
 static inline double plain_fractal(PlainNoise *noise, const double p[3], double width,
                                    double omega, int octaves) {
-  const PlainSight sight = plain_sight(width, octaves);
-  double sum = pow(omega, sight.whole) * sight.part * plain_octave(noise, p, sight.whole);
-  for (int i = 0; i < sight.whole; i++)
+  const PlainOctaves seen = plain_resolved(width, octaves);
+  double sum = pow(omega, seen.whole) * seen.part * plain_octave(noise, p, seen.whole);
+  for (int i = 0; i < seen.whole; i++)
     sum += pow(omega, i) * plain_octave(noise, p, i);
   return sum;
 }
@@ -39,12 +39,12 @@ static inline double plain_fractal(PlainNoise *noise, const double p[3], double 
  * does one octave that is finer than all. */
 static inline double plain_turbulence(PlainNoise *noise, const double p[3], double width,
                                       double omega, int octaves) {
-  const PlainSight sight = plain_sight(width, octaves);
-  const double next = fabs(plain_octave(noise, p, sight.whole));
-  double sum = pow(omega, sight.whole) * (sight.part * next + (1 - sight.part) * 0.2);
-  for (int i = 0; i < sight.whole; i++)
+  const PlainOctaves seen = plain_resolved(width, octaves);
+  const double next = fabs(plain_octave(noise, p, seen.whole));
+  double sum = pow(omega, seen.whole) * (seen.part * next + (1 - seen.part) * 0.2);
+  for (int i = 0; i < seen.whole; i++)
     sum += pow(omega, i) * fabs(plain_octave(noise, p, i));
-  for (int i = sight.whole; i < octaves; i++)
+  for (int i = seen.whole; i < octaves; i++)
     sum += pow(omega, i) * 0.2;
   return sum;
 }

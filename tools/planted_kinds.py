@@ -933,6 +933,14 @@ MISTAKES = [
      r"textures windy:.*wide", "src/texture/windy.h",
      "vl_mul(p, 0.1f), 0.1f * width, 0.5f, 3)",
      "vl_mul(p, 0.1f), width, 0.5f, 3)"),
+    ("images blurred by the longer axis of the footprint", "textures:imagemap",
+     r"textures imagemap:.*footprint", "src/texture/lookup.h",
+     "vl_max(vl_abs(as * bt - at * bs) / longer, 1.0f);",
+     "longer;"),
+    ("images: the footprint along v by the scale of u", "textures:imagemap",
+     r"textures imagemap:.*footprint", "src/texture/lookup.h",
+     ": node->sv * uv[k + 1];",
+     ": node->su * uv[k + 1];"),
     ]
 
 

@@ -7,8 +7,8 @@
 
 #include "../world/plain_noise.h"
 #include "conformance.h"
-#include "parameter_cases.h"
 #include "materials.h"
+#include "parameter_cases.h"
 #include "unit.h"
 
 /* ---- asking ------------------------------------------------------------------------------ */

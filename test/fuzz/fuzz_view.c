@@ -8,10 +8,14 @@
 #include "view/camera_edit.h"
 #include "view/sensor_edit.h"
 
+/* Each has all members. */
+static const MessageType types[] = {
+    {"camera", UINT32_MAX, MESSAGE_AT_ONCE}, {"sensor", UINT32_MAX, MESSAGE_AT_ONCE}, {NULL}};
+
 static void check_limits(const ViewMessage *m) {
   bool good = m->field_count <= MESSAGE_FIELDS && fabs(m->x) <= 65536 && fabs(m->y) <= 65536 &&
-              fabs(m->exposure) <= 64 && m->spp <= 1 << 24 && (!m->has_spp || m->spp) &&
-              m->crop[3] <= 65536;
+              fabs(m->exposure) <= 64 && m->spp <= 1 << 24 &&
+              (!(m->given & MEMBER_SPP) || m->spp) && m->crop[3] <= 65536;
   for (uint32_t i = 0; i < m->field_count; i++) {
     good &= m->fields[i].count <= MESSAGE_NUMBERS &&
             memchr(m->fields[i].name, 0, sizeof m->fields[i].name);
@@ -45,7 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   static ViewMessage message;
   const char *warning = NULL;
   char why[VL_GIVEN_MESSAGE] = "";
-  if (!message_parse((const char *)data, size, &message, why)) {
+  if (!message_parse(types, (const char *)data, size, &message, why)) {
     if (!why[0])
       abort();
     return 0;
@@ -59,10 +63,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     abort();
   if (camera_take(&def, &made, 2, &camera, &error) != VL_OK)
     abort();
-  if (message.kind == MESSAGE_SENSOR)
+  if (message.type != types)
     edit_sensor(&message);
-  if (message.kind != MESSAGE_CAMERA)
-    return 0;
   if (camera_edit(&camera, &message, &next, &warning, &error) != VL_OK && !error.message[0])
     abort();
   return 0;

@@ -391,19 +391,21 @@ def reply(view, page, text):
             return page, message["message"], None
         if isinstance(message, dict) and message["type"] == "state" and message.get("change") == change:
             return page, "", message
+        if isinstance(message, dict) and message.get("id") == change:
+            return page, "", None
 
 
 def test_settings(view, page):
     """Every setting that a page can send, by its row, has hostile values: refused with one sentence that names it, or a state of finite
     numbers. The server stays up, also while it renders what it accepted."""
     camera = [("camera", SPELLED.get(name, name), kind) for name, kind in setting_rows("camera")]
-    own = [("settings", name, kind) for name, kind in setting_rows("program") + setting_rows("render")
-           if name in ("exposure", "show", "spp", "samples", "x", "y")]
+    types = {"exposure": "outside", "show": "paths", "samples": "paths", "spp": "settings", "x": "pick", "y": "pick"}
+    own = [(types[name], name, kind) for name, kind in setting_rows("program") + setting_rows("render") if name in types]
     problems, tried, names = [], 0, set()
     for message, name, kind in camera + own:
         for value in [json.dumps(v) for v in HOSTILE] + list(RAW):
             member = f'"set":{{"{name}":{value}}}' if message == "camera" else f'"{name}":{value}'
-            page, sentence, state = reply(view, page, f'{{"type":"{message}","change":CHANGE,{member}}}')
+            page, sentence, state = reply(view, page, f'{{"type":"{message}","id":CHANGE,"change":CHANGE,{member}}}')
             if "unknown field" in sentence:
                 break
             tried += 1
@@ -421,7 +423,7 @@ def test_settings(view, page):
                 page.wait_frame()
             if state:
                 page, sentence, state = reply(view, page, '{"type":"reset","change":CHANGE}')
-    page, sentence, state = reply(view, page, '{"type":"settings","change":CHANGE,"spp":3,"exposure":0}')
+    page, sentence, state = reply(view, page, '{"type":"settings","change":CHANGE,"spp":3}')
     check("settings", not problems and len(names) > 25 and tried > 400, problems[:5], len(names), tried)
     check("settings_server_stays", view.process.poll() is None and state, sentence)
     return page

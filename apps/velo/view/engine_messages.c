@@ -69,11 +69,6 @@ void engine_clients(void *user, uint32_t count) {
 
 /* ---- the camera -------------------------------------------------------------------------- */
 
-static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const char *why) {
-  engine_post(e, client, "refused", "change %u, id %u, field %s, message %s", m->change, m->id,
-              m->field_count ? m->fields[0].name : "", why);
-}
-
 static void show_camera(Engine *e, const ViewCamera *camera) {
   e->wanted.camera = *camera;
   e->wanted.generation++;
@@ -81,7 +76,7 @@ static void show_camera(Engine *e, const ViewCamera *camera) {
   engine_drop_traces(e, 0, "the camera moved");
 }
 
-void engine_remember(Engine *e, const ViewCamera *camera, uint32_t gesture) {
+static void remember(Engine *e, const ViewCamera *camera, uint32_t gesture) {
   History *h = &e->history;
   bool same = gesture && gesture == h->gesture && h->at > 0;
   h->gesture = gesture;
@@ -95,44 +90,51 @@ void engine_remember(Engine *e, const ViewCamera *camera, uint32_t gesture) {
   h->count = h->at + 1;
 }
 
-/* The camera that a message makes. */
-static void take_camera(Engine *e, const ViewMessage *m, const ViewCamera *next) {
-  e->wanted.change = m->change;
-  engine_remember(e, next, m->gesture);
+void engine_take_camera(Engine *e, const ViewCamera *next, uint32_t change, uint32_t gesture) {
+  e->wanted.change = change;
+  remember(e, next, gesture);
   show_camera(e, next);
   engine_post_state(e, 0);
 }
 
-static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
+static void edit_camera(Engine *e, const ViewMessage *m) {
   ViewCamera next;
   vlError error = {0};
   const char *warning = NULL;
   if (camera_edit(&e->wanted.camera, m, &next, &warning, &error) != VL_OK) {
-    engine_post_state(e, client); /* its inputs show the camera as it is */
-    post_refusal(e, client, m, error.message[0] ? error.message : "refused");
+    engine_post_state(e, m->client); /* its inputs show the camera as it is */
+    engine_refuse(e, m, error.message[0] ? error.message : "refused");
     return;
   }
-  take_camera(e, m, &next);
+  engine_take_camera(e, &next, m->change, m->gesture);
   if (warning)
-    engine_post(e, client, "warning", "message %s", warning);
+    engine_post(e, m->client, "warning", "message %s", warning);
 }
 
-/* Each is answered with the state, also where there is nothing to step to. */
-static void step_history(Engine *e, const ViewMessage *m) {
+/* Each step is answered with the state, also where there is nothing to step to. */
+static void step_to(Engine *e, const ViewMessage *m, uint32_t at) {
   History *h = &e->history;
-  const uint32_t before = h->at;
-  if (m->kind == MESSAGE_RESET)
-    engine_remember(e, &e->scene_camera, 0);
-  else if (m->kind == MESSAGE_UNDO && h->at > 0)
-    h->at--;
-  else if (m->kind == MESSAGE_REDO && h->at + 1 < h->count)
-    h->at++;
   e->wanted.change = m->change;
-  if (m->kind == MESSAGE_RESET || h->at != before) {
+  if (at != h->at) {
+    h->at = at;
     h->gesture = 0;
-    show_camera(e, &h->cameras[h->at]);
+    show_camera(e, &h->cameras[at]);
   }
   engine_post_state(e, 0);
+}
+
+static void undo(Engine *e, const ViewMessage *m) {
+  const uint32_t at = e->history.at;
+  step_to(e, m, at > 0 ? at - 1 : at);
+}
+
+static void redo(Engine *e, const ViewMessage *m) {
+  const History *h = &e->history;
+  step_to(e, m, h->at + 1 < h->count ? h->at + 1 : h->at);
+}
+
+static void reset(Engine *e, const ViewMessage *m) {
+  engine_take_camera(e, &e->scene_camera, m->change, 0);
 }
 
 /* ---- settings ---------------------------------------------------------------------------- */
@@ -184,45 +186,48 @@ static bool set_crop(Engine *e, const uint32_t crop[4]) {
   return true;
 }
 
-static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
-  const char *refusal = m->has_channel ? channel_refusal(e, m->channel) : NULL;
+static void change_settings(Engine *e, const ViewMessage *m) {
+  const bool has_channel = m->given & MEMBER_CHANNEL;
+  const bool has_crop = m->given & MEMBER_CROP;
+  const bool has_denoise = m->given & MEMBER_DENOISE;
+  const char *refusal = has_channel ? channel_refusal(e, m->channel) : NULL;
   if (refusal)
-    post_refusal(e, client, m, refusal);
-  else if (m->has_channel && !set_channel(e, m->channel))
-    post_refusal(e, client, m, "there is no such channel");
-  if (m->has_crop) {
+    engine_refuse(e, m, refusal);
+  else if (has_channel && !set_channel(e, m->channel))
+    engine_refuse(e, m, "there is no such channel");
+  if (has_crop) {
     if (set_crop(e, m->crop))
       e->wanted.generation++;
     else
-      post_refusal(e, client, m, "the rectangle is not inside the image");
+      engine_refuse(e, m, "the rectangle is not inside the image");
   }
   if (m->mark) {
     e->wanted.mark = e->wanted.camera.made;
     e->wanted.generation += e->wanted.channel == CHANNEL_FLOW;
   }
-  if (m->has_denoise && m->denoise && (e->def.lecture || e->def.stepwise))
-    post_refusal(e, client, m, "this page has no denoised preview");
-  else if (m->has_denoise)
+  if (has_denoise && m->denoise && (e->def.lecture || e->def.stepwise))
+    engine_refuse(e, m, "this page has no denoised preview");
+  else if (has_denoise)
     e->wanted.denoise = m->denoise;
-  if (m->has_spp)
+  if (m->given & MEMBER_SPP)
     e->wanted.spp = m->spp;
-  if (m->has_paused)
+  if (m->given & MEMBER_PAUSED)
     e->wanted.paused = m->paused;
-  if (m->has_crop || m->has_channel || m->has_denoise || m->mark || e->wanted.paused)
+  if (has_crop || has_channel || has_denoise || m->mark || e->wanted.paused)
     engine_interrupt(e);
   e->wanted.change = m->change ? m->change : e->wanted.change;
   engine_post_state(e, 0);
 }
 
 /* The camera's back: light that is there already is exposed anew. */
-static void edit_sensor(Engine *e, uint32_t client, const ViewMessage *m) {
+static void edit_sensor(Engine *e, const ViewMessage *m) {
   vlError error = {0};
   if (!has_camera_mode(e)) {
-    post_refusal(e, client, m, "this page has no sensor");
+    engine_refuse(e, m, "this page has no sensor");
   } else if (sensor_edit(&e->wanted.sensor, &e->sensors, m, &e->wanted.sensor, &error) !=
              VL_OK) {
-    engine_post_state(e, client); /* its inputs show the sensor as it is */
-    post_refusal(e, client, m, error.message);
+    engine_post_state(e, m->client); /* its inputs show the sensor as it is */
+    engine_refuse(e, m, error.message);
   } else {
     e->wanted.sensor_edits++;
     e->wanted.change = m->change ? m->change : e->wanted.change;
@@ -232,11 +237,11 @@ static void edit_sensor(Engine *e, uint32_t client, const ViewMessage *m) {
   }
 }
 
-static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
+static void choose_scene(Engine *e, const ViewMessage *m) {
   const char *scene = e->def.lecture ? lecture_scene(m->name) : NULL;
   if (!scene) {
-    post_refusal(
-        e, client, m,
+    engine_refuse(
+        e, m,
         e->def.lecture ? "the lecture has no such scene" : "this page has one scene only");
     return;
   }
@@ -245,7 +250,7 @@ static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
 }
 
 /* Another time: of an animation that is loaded for it, or of the camera's shutter. */
-static void set_time(Engine *e, uint32_t client, const ViewMessage *m) {
+static void set_time(Engine *e, const ViewMessage *m) {
   vlError error = {0};
   ViewCamera next;
   if (e->model.seconds > 0 && e->watching) {
@@ -254,103 +259,84 @@ static void set_time(Engine *e, uint32_t client, const ViewMessage *m) {
     e->time_change = m->change;
     e->has_time = e->time_due = true;
   } else if (!(engine_time(e).duration > 0)) {
-    post_refusal(e, client, m, "nothing moves in this scene");
+    engine_refuse(e, m, "nothing moves in this scene");
   } else if (camera_set_shutter(&e->wanted.camera, m->at, m->at + m->shutter, &next, &error) !=
              VL_OK) {
-    post_refusal(e, client, m, error.message);
+    engine_refuse(e, m, error.message);
   } else {
-    take_camera(e, m, &next);
+    engine_take_camera(e, &next, m->change, m->gesture);
   }
-}
-
-/* Adds a message to a list of tasks. */
-static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tasks,
-                     uint32_t *count) {
-  if (*count == MAX_TASKS) {
-    post_refusal(e, client, m, "too much at once");
-    return;
-  }
-  tasks[(*count)++] = (Task){.client = client, .message = *m};
 }
 
 /* Has the command run that was copied last, or ends that run. */
-static void verify_command(Engine *e, uint32_t client, const ViewMessage *m) {
+static void verify_command(Engine *e, const ViewMessage *m) {
   if (m->end) {
     e->verify_end = true;
   } else if (!e->verifies) {
-    post_refusal(e, client, m, "this page runs no commands");
+    engine_refuse(e, m, "this page runs no commands");
   } else if (e->def.arguments->folder_count) {
-    post_refusal(e, client, m, "--sandbox allows no other programs");
+    engine_refuse(e, m, "--sandbox allows no other programs");
   } else if (e->verifying) {
-    post_refusal(e, client, m, "a command is being verified");
+    engine_refuse(e, m, "a command is being verified");
   } else if (!e->copied) {
-    post_refusal(e, client, m, "no command was copied");
+    engine_refuse(e, m, "no command was copied");
   } else {
-    e->verification = (Task){.client = client, .message = *m};
+    e->verification = *m;
     e->verify_end = false;
     e->verifying = true;
   }
 }
 
-/* Messages that change nothing that others see. */
-static bool is_harmless(MessageKind kind) {
-  return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY || kind == MESSAGE_OUTLINE ||
-         kind == MESSAGE_OUTSIDE || kind == MESSAGE_PATHS || kind == MESSAGE_CAMERAS;
-}
+/* ---- all messages ------------------------------------------------------------------------ */
 
-void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *m) {
+enum {
+  PIXEL = MEMBER_X | MEMBER_Y,
+  LOOK = MEMBER_EXPOSURE | MEMBER_VIEW,
+  SETTINGS =
+      MEMBER_SPP | MEMBER_PAUSED | MEMBER_CROP | MEMBER_CHANNEL | MEMBER_DENOISE | MEMBER_MARK,
+  FILE_TO_SAVE = MEMBER_WHAT | MEMBER_NAME | MEMBER_DIALECT | LOOK,
+  PATHS = PIXEL | MEMBER_SAMPLES | MEMBER_SHOW | MEMBER_BY_SAMPLE,
+  OVERLAY = MEMBER_BOXES | MEMBER_CURVES | MEMBER_FIELD
+};
+
+const MessageType message_types[] = {
+    {"seen", MEMBER_SERIAL, MESSAGE_SEEN},
+    {"steer", 0, MESSAGE_STEER},
+    {"camera", MEMBER_SET | MEMBER_GESTURE, MESSAGE_AT_ONCE, edit_camera},
+    {"undo", 0, MESSAGE_AT_ONCE, undo},
+    {"redo", 0, MESSAGE_AT_ONCE, redo},
+    {"reset", 0, MESSAGE_AT_ONCE, reset},
+    {"settings", SETTINGS, MESSAGE_AT_ONCE, change_settings},
+    {"sensor", MEMBER_SET, MESSAGE_AT_ONCE, edit_sensor},
+    {"time", MEMBER_AT | MEMBER_SHUTTER | MEMBER_GESTURE, MESSAGE_AT_ONCE, set_time},
+    {"scene", MEMBER_NAME, MESSAGE_AT_ONCE, choose_scene},
+    {"verify", MEMBER_END, MESSAGE_AT_ONCE, verify_command},
+    {"paths", PATHS, MESSAGE_AT_ONCE, engine_add_trace, .harmless = true},
+    {"save", FILE_TO_SAVE, MESSAGE_SAVES, engine_save},
+    {"command", LOOK, MESSAGE_SAVES, engine_command},
+    {"focus", PIXEL, MESSAGE_ASKS, engine_focus},
+    {"pick", PIXEL, MESSAGE_ASKS, engine_pick, .harmless = true},
+    {"overlay", OVERLAY, MESSAGE_ASKS, engine_overlay, .harmless = true},
+    {"outline", MEMBER_SET, MESSAGE_ASKS, engine_outline, .harmless = true},
+    {"cameras", 0, MESSAGE_ASKS, engine_cameras, .harmless = true},
+    {"outside", MEMBER_SIZE | MEMBER_EXPOSURE | MEMBER_SET, MESSAGE_ASKS, engine_outside,
+     .harmless = true},
+    {NULL}};
+_Static_assert(sizeof message_types / sizeof *message_types <= MESSAGE_TYPES, "too many types");
+
+void engine_message(void *user, bool steers, const ViewMessage *m) {
   Engine *e = user;
   engine_lock(e);
-  if (!steers && !is_harmless(m->kind)) {
-    post_refusal(e, client, m, "another page steers");
-  } else {
-    switch (m->kind) {
-      case MESSAGE_CAMERA:
-        edit_camera(e, client, m);
-        break;
-      case MESSAGE_UNDO:
-      case MESSAGE_REDO:
-      case MESSAGE_RESET:
-        step_history(e, m);
-        break;
-      case MESSAGE_SETTINGS:
-        change_settings(e, client, m);
-        break;
-      case MESSAGE_SENSOR:
-        edit_sensor(e, client, m);
-        break;
-      case MESSAGE_SAVE:
-      case MESSAGE_COMMAND:
-        if (e->def.lecture || e->def.stepwise)
-          post_refusal(e, client, m, "this page saves nothing");
-        else
-          add_task(e, client, m, e->tasks, &e->task_count);
-        break;
-      case MESSAGE_VERIFY:
-        verify_command(e, client, m);
-        break;
-      case MESSAGE_SCENE:
-        choose_scene(e, client, m);
-        break;
-      case MESSAGE_TIME:
-        set_time(e, client, m);
-        break;
-      case MESSAGE_PATHS:
-        engine_add_trace(e, client, m);
-        break;
-      case MESSAGE_PICK:
-      case MESSAGE_FOCUS:
-      case MESSAGE_OUTLINE:
-      case MESSAGE_OUTSIDE:
-      case MESSAGE_CAMERAS:
-      case MESSAGE_OVERLAY:
-        add_task(e, client, m, e->questions, &e->question_count);
-        break;
-      case MESSAGE_SEEN:
-      case MESSAGE_STEER:
-        break; /* the server's own */
-    }
-  }
+  if (!steers && !m->type->harmless)
+    engine_refuse(e, m, "another page steers");
+  else if (m->type->place == MESSAGE_AT_ONCE)
+    m->type->answer(e, m);
+  else if (m->type->place == MESSAGE_ASKS)
+    engine_add_task(e, m, &e->questions);
+  else if (e->def.lecture || e->def.stepwise)
+    engine_refuse(e, m, "this page saves nothing");
+  else
+    engine_add_task(e, m, &e->tasks);
   pthread_cond_broadcast(&e->wake);
   engine_unlock(e);
 }

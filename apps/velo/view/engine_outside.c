@@ -65,20 +65,20 @@ static double plane_distance(const ViewCamera *camera, const MessageField *given
   return d > 0.02 * arm && d < 4 * arm ? d : 0.4 * arm;
 }
 
-void engine_outline(Engine *e, const Task *task) {
+void engine_outline(Engine *e, const ViewMessage *m) {
   engine_lock(e);
   const ViewCamera camera = e->wanted.camera;
   engine_unlock(e);
-  const MessageField *point = find_field(&task->message, "point", 3);
+  const MessageField *point = find_field(m, "point", 3);
   vlDrawingDef def = vl_default_drawing_def();
   vlDrawing *drawing = NULL;
   vlError error = {0};
-  def.plane = plane_distance(&camera, find_field(&task->message, "plane", 1));
+  def.plane = plane_distance(&camera, find_field(m, "plane", 1));
   def.reach = fmax(1.3 * camera.units.lookat, 1.05 * def.plane);
   def.points = point ? point->numbers : NULL;
   def.point_count = point ? 1 : 0;
   vlResult result = vl_camera_outline(e->def.context, &camera.made, 1, &def, &drawing, &error);
-  Json *json = engine_reply_begin(task, result == VL_OK ? "outline" : "refused");
+  Json *json = engine_reply_begin(m, result == VL_OK ? "outline" : "refused");
   if (json) {
     if (result == VL_OK) {
       json_number(json, "plane", def.plane);
@@ -87,12 +87,12 @@ void engine_outline(Engine *e, const Task *task) {
     } else {
       json_text(json, "message", error.message);
     }
-    json_text_post(json, e->server, task->client);
+    json_text_post(json, e->server, m->client);
   }
   vl_drawing_destroy(drawing);
 }
 
-void engine_cameras(Engine *e, const Task *task) {
+void engine_cameras(Engine *e, const ViewMessage *m) {
   const Model *model = &e->model;
   vlDrawingDef def = vl_default_drawing_def();
   vlDrawing *drawing = NULL;
@@ -104,7 +104,7 @@ void engine_cameras(Engine *e, const Task *task) {
   if (model->camera_count)
     result = vl_camera_outline(e->def.context, model->cameras, model->camera_count, &def,
                                &drawing, &error);
-  Json *json = engine_reply_begin(task, result == VL_OK ? "cameras" : "refused");
+  Json *json = engine_reply_begin(m, result == VL_OK ? "cameras" : "refused");
   if (json) {
     if (result != VL_OK)
       json_text(json, "message", error.message);
@@ -117,7 +117,7 @@ void engine_cameras(Engine *e, const Task *task) {
       json_end(json, ']');
     }
     json_end(json, ']');
-    json_text_post(json, e->server, task->client);
+    json_text_post(json, e->server, m->client);
   }
   vl_drawing_destroy(drawing);
 }
@@ -178,7 +178,7 @@ static vlResult render_outside(const Engine *e, const vlCamera *camera, vlImage 
   return result;
 }
 
-void engine_outside(Engine *e, const Task *task) {
+void engine_outside(Engine *e, const ViewMessage *m) {
   vlCamera camera;
   vlImage *image = NULL, *shown = NULL;
   void *data = NULL;
@@ -186,20 +186,20 @@ void engine_outside(Engine *e, const Task *task) {
   vlError error = {0};
   vlWriteDef write = vl_default_write_def();
   write.quality = 85;
-  vlResult result = make_camera(&task->message, &camera, &error);
+  vlResult result = make_camera(m, &camera, &error);
   if (result == VL_OK)
     result = render_outside(e, &camera, &image, &error);
   if (result == VL_OK)
-    result = display_image(e->def.context, image, VL_VIEW_STANDARD,
-                           (float)task->message.exposure, false, &shown);
+    result = display_image(e->def.context, image, VL_VIEW_STANDARD, (float)m->exposure, false,
+                           &shown);
   if (result == VL_OK)
     result = vl_image_write_memory(shown, ".jpg", &write, &data, &size, &error);
   char *bytes = result == VL_OK ? to_base64(data, size) : NULL;
   Json *json =
-      result != VL_CANCELLED ? engine_reply_begin(task, bytes ? "outside" : "refused") : NULL;
+      result != VL_CANCELLED ? engine_reply_begin(m, bytes ? "outside" : "refused") : NULL;
   if (json) {
     json_text(json, bytes ? "data" : "message", bytes ? bytes : error.message);
-    json_text_post(json, e->server, task->client);
+    json_text_post(json, e->server, m->client);
   }
   free(bytes);
   vl_release(e->def.context, data);

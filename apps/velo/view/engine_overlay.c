@@ -58,8 +58,8 @@ static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
   free(boxes);
 }
 
-void engine_overlay(Engine *e, const Task *task) {
-  Json *json = engine_reply_begin(task, "overlay");
+void engine_overlay(Engine *e, const ViewMessage *m) {
+  Json *json = engine_reply_begin(m, "overlay");
   if (!json)
     return;
   engine_lock(e);
@@ -69,9 +69,9 @@ void engine_overlay(Engine *e, const Task *task) {
   const CameraPose pose = camera_pose(&camera);
   json_integer(json, "change", change);
   put_vanishing(json, &camera.made, pose.up);
-  if (task->message.curves || task->message.field)
-    engine_put_curves(json, &camera, &e->model.info, task->message.field);
-  if (task->message.boxes)
+  if (m->curves || m->field)
+    engine_put_curves(json, &camera, &e->model.info, m->field);
+  if (m->boxes)
     put_boxes(json, e, &camera.made);
-  json_text_post(json, e->server, task->client);
+  json_text_post(json, e->server, m->client);
 }

@@ -93,11 +93,11 @@ typedef struct Shot {
   vlRaw *raw;             /* the numbers; null: none */
 } Shot;
 
-/* A message that needs the world. */
-typedef struct Task {
-  uint32_t client;
-  ViewMessage message;
-} Task;
+/* Messages that wait to be answered. */
+typedef struct TaskList {
+  ViewMessage messages[MAX_TASKS];
+  uint32_t count;
+} TaskList;
 
 struct Engine {
   EngineDef def;
@@ -136,15 +136,13 @@ struct Engine {
   double at, shutter;
   bool has_time, time_due;
   uint32_t time_change;
-  Task tasks[MAX_TASKS], questions[MAX_TASKS]; /* for the render thread, for the answerer */
-  uint32_t task_count, question_count;
-  Task traces[MAX_TASKS]; /* pixels whose paths are to be traced: at most one of each page */
-  uint32_t trace_count,
-      trace_client; /* trace_client: the page whose paths are being traced; 0: none */
-  ViewTracer shown; /* of `film`; without one, of the next film */
+  TaskList tasks, questions; /* for the render thread, for the answerer */
+  TaskList traces;           /* pixels whose paths are to be traced: at most one of each page */
+  uint32_t trace_client;     /* the page whose paths are being traced; 0: none */
+  ViewTracer shown;          /* of `film`; without one, of the next film */
   /* the command that a page has copied last; null: none, or it is being verified */
   struct Copied *copied;
-  Task verification;          /* the message that asks for a verification */
+  ViewMessage verification;   /* the message that asks for a verification */
   bool verifying, verify_end; /* one is wanted or goes on; it shall end */
   /* the watcher's own */
   FileList files; /* of which the scene was made */
@@ -286,9 +284,11 @@ bool engine_coarse_next(Engine *engine);
 bool engine_render_error(Engine *engine);
 /* Posts the state to a page, or to all (0); the caller holds the lock. */
 void engine_post_state(Engine *engine, uint32_t client);
-/* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of
- * one gesture are one step; 0: none. */
-void engine_remember(Engine *engine, const ViewCamera *camera, uint32_t gesture);
+/* Shows another camera, which becomes the present one of the history; the caller holds the
+ * lock. change: the page's number of this change; gesture: edits of one gesture are one step;
+ * 0: none. */
+void engine_take_camera(Engine *engine, const ViewCamera *camera, uint32_t change,
+                        uint32_t gesture);
 /* The timeline: of the animation that is chosen; else of what moves by itself, where the
  * camera's shutter chooses the time. The caller holds the lock. */
 ViewTime engine_time(const Engine *engine);
@@ -305,17 +305,21 @@ void engine_offer(Engine *engine, Model *model, const char *path, uint32_t chang
 bool engine_load_choice(Engine *engine);
 /* Goes on with the scene that was loaded again, if there is one. Returns whether there was. */
 bool engine_swap_model(Engine *engine);
-/* Answers a task; on the render thread, without the lock. */
-void engine_answer(Engine *engine, const Task *task);
+/* Adds a task to a list that has room, or refuses it; the caller holds the lock. */
+void engine_add_task(Engine *engine, const ViewMessage *message, TaskList *tasks);
 /* Takes the first of a list of tasks; the caller holds the lock. False: there is none, or the
  * engine ends. */
-bool engine_take_task(const Engine *engine, Task *tasks, uint32_t *count, Task *first);
+bool engine_take_task(const Engine *engine, TaskList *tasks, ViewMessage *first);
 /* Answers the first question. False: there is none. */
 bool engine_answer_question(Engine *engine);
+/* Posts what a pixel sees. */
+void engine_pick(Engine *engine, const ViewMessage *message);
+/* Focuses the camera on what a pixel sees. */
+void engine_focus(Engine *engine, const ViewMessage *message);
 /* Writes a camera or an image; posts its name. */
-void engine_save(Engine *engine, const Task *task);
+void engine_save(Engine *engine, const ViewMessage *message);
 /* Writes the camera and posts the command that renders the present image. */
-void engine_command(Engine *engine, const Task *task);
+void engine_command(Engine *engine, const ViewMessage *message);
 /* The thread that runs the copied command and compares its image. */
 void *engine_verify_commands(void *engine);
 /* The settings of the present image; its crop, its samples and its tracer are those of the
@@ -325,16 +329,16 @@ vlSceneDefs engine_present_defs(const Engine *engine);
 int engine_write_film(Engine *engine);
 /* Posts vanishing points, horizon and, if asked for, the boxes of objects and the curves of
  * engine_put_curves. */
-void engine_overlay(Engine *engine, const Task *task);
+void engine_overlay(Engine *engine, const ViewMessage *message);
 /* Posts the lines that draw the camera from outside; a small image of the scene from
  * outside. */
-void engine_outline(Engine *engine, const Task *task);
-void engine_outside(Engine *engine, const Task *task);
+void engine_outline(Engine *engine, const ViewMessage *message);
+void engine_outside(Engine *engine, const ViewMessage *message);
 /* Posts the cameras of --trajectory, and the lines that draw them. */
-void engine_cameras(Engine *engine, const Task *task);
+void engine_cameras(Engine *engine, const ViewMessage *message);
 /* Adds a pixel whose paths are to be traced, in place of the page's one before; the caller
  * holds the lock. */
-void engine_add_trace(Engine *engine, uint32_t client, const ViewMessage *message);
+void engine_add_trace(Engine *engine, const ViewMessage *message);
 /* Drops the pixels of a page, or of all (0), because of `why`; the caller holds the lock. */
 void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
 /* Traces the paths of the first pixel. False: there is none. */
@@ -346,19 +350,19 @@ vlRenderDef engine_render_def(const Engine *engine, uint32_t spp);
 void engine_lock(Engine *engine);
 void engine_unlock(Engine *engine);
 /* Begins the answer to a task, as json_text_begin. */
-Json *engine_reply_begin(const Task *task, const char *type);
+Json *engine_reply_begin(const ViewMessage *message, const char *type);
 /* Posts a message of this type with these members (json_put) to a page, or to all (0). */
 void engine_post(Engine *engine, uint32_t client, const char *type, const char *members, ...)
     __attribute__((format(printf, 4, 5)));
 /* Posts why a message is not answered. */
-void engine_refuse(Engine *engine, const Task *task, const char *why);
+void engine_refuse(Engine *engine, const ViewMessage *message, const char *why);
 /* Writes the drawings over the image as curves in pixels, for every projection and distortion;
  * field: also where a pinhole would show the same things. */
 void engine_put_curves(Json *json, const ViewCamera *camera, const vlWorldInfo *info,
                        bool field);
 /* The server's calls. */
 void engine_greet(void *user, uint32_t client);
-void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *message);
+void engine_message(void *user, bool steers, const ViewMessage *message);
 void engine_clients(void *user, uint32_t count);
 
 #endif

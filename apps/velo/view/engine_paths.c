@@ -12,51 +12,46 @@
 enum { DEFAULT_SAMPLES = 16, DEFAULT_SHOWN = 16 };
 
 void engine_drop_traces(Engine *e, uint32_t client, const char *why) {
+  TaskList *traces = &e->traces;
   uint32_t kept = 0;
-  for (uint32_t i = 0; i < e->trace_count; i++) {
-    if (client && e->traces[i].client != client)
-      e->traces[kept++] = e->traces[i];
+  for (uint32_t i = 0; i < traces->count; i++) {
+    if (client && traces->messages[i].client != client)
+      traces->messages[kept++] = traces->messages[i];
     else
-      engine_refuse(e, &e->traces[i], why);
+      engine_refuse(e, &traces->messages[i], why);
   }
-  e->trace_count = kept;
+  traces->count = kept;
   if (e->trace_client && (!client || e->trace_client == client))
     vl_cancel_request(e->trace_stop);
 }
 
-void engine_add_trace(Engine *e, uint32_t client, const ViewMessage *m) {
-  const Task task = {.client = client, .message = *m};
-  engine_drop_traces(e, client, "another pixel was chosen");
-  if (e->trace_count == MAX_TASKS)
-    engine_refuse(e, &task, "too much at once");
-  else
-    e->traces[e->trace_count++] = task;
+void engine_add_trace(Engine *e, const ViewMessage *m) {
+  engine_drop_traces(e, m->client, "another pixel was chosen");
+  engine_add_task(e, m, &e->traces);
 }
 
-static void post_paths(Engine *e, const Task *task, const TracedPaths *traced) {
-  uint32_t most = task->message.show ? task->message.show : DEFAULT_SHOWN,
-           count = traced->paths->count;
+static void post_paths(Engine *e, const ViewMessage *m, const TracedPaths *traced) {
+  uint32_t most = m->show ? m->show : DEFAULT_SHOWN, count = traced->paths->count;
   const PathsReport report = {.file = e->def.path,
                               .world = e->model.world,
                               .traced = traced,
                               .shown = count < most ? count : most};
-  Json *json = engine_reply_begin(task, "paths");
+  Json *json = engine_reply_begin(m, "paths");
   if (!json)
     return;
   paths_put_json(json, &report);
-  json_text_post(json, e->server, task->client);
+  json_text_post(json, e->server, m->client);
 }
 
 /* Traces the pixel's paths: the samples of the image. */
-static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
-  const ViewMessage *m = &task->message;
+static void answer(Engine *e, const ViewMessage *m, const ViewCamera *camera) {
   const vlCamera *c = &camera->made;
   vlRenderDef render = e->model.job.defs->render;
   vlError error = {0};
   TracedPaths traced = {.paths = NULL};
   engine_set_tracer(&render, engine_shown(e));
   if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
-    engine_refuse(e, task, "the point is outside the image");
+    engine_refuse(e, m, "the point is outside the image");
     return;
   }
   if (render.tracer != VL_TRACER_PATH && render.tracer != VL_TRACER_VOLPATH) {
@@ -65,7 +60,7 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
         why, sizeof why,
         "paths of the tracer %s are not recorded; start velo view with --tracer path or volpath",
         kind_name("tracers", (int)render.tracer));
-    engine_refuse(e, task, why);
+    engine_refuse(e, m, why);
     return;
   }
   render.cancel = e->trace_stop;
@@ -79,27 +74,27 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
                                 .by_sample = m->by_sample};
   vlResult result = paths_trace(&request, &traced, &error);
   if (result == VL_OK)
-    post_paths(e, task, &traced);
+    post_paths(e, m, &traced);
   else
-    engine_refuse(e, task, error_text(&error, result));
+    engine_refuse(e, m, error_text(&error, result));
   paths_free(&traced);
 }
 
 bool engine_trace_next(Engine *e) {
-  static Task task; /* the thread that traces alone uses them */
+  static ViewMessage pixel; /* the thread that traces alone uses them */
   static ViewCamera camera;
   engine_lock(e);
-  bool any = engine_take_task(e, e->traces, &e->trace_count, &task);
+  bool any = engine_take_task(e, &e->traces, &pixel);
   if (any) {
     camera = e->wanted.camera;
-    e->trace_client = task.client;
+    e->trace_client = pixel.client;
     vl_cancel_clear(e->trace_stop);
   }
   engine_unlock(e);
   if (!any)
     return false;
   pthread_rwlock_rdlock(&e->model_lock);
-  answer(e, &task, &camera);
+  answer(e, &pixel, &camera);
   pthread_rwlock_unlock(&e->model_lock);
   engine_lock(e);
   e->trace_client = 0;

@@ -44,7 +44,7 @@ void engine_unlock(Engine *engine) {
 }
 
 static bool must_stop(const Engine *e) {
-  return e->quit || e->next || e->task_count || e->wanted.generation != e->now.generation;
+  return e->quit || e->next || e->tasks.count || e->wanted.generation != e->now.generation;
 }
 
 /* Whether the samples that are there are to be shown in another way. */
@@ -303,14 +303,14 @@ static bool wait_for_work(Engine *e) {
 }
 
 static void answer_tasks(Engine *e) {
-  static Task task; /* the render thread alone uses it */
+  static ViewMessage task; /* the render thread alone uses it */
   for (;;) {
     engine_lock(e);
-    bool any = engine_take_task(e, e->tasks, &e->task_count, &task);
+    bool any = engine_take_task(e, &e->tasks, &task);
     engine_unlock(e);
     if (!any)
       return;
-    engine_answer(e, &task);
+    task.type->answer(e, &task);
   }
 }
 
@@ -445,6 +445,7 @@ int engine_create(const EngineDef *def, Engine **result) {
 ServerCalls engine_calls(Engine *engine) {
   return (ServerCalls){.user = engine,
                        .greet = engine_greet,
+                       .types = message_types,
                        .message = engine_message,
                        .clients = engine_clients};
 }

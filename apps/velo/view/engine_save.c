@@ -46,8 +46,8 @@ static void scene_stem(const Engine *e, char stem[NAME_SIZE]) {
            name);
 }
 
-static void post_saved(Engine *e, const Task *task, const char *name) {
-  engine_post(e, task->client, "saved", "id %u, file %s", task->message.id, name);
+static void post_saved(Engine *e, const ViewMessage *m, const char *name) {
+  engine_post(e, m->client, "saved", "id %u, file %s", m->id, name);
 }
 
 static int choice_value(const Choice *choices, const char *name, int otherwise) {
@@ -60,7 +60,7 @@ static int choice_value(const Choice *choices, const char *name, int otherwise) 
 /* ---- files ------------------------------------------------------------------------------- */
 
 /* False after posting why not. */
-static bool write_camera(Engine *e, const Task *task, const char *path,
+static bool write_camera(Engine *e, const ViewMessage *m, const char *path,
                          vlCameraDialect dialect) {
   vlError error = {0};
   vlCameraFileDef def = vl_default_camera_file_def();
@@ -68,19 +68,20 @@ static bool write_camera(Engine *e, const Task *task, const char *path,
   def.dialect = dialect;
   vlResult result = vl_camera_write(e->def.context, path, &def, &record, &error);
   if (result != VL_OK)
-    engine_refuse(e, task, error_text(&error, result));
+    engine_refuse(e, m, error_text(&error, result));
   return result == VL_OK;
 }
 
-static void save_camera(Engine *e, const Task *task, const char *wanted, const char *dialect) {
+static void save_camera(Engine *e, const ViewMessage *m, const char *wanted,
+                        const char *dialect) {
   char name[NAME_SIZE];
   int found = choice_value(kind_choices(dialects), dialect, -1);
   if (found < 0 || found == VL_CAMERA_DIALECT_EXR)
-    return engine_refuse(e, task, "there is no such dialect");
+    return engine_refuse(e, m, "there is no such dialect");
   if (!free_name(wanted, name))
-    return engine_refuse(e, task, too_many);
-  if (write_camera(e, task, name, (vlCameraDialect)found))
-    post_saved(e, task, name);
+    return engine_refuse(e, m, too_many);
+  if (write_camera(e, m, name, (vlCameraDialect)found))
+    post_saved(e, m, name);
 }
 
 vlSceneDefs engine_present_defs(const Engine *e) {
@@ -111,42 +112,41 @@ static vlResult present_image(Engine *e, vlImage **image) {
 }
 
 /* The raw image of the mode "camera", or what is developed of it. */
-static void save_exposure(Engine *e, const Task *task, const char *wanted) {
+static void save_exposure(Engine *e, const ViewMessage *m, const char *wanted) {
   char name[NAME_SIZE];
   vlError error = {0};
   vlImage *image = NULL;
   const bool raw = text_ends_with(wanted, ".dng");
   if (e->now.channel != CHANNEL_CAMERA || !e->shot.raw || e->shot.scale != 1)
-    return engine_refuse(e, task,
+    return engine_refuse(e, m,
                          "a raw file (.dng) needs an exposure: show the image as the "
                          "camera sees it");
   if (!raw && !text_ends_with(wanted, ".png") && !text_ends_with(wanted, ".jpg") &&
       !text_ends_with(wanted, ".exr"))
-    return engine_refuse(e, task, "formats of an exposure are .dng .png .jpg .exr");
+    return engine_refuse(e, m, "formats of an exposure are .dng .png .jpg .exr");
   if (!free_name(wanted, name))
-    return engine_refuse(e, task, too_many);
+    return engine_refuse(e, m, too_many);
   vlResult result = raw ? vl_raw_write(e->shot.raw, name, &error)
                         : vl_raw_develop(e->shot.raw, NULL, &image, &error);
   if (result == VL_OK && !raw)
     result = vl_image_write(image, name, NULL, &error);
   vl_image_destroy(image);
   if (result == VL_OK)
-    post_saved(e, task, name);
+    post_saved(e, m, name);
   else
-    engine_refuse(e, task, error_text(&error, result));
+    engine_refuse(e, m, error_text(&error, result));
 }
 
-static void save_image(Engine *e, const Task *task, const char *wanted) {
+static void save_image(Engine *e, const ViewMessage *m, const char *wanted) {
   char name[NAME_SIZE];
-  const ViewMessage *m = &task->message;
   if (!e->film || !vl_film_spp(e->film))
-    return engine_refuse(e, task, "the image has no samples yet");
+    return engine_refuse(e, m, "the image has no samples yet");
   if (e->now.channel == CHANNEL_CAMERA || text_ends_with(wanted, ".dng"))
-    return save_exposure(e, task, wanted);
+    return save_exposure(e, m, wanted);
   if (!output_is_known(wanted))
-    return engine_refuse(e, task, "formats are .exr .png .jpg .hdr .pfm .tga");
+    return engine_refuse(e, m, "formats are .exr .png .jpg .hdr .pfm .tga");
   if (!free_name(wanted, name))
-    return engine_refuse(e, task, too_many);
+    return engine_refuse(e, m, too_many);
   Outputs outputs = {.paths = {name},
                      .count = 1,
                      .view = (vlView)choice_value(view_choices, m->view, VL_VIEW_STANDARD),
@@ -158,20 +158,19 @@ static void save_image(Engine *e, const Task *task, const char *wanted) {
         outputs_write(e->def.context, &outputs, image, vl_film_spp(e->film), OUTPUT_FINISHED);
   vl_image_destroy(image);
   if (status == STATUS_OK)
-    post_saved(e, task, name);
+    post_saved(e, m, name);
   else
-    engine_refuse(e, task, "the image could not be written; the terminal has the reason");
+    engine_refuse(e, m, "the image could not be written; the terminal has the reason");
 }
 
-void engine_save(Engine *e, const Task *task) {
-  const ViewMessage *m = &task->message;
+void engine_save(Engine *e, const ViewMessage *m) {
   if (!name_is_plain(m->name))
-    return engine_refuse(e, task, "the name must be that of a file in this folder");
+    return engine_refuse(e, m, "the name must be that of a file in this folder");
   if (strcmp(m->what, "camera") == 0)
-    return save_camera(e, task, m->name, m->dialect);
+    return save_camera(e, m, m->name, m->dialect);
   if (strcmp(m->what, "image") == 0)
-    return save_image(e, task, m->name);
-  engine_refuse(e, task, "only cameras and images can be saved");
+    return save_image(e, m, m->name);
+  engine_refuse(e, m, "only cameras and images can be saved");
 }
 
 /* ---- the command ------------------------------------------------------------------------- */
@@ -304,16 +303,15 @@ static void put_command(FILE *out, const Engine *e, const Copied *copied, const 
 }
 
 /* Null after posting why not. */
-static Copied *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
+static Copied *make_command(Engine *e, const ViewMessage *m, char camera[NAME_SIZE]) {
   char stem[NAME_SIZE - 40], whole[NAME_SIZE];
-  const ViewMessage *m = &task->message;
   scene_stem(e, whole);
   snprintf(stem, sizeof stem, "%.200s-view", whole);
   Copied *copied = calloc(1, sizeof *copied);
   FILE *out = copied ? open_memstream(&copied->words, &copied->size) : NULL;
   if (!out) {
     copied_free(copied);
-    engine_refuse(e, task, "out of memory");
+    engine_refuse(e, m, "out of memory");
     return NULL;
   }
   copied->exposure = m->exposure;
@@ -321,13 +319,13 @@ static Copied *make_command(Engine *e, const Task *task, char camera[NAME_SIZE])
   copied->spp = vl_film_spp(e->film);
   bool ok = free_pair(stem, camera, copied->file);
   if (!ok)
-    engine_refuse(e, task, too_many);
-  ok = ok && write_camera(e, task, camera, VL_CAMERA_DIALECT_VELO);
+    engine_refuse(e, m, too_many);
+  ok = ok && write_camera(e, m, camera, VL_CAMERA_DIALECT_VELO);
   if (ok)
     put_command(out, e, copied, camera);
   bool whole_text = fclose(out) == 0;
   if (ok && (!whole_text || present_image(e, &copied->image) != VL_OK)) {
-    engine_refuse(e, task, "out of memory");
+    engine_refuse(e, m, "out of memory");
     ok = false;
   }
   if (ok)
@@ -374,12 +372,12 @@ static void keep_command(Engine *e, Copied *copied) {
 
 /* Posts a command, the camera's file, the image and its samples; frees the command. Null:
  * memory is exhausted. */
-static void post_command(Engine *e, const Task *task, char *command, const char *camera,
+static void post_command(Engine *e, const ViewMessage *m, char *command, const char *camera,
                          const char *image, uint32_t spp) {
-  Json *json = command ? engine_reply_begin(task, "command") : NULL;
+  Json *json = command ? engine_reply_begin(m, "command") : NULL;
   if (json) {
     json_put(json, "command %s, file %s, image %s, spp %u", command, camera, image, spp);
-    json_text_post(json, e->server, task->client);
+    json_text_post(json, e->server, m->client);
   }
   free(command);
 }
@@ -453,34 +451,34 @@ static char *exposure_text(const Engine *e, const char *camera, const char *imag
 }
 
 /* Posts the commands that render the light of the present exposure and expose the sensor. */
-static void exposure_command(Engine *e, const Task *task) {
+static void exposure_command(Engine *e, const ViewMessage *m) {
   char stem[NAME_SIZE - 60], whole[NAME_SIZE], camera[NAME_SIZE], image[NAME_SIZE],
       raw[NAME_SIZE];
   if (!e->shot.raw || e->shot.scale != 1)
-    return engine_refuse(e, task, "the image has no samples yet");
+    return engine_refuse(e, m, "the image has no samples yet");
   if (e->now.sensor.white == VIEW_WHITE_AUTO)
-    return engine_refuse(e, task, "the white auto is this image's; a command has D65 or A");
+    return engine_refuse(e, m, "the white auto is this image's; a command has D65 or A");
   scene_stem(e, whole);
   snprintf(stem, sizeof stem, "%.190s-sensor", whole);
   if (!free_pair(stem, camera, image))
-    return engine_refuse(e, task, too_many);
+    return engine_refuse(e, m, too_many);
   snprintf(raw, sizeof raw, "%.*s.dng", (int)strlen(image) - 4, image);
   strcpy(image + strlen(image) - 4, ".exr");
-  if (!write_camera(e, task, camera, VL_CAMERA_DIALECT_VELO))
+  if (!write_camera(e, m, camera, VL_CAMERA_DIALECT_VELO))
     return;
   keep_command(e, NULL); /* what is verified is one command */
-  post_command(e, task, exposure_text(e, camera, image, raw), camera, raw, e->shot.spp);
+  post_command(e, m, exposure_text(e, camera, image, raw), camera, raw, e->shot.spp);
 }
 
-void engine_command(Engine *e, const Task *task) {
+void engine_command(Engine *e, const ViewMessage *m) {
   char camera[NAME_SIZE];
   if (!e->film || !vl_film_spp(e->film))
-    return engine_refuse(e, task, "the image has no samples yet");
+    return engine_refuse(e, m, "the image has no samples yet");
   if (e->now.channel == CHANNEL_CAMERA)
-    return exposure_command(e, task);
-  Copied *copied = make_command(e, task, camera);
+    return exposure_command(e, m);
+  Copied *copied = make_command(e, m, camera);
   if (!copied)
     return;
   keep_command(e, copied);
-  post_command(e, task, command_text(copied), camera, copied->file, copied->spp);
+  post_command(e, m, command_text(copied), camera, copied->file, copied->spp);
 }

@@ -7,15 +7,16 @@
 #include "velo/focus.h"
 #include "view/engine_status.h"
 
-Json *engine_reply_begin(const Task *task, const char *type) {
+Json *engine_reply_begin(const ViewMessage *m, const char *type) {
   Json *json = json_text_begin(type);
   if (json)
-    json_integer(json, "id", task->message.id);
+    json_integer(json, "id", m->id);
   return json;
 }
 
-void engine_refuse(Engine *e, const Task *task, const char *why) {
-  engine_post(e, task->client, "refused", "id %u, message %s", task->message.id, why);
+void engine_refuse(Engine *e, const ViewMessage *m, const char *why) {
+  engine_post(e, m->client, "refused", "change %u, id %u, field %s, message %s", m->change,
+              m->id, m->field_count ? m->fields[0].name : "", why);
 }
 
 static ViewCamera present_camera(Engine *e) {
@@ -53,12 +54,11 @@ static void put_id(Json *json, const Engine *e, const vlImage *ids, const char *
   json_end(json, '}');
 }
 
-static void pick(Engine *e, const Task *task) {
-  const ViewMessage *m = &task->message;
+void engine_pick(Engine *e, const ViewMessage *m) {
   const ViewCamera camera = present_camera(e);
   const vlCamera *c = &camera.made;
   if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
-    engine_refuse(e, task, "the point is outside the image");
+    engine_refuse(e, m, "the point is outside the image");
     return;
   }
   vlChannelsDef def = vl_default_channels_def(c->width, c->height);
@@ -71,9 +71,9 @@ static void pick(Engine *e, const Task *task) {
   vlImage *floats = NULL, *ids = NULL;
   vlError error = {0};
   vlResult result = vl_render_channels(e->model.world, c, &def, &floats, &ids, &error);
-  Json *json = result == VL_OK ? engine_reply_begin(task, "picked") : NULL;
+  Json *json = result == VL_OK ? engine_reply_begin(m, "picked") : NULL;
   if (result != VL_OK)
-    engine_refuse(e, task, error.message);
+    engine_refuse(e, m, error.message);
   if (json) {
     static const char *const vectors[][4] = {{"P", "P.X", "P.Y", "P.Z"},
                                              {"N", "N.X", "N.Y", "N.Z"},
@@ -91,14 +91,13 @@ static void pick(Engine *e, const Task *task) {
     put_id(json, e, ids, "id.object", VL_ID_OBJECT, "object");
     put_id(json, e, ids, "id.material", VL_ID_MATERIAL, "material");
     put_id(json, e, ids, "id.instance", VL_ID_INSTANCE, "instance");
-    json_text_post(json, e->server, task->client);
+    json_text_post(json, e->server, m->client);
   }
   vl_image_destroy(floats);
   vl_image_destroy(ids);
 }
 
-static void focus(Engine *e, const Task *task) {
-  const ViewMessage *m = &task->message;
+void engine_focus(Engine *e, const ViewMessage *m) {
   const ViewCamera camera = present_camera(e);
   ViewCamera next;
   vlError error = {0};
@@ -110,52 +109,40 @@ static void focus(Engine *e, const Task *task) {
     result = camera_set_focus(&e->wanted.camera, distance, &next, &error);
   if (result != VL_OK) {
     engine_unlock(e);
-    engine_refuse(e, task, error.message);
+    engine_refuse(e, m, error.message);
     return;
   }
-  if (e->wanted.change < m->change)
-    e->wanted.change = m->change;
-  engine_remember(e, &next, 0);
-  e->wanted.camera = next;
-  e->wanted.generation++;
-  engine_interrupt(e);
-  engine_drop_traces(e, 0, "the camera moved");
+  const uint32_t change = e->wanted.change > m->change ? e->wanted.change : m->change;
+  engine_take_camera(e, &next, change, 0);
   pthread_cond_broadcast(&e->wake);
-  engine_post_state(e, 0);
   engine_unlock(e);
 }
 
-/* Of the messages that become tasks and questions. */
-static void (*const answers[])(Engine *, const Task *) = {[MESSAGE_PICK] = pick,
-                                                          [MESSAGE_FOCUS] = focus,
-                                                          [MESSAGE_SAVE] = engine_save,
-                                                          [MESSAGE_COMMAND] = engine_command,
-                                                          [MESSAGE_OVERLAY] = engine_overlay,
-                                                          [MESSAGE_OUTLINE] = engine_outline,
-                                                          [MESSAGE_OUTSIDE] = engine_outside,
-                                                          [MESSAGE_CAMERAS] = engine_cameras};
-
-void engine_answer(Engine *e, const Task *task) {
-  answers[task->message.kind](e, task);
+void engine_add_task(Engine *e, const ViewMessage *m, TaskList *tasks) {
+  if (tasks->count == MAX_TASKS)
+    engine_refuse(e, m, "too much at once");
+  else
+    tasks->messages[tasks->count++] = *m;
 }
 
-bool engine_take_task(const Engine *e, Task *tasks, uint32_t *count, Task *first) {
-  if (e->quit || *count == 0)
+bool engine_take_task(const Engine *e, TaskList *tasks, ViewMessage *first) {
+  if (e->quit || tasks->count == 0)
     return false;
-  *first = tasks[0];
-  memmove(tasks, tasks + 1, --*count * sizeof *tasks);
+  *first = tasks->messages[0];
+  tasks->count--;
+  memmove(tasks->messages, tasks->messages + 1, tasks->count * sizeof *tasks->messages);
   return true;
 }
 
 bool engine_answer_question(Engine *e) {
-  static Task task; /* the thread that answers alone uses it */
+  static ViewMessage question; /* the thread that answers alone uses it */
   engine_lock(e);
-  bool any = engine_take_task(e, e->questions, &e->question_count, &task);
+  bool any = engine_take_task(e, &e->questions, &question);
   engine_unlock(e);
   if (!any)
     return false;
   pthread_rwlock_rdlock(&e->model_lock);
-  engine_answer(e, &task);
+  question.type->answer(e, &question);
   pthread_rwlock_unlock(&e->model_lock);
   return true;
 }

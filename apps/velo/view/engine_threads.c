@@ -20,14 +20,14 @@ static void *serve(Engine *e, bool (*waits)(const Engine *), bool (*work)(Engine
 }
 
 static bool question_waits(const Engine *e) {
-  return e->question_count > 0;
+  return e->questions.count > 0;
 }
 static void *answer(void *user) {
   return serve(user, question_waits, engine_answer_question);
 }
 
 static bool trace_waits(const Engine *e) {
-  return e->trace_count > 0;
+  return e->traces.count > 0;
 }
 static void *trace(void *user) {
   return serve(user, trace_waits, engine_trace_next);

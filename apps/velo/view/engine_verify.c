@@ -205,8 +205,8 @@ static bool compare(Verification *v) {
 
 /* ---- the thread -------------------------------------------------------------------------- */
 
-static void post_verified(const Verification *v, const Task *task, bool same) {
-  Json *json = engine_reply_begin(task, "verified");
+static void post_verified(const Verification *v, const ViewMessage *m, bool same) {
+  Json *json = engine_reply_begin(m, "verified");
   if (!json)
     return;
   json_put(json, "same %i, file %s", same, v->copied->file);
@@ -215,7 +215,7 @@ static void post_verified(const Verification *v, const Task *task, bool same) {
   } else {
     json_text(json, "message", v->message);
   }
-  json_text_post(json, v->engine->server, task->client);
+  json_text_post(json, v->engine->server, m->client);
 }
 
 static bool verify(Verification *v) {
@@ -228,7 +228,7 @@ static bool verify(Verification *v) {
 
 void *engine_verify_commands(void *user) {
   Engine *e = user;
-  static Task task; /* this thread alone uses it */
+  static ViewMessage asked; /* this thread alone uses it */
   for (;;) {
     engine_lock(e);
     while (!e->quit && !e->verifying)
@@ -236,13 +236,13 @@ void *engine_verify_commands(void *user) {
     const bool quit = e->quit;
     Copied *copied = e->copied;
     e->copied = NULL;
-    task = e->verification;
+    asked = e->verification;
     engine_unlock(e);
     Verification v = {.engine = e, .copied = copied};
     const bool same = !quit && verify(&v);
     engine_lock(e);
     if (!quit)
-      post_verified(&v, &task, same);
+      post_verified(&v, &asked, same);
     e->verifying = false;
     if (!e->copied) { /* it may be verified again */
       e->copied = copied;

@@ -3,25 +3,75 @@
 
 #include <jansson.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char *const kinds[] = {"seen",     "camera",  "undo",    "redo",    "reset",
-                                    "settings", "pick",    "focus",   "save",    "command",
-                                    "verify",   "overlay", "outline", "outside", "paths",
-                                    "cameras",  "steer",   "scene",   "sensor",  "time"};
-enum { KINDS = sizeof kinds / sizeof *kinds };
-
 /* The following functions return false for a value of a wrong type or out of range, and say
- * why. A missing value is right. */
+ * why. */
 
 typedef struct Reader {
   const json_t *object;
   char *why; /* VL_GIVEN_MESSAGE bytes */
 } Reader;
 
+typedef enum MemberKind {
+  KIND_COUNT,  /* uint32_t */
+  KIND_NUMBER, /* double */
+  KIND_FLAG,   /* bool */
+  KIND_PAIR,   /* uint32_t[2]: numbers of pixels; null: all 0 */
+  KIND_BOX,    /* uint32_t[4] */
+  KIND_TEXT,   /* char[MESSAGE_NAME] */
+  KIND_FIELDS  /* MessageField[] */
+} MemberKind;
+
 static const vlParameter serial_row = {.type = VL_PARAMETER_COUNT};
+static const vlParameter flag_row = {.type = VL_PARAMETER_BOOL};
 static const vlParameter shutter_row = {.type = VL_PARAMETER_DOUBLE, .low = 0, .high = 1e6};
+
+#define TO(MEMBER) offsetof(ViewMessage, MEMBER)
+
+/* What a member is, and where it is put. A number has the limits of its row; without one, of
+ * the setting of a group. */
+typedef struct Member {
+  MessageMember member;
+  const char *name;
+  MemberKind kind;
+  size_t to;
+  const vlParameter *row;
+  vlSettingGroup group;
+  const char *setting; /* null: its name is the member's */
+} Member;
+
+static const Member members[] = {
+    {MEMBER_SERIAL, "serial", KIND_COUNT, TO(serial), .row = &serial_row},
+    {MEMBER_CHANGE, "change", KIND_COUNT, TO(change), .row = &serial_row},
+    {MEMBER_GESTURE, "gesture", KIND_COUNT, TO(gesture), .row = &serial_row},
+    {MEMBER_ID, "id", KIND_COUNT, TO(id), .row = &serial_row},
+    {MEMBER_X, "x", KIND_NUMBER, TO(x), .group = VL_SETTING_PROGRAM},
+    {MEMBER_Y, "y", KIND_NUMBER, TO(y), .group = VL_SETTING_PROGRAM},
+    {MEMBER_EXPOSURE, "exposure", KIND_NUMBER, TO(exposure), .group = VL_SETTING_PROGRAM},
+    {MEMBER_AT, "at", KIND_NUMBER, TO(at), .group = VL_SETTING_LOAD, .setting = "time"},
+    {MEMBER_SHUTTER, "shutter", KIND_NUMBER, TO(shutter), .row = &shutter_row},
+    {MEMBER_SAMPLES, "samples", KIND_COUNT, TO(samples), .group = VL_SETTING_PROGRAM},
+    {MEMBER_SHOW, "show", KIND_COUNT, TO(show), .group = VL_SETTING_PROGRAM},
+    {MEMBER_SPP, "spp", KIND_COUNT, TO(spp), .group = VL_SETTING_RENDER},
+    {MEMBER_PAUSED, "paused", KIND_FLAG, TO(paused), .row = &flag_row},
+    {MEMBER_DENOISE, "denoise", KIND_FLAG, TO(denoise), .row = &flag_row},
+    {MEMBER_BOXES, "boxes", KIND_FLAG, TO(boxes), .row = &flag_row},
+    {MEMBER_CURVES, "curves", KIND_FLAG, TO(curves), .row = &flag_row},
+    {MEMBER_FIELD, "field", KIND_FLAG, TO(field), .row = &flag_row},
+    {MEMBER_MARK, "mark", KIND_FLAG, TO(mark), .row = &flag_row},
+    {MEMBER_BY_SAMPLE, "by_sample", KIND_FLAG, TO(by_sample), .row = &flag_row},
+    {MEMBER_END, "end", KIND_FLAG, TO(end), .row = &flag_row},
+    {MEMBER_CROP, "crop", KIND_BOX, TO(crop)},
+    {MEMBER_SIZE, "size", KIND_PAIR, TO(size)},
+    {MEMBER_CHANNEL, "channel", KIND_TEXT, TO(channel)},
+    {MEMBER_WHAT, "what", KIND_TEXT, TO(what)},
+    {MEMBER_NAME, "name", KIND_TEXT, TO(name)},
+    {MEMBER_DIALECT, "dialect", KIND_TEXT, TO(dialect)},
+    {MEMBER_VIEW, "view", KIND_TEXT, TO(view)},
+    {MEMBER_SET, "set", KIND_FIELDS, TO(fields)}};
 
 static bool refuse(const Reader *r, const char *format, const char *key) {
   snprintf(r->why, VL_GIVEN_MESSAGE, format, key);
@@ -41,38 +91,19 @@ static vlGiven given_of(const json_t *item) {
   return given;
 }
 
-static bool read_number(const Reader *r, const char *key, const vlParameter *row, double *value,
-                        bool *given) {
-  const json_t *item = json_object_get(r->object, key);
-  if (!item)
-    return true;
-  const vlGiven found = given_of(item);
-  if (!vl_given_check(row, key, &found, value, r->why))
+static bool read_number(const Reader *r, const Member *member, const json_t *item, void *to) {
+  const vlGiven given = given_of(item);
+  const char *setting = member->setting ? member->setting : member->name;
+  const vlParameter *row = member->row ? member->row : vl_setting(member->group, setting);
+  double number;
+  if (!vl_given_check(row, member->name, &given, &number, r->why))
     return false;
-  if (given)
-    *given = true;
-  return true;
-}
-
-static bool read_setting(const Reader *r, const char *key, double *value) {
-  return read_number(r, key, vl_setting(VL_SETTING_PROGRAM, key), value, NULL);
-}
-
-static bool read_count(const Reader *r, const char *key, const vlParameter *row,
-                       uint32_t *value, bool *given) {
-  double number = *value;
-  if (!read_number(r, key, row, &number, given))
-    return false;
-  *value = (uint32_t)number;
-  return true;
-}
-
-static bool read_bool(const Reader *r, const char *key, bool *value, bool *given) {
-  static const vlParameter row = {.type = VL_PARAMETER_BOOL};
-  double number = *value;
-  if (!read_number(r, key, &row, &number, given))
-    return false;
-  *value = number != 0;
+  if (member->kind == KIND_NUMBER)
+    *(double *)to = number;
+  else if (member->kind == KIND_FLAG)
+    *(bool *)to = number != 0;
+  else
+    *(uint32_t *)to = (uint32_t)number;
   return true;
 }
 
@@ -89,25 +120,11 @@ static bool copy_text(const json_t *item, char *text, size_t size) {
   return true;
 }
 
-static bool read_text(const Reader *r, const char *key, char text[MESSAGE_NAME], bool *given) {
-  const json_t *item = json_object_get(r->object, key);
-  if (!item)
-    return true;
-  if (given)
-    *given = true;
-  return copy_text(item, text, MESSAGE_NAME) ||
-         refuse(r, "%s must be text of at most 199 bytes", key);
-}
-
 /* An array of `count` numbers of sides or edges; null: all 0. */
-static bool read_counts(const Reader *r, const char *key, uint32_t count, uint32_t *values,
-                        bool *given) {
-  const json_t *item = json_object_get(r->object, key);
+static bool read_counts(const Reader *r, const char *key, uint32_t count, const json_t *item,
+                        uint32_t *values) {
   const vlParameter edge = {.type = VL_PARAMETER_COUNT,
                             .high = vl_setting(VL_SETTING_PROGRAM, "width")->high};
-  if (!item)
-    return true;
-  *given = true;
   if (json_is_null(item))
     return true;
   if (!json_is_array(item) || json_array_size(item) != count)
@@ -153,10 +170,7 @@ static bool read_field(const char *name, const json_t *value, MessageField *fiel
   return true;
 }
 
-static bool read_fields(const Reader *r, ViewMessage *message) {
-  json_t *set = json_object_get(r->object, "set");
-  if (!set)
-    return true;
+static bool read_fields(const Reader *r, json_t *set, ViewMessage *message) {
   if (!json_is_object(set) || json_object_size(set) > MESSAGE_FIELDS)
     return refuse(r, "%s must be names and values", "set");
   const char *name;
@@ -169,35 +183,54 @@ static bool read_fields(const Reader *r, ViewMessage *message) {
   return true;
 }
 
-static bool read_members(const Reader *r, ViewMessage *m) {
-  const vlParameter *samples = vl_setting(VL_SETTING_PROGRAM, "samples");
-  const vlParameter *show = vl_setting(VL_SETTING_PROGRAM, "show");
-  const vlParameter *time = vl_setting(VL_SETTING_LOAD, "time");
-  return read_count(r, "serial", &serial_row, &m->serial, NULL) &&
-         read_count(r, "change", &serial_row, &m->change, NULL) &&
-         read_count(r, "gesture", &serial_row, &m->gesture, NULL) &&
-         read_count(r, "id", &serial_row, &m->id, NULL) && read_setting(r, "x", &m->x) &&
-         read_setting(r, "y", &m->y) && read_setting(r, "exposure", &m->exposure) &&
-         read_number(r, "at", time, &m->at, NULL) &&
-         read_number(r, "shutter", &shutter_row, &m->shutter, NULL) &&
-         read_count(r, "samples", samples, &m->samples, NULL) &&
-         read_count(r, "show", show, &m->show, NULL) &&
-         read_count(r, "spp", vl_setting(VL_SETTING_RENDER, "spp"), &m->spp, &m->has_spp) &&
-         read_bool(r, "paused", &m->paused, &m->has_paused) &&
-         read_bool(r, "denoise", &m->denoise, &m->has_denoise) &&
-         read_bool(r, "boxes", &m->boxes, NULL) && read_bool(r, "curves", &m->curves, NULL) &&
-         read_bool(r, "field", &m->field, NULL) && read_bool(r, "mark", &m->mark, NULL) &&
-         read_bool(r, "by_sample", &m->by_sample, NULL) && read_bool(r, "end", &m->end, NULL) &&
-         read_counts(r, "crop", 4, m->crop, &m->has_crop) &&
-         read_counts(r, "size", 2, m->size, &m->has_size) &&
-         read_text(r, "channel", m->channel, &m->has_channel) &&
-         read_text(r, "what", m->what, NULL) && read_text(r, "name", m->name, NULL) &&
-         read_text(r, "dialect", m->dialect, NULL) && read_text(r, "view", m->view, NULL) &&
-         read_fields(r, m);
+static bool read_member(const Reader *r, const Member *member, ViewMessage *message) {
+  json_t *item = json_object_get(r->object, member->name);
+  void *to = (char *)message + member->to;
+  if (!item)
+    return true;
+  message->given |= member->member;
+  switch (member->kind) {
+    case KIND_COUNT:
+    case KIND_NUMBER:
+    case KIND_FLAG:
+      return read_number(r, member, item, to);
+    case KIND_PAIR:
+      return read_counts(r, member->name, 2, item, to);
+    case KIND_BOX:
+      return read_counts(r, member->name, 4, item, to);
+    case KIND_TEXT:
+      return copy_text(item, to, MESSAGE_NAME) ||
+             refuse(r, "%s must be text of at most 199 bytes", member->name);
+    case KIND_FIELDS:
+      return read_fields(r, item, message);
+  }
+  return false;
 }
 
-bool message_parse(const char *text, size_t size, ViewMessage *message,
-                   char why[VL_GIVEN_MESSAGE]) {
+static bool read_members(const Reader *r, ViewMessage *message) {
+  const uint32_t wanted = message->type->members | MEMBER_CHANGE | MEMBER_ID;
+  for (size_t i = 0; i < sizeof members / sizeof *members; i++)
+    if ((wanted & (uint32_t)members[i].member) && !read_member(r, &members[i], message))
+      return false;
+  return true;
+}
+
+/* The type of a message; null after saying which there are. */
+static const MessageType *find_type(const MessageType *types, const Reader *r) {
+  const char *name = json_string_value(json_object_get(r->object, "type"));
+  const char *names[MESSAGE_TYPES];
+  int count = 0;
+  for (const MessageType *type = types; type->name; type++) {
+    if (name && strcmp(name, type->name) == 0)
+      return type;
+    names[count++] = type->name;
+  }
+  vl_unknown_name("type of message", "", name ? name : "", names, count, r->why);
+  return NULL;
+}
+
+bool message_parse(const MessageType *types, const char *text, size_t size,
+                   ViewMessage *message, char why[VL_GIVEN_MESSAGE]) {
   memset(message, 0, sizeof *message);
   strcpy(why, "not a JSON object");
   if (size > MESSAGE_MAX_SIZE) {
@@ -206,19 +239,9 @@ bool message_parse(const char *text, size_t size, ViewMessage *message,
   }
   json_error_t error;
   json_t *object = json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
-  if (!json_is_object(object)) {
-    json_decref(object);
-    return false;
-  }
-  const char *type = json_string_value(json_object_get(object, "type"));
-  int kind = 0;
-  while (kind < KINDS && !(type && strcmp(type, kinds[kind]) == 0))
-    kind++;
-  if (kind == KINDS)
-    vl_unknown_name("type of message", "", type ? type : "", kinds, KINDS, why);
   const Reader reader = {object, why};
-  message->kind = kind < KINDS ? (MessageKind)kind : MESSAGE_SEEN;
-  bool good = kind < KINDS && read_members(&reader, message);
+  message->type = json_is_object(object) ? find_type(types, &reader) : NULL;
+  bool good = message->type && read_members(&reader, message);
   json_decref(object);
   return good;
 }

@@ -9,31 +9,65 @@ enum {
   MESSAGE_MAX_SIZE = 65536, /* bytes */
   MESSAGE_NAME = 200,       /* longest text of a message, bytes with the zero */
   MESSAGE_NUMBERS = 16,     /* most numbers of a field */
-  MESSAGE_FIELDS = 40       /* most fields of an edit */
+  MESSAGE_FIELDS = 40,      /* most fields of an edit */
+  MESSAGE_TYPES = 32        /* most types */
 };
 
-typedef enum MessageKind {
-  MESSAGE_SEEN,     /* a frame is drawn: serial */
-  MESSAGE_CAMERA,   /* edit the camera: change, gesture, fields */
-  MESSAGE_UNDO,     /* the camera before the last gesture */
-  MESSAGE_REDO,     /* the camera before the last undo */
-  MESSAGE_RESET,    /* the camera of the scene */
-  MESSAGE_SETTINGS, /* spp, paused, crop, channel, denoise, mark: those that are given */
-  MESSAGE_PICK,     /* what a pixel sees: id, x, y */
-  MESSAGE_FOCUS,    /* focus on a pixel: x, y */
-  MESSAGE_SAVE,     /* write a file: id, what, name, dialect, exposure, view */
-  MESSAGE_COMMAND,  /* write the camera and tell the command: id, exposure, view */
-  MESSAGE_VERIFY,   /* run the command that was told last: id; end: ends that */
-  MESSAGE_OVERLAY,  /* vanishing points, horizon, boxes, curves: id, boxes, curves, field */
-  MESSAGE_OUTLINE,  /* the camera as lines: id, fields: point */
-  MESSAGE_OUTSIDE,  /* the scene from outside: id, size, exposure, fields: eye, lookat, up */
-  MESSAGE_PATHS,    /* the paths of a pixel: id, x, y, samples, show, by_sample */
-  MESSAGE_CAMERAS,  /* the cameras of --trajectory as lines: id */
-  MESSAGE_STEER,    /* the sender steers from now on, and no other page */
-  MESSAGE_SCENE,    /* another scene of the lecture: name, change */
-  MESSAGE_SENSOR,   /* edit the sensor of the mode "camera": change, fields */
-  MESSAGE_TIME      /* the shutter opens at another time: at, shutter, change, gesture */
-} MessageKind;
+/* Members of a message. */
+typedef enum MessageMember {
+  MEMBER_CHANGE = 1 << 0, /* each type has this one, */
+  MEMBER_ID = 1 << 1,     /* and this: the number of the answer */
+  MEMBER_SERIAL = 1 << 2,
+  MEMBER_GESTURE = 1 << 3,
+  MEMBER_X = 1 << 4,
+  MEMBER_Y = 1 << 5,
+  MEMBER_EXPOSURE = 1 << 6,
+  MEMBER_AT = 1 << 7,
+  MEMBER_SHUTTER = 1 << 8,
+  MEMBER_SAMPLES = 1 << 9,
+  MEMBER_SHOW = 1 << 10,
+  MEMBER_SPP = 1 << 11,
+  MEMBER_PAUSED = 1 << 12,
+  MEMBER_DENOISE = 1 << 13,
+  MEMBER_BOXES = 1 << 14,
+  MEMBER_CURVES = 1 << 15,
+  MEMBER_FIELD = 1 << 16,
+  MEMBER_MARK = 1 << 17,
+  MEMBER_BY_SAMPLE = 1 << 18,
+  MEMBER_END = 1 << 19,
+  MEMBER_CROP = 1 << 20,
+  MEMBER_SIZE = 1 << 21,
+  MEMBER_CHANNEL = 1 << 22,
+  MEMBER_WHAT = 1 << 23,
+  MEMBER_NAME = 1 << 24,
+  MEMBER_DIALECT = 1 << 25,
+  MEMBER_VIEW = 1 << 26,
+  MEMBER_SET = 1 << 27 /* fields of an edit */
+} MessageMember;
+
+/* Who answers a message, and when. */
+typedef enum MessagePlace {
+  MESSAGE_SEEN,    /* the server: the page has drawn a frame */
+  MESSAGE_STEER,   /* the server: the page steers from now on, and no other */
+  MESSAGE_AT_ONCE, /* the engine, when the message comes; it has the lock then */
+  MESSAGE_SAVES,   /* the engine's render thread, which has the film; files are written */
+  MESSAGE_ASKS     /* the engine's thread for questions */
+} MessagePlace;
+
+struct Engine;
+struct ViewMessage;
+
+/* A type of message. */
+typedef struct MessageType {
+  const char *name; /* null: the end of the table */
+  uint32_t members; /* MessageMember: what it has; others are not read */
+  MessagePlace place;
+  void (*answer)(struct Engine *engine, const struct ViewMessage *message);
+  bool harmless; /* it changes nothing that others see: pages that only look may send it */
+} MessageType;
+
+/* All types, with the engine's answers (engine_messages.c). */
+extern const MessageType message_types[];
 
 /* A field of an edit: numbers, or a text. */
 typedef struct MessageField {
@@ -46,16 +80,17 @@ typedef struct MessageField {
 } MessageField;
 
 typedef struct ViewMessage {
-  MessageKind kind;
+  const MessageType *type;
+  uint32_t client; /* the page that sent it; the server notes it */
+  uint32_t given;  /* MessageMember: those that the page has sent */
   uint32_t serial, change, gesture, id;
   double x, y; /* pixels */
   uint32_t field_count;
   MessageField fields[MESSAGE_FIELDS];
-  bool has_spp, has_paused, has_crop, has_channel, has_size, has_denoise; /* of settings */
   uint32_t spp;
   uint32_t samples, show; /* numbers of paths; 0: not given */
   bool paused, denoise, boxes, curves, field, mark, by_sample, end;
-  uint32_t crop[4]; /* all 0: none */
+  uint32_t crop[4]; /* pixels; all 0: none */
   uint32_t size[2]; /* pixels */
   char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME],
       view[MESSAGE_NAME];
@@ -63,8 +98,9 @@ typedef struct ViewMessage {
   double at, shutter; /* seconds: when it opens, how long it stays open */
 } ViewMessage;
 
-/* Parses a message of `size` bytes. False: it is malformed; why then holds the reason. */
-bool message_parse(const char *text, size_t size, ViewMessage *message,
-                   char why[VL_GIVEN_MESSAGE]);
+/* Parses a message of `size` bytes of one of the types. False: it is malformed; why then holds
+ * the reason. */
+bool message_parse(const MessageType *types, const char *text, size_t size,
+                   ViewMessage *message, char why[VL_GIVEN_MESSAGE]);
 
 #endif

@@ -69,14 +69,15 @@ EMSCRIPTEN_KEEPALIVE void velo_page_message(void) {
   static ViewMessage message;
   char why[VL_GIVEN_MESSAGE];
   int size = velo_page_take(text, sizeof text);
-  if (!message_parse(text, (size_t)size, &message, why)) {
+  if (!message_parse(server.calls.types, text, (size_t)size, &message, why)) {
     report_warning("%s", why);
-  } else if (message.kind == MESSAGE_SEEN) {
+  } else if (message.type->place == MESSAGE_SEEN) {
     if (message.serial == server.waits_for)
       server.waits_for = 0;
     send_frame(&server);
-  } else if (message.kind != MESSAGE_STEER) {
-    server.calls.message(server.calls.user, 1, true, &message);
+  } else if (message.type->place != MESSAGE_STEER) {
+    message.client = 1;
+    server.calls.message(server.calls.user, true, &message);
   }
 }
 

@@ -45,7 +45,7 @@ static void greet(void *user, uint32_t client) {
   s->fresh = true;
 }
 
-static void refuse(void *user, uint32_t client, bool steers, const ViewMessage *message) {
+static void refuse(void *user, bool steers, const ViewMessage *message) {
   Serve *s = user;
   (void)steers;
   Json *json = json_text_begin("refused");
@@ -53,7 +53,7 @@ static void refuse(void *user, uint32_t client, bool steers, const ViewMessage *
     return;
   json_put(json, "id %u, change %u, message %s", message->id, message->change,
            "this page looks on: velo render --serve");
-  post_and_free(s->server, client, json_text_end(json));
+  post_and_free(s->server, message->client, json_text_end(json));
 }
 
 static void count(void *user, uint32_t clients) {
@@ -72,7 +72,8 @@ int serve_start(const Job *job, vlView view, float exposure, Serve **result) {
       (ViewCamera){.def = job->defs->camera, .made = job->camera, .units = {1, 1, 36, 1}};
   vl_world_info(job->world, &s->info);
   const ServerDef def = {.home = "index.html", .query = ""};
-  const ServerCalls calls = {.user = s, .greet = greet, .message = refuse, .clients = count};
+  const ServerCalls calls = {
+      .user = s, .greet = greet, .types = message_types, .message = refuse, .clients = count};
   int status = server_open(&def, &s->server);
   if (status < 0)
     status = server_start(s->server, &calls);

@@ -15,8 +15,9 @@ typedef struct ServerCalls {
   void *user;
   /* A page came; the texts that it needs are posted to it. */
   void (*greet)(void *user, uint32_t client);
-  /* A valid message. steers: whether this page may change things. */
-  void (*message)(void *user, uint32_t client, bool steers, const ViewMessage *message);
+  const MessageType *types; /* of the messages that a page may send */
+  /* A valid message. steers: whether its page may change things. */
+  void (*message)(void *user, bool steers, const ViewMessage *message);
   /* The number of pages changed. */
   void (*clients)(void *user, uint32_t count);
 } ServerCalls;

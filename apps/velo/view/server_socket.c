@@ -237,16 +237,17 @@ static int handle(struct lws *wsi, Client *client, const char *text, size_t size
   Server *server = server_of(wsi);
   static ViewMessage message; /* the server's thread alone uses it */
   char why[VL_GIVEN_MESSAGE];
-  if (!message_parse(text, size, &message, why))
+  if (!message_parse(server->calls.types, text, size, &message, why))
     return refuse(wsi, client, LWS_CLOSE_STATUS_POLICY_VIOLATION, why);
-  if (message.kind == MESSAGE_SEEN) {
+  message.client = client->id;
+  if (message.type->place == MESSAGE_SEEN) {
     if (message.serial == client->waits_for)
       client->waits_for = 0;
     lws_callback_on_writable(wsi);
-  } else if (message.kind == MESSAGE_STEER) {
+  } else if (message.type->place == MESSAGE_STEER) {
     take_over(server, client);
   } else {
-    server->calls.message(server->calls.user, client->id, client->steers, &message);
+    server->calls.message(server->calls.user, client->steers, &message);
   }
   return 0;
 }

@@ -532,6 +532,22 @@ def test_many(view):
     other.close()
 
 
+def test_page_that_does_not_read(view):
+    """What waits for it is limited; the last state arrives all the same."""
+    page, idle = Page(view), Page(view)
+    page.change = idle.wait_text("state")["change"]
+    idle.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    last = [edit(page, fov=20 + 0.01 * i) for i in range(3000)][-1]  # half of it is more than the system's buffers take
+    idle.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
+    try:
+        state = idle.wait(lambda m: isinstance(m, dict) and m["type"] == "state" and m["change"] >= last["change"], 20)
+    except TimeoutError:
+        state = None
+    check("last_state_arrives", state and state["camera"]["fov"] == last["camera"]["fov"], state)
+    page.close()
+    idle.close()
+
+
 # ---- files that change ----
 
 SMALL = ('LookAt 0 0 5 0 0 0 0 1 0\nCamera "perspective" "float fov" 40\nSampler "halton" "integer pixelsamples" 4\n'
@@ -731,6 +747,7 @@ def main():
         test_long(view)
         test_malformed(view)
         test_many(view)
+        test_page_that_does_not_read(view)
     finally:
         code, errors = view.end()
     check("ends", code == 0, code, errors)

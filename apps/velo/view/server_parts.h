@@ -21,6 +21,7 @@ enum {
 typedef struct Text {
   struct Text *next;
   size_t size;
+  size_t type_size; /* bytes up to the end of the member "type" */
   unsigned char bytes[];
 } Text;
 

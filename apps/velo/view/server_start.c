@@ -130,19 +130,43 @@ double server_seconds(const Server *server) {
   return server->seconds;
 }
 
+/* Whether two texts are of the same type, which is their first member. */
+static bool same_type(const Text *a, const Text *b) {
+  return a->type_size == b->type_size &&
+         memcmp(a->bytes + LWS_PRE, b->bytes + LWS_PRE, a->type_size) == 0;
+}
+
+/* Drops the oldest text behind which one of its type waits: the last of each type always
+ * arrives. Types are fewer than MAX_TEXTS. */
+static void drop_outdated(Client *client) {
+  for (Text **at = &client->first; *at; at = &(*at)->next) {
+    Text *old = *at;
+    const Text *newer = old->next;
+    while (newer && !same_type(old, newer))
+      newer = newer->next;
+    if (!newer)
+      continue;
+    *at = old->next;
+    free(old);
+    client->texts--;
+    return;
+  }
+}
+
 static void add_text(Client *client, const char *text) {
   size_t size = strlen(text);
-  if (client->texts >= MAX_TEXTS)
-    return;
   Text *made = malloc(sizeof *made + LWS_PRE + size);
   if (!made)
     return;
   made->next = NULL;
   made->size = size;
+  made->type_size = strcspn(text, ",}");
   memcpy(made->bytes + LWS_PRE, text, size);
   *client->last = made;
   client->last = &made->next;
   client->texts++;
+  if (client->texts > MAX_TEXTS)
+    drop_outdated(client);
 }
 
 void server_post(Server *server, uint32_t client, const char *text) {

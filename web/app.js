@@ -28,7 +28,7 @@ const app = {
 
   // Edits the camera. Several edits within one frame of the screen are sent as one.
   edit(set, gesture = 0) {
-    if (!app.local || !app.steers || !Object.keys(set).length) return;
+    if (!app.local || !app.steers || !Object.keys(set).length || app.gestures.isOver(gesture)) return;
     Object.assign(app.local, set);
     if (app.queued && app.queued.gesture !== gesture) app.flush();
     app.queued = { set: { ...app.queued?.set, ...set }, gesture };
@@ -51,9 +51,11 @@ const app = {
     app.connection.send({ ...message, id });
   },
 
-  // A step of the history comes after the edits that were made before it.
+  // A step of the history comes after the edits that were made before it, and ends a drag.
   step(type) {
     app.flush();
+    app.gestures.end();
+    timeline.end();
     app.connection.send({ type, change: ++app.change });
   },
   undo: () => app.step("undo"),

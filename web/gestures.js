@@ -1,5 +1,6 @@
 // Numbers of gestures: the edits of one gesture are one step of undo. next(): a gesture begins. burst(kind): one goes on, such as the
-// turns of a wheel, until they pause or another gesture begins.
+// turns of a wheel, until they pause or another gesture begins. end(): what goes on is over, and its further edits have no effect:
+// an undo in the midst of a drag stays.
 export class Gestures {
   constructor() {
     this.number = Math.floor(Math.random() * 2 ** 30); // a page that takes over goes on with no gesture of the one before
@@ -18,4 +19,7 @@ export class Gestures {
     this.timer = setTimeout(() => { this.kind = null; }, milliseconds);
     return number;
   }
+
+  end() { this.last = this.next(); }
+  isOver(number) { return number > 0 && number <= this.last; }
 }

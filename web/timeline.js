@@ -64,6 +64,10 @@ class Track {
     this.playing = null;
     this.player.setAttribute("aria-pressed", "false");
   }
+  end() {
+    this.stop();
+    this.next = undefined;
+  }
   // The value of this moment: images that take longer are left out, so that the speed is right.
   step() {
     let value = this.playing.from + this.rate * (performance.now() - this.playing.at) / 1000;
@@ -113,9 +117,16 @@ export class Timeline {
   }
   loaded() { if (this.app.state?.poses) this.load(); }
 
+  // Whether a step of the history ended what goes on.
+  isOver() { return this.app.gestures.isOver(this.gesture ??= this.app.next()); }
+  end() {
+    for (const track of [this.motion, this.trajectory]) track.end();
+  }
+
   time(at, shutter = this.shutter) {
+    if (this.isOver()) { this.motion.pending = false; return; }
     this.sent = ++this.app.change;
-    this.app.connection.send({ type: "time", at, shutter, gesture: this.gesture ??= this.app.next(), change: this.sent });
+    this.app.connection.send({ type: "time", at, shutter, gesture: this.gesture, change: this.sent });
   }
   toggle() {
     this.motion.stop();
@@ -123,10 +134,10 @@ export class Timeline {
     this.time(this.motion.value, this.shutter > 0 ? 0 : this.open);
   }
   pose(i) {
-    this.app.edit(this.poses[i] ? takePose(this.app.camera(), this.poses[i]) : {}, this.gesture ??= this.app.next());
+    if (this.isOver() || !this.poses[i]) { this.trajectory.pending = false; return; }
+    this.app.edit(takePose(this.app.camera(), this.poses[i]), this.gesture);
     this.app.flush();
     this.moved = this.app.change;
-    if (!this.poses[i]) this.trajectory.pending = false;
   }
 
   frame(frame) {

@@ -90,6 +90,28 @@ def test_undo(b):
             check(f"undo_to_{steps.index(wanted)}", near(eye(b), wanted), eye(b), wanted)
 
 
+def test_undo_ends_a_drag(b):
+    """Undo while the button is down: the rest of the drag does nothing, the next one goes on from there."""
+    home(b)
+    x, y = middle(b)
+    before = settled(b)
+    b.run("document.getElementById('stage').focus()")
+    b.mouse("mousePressed", x, y)
+    for i in range(1, 6):
+        b.mouse("mouseMoved", x + 10 * i, y)
+    check("drag_moves", not near(settled(b), before), eye(b))
+    press(b, "z")
+    b.wait("velo.state.change === velo.change")
+    check("undo_in_a_drag", near(settled(b), before), eye(b), before)
+    for i in range(6, 12):
+        b.mouse("mouseMoved", x + 10 * i, y)
+    b.mouse("mouseReleased", x + 110, y, buttons=0)
+    b.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    check("undo_stays", near(settled(b), before), eye(b), before)
+    b.drag(x, y, x + 60, y)
+    check("next_drag_moves", not near(settled(b), before), eye(b))
+
+
 def test_keys(b):
     """A button, a summary or a slider with the focus leaves other keys to the camera."""
     for name, selector in (("button", "#outside-toggle"), ("tool", "#tools [data-tool=orbit]"), ("summary", "#save summary"),
@@ -235,7 +257,7 @@ def main():
     try:
         b.open(view.address)
         b.wait("velo.frames > 0 && velo.state && velo.steers")
-        for test in (test_undo, test_keys, test_pick, test_focus, test_notice, test_digits):
+        for test in (test_undo, test_undo_ends_a_drag, test_keys, test_pick, test_focus, test_notice, test_digits):
             test(b)
         check("no_errors", not b.problems(), b.problems())
     finally:

@@ -1,8 +1,6 @@
 /* import/far.c: see far.h. */
 #include "import/far.h"
 
-#include <math.h>
-
 bool vl_far_origin(const double low[3], const double high[3], double origin[3]) {
   const double far = 100;
   double size = 0, most = 0;
@@ -18,12 +16,23 @@ bool vl_far_origin(const double low[3], const double high[3], double origin[3]) 
   return false;
 }
 
-bool vl_far_vertices(const float *positions, size_t vertices, double origin[3]) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+void vl_grow_box(const float *positions, size_t vertices, double low[3], double high[3]) {
   for (size_t i = 0; i < 3 * vertices; i++) {
     low[i % 3] = fmin(low[i % 3], (double)positions[i]);
     high[i % 3] = fmax(high[i % 3], (double)positions[i]);
   }
+}
+
+double vl_box_diagonal(const double low[3], const double high[3]) {
+  double sum = 0;
+  for (int i = 0; i < 3; i++)
+    sum += (high[i] - low[i]) * (high[i] - low[i]);
+  return sqrt(sum);
+}
+
+bool vl_far_vertices(const float *positions, size_t vertices, double origin[3]) {
+  VL_NO_BOX(low, high);
+  vl_grow_box(positions, vertices, low, high);
   return vl_far_origin(low, high, origin);
 }
 

@@ -56,3 +56,10 @@ const char *vl_names_nearest(const vlNameTable *t, const char *name) {
       names[count++] = t->slots[i].name;
   return vl_nearest_name(name, names, count);
 }
+
+vlHint vl_hint(const char *near) {
+  vlHint hint = {""};
+  if (near)
+    snprintf(hint.text, sizeof hint.text, " (did you mean \"%s\"?)", near);
+  return hint;
+}

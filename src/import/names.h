@@ -27,4 +27,10 @@ bool vl_names_add(vlContext *context, vlNameTable *table, const char *name,
 bool vl_names_find(const vlNameTable *table, const char *name, uint32_t *index);
 const char *vl_names_nearest(const vlNameTable *table, const char *name);
 
+/* The end of a message: the name that is meant, or nothing for null. */
+typedef struct vlHint {
+  char text[200];
+} vlHint;
+vlHint vl_hint(const char *near);
+
 #endif

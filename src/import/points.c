@@ -1,5 +1,6 @@
 /* import/points.c: see points.h. */
 #include "import/points.h"
+#include "import/far.h"
 #include "math/axis.h"
 #include "math/double3.h"
 
@@ -26,17 +27,6 @@ static double distance2(const float *a, const float *b) {
   for (int i = 0; i < 3; i++)
     sum += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
   return sum;
-}
-
-static double diagonal(const vlMesh *m) {
-  float low[3], high[3];
-  memcpy(low, m->positions, sizeof low);
-  memcpy(high, m->positions, sizeof high);
-  for (size_t i = 0; i < 3 * (size_t)m->vertices; i++) {
-    low[i % 3] = fminf(low[i % 3], m->positions[i]);
-    high[i % 3] = fmaxf(high[i % 3], m->positions[i]);
-  }
-  return sqrt(distance2(low, high));
 }
 
 /* The median distance of a point to its fourth neighbour, which in grids and in random surfaces
@@ -136,7 +126,9 @@ bool vl_import_points(vlContext *context, const char *path, vlMesh *m) {
   const bool discs = m->normals;
   if (count * BALL_FACES > 0x3fffffff)
     return false;
-  double size = diagonal(m), radius = spacing(m);
+  VL_NO_BOX(low, high);
+  vl_grow_box(m->positions, count, low, high);
+  double size = vl_box_diagonal(low, high), radius = spacing(m);
   radius = fmin(fmax(radius, size / 2000), size / 50);
   radius = radius > 0 ? radius : 1;
   bool ok = repeat_points(context, m, discs);

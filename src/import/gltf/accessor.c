@@ -5,19 +5,9 @@
 #include "import/gltf/gltf.h"
 
 static uint32_t component_size(uint32_t type) {
-  switch (type) {
-    case VL_GLTF_BYTE:
-    case VL_GLTF_UBYTE:
-      return 1;
-    case VL_GLTF_SHORT:
-    case VL_GLTF_USHORT:
-      return 2;
-    case VL_GLTF_UINT:
-    case VL_GLTF_FLOAT:
-      return 4;
-    default:
-      return 0;
-  }
+  static const uint8_t sizes[] = {1, 1, 2, 2, 0, 4, 4};
+  const uint32_t i = type - VL_GLTF_BYTE;
+  return i < VL_LENGTH(sizes) ? sizes[i] : 0;
 }
 
 static uint32_t component_count(const char *type, bool *matrix) {
@@ -34,13 +24,20 @@ static uint32_t component_count(const char *type, bool *matrix) {
   return 0;
 }
 
+const vlGltfView *vl_gltf_view(vlGltf *g, const vlGltfLocation *at, size_t index) {
+  if (g->views[index].data)
+    return &g->views[index];
+  vl_gltf_fail(at, "bufferViews[%zu] holds nothing that velo can read", index);
+  return NULL;
+}
+
 /* Checks that `count` elements of `size` bytes, `stride` bytes apart from `offset` on, lie
  * inside the view. */
 static bool fits(vlGltf *g, const vlGltfLocation *at, size_t view, size_t offset, size_t count,
                  size_t size, size_t stride) {
-  const vlGltfView *v = &g->views[view];
-  if (!v->data)
-    return vl_gltf_fail(at, "bufferViews[%zu] holds nothing that velo can read", view);
+  const vlGltfView *v = vl_gltf_view(g, at, view);
+  if (!v)
+    return false;
   if (count == 0)
     return true;
   /* count and offset are below 2^53 and stride is at most 252. The division avoids an overflow
@@ -76,10 +73,9 @@ static bool read_sparse(vlGltf *g, const vlGltfLocation *up, vlGltfAccessor *a, 
   if (value_view == VL_GLTF_NONE)
     return vl_gltf_fail(at_v, "\"bufferView\" is missing");
   if (type != VL_GLTF_UBYTE && type != VL_GLTF_USHORT && type != VL_GLTF_UINT)
-    return vl_gltf_fail(VL_GLTF_KEY(at_i, "componentType"), "%zu is not 5121, 5123 or 5125",
-                        type);
+    return vl_gltf_fail_key(at_i, "componentType", "%zu is not 5121, 5123 or 5125", type);
   if (a->sparse_count > a->count)
-    return vl_gltf_fail(VL_GLTF_KEY(at, "count"), "more than the accessor's count");
+    return vl_gltf_fail_key(at, "count", "more than the accessor's count");
   size_t index_size = component_size((uint32_t)type);
   if (!fits(g, at_i, index_view, index_offset, a->sparse_count, index_size, index_size) ||
       !fits(g, at_v, value_view, value_offset, a->sparse_count, size, size))
@@ -117,17 +113,16 @@ static bool read_accessor(vlGltf *g, size_t index, vlGltfAccessor *a) {
   a->type = component <= VL_GLTF_FLOAT ? (uint32_t)component : 0;
   size_t one = component_size(a->type);
   if (!a->components)
-    return vl_gltf_fail(
-        VL_GLTF_KEY(at, "type"),
-        "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
+    return vl_gltf_fail_key(
+        at, "type", "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
         vl_short_text(type).text);
   if (!one)
-    return vl_gltf_fail(VL_GLTF_KEY(at, "componentType"),
-                        "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126", component);
+    return vl_gltf_fail_key(at, "componentType",
+                            "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126", component);
   if (a->count == 0)
-    return vl_gltf_fail(VL_GLTF_KEY(at, "count"), "must be at least 1");
+    return vl_gltf_fail_key(at, "count", "must be at least 1");
   if (a->count > UINT32_MAX)
-    return vl_gltf_fail(VL_GLTF_KEY(at, "count"), "%zu is too many", a->count);
+    return vl_gltf_fail_key(at, "count", "%zu is too many", a->count);
   if (a->matrix && one < 4)
     return vl_gltf_fail(at, "matrices of small integers are not supported");
   size_t size = one * a->components;
@@ -141,16 +136,15 @@ static bool read_accessor(vlGltf *g, size_t index, vlGltfAccessor *a) {
     a->data = g->views[view].data + offset;
   } else if (a->count > g->total + 65536) /* without a view all elements are zero, so the
                                                file's size does not limit their number */
-    return vl_gltf_fail(VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file",
-                        a->count);
+    return vl_gltf_fail_key(at, "count", "%zu zeros are out of proportion to the file",
+                            a->count);
   if (!read_sparse(g, at, a, size))
     return false;
   for (size_t i = 0; i < a->sparse_count; i++) {
     uint32_t k =
         read_uint(a->sparse_indices + i * component_size(a->sparse_type), a->sparse_type);
     if (k >= a->count)
-      return vl_gltf_fail(VL_GLTF_KEY(at, "sparse.indices"), "names element %u of %zu", k,
-                          a->count);
+      return vl_gltf_fail_key(at, "sparse.indices", "names element %u of %zu", k, a->count);
   }
   a->state = VL_GLTF_GOOD;
   return true;

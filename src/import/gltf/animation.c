@@ -42,14 +42,13 @@ static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components,
     return false;
   for (size_t i = 0; i < t->count; i++)
     if (!isfinite(t->times[i]) || (i && !(t->times[i] > t->times[i - 1])))
-      return vl_gltf_fail(VL_GLTF_KEY(at, "input"), "times must ascend; number %zu does not",
-                          i);
+      return vl_gltf_fail_key(at, "input", "times must ascend; number %zu does not", i);
   for (size_t i = 0; i < total * components; i++)
     if (!isfinite(t->values[i]))
-      return vl_gltf_fail(VL_GLTF_KEY(at, "output"), "a value is not finite");
+      return vl_gltf_fail_key(at, "output", "a value is not finite");
   size_t keys = t->count * (t->mode == CUBIC ? 3 : 1);
   if (total % keys != 0)
-    return vl_gltf_fail(VL_GLTF_KEY(at, "output"), "%zu values for %zu keys", total, t->count);
+    return vl_gltf_fail_key(at, "output", "%zu values for %zu keys", total, t->count);
   t->width = total / keys * components;
   return true;
 }

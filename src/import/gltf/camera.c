@@ -33,11 +33,11 @@ static bool take_perspective(vlGltf *g, const vlGltfLocation *at, vlCameraDef *d
       !vl_gltf_number(at, "znear", &near_plane) || !vl_gltf_number(at, "zfar", &far_plane))
     return false;
   if (!(yfov > 0 && yfov < 3.1415926))
-    return vl_gltf_fail(VL_GLTF_KEY(at, "yfov"), "must lie between 0 and pi");
+    return vl_gltf_fail_key(at, "yfov", "must lie between 0 and pi");
   if (aspect == 0)
     aspect = 16.0 / 9.0; /* not valid, but Assimp writes it where it knows none */
   if (!(aspect > 1e-3 && aspect < 1e3))
-    return vl_gltf_fail(VL_GLTF_KEY(at, "aspectRatio"), "%g is no shape", aspect);
+    return vl_gltf_fail_key(at, "aspectRatio", "%g is no shape", aspect);
   set_size(g, aspect);
   def->fov = yfov;
   def->fov_axis = VL_FOV_VERTICAL;

@@ -33,11 +33,8 @@ double vl_gltf_animation_end(const vlGltf *g, size_t animation) {
       json_object_get(vl_gltf_item(g, "animations", animation), "samplers");
   double end = 0;
   for (size_t i = 0; i < json_array_size(samplers); i++) {
-    const json_t *input = json_object_get(json_array_get(samplers, i), "input");
-    const double index = json_number_value(input);
-    if (!json_is_number(input) || !(index >= 0 && index < (double)g->accessor_count))
-      continue;
-    const json_t *max = json_object_get(vl_gltf_item(g, "accessors", (size_t)index), "max");
+    const size_t input = vl_gltf_peek(json_array_get(samplers, i), "input", g->accessor_count);
+    const json_t *max = json_object_get(vl_gltf_item(g, "accessors", input), "max");
     const double last = json_number_value(json_array_get(max, 0));
     if (last > end && last < 1e9)
       end = last;

@@ -162,8 +162,7 @@ static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *join
     if (w == 0)
       continue;
     if (!isfinite(w)) {
-      ok = vl_gltf_fail(VL_GLTF_KEY(up, weights_name), "a weight of vertex %zu is not finite",
-                        i / 4);
+      ok = vl_gltf_fail_key(up, weights_name, "a weight of vertex %zu is not finite", i / 4);
     } else if (joints[i] >= count) {
       ok = vl_gltf_fail(at, "vertex %zu names joint %u of %zu", i / 4, joints[i], count);
     } else {

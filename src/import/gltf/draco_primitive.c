@@ -55,8 +55,7 @@ static bool fill_all(vlGltf *g, const vlGltfLocation *at, const vlGltfLocation *
       return false;
     double id = json_is_integer(value) ? json_number_value(value) : -1;
     if (!(id >= 0 && id < 4294967296.0))
-      return vl_gltf_fail(VL_GLTF_KEY(here, "attributes"),
-                          "an id of an attribute makes no sense");
+      return vl_gltf_fail_key(here, "attributes", "an id of an attribute makes no sense");
     if (accessor != VL_GLTF_NONE && !fill(g, here, mesh, accessor, (int64_t)id))
       return false;
   }
@@ -75,9 +74,9 @@ bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfLocation *at) {
     return false;
   if (view == VL_GLTF_NONE || !own)
     return vl_gltf_fail(here, "needs bufferView and attributes");
-  const vlGltfView *v = &g->views[view];
-  if (!v->data)
-    return vl_gltf_fail(here, "bufferViews[%zu] holds nothing that velo can read", view);
+  const vlGltfView *v = vl_gltf_view(g, here, view);
+  if (!v)
+    return false;
   /* The mesh of an accessor that stands in two primitives is decoded once. */
   if (first != VL_GLTF_NONE && g->accessors[first].state == VL_GLTF_GOOD &&
       g->accessors[first].data)

@@ -24,68 +24,55 @@ static const char *const known[] = {
 };
 /* Extensions of the Khronos registry that velo does not read. Messages show their names in full
  * and shorten unknown names. */
-static const char *const registered[] = {
-    "ADOBE_materials_clearcoat_specular",
-    "AGI_articulations",
-    "AGI_stk_metadata",
-    "CESIUM_primitive_outline",
-    "CESIUM_RTC",
-    "EXT_mesh_features",
-    "EXT_mesh_manifold",
-    "EXT_structural_metadata",
-    "EXT_texture_avif",
-    "FB_geometry_metadata",
-    "KHR_audio_emitter",
-    "KHR_draco_mesh_compression",
-    "KHR_gaussian_splatting",
-    "KHR_interactivity",
-    "KHR_materials_diffuse_roughness",
-    "KHR_materials_retroreflection",
-    "KHR_materials_scatter",
-    "KHR_materials_subsurface",
-    "KHR_materials_volume_scatter",
-    "KHR_physics_rigid_bodies",
-    "KHR_techniques_webgl",
-    "KHR_texture_basisu",
-    "KHR_xmp_json_ld",
-    "MPEG_media",
-    "MSFT_lod",
-    "MSFT_packing_normalRoughnessMetallic",
-    "MSFT_packing_occlusionRoughnessMetallic",
-    "MSFT_texture_dds",
-    "NV_materials_mdl",
-    "VRM",
-    "VRMC_materials_mtoon",
-    "VRMC_vrm",
-};
+static const char registered[] =
+    "ADOBE_materials_clearcoat_specular AGI_articulations AGI_stk_metadata "
+    "CESIUM_primitive_outline CESIUM_RTC EXT_mesh_features EXT_mesh_manifold "
+    "EXT_structural_metadata EXT_texture_avif FB_geometry_metadata KHR_audio_emitter "
+    "KHR_draco_mesh_compression KHR_gaussian_splatting KHR_interactivity "
+    "KHR_materials_diffuse_roughness KHR_materials_retroreflection KHR_materials_scatter "
+    "KHR_materials_subsurface KHR_materials_volume_scatter KHR_physics_rigid_bodies "
+    "KHR_techniques_webgl KHR_texture_basisu KHR_xmp_json_ld MPEG_media MSFT_lod "
+    "MSFT_packing_normalRoughnessMetallic MSFT_packing_occlusionRoughnessMetallic "
+    "MSFT_texture_dds NV_materials_mdl VRM VRMC_materials_mtoon VRMC_vrm";
 /* These extensions do not change the image. */
-static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_node_hoverability",
-                                     "KHR_node_selectability"};
+static const char silent[] =
+    "KHR_xmp KHR_xmp_json_ld KHR_node_hoverability KHR_node_selectability";
 
-static bool is_in(const char *name, const char *const *names, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (vl_text_is(name, names[i]))
+bool vl_gltf_reads_extension(const char *name) {
+  for (size_t i = 0; i < VL_LENGTH(known); i++)
+    if (vl_text_is(name, known[i]))
       return true;
   return false;
 }
 
-bool vl_gltf_reads_extension(const char *name) {
-  return is_in(name, known, VL_LENGTH(known));
-}
-
 bool vl_gltf_passes_extension(const char *name) {
-  return is_in(name, silent, VL_LENGTH(silent));
+  return vl_has_word(silent, name);
 }
 
 vlShortText vl_gltf_extension_text(const char *name) {
   vlShortText text = vl_short_text(name);
-  if (is_in(name, registered, VL_LENGTH(registered)))
+  if (vl_has_word(registered, name))
     snprintf(text.text, sizeof text.text, "%s", name);
   return text;
 }
 
+/* Reports an extension that the file requires and velo does not read. */
+static bool fail_required(const vlGltfLocation *at, const char *name) {
+  if (vl_text_is(name, "KHR_draco_mesh_compression"))
+    return vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at,
+                             "this velo was built without libdraco, which %s needs", name);
+  if (vl_text_is(name, "KHR_texture_basisu"))
+    return vl_gltf_fail_code(
+        VL_ERROR_UNSUPPORTED, at,
+        "velo does not read KTX2 images (%s): convert them to PNG, as gltf-transform does",
+        name);
+  const char *near = vl_nearest_name(name, known, VL_LENGTH(known));
+  return vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at, "velo does not read %s%s%s%s",
+                           vl_gltf_extension_text(name).text, near ? " (it reads " : "",
+                           near ? near : "", near ? ")" : "");
+}
+
 bool vl_gltf_check_extensions(vlGltf *g) {
-  const size_t known_count = VL_LENGTH(known);
   const json_t *used, *required;
   size_t used_count, required_count;
   if (!vl_gltf_array(&g->top, "extensionsUsed", &used, &used_count) ||
@@ -96,29 +83,15 @@ bool vl_gltf_check_extensions(vlGltf *g) {
     const vlGltfLocation *at = VL_GLTF_ROOT(g, "extensionsRequired", i);
     if (!name)
       return vl_gltf_fail(at, "must be a string");
-    if (is_in(name, known, known_count))
-      continue;
-    if (vl_text_is(name, "KHR_draco_mesh_compression"))
-      return vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at,
-                               "this velo was built without libdraco, which %s needs", name);
-    if (vl_text_is(name, "KHR_texture_basisu"))
-      return vl_gltf_fail_code(
-          VL_ERROR_UNSUPPORTED, at,
-          "velo does not read KTX2 images (%s): convert them to PNG, as gltf-transform does",
-          name);
-    const char *near = vl_nearest_name(name, known, known_count);
-    return near ? vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at,
-                                    "velo does not read %s (it reads %s)",
-                                    vl_gltf_extension_text(name).text, near)
-                : vl_gltf_fail_code(VL_ERROR_UNSUPPORTED, at, "velo does not read %s",
-                                    vl_gltf_extension_text(name).text);
+    if (!vl_gltf_reads_extension(name))
+      return fail_required(at, name);
   }
   for (size_t i = 0; i < used_count; i++) {
     const char *name = json_string_value(json_array_get(used, i));
     const vlGltfLocation *at = VL_GLTF_ROOT(g, "extensionsUsed", i);
     if (!name)
       return vl_gltf_fail(at, "must be a string");
-    if (!is_in(name, known, known_count) && !vl_gltf_passes_extension(name))
+    if (!vl_gltf_reads_extension(name) && !vl_gltf_passes_extension(name))
       vl_gltf_warn(VL_LOG_WARNING, at, "%s is ignored: velo does not read it",
                    vl_gltf_extension_text(name).text);
   }

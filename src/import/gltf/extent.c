@@ -59,21 +59,11 @@ double vl_gltf_point_radius(const vlGltf *g, const uint32_t *order, size_t count
   double box[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, sum = 0;
   for (size_t k = 0; k < count; k++) {
     const vlGltfNode *node = &g->nodes[order[k]];
-    const json_t *mesh = json_array_get(
-        json_object_get(g->root, "meshes"),
-        (size_t)fmax(0, json_is_integer(json_object_get(node->json, "mesh"))
-                            ? json_number_value(json_object_get(node->json, "mesh"))
-                            : 1e15));
+    const json_t *mesh = vl_gltf_item(g, "meshes", vl_gltf_mesh_of(g, node));
     const json_t *primitives = json_object_get(mesh, "primitives");
     for (size_t i = 0; i < json_array_size(primitives); i++) {
-      const json_t *position = json_object_get(
-          json_object_get(json_array_get(primitives, i), "attributes"), "POSITION");
-      double index = json_is_integer(position) ? json_number_value(position) : -1, low[3],
-             high[3];
-      if (!(index >= 0 && index < (double)g->accessor_count))
-        continue;
-      if (bounds(json_array_get(json_object_get(g->root, "accessors"), (size_t)index), low,
-                 high))
+      double low[3], high[3];
+      if (bounds(vl_gltf_peek_positions(g, json_array_get(primitives, i)), low, high))
         grow(&node->world, low, high, box);
     }
   }

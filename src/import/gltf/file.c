@@ -85,7 +85,7 @@ static bool count_items(vlGltf *g, const char *key, size_t *count) {
   if (!vl_gltf_array(&g->top, key, &array, count))
     return false;
   if (*count > MAX_ITEMS)
-    return vl_gltf_fail(VL_GLTF_KEY(&g->top, key), "too many: %zu", *count);
+    return vl_gltf_fail_key(&g->top, key, "too many: %zu", *count);
   for (size_t i = 0; i < *count; i++)
     if (!json_is_object(json_array_get(array, i)))
       return vl_gltf_fail(VL_GLTF_ROOT(g, key, i), "must be an object");
@@ -299,8 +299,8 @@ static bool read_buffer(vlGltf *g, size_t i) {
     }
   }
   if (size < length)
-    return vl_gltf_fail(VL_GLTF_KEY(at, "byteLength"), "%zu, but there are only %zu bytes",
-                        length, size);
+    return vl_gltf_fail_key(at, "byteLength", "%zu, but there are only %zu bytes", length,
+                            size);
   b->size = length;
   g->total += length;
   return true;
@@ -314,12 +314,10 @@ static bool read_view(vlGltf *g, size_t i) {
   size_t offset = 0, length = 0, stride = 0;
   if (packed)
     return vl_gltf_unpack_view(g, at, &g->views[i]);
-  if (!vl_gltf_index(at, "buffer", g->buffer_count, &buffer) ||
+  if (!vl_gltf_need_index(at, "buffer", g->buffer_count, &buffer) ||
       !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "byteLength", &length) ||
       !vl_gltf_size(at, "byteStride", &stride))
     return false;
-  if (buffer == VL_GLTF_NONE)
-    return vl_gltf_fail(at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
   if (!b->data)
     return true; /* what reads the view reports it */
@@ -327,7 +325,7 @@ static bool read_view(vlGltf *g, size_t i) {
     return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%zu] has only %zu", offset,
                         offset + length, buffer, b->size);
   if (stride && (stride < 4 || stride > 252))
-    return vl_gltf_fail(VL_GLTF_KEY(at, "byteStride"), "%zu is not from 4 to 252", stride);
+    return vl_gltf_fail_key(at, "byteStride", "%zu is not from 4 to 252", stride);
   g->views[i] = (vlGltfView){b->data + offset, length, stride};
   return true;
 }

@@ -34,11 +34,8 @@ static size_t vertices_of(const vlGltf *g, size_t mesh) {
   const json_t *primitives = json_object_get(vl_gltf_item(g, "meshes", mesh), "primitives");
   double sum = 0;
   for (size_t i = 0; i < json_array_size(primitives); i++) {
-    const json_t *attributes = json_object_get(json_array_get(primitives, i), "attributes");
-    const double a = json_number_value(json_object_get(attributes, "POSITION"));
-    if (!(a >= 0 && a < (double)g->accessor_count))
-      continue;
-    sum += json_number_value(json_object_get(vl_gltf_item(g, "accessors", (size_t)a), "count"));
+    const json_t *positions = vl_gltf_peek_positions(g, json_array_get(primitives, i));
+    sum += json_number_value(json_object_get(positions, "count"));
   }
   return sum > 0 && sum < 1e15 ? (size_t)sum : 0;
 }
@@ -47,11 +44,10 @@ static size_t vertices_of(const vlGltf *g, size_t mesh) {
 static int choose_times(const vlGltf *g) {
   size_t sum = 0;
   for (size_t i = 0; i < g->node_count; i++) {
-    const double mesh = json_number_value(json_object_get(g->nodes[i].json, "mesh"));
-    if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "mesh") ||
-        !vl_gltf_deforms(g, &g->nodes[i]))
+    const size_t mesh = vl_gltf_mesh_of(g, &g->nodes[i]);
+    if (!g->nodes[i].reached || mesh == VL_GLTF_NONE || !vl_gltf_deforms(g, &g->nodes[i]))
       continue;
-    sum += vertices_of(g, (size_t)mesh);
+    sum += vertices_of(g, mesh);
   }
   const size_t most = sum ? MAX_VERTICES / sum : TIMES;
   return most >= TIMES ? TIMES : most < 3 ? 3 : (int)most;
@@ -65,9 +61,9 @@ static bool longest(vlGltf *g, size_t animation) {
 /* The box of a mesh that does not deform is the same at all times. */
 static bool frame_node(vlGltf *g, size_t node, Box *boxes, bool first) {
   const vlGltfNode *n = &g->nodes[node];
-  const json_t *mesh = json_object_get(n->json, "mesh");
+  const size_t mesh = vl_gltf_mesh_of(g, n);
   const vlMat4 identity = vl_mat4_identity();
-  if (!n->reached || !mesh)
+  if (!n->reached || mesh == VL_GLTF_NONE)
     return true;
   const bool deforms = vl_gltf_deforms(g, n);
   if (first || deforms) {
@@ -75,8 +71,7 @@ static bool frame_node(vlGltf *g, size_t node, Box *boxes, bool first) {
       boxes[node].low[k] = INFINITY;
       boxes[node].high[k] = -INFINITY;
     }
-    if (!vl_gltf_mesh_box(g, (size_t)json_number_value(mesh), n, boxes[node].low,
-                          boxes[node].high))
+    if (!vl_gltf_mesh_box(g, mesh, n, boxes[node].low, boxes[node].high))
       return false;
   }
   return add_corners(g, &boxes[node], json_object_get(n->json, "skin") ? &identity : &n->world);

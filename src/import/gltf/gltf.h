@@ -169,6 +169,9 @@ enum {
 /* Report the error "path: location: message". Always return false. */
 bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/* The same of a member of the object at the location. */
+bool vl_gltf_fail_key(const vlGltfLocation *at, const char *key, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 bool vl_gltf_fail_code(vlResult code, const vlGltfLocation *location, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static inline bool vl_gltf_fail_memory(vlGltf *g) {
@@ -199,8 +202,9 @@ bool vl_gltf_choice(const vlGltfLocation *at, const char *key, const char *const
                     int count, int *value);
 /* A non-negative integer. */
 bool vl_gltf_size(const vlGltfLocation *at, const char *key, size_t *value);
-/* An index below limit; VL_GLTF_NONE when absent. */
+/* An index below limit; VL_GLTF_NONE when absent, which vl_gltf_need_index reports. */
 bool vl_gltf_index(const vlGltfLocation *at, const char *key, size_t limit, size_t *index);
+bool vl_gltf_need_index(const vlGltfLocation *at, const char *key, size_t limit, size_t *index);
 /* The same of an object that is not at the location, which messages name. */
 bool vl_gltf_size_in(const vlGltfLocation *at, const json_t *object, const char *key,
                      size_t *value);
@@ -218,6 +222,10 @@ const json_t *vl_gltf_extension(const json_t *object, const char *name);
 static inline const char *vl_gltf_name(const json_t *object) {
   return json_string_value(json_object_get(object, "name"));
 }
+/* The index below limit that a member holds; VL_GLTF_NONE: none. Reports nothing. */
+size_t vl_gltf_peek(const json_t *object, const char *key, size_t limit);
+/* The accessor of positions of a primitive, the same way. */
+const json_t *vl_gltf_peek_positions(const vlGltf *g, const json_t *primitive);
 /* Element i of an array at the root, for example nodes[3]. The caller must have checked i. */
 const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 
@@ -254,6 +262,8 @@ void vl_gltf_check_names(vlGltf *g);
 
 /* The accessor, checked; null after an error. */
 const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, size_t index);
+/* The bytes of a view; null after an error. */
+const vlGltfView *vl_gltf_view(vlGltf *g, const vlGltfLocation *at, size_t index);
 void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uint32_t *out);
 /* A new block of count * components floats from an accessor. The accessor must have one of the
  * given numbers of components and count elements (0: any; *read receives the count). Null after
@@ -376,6 +386,9 @@ vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);
 bool vl_gltf_texture(const vlGltfLocation *at, const char *key, const vlGltfTextureUse *use,
                      vlTextureId *id);
+/* Decodes an image of bytes in memory or of a file. False after an error, at the location. */
+bool vl_gltf_decode_image(vlGltf *g, const vlGltfLocation *at, const char *name,
+                          const void *data, size_t size, const char *path, vlImage **image);
 /* The bytes or the path of images[index]. */
 bool vl_gltf_read_image(vlGltf *g, size_t index);
 /* The uv set of a textureInfo; the one of KHR_texture_transform takes precedence. */

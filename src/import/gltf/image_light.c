@@ -23,13 +23,8 @@ static bool read_face(vlGltf *g, const vlGltfLocation *at, size_t index, Cube *c
   if (file->missing)
     return true; /* reported */
   vlImage *image = NULL;
-  vlError error;
-  vl_error_clear(&error);
-  vlResult r = file->path ? vl_image_read_named(g->context, NULL, file->path, &image, &error)
-                          : vl_image_read_memory(g->context, "image", file->data, file->size,
-                                                 &image, &error);
-  if (r != VL_OK)
-    return vl_gltf_fail_code(r, at, "%s", error.message);
+  if (!vl_gltf_decode_image(g, at, "image", file->data, file->size, file->path, &image))
+    return false;
   uint32_t channel[4], count = vl_image_color(image, channel);
   float *pixels = NULL;
   bool ok = count >= 3 && image->width == image->height;
@@ -127,7 +122,7 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *s
   if (json_array_size(faces) != 6)
     return vl_gltf_fail(at_images, "must hold six faces for each level");
   if (!(intensity >= 0))
-    return vl_gltf_fail(VL_GLTF_KEY(at, "intensity"), "must not be negative");
+    return vl_gltf_fail_key(at, "intensity", "must not be negative");
   Cube cube = {{0}, {NULL}};
   bool ok = true;
   for (int k = 0; ok && k < 6; k++) {

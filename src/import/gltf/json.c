@@ -61,6 +61,12 @@ bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...) {
   return vl_gltf_fail_code(VL_ERROR_SCENE, location, "%s", text);
 }
 
+bool vl_gltf_fail_key(const vlGltfLocation *at, const char *key, const char *format, ...) {
+  char text[MESSAGE];
+  VL_FORMAT(text, format);
+  return vl_gltf_fail(VL_GLTF_KEY(at, key), "%s", text);
+}
+
 void vl_gltf_warn(vlLogLevel level, const vlGltfLocation *location, const char *format, ...) {
   const vlGltf *g = vl_gltf_of(location);
   char text[MESSAGE], message[MESSAGE];
@@ -101,7 +107,7 @@ static const char *kind_of(const json_t *value) {
 
 static bool wrong_kind(const vlGltfLocation *at, const char *key, const char *wanted,
                        const json_t *found) {
-  return vl_gltf_fail(VL_GLTF_KEY(at, key), "must be %s, found %s", wanted, kind_of(found));
+  return vl_gltf_fail_key(at, key, "must be %s, found %s", wanted, kind_of(found));
 }
 
 /* Looks up a member of this kind. *value is null if it is not there. Returns false after an
@@ -116,16 +122,17 @@ static bool member(const vlGltfLocation *at, const char *key, const char *wanted
   return false;
 }
 
+static bool in_range(const vlGltfLocation *at, double value) {
+  return fabs(value) <= 3e38 || vl_gltf_fail(at, "%g is out of range", value);
+}
+
 bool vl_gltf_number(const vlGltfLocation *at, const char *key, double *value) {
   const json_t *v;
   if (!member(at, key, "a number", &v))
     return false;
-  if (!v)
-    return true;
-  *value = json_number_value(v);
-  if (isfinite(*value) && fabs(*value) <= 3e38)
-    return true;
-  return vl_gltf_fail(VL_GLTF_KEY(at, key), "%g is out of range", *value);
+  if (v)
+    *value = json_number_value(v);
+  return !v || in_range(VL_GLTF_KEY(at, key), *value);
 }
 
 bool vl_gltf_float(const vlGltfLocation *at, const char *key, float *value) {
@@ -139,40 +146,35 @@ bool vl_gltf_numbers(const vlGltfLocation *at, const char *key, size_t count, do
   const json_t *v;
   if (!member(at, key, "an array", &v))
     return false;
-  if (!v)
-    return true;
-  if (json_array_size(v) != count)
-    return vl_gltf_fail(VL_GLTF_KEY(at, key), "must hold %zu numbers, found %zu", count,
-                        json_array_size(v));
-  for (size_t i = 0; i < count; i++) {
+  if (v && json_array_size(v) != count)
+    return vl_gltf_fail_key(at, key, "must hold %zu numbers, found %zu", count,
+                            json_array_size(v));
+  for (size_t i = 0; v && i < count; i++) {
     const json_t *x = json_array_get(v, i);
+    const vlGltfLocation *here = VL_GLTF_ITEM(at, key, i);
     if (!json_is_number(x))
-      return vl_gltf_fail(VL_GLTF_ITEM(at, key, i), "must be a number, found %s", kind_of(x));
+      return vl_gltf_fail(here, "must be a number, found %s", kind_of(x));
     values[i] = json_number_value(x);
-    if (!isfinite(values[i]) || fabs(values[i]) > 3e38)
-      return vl_gltf_fail(VL_GLTF_ITEM(at, key, i), "%g is out of range", values[i]);
+    if (!in_range(here, values[i]))
+      return false;
   }
   return true;
 }
 
 bool vl_gltf_bool(const vlGltfLocation *at, const char *key, bool *value) {
   const json_t *v;
-  if (!member(at, key, "true or false", &v))
-    return false;
-  if (!v)
-    return true;
-  *value = json_is_true(v);
-  return true;
+  const bool ok = member(at, key, "true or false", &v);
+  if (v)
+    *value = json_is_true(v);
+  return ok;
 }
 
 bool vl_gltf_text(const vlGltfLocation *at, const char *key, const char **value) {
   const json_t *v;
-  if (!member(at, key, "a string", &v))
-    return false;
-  if (!v)
-    return true;
-  *value = json_string_value(v);
-  return true;
+  const bool ok = member(at, key, "a string", &v);
+  if (v)
+    *value = json_string_value(v);
+  return ok;
 }
 
 bool vl_gltf_choice(const vlGltfLocation *at, const char *key, const char *const *names,
@@ -188,8 +190,8 @@ bool vl_gltf_choice(const vlGltfLocation *at, const char *key, const char *const
     }
     vl_list_name(list, sizeof list, names[i]);
   }
-  return vl_gltf_fail(VL_GLTF_KEY(at, key), "unknown name \"%s\" (known%s)",
-                      vl_short_text(text).text, list);
+  return vl_gltf_fail_key(at, key, "unknown name \"%s\" (known%s)", vl_short_text(text).text,
+                          list);
 }
 
 static bool whole(const vlGltfLocation *at, const char *key, const json_t *v, size_t *value) {
@@ -197,8 +199,7 @@ static bool whole(const vlGltfLocation *at, const char *key, const json_t *v, si
     return wrong_kind(at, key, "a whole number", v);
   double x = json_number_value(v); /* some exporters write integers as 3.0 */
   if (!(x >= 0 && x <= 9007199254740992.0) || x != floor(x))
-    return vl_gltf_fail(VL_GLTF_KEY(at, key), "must be a whole number from 0 on, found %.17g",
-                        x);
+    return vl_gltf_fail_key(at, key, "must be a whole number from 0 on, found %.17g", x);
   *value = (size_t)x;
   return true;
 }
@@ -220,13 +221,33 @@ bool vl_gltf_index_in(const vlGltfLocation *at, const json_t *object, const char
     return false;
   if (*index == VL_GLTF_NONE || *index < limit)
     return true;
-  return limit ? vl_gltf_fail(VL_GLTF_KEY(at, key), "%zu: there are only %zu (0 to %zu)",
-                              *index, limit, limit - 1)
-               : vl_gltf_fail(VL_GLTF_KEY(at, key), "%zu: there are none", *index);
+  return limit ? vl_gltf_fail_key(at, key, "%zu: there are only %zu (0 to %zu)", *index, limit,
+                                  limit - 1)
+               : vl_gltf_fail_key(at, key, "%zu: there are none", *index);
 }
 
 bool vl_gltf_index(const vlGltfLocation *at, const char *key, size_t limit, size_t *index) {
   return vl_gltf_index_in(at, vl_gltf_json(at), key, limit, index);
+}
+
+bool vl_gltf_need_index(const vlGltfLocation *at, const char *key, size_t limit,
+                        size_t *index) {
+  if (!vl_gltf_index(at, key, limit, index))
+    return false;
+  return *index != VL_GLTF_NONE || vl_gltf_fail(at, "\"%s\" is missing", key);
+}
+
+size_t vl_gltf_peek(const json_t *object, const char *key, size_t limit) {
+  const json_t *value = json_object_get(object, key);
+  const double index = json_number_value(value);
+  return json_is_number(value) && index >= 0 && index < (double)limit ? (size_t)index
+                                                                      : VL_GLTF_NONE;
+}
+
+const json_t *vl_gltf_peek_positions(const vlGltf *g, const json_t *primitive) {
+  return vl_gltf_item(
+      g, "accessors",
+      vl_gltf_peek(json_object_get(primitive, "attributes"), "POSITION", g->accessor_count));
 }
 
 bool vl_gltf_element(const vlGltfLocation *at, const json_t *value, size_t limit,

@@ -18,7 +18,7 @@ static bool check_light(const vlGltfLocation *at, const char *factor_key, double
       key = "color";
   if (!(factor >= 0))
     key = factor_key;
-  return !key || vl_gltf_fail(VL_GLTF_KEY(at, key), "must not be negative");
+  return !key || vl_gltf_fail_key(at, key, "must not be negative");
 }
 
 static bool add_light(vlGltf *g, size_t node, size_t index) {
@@ -43,8 +43,7 @@ static bool add_light(vlGltf *g, size_t node, size_t index) {
   if (!check_light(at, "intensity", intensity, color))
     return false;
   if (is_spot && !(inner >= 0 && inner <= outer && outer > 0 && outer <= 1.5707964))
-    return vl_gltf_fail(VL_GLTF_KEY(at, "spot"),
-                        "its angles must be 0 <= inner <= outer <= pi/2");
+    return vl_gltf_fail_key(at, "spot", "its angles must be 0 <= inner <= outer <= pi/2");
   if (isfinite(range) && vl_gltf_once(g, VL_GLTF_REPORTED_RANGE))
     vl_gltf_warn(VL_LOG_INFO, at, "its range is ignored: light goes on as far as it may");
   vlLightDef def = vl_default_light_def(is_spot      ? VL_LIGHT_SPOT
@@ -80,12 +79,11 @@ static bool read_profile(vlGltf *g, const vlGltfLocation *at, vlLightDef *def) {
     return false;
   if (!uri && view == VL_GLTF_NONE)
     return vl_gltf_fail(at, "has neither \"uri\" nor \"bufferView\"");
-  if (!uri && !g->views[view].data)
-    return vl_gltf_fail(at, "bufferViews[%zu] holds nothing that velo can read", view);
   if (!uri) {
-    def->lamp_data = g->views[view].data;
-    def->lamp_size = g->views[view].size;
-    return true;
+    const vlGltfView *v = vl_gltf_view(g, at, view);
+    def->lamp_data = v ? v->data : NULL;
+    def->lamp_size = v ? v->size : 0;
+    return v != NULL;
   }
   if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &data, &def->lamp_size, &path))
     return false;
@@ -93,8 +91,7 @@ static bool read_profile(vlGltf *g, const vlGltfLocation *at, vlLightDef *def) {
   def->path = vl_names_lamp(path) ? path : NULL;
   if (def->lamp_data || def->path)
     return true;
-  return vl_gltf_fail(VL_GLTF_KEY(at, "uri"), "\"%s\" does not end with .ies",
-                      vl_short_text(uri).text);
+  return vl_gltf_fail_key(at, "uri", "\"%s\" does not end with .ies", vl_short_text(uri).text);
 }
 
 /* world_from_light: light space has -y where the node has -z, x where it has x, and -z where it

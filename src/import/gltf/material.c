@@ -225,7 +225,7 @@ static bool read_ior(const Reader *r, vlPrincipledDef *p) {
   if (!vl_gltf_float(r->at, "ior", &index))
     return false;
   if (index != 0.0f && !(index >= 1.0f))
-    return vl_gltf_fail(VL_GLTF_KEY(r->at, "ior"), "%g is below 1", (double)index);
+    return vl_gltf_fail_key(r->at, "ior", "%g is below 1", (double)index);
   r->def->eta = vl_spectrum_input(vl_spectrum_constant(index));
   return true;
 }
@@ -234,7 +234,7 @@ static bool read_dispersion(const Reader *r, vlPrincipledDef *p) {
   if (!vl_gltf_float(r->at, "dispersion", &p->dispersion))
     return false;
   return !(p->dispersion < 0.0f) ||
-         vl_gltf_fail(VL_GLTF_KEY(r->at, "dispersion"), "must not be negative");
+         vl_gltf_fail_key(r->at, "dispersion", "must not be negative");
 }
 
 static bool read_diffuse(const Reader *r, vlPrincipledDef *p) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/free.h"
+#include "import/far.h"
 #include "import/gltf/gltf.h"
 #include "velo/shape_kinds.h"
 
@@ -212,7 +213,7 @@ static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mes
       !vl_gltf_size(at, "mode", &mode) || !choose_material(g, at, &material))
     return false;
   if (mode > 6)
-    return vl_gltf_fail(VL_GLTF_KEY(at, "mode"), "%zu is not from 0 to 6", mode);
+    return vl_gltf_fail_key(at, "mode", "%zu is not from 0 to 6", mode);
   if (position == VL_GLTF_NONE) {
     vl_gltf_warn(VL_LOG_WARNING, at, "has no positions and is not drawn");
     return true;
@@ -289,11 +290,8 @@ static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mes
     return true;
   bool ok = vl_gltf_unpack_primitive(g, at) && read_attributes(g, at, position, &p) &&
             vl_gltf_morph(g, at, mesh, node, &p) && (!skinned || vl_gltf_skin(g, at, node, &p));
-  for (size_t i = 0; ok && i < p.vertices; i++)
-    for (size_t k = 0; k < 3; k++) {
-      low[k] = fmin(low[k], (double)p.positions[3 * i + k]);
-      high[k] = fmax(high[k], (double)p.positions[3 * i + k]);
-    }
+  if (ok)
+    vl_grow_box(p.positions, p.vertices, low, high);
   vl_mesh_free(g->context, &p);
   return ok;
 }

@@ -43,14 +43,12 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) 
   size_t buffer;
   size_t offset = 0, length = 0, stride = 0, count = 0;
   int mode = ATTRIBUTES, filter = NONE;
-  if (!vl_gltf_index(at, "buffer", g->buffer_count, &buffer) ||
+  if (!vl_gltf_need_index(at, "buffer", g->buffer_count, &buffer) ||
       !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "byteLength", &length) ||
       !vl_gltf_size(at, "byteStride", &stride) || !vl_gltf_size(at, "count", &count) ||
       !vl_gltf_choice(at, "mode", modes, 3, &mode) ||
       !vl_gltf_choice(at, "filter", filters, 4, &filter))
     return false;
-  if (buffer == VL_GLTF_NONE)
-    return vl_gltf_fail(at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
   if (!b->data || offset > b->size || length > b->size - offset)
     return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%zu] has only %zu", offset,

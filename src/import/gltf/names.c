@@ -203,28 +203,26 @@ static void walk(Look *look, const vlGltfLocation *at, const char *object, json_
   }
 }
 
-/* The nearest member of the object to the name, in text; empty if none is near. */
-static void nearest(const char *object, const char *name, char *text, size_t size) {
-  char words[256];
+/* The nearest member of the object to the name, of those in words; null if none is near. */
+static const char *nearest(const char *object, const char *name, char words[256]) {
   const char *list[MAX_MEMBERS + 2] = {"extensions", "extras"}, *members = members_of(object);
   size_t count = 2;
-  snprintf(words, sizeof words, "%s", members ? members : "");
+  snprintf(words, 256, "%s", members ? members : "");
   for (char *at = words; *at && count < VL_LENGTH(list);) {
     list[count++] = at;
     at += strcspn(at, " ");
     if (*at)
       *at++ = 0;
   }
-  const char *near = vl_nearest_name(name, list, count);
-  if (near)
-    snprintf(text, size, " (did you mean \"%s\"?)", near);
+  return vl_nearest_name(name, list, count);
 }
 
 static void report(vlGltf *g, const Unknown *name) {
-  char near[100] = "", times[60] = "";
+  char times[60] = "", words[256];
+  const char *near = NULL;
   const bool extension = vl_text_is(name->object, "extensions");
   if (!extension)
-    nearest(name->object, name->key, near, sizeof near);
+    near = nearest(name->object, name->key, words);
   if (name->count > 1)
     snprintf(times, sizeof times, ", here and in %u other place%s", name->count - 1,
              name->count > 2 ? "s" : "");
@@ -234,7 +232,7 @@ static void report(vlGltf *g, const Unknown *name) {
                  location, vl_gltf_extension_text(name->key).text, times);
   else
     vl_gltf_warn(VL_LOG_WARNING, &g->top, "%s: unknown name \"%s\" is ignored%s%s", location,
-                 vl_short_text(name->key).text, near, times);
+                 vl_short_text(name->key).text, vl_hint(near).text, times);
 }
 
 void vl_gltf_check_names(vlGltf *g) {

@@ -45,7 +45,7 @@ static bool read_node(vlGltf *g, size_t i) {
     n->matrix[k] = columns[4 * (k % 4) + k / 4];
   if (n->has_matrix &&
       (n->matrix[12] != 0 || n->matrix[13] != 0 || n->matrix[14] != 0 || n->matrix[15] != 1))
-    return vl_gltf_fail(VL_GLTF_KEY(at, "matrix"), "its last row must be 0 0 0 1");
+    return vl_gltf_fail_key(at, "matrix", "its last row must be 0 0 0 1");
   for (size_t k = 0; k < count; k++) {
     const vlGltfLocation *here = VL_GLTF_ITEM(at, "children", k);
     size_t index;
@@ -116,10 +116,7 @@ bool vl_gltf_pose_nodes(vlGltf *g) {
 }
 
 size_t vl_gltf_mesh_of(const vlGltf *g, const vlGltfNode *node) {
-  const json_t *mesh = json_object_get(node->json, "mesh");
-  double index = json_number_value(mesh);
-  return json_is_number(mesh) && index >= 0 && index < (double)g->mesh_count ? (size_t)index
-                                                                             : VL_GLTF_NONE;
+  return vl_gltf_peek(node->json, "mesh", g->mesh_count);
 }
 
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node) {
@@ -188,11 +185,9 @@ static size_t instance_count(vlGltf *g, const json_t *node) {
   json_t *value;
   size_t count = 1;
   json_object_foreach((json_t *)(uintptr_t)attributes, key, value) {
-    double index = json_number_value(value);
-    if (index < 0 || index >= (double)g->accessor_count)
-      continue;
-    double n = json_number_value(
-        json_object_get(vl_gltf_item(g, "accessors", (size_t)index), "count"));
+    const size_t index = vl_gltf_peek(attributes, key, g->accessor_count);
+    const double n =
+        json_number_value(json_object_get(vl_gltf_item(g, "accessors", index), "count"));
     if (n > (double)count)
       count = (size_t)(n < 1e9 ? n : 1e9);
   }
@@ -299,19 +294,13 @@ static bool draw_node(vlGltf *g, size_t i) {
 /* Whether the primitive's material (the chosen variant's, too) emits light. Parse errors are
  * reported later. */
 static bool emissive(vlGltf *g, const json_t *primitive) {
-  double index = json_number_value(json_object_get(primitive, "material"));
-  size_t i = 0;
-  const json_t *mapping,
-      *mappings =
-          json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
+  const json_t *mappings =
+      json_object_get(vl_gltf_extension(primitive, "KHR_materials_variants"), "mappings");
   bool any = false;
   for (int k = -1; k < (int)json_array_size(mappings); k++) {
-    mapping = k < 0 ? primitive : json_array_get(mappings, (size_t)k);
-    index = json_number_value(json_object_get(mapping, "material"));
-    if (!json_object_get(mapping, "material") || index < 0)
-      continue;
-    i = (size_t)index;
-    const json_t *m = vl_gltf_item(g, "materials", i),
+    const json_t *mapping = k < 0 ? primitive : json_array_get(mappings, (size_t)k);
+    const json_t *m = vl_gltf_item(g, "materials",
+                                   vl_gltf_peek(mapping, "material", g->material_count)),
                  *factor = json_object_get(m, "emissiveFactor");
     for (size_t c = 0; c < json_array_size(factor); c++)
       any = any || json_number_value(json_array_get(factor, c)) > 0;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "image/image.h"
 #include "import/gltf/gltf.h"
 
 #include "math/elementary.h"
@@ -50,6 +51,15 @@ static bool keep_image(vlGltf *g, vlGltfImage *image) {
     return true;
   }
   return vl_scene_copy_block(g->scene, image->data, image->size, 1, &image->data);
+}
+
+bool vl_gltf_decode_image(vlGltf *g, const vlGltfLocation *at, const char *name,
+                          const void *data, size_t size, const char *path, vlImage **image) {
+  vlError error;
+  vl_error_clear(&error);
+  vlResult r = path ? vl_image_read_named(g->context, NULL, path, image, &error)
+                    : vl_image_read_memory(g->context, name, data, size, image, &error);
+  return r == VL_OK || vl_gltf_fail_code(r, at, "%s", error.message);
 }
 
 bool vl_gltf_read_image(vlGltf *g, size_t index) {
@@ -173,10 +183,8 @@ bool vl_gltf_texture(const vlGltfLocation *up, const char *key, const vlGltfText
     return false;
   if (!info)
     return true;
-  if (!vl_gltf_index(at, "index", g->texture_count, &texture))
+  if (!vl_gltf_need_index(at, "index", g->texture_count, &texture))
     return false;
-  if (texture == VL_GLTF_NONE)
-    return vl_gltf_fail(at, "\"index\" is missing");
   if (!choose_image(g, texture, &image))
     return false;
   if (image == VL_GLTF_NONE)

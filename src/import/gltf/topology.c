@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "import/far.h"
 #include "import/gltf/gltf.h"
 
 #include "base/free.h"
@@ -112,16 +113,10 @@ static float point_radius(const vlGltf *g, const vlMesh *p) {
   double radius = g->scale > 0 ? g->point_radius / g->scale : 0;
   if (radius > 1e-30 && radius < 1e30)
     return (float)radius;
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY},
-         d = 0;
-  for (size_t i = 0; i < 3 * p->vertices; i++) {
-    double x = p->positions[i];
-    low[i % 3] = x < low[i % 3] ? x : low[i % 3];
-    high[i % 3] = x > high[i % 3] ? x : high[i % 3];
-  }
-  for (int i = 0; i < 3; i++)
-    d += (high[i] - low[i]) * (high[i] - low[i]);
-  return d > 0 && isfinite(d) ? (float)(0.003 * sqrt(d)) : 0.003f;
+  VL_NO_BOX(low, high);
+  vl_grow_box(p->positions, p->vertices, low, high);
+  const double d = vl_box_diagonal(low, high);
+  return d > 0 && isfinite(d) ? (float)(0.003 * d) : 0.003f;
 }
 
 static size_t count_solids(uint32_t mode, size_t count) {

@@ -18,7 +18,7 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, vlGltfMaterial *result)
       !vl_gltf_numbers(at, "attenuationColor", 3, color))
     return false;
   if (!(distance > 0))
-    return vl_gltf_fail(VL_GLTF_KEY(at, "attenuationDistance"), "must be above 0");
+    return vl_gltf_fail_key(at, "attenuationDistance", "must be above 0");
   for (int i = 0; i < 3; i++) {
     double c = color[i] > 1e-4 ? color[i] < 1 ? color[i] : 1 : 1e-4;
     sigma[i] = (float)(-vl_precise_log(c) / distance);
@@ -43,13 +43,9 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, vlGltfMaterial *result)
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input) {
   vlTextureDef def = g->scene->textures.items[from.index - 1];
   vlImage *image = NULL, *angles = NULL;
-  vlError error;
-  vl_error_clear(&error);
-  vlResult r = def.data ? vl_image_read_memory(g->context, def.name, def.data, def.data_size,
-                                               &image, &error)
-                        : vl_image_read_named(g->context, NULL, def.path, &image, &error);
-  if (r != VL_OK)
-    return vl_gltf_fail_code(r, &g->top, "%s", error.message);
+  if (!vl_gltf_decode_image(g, &g->top, def.name, def.data, def.data_size,
+                            def.data ? NULL : def.path, &image))
+    return false;
   bool ok = image->channels >= 3 || vl_gltf_fail(&g->top, "%s: has no directions", def.name);
   if (ok) {
     vlImageDef form = vl_default_image_def(image->width, image->height, 1);

@@ -27,6 +27,12 @@ static bool exists(const char *path) {
   return stat(path, &info) == 0 && S_ISREG(info.st_mode);
 }
 
+static void use_slashes(char *name) {
+  for (char *p = name; *p; p++)
+    if (*p == '\\')
+      *p = '/';
+}
+
 /* Finds a file at its path or, since paths are often those of another machine, a file of the
  * same name in the folder of the library or on the search path. */
 static bool find_file(vlObj *obj, const char *name, char *path, size_t size) {
@@ -57,9 +63,7 @@ static bool find_image(vlObj *obj, char *name, const char **path) {
                                       ".bmp", ".gif", ".ppm",  ".pgm", ".qoi", ".pnm"};
   char whole[4096];
   *path = NULL;
-  for (char *p = name; *p; p++)
-    if (*p == '\\')
-      *p = '/';
+  use_slashes(name);
   if (!find_file(obj, name, whole, sizeof whole)) {
     obj->repairs.images++;
     return report_missing(obj, "there is no image", name);
@@ -97,65 +101,71 @@ static bool option_word(vlObj *obj, const char *name, const char **word, size_t 
   return (*n = vl_obj_word(obj, word)) || vl_obj_fail(obj, "%s: its value is missing", name);
 }
 
+/* The options before an image's name. Those of `most` 0 are followed by a word, others by
+ * numbers, of which the first are `standard` if there are fewer. */
+typedef struct Option {
+  const char *name, *label; /* label: in messages */
+  uint32_t least, most;
+  double standard;
+} Option;
+
+static const Option options[] = {
+    {"-o", "-o, -s, -t", 1, 3, 0},     {"-s", "-o, -s, -t", 1, 3, 1},
+    {"-t", "-o, -s, -t", 1, 3, 0},     {"-mm", "-mm", 2, 2, 0},
+    {"-bm", "-bm", 1, 1, 0},           {"-boost", "-boost", 1, 1, 0},
+    {"-texres", "-texres", 1, 1, 0},   {"-clamp", "-clamp", 0, 0, 0},
+    {"-imfchan", "-imfchan", 0, 0, 0}, {"-blendu", "-blendu", 0, 0, 0},
+    {"-blendv", "-blendv", 0, 0, 0},   {"-cc", "-cc", 0, 0, 0},
+    {"-type", "-type", 0, 0, 0}};
+
+static void set_numbers(vlMtlMap *map, const char *option, const double v[3]) {
+  for (int i = 0; i < 2; i++) {
+    if (vl_text_is(option, "-o"))
+      map->offset[i] = (float)v[i];
+    if (vl_text_is(option, "-s"))
+      map->scale[i] = (float)v[i];
+  }
+  if (vl_text_is(option, "-mm")) {
+    map->base = (float)v[0];
+    map->gain = (float)v[1];
+  }
+  if (vl_text_is(option, "-bm"))
+    map->bump = (float)v[0];
+}
+
+static void set_word(vlMtlMap *map, const char *option, const char *word, size_t n) {
+  const char *channel = n == 1 ? strchr("rgbm", *word) : NULL;
+  if (vl_text_is(option, "-clamp"))
+    map->clamp = is_word(word, n, "on");
+  if (vl_text_is(option, "-imfchan"))
+    map->channel = channel ? (int)(channel - "rgbm") : -1;
+}
+
 /* Reads one option before an image's name. Returns false when there is none, or when it is
  * broken; *fine is then false. */
 static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
-  static const char *const words[] = {"-blendu", "-blendv", "-cc", "-type"},
-                           *const numbers[] = {"-boost", "-texres"};
   const char *word, *value;
   char *at = obj->at;
-  size_t n = vl_obj_word(obj, &word), size;
-  double v[3] = {0, 0, 0};
+  size_t n = vl_obj_word(obj, &word);
+  const Option *o = NULL;
+  for (size_t i = 0; i < VL_LENGTH(options) && !o; i++)
+    if (is_word(word, n, options[i].name))
+      o = &options[i];
   *fine = true;
-  if (n < 2 || word[0] != '-') {
+  if (!o) {
     obj->at = at;
     return false;
   }
-  if (is_word(word, n, "-o") || is_word(word, n, "-s") || is_word(word, n, "-t")) {
-    bool offset = word[1] == 'o', scale = word[1] == 's';
-    v[0] = v[1] = v[2] = scale ? 1 : 0;
-    *fine = option_numbers(obj, "-o, -s, -t", 1, 3, v);
-    for (int i = 0; i < 2 && offset; i++)
-      map->offset[i] = (float)v[i];
-    for (int i = 0; i < 2 && scale; i++)
-      map->scale[i] = (float)v[i];
+  if (!o->most) {
+    *fine = option_word(obj, o->label, &value, &n);
+    if (*fine)
+      set_word(map, o->name, value, n);
     return true;
   }
-  if (is_word(word, n, "-mm")) {
-    v[1] = 1;
-    *fine = option_numbers(obj, "-mm", 2, 2, v);
-    map->base = (float)v[0];
-    map->gain = (float)v[1];
-    return true;
-  }
-  if (is_word(word, n, "-bm")) {
-    *fine = option_numbers(obj, "-bm", 1, 1, v);
-    map->bump = (float)v[0];
-    return true;
-  }
-  if (is_word(word, n, "-clamp")) {
-    *fine = option_word(obj, "-clamp", &value, &size);
-    map->clamp = *fine && is_word(value, size, "on");
-    return true;
-  }
-  if (is_word(word, n, "-imfchan")) {
-    *fine = option_word(obj, "-imfchan", &value, &size);
-    const char *at_channel = *fine ? strchr("rgbm", *value) : NULL;
-    map->channel = *fine && size == 1 && at_channel ? (int)(at_channel - "rgbm") : -1;
-    return true;
-  }
-  for (int i = 0; i < 4; i++)
-    if (is_word(word, n, words[i])) {
-      *fine = option_word(obj, words[i], &value, &size);
-      return true;
-    }
-  for (int i = 0; i < 2; i++)
-    if (is_word(word, n, numbers[i])) {
-      *fine = option_numbers(obj, numbers[i], 1, 1, v);
-      return true;
-    }
-  obj->at = at;
-  return false;
+  double v[3] = {o->standard, o->standard, o->standard};
+  *fine = option_numbers(obj, o->label, o->least, o->most, v);
+  set_numbers(map, o->name, v);
+  return true;
 }
 
 static bool read_map(vlObj *obj, vlMtl *m, vlMtlMapKind kind) {
@@ -290,9 +300,7 @@ static bool read_library(vlObj *obj, char *name) {
       return true;
   if (obj->libraries.count >= VL_OBJ_LIBRARIES)
     return vl_obj_fail(obj, "mtllib: more than %d libraries", VL_OBJ_LIBRARIES);
-  for (char *p = name; *p; p++)
-    if (*p == '\\')
-      *p = '/';
+  use_slashes(name);
   const char *kept = name;
   const char **slot = VL_PUSH(obj->context, &obj->libraries);
   if (!slot)

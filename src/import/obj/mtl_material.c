@@ -2,6 +2,7 @@
  * the rules where MTL is ambiguous. */
 #include <math.h>
 
+#include "import/far.h"
 #include "import/obj/obj.h"
 
 #include "base/text.h"
@@ -90,11 +91,8 @@ static bool normal_or_bump_map(vlObj *obj, const vlMtl *m, vlMaterialDef *def) {
   }
   if (!bump->path)
     return true;
-  double size = 0;
-  for (int i = 0; i < 3; i++)
-    size += (obj->high[i] - obj->low[i]) * (obj->high[i] - obj->low[i]);
   vlTextureDef texture = texture_def(obj, bump, false);
-  texture.scale *= (float)(0.002 * sqrt(size)) * bump->bump;
+  texture.scale *= (float)(0.002 * vl_box_diagonal(obj->low, obj->high)) * bump->bump;
   texture.bias = 0;
   def->displacement.texture = vl_scene_add_texture(obj->scene, &texture);
   return def->displacement.texture.index != 0;

@@ -337,30 +337,23 @@ static bool read_face(vlObj *obj) {
 /* ---- what faces are of ------------------------------------------------------------------- */
 
 uint32_t vl_obj_material(vlObj *obj, const char *name) {
-  uint32_t hash = 2166136261u;
-  for (const char *p = name; *p; p++)
-    hash = (hash ^ (uint8_t)*p) * 16777619u;
-  uint32_t *head = &obj->heads[(hash ^ hash >> 15) % VL_OBJ_HEADS];
-  for (uint32_t i = *head; i; i = obj->materials.items[i - 1].next)
-    if (vl_text_is(obj->materials.items[i - 1].name, name))
-      return i - 1;
-  const char *kept = name;
-  if (obj->materials.count >= MAX_MATERIALS) {
+  uint32_t index = (uint32_t)obj->materials.count;
+  if (vl_names_find(&obj->material_names, name, &index))
+    return index;
+  if (index >= MAX_MATERIALS) {
     vl_obj_fail(obj, "too many materials");
     return UINT32_MAX;
   }
-  if (!vl_scene_copy_string(obj->scene, &kept))
+  if (!vl_scene_copy_string(obj->scene, &name))
     return UINT32_MAX;
   vlObjMaterial *m = VL_PUSH(obj->context, &obj->materials);
-  if (!m) {
+  if (!m || !vl_names_add(obj->context, &obj->material_names, name, index)) {
     vl_obj_fail_memory(obj);
     return UINT32_MAX;
   }
-  m->name = kept;
+  m->name = name;
   m->mtl = vl_mtl_default();
-  m->next = *head;
-  *head = (uint32_t)obj->materials.count;
-  return *head - 1;
+  return index;
 }
 
 static bool use_material(vlObj *obj) {
@@ -466,7 +459,7 @@ static void free_all(vlObj *obj) {
           obj->normals.items, obj->corners.items, obj->triangle_part.items,
           obj->triangle_smooth.items, obj->parts.items, obj->objects.items,
           obj->materials.items, obj->marks.items, obj->polygon.items, obj->ears.items,
-          (void *)obj->libraries.items, obj);
+          (void *)obj->libraries.items, obj->material_names.slots, obj);
 }
 
 vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {

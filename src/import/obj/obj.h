@@ -45,7 +45,6 @@ typedef struct vlMtl {
 
 typedef struct vlObjMaterial {
   const char *name; /* owned by the scene */
-  uint32_t next;    /* next material with the same hash, counted from 1; 0: none */
   uint32_t line;    /* first line that uses the material */
   bool defined, made;
   uint32_t part; /* part for all faces of the material when there are too many parts, counted
@@ -70,7 +69,7 @@ typedef struct vlObjPart {
   bool normals, uvs; /* whether any corner has normals, uvs */
 } vlObjPart;
 
-enum { VL_OBJ_HEADS = 4096, VL_OBJ_LIBRARIES = 64 };
+enum { VL_OBJ_LIBRARIES = 64 };
 
 /* A point, or a line between two vertices. */
 typedef struct vlObjMark {
@@ -108,7 +107,7 @@ typedef struct vlObj {
   VL_ARRAY(vlObjCorner) polygon;
   VL_ARRAY(uint32_t) ears; /* scratch of vl_obj_triangulate */
   VL_ARRAY(const char *) libraries;
-  uint32_t heads[VL_OBJ_HEADS]; /* first material with each hash, counted from 1 */
+  vlNameTable material_names; /* to indices of materials */
   uint32_t material, smooth, part;
   bool part_open;
   uint32_t reported; /* bit mask of warnings that are given only once and were given */

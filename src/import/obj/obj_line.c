@@ -102,10 +102,8 @@ static bool add_lines(vlObj *obj, const vlObjMark *marks, size_t count, float ra
 }
 
 bool vl_obj_add_marks(vlObj *obj) {
-  double diagonal = 0;
-  for (int i = 0; i < 3; i++)
-    diagonal += (obj->high[i] - obj->low[i]) * (obj->high[i] - obj->low[i]);
-  const float radius = diagonal > 0 ? (float)(THIN * sqrt(diagonal)) : 1;
+  const double diagonal = vl_box_diagonal(obj->low, obj->high);
+  const float radius = diagonal > 0 ? (float)(THIN * diagonal) : 1;
   vlObjMark *marks = obj->marks.items;
   if (obj->marks.count > 0x1fffffff)
     return vl_obj_fail(obj, "too many points and lines");

@@ -28,7 +28,7 @@ static bool read_vertex(const char *p, const char *end, double v[3]) {
 }
 
 void vl_obj_find_origin(vlObj *obj) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  VL_NO_BOX(low, high);
   const char *next = obj->line_start;
   while (next && next < obj->data_end) {
     double v[3];

@@ -3,48 +3,13 @@
  * they are resolved and linked to shapes. Also imports a whole file. */
 #include "import/pbrt/builder.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "import/pbrt/upgrade/detect.h"
 
 #include "base/text.h"
 #include "import/import.h"
 #include "velo/material.h"
 #include "velo/shape.h"
-
-/* The part of a file where a directive may stand: options precede WorldBegin, the world follows
- * it. */
-typedef enum Part { ANYWHERE, OPTIONS, WORLD } Part;
-
-typedef struct Rule {
-  const char *name; /* in messages; null: ANYWHERE, no message names it */
-  Part part;
-} Rule;
-
-static const Rule rules[VL_DIR_TEXTURE + 1] = {
-    [VL_DIR_WORLD_BEGIN] = {"WorldBegin", OPTIONS},
-    [VL_DIR_TRANSFORM_TIMES] = {"TransformTimes", OPTIONS},
-    [VL_DIR_FILM] = {"Film", OPTIONS},
-    [VL_DIR_SAMPLER] = {"Sampler", OPTIONS},
-    [VL_DIR_INTEGRATOR] = {"Integrator", OPTIONS},
-    [VL_DIR_PIXEL_FILTER] = {"PixelFilter", OPTIONS},
-    [VL_DIR_ACCELERATOR] = {"Accelerator", OPTIONS},
-    [VL_DIR_CAMERA] = {"Camera", OPTIONS},
-    [VL_DIR_ATTRIBUTE_BEGIN] = {"AttributeBegin", WORLD},
-    [VL_DIR_ATTRIBUTE_END] = {"AttributeEnd", WORLD},
-    [VL_DIR_TRANSFORM_BEGIN] = {"TransformBegin", WORLD},
-    [VL_DIR_TRANSFORM_END] = {"TransformEnd", WORLD},
-    [VL_DIR_REVERSE_ORIENTATION] = {"ReverseOrientation", WORLD},
-    [VL_DIR_OBJECT_END] = {"ObjectEnd", WORLD},
-    [VL_DIR_IMPORT_BEGIN] = {"Import", WORLD},
-    [VL_DIR_NAMED_MATERIAL] = {"NamedMaterial", WORLD},
-    [VL_DIR_OBJECT_BEGIN] = {"ObjectBegin", WORLD},
-    [VL_DIR_OBJECT_INSTANCE] = {"ObjectInstance", WORLD},
-    [VL_DIR_MATERIAL] = {"Material", WORLD},
-    [VL_DIR_MAKE_NAMED_MATERIAL] = {"MakeNamedMaterial", WORLD},
-    [VL_DIR_AREA_LIGHT_SOURCE] = {"AreaLightSource", WORLD},
-    [VL_DIR_LIGHT_SOURCE] = {"LightSource", WORLD},
-    [VL_DIR_SHAPE] = {"Shape", WORLD},
-    [VL_DIR_TEXTURE] = {"Texture", WORLD},
-};
 
 /* ---- parameters that outlive their directive --------------------------------------------- */
 
@@ -61,6 +26,18 @@ bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *
   return true;
 }
 
+/* Shares the attributes of a target with `to`. */
+static bool share_attributes(vlImport *import, vlAttributeTarget target, vlParamList *to) {
+  const vlParamList *from = &import->attributes[target];
+  if (!VL_RESERVE(import->context, &to->list, from->list.count))
+    return vl_import_fail_memory(import);
+  for (size_t i = 0; i < from->list.count; i++) {
+    from->list.items[i]->shared++;
+    to->list.items[to->list.count++] = from->list.items[i];
+  }
+  return true;
+}
+
 /* The statement's parameters follow the attributes: the last one given counts. */
 vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTarget target,
                           bool is_texture) {
@@ -74,7 +51,7 @@ vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTar
   p->space = import->state.space;
   p->ctm = import->state.ctm[0];
   if (!vl_scene_copy_source(import->scene, &p->source) ||
-      !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
+      !share_attributes(import, target, &p->params) ||
       !vl_import_keep_params(import, s, &p->params))
     return NULL;
   return p;
@@ -84,10 +61,11 @@ vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTar
  */
 
 /* Records a directive that precedes WorldBegin. The last directive of a kind counts. */
-static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
+static bool choose(vlImport *import, const vlStatement *s) {
+  vlChoice *choice = &import->choices[s->directive - VL_DIR_FILM];
   if (choice->given)
     vl_import_remark(import, s->source, "%s a second time: this one counts",
-                     rules[s->directive].name);
+                     vl_directive_name(s->directive));
   vl_param_list_free(import->context, &choice->params);
   choice->given = true;
   choice->source = s->source;
@@ -97,25 +75,28 @@ static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
          vl_import_keep_params(import, s, &choice->params);
 }
 
+/* A later camera replaces the media of the earlier one. */
+static void forget_camera_media(vlImport *import) {
+  for (size_t i = 0; i < import->medium_links.count;) {
+    vlMediumLink *link = &import->medium_links.items[i];
+    if (link->target == 'c')
+      *link = import->medium_links.items[--import->medium_links.count];
+    else
+      i++;
+  }
+}
+
 static bool camera(vlImport *import, const vlStatement *s) {
   vlMat4 world_from_camera[2];
-  if (!choose(import, s, &import->camera))
+  if (!choose(import, s))
     return false;
   memcpy(import->camera_from_world, import->state.ctm, sizeof import->state.ctm);
   if (!vl_mat4_inverse(import->state.ctm[0], &world_from_camera[0]) ||
       !vl_mat4_inverse(import->state.ctm[1], &world_from_camera[1]))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "Camera: the current transform is singular");
-  for (size_t i = 0;
-       i <
-       import->medium_links.count;) /* a later camera replaces the media of the earlier one */
-    if (import->medium_links.items[i].target == 'c')
-      import->medium_links.items[i] = import->medium_links.items[--import->medium_links.count];
-    else
-      i++;
-  if (!vl_import_note_media(import, 'c', 0, s->source))
-    return false;
-  return vl_import_name_system(import, "camera", world_from_camera);
+    return vl_import_wrong(import, s->source, "Camera: the current transform is singular");
+  forget_camera_media(import);
+  return vl_import_note_media(import, 'c', 0, s->source) &&
+         vl_import_name_system(import, "camera", world_from_camera);
 }
 
 static bool medium_interface(vlImport *import, const vlStatement *s) {
@@ -127,13 +108,14 @@ static bool medium_interface(vlImport *import, const vlStatement *s) {
 static bool color_space(vlImport *import, const vlStatement *s) {
   if (vl_import_color_space(s->names[0], &import->state.space))
     return true;
-  return vl_import_fail(
-      import, VL_ERROR_SCENE, s->source,
+  return vl_import_wrong(
+      import, s->source,
       "unknown colour space \"%s\" (known: srgb, dci-p3, rec2020, aces2065-1)",
       vl_short_text(s->names[0]).text);
 }
 
-static bool world_begin(vlImport *import) {
+static bool world_begin(vlImport *import, const vlStatement *s) {
+  (void)s;
   import->in_world = true;
   import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
   import->state.active = 3;
@@ -148,118 +130,110 @@ static void note_space(vlImport *import, const vlStatement *s) {
 
 /* ---- statements -------------------------------------------------------------------------- */
 
-static bool in_right_part(vlImport *import, const vlStatement *s) {
-  const Rule rule = rules[s->directive];
-  switch (rule.part) {
-    case ANYWHERE:
-      return true;
-    case OPTIONS:
-      if (!import->in_world)
-        return true;
-      if (s->directive == VL_DIR_WORLD_BEGIN)
-        return vl_import_fail(import, VL_ERROR_SCENE, s->source, "WorldBegin a second time");
-      return vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s must come before WorldBegin",
-                            rule.name);
-    case WORLD:
-      return import->in_world || vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                                                "%s must come after WorldBegin", rule.name);
-  }
+static bool begin_block(vlImport *import, const vlStatement *s) {
+  return vl_import_push(import, s->directive == VL_DIR_IMPORT_BEGIN ? 'i' : 'a', s->source);
+}
+
+static bool end_block(vlImport *import, const vlStatement *s) {
+  return vl_import_pop(import, 'a', vl_directive_name(s->directive), s->source);
+}
+
+static bool fail_open(vlImport *import) {
+  const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
+  return vl_import_wrong(import, top->source, "%s is never closed",
+                         top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
+}
+
+static bool end_import(vlImport *import, const vlStatement *s) {
+  (void)s;
+  if (import->stack.items[import->stack.count - 1].kind != 'i')
+    return fail_open(import);
+  vl_import_restore(import);
   return true;
 }
 
-static bool obey(vlImport *import, const vlStatement *s) {
-  note_space(import, s);
-  switch (s->directive) {
-    case VL_DIR_ATTRIBUTE_BEGIN:
-    case VL_DIR_TRANSFORM_BEGIN:
-      return vl_import_push(import, 'a',
-                            s->source); /* pbrt-v4: both save the whole graphics state */
-    case VL_DIR_ATTRIBUTE_END:
-    case VL_DIR_TRANSFORM_END:
-      return vl_import_pop(import, 'a', rules[s->directive].name, s->source);
-    case VL_DIR_IMPORT_BEGIN:
-      return vl_import_push(import, 'i', s->source);
-    case VL_DIR_IMPORT_END: {
-      const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
-      if (top->kind == 'i') {
-        vl_import_restore(import);
-        return true;
-      }
-      return vl_import_fail(import, VL_ERROR_SCENE, top->source, "%s is never closed",
-                            top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
-    }
-    case VL_DIR_ACTIVE_ALL:
-      import->state.active = 3;
-      return true;
-    case VL_DIR_ACTIVE_START:
-      import->state.active = 1;
-      return true;
-    case VL_DIR_ACTIVE_END:
-      import->state.active = 2;
-      return true;
-    case VL_DIR_REVERSE_ORIENTATION:
-      import->state.reverse_orientation = !import->state.reverse_orientation;
-      return true;
-    case VL_DIR_WORLD_BEGIN:
-      return world_begin(import);
-    case VL_DIR_OBJECT_BEGIN:
-      return vl_import_object_begin(import, s);
-    case VL_DIR_OBJECT_END:
-      return vl_import_object_end(import, s);
-    case VL_DIR_OBJECT_INSTANCE:
-      return vl_import_object_instance(import, s);
-    case VL_DIR_IDENTITY:
-    case VL_DIR_TRANSLATE:
-    case VL_DIR_SCALE:
-    case VL_DIR_ROTATE:
-    case VL_DIR_LOOK_AT:
-    case VL_DIR_TRANSFORM:
-    case VL_DIR_CONCAT_TRANSFORM:
-      return vl_import_transform(import, s);
-    case VL_DIR_TRANSFORM_TIMES:
-      return vl_import_times(import, s);
-    case VL_DIR_COORDINATE_SYSTEM:
-      return vl_import_name_system(import, s->names[0], import->state.ctm);
-    case VL_DIR_COORD_SYS_TRANSFORM:
-      return vl_import_use_system(import, s);
-    case VL_DIR_COLOR_SPACE:
-      return color_space(import, s);
-    case VL_DIR_NAMED_MATERIAL:
-      return vl_import_named_material(import, s);
-    case VL_DIR_MEDIUM_INTERFACE:
-      return medium_interface(import, s);
-    case VL_DIR_OPTION:
-      return vl_import_option(import, s);
-    case VL_DIR_ATTRIBUTE:
-      return vl_import_attribute(import, s);
-    case VL_DIR_FILM:
-      return choose(import, s, &import->film);
-    case VL_DIR_SAMPLER:
-      return choose(import, s, &import->sampler);
-    case VL_DIR_INTEGRATOR:
-      return choose(import, s, &import->integrator);
-    case VL_DIR_PIXEL_FILTER:
-      return choose(import, s, &import->filter);
-    case VL_DIR_ACCELERATOR:
-      return choose(import, s, &import->accelerator);
-    case VL_DIR_CAMERA:
-      return camera(import, s);
-    case VL_DIR_MAKE_NAMED_MEDIUM:
-      return vl_import_medium(import, s);
-    case VL_DIR_MATERIAL:
-      return vl_import_material(import, s);
-    case VL_DIR_MAKE_NAMED_MATERIAL:
-      return vl_import_make_named_material(import, s);
-    case VL_DIR_AREA_LIGHT_SOURCE:
-      return vl_import_area_light(import, s);
-    case VL_DIR_LIGHT_SOURCE:
-      return vl_import_light(import, s);
-    case VL_DIR_SHAPE:
-      return vl_import_shape(import, s);
-    case VL_DIR_TEXTURE:
-      return vl_import_texture(import, s);
-  }
+static bool activate(vlImport *import, const vlStatement *s) {
+  import->state.active = s->directive == VL_DIR_ACTIVE_ALL     ? 3
+                         : s->directive == VL_DIR_ACTIVE_START ? 1
+                                                               : 2;
   return true;
+}
+
+static bool reverse_orientation(vlImport *import, const vlStatement *s) {
+  (void)s;
+  import->state.reverse_orientation = !import->state.reverse_orientation;
+  return true;
+}
+
+static bool name_system(vlImport *import, const vlStatement *s) {
+  return vl_import_name_system(import, s->names[0], import->state.ctm);
+}
+
+/* ---- directives -------------------------------------------------------------------------- */
+
+/* What obeys a directive, and the part of a file where it may stand: options precede
+ * WorldBegin, the world follows it. */
+typedef enum Part { ANYWHERE, OPTIONS, WORLD } Part;
+typedef struct Rule {
+  vlImportStatement *obey;
+  Part part;
+} Rule;
+
+static const Rule rules[] = {
+    [VL_DIR_ATTRIBUTE_BEGIN] = {begin_block, WORLD}, /* as in pbrt-v4, both blocks save the */
+    [VL_DIR_ATTRIBUTE_END] = {end_block, WORLD},     /* whole graphics state */
+    [VL_DIR_TRANSFORM_BEGIN] = {begin_block, WORLD},
+    [VL_DIR_TRANSFORM_END] = {end_block, WORLD},
+    [VL_DIR_IDENTITY] = {vl_import_transform, ANYWHERE},
+    [VL_DIR_REVERSE_ORIENTATION] = {reverse_orientation, WORLD},
+    [VL_DIR_WORLD_BEGIN] = {world_begin, OPTIONS},
+    [VL_DIR_OBJECT_END] = {vl_import_object_end, WORLD},
+    [VL_DIR_ACTIVE_ALL] = {activate, ANYWHERE},
+    [VL_DIR_ACTIVE_START] = {activate, ANYWHERE},
+    [VL_DIR_ACTIVE_END] = {activate, ANYWHERE},
+    [VL_DIR_IMPORT_BEGIN] = {begin_block, WORLD},
+    [VL_DIR_IMPORT_END] = {end_import, ANYWHERE},
+    [VL_DIR_TRANSLATE] = {vl_import_transform, ANYWHERE},
+    [VL_DIR_SCALE] = {vl_import_transform, ANYWHERE},
+    [VL_DIR_ROTATE] = {vl_import_transform, ANYWHERE},
+    [VL_DIR_LOOK_AT] = {vl_import_transform, ANYWHERE},
+    [VL_DIR_TRANSFORM] = {vl_import_transform, ANYWHERE},
+    [VL_DIR_CONCAT_TRANSFORM] = {vl_import_transform, ANYWHERE},
+    [VL_DIR_TRANSFORM_TIMES] = {vl_import_times, OPTIONS},
+    [VL_DIR_COORDINATE_SYSTEM] = {name_system, ANYWHERE},
+    [VL_DIR_COORD_SYS_TRANSFORM] = {vl_import_use_system, ANYWHERE},
+    [VL_DIR_COLOR_SPACE] = {color_space, ANYWHERE},
+    [VL_DIR_NAMED_MATERIAL] = {vl_import_named_material, WORLD},
+    [VL_DIR_OBJECT_BEGIN] = {vl_import_object_begin, WORLD},
+    [VL_DIR_OBJECT_INSTANCE] = {vl_import_object_instance, WORLD},
+    [VL_DIR_MEDIUM_INTERFACE] = {medium_interface, ANYWHERE},
+    [VL_DIR_OPTION] = {vl_import_option, ANYWHERE},
+    [VL_DIR_ATTRIBUTE] = {vl_import_attribute, ANYWHERE},
+    [VL_DIR_FILM] = {choose, OPTIONS},
+    [VL_DIR_SAMPLER] = {choose, OPTIONS},
+    [VL_DIR_INTEGRATOR] = {choose, OPTIONS},
+    [VL_DIR_PIXEL_FILTER] = {choose, OPTIONS},
+    [VL_DIR_ACCELERATOR] = {choose, OPTIONS},
+    [VL_DIR_CAMERA] = {camera, OPTIONS},
+    [VL_DIR_MAKE_NAMED_MEDIUM] = {vl_import_medium, ANYWHERE},
+    [VL_DIR_MATERIAL] = {vl_import_material, WORLD},
+    [VL_DIR_MAKE_NAMED_MATERIAL] = {vl_import_make_named_material, WORLD},
+    [VL_DIR_AREA_LIGHT_SOURCE] = {vl_import_area_light, WORLD},
+    [VL_DIR_LIGHT_SOURCE] = {vl_import_light, WORLD},
+    [VL_DIR_SHAPE] = {vl_import_shape, WORLD},
+    [VL_DIR_TEXTURE] = {vl_import_texture, WORLD},
+};
+
+/* ---- statements -------------------------------------------------------------------------- */
+
+static bool in_right_part(vlImport *import, const vlStatement *s) {
+  const Part part = rules[s->directive].part;
+  if (part == ANYWHERE || (part == WORLD) == import->in_world)
+    return true;
+  if (s->directive == VL_DIR_WORLD_BEGIN)
+    return vl_import_wrong(import, s->source, "WorldBegin a second time");
+  return vl_import_wrong(import, s->source, "%s must come %s WorldBegin",
+                         vl_directive_name(s->directive), part == WORLD ? "after" : "before");
 }
 
 /* While diagnosing, an invalid statement is skipped. The name of a medium that it defines stays
@@ -267,7 +241,8 @@ static bool obey(vlImport *import, const vlStatement *s) {
 static bool statement(void *user, const vlStatement *s) {
   vlImport *import = user;
   bool misplaced = !in_right_part(import, s);
-  if (!misplaced && obey(import, s))
+  note_space(import, s);
+  if (!misplaced && rules[s->directive].obey(import, s))
     return true;
   if (misplaced && !import->in_world) { /* a file without WorldBegin: every later statement
                                            would be an error, too */
@@ -366,13 +341,10 @@ static bool finish(vlImport *import) {
   if (scene->error.code != VL_OK)
     return false;
   if (!import->in_world)
-    return vl_import_fail(import, VL_ERROR_SCENE, (vlSource){import->first, 0, 0},
-                          "the file has no WorldBegin");
-  if (import->stack.count) {
-    const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
-    return vl_import_fail(import, VL_ERROR_SCENE, top->source, "%s is never closed",
-                          top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
-  }
+    return vl_import_wrong(import, (vlSource){import->first, 0, 0},
+                           "the file has no WorldBegin");
+  if (import->stack.count)
+    return fail_open(import);
   if (!vl_import_flush_runs(import))
     return false;
   if (!vl_import_read_meshes(import))
@@ -392,8 +364,8 @@ static bool finish(vlImport *import) {
     const vlObject *object = &import->object_list.items[i];
     if (object->defined)
       continue;
-    vl_import_fail(import, VL_ERROR_SCENE, object->source, "there is no object \"%s\"",
-                   vl_short_text(object->name).text);
+    vl_import_wrong(import, object->source, "there is no object \"%s\"",
+                    vl_short_text(object->name).text);
     if (!vl_import_recover(import))
       return false;
   }
@@ -412,12 +384,8 @@ static void release(vlImport *import) {
   vlContext *context = import->context;
   free_pending(context, import->textures.items, import->textures.count);
   free_pending(context, import->materials.items, import->materials.count);
-  VL_ARRAY_FREE(context, &import->textures);
-  VL_ARRAY_FREE(context, &import->materials);
-  vlChoice *choices[] = {&import->camera,     &import->film,   &import->sampler,
-                         &import->integrator, &import->filter, &import->accelerator};
-  for (size_t i = 0; i < VL_LENGTH(choices); i++)
-    vl_param_list_free(context, &choices[i]->params);
+  for (size_t i = 0; i < VL_LENGTH(import->choices); i++)
+    vl_param_list_free(context, &import->choices[i].params);
   for (int t = 0; t < VL_ATTR_TARGETS; t++)
     vl_param_list_free(context, &import->attributes[t]);
   vlNameTable *tables[] = {
@@ -427,15 +395,11 @@ static void release(vlImport *import) {
     vl_free(context, tables[i]->slots);
   for (size_t i = 0; i < import->strings.count; i++)
     vl_free(context, import->strings.items[i]);
-  VL_ARRAY_FREE(context, &import->strings);
-  VL_ARRAY_FREE(context, &import->stack);
-  VL_ARRAY_FREE(context, &import->matrices);
-  VL_ARRAY_FREE(context, &import->moving);
   vl_import_free_runs(import);
-  VL_ARRAY_FREE(context, &import->object_list);
-  VL_ARRAY_FREE(context, &import->links);
-  VL_ARRAY_FREE(context, &import->mesh_files);
-  VL_ARRAY_FREE(context, &import->medium_links);
+  VL_FREE(context, import->textures.items, import->materials.items,
+          (void *)import->strings.items, import->stack.items, import->matrices.items,
+          import->moving.items, import->object_list.items, import->links.items,
+          import->mesh_files.items, import->medium_links.items, import);
 }
 
 /* A scene of an older pbrt: the error names the command. */
@@ -444,10 +408,10 @@ static bool fail_old(vlImport *import, const char *path) {
   if (!old.version)
     return false;
   vl_error_clear(&import->scene->error);
-  vl_import_fail(import, VL_ERROR_SCENE, (vlSource){path, old.line, old.column},
-                 "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a "
-                 "pbrt-v4 scene of it",
-                 old.version, old.sign, path);
+  vl_import_wrong(import, (vlSource){path, old.line, old.column},
+                  "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a "
+                  "pbrt-v4 scene of it",
+                  old.version, old.sign, path);
   return true;
 }
 
@@ -490,7 +454,6 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   if (!data && scene->error.code == VL_ERROR_SCENE)
     fail_old(import, path);
   release(import);
-  vl_free(scene->context, import);
   return vl_scene_result(scene, error);
 }
 

@@ -162,7 +162,12 @@ struct vlImport {
   bool in_object;           /* between ObjectBegin and ObjectEnd */
   vlGroupId object;
   double film_diagonal; /* mm */
-  vlChoice camera, film, sampler, integrator, filter, accelerator;
+  union {
+    struct {
+      vlChoice film, sampler, integrator, filter, accelerator, camera;
+    };
+    vlChoice choices[6]; /* the same, in the order of their directives from VL_DIR_FILM on */
+  };
   vlMat4 camera_from_world[2]; /* current transforms at the start and at the end time */
   vlNameTable media;           /* to ids in the scene */
   VL_ARRAY(vlMediumLink) medium_links;
@@ -202,11 +207,6 @@ void vl_import_remark(vlImport *import, vlSource source, const char *format, ...
  * warning; it then returns true. */
 bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* The end of a message: the name that is meant, or nothing for null. */
-typedef struct vlHint {
-  char text[200];
-} vlHint;
-vlHint vl_import_hint(const char *near);
 /* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not
  * support. */
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
@@ -236,8 +236,6 @@ bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t s
 bool vl_import_image_path(vlImport *import, const vlParam *param, char *path, size_t size);
 bool vl_import_color_space(const char *name, vlColorSpace *space);
 
-/* Appends copies of the parameters, marked optional, to `to`. */
-bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to);
 /* State (state.c). */
 bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]);
 bool vl_import_push(vlImport *import, char kind, vlSource source);
@@ -287,23 +285,24 @@ bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *i
 /* The parameters of a directive, and what messages call it (parameters.c). */
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
                       const vlParamList *own, const vlParamList *attributes);
-/* vl_import_dict for a directive that names a kind. */
+/* The same for the directive of a statement that names a kind. */
 vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
-                           const char *kind, vlSource source, vlColorSpace space,
-                           const vlParamList *own, const vlParamList *attributes);
+                           const vlStatement *s, vlAttributeTarget target);
 /* The same for a directive that a file has once; standard: its kind where the file lacks it. */
 vlDict vl_import_choice_dict(vlImport *import, const char *directive,
                              const vlKindFamily *family, const vlChoice *choice,
                              const char *standard);
-/* Reads the parameters of the row into the members of def. A member whose
- * parameter is not given is unchanged. spectrum selects the spectrum or the float input of
- * EITHER_INPUT. given receives, for each parameter of the row, whether the file gives it; it
- * may be null. Parameters with VL_PARAMETER_RULE and BLOCKs are left to the caller. False after
- * an error. */
-bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool spectrum,
-                          bool *given);
-/* Whether the file gives the parameter. The name must be one of the row's parameters. */
-bool vl_import_given(const vlKindRow *row, const bool *given, const char *name);
+/* Sets the kind and its row. */
+void vl_dict_set_kind(vlDict *dict, const vlKindFamily *family, int kind);
+/* Reads the parameters of the row into the members of def. A member whose parameter is not
+ * given is unchanged. spectrum selects the spectrum or the float input of EITHER_INPUT.
+ * Parameters with VL_PARAMETER_RULE and BLOCKs are left to the caller. False after an error. */
+bool vl_import_parameters(vlDict *dict, void *def, bool spectrum);
+/* Whether the file gives the parameter, which the row has. */
+bool vl_import_given(const vlDict *dict, const char *name);
+/* Reads the choice of the row's parameter into *value. False when the row lacks it, it is not
+ * given, or after an error. */
+bool vl_dict_row_choice(vlDict *dict, const char *name, int *value);
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source,
                           vlTextureId *id);

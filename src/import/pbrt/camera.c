@@ -278,17 +278,6 @@ static bool read_coefficients(vlDict *dict, const char *name, double *values, ui
   return true;
 }
 
-/* Reads the mapping of a fisheye or the layout of a cube map. */
-static int read_choice(vlDict *dict, const vlKindRow *row, const char *name) {
-  const vlParameter *p = vl_row_find(row, name);
-  int choice = 0;
-  size_t count = 0;
-  while (p->choices[count])
-    count++;
-  vl_dict_choice(dict, name, p->choices, count, &choice);
-  return choice;
-}
-
 static bool read_colmap(vlDict *dict, vlCameraDef *def) {
   const char *model = "PINHOLE";
   double values[14];
@@ -318,36 +307,38 @@ static void read_limits(vlDict *dict, vlCameraDef *def) {
 }
 
 /* Reads the parameters of projections and calibrated lenses that their rows do not describe. */
-static bool read_model(vlDict *dict, vlCameraDef *def, vlCameraKind kind,
-                       const vlKindRow *row) {
+static bool read_model(vlDict *dict, vlCameraDef *def, vlCameraKind kind) {
+  int choice = 0;
   uint32_t *count = &def->distortion_count;
-  bool given = kind != VL_CAMERA_COLMAP && vl_row_find(row, "coefficients") &&
+  bool given = kind != VL_CAMERA_COLMAP && vl_row_find(dict->row, "coefficients") &&
                read_coefficients(dict, "coefficients", def->distortion_coefficients, count);
   if (given)
     def->distortion =
         kind == VL_CAMERA_OPENCV_FISHEYE ? VL_DISTORTION_RADIAL : VL_DISTORTION_OPENCV;
   if (kind == VL_CAMERA_COLMAP)
     return read_colmap(dict, def);
+  vl_dict_row_choice(dict, "mapping", &choice);
   if (kind == VL_CAMERA_FISHEYE)
-    def->projection =
-        (vlProjection)((int)VL_PROJECTION_EQUIDISTANT + read_choice(dict, row, "mapping"));
+    def->projection = (vlProjection)((int)VL_PROJECTION_EQUIDISTANT + choice);
   if (kind == VL_CAMERA_OPENCV_FISHEYE)
     def->projection = VL_PROJECTION_EQUIDISTANT;
   if (kind >= VL_CAMERA_OF_PROJECTION)
     def->projection = (vlProjection)((int)kind - (int)VL_CAMERA_OF_PROJECTION);
-  if (vl_row_find(row, "longitude"))
+  if (vl_row_find(dict->row, "longitude"))
     read_limits(dict, def);
-  if (vl_row_find(row, "layout"))
-    def->shape[0] = read_choice(dict, row, "layout");
+  if (vl_row_find(dict->row, "layout")) {
+    choice = 0;
+    vl_dict_row_choice(dict, "layout", &choice);
+    def->shape[0] = choice;
+  }
   return vl_import_fine(dict->import);
 }
 
 /* Reads the parameters common to velo's own cameras: eye, lookat, up, roll; d, zoom, s or a
  * field of view; exposure time. Their world is right-handed. */
-static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind,
-                         const vlKindRow *row) {
+static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind) {
   vlImport *import = dict->import;
-  if (!read_model(dict, def, kind, row))
+  if (!read_model(dict, def, kind))
     return false;
   if (kind != VL_CAMERA_PINHOLE && !read_lens(dict, def))
     return false;
@@ -399,7 +390,8 @@ static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
 }
 
 /* Reads the parameters of a kind of camera. Returns false after an error. */
-static bool read_kind(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
+static bool read_kind(vlDict *dict, vlCameraDef *def) {
+  const vlCameraKind kind = (vlCameraKind)dict->kind;
   vlImport *import = dict->import;
   switch (kind) {
     case VL_CAMERA_PBRT_PERSPECTIVE:
@@ -420,7 +412,7 @@ static bool read_kind(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const v
     case VL_CAMERA_OF_PROJECTION:
       break;
   }
-  return read_lecture(dict, def, kind, row);
+  return read_lecture(dict, def, kind);
 }
 
 bool vl_import_camera(vlImport *import) {
@@ -429,13 +421,10 @@ bool vl_import_camera(vlImport *import) {
   vlDict dict =
       vl_import_choice_dict(import, "Camera", &vl_camera_family, choice, "perspective");
   vlCameraDef def = vl_default_camera_def(defs->film.width, defs->film.height);
-  int kind = choice->given ? vl_kind_find(&vl_camera_family, choice->kind)
-                           : (int)VL_CAMERA_PBRT_PERSPECTIVE;
-  const vlKindRow *row = vl_kind_row(&vl_camera_family, kind);
   for (int i = 0; i < 2 && !choice->given; i++)
     import->camera_from_world[i] = vl_mat4_identity();
   defs->camera_source = choice->source;
-  if (!row) { /* permissive: pbrt's perspective camera at the same pose replaces it */
+  if (!dict.row) { /* permissive: pbrt's perspective camera at the same pose replaces it */
     if (!vl_import_unknown_kind(import, choice->source, &vl_camera_family, choice->kind))
       return false;
     vl_dict_skip(&dict);
@@ -443,10 +432,8 @@ bool vl_import_camera(vlImport *import) {
     if (!pose_from_ctm(import, &def))
       return false;
   } else {
-    vl_row_set_defaults(row, &def);
-    if (!vl_import_parameters(&dict, row, &def, false, NULL))
-      return false;
-    if (!read_kind(&dict, &def, (vlCameraKind)kind, row))
+    vl_row_set_defaults(dict.row, &def);
+    if (!vl_import_parameters(&dict, &def, false) || !read_kind(&dict, &def))
       return false;
   }
   if (!check(import, dict.what, &def))
@@ -454,11 +441,11 @@ bool vl_import_camera(vlImport *import) {
   defs->camera = def;
   /* in pbrt the exposure grows with the time that the shutter is open; velo's own cameras have
    * a separate factor */
-  bool pbrts = row && kind <= (int)VL_CAMERA_REALISTIC;
+  bool pbrts = dict.row && dict.kind <= (int)VL_CAMERA_REALISTIC;
   if (pbrts)
     defs->develop.exposure *= (float)(def.shutter_close - def.shutter_open);
   /* pbrt limits the sensor's output, velo's film its input. */
   if (defs->develop.exposure > 0.0f)
     defs->film.max_component /= defs->develop.exposure;
-  return pbrts || !row || name_lecture_system(import, &def);
+  return pbrts || !dict.row || name_lecture_system(import, &def);
 }

@@ -127,8 +127,7 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
   Curve c = {.degree = 3};
   int basis = 0;
   float width = 1.0f;
-  if (!vl_import_parameters(dict, vl_kind_row(&vl_shape_family, VL_SHAPE_CURVES), def, false,
-                            NULL))
+  if (!vl_import_parameters(dict, def, false))
     return false;
   vl_dict_choice(dict, "basis", bases, 2, &basis);
   vl_dict_count(dict, "degree", 2, &c.degree);

@@ -233,26 +233,20 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
   int digits = 0, exponent = 0,
       written = 0; /* 10^exponent times the mantissa; the exponent that is written */
   bool exact = true, any = false;
-  for (; p < end && is_digit(*p); p++) {
+  bool fraction = false;
+  for (; p < end && (is_digit(*p) || (*p == '.' && !fraction)); p++) {
+    if (*p == '.') {
+      fraction = true;
+      continue;
+    }
     any = true;
     if (digits < 18) {
       mantissa = mantissa * 10 + (uint64_t)(*p - '0');
       digits += mantissa != 0;
+      exponent -= fraction && exponent > -100000;
     } else {
       exact = exact && *p == '0';
-      exponent += exponent < 100000;
-    }
-  }
-  if (p < end && *p == '.') {
-    for (p++; p < end && is_digit(*p); p++) {
-      any = true;
-      if (digits < 18) {
-        mantissa = mantissa * 10 + (uint64_t)(*p - '0');
-        digits += mantissa != 0;
-        exponent -= exponent > -100000;
-      } else {
-        exact = exact && *p == '0';
-      }
+      exponent += !fraction && exponent < 100000;
     }
   }
   if (!any)

@@ -122,10 +122,8 @@ static bool read_rest(vlDict *dict, vlSceneDefs *s) {
 }
 
 static bool read_gbuffer(vlDict *dict, vlSceneDefs *s) {
-  const vlParameter *system =
-      vl_row_find(vl_kind_row(&vl_film_family, VL_FILM_GBUFFER), "coordinatesystem");
   int number = 0;
-  vl_dict_choice(dict, system->name, system->choices, 2, &number);
+  vl_dict_row_choice(dict, "coordinatesystem", &number);
   s->gbuffer = number ? VL_GBUFFER_WORLD : VL_GBUFFER_CAMERA;
   return true;
 }
@@ -146,18 +144,16 @@ bool vl_import_film(vlImport *import) {
   vlSceneDefs *s = vl_scene_defs(import->scene);
   const vlChoice *choice = &import->film;
   vlDict dict = vl_import_choice_dict(import, "Film", &vl_film_family, choice, "rgb");
-  int kind = choice->given ? vl_kind_find(&vl_film_family, choice->kind) : VL_FILM_RGB;
-  bool known = kind >= 0;
+  const bool known = dict.row;
   if (!known && !vl_import_unknown_kind(import, choice->source, &vl_film_family, choice->kind))
     return false;
   if (!known)
-    kind = VL_FILM_RGB;
-  const vlKindRow *row = vl_kind_row(&vl_film_family, kind);
-  vl_row_set_defaults(row, s);
+    vl_dict_set_kind(&dict, &vl_film_family, VL_FILM_RGB);
+  vl_row_set_defaults(dict.row, s);
   s->film.space = choice->given ? choice->space : VL_SPACE_SRGB;
-  if (!vl_import_parameters(&dict, row, s, false, NULL) || !read_rest(&dict, s))
+  if (!vl_import_parameters(&dict, s, false) || !read_rest(&dict, s))
     return false;
-  if ((rules[kind] && !rules[kind](&dict, s)) || !check_wavelengths(&dict, s))
+  if ((rules[dict.kind] && !rules[dict.kind](&dict, s)) || !check_wavelengths(&dict, s))
     return false;
   if (!known)
     vl_dict_skip(&dict);

@@ -25,8 +25,8 @@ static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
 }
 
 /* Checks that the radiance has one source. */
-static bool check_source(vlDict *dict, const vlKindRow *row) {
-  if (!vl_row_find(row, "L") || !vl_row_find(row, "filename"))
+static bool check_source(vlDict *dict) {
+  if (!vl_row_find(dict->row, "L") || !vl_row_find(dict->row, "filename"))
     return true;
   vlParam *color = vl_dict_find(dict, "L", VL_BITS_SPECTRUM);
   vlParam *file = vl_dict_find(dict, "filename", VL_BIT_STRING);
@@ -35,15 +35,15 @@ static bool check_source(vlDict *dict, const vlKindRow *row) {
   return vl_import_fine(dict->import);
 }
 
-/* Rules that the row does not express. given: one entry per parameter of the row. */
-static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given,
-                         vlLightDef *def) {
+/* Rules that the row does not express. */
+static bool finish_light(vlDict *dict, vlLightDef *def) {
   vlImport *import = dict->import;
+  const vlKindRow *row = dict->row;
   vlParam *portal =
       vl_row_find(row, "portal") ? vl_dict_find(dict, "portal", VL_BIT_POINT3) : NULL;
   bool far = row->traits & VL_LIGHT_TRAIT_FAR,
        has_color = vl_row_find(row, far ? "L" : "I") != NULL;
-  bool color_given = has_color && vl_import_given(row, given, far ? "L" : "I");
+  bool color_given = has_color && vl_import_given(dict, far ? "L" : "I");
   if (has_color && !color_given)
     def->color.space = dict->space; /* default: the colour space's white */
   drop_target(&def->power);
@@ -74,25 +74,18 @@ static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   return true;
 }
 
-enum { MAX_PARAMETERS = 32 };
-
 bool vl_import_light(vlImport *import, const vlStatement *s) {
-  bool given[MAX_PARAMETERS];
-  vlDict dict =
-      vl_import_kind_dict(import, "LightSource", &vl_light_family, s->names[0], s->source,
-                          import->state.space, s->params, &import->attributes[VL_ATTR_LIGHT]);
-  int kind = vl_kind_find(&vl_light_family, s->names[0]);
-  if (kind < 0) /* permissive: skipped */
+  vlDict dict = vl_import_kind_dict(import, "LightSource", &vl_light_family, s, VL_ATTR_LIGHT);
+  const vlKindRow *row = dict.row;
+  if (!row) /* permissive: skipped */
     return vl_import_unknown_kind(import, s->source, &vl_light_family, s->names[0]);
-  const vlKindRow *row = vl_kind_row(&vl_light_family, kind);
-  vlLightDef def = vl_default_light_def((vlLightKind)kind);
+  vlLightDef def = vl_default_light_def((vlLightKind)dict.kind);
   vlMat4 ctm;
   import->image_missing = false;
   def.source = s->source;
   def.space = import->state.space;
-  if (!vl_import_ctm(import, s->source, &ctm) || !check_source(&dict, row) ||
-      !vl_import_parameters(&dict, row, &def, true, given) ||
-      !finish_light(&dict, row, given, &def))
+  if (!vl_import_ctm(import, s->source, &ctm) || !check_source(&dict) ||
+      !vl_import_parameters(&dict, &def, true) || !finish_light(&dict, &def))
     return false;
   if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def.path)
     return true; /* permissive: skipped */
@@ -111,23 +104,18 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {
-  bool given[MAX_PARAMETERS];
-  vlDict dict = vl_import_kind_dict(import, "AreaLightSource", &vl_emission_family, s->names[0],
-                                    s->source, import->state.space, s->params,
-                                    &import->attributes[VL_ATTR_LIGHT]);
+  vlDict dict =
+      vl_import_kind_dict(import, "AreaLightSource", &vl_emission_family, s, VL_ATTR_LIGHT);
   import->state.emission = (vlEmissionId){0};
   if (s->names[0][0] == 0)
     return true; /* as in pbrt, an empty name ends the current area light */
-  int kind = vl_kind_find(&vl_emission_family, s->names[0]);
-  if (kind < 0)
+  if (!dict.row)
     return vl_import_unknown_kind(import, s->source, &vl_emission_family, s->names[0]);
-  const vlKindRow *row = vl_kind_row(&vl_emission_family, kind);
   vlEmissionDef def = vl_default_emission_def();
   def.source = s->source;
-  if (!check_source(&dict, row) || !vl_import_parameters(&dict, row, &def, true, given) ||
-      !vl_dict_done(&dict))
+  if (!check_source(&dict) || !vl_import_parameters(&dict, &def, true) || !vl_dict_done(&dict))
     return false;
-  if (!vl_import_given(row, given, "L"))
+  if (!vl_import_given(&dict, "L"))
     def.radiance.space = dict.space; /* default: the colour space's white */
   drop_target(&def.power);
   import->state.emission = vl_scene_add_emission(import->scene, &def);

@@ -1,7 +1,6 @@
 /* import/pbrt/material.c: converts Material and MakeNamedMaterial to materials of the scene.
  * The parts of a mix are converted first. The rows describe the parameters
  * (material/NAME.row.c). */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -66,42 +65,30 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
 
 /* ---- what a table cannot say ------------------------------------------------------------- */
 
-/* The parameters of one material: its row, and which of them the file gives. */
-typedef struct Reading {
-  vlDict *dict;
-  const vlKindRow *row;
-  const bool *given;
-} Reading;
-
-static bool given(const Reading *r, const char *name) {
-  return vl_import_given(r->row, r->given, name);
-}
-
-static bool finish_metal(const Reading *r, vlMaterialDef *def, const char *eta, const char *k) {
-  def->use_reflectance = given(r, "reflectance");
-  if (!def->use_reflectance || (!given(r, eta) && !given(r, k)))
+static bool finish_metal(vlDict *dict, vlMaterialDef *def, const char *eta, const char *k) {
+  def->use_reflectance = vl_import_given(dict, "reflectance");
+  if (!def->use_reflectance || (!vl_import_given(dict, eta) && !vl_import_given(dict, k)))
     return true;
-  return vl_dict_fail(r->dict, "give either \"reflectance\" or \"%s\" and \"%s\", not both",
-                      eta, k);
+  return vl_dict_fail(dict, "give either \"reflectance\" or \"%s\" and \"%s\", not both", eta,
+                      k);
 }
 
-static bool finish_conductor(const Reading *r, vlMaterialDef *def) {
-  return finish_metal(r, def, "eta", "k");
+static bool finish_conductor(vlDict *dict, vlMaterialDef *def) {
+  return finish_metal(dict, def, "eta", "k");
 }
 
-static bool finish_coated_conductor(const Reading *r, vlMaterialDef *def) {
-  return finish_metal(r, def, "conductor.eta", "conductor.k");
+static bool finish_coated_conductor(vlDict *dict, vlMaterialDef *def) {
+  return finish_metal(dict, def, "conductor.eta", "conductor.k");
 }
 
-static bool finish_mix(const Reading *r, vlMaterialDef *def) {
-  vlImport *import = r->dict->import;
-  vlParam *p = vl_dict_find(r->dict, "materials", VL_BIT_STRING);
+static bool finish_mix(vlDict *dict, vlMaterialDef *def) {
+  vlImport *import = dict->import;
+  vlParam *p = vl_dict_find(dict, "materials", VL_BIT_STRING);
   if (!p)
-    return vl_dict_done(r->dict) &&
-           vl_dict_fail(r->dict, "\"string materials\" (two names) is missing");
+    return vl_dict_done(dict) &&
+           vl_dict_fail(dict, "\"string materials\" (two names) is missing");
   if (p->strings.count != 2)
-    return vl_dict_fail_at(r->dict, p->source,
-                           "parameter \"materials\" takes 2 values, found %zu",
+    return vl_dict_fail_at(dict, p->source, "parameter \"materials\" takes 2 values, found %zu",
                            p->strings.count);
   for (int i = 0; i < 2; i++) {
     bool is_interface;
@@ -114,55 +101,56 @@ static bool finish_mix(const Reading *r, vlMaterialDef *def) {
 
 /* As in pbrt, only the first of sigma_a, reflectance and the melanins that is given has an
  * effect. */
-static bool finish_hair(const Reading *r, vlMaterialDef *def) {
-  bool sigma = given(r, "sigma_a"), reflectance = given(r, "reflectance"),
-       pheomelanin = given(r, "pheomelanin");
-  bool melanin = given(r, "eumelanin") || pheomelanin;
-  if (pheomelanin && !given(r, "eumelanin"))
+static bool finish_hair(vlDict *dict, vlMaterialDef *def) {
+  bool sigma = vl_import_given(dict, "sigma_a"),
+       reflectance = vl_import_given(dict, "reflectance"),
+       pheomelanin = vl_import_given(dict, "pheomelanin");
+  bool melanin = vl_import_given(dict, "eumelanin") || pheomelanin;
+  if (pheomelanin && !vl_import_given(dict, "eumelanin"))
     def->hair.eumelanin = vl_float_input(0.0f);
   def->hair.color = sigma         ? VL_HAIR_SIGMA_A
                     : reflectance ? VL_HAIR_REFLECTANCE
                                   : VL_HAIR_MELANIN;
   if (sigma + reflectance + melanin > 1)
-    vl_dict_warn(r->dict,
+    vl_dict_warn(dict,
                  "its colour is given in several ways; sigma_a comes before reflectance, "
                  "that before melanin");
   return true;
 }
 
 /* The interior of the solid is given in one of four ways, as in pbrt. */
-static bool finish_subsurface(const Reading *r, vlMaterialDef *def) {
+static bool finish_subsurface(vlDict *dict, vlMaterialDef *def) {
   vlSubsurfaceDef *d = &def->subsurface;
-  bool a = given(r, "sigma_a"), s = given(r, "sigma_s"), mfp = given(r, "mfp"), named;
+  bool a = vl_import_given(dict, "sigma_a"), s = vl_import_given(dict, "sigma_s"),
+       mfp = vl_import_given(dict, "mfp"), named;
   vlSpectrum preset_a, preset_s;
-  d->from_reflectance = given(r, "reflectance");
-  if (!vl_import_scattering_preset(r->dict, "name", &preset_a, &preset_s, &named))
+  d->from_reflectance = vl_import_given(dict, "reflectance");
+  if (!vl_import_scattering_preset(dict, "name", &preset_a, &preset_s, &named))
     return false;
   if (named + (a || s) + (d->from_reflectance || mfp) > 1)
     return vl_dict_fail(
-        r->dict,
+        dict,
         "give only one of \"name\", \"sigma_a\" and \"sigma_s\", \"reflectance\" (and "
         "\"mfp\"): each says all");
   if (a != s)
-    return vl_dict_fail(r->dict, "%s",
+    return vl_dict_fail(dict, "%s",
                         a ? "\"sigma_s\" is missing beside \"sigma_a\""
                           : "\"sigma_a\" is missing beside \"sigma_s\"");
   if (mfp && !d->from_reflectance)
-    return vl_dict_fail(r->dict, "\"reflectance\" is missing beside \"mfp\"");
+    return vl_dict_fail(dict, "\"reflectance\" is missing beside \"mfp\"");
   if (!named)
     return true;
   d->sigma_a = vl_spectrum_input(preset_a);
   d->sigma_s = vl_spectrum_input(preset_s);
   if (def->g.value == 0.0f)
     return true;
-  vl_dict_warn(r->dict,
-               "\"g\" is ignored beside \"name\": measured scattering is that of g = 0");
+  vl_dict_warn(dict, "\"g\" is ignored beside \"name\": measured scattering is that of g = 0");
   def->g = vl_float_input(0.0f);
   return true;
 }
 
 /* Rules that run after the row's parameters are read; null: none. */
-typedef bool Rule(const Reading *r, vlMaterialDef *def);
+typedef bool Rule(vlDict *dict, vlMaterialDef *def);
 static Rule *const rules[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
     [VL_MATERIAL_CONDUCTOR] = finish_conductor,
     [VL_MATERIAL_COATED_CONDUCTOR] = finish_coated_conductor,
@@ -173,17 +161,12 @@ static Rule *const rules[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
 /* ---- materials --------------------------------------------------------------------------- */
 
 static bool read_material(vlDict *dict, vlMaterialDef *def) {
-  enum { MAX_PARAMETERS = 64 };
-  bool is_given[MAX_PARAMETERS];
-  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
-  const Reading r = {dict, row, is_given};
-  assert(row->parameter_count <= MAX_PARAMETERS);
-  return vl_import_parameters(dict, row, def, true, is_given) &&
-         (!rules[def->kind] || rules[def->kind](&r, def)) && vl_dict_done(dict);
+  return vl_import_parameters(dict, def, true) &&
+         (!rules[def->kind] || rules[def->kind](dict, def)) && vl_dict_done(dict);
 }
 
-/* Finds the kind; *kind is -1 for an unknown name. False after an error. */
-static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *kind) {
+/* Finds the kind, which may be unknown. False after an error. */
+static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict) {
   const char *type = pending->kind;
   vlSource source = pending->source;
   if (!type) { /* MakeNamedMaterial */
@@ -196,9 +179,10 @@ static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *k
     }
     source = vl_dict_find(dict, "type", VL_BIT_STRING)->source;
   }
-  *kind = type[0] ? vl_kind_find(&vl_material_family, type)
-                  : VL_MATERIAL_INTERFACE; /* pbrt-v3's spelling */
-  return *kind >= 0 || vl_import_unknown_kind(import, source, &vl_material_family, type);
+  vl_dict_set_kind(dict, &vl_material_family,
+                   type[0] ? vl_kind_find(&vl_material_family, type)
+                           : VL_MATERIAL_INTERFACE); /* pbrt-v3's spelling */
+  return dict->row || vl_import_unknown_kind(import, source, &vl_material_family, type);
 }
 
 static bool finish(vlImport *import, uint32_t index) {
@@ -211,14 +195,13 @@ static bool finish(vlImport *import, uint32_t index) {
     snprintf(what, sizeof what, "MakeNamedMaterial \"%s\"", vl_short_text(pending->name).text);
   vlDict dict =
       vl_import_dict(import, what, pending->source, pending->space, &pending->params, NULL);
-  int kind = -1;
-  if (!find_kind(import, pending, &dict, &kind))
+  if (!find_kind(import, pending, &dict))
     return false;
   vlMaterialDef def =
-      vl_default_material_def(kind < 0 ? VL_MATERIAL_DIFFUSE : (vlMaterialKind)kind);
+      vl_default_material_def(dict.row ? (vlMaterialKind)dict.kind : VL_MATERIAL_DIFFUSE);
   def.name = pending->name;
   def.source = pending->source;
-  if (kind >= 0 && !read_material(&dict, &def))
+  if (dict.row && !read_material(&dict, &def))
     return false;
   pending->is_interface = def.kind == VL_MATERIAL_INTERFACE;
   pending->id = vl_scene_add_material(import->scene, &def).index;

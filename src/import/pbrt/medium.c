@@ -35,7 +35,7 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
   vlSource at = vl_dict_find(dict, parameter, VL_BIT_STRING)->source;
   const char *near = vl_nearest_name(name, names, count);
   return vl_dict_fail_at(dict, at, "no preset is named \"%s\"%s", vl_short_text(name).text,
-                         vl_import_hint(near).text);
+                         vl_hint(near).text);
 }
 
 /* A preset takes precedence over sigma_a and sigma_s, as in pbrt. */
@@ -86,26 +86,21 @@ static bool missing(vlDict *dict, const char *what) {
   return vl_dict_fail(dict, "%s is missing", what);
 }
 
-/* Rules that the rows do not express, by kind; null: none. given: one entry per parameter of
- * the row. */
-typedef bool ReadMedium(vlDict *dict, const vlKindRow *row, const bool *given,
-                        vlMediumDef *def);
+/* Rules that the rows do not express, by kind; null: none. */
+typedef bool ReadMedium(vlDict *dict, vlMediumDef *def);
 
-static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
+static bool read_grid(vlDict *dict, vlMediumDef *def) {
   vlParam *scale = vl_dict_find(dict, "Lescale", VL_BIT_FLOAT);
   if (scale && scale->floats.count == 1)
     def->emission_scale = scale->floats.items[0];
   else if (!read_cells(dict, "Lescale", VL_PARAM_FLOAT, def, &def->emission_scales))
     return false;
-  if (vl_import_given(row, given, "Le") && def->temperature)
+  if (vl_import_given(dict, "Le") && def->temperature)
     return vl_dict_fail(dict, "give either \"Le\" or \"temperature\", not both");
   return def->density || missing(dict, "\"float density\"");
 }
 
-static bool read_rgb_grid(vlDict *dict, const vlKindRow *row, const bool *given,
-                          vlMediumDef *def) {
-  (void)row;
-  (void)given;
+static bool read_rgb_grid(vlDict *dict, vlMediumDef *def) {
   return def->rgb_a || def->rgb_s ||
          missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
 }
@@ -116,7 +111,8 @@ static ReadMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
 };
 
 /* Reads the arrays of the row: numbers or colours per cell. */
-static bool read_arrays(vlDict *dict, const vlKindRow *row, vlMediumDef *def) {
+static bool read_arrays(vlDict *dict, vlMediumDef *def) {
+  const vlKindRow *row = dict->row;
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (p->type != VL_PARAMETER_BLOCK || !p->name)
@@ -129,18 +125,15 @@ static bool read_arrays(vlDict *dict, const vlKindRow *row, vlMediumDef *def) {
   return true;
 }
 
-static bool read_medium(vlDict *dict, int kind, vlMediumDef *def) {
-  const vlKindRow *row = vl_kind_row(&vl_medium_family, kind);
-  bool given[32];
-  if (!vl_import_parameters(dict, row, def, true, given))
+static bool read_medium(vlDict *dict, vlMediumDef *def) {
+  ReadMedium *rule = rules[dict->kind];
+  if (!vl_import_parameters(dict, def, true))
     return false;
-  if (row->traits & VL_MEDIUM_TRAIT_BOX)
+  if (dict->row->traits & VL_MEDIUM_TRAIT_BOX)
     sort_box(def);
-  if (vl_row_find(row, "preset") && !read_preset(dict, def))
+  if (vl_row_find(dict->row, "preset") && !read_preset(dict, def))
     return false;
-  if (!read_arrays(dict, row, def))
-    return false;
-  return (!rules[kind] || rules[kind](dict, row, given, def)) && vl_dict_done(dict);
+  return read_arrays(dict, def) && (!rule || rule(dict, def)) && vl_dict_done(dict);
 }
 
 bool vl_import_medium(vlImport *import, const vlStatement *s) {
@@ -158,21 +151,21 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
       return false;
     return vl_import_wrong(import, s->source, "%s: \"string type\" is missing", what);
   }
-  int kind = vl_kind_find(&vl_medium_family, type);
+  vl_dict_set_kind(&dict, &vl_medium_family, vl_kind_find(&vl_medium_family, type));
   const char *name = vl_import_keep(import, s->names[0]);
   if (!name)
     return false;
   vlMediumId id = {0};
-  if (kind < 0) { /* permissive: vacuum */
+  if (!dict.row) { /* permissive: vacuum */
     if (!vl_import_unknown_kind(import, s->source, &vl_medium_family, type))
       return false;
   } else {
-    vlMediumDef def = vl_default_medium_def((vlMediumKind)kind);
+    vlMediumDef def = vl_default_medium_def((vlMediumKind)dict.kind);
     vlMat4 ctm;
     def.name = name;
     def.source = s->source;
     def.space = import->state.space;
-    if (!vl_import_ctm(import, s->source, &ctm) || !read_medium(&dict, kind, &def))
+    if (!vl_import_ctm(import, s->source, &ctm) || !read_medium(&dict, &def))
       return false;
     memcpy(def.world_from_medium, ctm.m, sizeof def.world_from_medium);
     id = vl_scene_add_medium(import->scene, &def);

@@ -5,6 +5,7 @@
 #define IMPORT_PBRT_PARAM_H
 
 #include "base/array.h"
+#include "schema/schema.h"
 #include "velo/scene_base.h"
 #include "velo/spectrum.h"
 
@@ -36,21 +37,22 @@ typedef struct vlParam {
   vlParamType type;
   char *name;
   vlSource source; /* location of the declaration; its file name is not owned */
-  /* One of these is filled: integers for type integer, floats for other numbers. */
+  /* One of these is filled: integers for types integer and bool, floats for other numbers. */
   VL_ARRAY(float) floats;
   VL_ARRAY(int32_t) integers;
   VL_ARRAY(char *) strings;
-  VL_ARRAY(uint8_t) bools;
   double exact[16]; /* the first 16 numbers in double precision */
   vlColorSpace space;
   bool used;
-  bool optional; /* given by an Attribute directive: may stay unused or have another type */
+  uint32_t shared; /* number of lists that have it, beside the first */
+  bool optional;   /* given by an Attribute directive: may stay unused or have another type */
 } vlParam;
 
 typedef struct vlParamList {
   VL_ARRAY(vlParam *) list;
 } vlParamList;
 
+/* Frees a parameter that no other list has. */
 void vl_param_free(vlContext *context, vlParam *param);
 void vl_param_list_free(vlContext *context, vlParamList *params);
 size_t vl_param_count(const vlParam *param); /* number of values of any type */
@@ -69,6 +71,9 @@ typedef struct vlDict {
   const vlParamList *own, *attributes; /* attributes may be null */
   const char *asked[64];
   uint32_t asked_count;
+  int kind;             /* of the object that the directive makes; -1: unknown */
+  const vlKindRow *row; /* of the kind; null: unknown */
+  bool given[64];       /* per parameter of the row: whether the file gives it */
 } vlDict;
 
 enum {

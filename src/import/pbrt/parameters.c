@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <strings.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "velo/setting.h"
@@ -47,16 +48,14 @@ const char *vl_param_type_nearest(const char *text) {
 }
 
 void vl_param_free(vlContext *context, vlParam *param) {
-  if (!param)
+  if (param->shared) {
+    param->shared--;
     return;
+  }
   for (size_t i = 0; i < param->strings.count; i++)
     vl_free(context, param->strings.items[i]);
-  VL_ARRAY_FREE(context, &param->strings);
-  VL_ARRAY_FREE(context, &param->floats);
-  VL_ARRAY_FREE(context, &param->integers);
-  VL_ARRAY_FREE(context, &param->bools);
-  vl_free(context, param->name);
-  vl_free(context, param);
+  VL_FREE(context, (void *)param->strings.items, param->floats.items, param->integers.items,
+          param->name, param);
 }
 
 void vl_param_list_free(vlContext *context, vlParamList *params) {
@@ -66,8 +65,7 @@ void vl_param_list_free(vlContext *context, vlParamList *params) {
 }
 
 size_t vl_param_count(const vlParam *param) {
-  return param->floats.count + param->integers.count + param->strings.count +
-         param->bools.count;
+  return param->floats.count + param->integers.count + param->strings.count;
 }
 
 /* ---- the parameters of a directive --------------------------------------------------------
@@ -81,19 +79,33 @@ vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlCol
   return dict;
 }
 
-vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
-                           const char *kind, vlSource source, vlColorSpace space,
-                           const vlParamList *own, const vlParamList *attributes) {
+void vl_dict_set_kind(vlDict *dict, const vlKindFamily *family, int kind) {
+  dict->kind = kind;
+  dict->row = vl_kind_row(family, kind);
+  assert(!dict->row || dict->row->parameter_count <= VL_LENGTH(dict->given));
+}
+
+static vlDict kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
+                        const char *kind, vlSource source, vlColorSpace space,
+                        const vlParamList *own, const vlParamList *attributes) {
   char what[160];
   snprintf(what, sizeof what, "%s \"%s\"", directive, vl_import_kind_text(family, kind).text);
-  return vl_import_dict(import, what, source, space, own, attributes);
+  vlDict dict = vl_import_dict(import, what, source, space, own, attributes);
+  vl_dict_set_kind(&dict, family, vl_kind_find(family, kind));
+  return dict;
+}
+
+vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
+                           const vlStatement *s, vlAttributeTarget target) {
+  return kind_dict(import, directive, family, s->names[0], s->source, import->state.space,
+                   s->params, &import->attributes[target]);
 }
 
 vlDict vl_import_choice_dict(vlImport *import, const char *directive,
                              const vlKindFamily *family, const vlChoice *choice,
                              const char *standard) {
-  return vl_import_kind_dict(import, directive, family, choice->given ? choice->kind : standard,
-                             choice->source, choice->space, &choice->params, NULL);
+  return kind_dict(import, directive, family, choice->given ? choice->kind : standard,
+                   choice->source, choice->space, &choice->params, NULL);
 }
 
 /* ---- questions --------------------------------------------------------------------------- */
@@ -125,9 +137,8 @@ static vlParam *find_in(vlDict *dict, const vlParamList *params, const char *nam
     } else if (!p->optional && !found) {
       char types[160];
       p->used = true;
-      vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                     "%s: parameter \"%s\" must be of type %s, not \"%s\"", dict->what, name,
-                     wanted_types(bits, types, sizeof types), vl_param_type_name(p->type));
+      vl_dict_fail_at(dict, p->source, "parameter \"%s\" must be of type %s, not \"%s\"", name,
+                      wanted_types(bits, types, sizeof types), vl_param_type_name(p->type));
       return NULL;
     }
   }
@@ -144,8 +155,7 @@ vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t bits) {
   if (dict->attributes && dict->import->scene->error.code == VL_OK)
     found = find_in(dict, dict->attributes, name, bits, found);
   if (found && vl_param_count(found) == 0) {
-    vl_import_fail(dict->import, VL_ERROR_SCENE, found->source,
-                   "%s: parameter \"%s\" has no value", dict->what, name);
+    vl_dict_fail_at(dict, found->source, "parameter \"%s\" has no value", name);
     return NULL;
   }
   return found;
@@ -154,9 +164,8 @@ vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t bits) {
 static vlParam *find_counted(vlDict *dict, const char *name, vlParamType type, size_t count) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
   if (p && vl_param_count(p) != count) {
-    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                   "%s: parameter \"%s\" takes %zu value%s, found %zu", dict->what, name, count,
-                   count == 1 ? "" : "s", vl_param_count(p));
+    vl_dict_fail_at(dict, p->source, "parameter \"%s\" takes %zu value%s, found %zu", name,
+                    count, count == 1 ? "" : "s", vl_param_count(p));
     return NULL;
   }
   return p;
@@ -194,7 +203,7 @@ bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *valu
   double number;
   snprintf(what, sizeof what, "%s: parameter \"%s\"", dict->what, name);
   if (!vl_given_check(&row, what, &given, &number, message))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s", message);
+    return vl_import_wrong(dict->import, p->source, "%s", message);
   *value = (uint32_t)number;
   return true;
 }
@@ -202,7 +211,7 @@ bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *valu
 bool vl_dict_bool(vlDict *dict, const char *name, bool *value) {
   vlParam *p = find_counted(dict, name, VL_PARAM_BOOL, 1);
   if (p)
-    *value = p->bools.items[0] != 0;
+    *value = p->integers.items[0] != 0;
   return p != NULL;
 }
 
@@ -239,21 +248,17 @@ bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, si
       return true;
     }
   }
+  const char *near = vl_nearest_name(text, names, count);
+  if (near)
+    return vl_dict_fail_at(dict, p->source, "\"%s\" cannot be \"%s\"%s", name,
+                           vl_short_text(text).text, vl_hint(near).text);
   char all[256];
   size_t n = 0;
   all[0] = 0;
   for (size_t i = 0; i < count && n < sizeof all; i++)
     n += (size_t)snprintf(all + n, sizeof all - n, "%s%s", i ? ", " : "", names[i]);
-  const char *near = vl_nearest_name(text, names, count);
-  if (near)
-    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                   "%s: \"%s\" cannot be \"%s\" (did you mean \"%s\"?)", dict->what, name,
-                   vl_short_text(text).text, near);
-  else
-    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
-                   "%s: \"%s\" cannot be \"%s\" (known: %s)", dict->what, name,
-                   vl_short_text(text).text, all);
-  return false;
+  return vl_dict_fail_at(dict, p->source, "\"%s\" cannot be \"%s\" (known: %s)", name,
+                         vl_short_text(text).text, all);
 }
 
 bool vl_dict_done(vlDict *dict) {
@@ -265,12 +270,8 @@ bool vl_dict_done(vlDict *dict) {
     if (p->used || p->optional)
       continue;
     const char *near = vl_nearest_name(p->name, dict->asked, dict->asked_count);
-    if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
-                            "%s: unknown parameter \"%s\" (did you mean \"%s\"?)", dict->what,
-                            vl_short_text(p->name).text, near);
-    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: unknown parameter \"%s\"",
-                          dict->what, vl_short_text(p->name).text);
+    return vl_dict_fail_at(dict, p->source, "unknown parameter \"%s\"%s",
+                           vl_short_text(p->name).text, vl_hint(near).text);
   }
   return true;
 }
@@ -453,54 +454,57 @@ static bool check(vlDict *dict, const vlParameter *p, const void *def) {
   const vlParam *param = vl_dict_find(dict, p->name, ~0u);
   if (!param && p->alias)
     param = vl_dict_find(dict, p->alias, ~0u);
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, param ? param->source : dict->source,
-                        "%s", message);
+  return vl_import_wrong(dict->import, param ? param->source : dict->source, "%s", message);
 }
 
-bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool spectrum,
-                          bool *given) {
-  const vlError *error = &dict->import->scene->error;
+/* Reports a parameter that is missing; one that is misspelt is reported first. */
+static bool check_required(vlDict *dict, const vlParameter *p) {
+  if (!p->name || !(p->flags & VL_PARAMETER_REQUIRED) || (p->flags & VL_PARAMETER_RULE) ||
+      vl_dict_find(dict, p->name, ~0u))
+    return true;
+  const bool text = p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE;
+  return vl_dict_done(dict) &&
+         vl_dict_fail(dict, "\"%s %s\" is missing", text ? "string" : "float", p->name);
+}
+
+bool vl_import_parameters(vlDict *dict, void *def, bool spectrum) {
+  const vlKindRow *row = dict->row;
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    bool is_given = false;
-    if (given)
-      given[i] = false;
+    bool given = false;
+    dict->given[i] = false;
     if (!p->name || (p->flags & VL_PARAMETER_RULE))
       continue;
     if (p->alias)
-      is_given = read_one(dict, p->alias, p, def, spectrum);
-    is_given = read_one(dict, p->name, p, def, spectrum) || is_given;
-    if (error->code != VL_OK)
+      given = read_one(dict, p->alias, p, def, spectrum);
+    given = read_one(dict, p->name, p, def, spectrum) || given;
+    if (!vl_import_fine(dict->import))
       return false;
-    if (given)
-      given[i] = is_given;
-    if (is_given)
-      convert(p, def);
-    if (is_given && !check(dict, p, def))
+    dict->given[i] = given;
+    if (!given)
+      continue;
+    convert(p, def);
+    if (!check(dict, p, def))
       return false;
-    if (is_given && p->second)
+    if (p->second)
       copy_to_second(p, def);
   }
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
-    if (!p->name || !(p->flags & VL_PARAMETER_REQUIRED) || (p->flags & VL_PARAMETER_RULE))
-      continue;
-    if (vl_dict_find(dict, p->name, ~0u))
-      continue;
-    if (!vl_dict_done(dict))
-      return false; /* a misspelt parameter is reported first */
-    return vl_import_fail(
-        dict->import, VL_ERROR_SCENE, dict->source, "%s: \"%s %s\" is missing", dict->what,
-        p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE ? "string" : "float",
-        p->name);
-  }
+  for (uint32_t i = 0; i < row->parameter_count; i++)
+    if (!check_required(dict, &row->parameters[i]))
+      return false;
   return true;
 }
 
-bool vl_import_given(const vlKindRow *row, const bool *given, const char *name) {
-  for (uint32_t i = 0; i < row->parameter_count; i++)
-    if (vl_text_is(row->parameters[i].name, name))
-      return given[i];
-  assert(!"a parameter of the row");
-  return false;
+bool vl_import_given(const vlDict *dict, const char *name) {
+  const vlParameter *p = vl_row_find(dict->row, name);
+  assert(p);
+  return dict->given[p - dict->row->parameters];
+}
+
+bool vl_dict_row_choice(vlDict *dict, const char *name, int *value) {
+  const vlParameter *p = vl_row_find(dict->row, name);
+  size_t count = 0;
+  while (p && p->choices[count])
+    count++;
+  return p && vl_dict_choice(dict, name, p->choices, count, value);
 }

@@ -56,6 +56,9 @@ typedef enum vlDirective {
   VL_DIR_TEXTURE /* names[0]: name, names[1]: type, names[2]: kind */
 } vlDirective;
 
+/* As files write it. */
+const char *vl_directive_name(vlDirective directive);
+
 typedef struct vlStatement {
   vlDirective directive;
   vlSource source;

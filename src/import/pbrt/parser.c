@@ -4,6 +4,7 @@
 
 #include "base/context.h"
 #include "base/text.h"
+#include "import/names.h"
 #include "import/pbrt/decimal.h"
 
 /* ---- tokens ------------------------------------------------------------------------------ */
@@ -63,31 +64,30 @@ static char unescape(char c) {
   }
 }
 
+static vlToken bad_string(vlToken token, const char *message) {
+  token.kind = VL_TOKEN_BAD;
+  token.message = message;
+  return token;
+}
+
 static vlToken read_string(vlTokenizer *t, vlToken token) {
   char *out = ++t->at;
   token.text = out;
   for (;;) {
-    if (t->at >= t->end || *t->at == '\n') {
-      token.kind = VL_TOKEN_BAD;
-      token.message = t->at >= t->end ? "unclosed string: the file ends before the closing \""
-                                      : "unclosed string: the line ends before the closing \"";
-      return token;
-    }
+    if (t->at >= t->end)
+      return bad_string(token, "unclosed string: the file ends before the closing \"");
+    if (*t->at == '\n')
+      return bad_string(token, "unclosed string: the line ends before the closing \"");
     char c = *t->at++;
     if (c == '"')
       break;
-    if (c == 0) {
-      token.kind = VL_TOKEN_BAD;
-      token.message = "zero byte in a string: this is not a text file";
-      return token;
-    }
+    if (c == 0)
+      return bad_string(token, "zero byte in a string: this is not a text file");
     if (c == '\\') {
       c = t->at < t->end ? unescape(*t->at) : 0;
-      if (!c) {
-        token.kind = VL_TOKEN_BAD;
-        token.message = "unknown escape in a string (known: \\b \\f \\n \\r \\t \\\\ \\' \\\")";
-        return token;
-      }
+      if (!c)
+        return bad_string(
+            token, "unknown escape in a string (known: \\b \\f \\n \\r \\t \\\\ \\' \\\")");
       t->at++;
     }
     *out++ = c;
@@ -122,6 +122,17 @@ vlToken vl_token_next(vlTokenizer *t) {
   return token;
 }
 
+char vl_token_peek(const vlTokenizer *t) {
+  vlTokenizer copy = *t;
+  skip_blank(&copy);
+  return copy.at < copy.end ? *copy.at : 0;
+}
+
+bool vl_token_is(const vlToken *token, const char *word) {
+  return token->kind == VL_TOKEN_WORD && token->length == strlen(word) &&
+         memcmp(token->text, word, token->length) == 0;
+}
+
 bool vl_token_number(vlTokenizer *t, double *value) {
   skip_blank(t);
   const char *p = t->at;
@@ -137,9 +148,18 @@ vlSource vl_parse_source(const vlParserFile *file, const vlToken *token) {
   return (vlSource){file->path, token->line, token->column};
 }
 
+/* Reports an error at a token. Returns false. */
+static bool fail_at(const vlParserFile *file, const vlToken *token, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static bool fail_at(const vlParserFile *file, const vlToken *token, const char *format, ...) {
+  char text[512];
+  VL_FORMAT(text, format);
+  return vl_parse_fail(file, vl_parse_source(file, token), "%s", text);
+}
+
 /* Reports a token of kind VL_TOKEN_BAD. Returns false. */
 static bool fail_bad(const vlParserFile *file, const vlToken *token) {
-  return vl_parse_fail(file, vl_parse_source(file, token), "%s", token->message);
+  return fail_at(file, token, "%s", token->message);
 }
 
 bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...) {
@@ -189,45 +209,23 @@ static vlToken take_token(vlParserFile *file) {
   return token;
 }
 
-static bool is_word(const vlToken *token, const char *word) {
-  return token->kind == VL_TOKEN_WORD && token->length == strlen(word) &&
-         memcmp(token->text, word, token->length) == 0;
-}
-
 /* ---- parameters -------------------------------------------------------------------------- */
-
-static bool is_blank(char c) {
-  return c == ' ' || c == '\t';
-}
 
 /* Splits "type name". */
 static bool declare(vlParserFile *file, const vlToken *token, vlParam *param) {
-  const char *p = token->text, *end = p + token->length;
-  while (p < end && is_blank(*p))
-    p++;
-  const char *type = p;
-  while (p < end && !is_blank(*p))
-    p++;
-  size_t type_length = (size_t)(p - type);
-  while (p < end && is_blank(*p))
-    p++;
-  const char *name = p;
-  while (p < end && !is_blank(*p))
-    p++;
-  size_t name_length = (size_t)(p - name);
-  while (p < end && is_blank(*p))
-    p++;
+  const char *end = token->text + token->length;
+  const char *type = token->text + strspn(token->text, " \t");
+  const size_t type_length = strcspn(type, " \t");
+  const char *name = type + type_length + strspn(type + type_length, " \t");
+  const size_t name_length = strcspn(name, " \t");
+  const char *p = name + name_length + strspn(name + name_length, " \t");
   if (type_length == 0 || name_length == 0 || p != end)
     return vl_parse_fail(file, param->source, "parameter %s is not of the form \"type name\"",
                          shown(token).text);
   if (!vl_param_type_find(type, type_length, &param->type)) {
     const vlShortText text = vl_short_text_of(type, type_length);
-    const char *near = vl_param_type_nearest(text.text);
-    if (near)
-      return vl_parse_fail(file, param->source,
-                           "unknown parameter type \"%s\" (did you mean \"%s\"?)", text.text,
-                           near);
-    return vl_parse_fail(file, param->source, "unknown parameter type \"%s\"", text.text);
+    return vl_parse_fail(file, param->source, "unknown parameter type \"%s\"%s", text.text,
+                         vl_hint(vl_param_type_nearest(text.text)).text);
   }
   param->name = vl_alloc(file->parser->context, name_length + 1);
   if (!param->name)
@@ -241,76 +239,73 @@ static bool takes_numbers(vlParamType type) {
   return type != VL_PARAM_BOOL && type != VL_PARAM_STRING && type != VL_PARAM_TEXTURE;
 }
 
+/* Reports a value of the parameter. what: "expected a number, found". */
+static bool fail_value(const vlParserFile *file, const vlToken *token, const vlParam *param,
+                       const char *what) {
+  return fail_at(file, token, "\"%s %s\": %s %s", vl_param_type_name(param->type),
+                 vl_short_text(param->name).text, what, shown(token).text);
+}
+
+static bool add_integer(vlParserFile *file, vlParam *param, int32_t value) {
+  int32_t *slot = VL_PUSH(file->parser->context, &param->integers);
+  if (!slot)
+    return vl_parse_fail_memory(file);
+  *slot = value;
+  return true;
+}
+
 static bool add_number(vlParserFile *file, const vlToken *token, vlParam *param) {
-  vlContext *context = file->parser->context;
   double value;
   if (!vl_number_parse(token->text, token->length, &value))
-    return vl_parse_fail(
-        file, vl_parse_source(file, token), "\"%s %s\": expected a number, found %s",
-        vl_param_type_name(param->type), vl_short_text(param->name).text, shown(token).text);
+    return fail_value(file, token, param, "expected a number, found");
   if (param->type == VL_PARAM_INTEGER) {
     if (value < -2147483648.0 || value > 2147483647.0 || value != (double)(int64_t)value)
-      return vl_parse_fail(file, vl_parse_source(file, token),
-                           "\"integer %s\": %s is not a 32-bit integer", param->name,
-                           shown(token).text);
-    int32_t *slot = VL_PUSH(context, &param->integers);
-    if (!slot)
-      return vl_parse_fail_memory(file);
-    *slot = (int32_t)value;
-    return true;
+      return fail_at(file, token, "\"integer %s\": %s is not a 32-bit integer", param->name,
+                     shown(token).text);
+    return add_integer(file, param, (int32_t)value);
   }
   size_t n = param->floats.count;
   if (n < 16)
     param->exact[n] = value;
-  float *slot = VL_PUSH(context, &param->floats);
+  float *slot = VL_PUSH(file->parser->context, &param->floats);
   if (!slot)
     return vl_parse_fail_memory(file);
   *slot = (float)value;
   return true;
 }
 
+/* Files written for older versions put booleans in quotes. */
+static bool add_bool(vlParserFile *file, const vlToken *token, vlParam *param) {
+  const bool quoted = token->kind == VL_TOKEN_STRING;
+  if (quoted ? vl_text_is(token->text, "true") : vl_token_is(token, "true"))
+    return add_integer(file, param, 1);
+  if (quoted ? vl_text_is(token->text, "false") : vl_token_is(token, "false"))
+    return add_integer(file, param, 0);
+  return fail_value(file, token, param, "expected true or false, found");
+}
+
+static bool fail_mixed(const vlParserFile *file, const vlToken *token, const vlParam *param) {
+  return fail_at(file, token, "\"%s %s\": numbers and strings do not mix",
+                 vl_param_type_name(param->type), vl_short_text(param->name).text);
+}
+
 static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) {
-  vlContext *context = file->parser->context;
-  const char *type = vl_param_type_name(param->type);
-  bool is_true = is_word(token, "true"), is_false = is_word(token, "false");
-  /* Files written for older versions put booleans in quotes. */
-  if (param->type == VL_PARAM_BOOL && token->kind == VL_TOKEN_STRING) {
-    is_true = vl_text_is(token->text, "true");
-    is_false = vl_text_is(token->text, "false");
+  const bool numbers = takes_numbers(param->type);
+  if (param->type == VL_PARAM_BOOL)
+    return add_bool(file, token, param);
+  if (token->kind != VL_TOKEN_STRING) {
+    if (!numbers)
+      return fail_value(file, token, param, "expected a string in quotes, found");
+    return param->strings.count ? fail_mixed(file, token, param)
+                                : add_number(file, token, param);
   }
-  if (param->type == VL_PARAM_BOOL) {
-    if (!is_true && !is_false)
-      return vl_parse_fail(file, vl_parse_source(file, token),
-                           "\"%s %s\": expected true or false, found %s", type,
-                           vl_short_text(param->name).text, shown(token).text);
-    uint8_t *slot = VL_PUSH(context, &param->bools);
-    if (!slot)
-      return vl_parse_fail_memory(file);
-    *slot = is_true;
-    return true;
-  }
-  if (token->kind == VL_TOKEN_STRING) {
-    if (takes_numbers(param->type) && param->type != VL_PARAM_SPECTRUM)
-      return vl_parse_fail(file, vl_parse_source(file, token),
-                           "\"%s %s\": expected a number, found the string %s", type,
-                           vl_short_text(param->name).text, shown(token).text);
-    if (param->floats.count)
-      return vl_parse_fail(file, vl_parse_source(file, token),
-                           "\"%s %s\": numbers and strings do not mix", type, param->name);
-    char **slot = VL_PUSH(context, &param->strings);
-    if (!slot || !(*slot = vl_strdup(context, token->text)))
-      return vl_parse_fail_memory(file);
-    return true;
-  }
-  if (!takes_numbers(param->type))
-    return vl_parse_fail(file, vl_parse_source(file, token),
-                         "\"%s %s\": expected a string in quotes, found %s", type,
-                         vl_short_text(param->name).text, shown(token).text);
-  if (param->strings.count)
-    return vl_parse_fail(file, vl_parse_source(file, token),
-                         "\"%s %s\": numbers and strings do not mix", type,
-                         vl_short_text(param->name).text);
-  return add_number(file, token, param);
+  if (numbers && param->type != VL_PARAM_SPECTRUM)
+    return fail_value(file, token, param, "expected a number, found the string");
+  if (param->floats.count)
+    return fail_mixed(file, token, param);
+  char **slot = VL_PUSH(file->parser->context, &param->strings);
+  return (slot && (*slot = vl_strdup(file->parser->context, token->text))) ||
+         vl_parse_fail_memory(file);
 }
 
 /* Fast path: reads successive numbers without a token for each. Anything else is left to the
@@ -349,9 +344,7 @@ static bool read_values(vlParserFile *file, vlParam *param) {
     return fail_bad(file, &token);
   if (token.kind != VL_TOKEN_OPEN) {
     if (token.kind == VL_TOKEN_END || token.kind == VL_TOKEN_CLOSE)
-      return vl_parse_fail(
-          file, vl_parse_source(file, &token), "\"%s %s\": expected a value, found %s",
-          vl_param_type_name(param->type), vl_short_text(param->name).text, shown(&token).text);
+      return fail_value(file, &token, param, "expected a value, found");
     return add_value(file, &token, param);
   }
   vlToken open = token;
@@ -365,11 +358,10 @@ static bool read_values(vlParserFile *file, vlParam *param) {
     if (token.kind == VL_TOKEN_BAD)
       return fail_bad(file, &token);
     if (token.kind == VL_TOKEN_OPEN)
-      return vl_parse_fail(file, vl_parse_source(file, &token), "[ inside of [ ]");
+      return fail_at(file, &token, "[ inside of [ ]");
     if (token.kind == VL_TOKEN_END)
-      return vl_parse_fail(file, vl_parse_source(file, &open),
-                           "unclosed [ in \"%s %s\": the file ends before the ]",
-                           vl_param_type_name(param->type), param->name);
+      return fail_at(file, &open, "unclosed [ in \"%s %s\": the file ends before the ]",
+                     vl_param_type_name(param->type), param->name);
     if (!add_value(file, &token, param))
       return false;
   }
@@ -413,9 +405,8 @@ static bool take_string(vlParserFile *file, const char *directive, const char *w
   }
   if (token.kind == VL_TOKEN_BAD)
     return fail_bad(file, &token);
-  return vl_parse_fail(file, vl_parse_source(file, &token),
-                       "%s: expected %s in quotes, found %s", directive, what,
-                       shown(&token).text);
+  return fail_at(file, &token, "%s: expected %s in quotes, found %s", directive, what,
+                 shown(&token).text);
 }
 
 static bool take_number(vlParserFile *file, const char *directive, double *value) {
@@ -424,8 +415,8 @@ static bool take_number(vlParserFile *file, const char *directive, double *value
     return true;
   if (token.kind == VL_TOKEN_BAD)
     return fail_bad(file, &token);
-  return vl_parse_fail(file, vl_parse_source(file, &token), "%s: expected a number, found %s",
-                       directive, shown(&token).text);
+  return fail_at(file, &token, "%s: expected a number, found %s", directive,
+                 shown(&token).text);
 }
 
 /* ---- directives -------------------------------------------------------------------------- */
@@ -494,6 +485,20 @@ static const Keyword keywords[] = {
 };
 enum { KEYWORDS = VL_LENGTH(keywords) };
 
+static const Keyword *find_keyword(const vlToken *token) {
+  for (size_t i = 0; i < KEYWORDS; i++)
+    if (vl_token_is(token, keywords[i].name))
+      return &keywords[i];
+  return NULL;
+}
+
+const char *vl_directive_name(vlDirective directive) {
+  size_t i = KEYWORDS;
+  while (i > 0 && keywords[--i].directive != directive) {
+  }
+  return keywords[i].name;
+}
+
 static bool unknown_directive(vlParserFile *file, const vlToken *token) {
   char text[64];
   size_t n = token->length < sizeof text ? token->length : sizeof text - 1;
@@ -505,17 +510,19 @@ static bool unknown_directive(vlParserFile *file, const vlToken *token) {
   const char *near = vl_nearest_name(text, names, KEYWORDS);
   double number;
   if (vl_number_parse(token->text, token->length, &number))
-    return vl_parse_fail(file, vl_parse_source(file, token),
-                         "expected a directive, found the number %s", shown(token).text);
+    return fail_at(file, token, "expected a directive, found the number %s", shown(token).text);
   if (near)
-    return vl_parse_fail(file, vl_parse_source(file, token),
-                         "unknown directive %s (did you mean %s?)", shown(token).text, near);
-  return vl_parse_fail(file, vl_parse_source(file, token), "unknown directive %s",
-                       shown(token).text);
+    return fail_at(file, token, "unknown directive %s (did you mean %s?)", shown(token).text,
+                   near);
+  return fail_at(file, token, "unknown directive %s", shown(token).text);
 }
 
 static bool send(vlParserFile *file, const vlStatement *statement) {
   return file->parser->target->statement(file->parser->target->user, statement);
+}
+
+static bool fail_unclosed(const vlParserFile *file, const Keyword *k, const vlToken *open) {
+  return fail_at(file, open, "unclosed [ of %s: the file ends before the ]", k->name);
 }
 
 static bool read_matrix(vlParserFile *file, const Keyword *k, vlStatement *s) {
@@ -523,16 +530,14 @@ static bool read_matrix(vlParserFile *file, const Keyword *k, vlStatement *s) {
   if (open.kind == VL_TOKEN_BAD)
     return fail_bad(file, &open);
   if (open.kind != VL_TOKEN_OPEN)
-    return vl_parse_fail(file, vl_parse_source(file, &open),
-                         "%s: expected [ and 16 numbers, found %s", k->name, shown(&open).text);
+    return fail_at(file, &open, "%s: expected [ and 16 numbers, found %s", k->name,
+                   shown(&open).text);
   for (uint32_t i = 0; i < 16; i++) {
     vlToken token = peek_token(file);
     if (token.kind == VL_TOKEN_CLOSE)
-      return vl_parse_fail(file, vl_parse_source(file, &token),
-                           "%s: 16 numbers needed, found %u", k->name, i);
+      return fail_at(file, &token, "%s: 16 numbers needed, found %u", k->name, i);
     if (token.kind == VL_TOKEN_END)
-      return vl_parse_fail(file, vl_parse_source(file, &open),
-                           "unclosed [ of %s: the file ends before the ]", k->name);
+      return fail_unclosed(file, k, &open);
     if (!take_number(file, k->name, &s->numbers[i]))
       return false;
   }
@@ -540,25 +545,23 @@ static bool read_matrix(vlParserFile *file, const Keyword *k, vlStatement *s) {
   if (close.kind == VL_TOKEN_CLOSE)
     return true;
   if (close.kind == VL_TOKEN_END)
-    return vl_parse_fail(file, vl_parse_source(file, &open),
-                         "unclosed [ of %s: the file ends before the ]", k->name);
-  return vl_parse_fail(file, vl_parse_source(file, &close),
-                       "%s: expected ] after 16 numbers, found %s", k->name,
-                       shown(&close).text);
+    return fail_unclosed(file, k, &open);
+  return fail_at(file, &close, "%s: expected ] after 16 numbers, found %s", k->name,
+                 shown(&close).text);
 }
 
 static bool read_active(vlParserFile *file, vlStatement *s) {
   vlToken token = take_token(file);
-  if (is_word(&token, "All"))
+  if (vl_token_is(&token, "All"))
     s->directive = VL_DIR_ACTIVE_ALL;
-  else if (is_word(&token, "StartTime"))
+  else if (vl_token_is(&token, "StartTime"))
     s->directive = VL_DIR_ACTIVE_START;
-  else if (is_word(&token, "EndTime"))
+  else if (vl_token_is(&token, "EndTime"))
     s->directive = VL_DIR_ACTIVE_END;
   else
-    return vl_parse_fail(file, vl_parse_source(file, &token),
-                         "ActiveTransform: expected StartTime, EndTime or All, found %s",
-                         shown(&token).text);
+    return fail_at(file, &token,
+                   "ActiveTransform: expected StartTime, EndTime or All, found %s",
+                   shown(&token).text);
   return true;
 }
 
@@ -577,8 +580,7 @@ static bool read_option(vlParserFile *file, vlStatement *s) {
   if (token.kind == VL_TOKEN_BAD)
     return fail_bad(file, &token);
   if (token.kind != VL_TOKEN_WORD && token.kind != VL_TOKEN_STRING)
-    return vl_parse_fail(file, vl_parse_source(file, &token),
-                         "Option: expected a value, found %s", shown(&token).text);
+    return fail_at(file, &token, "Option: expected a value, found %s", shown(&token).text);
   char value[1024];
   size_t n = token.length < sizeof value ? token.length : sizeof value - 1;
   memcpy(value, token.text, n);
@@ -587,8 +589,7 @@ static bool read_option(vlParserFile *file, vlStatement *s) {
   if (bracket) {
     vlToken close = take_token(file);
     if (close.kind != VL_TOKEN_CLOSE)
-      return vl_parse_fail(file, vl_parse_source(file, &close), "Option: expected ], found %s",
-                           shown(&close).text);
+      return fail_at(file, &close, "Option: expected ], found %s", shown(&close).text);
   }
   return send(file, s);
 }
@@ -601,15 +602,13 @@ static bool read_media(vlParserFile *file, vlStatement *s) {
          take_string(file, "MediumInterface", "the name of a medium", &s->names[1]);
 }
 
-static bool read_import(vlParserFile *file, const Keyword *k, const vlToken *at,
-                        vlStatement *s) {
+static bool read_import(vlParserFile *file, const Keyword *k, vlStatement *s) {
   vlToken where = peek_token(file);
   const char *name = NULL;
   if (!take_string(file, k->name, "a file name", &name))
     return false;
   if (k->form == INCLUDE)
     return vl_parse_follow(file, &where, name, true);
-  (void)at;
   if (!send(file, s) || !vl_parse_follow(file, &where, name, false))
     return false;
   s->directive = VL_DIR_IMPORT_END;
@@ -617,10 +616,7 @@ static bool read_import(vlParserFile *file, const Keyword *k, const vlToken *at,
 }
 
 static bool read_directive(vlParserFile *file, const vlToken *token) {
-  const Keyword *k = NULL;
-  for (size_t i = 0; i < KEYWORDS && !k; i++)
-    if (is_word(token, keywords[i].name))
-      k = &keywords[i];
+  const Keyword *k = find_keyword(token);
   if (!k)
     return unknown_directive(file, token);
   vlParamList params = {0};
@@ -650,7 +646,7 @@ static bool read_directive(vlParserFile *file, const vlToken *token) {
       return read_option(file, &s);
     case INCLUDE:
     case IMPORT:
-      return read_import(file, k, token, &s);
+      return read_import(file, k, &s);
     case PARAMS:
       fine = take_string(file, k->name,
                          k->directive == VL_DIR_MAKE_NAMED_MATERIAL ? "a name" : "a type name",
@@ -684,10 +680,7 @@ static bool go_on(vlParserFile *file) {
       return false;
     if (token.kind == VL_TOKEN_END)
       break;
-    bool next = false;
-    for (size_t i = 0; i < KEYWORDS && !next; i++)
-      next = is_word(&token, keywords[i].name);
-    if (next)
+    if (find_keyword(&token))
       break;
     take_token(file);
   }
@@ -707,8 +700,7 @@ bool vl_parse_block(vlParserFile *file, char *data, size_t size) {
   const unsigned char *b = (const unsigned char *)data;
   vlToken start = {.line = 1, .column = 1};
   if (size >= 2 && ((b[0] == 0xfe && b[1] == 0xff) || (b[0] == 0xff && b[1] == 0xfe)))
-    return vl_parse_fail(file, vl_parse_source(file, &start),
-                         "the file is encoded as UTF-16; only UTF-8 is understood");
+    return fail_at(file, &start, "the file is encoded as UTF-16; only UTF-8 is understood");
   vl_tokenizer_start(&file->tokens, data, size);
   for (;;) {
     vlToken token = take_token(file);
@@ -717,8 +709,7 @@ bool vl_parse_block(vlParserFile *file, char *data, size_t size) {
     if (token.kind == VL_TOKEN_BAD)
       return fail_bad(file, &token);
     if (token.kind != VL_TOKEN_WORD)
-      return vl_parse_fail(file, vl_parse_source(file, &token),
-                           "expected a directive, found %s", shown(&token).text);
+      return fail_at(file, &token, "expected a directive, found %s", shown(&token).text);
     if (!poll(file, size))
       return false;
     if (!read_directive(file, &token) && !go_on(file))

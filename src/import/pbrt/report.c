@@ -1,5 +1,5 @@
 /* import/pbrt/report.c: errors and warnings with their sources (file, line, column), kept
- * strings, paths, copies of parameters. */
+ * strings, paths. */
 #include <unistd.h>
 
 #include "base/file.h"
@@ -91,13 +91,6 @@ bool vl_import_unsupported(vlImport *import, vlSource source, const char *format
   return true;
 }
 
-vlHint vl_import_hint(const char *near) {
-  vlHint hint = {""};
-  if (near)
-    snprintf(hint.text, sizeof hint.text, " (did you mean \"%s\"?)", near);
-  return hint;
-}
-
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
                        const char *const *known, size_t known_count, const char *const *later,
                        size_t later_count) {
@@ -109,7 +102,7 @@ bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, con
   if (!near)
     near = vl_nearest_name(name, later, later_count);
   return vl_import_unsupported(import, source, "unknown %s \"%s\"%s", thing,
-                               vl_short_text(name).text, vl_import_hint(near).text);
+                               vl_short_text(name).text, vl_hint(near).text);
 }
 
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name) {
@@ -141,7 +134,7 @@ bool vl_import_missing_name(vlImport *import, vlSource source, const char *thing
   const char *near = vl_names_nearest(table, name);
   return vl_import_wrong(import, source, "there is no %s \"%s\"%s", thing,
                          vl_short_text(name).text,
-                         vl_import_hint(near ? vl_short_text(near).text : NULL).text);
+                         vl_hint(near ? vl_short_text(near).text : NULL).text);
 }
 
 void vl_import_note_elsewhere(void *user, vlSource source, const char *path) {
@@ -210,55 +203,4 @@ bool vl_import_color_space(const char *name, vlColorSpace *space) {
     }
   }
   return false;
-}
-
-/* ---- copies of parameters ---------------------------------------------------------------- */
-
-static bool copy_bytes(vlContext *context, const void *from, size_t count, size_t size,
-                       void *items, size_t *n, size_t *capacity) {
-  void *copy = NULL;
-  if (count) {
-    copy = vl_alloc_array(context, count, size);
-    if (!copy)
-      return false;
-    memcpy(copy, from, count * size);
-  }
-  memcpy(items, &copy, sizeof copy);
-  *n = *capacity = count;
-  return true;
-}
-
-static bool copy_param(vlContext *context, const vlParam *from, vlParam *to) {
-  to->type = from->type;
-  to->source = from->source;
-  to->space = from->space;
-  to->optional = true;
-  memcpy(to->exact, from->exact, sizeof to->exact);
-  to->name = vl_strdup(context, from->name);
-  bool fine = to->name &&
-              copy_bytes(context, from->floats.items, from->floats.count, sizeof(float),
-                         &to->floats.items, &to->floats.count, &to->floats.capacity) &&
-              copy_bytes(context, from->integers.items, from->integers.count, sizeof(int32_t),
-                         &to->integers.items, &to->integers.count, &to->integers.capacity) &&
-              copy_bytes(context, from->bools.items, from->bools.count, 1, &to->bools.items,
-                         &to->bools.count, &to->bools.capacity);
-  for (size_t i = 0; i < from->strings.count && fine; i++) {
-    char **slot = VL_PUSH(context, &to->strings);
-    fine = slot && (*slot = vl_strdup(context, from->strings.items[i]));
-  }
-  return fine;
-}
-
-bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to) {
-  for (size_t i = 0; i < from->list.count; i++) {
-    vlParam *param = vl_alloc_zero(import->context, 1, sizeof *param);
-    vlParam **slot = param ? VL_PUSH(import->context, &to->list) : NULL;
-    if (slot)
-      *slot = param;
-    else
-      vl_free(import->context, param);
-    if (!slot || !copy_param(import->context, from->list.items[i], param))
-      return vl_import_fail_memory(import);
-  }
-  return true;
 }

@@ -5,6 +5,7 @@
  * materials. */
 #include <string.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "velo/shape_kinds.h"
@@ -105,20 +106,13 @@ bool vl_import_flush_runs(vlImport *import) {
   return true;
 }
 
-static void free_rows(vlContext *context, vlShapeRun *run) {
-  VL_ARRAY_FREE(context, &run->positions);
-  VL_ARRAY_FREE(context, &run->normals);
-  VL_ARRAY_FREE(context, &run->uvs);
-  VL_ARRAY_FREE(context, &run->widths);
-  VL_ARRAY_FREE(context, &run->radii);
-  VL_ARRAY_FREE(context, &run->centers);
-  VL_ARRAY_FREE(context, &run->indices);
-}
-
 void vl_import_free_runs(vlImport *import) {
   for (int k = 0; k < VL_RUN_KINDS; k++)
-    for (int i = 0; i < VL_RUNS; i++)
-      free_rows(import->context, &import->runs[k].items[i]);
+    for (int i = 0; i < VL_RUNS; i++) {
+      const vlShapeRun *run = &import->runs[k].items[i];
+      VL_FREE(import->context, run->positions.items, run->normals.items, run->uvs.items,
+              run->widths.items, run->radii.items, run->centers.items, run->indices.items);
+    }
 }
 
 vlShapeRun *vl_import_run(vlImport *import, vlRunKind kind, const vlShapeDef *def,

@@ -7,23 +7,9 @@
 #include "velo/sampler.h"
 #include "velo/tracer.h"
 
-/* Finds the row of the kind that the file names. Null for an unknown kind; *good then says
- * whether the import continues. */
-static const vlKindRow *find_row(vlImport *import, const vlKindFamily *family,
-                                 const vlChoice *choice, int *kind, bool *good) {
-  *good = true;
-  *kind = vl_kind_find(family, choice->kind);
-  if (*kind < 0)
-    *good = vl_import_unknown_kind(import, choice->source, family, choice->kind);
-  return vl_kind_row(family, *kind);
-}
-
-static bool is_alias(const vlKindRow *row, const vlChoice *choice) {
-  return vl_text_is(row->alias, choice->kind);
-}
-
 /* Checks the types of pbrt's parameters that have no meaning in velo. */
-static void skip_ignored(vlDict *dict, const vlKindRow *row) {
+static void skip_ignored(vlDict *dict) {
+  const vlKindRow *row = dict->row;
   bool yes;
   float number;
   for (uint32_t i = 0; i < row->parameter_count; i++) {
@@ -58,11 +44,11 @@ static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   return true;
 }
 
-static void read_randomization(vlDict *dict, const vlParameter *p) {
+static void read_randomization(vlDict *dict) {
   int randomization = 2;
-  if (p && vl_dict_choice(dict, p->name, p->choices, 4, &randomization) && randomization == 0)
+  if (vl_dict_row_choice(dict, "randomization", &randomization) && randomization == 0)
     vl_import_warn(
-        dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, VL_BIT_STRING)->source,
+        dict->import, VL_LOG_INFO, vl_dict_find(dict, "randomization", VL_BIT_STRING)->source,
         "%s: randomization \"none\": samples are scrambled all the same", dict->what);
 }
 
@@ -73,25 +59,24 @@ static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   if (!choice->given)
     return true;
   vlDict dict = vl_import_choice_dict(import, "Sampler", &vl_sampler_family, choice, NULL);
-  int kind;
-  bool good, given[16];
-  const vlKindRow *row = find_row(import, &vl_sampler_family, choice, &kind, &good);
+  const vlKindRow *row = dict.row;
   if (!row)
-    return good;
-  s->render.sampler = (vlSamplerKind)kind;
+    return vl_import_unknown_kind(import, choice->source, &vl_sampler_family, choice->kind);
+  s->render.sampler = (vlSamplerKind)dict.kind;
   vl_row_set_defaults(row, s);
-  if (is_alias(row, choice) && (kind == VL_SAMPLER_SOBOL || kind == VL_SAMPLER_ZSOBOL))
+  if (vl_text_is(row->alias, choice->kind) &&
+      (dict.kind == VL_SAMPLER_SOBOL || dict.kind == VL_SAMPLER_ZSOBOL))
     vl_import_warn(import, VL_LOG_INFO, choice->source,
                    "sampler \"%s\": \"%s\" is taken in its place", row->alias, row->name);
   int32_t seed;
   if (vl_dict_integer(&dict, "seed", &seed))
     s->render.seed = (uint32_t)seed;
-  if (!vl_import_parameters(&dict, row, s, false, given))
+  if (!vl_import_parameters(&dict, s, false))
     return false;
-  if (kind == VL_SAMPLER_STRATIFIED &&
-      !read_grid(&dict, s, vl_import_given(row, given, "pixelsamples")))
+  if (dict.kind == VL_SAMPLER_STRATIFIED &&
+      !read_grid(&dict, s, vl_import_given(&dict, "pixelsamples")))
     return false;
-  read_randomization(&dict, vl_row_find(row, "randomization"));
+  read_randomization(&dict);
   return vl_dict_done(&dict);
 }
 
@@ -104,13 +89,11 @@ static bool read_filter(vlImport *import, vlSceneDefs *s) {
     return true;
   vlDict dict =
       vl_import_choice_dict(import, "PixelFilter", &vl_pixel_filter_family, choice, NULL);
-  int kind = vl_kind_find(&vl_pixel_filter_family, choice->kind);
-  if (kind < 0)
+  if (!dict.row)
     return vl_import_unknown_kind(import, choice->source, &vl_pixel_filter_family,
                                   choice->kind);
-  s->film.filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
-  const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, kind);
-  return vl_import_parameters(&dict, row, &s->film.filter, false, NULL) && vl_dict_done(&dict);
+  s->film.filter = vl_default_pixel_filter((vlPixelFilterKind)dict.kind);
+  return vl_import_parameters(&dict, &s->film.filter, false) && vl_dict_done(&dict);
 }
 
 /* ---- integrator -------------------------------------------------------------------------- */
@@ -128,21 +111,20 @@ static void read_depth(vlDict *dict, vlSceneDefs *s) {
   s->render.max_depth = MAX_DEPTH;
 }
 
-static void read_light_sampler(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {
-  const vlParameter *p = vl_row_find(row, "lightsampler");
+static void read_light_sampler(vlDict *dict, vlSceneDefs *s) {
   int sampler = 0;
-  if (!p || !vl_dict_choice(dict, p->name, p->choices, 4, &sampler))
+  if (!vl_dict_row_choice(dict, "lightsampler", &sampler))
     return;
   if (sampler == 3)
     vl_import_warn(
-        dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, VL_BIT_STRING)->source,
+        dict->import, VL_LOG_INFO, vl_dict_find(dict, "lightsampler", VL_BIT_STRING)->source,
         "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
   s->build.light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
 }
 
-static void read_photons(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {
+static void read_photons(vlDict *dict, vlSceneDefs *s) {
   int32_t photons = -1; /* -1: as many photons as pixels */
-  if (vl_row_find(row, "photonsperiteration") &&
+  if (vl_row_find(dict->row, "photonsperiteration") &&
       vl_dict_integer(dict, "photonsperiteration", &photons) && photons > 0)
     s->render.light_paths = photons < 1 << 24 ? (uint32_t)photons : 1u << 24;
 }
@@ -179,9 +161,9 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   if (!choice->given)
     return true;
   vlDict dict = vl_import_choice_dict(import, "Integrator", &vl_tracer_family, choice, NULL);
-  int kind = vl_kind_find(&vl_tracer_family, stand_in(choice->kind));
-  const vlKindRow *row = vl_kind_row(&vl_tracer_family, kind);
-  if (!row) { /* permissive: a path tracer of the same depth replaces it */
+  vl_dict_set_kind(&dict, &vl_tracer_family,
+                   vl_kind_find(&vl_tracer_family, stand_in(choice->kind)));
+  if (!dict.row) { /* permissive: a path tracer of the same depth replaces it */
     static const char *const later[] = {"function"};
     const char *names[32];
     size_t count = vl_kind_names(&vl_tracer_family, names, VL_LENGTH(names));
@@ -191,14 +173,14 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
     read_depth(&dict, s);
     return vl_import_fine(import);
   }
-  s->render.tracer = (vlTracer)kind;
-  if (!vl_import_parameters(&dict, row, s, false, NULL))
+  s->render.tracer = (vlTracer)dict.kind;
+  if (!vl_import_parameters(&dict, s, false))
     return false;
-  if (vl_row_find(row, "maxdepth"))
+  if (vl_row_find(dict.row, "maxdepth"))
     read_depth(&dict, s);
-  read_light_sampler(&dict, row, s);
-  read_photons(&dict, row, s);
-  skip_ignored(&dict, row);
+  read_light_sampler(&dict, s);
+  read_photons(&dict, s);
+  skip_ignored(&dict);
   remark_regularize(&dict, s);
   remark_two_way(import, choice->kind, s->render.tracer);
   return vl_dict_done(&dict);

@@ -144,17 +144,15 @@ static bool read_loop(vlDict *dict, vlShapeDef *def) {
 }
 
 static bool read_quadric(vlDict *dict, vlShapeDef *def) {
-  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)def->kind);
   const float whole = vl_default_shape_def(def->kind).phi_max;
-  bool given[32];
-  if (!vl_import_parameters(dict, row, def, false, given))
+  if (!vl_import_parameters(dict, def, false))
     return false;
   if (def->phi_max > whole)
     def->phi_max = whole;
   if (def->kind == VL_SHAPE_SPHERE) {
-    if (!vl_import_given(row, given, "zmin"))
+    if (!vl_import_given(dict, "zmin"))
       def->z_min = -def->radius;
-    if (!vl_import_given(row, given, "zmax"))
+    if (!vl_import_given(dict, "zmax"))
       def->z_max = def->radius;
   }
   if (def->z_min > def->z_max) { /* as in pbrt, sorted */
@@ -300,10 +298,9 @@ static bool enter_sphere(Entry *e) {
 
 /* Adds a shape of any kind that its row describes completely. */
 static bool enter_row(Entry *e) {
-  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)e->def->kind);
-  bool quadric = row->traits & VL_SHAPE_TRAIT_QUADRIC;
+  const bool quadric = e->dict->row->traits & VL_SHAPE_TRAIT_QUADRIC;
   return (quadric ? read_quadric(e->dict, e->def)
-                  : vl_import_parameters(e->dict, row, e->def, false, NULL)) &&
+                  : vl_import_parameters(e->dict, e->def, false)) &&
          enter(e);
 }
 
@@ -384,6 +381,7 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   EnterShape *function = find_shape(s->names[0], &kind);
   if (!function)
     return unknown_shape(import, s);
+  vl_dict_set_kind(&dict, &vl_shape_family, (int)kind);
   vlShapeDef def = vl_default_shape_def(kind);
   vlShapeLink link = {.material = import->state.material,
                       .material_name = import->state.material_name,

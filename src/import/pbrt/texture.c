@@ -1,6 +1,5 @@
 /* import/pbrt/texture.c: Texture directives become textures of the scene, each after the
  * textures that it refers to. */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -14,17 +13,17 @@
 bool vl_import_texture(vlImport *import, const vlStatement *s) {
   bool spectrum = vl_text_is(s->names[1], "spectrum") || vl_text_is(s->names[1], "color");
   if (!spectrum && !vl_text_is(s->names[1], "float"))
-    return vl_import_fail(
-        import, VL_ERROR_SCENE, s->source,
+    return vl_import_wrong(
+        import, s->source,
         "Texture \"%s\": the type must be \"float\" or \"spectrum\", not \"%s\"",
         vl_short_text(s->names[0]).text, vl_short_text(s->names[1]).text);
   vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
   uint32_t index;
   if (vl_names_find(table, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
-                          "%s texture \"%s\" is made a second time (first in line %u)",
-                          spectrum ? "spectrum" : "float", vl_short_text(s->names[0]).text,
-                          import->textures.items[index].source.line);
+    return vl_import_wrong(import, s->source,
+                           "%s texture \"%s\" is made a second time (first in line %u)",
+                           spectrum ? "spectrum" : "float", vl_short_text(s->names[0]).text,
+                           import->textures.items[index].source.line);
   vlPending *p = vl_import_wait(import, s, VL_ATTR_TEXTURE, true);
   if (!p)
     return false;
@@ -48,15 +47,15 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
   uint32_t index;
   if (!vl_names_find(table, name, &index)) {
     if (vl_names_find(other, name, &index))
-      return vl_import_fail(import, VL_ERROR_SCENE, source,
-                            "texture \"%s\" is a %s texture; a %s texture is needed here",
-                            vl_short_text(name).text, spectrum ? "float" : "spectrum", type);
+      return vl_import_wrong(import, source,
+                             "texture \"%s\" is a %s texture; a %s texture is needed here",
+                             vl_short_text(name).text, spectrum ? "float" : "spectrum", type);
     return vl_import_missing_name(import, source,
                                   spectrum ? "spectrum texture" : "float texture", name, table);
   }
   if (import->textures.items[index].state == VL_IN_PROGRESS)
-    return vl_import_fail(import, VL_ERROR_SCENE, source, "texture \"%s\" refers to itself",
-                          vl_short_text(name).text);
+    return vl_import_wrong(import, source, "texture \"%s\" refers to itself",
+                           vl_short_text(name).text);
   if (!vl_import_finish_texture(import, index))
     return false;
   id->index = import->textures.items[index].id;
@@ -65,16 +64,8 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
 
 /* ---- what a table cannot say ------------------------------------------------------------- */
 
-/* The parameters of one texture: its row, and which of them the file gives. */
-typedef struct Reading {
-  vlDict *dict;
-  const vlKindRow *row;
-  const bool *given;
-  const vlMat4 *world_from_texture;
-} Reading;
-
 /* A parameter that does not belong to the mapping is an error, like any unknown one. */
-static bool check_mapping(const Reading *r, const vlTextureDef *def) {
+static bool check_mapping(vlDict *dict, const vlTextureDef *def) {
   static const struct {
     const char *name;
     bool in[4]; /* per mapping: whether it has the parameter */
@@ -83,19 +74,17 @@ static bool check_mapping(const Reading *r, const vlTextureDef *def) {
       {"udelta", {true, false, false, true}},  {"vdelta", {true, false, false, true}},
       {"v1", {false, false, false, true}},     {"v2", {false, false, false, true}}};
   bool solid = def->kind == VL_TEXTURE_CHECKERBOARD && def->dimension == 3;
-  const vlParam *mapping = solid ? vl_dict_find(r->dict, "mapping", ~0u) : NULL;
+  const vlParam *mapping = solid ? vl_dict_find(dict, "mapping", ~0u) : NULL;
   if (mapping && !mapping->optional)
-    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, mapping->source,
-                          "%s: \"mapping\" has no effect with \"dimension\" 3", r->dict->what);
+    return vl_dict_fail_at(dict, mapping->source,
+                           "\"mapping\" has no effect with \"dimension\" 3");
   for (size_t i = 0; i < VL_LENGTH(parameters); i++) {
     const char *name = parameters[i].name;
     if (parameters[i].in[def->mapping] && !solid)
       continue;
-    const vlParam *p =
-        vl_import_given(r->row, r->given, name) ? vl_dict_find(r->dict, name, ~0u) : NULL;
+    const vlParam *p = vl_import_given(dict, name) ? vl_dict_find(dict, name, ~0u) : NULL;
     if (p && !p->optional) /* attributes may stay unused */
-      return vl_import_fail(r->dict->import, VL_ERROR_SCENE, p->source,
-                            "%s: \"%s\" has no effect with this mapping", r->dict->what, name);
+      return vl_dict_fail_at(dict, p->source, "\"%s\" has no effect with this mapping", name);
   }
   return true;
 }
@@ -115,68 +104,62 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
              isfinite(def->gamma)) {
     def->encoding = VL_ENCODING_GAMMA;
   } else {
-    return vl_import_fail(
-        dict->import, VL_ERROR_SCENE, p->source,
-        "%s: unknown encoding \"%s\" (known: sRGB, linear, gamma followed by a number)",
-        dict->what, vl_short_text(text).text);
+    return vl_dict_fail_at(
+        dict, p->source,
+        "unknown encoding \"%s\" (known: sRGB, linear, gamma followed by a number)",
+        vl_short_text(text).text);
   }
   return true;
 }
 
-static bool finish_image(const Reading *r, vlTextureDef *def) {
+static bool finish_image(vlDict *dict, const vlMat4 *ctm, vlTextureDef *def) {
+  (void)ctm;
   float anisotropy = 8.0f;
-  vl_dict_float(r->dict, "maxanisotropy",
+  vl_dict_float(dict, "maxanisotropy",
                 &anisotropy); /* accepted and ignored: limit of pbrt's EWA filter */
-  if (!read_encoding(r->dict, def) || !vl_dict_done(r->dict))
+  if (!read_encoding(dict, def) || !vl_dict_done(dict))
     return false; /* a misspelt "filename" is reported first */
-  if (r->dict->import->image_missing)
+  if (dict->import->image_missing)
     return true;
-  return def->path || vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
-                                     "%s: \"string filename\" is missing", r->dict->what);
+  return def->path || vl_dict_fail(dict, "\"string filename\" is missing");
 }
 
-static bool finish_direction_mix(const Reading *r, vlTextureDef *def) {
+static bool finish_direction_mix(vlDict *dict, const vlMat4 *ctm, vlTextureDef *def) {
   double d[3], world[3];
   for (int i = 0; i < 3; i++)
     d[i] = (double)def->direction[i];
-  vlParam *p = vl_dict_find(r->dict, "dir", ~0u);
+  vlParam *p = vl_dict_find(dict, "dir", ~0u);
   for (int i = 0; p && i < 3; i++)
     d[i] = p->exact[i];
-  vl_mat4_vector(r->world_from_texture, d, world);
+  vl_mat4_vector(ctm, d, world);
   double length = vl_norm3(world);
   if (!(length > 0.0))
-    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
-                          "%s: \"dir\" is zero", r->dict->what);
+    return vl_dict_fail(dict, "\"dir\" is zero");
   for (int i = 0; i < 3; i++)
     def->direction[i] = (float)(world[i] / length);
   return true;
 }
 
 /* Rules that run after the row's parameters are read; null: none. */
-typedef bool Rule(const Reading *r, vlTextureDef *def);
+typedef bool Rule(vlDict *dict, const vlMat4 *ctm, vlTextureDef *def);
 static Rule *const rules[0 VL_TEXTURE_KINDS(VL_COUNT_KIND)] = {
     [VL_TEXTURE_IMAGE] = finish_image, [VL_TEXTURE_DIRECTION_MIX] = finish_direction_mix};
 
 /* ---- textures ---------------------------------------------------------------------------- */
 
 static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pending) {
-  enum { MAX_PARAMETERS = 64 };
-  bool is_given[MAX_PARAMETERS];
-  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
-  const Reading r = {dict, row, is_given, &pending->ctm};
   vlMat4 texture_from_world;
-  assert(row->parameter_count <= MAX_PARAMETERS);
+  const vlKindRow *row = dict->row;
   if (!vl_mat4_inverse(pending->ctm, &texture_from_world))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, pending->source,
-                          "%s: the current transform is singular", dict->what);
+    return vl_dict_fail_at(dict, pending->source, "the current transform is singular");
   memcpy(def->texture_from_world, texture_from_world.m, sizeof def->texture_from_world);
   if (row->traits & (def->spectrum ? VL_TEXTURE_FLOAT_ONLY : VL_TEXTURE_COLOR_ONLY))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
-                          "%s: this is a %s texture only", dict->what,
-                          def->spectrum ? "float" : "spectrum");
-  return vl_import_parameters(dict, row, def, def->spectrum, is_given) &&
-         (!vl_row_find(row, "mapping") || check_mapping(&r, def)) &&
-         (!rules[def->kind] || rules[def->kind](&r, def)) && vl_dict_done(dict);
+    return vl_dict_fail(dict, "this is a %s texture only",
+                        def->spectrum ? "float" : "spectrum");
+  return vl_import_parameters(dict, def, def->spectrum) &&
+         (!vl_row_find(row, "mapping") || check_mapping(dict, def)) &&
+         (!rules[def->kind] || rules[def->kind](dict, &pending->ctm, def)) &&
+         vl_dict_done(dict);
 }
 
 /* The texture in place of an image that is missing: middle grey, or the number 1. */
@@ -195,15 +178,15 @@ static bool finish(vlImport *import, uint32_t index) {
            vl_import_kind_text(&vl_texture_family, pending->kind).text);
   vlDict dict =
       vl_import_dict(import, what, pending->source, pending->space, &pending->params, NULL);
-  int kind = vl_kind_find(&vl_texture_family, pending->kind);
+  vl_dict_set_kind(&dict, &vl_texture_family, vl_kind_find(&vl_texture_family, pending->kind));
   vlTextureDef def = vl_default_texture_def(
-      kind < 0 ? VL_TEXTURE_CONSTANT : (vlTextureKind)kind, pending->spectrum);
+      dict.row ? (vlTextureKind)dict.kind : VL_TEXTURE_CONSTANT, pending->spectrum);
   def.name = pending->name;
   def.source = pending->source;
   def.space = def.kind == VL_TEXTURE_IMAGE
                   ? VL_SPACE_SRGB
                   : pending->space; /* images have their own colour space or are sRGB */
-  if (kind < 0) {                   /* permissive: a constant replaces it: middle grey, or 1 */
+  if (!dict.row) {                  /* permissive: a constant replaces it: middle grey, or 1 */
     if (vl_text_is(pending->kind, "ptex")) {
       if (!vl_import_unsupported(
               import, pending->source,
@@ -231,8 +214,8 @@ bool vl_import_finish_texture(vlImport *import, uint32_t index) {
   if (pending->state == VL_DONE)
     return true;
   if (++import->depth > VL_IMPORT_DEPTH)
-    return vl_import_fail(import, VL_ERROR_SCENE, pending->source,
-                          "textures refer to each other more than %d deep", VL_IMPORT_DEPTH);
+    return vl_import_wrong(import, pending->source,
+                           "textures refer to each other more than %d deep", VL_IMPORT_DEPTH);
   pending->state = VL_IN_PROGRESS;
   if (!finish(import, index))
     return false;

@@ -31,6 +31,10 @@ typedef struct vlTokenizer {
 /* data[size] must be a zero byte. */
 void vl_tokenizer_start(vlTokenizer *tokenizer, char *data, size_t size);
 vlToken vl_token_next(vlTokenizer *tokenizer);
+/* Whether the token is this word. */
+bool vl_token_is(const vlToken *token, const char *word);
+/* The first character of the next token, which is not taken; 0: there is none. */
+char vl_token_peek(const vlTokenizer *tokenizer);
 /* Takes the next token if it is a number; otherwise changes nothing. This is the fast path for
  * long lists. */
 bool vl_token_number(vlTokenizer *tokenizer, double *value);

@@ -25,11 +25,6 @@ static const struct {
      "disney",
      3}};
 
-static bool is_word(const vlToken *t, const char *word) {
-  return t->kind == VL_TOKEN_WORD && strlen(word) == t->length &&
-         memcmp(word, t->text, t->length) == 0;
-}
-
 /* The first sign of the highest rank: signs of pbrt-v2 count more. */
 static void look(vlOldScene *found, char *data, size_t size) {
   vlTokenizer tokens;
@@ -42,7 +37,7 @@ static void look(vlOldScene *found, char *data, size_t size) {
     for (size_t i = 0; i < VL_LENGTH(signs); i++) {
       bool kind = signs[i].kinds != NULL;
       const vlToken *word = kind ? &before : &t;
-      if (!is_word(word, signs[i].directive))
+      if (!vl_token_is(word, signs[i].directive))
         continue;
       if (kind && (t.kind != VL_TOKEN_STRING || !vl_has_word(signs[i].kinds, t.text)))
         continue;

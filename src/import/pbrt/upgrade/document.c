@@ -18,28 +18,6 @@ static vlOldSpan span_of(const vlOldFile *file, const vlTokenizer *tokens,
   return (vlOldSpan){start, offset(file, tokens->at)};
 }
 
-static vlToken peek(const vlTokenizer *tokens) {
-  vlTokenizer copy = *tokens;
-  /* a string is changed in place when it is read: its first character decides */
-  while (copy.at < copy.end && (strchr(" \n\t\r\v\f", *copy.at) || *copy.at == '#')) {
-    if (*copy.at == '#')
-      while (copy.at < copy.end && *copy.at != '\n')
-        copy.at++;
-    else
-      copy.at++;
-  }
-  vlToken token = {.kind = VL_TOKEN_WORD, .text = copy.at};
-  if (copy.at >= copy.end)
-    token.kind = VL_TOKEN_END;
-  if (copy.at < copy.end && *copy.at == '"')
-    token.kind = VL_TOKEN_STRING;
-  if (copy.at < copy.end && *copy.at == '[')
-    token.kind = VL_TOKEN_OPEN;
-  if (copy.at < copy.end && *copy.at == ']')
-    token.kind = VL_TOKEN_CLOSE;
-  return token;
-}
-
 static bool bad_token(vlOldFile *file, const vlToken *token, const char *wanted) {
   if (token->kind == VL_TOKEN_BAD)
     return vl_old_fail(file, VL_ERROR_SCENE, token->line, token->column, "%s", token->message);
@@ -110,7 +88,7 @@ static bool read_param(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) 
 }
 
 static bool read_names(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) {
-  while (s->name_count < s->word->strings && peek(tokens).kind == VL_TOKEN_STRING) {
+  while (s->name_count < s->word->strings && vl_token_peek(tokens) == '"') {
     vlToken token = vl_token_next(tokens);
     if (token.kind != VL_TOKEN_STRING)
       return bad_token(file, &token, "a name in quotes");
@@ -127,9 +105,9 @@ static bool read_names(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) 
 
 static bool read_numbers(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s) {
   for (;;) {
-    vlToken next = peek(tokens);
+    const char next = vl_token_peek(tokens);
     double value;
-    if (next.kind == VL_TOKEN_OPEN || next.kind == VL_TOKEN_CLOSE) {
+    if (next == '[' || next == ']') {
       vlToken token = vl_token_next(tokens);
       s->numbers[token.kind == VL_TOKEN_CLOSE] = span_of(file, tokens, &token);
     } else {
@@ -176,7 +154,7 @@ bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *
       fine = fine && read_numbers(file, tokens, s);
       break;
     case VL_OLD_PARAMS:
-      while (fine && peek(tokens).kind == VL_TOKEN_STRING)
+      while (fine && vl_token_peek(tokens) == '"')
         fine = read_param(file, tokens, s);
       break;
   }

@@ -67,49 +67,39 @@ static const uint32_t AFTER = 0x80000000u;
 
 /* ---- edits ------------------------------------------------------------------------------- */
 
-static bool edit_text(const vlOldStatement *s, vlOldSpan span, const char *text) {
+/* An edit of prefix, text of any length, and suffix. */
+static bool edit_parts(const vlOldStatement *s, vlOldSpan span, const char *prefix,
+                       int prefix_length, const char *suffix, int suffix_length,
+                       const char *format, va_list args) {
   vlContext *context = s->u->context;
-  uint32_t order = (uint32_t)s->file->edits.count;
-  vlOldEdit *edit = VL_PUSH(context, &s->file->edits);
-  if (!edit)
-    return vl_old_fail_memory(s->u);
-  *edit = (vlOldEdit){span, vl_strdup(context, text), order};
-  return edit->text || vl_old_fail_memory(s->u);
-}
-
-/* Formats text of any length into a new block. */
-static char *format_text(vlContext *context, const char *format, va_list args) {
   va_list again;
   va_copy(again, args);
-  int n = vsnprintf(NULL, 0, format, again);
+  const int length = vsnprintf(NULL, 0, format, again);
   va_end(again);
-  char *text = n < 0 ? NULL : vl_alloc(context, (size_t)n + 1);
-  if (text)
-    vsnprintf(text, (size_t)n + 1, format, args);
-  return text;
-}
-
-/* An edit of prefix, text and suffix. Frees text. */
-static bool edit_parts(const vlOldStatement *s, vlOldSpan span, const char *prefix,
-                       int prefix_length, char *text, const char *suffix, int suffix_length) {
-  vlContext *context = s->u->context;
-  size_t size = text ? strlen(text) + (size_t)prefix_length + (size_t)suffix_length + 1 : 0;
-  char *whole = text ? vl_alloc(context, size) : NULL;
-  bool fine = whole != NULL;
-  if (fine) {
-    snprintf(whole, size, "%.*s%s%.*s", prefix_length, prefix, text, suffix_length, suffix);
-    fine = edit_text(s, span, whole);
+  const size_t size = (size_t)length + (size_t)prefix_length + (size_t)suffix_length + 1;
+  char *whole = length < 0 ? NULL : vl_alloc(context, size);
+  if (!whole)
+    return vl_old_fail_memory(s->u);
+  memcpy(whole, prefix, (size_t)prefix_length);
+  vsnprintf(whole + prefix_length, size - (size_t)prefix_length, format, args);
+  memcpy(whole + prefix_length + length, suffix, (size_t)suffix_length);
+  whole[size - 1] = 0;
+  uint32_t order = (uint32_t)s->file->edits.count;
+  vlOldEdit *edit = VL_PUSH(context, &s->file->edits);
+  if (!edit) {
+    vl_free(context, whole);
+    return vl_old_fail_memory(s->u);
   }
-  VL_FREE(context, whole, text);
-  return fine || vl_old_fail_memory(s->u);
+  *edit = (vlOldEdit){span, whole, order};
+  return true;
 }
 
 bool vl_old_edit(const vlOldStatement *s, vlOldSpan span, const char *format, ...) {
   va_list args;
   va_start(args, format);
-  char *text = format_text(s->u->context, format, args);
+  const bool fine = edit_parts(s, span, "", 0, "", 0, format, args);
   va_end(args);
-  return edit_parts(s, span, "", 0, text, "", 0);
+  return fine;
 }
 
 /* Start of the line of an offset, and the length of its indentation. */
@@ -160,10 +150,9 @@ bool vl_old_insert(const vlOldStatement *s, vlOldSide side, const char *format, 
   const size_t at = after ? s->whole.end : s->keyword.start;
   va_list args;
   va_start(args, format);
-  char *text = format_text(s->u->context, format, args);
+  const bool fine = edit_parts(s, (vlOldSpan){at, at}, line.text, after ? line.length : 0,
+                               line.text, after ? 0 : line.length, format, args);
   va_end(args);
-  bool fine = edit_parts(s, (vlOldSpan){at, at}, line.text, after ? line.length : 0, text,
-                         line.text, after ? 0 : line.length);
   if (fine && after)
     s->file->edits.items[s->file->edits.count - 1].order |= AFTER;
   return fine;
@@ -188,9 +177,10 @@ bool vl_old_add(const vlOldStatement *s, const char *format, ...) {
   int n = separator(s, &blank);
   va_list args;
   va_start(args, format);
-  char *text = format_text(s->u->context, format, args);
+  const bool fine =
+      edit_parts(s, (vlOldSpan){s->whole.end, s->whole.end}, blank, n, "", 0, format, args);
   va_end(args);
-  return edit_parts(s, (vlOldSpan){s->whole.end, s->whole.end}, blank, n, text, "", 0);
+  return fine;
 }
 
 bool vl_old_rename(vlOldStatement *s, size_t i, const char *name) {

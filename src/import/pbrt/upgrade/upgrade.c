@@ -182,24 +182,21 @@ static bool same_file(const char *a, const char *b) {
 static void release(vlUpgrade *u) {
   vlContext *c = u->context;
   for (size_t i = 0; i < u->textures.count; i++) {
-    VL_FREE(c, u->textures.items[i].name, u->textures.items[i].text, u->textures.items[i].copy);
+    const vlOldTexture *t = &u->textures.items[i];
+    VL_FREE(c, t->name, t->text, t->copy);
   }
-  for (size_t i = 0; i < u->names.count; i++) {
+  for (size_t i = 0; i < u->names.count; i++)
     VL_FREE(c, u->names.items[i].old, u->names.items[i].name);
-  }
-  for (size_t i = 0; i < u->includes.count; i++) {
+  for (size_t i = 0; i < u->includes.count; i++)
     VL_FREE(c, u->includes.items[i].path, u->includes.items[i].name);
-  }
   for (size_t i = 0; i < u->outputs.count; i++)
     vl_free(c, u->outputs.items[i]);
   for (size_t i = 0; i < u->maps.count; i++) {
-    VL_FREE(c, u->maps.items[i].from, u->maps.items[i].name, u->maps.items[i].data);
+    const vlOldMap *map = &u->maps.items[i];
+    VL_FREE(c, map->from, map->name, map->data);
   }
-  VL_ARRAY_FREE(c, &u->textures);
-  VL_ARRAY_FREE(c, &u->includes);
-  VL_ARRAY_FREE(c, &u->names);
-  VL_ARRAY_FREE(c, &u->outputs);
-  VL_ARRAY_FREE(c, &u->maps);
+  VL_FREE(c, u->textures.items, u->includes.items, u->names.items, (void *)u->outputs.items,
+          u->maps.items);
 }
 
 /* Reads the new scene before it is written: what velo refuses is an error of the upgrade. A

@@ -75,15 +75,15 @@ static bool render_colours(Engine *e, uint32_t scale) {
   PartOfFilm part = {.engine = e, .film = film, .camera = &camera, .scale = scale};
   memcpy(part.crop, def.crop, sizeof part.crop);
   const bool warps = engine_warp_suits(e, scale);
-  part.denoise =
-      !warps && !e->first_runs && engine_can_denoise(e, engine_pixels(e) / (scale * scale));
+  part.denoise = !warps && !e->interrupt.first_runs &&
+                 engine_can_denoise(e, engine_pixels(e) / (scale * scale));
   if (!warps)
-    engine_render_in_parts(&part, &render, e->coarse_seconds);
+    engine_render_in_parts(&part, &render, e->coarse.pixel_seconds);
   double start = monotonic_seconds();
   if (result == VL_OK)
     result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
   if (result == VL_OK) {
-    engine_note_speed(&e->coarse_seconds, stats.camera_rays, monotonic_seconds() - start);
+    engine_note_speed(&e->coarse.pixel_seconds, stats.camera_rays, monotonic_seconds() - start);
     if (warps)
       publish_moved(e, film, scale);
     else if (!part.denoise || !engine_denoise(&part, def.crop[3] - def.crop[1]))
@@ -120,7 +120,7 @@ static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage
 /* The illuminance takes as many samples as a film has: this one, whose light nobody sees. */
 static vlResult make_film(Engine *e, const vlCamera *camera, const vlFilmDef *def,
                           vlRenderDef *render, vlFilm **film, vlError *error) {
-  *render = engine_render_def(e, e->light_spp);
+  *render = engine_render_def(e, e->coarse.light_spp);
   render->tracer = VL_TRACER_RAYCAST;
   const vlResult result = vl_film_create(e->def.context, def, film);
   return result == VL_OK ? vl_render(e->model.world, camera, *film, render, NULL, error)
@@ -146,7 +146,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
   def.render = &e->model.job.defs->render;
   def.film = e->film;
   def.exposure = e->model.job.defs->develop.exposure;
-  def.cancel = e->stop;
+  def.cancel = e->interrupt.cancel;
   vlFilm *few = NULL;
   vlRenderDef render = e->model.job.defs->render;
   const bool light = e->now.channel == CHANNEL_ILLUMINANCE;
@@ -163,7 +163,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
   const vlImage *image = flow ? flow : floats ? floats : ids;
   if (result == VL_OK && image) {
     if (e->now.channel != CHANNEL_ERROR && !light)
-      engine_note_speed(&e->channel_seconds,
+      engine_note_speed(&e->coarse.channel_seconds,
                         (uint64_t)vl_image_width(image) * vl_image_height(image),
                         monotonic_seconds() - start);
     const FrameKind kind = {
@@ -171,7 +171,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
         .channels = vl_image_channels(image) < 3 ? vl_image_channels(image) : 3,
         .scale = scale,
         .spp = scale > 1 ? 0
-               : light   ? e->light_spp
+               : light   ? e->coarse.light_spp
                : e->film ? vl_film_spp(e->film)
                          : 0};
     engine_publish(e, image, &kind);
@@ -194,34 +194,36 @@ bool engine_render_error(Engine *e) {
 void engine_coarse_begin(Engine *e) {
   bool colours = engine_is_of_film(e->now.channel);
   bool light = e->now.channel == CHANNEL_ILLUMINANCE;
-  e->light_spp = 1;
-  e->coarse = first_scale(e, colours || light ? e->coarse_seconds : e->channel_seconds);
-  if (colours && (e->coarse == 1 || e->now.channel == CHANNEL_ERROR))
-    e->coarse = 0; /* the film is next */
+  e->coarse.light_spp = 1;
+  e->coarse.next =
+      first_scale(e, colours || light ? e->coarse.pixel_seconds : e->coarse.channel_seconds);
+  if (colours && (e->coarse.next == 1 || e->now.channel == CHANNEL_ERROR))
+    e->coarse.next = 0; /* the film is next */
 }
 
 /* The whole image of the illuminance is rendered again with four times the samples, up to those
  * that are wanted. */
 static void more_light(Engine *e, uint32_t scale) {
-  if (scale > 1 || e->now.channel != CHANNEL_ILLUMINANCE || e->light_spp >= e->now.spp)
+  if (scale > 1 || e->now.channel != CHANNEL_ILLUMINANCE || e->coarse.light_spp >= e->now.spp)
     return;
-  e->light_spp = 4 * e->light_spp < e->now.spp ? 4 * e->light_spp : e->now.spp;
-  e->coarse = 1;
+  e->coarse.light_spp =
+      4 * e->coarse.light_spp < e->now.spp ? 4 * e->coarse.light_spp : e->now.spp;
+  e->coarse.next = 1;
 }
 
 bool engine_coarse_next(Engine *e) {
-  const uint32_t scale = e->coarse;
+  const uint32_t scale = e->coarse.next;
   if (!engine_is_of_film(e->now.channel)) {
-    e->coarse = scale / 2;
+    e->coarse.next = scale / 2;
     if (render_channel(e, scale)) {
       more_light(e, scale);
       return true;
     }
     e->now.channel = UINT32_MAX; /* it is rendered anew */
-    e->coarse = 0;
+    e->coarse.next = 0;
     return false;
   }
   bool done = render_colours(e, scale);
-  e->coarse = done && scale > 3 ? scale / 2 : 0;
+  e->coarse.next = done && scale > 3 ? scale / 2 : 0;
   return done;
 }

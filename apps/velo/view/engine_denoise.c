@@ -35,7 +35,8 @@ static const char *const channel_names[CHANNELS] = {"R",
 
 static bool is_wanted(const Engine *e) {
   /* the samples of these tracers depend on each other */
-  bool suited = e->best.tracer != VL_TRACER_SPPM && e->best.tracer != VL_TRACER_MERGING;
+  bool suited =
+      e->race.best.tracer != VL_TRACER_SPPM && e->race.best.tracer != VL_TRACER_MERGING;
   return e->now.denoise && !e->now.channel && !e->preview.failed && suited;
 }
 
@@ -109,7 +110,7 @@ static vlResult make_features(PartOfFilm *part, uint32_t first, uint32_t end,
   def.space = e->model.job.defs->film.space;
   def.film = part->film;
   def.render = &e->model.job.defs->render;
-  def.cancel = e->stop;
+  def.cancel = e->interrupt.cancel;
   vlResult result =
       vl_render_channels(e->model.world, part->camera, &def, features, NULL, NULL);
   if (result == VL_OK && whole) {
@@ -168,7 +169,7 @@ static vlResult make_clean(PartOfFilm *part) {
   const uint32_t width = part->crop[2] - part->crop[0], height = part->crop[3] - part->crop[1];
   vlImageDef def = vl_default_image_def(width, height, 4);
   vlResult result = vl_image_create(part->engine->def.context, &def, &part->clean);
-  if (result == VL_OK && part->engine->coarser)
+  if (result == VL_OK && part->engine->coarse.last)
     engine_fill_rows(part->engine, part->clean, part->scale, 0);
   return result;
 }
@@ -180,7 +181,7 @@ static void publish(PartOfFilm *part, uint32_t rows) {
                           .channels = 3,
                           .scale = part->scale,
                           .spp = whole && part->scale == 1 ? vl_film_spp(part->film) : 0,
-                          .denoised = whole || e->coarser_denoised};
+                          .denoised = whole || e->coarse.last_denoised};
   engine_publish(e, part->clean, &kind);
   if (!whole)
     return;
@@ -197,7 +198,7 @@ bool engine_denoise(PartOfFilm *part, uint32_t rows) {
   const double start = engine_program_seconds();
   vlImage *image = NULL, *clean = NULL;
   vlDenoiseDef def = vl_default_denoise_def();
-  def.cancel = e->stop;
+  def.cancel = e->interrupt.cancel;
   vlResult result = part->clean ? VL_OK : make_clean(part);
   if (result == VL_OK)
     result = gather(part, first, rows, &image);

@@ -110,5 +110,5 @@ void engine_tell_exposure(Engine *e, double seconds) {
   count(&e->shot, behind);
   put_exposure(json, e, behind, seconds);
   free(behind);
-  json_text_keep(json, e, &e->last_exposure);
+  json_text_keep(json, e, &e->last.exposure);
 }

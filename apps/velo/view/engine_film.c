@@ -69,7 +69,7 @@ static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt,
   vlSceneDefs defs = engine_present_defs(e);
   const uint32_t *crop = e->now.crop;
   const ReceiptPlan plan = {.arguments = &c->arguments, .opening = &e->model.opening};
-  if (e->model.load != e->loads) {
+  if (e->model.load != e->reload.loads) {
     report_warning(
         "%s has no receipt and cannot be continued: the scene's files changed during its last "
         "image",

@@ -18,7 +18,7 @@ void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
   ViewFrame *frame = frame_make(image, kind->format, kind->channels, matrix);
   if (!frame)
     return;
-  frame->serial = ++e->serial;
+  frame->serial = ++e->frames.serial;
   frame->change = e->now.change;
   frame->width = e->now.camera.made.width;
   frame->height = e->now.camera.made.height;
@@ -31,8 +31,8 @@ void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
   frame->moved = kind->moved;
   server_show(e->server, frame);
   frame_drop(frame);
-  e->published = monotonic_seconds();
-  e->publish_seconds = e->published - start;
+  e->frames.published = monotonic_seconds();
+  e->frames.publish_seconds = e->frames.published - start;
   engine_warp_keep(e, image, kind);
 }
 
@@ -56,15 +56,15 @@ static Blend blend_at(uint32_t i, uint32_t scale, uint32_t first, uint32_t coars
 
 /* Between the pixels of the coarser image it is linear. */
 void engine_fill_rows(const Engine *e, vlImage *image, uint32_t scale, uint32_t rows) {
-  const vlImage *from = e->coarser;
+  const vlImage *from = e->coarse.last;
   const uint32_t width = vl_image_width(image), height = vl_image_height(image),
                  columns = vl_image_width(from), *crop = e->now.crop;
   const float *pixels = vl_image_const_pixels(from);
   float *to = (float *)vl_image_pixels(image) + 4 * (size_t)rows * width;
   for (uint32_t y = rows; y < height; y++) {
-    Blend v = blend_at(y, scale, crop[1], e->coarser_scale, vl_image_height(from));
+    Blend v = blend_at(y, scale, crop[1], e->coarse.last_scale, vl_image_height(from));
     for (uint32_t x = 0; x < width; x++, to += 4) {
-      Blend u = blend_at(x, scale, crop[0], e->coarser_scale, columns);
+      Blend u = blend_at(x, scale, crop[0], e->coarse.last_scale, columns);
       const float *low = pixels + 4 * (size_t)v.low * columns,
                   *high = pixels + 4 * (size_t)v.high * columns;
       for (uint32_t c = 0; c < 4; c++) {
@@ -77,16 +77,16 @@ void engine_fill_rows(const Engine *e, vlImage *image, uint32_t scale, uint32_t 
 }
 
 void engine_forget_coarser(Engine *e) {
-  vl_image_destroy(e->coarser);
-  e->coarser = NULL;
-  e->coarser_denoised = false;
+  vl_image_destroy(e->coarse.last);
+  e->coarse.last = NULL;
+  e->coarse.last_denoised = false;
 }
 
 void engine_keep_coarser(Engine *e, vlImage **image, uint32_t scale, bool denoised) {
   engine_forget_coarser(e);
-  e->coarser = *image;
-  e->coarser_scale = scale;
-  e->coarser_denoised = denoised;
+  e->coarse.last = *image;
+  e->coarse.last_scale = scale;
+  e->coarse.last_denoised = denoised;
   *image = NULL;
 }
 
@@ -119,7 +119,7 @@ static void publish_luminance(Engine *e, const vlFilm *film, uint32_t scale) {
 static void publish_colours(Engine *e, const vlFilm *film, uint32_t scale, uint32_t rows) {
   vlImage *image = NULL;
   if (vl_film_develop(film, &e->model.job.defs->develop, &image) == VL_OK) {
-    bool part = rows < vl_image_height(image) && e->coarser;
+    bool part = rows < vl_image_height(image) && e->coarse.last;
     if (part)
       engine_fill_rows(e, image, scale, rows);
     const FrameKind kind = {.format = FRAME_HALF,
@@ -141,8 +141,8 @@ void engine_publish_film(Engine *e, const vlFilm *film, uint32_t scale, uint32_t
     engine_publish_camera(e, film, scale);
   else
     publish_colours(e, film, scale, rows);
-  e->publish_seconds = monotonic_seconds() - start;
-  e->frame_seconds += engine_thread_seconds() - used;
+  e->frames.publish_seconds = monotonic_seconds() - start;
+  e->frames.seconds += engine_thread_seconds() - used;
 }
 
 static bool publish_rows(void *user, const vlProgress *progress) {
@@ -158,7 +158,7 @@ static bool publish_rows(void *user, const vlProgress *progress) {
 void engine_render_in_parts(PartOfFilm *part, vlRenderDef *render, double pixel_seconds) {
   const uint32_t height = part->crop[3] - part->crop[1];
   const double whole = pixel_seconds * (part->crop[2] - part->crop[0]) * height;
-  if (!part->engine->coarser || whole < 2 * PART_SECONDS || engine_warp_stays(part->engine))
+  if (!part->engine->coarse.last || whole < 2 * PART_SECONDS || engine_warp_stays(part->engine))
     return;
   render->pass_rows = (uint32_t)ceil(height * PART_SECONDS / whole);
   render->progress = publish_rows;

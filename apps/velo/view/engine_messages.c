@@ -48,10 +48,10 @@ void engine_greet(void *user, uint32_t client) {
   free(lists);
   engine_lock(e);
   engine_post_state(e, client);
-  if (e->last_status)
-    server_post(e->server, client, e->last_status);
-  if (e->last_exposure)
-    server_post(e->server, client, e->last_exposure);
+  if (e->last.status)
+    server_post(e->server, client, e->last.status);
+  if (e->last.exposure)
+    server_post(e->server, client, e->last.exposure);
   engine_unlock(e);
 }
 
@@ -245,19 +245,19 @@ static void choose_scene(Engine *e, const ViewMessage *m) {
         e->def.lecture ? "the lecture has no such scene" : "this page has one scene only");
     return;
   }
-  e->chosen = scene;
-  e->chosen_change = m->change;
+  e->choice.scene = scene;
+  e->choice.change = m->change;
 }
 
 /* Another time: of an animation that is loaded for it, or of the camera's shutter. */
 static void set_time(Engine *e, const ViewMessage *m) {
   vlError error = {0};
   ViewCamera next;
-  if (e->model.seconds > 0 && e->watching) {
-    e->at = m->at;
-    e->shutter = m->shutter;
-    e->time_change = m->change;
-    e->has_time = e->time_due = true;
+  if (e->model.seconds > 0 && e->threads.watches) {
+    e->time.at = m->at;
+    e->time.shutter = m->shutter;
+    e->time.change = m->change;
+    e->time.given = e->time.due = true;
   } else if (!(engine_time(e).duration > 0)) {
     engine_refuse(e, m, "nothing moves in this scene");
   } else if (camera_set_shutter(&e->wanted.camera, m->at, m->at + m->shutter, &next, &error) !=
@@ -271,19 +271,19 @@ static void set_time(Engine *e, const ViewMessage *m) {
 /* Has the command run that was copied last, or ends that run. */
 static void verify_command(Engine *e, const ViewMessage *m) {
   if (m->end) {
-    e->verify_end = true;
-  } else if (!e->verifies) {
+    e->verify.end = true;
+  } else if (!e->threads.verifies) {
     engine_refuse(e, m, "this page runs no commands");
   } else if (e->def.arguments->folder_count) {
     engine_refuse(e, m, "--sandbox allows no other programs");
-  } else if (e->verifying) {
+  } else if (e->verify.runs) {
     engine_refuse(e, m, "a command is being verified");
-  } else if (!e->copied) {
+  } else if (!e->verify.copied) {
     engine_refuse(e, m, "no command was copied");
   } else {
-    e->verification = *m;
-    e->verify_end = false;
-    e->verifying = true;
+    e->verify.asked = *m;
+    e->verify.end = false;
+    e->verify.runs = true;
   }
 }
 

@@ -12,7 +12,7 @@
 enum { DEFAULT_SAMPLES = 16, DEFAULT_SHOWN = 16 };
 
 void engine_drop_traces(Engine *e, uint32_t client, const char *why) {
-  TaskList *traces = &e->traces;
+  TaskList *traces = &e->traces.pixels;
   uint32_t kept = 0;
   for (uint32_t i = 0; i < traces->count; i++) {
     if (client && traces->messages[i].client != client)
@@ -21,13 +21,13 @@ void engine_drop_traces(Engine *e, uint32_t client, const char *why) {
       engine_refuse(e, &traces->messages[i], why);
   }
   traces->count = kept;
-  if (e->trace_client && (!client || e->trace_client == client))
-    vl_cancel_request(e->trace_stop);
+  if (e->traces.client && (!client || e->traces.client == client))
+    vl_cancel_request(e->traces.stop);
 }
 
 void engine_add_trace(Engine *e, const ViewMessage *m) {
   engine_drop_traces(e, m->client, "another pixel was chosen");
-  engine_add_task(e, m, &e->traces);
+  engine_add_task(e, m, &e->traces.pixels);
 }
 
 static void post_paths(Engine *e, const ViewMessage *m, const TracedPaths *traced) {
@@ -63,7 +63,7 @@ static void answer(Engine *e, const ViewMessage *m, const ViewCamera *camera) {
     engine_refuse(e, m, why);
     return;
   }
-  render.cancel = e->trace_stop;
+  render.cancel = e->traces.stop;
   render.priority = 2;
   const PathsRequest request = {.world = e->model.world,
                                 .camera = c,
@@ -84,11 +84,11 @@ bool engine_trace_next(Engine *e) {
   static ViewMessage pixel; /* the thread that traces alone uses them */
   static ViewCamera camera;
   engine_lock(e);
-  bool any = engine_take_task(e, &e->traces, &pixel);
+  bool any = engine_take_task(e, &e->traces.pixels, &pixel);
   if (any) {
     camera = e->wanted.camera;
-    e->trace_client = pixel.client;
-    vl_cancel_clear(e->trace_stop);
+    e->traces.client = pixel.client;
+    vl_cancel_clear(e->traces.stop);
   }
   engine_unlock(e);
   if (!any)
@@ -97,7 +97,7 @@ bool engine_trace_next(Engine *e) {
   answer(e, &pixel, &camera);
   pthread_rwlock_unlock(&e->model_lock);
   engine_lock(e);
-  e->trace_client = 0;
+  e->traces.client = 0;
   engine_unlock(e);
   return true;
 }

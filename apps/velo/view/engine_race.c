@@ -37,14 +37,14 @@ static ViewTracer tracer_of(const Engine *e, vlTracer tracer, uint32_t light_pat
 
 void engine_race_forget(Engine *e) {
   const vlRenderDef *render = &e->model.job.defs->render;
-  e->best = e->shown = tracer_of(e, render->tracer, render->light_paths);
-  e->raced_for = 0;
-  e->racing = e->by_race = false;
+  e->race.best = e->shown = tracer_of(e, render->tracer, render->light_paths);
+  e->race.planned_for = 0;
+  e->race.runs = e->race.decided = false;
 }
 
 void engine_drop_successor(Engine *e) {
-  vl_film_destroy(e->successor);
-  e->successor = NULL;
+  vl_film_destroy(e->race.successor);
+  e->race.successor = NULL;
 }
 
 /* The settings by which `velo render` plans its race. */
@@ -58,9 +58,9 @@ static RaceKind plan(const Engine *e, uint32_t spp, vlSceneDefs *defs) {
 bool engine_race_due(const Engine *e, uint32_t spp) {
   vlSceneDefs defs;
   uint32_t least = spp < RACE_LEAST_SAMPLES ? spp : RACE_LEAST_SAMPLES;
-  if (e->raced_for == UINT32_MAX || !e->film || vl_film_spp(e->film) < least)
+  if (e->race.planned_for == UINT32_MAX || !e->film || vl_film_spp(e->film) < least)
     return false;
-  return plan(e, spp, &defs) != RACE_NONE && race_samples(&defs) > e->raced_for;
+  return plan(e, spp, &defs) != RACE_NONE && race_samples(&defs) > e->race.planned_for;
 }
 
 /* ---- the successor ----------------------------------------------------------------------- */
@@ -82,7 +82,7 @@ static const vlTracerTrial *find_trial(const Engine *e, const vlTracerChoice *ch
  * of the race; at most as many as the film has. */
 static uint32_t enough_samples(const Engine *e, const vlTracerChoice *choice) {
   const vlTracerTrial *now = find_trial(e, choice, e->shown),
-                      *next = find_trial(e, choice, e->best);
+                      *next = find_trial(e, choice, e->race.best);
   uint32_t done = vl_film_spp(e->film);
   if (!now || !next)
     return done;
@@ -100,33 +100,33 @@ static void show(Engine *e, vlFilm *film) {
   vl_film_destroy(e->film);
   e->film = film;
   engine_lock(e);
-  e->shown = e->best;
+  e->shown = e->race.best;
   engine_unlock(e);
-  e->noise = NAN;
-  e->looked = 0;
+  e->status.noise = NAN;
+  e->status.estimated = 0;
 }
 
 static void take(Engine *e, RaceKind kind, const vlTracerChoice *choice) {
   vlRenderDef def = e->model.job.defs->render;
   race_take(&def, kind, choice);
-  e->by_race = choice->count > 0;
-  e->best = tracer_of(e, def.tracer, def.light_paths);
-  if (is_same(e->best, e->shown)) {
-    e->best = e->shown;
+  e->race.decided = choice->count > 0;
+  e->race.best = tracer_of(e, def.tracer, def.light_paths);
+  if (is_same(e->race.best, e->shown)) {
+    e->race.best = e->shown;
     return;
   }
-  e->successor_enough = enough_samples(e, choice);
-  e->pixel_seconds = 0; /* of the other tracer */
-  e->successor = engine_make_film(e);
-  if (!e->successor)
+  e->race.enough = enough_samples(e, choice);
+  e->samples.pixel_seconds = 0; /* of the other tracer */
+  e->race.successor = engine_make_film(e);
+  if (!e->race.successor)
     show(e, NULL); /* no memory for two: the image begins anew */
 }
 
 bool engine_succeed(Engine *e) {
-  if (!e->successor || vl_film_spp(e->successor) < e->successor_enough)
+  if (!e->race.successor || vl_film_spp(e->race.successor) < e->race.enough)
     return false;
-  show(e, e->successor);
-  e->successor = NULL;
+  show(e, e->race.successor);
+  e->race.successor = NULL;
   return true;
 }
 
@@ -139,7 +139,7 @@ static void tell(Engine *e, RaceKind kind, const vlTracerChoice *choice) {
     return;
   race_line(kind, choice, line, sizeof line);
   report_note("%s", line);
-  if (!is_same(e->best, e->shown))
+  if (!is_same(e->race.best, e->shown))
     engine_post(e, 0, "note", "message %s", line);
 }
 
@@ -150,18 +150,19 @@ bool engine_race(Engine *e) {
   vlTracerChoice choice;
   vlError error = {0};
   def.spp = race_samples(&defs);
-  def.cancel = e->stop;
-  e->racing = true;
+  def.cancel = e->interrupt.cancel;
+  e->race.runs = true;
   status_tell(e, false);
   double start = monotonic_seconds();
   vlResult result = vl_choose_tracer(e->model.world, &e->now.camera.made, &defs.film, &def,
                                      kind == RACE_TRACERS, &choice, &error);
-  e->rendered += monotonic_seconds() - start;
-  e->racing = false;
+  e->samples.seconds += monotonic_seconds() - start;
+  e->race.runs = false;
   if (result == VL_CANCELLED)
     return false;
-  e->raced_for = result != VL_OK || choice.count ? UINT32_MAX
-                                                 : def.spp; /* more samples may allow a race */
+  e->race.planned_for = result != VL_OK || choice.count
+                            ? UINT32_MAX
+                            : def.spp; /* more samples may allow a race */
   if (result != VL_OK) {
     report_warning("no race of the tracers: %s", error_text(&error, result));
     return true;

@@ -74,61 +74,62 @@ static bool has_parts_of_scene(const ViewCamera *camera) {
   return camera->def.lens.optics || camera->def.lens.aperture;
 }
 
-/* before, now: the scene's camera, before and now; shown: the page's. False: the scene's camera
- * changed in more than the size of the image, or the page's has parts of the old scene. Else
- * *kept (it may be *shown) is the page's camera for the size of the image: its field of view is
- * that of the scene's camera if the page left it so; otherwise it is kept across the smaller
- * side, as with --resolution. */
-static bool camera_keep(const ViewCamera *before, const ViewCamera *now,
-                        const ViewCamera *shown, ViewCamera *kept) {
+/* before, now: the scene's camera, before and now. False: the scene's camera changed in more
+ * than the size of the image. Else *camera is the page's camera for the size of the image: its
+ * field of view is that of the scene's camera if the page left it so; otherwise it is kept
+ * across the smaller side, as with --resolution. */
+static bool keep_camera(const ViewCamera *before, const ViewCamera *now, ViewCamera *camera) {
   const bool sized = same_size(before, now);
-  if (has_parts_of_scene(shown) || !same_rest(&before->made, &now->made))
+  if (!same_rest(&before->made, &now->made))
     return false;
   if (!same_field(&before->made, &now->made) && (sized || !same_focal(&before->def, &now->def)))
     return false;
-  ViewCamera next = *shown;
-  if (sized) {
-    *kept = next;
+  if (sized)
     return true;
-  }
+  ViewCamera next = *camera;
   vlError error;
   vlCamera made;
-  if (same_focal(&shown->def, &before->def)) {
+  if (same_focal(&camera->def, &before->def)) {
     copy_focal(&now->def, &next.def);
     next.def.width = now->def.width;
     next.def.height = now->def.height;
     if (vl_camera_make(&next.def, &next.made, NULL, &error) != VL_OK)
       return false;
-  } else if (vl_camera_resize(&shown->made, now->made.width, now->made.height, &made) !=
+  } else if (vl_camera_resize(&camera->made, now->made.width, now->made.height, &made) !=
                  VL_OK ||
-             camera_take(&shown->def, &made, shown->units.lookat, &next, &error) != VL_OK) {
+             camera_take(&camera->def, &made, camera->units.lookat, &next, &error) != VL_OK) {
     return false;
   }
-  next.units = shown->units;
-  *kept = next;
-  return same_size(kept, now);
+  next.units = camera->units;
+  *camera = next;
+  return same_size(camera, now);
 }
 
-/* For another time of the same animation; the arguments are as camera_keep's. added: the
- * scene's camera is not the file's. False: the page's camera has parts of the old scene. Else
- * *kept is the scene's camera if it is the file's and the page has not moved it; otherwise the
- * page's, with the shutter of the new one. */
-static bool camera_follow(const ViewCamera *before, const ViewCamera *now,
-                          const ViewCamera *shown, bool added, ViewCamera *kept) {
+/* For another time of the same animation. added: the scene's camera is not the file's. *camera
+ * becomes the scene's if that is the file's and the page has not moved it; otherwise it gets
+ * the shutter of the new one. */
+static bool follow_camera(const ViewCamera *before, const ViewCamera *now, bool added,
+                          ViewCamera *camera) {
   vlError error;
-  if (has_parts_of_scene(shown))
-    return false;
-  if (!added && same_size(before, shown) && same_rest(&before->made, &shown->made) &&
-      same_field(&before->made, &shown->made)) {
-    *kept = *now;
+  ViewCamera next;
+  if (!added && same_size(before, camera) && same_rest(&before->made, &camera->made) &&
+      same_field(&before->made, &camera->made)) {
+    *camera = *now;
     return true;
   }
-  ViewCamera next;
-  if (camera_set_shutter(shown, now->def.shutter_open, now->def.shutter_close, &next, &error) !=
-      VL_OK)
+  if (camera_set_shutter(camera, now->def.shutter_open, now->def.shutter_close, &next,
+                         &error) != VL_OK)
     return false;
-  *kept = next;
+  *camera = next;
   return true;
+}
+
+/* False: the camera cannot go on, or it has parts of the old scene. */
+static bool carry_camera(bool timed, bool added, const ViewCamera *before,
+                         const ViewCamera *now, ViewCamera *camera) {
+  if (has_parts_of_scene(camera))
+    return false;
+  return timed ? follow_camera(before, now, added, camera) : keep_camera(before, now, camera);
 }
 
 void engine_report(void *user, const char *kind, const vlError *what) {
@@ -145,11 +146,11 @@ void engine_report(void *user, const char *kind, const vlError *what) {
 
 void engine_offer(Engine *e, Model *model, const char *path, uint32_t change) {
   engine_lock(e);
-  Model *unused = e->next;
-  e->next = model;
+  Model *unused = e->reload.model;
+  e->reload.model = model;
   if (path)
-    e->next_path = path;
-  e->next_change = change;
+    e->reload.path = path;
+  e->reload.change = change;
   engine_interrupt(e);
   if (!path)
     engine_drop_traces(e, 0, "the scene changed");
@@ -164,9 +165,9 @@ void engine_offer(Engine *e, Model *model, const char *path, uint32_t change) {
 
 bool engine_load_choice(Engine *e) {
   engine_lock(e);
-  const char *path = e->quit ? NULL : e->chosen;
-  uint32_t change = e->chosen_change;
-  e->chosen = NULL;
+  const char *path = e->quit ? NULL : e->choice.scene;
+  uint32_t change = e->choice.change;
+  e->choice.scene = NULL;
   engine_unlock(e);
   if (!path)
     return false;
@@ -188,79 +189,65 @@ bool engine_load_choice(Engine *e) {
 
 /* ---- the render thread ------------------------------------------------------------------- */
 
-/* Goes on with the page's camera and those of its history, if the scene's camera changed in
- * nothing but the size of the image; else all begin with the scene's. before: the scene's
- * camera before; crop, history: of the page. The caller holds the lock. */
-static void keep_cameras(Engine *e, const ViewCamera *before, const ViewCamera *shown,
-                         const uint32_t crop[4], const History *history) {
-  const ViewCamera *now = &e->scene_camera;
-  Wanted *w = &e->wanted;
-  if (!camera_keep(before, now, shown, &w->camera)) {
-    w->camera = *now;
-    return;
-  }
-  if (before->made.width == now->made.width && before->made.height == now->made.height)
-    memcpy(w->crop, crop, sizeof w->crop);
-  e->history = *history;
-  for (uint32_t i = 0; i < e->history.count; i++) {
-    ViewCamera *camera = &e->history.cameras[i];
-    if (camera_keep(before, now, camera, camera))
-      continue;
-    e->history.cameras[0] = w->camera; /* one has parts of the old scene */
-    e->history.count = 1;
-    e->history.at = 0;
-  }
-}
-
-/* Another time of the animation: the page's camera stays, or follows the file's if the page has
- * not moved it; the settings stay. The caller holds the lock. */
-static void follow_cameras(Engine *e, const ViewCamera *before, const ViewCamera *shown,
-                           const uint32_t crop[4], const History *history) {
+/* Has the page's camera, its crop and the cameras of its history go on in the scene that was
+ * loaded anew, or `timed`, for another time of the same animation; else all begin with the
+ * scene's. before: the scene's camera before; page, history: what the page had. The caller
+ * holds the lock. */
+static void carry_cameras(Engine *e, bool timed, const ViewCamera *before, const Wanted *page,
+                          const History *history) {
   const bool added = e->model.opening.camera_added;
   const ViewCamera now = e->scene_camera;
-  if (!camera_follow(before, &now, shown, added, &e->wanted.camera))
+  Wanted *w = &e->wanted;
+  History *h = &e->history;
+  w->camera = page->camera;
+  bool kept = carry_camera(timed, added, before, &now, &w->camera);
+  if (!kept) {
+    w->camera = now;
     return;
-  memcpy(e->wanted.crop, crop, sizeof e->wanted.crop);
-  e->history = *history;
-  for (uint32_t i = 0; i < e->history.count; i++)
-    camera_follow(before, &now, &e->history.cameras[i], added, &e->history.cameras[i]);
+  }
+  if (same_size(before, &now))
+    memcpy(w->crop, page->crop, sizeof w->crop);
+  *h = *history;
+  for (uint32_t i = 0; i < h->count && kept; i++)
+    kept = carry_camera(timed, added, before, &now, &h->cameras[i]);
+  if (kept)
+    return;
+  h->cameras[0] = w->camera; /* one has parts of the old scene */
+  h->count = 1;
+  h->at = 0;
 }
 
 bool engine_swap_model(Engine *e) {
   static History history; /* the render thread alone uses it */
   engine_lock(e);
-  Model *next = e->next;
+  Model *next = e->reload.model;
   engine_unlock(e);
   if (!next)
     return false;
   pthread_rwlock_wrlock(&e->model_lock);
   engine_lock(e);
-  next = e->next; /* another load may have replaced it */
-  e->next = NULL;
+  next = e->reload.model; /* another load may have replaced it */
+  e->reload.model = NULL;
   Model old = e->model;
-  const ViewCamera before = e->scene_camera, shown = e->wanted.camera;
-  uint32_t crop[4], spp = e->wanted.spp, old_spp = old.job.defs->render.spp;
-  memcpy(crop, e->wanted.crop, sizeof crop);
+  const ViewCamera before = e->scene_camera;
+  const Wanted page = e->wanted;
+  const uint32_t old_spp = old.job.defs->render.spp;
   e->model = *next;
-  bool other = e->next_path != NULL;
+  const bool other = e->reload.path != NULL;
+  const bool timed = e->model.timed;
   if (other) {
-    e->def.path = e->next_path;
-    e->next_path = NULL;
-    e->wanted.change = e->next_change;
+    e->def.path = e->reload.path;
+    e->reload.path = NULL;
     e->wanted.channel = 0;
     e->wanted.paused = false;
   }
+  if (other || timed)
+    e->wanted.change = e->reload.change;
   history = e->history;
-  const bool timed = e->model.timed;
-  if (timed)
-    e->wanted.change = e->next_change;
-  const bool taken = engine_take_model(e) < 0;
-  if (taken && timed)
-    follow_cameras(e, &before, &shown, crop, &history);
-  else if (taken && !other)
-    keep_cameras(e, &before, &shown, crop, &history);
-  if ((spp != old_spp || timed) && !other)
-    e->wanted.spp = spp;
+  if (engine_take_model(e) < 0 && (timed || !other))
+    carry_cameras(e, timed, &before, &page, &history);
+  if ((page.spp != old_spp || timed) && !other)
+    e->wanted.spp = page.spp;
   engine_post_state(e, 0);
   engine_unlock(e);
   pthread_rwlock_unlock(&e->model_lock);
@@ -269,7 +256,7 @@ bool engine_swap_model(Engine *e) {
   engine_drop_successor(e);
   engine_warp_forget(e);
   if (!timed)
-    e->pixel_seconds = e->coarse_seconds = e->channel_seconds = 0;
+    e->samples.pixel_seconds = e->coarse.pixel_seconds = e->coarse.channel_seconds = 0;
   model_free(&old);
   free(next);
   return true;

@@ -44,7 +44,8 @@ void engine_unlock(Engine *engine) {
 }
 
 static bool must_stop(const Engine *e) {
-  return e->quit || e->next || e->tasks.count || e->wanted.generation != e->now.generation;
+  return e->quit || e->reload.model || e->tasks.count ||
+         e->wanted.generation != e->now.generation;
 }
 
 /* Whether the samples that are there are to be shown in another way. */
@@ -55,11 +56,11 @@ static bool shows_other(const Engine *e) {
 }
 
 void engine_interrupt(Engine *engine) {
-  if (engine->first_runs && engine->clients && !engine->quit)
+  if (engine->interrupt.first_runs && engine->clients && !engine->quit)
     return;
-  if (engine->interrupted <= 0)
-    engine->interrupted = monotonic_seconds();
-  vl_cancel_request(engine->stop);
+  if (engine->interrupt.since <= 0)
+    engine->interrupt.since = monotonic_seconds();
+  vl_cancel_request(engine->interrupt.cancel);
 }
 
 /* Whether the render thread must stop what it does. Takes the lock. */
@@ -76,7 +77,7 @@ vlRenderDef engine_render_def(const Engine *e, uint32_t spp) {
   def.first_sample = 0;
   def.time_limit = 0;
   def.noise = 0;
-  def.cancel = e->stop;
+  def.cancel = e->interrupt.cancel;
   return def;
 }
 
@@ -98,16 +99,17 @@ vlFilm *engine_make_film(Engine *e) {
 static void begin_film(Engine *e) {
   e->film = engine_make_film(e);
   engine_lock(e);
-  e->shown = e->best;
+  e->shown = e->race.best;
   engine_unlock(e);
 }
 
 /* The number of samples of the next pass of a film that shall have `most`. */
 static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most) {
   double pixels = engine_pixels(e),
-         seconds = e->def.stepwise ? step_seconds
-                                   : fmin(longest_pass, pass_seconds + 0.25 * e->rendered),
-         n = seconds / (e->pixel_seconds * pixels + 1e-9);
+         seconds = e->def.stepwise
+                       ? step_seconds
+                       : fmin(longest_pass, pass_seconds + 0.25 * e->samples.seconds),
+         n = seconds / (e->samples.pixel_seconds * pixels + 1e-9);
   uint32_t done = vl_film_spp(film), left = most - done;
   n = n < 1 ? 1 : n > 256 ? 256 : floor(n);
   if (done == 0)
@@ -118,11 +120,12 @@ static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most)
 static void publish_if_due(Engine *e) {
   if (engine_warp_stays(e) && e->now.channel == 0)
     return;
-  double now = monotonic_seconds(), share = 0.25 / (1 + 2 * e->rendered);
+  double now = monotonic_seconds(), share = 0.25 / (1 + 2 * e->samples.seconds);
   bool last = vl_film_spp(e->film) >= e->now.spp;
   if (share < publish_share)
     share = publish_share;
-  if (!last && vl_film_spp(e->film) > 1 && now - e->published < e->publish_seconds / share)
+  if (!last && vl_film_spp(e->film) > 1 &&
+      now - e->frames.published < e->frames.publish_seconds / share)
     return;
   if (e->now.channel == CHANNEL_ERROR)
     engine_render_error(e);
@@ -137,14 +140,14 @@ static PartOfFilm whole_film(Engine *e, const vlFilm *film) {
 }
 
 static bool denoise_due(const Engine *e) {
-  return e->film && !e->successor && engine_denoise_due(e, vl_film_spp(e->film));
+  return e->film && !e->race.successor && engine_denoise_due(e, vl_film_spp(e->film));
 }
 
 /* Sends the film's image, if it is not about to be denoised. A denoised one stays until the
  * next. */
 static void show_film(Engine *e) {
   bool stays = e->now.denoise && e->preview.spp && !e->now.channel;
-  if (e->first_runs || (!stays && !denoise_due(e)))
+  if (e->interrupt.first_runs || (!stays && !denoise_due(e)))
     publish_if_due(e);
 }
 
@@ -160,9 +163,9 @@ static bool denoise_film(Engine *e) {
 
 static void tell_if_due(Engine *e, bool always) {
   double now = monotonic_seconds();
-  if (!always && now - e->reported < status_seconds)
+  if (!always && now - e->status.sent < status_seconds)
     return;
-  e->reported = now;
+  e->status.sent = now;
   status_tell(e, always);
 }
 
@@ -177,28 +180,29 @@ static void tell_end(Engine *e) {
 /* Whether samples are missing, or the race, or the image of the tracer that won it. spp: the
  * samples per pixel that are wanted. */
 static bool is_unfinished(const Engine *e, uint32_t spp) {
-  return !e->failed &&
-         (!e->film || vl_film_spp(e->film) < spp || e->successor || engine_race_due(e, spp));
+  return !e->samples.failed && (!e->film || vl_film_spp(e->film) < spp || e->race.successor ||
+                                engine_race_due(e, spp));
 }
 
 /* Adds samples to the film, or to its successor. False: interrupted, or it failed. */
 static bool render_pass(Engine *e) {
-  vlFilm *film = e->successor ? e->successor : e->film;
+  vlFilm *film = e->race.successor ? e->race.successor : e->film;
   vlRenderDef render = e->model.job.defs->render;
   vlError error = {0};
   vlRenderStats stats = {0};
-  engine_set_tracer(&render, e->best);
-  render.cancel = e->stop;
+  engine_set_tracer(&render, e->race.best);
+  render.cancel = e->interrupt.cancel;
   render.first_sample = 0;
   render.time_limit = 0;
   render.spp = vl_film_spp(film) +
-               pass_samples(e, film, e->successor ? e->successor_enough : e->now.spp);
+               pass_samples(e, film, e->race.successor ? e->race.enough : e->now.spp);
   PartOfFilm part = whole_film(e, film);
   const bool first = vl_film_spp(film) == 0;
-  part.denoise = first && !e->first_runs && engine_denoise_due(e, 1);
-  if (first && !e->successor && e->now.channel == 0)
-    engine_render_in_parts(&part, &render,
-                           e->pixel_seconds > 0 ? e->pixel_seconds : e->coarse_seconds);
+  part.denoise = first && !e->interrupt.first_runs && engine_denoise_due(e, 1);
+  if (first && !e->race.successor && e->now.channel == 0)
+    engine_render_in_parts(
+        &part, &render,
+        e->samples.pixel_seconds > 0 ? e->samples.pixel_seconds : e->coarse.pixel_seconds);
   double start = monotonic_seconds();
   vlResult result =
       vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);
@@ -213,12 +217,12 @@ static bool render_pass(Engine *e) {
   }
   if (result != VL_OK) {
     status_error(e, &error, result);
-    e->failed = true; /* until the next change */
+    e->samples.failed = true; /* until the next change */
     return false;
   }
-  e->rendered += seconds;
-  e->paths += stats.paths;
-  engine_note_speed(&e->pixel_seconds, stats.camera_rays, seconds);
+  e->samples.seconds += seconds;
+  e->samples.paths += stats.paths;
+  engine_note_speed(&e->samples.pixel_seconds, stats.camera_rays, seconds);
   return true;
 }
 
@@ -226,21 +230,21 @@ static bool render_pass(Engine *e) {
 static bool render_film(Engine *e) {
   if (!e->film)
     begin_film(e);
-  if (!e->film || (!e->first_runs && is_interrupted(e)))
+  if (!e->film || (!e->interrupt.first_runs && is_interrupted(e)))
     return false;
-  if (!e->first_runs && denoise_due(e))
+  if (!e->interrupt.first_runs && denoise_due(e))
     return denoise_film(e);
   if (!is_unfinished(e, e->now.spp))
     return false;
-  if (!e->successor && engine_race_due(e, e->now.spp))
+  if (!e->race.successor && engine_race_due(e, e->now.spp))
     return engine_race(e);
   if (!render_pass(e))
     return false;
   if (engine_succeed(e)) {
-    e->published = e->reported = 0; /* both are due */
+    e->frames.published = e->status.sent = 0; /* both are due */
     e->preview.spp = 0;
   }
-  if (!e->successor)
+  if (!e->race.successor)
     show_film(e);
   tell_if_due(e, !is_unfinished(e, e->now.spp));
   return true;
@@ -256,26 +260,25 @@ static bool take_wanted(Engine *e) {
        denoise = e->wanted.denoise != e->now.denoise,
        sensor = e->wanted.sensor_edits != e->now.sensor_edits;
   e->now = e->wanted;
-  if (!e->quit && !e->next)
-    vl_cancel_clear(e->stop);
-  e->interrupted = 0;
-  e->first_runs = anew || channel;
+  if (!e->quit && !e->reload.model)
+    vl_cancel_clear(e->interrupt.cancel);
+  e->interrupt.since = 0;
+  e->interrupt.first_runs = anew || channel;
   engine_unlock(e);
   if (denoise)
     e->preview.spp = 0;
   if (!anew)
     return engine_sensor_changed(e, sensor && !channel) || channel || denoise;
-  e->failed = false;
+  e->samples.failed = false;
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);
   engine_forget_coarser(e);
   engine_forget_denoised(e);
-  e->paths = 0;
-  e->rendered = 0;
-  e->noise = NAN;
-  e->looked = 0;
-  e->begun = monotonic_seconds();
+  e->samples.paths = 0;
+  e->samples.seconds = 0;
+  e->status.noise = NAN;
+  e->status.estimated = 0;
   return true;
 }
 
@@ -292,9 +295,9 @@ static bool has_work(const Engine *e) {
 /* Waits until there is something to do. False: the end. */
 static bool wait_for_work(Engine *e) {
   engine_lock(e);
-  if (e->interrupted > 0)
-    e->stop_seconds = fmax(e->stop_seconds, monotonic_seconds() - e->interrupted);
-  e->interrupted = 0;
+  if (e->interrupt.since > 0)
+    e->interrupt.longest = fmax(e->interrupt.longest, monotonic_seconds() - e->interrupt.since);
+  e->interrupt.since = 0;
   while (!has_work(e))
     pthread_cond_wait(&e->wake, &e->lock);
   bool quit = e->quit;
@@ -318,7 +321,7 @@ static void answer_tasks(Engine *e) {
  * one meanwhile. */
 static bool end_first(Engine *e) {
   engine_lock(e);
-  e->first_runs = false;
+  e->interrupt.first_runs = false;
   bool changed = must_stop(e);
   engine_unlock(e);
   return changed;
@@ -330,7 +333,7 @@ static void begin_work(Engine *e) {
   answer_tasks(e);
   if (!take_wanted(e))
     return;
-  e->coarse = 0;
+  e->coarse.next = 0;
   const bool error = e->now.channel == CHANNEL_ERROR,
              of_film = engine_is_of_film(e->now.channel);
   if (error)
@@ -338,19 +341,20 @@ static void begin_work(Engine *e) {
   else if (!of_film || !e->film)
     engine_coarse_begin(e);
   else if (vl_film_spp(e->film)) {
-    e->published = 0;
+    e->frames.published = 0;
     show_film(e);
   }
-  if (!e->coarse && (e->film || error || !of_film))
+  if (!e->coarse.next && (e->film || error || !of_film))
     end_first(e);
 }
 
 /* The next coarse image, or the next samples. False: interrupted, or nothing is left to do. */
 static bool work(Engine *e) {
   bool samples = engine_is_of_film(e->now.channel),
-       done = e->coarse ? engine_coarse_next(e) : samples && !e->failed && render_film(e);
-  bool changed = e->first_runs && end_first(e);
-  if (done && !changed && !e->coarse)
+       done = e->coarse.next ? engine_coarse_next(e)
+                             : samples && !e->samples.failed && render_film(e);
+  bool changed = e->interrupt.first_runs && end_first(e);
+  if (done && !changed && !e->coarse.next)
     engine_warp_prepare(e);
   return done && !changed;
 }
@@ -422,13 +426,13 @@ int engine_create(const EngineDef *def, Engine **result) {
   pthread_mutex_init(&engine->lock, NULL);
   pthread_cond_init(&engine->wake, NULL);
   pthread_rwlock_init(&engine->model_lock, NULL);
-  bool made = vl_cancel_create(def->context, &engine->stop) == VL_OK &&
+  bool made = vl_cancel_create(def->context, &engine->interrupt.cancel) == VL_OK &&
               vl_cancel_create(def->context, &engine->end) == VL_OK &&
-              vl_cancel_create(def->context, &engine->trace_stop) == VL_OK;
+              vl_cancel_create(def->context, &engine->traces.stop) == VL_OK;
   int status = made ? -1 : report_failure(STATUS_OTHER, "out of memory");
   if (status < 0)
     status = model_load(def->context, def->path, def->arguments, NULL, NULL, NULL,
-                        &engine->model, &engine->files);
+                        &engine->model, &engine->reload.files);
   if (status < 0)
     status = check_options(engine);
   if (status < 0)
@@ -458,22 +462,22 @@ void engine_destroy(Engine *engine) {
   if (!engine)
     return;
   vl_film_destroy(engine->film);
-  vl_film_destroy(engine->successor);
-  vl_image_destroy(engine->coarser);
+  vl_film_destroy(engine->race.successor);
+  vl_image_destroy(engine->coarse.last);
   engine_warp_forget(engine);
   engine_sensor_forget(engine);
   vl_image_destroy(engine->preview.features);
   model_free(&engine->model);
-  if (engine->next)
-    model_free(engine->next);
-  free(engine->next);
-  file_list_free(&engine->files);
-  free(engine->last_status);
-  free(engine->last_exposure);
-  copied_free(engine->copied);
-  vl_cancel_destroy(engine->stop);
+  if (engine->reload.model)
+    model_free(engine->reload.model);
+  free(engine->reload.model);
+  file_list_free(&engine->reload.files);
+  free(engine->last.status);
+  free(engine->last.exposure);
+  copied_free(engine->verify.copied);
+  vl_cancel_destroy(engine->interrupt.cancel);
   vl_cancel_destroy(engine->end);
-  vl_cancel_destroy(engine->trace_stop);
+  vl_cancel_destroy(engine->traces.stop);
   pthread_rwlock_destroy(&engine->model_lock);
   pthread_cond_destroy(&engine->wake);
   pthread_mutex_destroy(&engine->lock);

@@ -364,8 +364,8 @@ static char *command_text(const Copied *copied) {
 /* The command is the one to verify from now on. */
 static void keep_command(Engine *e, Copied *copied) {
   engine_lock(e);
-  Copied *before = e->copied;
-  e->copied = copied;
+  Copied *before = e->verify.copied;
+  e->verify.copied = copied;
   engine_unlock(e);
   copied_free(before);
 }

@@ -72,42 +72,43 @@ static void estimate_noise(Engine *e) {
     return;
   if (vl_film_develop(e->film, develop, &image) == VL_OK &&
       vl_film_errors(e->film, develop, &errors) == VL_OK)
-    e->noise = display_noise(image, errors, exp2((double)e->model.exposure));
+    e->status.noise = display_noise(image, errors, exp2((double)e->model.exposure));
   vl_image_destroy(image);
   vl_image_destroy(errors);
 }
 
 void status_tell(Engine *e, bool estimate) {
-  double now = monotonic_seconds(), cost = now - e->looked;
+  double now = monotonic_seconds(), cost = now - e->status.estimated;
   uint32_t spp = e->film ? vl_film_spp(e->film) : 0;
-  const bool stale = isnan(e->noise) || e->noise_spp != spp;
-  if (stale && (estimate || cost > 2 + 0.25 * e->rendered)) {
+  const bool stale = isnan(e->status.noise) || e->status.noise_spp != spp;
+  if (stale && (estimate || cost > 2 + 0.25 * e->samples.seconds)) {
     estimate_noise(e);
-    e->noise_spp = spp;
-    e->looked = monotonic_seconds();
+    e->status.noise_spp = spp;
+    e->status.estimated = monotonic_seconds();
   }
   Json *json = json_text_begin("status");
   if (!json)
     return;
   engine_lock(e);
   bool paused = e->wanted.paused;
-  double stop = e->stop_seconds;
-  e->stop_seconds = 0;
+  double stop = e->interrupt.longest;
+  e->interrupt.longest = 0;
   engine_unlock(e);
   json_put(json, "change %u, spp %u, target %u, paths_per_second %g, seconds %g", e->now.change,
-           spp, e->now.spp, e->rendered > 0 ? (double)e->paths / e->rendered : NAN,
-           e->rendered);
-  json_put(json, "error %g, program_seconds %g, frame_seconds %g, denoise_seconds %g", e->noise,
-           engine_program_seconds(), e->frame_seconds + server_seconds(e->server),
-           e->preview.seconds);
+           spp, e->now.spp,
+           e->samples.seconds > 0 ? (double)e->samples.paths / e->samples.seconds : NAN,
+           e->samples.seconds);
+  json_put(json, "error %g, program_seconds %g, frame_seconds %g, denoise_seconds %g",
+           e->status.noise, engine_program_seconds(),
+           e->frames.seconds + server_seconds(e->server), e->preview.seconds);
   if (stop > 0)
     json_number(json, "stop_seconds", stop);
   json_put(json, "paused %i, tracer %s, racing %i, raced %i", paused,
            kind_name("tracers", (int)engine_shown(e).tracer),
-           e->racing || engine_race_due(e, e->now.spp), e->by_race);
-  if (e->successor)
-    json_text(json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
-  json_text_keep(json, e, &e->last_status);
+           e->race.runs || engine_race_due(e, e->now.spp), e->race.decided);
+  if (e->race.successor)
+    json_text(json, "next_tracer", kind_name("tracers", (int)e->race.best.tracer));
+  json_text_keep(json, e, &e->last.status);
 }
 
 void status_error(Engine *e, const vlError *error, vlResult result) {
@@ -142,7 +143,7 @@ ViewTime engine_time(const Engine *e) {
   const vlCamera *camera = &e->wanted.camera.made;
   if (e->model.seconds > 0)
     return (ViewTime){
-        .duration = e->watching ? e->model.seconds : 0,
+        .duration = e->threads.watches ? e->model.seconds : 0,
         .at = load->time,
         .shutter = isnan(load->time_close) ? 0 : seconds_between(load->time, load->time_close)};
   ViewTime time = {.at = camera->shutter_open,

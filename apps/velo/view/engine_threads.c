@@ -27,14 +27,14 @@ static void *answer(void *user) {
 }
 
 static bool trace_waits(const Engine *e) {
-  return e->traces.count > 0;
+  return e->traces.pixels.count > 0;
 }
 static void *trace(void *user) {
   return serve(user, trace_waits, engine_trace_next);
 }
 
 static bool choice_waits(const Engine *e) {
-  return e->chosen != NULL;
+  return e->choice.scene != NULL;
 }
 static void *load(void *user) {
   return serve(user, choice_waits, engine_load_choice);
@@ -42,38 +42,38 @@ static void *load(void *user) {
 
 int engine_start(Engine *engine, Server *server) {
   engine->server = server;
-  if (pthread_create(&engine->thread, NULL, engine_render, engine) != 0)
+  if (pthread_create(&engine->threads.render, NULL, engine_render, engine) != 0)
     return report_failure(STATUS_OTHER, "the system refuses to start a thread");
-  engine->started = true;
-  engine->answering = pthread_create(&engine->answerer, NULL, answer, engine) == 0;
-  engine->tracing = pthread_create(&engine->tracer, NULL, trace, engine) == 0;
+  engine->threads.renders = true;
+  engine->threads.answers = pthread_create(&engine->threads.answer, NULL, answer, engine) == 0;
+  engine->threads.traces = pthread_create(&engine->threads.trace, NULL, trace, engine) == 0;
   if (!engine->def.lecture)
-    engine->verifies =
-        pthread_create(&engine->verifier, NULL, engine_verify_commands, engine) == 0;
+    engine->threads.verifies =
+        pthread_create(&engine->threads.verify, NULL, engine_verify_commands, engine) == 0;
   void *(*watch)(void *) = engine->def.lecture ? load : engine_watch;
-  engine->watching = pthread_create(&engine->watcher, NULL, watch, engine) == 0;
+  engine->threads.watches = pthread_create(&engine->threads.watch, NULL, watch, engine) == 0;
   return -1;
 }
 
 int engine_stop(Engine *engine) {
-  if (!engine->started)
+  if (!engine->threads.renders)
     return STATUS_OK;
   engine_lock(engine);
   engine->quit = true;
   engine_interrupt(engine);
   vl_cancel_request(engine->end);
-  vl_cancel_request(engine->trace_stop);
+  vl_cancel_request(engine->traces.stop);
   pthread_cond_broadcast(&engine->wake);
   engine_unlock(engine);
-  pthread_join(engine->thread, NULL);
-  if (engine->watching)
-    pthread_join(engine->watcher, NULL);
-  if (engine->answering)
-    pthread_join(engine->answerer, NULL);
-  if (engine->tracing)
-    pthread_join(engine->tracer, NULL);
-  if (engine->verifies)
-    pthread_join(engine->verifier, NULL);
-  engine->started = false;
+  pthread_join(engine->threads.render, NULL);
+  if (engine->threads.watches)
+    pthread_join(engine->threads.watch, NULL);
+  if (engine->threads.answers)
+    pthread_join(engine->threads.answer, NULL);
+  if (engine->threads.traces)
+    pthread_join(engine->threads.trace, NULL);
+  if (engine->threads.verifies)
+    pthread_join(engine->threads.verify, NULL);
+  engine->threads.renders = false;
   return engine->def.film_path ? engine_write_film(engine) : STATUS_OK;
 }

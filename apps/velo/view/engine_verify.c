@@ -117,7 +117,7 @@ static bool start(Verification *v, pid_t *child) {
 
 static bool is_ended(Engine *e) {
   engine_lock(e);
-  bool ended = e->quit || e->verify_end;
+  bool ended = e->quit || e->verify.end;
   engine_unlock(e);
   return ended;
 }
@@ -231,21 +231,21 @@ void *engine_verify_commands(void *user) {
   static ViewMessage asked; /* this thread alone uses it */
   for (;;) {
     engine_lock(e);
-    while (!e->quit && !e->verifying)
+    while (!e->quit && !e->verify.runs)
       pthread_cond_wait(&e->wake, &e->lock);
     const bool quit = e->quit;
-    Copied *copied = e->copied;
-    e->copied = NULL;
-    asked = e->verification;
+    Copied *copied = e->verify.copied;
+    e->verify.copied = NULL;
+    asked = e->verify.asked;
     engine_unlock(e);
     Verification v = {.engine = e, .copied = copied};
     const bool same = !quit && verify(&v);
     engine_lock(e);
     if (!quit)
       post_verified(&v, &asked, same);
-    e->verifying = false;
-    if (!e->copied) { /* it may be verified again */
-      e->copied = copied;
+    e->verify.runs = false;
+    if (!e->verify.copied) { /* it may be verified again */
+      e->verify.copied = copied;
       copied = NULL;
     }
     engine_unlock(e);

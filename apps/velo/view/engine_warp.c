@@ -86,7 +86,7 @@ void engine_warp_prepare(Engine *e) {
     return;
   vlChannelsDef def = vl_default_channels_def(w->camera.width, w->camera.height);
   def.channels = VL_CHANNEL_DISTANCE;
-  def.cancel = e->stop;
+  def.cancel = e->interrupt.cancel;
   if (vl_render_channels(e->model.world, &w->camera, &def, &w->distances, NULL, NULL) != VL_OK)
     w->distances = NULL;
 }
@@ -205,7 +205,7 @@ bool engine_warp_stays(const Engine *e) {
 bool engine_warp_publish(Engine *e) {
   WarpSource *w = &e->warp;
   vlCamera to;
-  if (!e->coarser || vl_camera_coarse(&e->now.camera.made, w->scale, &to) != VL_OK)
+  if (!e->coarse.last || vl_camera_coarse(&e->now.camera.made, w->scale, &to) != VL_OK)
     return false;
   const double used = engine_thread_seconds();
   const size_t pixels = (size_t)to.width * to.height;
@@ -227,6 +227,6 @@ bool engine_warp_publish(Engine *e) {
   vl_image_destroy(image);
   free(cover.from);
   free(cover.depth);
-  e->frame_seconds += engine_thread_seconds() - used;
+  e->frames.seconds += engine_thread_seconds() - used;
   return done;
 }

@@ -129,19 +129,19 @@ static bool load_again(Engine *e, Watch *watch, bool timed) {
   if (!timed)
     post(e, "loading");
   engine_lock(e);
-  uint32_t load = ++e->loads;
-  ModelTime time = {e->at, e->shutter, e->model.exposure};
-  const bool at = e->has_time;
-  const uint32_t change = e->time_change;
-  e->time_due = false;
+  uint32_t load = ++e->reload.loads;
+  ModelTime time = {e->time.at, e->time.shutter, e->model.exposure};
+  const bool at = e->time.given;
+  const uint32_t change = e->time.change;
+  e->time.due = false;
   engine_unlock(e);
   report_listen(engine_report, e);
   pthread_rwlock_rdlock(&e->model_lock); /* the previous world stays */
   int status = model_load(e->def.context, e->def.path, e->def.arguments, at ? &time : NULL,
-                          e->model.world, e->end, model, &e->files);
+                          e->model.world, e->end, model, &e->reload.files);
   pthread_rwlock_unlock(&e->model_lock);
   report_listen(NULL, NULL);
-  watch_files(watch, &e->files);
+  watch_files(watch, &e->reload.files);
   if (status >= 0) {
     free(model);
     return false;
@@ -170,7 +170,7 @@ static double model_seconds(Engine *e) {
 
 static bool time_is_due(Engine *e) {
   engine_lock(e);
-  bool due = e->time_due;
+  bool due = e->time.due;
   engine_unlock(e);
   return due;
 }
@@ -183,7 +183,7 @@ void *engine_watch(void *user) {
     report_warning("changes of the scene's files are not noticed: the system gives no inotify");
     return NULL;
   }
-  watch_files(watch, &e->files);
+  watch_files(watch, &e->reload.files);
   while (!ends(e)) {
     if (time_is_due(e))
       good = load_again(e, watch, true);

@@ -88,209 +88,140 @@ static const Need needs_of[MAX_OPTIONS] = {
 
 /* ---- when it is there -------------------------------------------------------------------- */
 
-/* What the tests look at. */
-typedef struct Facts {
-  const Needs *needs;
-  const Render *render; /* may be null */
-  const OptionValue *v; /* of the whole command */
-  vlTracer tracer;
-} Facts;
+/* has: what is there, by needs. */
 
-static bool has_gltf(const Facts *f) {
-  return scene_is_gltf(f->needs->job->path);
-}
-
-static bool has_animations(const Facts *f) {
-  return vl_scene_choice_count(f->needs->scene, VL_CHOICE_ANIMATION) > 0;
-}
-
-static bool has_played_time(const Facts *f) {
-  return f->v[RENDER_AT].given || f->v[RENDER_ANIMATE].given;
-}
-
-static bool has_animate(const Facts *f) {
-  return f->v[RENDER_ANIMATE].given || (f->render && f->render->videos);
-}
-
-static bool has_added_camera(const Facts *f) {
-  return f->needs->opening->camera_added;
-}
-
-static bool has_added_camera_or_point(const Facts *f) {
-  const int64_t walls = f->v[RENDER_WALLS].integer;
-  return has_added_camera(f) || walls == OPTION_LIST_GIVEN || walls == WALLS_BOTH_SIDES;
-}
-
-static bool has_added_light(const Facts *f) {
-  return f->needs->opening->environment != VL_ENVIRONMENT_NONE;
-}
-
-static bool has_added_ground(const Facts *f) {
-  return f->needs->opening->model && vl_environment_is_studio(f->needs->opening->environment);
-}
-
-static bool has_added(const Facts *f) {
-  return has_added_camera(f) || has_added_light(f) || f->v[RENDER_GROUND].given ||
-         f->v[RENDER_GROUND_MIDDLE].given || f->v[RENDER_GROUND_RADIUS].given ||
-         f->v[RENDER_TURN].given || f->v[RENDER_TURNTABLE].given;
-}
-
-static bool has_camera_file(const Facts *f) {
-  const OptionValue *camera = &f->v[RENDER_CAMERA];
-  return camera->given && !camera_is_scene(camera->text) &&
-         !scene_camera_is_own(f->needs->job->path, f->needs->arguments);
-}
-
-/* Whether light depends on the length of the scene's unit. */
-static bool has_lamps(const Facts *f) {
+static void look_at_scene(const Needs *n, bool has[NEED_COUNT]) {
+  const OptionValue *v = n->values;
+  const OptionValue *file = &v[RENDER_CAMERA];
+  const SceneOpening *opening = n->opening;
+  const vlCamera *camera = &n->job->camera;
+  const bool light = opening->environment != VL_ENVIRONMENT_NONE;
+  const bool turned = v[RENDER_TURN].given || v[RENDER_TURNTABLE].given;
+  const bool ground =
+      v[RENDER_GROUND].given || v[RENDER_GROUND_MIDDLE].given || v[RENDER_GROUND_RADIUS].given;
+  const int64_t walls = v[RENDER_WALLS].integer;
   vlSceneInfo info;
-  vl_scene_info(f->needs->scene, &info);
-  return info.lamps > 0;
-}
-
-static bool has_camera_or_poses(const Facts *f) {
-  return has_camera_file(f) || f->v[RENDER_TRAJECTORY].given;
-}
-
-static bool has_lens(const Facts *f) {
-  const vlCamera *camera = &f->needs->job->camera;
-  const bool others = f->needs->edited || (f->render && f->render->many);
-  return others || camera->lens_radius > 0 || camera->lens.optics;
-}
-
-static bool has_film(const Facts *f) {
-  return !f->render || f->render->film_plan.path != NULL;
+  vl_scene_info(n->scene, &info);
+  has[NEED_GLTF] = scene_is_gltf(n->job->path);
+  has[NEED_LAMPS] = info.lamps > 0; /* light depends on the length of the scene's unit */
+  has[NEED_ANIMATIONS] = vl_scene_choice_count(n->scene, VL_CHOICE_ANIMATION) > 0;
+  has[NEED_PLAYED_TIME] = v[RENDER_AT].given || v[RENDER_ANIMATE].given;
+  has[NEED_ANIMATE] = v[RENDER_ANIMATE].given || (n->render && n->render->videos);
+  has[NEED_ADDED_CAMERA] = opening->camera_added;
+  has[NEED_ADDED_CAMERA_OR_POINT] =
+      opening->camera_added || walls == OPTION_LIST_GIVEN || walls == WALLS_BOTH_SIDES;
+  has[NEED_ADDED_LIGHT] = light;
+  has[NEED_ADDED_GROUND] = opening->model && vl_environment_is_studio(opening->environment);
+  has[NEED_ADDED] = opening->camera_added || light || ground || turned;
+  has[NEED_CAMERA_FILE] = file->given && !camera_is_scene(file->text) &&
+                          !scene_camera_is_own(n->job->path, n->arguments);
+  has[NEED_CAMERA_OR_POSES] = has[NEED_CAMERA_FILE] || v[RENDER_TRAJECTORY].given;
+  has[NEED_LENS] = n->edited || (n->render && n->render->many) || camera->lens_radius > 0 ||
+                   camera->lens.optics;
 }
 
 /* Whether a film, or an image for which the test is true, is written. */
-static bool has_output(const Facts *f, bool (*test)(const char *path)) {
-  if (!f->render)
-    return true;
-  return outputs_any(&f->render->outputs, test) ||
-         outputs_any(&f->render->denoised.outputs, test) || has_film(f);
+static bool has_output(const Render *render, bool (*test)(const char *path)) {
+  return !render || render->film_plan.path || outputs_any(&render->outputs, test) ||
+         outputs_any(&render->denoised.outputs, test);
 }
 
-static bool has_display(const Facts *f) {
-  return has_output(f, output_is_display) || f->v[RENDER_NOISE].given ||
-         f->v[RENDER_SERVE].given;
-}
-
-static bool has_exr(const Facts *f) {
-  return has_output(f, output_holds_layers);
-}
-
-static bool has_alpha(const Facts *f) {
-  return has_output(f, output_holds_alpha);
-}
-
-static bool has_channels(const Facts *f) {
-  return !f->render ||
-         (has_exr(f) && (f->render->channels.bits || f->render->channels.gbuffer));
-}
-
-static bool has_crypto(const Facts *f) {
+/* A command without outputs of its own shows or needs all. */
+static void look_at_outputs(const Needs *n, bool has[NEED_COUNT]) {
+  const OptionValue *v = n->values;
+  const Render *r = n->render;
+  const Channels *channels = r ? &r->channels : NULL;
   const uint32_t crypto =
       VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
-  return !f->render || (has_exr(f) && f->render->channels.bits & crypto);
+  const bool exr = has_output(r, output_holds_layers);
+  has[NEED_FILM] = !r || r->film_plan.path;
+  has[NEED_DISPLAY] =
+      has_output(r, output_is_display) || v[RENDER_NOISE].given || v[RENDER_SERVE].given;
+  has[NEED_EXR] = exr;
+  has[NEED_LAYERS] = exr;
+  has[NEED_ALPHA] = has_output(r, output_holds_alpha);
+  has[NEED_CHANNELS] = exr && (!channels || channels->bits || channels->gbuffer);
+  has[NEED_CRYPTO] = exr && (!channels || channels->bits & crypto);
+  has[NEED_OTHER_DENOISER] = !r || r->denoised.def.denoiser != VL_DENOISER_VELO;
 }
 
-static bool has_other_denoiser(const Facts *f) {
-  return !f->render || f->render->denoised.def.denoiser != VL_DENOISER_VELO;
-}
-
-static bool has_merging(const Facts *f) {
-  return f->tracer == VL_TRACER_MERGING || f->tracer == VL_TRACER_SPPM;
-}
-
-static bool has_light_paths(const Facts *f) {
-  return tracer_has_light_paths(f->tracer);
-}
-
-static bool has_bounces(const Facts *f) {
-  return f->tracer != VL_TRACER_RAYCAST && f->tracer != VL_TRACER_AMBIENT_OCCLUSION;
-}
-
-static bool has_light_samples(const Facts *f) {
-  return has_bounces(f) && f->tracer != VL_TRACER_RANDOM_WALK;
+static void look_at_tracer(vlTracer tracer, bool has[NEED_COUNT]) {
+  has[NEED_MERGING] = tracer == VL_TRACER_MERGING || tracer == VL_TRACER_SPPM;
+  has[NEED_LIGHT_PATHS] = tracer_has_light_paths(tracer);
+  has[NEED_BOUNCES] = tracer != VL_TRACER_RAYCAST && tracer != VL_TRACER_AMBIENT_OCCLUSION;
+  has[NEED_LIGHT_SAMPLES] = has[NEED_BOUNCES] && tracer != VL_TRACER_RANDOM_WALK;
 }
 
 static const struct {
-  bool (*has)(const Facts *facts);
   const char *why;   /* after "--option has no effect: " */
   bool names_scene;  /* the path of the scene goes before */
   bool is_warned_of; /* each output has its warning already (render.c) */
   Need before;       /* is needed for it, too, and looked at first */
 } rows[NEED_COUNT] = {
-    [NEED_GLTF] = {has_gltf, " is not a glTF file", .names_scene = true},
-    [NEED_LAMPS] = {has_lamps, " has no light given in candela or lumens", .names_scene = true},
-    [NEED_ANIMATIONS] = {has_animations, " has no animations", .names_scene = true,
-                         .before = NEED_GLTF},
-    [NEED_PLAYED_TIME] = {has_played_time, "no animation is played (--at, --animate)",
+    [NEED_GLTF] = {" is not a glTF file", .names_scene = true},
+    [NEED_LAMPS] = {" has no light given in candela or lumens", .names_scene = true},
+    [NEED_ANIMATIONS] = {" has no animations", .names_scene = true, .before = NEED_GLTF},
+    [NEED_PLAYED_TIME] = {"no animation is played (--at, --animate)",
                           .before = NEED_ANIMATIONS},
-    [NEED_ANIMATE] = {has_animate, "it goes with --animate, or with a video"},
-    [NEED_ADDED] = {has_added, " has a camera and light of its own", .names_scene = true},
-    [NEED_ADDED_CAMERA] = {has_added_camera, "no camera is added, the camera is given"},
-    [NEED_ADDED_CAMERA_OR_POINT] = {has_added_camera_or_point,
-                                    "no camera is added, the camera is given"},
-    [NEED_ADDED_GROUND] = {has_added_ground, "no ground would be added"},
-    [NEED_ADDED_LIGHT] = {has_added_light, "no environment map is added (--environment)"},
+    [NEED_ANIMATE] = {"it goes with --animate, or with a video"},
+    [NEED_ADDED] = {" has a camera and light of its own", .names_scene = true},
+    [NEED_ADDED_CAMERA] = {"no camera is added, the camera is given"},
+    [NEED_ADDED_CAMERA_OR_POINT] = {"no camera is added, the camera is given"},
+    [NEED_ADDED_GROUND] = {"no ground would be added"},
+    [NEED_ADDED_LIGHT] = {"no environment map is added (--environment)"},
     [NEED_CAMERA_FILE] =
-        {has_camera_file,
-         "the file of --camera is a scene, or the scene's own camera is taken"},
-    [NEED_CAMERA_OR_POSES] = {has_camera_or_poses,
-                              "there is no camera file (--camera, --trajectory)"},
-    [NEED_LENS] = {has_lens, "the camera is a pinhole (--lens-radius, --f-number)"},
-    [NEED_FILM] = {has_film, "there is no film (--film)"},
-    [NEED_DISPLAY] = {has_display, "no output is a .png, .jpg or .tga"},
-    [NEED_EXR] = {has_exr, "no output is an .exr"},
-    [NEED_LAYERS] = {has_exr, "no output is an .exr", .is_warned_of = true},
-    [NEED_ALPHA] = {has_alpha, "no output is a .png or .exr", .is_warned_of = true},
-    [NEED_CHANNELS] = {has_channels, "no ground truth is written (--channels, into an .exr)"},
-    [NEED_CRYPTO] = {has_crypto, "no Cryptomatte is written (--channels crypto, into an .exr)"},
-    [NEED_OTHER_DENOISER] = {has_other_denoiser,
-                             "the denoiser is velo's own (--denoiser oidn)"},
-    [NEED_MERGING] = {has_merging, "only merging and sppm merge"},
-    [NEED_LIGHT_PATHS] = {has_light_paths,
-                          "only bidirectional, merging, sppm and lightpath follow light paths"},
-    [NEED_BOUNCES] = {has_bounces, "this tracer follows no path"},
-    [NEED_LIGHT_SAMPLES] = {has_light_samples, "this tracer samples no lights"},
+        {"the file of --camera is a scene, or the scene's own camera is taken"},
+    [NEED_CAMERA_OR_POSES] = {"there is no camera file (--camera, --trajectory)"},
+    [NEED_LENS] = {"the camera is a pinhole (--lens-radius, --f-number)"},
+    [NEED_FILM] = {"there is no film (--film)"},
+    [NEED_DISPLAY] = {"no output is a .png, .jpg or .tga"},
+    [NEED_EXR] = {"no output is an .exr"},
+    [NEED_LAYERS] = {"no output is an .exr", .is_warned_of = true},
+    [NEED_ALPHA] = {"no output is a .png or .exr", .is_warned_of = true},
+    [NEED_CHANNELS] = {"no ground truth is written (--channels, into an .exr)"},
+    [NEED_CRYPTO] = {"no Cryptomatte is written (--channels crypto, into an .exr)"},
+    [NEED_OTHER_DENOISER] = {"the denoiser is velo's own (--denoiser oidn)"},
+    [NEED_MERGING] = {"only merging and sppm merge"},
+    [NEED_LIGHT_PATHS] = {"only bidirectional, merging, sppm and lightpath follow light paths"},
+    [NEED_BOUNCES] = {"this tracer follows no path"},
+    [NEED_LIGHT_SAMPLES] = {"this tracer samples no lights"},
 };
 
 /* ---- the check --------------------------------------------------------------------------- */
 
-static int report_option(const Facts *f, const Option *option, Need need) {
-  const bool strict = f->v[RENDER_STRICT_OPTIONS].given;
-  const char *scene = rows[need].names_scene ? f->needs->job->path : "", *why = rows[need].why;
-  const bool of_tracer = need > NEED_OF_TRACER;
-  const char *tracer = of_tracer ? kind_name("tracers", (int)f->tracer) : "",
-             *gap = of_tracer ? ": " : "";
-  if (strict)
-    return report_usage("--%s has no effect: %s%s%s%s", option->name, tracer, gap, scene, why);
+/* tracer: the one that lacks something; null: it is not the tracer. */
+static int report_option(const Needs *n, const Option *option, Need need, const char *tracer) {
+  const char *scene = rows[need].names_scene ? n->job->path : "";
+  const char *by = tracer ? tracer : "";
+  const char *gap = tracer ? ": " : "";
+  const char *why = rows[need].why;
+  if (n->values[RENDER_STRICT_OPTIONS].given)
+    return report_usage("--%s has no effect: %s%s%s%s", option->name, by, gap, scene, why);
   if (!rows[need].is_warned_of)
-    report_note("--%s has no effect: %s%s%s%s", option->name, tracer, gap, scene, why);
+    report_note("--%s has no effect: %s%s%s%s", option->name, by, gap, scene, why);
   return -1;
 }
 
 /* What is missing of a need: itself, or one before it. NEED_NOTHING: it is there. */
-static Need missing(const Facts *f, Need need) {
+static Need missing(const bool has[NEED_COUNT], Need need) {
   if (need == NEED_NOTHING)
     return need;
-  const Need before = missing(f, rows[need].before);
+  const Need before = missing(has, rows[need].before);
   if (before != NEED_NOTHING)
     return before;
-  return rows[need].has(f) ? NEED_NOTHING : need;
+  return has[need] ? NEED_NOTHING : need;
 }
 
-static int check(const Facts *f, bool of_tracer) {
+static int check(const Needs *n, const bool has[NEED_COUNT], const char *tracer) {
   int status = -1;
-  for (const Option *option = f->needs->options; option->name; option++) {
-    if (option->id >= RENDER_OPTIONS || !f->v[option->id].given)
+  for (const Option *option = n->options; option->name; option++) {
+    if (option->id >= RENDER_OPTIONS || !n->values[option->id].given)
       continue; /* an option of another command */
     const Need need = needs_of[option->id];
-    if ((need > NEED_OF_TRACER) != of_tracer)
+    if ((need > NEED_OF_TRACER) != (tracer != NULL))
       continue;
-    const Need lacking = missing(f, need);
-    const int code = lacking == NEED_NOTHING ? -1 : report_option(f, option, lacking);
+    const Need lacking = missing(has, need);
+    const int code = lacking == NEED_NOTHING ? -1 : report_option(n, option, lacking, tracer);
     if (code >= 0)
       status = code;
   }
@@ -298,19 +229,20 @@ static int check(const Facts *f, bool of_tracer) {
 }
 
 int needs_check_scene(const Needs *needs) {
-  const Facts facts = {.needs = needs, .render = needs->render, .v = needs->values};
-  return check(&facts, false);
+  bool has[NEED_COUNT] = {false};
+  look_at_scene(needs, has);
+  look_at_outputs(needs, has);
+  return check(needs, has, NULL);
 }
 
 int needs_check_tracer(const Needs *needs, const vlWorld *world) {
+  bool has[NEED_COUNT] = {false};
   const Job *job = needs->job;
-  const vlTracer tracer = job->defs->render.tracer;
-  const bool replaced = vl_tracer_lacks(world, &job->camera, &job->defs->film, tracer) != 0;
-  const Facts facts = {.needs = needs,
-                       .render = needs->render,
-                       .v = needs->values,
-                       .tracer = replaced ? VL_TRACER_VOLPATH : tracer};
-  return check(&facts, true);
+  vlTracer tracer = job->defs->render.tracer;
+  if (vl_tracer_lacks(world, &job->camera, &job->defs->film, tracer))
+    tracer = VL_TRACER_VOLPATH; /* it replaces that */
+  look_at_tracer(tracer, has);
+  return check(needs, has, kind_name("tracers", (int)tracer));
 }
 
 /* A frame of an animation has other options than the command: --at in place of --animate. */

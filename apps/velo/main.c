@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/command_words.h"
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "cli/context.h"
@@ -17,7 +18,36 @@
 /* The git commit of the source; empty when unknown. Written by cmake/commit.cmake. */
 extern const char velo_commit[];
 
-/* Commands of two words ("image diff") come last. */
+/* The command `velo help`. */
+enum { HELP_ALL, HELP_MAN, HELP_COMPLETION, HELP_COMMANDS };
+
+static Option help_options[] = {
+    {HELP_ALL, "all", "print all options, where the page of COMMAND has the most used only"},
+    {HELP_MAN, "man", "print the manual page of COMMAND, or of velo, in the format of man(7)"},
+    {HELP_COMPLETION, "completion", "print the completion script of a shell:", OPTION_CHOICE,
+     "SHELL", .choices = shell_choices},
+    {HELP_COMMANDS, "commands", "print the names of all commands, one per line"},
+    {0}};
+
+static int help(const Arguments *arguments, vlContext *context);
+
+static const Command help_command = {
+    .name = "help",
+    .usage = "[COMMAND] [options]",
+    .summary = "print the options of a command",
+    .text =
+        "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options "
+        "in sections\n(of render the most used ones, --all prints all), and examples. For "
+        "image, scene, camera, film or raw, prints this for each command of that group.",
+    .examples =
+        "velo help render\nvelo help render --all\nvelo help image diff\nvelo help --man "
+        "render | man -l -",
+    .options = help_options,
+    .max_operands = MAX_OPERANDS,
+    .run = help,
+};
+
+/* Commands of two words ("image diff") come after those of one. */
 static const Command *const commands[] = {&render_command,         &view_command,
                                           &trace_command,          &scene_info_command,
                                           &scene_check_command,    &scene_convert_command,
@@ -32,56 +62,35 @@ static const Command *const commands[] = {&render_command,         &view_command
                                           &film_info_command,      &film_merge_command,
                                           &film_develop_command,   &raw_develop_command,
                                           &raw_info_command,       &sensor_expose_command,
-                                          &sensor_verify_command,  &light_info_command};
-enum { COMMANDS = LENGTH(commands) };
+                                          &sensor_verify_command,  &light_info_command,
+                                          &help_command,           NULL};
+enum { COMMANDS = LENGTH(commands) - 1 };
 
 static void print_overview(void) {
   printf("velo, a photorealistic renderer\n\nusage: velo COMMAND ...\n\n");
-  for (int i = 0; i < COMMANDS; i++)
-    printf("  %-16s  %s\n", commands[i]->name, commands[i]->summary);
+  for (const Command *const *c = commands; *c != &help_command; c++)
+    printf("  %-16s  %s\n", (*c)->name, (*c)->summary);
   printf("  %-16s  %s\n", "help COMMAND", "print the options of a command");
   printf("  %-16s  %s\n\n", "--version", "print the version");
   options_print_exit_statuses();
 }
 
-/* Returns the number of words of argv that name the command, or 0 if they name another
- * command. */
-static int name_words(const Command *command, int argc, char **argv) {
-  const char *space = strchr(command->name, ' ');
-  if (!space)
-    return argc >= 1 && strcmp(argv[0], command->name) == 0 ? 1 : 0;
-  size_t n = (size_t)(space - command->name);
-  return argc >= 2 && strlen(argv[0]) == n && strncmp(argv[0], command->name, n) == 0 &&
-                 strcmp(argv[1], space + 1) == 0
-             ? 2
-             : 0;
-}
-
-/* Whether the word is the first of commands of two words. names: their second words. */
-static bool is_family(const char *word, const char *names[COMMANDS], int *count) {
-  *count = 0;
-  size_t n = strlen(word);
-  for (int i = 0; i < COMMANDS; i++)
-    if (strncmp(commands[i]->name, word, n) == 0 && commands[i]->name[n] == ' ')
-      names[(*count)++] = commands[i]->name + n + 1;
-  return *count > 0;
-}
-
-static const Command *find_command(int argc, char **argv, int *words) {
-  for (int i = 0; i < COMMANDS; i++)
-    if ((*words = name_words(commands[i], argc, argv)))
-      return commands[i];
-  return NULL;
+/* The number of commands in the group of a word. names: their second words. */
+static int group_names(const char *word, const char *names[COMMANDS]) {
+  int count = 0;
+  for (const Command *const *c = commands; *c; c++)
+    if (command_second_word(*c) && command_begins_with(*c, word))
+      names[count++] = command_second_word(*c);
+  return count;
 }
 
 /* For the second word alone (velo convert): lists the commands that end with it. */
 static bool is_second_word(const char *word, char *list, size_t size) {
   list[0] = 0;
-  for (int i = 0; i < COMMANDS; i++) {
-    const char *space = strchr(commands[i]->name, ' ');
-    if (!space || strcmp(space + 1, word) != 0)
-      continue;
-    text_add(list, size, "%s\"velo %s\"", list[0] ? " or " : "", commands[i]->name);
+  for (const Command *const *c = commands; *c; c++) {
+    const char *second = command_second_word(*c);
+    if (second && strcmp(second, word) == 0)
+      text_add(list, size, "%s\"velo %s\"", list[0] ? " or " : "", (*c)->name);
   }
   return list[0];
 }
@@ -103,121 +112,97 @@ static const char *command_for_file(const char *word) {
   return NULL;
 }
 
-static int unknown_command(int argc, char **argv) {
-  const char *names[COMMANDS + 3];
-  char whole[200];
-  int count;
-  if (command_for_file(argv[0]))
-    return report_usage("a command comes first; did you mean \"velo %s %s\"?",
-                        command_for_file(argv[0]), argv[0]);
-  if (is_second_word(argv[0], whole, sizeof whole))
-    return report_usage("unknown command \"%s\"; did you mean %s?", argv[0], whole);
-  if (is_family(argv[0], names, &count)) {
-    char list[200];
-    text_list(list, sizeof list, names, count);
-    if (argc < 2)
-      return report_usage("%s: which of %s?", argv[0], list);
-    const char *near = did_you_mean("", argv[1], names, count);
-    if (*near)
-      return report_usage("%s: unknown command \"%s\"%s", argv[0], argv[1], near);
-    return report_usage("%s: unknown command \"%s\"; there are %s", argv[0], argv[1], list);
-  }
+/* Of a word that is no command. */
+static int unknown_word(const char *word) {
+  const char *names[COMMANDS + 2];
   char first_words[COMMANDS][40];
   for (int i = 0; i < COMMANDS; i++) {
-    text_set(first_words[i], "%.*s", (int)strcspn(commands[i]->name, " "), commands[i]->name);
+    text_set(first_words[i], "%.*s", command_first_length(commands[i]), commands[i]->name);
     names[i] = first_words[i];
   }
-  names[COMMANDS] = "help";
-  names[COMMANDS + 1] = "--version";
-  names[COMMANDS + 2] = "--help";
-  const char *near = did_you_mean("", argv[0], names, COMMANDS + 3);
-  return report_usage("unknown %s \"%s\"%s", argv[0][0] == '-' ? "option" : "command", argv[0],
+  names[COMMANDS] = "--version";
+  names[COMMANDS + 1] = "--help";
+  const char *near = did_you_mean("", word, names, COMMANDS + 2);
+  return report_usage("unknown %s \"%s\"%s", word[0] == '-' ? "option" : "command", word,
                       *near ? near : "; \"velo help\" lists the commands");
 }
 
-/* Values of the options of `velo help`. */
-enum { HELP_ALL, HELP_MAN, HELP_COMPLETION, HELP_COMMANDS };
+static int unknown_command(int count, const char *const *words) {
+  const char *word = words[0], *names[COMMANDS];
+  char list[200];
+  if (command_for_file(word))
+    return report_usage("a command comes first; did you mean \"velo %s %s\"?",
+                        command_for_file(word), word);
+  if (is_second_word(word, list, sizeof list))
+    return report_usage("unknown command \"%s\"; did you mean %s?", word, list);
+  const int name_count = group_names(word, names);
+  if (!name_count)
+    return unknown_word(word);
+  text_list(list, sizeof list, names, name_count);
+  if (count < 2)
+    return report_usage("%s: which of %s?", word, list);
+  const char *near = did_you_mean("", words[1], names, name_count);
+  if (*near)
+    return report_usage("%s: unknown command \"%s\"%s", word, words[1], near);
+  return report_usage("%s: unknown command \"%s\"; there are %s", word, words[1], list);
+}
 
-static Option help_options[] = {
-    {HELP_ALL, "all", "print all options, where the page of COMMAND has the most used only"},
-    {HELP_MAN, "man", "print the manual page of COMMAND, or of velo, in the format of man(7)"},
-    {HELP_COMPLETION, "completion", "print the completion script of a shell:", OPTION_CHOICE,
-     "SHELL", .choices = shell_choices},
-    {HELP_COMMANDS, "commands", "print the names of all commands, one per line"},
-    {0}};
-
-static const Command help_command = {
-    .name = "help",
-    .usage = "[COMMAND] [options]",
-    .summary = "print the options of a command",
-    .text =
-        "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options "
-        "in sections\n(of render the most used ones, --all prints all), and examples. For "
-        "image, scene, camera, film or raw, prints this for each command of that group.",
-    .examples =
-        "velo help render\nvelo help render --all\nvelo help image diff\nvelo help --man "
-        "render | man -l -",
-    .options = help_options,
-    .max_operands = MAX_OPERANDS,
-};
-
-/* Prints the help pages of one command or of a group of commands. */
-static int print_help(int argc, char **argv, bool all) {
-  int words, count;
-  const char *names[COMMANDS];
-  const Command *command = find_command(argc, argv, &words);
-  if (!command && argc == 1 && strcmp(argv[0], "help") == 0)
-    command = &help_command;
+/* Prints the help pages of the command or of the group of commands that the words name. */
+static int print_help(int count, const char *const *words, bool all) {
+  int used;
+  const char *names[COMMANDS], *gap = "";
+  const Command *command = command_find(commands, count, words, &used);
   if (command) {
     options_print_help(command, all);
-  } else if (argc == 0) {
+    return STATUS_OK;
+  }
+  if (count == 0) {
     print_overview();
-  } else if (argc == 1 && is_family(argv[0], names, &count)) {
-    for (int i = 0; i < COMMANDS; i++) {
-      if (strncmp(commands[i]->name, argv[0], strlen(argv[0])) != 0)
-        continue;
-      if (count-- < (int)(LENGTH(names)))
-        options_print_help(commands[i], all);
-      if (count)
-        printf("\n");
-    }
-  } else {
-    return unknown_command(argc, argv);
+    return STATUS_OK;
+  }
+  if (count > 1 || !group_names(words[0], names))
+    return unknown_command(count, words);
+  for (const Command *const *c = commands; *c; c++) {
+    if (!command_begins_with(*c, words[0]))
+      continue;
+    fputs(gap, stdout);
+    options_print_help(*c, all);
+    gap = "\n";
   }
   return STATUS_OK;
 }
 
-/* `velo help`, argv without these words. */
-static int help(int argc, char **argv) {
-  static Arguments arguments;
-  TRY(options_parse(&help_command, argc, argv, &arguments));
-  argc = arguments.operand_count; /* the operands now come first in argv */
-  const OptionValue *v = arguments.values;
+static int print_manual(int count, const char *const *words) {
+  int used;
+  if (count == 0) {
+    manual_print_program(commands);
+    return STATUS_OK;
+  }
+  const Command *command = command_find(commands, count, words, &used);
+  if (!command)
+    return unknown_command(count, words);
+  manual_print_command(command);
+  return STATUS_OK;
+}
+
+static int help(const Arguments *arguments, vlContext *context) {
+  const int count = arguments->operand_count;
+  const char *const *words = arguments->all_operands;
+  const OptionValue *v = arguments->values;
+  (void)context;
   if (v[HELP_MAN].given + v[HELP_COMPLETION].given + v[HELP_COMMANDS].given > 1)
     return report_usage("help: --man, --completion and --commands exclude each other");
-  if (argc > 0 && (v[HELP_COMPLETION].given || v[HELP_COMMANDS].given))
+  if (count > 0 && (v[HELP_COMPLETION].given || v[HELP_COMMANDS].given))
     return report_usage("help: --completion and --commands take no COMMAND");
-  const Command *all[COMMANDS + 1];
-  memcpy(all, commands, sizeof commands);
-  all[COMMANDS] = &help_command;
-  if (v[HELP_COMPLETION].given) {
-    completion_print((Shell)v[HELP_COMPLETION].integer, all, COMMANDS + 1, &help_command);
-  } else if (v[HELP_COMMANDS].given) {
-    for (int i = 0; i <= COMMANDS; i++)
-      puts(all[i]->name);
-  } else if (v[HELP_MAN].given && argc == 0) {
-    manual_print_program(all, COMMANDS + 1);
-  } else if (v[HELP_MAN].given) {
-    int words;
-    const Command *command = argc == 1 && strcmp(argv[0], "help") == 0
-                                 ? &help_command
-                                 : find_command(argc, argv, &words);
-    if (!command)
-      return unknown_command(argc, argv);
-    manual_print_command(command);
-  } else {
-    return print_help(argc, argv, v[HELP_ALL].given);
-  }
+  if (v[HELP_MAN].given)
+    return print_manual(count, words);
+  if (v[HELP_COMPLETION].given)
+    completion_print((Shell)v[HELP_COMPLETION].integer, commands);
+  else if (v[HELP_COMMANDS].given)
+    for (const Command *const *c = commands; *c; c++)
+      puts((*c)->name);
+  else
+    return print_help(count, words, v[HELP_ALL].given);
   return STATUS_OK;
 }
 
@@ -245,29 +230,29 @@ static int print_version(void) {
   return STATUS_OK;
 }
 
+static bool asks_help(const char *word) {
+  return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
+}
+
 static int run(int argc, char **argv) {
-  for (int i = 0; i < COMMANDS; i++)
-    options_share(commands[i]->options, render_command.options);
-  if (argc < 2) {
+  const char *const *words = (const char *const *)argv + 1;
+  int count = argc - 1, used = 1;
+  for (const Command *const *c = commands; *c; c++)
+    options_share((*c)->options, render_command.options);
+  if (count < 1) {
     print_overview();
     return STATUS_USAGE;
   }
-  const char *first = argv[1];
-  if (strcmp(first, "--version") == 0) {
+  if (strcmp(words[0], "--version") == 0)
     return print_version();
-  }
-  if (strcmp(first, "help") == 0)
-    return help(argc - 2, argv + 2);
-  if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0)
-    return help(argc - 2, argv + 2);
-  int words;
-  const Command *command = find_command(argc - 1, argv + 1, &words);
-  if (!command && argc == 3 && (strcmp(argv[2], "--help") == 0 || strcmp(argv[2], "-h") == 0))
-    return print_help(1, argv + 1, false);
+  const Command *command =
+      asks_help(words[0]) ? &help_command : command_find(commands, count, words, &used);
+  if (!command && count == 2 && asks_help(words[1]))
+    return print_help(1, words, false);
   if (!command)
-    return unknown_command(argc - 1, argv + 1);
+    return unknown_command(count, words);
   static Arguments arguments;
-  int status = options_parse(command, argc - 1 - words, argv + 1 + words, &arguments);
+  int status = options_parse(command, count - used, argv + 1 + used, &arguments);
   vlContext *context = NULL;
   if (status < 0 && command->context != CONTEXT_OWN)
     status = context_open_for(&arguments, report_log, NULL, &context);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/command_words.h"
 #include "cli/macros.h"
 
 const Choice shell_choices[] = {
@@ -73,48 +74,32 @@ static void put_families(void) {
 
 /* ---- words of the commands --------------------------------------------------------------- */
 
-/* Length of a command's first word. */
-static int first_length(const Command *command) {
-  return (int)strcspn(command->name, " ");
+/* Whether the operand of a command is a command: that of `velo help`. */
+static bool takes_command(const Command *command) {
+  return strstr(command->usage, "COMMAND") != NULL;
 }
 
-static bool has_two_words(const Command *command) {
-  return command->name[first_length(command)] != '\0';
-}
-
-static bool same_first(const Command *a, const Command *b) {
-  return first_length(a) == first_length(b) &&
-         strncmp(a->name, b->name, (size_t)first_length(a)) == 0;
-}
-
-/* Whether commands[i] is the first with its first word. */
-static bool is_first(const Command *const *commands, int i) {
-  for (int j = 0; j < i; j++)
-    if (same_first(commands[j], commands[i]))
-      return false;
-  return true;
-}
-
-/* Whether commands[i] is the first of several with its first word. */
-static bool is_group(const Command *const *commands, int i) {
-  return is_first(commands, i) && has_two_words(commands[i]);
+static void put_first_word(const Command *command) {
+  printf("%.*s", command_first_length(command), command->name);
 }
 
 /* Prints the first words of all commands. */
-static void put_first_words(const Command *const *commands, int count) {
-  for (int i = 0; i < count; i++)
-    if (is_first(commands, i))
-      printf("%s%.*s", i ? " " : "", first_length(commands[i]), commands[i]->name);
+static void put_first_words(const Command *const *commands) {
+  for (const Command *const *c = commands; *c; c++) {
+    if (!command_leads(commands, *c))
+      continue;
+    fputs(c == commands ? "" : " ", stdout);
+    put_first_word(*c);
+  }
 }
 
 /* Prints the second words of the commands that begin as `command`. */
-static void put_second_words(const Command *const *commands, int count,
-                             const Command *command) {
+static void put_second_words(const Command *const *commands, const Command *command) {
   const char *gap = "";
-  for (int i = 0; i < count; i++) {
-    if (!same_first(commands[i], command))
+  for (const Command *const *c = commands; *c; c++) {
+    if (!command_same_first(*c, command))
       continue;
-    printf("%s%s", gap, commands[i]->name + first_length(command) + 1);
+    printf("%s%s", gap, command_second_word(*c));
     gap = " ";
   }
 }
@@ -180,8 +165,7 @@ static void bash_option(const Option *o) {
   printf(" ;;\n");
 }
 
-static void bash_command(const Command *const *commands, int count, const Command *command,
-                         const Command *help) {
+static void bash_command(const Command *const *commands, const Command *command) {
   printf("    '%s')\n      options='", command->name);
   for (const Option *o = command->options; o->name; o++) {
     printf("--%s ", o->name);
@@ -194,17 +178,19 @@ static void bash_command(const Command *const *commands, int count, const Comman
     put_families();
     printf("'\n");
   }
-  if (command == help) {
+  if (takes_command(command)) {
     printf(
         "      kind=operand\n      case ${COMP_WORDS[COMP_CWORD - 1]} in\n        help) "
         "names='");
-    put_first_words(commands, count);
+    put_first_words(commands);
     printf("' ;;\n");
-    for (int i = 0; i < count; i++) {
-      if (!is_group(commands, i))
+    for (const Command *const *c = commands; *c; c++) {
+      if (!command_leads_group(commands, *c))
         continue;
-      printf("        %.*s) names='", first_length(commands[i]), commands[i]->name);
-      put_second_words(commands, count, commands[i]);
+      printf("        ");
+      put_first_word(*c);
+      printf(") names='");
+      put_second_words(commands, *c);
       printf("' ;;\n");
     }
     printf("      esac\n");
@@ -218,23 +204,24 @@ static void bash_command(const Command *const *commands, int count, const Comman
   printf("      ;;\n");
 }
 
-static void print_bash(const Command *const *commands, int count, const Command *help) {
+static void print_bash(const Command *const *commands) {
   fputs(bash_head, stdout);
-  for (int i = 0; i < count; i++) {
-    if (!is_group(commands, i))
+  for (const Command *const *c = commands; *c; c++) {
+    if (!command_leads_group(commands, *c))
       continue;
-    printf("    %.*s)\n      command+=\" ${COMP_WORDS[2]}\" at=3 names='",
-           first_length(commands[i]), commands[i]->name);
-    put_second_words(commands, count, commands[i]);
+    printf("    ");
+    put_first_word(*c);
+    printf(")\n      command+=\" ${COMP_WORDS[2]}\" at=3 names='");
+    put_second_words(commands, *c);
     printf("'\n      ;;\n");
   }
   printf("  esac\n  if ((COMP_CWORD == 1)); then\n    names='");
-  put_first_words(commands, count);
+  put_first_words(commands);
   printf(
       " --version --help'\n  fi\n  ((COMP_CWORD < at)) && command= kind=names\n  case $command "
       "in\n");
-  for (int i = 0; i < count; i++)
-    bash_command(commands, count, commands[i], help);
+  for (const Command *const *c = commands; *c; c++)
+    bash_command(commands, *c);
   fputs(bash_tail, stdout);
 }
 
@@ -273,27 +260,27 @@ static void zsh_option(const Option *o) {
 
 /* Prints a call of _describe: commands with their summaries. family: null for the first
  * words. */
-static void zsh_describe(const Command *const *commands, int count, const Command *family) {
+static void zsh_describe(const Command *const *commands, const Command *family) {
   printf("    names=(\n");
-  for (int i = 0; i < count; i++) {
-    if (family ? !same_first(commands[i], family) : !is_first(commands, i))
+  for (const Command *const *c = commands; *c; c++) {
+    if (family ? !command_same_first(*c, family) : !command_leads(commands, *c))
       continue;
-    bool group = !family && has_two_words(commands[i]);
-    int n = first_length(commands[i]);
-    printf("      '%.*s:", family ? 100 : n,
-           family ? commands[i]->name + n + 1 : commands[i]->name);
-    if (group) {
-      printf("commands about %.*ss", n, commands[i]->name);
-    } else {
-      put_clause(commands[i]->summary, ":\\", false);
-    }
+    const int n = command_first_length(*c);
+    const char *second = command_second_word(*c);
+    if (family)
+      printf("      '%s:", second);
+    else
+      printf("      '%.*s:", n, (*c)->name);
+    if (second && !family)
+      printf("commands about %.*ss", n, (*c)->name);
+    else
+      put_clause((*c)->summary, ":\\", false);
     printf("'\n");
   }
   printf("    )\n    _describe -t commands 'velo command' names\n    return\n");
 }
 
-static void zsh_command(const Command *const *commands, int count, const Command *command,
-                        const Command *help) {
+static void zsh_command(const Command *const *commands, const Command *command) {
   printf("    '%s')\n      _arguments -s -S \\\n", command->name);
   for (const Option *o = command->options; o->name; o++)
     zsh_option(o);
@@ -302,9 +289,9 @@ static void zsh_command(const Command *const *commands, int count, const Command
     printf("'1:family:(");
     put_families();
     printf(")'\n");
-  } else if (command == help) {
+  } else if (takes_command(command)) {
     printf("'1:command:(");
-    put_first_words(commands, count);
+    put_first_words(commands);
     printf(")' '2:command: '\n");
   } else {
     printf("'*:file:_files'\n");
@@ -312,35 +299,37 @@ static void zsh_command(const Command *const *commands, int count, const Command
   printf("      ;;\n");
 }
 
-static void print_zsh(const Command *const *commands, int count, const Command *help) {
+static void print_zsh(const Command *const *commands) {
   printf(
       "#compdef velo\n# written by `velo help --completion zsh`\n_velo() {\n  local "
       "command=$words[2]\n  local -a names\n");
   printf("  if ((CURRENT == 2)); then\n");
-  zsh_describe(commands, count, NULL);
+  zsh_describe(commands, NULL);
   printf("  fi\n");
-  for (int i = 0; i < count; i++) {
-    if (!is_group(commands, i))
+  for (const Command *const *c = commands; *c; c++) {
+    if (!command_leads_group(commands, *c))
       continue;
-    printf("  if [[ $command == %.*s ]] && ((CURRENT == 3)); then\n", first_length(commands[i]),
-           commands[i]->name);
-    zsh_describe(commands, count, commands[i]);
+    printf("  if [[ $command == ");
+    put_first_word(*c);
+    printf(" ]] && ((CURRENT == 3)); then\n");
+    zsh_describe(commands, *c);
     printf("  fi\n");
   }
   printf("  case $command in\n    ");
   const char *gap = "";
-  for (int i = 0; i < count; i++) {
-    if (!is_group(commands, i))
+  for (const Command *const *c = commands; *c; c++) {
+    if (!command_leads_group(commands, *c))
       continue;
-    printf("%s%.*s", gap, first_length(commands[i]), commands[i]->name);
+    fputs(gap, stdout);
+    put_first_word(*c);
     gap = " | ";
   }
   printf(
       ")\n      command+=\" $words[3]\"\n      shift 2 words\n      ((CURRENT -= 2))\n      "
       ";;\n    *)\n      shift words\n      ((CURRENT -= 1))\n      ;;\n  esac\n  case "
       "$command in\n");
-  for (int i = 0; i < count; i++)
-    zsh_command(commands, count, commands[i], help);
+  for (const Command *const *c = commands; *c; c++)
+    zsh_command(commands, *c);
   printf("  esac\n}\n_velo \"$@\"\n");
 }
 
@@ -380,49 +369,54 @@ static void fish_word(const char *condition, int length, const char *word, const
   putchar('\n');
 }
 
-static void print_fish(const Command *const *commands, int count, const Command *help) {
-  fputs(fish_head, stdout);
+static void fish_words(const Command *const *commands, const Command *command) {
+  const int n = command_first_length(command);
+  const char *second = command_second_word(command);
   char condition[80];
-  for (int i = 0; i < count; i++) {
-    const Command *c = commands[i];
-    int n = first_length(c);
-    if (is_first(commands, i)) {
-      fish_word("__velo_words_are", n, c->name, has_two_words(c) ? NULL : c->summary);
-      fish_word("__velo_words_are help", n, c->name, NULL);
-    }
-    if (!has_two_words(c))
-      continue;
-    text_set(condition, "__velo_words_are %.*s", n, c->name);
-    fish_word(condition, 100, c->name + n + 1, c->summary);
-    text_set(condition, "__velo_words_are help %.*s", n, c->name);
-    fish_word(condition, 100, c->name + n + 1, NULL);
+  if (command_leads(commands, command)) {
+    fish_word("__velo_words_are", n, command->name, second ? NULL : command->summary);
+    fish_word("__velo_words_are help", n, command->name, NULL);
   }
-  for (int i = 0; i < count; i++) {
-    for (const Option *o = commands[i]->options; o->name; o++)
-      fish_option(commands[i], o);
-    printf("complete -c velo -n '__velo_command_is %s' -l help -s h -d 'print the options'\n",
-           commands[i]->name);
-    if (takes_family(commands[i])) {
-      printf("complete -c velo -f -n '__velo_command_is %s' -a '", commands[i]->name);
-      put_families();
-      printf("'\n");
-    }
-    if (commands[i] == help)
-      printf("complete -c velo -f -n '__velo_command_is %s'\n", help->name);
-  }
+  if (!second)
+    return;
+  text_set(condition, "__velo_words_are %.*s", n, command->name);
+  fish_word(condition, 100, second, command->summary);
+  text_set(condition, "__velo_words_are help %.*s", n, command->name);
+  fish_word(condition, 100, second, NULL);
 }
 
-void completion_print(Shell shell, const Command *const *commands, int count,
-                      const Command *help) {
+static void fish_command(const Command *command) {
+  for (const Option *o = command->options; o->name; o++)
+    fish_option(command, o);
+  printf("complete -c velo -n '__velo_command_is %s' -l help -s h -d 'print the options'\n",
+         command->name);
+  if (takes_family(command)) {
+    printf("complete -c velo -f -n '__velo_command_is %s' -a '", command->name);
+    put_families();
+    printf("'\n");
+  }
+  if (takes_command(command))
+    printf("complete -c velo -f -n '__velo_command_is %s'\n", command->name);
+}
+
+static void print_fish(const Command *const *commands) {
+  fputs(fish_head, stdout);
+  for (const Command *const *c = commands; *c; c++)
+    fish_words(commands, *c);
+  for (const Command *const *c = commands; *c; c++)
+    fish_command(*c);
+}
+
+void completion_print(Shell shell, const Command *const *commands) {
   switch (shell) {
     case SHELL_BASH:
-      print_bash(commands, count, help);
+      print_bash(commands);
       break;
     case SHELL_ZSH:
-      print_zsh(commands, count, help);
+      print_zsh(commands);
       break;
     case SHELL_FISH:
-      print_fish(commands, count, help);
+      print_fish(commands);
       break;
   }
 }

@@ -9,9 +9,7 @@ typedef enum Shell { SHELL_BASH, SHELL_ZSH, SHELL_FISH } Shell;
 extern const Choice shell_choices[];
 
 /* Prints the completion script of velo for this shell to stdout: commands, options, the names
- * that options take, files and folders. help: the command `velo help`, whose operands are the
- * names of commands; one of `commands`. */
-void completion_print(Shell shell, const Command *const *commands, int count,
-                      const Command *help);
+ * that options take, files and folders. commands: null ends them. */
+void completion_print(Shell shell, const Command *const *commands);
 
 #endif

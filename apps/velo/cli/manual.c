@@ -125,6 +125,16 @@ static void put_prose(const char *text, const char *paragraph) {
 
 /* ---- parts of a page --------------------------------------------------------------------- */
 
+/* Prints the words of a command's name, with dashes between them. */
+static void put_joined(const char *name, bool upper) {
+  for (const char *c = name; *c; c++) {
+    if (*c == ' ')
+      fputs("\\-", stdout);
+    else
+      putchar(upper ? toupper((unsigned char)*c) : *c);
+  }
+}
+
 /* Prints the title line and the section NAME. name: "image diff"; empty: the program. */
 static void put_title(const char *name, const char *summary) {
   char date[32] = "", *end;
@@ -136,15 +146,13 @@ static void put_title(const char *name, const char *summary) {
   printf(".\\\" written by velo help --man%s%s\n.TH VELO", *name ? " " : "", name);
   if (*name)
     printf("\\-");
-  for (const char *c = name; *c; c++)
-    printf("%s", *c == ' ' ? "\\-" : (char[]){(char)toupper((unsigned char)*c), 0});
+  put_joined(name, true);
   printf(" 1 \"%s\" \"velo %d.%d.%d\" \"User Commands\"\n", date, VL_VERSION_MAJOR,
          VL_VERSION_MINOR, VL_VERSION_PATCH);
   printf(".SH NAME\nvelo");
   if (*name)
     printf("\\-");
-  for (const char *c = name; *c; c++)
-    printf("%s", *c == ' ' ? "\\-" : (char[]){*c, 0});
+  put_joined(name, false);
   printf(" \\- ");
   put_literal(summary);
   printf("\n");
@@ -220,7 +228,7 @@ void manual_print_command(const Command *command) {
   printf(".EE\n.SH SEE ALSO\n.BR velo (1)\n");
 }
 
-void manual_print_program(const Command *const *commands, int count) {
+void manual_print_program(const Command *const *commands) {
   put_title("", "photorealistic renderer");
   printf(
       ".SH SYNOPSIS\n\\fBvelo\\fR COMMAND ...\n.br\n\\fBvelo help\\fR [COMMAND]\n.br\n\\fBvelo "
@@ -233,12 +241,11 @@ void manual_print_program(const Command *const *commands, int count) {
       "command has a manual page of its own.",
       ".PP");
   printf(".SH COMMANDS\n");
-  for (int i = 0; i < count; i++) {
+  for (const Command *const *c = commands; *c; c++) {
     printf(".TP\n.BR velo\\-");
-    for (const char *c = commands[i]->name; *c; c++)
-      printf("%s", *c == ' ' ? "\\-" : (char[]){*c, 0});
+    put_joined((*c)->name, false);
     printf(" (1)\n");
-    put_prose(commands[i]->summary, ".sp");
+    put_prose((*c)->summary, ".sp");
   }
   printf(".SH ENVIRONMENT\n.TP\n.B VELO_ISA\n");
   put_prose(

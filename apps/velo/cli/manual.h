@@ -6,8 +6,8 @@
 
 /* Prints the page velo(1), which lists the commands, or the page of one command, such as
  * velo-render(1), in man's format to stdout. SOURCE_DATE_EPOCH in the environment gives the
- * page's date. */
-void manual_print_program(const Command *const *commands, int count);
+ * page's date. commands: null ends them. */
+void manual_print_program(const Command *const *commands);
 void manual_print_command(const Command *command);
 
 #endif

@@ -12,6 +12,11 @@ bool text_ends_with(const char *text, const char *suffix) {
   return n >= m && strcasecmp(text + n - m, suffix) == 0;
 }
 
+const char *text_file_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
+}
+
 void text_add(char *text, size_t size, const char *format, ...) {
   const size_t used = strlen(text);
   va_list values;

@@ -7,6 +7,8 @@
 
 /* In upper case or lower. */
 bool text_ends_with(const char *text, const char *suffix);
+/* What stands behind the last slash of a path. */
+const char *text_file_name(const char *path);
 /* Adds to a text in an array of so many bytes; what does not fit is cut. */
 void text_add(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -94,8 +94,7 @@ static int check_output(const Blend *blend, const char *path) {
 
 /* FILE.png in the current folder. */
 static void choose_output(Blend *blend) {
-  const char *scene = blend->arguments->operands[0], *slash = strrchr(scene, '/');
-  const char *name = slash ? slash + 1 : scene;
+  const char *name = text_file_name(blend->arguments->operands[0]);
   text_set(blend->default_output, "%.*s.png", (int)(strlen(name) - strlen(".blend")), name);
   blend->own.texts[blend->own.text_count++] = blend->default_output;
 }

@@ -6,6 +6,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "render/channels.h"
 #include "render/outputs.h"
 #include "velo/header.h"
@@ -98,10 +99,9 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
   } kinds[] = {{"id.object.Y", "objects", VL_ID_OBJECT},
                {"id.material.Y", "materials", VL_ID_MATERIAL},
                {"id.instance.Y", "instances", VL_ID_INSTANCE}};
-  const char *slash = strrchr(path, '/');
   Json json = {.out = file};
   json_begin(&json, NULL, '{');
-  json_text(&json, "image", slash ? slash + 1 : path);
+  json_text(&json, "image", text_file_name(path));
   for (size_t k = 0; k < LENGTH(kinds); k++) {
     if (vl_image_find_channel(ids, kinds[k].channel) < 0)
       continue;

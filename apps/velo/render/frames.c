@@ -12,6 +12,7 @@
 #include "camera/camera.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "cli/vector.h"
 #include "render/pattern.h"
 #include "render/shard.h"
@@ -346,7 +347,7 @@ int frames_check_names(const Frames *frames, const Outputs *outputs) {
         "--film \"%s\": each eye has a film; put %%v (left, right) into the name",
         frames->films->path);
   for (int i = 0; i < outputs->count; i++) {
-    const char *pattern = outputs->paths[i], *slash = strrchr(pattern, '/');
+    const char *pattern = outputs->paths[i];
     bool by_view = pattern_has(pattern, 'v');
     if (frames->views == 2 && pattern_check(pattern) >= 0)
       return STATUS_USAGE;
@@ -357,7 +358,7 @@ int frames_check_names(const Frames *frames, const Outputs *outputs) {
           pattern);
     if (frames_count(frames) > 1)
       TRY(check_twice(frames, pattern));
-    bool folders = slash && memchr(pattern, '%', (size_t)(slash - pattern));
+    bool folders = memchr(pattern, '%', (size_t)(text_file_name(pattern) - pattern));
     for (uint32_t k = 0; k < frames_count(frames) && folders; k++)
       for (int view = 0; view < (by_view ? frames->views : 1); view++) {
         Frame frame = frames_at(frames, k);

@@ -12,6 +12,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "image/display.h"
 #include "render/exposure.h"
 
@@ -37,8 +38,7 @@ const char *output_opened(const char *path) {
 const char *output_dot(const char *path) {
   if (strcmp(path, "-") == 0)
     return ".exr";
-  const char *slash = strrchr(path, '/');
-  return strrchr(slash ? slash : path, '.');
+  return strrchr(text_file_name(path), '.');
 }
 
 static const struct Suffix *find_suffix(const char *path) {
@@ -131,8 +131,9 @@ int output_check(vlContext *context, const char *path, vlOutputKind kind) {
 
 int outputs_check_folders(const Outputs *outputs) {
   for (int i = 0; i < outputs->count; i++) {
-    const char *path = outputs->paths[i], *slash = strrchr(path, '/');
-    if (outputs->patterns && slash && memchr(path, '%', (size_t)(slash - path)))
+    const char *path = outputs->paths[i];
+    const size_t folder = (size_t)(text_file_name(path) - path);
+    if (outputs->patterns && memchr(path, '%', folder))
       continue; /* made later */
     TRY(output_check(NULL, path, VL_OUTPUT_PLAIN));
     if (!output_is_stream(path))
@@ -147,8 +148,7 @@ int outputs_check_folders(const Outputs *outputs) {
  * too long. */
 static bool name_beside(const char *path, size_t keep, const char *tail, char *result,
                         size_t size) {
-  const char *slash = strrchr(path, '/');
-  size_t folder = slash ? (size_t)(slash + 1 - path) : 0;
+  const size_t folder = (size_t)(text_file_name(path) - path);
   if (keep > folder + MAX_NAME - strlen(tail)) {
     keep = folder + MAX_NAME - strlen(tail);
     while (keep > folder && ((unsigned char)path[keep] & 0xc0) == 0x80)
@@ -170,7 +170,7 @@ bool output_part_path(const char *path, char *part, size_t size) {
     return false;
   if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode) && realpath(path, target))
     path = target;
-  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+  const char *dot = strrchr(text_file_name(path), '.');
   size_t stem = dot ? (size_t)(dot - path) : strlen(path);
   text_set(tail, ".part%.20s", dot ? dot : "");
   return name_beside(path, stem, tail, part, size);

@@ -7,6 +7,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 
 /* Parses the text after a percent sign: digits of the width, then a letter, which is returned.
  * 0: unknown. *length: number of characters after the sign. */
@@ -50,8 +51,10 @@ bool pattern_has(const char *pattern, char kind) {
 /* The last component of a path, without its suffix. Characters that some systems do not allow
  * in file names become "_". */
 static void clean(const char *name, char *result, size_t size) {
-  const char *slash = strrchr(name, '/'), *back = strrchr(slash ? slash : name, '\\');
-  const char *start = back ? back + 1 : slash ? slash + 1 : name, *dot = strrchr(start, '.');
+  const char *file = text_file_name(name);
+  const char *back = strrchr(file, '\\');
+  const char *start = back ? back + 1 : file;
+  const char *dot = strrchr(start, '.');
   size_t length =
       dot && dot > start && strlen(dot) <= 6 ? (size_t)(dot - start) : strlen(start);
   if (length >= size)

@@ -11,6 +11,7 @@
 #include "cli/context.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "render/animate.h"
 #include "render/blend.h"
 #include "render/exposure.h"
@@ -39,14 +40,12 @@ static const char *default_suffix(const Render *render, const Arguments *argumen
  * untrusted. */
 static void choose_output(Render *render, const char *scene_path, const char *asked,
                           const char *suffix) {
-  const char *slash = strrchr(asked, '/');
-  if (slash)
-    asked = slash + 1;
+  asked = text_file_name(asked);
   if (output_is_known(asked)) {
     text_set(render->default_output, "%s", asked);
   } else {
-    slash = strrchr(scene_path, '/');
-    const char *name = slash ? slash + 1 : scene_path, *end = strstr(name, ".pbrt");
+    const char *name = text_file_name(scene_path);
+    const char *end = strstr(name, ".pbrt");
     if (!end)
       end = strrchr(name, '.');
     int length = end && end > name ? (int)(end - name) : (int)strlen(name);

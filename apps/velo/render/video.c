@@ -10,6 +10,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "cli/text.h"
 #include "render/child.h"
 #include "render/ffmpeg.h"
 #include "render/job.h"
@@ -92,11 +93,10 @@ static bool is_frames(const char *path) {
 static bool name_frames(Videos *videos, const char *part) {
   const char *path = videos->paths[0];
   const int stem = (int)(output_dot(path) - path);
-  const char *slash = strrchr(path, '/');
   const size_t longest = MAX_NAME - strlen(".part_1000000.part.png");
   return text_set(videos->frames, "%.*s%s_%%04d.png", stem, path, part) <
              (int)sizeof videos->frames &&
-         (size_t)(path + stem - (slash ? slash + 1 : path)) <= longest;
+         (size_t)(path + stem - text_file_name(path)) <= longest;
 }
 
 int videos_plan(Videos *videos, const Arguments *arguments, Arguments *frames) {

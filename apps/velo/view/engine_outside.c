@@ -66,9 +66,7 @@ static double plane_distance(const ViewCamera *camera, const MessageField *given
 }
 
 void engine_outline(Engine *e, const ViewMessage *m) {
-  engine_lock(e);
-  const ViewCamera camera = e->wanted.camera;
-  engine_unlock(e);
+  const ViewCamera camera = engine_camera(e);
   const MessageField *point = find_field(m, "point", 3);
   vlDrawingDef def = vl_default_drawing_def();
   vlDrawing *drawing = NULL;
@@ -78,15 +76,12 @@ void engine_outline(Engine *e, const ViewMessage *m) {
   def.points = point ? point->numbers : NULL;
   def.point_count = point ? 1 : 0;
   vlResult result = vl_camera_outline(e->def.context, &camera.made, 1, &def, &drawing, &error);
-  Json *json = engine_reply_begin(m, result == VL_OK ? "outline" : "refused");
+  if (result != VL_OK)
+    engine_refuse(e, m, error.message);
+  Json *json = result == VL_OK ? engine_reply_begin(m, "outline") : NULL;
   if (json) {
-    if (result == VL_OK) {
-      json_number(json, "plane", def.plane);
-      json_number(json, "d", camera.def.view_distance);
-      put_drawing(json, drawing);
-    } else {
-      json_text(json, "message", error.message);
-    }
+    json_put(json, "plane %g, d %g", def.plane, camera.def.view_distance);
+    put_drawing(json, drawing);
     json_text_post(json, e->server, m->client);
   }
   vl_drawing_destroy(drawing);
@@ -104,18 +99,15 @@ void engine_cameras(Engine *e, const ViewMessage *m) {
   if (model->camera_count)
     result = vl_camera_outline(e->def.context, model->cameras, model->camera_count, &def,
                                &drawing, &error);
-  Json *json = engine_reply_begin(m, result == VL_OK ? "cameras" : "refused");
+  if (result != VL_OK)
+    engine_refuse(e, m, error.message);
+  Json *json = result == VL_OK ? engine_reply_begin(m, "cameras") : NULL;
   if (json) {
-    if (result != VL_OK)
-      json_text(json, "message", error.message);
     if (drawing)
       put_drawing(json, drawing);
     json_begin(json, "poses", '[');
-    for (uint32_t i = 0; i < model->camera_count; i++) {
-      json_begin(json, NULL, '[');
-      put_numbers(json, model->cameras[i].world_from_camera, 16);
-      json_end(json, ']');
-    }
+    for (uint32_t i = 0; i < model->camera_count; i++)
+      json_numbers(json, NULL, model->cameras[i].world_from_camera, 16);
     json_end(json, ']');
     json_text_post(json, e->server, m->client);
   }
@@ -195,12 +187,10 @@ void engine_outside(Engine *e, const ViewMessage *m) {
   if (result == VL_OK)
     result = vl_image_write_memory(shown, ".jpg", &write, &data, &size, &error);
   char *bytes = result == VL_OK ? to_base64(data, size) : NULL;
-  Json *json =
-      result != VL_CANCELLED ? engine_reply_begin(m, bytes ? "outside" : "refused") : NULL;
-  if (json) {
-    json_text(json, bytes ? "data" : "message", bytes ? bytes : error.message);
-    json_text_post(json, e->server, m->client);
-  }
+  if (bytes)
+    engine_post(e, m->client, "outside", "id %u, data %s", m->id, bytes);
+  else if (result != VL_CANCELLED)
+    engine_refuse(e, m, error.message);
   free(bytes);
   vl_release(e->def.context, data);
   vl_image_destroy(image);

@@ -53,6 +53,8 @@ typedef struct History {
   uint32_t count, at; /* cameras[at] is the present one */
   uint32_t gesture;   /* edits of one gesture are one step */
 } History;
+/* The camera that pages want; takes the lock. */
+ViewCamera engine_camera(Engine *engine);
 /* Shows another camera, which becomes the present one of the history; the caller holds the
  * lock. change: the page's number of this change; gesture: edits of one gesture are one step;
  * 0: none. */

@@ -40,14 +40,23 @@ static bool free_name(const char *wanted, char name[NAME_SIZE]) {
 
 /* The scene's name without folder and suffix. */
 static void scene_stem(const Engine *e, char stem[NAME_SIZE]) {
-  const char *slash = strrchr(e->def.path, '/'), *name = slash ? slash + 1 : e->def.path,
-             *dot = strchr(name, '.');
+  const char *name = text_file_name(e->def.path);
+  const char *dot = strchr(name, '.');
   snprintf(stem, NAME_SIZE, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name),
            name);
 }
 
 static void post_saved(Engine *e, const ViewMessage *m, const char *name) {
   engine_post(e, m->client, "saved", "id %u, file %s", m->id, name);
+}
+
+/* As free_name; where no name is free, that is posted. */
+static bool take_name(Engine *e, const ViewMessage *m, const char *wanted,
+                      char name[NAME_SIZE]) {
+  const bool there = free_name(wanted, name);
+  if (!there)
+    engine_refuse(e, m, too_many);
+  return there;
 }
 
 static int choice_value(const Choice *choices, const char *name, int otherwise) {
@@ -78,8 +87,8 @@ static void save_camera(Engine *e, const ViewMessage *m, const char *wanted,
   int found = choice_value(kind_choices(dialects), dialect, -1);
   if (found < 0 || found == VL_CAMERA_DIALECT_EXR)
     return engine_refuse(e, m, "there is no such dialect");
-  if (!free_name(wanted, name))
-    return engine_refuse(e, m, too_many);
+  if (!take_name(e, m, wanted, name))
+    return;
   if (write_camera(e, m, name, (vlCameraDialect)found))
     post_saved(e, m, name);
 }
@@ -124,8 +133,8 @@ static void save_exposure(Engine *e, const ViewMessage *m, const char *wanted) {
   if (!raw && !text_ends_with(wanted, ".png") && !text_ends_with(wanted, ".jpg") &&
       !text_ends_with(wanted, ".exr"))
     return engine_refuse(e, m, "formats of an exposure are .dng .png .jpg .exr");
-  if (!free_name(wanted, name))
-    return engine_refuse(e, m, too_many);
+  if (!take_name(e, m, wanted, name))
+    return;
   vlResult result = raw ? vl_raw_write(e->shot.raw, name, &error)
                         : vl_raw_develop(e->shot.raw, NULL, &image, &error);
   if (result == VL_OK && !raw)
@@ -145,8 +154,8 @@ static void save_image(Engine *e, const ViewMessage *m, const char *wanted) {
     return save_exposure(e, m, wanted);
   if (!output_is_known(wanted))
     return engine_refuse(e, m, "formats are .exr .png .jpg .hdr .pfm .tga");
-  if (!free_name(wanted, name))
-    return engine_refuse(e, m, too_many);
+  if (!take_name(e, m, wanted, name))
+    return;
   Outputs outputs = {.paths = {name},
                      .count = 1,
                      .view = (vlView)choice_value(view_choices, m->view, VL_VIEW_STANDARD),
@@ -374,11 +383,9 @@ static void keep_command(Engine *e, Copied *copied) {
  * memory is exhausted. */
 static void post_command(Engine *e, const ViewMessage *m, char *command, const char *camera,
                          const char *image, uint32_t spp) {
-  Json *json = command ? engine_reply_begin(m, "command") : NULL;
-  if (json) {
-    json_put(json, "command %s, file %s, image %s, spp %u", command, camera, image, spp);
-    json_text_post(json, e->server, m->client);
-  }
+  if (command)
+    engine_post(e, m->client, "command", "id %u, command %s, file %s, image %s, spp %u", m->id,
+                command, camera, image, spp);
   free(command);
 }
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "cli/text.h"
 #include "render/denoised.h"
 #include "sensor/sensor.h"
 #include "velo/filter_kinds.h"
@@ -57,8 +58,7 @@ static int take_number(const OptionValue *value, const char *option, const char 
 
 /* The sensor of a file: its name is the file's, without the folder. */
 static void take_file(ViewSensors *sensors, const char *path, const vlSensor *sensor) {
-  const char *slash = strrchr(path, '/');
-  const char *name = slash ? slash + 1 : path;
+  const char *name = text_file_name(path);
   sensors->file = *vl_sensor_def(sensor);
   snprintf(sensors->own, sizeof sensors->own, "%s",
            strlen(name) < sizeof sensors->own ? name : "the sensor file");

@@ -19,7 +19,7 @@ void engine_refuse(Engine *e, const ViewMessage *m, const char *why) {
               m->id, m->field_count ? m->fields[0].name : "", why);
 }
 
-static ViewCamera present_camera(Engine *e) {
+ViewCamera engine_camera(Engine *e) {
   engine_lock(e);
   ViewCamera camera = e->wanted.camera;
   engine_unlock(e);
@@ -55,7 +55,7 @@ static void put_id(Json *json, const Engine *e, const vlImage *ids, const char *
 }
 
 void engine_pick(Engine *e, const ViewMessage *m) {
-  const ViewCamera camera = present_camera(e);
+  const ViewCamera camera = engine_camera(e);
   const vlCamera *c = &camera.made;
   if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
     engine_refuse(e, m, "the point is outside the image");
@@ -98,7 +98,7 @@ void engine_pick(Engine *e, const ViewMessage *m) {
 }
 
 void engine_focus(Engine *e, const ViewMessage *m) {
-  const ViewCamera camera = present_camera(e);
+  const ViewCamera camera = engine_camera(e);
   ViewCamera next;
   vlError error = {0};
   double distance;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/report.h"
+#include "cli/text.h"
 #include "view/engine_status.h"
 #include "view/model.h"
 
@@ -43,13 +44,8 @@ static void watch_destroy(Watch *watch) {
   free(watch);
 }
 
-static const char *file_name(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash ? slash + 1 : path;
-}
-
 static int watch_folder(int fd, const char *path) {
-  const char *name = file_name(path);
+  const char *name = text_file_name(path);
   char *folder = name == path ? strdup(".")
                               : strndup(path, name - path > 1 ? (size_t)(name - path - 1) : 1);
   int descriptor = folder ? inotify_add_watch(fd, folder, IN_CLOSE_WRITE | IN_MOVED_TO) : -1;
@@ -84,7 +80,8 @@ static void watch_files(Watch *watch, const FileList *list) {
 static bool concerns(const Watch *watch, const struct inotify_event *event, bool any) {
   for (uint32_t i = 0; i < watch->files.count; i++)
     if (watch->folders[i] == event->wd &&
-        (any || (event->len && strcmp(file_name(watch->files.paths[i]), event->name) == 0)))
+        (any ||
+         (event->len && strcmp(text_file_name(watch->files.paths[i]), event->name) == 0)))
       return true;
   return false;
 }

@@ -1,15 +1,14 @@
 /* trace/surface/surface.hot.c: computes surface points from ids. It does not use Embree's t, u,
  * v, which differ between instruction sets. For triangles, it gathers the corners and then runs
  * one vector loop. Other shapes are computed one by one by shape/surface_point.c. */
+#include "math/double3.h"
 #include "shape/surface_point.h"
 #include "trace/stages.h"
 #include "velo/shape.h"
 #include "world/moving.h"
 
-static inline vlVec3 move_corner(const float m[12], const float *x) {
-  return vl_vec3(m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3],
-                 m[4] * x[0] + m[5] * x[1] + m[6] * x[2] + m[7],
-                 m[8] * x[0] + m[9] * x[1] + m[10] * x[2] + m[11]);
+static inline vlVec3 point_at(const float *x) {
+  return vl_vec3(x[0], x[1], x[2]);
 }
 static inline float placing_error(const vlWorldInstance *q, const float *x) {
   return q->error[0] * vl_abs(x[0]) + q->error[1] * vl_abs(x[1]) + q->error[2] * vl_abs(x[2]) +
@@ -21,6 +20,10 @@ static inline vlVec3 move_normal(const float inverse[12], const float *n) {
   return vl_vec3(inverse[0] * n[0] + inverse[4] * n[1] + inverse[8] * n[2],
                  inverse[1] * n[0] + inverse[5] * n[1] + inverse[9] * n[2],
                  inverse[2] * n[0] + inverse[6] * n[1] + inverse[10] * n[2]);
+}
+/* Stores corner k of lane i: a point or a normal. */
+static inline void set_corner(float rows[9][VL_ROW_SIZE], int k, uint32_t i, vlVec3 v) {
+  vl_set_lane3(rows[3 * k], rows[3 * k + 1], rows[3 * k + 2], i, v);
 }
 
 static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uint32_t i,
@@ -49,17 +52,10 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   c->flip[i] = s->flip != q->mirrored ? -1.0f : 1.0f;
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
-    vlVec3 moved = move_corner(q->from_group, x);
-    c->p[3 * k][i] = moved.x;
-    c->p[3 * k + 1][i] = moved.y;
-    c->p[3 * k + 2][i] = moved.z;
+    set_corner(c->p, k, i, vl_affine_point(q->from_group, point_at(x)));
     c->error[i] = vl_max(c->error[i], placing_error(q, x));
-    if (s->normals) {
-      vlVec3 n = move_normal(q->to_group, s->normals + 3 * (size_t)f[k]);
-      c->n[3 * k][i] = n.x;
-      c->n[3 * k + 1][i] = n.y;
-      c->n[3 * k + 2][i] = n.z;
-    }
+    if (s->normals)
+      set_corner(c->n, k, i, move_normal(q->to_group, s->normals + 3 * (size_t)f[k]));
   }
 }
 
@@ -112,13 +108,13 @@ static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance 
     const float *x = vl_vertex_at(s, f[k], time, point_room);
     const float *y = s->normals ? vl_normal_at(s, f[k], time, normal_room) : NULL;
     float error = s->steps > 1 ? vl_moving_vertex_error(s, f[k], time) : 0.0f;
-    r.p[k] = vl_vec3(x[0], x[1], x[2]);
-    r.n[k] = y ? vl_vec3(y[0], y[1], y[2]) : vl_vec3(0, 0, 0);
+    r.p[k] = point_at(x);
+    r.n[k] = y ? point_at(y) : vl_vec3(0, 0, 0);
     if (q) {
       float size = 0;
       for (int i = 0; i < 9; i++)
         size = vl_max(size, vl_abs(q->from_group[i + i / 3]));
-      r.p[k] = move_corner(q->from_group, x);
+      r.p[k] = vl_affine_point(q->from_group, r.p[k]);
       error = placing_error(q, x) + 3.0f * size * error;
       if (y)
         r.n[k] = move_normal(q->to_group, y);
@@ -141,12 +137,8 @@ static void gather_moving(const vlWorld *world, const vlHits *hits, float time, 
       hits->instance[i] == VL_NONE ? NULL : &world->instances.items[hits->instance[i]];
   MovedTriangle r = move_triangle(s, q, hits->prim[i], time);
   for (int k = 0; k < 3; k++) {
-    c->p[3 * k][i] = r.p[k].x;
-    c->p[3 * k + 1][i] = r.p[k].y;
-    c->p[3 * k + 2][i] = r.p[k].z;
-    c->n[3 * k][i] = r.n[k].x;
-    c->n[3 * k + 1][i] = r.n[k].y;
-    c->n[3 * k + 2][i] = r.n[k].z;
+    set_corner(c->p, k, i, r.p[k]);
+    set_corner(c->n, k, i, r.n[k]);
   }
   c->error[i] = r.error;
   c->flip[i] = s->flip != r.mirrored ? -1.0f : 1.0f;
@@ -242,31 +234,23 @@ static inline __attribute__((always_inline)) Triangle triangle_point(
 /* Mean curvature from the derivatives of point and normal (Weingarten's equations). */
 static float mean_curvature(const vlSurfacePoint *q) {
   const double *u = q->dpdu, *v = q->dpdv, *a = q->dndu, *b = q->dndv;
-  double e = u[0] * u[0] + u[1] * u[1] + u[2] * u[2],
-         f = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-  double g = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-  double l = a[0] * u[0] + a[1] * u[1] + a[2] * u[2],
-         n = b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
-  double m = a[0] * v[0] + a[1] * v[1] + a[2] * v[2], det = e * g - f * f;
+  double e = vl_dot3(u, u), f = vl_dot3(u, v), g = vl_dot3(v, v);
+  double l = vl_dot3(a, u), n = vl_dot3(b, v), m = vl_dot3(a, v);
+  double det = e * g - f * f;
   return det > 0 ? (float)(0.5 * (l * g - 2 * m * f + n * e) / det) : 0.0f;
 }
 
+static inline vlVec3 in_single(const double v[3]) {
+  return vl_vec3((float)v[0], (float)v[1], (float)v[2]);
+}
+
 static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, float t) {
-  out->px[i] = (float)q->p[0];
-  out->py[i] = (float)q->p[1];
-  out->pz[i] = (float)q->p[2];
-  out->gx[i] = (float)q->n[0];
-  out->gy[i] = (float)q->n[1];
-  out->gz[i] = (float)q->n[2];
-  out->nx[i] = (float)q->ns[0];
-  out->ny[i] = (float)q->ns[1];
-  out->nz[i] = (float)q->ns[2];
-  out->ux[i] = (float)q->dpdu[0];
-  out->uy[i] = (float)q->dpdu[1];
-  out->uz[i] = (float)q->dpdu[2];
-  out->vx[i] = (float)q->dpdv[0];
-  out->vy[i] = (float)q->dpdv[1];
-  out->vz[i] = (float)q->dpdv[2];
+  vlVec3 u = in_single(q->dpdu), v = in_single(q->dpdv);
+  vl_set_lane3(out->px, out->py, out->pz, i, in_single(q->p));
+  vl_set_lane3(out->gx, out->gy, out->gz, i, in_single(q->n));
+  vl_set_lane3(out->nx, out->ny, out->nz, i, in_single(q->ns));
+  vl_set_lane3(out->ux, out->uy, out->uz, i, u);
+  vl_set_lane3(out->vx, out->vy, out->vz, i, v);
   for (int k = 0; k < 3; k++) {
     out->dn[k][i] = (float)q->dndu[k];
     out->dn[3 + k][i] = (float)q->dndv[k];
@@ -276,9 +260,38 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, flo
   out->v[i] = q->uv[1];
   out->t[i] = t;
   out->offset[i] = vl_point_offset(q);
-  float area = vl_length(
-      vl_cross(vl_lane3(out->ux, out->uy, out->uz, i), vl_lane3(out->vx, out->vy, out->vz, i)));
+  float area = vl_length(vl_cross(u, v));
   out->uv_scale[i] = area > 0.0f ? 1.0f / __builtin_sqrtf(area) : 0.0f;
+}
+
+/* Transforms a point of an instance's group to the world. */
+static vlSurfacePoint point_in_world(const vlWorldInstance *q, const vlSurfacePoint *point) {
+  double from[12], to[12];
+  for (int i = 0; i < 12; i++) {
+    from[i] = (double)q->from_group[i];
+    to[i] = (double)q->to_group[i];
+  }
+  const float x[3] = {(float)point->p[0], (float)point->p[1], (float)point->p[2]};
+  vlSurfacePoint r = *point;
+  vl_map_point(from, point->p, r.p);
+  vl_map_vector(from, point->dpdu, r.dpdu);
+  vl_map_vector(from, point->dpdv, r.dpdv);
+  vl_map_normal(to, point->dndu, r.dndu);
+  vl_map_normal(to, point->dndv, r.dndv);
+  vl_map_normal(to, point->n, r.n);
+  vl_map_normal(to, point->ns, r.ns);
+  for (int i = 0; i < 3; i++)
+    r.error[i] = __builtin_fabs(from[4 * i]) * point->error[0] +
+                 __builtin_fabs(from[4 * i + 1]) * point->error[1] +
+                 __builtin_fabs(from[4 * i + 2]) * point->error[2] +
+                 (double)placing_error(q, x);
+  /* planes perpendicular to n that are off apart are off / length apart when transformed */
+  double length = vl_normalize3(r.n);
+  r.off /= length > 0 ? length : 1;
+  double shading = vl_normalize3(r.ns);
+  vl_normal_derivative(r.ns, shading, r.dndu);
+  vl_normal_derivative(r.ns, shading, r.dndv);
+  return r;
 }
 
 /* Computes the surface point of a sphere, disk, cylinder, patch or curve: intersects the shape
@@ -304,42 +317,7 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
     double pdf;
     vl_shape_sample(s, prim, 0.5f, 0.5f, &point, &pdf);
   }
-  if (!q)
-    return point;
-  const float *m = q->from_group, *w = q->to_group;
-  const float x[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
-  vlSurfacePoint r = point;
-  for (int i = 0; i < 3; i++) {
-    r.p[i] = (double)m[4 * i] * point.p[0] + (double)m[4 * i + 1] * point.p[1] +
-             (double)m[4 * i + 2] * point.p[2] + m[4 * i + 3];
-    r.dpdu[i] = (double)m[4 * i] * point.dpdu[0] + (double)m[4 * i + 1] * point.dpdu[1] +
-                (double)m[4 * i + 2] * point.dpdu[2];
-    r.dpdv[i] = (double)m[4 * i] * point.dpdv[0] + (double)m[4 * i + 1] * point.dpdv[1] +
-                (double)m[4 * i + 2] * point.dpdv[2];
-    r.dndu[i] = (double)w[i] * point.dndu[0] + (double)w[4 + i] * point.dndu[1] +
-                (double)w[8 + i] * point.dndu[2];
-    r.dndv[i] = (double)w[i] * point.dndv[0] + (double)w[4 + i] * point.dndv[1] +
-                (double)w[8 + i] * point.dndv[2];
-    r.n[i] = (double)w[i] * point.n[0] + (double)w[4 + i] * point.n[1] +
-             (double)w[8 + i] * point.n[2];
-    r.error[i] = __builtin_fabs((double)m[4 * i]) * point.error[0] +
-                 __builtin_fabs((double)m[4 * i + 1]) * point.error[1] +
-                 __builtin_fabs((double)m[4 * i + 2]) * point.error[2] +
-                 (double)placing_error(q, x);
-    r.ns[i] = (double)w[i] * point.ns[0] + (double)w[4 + i] * point.ns[1] +
-              (double)w[8 + i] * point.ns[2];
-  }
-  double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
-  double ls = __builtin_sqrt(r.ns[0] * r.ns[0] + r.ns[1] * r.ns[1] + r.ns[2] * r.ns[2]);
-  r.off /= ln > 0 ? ln : 1; /* planes perpendicular to n that are off apart are off / ln apart
-                               when transformed */
-  for (int i = 0; i < 3; i++) {
-    r.n[i] /= ln > 0 ? ln : 1;
-    r.ns[i] /= ls > 0 ? ls : 1;
-  }
-  vl_normal_derivative(r.ns, ls, r.dndu);
-  vl_normal_derivative(r.ns, ls, r.dndv);
-  return r;
+  return q ? point_in_world(q, &point) : point;
 }
 
 /* Vertex tangents (pbrt's S), interpolated. */
@@ -358,19 +336,15 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   float b2 = vl_dot(vl_cross(vl_sub(k[1], k[0]), vl_sub(p, k[0])), g) / total;
   float w[3] = {1.0f - b1 - b2, b1, b2};
   vlVec3 t = vl_vec3(0, 0, 0);
-  for (int j = 0; j < 3; j++) {
-    const float *x = s->tangents + 3 * (size_t)f[j];
-    t = vl_add(t, vl_mul(vl_vec3(x[0], x[1], x[2]), w[j]));
-  }
+  for (int j = 0; j < 3; j++)
+    t = vl_add(t, vl_mul(point_at(s->tangents + 3 * (size_t)f[j]), w[j]));
   bool mirrored = false;
   if (hits->instance[i] != VL_NONE) {
     vlWorldInstance room;
     const vlWorldInstance *q =
         vl_instance_at(&world->instances.items[hits->instance[i]], time, &room);
-    const float *m = q->from_group;
     mirrored = q->mirrored;
-    t = vl_vec3(m[0] * t.x + m[1] * t.y + m[2] * t.z, m[4] * t.x + m[5] * t.y + m[6] * t.z,
-                m[8] * t.x + m[9] * t.y + m[10] * t.z);
+    t = vl_affine_vector(q->from_group, t);
   }
   if (!(vl_length2(t) > 0.0f))
     return;
@@ -479,15 +453,15 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
   r.error = 0;
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
-    r.p[k] = vl_vec3(x[0], x[1], x[2]);
+    r.p[k] = point_at(x);
     r.n[k] = vl_vec3(0, 0, 0);
     if (q) {
-      r.p[k] = move_corner(q->from_group, x);
+      r.p[k] = vl_affine_point(q->from_group, r.p[k]);
       r.error = vl_max(r.error, placing_error(q, x));
     }
     if (s->normals) {
       const float *y = s->normals + 3 * (size_t)f[k];
-      r.n[k] = q ? move_normal(q->to_group, y) : vl_vec3(y[0], y[1], y[2]);
+      r.n[k] = q ? move_normal(q->to_group, y) : point_at(y);
     }
     for (int j = 0; j < 2; j++)
       uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
@@ -507,9 +481,9 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
 
 static vlPoint point_of(const vlSurfacePoint *q, float t) {
   vlPoint r;
-  r.p = vl_vec3((float)q->p[0], (float)q->p[1], (float)q->p[2]);
-  r.g = vl_vec3((float)q->n[0], (float)q->n[1], (float)q->n[2]);
-  r.n = vl_vec3((float)q->ns[0], (float)q->ns[1], (float)q->ns[2]);
+  r.p = in_single(q->p);
+  r.g = in_single(q->n);
+  r.n = in_single(q->ns);
   r.u = q->uv[0];
   r.v = q->uv[1];
   r.t = t;
@@ -542,12 +516,8 @@ static uint32_t gather_crossings(const vlWorld *world, const vlRays *rays,
     triangles++;
     OneTriangle c = one_triangle(world, time, x->shape[i], x->prim[i], x->instance[i]);
     for (int j = 0; j < 3; j++) {
-      x->corner[j][0][i] = c.p[j].x;
-      x->corner[j][1][i] = c.p[j].y;
-      x->corner[j][2][i] = c.p[j].z;
-      x->normal[j][0][i] = c.n[j].x;
-      x->normal[j][1][i] = c.n[j].y;
-      x->normal[j][2][i] = c.n[j].z;
+      vl_set_lane3(x->corner[j][0], x->corner[j][1], x->corner[j][2], i, c.p[j]);
+      vl_set_lane3(x->normal[j][0], x->normal[j][1], x->normal[j][2], i, c.n[j]);
     }
     x->error[i] = c.error;
     x->flip[i] = c.flip;

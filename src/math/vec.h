@@ -63,6 +63,12 @@ static inline vlVec3 vl_affine_vector(const float m[12], vlVec3 v) {
   return vl_vec3(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
                  m[8] * v.x + m[9] * v.y + m[10] * v.z);
 }
+/* A normal under an affine map of which the inverse is given (3x4). */
+static inline vlVec3 vl_affine_normal(const float inverse[12], vlVec3 n) {
+  const float *m = inverse;
+  return vl_vec3(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z,
+                 m[2] * n.x + m[6] * n.y + m[10] * n.z);
+}
 static inline float vl_min(float a, float b) {
   return a < b ? a : b;
 }

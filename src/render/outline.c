@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "camera/moments.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "render/boxes.h"
 #include "velo/schema.h"
@@ -130,12 +131,10 @@ static void add_vertices(Points *p, const vlWorldShape *s, float time) {
 /* Adds points of a circle of radius r at height z in object space, over the shape's phi
  * range. */
 static void add_ring(Points *p, const vlWorldShape *s, double r, double z) {
-  const double *m = s->from_shape;
   for (int i = 0; i <= AROUND; i++) {
-    double phi = (double)s->phi_max * i / AROUND, x = r * vl_precise_cos(phi),
-           y = r * vl_precise_sin(phi), q[3];
-    for (int k = 0; k < 3; k++)
-      q[k] = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
+    double phi = (double)s->phi_max * i / AROUND, q[3];
+    const double p[3] = {r * vl_precise_cos(phi), r * vl_precise_sin(phi), z};
+    vl_map_point(s->from_shape, p, q);
     add(p, q[0], q[1], q[2]);
   }
 }

@@ -209,10 +209,9 @@ static void instance_bounds(const vlWorld *world, const vlWorldInstance *instanc
   for (uint32_t key = 0; key == 0 || key < instance->keys; key++) {
     const float *m = instance->keys ? instance->path + 12 * (size_t)key : instance->from_group;
     for (int c = 0; a[0] <= b[0] && c < 8; c++) {
-      float p[3] = {c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]}, q[3];
-      for (int i = 0; i < 3; i++)
-        q[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
-      grow_bounds(low, high, q);
+      vlVec3 corner = vl_vec3(c & 1 ? a[0] : b[0], c & 2 ? a[1] : b[1], c & 4 ? a[2] : b[2]);
+      vlVec3 q = vl_affine_point(m, corner);
+      grow_bounds(low, high, (const float[]){q.x, q.y, q.z});
     }
   }
 }

@@ -14,13 +14,6 @@ static inline float placing_error(const vlWorldInstance *q, const float *x) {
   return q->error[0] * vl_abs(x[0]) + q->error[1] * vl_abs(x[1]) + q->error[2] * vl_abs(x[2]) +
          q->error[3];
 }
-/* Transforms a normal by the inverse transpose: the rows of the inverse matrix are used as
- * columns. */
-static inline vlVec3 move_normal(const float inverse[12], const float *n) {
-  return vl_vec3(inverse[0] * n[0] + inverse[4] * n[1] + inverse[8] * n[2],
-                 inverse[1] * n[0] + inverse[5] * n[1] + inverse[9] * n[2],
-                 inverse[2] * n[0] + inverse[6] * n[1] + inverse[10] * n[2]);
-}
 /* Stores corner k of lane i: a point or a normal. */
 static inline void set_corner(float rows[9][VL_ROW_SIZE], int k, uint32_t i, vlVec3 v) {
   vl_set_lane3(rows[3 * k], rows[3 * k + 1], rows[3 * k + 2], i, v);
@@ -55,7 +48,8 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
     set_corner(c->p, k, i, vl_affine_point(q->from_group, point_at(x)));
     c->error[i] = vl_max(c->error[i], placing_error(q, x));
     if (s->normals)
-      set_corner(c->n, k, i, move_normal(q->to_group, s->normals + 3 * (size_t)f[k]));
+      set_corner(c->n, k, i,
+                 vl_affine_normal(q->to_group, point_at(s->normals + 3 * (size_t)f[k])));
   }
 }
 
@@ -117,7 +111,7 @@ static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance 
       r.p[k] = vl_affine_point(q->from_group, r.p[k]);
       error = placing_error(q, x) + 3.0f * size * error;
       if (y)
-        r.n[k] = move_normal(q->to_group, y);
+        r.n[k] = vl_affine_normal(q->to_group, r.n[k]);
     }
     r.error = vl_max(r.error, error);
   }
@@ -461,7 +455,7 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
     }
     if (s->normals) {
       const float *y = s->normals + 3 * (size_t)f[k];
-      r.n[k] = q ? move_normal(q->to_group, y) : point_at(y);
+      r.n[k] = q ? vl_affine_normal(q->to_group, point_at(y)) : point_at(y);
     }
     for (int j = 0; j < 2; j++)
       uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];

@@ -40,15 +40,8 @@ static vlTextureQuery world_query(const vlWorld *world, const vlLocalRay *r,
     return q;
   const vlWorldInstance *instance =
       vl_instance_at(&world->instances.items[r->instance], r->time, &moved);
-  const float *m = instance->from_group, *w = instance->to_group;
-  const float p[3] = {at->p.x, at->p.y, at->p.z}, n[3] = {at->n.x, at->n.y, at->n.z};
-  float placed[3], turned[3];
-  for (int i = 0; i < 3; i++) {
-    placed[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
-    turned[i] = w[i] * n[0] + w[4 + i] * n[1] + w[8 + i] * n[2];
-  }
-  q.p = vl_vec3(placed[0], placed[1], placed[2]);
-  q.n = vl_vec3(turned[0], turned[1], turned[2]);
+  q.p = vl_affine_point(instance->from_group, at->p);
+  q.n = vl_affine_normal(instance->to_group, at->n);
   return q;
 }
 

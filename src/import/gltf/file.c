@@ -93,24 +93,23 @@ static bool count_items(vlGltf *g, const char *key, size_t *count) {
 }
 
 static bool count_all(vlGltf *g) {
-  bool ok = count_items(g, "buffers", &g->buffer_count) &&
-            count_items(g, "bufferViews", &g->view_count) &&
-            count_items(g, "accessors", &g->accessor_count) &&
-            count_items(g, "nodes", &g->node_count) &&
-            count_items(g, "materials", &g->material_count) &&
-            count_items(g, "images", &g->image_count) &&
-            count_items(g, "textures", &g->texture_count) &&
-            count_items(g, "meshes", &g->mesh_count) &&
-            count_items(g, "skins", &g->skin_count) &&
-            count_items(g, "cameras", &g->camera_count) &&
-            count_items(g, "samplers", &g->sampler_count) &&
-            count_items(g, "animations", &g->animation_count) &&
-            count_items(g, "scenes", &g->scene_count) &&
-            vl_gltf_array(VL_GLTF_KEY(&g->top, "extensions.KHR_lights_punctual"), "lights",
-                          &g->lights, &g->light_count) &&
-            vl_gltf_array(VL_GLTF_KEY(&g->top, "extensions.EXT_lights_ies"), "lights",
-                          &g->lamps, &g->lamp_count);
-  if (!ok)
+  const struct {
+    const char *key;
+    size_t *count;
+  } arrays[] = {{"buffers", &g->buffer_count},     {"bufferViews", &g->view_count},
+                {"accessors", &g->accessor_count}, {"nodes", &g->node_count},
+                {"materials", &g->material_count}, {"images", &g->image_count},
+                {"textures", &g->texture_count},   {"meshes", &g->mesh_count},
+                {"skins", &g->skin_count},         {"cameras", &g->camera_count},
+                {"samplers", &g->sampler_count},   {"animations", &g->animation_count},
+                {"scenes", &g->scene_count}};
+  for (size_t i = 0; i < VL_LENGTH(arrays); i++)
+    if (!count_items(g, arrays[i].key, arrays[i].count))
+      return false;
+  if (!vl_gltf_array(VL_GLTF_KEY(&g->top, "extensions.KHR_lights_punctual"), "lights",
+                     &g->lights, &g->light_count) ||
+      !vl_gltf_array(VL_GLTF_KEY(&g->top, "extensions.EXT_lights_ies"), "lights", &g->lamps,
+                     &g->lamp_count))
     return false;
   vlContext *c = g->context;
   g->buffers = vl_alloc_zero(c, g->buffer_count + 1, sizeof *g->buffers);
@@ -120,10 +119,9 @@ static bool count_all(vlGltf *g) {
   g->materials = vl_alloc_zero(c, 2 * (g->material_count + 1), sizeof *g->materials);
   g->images = vl_alloc_zero(c, g->image_count + 1, sizeof *g->images);
   g->meshes = vl_alloc_zero(c, g->mesh_count + 1, sizeof *g->meshes);
-  if (!g->buffers || !g->views || !g->accessors || !g->nodes || !g->materials || !g->images ||
-      !g->meshes)
-    return vl_gltf_fail_memory(g);
-  return true;
+  return (g->buffers && g->views && g->accessors && g->nodes && g->materials && g->images &&
+          g->meshes) ||
+         vl_gltf_fail_memory(g);
 }
 
 bool vl_gltf_own(vlGltf *g, void *block) {

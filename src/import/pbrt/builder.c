@@ -41,12 +41,10 @@ static bool share_attributes(vlImport *import, vlAttributeTarget target, vlParam
 /* The statement's parameters follow the attributes: the last one given counts. */
 vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTarget target,
                           bool is_texture) {
-  vlPending *p = is_texture ? VL_PUSH(import->context, &import->textures)
-                            : VL_PUSH(import->context, &import->materials);
-  if (!p) {
-    vl_import_fail_memory(import);
+  vlPending *p = is_texture ? VL_IMPORT_PUSH(import, &import->textures)
+                            : VL_IMPORT_PUSH(import, &import->materials);
+  if (!p)
     return NULL;
-  }
   p->source = s->source;
   p->space = import->state.space;
   p->ctm = import->state.ctm[0];
@@ -256,8 +254,7 @@ static bool statement(void *user, const vlStatement *s) {
       vl_names_find(&import->media, s->names[0], &index))
     return true;
   const char *name = vl_import_keep(import, s->names[0]);
-  return name && (vl_names_add(import->context, &import->media, name, 0) ||
-                  vl_import_fail_memory(import));
+  return name && vl_import_add_name(import, &import->media, name, 0);
 }
 
 static void parse_error(void *user, vlResult code, vlSource source, const char *message) {
@@ -286,6 +283,22 @@ static bool go_on(void *user, double fraction) {
 }
 
 /* ---- the end of the file ----------------------------------------------------------------- */
+
+bool vl_import_finish_once(vlImport *import, vlPending *pending,
+                           bool (*finish)(vlImport *import, vlPending *pending),
+                           const char *too_deep) {
+  if (pending->state == VL_DONE)
+    return true;
+  if (++import->depth > VL_IMPORT_DEPTH)
+    return vl_import_wrong(import, pending->source, "%s more than %d deep", too_deep,
+                           VL_IMPORT_DEPTH);
+  pending->state = VL_IN_PROGRESS;
+  if (!finish(import, pending))
+    return false;
+  import->depth--;
+  pending->state = VL_DONE;
+  return true;
+}
 
 static bool link_shape(vlImport *import, const vlShapeLink *link) {
   vlShapeDef *shape = &import->scene->shapes.items[link->shape];

@@ -251,6 +251,14 @@ bool vl_import_moving_group(vlImport *import, vlSource source, vlGroupId *group)
 bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2],
                             vlSource source);
 
+/* VL_PUSH, which reports that memory is exhausted. */
+#define VL_IMPORT_PUSH(import, array)                                       \
+  (VL_RESERVE((import)->context, array, 1) || vl_import_fail_memory(import) \
+       ? &(array)->items[(array)->count++]                                  \
+       : NULL)
+/* Adds a name to a table. False: memory is exhausted. */
+bool vl_import_add_name(vlImport *import, vlNameTable *table, const char *name, size_t index);
+
 /* ---- parts ------------------------------------------------------------------------------- */
 
 /* Functions that obey a directive. False after an error. */
@@ -309,6 +317,14 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
 bool vl_import_finish_texture(
     vlImport *import, uint32_t index); /* first resolves the textures that this one refers to */
 bool vl_import_finish_material(vlImport *import, uint32_t index);
+/* Finishes a texture or a material once. too_deep: the error where they refer to each other
+ * more than VL_IMPORT_DEPTH deep. */
+bool vl_import_finish_once(vlImport *import, vlPending *pending,
+                           bool (*finish)(vlImport *import, vlPending *pending),
+                           const char *too_deep);
+/* Reads the parameter "type" of a directive that makes something by name. False after an
+ * error, also that there is none. */
+bool vl_dict_type(vlDict *dict, const char **type);
 /* Absorption and scattering per millimetre of the substance named by parameter `name`
  * (scattering.h). */
 bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption,
@@ -326,6 +342,8 @@ vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTar
 /* Notes that pbrt shows the rough coats of the scene brighter. */
 void vl_import_note_rough_coats(vlImport *import);
 
+/* Keeps what links a shape of this index to other things, if anything does. */
+bool vl_import_link_shape(vlImport *import, const vlShapeLink *link, uint32_t shape);
 bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source,
                          const vlShapeDef *def, const vlShapeLink *link);
 /* Adds a shape between two media that are not those of the current state. The scene takes

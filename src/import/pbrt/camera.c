@@ -62,9 +62,9 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
   if (!vl_dict_string(dict, "aperture", &name) || vl_text_is(name, "circle") ||
       vl_text_is(name, "circular") || name[0] == 0)
     return scene_ok(dict);
-  vlAperture **slot = VL_PUSH(import->context, &import->scene->apertures);
+  vlAperture **slot = VL_IMPORT_PUSH(import, &import->scene->apertures);
   if (!slot)
-    return vl_import_fail_memory(import);
+    return false;
   vlError error = {0};
   vlResult result = VL_OK;
   bool named = false;
@@ -114,9 +114,9 @@ static bool read_optics(vlDict *dict, vlCameraDef *def, double film_diagonal) {
     return vl_dict_fail(dict, "\"string lensfile\" is missing");
   if (!vl_import_path(import, p, path, sizeof path) || !read_aperture(dict, &optics.aperture))
     return false;
-  vlOptics **slot = VL_PUSH(import->context, &import->scene->optics);
+  vlOptics **slot = VL_IMPORT_PUSH(import, &import->scene->optics);
   if (!slot)
-    return vl_import_fail_memory(import);
+    return false;
   vlError error = {0};
   vlResult result = vl_optics_load(import->context, path, &optics, slot, &error);
   if (result != VL_OK)

@@ -27,10 +27,8 @@ bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
   vlPending *p = vl_import_wait(import, s, VL_ATTR_MATERIAL, false);
   if (!p || !(p->name = vl_import_keep(import, s->names[0])))
     return false;
-  if (vl_names_add(import->context, &import->named_materials, p->name,
-                   (uint32_t)import->materials.count - 1))
-    return true;
-  return vl_import_fail_memory(import);
+  return vl_import_add_name(import, &import->named_materials, p->name,
+                            import->materials.count - 1);
 }
 
 bool vl_import_named_material(vlImport *import, const vlStatement *s) {
@@ -170,13 +168,8 @@ static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict) {
   const char *type = pending->kind;
   vlSource source = pending->source;
   if (!type) { /* MakeNamedMaterial */
-    if (!vl_dict_string(dict, "type", &type)) {
-      if (!vl_import_fine(import))
-        return false;
-      return vl_import_wrong(import, source,
-                             "MakeNamedMaterial \"%s\": \"string type\" is missing",
-                             vl_short_text(pending->name).text);
-    }
+    if (!vl_dict_type(dict, &type))
+      return false;
     source = vl_dict_find(dict, "type", VL_BIT_STRING)->source;
   }
   vl_dict_set_kind(dict, &vl_material_family,
@@ -185,8 +178,7 @@ static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict) {
   return dict->row || vl_import_unknown_kind(import, source, &vl_material_family, type);
 }
 
-static bool finish(vlImport *import, uint32_t index) {
-  vlPending *pending = &import->materials.items[index]; /* the array no longer grows */
+static bool finish(vlImport *import, vlPending *pending) {
   char what[128];
   if (pending->kind)
     snprintf(what, sizeof what, "Material \"%s\"",
@@ -209,19 +201,9 @@ static bool finish(vlImport *import, uint32_t index) {
 }
 
 bool vl_import_finish_material(vlImport *import, uint32_t index) {
-  vlPending *pending = &import->materials.items[index];
-  if (pending->state == VL_DONE)
-    return true;
-  if (++import->depth > VL_IMPORT_DEPTH)
-    return vl_import_wrong(import, pending->source,
-                           "materials are mixed of each other more than %d deep",
-                           VL_IMPORT_DEPTH);
-  pending->state = VL_IN_PROGRESS;
-  if (!finish(import, index))
-    return false;
-  import->depth--;
-  pending->state = VL_DONE;
-  return true;
+  /* the array no longer grows */
+  return vl_import_finish_once(import, &import->materials.items[index], finish,
+                               "materials are mixed of each other");
 }
 
 /* ---- rough coats ------------------------------------------------------------------------- */

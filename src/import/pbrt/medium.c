@@ -146,11 +146,8 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
                            vl_short_text(s->names[0]).text);
   vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                &import->attributes[VL_ATTR_MEDIUM]);
-  if (!vl_dict_string(&dict, "type", &type)) {
-    if (!vl_import_fine(import))
-      return false;
-    return vl_import_wrong(import, s->source, "%s: \"string type\" is missing", what);
-  }
+  if (!vl_dict_type(&dict, &type))
+    return false;
   vl_dict_set_kind(&dict, &vl_medium_family, vl_kind_find(&vl_medium_family, type));
   const char *name = vl_import_keep(import, s->names[0]);
   if (!name)
@@ -172,8 +169,7 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
     if (!id.index)
       return false;
   }
-  return vl_names_add(import->context, &import->media, name, id.index) ||
-         vl_import_fail_memory(import);
+  return vl_import_add_name(import, &import->media, name, id.index);
 }
 
 /* ---- who lies in them -------------------------------------------------------------------- */
@@ -183,9 +179,9 @@ bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSourc
   const char *outside = import->state.outside ? import->state.outside : "";
   if (!inside[0] && !outside[0])
     return true;
-  vlMediumLink *link = VL_PUSH(import->context, &import->medium_links);
+  vlMediumLink *link = VL_IMPORT_PUSH(import, &import->medium_links);
   if (!link)
-    return vl_import_fail_memory(import);
+    return false;
   *link = (vlMediumLink){target, index, inside, outside, source};
   return vl_scene_copy_source(import->scene, &link->source);
 }

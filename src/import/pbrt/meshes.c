@@ -25,9 +25,9 @@ typedef struct Work {
 bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source,
                          const vlShapeDef *def, const vlShapeLink *link) {
   vlScene *scene = import->scene;
-  vlMeshFile *file = VL_PUSH(import->context, &import->mesh_files);
+  vlMeshFile *file = VL_IMPORT_PUSH(import, &import->mesh_files);
   if (!file)
-    return vl_import_fail_memory(import);
+    return false;
   *file = (vlMeshFile){
       .source = source, .def = *def, .link = *link, .shape = (uint32_t)scene->shapes.count};
   if (!(file->path = vl_import_keep(import, path)) ||
@@ -114,9 +114,9 @@ static bool move_links(vlImport *import, const uint32_t *first) {
     if (!count)
       import->medium_links.items[i].target = 0; /* the shape was skipped */
     for (uint32_t k = 1; k < count; k++) {
-      vlMediumLink *more = VL_PUSH(import->context, &import->medium_links);
+      vlMediumLink *more = VL_IMPORT_PUSH(import, &import->medium_links);
       if (!more)
-        return vl_import_fail_memory(import);
+        return false;
       *more = link;
       more->index = first[old] + k;
     }
@@ -126,16 +126,9 @@ static bool move_links(vlImport *import, const uint32_t *first) {
     import->links.items[i].shape = first[import->links.items[i].shape];
   for (size_t i = 0; i < import->mesh_files.count; i++) {
     const vlMeshFile *file = &import->mesh_files.items[i];
-    const vlShapeLink *l = &file->link;
-    if (!l->material && !l->material_name && !l->alpha && !l->displacement)
-      continue;
-    for (uint32_t k = first[file->shape]; k < first[file->shape + 1]; k++) {
-      vlShapeLink *more = VL_PUSH(import->context, &import->links);
-      if (!more)
-        return vl_import_fail_memory(import);
-      *more = *l;
-      more->shape = k;
-    }
+    for (uint32_t k = first[file->shape]; k < first[file->shape + 1]; k++)
+      if (!vl_import_link_shape(import, &file->link, k))
+        return false;
   }
   return true;
 }

@@ -69,9 +69,9 @@ bool vl_import_moving_group(vlImport *import, vlSource source, vlGroupId *group)
   if (!last || last->object.index != import->object.index ||
       memcmp(last->ctm, ctm, sizeof last->ctm) != 0) {
     vlGroupId made = vl_scene_add_group(import->scene, "");
-    last = made.index ? VL_PUSH(import->context, &import->moving) : NULL;
+    last = made.index ? VL_IMPORT_PUSH(import, &import->moving) : NULL;
     if (!last)
-      return vl_import_fine(import) ? vl_import_fail_memory(import) : false;
+      return false;
     *last = (vlMovingGroup){.group = made, .object = import->object, .source = source};
     memcpy(last->ctm, ctm, sizeof last->ctm);
     if (!vl_scene_copy_source(import->scene, &last->source) ||

@@ -21,24 +21,16 @@ const char *vl_param_type_name(vlParamType type) {
 }
 
 bool vl_param_type_find(const char *text, size_t length, vlParamType *type) {
-  static const struct {
-    const char *name;
-    vlParamType type;
-  } old[] = {{"point", VL_PARAM_POINT3},
-             {"vector", VL_PARAM_VECTOR3},
-             {"color", VL_PARAM_RGB},
-             {"normal3", VL_PARAM_NORMAL}};
+  static const char *const old_names[VL_PARAM_TYPES] = {[VL_PARAM_POINT3] = "point",
+                                                        [VL_PARAM_VECTOR3] = "vector",
+                                                        [VL_PARAM_RGB] = "color",
+                                                        [VL_PARAM_NORMAL] = "normal3"};
   for (int i = 0; i < VL_PARAM_TYPES; i++) {
-    if (strlen(type_names[i]) == length && memcmp(type_names[i], text, length) == 0) {
-      *type = (vlParamType)i;
-      return true;
-    }
-  }
-  for (size_t i = 0; i < VL_LENGTH(old); i++) {
-    if (strlen(old[i].name) == length && memcmp(old[i].name, text, length) == 0) {
-      *type = old[i].type;
-      return true;
-    }
+    const char *old = old_names[i] ? old_names[i] : "";
+    if (!vl_has_word_of(type_names[i], text, length) && !vl_has_word_of(old, text, length))
+      continue;
+    *type = (vlParamType)i;
+    return true;
   }
   return false;
 }
@@ -220,6 +212,11 @@ bool vl_dict_string(vlDict *dict, const char *name, const char **value) {
   if (p)
     *value = p->strings.items[0];
   return p != NULL;
+}
+
+bool vl_dict_type(vlDict *dict, const char **type) {
+  return vl_dict_string(dict, "type", type) ||
+         (vl_import_fine(dict->import) && vl_dict_fail(dict, "\"string type\" is missing"));
 }
 
 static bool read_vector(vlDict *dict, const char *name, vlParamType type, double value[3]) {

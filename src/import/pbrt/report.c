@@ -120,13 +120,12 @@ bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamil
 }
 
 const char *vl_import_keep(vlImport *import, const char *text) {
-  char **slot = VL_PUSH(import->context, &import->strings);
-  if (slot)
-    *slot = vl_strdup(import->context, text);
-  if (slot && *slot)
-    return *slot;
-  vl_import_fail_memory(import);
-  return NULL;
+  char **slot = VL_IMPORT_PUSH(import, &import->strings);
+  if (!slot)
+    return NULL;
+  if (!(*slot = vl_strdup(import->context, text)))
+    vl_import_fail_memory(import);
+  return *slot;
 }
 
 bool vl_import_missing_name(vlImport *import, vlSource source, const char *thing,
@@ -203,4 +202,9 @@ bool vl_import_color_space(const char *name, vlColorSpace *space) {
     }
   }
   return false;
+}
+
+bool vl_import_add_name(vlImport *import, vlNameTable *table, const char *name, size_t index) {
+  return vl_names_add(import->context, table, name, (uint32_t)index) ||
+         vl_import_fail_memory(import);
 }

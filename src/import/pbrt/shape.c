@@ -171,19 +171,23 @@ static bool read_quadric(vlDict *dict, vlShapeDef *def) {
 
 /* ---- shapes enter ------------------------------------------------------------------------ */
 
+bool vl_import_link_shape(vlImport *import, const vlShapeLink *link, uint32_t shape) {
+  if (!link->material && !link->material_name && !link->alpha && !link->displacement)
+    return true;
+  vlShapeLink *slot = VL_IMPORT_PUSH(import, &import->links);
+  if (!slot)
+    return false;
+  *slot = *link;
+  slot->shape = shape;
+  return true;
+}
+
 /* Adds a shape. The scene takes ownership of the def's arrays. */
 static bool add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link) {
   vlShapeId id = vl_scene_adopt_shape(import->scene, def);
   if (!id.index)
     return false;
-  if (!link->material && !link->material_name && !link->alpha && !link->displacement)
-    return true;
-  vlShapeLink *slot = VL_PUSH(import->context, &import->links);
-  if (!slot)
-    return vl_import_fail_memory(import);
-  *slot = *link;
-  slot->shape = id.index - 1;
-  return true;
+  return vl_import_link_shape(import, link, id.index - 1);
 }
 
 bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def,

@@ -11,11 +11,11 @@
 
 /* The block lives until the end of the import, like the strings. */
 static float *keep_floats(vlImport *import, size_t count) {
-  char **slot = VL_PUSH(import->context, &import->strings);
-  float *block =
-      slot ? vl_alloc_array(import->context, count ? count : 1, sizeof *block) : NULL;
-  if (slot)
-    *slot = (char *)block;
+  char **slot = VL_IMPORT_PUSH(import, &import->strings);
+  if (!slot)
+    return NULL;
+  float *block = vl_alloc_array(import->context, count ? count : 1, sizeof *block);
+  *slot = (char *)block;
   if (!block)
     vl_import_fail_memory(import);
   return block;

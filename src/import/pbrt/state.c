@@ -73,15 +73,13 @@ bool vl_import_transform(vlImport *import, const vlStatement *s) {
 
 bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]) {
   const char *kept = vl_import_keep(import, name);
-  vlTransforms *slot = kept ? VL_PUSH(import->context, &import->matrices) : NULL;
+  vlTransforms *slot = kept ? VL_IMPORT_PUSH(import, &import->matrices) : NULL;
   if (!slot)
-    return vl_import_fail_memory(import);
+    return false;
   slot->at[0] = m[0];
   slot->at[1] = m[1];
-  if (vl_names_add(import->context, &import->coordinate_systems, kept,
-                   (uint32_t)import->matrices.count - 1))
-    return true;
-  return vl_import_fail_memory(import);
+  return vl_import_add_name(import, &import->coordinate_systems, kept,
+                            import->matrices.count - 1);
 }
 
 bool vl_import_use_system(vlImport *import, const vlStatement *s) {
@@ -100,9 +98,9 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s) {
 bool vl_import_push(vlImport *import, char kind, vlSource source) {
   if (import->stack.count > 100000)
     return vl_import_wrong(import, source, "attributes are nested more than 100000 deep");
-  vlStackEntry *entry = VL_PUSH(import->context, &import->stack);
+  vlStackEntry *entry = VL_IMPORT_PUSH(import, &import->stack);
   if (!entry)
-    return vl_import_fail_memory(import);
+    return false;
   *entry = (vlStackEntry){kind, source, import->state};
   return vl_scene_copy_source(import->scene, &entry->source);
 }
@@ -171,12 +169,10 @@ static vlObject *find_object(vlImport *import, const char *name, vlSource source
   vlGroupId group = vl_scene_add_group(import->scene, kept);
   if (!group.index)
     return NULL;
-  vlObject *object = VL_PUSH(import->context, &import->object_list);
-  if (!object || !vl_names_add(import->context, &import->objects, kept,
-                               (uint32_t)import->object_list.count - 1)) {
-    vl_import_fail_memory(import);
+  vlObject *object = VL_IMPORT_PUSH(import, &import->object_list);
+  if (!object ||
+      !vl_import_add_name(import, &import->objects, kept, import->object_list.count - 1))
     return NULL;
-  }
   *object = (vlObject){.name = kept, .group = group, .source = source};
   return object;
 }

@@ -32,9 +32,7 @@ bool vl_import_texture(vlImport *import, const vlStatement *s) {
       !(p->name = vl_import_keep(import, s->names[0])) ||
       !(p->kind = vl_import_keep(import, s->names[2])))
     return false;
-  if (vl_names_add(import->context, table, p->name, (uint32_t)import->textures.count - 1))
-    return true;
-  return vl_import_fail_memory(import);
+  return vl_import_add_name(import, table, p->name, import->textures.count - 1);
 }
 
 /* ---- the end of the file ----------------------------------------------------------------- */
@@ -171,8 +169,7 @@ static vlTextureDef stand_in(const vlTextureDef *image) {
   return def;
 }
 
-static bool finish(vlImport *import, uint32_t index) {
-  vlPending *pending = &import->textures.items[index]; /* the array no longer grows */
+static bool finish(vlImport *import, vlPending *pending) {
   char what[160];
   snprintf(what, sizeof what, "Texture \"%s\" (%s)", vl_short_text(pending->name).text,
            vl_import_kind_text(&vl_texture_family, pending->kind).text);
@@ -210,16 +207,7 @@ static bool finish(vlImport *import, uint32_t index) {
 }
 
 bool vl_import_finish_texture(vlImport *import, uint32_t index) {
-  vlPending *pending = &import->textures.items[index];
-  if (pending->state == VL_DONE)
-    return true;
-  if (++import->depth > VL_IMPORT_DEPTH)
-    return vl_import_wrong(import, pending->source,
-                           "textures refer to each other more than %d deep", VL_IMPORT_DEPTH);
-  pending->state = VL_IN_PROGRESS;
-  if (!finish(import, index))
-    return false;
-  import->depth--;
-  pending->state = VL_DONE;
-  return true;
+  /* the array no longer grows */
+  return vl_import_finish_once(import, &import->textures.items[index], finish,
+                               "textures refer to each other");
 }

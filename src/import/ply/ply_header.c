@@ -71,25 +71,32 @@ static bool find_type(const char *name, vlPlyType *type) {
   return false;
 }
 
+static const char *const role_names[VL_PLY_ROLES] = {[VL_PLY_NOTHING] = "",
+                                                     [VL_PLY_X] = "x",
+                                                     [VL_PLY_Y] = "y",
+                                                     [VL_PLY_Z] = "z",
+                                                     [VL_PLY_NX] = "nx",
+                                                     [VL_PLY_NY] = "ny",
+                                                     [VL_PLY_NZ] = "nz",
+                                                     [VL_PLY_U] = "u s texture_u texture_s",
+                                                     [VL_PLY_V] = "v t texture_v texture_t",
+                                                     [VL_PLY_RED] = "red r diffuse_red",
+                                                     [VL_PLY_GREEN] = "green g diffuse_green",
+                                                     [VL_PLY_BLUE] = "blue b diffuse_blue",
+                                                     [VL_PLY_ALPHA] = "alpha",
+                                                     [VL_PLY_INDICES] = ""};
+
 static vlPlyRole vertex_role(const char *name) {
-  static const char *const names[VL_PLY_ROLES] = {[VL_PLY_NOTHING] = "",
-                                                  [VL_PLY_X] = "x",
-                                                  [VL_PLY_Y] = "y",
-                                                  [VL_PLY_Z] = "z",
-                                                  [VL_PLY_NX] = "nx",
-                                                  [VL_PLY_NY] = "ny",
-                                                  [VL_PLY_NZ] = "nz",
-                                                  [VL_PLY_U] = "u s texture_u texture_s",
-                                                  [VL_PLY_V] = "v t texture_v texture_t",
-                                                  [VL_PLY_RED] = "red r diffuse_red",
-                                                  [VL_PLY_GREEN] = "green g diffuse_green",
-                                                  [VL_PLY_BLUE] = "blue b diffuse_blue",
-                                                  [VL_PLY_ALPHA] = "alpha",
-                                                  [VL_PLY_INDICES] = ""};
   for (int role = 0; role < VL_PLY_ROLES; role++)
-    if (vl_has_word(names[role], name))
+    if (vl_has_word(role_names[role], name))
       return (vlPlyRole)role;
   return VL_PLY_NOTHING;
+}
+
+bool vl_ply_fail_number(vlPlyReader *r, uint64_t vertex, vlPlyRole role, double value) {
+  const char *names = role_names[role];
+  return vl_ply_fail(r, "vertex %llu: %.*s is not finite (%g)", (unsigned long long)vertex,
+                     (int)strcspn(names, " "), names, value);
 }
 
 static bool read_element(vlPlyReader *r, const Words *w) {
@@ -152,17 +159,17 @@ static bool read_property(vlPlyReader *r, const Words *w) {
 }
 
 static bool read_format(vlPlyReader *r, const Words *w) {
-  if (w->count == 3 && vl_text_is(w->word[1], "ascii"))
-    r->format = VL_PLY_ASCII;
-  else if (w->count == 3 && vl_text_is(w->word[1], "binary_little_endian"))
-    r->format = VL_PLY_LITTLE;
-  else if (w->count == 3 && vl_text_is(w->word[1], "binary_big_endian"))
-    r->format = VL_PLY_BIG;
-  else
-    return vl_ply_fail(
-        r, "unknown format \"%s\" (known: ascii, binary_little_endian, binary_big_endian)",
-        vl_short_text(w->count > 1 ? w->word[1] : "").text);
-  return true;
+  static const char *const formats[] = {[VL_PLY_ASCII] = "ascii",
+                                        [VL_PLY_LITTLE] = "binary_little_endian",
+                                        [VL_PLY_BIG] = "binary_big_endian"};
+  for (size_t i = 0; i < VL_LENGTH(formats) && w->count == 3; i++)
+    if (vl_text_is(formats[i], w->word[1])) {
+      r->format = (vlPlyFormat)i;
+      return true;
+    }
+  return vl_ply_fail(
+      r, "unknown format \"%s\" (known: ascii, binary_little_endian, binary_big_endian)",
+      vl_short_text(w->count > 1 ? w->word[1] : "").text);
 }
 
 /* The bytes of a row; for a text file a lower bound of two bytes, a digit and a blank, per

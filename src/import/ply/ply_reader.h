@@ -91,6 +91,8 @@ static inline uint32_t vl_ply_type_size(vlPlyType type) {
 
 bool vl_ply_fail(vlPlyReader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool vl_ply_fail_memory(vlPlyReader *r);
+/* A number of a vertex is not finite. */
+bool vl_ply_fail_number(vlPlyReader *r, uint64_t vertex, vlPlyRole role, double value);
 /* False, with the error CANCELLED: the load must stop. row: number of the row that is read
  * next. */
 bool vl_ply_goes_on(vlPlyReader *r, uint64_t row);

@@ -22,13 +22,6 @@ static bool has_roles(const vlPlyElement *e, vlPlyRole first, int count) {
   return true;
 }
 
-static bool not_finite(vlPlyReader *r, uint64_t vertex, vlPlyRole role, double value) {
-  static const char *const names[VL_PLY_ROLES] = {
-      "", "x", "y", "z", "nx", "ny", "nz", "u", "v", "red", "green", "blue", "alpha", ""};
-  return vl_ply_fail(r, "vertex %llu: %s is not finite (%g)", (unsigned long long)vertex,
-                     names[role], value);
-}
-
 /* Unsigned integers map from [0, largest value]; colours are sRGB, as programs write them. */
 static float color_value(vlPlyType type, bool alpha, double value) {
   double x = type == VL_PLY_U8 ? value / 255 : type == VL_PLY_U16 ? value / 65535 : value;
@@ -130,7 +123,7 @@ static bool read_vertex_rows(vlPlyReader *r, const vlPlyElement *e) {
                                   : (float)value;
       bool may_break = r->broken && p->role >= VL_PLY_NX && p->role <= VL_PLY_V;
       if (!isfinite(*to) && !may_break)
-        return not_finite(r, i, p->role, value);
+        return vl_ply_fail_number(r, i, p->role, value);
     }
   }
   return true;

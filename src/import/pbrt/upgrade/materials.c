@@ -107,19 +107,12 @@ static bool add_roughness(vlOldStatement *s, const char *value) {
   return vl_old_add(s, u ? "\"float vroughness\" %s" : "\"float uroughness\" %s", value);
 }
 
-static bool is_black(vlOldStatement *s, const char *name) {
-  double value;
-  vlOldParam *p = vl_old_find(s, name);
-  return p && vl_old_is_grey(p, &value) && value == 0;
-}
-
 /* Without its coat, plastic and substrate are diffuse. */
 static bool coat_rule(vlOldStatement *s) {
-  if (is_black(s, "Ks")) {
+  if (vl_old_is_black(s, "Ks")) {
     static const char *const coat[] = {"Ks", "roughness", "uroughness", "vroughness",
                                        "remaproughness"};
-    for (size_t i = 0; i < VL_LENGTH(coat); i++)
-      vl_old_drop(s, vl_old_find(s, coat[i]));
+    vl_old_drop_all(s, coat, VL_LENGTH(coat));
     return true;
   }
   return add_roughness(s, "0.1");

@@ -64,10 +64,8 @@ static bool mix_with_nothing(vlOldStatement *s, const vlOldParam *opacity) {
 }
 
 static void drop_black(vlOldStatement *s, const char *name) {
-  double value;
-  vlOldParam *p = vl_old_find(s, name);
-  if (p && vl_old_is_grey(p, &value) && value == 0)
-    vl_old_drop(s, p);
+  if (vl_old_is_black(s, name))
+    vl_old_drop(s, vl_old_find(s, name));
 }
 
 bool vl_old_uber(vlOldStatement *s) {
@@ -75,16 +73,14 @@ bool vl_old_uber(vlOldStatement *s) {
   double value;
   drop_black(s, "Kr");
   drop_black(s, "Kt");
-  vlOldParam *ks = vl_old_find(s, "Ks");
-  bool coat = !ks || !vl_old_is_grey(ks, &value) || value != 0;
+  const bool coat = !vl_old_is_black(s, "Ks");
   if (coat && !vl_old_find(s, "roughness") && !vl_old_find(s, "uroughness") &&
       !vl_old_find(s, "vroughness") && !vl_old_add(s, "\"float roughness\" 0.1"))
     return false;
   if (!coat) {
     static const char *const names[] = {
         "Ks", "roughness", "uroughness", "vroughness", "remaproughness", "index", "eta"};
-    for (size_t i = 0; i < VL_LENGTH(names); i++)
-      vl_old_drop(s, vl_old_find(s, names[i]));
+    vl_old_drop_all(s, names, VL_LENGTH(names));
   }
   if (!opacity)
     return true;

@@ -23,6 +23,11 @@ void vl_old_drop(vlOldStatement *s, vlOldParam *p) {
   vl_old_note(s, "without %s", p->name);
 }
 
+void vl_old_drop_all(vlOldStatement *s, const char *const *names, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    vl_old_drop(s, vl_old_find(s, names[i]));
+}
+
 bool vl_old_is_texture(const vlOldParam *p) {
   return vl_text_is(p->type, "texture") && p->count > 0;
 }
@@ -44,6 +49,12 @@ bool vl_old_is_grey(const vlOldParam *p, double *value) {
     return false;
   *value = rgb[0];
   return true;
+}
+
+bool vl_old_is_black(vlOldStatement *s, const char *name) {
+  double value;
+  const vlOldParam *p = vl_old_find(s, name);
+  return p && vl_old_is_grey(p, &value) && value == 0;
 }
 
 double vl_old_number(vlOldStatement *s, const char *name, double otherwise) {

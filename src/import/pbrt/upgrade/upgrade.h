@@ -201,12 +201,15 @@ vlOldParam *vl_old_find(vlOldStatement *s,
                         const char *name); /* the last one that is not dropped; null: none */
 /* Leaves the parameter out. */
 void vl_old_drop(vlOldStatement *s, vlOldParam *p);
+void vl_old_drop_all(vlOldStatement *s, const char *const *names, size_t count);
 /* Converts type names and values to those of pbrt-v4. */
 bool vl_old_types(vlOldStatement *s);
 /* Whether the parameter is a number, or a colour of three equal numbers. */
 bool vl_old_is_grey(const vlOldParam *p, double *value);
 /* Whether the parameter is a colour; a number counts. */
 bool vl_old_is_color(const vlOldParam *p, double rgb[3]);
+/* Whether the statement has a parameter of this name that is black, or 0. */
+bool vl_old_is_black(vlOldStatement *s, const char *name);
 bool vl_old_is_texture(const vlOldParam *p);
 /* The number of a parameter, or `otherwise`. */
 double vl_old_number(vlOldStatement *s, const char *name, double otherwise);

@@ -172,7 +172,7 @@ static Option convert_options[] = {
      OPTION_KIND, "DIALECT", .choices = dialects},
     {CONVERT_FRAME, "frame", "camera of IN to use, by name or number from 0, if it has several",
      OPTION_TEXT, "NAME"},
-    {CONVERT_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},
+    CAMERA_SIZE_OPTION(CONVERT_SIZE),
     {CONVERT_DROP, "drop",
      "leave out a field that OUT's dialect cannot hold, or all of them; may be given several times",
      OPTION_TEXTS, "FIELD"},

@@ -7,7 +7,22 @@
 
 /* The dialects of camera files: the list of an OPTION_KIND. */
 extern const Choice dialects[];
-#define CAMERA_SIZE_HELP "image size for a file that does not give one"
+/* Rows of options that several commands have. */
+#define CAMERA_FILE_OPTION(id)                                                              \
+  {                                                                                         \
+    (id), "camera", "camera file in any dialect of `velo camera convert`, or a scene file", \
+        OPTION_TEXT, "FILE"                                                                 \
+  }
+#define CAMERA_FRAME_OPTION(id)                                                        \
+  {                                                                                    \
+    (id), "frame", "camera to use, by name or number from 0, if the file has several", \
+        OPTION_TEXT, "NAME"                                                            \
+  }
+#define CAMERA_SIZE_OPTION(id)                                                           \
+  {                                                                                      \
+    (id), "size", "image size for a file that does not give one", OPTION_SIZE, "WxH", 1, \
+        1 << 24                                                                          \
+  }
 
 /* Returns whether the file's name is that of a scene, whose camera is then read. */
 bool camera_is_scene(const char *path);

@@ -121,12 +121,10 @@ static int run_info(const Arguments *arguments, vlContext *context) {
   return status;
 }
 
-static Option info_options[] = {
-    {INFO_JSON, "json", "print one JSON object to stdout"},
-    {INFO_FRAME, "frame", "camera to use, by name or number from 0, if the file has several",
-     OPTION_TEXT, "NAME"},
-    {INFO_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},
-    {0}};
+static Option info_options[] = {JSON_OPTION(INFO_JSON),
+                                CAMERA_FRAME_OPTION(INFO_FRAME),
+                                CAMERA_SIZE_OPTION(INFO_SIZE),
+                                {0}};
 
 const Command camera_info_command = {
     .name = "camera info",

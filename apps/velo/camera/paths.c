@@ -116,7 +116,7 @@ static Option paths_options[] = {
     {PATHS_SORT, "sort",
      "order of the paths: the largest share of the pixel first, or by sample:", OPTION_CHOICE,
      "NAME", .choices = sort_choices},
-    {PATHS_JSON, "json", "print one JSON object to stdout"},
+    JSON_OPTION(PATHS_JSON),
     {RENDER_SPP, .help = "samples per pixel of the image"},
     {RENDER_RESOLUTION, .help = "image size in pixels"},
     {RENDER_CAMERA, .help = "scene or camera file that gives the camera"},

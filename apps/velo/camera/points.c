@@ -164,16 +164,13 @@ static int run_unproject(const Arguments *arguments, vlContext *context) {
 }
 
 static Option points_options[] = {
-    {POINTS_CAMERA, "camera",
-     "camera file in any dialect of `velo camera convert`, or a scene file", OPTION_TEXT,
-     "FILE"},
+    CAMERA_FILE_OPTION(POINTS_CAMERA),
     {POINTS_ORIGIN, "pixel-origin",
      "position of (0, 0) in the image: its top left corner (default; the centre of the first "
      "pixel is (0.5, 0.5)), or the centre of the first pixel, as in OpenCV:",
      OPTION_CHOICE, "WHERE", .choices = origin_choices},
-    {POINTS_FRAME, "frame", "camera to use, by name or number from 0, if the file has several",
-     OPTION_TEXT, "NAME"},
-    {POINTS_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},
+    CAMERA_FRAME_OPTION(POINTS_FRAME),
+    CAMERA_SIZE_OPTION(POINTS_SIZE),
     {POINTS_STRICT, "strict",
      "end at a line that is not numbers. Default: the line is reported and its result marked "
      "as not valid, the other lines are read, and the exit code is 3"},

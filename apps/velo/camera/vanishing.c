@@ -356,9 +356,8 @@ static int run_vanishing(const Arguments *arguments, vlContext *context) {
 }
 
 static Option vanishing_options[] = {
-    {V_JSON, "json", "print one JSON object to stdout"},
-    {V_FRAME, "frame", "camera to use, by name or number from 0, if the file has several",
-     OPTION_TEXT, "NAME"},
+    JSON_OPTION(V_JSON),
+    CAMERA_FRAME_OPTION(V_FRAME),
     {V_UP, "up",
      "up direction: the horizon is that of the planes perpendicular to it; default 0,1,0",
      OPTION_TEXT, "x,y,z"},

@@ -232,12 +232,9 @@ static int run_verify(const Arguments *arguments, vlContext *context) {
 }
 
 static Option verify_options[] = {
-    {VERIFY_CAMERA, "camera",
-     "camera file in any dialect of `velo camera convert`, or a scene file", OPTION_TEXT,
-     "FILE"},
-    {VERIFY_FRAME, "frame", "camera to use, by name or number from 0, if the file has several",
-     OPTION_TEXT, "NAME"},
-    {VERIFY_SIZE, "size", CAMERA_SIZE_HELP, OPTION_SIZE, "WxH", 1, 1 << 24},
+    CAMERA_FILE_OPTION(VERIFY_CAMERA),
+    CAMERA_FRAME_OPTION(VERIFY_FRAME),
+    CAMERA_SIZE_OPTION(VERIFY_SIZE),
     {VERIFY_AGAINST, "against",
      "compare the images with the equations of the camera in this file, to find out whether "
      "both files describe the same camera",
@@ -262,7 +259,7 @@ static Option verify_options[] = {
      OPTION_NUMBER, "PX", 0, 1e9},
     {VERIFY_KEEP, "keep", "write the images and corners.csv to this folder", OPTION_TEXT,
      "FOLDER"},
-    {VERIFY_JSON, "json", "print one JSON object to stdout"},
+    JSON_OPTION(VERIFY_JSON),
     {0}};
 
 const Command camera_verify_command = {

@@ -104,6 +104,10 @@ typedef struct Command {
   int (*run)(const Arguments *arguments, vlContext *context);
 } Command;
 
+/* The row of commands whose result can be one JSON object. */
+#define JSON_OPTION(id) \
+  { (id), "json", "print one JSON object to stdout" }
+
 /* Gives each row without a name the members of the row of `from` with the same id, and its help
  * unless it has one of its own. For all commands, before anything else reads their rows. */
 void options_share(Option *options, const Option *from);

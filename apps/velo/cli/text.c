@@ -60,6 +60,15 @@ void text_shell_word(FILE *out, const char *word) {
   fputc('\'', out);
 }
 
+bool text_take_word(const char **list, char *word, size_t size) {
+  if (!*list)
+    return false;
+  const size_t length = strcspn(*list, ",");
+  snprintf(word, size, "%.*s", (int)length, *list);
+  *list = (*list)[length] ? *list + length + 1 : NULL;
+  return true;
+}
+
 bool parse_numbers(const char *text, int count, double *values) {
   for (int i = 0; i < count; i++) {
     char *end;

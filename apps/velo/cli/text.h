@@ -19,6 +19,9 @@ void text_print_plain(const char *text);
 /* Writes a space and a word, quoted so that a POSIX shell reads it as one. No control
  * characters that a terminal would obey are written: the shell gets them of printf. */
 void text_shell_word(FILE *out, const char *word);
+/* Takes the next word of a list "a,b,c" from *list; a longer one is cut. False: the list is at
+ * its end, where *list becomes null. */
+bool text_take_word(const char **list, char *word, size_t size);
 /* Reads `count` finite numbers separated by commas, and nothing else. */
 bool parse_numbers(const char *text, int count, double *values);
 

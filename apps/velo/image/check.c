@@ -341,7 +341,7 @@ static Option check_options[] = {
      "the previous image: check that backward.U and backward.V lead to the matching pixels of "
      "it",
      OPTION_TEXT, "FILE"},
-    {CHECK_JSON, "json", "print one JSON object to stdout"},
+    JSON_OPTION(CHECK_JSON),
     {0}};
 
 const Command image_check_command = {

@@ -158,7 +158,7 @@ static Option diff_options[] = {
      "exit with code 1 if this measure is above VALUE (psnr: below VALUE; meanratio: farther "
      "than VALUE from 1); may be given several times",
      OPTION_TEXTS, "NAME=VALUE"},
-    {DIFF_JSON, "json", "print one JSON object to stdout"},
+    JSON_OPTION(DIFF_JSON),
     {0}};
 
 const Command image_diff_command = {

@@ -260,7 +260,7 @@ static int run_info(const Arguments *arguments, vlContext *context) {
   return STATUS_OK;
 }
 
-static Option info_options[] = {{INFO_JSON, "json", "print one JSON object to stdout"}, {0}};
+static Option info_options[] = {JSON_OPTION(INFO_JSON), {0}};
 
 const Command image_info_command = {
     .name = "image info",

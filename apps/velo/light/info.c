@@ -222,7 +222,7 @@ static int run_info(const Arguments *arguments, vlContext *context) {
 
 static Option info_options[] = {{INFO_OUT, "output", "write the polar diagram to this file",
                                  OPTION_TEXT, "FILE.svg", .letter = 'o'},
-                                {INFO_JSON, "json", "print one JSON object to stdout"},
+                                JSON_OPTION(INFO_JSON),
                                 {0}};
 
 const Command light_info_command = {

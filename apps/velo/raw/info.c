@@ -161,7 +161,7 @@ static int run_info(const Arguments *arguments, vlContext *context) {
   return status;
 }
 
-static Option info_options[] = {{INFO_JSON, "json", "print one JSON object to stdout"}, {0}};
+static Option info_options[] = {JSON_OPTION(INFO_JSON), {0}};
 
 const Command raw_info_command = {
     .name = "raw info",

@@ -56,15 +56,10 @@ static int read_one(const char *name, uint32_t *channels) {
 }
 
 static int read_list(const char *list, uint32_t *channels) {
-  for (const char *at = list;; at++) {
-    size_t length = strcspn(at, ",");
-    char name[64];
-    text_set(name, "%.*s", length < sizeof name ? (int)length : (int)sizeof name - 1, at);
+  char name[64];
+  while (text_take_word(&list, name, sizeof name))
     TRY(read_one(name, channels));
-    at += length;
-    if (!*at)
-      return -1;
-  }
+  return -1;
 }
 
 int channels_choose(Channels *c, const Arguments *arguments) {

@@ -193,7 +193,7 @@ static int run(const Arguments *arguments, vlContext *unused) {
 }
 
 static Option options[] = {
-    {CHECK_JSON, "json", "print one JSON object to stdout"},
+    JSON_OPTION(CHECK_JSON),
     {CHECK_ALL, "all", "print every finding; default: the first 10 of each kind",
      .letter = 'a'},
     {CHECK_NO_IMAGES, "no-images",

@@ -363,7 +363,7 @@ static int run(const Arguments *arguments, vlContext *context) {
 }
 
 static Option options[] = {
-    {INFO_JSON, "json", "print one JSON object to stdout"},
+    JSON_OPTION(INFO_JSON),
     {INFO_PERMISSIVE, "permissive",
      "leave out parts of the scene that velo does not understand, instead of ending with an "
      "error"},

@@ -160,7 +160,7 @@ static Option options[] = {
      "the reference renderer; default: the environment variable VELO_REFERENCE, else "
      "velo-reference beside velo",
      OPTION_TEXT, "PROGRAM"},
-    {VERIFY_JSON, "json", "print one JSON object to stdout"},
+    JSON_OPTION(VERIFY_JSON),
     {RENDER_THREADS, .help = "number of threads; default: one per processor core"},
     {RENDER_RESOLUTION, "resolution",
      "image size in pixels; default: that of the scene, reduced to 64 pixels on its longer "

@@ -253,7 +253,7 @@ static void choose_scene(Engine *e, const ViewMessage *m) {
 static void set_time(Engine *e, const ViewMessage *m) {
   vlError error = {0};
   ViewCamera next;
-  if (e->model.seconds > 0 && e->threads.watches) {
+  if (e->model.seconds > 0 && e->threads[THREAD_WATCH].runs) {
     e->time.at = m->at;
     e->time.shutter = m->shutter;
     e->time.change = m->change;
@@ -272,7 +272,7 @@ static void set_time(Engine *e, const ViewMessage *m) {
 static void verify_command(Engine *e, const ViewMessage *m) {
   if (m->end) {
     e->verify.end = true;
-  } else if (!e->threads.verifies) {
+  } else if (!e->threads[THREAD_VERIFY].runs) {
     engine_refuse(e, m, "this page runs no commands");
   } else if (e->def.arguments->folder_count) {
     engine_refuse(e, m, "--sandbox allows no other programs");

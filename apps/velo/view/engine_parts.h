@@ -77,6 +77,8 @@ bool engine_take_task(const Engine *engine, TaskList *tasks, ViewMessage *first)
 bool engine_answer_question(Engine *engine);
 /* Begins the answer to a task, as json_text_begin. */
 Json *engine_reply_begin(const ViewMessage *message, const char *type);
+/* Whether a message's point is in the image; if not, that is posted. */
+bool engine_is_in_image(Engine *engine, const ViewMessage *message, const vlCamera *camera);
 /* Posts why a message is not answered. */
 void engine_refuse(Engine *engine, const ViewMessage *message, const char *why);
 
@@ -405,15 +407,24 @@ void engine_clients(void *user, uint32_t count);
 
 /* ---- the engine -------------------------------------------------------------------------- */
 
-typedef struct Threads {
-  pthread_t render, watch, answer, trace, verify;
-  bool renders, watches, answers, traces, verifies; /* they were started */
-} Threads;
+typedef enum ThreadKind {
+  THREAD_RENDER,
+  THREAD_ANSWER,
+  THREAD_TRACE,
+  THREAD_VERIFY,
+  THREAD_WATCH,
+  THREAD_COUNT
+} ThreadKind;
+
+typedef struct Thread {
+  pthread_t thread;
+  bool runs;
+} Thread;
 
 struct Engine {
   EngineDef def;
   Server *server;
-  Threads threads;
+  Thread threads[THREAD_COUNT];
   pthread_mutex_t lock;
   pthread_cond_t wake;
   pthread_rwlock_t model_lock; /* held by those who use the model outside the render thread */

@@ -50,10 +50,8 @@ static void answer(Engine *e, const ViewMessage *m, const ViewCamera *camera) {
   vlError error = {0};
   TracedPaths traced = {.paths = NULL};
   engine_set_tracer(&render, engine_shown(e));
-  if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
-    engine_refuse(e, m, "the point is outside the image");
+  if (!engine_is_in_image(e, m, c))
     return;
-  }
   if (render.tracer != VL_TRACER_PATH && render.tracer != VL_TRACER_VOLPATH) {
     char why[200];
     snprintf(

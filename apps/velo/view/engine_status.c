@@ -143,7 +143,7 @@ ViewTime engine_time(const Engine *e) {
   const vlCamera *camera = &e->wanted.camera.made;
   if (e->model.seconds > 0)
     return (ViewTime){
-        .duration = e->threads.watches ? e->model.seconds : 0,
+        .duration = e->threads[THREAD_WATCH].runs ? e->model.seconds : 0,
         .at = load->time,
         .shutter = isnan(load->time_close) ? 0 : seconds_between(load->time, load->time_close)};
   ViewTime time = {.at = camera->shutter_open,

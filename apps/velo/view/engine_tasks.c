@@ -54,13 +54,18 @@ static void put_id(Json *json, const Engine *e, const vlImage *ids, const char *
   json_end(json, '}');
 }
 
+bool engine_is_in_image(Engine *e, const ViewMessage *m, const vlCamera *camera) {
+  const bool inside = m->x >= 0 && m->y >= 0 && m->x < camera->width && m->y < camera->height;
+  if (!inside)
+    engine_refuse(e, m, "the point is outside the image");
+  return inside;
+}
+
 void engine_pick(Engine *e, const ViewMessage *m) {
   const ViewCamera camera = engine_camera(e);
   const vlCamera *c = &camera.made;
-  if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
-    engine_refuse(e, m, "the point is outside the image");
+  if (!engine_is_in_image(e, m, c))
     return;
-  }
   vlChannelsDef def = vl_default_channels_def(c->width, c->height);
   uint32_t x = (uint32_t)m->x, y = (uint32_t)m->y;
   const uint32_t crop[4] = {x, y, x + 1, y + 1};

@@ -41,22 +41,25 @@ static void *load(void *user) {
 }
 
 int engine_start(Engine *engine, Server *server) {
+  const bool lecture = engine->def.lecture;
+  void *(*const work[THREAD_COUNT])(void *) = {
+      [THREAD_RENDER] = engine_render,
+      [THREAD_ANSWER] = answer,
+      [THREAD_TRACE] = trace,
+      [THREAD_VERIFY] = lecture ? NULL : engine_verify_commands,
+      [THREAD_WATCH] = lecture ? load : engine_watch};
   engine->server = server;
-  if (pthread_create(&engine->threads.render, NULL, engine_render, engine) != 0)
-    return report_failure(STATUS_OTHER, "the system refuses to start a thread");
-  engine->threads.renders = true;
-  engine->threads.answers = pthread_create(&engine->threads.answer, NULL, answer, engine) == 0;
-  engine->threads.traces = pthread_create(&engine->threads.trace, NULL, trace, engine) == 0;
-  if (!engine->def.lecture)
-    engine->threads.verifies =
-        pthread_create(&engine->threads.verify, NULL, engine_verify_commands, engine) == 0;
-  void *(*watch)(void *) = engine->def.lecture ? load : engine_watch;
-  engine->threads.watches = pthread_create(&engine->threads.watch, NULL, watch, engine) == 0;
+  for (int i = 0; i < THREAD_COUNT; i++) {
+    Thread *thread = &engine->threads[i];
+    thread->runs = work[i] && pthread_create(&thread->thread, NULL, work[i], engine) == 0;
+    if (!engine->threads[THREAD_RENDER].runs)
+      return report_failure(STATUS_OTHER, "the system refuses to start a thread");
+  }
   return -1;
 }
 
 int engine_stop(Engine *engine) {
-  if (!engine->threads.renders)
+  if (!engine->threads[THREAD_RENDER].runs)
     return STATUS_OK;
   engine_lock(engine);
   engine->quit = true;
@@ -65,15 +68,10 @@ int engine_stop(Engine *engine) {
   vl_cancel_request(engine->traces.stop);
   pthread_cond_broadcast(&engine->wake);
   engine_unlock(engine);
-  pthread_join(engine->threads.render, NULL);
-  if (engine->threads.watches)
-    pthread_join(engine->threads.watch, NULL);
-  if (engine->threads.answers)
-    pthread_join(engine->threads.answer, NULL);
-  if (engine->threads.traces)
-    pthread_join(engine->threads.trace, NULL);
-  if (engine->threads.verifies)
-    pthread_join(engine->threads.verify, NULL);
-  engine->threads.renders = false;
+  for (int i = 0; i < THREAD_COUNT; i++) {
+    if (engine->threads[i].runs)
+      pthread_join(engine->threads[i].thread, NULL);
+    engine->threads[i].runs = false;
+  }
   return engine->def.film_path ? engine_write_film(engine) : STATUS_OK;
 }

@@ -14,6 +14,8 @@ typedef struct MaterialVariant {
                        normal; 0: not known */
   double reflected; /* known share of the weight that stays on the side of the eye, there;
                        0: not known */
+  double along;     /* known mean of the samples' directions along x, by their weight, there;
+                       0: not known */
   bool refracts;    /* radiance changes with the square of the index: no law of energy, none of
                        reciprocity */
   bool both_sides;  /* light from below is scattered, too: reciprocity over the whole sphere */

@@ -34,6 +34,10 @@ const MediumCase cloud_medium = {
     .scatters = "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" .5",
     .absorbs = "\"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [0 0 0]",
     .density = density,
+    /* above y = 1 the noise counts the other way */
+    .tall =
+        "\"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 3 1] \"float density\" 3 "
+        "\"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [0 0 0]",
     .parameters =
         {
             {.base = "\"point3 p0\" [-1 -1 -1];\"point3 p1\" [1 1 1];\"float density\" 4"},

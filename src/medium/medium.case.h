@@ -21,6 +21,7 @@ typedef struct MediumCase {
   double passes;      /* the transmittance of that */
   double (*density)(const double p[3], PlainNoise *noise); /* the extinction of `absorbs` at a
                                            point of the box; null: not known */
+  const char *tall; /* all parameters of one higher than the box; null: it is like the others */
   /* All parameters of a medium that reaches beyond one block of the kind's grid, and its
    * extinction; null: the kind has no blocks. */
   const char *blocks;

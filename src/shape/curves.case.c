@@ -4,7 +4,8 @@
 /* A straight curve. Flat ones turn to the ray and are seen as wide as they are: 2 w l times the
  * mean sine of the angle between axis and ray, pi / 4. The width of ribbons is also multiplied
  * by the cosine between their normal and the ray, and so is their normal: the mean product is
- * 4 / (3 pi). */
+ * 4 / (3 pi). As in pbrt, v is 1/2 on the axis and falls to the left of a ray that has the
+ * curve's way above it (here to +y). */
 #define STRAIGHT "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width\" .1 "
 #define TAPERED \
   "\"point3 P\" [-.6 0 0 -.2 0 0 .2 0 0 .6 0 0] \"float width0\" .05 \"float width1\" .15 "
@@ -20,14 +21,14 @@ const ShapeCase curves_shape = {
              .area = 0.12 * HALF_TURN / 2,
              .reach = 0.61,
              .faces_rays = true,
-             .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, NAN},
+             .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, .1},
                        {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
              .known_count = 2},
             {.parameters = STRAIGHT "\"string type\" \"ribbon\" \"normal N\" [0 0 1 0 0 1]",
              .area = 0.12 * 8 / (3 * HALF_TURN),
              .reach = 0.61,
              .faces_rays = true, /* its points lie across the ray, as in pbrt */
-             .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, NAN}},
+             .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, .1}},
              .known_count = 1},
             /* its normal turns evenly from z to y: by 67.5 degrees at u = .75, where it is seen
              * .114805 wide */
@@ -35,7 +36,7 @@ const ShapeCase curves_shape = {
              .area = 0.36 * 8 / (3 * HALF_TURN),
              .reach = 0.63,
              .faces_rays = true,
-             .known = {{{.3, .05, 1}, {0, 0, -1}, 1, .75, NAN, .38268343},
+             .known = {{{.3, .05, 1}, {0, 0, -1}, 1, .75, .0644789, .38268343},
                        {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
              .known_count = 2},
             {.parameters = STRAIGHT "\"string type\" \"cylinder\"",
@@ -43,14 +44,14 @@ const ShapeCase curves_shape = {
              .reach = 0.61,
              .faces_rays = true,
              /* the normal turns by 90 degrees from the middle to an edge */
-             .known = {{{.3, .025, 1}, {0, 0, -1}, 1, .75, NAN, .70710678}},
+             .known = {{{.3, .025, 1}, {0, 0, -1}, 1, .75, .25, .70710678}},
              .known_count = 1},
             /* it widens from .05 to .15 */
             {.parameters = TAPERED "\"string type\" \"flat\"",
              .area = 0.12 * HALF_TURN / 2,
              .reach = 0.61,
              .faces_rays = true,
-             .known = {{{.3, .06, 1}, {0, 0, -1}, 1, .75, NAN},
+             .known = {{{.3, .06, 1}, {0, 0, -1}, 1, .75, .02},
                        {{-.3, .04, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
              .known_count = 2},
         },

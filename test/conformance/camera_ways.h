@@ -20,11 +20,19 @@ enum { WAYS = 4096, AZIMUTHS = 16, NEARNESSES = 7 };
 /* Farther out than this, in focal lengths, cancellation leaves few digits. */
 #define FARTHEST 1e3
 
-/* How many directions were tried, and what became of them. */
+/* How many directions were tried, and what became of them. other: found from their film point
+ * is another direction. */
 typedef struct Ways {
-  uint32_t seen, lost;
+  uint32_t seen, lost, other;
   double worst; /* pixels, between film points, per pixel of their distance from the centre */
 } Ways;
+
+static double angle_between(const double a[3], const double b[3]) {
+  const double cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                           a[0] * b[1] - a[1] * b[0]};
+  return atan2(sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]),
+               a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
 
 /* A direction that has a film point is found from it; false: it has none. */
 static bool go_and_return(const vlCamera *camera, const double direction[3], Ways *ways) {
@@ -40,6 +48,7 @@ static bool go_and_return(const vlCamera *camera, const double direction[3], Way
     ways->lost++;
     return true;
   }
+  ways->other += angle_between(direction, d) > 1e-4;
   double size = camera->fx + fabs(film[0]) + fabs(film[1]);
   for (int k = 0; k < 2 && size < FARTHEST * camera->fx; k++)
     ways->worst = fmax(ways->worst, fabs(again[k] - film[k]) / size);
@@ -96,6 +105,9 @@ static void check_ways(const char *family, const char *kind, const vlCamera *cam
   }
   if (ways.lost)
     broken(family, kind, "%u of %u directions with a film point have no way back", ways.lost,
+           ways.seen);
+  if (ways.other)
+    broken(family, kind, "%u of %u directions have the film point of another one", ways.other,
            ways.seen);
   if (!(ways.worst < 1e-9))
     broken(family, kind, "a direction comes back %g off", ways.worst);

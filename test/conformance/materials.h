@@ -32,6 +32,7 @@ typedef struct MaterialLaws {
   Mean all[3],
       stays; /* the mean weight of all samples; the share of it that stays on the eye's side */
   Mean density, has_density;
+  Mean along; /* the samples' directions along x beyond what is known, by their weight */
   uint32_t compared, wrong_density, wrong_weight, both_ways, unequal;
 } MaterialLaws;
 
@@ -76,6 +77,7 @@ static void ask_samples(MaterialLaws *m, vlTrace *trace, bool above) {
     bool stays = ((double)m->next->rays.direction[2][i] > 0) == above;
     mean_add(&m->stays, stays ? sum / 3 : 0);
     mean_add(&m->has_density, dense);
+    mean_add(&m->along, sum / 3 * ((double)m->next->rays.direction[0][i] - m->variant->along));
     if (!dense)
       continue;
     m->compared++;
@@ -186,6 +188,9 @@ static void judge_material(const MaterialLaws *m) {
   snprintf(what, sizeof what, "%s, %.1f: light that is reflected", p, a);
   if (v->reflected > 0 && a == material_angles[0])
     check_mean("materials", m->kind, what, &m->stays, v->reflected * all, sharp);
+  snprintf(what, sizeof what, "%s, %.1f: light along x", p, a);
+  if (v->along != 0 && a == material_angles[0])
+    check_mean("materials", m->kind, what, &m->along, 0, (Sight){.slack = 1e-3, .least = 0.01});
   if (m->unequal > m->both_ways / 100)
     broken("materials", m->kind, "%s, %.1f: %u of %u directions are not reciprocal", p, a,
            m->unequal, m->both_ways);

@@ -43,9 +43,9 @@ static void take_numbers(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   }
 }
 
-/* Renders with a tracer that takes numbers. */
+/* Renders with a tracer that takes numbers. After `sequence` samples another one begins. */
 static void draw_by(const vlOwnTracer *tracer, vlSamplerKind kind, uint32_t width,
-                    uint32_t height, uint32_t samples) {
+                    uint32_t height, uint32_t samples, uint32_t sequence) {
   vlError error = {0};
   vlScene *scene = load_text(context, HEAD "WorldBegin LightSource \"infinite\"", &error);
   assert_non_null(scene);
@@ -54,7 +54,7 @@ static void draw_by(const vlOwnTracer *tracer, vlSamplerKind kind, uint32_t widt
   defs->film = vl_default_film_def(width, height);
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   defs->render.spp = samples;
-  defs->render.sequence = samples;
+  defs->render.sequence = sequence;
   defs->render.sampler = kind;
   defs->render.share_samples = false;
   defs->render.own_tracer = tracer;
@@ -64,15 +64,20 @@ static void draw_by(const vlOwnTracer *tracer, vlSamplerKind kind, uint32_t widt
   vl_image_destroy(image);
 }
 
-static Numbers2 *draw_numbers(vlSamplerKind kind, uint32_t width, uint32_t samples) {
+static Numbers2 *draw_sequences(vlSamplerKind kind, uint32_t width, uint32_t samples,
+                                uint32_t sequence) {
   Numbers2 *n = calloc(1, sizeof *n);
   assert_non_null(n);
   n->width = width;
   n->samples = samples;
   const vlOwnTracer tracer = {.name = "numbers", .radiance = take_numbers, .user = n};
-  draw_by(&tracer, kind, width, SETS / width, samples);
+  draw_by(&tracer, kind, width, SETS / width, samples, sequence);
   assert_int_equal(n->count, SETS * samples);
   return n;
+}
+
+static Numbers2 *draw_numbers(vlSamplerKind kind, uint32_t width, uint32_t samples) {
+  return draw_sequences(kind, width, samples, samples);
 }
 
 /* Chi-square over 256 intervals of all numbers, as standard deviations above what independent
@@ -261,6 +266,30 @@ static void samplers_of_any_count(void **state) {
   expect_no_failures();
 }
 
+/* ---- samples past the end of a sequence -------------------------------------------------- */
+
+/* They begin another one: fewer than a tenth have the numbers of the sample in whose place they
+ * are. */
+static void samplers_of_later_sequences(void **state) {
+  (void)state;
+  enum { SEQUENCE = SET / 2 };
+  const vlKindFamily *family = vl_kind_family_find("samplers");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    Numbers2 *n = draw_sequences((vlSamplerKind)k, 8, SET, SEQUENCE);
+    uint32_t equal = 0;
+    for (int p = 0; p < SETS; p++)
+      for (int i = 0; i < SEQUENCE; i++)
+        equal += fabs(n->u[p][i] - n->u[p][i + SEQUENCE]) < 1e-6 &&
+                 fabs(n->v[p][i] - n->v[p][i + SEQUENCE]) < 1e-6;
+    if (equal > SETS * SEQUENCE / 10)
+      broken("samplers", family->rows[k]->name,
+             "%u of %d samples past the end of their sequence repeat it", equal,
+             SETS * SEQUENCE);
+    free(n);
+  }
+  expect_no_failures();
+}
+
 /* ---- neighbours -------------------------------------------------------------------------- */
 
 enum { FEW = 16 }; /* samples of a pixel; four pixels have SET of them */
@@ -323,7 +352,7 @@ static void check_far_pixels(vlSamplerKind kind, const char *name, bool tall) {
   uint32_t height = tall ? FAR_AWAY + NEAR : 1;
   uint32_t equal = 0;
   n.count = 0;
-  draw_by(&tracer, kind, width, height, FEW);
+  draw_by(&tracer, kind, width, height, FEW, FEW);
   assert_int_equal(n.count, 2 * NEAR * FEW);
   for (int p = 0; p < NEAR; p++)
     equal += memcmp(n.u[0][p], n.u[1][p], sizeof n.u[0][p]) == 0;

@@ -2,4 +2,4 @@
 #include "tracer/tracer.case.h"
 
 const TracerCase ambient_occlusion_tracer = {
-    .spp = 320, .sky = {.even = 1}, .lamp = {.even = 1, .ball = -1}};
+    .spp = 320, .sky = {.even = 1}, .lamp = {.even = 1, .ball = -1}, MIRRORS};

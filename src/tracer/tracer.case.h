@@ -18,7 +18,9 @@ typedef struct Plate {
 
 typedef struct TracerCase {
   Plate sky, lamp;
-  uint32_t spp;         /* 0: 64 */
+  Plate mirror; /* below the sky, of a smooth metal that reflects all light; 0: the tracer
+                   follows no mirrors */
+  uint32_t spp; /* 0: 64 */
   double least_of_lamp; /* the least mistake that must be found of the lamp's light; 0: .03 */
   uint32_t room_spp;    /* of a room lit from its ceiling; 0: not compared */
   bool blurs;           /* by up to 2 % of the room's light */
@@ -26,6 +28,7 @@ typedef struct TracerCase {
 
 /* Below a sky of 1: half of it. Below the ball: half of 4 times its share. */
 #define TRANSPORT .sky = {.even = 0.5}, .lamp = {.ball = 2}
+#define MIRRORS .mirror = {.even = 1}
 
 /* Declares the case of each kind, which is in the file of the kind: tracer/NAME.case.c. */
 #define TRACER_CASE(kind, name) extern const TracerCase name##_tracer;

@@ -1,4 +1,4 @@
 /* tracer/volpath.case.c: what tests know of the tracer volpath. */
 #include "tracer/tracer.case.h"
 
-const TracerCase volpath_tracer = {TRANSPORT, .room_spp = 512};
+const TracerCase volpath_tracer = {TRANSPORT, MIRRORS, .room_spp = 512};

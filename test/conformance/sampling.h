@@ -450,9 +450,12 @@ static void check_filter(const vlPixelFilter *filter, const char *name, bool sha
   double worst = 0;
   double across[2 * FILTERED];
   double down[2 * FILTERED];
+  double least =
+      0; /* below 0: the filter has negative lobes, for which no samples are shared */
   for (int k = 0; k < 2 * FILTERED; k++) {
     across[k] = filtered_share(filter, radius, k - FILTERED / 2);
     down[k] = filtered_share(filter, radius_y, k - FILTERED / 2);
+    least = fmin(least, fmin(across[k], down[k]));
   }
   for (uint32_t y = 0; y <= FILTERED; y++)
     for (uint32_t x = 0; x <= FILTERED; x++) {
@@ -463,7 +466,7 @@ static void check_filter(const vlPixelFilter *filter, const char *name, bool sha
   vl_image_destroy(image);
   if (!(fabs(sum - 1) < 0.02))
     broken("filters", name, "%s: light of 1 becomes %.4f", share ? "shared" : "own", sum);
-  if (!(worst < 0.01))
+  if (!(worst < (share && least >= 0 ? 5e-4 : 0.01)))
     broken("filters", name, "%s: a pixel is off by %.4f", share ? "shared" : "own", worst);
 }
 

@@ -262,10 +262,12 @@ static void laws_of_media(void **state) {
 /* A plate that reflects half of the light, turned by 60 degrees from the eye; its normal is
  * (0, -.866, .5). The eye is 100 away (a perspective camera, which light paths find) and sees a
  * square of 2.4 around the origin, which is nearly the whole plate. */
-#define PLATE \
-  "LookAt 0 0 100 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 1.375033\n" VIEW("12") \
-  "WorldBegin Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5] AttributeBegin Rotate 60 1 0 0\n"   \
-  "Shape \"bilinearmesh\" \"point3 P\" [-1.25 -2.5 0 1.25 -2.5 0 -1.25 2.5 0 1.25 2.5 0] AttributeEnd\n"
+#define PLATE PLATE_OF("\"diffuse\" \"rgb reflectance\" [.5 .5 .5]")
+#define PLATE_OF(material)                                                           \
+  "LookAt 0 0 100 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 1.375033\n" VIEW( \
+      "12") "WorldBegin Material " material                                          \
+            " AttributeBegin Rotate 60 1 0 0\n"                                      \
+            "Shape \"bilinearmesh\" \"point3 P\" [-1.25 -2.5 0 1.25 -2.5 0 -1.25 2.5 0 1.25 2.5 0] AttributeEnd\n"
 
 static const char *const below_sky = PLATE "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 /* A ball of radius .5, two away along the normal, and radiance 4. */
@@ -297,6 +299,12 @@ static double ball_share_of_pixel(uint32_t column, uint32_t row) {
                         2.4 * (0.5 - (row + (j + 0.5) / PLATE_STEPS) / PLATE_SIDE));
   return sum / (PLATE_STEPS * PLATE_STEPS);
 }
+
+/* The plate as a mirror: a metal that has no reflectance, but an index. */
+#define MIRROR \
+  "\"conductor\" \"spectrum eta\" [300 .001 900 .001] \"spectrum k\" [300 30 900 30]"
+static const char *const mirrored_sky =
+    PLATE_OF(MIRROR) "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 
 /* The kinds of tracers with what the plate looks like by them. */
 #define TRACER_CASE(kind, name) &name##_tracer,
@@ -529,6 +537,7 @@ static void laws_of_tracers(void **state) {
       check_room(name, paths, c);
     check_tracer(name, "sky", below_sky, c->sky, c);
     check_tracer(name, "lamp", below_lamp, c->lamp, c);
+    check_tracer(name, "mirror", mirrored_sky, c->mirror, c);
     if (c->blurs) {
       check_merging(name);
       check_radius((vlTracer)k, name);

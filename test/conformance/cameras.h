@@ -95,6 +95,34 @@ static void check_round_trip(const char *family, const char *kind, const vlCamer
     broken(family, kind, "%d points have other bits in a batch", other_bits);
 }
 
+/* Filters look beyond the edges of the image: where a point there has a direction, the view
+ * goes on as it goes up to the edge. */
+static void check_edges(const char *kind, const vlCamera *camera) {
+  enum { EACH_EDGE = 100, PLACES = 3 };
+  static const double inwards[PLACES] = {0.15, 0.05, -0.05}; /* pixels from the edge */
+  const double size[2] = {FILM_WIDTH, FILM_HEIGHT};
+  uint32_t other = 0;
+  for (int i = 0; i < 4 * EACH_EDGE; i++) {
+    const int axis = i % 2;
+    const bool high = i / 2 % 2 == 1;
+    double o[3];
+    double d[PLACES][3] = {{0}};
+    bool seen = true;
+    for (int k = 0; k < PLACES; k++) {
+      double at[2];
+      at[1 - axis] = size[1 - axis] * (i / 4 + 0.5) / EACH_EDGE;
+      at[axis] = high ? size[axis] - inwards[k] : inwards[k];
+      seen = seen && vl_camera_unproject(camera, at[0], at[1], o, d[k]);
+    }
+    const double before = angle_between(d[0], d[1]);
+    const double across = angle_between(d[1], d[2]);
+    other += seen && !(across > 0.5 * before && across < 2 * before);
+  }
+  if (other > 4)
+    broken("projections", kind, "at %u of %d points of the edge the view does not go on", other,
+           4 * EACH_EDGE);
+}
+
 /* The solid angle of pixels against that of the triangles between their corners' rays; the sum
  * over the image. */
 static void check_solid_angle(const char *kind, const vlCamera *camera, double known) {
@@ -420,8 +448,10 @@ static void laws_of_projections(void **state) {
     if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
       check_solid_angle(name, &camera, c->solid_angle);
     check_known(name, &camera, c);
-    if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
+    if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics) {
       check_domain(name, &def, &camera, c->end);
+      check_edges(name, &camera);
+    }
     check_derivatives_in_film("projections", name, &camera);
     if (!c->optics)
       check_file("projections", name, &def, &camera);

@@ -456,6 +456,28 @@ def closed(page):
         return ("closed", 0, "")
 
 
+def test_documented(view):
+    """Each type of docs/view.md is a type, and each of its members one that a number in place of text, or text in place of a number,
+    makes wrong."""
+    text = open(os.path.join(ROOT, "docs/view.md")).read()
+    table = re.findall(r"^\| (`.*?) \| (.*) \|$", text[text.index("| type | members |"):text.index("velo answers with")], re.M)
+    members = ("serial change gesture id x y exposure at shutter samples show spp paused denoise boxes curves field mark by_sample end "
+               "crop size channel what name dialect view set").split()
+    wrong, tried = [], 0
+    for types, said in table:
+        for kind in re.findall(r"`(\w+)`", types):
+            for member in [m for m in re.findall(r"`(\w+)`", said.split("`set`: `")[0]) if m in members]:
+                text_like = member in ("channel", "what", "name", "dialect", "view")
+                page = Page(view)
+                page.send(**{"type": kind, member: 5 if text_like else "x"})
+                reason = closed(page)
+                tried += 1
+                if reason[1] != 1008 or member not in reason[2]:
+                    wrong.append((kind, member, reason))
+                page.close()
+    check("documented", tried > 40 and not wrong, tried, wrong)
+
+
 def test_malformed(view):
     rest = random.Random(5)
     texts = [b"", b"{", b"[]", b"null", b'{"type":1}', b'{"type":"camera","set":[]}', b'{"type":"camera","change":-1}',
@@ -745,6 +767,7 @@ def main():
         page.close()
         test_settings(view, Page(view)).close()
         test_long(view)
+        test_documented(view)
         test_malformed(view)
         test_many(view)
         test_page_that_does_not_read(view)

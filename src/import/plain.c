@@ -76,6 +76,8 @@ static bool fail(vlScene *scene, vlResult code, const char *path, const char *wh
 /* Gives the mesh faces, and vertices their colours. */
 static bool finish_mesh(vlScene *scene, const char *path, vlMesh *m) {
   vlContext *context = scene->context;
+  if (scene->error.code != VL_OK)
+    return false;
   if (!m->vertices)
     return fail(scene, VL_ERROR_SCENE, path,
                 "it has no faces and no points: there is nothing to draw");
@@ -120,11 +122,9 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load,
       vl_ply_read_given(context, scene->task, path, load && load->permissive, &mesh, &inside);
   if (r == VL_OK && !vl_mesh_split_quads(context, &mesh))
     r = VL_ERROR_MEMORY;
-  if (r == VL_OK)
-    return vl_import_plain_mesh(scene, path, load, &mesh, error);
-  vl_mesh_free(context, &mesh);
-  vlSource source = {inside.file[0] ? inside.file : NULL, inside.line, inside.column};
-  vl_scene_fail(scene, r, source, "%s",
-                r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
-  return vl_scene_result(scene, error);
+  const vlSource source = {inside.file[0] ? inside.file : NULL, inside.line, inside.column};
+  if (r != VL_OK)
+    vl_scene_fail(scene, r, source, "%s",
+                  r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
+  return vl_import_plain_mesh(scene, path, load, &mesh, error);
 }

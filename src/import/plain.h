@@ -13,10 +13,11 @@ void vl_import_plain_settings(vlScene *scene);
 bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const char **at,
                           const char **end);
 
-/* Adds the mesh, whose arrays it takes, to the scene. Without triangles its vertices are
- * points: discs across their normals; without normals small balls. The median distance to the
- * fourth neighbour is their radius, within 1/2000 and 1/50 of the diagonal. load: its
- * permissive repairs normals and uvs; may be null. Returns vl_scene_result. */
+/* Adds the mesh, whose arrays it takes, to the scene, unless that has an error. Without
+ * triangles its vertices are points: discs across their normals; without normals small balls.
+ * The median distance to the fourth neighbour is their radius, within 1/2000 and 1/50 of the
+ * diagonal. load: its permissive repairs normals and uvs; may be null. Returns vl_scene_result.
+ */
 vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load,
                               vlMesh *mesh, vlError *error);
 

@@ -121,21 +121,31 @@ bool vl_gltf_check_camera(vlGltf *g, size_t index) {
   return take_camera(g, index, &node);
 }
 
+bool vl_gltf_next_camera(vlGltf *g, size_t *node, size_t *camera) {
+  for (; *node < g->node_count; ++*node) {
+    if (!g->nodes[*node].reached)
+      continue;
+    if (!vl_gltf_index(VL_GLTF_ROOT(g, "nodes", *node), "camera", g->camera_count, camera))
+      return false;
+    if (*camera != VL_GLTF_NONE)
+      return true;
+  }
+  return true;
+}
+
 bool vl_gltf_choose_camera(vlGltf *g) {
   const char *wanted = g->def->camera;
   char *end = NULL;
   unsigned long number = wanted ? strtoul(wanted, &end, 10) : 0;
   bool numbered = wanted && end != wanted && !*end;
   size_t by_name = VL_GLTF_NONE, by_number = VL_GLTF_NONE;
-  for (size_t i = 0; i < g->node_count; i++) {
-    size_t camera;
-    const vlGltfNode *node = &g->nodes[i];
-    if (!node->reached)
-      continue;
-    if (!vl_gltf_index(VL_GLTF_ROOT(g, "nodes", i), "camera", g->camera_count, &camera))
+  size_t camera;
+  for (size_t i = 0;; i++) {
+    if (!vl_gltf_next_camera(g, &i, &camera))
       return false;
-    if (camera == VL_GLTF_NONE)
-      continue;
+    if (i == g->node_count)
+      break;
+    const vlGltfNode *node = &g->nodes[i];
     bool named =
         wanted && (vl_text_is(vl_gltf_name(node->json), wanted) ||
                    vl_text_is(vl_gltf_name(vl_gltf_item(g, "cameras", camera)), wanted));

@@ -44,21 +44,18 @@ double vl_gltf_animation_end(const vlGltf *g, size_t animation) {
 
 /* Cameras are numbered as vl_gltf_choose_camera numbers them: by the nodes of the scene. */
 static bool list_cameras(vlGltf *g) {
-  for (size_t i = 0; i < g->node_count; i++) {
-    size_t camera;
-    if (!g->nodes[i].reached)
-      continue;
-    if (!vl_gltf_index(VL_GLTF_ROOT(g, "nodes", i), "camera", g->camera_count, &camera))
+  size_t camera;
+  for (size_t i = 0;; i++) {
+    if (!vl_gltf_next_camera(g, &i, &camera))
       return false;
-    if (camera == VL_GLTF_NONE)
-      continue;
+    if (i == g->node_count)
+      return true;
     const char *name = vl_gltf_name(g->nodes[i].json);
     if (!name)
       name = vl_gltf_name(vl_gltf_item(g, "cameras", camera));
     if (!vl_scene_add_choice(g->scene, VL_CHOICE_CAMERA, name, 0))
       return false;
   }
-  return true;
 }
 
 bool vl_gltf_list_choices(vlGltf *g) {

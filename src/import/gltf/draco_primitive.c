@@ -25,10 +25,8 @@ static bool fill(vlGltf *g, const vlGltfLocation *at, const vlDraco *mesh, size_
                                                    : 1;
   if (!vl_gltf_spend(at, (uint64_t)a->count * a->components * size))
     return false;
-  uint8_t *data = vl_alloc_array(g->context, a->count + 1, a->components * size);
+  uint8_t *data = vl_gltf_make(g, a->count + 1, a->components * size);
   if (!data)
-    return vl_gltf_fail_memory(g);
-  if (!vl_gltf_own(g, data))
     return false;
   if (id < 0)
     vl_draco_indices(mesh, (uint32_t *)(void *)data);

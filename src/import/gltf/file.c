@@ -111,20 +111,18 @@ static bool count_all(vlGltf *g) {
       !vl_gltf_array(VL_GLTF_KEY(&g->top, "extensions.EXT_lights_ies"), "lights", &g->lamps,
                      &g->lamp_count))
     return false;
-  vlContext *c = g->context;
-  g->buffers = vl_alloc_zero(c, g->buffer_count + 1, sizeof *g->buffers);
-  g->views = vl_alloc_zero(c, g->view_count + 1, sizeof *g->views);
-  g->accessors = vl_alloc_zero(c, g->accessor_count + 1, sizeof *g->accessors);
-  g->nodes = vl_alloc_zero(c, g->node_count + 1, sizeof *g->nodes);
-  g->materials = vl_alloc_zero(c, 2 * (g->material_count + 1), sizeof *g->materials);
-  g->images = vl_alloc_zero(c, g->image_count + 1, sizeof *g->images);
-  g->meshes = vl_alloc_zero(c, g->mesh_count + 1, sizeof *g->meshes);
-  return (g->buffers && g->views && g->accessors && g->nodes && g->materials && g->images &&
-          g->meshes) ||
-         vl_gltf_fail_memory(g);
+  return (g->buffers = vl_gltf_make(g, g->buffer_count + 1, sizeof *g->buffers)) &&
+         (g->views = vl_gltf_make(g, g->view_count + 1, sizeof *g->views)) &&
+         (g->accessors = vl_gltf_make(g, g->accessor_count + 1, sizeof *g->accessors)) &&
+         (g->nodes = vl_gltf_make(g, g->node_count + 1, sizeof *g->nodes)) &&
+         (g->materials = vl_gltf_make(g, 2 * (g->material_count + 1), sizeof *g->materials)) &&
+         (g->images = vl_gltf_make(g, g->image_count + 1, sizeof *g->images)) &&
+         (g->meshes = vl_gltf_make(g, g->mesh_count + 1, sizeof *g->meshes));
 }
 
-bool vl_gltf_own(vlGltf *g, void *block) {
+/* Keeps a block until vl_gltf_close, which frees it. False: out of memory; the block is
+ * freed. */
+static bool own(vlGltf *g, void *block) {
   void **slot = VL_PUSH(g->context, &g->blocks);
   if (!slot) {
     vl_free(g->context, block);
@@ -132,6 +130,13 @@ bool vl_gltf_own(vlGltf *g, void *block) {
   }
   *slot = block;
   return true;
+}
+
+void *vl_gltf_make(vlGltf *g, size_t count, size_t size) {
+  void *block = vl_alloc_zero(g->context, count, size);
+  if (!block)
+    vl_gltf_fail_memory(g);
+  return block && own(g, block) ? block : NULL;
 }
 
 bool vl_gltf_open(vlGltf *g) {
@@ -144,7 +149,7 @@ bool vl_gltf_open(vlGltf *g) {
     return false;
   }
   g->file = (uint8_t *)data;
-  if (!vl_gltf_own(g, data))
+  if (!own(g, data))
     return false;
   const char *json = data;
   size_t size = g->file_size;
@@ -160,15 +165,12 @@ bool vl_gltf_open(vlGltf *g) {
 
 void vl_gltf_close(vlGltf *g) {
   json_decref(g->root);
-  for (size_t i = 0; g->nodes && i < g->node_count; i++) {
+  for (size_t i = 0; g->nodes && i < g->node_count; i++)
     VL_FREE(g->context, g->nodes[i].weights, g->nodes[i].weights_close);
-  }
-  vl_gltf_free_labels(g);
+  VL_FREE(g->context, g->material_names.slots, g->shape_names.slots, g->instance_names.slots);
   for (size_t i = 0; i < g->blocks.count; i++)
     vl_free(g->context, g->blocks.items[i]);
   VL_ARRAY_FREE(g->context, &g->blocks);
-  VL_FREE(g->context, g->buffers, g->views, g->accessors, g->keys, g->nodes, g->materials,
-          g->images, g->meshes);
 }
 
 /* ---- uris -------------------------------------------------------------------------------- */
@@ -213,10 +215,8 @@ static bool unpack(vlGltf *g, const vlGltfLocation *at, const char *uri, const u
     return vl_gltf_fail(at, "broken data: uri, it has no comma");
   bool base64 = comma - uri >= 7 && strncmp(comma - 7, ";base64", 7) == 0;
   const char *text = comma + 1;
-  uint8_t *block = vl_alloc_array(g->context, strlen(text) + 1, 1);
+  uint8_t *block = vl_gltf_make(g, strlen(text) + 1, 1);
   if (!block)
-    return vl_gltf_fail_memory(g);
-  if (!vl_gltf_own(g, block))
     return false;
   *data = block;
   if (!base64) {
@@ -291,7 +291,7 @@ static bool read_buffer(vlGltf *g, size_t i) {
       vlResult r = vl_file_read(g->context, path, false, &data, &size, &error);
       if (r != VL_OK)
         return vl_gltf_fail_code(r, VL_GLTF_KEY(at, "uri"), "%s", error.message);
-      if (!vl_gltf_own(g, data))
+      if (!own(g, data))
         return false;
       b->data = (const uint8_t *)data;
     }

@@ -85,8 +85,8 @@ bool vl_gltf_frame_animation(vlGltf *g) {
     return false;
   const double end = g->time;
   const int times = choose_times(g);
-  Box *boxes = vl_alloc_array(g->context, g->node_count + 1, sizeof *boxes);
-  bool ok = boxes || vl_gltf_fail_memory(g);
+  Box *boxes = vl_gltf_make(g, g->node_count + 1, sizeof *boxes);
+  bool ok = boxes;
   for (int k = 0; ok && k < times; k++) {
     g->time = end * k / (times - 1);
     for (size_t i = 0; i < g->node_count; i++)
@@ -95,6 +95,5 @@ bool vl_gltf_frame_animation(vlGltf *g) {
     for (size_t i = 0; ok && i < g->node_count; i++)
       ok = frame_node(g, i, boxes, k == 0);
   }
-  vl_free(g->context, boxes);
   return ok;
 }

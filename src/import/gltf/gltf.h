@@ -119,7 +119,7 @@ typedef struct vlGltf {
   json_t *root;
   uint8_t *file;
   size_t file_size;
-  VL_ARRAY(void *) blocks; /* the bytes of the file and of its buffers; freed when it is read */
+  VL_ARRAY(void *) blocks; /* freed when the file is read: its bytes and all arrays below */
   const uint8_t *chunk;    /* the binary chunk of a .glb */
   size_t chunk_size;
   vlGltfBuffer *buffers;
@@ -232,9 +232,8 @@ const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 /* ---- files (file.c) ---------------------------------------------------------------------- */
 
 bool vl_gltf_open(vlGltf *g);
-/* Keeps a block until vl_gltf_close, which frees it. False: out of memory; the block is
- * freed. */
-bool vl_gltf_own(vlGltf *g, void *block);
+/* A zeroed block that vl_gltf_close frees. Null: out of memory (reported). */
+void *vl_gltf_make(vlGltf *g, size_t count, size_t size);
 bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
@@ -325,7 +324,6 @@ typedef struct vlGltfShapeIndices {
 } vlGltfShapeIndices;
 /* Makes the labels of nodes and materials. */
 bool vl_gltf_make_labels(vlGltf *g);
-void vl_gltf_free_labels(vlGltf *g);
 /* The scene owns the strings of the label. */
 bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapeIndices *at, vlLabel *label);
 /* Labels the instance that was added last. */
@@ -406,6 +404,9 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
 bool vl_gltf_add_lights(vlGltf *g, size_t node);
 bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfLocation *at);
 bool vl_gltf_choose_camera(vlGltf *g);
+/* Moves *node to the next node from it on that the scene reaches and that has a camera, which
+ * *camera receives; to the number of nodes after the last one. */
+bool vl_gltf_next_camera(vlGltf *g, size_t *node, size_t *camera);
 /* Reads a camera that no node has. The scene's own camera is replaced. */
 bool vl_gltf_check_camera(vlGltf *g, size_t index);
 

@@ -3,7 +3,6 @@
  * get those of their parents: Hall/Chair. */
 #include <stdio.h>
 
-#include "base/free.h"
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "import/labels.h"
@@ -93,26 +92,25 @@ static bool label_list(vlGltf *g, const uint32_t *list, size_t count, uint8_t *d
 
 static bool label_nodes(vlGltf *g) {
   size_t count = 0;
-  uint32_t *list = vl_alloc_array(g->context, g->node_count + 1, sizeof *list);
-  uint8_t *depths = vl_alloc_zero(g->context, g->node_count + 1, 1);
-  char **paths = vl_alloc_zero(g->context, g->node_count + 1, sizeof *paths);
-  bool ok = (list && depths && paths) || vl_gltf_fail_memory(g);
-  for (size_t i = 0; ok && i < g->node_count; i++)
+  uint32_t *list = vl_gltf_make(g, g->node_count + 1, sizeof *list);
+  uint8_t *depths = list ? vl_gltf_make(g, g->node_count + 1, 1) : NULL;
+  char **paths = depths ? vl_gltf_make(g, g->node_count + 1, sizeof *paths) : NULL;
+  if (!paths)
+    return false;
+  for (size_t i = 0; i < g->node_count; i++)
     if (vl_gltf_mesh_of(g, &g->nodes[i]) != VL_GLTF_NONE)
       list[count++] = (uint32_t)i;
-  ok = ok && label_list(g, list, count, depths, paths);
-  for (size_t i = 0; paths && i < count; i++)
+  const bool ok = label_list(g, list, count, depths, paths);
+  for (size_t i = 0; i < count; i++)
     vl_free(g->context, paths[i]);
-  VL_FREE(g->context, list, depths, (void *)paths);
   return ok;
 }
 
 bool vl_gltf_make_labels(vlGltf *g) {
-  g->node_labels = vl_alloc_zero(g->context, g->node_count + 1, sizeof *g->node_labels);
-  g->material_labels =
-      vl_alloc_zero(g->context, g->material_count + 1, sizeof *g->material_labels);
+  g->node_labels = vl_gltf_make(g, g->node_count + 1, sizeof *g->node_labels);
+  g->material_labels = vl_gltf_make(g, g->material_count + 1, sizeof *g->material_labels);
   if (!g->node_labels || !g->material_labels)
-    return vl_gltf_fail_memory(g);
+    return false;
   for (size_t i = 0; i < g->material_count; i++) {
     char name[VL_LABEL_SIZE] = "";
     vl_label_append(name, name_of(vl_gltf_item(g, "materials", i)));
@@ -122,11 +120,6 @@ bool vl_gltf_make_labels(vlGltf *g) {
       return false;
   }
   return label_nodes(g);
-}
-
-void vl_gltf_free_labels(vlGltf *g) {
-  VL_FREE(g->context, (void *)g->node_labels, (void *)g->material_labels,
-          g->material_names.slots, g->shape_names.slots, g->instance_names.slots);
 }
 
 /* nodes[3], or nodes[3].copies[7] where EXT_mesh_gpu_instancing places the node several

@@ -177,13 +177,23 @@ static bool finish_primitive(vlGltf *g, const vlGltfMaterial *m, vlMesh *p, vlGr
   return add_shape(g, m, p, group, pose);
 }
 
+static bool is_skinned(const vlGltfNode *node) {
+  return node && json_object_get(node->json, "skin");
+}
+
+/* The vertices as the node deforms them. */
+static bool deform(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
+                   const vlGltfNode *node, vlMesh *p) {
+  return vl_gltf_morph(g, at, mesh, node, p) &&
+         (!is_skinned(node) || vl_gltf_skin(g, at, node, p));
+}
+
 /* The vertices as deformed at shutter close. */
 static bool read_close(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                       const vlGltfNode *node, size_t position, bool skinned, vlMesh *p) {
+                       const vlGltfNode *node, size_t position, vlMesh *p) {
   vlMesh q = {0};
   g->closing = true;
-  bool ok = read_attributes(g, at, position, &q) && vl_gltf_morph(g, at, mesh, node, &q) &&
-            (!skinned || vl_gltf_skin(g, at, node, &q));
+  bool ok = read_attributes(g, at, position, &q) && deform(g, at, mesh, node, &q);
   g->closing = false;
   if (ok && memcmp(p->positions, q.positions, 3 * p->vertices * sizeof(float)) != 0) {
     p->positions_close = q.positions;
@@ -221,13 +231,9 @@ static bool add_primitive(vlGltf *g, const vlGltfLocation *at, const json_t *mes
   if (!vl_gltf_unpack_primitive(g, at) || !read_attributes(g, at, position, p) ||
       !read_indices(g, at, p->vertices, &indices, &count))
     return false;
-  bool skinned = node && json_object_get(node->json, "skin");
-  if (!vl_gltf_morph(g, at, mesh, node, p) || (skinned && !vl_gltf_skin(g, at, node, p))) {
-    vl_free(g->context, indices);
-    return false;
-  }
-  if (g->moves && node && mode >= 4 && (skinned || node->weights) &&
-      !read_close(g, at, mesh, node, position, skinned, p)) {
+  const bool skinned = is_skinned(node);
+  const bool moves = g->moves && node && mode >= 4 && (skinned || node->weights);
+  if (!deform(g, at, mesh, node, p) || (moves && !read_close(g, at, mesh, node, position, p))) {
     vl_free(g->context, indices);
     return false;
   }
@@ -272,7 +278,7 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
     vl_mesh_free(g->context, &p);
     if (!ok || (g->scene->shapes.count > before && !label_last(g, here, node_index, index, i)))
       return false;
-    count_deformed(g, primitive, node && json_object_get(node->json, "skin"));
+    count_deformed(g, primitive, is_skinned(node));
   }
   return true;
 }
@@ -281,7 +287,6 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
  * world. */
 static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
                           const vlGltfNode *node, double low[3], double high[3]) {
-  const bool skinned = json_object_get(node->json, "skin") != NULL;
   size_t position;
   vlMesh p = {0};
   if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count, &position))
@@ -289,7 +294,7 @@ static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mes
   if (position == VL_GLTF_NONE)
     return true;
   bool ok = vl_gltf_unpack_primitive(g, at) && read_attributes(g, at, position, &p) &&
-            vl_gltf_morph(g, at, mesh, node, &p) && (!skinned || vl_gltf_skin(g, at, node, &p));
+            deform(g, at, mesh, node, &p);
   if (ok)
     vl_grow_box(p.positions, p.vertices, low, high);
   vl_mesh_free(g->context, &p);

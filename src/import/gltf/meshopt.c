@@ -59,10 +59,8 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) 
   if (count > MAX_TIMES * length / stride)
     return vl_gltf_fail(at, "%zu bytes cannot hold %zu elements of %zu bytes", length, count,
                         stride);
-  uint8_t *out = vl_alloc_zero(g->context, count + 1, stride);
+  uint8_t *out = vl_gltf_make(g, count + 1, stride);
   if (!out)
-    return vl_gltf_fail_memory(g);
-  if (!vl_gltf_own(g, out))
     return false;
   if (count && decode((Mode)mode, out, count, stride, b->data + offset, length) != 0)
     return vl_gltf_fail(at, "its bytes are no meshopt %s", modes[mode]);

@@ -313,17 +313,14 @@ static bool emissive(vlGltf *g, const json_t *primitive) {
  * deep. */
 static bool collect(vlGltf *g, const json_t *roots, const vlGltfLocation *at, uint32_t *order,
                     size_t *count) {
-  uint32_t *stack = vl_alloc_array(g->context, g->node_count + 1, sizeof *stack);
-  if (!stack)
-    return vl_gltf_fail_memory(g);
-  bool ok = true;
+  uint32_t *stack = vl_gltf_make(g, g->node_count + 1, sizeof *stack);
   *count = 0;
-  for (size_t k = 0; ok && k < json_array_size(roots); k++) {
+  for (size_t k = 0; stack && k < json_array_size(roots); k++) {
     size_t top = 0, index;
-    ok = vl_gltf_element(VL_GLTF_ITEM(at, "nodes", k), json_array_get(roots, k), g->node_count,
-                         "node", &index);
-    if (ok)
-      stack[top++] = (uint32_t)index;
+    if (!vl_gltf_element(VL_GLTF_ITEM(at, "nodes", k), json_array_get(roots, k), g->node_count,
+                         "node", &index))
+      return false;
+    stack[top++] = (uint32_t)index;
     while (top > 0) {
       uint32_t i = stack[--top];
       if (g->nodes[i].reached)
@@ -339,8 +336,7 @@ static bool collect(vlGltf *g, const json_t *roots, const vlGltfLocation *at, ui
           stack[top++] = (uint32_t)json_number_value(json_array_get(children, c));
     }
   }
-  vl_free(g->context, stack);
-  return ok;
+  return stack;
 }
 
 static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
@@ -390,16 +386,14 @@ bool vl_gltf_draw(vlGltf *g) {
         json_array_append_new(all, json_integer((json_int_t)i));
     roots = all;
   }
-  uint32_t *order = vl_alloc_array(g->context, g->node_count + 1, sizeof *order);
-  bool ok = order || vl_gltf_fail_memory(g);
-  ok = ok && collect(g, roots, at, order, &count) && count_uses(g, order, count) &&
-       vl_gltf_choose_camera(g);
+  uint32_t *order = vl_gltf_make(g, g->node_count + 1, sizeof *order);
+  bool ok = order && collect(g, roots, at, order, &count) && count_uses(g, order, count) &&
+            vl_gltf_choose_camera(g);
   if (ok)
     g->point_radius = vl_gltf_point_radius(g, order, count);
   for (size_t k = 0; ok && k < count; k++)
     ok = !vl_scene_stopped(g->scene, (double)k / (double)count) && draw_node(g, order[k]);
   ok = ok && vl_gltf_image_light(g, scene, at);
-  vl_free(g->context, order);
   json_decref(all);
   return ok;
 }

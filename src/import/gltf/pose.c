@@ -23,9 +23,9 @@ bool vl_gltf_pose(vlGltf *g) {
     return pose_at(g, g->open);
   if (!vl_gltf_spend(&g->top, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys))
     return false;
-  g->keys = vl_alloc_array(g->context, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
+  g->keys = vl_gltf_make(g, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
   if (!g->keys)
-    return vl_gltf_fail_memory(g);
+    return false;
   for (int k = VL_GLTF_KEYS - 1; k >= 0;
        k--) { /* the order of the times does not matter, since an
                  animation sets the same properties at any time */

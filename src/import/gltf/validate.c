@@ -145,10 +145,11 @@ static void read_unused(Check *c) {
 void vl_gltf_validate(vlGltf *g) {
   vlScene *scratch = NULL;
   const size_t count = g->mesh_count > g->material_count ? g->mesh_count : g->material_count;
-  uint8_t *used = vl_alloc_zero(g->context, count + 1, 1);
-  if (!used || vl_scene_create(g->context, &scratch) != VL_OK) {
+  uint8_t *used = vl_gltf_make(g, count + 1, 1);
+  if (!used)
+    return;
+  if (vl_scene_create(g->context, &scratch) != VL_OK) {
     vl_gltf_fail_memory(g);
-    vl_free(g->context, used);
     return;
   }
   mark_used(g, used);
@@ -159,5 +160,4 @@ void vl_gltf_validate(vlGltf *g) {
   read_unused(&c);
   g->scene = c.kept;
   vl_scene_destroy(scratch);
-  vl_free(g->context, used);
 }

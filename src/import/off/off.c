@@ -248,13 +248,10 @@ static bool read(Off *s) {
 vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load,
                        vlError *error) {
   Off s = {.scene = scene, .path = path};
-  vlContext *context = scene->context;
   char *data = NULL;
-  bool ok = vl_import_plain_read(scene, path, &data, &s.at, &s.end) && read(&s);
-  vl_free(context, data);
-  VL_ARRAY_FREE(context, &s.corners);
-  if (ok)
-    return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
-  vl_mesh_free(context, &s.mesh);
-  return vl_scene_result(scene, error);
+  if (vl_import_plain_read(scene, path, &data, &s.at, &s.end))
+    read(&s); /* else the scene has an error */
+  vl_free(scene->context, data);
+  VL_ARRAY_FREE(scene->context, &s.corners);
+  return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
 }

@@ -285,10 +285,10 @@ vlImportStep vl_import_flush_runs, vl_import_flush_curves;
  * import's strings. */
 bool vl_import_spectrum(vlImport *import, vlParam *param, vlSpectrum *spectrum);
 /* The first function reads a number or a float texture, the second a spectrum or a spectrum
- * texture. given may be null. Both return false after an error. */
-bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given);
+ * texture. Both return whether it is given; false also after an error. */
+bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input);
 bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input,
-                              bool albedo, bool *given);
+                              bool albedo);
 
 /* The parameters of a directive, and what messages call it (parameters.c). */
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,

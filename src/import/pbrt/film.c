@@ -20,14 +20,12 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   double w = s->film.width, h = s->film.height;
   double box[4] = {0, w, 0, h}; /* x0 x1 y0 y1, pixels */
   double crop[4];
-  vlParam *pixels = vl_dict_find(dict, "pixelbounds", VL_BIT_INTEGER);
+  vlParam *pixels = vl_dict_find_counted(dict, "pixelbounds", VL_BIT_INTEGER, 4);
   vlSource source = dict->source;
+  if (!vl_import_fine(import))
+    return false;
   if (pixels) {
     source = pixels->source;
-    if (pixels->integers.count != 4)
-      return vl_dict_fail_at(dict, source,
-                             "parameter \"pixelbounds\" takes 4 values, found %zu",
-                             pixels->integers.count);
     for (int i = 0; i < 4; i++) {
       const double bound = pixels->integers.items[i];
       box[i] = clamped(bound, i < 2 ? w : h);

@@ -81,13 +81,10 @@ static bool finish_coated_conductor(vlDict *dict, vlMaterialDef *def) {
 
 static bool finish_mix(vlDict *dict, vlMaterialDef *def) {
   vlImport *import = dict->import;
-  vlParam *p = vl_dict_find(dict, "materials", VL_BIT_STRING);
+  vlParam *p = vl_dict_find_counted(dict, "materials", VL_BIT_STRING, 2);
   if (!p)
     return vl_dict_done(dict) &&
            vl_dict_fail(dict, "\"string materials\" (two names) is missing");
-  if (p->strings.count != 2)
-    return vl_dict_fail_at(dict, p->source, "parameter \"materials\" takes 2 values, found %zu",
-                           p->strings.count);
   for (int i = 0; i < 2; i++) {
     bool is_interface;
     if (!vl_import_material_id(import, p->strings.items[i], p->source, &def->materials[i],

@@ -92,6 +92,8 @@ enum {
 /* The parameter `name` with one of the types of the bit mask. Null when it is not given. A
  * parameter of another type is an error. */
 vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t type_bits);
+/* The same; it must have `count` values. */
+vlParam *vl_dict_find_counted(vlDict *dict, const char *name, uint32_t type_bits, size_t count);
 /* These functions read a value. They return whether the parameter was given; otherwise *value
  * is unchanged. */
 bool vl_dict_float(vlDict *dict, const char *name, float *value);

@@ -153,8 +153,8 @@ vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t bits) {
   return found;
 }
 
-static vlParam *find_counted(vlDict *dict, const char *name, vlParamType type, size_t count) {
-  vlParam *p = vl_dict_find(dict, name, 1u << type);
+vlParam *vl_dict_find_counted(vlDict *dict, const char *name, uint32_t bits, size_t count) {
+  vlParam *p = vl_dict_find(dict, name, bits);
   if (p && vl_param_count(p) != count) {
     vl_dict_fail_at(dict, p->source, "parameter \"%s\" takes %zu value%s, found %zu", name,
                     count, count == 1 ? "" : "s", vl_param_count(p));
@@ -164,28 +164,28 @@ static vlParam *find_counted(vlDict *dict, const char *name, vlParamType type, s
 }
 
 bool vl_dict_double(vlDict *dict, const char *name, double *value) {
-  vlParam *p = find_counted(dict, name, VL_PARAM_FLOAT, 1);
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_FLOAT, 1);
   if (p)
     *value = p->exact[0];
   return p != NULL;
 }
 
 bool vl_dict_float(vlDict *dict, const char *name, float *value) {
-  vlParam *p = find_counted(dict, name, VL_PARAM_FLOAT, 1);
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_FLOAT, 1);
   if (p)
     *value = p->floats.items[0];
   return p != NULL;
 }
 
 bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value) {
-  vlParam *p = find_counted(dict, name, VL_PARAM_INTEGER, 1);
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_INTEGER, 1);
   if (p)
     *value = p->integers.items[0];
   return p != NULL;
 }
 
 bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *value) {
-  vlParam *p = find_counted(dict, name, VL_PARAM_INTEGER, 1);
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_INTEGER, 1);
   if (!p)
     return false;
   const vlParameter row = {.type = VL_PARAMETER_COUNT, .low = least, .high = (double)INFINITY};
@@ -201,14 +201,14 @@ bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *valu
 }
 
 bool vl_dict_bool(vlDict *dict, const char *name, bool *value) {
-  vlParam *p = find_counted(dict, name, VL_PARAM_BOOL, 1);
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_BOOL, 1);
   if (p)
     *value = p->integers.items[0] != 0;
   return p != NULL;
 }
 
 bool vl_dict_string(vlDict *dict, const char *name, const char **value) {
-  vlParam *p = find_counted(dict, name, VL_PARAM_STRING, 1);
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_STRING, 1);
   if (p)
     *value = p->strings.items[0];
   return p != NULL;
@@ -220,14 +220,14 @@ bool vl_dict_type(vlDict *dict, const char **type) {
 }
 
 static bool read_vector(vlDict *dict, const char *name, vlParamType type, double value[3]) {
-  vlParam *p = find_counted(dict, name, type, 3);
+  vlParam *p = vl_dict_find_counted(dict, name, 1u << type, 3);
   for (int i = 0; p && i < 3; i++)
     value[i] = p->exact[i];
   return p != NULL;
 }
 
 bool vl_dict_floats(vlDict *dict, const char *name, size_t count, double *value) {
-  vlParam *p = find_counted(dict, name, VL_PARAM_FLOAT, count);
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_FLOAT, count);
   for (size_t i = 0; p && i < count; i++)
     value[i] = p->exact[i];
   return p != NULL;
@@ -235,7 +235,7 @@ bool vl_dict_floats(vlDict *dict, const char *name, size_t count, double *value)
 
 bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, size_t count,
                     int *value) {
-  vlParam *p = find_counted(dict, name, VL_PARAM_STRING, 1);
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_STRING, 1);
   if (!p)
     return false;
   const char *text = p->strings.items[0];
@@ -373,18 +373,15 @@ static bool read_plain_spectrum(vlDict *dict, const char *name, const vlParamete
 
 static bool read_spectrum_input(vlDict *dict, const char *name, const vlParameter *p,
                                 vlSpectrumInput *at) {
-  bool given;
   if (p->flags & VL_PARAMETER_NO_TEXTURE)
     return read_plain_spectrum(dict, name, p, at);
-  return vl_import_spectrum_input(dict, name, at, p->role == VL_PARAMETER_ALBEDO, &given) &&
-         given;
+  return vl_import_spectrum_input(dict, name, at, p->role == VL_PARAMETER_ALBEDO);
 }
 
 /* Reads one parameter. False when it is not given or after an error. */
 static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char *def,
                      bool spectrum) {
   void *at = def + p->offset;
-  bool given;
   switch (p->type) {
     case VL_PARAMETER_BOOL:
       return vl_dict_bool(dict, name, at);
@@ -409,13 +406,13 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
     case VL_PARAMETER_FLOAT_INPUT:
       if (p->flags & (VL_PARAMETER_NO_TEXTURE | VL_PARAMETER_FILE_NUMBER))
         return read_number_input(dict, name, at);
-      return vl_import_float_input(dict, name, at, &given) && given;
+      return vl_import_float_input(dict, name, at);
     case VL_PARAMETER_SPECTRUM_INPUT:
       return read_spectrum_input(dict, name, p, at);
     case VL_PARAMETER_EITHER_INPUT:
       if (spectrum)
         return read_spectrum_input(dict, name, p, (vlSpectrumInput *)(void *)(def + p->second));
-      return vl_import_float_input(dict, name, at, &given) && given;
+      return vl_import_float_input(dict, name, at);
     case VL_PARAMETER_TEXTURE: /* files name textures only in place of a value */
     case VL_PARAMETER_BLOCK:
       return false;

@@ -237,12 +237,9 @@ static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
 /* Alpha: a number, or a float texture that is resolved at the end. */
 static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
-  vlParam *p = vl_dict_find(dict, "alpha", VL_BIT_FLOAT | VL_BIT_TEXTURE);
+  vlParam *p = vl_dict_find_counted(dict, "alpha", VL_BIT_FLOAT | VL_BIT_TEXTURE, 1);
   if (!p)
     return vl_import_fine(import);
-  if (vl_param_count(p) != 1)
-    return vl_dict_fail_at(dict, p->source, "parameter \"alpha\" takes 1 value, found %zu",
-                           vl_param_count(p));
   if (p->type == VL_PARAM_FLOAT) {
     def->alpha.value = p->floats.items[0];
     return true;

@@ -146,31 +146,23 @@ bool vl_import_spectrum(vlImport *import, vlParam *p, vlSpectrum *spectrum) {
   return read_named(import, p, spectrum);
 }
 
-bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given) {
-  vlImport *import = dict->import;
-  vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT | VL_BIT_TEXTURE);
-  if (given)
-    *given = p != NULL;
+bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input) {
+  vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_FLOAT | VL_BIT_TEXTURE, 1);
   if (!p)
-    return vl_import_fine(import);
-  if (vl_param_count(p) != 1)
-    return vl_dict_fail_at(dict, p->source, "parameter \"%s\" takes 1 value, found %zu", name,
-                           vl_param_count(p));
-  if (p->type == VL_PARAM_FLOAT) {
-    *input = vl_float_input(p->floats.items[0]);
-    return true;
-  }
-  return vl_import_texture_id(import, p->strings.items[0], false, p->source, &input->texture);
+    return false;
+  if (p->type == VL_PARAM_TEXTURE)
+    return vl_import_texture_id(dict->import, p->strings.items[0], false, p->source,
+                                &input->texture);
+  *input = vl_float_input(p->floats.items[0]);
+  return true;
 }
 
 bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input,
-                              bool albedo, bool *given) {
+                              bool albedo) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, name, VL_BITS_SPECTRUM | VL_BIT_TEXTURE);
-  if (given)
-    *given = p != NULL;
   if (!p)
-    return vl_import_fine(import);
+    return false;
   if (p->type == VL_PARAM_TEXTURE) {
     if (vl_param_count(p) != 1)
       return vl_dict_fail_at(dict, p->source, "parameter \"%s\" takes 1 texture, found %zu",
@@ -180,11 +172,10 @@ bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *i
   *input = (vlSpectrumInput){0};
   if (!vl_import_spectrum(import, p, &input->value))
     return false;
-  if (albedo && p->type == VL_PARAM_RGB)
-    for (int i = 0; i < 3; i++)
-      if (p->floats.items[i] > 1.0f)
-        return vl_dict_fail_at(dict, p->source,
-                               "\"rgb %s\" is a reflectance and must not be above 1, it is %g",
-                               name, (double)p->floats.items[i]);
+  for (int i = 0; albedo && p->type == VL_PARAM_RGB && i < 3; i++)
+    if (p->floats.items[i] > 1.0f)
+      return vl_dict_fail_at(dict, p->source,
+                             "\"rgb %s\" is a reflectance and must not be above 1, it is %g",
+                             name, (double)p->floats.items[i]);
   return true;
 }

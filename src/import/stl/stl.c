@@ -162,12 +162,9 @@ vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load,
                        vlError *error) {
   Stl s = {.scene = scene, .path = path};
   char *data = NULL;
-  bool ok = vl_import_plain_read(scene, path, &data, &s.at, &s.end) && read(&s) &&
-            number_vertices(&s);
+  if (vl_import_plain_read(scene, path, &data, &s.at, &s.end) && read(&s))
+    number_vertices(&s); /* else the scene has an error */
   vl_free(scene->context, data);
   s.mesh.positions = s.positions.items;
-  if (ok)
-    return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
-  vl_mesh_free(scene->context, &s.mesh);
-  return vl_scene_result(scene, error);
+  return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
 }

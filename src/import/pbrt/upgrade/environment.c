@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "image/image.h"
-#include "import/find.h"
 #include "import/pbrt/upgrade/upgrade.h"
 #include "math/approx_double.h"
 #include "math/octahedral.h"
@@ -120,15 +119,12 @@ bool vl_old_environment(const vlOldStatement *s, const char *name, const double 
                         char *result, size_t size) {
   vlUpgrade *u = s->u;
   char path[4096];
-  vlFound found = vl_find_file(u->context, s->file->path, u->first, u->def->search_path, name,
-                               path, sizeof path);
+  const vlFound found =
+      vl_old_find_file(s, name, "image", "it must become an equal-area map", path);
   if (found == VL_FOUND_TOO_LONG)
     return vl_old_fail(s->file, VL_ERROR_SCENE, s->line, 0, "file name too long");
-  if (found == VL_FOUND_NOT) {
-    u->missing++;
-    vl_old_lose(s, "there is no image \"%s\": it must become an equal-area map", name);
+  if (found == VL_FOUND_NOT)
     return snprintf(result, size, "%s", name) > 0;
-  }
   for (size_t i = 0; i < u->maps.count; i++) {
     const vlOldMap *map = &u->maps.items[i];
     if (vl_text_is(map->from, path) && memcmp(map->factor, factor, sizeof map->factor) == 0)

@@ -6,7 +6,6 @@
 
 #include "base/context.h"
 #include "base/text.h"
-#include "import/find.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 /* The path from one absolute folder to an absolute file. */
@@ -48,21 +47,31 @@ static bool is_metal(const char *name, char *result, size_t size) {
   return false;
 }
 
+vlFound vl_old_find_file(const vlOldStatement *s, const char *name, const char *what,
+                         const char *otherwise, char path[4096]) {
+  vlUpgrade *u = s->u;
+  const vlFound found =
+      vl_find_file(u->context, s->file->path, u->first, u->def->search_path, name, path, 4096);
+  if (found == VL_FOUND_NOT) {
+    u->missing++;
+    vl_old_lose(s, "there is no %s \"%s\": %s", what, name, otherwise);
+  }
+  return found;
+}
+
+static const char same_name[] = "its name stays as it is";
+
 bool vl_old_file_name(const vlOldStatement *s, const char *name, char *result, size_t size) {
   vlUpgrade *u = s->u;
   char path[4096], beside[4096], real[PATH_MAX];
   if (is_metal(name, result, size))
     return true;
-  vlFound found = vl_find_file(u->context, s->file->path, u->first, u->def->search_path, name,
-                               path, sizeof path);
+  const vlFound found = vl_old_find_file(s, name, "file", same_name, path);
   if (found == VL_FOUND_TOO_LONG || strlen(name) >= size)
     return vl_old_fail(s->file, VL_ERROR_SCENE, s->line, 0, "file name too long");
   snprintf(result, size, "%s", name);
-  if (found == VL_FOUND_NOT) {
-    u->missing++;
-    vl_old_lose(s, "there is no file \"%s\": its name stays as it is", name);
+  if (found == VL_FOUND_NOT)
     return true;
-  }
   struct stat info;
   bool first = vl_path_join(u->first, name, beside, sizeof beside) &&
                vl_context_allows(u->context, beside) && stat(beside, &info) == 0;
@@ -208,17 +217,13 @@ static const vlOldInclude *read_include(const vlOldStatement *s, const char *pat
 bool vl_old_include(vlOldStatement *s) {
   vlUpgrade *u = s->u;
   char path[4096];
-  vlFound found = vl_find_file(u->context, s->file->path, u->first, u->def->search_path,
-                               s->name[0], path, sizeof path);
+  const vlFound found = vl_old_find_file(s, s->name[0], "file", same_name, path);
   if (found == VL_FOUND_TOO_LONG)
     return vl_old_wrong(s, "file name too long");
   if (u->depth > 64)
     return vl_old_wrong(s, "files include each other more than 64 deep");
-  if (found == VL_FOUND_NOT) {
-    u->missing++;
-    vl_old_lose(s, "there is no file \"%s\": its name stays as it is", s->name[0]);
+  if (found == VL_FOUND_NOT)
     return true;
-  }
   const vlOldInclude *known = find_include(u, path);
   if (!known || known->makes || (known->refers && u->renamed))
     known = read_include(s, path, !known);

@@ -7,6 +7,7 @@
 #define IMPORT_PBRT_UPGRADE_UPGRADE_H
 
 #include "base/file_set.h"
+#include "import/find.h"
 #include "velo/upgrade.h"
 
 /* Part of a file's text: [start, end). */
@@ -276,6 +277,10 @@ vlOldRule vl_old_mesh_of_shape;
 
 /* ---- files (files.c, environment.c) ------------------------------------------------------ */
 
+/* Finds a file that the statement names. what: "file", and what becomes of its name where
+ * there is none, which is counted and reported. */
+vlFound vl_old_find_file(const vlOldStatement *s, const char *name, const char *what,
+                         const char *otherwise, char path[4096]);
 /* What the new scene says for a file that the old one names. False after an error. */
 bool vl_old_file_name(const vlOldStatement *s, const char *name, char *result, size_t size);
 /* The same for the file that a parameter names (null: none), and says so. */

@@ -133,8 +133,8 @@ static void add_vertices(Points *p, const vlWorldShape *s, float time) {
 static void add_ring(Points *p, const vlWorldShape *s, double r, double z) {
   for (int i = 0; i <= AROUND; i++) {
     double phi = (double)s->phi_max * i / AROUND, q[3];
-    const double p[3] = {r * vl_precise_cos(phi), r * vl_precise_sin(phi), z};
-    vl_map_point(s->from_shape, p, q);
+    const double at[3] = {r * vl_precise_cos(phi), r * vl_precise_sin(phi), z};
+    vl_map_point(s->from_shape, at, q);
     add(p, q[0], q[1], q[2]);
   }
 }

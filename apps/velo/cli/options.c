@@ -360,6 +360,17 @@ void option_size(const OptionValue *value, uint32_t *width, uint32_t *height) {
   *height = value->given ? (uint32_t)value->integers[1] : *height;
 }
 
+int option_crop(const OptionValue *value, uint32_t window[4]) {
+  if (!value->given)
+    return -1;
+  if (value->integers[2] > window[2] || value->integers[3] > window[3])
+    return report_usage("--crop \"%s\": the image has only %u x %u pixels", value->text,
+                        window[2], window[3]);
+  for (int i = 0; i < 4; i++)
+    window[i] = (uint32_t)value->integers[i];
+  return -1;
+}
+
 /* Reads x0,y0,x1,y1. */
 static int read_crop(const Option *option, const char *text, int64_t *crop) {
   if (read_list(text, 4, crop, NULL, false) && crop[0] >= 0 && crop[1] >= 0 &&

@@ -141,6 +141,9 @@ void options_put(const Option *options, const OptionValue *values, vlSettingGrou
 uint32_t option_count(const OptionValue *value, uint32_t otherwise);
 /* The size that was given, of OPTION_SIZE; else both numbers stay. */
 void option_size(const OptionValue *value, uint32_t *width, uint32_t *height);
+/* The pixels that were given, of OPTION_CROP, in place of the whole image in window; where none
+ * were, it stays. -1, or the exit code after reporting that the image is smaller. */
+int option_crop(const OptionValue *value, uint32_t window[4]);
 /* Reads a number by a row, in the row's unit. -1: it is read; else the exit code, after a
  * report. name: of the value in the message. number may be null. */
 int option_number(const char *name, const char *text, const vlParameter *row, double *number);

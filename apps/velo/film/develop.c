@@ -133,13 +133,12 @@ static Option develop_options[] = {
      "image file to write; may be given several times. The suffix chooses the format, as for "
      "velo render",
      OPTION_TEXTS, "FILE", .letter = 'o'},
-    {DEVELOP_VIEW, "view", "view transform from radiance to display values (.png .jpg .tga):",
-     OPTION_CHOICE, "NAME", .choices = view_choices},
+    OUTPUT_VIEW_OPTION(DEVELOP_VIEW),
     {DEVELOP_EXPOSURE, "exposure",
      "exposure of .png .jpg .tga: a number multiplies the image by 2^EV; auto chooses it so "
      "that the geometric mean of the luminance becomes 18 % grey",
      OPTION_TEXT, "EV"},
-    {DEVELOP_HALF, "half", "write .exr with 16-bit instead of 32-bit floats"},
+    OUTPUT_HALF_OPTION(DEVELOP_HALF),
     {0}};
 
 const Command film_develop_command = {

@@ -83,13 +83,7 @@ static int prepare_pixels(vlContext *context, const Arguments *arguments, bool w
                           vlImage **image) {
   const OptionValue *crop = &arguments->values[CONVERT_CROP];
   uint32_t window[4] = {0, 0, vl_image_width(*image), vl_image_height(*image)};
-  if (crop->given) {
-    if (crop->integers[2] > window[2] || crop->integers[3] > window[3])
-      return report_usage("--crop \"%s\": the image has only %u x %u pixels", crop->text,
-                          window[2], window[3]);
-    for (int i = 0; i < 4; i++)
-      window[i] = (uint32_t)crop->integers[i];
-  }
+  TRY(option_crop(crop, window));
   bool to_float = want_float && !is_float(*image);
   if (!crop->given && !to_float)
     return -1;
@@ -225,11 +219,9 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
 static Option convert_options[] = {
     {CONVERT_CROP, "crop", "write only these pixels; x1 and y1 are exclusive", OPTION_CROP,
      "x0,y0,x1,y1"},
-    {CONVERT_VIEW, "view", "view transform from radiance to display values (.png .jpg .tga):",
-     OPTION_CHOICE, "NAME", .choices = view_choices},
-    {CONVERT_EXPOSURE, "exposure", "exposure of .png .jpg .tga: multiply the image by 2^EV",
-     OPTION_NUMBER, "EV"},
-    {CONVERT_HALF, "half", "write .exr with 16-bit instead of 32-bit floats"},
+    OUTPUT_VIEW_OPTION(CONVERT_VIEW),
+    OUTPUT_EXPOSURE_OPTION(CONVERT_EXPOSURE),
+    OUTPUT_HALF_OPTION(CONVERT_HALF),
     {CONVERT_CHANNEL, "channel", "write one channel only, such as Z", OPTION_TEXT, "NAME"},
     {CONVERT_SCALE, "scale",
      "with --channel and .png: multiply by FACTOR and round to 16-bit integers; depth in "

@@ -131,12 +131,11 @@ static int override_crop(vlSceneDefs *defs, const Arguments *arguments) {
   if (crop->given && window->given)
     return report_usage("--crop and --cropwindow exclude each other");
   if (crop->given) {
-    if (crop->integers[2] > width || crop->integers[3] > height)
-      return report_usage("--crop \"%s\": the image has only %u x %u pixels", crop->text, width,
-                          height);
-    for (int i = 0; i < 4; i++)
-      defs->film.crop[i] = (uint32_t)crop->integers[i];
-  } else if (window->given) {
+    const uint32_t whole[4] = {0, 0, width, height};
+    memcpy(defs->film.crop, whole, sizeof whole);
+    return option_crop(crop, defs->film.crop);
+  }
+  if (window->given) {
     defs->film.crop[0] = crop_pixel(width, window->numbers[0]);
     defs->film.crop[2] = crop_pixel(width, window->numbers[1]);
     defs->film.crop[1] = crop_pixel(height, window->numbers[2]);

@@ -4,6 +4,7 @@
 #include "render/channels.h"
 #include "render/job.h"
 #include "render/lens_options.h"
+#include "render/outputs.h"
 
 /* The first is a family of velo/schema.h; others are further names. */
 static const Choice tracers[] = {{"tracers", 0}, {"auto", TRACER_AUTO}, {0}},
@@ -228,8 +229,7 @@ Option render_options[] = {
      "camera whose spectral response the sensor has; daylight of 6500 K becomes white, unless "
      "the scene gives another white balance:",
      OPTION_KIND, "NAME", .choices = sensor_choices},
-    {RENDER_VIEW, "view", "view transform from radiance to display values (.png .jpg .tga):",
-     OPTION_CHOICE, "NAME", .choices = view_choices},
+    OUTPUT_VIEW_OPTION(RENDER_VIEW),
     {RENDER_FOCUS_PIXEL, "focus-pixel",
      "autofocus: focus on the surface that is seen at this point of the image, in pixels from "
      "the top left corner",
@@ -295,7 +295,7 @@ Option render_options[] = {
     {RENDER_TRANSPARENT, "transparent",
      "transparent background: .png and .exr have an alpha channel, in which ground and studio "
      "are transparent (.exr: premultiplied)"},
-    {RENDER_HALF, "half", "write .exr with 16-bit instead of 32-bit floats"},
+    OUTPUT_HALF_OPTION(RENDER_HALF),
     {RENDER_AGAIN, "again",
      "repeat the render that the receipt in the image's header describes: the result has the "
      "same bytes, or a message names what has changed. FILE gives the scene's path if it has "

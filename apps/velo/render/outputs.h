@@ -38,6 +38,21 @@ typedef struct Outputs {
   } files[MAX_OUTPUTS];
 } Outputs;
 
+/* Rows of options of commands that write images. */
+#define OUTPUT_VIEW_OPTION(id)                                                             \
+  {                                                                                        \
+    (id), "view",                                                                          \
+        "view transform from radiance to display values (.png .jpg .tga):", OPTION_CHOICE, \
+        "NAME", .choices = view_choices                                                    \
+  }
+#define OUTPUT_EXPOSURE_OPTION(id)                                                             \
+  {                                                                                            \
+    (id), "exposure", "exposure of .png .jpg .tga: multiply the image by 2^EV", OPTION_NUMBER, \
+        "EV"                                                                                   \
+  }
+#define OUTPUT_HALF_OPTION(id) \
+  { (id), "half", "write .exr with 16-bit instead of 32-bit floats" }
+
 /* Whether the output is the standard output. */
 bool output_is_stdout(const char *path);
 /* The path that is opened for this output. */

@@ -11,7 +11,7 @@
 #include "render/lens_options.h"
 #include "render/receipt.h"
 #include "velo/camera_file.h"
-#include "view/engine_parts.h"
+#include "view/engine_answers.h"
 
 /* The texts of the command's options, as long as it is used. */
 typedef struct FilmCommand {

@@ -9,8 +9,8 @@
 
 #include "cli/report.h"
 #include "render/needs.h"
+#include "view/engine_answers.h"
 #include "view/engine_copied.h"
-#include "view/engine_parts.h"
 #include "view/engine_sensor.h"
 #include "view/view.h"
 

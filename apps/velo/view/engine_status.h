@@ -2,7 +2,7 @@
 #ifndef APP_VIEW_ENGINE_STATUS_H
 #define APP_VIEW_ENGINE_STATUS_H
 
-#include "view/engine_parts.h"
+#include "view/engine_answers.h"
 #include "view/state.h"
 
 /* Samples, speed, estimated error. estimate: the error is estimated anew now. */

@@ -3,7 +3,7 @@
  * page.c calls engine_work.
  */
 #include "cli/report.h"
-#include "view/engine_parts.h"
+#include "view/engine_answers.h"
 
 /* Does one kind of work whenever some waits, until the engine ends. */
 static void *serve(Engine *e, bool (*waits)(const Engine *), bool (*work)(Engine *)) {

@@ -1029,6 +1029,10 @@ MISTAKES = [
      r"tracers raycast: mirror", "src/tracer/tracers.hot.c",
      "s->at.shade.reflectance[c][i] : 0.8f;",
      "s->at.shade.reflectance[c][i] : 1.0f;"),
+    ("temperatures in RGB: the nearest lower step", "media:uniformgrid media:nanovdb",
+     r"media uniformgrid:.*in RGB the luminance", "src/medium/lookup.h",
+     "le[c] = scale * (a[c] + f * (a[c + 3] - a[c]));",
+     "le[c] = scale * a[c];"),
     ]
 
 

@@ -97,6 +97,51 @@ static void check_emission_of_heat(const char *kind, const MediumCase *c) {
   vl_world_destroy(worlds[1]);
 }
 
+/* The luminance of the emission at a point: the integral over wavelengths of the observer's y.
+ */
+static double luminance_at(const vlWorldMedium *m, bool rgb, const double p[3]) {
+  const vlVec3 at = vl_vec3((float)p[0], (float)p[1], (float)p[2]);
+  const float *y = vl_cie_y();
+  double sum = 0;
+  for (int i = 0; i + 3 < VL_LAMBDA_COUNT; i += 4) {
+    const int k = VL_LAMBDA_MIN + i;
+    const float lambda[4] = {(float)k, (float)(k + 1), (float)(k + 2), (float)(k + 3)};
+    const vlMediumLight all = vl_medium_coefficients(m, lambda);
+    const vlMediumLight here = vl_medium_at(m, &all, lambda, at, true);
+    if (rgb)
+      return 0.212639 * (double)here.le[0] + 0.715169 * (double)here.le[1] +
+             0.072192 * (double)here.le[2];
+    for (int c = 0; c < 4; c++)
+      sum += (double)y[i + c] * (double)here.le[c];
+  }
+  return sum;
+}
+
+/* Heat that one sees has the luminance in RGB that it has in wavelengths. (What glows less is
+ * redder than RGB can say.) */
+static void check_heat_in_rgb(const char *kind, const MediumCase *c) {
+  enum { POINTS = 200 };
+  vlWorld *rgb = world_of_medium(kind, c->hot[0], VL_COLOR_RGB);
+  vlWorld *spectral = world_of_medium(kind, c->hot[0], VL_COLOR_SPECTRAL);
+  uint32_t seen = 0;
+  double worst = 0;
+  for (uint32_t i = 0; i < POINTS; i++) {
+    double p[3];
+    point_in_box(i, p);
+    p[2] *= 0.49;
+    const double known = luminance_at(&spectral->media.items[0], false, p);
+    if (known < 1)
+      continue;
+    seen++;
+    worst = fmax(worst, fabs(luminance_at(&rgb->media.items[0], true, p) / known - 1));
+  }
+  if (!(worst < 0.02) || seen < POINTS / 4)
+    broken("media", kind, "%s: in RGB the luminance of its emission is %.4f off", c->hot[0],
+           worst);
+  vl_world_destroy(rgb);
+  vl_world_destroy(spectral);
+}
+
 /* Of the medium that a scene describes; density: null: not known. */
 static void check_densities(const char *kind, const char *parameters,
                             double (*density)(const double p[3], PlainNoise *noise)) {
@@ -141,6 +186,8 @@ static void laws_of_densities(void **state) {
     }
     if (c->hot[0])
       check_emission_of_heat(family->rows[k]->name, c);
+    if (c->hot[0])
+      check_heat_in_rgb(family->rows[k]->name, c);
     if (c->tall)
       check_densities(family->rows[k]->name, c->tall, NULL);
     if (c->blocks)

@@ -46,19 +46,24 @@ static void across(const double d[3], double a[3], double b[3]) {
     b[k] = d[(k + 1) % 3] * a[(k + 2) % 3] - d[(k + 2) % 3] * a[(k + 1) % 3];
 }
 
+/* One of the lines that cross a ball around the origin evenly, from outside of it. */
+static void even_line(uint32_t i, uint32_t batch, double reach, double origin[3], double d[3]) {
+  double a[3];
+  double b[3];
+  double at[2];
+  even_direction(i, VL_OWN_BATCH, 0.7548776662 * batch, d);
+  across(d, a, b);
+  even_disk(i, 0.618034 * batch, at);
+  for (int k = 0; k < 3; k++)
+    origin[k] = reach * (at[0] * a[k] + at[1] * b[k] - 2 * d[k]);
+}
+
 static void count_crossings(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
   double found[VL_OWN_BATCH] = {0};
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     double d[3];
-    double a[3];
-    double b[3];
-    double at[2];
     double origin[3];
-    even_direction(i, VL_OWN_BATCH, 0.7548776662 * batch, d);
-    across(d, a, b);
-    even_disk(i, 0.618034 * batch, at);
-    for (int k = 0; k < 3; k++)
-      origin[k] = s->reach * (at[0] * a[k] + at[1] * b[k]) - 2 * d[k];
+    even_line(i, batch, s->reach, origin, d);
     set_ray(s->rays, i, origin, d);
   }
   bool more = true;

@@ -137,15 +137,8 @@ static Mean area_by_crossings(const vlWorldShape *s, double reach) {
     uint32_t found = 0;
     for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
       double d[3];
-      double a[3];
-      double b[3];
-      double at[2];
       double o[3];
-      even_direction(i, VL_OWN_BATCH, 0.7548776662 * batch, d);
-      across(d, a, b);
-      even_disk(i, 0.618034 * batch, at);
-      for (int k = 0; k < 3; k++)
-        o[k] = reach * (at[0] * a[k] + at[1] * b[k]) - 2 * reach * d[k];
+      even_line(i, batch, reach, o, d);
       found += crossings_of_line(s, o, d);
     }
     mean_add(&area, 2 * PI * reach * reach * found / VL_OWN_BATCH);

@@ -8,9 +8,15 @@ vlBsdfSample vl_bsdf_translucent_sample;
 
 /* Probability of reflection, of the largest channels of both colours; any value if both are 0.
  */
-static inline float share(float reflectance, float transmittance) {
-  float sum = reflectance + transmittance;
-  return sum > 0.0f ? reflectance / sum : 1.0f;
+static inline float share(const vlBsdfParams *params, uint32_t i) {
+  float *const *reflectance = params->reflectance;
+  float *const *transmittance = params->own + VL_T_TRANSMITTANCE;
+  float r =
+      vl_largest4(reflectance[0][i], reflectance[1][i], reflectance[2][i], reflectance[3][i]);
+  float t = vl_largest4(transmittance[0][i], transmittance[1][i], transmittance[2][i],
+                        transmittance[3][i]);
+  float sum = r + t;
+  return sum > 0.0f ? r / sum : 1.0f;
 }
 
 void vl_bsdf_translucent_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
@@ -19,12 +25,7 @@ void vl_bsdf_translucent_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDire
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float zo = wo.z[i], zi = wi.z[i], side = zo * zi;
-    float r = vl_largest4(params->reflectance[0][i], params->reflectance[1][i],
-                          params->reflectance[2][i], params->reflectance[3][i]);
-    float t = vl_largest4(
-        params->own[VL_T_TRANSMITTANCE][i], params->own[VL_T_TRANSMITTANCE + 1][i],
-        params->own[VL_T_TRANSMITTANCE + 2][i], params->own[VL_T_TRANSMITTANCE + 3][i]);
-    float p = share(r, t);
+    float p = share(params, i);
     float c = side != 0.0f ? vl_abs(zi) * VL_INV_PI : 0.0f;
     float up = side > 0.0f ? 1.0f : 0.0f, down = 1.0f - up;
     for (int k = 0; k < 4; k++)
@@ -40,12 +41,7 @@ void vl_bsdf_translucent_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDi
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float zo = wo.z[i];
-    float r = vl_largest4(params->reflectance[0][i], params->reflectance[1][i],
-                          params->reflectance[2][i], params->reflectance[3][i]);
-    float t = vl_largest4(
-        params->own[VL_T_TRANSMITTANCE][i], params->own[VL_T_TRANSMITTANCE + 1][i],
-        params->own[VL_T_TRANSMITTANCE + 2][i], params->own[VL_T_TRANSMITTANCE + 3][i]);
-    float p = share(r, t);
+    float p = share(params, i);
     vlVec3 d = vl_cosine_direction(random.u[i], random.v[i]);
     int reflect = (random.lobe[i] < p), valid = (vl_abs(zo) > 0.0f);
     float up = reflect ? 1.0f : 0.0f, down = 1.0f - up, on = valid ? 1.0f : 0.0f;

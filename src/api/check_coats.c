@@ -90,7 +90,7 @@ static void check_coats(vlCheck *check) {
   uint32_t count = 0;
   for (size_t i = 0; i < check->scene->materials.count && !check->no_memory; i++) {
     const vlMaterialDef *m = &check->scene->materials.items[i];
-    double lost = check->material_used[i] ? loss_of(check, m, &coats) : 0;
+    double lost = check->used[VL_SCENE_MATERIALS][i] ? loss_of(check, m, &coats) : 0;
     if (lost < least)
       continue;
     count++;

@@ -5,30 +5,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/cookie.h"
 #include "base/text.h"
 #include "color/color.h"
 #include "color/named.h"
-#include "scene/scene.h"
+#include "scene/family.h"
 #include "schema/schema.h"
-#include "velo/edit.h"
 #include "velo/material.h"
 #include "velo/texture.h"
-
-enum { MAX_OBJECTS = 0x7fffffff };
-
-bool vl_scene_may_add(vlScene *scene, const void *def, bool cookie, size_t count,
-                      vlSource source, const char *what) {
-  if (scene->error.code != VL_OK)
-    return false;
-  if (!def || !cookie) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, source, "%s: " VL_BAD_COOKIE, what);
-    return false;
-  }
-  if (count >= MAX_OBJECTS)
-    vl_scene_fail(scene, VL_ERROR_SCENE, source, "too many objects");
-  return count < MAX_OBJECTS;
-}
 
 bool vl_scene_reject(vlScene *scene, vlSource source, const char *what, const char *why) {
   vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s: %s", what, why);
@@ -249,8 +232,7 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKin
 /* Members that the kind's row does not describe are not stored. */
 static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool adopt) {
   const vlTextureId none = {0};
-  if (!vl_scene_may_add(scene, def, def && def->cookie == VL_COOKIE_TEXTURE,
-                        scene->textures.count, (vlSource){0}, "texture"))
+  if (!vl_scene_may_add(scene, VL_SCENE_TEXTURES, def))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
   if (!row) {
@@ -270,13 +252,7 @@ static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool ado
   if (!adopt && (!vl_scene_copy_image(scene, &d.image) ||
                  !vl_scene_copy_block(scene, d.data, d.data_size, 1, &d.data)))
     return none;
-  vlTextureDef *slot = VL_PUSH(scene->context, &scene->textures);
-  if (!slot) {
-    vl_scene_fail_memory(scene);
-    return none;
-  }
-  *slot = d;
-  return (vlTextureId){(uint32_t)scene->textures.count};
+  return (vlTextureId){vl_scene_push(scene, VL_SCENE_TEXTURES, &d)};
 }
 
 vlTextureId vl_scene_add_texture(vlScene *scene, const vlTextureDef *def) {
@@ -319,8 +295,7 @@ bool vl_principled_transmits(const vlMaterialDef *def) {
 /* Members that the kind's row does not describe are not stored. */
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
-  if (!vl_scene_may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL,
-                        scene->materials.count, (vlSource){0}, "material"))
+  if (!vl_scene_may_add(scene, VL_SCENE_MATERIALS, def))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
   if (!row) {
@@ -352,11 +327,5 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
     d.materials[0] = def->materials[0];
     d.materials[1] = def->materials[1];
   }
-  vlMaterialDef *slot = VL_PUSH(scene->context, &scene->materials);
-  if (!slot) {
-    vl_scene_fail_memory(scene);
-    return none;
-  }
-  *slot = d;
-  return (vlMaterialId){(uint32_t)scene->materials.count};
+  return (vlMaterialId){vl_scene_push(scene, VL_SCENE_MATERIALS, &d)};
 }

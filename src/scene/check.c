@@ -41,18 +41,12 @@ void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSou
 }
 
 static bool make_used(vlCheck *check) {
-  const vlScene *s = check->scene;
-  const struct {
-    uint8_t **array;
-    size_t count;
-  } all[] = {{&check->texture_used, s->textures.count},
-             {&check->material_used, s->materials.count},
-             {&check->medium_used, s->media.count},
-             {&check->group_used, s->groups.count},
-             {&check->emission_used, s->emissions.count}};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (!(*all[i].array = vl_alloc_zero(check->context, all[i].count + 1, 1)))
+  for (int k = 0; k < VL_SCENE_FAMILIES; k++) {
+    const size_t count = vl_scene_highest(check->scene, (vlSceneFamily)k);
+    check->used[k] = vl_alloc_zero(check->context, count + 1, 1);
+    if (!check->used[k])
       return false;
+  }
   return true;
 }
 
@@ -117,8 +111,9 @@ void vl_check_destroy(vlCheck *check) {
     vl_free(c, block);
   }
   VL_ARRAY_FREE(c, &check->findings);
-  VL_FREE(c, check->texture_used, check->material_used, check->medium_used, check->group_used,
-          check->emission_used, check);
+  for (int k = 0; k < VL_SCENE_FAMILIES; k++)
+    vl_free(c, check->used[k]);
+  vl_free(c, check);
 }
 
 uint32_t vl_check_count(const vlCheck *check) {

@@ -4,7 +4,7 @@
 #ifndef SCENE_CHECK_H
 #define SCENE_CHECK_H
 
-#include "scene/scene.h"
+#include "scene/family.h"
 #include "velo/check.h"
 
 struct vlCheck {
@@ -14,7 +14,7 @@ struct vlCheck {
   VL_ARRAY(vlFinding) findings; /* each message has a memory block of its own */
   bool no_memory;
   /* One flag per object, at index id - 1: whether shapes, lights or instances use it. */
-  uint8_t *texture_used, *material_used, *medium_used, *group_used, *emission_used;
+  uint8_t *used[VL_SCENE_FAMILIES];
 };
 
 void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source,
@@ -27,7 +27,7 @@ typedef void vlCheckPart(vlCheck *check);
 vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart *more,
                        vlCheck **check, vlError *error);
 void vl_check_names(
-    vlCheck *check); /* finds unused and replaced names; fills the arrays *_used */
+    vlCheck *check); /* finds unused and replaced names; fills the arrays `used` */
 void vl_check_images(vlCheck *check); /* checks image files, albedos and the power of lights */
 void vl_check_meshes(
     vlCheck *check); /* finds degenerate faces, missing uvs, open and inverted solids */

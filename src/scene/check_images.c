@@ -309,7 +309,7 @@ static void check_lights(vlCheck *c) {
   }
   for (size_t i = 0; i < s->emissions.count; i++) {
     const vlEmissionDef *e = &s->emissions.items[i];
-    if (c->emission_used[i] &&
+    if (c->used[VL_SCENE_EMISSIONS][i] &&
         (is_dark(&e->radiance, e->scale, e->image || e->texture.index) || e->power == 0.0))
       vl_check_add(c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, e->source,
                    "this area light gives no light: its power is 0");

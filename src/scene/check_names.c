@@ -46,63 +46,42 @@ vlCheckName vl_check_texture_name(const vlTextureDef *t) {
   return name_of("texture", t->name, t->source.line);
 }
 
-static void use(uint8_t *used, uint32_t index) {
-  if (index)
-    used[index - 1] = 1;
+/* Marks what an object refers to. flags: an array of each family; null: not marked. */
+static void mark_uses(const vlScene *scene, vlSceneFamily family, size_t index,
+                      uint8_t *const flags[VL_SCENE_FAMILIES]) {
+  const void *def = vl_scene_item(scene, family, (uint32_t)index);
+  vlSceneUse uses[VL_SCENE_MAX_USES];
+  const uint32_t count = def ? vl_scene_uses(family, def, uses) : 0;
+  for (uint32_t i = 0; i < count; i++)
+    if (flags[uses[i].family])
+      flags[uses[i].family][uses[i].index - 1] = 1;
 }
 
 static void find_used(vlCheck *c) {
   const vlScene *s = c->scene;
-  for (size_t i = 0; i < s->shapes.count; i++) {
-    const vlShapeDef *d = &s->shapes.items[i];
-    use(c->material_used, d->material.index);
-    use(c->emission_used, d->emission.index);
-    use(c->texture_used, d->alpha.texture.index);
-    use(c->medium_used, d->inside.index);
-    use(c->medium_used, d->outside.index);
-  }
-  for (size_t i = 0; i < s->lights.count; i++)
-    use(c->medium_used, s->lights.items[i].medium.index);
-  use(c->medium_used, s->defs.camera_medium.index);
-  for (size_t i = 0; i < s->emissions.count; i++)
-    use(c->texture_used, s->emissions.items[i].texture.index);
-  for (size_t i = 0; i < s->instances.count; i++)
-    use(c->group_used, s->instances.items[i].group.index);
-  vlTextureId inputs[VL_CHECK_INPUTS];
-  for (size_t i = s->materials.count; i-- > 0;) {
-    const vlMaterialDef *m = &s->materials.items[i];
-    if (!c->material_used[i])
-      continue;
-    use(c->material_used, m->materials[0].index);
-    use(c->material_used, m->materials[1].index);
-    uint32_t n = vl_check_material_inputs(m, inputs);
-    for (uint32_t k = 0; k < n; k++)
-      use(c->texture_used, inputs[k].index);
-  }
-  for (size_t i = s->textures.count; i-- > 0;) {
-    if (!c->texture_used[i])
-      continue;
-    uint32_t n = vl_check_texture_inputs(&s->textures.items[i], inputs);
-    for (uint32_t k = 0; k < n; k++)
-      use(c->texture_used, inputs[k].index);
-  }
+  const vlSceneFamily roots[] = {VL_SCENE_SHAPES, VL_SCENE_LIGHTS, VL_SCENE_EMISSIONS,
+                                 VL_SCENE_INSTANCES};
+  const vlSceneFamily readers[] = {VL_SCENE_MATERIALS, VL_SCENE_TEXTURES};
+  for (size_t k = 0; k < sizeof roots / sizeof *roots; k++)
+    for (size_t i = 1; i <= vl_scene_highest(s, roots[k]); i++)
+      mark_uses(s, roots[k], i, c->used);
+  if (s->defs.camera_medium.index)
+    c->used[VL_SCENE_MEDIA][s->defs.camera_medium.index - 1] = 1;
+  for (size_t k = 0; k < sizeof readers / sizeof *readers; k++)
+    for (size_t i = vl_scene_highest(s, readers[k]); i > 0; i--)
+      if (c->used[readers[k]][i - 1])
+        mark_uses(s, readers[k], i, c->used);
 }
 
-/* Marks textures that a material or another texture reads, used or not. They are not reported:
- * their unused reader is. */
-static void mark_textures_of_unused(vlCheck *c, uint8_t *read) {
-  const vlScene *s = c->scene;
-  vlTextureId inputs[VL_CHECK_INPUTS];
-  for (size_t i = 0; i < s->materials.count; i++) {
-    uint32_t n = vl_check_material_inputs(&s->materials.items[i], inputs);
-    for (uint32_t k = 0; k < n; k++)
-      use(read, inputs[k].index);
-  }
-  for (size_t i = 0; i < s->textures.count; i++) {
-    uint32_t n = vl_check_texture_inputs(&s->textures.items[i], inputs);
-    for (uint32_t k = 0; k < n; k++)
-      use(read, inputs[k].index);
-  }
+/* Marks what a material or another texture reads, used or not. It is not reported: its unused
+ * reader is. */
+static void mark_inputs_of_unused(const vlScene *scene, uint8_t *textures, uint8_t *materials) {
+  uint8_t *const flags[VL_SCENE_FAMILIES] = {
+      [VL_SCENE_TEXTURES] = textures, [VL_SCENE_MATERIALS] = materials};
+  for (size_t i = 1; i <= scene->materials.count; i++)
+    mark_uses(scene, VL_SCENE_MATERIALS, i, flags);
+  for (size_t i = 1; i <= scene->textures.count; i++)
+    mark_uses(scene, VL_SCENE_TEXTURES, i, flags);
 }
 
 static bool named(const char *name) {
@@ -119,19 +98,16 @@ static void tell_unused(vlCheck *c) {
     c->no_memory = true;
     return;
   }
-  mark_textures_of_unused(c, read);
-  for (size_t i = 0; i < s->materials.count; i++)
-    for (int k = 0; k < 2; k++)
-      use(mixed, s->materials.items[i].materials[k].index);
+  mark_inputs_of_unused(s, read, mixed);
   for (size_t i = 0; i < s->textures.count; i++) {
     const vlTextureDef *t = &s->textures.items[i];
-    if (!c->texture_used[i] && !read[i] && named(t->name))
+    if (!c->used[VL_SCENE_TEXTURES][i] && !read[i] && named(t->name))
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, t->source,
                    "texture \"%s\" is not used", vl_short_text(t->name).text);
   }
   for (size_t i = 0; i < s->materials.count; i++) {
     const vlMaterialDef *m = &s->materials.items[i];
-    if (c->material_used[i] || mixed[i])
+    if (c->used[VL_SCENE_MATERIALS][i] || mixed[i])
       continue;
     if (named(m->name))
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, m->source,
@@ -141,11 +117,11 @@ static void tell_unused(vlCheck *c) {
                    "no shape takes this material");
   }
   for (size_t i = 0; i < s->media.count; i++)
-    if (!c->medium_used[i] && !vl_scene_mark(&s->medium_marks, i).removed)
+    if (!c->used[VL_SCENE_MEDIA][i] && vl_scene_has(s, VL_SCENE_MEDIA, (uint32_t)i + 1))
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->media.items[i].source,
                    "nothing lies in medium \"%s\"", vl_short_text(s->media.items[i].name).text);
   for (size_t i = 0; i < s->emissions.count; i++)
-    if (!c->emission_used[i] && !vl_scene_mark(&s->emission_marks, i).removed)
+    if (!c->used[VL_SCENE_EMISSIONS][i] && vl_scene_has(s, VL_SCENE_EMISSIONS, (uint32_t)i + 1))
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->emissions.items[i].source,
                    "no shape emits light by this area light");
   vl_free(c->context, read);
@@ -159,7 +135,7 @@ static void tell_groups(vlCheck *c) {
   size_t next = 0;
   for (size_t g = 0; g < s->groups.count; g++) {
     const vlSceneGroup *group = &s->groups.items[g];
-    if (!c->group_used[g] && group->shape_count && named(group->name)) {
+    if (!c->used[VL_SCENE_GROUPS][g] && group->shape_count && named(group->name)) {
       while (next < s->shapes.count && s->shapes.items[next].group.index != g + 1)
         next++;
       vlSource at = next < s->shapes.count ? s->shapes.items[next].source : (vlSource){0};
@@ -167,7 +143,7 @@ static void tell_groups(vlCheck *c) {
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, at,
                    "object \"%s\" is placed nowhere", vl_short_text(group->name).text);
     }
-    if (!c->group_used[g] || group->shape_count)
+    if (!c->used[VL_SCENE_GROUPS][g] || group->shape_count)
       continue;
     size_t i = 0;
     while (s->instances.items[i].group.index != g + 1)

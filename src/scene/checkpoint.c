@@ -60,45 +60,17 @@ static void count_groups(vlScene *scene) {
   }
 }
 
-/* The array may have moved since. */
-#define KEEP_ARRAY(array)                         \
-  do {                                            \
-    scene->array.items = after.array.items;       \
-    scene->array.capacity = after.array.capacity; \
-  } while (0)
-
 void vl_scene_roll_back(vlScene *scene, vlSceneCheckpoint *checkpoint) {
   if (!scene || !checkpoint || checkpoint->scene.number != scene->number)
     return;
   const vlScene after = *scene;
   free_added(scene, &checkpoint->scene);
   *scene = checkpoint->scene;
-  KEEP_ARRAY(textures);
-  KEEP_ARRAY(materials);
-  KEEP_ARRAY(emissions);
-  KEEP_ARRAY(lights);
-  KEEP_ARRAY(media);
-  KEEP_ARRAY(shapes);
-  KEEP_ARRAY(groups);
-  KEEP_ARRAY(instances);
-  KEEP_ARRAY(texture_marks);
-  KEEP_ARRAY(material_marks);
-  KEEP_ARRAY(emission_marks);
-  KEEP_ARRAY(group_marks);
-  KEEP_ARRAY(light_marks);
-  KEEP_ARRAY(medium_marks);
-  KEEP_ARRAY(shape_marks);
-  KEEP_ARRAY(apertures);
-  KEEP_ARRAY(optics);
-  KEEP_ARRAY(blocks);
-  KEEP_ARRAY(images);
-  KEEP_ARRAY(files);
-  KEEP_ARRAY(choices);
-  KEEP_ARRAY(frame_points);
-  KEEP_ARRAY(unread);
-  KEEP_ARRAY(edits);
-  KEEP_ARRAY(removed_shapes);
-  KEEP_ARRAY(removed_instances);
+#define KEEP_ARRAY(array)                                               \
+  scene->array.items = after.array.items; /* it may have moved since */ \
+  scene->array.capacity = after.array.capacity;
+  VL_SCENE_ARRAYS(KEEP_ARRAY)
+#undef KEEP_ARRAY
   for (size_t i = 0; i < scene->unread.count; i++)
     scene->unread.items[i].count = checkpoint->unread[i];
   count_groups(scene);

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/scene.h"
+#include "scene/family.h"
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/medium.h"
@@ -15,34 +15,28 @@
 
 /* ---- defs -------------------------------------------------------------------------------- */
 
-#define ITEM(scene, array, id)                                 \
-  ((scene) && (id).index && (id).index <= (scene)->array.count \
-       ? &(scene)->array.items[(id).index - 1]                 \
-       : NULL)
-
 const vlTextureDef *vl_scene_texture(const vlScene *scene, vlTextureId id) {
-  return vl_scene_has(scene, VL_SCENE_TEXTURES, id.index) ? ITEM(scene, textures, id) : NULL;
+  return vl_scene_item(scene, VL_SCENE_TEXTURES, id.index);
 }
 const vlMaterialDef *vl_scene_material(const vlScene *scene, vlMaterialId id) {
-  return vl_scene_has(scene, VL_SCENE_MATERIALS, id.index) ? ITEM(scene, materials, id) : NULL;
+  return vl_scene_item(scene, VL_SCENE_MATERIALS, id.index);
 }
 const vlEmissionDef *vl_scene_emission(const vlScene *scene, vlEmissionId id) {
-  return vl_scene_has(scene, VL_SCENE_EMISSIONS, id.index) ? ITEM(scene, emissions, id) : NULL;
+  return vl_scene_item(scene, VL_SCENE_EMISSIONS, id.index);
 }
 const vlLightDef *vl_scene_light(const vlScene *scene, vlLightId id) {
-  return vl_scene_has(scene, VL_SCENE_LIGHTS, id.index) ? ITEM(scene, lights, id) : NULL;
+  return vl_scene_item(scene, VL_SCENE_LIGHTS, id.index);
 }
 const vlMediumDef *vl_scene_medium(const vlScene *scene, vlMediumId id) {
-  return vl_scene_has(scene, VL_SCENE_MEDIA, id.index) ? ITEM(scene, media, id) : NULL;
+  return vl_scene_item(scene, VL_SCENE_MEDIA, id.index);
 }
 const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id) {
-  const vlShapeDef *def = ITEM(scene, shapes, id);
-  return def && !vl_scene_shape_is_removed(scene, id.index - 1) ? def : NULL;
+  return vl_scene_item(scene, VL_SCENE_SHAPES, id.index);
 }
 
 vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo *info) {
-  const vlSceneInstance *instance = ITEM(scene, instances, id);
-  if (!instance || instance->removed || !info)
+  const vlSceneInstance *instance = vl_scene_item(scene, VL_SCENE_INSTANCES, id.index);
+  if (!instance || !info)
     return VL_ERROR_ARGUMENT;
   *info = (vlInstanceInfo){.group = instance->group,
                            .moves = instance->keys > 0,
@@ -68,6 +62,13 @@ static vlResult check(const vlScene *scene, bool found, const char *what, vlErro
                : vl_fail(error, VL_ERROR_ARGUMENT, "%s: there is no such %s", what, what);
 }
 
+/* Whether a change of this object may begin: the scene has no error, and the object is there.
+ */
+static vlResult check_object(const vlScene *scene, vlSceneFamily family, uint32_t index,
+                             vlError *error) {
+  return check(scene, vl_scene_has(scene, family, index), vl_scene_rows[family].thing, error);
+}
+
 /* Takes the error of a failed change out of the scene. */
 static vlResult take_error(vlScene *scene, vlError *error) {
   vlResult result = scene->error.code;
@@ -91,11 +92,11 @@ bool vl_scene_image_is_used(const vlScene *scene, const vlImage *image) {
 
 /* Frees what an earlier change of the object has allocated; entries from `end` on are of this
  * change. */
-void vl_scene_free_edits(vlScene *scene, const void *array, uint32_t id, size_t end) {
+void vl_scene_free_edits(vlScene *scene, vlSceneFamily family, uint32_t id, size_t end) {
   size_t kept = 0;
   for (size_t i = 0; i < scene->edits.count; i++) {
     vlSceneEdit e = scene->edits.items[i];
-    if (i < end && e.array == array && e.id == id &&
+    if (i < end && e.family == family && e.id == id &&
         !(e.image && vl_scene_image_is_used(scene, e.image))) {
       vl_free(scene->context, e.block);
       vl_image_destroy(e.image);
@@ -108,26 +109,26 @@ void vl_scene_free_edits(vlScene *scene, const void *array, uint32_t id, size_t 
 
 /* Moves the blocks and images that the change has added to the scene's lists into its edits.
  * There is room. */
-static void note_edits(vlScene *scene, const void *array, uint32_t id, size_t blocks,
+static void note_edits(vlScene *scene, vlSceneFamily family, uint32_t id, size_t blocks,
                        size_t images) {
   for (size_t i = blocks; i < scene->blocks.count; i++)
     scene->edits.items[scene->edits.count++] =
-        (vlSceneEdit){array, id, scene->blocks.items[i], NULL};
+        (vlSceneEdit){family, id, scene->blocks.items[i], NULL};
   for (size_t i = images; i < scene->images.count; i++)
     scene->edits.items[scene->edits.count++] =
-        (vlSceneEdit){array, id, NULL, scene->images.items[i]};
+        (vlSceneEdit){family, id, NULL, scene->images.items[i]};
   scene->blocks.count = blocks;
   scene->images.count = images;
 }
 
 /* Ends a change: what the failed or the replaced def has allocated is freed. */
-static vlResult finish(vlScene *scene, const void *array, uint32_t id, size_t blocks,
+static vlResult finish(vlScene *scene, vlSceneFamily family, uint32_t id, size_t blocks,
                        size_t images, bool done, vlError *error) {
   size_t old = scene->edits.count;
   if (done && VL_RESERVE(scene->context, &scene->edits,
                          scene->blocks.count - blocks + scene->images.count - images)) {
-    note_edits(scene, array, id, blocks, images);
-    vl_scene_free_edits(scene, array, id, old);
+    note_edits(scene, family, id, blocks, images);
+    vl_scene_free_edits(scene, family, id, old);
     return VL_OK;
   }
   if (done)
@@ -150,8 +151,7 @@ vlSceneMark *vl_scene_mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) 
   return &marks->items[id - 1];
 }
 
-/* A removed object is there again. */
-static void note_change(vlScene *scene, vlSceneMark *mark) {
+void vl_scene_note_change(vlScene *scene, vlSceneMark *mark) {
   mark->generation = vl_context_number(scene->context);
   if (!mark->removed)
     return;
@@ -160,72 +160,85 @@ static void note_change(vlScene *scene, vlSceneMark *mark) {
   mark->serial = mark->generation;
 }
 
-/* Sets the object of an array by the function that adds one. After success the object's mark
- * has a new generation. */
-#define SET(scene, array, marks, add, id, def, what, error)                          \
-  do {                                                                               \
-    VL_TRY(check(scene, ITEM(scene, array, id) != NULL, what, error));               \
-    vlSceneMark *mark = vl_scene_mark_of(scene, &(scene)->marks, (id).index);        \
-    if (!mark)                                                                       \
-      return vl_fail_memory(error);                                                  \
-    if (!(def))                                                                      \
-      return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", what);             \
-    vlSource source = (def)->source; /* its file's name outlives the change */       \
-    if (!vl_scene_copy_source(scene, &source))                                       \
-      return take_error(scene, error);                                               \
-    size_t blocks = (scene)->blocks.count, images = (scene)->images.count;           \
-    size_t count = (scene)->array.count;                                             \
-    const size_t at = (id).index - 1;                                                \
-    __typeof__(*(scene)->array.items) old = (scene)->array.items[at];                \
-    (scene)->array.count = at;                                                       \
-    bool done = add(scene, def).index != 0;                                          \
-    (scene)->array.count = count;                                                    \
-    if (!done)                                                                       \
-      (scene)->array.items[at] = old;                                                \
-    VL_TRY(finish(scene, &(scene)->array, (id).index, blocks, images, done, error)); \
-    note_change(scene, mark);                                                        \
-    return VL_OK;                                                                    \
-  } while (0)
+/* A def of any family that has them. */
+typedef union AnyDef {
+  vlTextureDef texture;
+  vlMaterialDef material;
+  vlEmissionDef emission;
+  vlLightDef light;
+  vlMediumDef medium;
+  vlShapeDef shape;
+} AnyDef;
+
+/* Sets an object by the function that adds one. After success the object's mark has a new
+ * generation. */
+static vlResult set_object(vlScene *scene, vlSceneFamily family, uint32_t id, const void *def,
+                           vlError *error) {
+  const vlSceneRow *row = &vl_scene_rows[family];
+  void *object = vl_scene_at(scene, family, id); /* a removed one, too */
+  VL_TRY(check(scene, object != NULL, row->thing, error));
+  vlSceneMark *mark = vl_scene_mark_of(scene, vl_scene_marks(scene, family), id);
+  if (!mark)
+    return vl_fail_memory(error);
+  if (!def)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", row->thing);
+  vlSource source; /* its file's name outlives the change */
+  memcpy(&source, (const char *)def + row->source, sizeof source);
+  if (!vl_scene_copy_source(scene, &source))
+    return take_error(scene, error);
+  const size_t blocks = scene->blocks.count;
+  const size_t images = scene->images.count;
+  size_t *count = vl_scene_count_of(scene, family);
+  const size_t all = *count;
+  AnyDef old;
+  memcpy(&old, object, row->size);
+  *count = id - 1;
+  const bool done = row->add(scene, def) != 0;
+  *count = all;
+  if (!done)
+    memcpy(vl_scene_at(scene, family, id), &old, row->size);
+  VL_TRY(finish(scene, family, id, blocks, images, done, error));
+  vl_scene_note_change(scene, mark);
+  return VL_OK;
+}
 
 vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def,
                               vlError *error) {
-  VL_TRY(check(scene, ITEM(scene, textures, id) != NULL, "texture", error));
+  const vlTextureDef *old = vl_scene_at(scene, VL_SCENE_TEXTURES, id.index);
+  VL_TRY(check(scene, old != NULL, "texture", error));
   const bool there = vl_scene_has(scene, VL_SCENE_TEXTURES, id.index);
-  if (there && def && def->spectrum != scene->textures.items[id.index - 1].spectrum)
+  if (there && def && def->spectrum != old->spectrum)
     return vl_fail(error, VL_ERROR_ARGUMENT, "texture: a texture of %s cannot become one of %s",
                    def->spectrum ? "floats" : "colours", def->spectrum ? "colours" : "floats");
-  SET(scene, textures, texture_marks, vl_scene_add_texture, id, def, "texture", error);
+  return set_object(scene, VL_SCENE_TEXTURES, id.index, def, error);
 }
 
 vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def,
                                vlError *error) {
-  SET(scene, materials, material_marks, vl_scene_add_material, id, def, "material", error);
+  return set_object(scene, VL_SCENE_MATERIALS, id.index, def, error);
 }
 
 vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def,
                                vlError *error) {
-  SET(scene, emissions, emission_marks, vl_scene_add_emission, id, def, "emission", error);
+  return set_object(scene, VL_SCENE_EMISSIONS, id.index, def, error);
 }
 
 vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def,
                             vlError *error) {
-  SET(scene, lights, light_marks, vl_scene_add_light, id, def, "light", error);
+  return set_object(scene, VL_SCENE_LIGHTS, id.index, def, error);
 }
 
 vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def,
                              vlError *error) {
-  SET(scene, media, medium_marks, vl_scene_add_medium, id, def, "medium", error);
-}
-
-static vlResult set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def, vlError *error) {
-  SET(scene, shapes, shape_marks, vl_scene_add_shape, id, def, "shape", error);
+  return set_object(scene, VL_SCENE_MEDIA, id.index, def, error);
 }
 
 /* ---- shapes, lights ---------------------------------------------------------------------- */
 
-static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool shown,
+static vlResult show(vlScene *scene, vlSceneFamily family, uint32_t index, bool shown,
                      vlError *error) {
-  vlSceneMark *mark = vl_scene_mark_of(scene, marks, id);
+  VL_TRY(check_object(scene, family, index, error));
+  vlSceneMark *mark = vl_scene_mark_of(scene, vl_scene_marks(scene, family), index);
   if (!mark)
     return vl_fail_memory(error);
   mark->hidden = !shown;
@@ -233,13 +246,11 @@ static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool show
 }
 
 vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error) {
-  VL_TRY(check(scene, vl_scene_light(scene, id) != NULL, "light", error));
-  return show(scene, &scene->light_marks, id.index, shown, error);
+  return show(scene, VL_SCENE_LIGHTS, id.index, shown, error);
 }
 
 vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *error) {
-  VL_TRY(check(scene, vl_scene_shape(scene, id) != NULL, "shape", error));
-  return show(scene, &scene->shape_marks, id.index, shown, error);
+  return show(scene, VL_SCENE_SHAPES, id.index, shown, error);
 }
 
 void vl_scene_free_blocks(vlScene *scene, const void *const *own, int count) {
@@ -285,10 +296,11 @@ void vl_scene_forget_removed_shape(vlScene *scene, uint32_t id) {
 
 vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
                             vlError *error) {
-  VL_TRY(check(scene, ITEM(scene, shapes, id) != NULL, "shape", error));
-  const vlShapeDef old = scene->shapes.items[id.index - 1];
+  const vlShapeDef *shape = vl_scene_at(scene, VL_SCENE_SHAPES, id.index);
+  VL_TRY(check(scene, shape != NULL, "shape", error));
+  const vlShapeDef old = *shape;
   const bool removed = vl_scene_shape_is_removed(scene, id.index - 1);
-  VL_TRY(set_shape(scene, id, def, error));
+  VL_TRY(set_object(scene, VL_SCENE_SHAPES, id.index, def, error));
   end_change(scene, &old);
   if (removed)
     vl_scene_forget_removed_shape(scene, id.index);
@@ -296,7 +308,7 @@ vlResult vl_scene_set_shape(vlScene *scene, vlShapeId id, const vlShapeDef *def,
 }
 
 vlResult vl_scene_remove_shape(vlScene *scene, vlShapeId id, vlError *error) {
-  VL_TRY(check(scene, vl_scene_shape(scene, id) != NULL, "shape", error));
+  VL_TRY(check_object(scene, VL_SCENE_SHAPES, id.index, error));
   vlSceneMark *mark = vl_scene_mark_of(scene, &scene->shape_marks, id.index);
   uint32_t *slot = mark ? VL_PUSH(scene->context, &scene->removed_shapes) : NULL;
   if (!slot)
@@ -305,7 +317,7 @@ vlResult vl_scene_remove_shape(vlScene *scene, vlShapeId id, vlError *error) {
   vlShapeDef *def = &scene->shapes.items[id.index - 1];
   end_change(scene, def);
   mark->generation = vl_context_number(scene->context);
-  vl_scene_free_edits(scene, &scene->shapes, id.index, scene->edits.count);
+  vl_scene_free_edits(scene, VL_SCENE_SHAPES, id.index, scene->edits.count);
   *def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   mark->removed = mark->hidden = true;
   return VL_OK;
@@ -320,26 +332,23 @@ vlShapeId vl_scene_removed_shape(const vlScene *scene) {
 }
 
 uint64_t vl_scene_shape_serial(const vlScene *scene, vlShapeId id) {
-  return vl_scene_shape(scene, id) ? vl_scene_mark(&scene->shape_marks, id.index - 1).serial
-                                   : 0;
+  return vl_scene_serial(scene, VL_SCENE_SHAPES, id.index);
 }
 
 vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material,
                                      vlError *error) {
-  VL_TRY(check(scene, vl_scene_shape(scene, id) != NULL, "shape", error));
-  VL_TRY(check(scene,
-               !material.index || vl_scene_has(scene, VL_SCENE_MATERIALS, material.index),
-               "material", error));
+  VL_TRY(check_object(scene, VL_SCENE_SHAPES, id.index, error));
+  if (material.index)
+    VL_TRY(check_object(scene, VL_SCENE_MATERIALS, material.index, error));
   scene->shapes.items[id.index - 1].material = material;
   return VL_OK;
 }
 
 vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission,
                                      vlError *error) {
-  VL_TRY(check(scene, vl_scene_shape(scene, id) != NULL, "shape", error));
-  VL_TRY(check(scene,
-               !emission.index || vl_scene_has(scene, VL_SCENE_EMISSIONS, emission.index),
-               "emission", error));
+  VL_TRY(check_object(scene, VL_SCENE_SHAPES, id.index, error));
+  if (emission.index)
+    VL_TRY(check_object(scene, VL_SCENE_EMISSIONS, emission.index, error));
   const vlShapeDef *shape = &scene->shapes.items[id.index - 1];
   if (emission.index && !vl_shape_may_emit(shape))
     return vl_fail(error, VL_ERROR_SCENE, "shape: a shape of this kind cannot emit light");
@@ -351,8 +360,8 @@ vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId 
 
 static vlResult find_instance(vlScene *scene, vlInstanceId id, vlSceneInstance **instance,
                               vlError *error) {
-  *instance = ITEM(scene, instances, id);
-  return check(scene, *instance && !(*instance)->removed, "instance", error);
+  *instance = vl_scene_at(scene, VL_SCENE_INSTANCES, id.index);
+  return check_object(scene, VL_SCENE_INSTANCES, id.index, error);
 }
 
 vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id,
@@ -411,6 +420,5 @@ vlInstanceId vl_scene_fill_instance(vlScene *scene) {
 }
 
 uint64_t vl_scene_instance_serial(const vlScene *scene, vlInstanceId id) {
-  const vlSceneInstance *instance = ITEM(scene, instances, id);
-  return instance && !instance->removed ? instance->serial : 0;
+  return vl_scene_serial(scene, VL_SCENE_INSTANCES, id.index);
 }

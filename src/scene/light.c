@@ -3,12 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/cookie.h"
 #include "base/unset.h"
 #include "color/color.h"
-#include "scene/scene.h"
+#include "scene/family.h"
 #include "schema/schema.h"
-#include "velo/edit.h"
 #include "velo/light.h"
 #include "velo/texture.h"
 
@@ -66,8 +64,7 @@ static bool light_to_photometric(vlScene *scene, vlLightDef *d, const char *what
 
 vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   const vlEmissionId none = {0};
-  if (!vl_scene_may_add(scene, def, def && def->cookie == VL_COOKIE_EMISSION,
-                        scene->emissions.count, (vlSource){0}, "emission"))
+  if (!vl_scene_may_add(scene, VL_SCENE_EMISSIONS, def))
     return none;
   vlEmissionDef d = *def;
   if (!vl_row_take(scene, vl_kind_row(&vl_emission_family, 0), &d, true, d.source, "emission"))
@@ -86,13 +83,7 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
   }
   if (!vl_scene_copy_source(scene, &d.source))
     return none;
-  vlEmissionDef *slot = VL_PUSH(scene->context, &scene->emissions);
-  if (!slot) {
-    vl_scene_fail_memory(scene);
-    return none;
-  }
-  *slot = d;
-  return (vlEmissionId){(uint32_t)scene->emissions.count};
+  return (vlEmissionId){vl_scene_push(scene, VL_SCENE_EMISSIONS, &d)};
 }
 
 /* A portal must be a rectangle and needs an image. Tolerances are pbrt's. */
@@ -150,8 +141,7 @@ static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *ro
 
 vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   const vlLightId none = {0};
-  if (!vl_scene_may_add(scene, def, def && def->cookie == VL_COOKIE_LIGHT, scene->lights.count,
-                        (vlSource){0}, "light"))
+  if (!vl_scene_may_add(scene, VL_SCENE_LIGHTS, def))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_light_family, (int)def->kind);
   if (!row) {
@@ -180,11 +170,5 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
       !vl_scene_copy_image(scene, &d.image) ||
       !vl_scene_copy_block(scene, d.lamp_data, d.lamp_size, 1, &d.lamp_data))
     return none;
-  vlLightDef *slot = VL_PUSH(scene->context, &scene->lights);
-  if (!slot) {
-    vl_scene_fail_memory(scene);
-    return none;
-  }
-  *slot = d;
-  return (vlLightId){(uint32_t)scene->lights.count};
+  return (vlLightId){vl_scene_push(scene, VL_SCENE_LIGHTS, &d)};
 }

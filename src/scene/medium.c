@@ -3,8 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/cookie.h"
-#include "scene/scene.h"
+#include "scene/family.h"
 #include "schema/schema.h"
 #include "velo/medium.h"
 
@@ -101,12 +100,8 @@ static void copy_cells(const vlMediumDef *from, vlMediumDef *to) {
 
 vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
   const vlMediumId none = {0};
-  if (scene->error.code != VL_OK)
+  if (!vl_scene_may_add(scene, VL_SCENE_MEDIA, def))
     return none;
-  if (!def || def->cookie != VL_COOKIE_MEDIUM) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "medium: " VL_BAD_COOKIE);
-    return none;
-  }
   const vlKindRow *row = vl_kind_row(&vl_medium_family, (int)def->kind);
   if (!row) {
     bad(scene, def, "unknown kind");
@@ -140,12 +135,5 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
     if (!vl_scene_copy_block(scene, *grids[i], cells, (i < 3 ? 1 : 3) * sizeof(float),
                              grids[i]))
       return none;
-  vlMediumDef *slot =
-      scene->media.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->media) : NULL;
-  if (!slot) {
-    vl_scene_fail_memory(scene);
-    return none;
-  }
-  *slot = d;
-  return (vlMediumId){(uint32_t)scene->media.count};
+  return (vlMediumId){vl_scene_push(scene, VL_SCENE_MEDIA, &d)};
 }

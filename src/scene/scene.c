@@ -1,6 +1,7 @@
 /* scene/scene.c: creates and destroys scenes; functions for a scene's first error, its defs and
  * the numbers of its objects. */
 #include "scene/scene.h"
+
 #include "base/text.h"
 #include "base/unset.h"
 
@@ -72,32 +73,9 @@ void vl_scene_destroy(vlScene *scene) {
     vl_free(context, scene->edits.items[i].block);
     vl_image_destroy(scene->edits.items[i].image);
   }
-  VL_ARRAY_FREE(context, &scene->edits);
-  VL_ARRAY_FREE(context, &scene->removed_shapes);
-  VL_ARRAY_FREE(context, &scene->removed_instances);
-  VL_ARRAY_FREE(context, &scene->texture_marks);
-  VL_ARRAY_FREE(context, &scene->material_marks);
-  VL_ARRAY_FREE(context, &scene->emission_marks);
-  VL_ARRAY_FREE(context, &scene->group_marks);
-  VL_ARRAY_FREE(context, &scene->light_marks);
-  VL_ARRAY_FREE(context, &scene->medium_marks);
-  VL_ARRAY_FREE(context, &scene->shape_marks);
-  VL_ARRAY_FREE(context, &scene->apertures);
-  VL_ARRAY_FREE(context, &scene->optics);
-  VL_ARRAY_FREE(context, &scene->textures);
-  VL_ARRAY_FREE(context, &scene->materials);
-  VL_ARRAY_FREE(context, &scene->emissions);
-  VL_ARRAY_FREE(context, &scene->lights);
-  VL_ARRAY_FREE(context, &scene->media);
-  VL_ARRAY_FREE(context, &scene->shapes);
-  VL_ARRAY_FREE(context, &scene->groups);
-  VL_ARRAY_FREE(context, &scene->instances);
-  VL_ARRAY_FREE(context, &scene->blocks);
-  VL_ARRAY_FREE(context, &scene->images);
-  VL_ARRAY_FREE(context, &scene->files);
-  VL_ARRAY_FREE(context, &scene->choices);
-  VL_ARRAY_FREE(context, &scene->unread);
-  VL_ARRAY_FREE(context, &scene->frame_points);
+#define FREE_ARRAY(array) VL_ARRAY_FREE(context, &scene->array);
+  VL_SCENE_ARRAYS(FREE_ARRAY)
+#undef FREE_ARRAY
   vl_free(context, scene);
 }
 
@@ -111,24 +89,6 @@ vlResult vl_scene_result(const vlScene *scene, vlError *error) {
 
 vlSceneDefs *vl_scene_defs(vlScene *scene) {
   return &scene->defs;
-}
-
-#define COUNT_KINDS(name, array, marks)                        \
-  if (strcmp(family, name) == 0) {                             \
-    for (size_t i = 0; i < scene->array.count; i++)            \
-      count += (uint32_t)scene->array.items[i].kind == kind && \
-               !vl_scene_mark(&scene->marks, i).removed;       \
-    return count;                                              \
-  }
-
-uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind) {
-  uint64_t count = 0;
-  COUNT_KINDS("materials", materials, material_marks)
-  COUNT_KINDS("textures", textures, texture_marks)
-  COUNT_KINDS("media", media, medium_marks)
-  COUNT_KINDS("lights", lights, light_marks)
-  COUNT_KINDS("shapes", shapes, shape_marks)
-  return 0;
 }
 
 void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {

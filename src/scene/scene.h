@@ -10,14 +10,15 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "velo/check.h"
+#include "velo/edit.h"
 #include "velo/load.h"
 #include "velo/render.h"
 #include "velo/schema.h"
 
 typedef struct vlSceneGroup {
-  const char *name;     /* never null, may be empty */
   uint32_t shape_count; /* number of shapes in the group */
   uint32_t instance_count;
+  const char *name; /* never null, may be empty */
 } vlSceneGroup;
 
 typedef struct vlSceneInstance {
@@ -33,7 +34,7 @@ typedef struct vlSceneInstance {
 
 /* What vl_scene_set_* has allocated for an object; freed when the object is set again. */
 typedef struct vlSceneEdit {
-  const void *array; /* address of the scene's array that holds the object */
+  vlSceneFamily family; /* of the object */
   uint32_t id;
   void *block; /* one of the two is null */
   vlImage *image;
@@ -105,6 +106,35 @@ struct vlScene {
   bool meshes_dropped; /* vl_scene_drop_meshes has freed the arrays of the shapes */
 };
 
+/* X(array) for all arrays of vlScene. */
+#define VL_SCENE_ARRAYS(X) \
+  X(textures)              \
+  X(materials)             \
+  X(emissions)             \
+  X(lights)                \
+  X(media)                 \
+  X(shapes)                \
+  X(groups)                \
+  X(instances)             \
+  X(texture_marks)         \
+  X(material_marks)        \
+  X(emission_marks)        \
+  X(group_marks)           \
+  X(light_marks)           \
+  X(medium_marks)          \
+  X(shape_marks)           \
+  X(edits)                 \
+  X(removed_shapes)        \
+  X(removed_instances)     \
+  X(apertures)             \
+  X(optics)                \
+  X(blocks)                \
+  X(images)                \
+  X(files)                 \
+  X(choices)               \
+  X(frame_points)          \
+  X(unread)
+
 static inline vlSceneMark vl_scene_mark(const vlSceneMarks *marks, size_t index) {
   return index < marks->count ? marks->items[index] : (vlSceneMark){0};
 }
@@ -148,10 +178,12 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
 enum { VL_SHAPE_ARRAYS = 15 };
 void vl_shape_arrays(const vlShapeDef *def, const void *arrays[VL_SHAPE_ARRAYS]);
 /* Frees what the changes of an object have allocated (edit.c): the first `end` entries of
- * scene->edits, as far as they are those of this id in the array at this address. */
-void vl_scene_free_edits(vlScene *scene, const void *array, uint32_t id, size_t end);
+ * scene->edits, as far as they are those of this id in the family. */
+void vl_scene_free_edits(vlScene *scene, vlSceneFamily family, uint32_t id, size_t end);
 /* The mark of the object with this id; null: out of memory. */
 vlSceneMark *vl_scene_mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id);
+/* Gives an object a new generation; a removed one is there again. */
+void vl_scene_note_change(vlScene *scene, vlSceneMark *mark);
 /* Frees those of the scene's blocks that are in a list. */
 void vl_scene_free_blocks(vlScene *scene, const void *const *own, int count);
 /* Takes an id out of the list of removed shapes. */
@@ -177,11 +209,6 @@ void vl_scene_drop_meshes(vlScene *scene);
  * it is not copied. */
 vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);
 
-/* For functions that add an object (scene/add.c). Whether one more than `count` can be added:
- * the scene has no error, the def is not null, and its cookie is right. Otherwise it reports
- * the reason; `what` names the object in the message. */
-bool vl_scene_may_add(vlScene *scene, const void *def, bool cookie, size_t count,
-                      vlSource source, const char *what);
 /* Reports the error "what: why". Returns false. */
 bool vl_scene_reject(vlScene *scene, vlSource source, const char *what, const char *why);
 

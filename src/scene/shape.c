@@ -7,9 +7,8 @@
 #include "base/text.h"
 #include "math/double3.h"
 #include "math/motion.h"
-#include "scene/scene.h"
+#include "scene/family.h"
 #include "schema/schema.h"
-#include "velo/edit.h"
 #include "velo/shape_kinds.h"
 
 static bool bad(vlScene *scene, const vlShapeDef *d, const char *why) {
@@ -218,16 +217,10 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
 
 /* Stores a def. The scene must own the def's arrays, or they are null. */
 static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
-  vlShapeDef *slot =
-      scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
-  if (!slot) {
-    vl_scene_fail_memory(scene);
-    return (vlShapeId){0};
-  }
-  *slot = *d;
-  if (d->group.index)
+  const vlShapeId id = {vl_scene_push(scene, VL_SCENE_SHAPES, d)};
+  if (id.index && d->group.index)
     scene->groups.items[d->group.index - 1].shape_count++;
-  return (vlShapeId){(uint32_t)scene->shapes.count};
+  return id;
 }
 
 static void drop_unused(vlShapeDef *d) {
@@ -259,12 +252,8 @@ static void drop_unused(vlShapeDef *d) {
 
 vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
   const vlShapeId none = {0};
-  if (scene->error.code != VL_OK)
+  if (!vl_scene_may_add(scene, VL_SCENE_SHAPES, def))
     return none;
-  if (!def || def->cookie != VL_COOKIE_SHAPE) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "shape: " VL_BAD_COOKIE);
-    return none;
-  }
   vlShapeDef d = *def;
   drop_unused(&d);
   if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_label(scene, &d.label) ||
@@ -323,14 +312,8 @@ vlGroupId vl_scene_add_group(vlScene *scene, const char *name) {
     name = "";
   if (!vl_scene_copy_string(scene, &name))
     return none;
-  vlSceneGroup *slot =
-      scene->groups.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->groups) : NULL;
-  if (!slot) {
-    vl_scene_fail_memory(scene);
-    return none;
-  }
-  slot->name = name;
-  return (vlGroupId){(uint32_t)scene->groups.count};
+  const vlSceneGroup group = {.name = name};
+  return (vlGroupId){vl_scene_push(scene, VL_SCENE_GROUPS, &group)};
 }
 
 static bool check_pose(vlScene *scene, const double *m, vlSource source) {

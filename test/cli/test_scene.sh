@@ -102,6 +102,10 @@ finds 1 unused_material ':5:1: warning: material "m" is not used' unused.pbrt
 finds 1 unused_object ':6:[0-9]+: warning: object "o" is placed nowhere' unused.pbrt
 finds 1 unused_medium ':7:1: warning: nothing lies in medium "fog"' unused.pbrt
 finds 1 unused_area_light ':8:[0-9]+: warning: no shape emits light' unused.pbrt
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 5\n1 0 5\n0 1 5\n3 0 1 2\n' >face.ply
+scene displaced.pbrt 'Texture "bumps" "float" "constant" "float value" 0.1' \
+  'Shape "plymesh" "string filename" "face.ply" "texture displacement" "bumps"'
+sound a_displacement_is_a_use displaced.pbrt
 finds 1 material_of_nothing ':9:1: note: no shape takes this material \[replaced\]' unused.pbrt
 printf 'Camera "perspective"\nCamera "orthographic"\nFilm "rgb"\nWorldBegin\nLightSource "infinite"\n' >twice.pbrt
 finds 1 said_twice 'twice\.pbrt:2:1: warning: Camera a second time: this one counts \[overwritten\]' twice.pbrt

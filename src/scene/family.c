@@ -1,0 +1,340 @@
+/* scene/family.c: see family.h. */
+#include "scene/family.h"
+
+#include <string.h>
+
+#include "base/cookie.h"
+#include "schema/schema.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
+
+/* ---- the rows ---------------------------------------------------------------------------- */
+
+static uint32_t add_texture(vlScene *scene, const void *def) {
+  return vl_scene_add_texture(scene, def).index;
+}
+
+static uint32_t add_material(vlScene *scene, const void *def) {
+  return vl_scene_add_material(scene, def).index;
+}
+
+static uint32_t add_medium(vlScene *scene, const void *def) {
+  return vl_scene_add_medium(scene, def).index;
+}
+
+static uint32_t add_emission(vlScene *scene, const void *def) {
+  return vl_scene_add_emission(scene, def).index;
+}
+
+static uint32_t add_light(vlScene *scene, const void *def) {
+  return vl_scene_add_light(scene, def).index;
+}
+
+static uint32_t add_shape(vlScene *scene, const void *def) {
+  return vl_scene_add_shape(scene, def).index;
+}
+
+#define ARRAY(array)                                                                \
+  .items = offsetof(vlScene, array.items), .count = offsetof(vlScene, array.count), \
+  .capacity = offsetof(vlScene, array.capacity),                                    \
+  .size = sizeof *((vlScene *)NULL)->array.items
+
+const vlSceneRow vl_scene_rows[VL_SCENE_FAMILIES] = {
+    [VL_SCENE_TEXTURES] = {.thing = "texture",
+                           ARRAY(textures),
+                           .marks = offsetof(vlScene, texture_marks),
+                           .kinds = &vl_texture_family,
+                           .kind = offsetof(vlTextureDef, kind),
+                           .name = offsetof(vlTextureDef, name),
+                           .source = offsetof(vlTextureDef, source),
+                           .image = offsetof(vlTextureDef, image),
+                           .cookie = VL_COOKIE_TEXTURE,
+                           .add = add_texture},
+    [VL_SCENE_MATERIALS] = {.thing = "material",
+                            ARRAY(materials),
+                            .marks = offsetof(vlScene, material_marks),
+                            .kinds = &vl_material_family,
+                            .kind = offsetof(vlMaterialDef, kind),
+                            .name = offsetof(vlMaterialDef, name),
+                            .source = offsetof(vlMaterialDef, source),
+                            .cookie = VL_COOKIE_MATERIAL,
+                            .add = add_material},
+    [VL_SCENE_MEDIA] = {.thing = "medium",
+                        ARRAY(media),
+                        .marks = offsetof(vlScene, medium_marks),
+                        .kinds = &vl_medium_family,
+                        .kind = offsetof(vlMediumDef, kind),
+                        .name = offsetof(vlMediumDef, name),
+                        .source = offsetof(vlMediumDef, source),
+                        .cookie = VL_COOKIE_MEDIUM,
+                        .add = add_medium},
+    [VL_SCENE_EMISSIONS] = {.thing = "emission",
+                            ARRAY(emissions),
+                            .marks = offsetof(vlScene, emission_marks),
+                            .kinds = &vl_emission_family,
+                            .source = offsetof(vlEmissionDef, source),
+                            .cookie = VL_COOKIE_EMISSION,
+                            .add = add_emission},
+    [VL_SCENE_LIGHTS] = {.thing = "light",
+                         ARRAY(lights),
+                         .marks = offsetof(vlScene, light_marks),
+                         .kinds = &vl_light_family,
+                         .kind = offsetof(vlLightDef, kind),
+                         .source = offsetof(vlLightDef, source),
+                         .image = offsetof(vlLightDef, image),
+                         .cookie = VL_COOKIE_LIGHT,
+                         .add = add_light},
+    [VL_SCENE_SHAPES] = {.thing = "shape",
+                         ARRAY(shapes),
+                         .marks = offsetof(vlScene, shape_marks),
+                         .kinds = &vl_shape_family,
+                         .kind = offsetof(vlShapeDef, kind),
+                         .name = offsetof(vlShapeDef, label.name),
+                         .source = offsetof(vlShapeDef, source),
+                         .cookie = VL_COOKIE_SHAPE,
+                         .add = add_shape},
+    [VL_SCENE_GROUPS] = {.thing = "group",
+                         ARRAY(groups),
+                         .marks = offsetof(vlScene, group_marks),
+                         .name = offsetof(vlSceneGroup, name)},
+    [VL_SCENE_INSTANCES] = {.thing = "instance",
+                            ARRAY(instances),
+                            .name = offsetof(vlSceneInstance, label.name)},
+};
+
+/* A member of a def: an id of an object of another family, or a pointer to a block. */
+typedef struct Member {
+  vlSceneFamily family;
+  size_t at;
+} Member;
+
+/* The ids in defs, besides those that rows of kinds describe. */
+static const struct {
+  Member from;
+  vlSceneFamily to;
+} ids[] = {
+    {{VL_SCENE_MATERIALS, offsetof(vlMaterialDef, materials[0].index)}, VL_SCENE_MATERIALS},
+    {{VL_SCENE_MATERIALS, offsetof(vlMaterialDef, materials[1].index)}, VL_SCENE_MATERIALS},
+    {{VL_SCENE_EMISSIONS, offsetof(vlEmissionDef, texture.index)}, VL_SCENE_TEXTURES},
+    {{VL_SCENE_LIGHTS, offsetof(vlLightDef, medium.index)}, VL_SCENE_MEDIA},
+    {{VL_SCENE_SHAPES, offsetof(vlShapeDef, alpha.texture.index)}, VL_SCENE_TEXTURES},
+    {{VL_SCENE_SHAPES, offsetof(vlShapeDef, displacement.texture.index)}, VL_SCENE_TEXTURES},
+    {{VL_SCENE_SHAPES, offsetof(vlShapeDef, material.index)}, VL_SCENE_MATERIALS},
+    {{VL_SCENE_SHAPES, offsetof(vlShapeDef, emission.index)}, VL_SCENE_EMISSIONS},
+    {{VL_SCENE_SHAPES, offsetof(vlShapeDef, inside.index)}, VL_SCENE_MEDIA},
+    {{VL_SCENE_SHAPES, offsetof(vlShapeDef, outside.index)}, VL_SCENE_MEDIA},
+    {{VL_SCENE_INSTANCES, offsetof(vlSceneInstance, group.index)}, VL_SCENE_GROUPS},
+};
+
+/* The blocks of defs, besides names and those that rows of kinds describe. */
+static const Member blocks[] = {
+    {VL_SCENE_MATERIALS, offsetof(vlMaterialDef, place)},
+    {VL_SCENE_MEDIA, offsetof(vlMediumDef, density)},
+    {VL_SCENE_MEDIA, offsetof(vlMediumDef, emission_scales)},
+    {VL_SCENE_MEDIA, offsetof(vlMediumDef, temperature)},
+    {VL_SCENE_MEDIA, offsetof(vlMediumDef, rgb_a)},
+    {VL_SCENE_MEDIA, offsetof(vlMediumDef, rgb_s)},
+    {VL_SCENE_MEDIA, offsetof(vlMediumDef, rgb_emission)},
+};
+
+/* ---- arrays ------------------------------------------------------------------------------ */
+
+static void *member(vlScene *scene, size_t offset) {
+  return (char *)scene + offset;
+}
+
+size_t *vl_scene_count_of(vlScene *scene, vlSceneFamily family) {
+  return member(scene, vl_scene_rows[family].count);
+}
+
+void *vl_scene_at(vlScene *scene, vlSceneFamily family, uint32_t index) {
+  const vlSceneRow *row = &vl_scene_rows[family];
+  if (!scene || index == 0 || index > *vl_scene_count_of(scene, family))
+    return NULL;
+  char *const *items = member(scene, row->items);
+  return *items + row->size * (index - 1);
+}
+
+vlSceneMarks *vl_scene_marks(vlScene *scene, vlSceneFamily family) {
+  const size_t offset = vl_scene_rows[family].marks;
+  return offset ? member(scene, offset) : NULL;
+}
+
+uint32_t vl_scene_highest(const vlScene *scene, vlSceneFamily family) {
+  vlScene *const unchanged = (vlScene *)(uintptr_t)scene;
+  if (!scene || (unsigned)family >= VL_SCENE_FAMILIES)
+    return 0;
+  return (uint32_t)*vl_scene_count_of(unchanged, family);
+}
+
+/* The state of an object that the array holds. */
+static vlSceneMark state_of(const vlScene *scene, vlSceneFamily family, uint32_t index) {
+  vlScene *const unchanged = (vlScene *)(uintptr_t)scene;
+  const vlSceneMarks *marks = vl_scene_marks(unchanged, family);
+  if (marks)
+    return vl_scene_mark(marks, index - 1);
+  const vlSceneInstance *instance = &scene->instances.items[index - 1];
+  return (vlSceneMark){
+      .serial = instance->serial, .hidden = instance->hidden, .removed = instance->removed};
+}
+
+bool vl_scene_has(const vlScene *scene, vlSceneFamily family, uint32_t index) {
+  return index != 0 && index <= vl_scene_highest(scene, family) &&
+         !state_of(scene, family, index).removed;
+}
+
+uint64_t vl_scene_serial(const vlScene *scene, vlSceneFamily family, uint32_t index) {
+  return vl_scene_has(scene, family, index) ? state_of(scene, family, index).serial : 0;
+}
+
+const void *vl_scene_item(const vlScene *scene, vlSceneFamily family, uint32_t index) {
+  vlScene *const unchanged = (vlScene *)(uintptr_t)scene;
+  return vl_scene_has(scene, family, index) ? vl_scene_at(unchanged, family, index) : NULL;
+}
+
+/* ---- adding ------------------------------------------------------------------------------ */
+
+enum { MAX_OBJECTS = 0x7fffffff };
+
+bool vl_scene_may_add(vlScene *scene, vlSceneFamily family, const void *def) {
+  const vlSceneRow *row = &vl_scene_rows[family];
+  const vlSource nowhere = {0};
+  if (scene->error.code != VL_OK)
+    return false;
+  if (!def || *(const uint32_t *)def != row->cookie) { /* the first member of each def */
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, nowhere, "%s: " VL_BAD_COOKIE, row->thing);
+    return false;
+  }
+  if (*vl_scene_count_of(scene, family) < MAX_OBJECTS)
+    return true;
+  vl_scene_fail(scene, VL_ERROR_SCENE, nowhere, "too many objects");
+  return false;
+}
+
+uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def) {
+  const vlSceneRow *row = &vl_scene_rows[family];
+  size_t *count = vl_scene_count_of(scene, family);
+  if (*count >= MAX_OBJECTS ||
+      !vl_array_grow(scene->context, member(scene, row->items), member(scene, row->capacity),
+                     *count, row->size, 1)) {
+    vl_scene_fail_memory(scene);
+    return 0;
+  }
+  ++*count;
+  memcpy(vl_scene_at(scene, family, (uint32_t)*count), def, row->size);
+  return (uint32_t)*count;
+}
+
+/* ---- defs -------------------------------------------------------------------------------- */
+
+int vl_scene_def_kind(vlSceneFamily family, const void *def) {
+  const size_t offset = vl_scene_rows[family].kind;
+  int kind = 0;
+  if (offset)
+    memcpy(&kind, (const char *)def + offset, sizeof kind);
+  return kind;
+}
+
+/* The row of a def's kind; null: unknown, or the family has no kinds. */
+static const vlKindRow *def_row(vlSceneFamily family, const void *def) {
+  const vlKindFamily *kinds = vl_scene_rows[family].kinds;
+  return kinds ? vl_kind_row(kinds, vl_scene_def_kind(family, def)) : NULL;
+}
+
+uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind) {
+  uint64_t count = 0;
+  for (int k = 0; k < VL_SCENE_FAMILIES; k++) {
+    const vlSceneRow *row = &vl_scene_rows[k];
+    if (!row->kind || strcmp(row->kinds->name, family) != 0)
+      continue;
+    for (uint32_t i = 1; i <= vl_scene_highest(scene, (vlSceneFamily)k); i++) {
+      const void *def = vl_scene_item(scene, (vlSceneFamily)k, i);
+      count += def && vl_scene_def_kind((vlSceneFamily)k, def) == (int)kind;
+    }
+  }
+  return count;
+}
+
+/* The pointer in a member of a def. */
+static const void *pointer_at(const void *def, size_t offset) {
+  const void *pointer;
+  memcpy(&pointer, (const char *)def + offset, sizeof pointer);
+  return pointer;
+}
+
+const char *vl_scene_def_name(vlSceneFamily family, const void *def) {
+  const size_t offset = vl_scene_rows[family].name;
+  return offset ? pointer_at(def, offset) : NULL;
+}
+
+uint32_t vl_scene_uses(vlSceneFamily family, const void *def,
+                       vlSceneUse uses[VL_SCENE_MAX_USES]) {
+  enum { MAX_IDS = sizeof ids / sizeof *ids };
+  vlTextureId inputs[VL_SCENE_MAX_USES - MAX_IDS];
+  const vlKindRow *row = def_row(family, def);
+  const uint32_t most = VL_SCENE_MAX_USES - MAX_IDS;
+  uint32_t count = row ? vl_row_textures(row, def, inputs, most) : 0;
+  for (uint32_t i = 0; i < count; i++)
+    uses[i] = (vlSceneUse){VL_SCENE_TEXTURES, inputs[i].index};
+  for (size_t i = 0; i < MAX_IDS; i++) {
+    if (ids[i].from.family != family)
+      continue;
+    const uint32_t index =
+        *(const uint32_t *)(const void *)((const char *)def + ids[i].from.at);
+    if (index)
+      uses[count++] = (vlSceneUse){ids[i].to, index};
+  }
+  return count;
+}
+
+/* ---- what a def owns --------------------------------------------------------------------- */
+
+void vl_scene_own_block(vlSceneOwned *owned, const void *block) {
+  const int most = (int)(sizeof owned->items / sizeof *owned->items);
+  if (block && owned->count < most)
+    owned->items[owned->count++] = block;
+}
+
+static void own_spectrum(vlSceneOwned *owned, const vlSpectrum *spectrum) {
+  if (spectrum->kind == VL_SPECTRUM_SAMPLED) {
+    vl_scene_own_block(owned, spectrum->wavelengths);
+    vl_scene_own_block(owned, spectrum->values);
+  }
+  if (spectrum->kind == VL_SPECTRUM_NAMED)
+    vl_scene_own_block(owned, spectrum->name);
+}
+
+static void own_row(vlSceneOwned *owned, const vlKindRow *row, const void *def) {
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    const char *at = (const char *)def + p->offset;
+    const char *second = p->second ? (const char *)def + p->second : NULL;
+    if (p->flags & VL_PARAMETER_SHORTHAND)
+      continue;
+    if (p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE)
+      vl_scene_own_block(owned, pointer_at(def, p->offset));
+    if (p->type == VL_PARAMETER_SPECTRUM)
+      own_spectrum(owned, (const vlSpectrum *)(const void *)at);
+    if (p->type == VL_PARAMETER_SPECTRUM && second)
+      own_spectrum(owned, (const vlSpectrum *)(const void *)second);
+    if (p->type == VL_PARAMETER_SPECTRUM_INPUT)
+      own_spectrum(owned, &((const vlSpectrumInput *)(const void *)at)->value);
+    if ((p->type == VL_PARAMETER_SPECTRUM_INPUT || p->type == VL_PARAMETER_EITHER_INPUT) &&
+        second)
+      own_spectrum(owned, &((const vlSpectrumInput *)(const void *)second)->value);
+  }
+}
+
+void vl_scene_owned(vlSceneFamily family, const void *def, vlSceneOwned *owned) {
+  const vlKindRow *row = def_row(family, def);
+  owned->count = 0;
+  if (row)
+    own_row(owned, row, def);
+  vl_scene_own_block(owned, vl_scene_def_name(family, def));
+  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+    if (blocks[i].family == family)
+      vl_scene_own_block(owned, pointer_at(def, blocks[i].at));
+}

@@ -107,75 +107,119 @@ static vlSpectrum default_spectrum(const vlParameter *p) {
   return vl_spectrum_constant((float)p->value[0]);
 }
 
-/* Sets a member that is a number, a bool or a choice. Members of other types are unchanged. */
-static void put(const vlParameter *p, double number, void *at) {
-  if (p->type == VL_PARAMETER_BOOL)
-    *(bool *)at = number != 0;
-  else if (p->type == VL_PARAMETER_COUNT)
-    *(uint32_t *)at = (uint32_t)number;
-  else if (p->type == VL_PARAMETER_CHOICE)
-    *(int *)at = (int)number;
-  else if (p->type == VL_PARAMETER_FLOAT)
-    *(float *)at = (float)number;
-  else if (p->type == VL_PARAMETER_DOUBLE)
-    *(double *)at = number;
+/* ---- the types of parameters ------------------------------------------------------------- */
+
+_Static_assert(sizeof(vlWrap) == sizeof(int), "choices are stored as int");
+
+static double get_bool(const void *at, int i) {
+  return ((const bool *)at)[i];
+}
+static void put_bool(void *at, int i, double number) {
+  ((bool *)at)[i] = number != 0;
+}
+static double get_count(const void *at, int i) {
+  return ((const uint32_t *)at)[i];
+}
+static void put_count(void *at, int i, double number) {
+  ((uint32_t *)at)[i] = (uint32_t)number;
+}
+static double get_choice(const void *at, int i) {
+  return ((const int *)at)[i];
+}
+static void put_choice(void *at, int i, double number) {
+  ((int *)at)[i] = (int)number;
+}
+static double get_float(const void *at, int i) {
+  return (double)((const float *)at)[i];
+}
+static void put_float(void *at, int i, double number) {
+  ((float *)at)[i] = (float)number;
+}
+static double get_double(const void *at, int i) {
+  return ((const double *)at)[i];
+}
+static void put_double(void *at, int i, double number) {
+  ((double *)at)[i] = number;
 }
 
-static void set_default(const vlParameter *p, void *at) {
-  double number = p->value[0];
-  switch (p->type) {
-    case VL_PARAMETER_BOOL:
-    case VL_PARAMETER_COUNT:
-    case VL_PARAMETER_FLOAT:
-    case VL_PARAMETER_CHOICE:
-    case VL_PARAMETER_DOUBLE:
-      if (p->type == VL_PARAMETER_DOUBLE && p->flags & VL_PARAMETER_UNSET)
-        number = VL_UNSET;
-      put(p, number, at);
-      break;
-    case VL_PARAMETER_FLOAT3:
-      for (int i = 0; i < 3; i++)
-        ((float *)at)[i] = (float)p->value[i];
-      break;
-    case VL_PARAMETER_DOUBLE3:
-      for (int i = 0; i < 3; i++)
-        ((double *)at)[i] = p->flags & VL_PARAMETER_UNSET ? VL_UNSET : p->value[i];
-      break;
-    case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE:
-      *(const char **)at = p->text;
-      break;
-    case VL_PARAMETER_SPECTRUM:
-      *(vlSpectrum *)at = default_spectrum(p);
-      break;
-    case VL_PARAMETER_EITHER_INPUT:
-    case VL_PARAMETER_FLOAT_INPUT:
-      *(vlFloatInput *)at = vl_float_input((float)number);
-      break;
-    case VL_PARAMETER_SPECTRUM_INPUT:
-      *(vlSpectrumInput *)at = vl_spectrum_input(default_spectrum(p));
-      break;
-    case VL_PARAMETER_TEXTURE:
-      *(vlTextureId *)at = (vlTextureId){0};
-      break;
-    case VL_PARAMETER_BLOCK:
-      break;
-  }
+/* How the value of a parameter is stored. Offsets are from the value's begin. */
+typedef struct Type {
+  int numbers;   /* 1 or 3; 0: it holds a spectrum, a text, or something else */
+  size_t number; /* offset of the first one */
+  double (*get)(const void *at, int i);
+  void (*put)(void *at, int i, double number);
+  bool textured;    /* it begins with the id of a texture, which stands for the rest */
+  bool spectral;    /* it holds a spectrum */
+  size_t spectrum;  /* offset of the spectrum */
+  bool text;        /* it is a pointer to characters */
+  const char *rule; /* what it must be; null: put_rule writes that */
+} Type;
+
+#define NUMBERS(count, offset, get_function, put_function) \
+  .numbers = (count), .number = (offset), .get = get_function, .put = put_function
+static const Type types[] = {
+    [VL_PARAMETER_BOOL] = {NUMBERS(1, 0, get_bool, put_bool), .rule = "true or false"},
+    [VL_PARAMETER_COUNT] = {NUMBERS(1, 0, get_count, put_count)},
+    [VL_PARAMETER_FLOAT] = {NUMBERS(1, 0, get_float, put_float)},
+    [VL_PARAMETER_DOUBLE] = {NUMBERS(1, 0, get_double, put_double)},
+    [VL_PARAMETER_FLOAT3] = {NUMBERS(3, 0, get_float, put_float)},
+    [VL_PARAMETER_DOUBLE3] = {NUMBERS(3, 0, get_double, put_double)},
+    [VL_PARAMETER_CHOICE] = {NUMBERS(1, 0, get_choice, put_choice)},
+    [VL_PARAMETER_STRING] = {.text = true, .rule = "text"},
+    [VL_PARAMETER_FILE] = {.text = true, .rule = "the path of a file"},
+    [VL_PARAMETER_SPECTRUM] = {.spectral = true},
+    [VL_PARAMETER_FLOAT_INPUT] = {NUMBERS(1, offsetof(vlFloatInput, value), get_float,
+                                          put_float),
+                                  .textured = true},
+    [VL_PARAMETER_SPECTRUM_INPUT] = {.textured = true,
+                                     .spectral = true,
+                                     .spectrum = offsetof(vlSpectrumInput, value)},
+    [VL_PARAMETER_EITHER_INPUT] = {NUMBERS(1, offsetof(vlFloatInput, value), get_float,
+                                           put_float),
+                                   .textured = true},
+    [VL_PARAMETER_TEXTURE] = {.textured = true, .rule = "a texture"},
+    [VL_PARAMETER_BLOCK] = {.rule = "what its file's format says"}};
+
+/* The type of the member at `second`. */
+static vlParameterType second_type(const vlParameter *p) {
+  return p->type == VL_PARAMETER_EITHER_INPUT ? VL_PARAMETER_SPECTRUM_INPUT : p->type;
 }
+
+static uint32_t texture_of(const Type *type, const void *at) {
+  return type->textured ? ((const vlTextureId *)at)->index : 0;
+}
+
+static double number_of(const Type *type, const void *at, int i) {
+  return type->get((const char *)at + type->number, i);
+}
+
+static const vlSpectrum *spectrum_of(const Type *type, const void *at) {
+  return (const vlSpectrum *)(const void *)((const char *)at + type->spectrum);
+}
+
+static void set_default(const vlParameter *p, vlParameterType type, void *at) {
+  const Type *t = &types[type];
+  char *const bytes = at;
+  if (t->textured)
+    *(vlTextureId *)at = (vlTextureId){0};
+  if (t->spectral)
+    *(vlSpectrum *)(void *)(bytes + t->spectrum) = default_spectrum(p);
+  if (t->text)
+    *(const char **)at = p->text;
+  for (int i = 0; i < t->numbers; i++)
+    t->put(bytes + t->number, i, p->flags & VL_PARAMETER_UNSET ? VL_UNSET : p->value[i]);
+}
+
+/* ---- defaults of defs -------------------------------------------------------------------- */
 
 void vl_row_set_defaults(const vlKindRow *row, void *def) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (p->flags & VL_PARAMETER_SHORTHAND)
       continue;
-    set_default(p, (char *)def + p->offset);
-    if (!p->second)
-      continue;
-    void *second = (char *)def + p->second;
-    if (p->type == VL_PARAMETER_EITHER_INPUT)
-      *(vlSpectrumInput *)second = vl_spectrum_input(default_spectrum(p));
-    else
-      set_default(p, second);
+    set_default(p, p->type, (char *)def + p->offset);
+    if (p->second)
+      set_default(p, second_type(p), (char *)def + p->second);
   }
 }
 
@@ -249,8 +293,6 @@ vlRenderDef vl_default_render_def(void) {
 
 /* ---- members ----------------------------------------------------------------------------- */
 
-_Static_assert(sizeof(vlWrap) == sizeof(int), "choices are stored as int");
-
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
@@ -261,48 +303,19 @@ void vl_row_copy_members(const vlKindRow *row, const void *from, void *to) {
   }
 }
 
-static bool spectrum_number(const vlSpectrum *s, double *number) {
-  *number = (double)(s->value * s->scale);
-  return s->kind == VL_SPECTRUM_CONSTANT;
-}
-
 bool vl_parameter_number(const vlParameter *p, const void *def, double *number) {
+  const Type *t = &types[p->type];
   const void *at = (const char *)def + p->offset;
-  switch (p->type) {
-    case VL_PARAMETER_BOOL:
-      *number = *(const bool *)at;
-      return true;
-    case VL_PARAMETER_COUNT:
-      *number = *(const uint32_t *)at;
-      return true;
-    case VL_PARAMETER_FLOAT:
-      *number = (double)*(const float *)at;
-      return true;
-    case VL_PARAMETER_DOUBLE:
-      *number = *(const double *)at;
-      return true;
-    case VL_PARAMETER_CHOICE:
-      *number = *(const int *)at;
-      return true;
-    case VL_PARAMETER_SPECTRUM:
-      return spectrum_number(at, number);
-    case VL_PARAMETER_EITHER_INPUT:
-    case VL_PARAMETER_FLOAT_INPUT:
-      *number = (double)((const vlFloatInput *)at)->value;
-      return !((const vlFloatInput *)at)->texture.index;
-    case VL_PARAMETER_SPECTRUM_INPUT: {
-      const vlSpectrumInput *input = at;
-      return !input->texture.index && spectrum_number(&input->value, number);
-    }
-    case VL_PARAMETER_FLOAT3:
-    case VL_PARAMETER_DOUBLE3:
-    case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE:
-    case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK:
-      return false;
+  if (texture_of(t, at))
+    return false;
+  if (t->spectral) {
+    const vlSpectrum *s = spectrum_of(t, at);
+    *number = (double)(s->value * s->scale);
+    return s->kind == VL_SPECTRUM_CONSTANT;
   }
-  return false;
+  if (t->numbers == 1)
+    *number = number_of(t, at, 0);
+  return t->numbers == 1;
 }
 
 static bool same_spectrum(const vlSpectrum *a, const vlSpectrum *b) {
@@ -323,39 +336,32 @@ static bool same_spectrum(const vlSpectrum *a, const vlSpectrum *b) {
   return false;
 }
 
+static bool is_default_number(const vlParameter *p, double number, int i) {
+  if (p->flags & VL_PARAMETER_UNSET)
+    return isnan(number);
+  if (p->type == VL_PARAMETER_DOUBLE3)
+    return number == p->value[i];
+  return (float)number == (float)p->value[i];
+}
+
 bool vl_parameter_is_default(const vlParameter *p, const void *def, bool spectrum) {
-  const void *at = (const char *)def +
-                   (spectrum && p->type == VL_PARAMETER_EITHER_INPUT ? p->second : p->offset);
-  const vlSpectrum usual = default_spectrum(p);
-  double number;
-  if ((p->type == VL_PARAMETER_EITHER_INPUT && spectrum) ||
-      p->type == VL_PARAMETER_SPECTRUM_INPUT)
-    return !((const vlSpectrumInput *)at)->texture.index &&
-           same_spectrum(&((const vlSpectrumInput *)at)->value, &usual);
-  if (p->type == VL_PARAMETER_SPECTRUM)
-    return same_spectrum(at, &usual);
-  if (p->type == VL_PARAMETER_FLOAT3) {
-    const float *v = at;
-    return v[0] == (float)p->value[0] && v[1] == (float)p->value[1] &&
-           v[2] == (float)p->value[2];
-  }
-  if (p->type == VL_PARAMETER_DOUBLE3) {
-    const double *v = at;
-    if (p->flags & VL_PARAMETER_UNSET)
-      return v[0] != v[0] && v[1] != v[1] && v[2] != v[2];
-    return v[0] == p->value[0] && v[1] == p->value[1] && v[2] == p->value[2];
-  }
-  if (p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE) {
+  const bool second = spectrum && p->type == VL_PARAMETER_EITHER_INPUT;
+  const Type *t = &types[second ? second_type(p) : p->type];
+  const void *at = (const char *)def + (second ? p->second : p->offset);
+  if (texture_of(t, at) || p->type == VL_PARAMETER_BLOCK)
+    return false;
+  if (t->text) {
     const char *text = *(const char *const *)at;
     return text && p->text ? strcmp(text, p->text) == 0 : text == p->text;
   }
-  if (p->type == VL_PARAMETER_TEXTURE)
-    return !((const vlTextureId *)at)->index;
-  if (!vl_parameter_number(p, def, &number))
-    return false;
-  if (p->flags & VL_PARAMETER_UNSET)
-    return number != number;
-  return (float)number == (float)p->value[0];
+  if (t->spectral) {
+    const vlSpectrum usual = default_spectrum(p);
+    return same_spectrum(spectrum_of(t, at), &usual);
+  }
+  bool same = true;
+  for (int i = 0; i < t->numbers; i++)
+    same = same && is_default_number(p, number_of(t, at, i), i);
+  return same;
 }
 
 uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids,
@@ -363,22 +369,16 @@ uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids
   uint32_t n = 0;
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    const char *at = (const char *)def + p->offset;
-    vlTextureId read[2] = {{0}, {0}};
+    const char *at = (const char *)def;
     if (p->flags & VL_PARAMETER_SHORTHAND)
       continue; /* other parameters have its members */
-    if (p->type == VL_PARAMETER_FLOAT_INPUT || p->type == VL_PARAMETER_EITHER_INPUT)
-      read[0] = ((const vlFloatInput *)(const void *)at)->texture;
-    if (p->type == VL_PARAMETER_SPECTRUM_INPUT)
-      read[0] = ((const vlSpectrumInput *)(const void *)at)->texture;
-    if (p->type == VL_PARAMETER_TEXTURE)
-      read[0] = *(const vlTextureId *)(const void *)at;
-    if (p->type == VL_PARAMETER_EITHER_INPUT)
-      read[1] =
-          ((const vlSpectrumInput *)(const void *)((const char *)def + p->second))->texture;
+    const uint32_t read[2] = {texture_of(&types[p->type], at + p->offset),
+                              p->type == VL_PARAMETER_EITHER_INPUT
+                                  ? texture_of(&types[second_type(p)], at + p->second)
+                                  : 0};
     for (int k = 0; k < 2; k++)
-      if (read[k].index && n < most)
-        ids[n++] = read[k];
+      if (read[k] && n < most)
+        ids[n++] = (vlTextureId){read[k]};
   }
   return n;
 }
@@ -464,37 +464,13 @@ static void put_choices(const char *const *choices, char *rule, size_t size) {
 }
 
 static void put_rule(const vlParameter *row, double factor, char *rule, size_t size) {
-  switch (row->type) {
-    case VL_PARAMETER_BOOL:
-      snprintf(rule, size, "true or false");
-      break;
-    case VL_PARAMETER_CHOICE:
-      put_choices(row->choices, rule, size);
-      break;
-    case VL_PARAMETER_STRING:
-      snprintf(rule, size, "text");
-      break;
-    case VL_PARAMETER_FILE:
-      snprintf(rule, size, "the path of a file");
-      break;
-    case VL_PARAMETER_TEXTURE:
-      snprintf(rule, size, "a texture");
-      break;
-    case VL_PARAMETER_BLOCK:
-      snprintf(rule, size, "what its file's format says");
-      break;
-    case VL_PARAMETER_COUNT:
-    case VL_PARAMETER_FLOAT:
-    case VL_PARAMETER_DOUBLE:
-    case VL_PARAMETER_FLOAT3:
-    case VL_PARAMETER_DOUBLE3:
-    case VL_PARAMETER_SPECTRUM:
-    case VL_PARAMETER_FLOAT_INPUT:
-    case VL_PARAMETER_SPECTRUM_INPUT:
-    case VL_PARAMETER_EITHER_INPUT:
-      put_number_rule(row, factor, rule, size);
-      break;
-  }
+  const char *known = types[row->type].rule;
+  if (known)
+    snprintf(rule, size, "%s", known);
+  else if (row->type == VL_PARAMETER_CHOICE)
+    put_choices(row->choices, rule, size);
+  else
+    put_number_rule(row, factor, rule, size);
 }
 
 /* ---- whether it is that ------------------------------------------------------------------ */
@@ -542,44 +518,36 @@ static int find_word(const char *const *choices, const char *word) {
   return -1;
 }
 
-static bool fits(const vlParameter *row, const vlGiven *given, double factor, double *number) {
-  bool optional = row->flags & VL_PARAMETER_UNSET;
-  *number = 0;
-  switch (row->type) {
-    case VL_PARAMETER_BOOL:
-      *number = given->number != 0;
-      return given->kind == VL_GIVEN_FLAG;
-    case VL_PARAMETER_CHOICE: {
-      int choice = given->kind == VL_GIVEN_TEXT ? find_word(row->choices, given->text) : -1;
-      *number = choice;
-      return choice >= 0;
-    }
-    case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE:
-      if (given->kind == VL_GIVEN_NOTHING)
-        return !(row->flags & VL_PARAMETER_REQUIRED);
-      return given->kind == VL_GIVEN_TEXT &&
-             (given->text[0] || row->type == VL_PARAMETER_STRING);
-    case VL_PARAMETER_TEXTURE:
-      return given->kind == VL_GIVEN_NOTHING;
-    case VL_PARAMETER_BLOCK:
-      return false;
-    case VL_PARAMETER_COUNT:
-    case VL_PARAMETER_FLOAT:
-    case VL_PARAMETER_DOUBLE:
-    case VL_PARAMETER_FLOAT3:
-    case VL_PARAMETER_DOUBLE3:
-    case VL_PARAMETER_SPECTRUM:
-    case VL_PARAMETER_FLOAT_INPUT:
-    case VL_PARAMETER_SPECTRUM_INPUT:
-    case VL_PARAMETER_EITHER_INPUT:
-      break;
-  }
-  *number = given->kind == VL_GIVEN_NOTHING ? VL_UNSET : factor * given->number;
+static bool fits_text(const vlParameter *row, const vlGiven *given) {
   if (given->kind == VL_GIVEN_NOTHING)
-    return optional;
+    return !(row->flags & VL_PARAMETER_REQUIRED);
+  return given->kind == VL_GIVEN_TEXT && (given->text[0] || row->type == VL_PARAMETER_STRING);
+}
+
+static bool fits_number(const vlParameter *row, const vlGiven *given, double number) {
+  if (given->kind == VL_GIVEN_NOTHING)
+    return row->flags & VL_PARAMETER_UNSET;
   /* A NaN that somebody gives is a wrong number, also if its bits are those of VL_UNSET. */
-  return given->kind == VL_GIVEN_NUMBER && !isnan(given->number) && in_range(row, *number);
+  return given->kind == VL_GIVEN_NUMBER && !isnan(given->number) && in_range(row, number);
+}
+
+static bool fits(const vlParameter *row, const vlGiven *given, double factor, double *number) {
+  const Type *t = &types[row->type];
+  *number = 0;
+  if (row->type == VL_PARAMETER_BOOL) {
+    *number = given->number != 0;
+    return given->kind == VL_GIVEN_FLAG;
+  }
+  if (row->type == VL_PARAMETER_CHOICE) {
+    *number = given->kind == VL_GIVEN_TEXT ? find_word(row->choices, given->text) : -1;
+    return *number >= 0;
+  }
+  if (t->text)
+    return fits_text(row, given);
+  if (!t->numbers && !t->spectral) /* a texture or a block */
+    return t->textured && given->kind == VL_GIVEN_NOTHING;
+  *number = given->kind == VL_GIVEN_NOTHING ? VL_UNSET : factor * given->number;
+  return fits_number(row, given, *number);
 }
 
 /* ---- messages ---------------------------------------------------------------------------- */
@@ -646,9 +614,12 @@ bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *giv
 }
 
 void vl_given_put(const vlParameter *row, double number, void *def) {
-  put(row, number, (char *)def + row->offset);
+  const Type *t = &types[row->type];
+  if (t->numbers != 1 || t->textured)
+    return;
+  t->put((char *)def + row->offset, 0, number);
   if (row->second)
-    put(row, number, (char *)def + row->second);
+    t->put((char *)def + row->second, 0, number);
 }
 
 const char *vl_near_name(const char *name, const char *const *names, size_t count) {
@@ -693,40 +664,38 @@ static uint32_t count_of(const char *const *choices) {
   return n;
 }
 
+static bool check_choice(const vlParameter *p, int choice, const char *name,
+                         char message[VL_GIVEN_MESSAGE]) {
+  if (choice >= 0 && (uint32_t)choice < count_of(p->choices))
+    return true;
+  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = choice};
+  put_wrong(p, name, &given, message, VL_GIVEN_MESSAGE);
+  return false;
+}
+
 bool vl_parameter_check(const vlParameter *p, const void *def, const char *name,
                         char message[VL_GIVEN_MESSAGE]) {
-  const char *at = (const char *)def + p->offset;
-  double x;
-  if (p->type == VL_PARAMETER_FLOAT3) {
-    for (int i = 0; i < 3; i++)
-      if (!check_number(p, (double)((const float *)(const void *)at)[i], name, message))
-        return false;
+  const Type *t = &types[p->type];
+  const void *at = (const char *)def + p->offset;
+  double number;
+  if (p->type == VL_PARAMETER_BOOL)
     return true;
-  }
-  if (p->type == VL_PARAMETER_DOUBLE3) {
-    for (int i = 0; i < 3; i++)
-      if (!check_number(p, ((const double *)(const void *)at)[i], name, message))
-        return false;
-    return true;
-  }
-  if (p->type == VL_PARAMETER_CHOICE) {
-    int choice = *(const int *)(const void *)at;
-    if (choice >= 0 && (uint32_t)choice < count_of(p->choices))
-      return true;
-    const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = choice};
-    put_wrong(p, name, &given, message, VL_GIVEN_MESSAGE);
-    return false;
-  }
-  if ((p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE) &&
-      (p->flags & VL_PARAMETER_REQUIRED)) {
-    if (*(const char *const *)(const void *)at)
+  if (p->type == VL_PARAMETER_CHOICE)
+    return check_choice(p, *(const int *)at, name, message);
+  if (t->text) {
+    if (!(p->flags & VL_PARAMETER_REQUIRED) || *(const char *const *)at)
       return true;
     snprintf(message, VL_GIVEN_MESSAGE, "%s is missing", name);
     return false;
   }
-  if (p->type == VL_PARAMETER_BOOL)
+  if (t->spectral)
+    return !vl_parameter_number(p, def, &number) || check_number(p, number, name, message);
+  if (texture_of(t, at))
     return true;
-  return !vl_parameter_number(p, def, &x) || check_number(p, x, name, message);
+  for (int i = 0; i < t->numbers; i++)
+    if (!check_number(p, number_of(t, at, i), name, message))
+      return false;
+  return true;
 }
 
 bool vl_choices_check(vlSettingGroup group, size_t begin, size_t size, const void *part,

@@ -136,31 +136,18 @@ static bool take_spectrum_input(const Take *t, const vlParameter *p, vlSpectrumI
   return true;
 }
 
+/* What points at nothing needs no copy, and has no texture. */
 static bool take_member(const Take *t, const vlParameter *p, void *at) {
-  switch (p->type) {
-    case VL_PARAMETER_STRING:
-    case VL_PARAMETER_FILE:
-      return vl_scene_copy_string(t->scene, at);
-    case VL_PARAMETER_SPECTRUM:
-      return take_spectrum(t, p, at);
-    case VL_PARAMETER_EITHER_INPUT:
-    case VL_PARAMETER_FLOAT_INPUT:
-      return take_texture(t, p, ((vlFloatInput *)at)->texture, false);
-    case VL_PARAMETER_SPECTRUM_INPUT:
-      return take_spectrum_input(t, p, at);
-    case VL_PARAMETER_TEXTURE:
-      return take_texture(t, p, *(vlTextureId *)at, true);
-    case VL_PARAMETER_BOOL:
-    case VL_PARAMETER_COUNT:
-    case VL_PARAMETER_FLOAT:
-    case VL_PARAMETER_DOUBLE:
-    case VL_PARAMETER_FLOAT3:
-    case VL_PARAMETER_DOUBLE3:
-    case VL_PARAMETER_CHOICE:
-    case VL_PARAMETER_BLOCK:
-      return true;
-  }
-  return true;
+  const vlParameterType type = p->type;
+  if (type == VL_PARAMETER_STRING || type == VL_PARAMETER_FILE)
+    return vl_scene_copy_string(t->scene, at);
+  if (type == VL_PARAMETER_SPECTRUM)
+    return take_spectrum(t, p, at);
+  if (type == VL_PARAMETER_EITHER_INPUT || type == VL_PARAMETER_FLOAT_INPUT)
+    return take_texture(t, p, ((vlFloatInput *)at)->texture, false);
+  if (type == VL_PARAMETER_SPECTRUM_INPUT)
+    return take_spectrum_input(t, p, at);
+  return type != VL_PARAMETER_TEXTURE || take_texture(t, p, *(vlTextureId *)at, true);
 }
 
 static bool take_parameter(const Take *t, const vlParameter *p, char *def, bool spectrum) {

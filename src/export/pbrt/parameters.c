@@ -68,36 +68,17 @@ static void put_spectrum(vlExport *x, const vlParameter *p, const vlPbrtInput *i
 static void put(vlExport *x, const vlParameter *p, const void *def, bool spectrum,
                 const vlPbrtParameter *prepared) {
   const vlPbrtInput *input = &prepared->input;
-  switch (p->type) {
-    case VL_PARAMETER_FILE:
-      PUT(" \"string %s\" \"%s\"", p->name, prepared->file);
-      break;
-    case VL_PARAMETER_EITHER_INPUT:
-      if (spectrum)
-        vl_pbrt_put_color(x, p->name, input);
-      else
-        vl_pbrt_put_number(x, p->name, input);
-      break;
-    case VL_PARAMETER_FLOAT_INPUT:
-      vl_pbrt_put_number(x, p->name, input);
-      break;
-    case VL_PARAMETER_SPECTRUM_INPUT:
-      put_spectrum(x, p, input);
-      break;
-    case VL_PARAMETER_BOOL:
-    case VL_PARAMETER_COUNT:
-    case VL_PARAMETER_FLOAT:
-    case VL_PARAMETER_DOUBLE:
-    case VL_PARAMETER_FLOAT3:
-    case VL_PARAMETER_DOUBLE3:
-    case VL_PARAMETER_CHOICE:
-    case VL_PARAMETER_STRING:
-    case VL_PARAMETER_SPECTRUM:
-    case VL_PARAMETER_TEXTURE:
-    case VL_PARAMETER_BLOCK:
-      vl_pbrt_parameter(x, p, def);
-      break;
-  }
+  const bool either = p->type == VL_PARAMETER_EITHER_INPUT;
+  if (p->type == VL_PARAMETER_FILE)
+    PUT(" \"string %s\" \"%s\"", p->name, prepared->file);
+  else if (p->type == VL_PARAMETER_SPECTRUM_INPUT)
+    put_spectrum(x, p, input);
+  else if (either && spectrum)
+    vl_pbrt_put_color(x, p->name, input);
+  else if (either || p->type == VL_PARAMETER_FLOAT_INPUT)
+    vl_pbrt_put_number(x, p->name, input);
+  else
+    vl_pbrt_parameter(x, p, def);
 }
 
 void vl_pbrt_put(vlExport *x, const vlKindRow *row, const void *def, bool spectrum,

@@ -13,36 +13,21 @@
 #include "base/text.h"
 #include "camera_files/colmap.h"
 #include "camera_files/fields.h"
+#include "camera_files/lines.h"
 #include "camera_files/trajectory.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
 
-typedef struct {
-  char *at, *end; /* the unread text */
-  uint32_t line;
-} Lines;
-
-/* Returns the next line that is not a comment, zero-terminated, or null at the end. */
-static char *next_line(Lines *lines) {
-  if (lines->line == 0 && lines->end - lines->at >= 3 && !memcmp(lines->at, "\xef\xbb\xbf", 3))
-    lines->at += 3; /* byte order mark */
-  while (lines->at < lines->end) {
-    char *line = lines->at, *stop = memchr(line, '\n', (size_t)(lines->end - line));
-    lines->at = stop ? stop + 1 : lines->end;
-    if (stop)
-      *stop = 0;
-    lines->line++;
-    size_t n = strlen(line);
-    if (n && line[n - 1] == '\r')
-      line[n - 1] = 0;
-    if (line[0] != '#')
-      return line;
-  }
-  return NULL;
+/* The next line that is not a comment; null: there is none. */
+static char *next_line(vlRawLines *lines) {
+  char *line = vl_camera_raw_line(lines);
+  while (line && line[0] == '#')
+    line = vl_camera_raw_line(lines);
+  return line;
 }
 
 /* The same for lines that are not blank. */
-static char *next_entry(Lines *lines) {
+static char *next_entry(vlRawLines *lines) {
   char *line = next_line(lines);
   while (line && line[strspn(line, " \t")] == 0)
     line = next_line(lines);
@@ -70,20 +55,20 @@ static char *next_word(char **at) {
   return word;
 }
 
-static vlResult read_camera_line(const vlCameraFile *file, const char *path, const Lines *lines,
-                                 char *rest, vlCameraDef *d) {
+static vlResult read_camera_line(const vlCameraFile *file, const char *path,
+                                 const vlRawLines *lines, char *rest, vlCameraDef *d) {
   char *model = next_word(&rest);
   double size[2], parameters[16];
   uint32_t count = 0;
   for (int i = 0; i < 2; i++)
     if (!next_number(&rest, &size[i]) || !vl_camera_is_side(size[i]))
-      return wrong_line(file, path, lines->line,
+      return wrong_line(file, path, lines->number,
                         "after the model come width and height in whole pixels");
   for (rest += strspn(rest, " \t"); *rest; rest += strspn(rest, " \t")) {
     if (count == VL_LENGTH(parameters))
-      return wrong_line(file, path, lines->line, "more than 16 parameters");
+      return wrong_line(file, path, lines->number, "more than 16 parameters");
     if (!next_number(&rest, &parameters[count++]))
-      return wrong_line(file, path, lines->line, "a parameter is no finite number");
+      return wrong_line(file, path, lines->number, "a parameter is no finite number");
   }
   d->width = (uint32_t)size[0];
   d->height = (uint32_t)size[1];
@@ -91,15 +76,15 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   if (vl_camera_def_colmap(d, model, parameters, count, &error) == VL_OK)
     return VL_OK;
   vl_shorten_quoted(&error, model);
-  return wrong_line(file, path, lines->line, error.message);
+  return wrong_line(file, path, lines->number, error.message);
 }
 
 /* Loads a file into *text, which is to be freed. */
 static vlResult open_lines(const vlCameraFile *file, const char *path, char **text,
-                           Lines *lines) {
+                           vlRawLines *lines) {
   size_t size;
   VL_TRY(vl_colmap_load(file, path, text, &size));
-  *lines = (Lines){*text, *text + size, 0};
+  *lines = (vlRawLines){*text, *text + size, 0};
   return VL_OK;
 }
 
@@ -107,13 +92,13 @@ static vlResult open_lines(const vlCameraFile *file, const char *path, char **te
 static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id,
                              vlCameraRecord *record) {
   char *text = NULL;
-  Lines lines;
+  vlRawLines lines;
   vlResult result = open_lines(file, path, &text, &lines);
   bool found = false;
   for (char *line; result == VL_OK && !found && (line = next_entry(&lines));) {
     double number;
     if (!next_number(&line, &number))
-      result = wrong_line(file, path, lines.line, "a line begins with the camera's number");
+      result = wrong_line(file, path, lines.number, "a line begins with the camera's number");
     else if ((found = !id || number == *id))
       result = read_camera_line(file, path, &lines, line, &record->camera);
   }
@@ -146,7 +131,7 @@ static vlResult read_image_line(const vlCameraFile *file, const char *path, uint
 static vlResult read_images(const vlCameraFile *file, const char *path, double *id,
                             vlCameraRecord *record) {
   char *text = NULL;
-  Lines lines;
+  vlRawLines lines;
   vlResult result = open_lines(file, path, &text, &lines);
   bool taken = false;
   record->frames = 0;
@@ -154,7 +139,7 @@ static vlResult read_images(const vlCameraFile *file, const char *path, double *
     bool found = false;
     if (!taken)
       result =
-          read_image_line(file, path, lines.line, line, &found, record->frames, id, record);
+          read_image_line(file, path, lines.number, line, &found, record->frames, id, record);
     taken = taken || found;
     record->frames++;
     next_line(&lines); /* skip the line of points */
@@ -180,13 +165,13 @@ static int by_id(const void *a, const void *b) {
 
 static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, const char *path,
                                  char *text, size_t size, CameraIds *ids) {
-  Lines lines = {text, text + size, 0};
+  vlRawLines lines = {text, text + size, 0};
   for (char *line; (line = next_entry(&lines));) {
     vlCameraRecord record;
     CameraId id;
     vl_trajectory_begin(VL_CAMERA_DIALECT_COLMAP, &record);
     if (!next_number(&line, &id.id))
-      return wrong_line(file, path, lines.line, "a line begins with the camera's number");
+      return wrong_line(file, path, lines.number, "a line begins with the camera's number");
     VL_TRY(read_camera_line(file, path, &lines, line, &record.camera));
     snprintf(record.name, sizeof record.name, "%.0f", id.id);
     VL_TRY(vl_trajectory_add_camera(t, file, &record, &id.index));
@@ -202,7 +187,7 @@ static vlResult read_all_cameras(vlTrajectory *t, const vlCameraFile *file, cons
 
 static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const char *path,
                                 char *text, size_t size, const CameraIds *ids) {
-  Lines lines = {text, text + size, 0};
+  vlRawLines lines = {text, text + size, 0};
   vlCameraFileDef any = *file->def; /* no frame filter: every image is read */
   vlCameraFile copy = *file;
   copy.def = &any;
@@ -211,10 +196,10 @@ static vlResult read_all_images(vlTrajectory *t, const vlCameraFile *file, const
     vlCameraRecord record = {.frames = 0};
     CameraId wanted = {0, 0};
     bool found = false;
-    VL_TRY(read_image_line(&copy, path, lines.line, line, &found, 0, &wanted.id, &record));
+    VL_TRY(read_image_line(&copy, path, lines.number, line, &found, 0, &wanted.id, &record));
     const CameraId *id =
         ids->count ? bsearch(&wanted, ids->items, ids->count, sizeof *ids->items, by_id) : NULL;
-    vlFrameLocation location = {path, lines.line, (uint32_t)t->frames.count, record.name};
+    vlFrameLocation location = {path, lines.number, (uint32_t)t->frames.count, record.name};
     if (!id)
       return vl_frame_wrong(file, &location, "there is no camera %.0f in cameras.txt",
                             wanted.id);

@@ -58,3 +58,22 @@ vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *l
     *count = found;
   return VL_OK;
 }
+
+char *vl_camera_raw_line(vlRawLines *lines) {
+  const bool marked = lines->number == 0 && lines->end - lines->at >= 3 &&
+                      memcmp(lines->at, "\xef\xbb\xbf", 3) == 0;
+  if (marked)
+    lines->at += 3;
+  if (lines->at >= lines->end)
+    return NULL;
+  char *line = lines->at;
+  char *stop = memchr(line, '\n', (size_t)(lines->end - line));
+  lines->at = stop ? stop + 1 : lines->end;
+  lines->number++;
+  if (stop)
+    *stop = 0;
+  const size_t length = strlen(line);
+  if (length && line[length - 1] == '\r')
+    line[length - 1] = 0;
+  return line;
+}

@@ -22,4 +22,14 @@ vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *l
                                 const char *from, double *values, uint32_t least, uint32_t most,
                                 uint32_t *count);
 
+/* Lines whose blanks and comments have a meaning. The text is writable; each line of it becomes
+ * a text of its own. */
+typedef struct vlRawLines {
+  char *at, *end; /* the unread text */
+  uint32_t number;
+} vlRawLines;
+/* The next line without its end, LF or CR LF; null: there is none. A byte order mark is
+ * skipped. */
+char *vl_camera_raw_line(vlRawLines *lines);
+
 #endif

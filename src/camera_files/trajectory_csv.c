@@ -9,6 +9,7 @@
 
 #include "base/context.h"
 #include "base/text.h"
+#include "camera_files/lines.h"
 #include "camera_files/trajectory.h"
 
 enum { MAX_COLUMNS = 64 };
@@ -337,17 +338,9 @@ static vlResult read_line(Csv *csv, char *line) {
 vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char *text,
                                 size_t size) {
   Csv csv = {.trajectory = t, .file = file, .time_unit = 1.0};
-  char *end = text + size;
-  if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
-    text += 3; /* byte order mark */
-  for (char *line = text; line < end;) {
-    char *stop = memchr(line, '\n', (size_t)(end - line)), *next = stop ? stop + 1 : end;
-    if (stop)
-      *stop = 0;
-    csv.line++;
-    size_t n = strlen(line);
-    if (n && line[n - 1] == '\r')
-      line[n - 1] = 0;
+  vlRawLines lines = {.at = text, .end = text + size};
+  for (char *line; (line = vl_camera_raw_line(&lines));) {
+    csv.line = lines.number;
     const char *first = line + strspn(line, " \t");
     if (*first == '#' && strstr(first, "p_RS_R_x")) {
       VL_TRY(read_euroc_header(&csv, line + (first - line) + 1));
@@ -360,7 +353,6 @@ vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char 
     } else if (*first) {
       VL_TRY(read_line(&csv, line));
     }
-    line = next;
   }
   return VL_OK;
 }

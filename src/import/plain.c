@@ -53,6 +53,14 @@ static bool color_faces(vlContext *context, vlMesh *m) {
   return true;
 }
 
+bool vl_import_plain_fail(vlScene *scene, vlResult code, const char *path, uint32_t line,
+                          const char *what, const char *word) {
+  const vlSource source = {.file = path, .line = line, .column = line ? 1 : 0};
+  vl_scene_fail(scene, code, source, "%s%s%s%s", what, word ? " \"" : "", word ? word : "",
+                word ? "\"" : "");
+  return false;
+}
+
 bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const char **at,
                           const char **end) {
   size_t size = 0;
@@ -68,23 +76,19 @@ bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const c
   return true;
 }
 
-static bool fail(vlScene *scene, vlResult code, const char *path, const char *what) {
-  vl_scene_fail(scene, code, (vlSource){.file = path}, "%s", what);
-  return false;
-}
-
 /* Gives the mesh faces, and vertices their colours. */
 static bool finish_mesh(vlScene *scene, const char *path, vlMesh *m) {
   vlContext *context = scene->context;
   if (scene->error.code != VL_OK)
     return false;
   if (!m->vertices)
-    return fail(scene, VL_ERROR_SCENE, path,
-                "it has no faces and no points: there is nothing to draw");
+    return vl_import_plain_fail(scene, VL_ERROR_SCENE, path, 0,
+                                "it has no faces and no points: there is nothing to draw",
+                                NULL);
   bool ok = m->triangles || vl_import_points(context, path, m);
   if (ok && m->face_colors && !m->colors)
     ok = color_faces(context, m);
-  return ok || fail(scene, VL_ERROR_MEMORY, path, "out of memory");
+  return ok || vl_import_plain_fail(scene, VL_ERROR_MEMORY, path, 0, "out of memory", NULL);
 }
 
 vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load,

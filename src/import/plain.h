@@ -13,6 +13,11 @@ void vl_import_plain_settings(vlScene *scene);
 bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const char **at,
                           const char **end);
 
+/* Reports what is wrong at a line of a file, 0: none, with the word that is; null: none.
+ * Returns false. */
+bool vl_import_plain_fail(vlScene *scene, vlResult code, const char *path, uint32_t line,
+                          const char *what, const char *word);
+
 /* Adds the mesh, whose arrays it takes, to the scene, unless that has an error. Without
  * triangles its vertices are points: discs across their normals; without normals small balls.
  * The median distance to the fourth neighbour is their radius, within 1/2000 and 1/50 of the

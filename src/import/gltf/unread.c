@@ -74,8 +74,10 @@ static bool walk(vlGltf *g, const char *key, json_t *value) {
     }
     if (json_is_object(part) && !walk(g, name, part))
       return false;
-    json_array_foreach(part, i,
-                       item) if (json_is_object(item) && !walk(g, name, item)) return false;
+    json_array_foreach(part, i, item) {
+      if (json_is_object(item) && !walk(g, name, item))
+        return false;
+    }
   }
   return true;
 }

@@ -23,15 +23,11 @@ typedef struct Off {
 } Off;
 
 static bool fail(Off *s, const char *what, const char *word) {
-  vlSource source = {.file = s->path, .line = s->line, .column = s->line ? 1 : 0};
-  vl_scene_fail(s->scene, VL_ERROR_SCENE, source, "OFF: %s%s%s%s", what, word ? " \"" : "",
-                word ? word : "", word ? "\"" : "");
-  return false;
+  return vl_import_plain_fail(s->scene, VL_ERROR_SCENE, s->path, s->line, what, word);
 }
 
 static bool fail_memory(Off *s) {
-  vl_scene_fail(s->scene, VL_ERROR_MEMORY, (vlSource){.file = s->path}, "out of memory");
-  return false;
+  return vl_import_plain_fail(s->scene, VL_ERROR_MEMORY, s->path, 0, "out of memory", NULL);
 }
 
 /* ---- words ------------------------------------------------------------------------------- */
@@ -56,12 +52,12 @@ static bool skip_blanks(Off *s, bool lines) {
 
 static bool number(Off *s, double *value) {
   if (!skip_blanks(s, true))
-    return fail(s, "the file ends too early", NULL);
+    return fail(s, "OFF: the file ends too early", NULL);
   const char *start = s->at, *p = start;
   while (s->at < s->end && !is_blank(*s->at) && *s->at != '\n' && *s->at != '#')
     s->at++;
   if (!vl_number_scan(&p, s->end, value) || p != s->at || !isfinite((float)*value))
-    return fail(s, "expected a number, found",
+    return fail(s, "OFF: expected a number, found",
                 vl_short_text_of(start, (size_t)(s->at - start)).text);
   for (p = start; p < s->at; p++)
     s->integers = s->integers && *p != '.' && *p != 'e' && *p != 'E';
@@ -73,9 +69,9 @@ static bool count(Off *s, uint64_t bytes, size_t *n) {
   if (!number(s, &value))
     return false;
   if (!(value >= 0 && value < 0x2aaaaaaa) || value != floor(value))
-    return fail(s, "a count makes no sense", NULL);
+    return fail(s, "OFF: a count makes no sense", NULL);
   if (value * (double)bytes > (double)(s->end - s->at) + 1)
-    return fail(s, "the file is too short for its counts", NULL);
+    return fail(s, "OFF: the file is too short for its counts", NULL);
   *n = (size_t)value;
   return true;
 }
@@ -108,7 +104,7 @@ static bool rest_of_line(Off *s, double values[8], int *n) {
 static bool read_header(Off *s) {
   s->line = 1;
   if (!skip_blanks(s, true))
-    return fail(s, "the file is empty", NULL);
+    return fail(s, "OFF: the file is empty", NULL);
   const char *start = s->at;
   while (s->at < s->end && !is_blank(*s->at) && *s->at != '\n' && *s->at != '#')
     s->at++;
@@ -130,10 +126,11 @@ static bool read_header(Off *s) {
     length--;
   }
   if (length != 3 || memcmp(start, "OFF", 3) != 0)
-    return fail(s, "the file must begin with OFF, COFF, NOFF, CNOFF or STOFF, not", word.text);
+    return fail(s, "OFF: the file must begin with OFF, COFF, NOFF, CNOFF or STOFF, not",
+                word.text);
   const char *before = s->at;
   if (skip_blanks(s, false) && s->end - s->at >= 6 && memcmp(s->at, "BINARY", 6) == 0)
-    return fail(s, "binary files are not read, only text", NULL);
+    return fail(s, "OFF: binary files are not read, only text", NULL);
   s->at = before;
   return true;
 }
@@ -164,7 +161,7 @@ static bool read_rows(Off *s) {
       return false;
     if (s->colors) {
       if (n < 3)
-        return fail(s, "a vertex has no colour", NULL);
+        return fail(s, "OFF: a vertex has no colour", NULL);
       bool alpha = n == 4 || n == 6;
       for (int k = 0; k < 4; k++)
         color[k] = k < 3 ? rest[k] : alpha ? rest[3] : s->integers ? 255 : 1;
@@ -172,7 +169,7 @@ static bool read_rows(Off *s) {
     }
     for (int k = 0; s->uvs && k < 2; k++) {
       if (n < 2)
-        return fail(s, "a vertex has no texture coordinates", NULL);
+        return fail(s, "OFF: a vertex has no texture coordinates", NULL);
       m->uvs[0][2 * i + (size_t)k] = (float)rest[n - 2 + k];
     }
   }
@@ -207,7 +204,7 @@ static bool read_face(Off *s, bool *colored) {
     if (!number(s, &value))
       return false;
     if (!(value >= 0 && value < (double)m->vertices))
-      return fail(s, "a face names a vertex that is not there", NULL);
+      return fail(s, "OFF: a face names a vertex that is not there", NULL);
     s->corners.items[k] = (uint32_t)value;
   }
   if (!rest_of_line(s, rest, &more))
@@ -237,7 +234,7 @@ static bool read(Off *s) {
     if (!read_face(s, &colored))
       return false;
   if (s->mesh.triangles > 0x2aaaaaaa)
-    return fail(s, "too many faces", NULL);
+    return fail(s, "OFF: too many faces", NULL);
   if (colored)
     return true;
   vl_free(s->scene->context, s->mesh.face_colors);

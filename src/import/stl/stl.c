@@ -23,27 +23,29 @@ typedef struct Stl {
   VL_ARRAY(float) positions; /* about the mesh's origin */
 } Stl;
 
-static bool fail(Stl *s, vlResult code, const char *what, const char *word) {
-  vlSource source = {.file = s->path, .line = s->line, .column = s->line ? 1 : 0};
-  vl_scene_fail(s->scene, code, source, "STL: %s%s%s%s", what, word ? " \"" : "",
-                word ? word : "", word ? "\"" : "");
-  return false;
+static bool fail(Stl *s, const char *what, const char *word) {
+  return vl_import_plain_fail(s->scene, VL_ERROR_SCENE, s->path, s->line, what, word);
+}
+
+static bool fail_memory(Stl *s) {
+  return vl_import_plain_fail(s->scene, VL_ERROR_MEMORY, s->path, s->line, "STL: out of memory",
+                              NULL);
 }
 
 /* ---- binary ------------------------------------------------------------------------------ */
 
 static bool read_binary(Stl *s, uint64_t count) {
   if (count > 0x2aaaaaaa)
-    return fail(s, VL_ERROR_SCENE, "too many facets", NULL);
+    return fail(s, "STL: too many facets", NULL);
   if (!VL_RESERVE(s->scene->context, &s->positions, 9 * count))
-    return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
+    return fail_memory(s);
   for (uint64_t i = 0; i < count; i++)
     for (int k = 0; k < 9; k++) {
       uint32_t bits = vl_little32(s->at + HEADER + FACET * i + 12 + 4 * k);
       float v;
       memcpy(&v, &bits, sizeof v);
       if (!isfinite(v))
-        return fail(s, VL_ERROR_SCENE, "a vertex is not finite", NULL);
+        return fail(s, "STL: a vertex is not finite", NULL);
       s->positions.items[s->positions.count++] = v;
     }
   return true;
@@ -77,14 +79,13 @@ static bool is(const char *word, size_t length, const char *wanted) {
 
 static bool read_vertex(Stl *s) {
   if (!VL_RESERVE(s->scene->context, &s->positions, 3))
-    return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
+    return fail_memory(s);
   for (int k = 0; k < 3; k++) {
     size_t length;
     const char *word = next_word(s, &length), *p = word;
     double value;
     if (!vl_number_scan(&p, s->end, &value) || p != s->at || !isfinite((float)value))
-      return fail(s, VL_ERROR_SCENE, "expected a coordinate, found",
-                  vl_short_text_of(word, length).text);
+      return fail(s, "STL: expected a coordinate, found", vl_short_text_of(word, length).text);
     s->positions.items[s->positions.count++] = (float)(value - s->mesh.origin[k]);
   }
   return true;
@@ -105,13 +106,12 @@ static bool read_text(Stl *s) {
     if (!is(word, length, "endloop") && !is(word, length, "endsolid"))
       continue;
     if (is(word, length, "endloop") && s->positions.count != first + 9)
-      return fail(s, VL_ERROR_SCENE, "a facet must have 3 vertices", NULL);
+      return fail(s, "STL: a facet must have 3 vertices", NULL);
     first = s->positions.count;
   }
   if (s->positions.count % 9)
-    return fail(s, VL_ERROR_SCENE, "the file ends too early", NULL);
-  return s->positions.count / 9 <= 0x2aaaaaaa ||
-         fail(s, VL_ERROR_SCENE, "too many facets", NULL);
+    return fail(s, "STL: the file ends too early", NULL);
+  return s->positions.count / 9 <= 0x2aaaaaaa || fail(s, "STL: too many facets", NULL);
 }
 
 /* Reads the text, and once more about the origin if it lies far from that. */
@@ -138,10 +138,9 @@ static bool read(Stl *s) {
   if (s->end - p >= 5 && is(p, 5, "solid"))
     return read_near_text(s);
   if (size < HEADER)
-    return fail(s, VL_ERROR_SCENE,
-                "neither a text that begins with \"solid\" nor a binary file", NULL);
+    return fail(s, "STL: neither a text that begins with \"solid\" nor a binary file", NULL);
   if ((size - HEADER) / FACET < count)
-    return fail(s, VL_ERROR_SCENE, "the file ends too early", NULL);
+    return fail(s, "STL: the file ends too early", NULL);
   return read_binary(s, count); /* with something after the facets */
 }
 
@@ -150,7 +149,7 @@ static bool number_vertices(Stl *s) {
   const size_t count = s->positions.count / 3;
   s->mesh.indices = vl_alloc_array(s->scene->context, count + 1, sizeof *s->mesh.indices);
   if (!s->mesh.indices)
-    return fail(s, VL_ERROR_MEMORY, "out of memory", NULL);
+    return fail_memory(s);
   for (size_t i = 0; i < count; i++)
     s->mesh.indices[i] = (uint32_t)i;
   s->mesh.vertices = count;

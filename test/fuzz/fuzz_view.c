@@ -9,11 +9,11 @@
 #include "view/sensor_edit.h"
 
 /* Each has all members. */
-static const MessageType types[] = {
-    {"camera", UINT32_MAX, MESSAGE_AT_ONCE},   {"sensor", UINT32_MAX, MESSAGE_AT_ONCE},
-    {"settings", UINT32_MAX, MESSAGE_AT_ONCE}, {"overlay", UINT32_MAX, MESSAGE_AT_ONCE},
-    {"pick", UINT32_MAX, MESSAGE_AT_ONCE},     {"save", UINT32_MAX, MESSAGE_AT_ONCE},
-    {"scene", UINT32_MAX, MESSAGE_AT_ONCE},    {NULL}};
+#define TYPE(NAME) \
+  { .name = NAME, .members = UINT32_MAX, .place = MESSAGE_AT_ONCE }
+static const MessageType types[] = {TYPE("camera"),  TYPE("sensor"), TYPE("settings"),
+                                    TYPE("overlay"), TYPE("pick"),   TYPE("save"),
+                                    TYPE("scene"),   {.name = NULL}};
 
 static void check_limits(const ViewMessage *m) {
   bool good = m->field_count <= MESSAGE_FIELDS && fabs(m->x) <= 65536 && fabs(m->y) <= 65536 &&

@@ -321,7 +321,7 @@ const MessageType message_types[] = {
     {"cameras", 0, MESSAGE_ASKS, engine_cameras, .harmless = true},
     {"outside", MEMBER_SIZE | MEMBER_EXPOSURE | MEMBER_SET, MESSAGE_ASKS, engine_outside,
      .harmless = true},
-    {NULL}};
+    {.name = NULL}};
 _Static_assert(sizeof message_types / sizeof *message_types <= MESSAGE_TYPES, "too many types");
 
 void engine_message(void *user, bool steers, const ViewMessage *m) {

@@ -64,14 +64,14 @@ static const Member members[] = {
     {MEMBER_MARK, "mark", KIND_FLAG, TO(mark), .row = &flag_row},
     {MEMBER_BY_SAMPLE, "by_sample", KIND_FLAG, TO(by_sample), .row = &flag_row},
     {MEMBER_END, "end", KIND_FLAG, TO(end), .row = &flag_row},
-    {MEMBER_CROP, "crop", KIND_BOX, TO(crop)},
-    {MEMBER_SIZE, "size", KIND_PAIR, TO(size)},
-    {MEMBER_CHANNEL, "channel", KIND_TEXT, TO(channel)},
-    {MEMBER_WHAT, "what", KIND_TEXT, TO(what)},
-    {MEMBER_NAME, "name", KIND_TEXT, TO(name)},
-    {MEMBER_DIALECT, "dialect", KIND_TEXT, TO(dialect)},
-    {MEMBER_VIEW, "view", KIND_TEXT, TO(view)},
-    {MEMBER_SET, "set", KIND_FIELDS, TO(fields)}};
+    {MEMBER_CROP, "crop", KIND_BOX, TO(crop), .row = NULL},
+    {MEMBER_SIZE, "size", KIND_PAIR, TO(size), .row = NULL},
+    {MEMBER_CHANNEL, "channel", KIND_TEXT, TO(channel), .row = NULL},
+    {MEMBER_WHAT, "what", KIND_TEXT, TO(what), .row = NULL},
+    {MEMBER_NAME, "name", KIND_TEXT, TO(name), .row = NULL},
+    {MEMBER_DIALECT, "dialect", KIND_TEXT, TO(dialect), .row = NULL},
+    {MEMBER_VIEW, "view", KIND_TEXT, TO(view), .row = NULL},
+    {MEMBER_SET, "set", KIND_FIELDS, TO(fields), .row = NULL}};
 
 static bool refuse(const Reader *r, const char *format, const char *key) {
   snprintf(r->why, VL_GIVEN_MESSAGE, format, key);

@@ -11,6 +11,7 @@
 #include "light/lamp.h"
 #include "math/double3.h"
 #include "math/elementary.h"
+#include "math/octahedral.h"
 #include "math/transform.h"
 #include "texture/lookup.h"
 #include "velo/light.h"
@@ -40,43 +41,14 @@ static vlResult bad_pixel(const vlLightDef *def, uint32_t x, uint32_t y, vlError
                  def->path ? def->path : "the image", x, y);
 }
 
-static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlMipmap *mip,
-                                vlWorldLight *light, vlEmitted *e, vlError *error) {
-  static const int order[3] = {0, 2, 1};
-  static const float sign[3] = {1, 1, 1};
-  uint32_t n = mip->levels[0].width;
-  if (n != mip->levels[0].height)
-    return vl_fail(error, VL_ERROR_SCENE,
-                   "%s: %u x %u: a goniometric light's image must be square (equal-area "
-                   "octahedral map)",
-                   def->path ? def->path : "the image", n, mip->levels[0].height);
-  if (!set_frame(def, order, sign, light))
-    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
-  double sum = 0;
-  for (uint32_t y = 0; y < n; y++)
-    for (uint32_t x = 0; x < n; x++) {
-      float value =
-          mean_of(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
-      if (!isfinite(value))
-        return bad_pixel(def, x, y, error);
-      sum += value > 0 ? value : 0;
-    }
-  double mean = sum / ((double)n * n), factor = def->scale;
-  if (def->power == def->power)
-    factor *= mean > 0 ? def->power / (4 * M_PI * mean) : 0;
-  vlResult r = vl_light_color(world, &def->color, (float)factor, e, error);
-  light->power = (float)(4 * M_PI * mean) * vl_light_luminance(&e->spectrum);
-  return r;
-}
-
-/* How a projection light's frame lies in the world. */
-typedef struct ImageFrame {
+/* How a light's frame lies in the world. */
+typedef struct LightFrame {
   vlMat4 world_from_light;
   bool is_skewed; /* not a rotation, mirroring and scaling by one number, to rounding */
-} ImageFrame;
+} LightFrame;
 
-static ImageFrame image_frame(const vlLightDef *def) {
-  ImageFrame frame = {.world_from_light = vl_mat4_load(def->world_from_light)};
+static LightFrame light_frame(const vlLightDef *def) {
+  LightFrame frame = {.world_from_light = vl_mat4_load(def->world_from_light)};
   double axes[3][3];
   for (int i = 0; i < 3; i++) {
     const double unit[3] = {i == 0, i == 1, i == 2};
@@ -91,14 +63,86 @@ static ImageFrame image_frame(const vlLightDef *def) {
   return frame;
 }
 
+/* Solid angle of the world per solid angle of the frame, in a direction of the frame (unit). 1
+ * without skew. */
+static double stretch(const LightFrame *frame, const double direction[3]) {
+  if (!frame->is_skewed)
+    return 1;
+  double world[3];
+  vl_mat4_vector(&frame->world_from_light, direction, world);
+  const double length = vl_norm3(world);
+  return fabs(vl_mat4_determinant3(frame->world_from_light)) / (length * length * length);
+}
+
+/* ---- goniometric lights with an image ---------------------------------------------------- */
+
+/* Directions for the mean over all: at least so many along each side of the octahedral square,
+ * where the frame is skewed. */
+enum { SQUARE = 256 };
+
+/* The direction, in the light's frame, of a point of the octahedral square. */
+static void square_direction(double s, double t, double direction[3]) {
+  const vlVec3 d = vl_octahedral_decode((float)s, (float)t);
+  direction[0] = (double)d.x;
+  direction[1] = (double)d.z;
+  direction[2] = (double)d.y;
+}
+
+/* The mean of stretch over texel (x, y) of n x n. */
+static double texel_stretch(const LightFrame *frame, uint32_t n, uint32_t x, uint32_t y) {
+  if (!frame->is_skewed)
+    return 1;
+  const uint32_t parts = n < SQUARE ? SQUARE / n : 1;
+  double sum = 0;
+  for (uint32_t i = 0; i < parts * parts; i++) {
+    double direction[3];
+    square_direction((x + (i % parts + 0.5) / parts) / n, (y + (i / parts + 0.5) / parts) / n,
+                     direction);
+    sum += stretch(frame, direction);
+  }
+  return sum / (parts * parts);
+}
+
+static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlMipmap *mip,
+                                vlWorldLight *light, vlEmitted *e, vlError *error) {
+  static const int order[3] = {0, 2, 1};
+  static const float sign[3] = {1, 1, 1};
+  uint32_t n = mip->levels[0].width;
+  if (n != mip->levels[0].height)
+    return vl_fail(error, VL_ERROR_SCENE,
+                   "%s: %u x %u: a goniometric light's image must be square (equal-area "
+                   "octahedral map)",
+                   def->path ? def->path : "the image", n, mip->levels[0].height);
+  if (!set_frame(def, order, sign, light))
+    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
+  const LightFrame frame = light_frame(def);
+  double sum = 0;
+  for (uint32_t y = 0; y < n; y++)
+    for (uint32_t x = 0; x < n; x++) {
+      float value =
+          mean_of(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
+      if (!isfinite(value))
+        return bad_pixel(def, x, y, error);
+      sum += value > 0 ? value * texel_stretch(&frame, n, x, y) : 0;
+    }
+  double mean = sum / ((double)n * n), factor = def->scale;
+  if (def->power == def->power)
+    factor *= mean > 0 ? def->power / (4 * M_PI * mean) : 0;
+  vlResult r = vl_light_color(world, &def->color, (float)factor, e, error);
+  light->power = (float)(4 * M_PI * mean) * vl_light_luminance(&e->spectrum);
+  return r;
+}
+
+/* ---- projection lights ------------------------------------------------------------------- */
+
 /* The direction, not normalized, of a point of the plane z = 1. The image's y points down. */
-static void image_direction(const ImageFrame *frame, double x, double y, double direction[3]) {
+static void image_direction(const LightFrame *frame, double x, double y, double direction[3]) {
   const double at[3] = {x, -y, 1};
   vl_mat4_vector(&frame->world_from_light, at, direction);
 }
 
 /* An area of the plane z = 1 around a point, over its solid angle. */
-static double image_area(const ImageFrame *frame, double x, double y) {
+static double image_area(const LightFrame *frame, double x, double y) {
   double q = 1 + x * x + y * y;
   if (!frame->is_skewed)
     return q * sqrt(q);
@@ -110,7 +154,7 @@ static double image_area(const ImageFrame *frame, double x, double y) {
 
 /* Cosine of the widest angle between the axis (unit) and what the image covers; -1 where a
  * corner is at more than a right angle. */
-static double image_cone(const ImageFrame *frame, const float axis[3], const float half[2]) {
+static double image_cone(const LightFrame *frame, const float axis[3], const float half[2]) {
   if (!frame->is_skewed)
     return 1 / sqrt(1 + half[0] * half[0] + half[1] * half[1]);
   double least = 1;
@@ -134,7 +178,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   double aspect = (double)w / h, tangent = vl_precise_tan(0.5 * def->fov);
   light->own[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
   light->own[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));
-  const ImageFrame frame = image_frame(def);
+  const LightFrame frame = light_frame(def);
   double sum = 0;
   for (uint32_t y = 0; y < h; y++)
     for (uint32_t x = 0; x < w; x++) {
@@ -218,6 +262,22 @@ static bool set_lamp_frame(const vlLightDef *def, const vlLamp *lamp, vlWorldLig
   return true;
 }
 
+/* The flux of a lamp in its frame, lumens. */
+static double lamp_flux(const vlLamp *lamp, const vlLightDef *def) {
+  const LightFrame frame = light_frame(def);
+  if (!frame.is_skewed)
+    return lamp->info.flux;
+  double straight = 0, skewed = 0;
+  for (int i = 0; i < SQUARE * SQUARE; i++) {
+    double direction[3];
+    square_direction((i % SQUARE + 0.5) / SQUARE, (i / SQUARE + 0.5) / SQUARE, direction);
+    const double candela = vl_lamp_intensity(lamp, direction);
+    straight += candela;
+    skewed += candela * stretch(&frame, direction);
+  }
+  return straight > 0 ? lamp->info.flux * skewed / straight : 0;
+}
+
 /* The intensity is that of the lamp file in candela, times the colour's, whose luminance is
  * 1. */
 static vlResult compile_lamp(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
@@ -227,7 +287,7 @@ static vlResult compile_lamp(vlWorld *world, const vlLightDef *def, vlWorldLight
     return error && error->code ? error->code : VL_ERROR_SCENE;
   if (!set_lamp_frame(def, lamp, light))
     return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
-  double flux = lamp->info.flux, factor = def->scale;
+  double flux = lamp_flux(lamp, def), factor = def->scale;
   if (def->power == def->power)
     factor *= flux > 0 ? def->power / flux : 0;
   vlResult r = vl_light_color(world, &def->color, (float)factor, e, error);

@@ -158,10 +158,21 @@ static void check_power_of_light(const vlKindRow *row, const LightVariant *v,
   check_rim(row->name, v, text);
 }
 
+/* A given power is what arrives around the light, whatever its image, lamp file and frame. */
+static void check_given_power(const vlKindRow *row, const LightVariant *v, const char *form) {
+  static char parameters[TEXT];
+  if (!vl_row_find(row, "power") || row->traits & VL_LIGHT_TRAIT_FAR ||
+      !strstr(v->parameters, "filename"))
+    return;
+  snprintf(parameters, sizeof parameters, "%s \"float power\" 10", v->parameters);
+  check_power("lights", row->name, form, parameters);
+}
+
 static void chosen_powers(void **state) {
   (void)state;
   static char form[TEXT];
   for_each_light(FLOOR, check_power_of_light);
+  for_each_light(AROUND, check_given_power);
   static const char *const shapes[] = {
       "\"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3]",
       "\"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 .5 1 1 .5] \"integer indices\" [0 1 "

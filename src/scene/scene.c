@@ -3,12 +3,9 @@
 #include "scene/scene.h"
 
 #include "base/text.h"
-#include "base/unset.h"
 
 #include <string.h>
 
-#include "velo/light.h"
-#include "velo/material.h"
 #include "velo/medium.h"
 #include "velo/shape_kinds.h"
 #include "velo/texture.h"
@@ -109,9 +106,5 @@ void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
     if (shape->emission.index)
       info->emissive_shapes++;
   }
-  for (size_t i = 0; i < scene->lights.count; i++)
-    info->lamps += vl_light_is_near(&scene->lights.items[i]);
-  for (size_t i = 0; i < scene->emissions.count; i++)
-    info->lamps += !vl_is_unset(scene->emissions.items[i].power);
-  info->lamps -= vl_scene_removed_count(&scene->light_marks); /* they are point lights now */
+  info->lamps = vl_scene_lamps(scene);
 }

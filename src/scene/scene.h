@@ -232,8 +232,9 @@ bool vl_scene_copy_label(vlScene *scene, vlLabel *label);
 bool vl_scene_copy_source(vlScene *scene, vlSource *source);
 bool vl_scene_copy_image(vlScene *scene, const vlImage **image);
 
-/* Whether the light comes from a point of the scene: its unit is the candela. */
-bool vl_light_is_near(const vlLightDef *light);
+/* The number of lights from points of the scene, whose unit is the candela, and of emissions of
+ * a given power. */
+size_t vl_scene_lamps(const vlScene *scene);
 /* A unit of the scene is `metres` long: candela and lumens of the lights and emissions from
  * first_light and first_emission on give the light that they give in metres. What is far away,
  * and what is given as luminance or illuminance, does not change. */

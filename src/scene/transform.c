@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/unset.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
@@ -80,9 +81,19 @@ static bool transform_material(vlScene *scene, size_t index, const Similarity *s
   return scale_height(scene, &m->displacement, s->scale);
 }
 
-bool vl_light_is_near(const vlLightDef *light) {
+/* Whether the light comes from a point of the scene. */
+static bool is_near(const vlLightDef *light) {
   const vlKindRow *row = vl_kind_row(&vl_light_family, (int)light->kind);
   return (row->traits & VL_LIGHT_TRAIT_AT_POINT) != 0;
+}
+
+size_t vl_scene_lamps(const vlScene *scene) {
+  size_t count = 0;
+  for (size_t i = 0; i < scene->lights.count; i++)
+    count += is_near(&scene->lights.items[i]);
+  for (size_t i = 0; i < scene->emissions.count; i++)
+    count += !vl_is_unset(scene->emissions.items[i].power);
+  return count - vl_scene_removed_count(&scene->light_marks); /* they are point lights now */
 }
 
 /* The direction and the position of a light change, its own space is scaled: so images of
@@ -100,7 +111,7 @@ static void transform_light(vlLightDef *light, const Similarity *s) {
     light->to[i] = (float)(light->to[i] * s->scale);
   }
   /* the same irradiance at `scale` times the distance */
-  if (vl_light_is_near(light))
+  if (is_near(light))
     light->scale = (float)(light->scale * s->scale * s->scale);
   for (int corner = 0; light->has_portal && corner < 4; corner++) {
     const double from[3] = {light->portal[corner][0], light->portal[corner][1],
@@ -188,7 +199,7 @@ void vl_scene_state_unit(vlScene *scene, size_t first_light, size_t first_emissi
   const double factor = 1 / (metres * metres);
   for (size_t i = first_light; i < scene->lights.count; i++) {
     vlLightDef *light = &scene->lights.items[i];
-    if (vl_light_is_near(light))
+    if (is_near(light))
       light->scale = (float)(light->scale * factor);
   }
   for (size_t i = first_emission; i < scene->emissions.count; i++)

@@ -143,13 +143,9 @@ static void image_direction(const LightFrame *frame, double x, double y, double 
 
 /* An area of the plane z = 1 around a point, over its solid angle. */
 static double image_area(const LightFrame *frame, double x, double y) {
-  double q = 1 + x * x + y * y;
-  if (!frame->is_skewed)
-    return q * sqrt(q);
-  double direction[3];
-  image_direction(frame, x, y, direction);
-  const double length = vl_norm3(direction);
-  return length * length * length / fabs(vl_mat4_determinant3(frame->world_from_light));
+  const double length2 = 1 + x * x + y * y, length = sqrt(length2);
+  const double direction[3] = {x / length, -y / length, 1 / length};
+  return length2 * length / stretch(frame, direction);
 }
 
 /* Cosine of the widest angle between the axis (unit) and what the image covers; -1 where a

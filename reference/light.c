@@ -95,15 +95,15 @@ static double spot_share(const vlLightDef *def, double cosine) {
 
 /* Light from one direction, or from one place: its intensity becomes radiance by the square of the distance. */
 static bool sample_lamp(const light *l, vector point, const wavelengths *lambda, light_sample *result) {
+  vector axis = subtract(from_floats(l->def->to), from_floats(l->def->from)); /* in the light's own space */
   vector from = transform_point(&l->world_from_light, from_floats(l->def->from));
-  vector to = transform_point(&l->world_from_light, from_floats(l->def->to));
-  vector axis = normalize(subtract(to, from));
-  result->direction = negate(axis);
+  result->direction = normalize(transform_vector(&l->world_from_light, negate(axis)));
   result->radiance = light_color(l, lambda);
   if (l->def->kind == VL_LIGHT_DISTANT) return true;
   if (!aim_at(from, point, result)) return false;
   spectrum share = gray(1);
-  if (l->def->kind == VL_LIGHT_SPOT) share = gray(spot_share(l->def, -dot(result->direction, axis)));
+  vector away = normalize(transform_vector(&l->light_from_world, negate(result->direction)));
+  if (l->def->kind == VL_LIGHT_SPOT) share = gray(spot_share(l->def, dot(away, normalize(axis))));
   if (l->map.image) share = shown_by_lamp(l, negate(result->direction), lambda);
   result->radiance = scaled(1 / square(result->distance), times(share, result->radiance));
   return true;

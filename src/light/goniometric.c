@@ -12,6 +12,7 @@
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/octahedral.h"
+#include "math/stretch.h"
 #include "math/transform.h"
 #include "texture/lookup.h"
 #include "velo/light.h"
@@ -41,39 +42,6 @@ static vlResult bad_pixel(const vlLightDef *def, uint32_t x, uint32_t y, vlError
                  def->path ? def->path : "the image", x, y);
 }
 
-/* How a light's frame lies in the world. */
-typedef struct LightFrame {
-  vlMat4 world_from_light;
-  bool is_skewed; /* not a rotation, mirroring and scaling by one number, to rounding */
-} LightFrame;
-
-static LightFrame light_frame(const vlLightDef *def) {
-  LightFrame frame = {.world_from_light = vl_mat4_load(def->world_from_light)};
-  double axes[3][3];
-  for (int i = 0; i < 3; i++) {
-    const double unit[3] = {i == 0, i == 1, i == 2};
-    vl_mat4_vector(&frame.world_from_light, unit, axes[i]);
-  }
-  const double length2 = vl_dot3(axes[0], axes[0]);
-  for (int i = 0; i < 3; i++) {
-    const double own = vl_dot3(axes[i], axes[i]), skew = vl_dot3(axes[i], axes[(i + 1) % 3]);
-    if (fabs(own - length2) > 1e-4 * length2 || fabs(skew) > 1e-4 * length2)
-      frame.is_skewed = true;
-  }
-  return frame;
-}
-
-/* Solid angle of the world per solid angle of the frame, in a direction of the frame (unit). 1
- * without skew. */
-static double stretch(const LightFrame *frame, const double direction[3]) {
-  if (!frame->is_skewed)
-    return 1;
-  double world[3];
-  vl_mat4_vector(&frame->world_from_light, direction, world);
-  const double length = vl_norm3(world);
-  return fabs(vl_mat4_determinant3(frame->world_from_light)) / (length * length * length);
-}
-
 /* ---- goniometric lights with an image ---------------------------------------------------- */
 
 /* Directions for the mean over all: at least so many along each side of the octahedral square,
@@ -89,8 +57,8 @@ static void square_direction(double s, double t, double direction[3]) {
 }
 
 /* The mean of stretch over texel (x, y) of n x n. */
-static double texel_stretch(const LightFrame *frame, uint32_t n, uint32_t x, uint32_t y) {
-  if (!frame->is_skewed)
+static double texel_stretch(const vlStretch *stretch, uint32_t n, uint32_t x, uint32_t y) {
+  if (!stretch->is_skewed)
     return 1;
   const uint32_t parts = n < SQUARE ? SQUARE / n : 1;
   double sum = 0;
@@ -98,7 +66,7 @@ static double texel_stretch(const LightFrame *frame, uint32_t n, uint32_t x, uin
     double direction[3];
     square_direction((x + (i % parts + 0.5) / parts) / n, (y + (i / parts + 0.5) / parts) / n,
                      direction);
-    sum += stretch(frame, direction);
+    sum += vl_stretch_at(stretch, direction);
   }
   return sum / (parts * parts);
 }
@@ -115,7 +83,7 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
                    def->path ? def->path : "the image", n, mip->levels[0].height);
   if (!set_frame(def, order, sign, light))
     return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
-  const LightFrame frame = light_frame(def);
+  const vlStretch stretch = vl_stretch(def->world_from_light);
   double sum = 0;
   for (uint32_t y = 0; y < n; y++)
     for (uint32_t x = 0; x < n; x++) {
@@ -123,7 +91,7 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
           mean_of(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
       if (!isfinite(value))
         return bad_pixel(def, x, y, error);
-      sum += value > 0 ? value * texel_stretch(&frame, n, x, y) : 0;
+      sum += value > 0 ? value * texel_stretch(&stretch, n, x, y) : 0;
     }
   double mean = sum / ((double)n * n), factor = def->scale;
   if (def->power == def->power)
@@ -136,27 +104,27 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
 /* ---- projection lights ------------------------------------------------------------------- */
 
 /* The direction, not normalized, of a point of the plane z = 1. The image's y points down. */
-static void image_direction(const LightFrame *frame, double x, double y, double direction[3]) {
+static void image_direction(const vlStretch *stretch, double x, double y, double direction[3]) {
   const double at[3] = {x, -y, 1};
-  vl_mat4_vector(&frame->world_from_light, at, direction);
+  vl_mat4_vector(&stretch->map, at, direction);
 }
 
 /* An area of the plane z = 1 around a point, over its solid angle. */
-static double image_area(const LightFrame *frame, double x, double y) {
+static double image_area(const vlStretch *stretch, double x, double y) {
   const double length2 = 1 + x * x + y * y, length = sqrt(length2);
   const double direction[3] = {x / length, -y / length, 1 / length};
-  return length2 * length / stretch(frame, direction);
+  return length2 * length / vl_stretch_at(stretch, direction);
 }
 
 /* Cosine of the widest angle between the axis (unit) and what the image covers; -1 where a
  * corner is at more than a right angle. */
-static double image_cone(const LightFrame *frame, const float axis[3], const float half[2]) {
-  if (!frame->is_skewed)
+static double image_cone(const vlStretch *stretch, const float axis[3], const float half[2]) {
+  if (!stretch->is_skewed)
     return 1 / sqrt(1 + half[0] * half[0] + half[1] * half[1]);
   double least = 1;
   for (int i = 0; i < 4; i++) {
     double to[3], along = 0;
-    image_direction(frame, i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], to);
+    image_direction(stretch, i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], to);
     for (int k = 0; k < 3; k++)
       along += to[k] * axis[k];
     least = fmin(least, along / vl_norm3(to));
@@ -174,7 +142,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   double aspect = (double)w / h, tangent = vl_precise_tan(0.5 * def->fov);
   light->own[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
   light->own[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));
-  const LightFrame frame = light_frame(def);
+  const vlStretch stretch = vl_stretch(def->world_from_light);
   double sum = 0;
   for (uint32_t y = 0; y < h; y++)
     for (uint32_t x = 0; x < w; x++) {
@@ -184,7 +152,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
           vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
       if (!isfinite(value))
         return bad_pixel(def, x, y, error);
-      sum += value > 0 ? value / image_area(&frame, a, b) : 0;
+      sum += value > 0 ? value / image_area(&stretch, a, b) : 0;
     }
   double flux = sum / ((double)w * h) * 4 * light->own[0] * light->own[1], factor = def->scale;
   if (def->power == def->power)
@@ -193,11 +161,11 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), (float)factor,
                        e);
   double axis[3];
-  image_direction(&frame, 0, 0, axis);
+  image_direction(&stretch, 0, 0, axis);
   double l = vl_norm3(axis);
   for (int i = 0; i < 3; i++)
     light->direction[i] = (float)(axis[i] / l);
-  light->cos_end = light->cos_start = (float)image_cone(&frame, light->direction, light->own);
+  light->cos_end = light->cos_start = (float)image_cone(&stretch, light->direction, light->own);
   light->power = (float)(flux * factor / (2 * M_PI * (1 - light->cos_end)) * 4 *
                          M_PI); /* as for a spot light */
   return VL_OK;
@@ -260,8 +228,8 @@ static bool set_lamp_frame(const vlLightDef *def, const vlLamp *lamp, vlWorldLig
 
 /* The flux of a lamp in its frame, lumens. */
 static double lamp_flux(const vlLamp *lamp, const vlLightDef *def) {
-  const LightFrame frame = light_frame(def);
-  if (!frame.is_skewed)
+  const vlStretch stretch = vl_stretch(def->world_from_light);
+  if (!stretch.is_skewed)
     return lamp->info.flux;
   double straight = 0, skewed = 0;
   for (int i = 0; i < SQUARE * SQUARE; i++) {
@@ -269,7 +237,7 @@ static double lamp_flux(const vlLamp *lamp, const vlLightDef *def) {
     square_direction((i % SQUARE + 0.5) / SQUARE, (i / SQUARE + 0.5) / SQUARE, direction);
     const double candela = vl_lamp_intensity(lamp, direction);
     straight += candela;
-    skewed += candela * stretch(&frame, direction);
+    skewed += candela * vl_stretch_at(&stretch, direction);
   }
   return straight > 0 ? lamp->info.flux * skewed / straight : 0;
 }

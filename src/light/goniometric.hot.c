@@ -35,26 +35,6 @@ void vl_light_sample_goniometric(const vlLightQuery *q, vlLightSample *out) {
     out->radiance[c] *= factor;
 }
 
-/* The world's direction of one in the table's frame: the transpose of a rotation times a scale,
- * or for skewed frames its inverse. */
-static vlVec3 from_lamp(const float m[9], vlVec3 d) {
-  vlVec3 x = vl_vec3(m[0], m[1], m[2]), y = vl_vec3(m[3], m[4], m[5]),
-         z = vl_vec3(m[6], m[7], m[8]);
-  vlVec3 a = vl_cross(y, z), b = vl_cross(z, x), c = vl_cross(x, y);
-  float sign = vl_dot(x, a) < 0.0f ? -1.0f : 1.0f;
-  vlVec3 sum = vl_add(vl_mul(a, d.x), vl_add(vl_mul(b, d.y), vl_mul(c, d.z)));
-  return vl_normalize(vl_mul(sum, sign));
-}
-
-/* Solid angle in the table's frame per solid angle of the world, for a unit direction d of the
- * world that is `local` there, before it is normalised: |det m| / |m d|^3. 1 without skew. */
-static float lamp_stretch(const float m[9], vlVec3 local) {
-  vlVec3 x = vl_vec3(m[0], m[1], m[2]), y = vl_vec3(m[3], m[4], m[5]),
-         z = vl_vec3(m[6], m[7], m[8]);
-  float length2 = vl_length2(local);
-  return vl_abs(vl_dot(x, vl_cross(y, z))) / (length2 * __builtin_sqrtf(length2));
-}
-
 /* A ray of the lamp: its direction has the density of the flux of the table's cells. */
 static void emit_lamp(const vlEmissionQuery *q, const vlLampTable *table, vlEmission *out) {
   const float span = 2.0f;
@@ -64,8 +44,8 @@ static void emit_lamp(const vlEmissionQuery *q, const vlLampTable *table, vlEmis
     return;
   float density;
   vlVec3 local = vl_lamp_sample(table, q->s, q->t, &density);
-  out->d = from_lamp(q->light->corners, local);
-  density *= lamp_stretch(q->light->corners, vl_light_local(q->light, out->d));
+  out->d = vl_light_from_local(q->light, local);
+  density *= vl_light_stretch(q->light, vl_light_local(q->light, out->d));
   out->density = density;
   out->valid = density > 0.0f;
   float factor = out->valid ? vl_lamp_candela(table, local) / density : 0.0f;
@@ -96,5 +76,5 @@ float vl_light_emit_pdf_goniometric(const vlWorld *world, const vlWorldLight *li
     return vl_light_emit_pdf_from_point(light, 2.0f, p, w, distance);
   vlVec3 local = vl_light_local(light, vl_neg(w));
   float density = vl_lamp_density(lamp, vl_normalize(local));
-  return p * density * lamp_stretch(light->corners, local) / (distance * distance);
+  return p * density * vl_light_stretch(light, local) / (distance * distance);
 }

@@ -86,9 +86,33 @@ static inline vlVec3 vl_light_axis(const vlWorldLight *light) {
   return vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
 }
 
-/* Transforms a world direction to the light's frame, for lights with an image. */
+/* Transforms a world direction to the light's frame (`corners`); not normalized. */
 static inline vlVec3 vl_light_local(const vlWorldLight *light, vlVec3 d) {
   return vl_turn(light->corners, d);
+}
+
+/* The world's direction (unit) of one in the light's frame: by the transpose of a rotation
+ * times a scale, or for skewed frames by its inverse. */
+static inline vlVec3 vl_light_from_local(const vlWorldLight *light, vlVec3 d) {
+  const float *m = light->corners;
+  vlVec3 x = vl_vec3(m[0], m[1], m[2]);
+  vlVec3 y = vl_vec3(m[3], m[4], m[5]);
+  vlVec3 z = vl_vec3(m[6], m[7], m[8]);
+  vlVec3 a = vl_cross(y, z), b = vl_cross(z, x), c = vl_cross(x, y);
+  float sign = vl_dot(x, a) < 0.0f ? -1.0f : 1.0f;
+  vlVec3 sum = vl_add(vl_mul(a, d.x), vl_add(vl_mul(b, d.y), vl_mul(c, d.z)));
+  return vl_normalize(vl_mul(sum, sign));
+}
+
+/* Solid angle in the light's frame per solid angle of the world, for a unit direction d of the
+ * world that is `local` = m d there, not normalized: |det m| / |m d|^3. 1 without skew. */
+static inline float vl_light_stretch(const vlWorldLight *light, vlVec3 local) {
+  const float *m = light->corners;
+  vlVec3 x = vl_vec3(m[0], m[1], m[2]);
+  vlVec3 y = vl_vec3(m[3], m[4], m[5]);
+  vlVec3 z = vl_vec3(m[6], m[7], m[8]);
+  float length2 = vl_length2(local);
+  return vl_abs(vl_dot(x, vl_cross(y, z))) / (length2 * __builtin_sqrtf(length2));
 }
 
 /* Sets target, direction and density of a sample of a point light. Returns 1 / distance^2. */

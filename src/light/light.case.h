@@ -29,7 +29,7 @@ typedef struct LightVariant {
         light */
 } LightVariant;
 
-enum { LIGHT_VARIANTS = 5 };
+enum { LIGHT_VARIANTS = 7 };
 typedef struct LightCase {
   const char *before; /* statements before the light, such as its place; null: none */
   LightVariant variants[LIGHT_VARIANTS];

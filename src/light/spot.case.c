@@ -10,6 +10,8 @@ static void square(vlLightDef *def) {
   "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"float coneangle\" 40 \"float " \
   "conedeltaangle\" 20 "
 
+#define UNEVEN "ConcatTransform [2 0 0 0 .3 1 0 0 0 0 .6 0 0 0 0 1]"
+
 /* Between the cosines of 40 and of 20 degrees t runs from 0 to 1; the falloff is 3 t^2 - 2 t^3,
  * here of t = .4994 and of .1955 (36.87 degrees), over the squared distance; t^2 where it is
  * squared. */
@@ -38,6 +40,23 @@ const LightCase spot_light = {
             {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [1 0 0] \"rgb I\" [1 2 4]",
              .known = {{1, 0, {.5, 1, 2}}},
              .known_count = 1},
+            /* the cone is round in a frame that is skewed and scaled: x' = 2 x + .3 y, z' = .6
+             * z; the power is that of the world's directions */
+            {.parameters = CONE "\"rgb I\" [1 1 1] \"float power\" 10",
+             .before = UNEVEN,
+             .change = square,
+             .known = {{-.3, 0, {10.01089, 10.01089, 10.01089}},
+                       {.6, .2, {8.564451, 8.564451, 8.564451}},
+                       {-1.2, .1, {.950077, .950077, .950077}},
+                       {.2, .55, {0, 0, 0}}},
+             .known_count = 4},
+            {.parameters = CONE "\"rgb I\" [1 1 1]",
+             .before = UNEVEN,
+             .known = {{-.3, 0, {.735294, .735294, .735294}},
+                       {.6, .2, {.826441, .826441, .826441}},
+                       {-1.2, .1, {.142781, .142781, .142781}},
+                       {.2, .55, {0, 0, 0}}},
+             .known_count = 4},
         },
     .parameters = {{.base = "\"point3 from\" [1 3 2];\"point3 to\" [0 0 0]"},
                    {.parameter = "coneangle", .value = "\"float coneangle\" 12"},

@@ -223,10 +223,12 @@ typedef struct vlWorldLight {
                            towards   the light */
   float cos_start,
       cos_end; /* of a spot light: full intensity within the angle `start`, none beyond `end` */
-  bool cone_squared;    /* the falloff between start and end is t^2; otherwise it is smooth */
-  bool has_cone;        /* emits only into the cone of cos_end about its direction */
-  bool at_point;        /* all light starts at `position` */
-  bool far;             /* infinitely far away */
+  bool cone_squared; /* the falloff between start and end is t^2; otherwise it is smooth */
+  bool has_cone;     /* emits only into the cone of cos_end about its direction */
+  bool skewed_cone;  /* the cone is round in the light's frame only: `corners` turns directions
+                        of the world into it */
+  bool at_point;     /* all light starts at `position` */
+  bool far;          /* infinitely far away */
   uint32_t environment; /* of an infinite light with an image: index into environments; VL_NONE:
                            uniform radiance */
   float power;          /* for light selection: emitted flux in units of luminance; of a light
@@ -244,7 +246,8 @@ typedef struct vlWorldLight {
   uint32_t lamp;  /* of a goniometric light with a lamp file: index into lamps, and `corners`
                      holds  the rotation to the table's frame; else VL_NONE */
   float own[4];   /* numbers that only this kind has; of a projection light: half the width and
-                     height of the image at distance 1 */
+                     height of the image at distance 1; of a spot light with a skewed cone: the
+                     axis in the light's frame, unit */
   /* Of an area light that is a triangle: its corners. Of a whole sphere: its centre, its
    * radius, 1 if it emits outwards or -1 if it emits inwards, and the distance by which points
    * sampled on it may be off. */

@@ -9,6 +9,7 @@
 #include "base/unfinished.h"
 #include "export/export.h"
 #include "math/elementary.h"
+#include "math/stretch.h"
 #include "velo/camera_file.h"
 #include "velo/light.h"
 
@@ -302,6 +303,8 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
         json_pack("{s:s,s:[f,f,f],s:f}", "type", types[d->kind], "color", rgb[0] / most,
                   rgb[1] / most, rgb[2] / most, "intensity", intensity);
     if (d->kind == VL_LIGHT_SPOT) {
+      if (vl_stretch(d->world_from_light).is_skewed)
+        vl_export_lose(x, "spots in frames that are skewed or scaled unevenly: a round cone");
       double inner = d->cone_angle - d->cone_delta, outer = fmin(d->cone_angle, 1.57079632679);
       json_object_set_new(
           light, "spot",

@@ -18,7 +18,7 @@ typedef struct vlLoadDef {
                       images are repaired, with a warning that counts them; false: they are
                       errors (zero normals are not) */
   bool strict;     /**< glTF, OBJ: true: a missing image is an error; false: a warning, and the
-                      material     does without it */
+                      material does without it */
   const char *search_path; /**< pbrt, glTF, OBJ: further folders, separated by ':', in which
                               files are looked for; null: none */
   double time; /**< glTF: time of the animations, seconds; unset: the scene without animation */
@@ -40,9 +40,9 @@ typedef struct vlLoadDef {
 /** The default def. */
 VL_API vlLoadDef vl_default_load_def(void);
 /** Adds the contents of a file to the scene. The suffix selects the format: .pbrt, .gltf, .glb,
- * .obj, .ply, .stl, .off or one of these but glTF's with .gz. Relative paths in the file are
- * relative to its folder. def may be null. Errors: SCENE, MISSING, IO, MEMORY, UNSUPPORTED
- * (valid, but not supported; the message says what). */
+ * .obj, .ply, .stl or .off; all but glTF's two also with .gz behind it. Relative paths in the
+ * file are relative to its folder. def may be null. Errors: SCENE, MISSING, IO, MEMORY,
+ * UNSUPPORTED (valid, but not supported; the message says what). */
 VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def,
                               vlError *error);
 
@@ -76,7 +76,7 @@ VL_API bool vl_environment_is_studio(vlEnvironmentKind kind);
 /** From where the added camera looks. */
 typedef enum vlFraming {
   VL_FRAMING_AUTO,   /**< CORNER; flat models nearly along their normal; the middle of a shell
-                        that   contains nothing */
+                        that contains nothing */
   VL_FRAMING_CORNER, /**< from the front, slightly from the right and from above */
   VL_FRAMING_FRONT   /**< straight from the front */
 } vlFraming;

@@ -10,8 +10,8 @@ struct vlFilmFile {
   vlFilmReader reader;
   vlReceipt *receipt;
   char *data; /* memory for the data of one block, allocated when the first block is checked */
-  vlSampleRange *ranges;
-  uint32_t capacity;
+  vlSampleRange *ranges; /* of the block that was read last */
+  uint32_t capacity;     /* number of ranges that have memory */
 };
 
 vlResult vl_film_receipt(const vlFilmReader *reader, vlReceipt **receipt, vlError *error) {
@@ -81,10 +81,12 @@ vlResult vl_film_file_attributes(const vlFilmFile *file, vlImage *image, vlError
              : VL_OK;
 }
 
+/* Reads the data of the block whose head was read last: a check of its checksum. */
 static vlResult check_data(vlFilmFile *file, vlError *error) {
   vlFilmReader *r = &file->reader;
-  size_t most = vl_film_most_data(&r->shape.def);
-  if (!file->data && !(file->data = vl_alloc(r->context, most)))
+  if (!file->data)
+    file->data = vl_alloc(r->context, vl_film_most_data(&r->shape.def));
+  if (!file->data)
     return vl_fail_memory(error);
   return vl_film_reader_data(r, file->data, error);
 }
@@ -102,8 +104,8 @@ vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *block, vlE
   vlResult result = vl_film_reader_next(r, error);
   if (result != VL_OK || last)
     return result;
-  if (check && (result = check_data(file, error)) != VL_OK)
-    return result;
+  if (check)
+    VL_TRY(check_data(file, error));
   const vlFilmBlockHead *h = &r->head;
   if (h->range_count > file->capacity) {
     vlSampleRange *more =

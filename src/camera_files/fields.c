@@ -148,9 +148,11 @@ void vl_camera_set_flipped(vlCameraDef *def, const double m[16]) {
 /* The values that every form can name, computed from the camera; fields.h says what they are.
  */
 typedef struct {
-  double sides[2], k[9], r[9], t[3], v[3], flipped[16], flipped_columns[16], view_columns[16],
-      axes[9], centre[3];
-  double offset[2], aspect, ratio, yfov;
+  double sides[2], k[9], offset[2];
+  double aspect, ratio, yfov;
+  double r[9], t[3], v[3];
+  double flipped[16], flipped_columns[16], view_columns[16];
+  double axes[9], centre[3];
 } Values;
 
 static Values values_of(const vlCamera *c) {
@@ -175,17 +177,17 @@ static Values values_of(const vlCamera *c) {
 
 /* layout: the letter of vl_camera_put_form (fields.h); 0: separated by commas. */
 static void put_list(vlCameraText *text, const double *values, uint32_t count, char layout) {
-  const bool round = layout == 'p', bracketed = round || (layout >= '1' && layout <= '9');
-  const uint32_t step = round ? 4 : bracketed ? (uint32_t)(layout - '0') : 1;
-  const char *open = round ? "(" : "[", *close = round ? ")" : "]";
+  const bool round = layout == 'p';
+  const bool square = isdigit((unsigned char)layout);
+  const char *open = round ? "(" : square ? "[" : "";
+  const char *close = round ? ")" : square ? "]" : "";
   const char *mark = layout == 'q' ? "\"" : "";
+  const char *separator = layout == 's' ? " " : ", ";
+  const uint32_t group = square ? (uint32_t)(layout - '0') : 4; /* numbers in brackets */
   for (uint32_t i = 0; i < count; i++) {
-    const bool first = bracketed && i % step == 0, last = bracketed && (i + 1) % step == 0;
-    vl_camera_put(text, "%s%s%s%.17g%s%s",
-                  !i              ? ""
-                  : layout == 's' ? " "
-                                  : ", ",
-                  first ? open : "", mark, values[i] + 0.0, mark, last ? close : "");
+    const double value = values[i] + 0.0; /* no -0 */
+    vl_camera_put(text, "%s%s%s%.17g%s%s", i ? separator : "", i % group == 0 ? open : "", mark,
+                  value, mark, (i + 1) % group == 0 ? close : "");
   }
 }
 

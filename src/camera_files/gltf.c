@@ -29,7 +29,8 @@ static Numbers numbers_of(const vlCamera *c) {
 
 /* A node's own transform: matrix, or translation, rotation (x y z w), scale. */
 static vlResult local_matrix(const vlCameraFile *file, const json_t *node, vlMat4 *result) {
-  double m[16], t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1}, r[9];
+  double m[16], r[9];
+  double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
   *result = vl_mat4_identity();
   if (vl_camera_has(node, "matrix")) {
     VL_TRY(vl_camera_list(file, node, "matrix", m, 16));
@@ -120,6 +121,7 @@ static vlResult read_orthographic(const vlCameraFile *file, const json_t *lens,
   return VL_OK;
 }
 
+/* Whether two numbers are equal but for the rounding of numbers in a file. */
 static bool agree(double a, double b) {
   return fabs(a - b) <= 1e-6 * fmax(1.0, fmax(fabs(a), fabs(b)));
 }
@@ -176,10 +178,10 @@ static vlResult check_members(const vlCameraFile *file, const json_t *node,
                               const json_t *camera, vlCameraRecord *record) {
   static const char of_node[] =
       "camera children extensions! extras! matrix mesh name rotation "
-      "scale skin translation weights",
-                    of_camera[] =
-                        "aspectRatio extensions extras! name orthographic "
-                        "perspective type xmag yfov ymag zfar znear";
+      "scale skin translation weights";
+  static const char of_camera[] =
+      "aspectRatio extensions extras! name orthographic "
+      "perspective type xmag yfov ymag zfar znear";
   VL_TRY(vl_camera_check_part(file, of_camera, camera, record));
   return vl_camera_check_part(file, of_node, node, record);
 }
@@ -195,57 +197,69 @@ static vlResult camera_of(const vlCameraFile *file, const json_t *cameras, const
              : vl_camera_wrong(file, "gltf: a node names a camera that does not exist");
 }
 
-static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
-                          vlCameraRecord *record) {
-  const json_t *cameras, *nodes = json_object_get(tree, "nodes"), *camera = NULL,
-                         *chosen = NULL, *holder = NULL;
-  vlResult result = vl_camera_field(file, tree, "cameras", &cameras);
-  if (result != VL_OK)
-    return result;
-  size_t count = json_array_size(nodes);
-  vlMat4 pose = vl_mat4_identity();
+/* World from camera of node `index`. */
+static vlResult pose_of(const vlCameraFile *file, const json_t *nodes, size_t index,
+                        vlMat4 *pose) {
+  int64_t *parents = vl_alloc(file->context, json_array_size(nodes) * sizeof *parents);
+  if (!parents)
+    return vl_fail_memory(file->error);
+  vlResult result = find_parents(file, nodes, parents);
+  if (result == VL_OK)
+    result = world_matrix(file, nodes, parents, (int64_t)index, pose);
+  vl_free(file->context, parents);
+  return result;
+}
+
+/* A node that holds a camera, and that camera. */
+typedef struct {
+  size_t index;
+  const json_t *node, *camera;
+} Holder;
+
+/* Counts the nodes with cameras, and finds the one that is asked for. */
+static vlResult find_holder(const vlCameraFile *file, const json_t *cameras,
+                            const json_t *nodes, vlCameraRecord *record, Holder *chosen) {
+  *chosen = (Holder){.node = NULL};
   record->frames = 0;
-  for (size_t i = 0; i < count && result == VL_OK; i++) {
-    const json_t *node = json_array_get(nodes, i), *index = json_object_get(node, "camera");
+  for (size_t i = 0; i < json_array_size(nodes); i++) {
+    const json_t *camera, *node = json_array_get(nodes, i);
+    const json_t *index = json_object_get(node, "camera");
     if (!index)
       continue;
-    result = camera_of(file, cameras, index, &camera);
+    VL_TRY(camera_of(file, cameras, index, &camera));
     const char *name = vl_camera_text(node, "name");
     if (!name)
       name = vl_camera_text(camera, "name");
-    if (result == VL_OK && !chosen && vl_camera_is_frame(file, record->frames, name)) {
-      int64_t *parents = vl_alloc(file->context, count * sizeof *parents);
-      if (!parents)
-        return vl_fail_memory(file->error);
-      chosen = camera;
-      holder = node;
-      result = find_parents(file, nodes, parents);
-      if (result == VL_OK)
-        result = world_matrix(file, nodes, parents, (int64_t)i, &pose);
-      vl_free(file->context, parents);
+    if (!chosen->node && vl_camera_is_frame(file, record->frames, name)) {
+      *chosen = (Holder){i, node, camera};
       vl_camera_name(record, name);
     }
     record->frames++;
   }
-  if (result == VL_OK && record->frames == 0)
+  if (record->frames == 0)
     return vl_camera_wrong(file, "gltf: no node holds a camera (\"cameras\" has %zu)",
                            json_array_size(cameras));
-  if (result == VL_OK && !chosen)
-    return vl_camera_no_frame(file, "camera", record);
-  if (result != VL_OK)
-    return result;
-  char name[sizeof record->name];
-  memcpy(name, record->name, sizeof name);
-  result = read_camera(file, chosen, &pose, record);
-  if (!record->name[0])
-    memcpy(record->name, name, sizeof name);
-  return result == VL_OK ? check_members(file, holder, chosen, record) : result;
+  return chosen->node ? VL_OK : vl_camera_no_frame(file, "camera", record);
 }
 
-static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
-  const vlCamera *c = &fit->camera;
-  Numbers n = numbers_of(c);
-  const double *m = n.matrix;
+static vlResult read_gltf(const vlCameraFile *file, const json_t *tree,
+                          vlCameraRecord *record) {
+  const json_t *cameras, *nodes = json_object_get(tree, "nodes");
+  Holder holder;
+  vlMat4 pose;
+  VL_TRY(vl_camera_field(file, tree, "cameras", &cameras));
+  VL_TRY(find_holder(file, cameras, nodes, record, &holder));
+  VL_TRY(pose_of(file, nodes, holder.index, &pose));
+  char name[sizeof record->name];
+  memcpy(name, record->name, sizeof name);
+  VL_TRY(read_camera(file, holder.camera, &pose, record)); /* may read a record with a name */
+  if (!record->name[0])
+    memcpy(record->name, name, sizeof name);
+  return check_members(file, holder.node, holder.camera, record);
+}
+
+/* Whether two of the matrix's axes are not perpendicular. */
+static bool shears(const double m[16]) {
   double dots[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
   for (int i = 0; i < 12; i += 4)
     for (int k = 0; k < 3; k++) {
@@ -254,8 +268,16 @@ static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
     }
   for (int k = 0; k < 3; k++)
     if (fabs(dots[k]) > 1e-9 * sqrt(squares[k] * squares[(k + 1) % 3]))
-      return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
-                        "gltf cannot hold a pose that shears");
+      return true;
+  return false;
+}
+
+static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  Numbers n = numbers_of(c);
+  if (shears(n.matrix))
+    return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
+                      "gltf cannot hold a pose that shears");
   /* glTF requires a near plane, and a far plane of orthographic cameras; the extras record that
    * the camera has none */
   double near_plane =

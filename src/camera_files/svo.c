@@ -8,15 +8,15 @@
 #include "camera_files/fields.h"
 #include "velo/projection.h"
 
-static vlResult read_first(const vlCameraFile *file, const json_t *tree,
-                           vlCameraRecord *record) {
+static vlResult read_version_1(const vlCameraFile *file, const json_t *tree,
+                               vlCameraRecord *record) {
   static const char *const names[] = {"cam_fx", "cam_fy", "cam_cx", "cam_cy"};
   static const char *const lens[] = {"cam_d0", "cam_d1", "cam_d2", "cam_d3"};
   const char *model = vl_camera_text(tree, "cam_model");
   vlCameraDef *d = &record->camera;
   double f[4], k[4] = {0};
   bool atan = vl_text_is(model, "ATAN");
-  if (!atan && !(vl_text_is(model, "Pinhole")))
+  if (!atan && !vl_text_is(model, "Pinhole"))
     return vl_camera_unknown(file, tree, "cam_model", model, "there are Pinhole, ATAN");
   VL_TRY(vl_camera_sides(file, tree, "cam_width", "cam_height", record));
   VL_TRY(vl_camera_read_named(file, tree, names, 4, false, f));
@@ -52,11 +52,11 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
   uint32_t n = 0;
   VL_TRY(vl_camera_field(file, item, "camera", &camera));
   const char *type = vl_camera_text(camera, "type");
-  bool unified = vl_text_is(type, "omni");
+  bool unified = vl_text_is(type, "omni"); /* its intrinsics begin with xi */
+  const uint32_t intrinsics = unified ? 5 : 4;
   if (!unified && type && !vl_text_is(type, "pinhole"))
     return vl_camera_unknown(file, camera, "type", type, "there are pinhole, omni");
-  VL_TRY(
-      vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n));
+  VL_TRY(vl_camera_numbers(file, camera, "intrinsics", k, intrinsics, intrinsics, &n));
   VL_TRY(vl_camera_sides(file, camera, "image_width", "image_height", record));
   if (unified) {
     d->projection = VL_PROJECTION_UNIFIED;
@@ -67,7 +67,7 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
   if (delay != 0.0)
     return vl_camera_wrong_in(file, camera, "line-delay-nanoseconds",
                               "svo: rows of an image at different times are not taken");
-  vl_camera_set_centred(d, k + unified);
+  vl_camera_set_centred(d, unified ? k + 1 : k);
   const json_t *lens = json_object_get(camera, "distortion");
   if (lens)
     VL_TRY(
@@ -87,7 +87,7 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
 static vlResult read_svo(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const json_t *cameras = json_object_get(tree, "cameras");
   if (vl_camera_has(tree, "cam_model"))
-    return read_first(file, tree, record);
+    return read_version_1(file, tree, record);
   const json_t *item, *chosen = NULL;
   record->frames = 0;
   VL_EACH(item, cameras)
@@ -102,7 +102,8 @@ static bool is_svo(const json_t *tree) {
 }
 
 static vlResult write_svo(const vlFittedCamera *fit, vlCameraText *text) {
-  static const char *const words[] = {"none", "radial-tangential", "equidistant", "fisheye"};
+  static const char *const lens_words[] = {"none", "radial-tangential", "equidistant",
+                                           "fisheye"};
   const vlCamera *c = &fit->camera;
   const bool unified = fit->family == VL_LENS_UNIFIED;
   const double xi = c->shape[0], numbers[2] = {unified ? 5.0 : 4.0, fit->count};
@@ -115,7 +116,7 @@ static vlResult write_svo(const vlFittedCamera *fit, vlCameraText *text) {
       "  T_B_C:\n    cols: 4\n    rows: 4\n    data: [$pose]\n",
       VL_WORD("type", unified ? "omni" : "pinhole"), VL_VALUES("numbers", numbers, 2),
       VL_PART("mirror", unified, "$xi, "), VL_VALUES("xi", &xi, 1),
-      VL_WORD("lens", unified ? words[fit->count > 0] : words[fit->family]),
+      VL_WORD("lens", lens_words[unified ? fit->count > 0 : fit->family]),
       VL_PART("coefficients", fit->count,
               "      parameters:\n        cols: 1\n        rows: $numbers@1\n"
               "        data: [$k]\n"),

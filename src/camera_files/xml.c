@@ -1,7 +1,12 @@
-/* camera_files/xml.c: parses XML by expat into a tree: an element is an object with its
- * attributes by name, "<": its tag, "#": its line, "|": its column, "/": its child elements;
- * "$": its text, where that is wanted. A document type is refused, and with it every entity
- * that a file could define; depth and number of elements are bounded. */
+/* camera_files/xml.c: parses XML with expat into a tree of JSON objects, one for each element.
+ * The object has the element's attributes by name, and these members:
+ *   "<"  its tag
+ *   "#"  its line
+ *   "|"  its column
+ *   "/"  its child elements
+ *   "$"  its text, if all elements are kept
+ * A document type is an error, so a file cannot define entities. Depth and number of elements
+ * are bounded. */
 #include <expat.h>
 #include <math.h>
 
@@ -13,17 +18,21 @@ enum { MAX_DEPTH = 32, MAX_ELEMENTS = 2000000, MAX_WANTED = 20000 };
 typedef struct {
   const vlCameraFile *file;
   XML_Parser parser;
-  const char *const *wanted; /* tags of the root, or below it; other elements there are ignored
-                                with their contents */
-  VL_ARRAY(char) text;       /* of the innermost element so far */
-  json_t *open[MAX_DEPTH];   /* each is owned by the one before it */
-  int depth, skipped;        /* skipped: open elements that are ignored */
+  const char *const *wanted; /* see vl_camera_xml */
+  VL_ARRAY(char) text;       /* of the innermost open element so far */
+  json_t *open[MAX_DEPTH];   /* the open elements; each is owned by the one before it */
+  int depth;                 /* number of open elements that are kept */
+  int skipped;               /* number of open elements that are ignored */
   uint32_t elements;
   vlResult result;
 } Builder;
 
 static uint32_t line_of(const Builder *b) {
   return (uint32_t)XML_GetCurrentLineNumber(b->parser);
+}
+
+static uint32_t column_of(const Builder *b) {
+  return (uint32_t)XML_GetCurrentColumnNumber(b->parser) + 1;
 }
 
 static void stop(Builder *b, vlResult result) {
@@ -43,6 +52,21 @@ static bool is_wanted(const Builder *b, const char *tag) {
   return is_among(b->wanted, json_string_value(json_object_get(b->open[0], "<")));
 }
 
+/* An element without children and text; null if out of memory. */
+static json_t *new_element(const Builder *b, const char *tag, const char **attributes) {
+  json_t *element = json_object();
+  int failed = json_object_set_new(element, "<", json_string(tag));
+  failed |= json_object_set_new(element, "#", json_real(line_of(b)));
+  failed |= json_object_set_new(element, "|", json_real(column_of(b)));
+  failed |= json_object_set_new(element, "/", json_array());
+  for (; *attributes && !failed; attributes += 2)
+    failed |= json_object_set_new(element, attributes[0], json_string(attributes[1]));
+  if (!failed)
+    return element;
+  json_decref(element);
+  return NULL;
+}
+
 static void on_start(void *data, const char *tag, const char **attributes) {
   Builder *b = data;
   if (b->result != VL_OK)
@@ -51,29 +75,26 @@ static void on_start(void *data, const char *tag, const char **attributes) {
     b->skipped++;
     return;
   }
-  uint32_t line = line_of(b), column = (uint32_t)XML_GetCurrentColumnNumber(b->parser) + 1;
-  if (b->depth == MAX_DEPTH || ++b->elements > (b->wanted ? MAX_WANTED : MAX_ELEMENTS)) {
-    stop(b,
-         vl_camera_wrong_at(b->file, line, column, "%s for a camera",
-                            b->depth == MAX_DEPTH ? "nested too deeply" : "too many elements"));
+  const char *excess = NULL;
+  if (b->depth == MAX_DEPTH)
+    excess = "nested too deeply";
+  else if (++b->elements > (b->wanted ? MAX_WANTED : MAX_ELEMENTS))
+    excess = "too many elements";
+  if (excess) {
+    stop(b, vl_camera_wrong_at(b->file, line_of(b), column_of(b), "%s for a camera", excess));
     return;
   }
-  json_t *element = json_object();
-  int failed = json_object_set_new(element, "<", json_string(tag));
-  failed |= json_object_set_new(element, "#", json_real(line));
-  failed |= json_object_set_new(element, "|", json_real(column));
-  failed |= json_object_set_new(element, "/", json_array());
   b->text.count = 0;
-  for (; *attributes && !failed; attributes += 2)
-    failed |= json_object_set_new(element, attributes[0], json_string(attributes[1]));
-  if (!failed && b->depth > 0)
-    failed = json_array_append(json_object_get(b->open[b->depth - 1], "/"), element);
-  if (failed)
+  json_t *element = new_element(b, tag, attributes);
+  bool kept = element != NULL;
+  if (kept && b->depth > 0) /* the parent takes over the reference, even if this fails */
+    kept = json_array_append_new(json_object_get(b->open[b->depth - 1], "/"), element) == 0;
+  if (!kept) {
     stop(b, vl_fail_memory(b->file->error));
-  if (b->depth > 0 || failed)
-    json_decref(element); /* the builder owns the root */
-  if (!failed)
-    b->open[b->depth++] = element;
+    return;
+  }
+  b->open[b->depth] = element;
+  b->depth++;
 }
 
 static void on_end(void *data, const char *tag) {
@@ -137,14 +158,12 @@ vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size,
     size_t n = size - at < STEP ? size - at : STEP;
     status = XML_Parse(b.parser, text + at, (int)n, at + n == size);
   }
-  if (status != XML_STATUS_OK && b.result == VL_OK) {
-    enum XML_Error code = XML_GetErrorCode(b.parser);
-    b.result = code == XML_ERROR_NO_MEMORY
-                   ? vl_fail_memory(file->error)
-                   : vl_camera_wrong_at(file, line_of(&b),
-                                        (uint32_t)XML_GetCurrentColumnNumber(b.parser) + 1,
-                                        "not XML: %s", XML_ErrorString(code));
-  }
+  enum XML_Error code = XML_GetErrorCode(b.parser);
+  if (status != XML_STATUS_OK && b.result == VL_OK && code == XML_ERROR_NO_MEMORY)
+    b.result = vl_fail_memory(file->error);
+  else if (status != XML_STATUS_OK && b.result == VL_OK)
+    b.result = vl_camera_wrong_at(file, line_of(&b), column_of(&b), "not XML: %s",
+                                  XML_ErrorString(code));
   XML_ParserFree(b.parser);
   VL_ARRAY_FREE(file->context, &b.text);
   if (b.result == VL_OK)
@@ -185,7 +204,7 @@ bool vl_camera_has_tag(const json_t *element, const char *tag) {
 const json_t *vl_camera_child(const json_t *element, const char *tag) {
   const json_t *child;
   VL_EACH_CHILD(child, element) {
-    if (vl_text_is(json_string_value(json_object_get(child, "<")), tag))
+    if (vl_camera_has_tag(child, tag))
       return child;
   }
   return NULL;
@@ -225,7 +244,8 @@ vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element,
   const json_t *child = vl_camera_child(element, tag);
   if (child)
     return vl_camera_element_numbers(file, child, value, 1);
-  return needed ? vl_camera_wrong_element(file, element, "<%s> has no <%s>",
-                                          vl_short_text(vl_camera_text(element, "<")).text, tag)
-                : VL_OK;
+  if (!needed)
+    return VL_OK;
+  return vl_camera_wrong_element(file, element, "<%s> has no <%s>",
+                                 vl_short_text(vl_camera_text(element, "<")).text, tag);
 }

@@ -35,9 +35,7 @@ enum {
   VL_P_F0,
   VL_P_F90 = VL_P_F0 + 4,
   VL_P_TRANSMISSION,
-  VL_P_THIN, /* 1: a thin sheet, or opaque; 0: a transmissive solid with index of refraction
-              * eta_s
-              */
+  VL_P_THIN, /* 1: a thin sheet, or opaque; 0: a transmissive solid, whose index is eta_s */
   VL_P_DIFFUSE_TRANSMISSION,
   VL_P_THROUGH, /* 4 rows: colour of the diffuse transmission */
   VL_P_COAT = VL_P_THROUGH + 4,
@@ -55,27 +53,31 @@ _Static_assert((int)VL_P_FILM_NM < (int)VL_BSDF_ROWS, "enough rows");
 
 /* Rows of the other kinds: VL_T_ diffuse transmission, VL_L_ layered, VL_H_ hair, VL_S_
  * subsurface. */
-enum { VL_T_TRANSMITTANCE /* 4 */ };
+enum { VL_T_TRANSMITTANCE }; /* 4 rows */
 enum {
-  VL_L_METAL, /* 1: the base is a metal with eta and k, relative to the coat's index; 0: the
-                 base is diffuse with `reflectance` */
-  VL_L_BASE_X,
-  VL_L_BASE_Y, /* BASE_X, BASE_Y: alpha of the metal; the coat has alpha_x, alpha_y */
-  VL_L_THICKNESS,
-  VL_L_G,
-  VL_L_ALBEDO,
-  VL_L_DEPTH = VL_L_ALBEDO + 4, /* largest number of steps of a walk */
-  VL_L_WALKS
+  VL_L_METAL,  /* 1: the base is a metal with eta and k, relative to the coat's index; 0: the
+                  base is diffuse with `reflectance` */
+  VL_L_BASE_X, /* alpha of the metal; the coat has alpha_x, alpha_y */
+  VL_L_BASE_Y,
+  VL_L_THICKNESS,               /* of the medium between coat and base */
+  VL_L_G,                       /* its Henyey-Greenstein asymmetry */
+  VL_L_ALBEDO,                  /* its single-scattering albedo, 4 rows */
+  VL_L_DEPTH = VL_L_ALBEDO + 4, /* largest number of steps of a random walk */
+  VL_L_WALKS                    /* number of random walks whose mean is the value */
 };
+/* Hair: names and units of the pbrt book, 9.9. */
 enum {
-  VL_H_SIGMA_A,
+  VL_H_SIGMA_A,                   /* 4 rows */
   VL_H_ACROSS = VL_H_SIGMA_A + 4, /* offset of the hit from the hair's axis, -1 to 1 */
   VL_H_BETA_M,
   VL_H_BETA_N,
   VL_H_ALPHA, /* radians */
   VL_H_ROWS
 };
-enum { VL_S_SIGMA /* extinction, 4 */, VL_S_ALBEDO = VL_S_SIGMA + 4 /* 4 */ }; /* subsurface */
+enum {
+  VL_S_SIGMA,                  /* extinction, 4 rows */
+  VL_S_ALBEDO = VL_S_SIGMA + 4 /* 4 rows */
+};
 
 enum {
   VL_SAMPLED_SPECULAR = 1,     /* a delta lobe, which eval does not include */
@@ -88,8 +90,8 @@ enum {
  * comment names it. */
 typedef struct vlBsdfParams {
   float *reflectance[4]; /* diffuse, coated diffuse: albedo of the base, in [0, 1] */
-  const float
-      *tint[4]; /* principled: factor on the light that it transmits; null: the reflectance */
+  /* principled: factor on the light that it transmits; null: the reflectance */
+  const float *tint[4];
   float *eta[4], *k[4];     /* conductor */
   float *alpha_x, *alpha_y; /* conductor, dielectric, coat */
   float *eta_s;             /* dielectric, thin, coat */

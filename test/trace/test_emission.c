@@ -162,7 +162,6 @@ static void points(void **state) {
   }
 }
 
-/* Rays pass a disk that covers the world, with uniform density over it. */
 /* A cone with a half angle of 180 degrees has its edge behind the light. */
 static void whole_cone(void **state) {
   (void)state;
@@ -202,6 +201,21 @@ static void spots_of_a_power(void **state) {
   }
 }
 
+/* Chi-square test: all cells have the same expected count. */
+static void counts_are_equal(const char *what, const uint32_t *counts, uint32_t cells) {
+  double total = 0, statistic = 0;
+  for (uint32_t k = 0; k < cells; k++)
+    total += counts[k];
+  const double expected = total / cells;
+  for (uint32_t k = 0; k < cells; k++)
+    statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
+  const double p = stat_chi2_q(statistic, cells - 1);
+  if (!(p > 0.01 / TESTS))
+    fail_msg("%s: chi-square %g, p = %g", what, statistic, p);
+}
+
+/* Rays pass a disk that covers the world, with uniform density over it. w: the disk's normal,
+ * towards the light. */
 static void check_disk(Fixture *f, vlVec3 w, unsigned seed) {
   enum { RINGS = 6, PARTS = 8 };
   uint32_t counts[RINGS * PARTS] = {0};
@@ -216,12 +230,7 @@ static void check_disk(Fixture *f, vlVec3 w, unsigned seed) {
     int ring = (int)(r2 * RINGS), part = (int)((atan2(y, x) + M_PI) / (2 * M_PI) * PARTS);
     counts[(ring < RINGS ? ring : RINGS - 1) * PARTS + (part < PARTS ? part : PARTS - 1)]++;
   }
-  double statistic = 0, expected = (double)TRIES / (RINGS * PARTS);
-  for (int k = 0; k < RINGS * PARTS; k++)
-    statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
-  double p = stat_chi2_q(statistic, RINGS * PARTS - 1);
-  if (!(p > 0.01 / TESTS))
-    fail_msg("disk: chi-square %g, p = %g", statistic, p);
+  counts_are_equal("disk", counts, RINGS * PARTS);
 }
 
 static void distant(void **state) {
@@ -304,8 +313,8 @@ static void portal(void **state) {
   density_is_told(f, "portal", 32);
   directions(f, "portal", 0, window_across, 33);
   statRng rng = stat_rng(34);
-  for (int i = 0; i < 5000;
-       i++) { /* each ray passes through the portal and starts outside the world */
+  for (int i = 0; i < 5000; i++) {
+    /* each ray passes through the portal and starts outside the world */
     vlEmission e = one(f, &rng);
     if (!e.valid)
       continue;
@@ -347,14 +356,9 @@ static void leave_by_cosine(Fixture *f, const char *what, bool two_sided, unsign
   }
   assert_true(n > TRIES * 0.999);
   uint32_t cells = two_sided ? CELLS : CELLS / 2;
-  double statistic = 0, expected = (double)n / cells;
-  for (uint32_t k = 0; k < cells; k++)
-    statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
   for (uint32_t k = cells; k < CELLS; k++)
     assert_int_equal(counts[k], 0);
-  double p = stat_chi2_q(statistic, cells - 1);
-  if (!(p > 0.01 / TESTS))
-    fail_msg("%s: chi-square %g, p = %g", what, statistic, p);
+  counts_are_equal(what, counts, cells);
 }
 
 static void surfaces(void **state) {
@@ -413,8 +417,8 @@ static void places(void **state) {
     vlEmission e = one(f, &rng);
     double b2 = (double)e.at.y / 2, b1 = ((double)e.at.x - b2) / 3, b0 = 1 - b1 - b2;
     int part = 0;
-    for (int level = 0; level < 2;
-         level++) { /* the midpoints of the sides make four triangles */
+    for (int level = 0; level < 2; level++) {
+      /* the midpoints of the sides make four triangles */
       int corner = b0 > 0.5 ? 0 : b1 > 0.5 ? 1 : b2 > 0.5 ? 2 : 3;
       part = 4 * part + corner;
       b0 = corner == 3 ? 1 - 2 * b0 : 2 * b0 - (corner == 0);
@@ -423,12 +427,7 @@ static void places(void **state) {
     }
     counts[part]++;
   }
-  double statistic = 0, expected = TRIES / 16.0;
-  for (int k = 0; k < 16; k++)
-    statistic += (counts[k] - expected) * (counts[k] - expected) / expected;
-  double q = stat_chi2_q(statistic, 15);
-  if (!(q > 0.01 / TESTS))
-    fail_msg("places: chi-square %g, p = %g", statistic, q);
+  counts_are_equal("triangle", counts, 16);
   end(f);
 }
 

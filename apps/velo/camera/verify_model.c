@@ -73,9 +73,11 @@ static void cube(bool as_cross, const double p[3], double plane[2]) {
  * the principal point. False: outside of the projection's domain, or there is no formula here
  * for this projection (*known is then false). */
 static bool to_plane(const vlCamera *c, const double p[3], double plane[2], bool *known) {
-  double x = p[0], y = p[1], z = p[2], across = sqrt(x * x + y * y),
-         length = sqrt(across * across + z * z);
-  double a = c->shape[0], b = c->shape[1], k, r;
+  double x = p[0], y = p[1], z = p[2];
+  double across = sqrt(x * x + y * y); /* distance from the axis */
+  double length = sqrt(across * across + z * z);
+  double a = c->shape[0], b = c->shape[1]; /* the projection's parameters */
+  double k, r;                             /* plane = k (x, y); r = |plane| */
   *known = true;
   switch (c->projection) {
     case VL_PROJECTION_PERSPECTIVE:
@@ -121,9 +123,8 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2], bool
       plane[0] = k * x;
       plane[1] = k * y;
       return z > 0.0;
-    case VL_PROJECTION_DIVISION: { /* the solution r of r Z = R (1 + lambda r^2) that is 0 at R
-                                    * = 0
-                                    */
+    case VL_PROJECTION_DIVISION: {
+      /* with R = across: the solution r of r z = R (1 + a r^2) that is 0 at R = 0 */
       double root = z * z - 4.0 * a * across * across;
       if (root < 0.0)
         return false;
@@ -174,7 +175,7 @@ static void opencv(const double *k, double plane[2]) {
 }
 
 /* Applies the lens distortion to a point of the image plane. False: unknown distortion. */
-static bool bend(const vlCameraDef *def, double plane[2]) {
+static bool distort(const vlCameraDef *def, double plane[2]) {
   double k[14] = {0}, x = plane[0], y = plane[1], r2 = x * x + y * y;
   if (def->distortion_count > 14)
     return false;
@@ -200,8 +201,10 @@ static bool bend(const vlCameraDef *def, double plane[2]) {
     }
     case VL_DISTORTION_RAD_TAN_THIN_PRISM: { /* Project Aria: k0 to k5, p0 p1, s0 to s3 */
       double q = 1.0, power = 1.0;
-      for (int i = 0; i < 6; i++)
-        q += k[i] * (power *= r2);
+      for (int i = 0; i < 6; i++) {
+        power *= r2;
+        q += k[i] * power;
+      }
       x *= q;
       y *= q;
       r2 = x * x + y * y;
@@ -234,7 +237,7 @@ bool verify_knows(const VerifyModel *m) {
   double plane[2] = {0, 0};
   bool known;
   to_plane(&m->camera, ahead, plane, &known);
-  return m->camera.eye_circle == 0.0 && known && bend(&m->def, (double[2]){0, 0});
+  return m->camera.eye_circle == 0.0 && known && distort(&m->def, (double[2]){0, 0});
 }
 
 bool verify_project(const VerifyModel *m, const double point[3], double pixel[2]) {
@@ -242,7 +245,7 @@ bool verify_project(const VerifyModel *m, const double point[3], double pixel[2]
   double p[3], plane[2] = {0, 0};
   bool known;
   to_camera(c->world_from_camera, point, p);
-  if (!to_plane(c, p, plane, &known) || !bend(&m->def, plane))
+  if (!to_plane(c, p, plane, &known) || !distort(&m->def, plane))
     return false;
   pixel[0] = c->cx + c->fx * plane[0] + c->skew * plane[1];
   pixel[1] = c->cy + c->fy * plane[1];

@@ -11,6 +11,8 @@
 #include "render/job.h"
 #include "render/output_names.h"
 
+enum { MAX_CHANNELS = 1024 }; /* of any image: velo/image.h */
+
 enum {
   CONVERT_CROP,
   CONVERT_VIEW,
@@ -22,6 +24,23 @@ enum {
 
 static bool is_float(const vlImage *image) {
   return vl_image_type(image) == VL_PIXEL_F16 || vl_image_type(image) == VL_PIXEL_F32;
+}
+
+static size_t pixel_bytes(const vlImage *image) {
+  switch (vl_image_type(image)) {
+    case VL_PIXEL_U8:
+      return vl_image_channels(image);
+    case VL_PIXEL_U16:
+    case VL_PIXEL_F16:
+      return 2 * (size_t)vl_image_channels(image);
+    default:
+      return 4 * (size_t)vl_image_channels(image);
+  }
+}
+
+static void channel_names(const vlImage *image, const char *names[MAX_CHANNELS]) {
+  for (uint32_t c = 0; c < vl_image_channels(image); c++)
+    names[c] = vl_image_channel_name(image, c);
 }
 
 /* Copies the attributes. After a crop, those that place the pixels in a larger image are left
@@ -39,15 +58,37 @@ static vlResult copy_attributes(const vlImage *from, vlImage *to, bool cropped) 
   return result;
 }
 
-/* A window of the image. to_float: converted to linear 32-bit floats; otherwise values are
- * unchanged. */
+/* Copies the window's pixels as linear floats. */
+static void copy_floats(const vlImage *from, const uint32_t window[4], vlImage *to) {
+  const uint32_t channels = vl_image_channels(from);
+  float *pixel = vl_image_pixels(to);
+  for (uint32_t y = window[1]; y < window[3]; y++)
+    for (uint32_t x = window[0]; x < window[2]; x++)
+      for (uint32_t c = 0; c < channels; c++)
+        *pixel++ = vl_image_get(from, x, y, c);
+}
+
+/* Copies the window's pixels as they are; `to` has the size of the window and the same type. */
+static void copy_rows(const vlImage *from, const uint32_t window[4], vlImage *to) {
+  const size_t pixel = pixel_bytes(from);
+  const size_t row = (window[2] - window[0]) * pixel;
+  const char *source = vl_image_const_pixels(from);
+  char *target = vl_image_pixels(to);
+  for (uint32_t y = window[1]; y < window[3]; y++) {
+    memcpy(target, source + ((size_t)y * vl_image_width(from) + window[0]) * pixel, row);
+    target += row;
+  }
+}
+
+/* The pixels in the window x0, y0, x1, y1 of the image. to_float: converted to linear 32-bit
+ * floats; otherwise values are unchanged. */
 static vlResult copy_window(vlContext *context, const vlImage *from, const uint32_t window[4],
                             bool to_float, vlImage **result) {
-  uint32_t channels = vl_image_channels(from), width = window[2] - window[0],
-           height = window[3] - window[1];
-  const char *names[1024];
-  for (uint32_t c = 0; c < channels; c++)
-    names[c] = vl_image_channel_name(from, c);
+  const uint32_t width = window[2] - window[0];
+  const uint32_t height = window[3] - window[1];
+  const uint32_t channels = vl_image_channels(from);
+  const char *names[MAX_CHANNELS];
+  channel_names(from, names);
   vlImageDef def = vl_default_image_def(width, height, channels);
   def.names = names;
   def.type = to_float ? VL_PIXEL_F32 : vl_image_type(from);
@@ -55,30 +96,16 @@ static vlResult copy_window(vlContext *context, const vlImage *from, const uint3
   vlResult status = vl_image_create(context, &def, result);
   if (status != VL_OK)
     return status;
-  if (to_float) {
-    float *pixel = vl_image_pixels(*result);
-    for (uint32_t y = window[1]; y < window[3]; y++)
-      for (uint32_t x = window[0]; x < window[2]; x++)
-        for (uint32_t c = 0; c < channels; c++)
-          *pixel++ = vl_image_get(from, x, y, c);
-  } else {
-    vlPixelType type = vl_image_type(from);
-    size_t value = type == VL_PIXEL_U8                            ? 1
-                   : type == VL_PIXEL_U16 || type == VL_PIXEL_F16 ? 2
-                                                                  : 4,
-           pixel = value * channels;
-    const char *source = vl_image_const_pixels(from);
-    char *target = vl_image_pixels(*result);
-    for (uint32_t y = 0; y < height; y++)
-      memcpy(target + y * width * pixel,
-             source + ((size_t)(window[1] + y) * vl_image_width(from) + window[0]) * pixel,
-             width * pixel);
-  }
+  if (to_float)
+    copy_floats(from, window, *result);
+  else
+    copy_rows(from, window, *result);
   bool cropped = width != vl_image_width(from) || height != vl_image_height(from);
   return copy_attributes(from, *result, cropped);
 }
 
-/* Replaces *image by its window, as floats when the target or the view needs linear light. */
+/* Replaces *image by the pixels of --crop, as floats when the target or the view needs linear
+ * light. */
 static int prepare_pixels(vlContext *context, const Arguments *arguments, bool want_float,
                           vlImage **image) {
   const OptionValue *crop = &arguments->values[CONVERT_CROP];
@@ -101,8 +128,8 @@ static int prepare_pixels(vlContext *context, const Arguments *arguments, bool w
 
 /* One channel times a factor as 16-bit integers: the depth format of RGB-D data sets. Values
  * that are not finite, negative or above 65535 become 0 ("unknown"), since clamped depths would
- * be wrong. */
-static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t channel,
+ * be wrong. too_large: the number of finite values above 65535. */
+static vlResult scale_channel(vlContext *context, const vlImage *from, uint32_t channel,
                               double scale, vlImage **result, uint64_t *too_large) {
   vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), 1);
   def.type = VL_PIXEL_U16;
@@ -111,51 +138,62 @@ static vlResult whole_numbers(vlContext *context, const vlImage *from, uint32_t 
   *too_large = 0;
   for (uint32_t y = 0; y < def.height && pixel; y++)
     for (uint32_t x = 0; x < def.width; x++) {
-      double value = floor(vl_image_get(from, x, y, channel) * scale + 0.5);
-      bool finite = isfinite(value);
-      if (finite && value > 65535)
-        ++*too_large;
-      *pixel++ = finite && value >= 0 && value <= 65535 ? (uint16_t)value : 0;
+      const double value = floor(vl_image_get(from, x, y, channel) * scale + 0.5);
+      const bool large = value > UINT16_MAX && isfinite(value);
+      *too_large += large;
+      *pixel++ = value >= 0 && value <= UINT16_MAX ? (uint16_t)value : 0;
     }
   return status;
+}
+
+/* One channel with its name and the image's attributes. */
+static vlResult copy_channel(vlContext *context, const vlImage *from, uint32_t channel,
+                             vlImage **result) {
+  const char *name = vl_image_channel_name(from, channel);
+  vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), 1);
+  def.names = &name;
+  vlResult status = vl_image_create(context, &def, result);
+  if (status != VL_OK)
+    return status;
+  float *pixel = vl_image_pixels(*result);
+  for (uint32_t y = 0; y < def.height; y++)
+    for (uint32_t x = 0; x < def.width; x++)
+      *pixel++ = vl_image_get(from, x, y, channel);
+  return copy_attributes(from, *result, false);
+}
+
+/* Reports that the image has no channel of this name. Returns the exit code. */
+static int report_no_channel(const vlImage *image, const char *path, const char *name) {
+  const char *names[MAX_CHANNELS];
+  channel_names(image, names);
+  const int count = (int)vl_image_channels(image);
+  const char *near = did_you_mean("", name, names, count);
+  char list[600] = "";
+  enum { PER_NAME = 80 };
+  size_t used = 0;
+  for (int c = 0; c < count && !*near && used + PER_NAME < sizeof list; c++)
+    used +=
+        (size_t)snprintf(list + used, PER_NAME, "%s%.60s", c ? ", " : "; it has ", names[c]);
+  return report_failure(STATUS_USAGE, "%s has no channel \"%.200s\"%s%s", path, name, near,
+                        list);
 }
 
 /* Replaces *image by one of its channels: unchanged, or as 16-bit integers when a scale is
  * given. */
 static int take_channel(vlContext *context, const Arguments *arguments, vlImage **image) {
-  const OptionValue *name = &arguments->values[CONVERT_CHANNEL],
-                    *scale = &arguments->values[CONVERT_SCALE];
+  const char *name = arguments->values[CONVERT_CHANNEL].text;
+  const OptionValue *scale = &arguments->values[CONVERT_SCALE];
   const char *path = arguments->operands[0];
-  int channel = vl_image_find_channel(*image, name->text);
-  if (channel < 0) {
-    const char *names[1024];
-    int count = (int)vl_image_channels(*image);
-    for (int c = 0; c < count; c++)
-      names[c] = vl_image_channel_name(*image, (uint32_t)c);
-    const char *near = did_you_mean("", name->text, names, count);
-    char list[600] = "";
-    size_t used = 0;
-    for (int c = 0; c < count && !*near && used + 80 < sizeof list; c++)
-      used += (size_t)snprintf(list + used, 80, "%s%.60s", c ? ", " : "; it has ", names[c]);
-    return report_failure(STATUS_USAGE, "%s has no channel \"%.200s\"%s%s", path, name->text,
-                          near, list);
-  }
+  const int channel = vl_image_find_channel(*image, name);
+  if (channel < 0)
+    return report_no_channel(*image, path, name);
   vlImage *one = NULL;
   uint64_t too_large = 0;
   vlResult result;
-  if (scale->given) {
-    result = whole_numbers(context, *image, (uint32_t)channel, scale->number, &one, &too_large);
-  } else {
-    vlImageDef def = vl_default_image_def(vl_image_width(*image), vl_image_height(*image), 1);
-    def.names = &name->text;
-    result = vl_image_create(context, &def, &one);
-    float *pixel = result == VL_OK ? vl_image_pixels(one) : NULL;
-    for (uint32_t y = 0; y < def.height && pixel; y++)
-      for (uint32_t x = 0; x < def.width; x++)
-        *pixel++ = vl_image_get(*image, x, y, (uint32_t)channel);
-    if (result == VL_OK)
-      result = copy_attributes(*image, one, false);
-  }
+  if (scale->given)
+    result = scale_channel(context, *image, (uint32_t)channel, scale->number, &one, &too_large);
+  else
+    result = copy_channel(context, *image, (uint32_t)channel, &one);
   if (result != VL_OK) {
     vl_image_destroy(one);
     return report_reason(result, path, "the channel cannot be copied");
@@ -193,8 +231,8 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
   TRY(check_channel(arguments));
   TRY(outputs_check_folders(&outputs));
   vlImage *image = NULL;
-  const bool eight_bit = output_is_display(outputs.paths[0]),
-             viewed = v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given;
+  const bool eight_bit = output_is_display(outputs.paths[0]);
+  const bool viewed = v[CONVERT_VIEW].given || v[CONVERT_EXPOSURE].given;
   int status = image_load(context, arguments->operands[0], &image);
   if (status < 0)
     status = outputs_check_inputs(context, &outputs);
@@ -202,8 +240,8 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
     status = prepare_pixels(context, arguments, !eight_bit || viewed, &image);
   if (status < 0 && v[CONVERT_CHANNEL].given)
     status = take_channel(context, arguments, &image);
-  if (status < 0 && eight_bit && !viewed &&
-      !is_float(image)) { /* display values stay unchanged */
+  const bool unchanged = eight_bit && !viewed && status < 0 && !is_float(image);
+  if (unchanged) { /* display values are written as they were read */
     vlError error = {0};
     const vlImage *one = image;
     vlResult result =

@@ -23,13 +23,14 @@ static void take_options(Continue *c, const Arguments *given, const vlReceipt *r
   if (ends && !given->values[RENDER_SPP].given)
     a->values[RENDER_SPP].given = false;
   receipt_take_names(a, given);
-  const char *output;
   bool part = given->values[RENDER_SAMPLES].given || given->values[RENDER_SHARD].given ||
               given->values[RENDER_TILES].given;
-  for (uint32_t i = 0; !given->text_count && !part && (output = vl_receipt_output(receipt, i));
-       i++)
-    if (a->text_count < MAX_TEXTS)
-      a->texts[a->text_count++] = output;
+  if (given->text_count || part)
+    return;
+  for (uint32_t i = 0; a->text_count < MAX_TEXTS && vl_receipt_output(receipt, i); i++) {
+    a->texts[a->text_count] = vl_receipt_output(receipt, i);
+    a->text_count++;
+  }
 }
 
 static int take_scene(Continue *c, const Arguments *given) {
@@ -49,7 +50,7 @@ int continue_open(Continue *c, const Arguments **arguments) {
   c->path = given->values[RENDER_CONTINUE].text;
   char first[4096];
   const PatternValues left = {0, "", "", "left"};
-  bool eyes = pattern_has(c->path, 'v');
+  bool eyes = pattern_has(c->path, 'v'); /* two films; the left one tells the command */
   if (eyes && !pattern_expand(c->path, &left, first, sizeof first))
     return report_usage("--continue: the name is too long");
   TRY(context_open_one(&c->context));
@@ -117,14 +118,17 @@ static int find_extent(const Source *source, uint32_t crop[4], vlSampleRange *ra
     if (!block.range_count)
       continue;
     const uint32_t window[4] = {block.x0, block.y0, block.x1, block.y1};
-    for (int i = 0; i < 4; i++)
-      if (!any || (i < 2 ? window[i] < crop[i] : window[i] > crop[i]))
-        crop[i] = window[i];
-    if (!any)
+    const uint32_t end = block.ranges[block.range_count - 1].end;
+    if (!any) {
+      memcpy(crop, window, sizeof window);
       *range = block.ranges[0];
-    if (block.ranges[block.range_count - 1].end > range->end)
-      range->end = block.ranges[block.range_count - 1].end;
+    }
     any = true;
+    for (int i = 0; i < 2; i++) {
+      crop[i] = window[i] < crop[i] ? window[i] : crop[i];
+      crop[i + 2] = window[i + 2] > crop[i + 2] ? window[i + 2] : crop[i + 2];
+    }
+    range->end = end > range->end ? end : range->end;
   }
 }
 
@@ -194,7 +198,8 @@ static int take_film(Source *source, const Arguments *arguments, const vlReceipt
 
 int continue_film(const FilmClaim *claim, const Arguments *arguments, const vlReceipt *now,
                   vlContext *context, vlSceneDefs *defs, vlFilm **film) {
-  Source own = {.path = claim->path, .repeats = true}, from = {.path = claim->from};
+  Source own = {.path = claim->path, .repeats = true};
+  Source from = {.path = claim->from};
   if (!claim->earlier)
     return from.path[0] ? take_film(&from, arguments, now, context, defs, film) : -1;
   if (!from.path[0])

@@ -58,9 +58,10 @@ static void spectrum_row(const vlSpectral *s, int channel, uint32_t n, const flo
   }
 }
 
-/* Takes the lanes in this medium. */
+/* Takes the lanes in this medium; afterwards they are in none (f->medium). */
 static void find_segments(const vlWorld *world, uint32_t medium, vlFlights *f, Segments *k) {
-  uint32_t padded = k->padded = VL_PAD(f->n);
+  const uint32_t padded = VL_PAD(f->n);
+  k->padded = padded;
   k->medium = &world->media.items[medium];
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
@@ -75,6 +76,7 @@ static void find_segments(const vlWorld *world, uint32_t medium, vlFlights *f, S
   }
 }
 
+/* An exponentially distributed number of mean 1. */
 static inline float exponential(float u) {
   return -vl_ln(1.0f - u);
 }
@@ -148,8 +150,8 @@ static void weigh_channel(vlFlights *f, const Segments *k, int c) {
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     float hero = k->hero[i], sigma = a[i] + s[i];
     float factor = vl_exp(-(sigma - hero) * k->distance[i]);
-    float seen =
-        vl_exp(-hero * k->length[i]); /* light sampling uses the expected transmittance */
+    /* light sampling uses the expected transmittance */
+    float seen = vl_exp(-hero * k->length[i]);
     int flies = k->flies[i] != 0, scatters = k->scatters[i] != 0;
     float of_beta = scatters ? factor * s[i] / hero : factor;
     float of_u = scatters ? factor * sigma / hero : factor;
@@ -163,8 +165,8 @@ static void weigh_channel(vlFlights *f, const Segments *k, int c) {
 static void attenuate_channel(vlFlights *f, const Segments *k, int c) {
   float *beta = f->beta[c], *u = f->u[c];
   const float *a = k->a[c], *s = k->s[c];
-  uint32_t padded = k->padded,
-           chosen = k->medium->scatters; /* whether flights pass by chance */
+  uint32_t padded = k->padded;
+  uint32_t chosen = k->medium->scatters; /* whether flights pass by chance */
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     float passes = vl_exp(-(a[i] + s[i]) * k->length[i]);
@@ -216,15 +218,17 @@ static void fly_uniform(const vlTracing *t, uint32_t medium, vlFlights *f, bool 
     if (!k.flies[i])
       continue;
     float most = vl_largest4(f->beta[0][i], f->beta[1][i], f->beta[2][i], f->beta[3][i]);
-    uint32_t ends = m->scatters && k.scatters[i] ? VL_FLIGHT_SCATTERED : VL_FLIGHT_PASSED;
-    f->end[i] = (ends == VL_FLIGHT_SCATTERED || !m->scatters) && !(most > 0.0f)
-                    ? VL_FLIGHT_ENDED
-                    : ends;
+    bool scattered = m->scatters && k.scatters[i];
+    bool dark = (scattered || !m->scatters) && !(most > 0.0f);
+    f->end[i] = scattered ? VL_FLIGHT_SCATTERED : VL_FLIGHT_PASSED;
+    if (dark)
+      f->end[i] = VL_FLIGHT_ENDED;
   }
 }
 
 /* ---- any medium -------------------------------------------------------------------------- */
 
+/* The state of lane i's ray. */
 static vlFlight take(const vlTracing *t, const vlFlights *f, uint32_t i) {
   vlFlight r = {.hero = vl_volume_hero(t, f->paths, f->path[i]),
                 .channels = vl_volume_rgb(t) ? 3 : 4,
@@ -241,6 +245,7 @@ static vlFlight take(const vlTracing *t, const vlFlights *f, uint32_t i) {
   return r;
 }
 
+/* Writes a ray's state back to lane i. */
 static void put(vlFlights *f, uint32_t i, const vlFlight *r) {
   f->first[i] = r->first;
   f->count[i] = r->count;

@@ -28,14 +28,6 @@ static uint32_t line_of(const json_t *element) {
   return (uint32_t)json_number_value(json_object_get(element, "#"));
 }
 
-static vlResult wrong(const Scene *scene, const json_t *element, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static vlResult wrong(const Scene *scene, const json_t *element, const char *format, ...) {
-  char message[400];
-  VL_FORMAT(message, format);
-  return vl_camera_wrong_at(scene->file, line_of(element), 0, "mitsuba: %s", message);
-}
-
 /* Returns whether two names are equal except for case and underscores. */
 static bool same(const char *a, const char *b) {
   for (;; a++, b++) {
@@ -67,8 +59,8 @@ static vlResult attribute(const Scene *scene, const json_t *element, const char 
       return VL_OK;
     break;
   }
-  return wrong(scene, element, "\"%s\" has no <default>",
-               vl_short_text(vl_camera_text(element, key)).text);
+  return vl_camera_wrong_element(scene->file, element, "\"%s\" has no <default>",
+                                 vl_short_text(vl_camera_text(element, key)).text);
 }
 
 /* `count` numbers, or one that is used for all. *found: whether the attribute exists (null: it
@@ -96,8 +88,9 @@ static vlResult numbers(const Scene *scene, const json_t *element, const char *k
       values[n] = values[0];
   if (whole && n == count)
     return VL_OK;
-  return wrong(scene, element, "\"%s\" of <%s> must hold %u finite number%s", key,
-               vl_short_text(tag_of(element)).text, count, count > 1 ? "s" : "");
+  return vl_camera_wrong_element(
+      scene->file, element, "\"%s\" of <%s> must hold %u finite number%s", key,
+      vl_short_text(tag_of(element)).text, count, count > 1 ? "s" : "");
 }
 
 /* Returns the parameter of a sensor or film with this name, or null. */
@@ -125,7 +118,7 @@ static vlResult word(const Scene *scene, const json_t *parent, const char *name,
     return VL_OK;
   VL_TRY(attribute(scene, item, "value", text));
   if (!*text)
-    return wrong(scene, item, "\"%s\" has no value", name);
+    return vl_camera_wrong_element(scene->file, item, "\"%s\" has no value", name);
   return VL_OK;
 }
 
@@ -154,8 +147,9 @@ static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
   vl_cross3(up, z, x); /* left */
   double across = vl_norm3(x);
   if (!(length > 0.0 && across > 1e-9 * vl_norm3(up)))
-    return wrong(scene, op, "origin, target and up of <%s> give no direction",
-                 vl_short_text(tag_of(op)).text);
+    return vl_camera_wrong_element(scene->file, op,
+                                   "origin, target and up of <%s> give no direction",
+                                   vl_short_text(tag_of(op)).text);
   *m = vl_mat4_identity();
   for (int i = 0; i < 3; i++)
     x[i] /= across;
@@ -185,15 +179,16 @@ static vlResult operation(const Scene *scene, const json_t *op, vlMat4 *m) {
     VL_TRY(triple(scene, op, 0.0, v));
     VL_TRY(numbers(scene, op, "angle", 1, &v[3], NULL));
     if (v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0)
-      return wrong(scene, op, "<rotate> has no axis");
+      return vl_camera_wrong_element(scene->file, op, "<rotate> has no axis");
     *m = vl_mat4_rotate(v[3] * VL_DEGREE, v[0], v[1], v[2]);
   } else if (vl_text_is(tag, "matrix")) {
     VL_TRY(numbers(scene, op, "value", 16, v, NULL));
     *m = vl_mat4_load(v);
   } else {
-    return wrong(scene, op,
-                 "unknown transform <%s>; there are translate, rotate, scale, lookat, matrix",
-                 vl_short_text(tag).text);
+    return vl_camera_wrong_element(
+        scene->file, op,
+        "unknown transform <%s>; there are translate, rotate, scale, lookat, matrix",
+        vl_short_text(tag).text);
   }
   return VL_OK;
 }
@@ -232,8 +227,9 @@ static vlResult read_film(const Scene *scene, const json_t *sensor, double size[
           crop[k] + crop[2 + k] <= size[k]) ||
         size[k] != floor(size[k]) || crop[k] != floor(crop[k]) ||
         crop[2 + k] != floor(crop[2 + k]))
-      return wrong(scene, film ? film : sensor,
-                   "the film's sides and crop must be whole pixels, sides 1 to 16777216");
+      return vl_camera_wrong_element(
+          scene->file, film ? film : sensor,
+          "the film's sides and crop must be whole pixels, sides 1 to 16777216");
   return VL_OK;
 }
 
@@ -248,27 +244,30 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
   VL_TRY(word(scene, sensor, "fov_axis", &axis));
   VL_TRY(word(scene, sensor, "focal_length", &focal));
   if (!vl_is_unset(fov) && focal)
-    return wrong(scene, sensor, "fov and focal_length are given; there is room for one");
+    return vl_camera_wrong_element(scene->file, sensor,
+                                   "fov and focal_length are given; there is room for one");
   if (vl_is_unset(fov)) { /* 35 mm equivalent, by the film's diagonal */
     char *end = NULL;
     double mm = focal ? vl_camera_parse(focal, &end) : 50.0;
     if (!(mm > 0.0) || isinf(mm) ||
         (focal && (end == focal || (*end && !vl_text_is(end, "mm")))))
-      return wrong(scene, sensor, "focal_length \"%s\" must be like \"50mm\"",
-                   vl_short_text(focal).text);
+      return vl_camera_wrong_element(scene->file, sensor,
+                                     "focal_length \"%s\" must be like \"50mm\"",
+                                     vl_short_text(focal).text);
     *f = mm * diagonal / sqrt(36.0 * 36.0 + 24.0 * 24.0);
     return VL_OK;
   }
   if (!(fov > 0.0 && fov < 180.0))
-    return wrong(scene, sensor, "fov is %g degrees; it must lie between 0 and 180", fov);
+    return vl_camera_wrong_element(scene->file, sensor,
+                                   "fov is %g degrees; it must lie between 0 and 180", fov);
   for (int i = 0; i < 5; i++)
     if (vl_text_is(axis, names[i])) {
       *f = 0.5 * sides[i] / vl_precise_tan(0.5 * fov * VL_DEGREE);
       return VL_OK;
     }
-  return wrong(scene, sensor,
-               "unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
-               vl_short_text(axis).text);
+  return vl_camera_wrong_element(
+      scene->file, sensor, "unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
+      vl_short_text(axis).text);
 }
 
 /* The numbers of a sensor, each optional. */
@@ -334,7 +333,8 @@ static vlResult check_sensor(const Scene *scene, const json_t *sensor, int kind,
     if (result == VL_OK && vl_camera_has_tag(item, "film"))
       result = check_parameters(scene, item, film, record);
     if (vl_camera_has_tag(item, "ref") && vl_text_is(vl_camera_text(item, "name"), "film"))
-      result = wrong(scene, item, "the film is a reference; write it into the sensor");
+      result = vl_camera_wrong_element(scene->file, item,
+                                       "the film is a reference; write it into the sensor");
   }
   return result;
 }
@@ -350,7 +350,8 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRe
   if (kind == 3) {
     char known[300];
     vl_tell_names(known, sizeof known, type ? type : "", types, 3);
-    return wrong(scene, sensor, "unknown sensor \"%s\"%s", vl_short_text(type).text, known);
+    return vl_camera_wrong_element(scene->file, sensor, "unknown sensor \"%s\"%s",
+                                   vl_short_text(type).text, known);
   }
   double size[2], crop[4], offset[2] = {0, 0}, f = 1.0;
   vlMat4 m;
@@ -372,7 +373,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRe
   if (kind == 1)
     VL_TRY(number(scene, sensor, "aperture_radius", &d->lens_radius));
   if (kind == 1 && !parameter(sensor, "aperture_radius"))
-    return wrong(scene, sensor, "a thinlens needs its aperture_radius");
+    return vl_camera_wrong_element(scene->file, sensor, "a thinlens needs its aperture_radius");
   if (kind == 1 && vl_is_unset(d->focus_distance))
     d->focus_distance = isinf(d->far_plane) ? 1e4 : d->far_plane;
   d->fx = d->fy = f;

@@ -95,14 +95,13 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat
 
 /* Refuses values that change with time. */
 static vlResult check_still(const vlCameraFile *file, const json_t *prim) {
-  uint32_t line = (uint32_t)json_number_value(json_object_get(prim, "#"));
   const char *key;
   json_t *unused;
   json_object_foreach((json_t *)prim, key, unused) {
     if (vl_ends_with(key, ".timeSamples"))
-      return vl_camera_wrong_at(file, line, 0,
-                                "usd: \"%s\": values that change with time are not taken",
-                                vl_short_text(key).text);
+      return vl_camera_wrong_element(file, prim,
+                                     "\"%s\": values that change with time are not taken",
+                                     vl_short_text(key).text);
   }
   return VL_OK;
 }
@@ -311,8 +310,9 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
   /* an error without a line gets the line of the chosen camera, or 1 */
   if (result == VL_ERROR_SCENE && file->error && file->error->line == 0) {
     const json_t *line = json_object_get(search.camera, "#");
+    const json_t *column = json_object_get(search.camera, "|");
     file->error->line = line ? (uint32_t)json_number_value(line) : 1;
-    file->error->column = 1;
+    file->error->column = column ? (uint32_t)json_number_value(column) : 1;
   }
   json_decref(tree);
   return result;

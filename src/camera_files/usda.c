@@ -1,8 +1,8 @@
 /* camera_files/usda.c: parses USD's text form, as far as cameras need it, into a tree. A prim
  * is an object with its properties by name (numbers, words and lists of them; tuples are
- * lists), "<": its type, "@": its name, "#": its line, "/": its child prims. The root holds the
- * layer's metadata by name. Properties of cameras, render settings and transforms are kept; all
- * others, above all meshes, are skipped without being stored. */
+ * lists), "<": its type, "@": its name, "#": its line, "|": its column, "/": its child prims.
+ * The root holds the layer's metadata by name. Properties of cameras, render settings and
+ * transforms are kept; all others, above all meshes, are skipped without being stored. */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -20,13 +20,16 @@ typedef struct {
   vlResult result;
 } Parser;
 
-static bool fail(Parser *p, const char *what) {
+static uint32_t column_of(const Parser *p) {
   const char *first = p->at;
   while (first > p->start && first[-1] != '\n')
     first--;
+  return (uint32_t)(p->at - first) + 1;
+}
+
+static bool fail(Parser *p, const char *what) {
   if (p->result == VL_OK)
-    p->result = vl_camera_wrong_at(p->file, p->line, (uint32_t)(p->at - first) + 1,
-                                   "not USD: %s", what);
+    p->result = vl_camera_wrong_at(p->file, p->line, column_of(p), "not USD: %s", what);
   return false;
 }
 
@@ -304,7 +307,7 @@ static bool prim(Parser *p, json_t *parent, int depth) {
   type = p->at;
   type_length = word(p);
   p->at += type_length;
-  uint32_t line = p->line;
+  uint32_t line = p->line, column = column_of(p);
   if (!skip(p) || (*p->at != '"' && *p->at != '\''))
     return fail(p, "a prim has no name");
   if (!string(p, &text, &length))
@@ -313,6 +316,7 @@ static bool prim(Parser *p, json_t *parent, int depth) {
   int failed = json_object_set_new(self, "<", json_stringn(type, type_length));
   failed |= json_object_set_new(self, "@", json_stringn(text, length));
   failed |= json_object_set_new(self, "#", json_real(line));
+  failed |= json_object_set_new(self, "|", json_real(column));
   failed |= json_object_set_new(self, "/", json_array());
   if (stored && !failed)
     failed = json_array_append(json_object_get(parent, "/"), self);

@@ -212,7 +212,7 @@ const json_t *vl_camera_child(const json_t *element, const char *tag) {
 
 vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element,
                                  const char *format, ...) {
-  char message[300];
+  char message[400];
   VL_FORMAT(message, format);
   return vl_camera_wrong_at(file, (uint32_t)json_number_value(json_object_get(element, "#")),
                             (uint32_t)json_number_value(json_object_get(element, "|")),

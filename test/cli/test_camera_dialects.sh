@@ -95,7 +95,7 @@ wrong() {
   expect_line "$1_words" "$3"
 }
 wrong xml_entities bad.xml 'bad.xml:1:1: a document type' '<!DOCTYPE a [<!ENTITY b "c">]><scene>&b;</scene>'
-wrong xml_type bad.xml 'bad.xml:2: mitsuba: unknown sensor "perspectiv"; the nearest is "perspective"' \
+wrong xml_type bad.xml 'bad.xml:2:1: mitsuba: unknown sensor "perspectiv"; the nearest is "perspective"' \
   '<scene>\n<sensor type="perspectiv"/></scene>'
 wrong json_cut bad.gltf 'bad.gltf:1:' '{"asset": {}, "nodes": ['
 wrong usd_huge bad.usda 'no finite number' '#usda 1.0\ndef Camera "a" {\n float focalLength = 1e999\n}\n'

@@ -71,6 +71,39 @@ static void check_stated_power(const char *kind, const char *parameters, const v
   check_mean("lights", kind, what, &mean, stated, (Sight){0.01 * stated, 0.05 * stated});
 }
 
+/* The density of a ray that a light emits is the one that camera paths find at what the ray
+ * meets. No image shows a wrong one if it only weighs estimators that are right by themselves:
+ * it makes noise. */
+static void check_emitted_density(const char *family, const char *kind, const char *parameters,
+                                  const vlWorld *world, uint32_t light) {
+  enum { RAYS = 1 << 10 };
+  const float distance = 2; /* any */
+  float *choice = calloc(world->lights.count + 1, sizeof *choice);
+  assert_non_null(choice);
+  for (size_t k = light + 1; k <= world->lights.count; k++)
+    choice[k] = 1;
+  const vlTwoWay way = {.choice = choice};
+  const bool at_point = world->lights.items[light].at_point;
+  uint32_t valid = 0;
+  uint32_t wrong = 0;
+  for (uint32_t i = 0; i < RAYS; i++) {
+    const vlEmission e = emitted_ray(world, &way, i);
+    const vlPoint at = {.p = e.at, .g = e.n, .n = e.n};
+    const vlVec3 w = {-e.d.x, -e.d.y, -e.d.z};
+    if (!e.valid)
+      continue;
+    const float found = vl_emission_density(world, &way, light, w, distance, &at);
+    const double known = (double)e.density / (at_point ? (double)(distance * distance) : 1);
+    valid++;
+    wrong += !(fabs((double)found - known) <= 1e-3 * known);
+  }
+  free(choice);
+  /* rays at the edge of a cone or of a cell may count to either side */
+  if (wrong > valid / 50)
+    broken(family, kind, "%s: the density of %u of %u light paths is not that of their ends",
+           parameters, wrong, valid);
+}
+
 static void check_chosen_power(const char *family, const char *kind, const char *parameters,
                                const char *text) {
   char what[200];
@@ -91,6 +124,7 @@ static void check_chosen_power(const char *family, const char *kind, const char 
     const bool image = strstr(parameters, "filename") && light->shape != VL_NONE;
     const Sight sight = {(image ? 0.25 : 0.01) * power, (image ? 0.5 : 0.05) * power};
     check_mean(family, kind, what, &mean, power, sight);
+    check_emitted_density(family, kind, parameters, world, i);
   }
   if (strcmp(family, "lights") == 0)
     check_stated_power(kind, parameters, scene, world);

@@ -254,19 +254,24 @@ static void probe_world(const char *text, Probe *probe, uint32_t batches) {
   probe_scene(need_scene(text), text, probe, batches);
 }
 
-/* Adds the square from -1 to 1 with this material; its texture coordinates are 0 to 1. */
-static void add_square(vlScene *scene, const vlMaterialDef *material) {
+/* Adds the square from -1 to 1 with this material; its texture coordinates are 0 to 1, of
+ * `mirrored` squares u is 1 to 0. */
+static void add_square_of(vlScene *scene, const vlMaterialDef *material, bool mirrored) {
   static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-  static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+  static const float upright[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+  static const float turned[8] = {1, 0, 0, 0, 0, 1, 1, 1};
   static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
   vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   square.vertices = 4;
   square.faces = 2;
   square.positions = corners;
-  square.uvs = uvs;
+  square.uvs = mirrored ? turned : upright;
   square.indices = indices;
   square.material = vl_scene_add_material(scene, material);
   vl_scene_add_shape(scene, &square);
+}
+static void add_square(vlScene *scene, const vlMaterialDef *material) {
+  add_square_of(scene, material, false);
 }
 
 static vlTraceRays *new_rays(void) {

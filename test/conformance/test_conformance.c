@@ -6,6 +6,7 @@
 #include "files.h"
 #include "footprints.h"
 #include "hostile.h"
+#include "instances.h"
 #include "lamps.h"
 #include "layers.h"
 #include "light_power.h"
@@ -60,6 +61,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_emission),
       cmocka_unit_test(laws_of_shapes),
       cmocka_unit_test(laws_of_surfaces),
+      cmocka_unit_test(laws_of_instances),
       cmocka_unit_test(laws_of_textures),
       cmocka_unit_test(laws_of_footprints),
       cmocka_unit_test(laws_of_means),

@@ -123,7 +123,7 @@ typedef struct vlCameraDef {
   double eye[3], lookat[3],
       up[3]; /**< world space: position, a point on the view axis, the direction of image up */
   double roll;     /**< radians about the view direction; positive turns the camera clockwise as
-                      seen     from behind it */
+                      seen from behind it */
   bool has_matrix; /**< world_from_camera is given, in place of eye, lookat, up */
   double world_from_camera[16]; /**< camera x right, y down, z forward; may mirror or scale */
 
@@ -163,7 +163,7 @@ typedef struct vlCameraDef {
   double near_plane, far_plane;
 
   double shape[2];  /**< parameters of the projection (VL_PROJECTION_KINDS); unset: Panini 1,
-                       cube 0;  other projections with parameters require them */
+                       cube 0; other projections with parameters require them */
   double max_angle; /**< fisheyes and calibrated models: radius of the image circle, radians
                      * from the axis; unset: the projection's limit, or half of a fisheye's fov
                      * (given, or its default of 180 degrees) */
@@ -203,7 +203,7 @@ typedef struct vlDistortionMap {
                         radial distortion; false: of the point before it */
   double tilt[9], untilt[9]; /**< row-major homography of a tilted sensor, and its inverse */
   double radius;  /**< radius of the disc around the projection plane's centre in which the map
-                     is  one-to-one */
+                     is one-to-one */
   uint32_t steps; /**< number of Newton iterations that suffice to invert the map in that disc;
                      0: no distortion */
 } vlDistortionMap;
@@ -241,8 +241,8 @@ typedef struct vlCamera {
                      positive for the right eye, negative for the left; 0: a single eye point */
   const struct vlOwnCamera *own; /**< the projection OWN: its functions; else null */
   double own_size[2];  /**< OWN: width and height of the image whose pixels its functions count.
-                          (x_cam, y_cam) is a film  point in these pixels: fx, fy are 1 and cx,
-                          cy 0  unless the camera was resized */
+                          (x_cam, y_cam) is a film point in these pixels: fx, fy are 1 and cx,
+                          cy 0 unless the camera was resized */
   double own_pixel[2]; /**< OWN: the side of that image's central pixel: angle, radians; width,
                           units of camera space */
 } vlCamera;

@@ -20,7 +20,7 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_OPENCV,  /**< YAML, JSON or XML, also FileStorage's */
   VL_CAMERA_DIALECT_ROS,     /**< camera_info YAML, or .ini */
   VL_CAMERA_DIALECT_COLMAP,  /**< a folder with the files cameras and images (.txt or .bin), or
-                                one  of these files */
+                                one of these files */
   VL_CAMERA_DIALECT_NERF,    /**< transforms.json */
   VL_CAMERA_DIALECT_KALIBR,  /**< camchain YAML */
   VL_CAMERA_DIALECT_BLENDER, /**< JSON of Blender's own property names */
@@ -35,7 +35,7 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_MITSUBA, /**< a sensor in Mitsuba 3's XML */
   VL_CAMERA_DIALECT_USD,     /**< a Camera in USD's text form, .usda */
   VL_CAMERA_DIALECT_EXR,     /**< the header of an image rendered by the program velo; only that
-                                program     reads it */
+                                program reads it */
   VL_CAMERA_DIALECT_EUROC,   /**< sensor.yaml of the EuRoC datasets */
   VL_CAMERA_DIALECT_CAMODOCAL,  /**< camodocal's and VINS's YAML */
   VL_CAMERA_DIALECT_BASALT,     /**< Basalt's calibration JSON */

@@ -35,7 +35,7 @@ typedef enum vlChannel {
       1
       << 8, /**< id.object: number of the shape in the order of the file, from 1; nothing: 0 */
   VL_CHANNEL_ID_MATERIAL = 1 << 9,  /**< id.material: 1 is the default material; the others
-                                       follow in  the order of the file */
+                                       follow in the order of the file */
   VL_CHANNEL_ID_INSTANCE = 1 << 10, /**< id.instance: number of the instance, from 1; 0 for
                                        nothing and for objects in no instance */
   VL_CHANNEL_ID_PRIMITIVE =
@@ -46,10 +46,10 @@ typedef enum vlChannel {
       1 << 13, /**< film.X film.Y: the film point, pixels from the pixel's top left corner */
   /* The following channels cost more and are not part of VL_CHANNEL_ALL. */
   VL_CHANNEL_ERROR = 1 << 14, /**< error.R error.G error.B: standard error of the image; needs a
-                               * film with    vlFilmDef.errors; infinity below 2 samples */
+                               * film with vlFilmDef.errors; infinity below 2 samples */
   VL_CHANNEL_FORWARD =
       1 << 15, /**< forward.U forward.V: flow in pixels to the image of the camera
-                  vlChannelsDef.forward, for the same  point of the same surface (or
+                  vlChannelsDef.forward, for the same point of the same surface (or
                   direction of the sky); forward.hidden: a vlHidden, as uint */
   VL_CHANNEL_BACKWARD = 1 << 16, /**< backward.U backward.V backward.hidden: the same for the
                                     camera vlChannelsDef.backward */

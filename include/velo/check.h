@@ -26,10 +26,10 @@ typedef enum vlFindingKind {
                                  with one face only */
   VL_FINDING_INVERTED_DIELECTRIC, /**< a refracting solid whose normals point inwards */
   VL_FINDING_MEDIA,      /**< solids of media that overlap, or are nested and disagree about the
-                            medium      between them */
+                            medium between them */
   VL_FINDING_DEGENERATE, /**< faces without area, normals without length */
   VL_FINDING_NO_UV,  /**< a texture over uv on a mesh without uv, or vertex colours on a mesh
-                        without  them */
+                        without them */
   VL_FINDING_ALBEDO, /**< a surface that reflects more light than it receives */
   VL_FINDING_CAMERA_INSIDE, /**< the camera is inside a closed solid */
   VL_FINDING_DARK_LIGHT, /**< a light of power 0, or one that arrives at the wrong side of its
@@ -70,7 +70,7 @@ typedef struct vlCheckDef {
   uint32_t cookie;
   bool names_only; /**< find unused names only; default false */
   bool images;     /**< read the scene's images for their greatest values; default true. Their
-                    * existence     is always checked */
+                    * existence is always checked */
 } vlCheckDef;
 /** The default def. */
 VL_API vlCheckDef vl_default_check_def(void);

@@ -20,8 +20,8 @@ typedef struct vlTracerTrial {
                    difference of two seeds, without the worst 0.1 % of pixels; with `tail`,
                    where that is more */
   double tail;  /**< relative squared error by samples that are too rare and bright for the race
-                   to  see them all,  as light paths find it, less two standard errors; 0 for
-                   tracers that  have light paths */
+                   to see them all, as light paths find it, less two standard errors; 0 for
+                   tracers that have light paths */
   double missing; /**< relative squared error of the light that merging finds and this tracer
                      does not; 0 without merging in the race, and for merging itself */
   double cost;    /**< rays of the race, each times its mean time relative to a ray of

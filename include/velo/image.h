@@ -151,7 +151,7 @@ typedef struct vlWriteDef {
   int compression; /**< EXR: 0 none, 1 ZIP (default). PNG: always deflate */
   int quality;     /**< JPEG: 1 to 100, default 95 */
   bool alone;      /**< single-threaded, on the calling thread: for writing while the context's
-                    * workers      render; default false
+                    * workers render; default false
                     */
   const char *format; /**< a suffix that names the format, such as ".png"; default null: the
                          suffix of the path */

@@ -110,7 +110,7 @@ typedef struct vlLensDef {
   double rotation; /**< rotation of blades or aperture image, radians, clockwise as seen from
                       behind the camera; 0: a corner is at the top */
   double ratio;    /**< the aperture's height divided by its width: 2 for typical anamorphic
-                      lenses;    default 1 */
+                      lenses; default 1 */
   const vlAperture *aperture; /**< image of the aperture; null: none */
   /** tilt_x, tilt_y: rotation of the plane in focus about its point on the camera's axis,
    * radians. tilt_x > 0 moves the plane's top away from the camera, tilt_y > 0 its left side.

@@ -82,15 +82,15 @@ struct vlLightDef {
   float cone_angle, cone_delta; /**< spot: angle between the cone's axis and its edge, and width
                                    of the falloff inside it; radians */
   bool cone_squared; /**< true: the falloff is t^2, t linear in the cosine, as in glTF; false:
-                        pbrt's smooth step 3t^2 -    2t^3 */
+                        pbrt's smooth step 3t^2 - 2t^3 */
   const char *path;  /**< path of the image, or of a lamp file (goniometric); infinite: a square
-                        equal-area octahedral map (pbrt  book 3.8.3); null:     uniform light */
+                        equal-area octahedral map (pbrt book 3.8.3); null: uniform light */
   const vlImage *image;  /**< the image in memory, in place of path; copied */
   const void *lamp_data; /**< goniometric: the contents of a lamp file in memory, in place of
                             path and image; copied */
   size_t lamp_size;      /**< length of lamp_data, bytes */
   vlColorSpace space;    /**< colour space of an image that names none; an image replaces color,
-                            and   its values are   multiplied by scale */
+                            and its values are multiplied by scale */
   vlMediumId medium;     /**< the medium around the light */
   float fov; /**< projection: radians across the image's smaller side; default pi/2 */
   /** Infinite with an image: the light enters only through the rectangle `portal` in the world,

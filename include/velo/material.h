@@ -126,7 +126,7 @@ struct vlMaterialDef {
   vlSpectrumInput eta, k; /**< index of refraction. Metals: eta and k; dielectrics and the coat
                              of coated diffuse: eta, untextured */
   vlFloatInput thickness, g;   /**< coat: its thickness (coated diffuse: untextured) and its
-                                  medium's   mean cosine. Subsurface: g, untextured */
+                                  medium's mean cosine. Subsurface: g, untextured */
   vlSpectrumInput albedo;      /**< albedo of the coat's medium; 0: the medium only absorbs */
   uint32_t max_depth, samples; /**< coat: largest number of bounces inside it; number of random
                                   walks per evaluation */

@@ -32,11 +32,11 @@ typedef struct vlOwnFilmPoints {
   uint32_t count;         /**< length of the arrays */
   uint32_t width, height; /**< the size of the image for which the camera was made, pixels */
   const double *x, *y;    /**< film points, pixels from the top left corner; the first pixel's
-                             centre is (0.5, 0.5).    By the reconstruction filter, points may be
-                             up    to 16 pixels outside the image */
+                             centre is (0.5, 0.5). By the reconstruction filter, points may be
+                             up to 16 pixels outside the image */
   const double *lens_u,
       *lens_v;        /**< a pair of numbers in [0, 1) for a point of the lens; 0.5 without
-                         vlOwnCamera.lens,        and where rays pass the centre of the lens */
+                         vlOwnCamera.lens, and where rays pass the centre of the lens */
   const double *time; /**< seconds, by shutter and readout of the camera */
 } vlOwnFilmPoints;
 /** Rays in camera space (x right, y down, z forward; scene units); the camera's pose is applied
@@ -79,8 +79,8 @@ typedef struct vlOwnCamera {
 typedef struct vlOwnSamples {
   uint32_t count;        /**< length of the arrays */
   const int32_t *x, *y;  /**< their pixels: column and row from the top left. Pixels that share
-                            samples  (vlRenderDef.share_samples) need some up to 2 pixels outside
-                            the  image, also negative ones */
+                            samples (vlRenderDef.share_samples) need some up to 2 pixels outside
+                            the image, also negative ones */
   const uint32_t *index; /**< index of the sample in its pixel */
   /** What the numbers are for: 0 and 1 the film point, 2 and 3 the light sample at the first
    * hit, 4 the wavelength, 5 the time, 6 and 7 the lens; 8 + 8 b and up: bounce b

@@ -56,7 +56,7 @@ typedef struct vlPathVertex {
                          * here on
                          */
   const char *bsdf;     /**< kind of the BSDF or phase function: a constant string; null where
-                           nothing     was shaded */
+                           nothing was shaded */
   float reflectance[4]; /**< the material's reflectance at this point; 0 for materials without
                            one */
   /** The texture of the reflectance: its kind ("image", "checkerboard", ...), null for a
@@ -100,7 +100,7 @@ typedef struct vlPathContribution {
                       0: it cannot make this path. A delta light: the probability of choosing it
                     */
   float bsdf_pdf;  /**< density per solid angle of BSDF or phase-function sampling; 0: it cannot
-                      make  this path */
+                      make this path */
   float weight;    /**< weight of multiple importance sampling, 0 to 1 */
   float radiance[4]; /**< by channel: throughput, BSDF, light, weight and transmittance
                         multiplied */
@@ -110,7 +110,7 @@ typedef struct vlPathContribution {
 /** A path: one sample that counts in the pixel. */
 typedef struct vlPath {
   int32_t x, y;    /**< the pixel in which the sample was taken: the pixel itself, or one of its
-                      neighbours (then        it may lie outside the image) if pixels share samples
+                      neighbours (then it may lie outside the image) if pixels share samples
                       (vlRenderDef.share_samples) */
   uint32_t sample; /**< index of the sample in that pixel */
   float film[2];   /**< film point, pixels from the image's top left corner */
@@ -123,7 +123,7 @@ typedef struct vlPath {
   float lambda[4];     /**< wavelengths, nm; 0 in RGB mode */
   float inv_pdf[4];    /**< 1 / density of each wavelength, nm; 1 in RGB mode */
   float radiance[4];   /**< by channel: the float sum of the contributions in their order, times
-                          camera_weight. Not   finite: the film drops the sample */
+                          camera_weight. Not finite: the film drops the sample */
   float rgb[3]; /**< the sample as the film adds it: in its colour space, exposed and limited to
                    max_component */
   const vlPathVertex *vertices; /**< in the order of the path; none if the camera has no ray */
@@ -139,8 +139,8 @@ typedef struct vlPixelPaths {
   uint32_t count;      /**< number of paths: samples, or more if pixels share samples */
   const vlPath *paths; /**< in the order of samples; of one index the pixel's own comes first */
   double mean[3];      /**< sum of filter_weight * rgb over the sum of filter_weight, over the
-                          samples that      are finite: the pixel of a film with these samples,
-                          without      its exposure */
+                          samples that are finite: the pixel of a film with these samples,
+                          without its exposure */
   uint32_t dropped;    /**< number of samples that are not finite */
 } vlPixelPaths;
 

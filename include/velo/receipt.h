@@ -24,7 +24,7 @@ typedef struct vlReceiptDef {
   uint32_t cookie;
   const char *commit; /**< git commit of the program's source */
   const char *scene;  /**< path of the scene's file; paths of recorded files below its folder
-                         become  relative to it */
+                         become relative to it */
   const char *const
       *command;           /**< words of the command line that makes the image, without options
                            * that do not affect the pixels (outputs, threads, ...) */

@@ -136,7 +136,7 @@ typedef struct vlRenderDef {
   uint32_t tracer;  /**< light transport algorithm: a vlTracer (velo/tracer.h) */
   uint32_t sampler; /**< sample generator: a vlSamplerKind (velo/sampler.h) */
   uint32_t spp;  /**< samples per pixel that the film has after the render; includes the samples
-                    that  it has before, and those before its first_sample */
+                    that it has before, and those before its first_sample */
   uint32_t seed; /**< seed of the random numbers */
   /** The length of the sample sequence: the number of samples per pixel for which the sampler
    * lays out its points. All renders with the same length have the same sample i of a pixel,
@@ -281,7 +281,7 @@ struct vlSceneDefs {
   vlBuildDef build;         /**< for vl_world_build */
   vlRenderDef render;       /**< for vl_render */
   vlDevelopDef develop;     /**< for vl_film_develop; its exposure combines the settings of the
-                               file's     sensor: ISO, imaging ratio, seconds */
+                               file's sensor: ISO, imaging ratio, seconds */
   vlMediumId camera_medium; /**< the medium around the camera; index 0: vacuum. Read when the
                                world is built */
   vlGbuffer gbuffer; /**< ground truth channels that the file requests (pbrt's gbuffer film) */
@@ -290,7 +290,7 @@ struct vlSceneDefs {
                              vl_camera_make; file may be null */
   bool camera_missing;    /**< the file describes no camera: vl_scene_complete adds one */
   bool tracer_missing;    /**< the file names no tracer: render.tracer is VL_TRACER_VOLPATH, and
-                             vl_choose_tracer    (velo/choose.h) may find a better one */
+                             vl_choose_tracer (velo/choose.h) may find a better one */
   bool light_missing; /**< the file describes no environment light: vl_scene_complete may add
                          one */
 };

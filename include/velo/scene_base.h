@@ -76,7 +76,7 @@ typedef struct vlSource {
  * be null. */
 typedef struct vlLabel {
   const char *name;  /**< short; the importers give no two shapes, materials or instances of a
-                        file  the same */
+                        file the same */
   const char *path;  /**< all names that apply, from the root down, with / between: nodes, mesh,
                         material */
   const char *place; /**< indices in a file without lines: nodes[3].meshes[1].primitives[0] */

@@ -33,7 +33,7 @@ typedef enum vlParameterType {
   VL_PARAMETER_FLOAT_INPUT,    /**< vlFloatInput: a number or a float texture */
   VL_PARAMETER_SPECTRUM_INPUT, /**< vlSpectrumInput: a spectrum or a spectrum texture */
   VL_PARAMETER_EITHER_INPUT,   /**< textures: a vlFloatInput at offset, a vlSpectrumInput at
-                                  second;   chosen by the def */
+                                  second; chosen by the def */
   VL_PARAMETER_TEXTURE,        /**< vlTextureId of a spectrum texture; 0: none */
   VL_PARAMETER_BLOCK /**< anything else (arrays, pointers to numbers): described only, not read
                         or written by rows */
@@ -87,7 +87,7 @@ typedef struct vlParameter {
   size_t second;           /**< of another member that gets the same value; 0: none */
   double factor;           /**< value in the def = factor * value in files; 0 is read as 1 */
   double value[3];  /**< default: a number (of a bool 0 or 1, of a choice its index), or three.
-                       In  the def's unit */
+                       In the def's unit */
   const char *text; /**< default of strings; name of a spectrum (vl_spectrum_name); of a BLOCK:
                        its type in files */
   double low, high; /**< range, in the def's unit; no limits where both are 0 */
@@ -147,7 +147,7 @@ typedef enum vlFilmKind {
 enum {
   VL_MATERIAL_OPAQUE = 1, /**< transmits no light */
   VL_MATERIAL_METAL = 2,  /**< a conductor: its colour is the colour of its specular reflection,
-                             and  it has no albedo */
+                             and it has no albedo */
   VL_MATERIAL_ROUGH = 4,  /**< has a microfacet distribution with an alpha */
   VL_MATERIAL_REFRACTS = 8, /**< a closed shape of this material refracts light */
   VL_MATERIAL_ABSENT = 16   /**< not a visible surface; it only separates media */

@@ -57,7 +57,7 @@ struct vlTextureDef {
   vlSource source;    /**< where the file describes it */
   vlTextureKind kind; /**< which fields below are read */
   bool spectrum; /**< true: a colour texture, which reads the inputs spectrum_*; false: a float
-                    texture, which reads      float_* */
+                    texture, which reads float_* */
   /** Inputs of a float texture. Constant: a is the value. Scale reads a. Mix, checkerboard and
    * dots read a and b. Bilerp reads a to d as v00, v01, v10, v11. */
   vlFloatInput float_a, float_b, float_c, float_d;
@@ -81,7 +81,7 @@ struct vlTextureDef {
   vlWrap wrap_t;          /**< wrapping of t */
   vlTextureFilter filter; /**< interpolation */
   bool encoding_given;    /**< encoding and gamma are read; else the file's own encoding is used
-                             (8-bit    files: sRGB) */
+                             (8-bit files: sRGB) */
   vlEncoding encoding;    /**< encoding of the file's integers */
   float gamma;            /**< for VL_ENCODING_GAMMA */
   float scale;            /**< factor on image values; marble: on positions */
@@ -98,7 +98,7 @@ struct vlTextureDef {
                     unset: it is not changed */
   vlColorSpace space; /**< colour space of the image's colours */
   vlMapping mapping;  /**< UV: (s, t) = (su u + du, sv v + dv); the other mappings use the point
-                         in  texture space */
+                         in texture space */
   float su, sv, du, dv;             /**< scale and offset of uv; planar: offsets du, dv */
   float planar_v1[3], planar_v2[3]; /**< planar: s and t are the dot products of the point in
                                        texture space with these vectors */

@@ -44,7 +44,7 @@ typedef struct vlTraceHits {
   float normal[3][VL_OWN_BATCH];   /**< of the surface itself, unit, on the side of the ray's
                                       origin */
   float shading[3][VL_OWN_BATCH];  /**< the material's: interpolated, with bump and normal maps;
-                                      unit; its side is that of  the surface's outside */
+                                      unit; its side is that of the surface's outside */
   float uv[2][VL_OWN_BATCH];       /**< texture coordinates */
   uint32_t object[VL_OWN_BATCH],
       material[VL_OWN_BATCH]; /**< ids as in ground truth (velo/channels.h); 0: nothing */
@@ -59,9 +59,9 @@ typedef struct vlTraceHits {
 typedef struct vlTraceLights {
   float direction[3][VL_OWN_BATCH]; /**< towards the light, unit */
   float radiance[4][VL_OWN_BATCH];  /**< radiance that arrives from there if nothing is in
-                                       between,  divided by pdf */
+                                       between, divided by pdf */
   float pdf[VL_OWN_BATCH];     /**< density of the sample, per steradian; 0: there is none, and
-                                  radiance     is 0 */
+                                  radiance is 0 */
   uint8_t delta[VL_OWN_BATCH]; /**< 1: light from a single point or direction, which no other
                                   ray can meet */
   vlTraceRays rays;            /**< the way to the light, for vl_world_occluded */

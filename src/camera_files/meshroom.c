@@ -22,7 +22,8 @@ static vlResult numbers(const vlCameraFile *file, const json_t *object, const ch
                         double *values, uint32_t count) {
   const json_t *field;
   VL_TRY(vl_camera_field(file, object, key, &field));
-  bool one = count == 1 && !json_is_array(field), good = one || json_array_size(field) == count;
+  bool one = count == 1 && !json_is_array(field);
+  bool good = one || json_array_size(field) == count;
   for (uint32_t i = 0; i < count && good; i++)
     good = number_of(one ? field : json_array_get(field, i), &values[i]);
   if (good)
@@ -31,10 +32,13 @@ static vlResult numbers(const vlCameraFile *file, const json_t *object, const ch
                             key, count, count == 1 ? "" : "s");
 }
 
+/* Whether the version is before 1.minor.revision. */
 static bool is_before(const double version[3], double minor, double revision) {
-  return version[0] < 1.0 ||
-         (version[0] == 1.0 &&
-          (version[1] < minor || (version[1] == minor && version[2] < revision)));
+  if (version[0] != 1.0)
+    return version[0] < 1.0;
+  if (version[1] != minor)
+    return version[1] < minor;
+  return version[2] < revision;
 }
 
 static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic,
@@ -60,55 +64,72 @@ static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic,
   return VL_OK;
 }
 
+/* A distortion of AliceVision: its names, and what it is here. */
+typedef struct {
+  const char *names[2];
+  vlLensFamily family;
+  uint32_t count;  /* of coefficients */
+  bool tangential; /* the coefficients are k1 k2 k3 p1 p2; else radial, k1 to k3 */
+  bool normalised; /* the polynomial is divided by its value at radius 1 */
+} Model;
+
+static const Model *find_model(const char *name) {
+  static const Model models[] = {
+      {.names = {"none", "pinhole"}, .family = VL_LENS_PINHOLE},
+      {.names = {"radialk1", "radial1"}, .family = VL_LENS_OPENCV, .count = 1},
+      {.names = {"radialk3", "radial3"}, .family = VL_LENS_OPENCV, .count = 3},
+      {.names = {"radialk3pt", "radial3pt"},
+       .family = VL_LENS_OPENCV,
+       .count = 3,
+       .normalised = true},
+      {.names = {"brown", "brownt2"}, .family = VL_LENS_OPENCV, .count = 5, .tangential = true},
+      {.names = {"fisheye4", "fisheye"}, .family = VL_LENS_FISHEYE, .count = 4},
+      {.names = {"fisheye1"}, .family = VL_LENS_FOV, .count = 1}};
+  for (size_t i = 0; i < sizeof models / sizeof *models; i++)
+    for (int j = 0; j < 2 && models[i].names[j]; j++)
+      if (vl_text_is(name, models[i].names[j]))
+        return &models[i];
+  return NULL;
+}
+
+/* Coefficients that are missing are 0. */
+static void set_lens(vlCameraDef *d, const Model *model, const double k[5], bool given) {
+  const double radial[5] = {k[0], k[1], 0.0, 0.0, k[2]};
+  const double tangential[5] = {k[0], k[1], k[3], k[4], k[2]};
+  if (model->family == VL_LENS_FISHEYE)
+    vl_camera_set_fisheye(d, k);
+  else if (model->family == VL_LENS_FOV && k[0] != 0.0)
+    vl_camera_set_lens(d, VL_LENS_FOV, k, 1);
+  else if (model->family == VL_LENS_OPENCV && given)
+    vl_camera_set_opencv(d, model->tangential ? tangential : radial, 5);
+  if (given && model->normalised) {
+    d->fx /= 1.0 + k[0] + k[1] + k[2];
+    d->fy /= 1.0 + k[0] + k[1] + k[2];
+  }
+}
+
 /* The distortion, by its name: of version 1.2.8 and later in distortionType, before as the
  * camera's type. */
 static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlCameraDef *d) {
-  static const struct {
-    const char *names[3];
-    uint32_t count;
-  } models[] = {{{"none", "pinhole"}, 0},        {{"radialk1", "radial1"}, 1},
-                {{"radialk3", "radial3"}, 3},    {{"brown", "brownt2"}, 5},
-                {{"fisheye4", "fisheye"}, 4},    {{"fisheye1"}, 1},
-                {{"radialk3pt", "radial3pt"}, 3}};
   const char *key = vl_camera_text(intrinsic, "distortionType") ? "distortionType" : "type";
   const char *base = vl_camera_text(intrinsic, "type"), *name = vl_camera_text(intrinsic, key);
   const json_t *list = json_object_get(intrinsic, "distortionParams");
+  const Model *model = find_model(name);
   double k[5] = {0.0};
-  int model = -1;
   if (base && (strstr(base, "equidistant") || strstr(base, "equirectangular")))
     return vl_camera_wrong_in(file, intrinsic, "type",
                               "meshroom: type \"%s\" is no model of velo",
                               vl_short_text(base).text);
-  for (int i = 0; i < 7; i++)
-    for (int j = 0; j < 3 && models[i].names[j]; j++)
-      if (vl_text_is(name, models[i].names[j]))
-        model = i;
-  if (model < 0)
+  if (!model)
     return vl_camera_wrong_in(
         file, intrinsic, key,
         "meshroom: unknown %s \"%s\"; there are none, radialk1, radialk3, radialk3pt, brown, "
         "fisheye1, fisheye4",
         key, vl_short_text(name).text);
-  uint32_t count = json_array_size(list) ? models[model].count : 0;
-  if (count) {
-    VL_TRY(numbers(file, intrinsic, "distortionParams", k, count));
-  }
-  const double radial[5] = {k[0], k[1], 0.0, 0.0, k[2]},
-               brown[5] = {k[0], k[1], k[3], k[4], k[2]};
-  if (model == 4) {
-    vl_camera_set_fisheye(d, k);
-  } else if (model == 5) {
-    if (k[0] != 0.0) {
-      d->projection = VL_PROJECTION_FOV;
-      d->shape[0] = k[0];
-    }
-  } else if (count) {
-    vl_camera_set_opencv(d, model == 3 ? brown : radial, 5);
-    if (model == 6) {
-      d->fx /= 1.0 + k[0] + k[1] + k[2];
-      d->fy /= 1.0 + k[0] + k[1] + k[2];
-    }
-  }
+  const bool given = json_array_size(list) > 0 && model->count > 0;
+  if (given)
+    VL_TRY(numbers(file, intrinsic, "distortionParams", k, model->count));
+  set_lens(d, model, k, given);
   return VL_OK;
 }
 
@@ -149,9 +170,9 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
                           vlCameraRecord *record) {
   const json_t *intrinsic = with_id(json_object_get(tree, "intrinsics"), "intrinsicId",
                                     json_object_get(view, "intrinsicId"));
-  const json_t *pose = with_id(json_object_get(tree, "poses"), "poseId",
-                               json_object_get(view, "poseId")),
-               *transform;
+  const json_t *pose =
+      with_id(json_object_get(tree, "poses"), "poseId", json_object_get(view, "poseId"));
+  const json_t *transform;
   double r[9] = {0.0}, center[3] = {0.0};
   if (!intrinsic)
     return vl_camera_wrong_in(
@@ -199,13 +220,17 @@ static bool is_meshroom(const json_t *tree) {
 
 static vlResult write_meshroom(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
-  static const char *const words[] = {"none", "brown", "fisheye4", "fisheye1"};
-  const bool brown = fit->family == VL_LENS_OPENCV, fov = fit->family == VL_LENS_FOV;
-  const double k[5] = {fit->k[0], fit->k[1], fit->k[4], fit->k[2], fit->k[3]};
-  const double sensor =
-      fit->record->camera.sensor_width_mm > 0.0 ? fit->record->camera.sensor_width_mm : 36.0;
-  const double values[] = {sensor, sensor * (c->fx / c->fy) * c->height / c->width,
-                           c->fx * sensor / c->width};
+  static const char *const lens_words[] = {"none", "brown", "fisheye4", "fisheye1"};
+  const double brown[5] = {fit->k[0], fit->k[1], fit->k[4], fit->k[2], fit->k[3]};
+  vlCameraValue lens = VL_VALUES("own", fit->k, fit->count);
+  if (fit->family == VL_LENS_FOV)
+    lens = (vlCameraValue)VL_VALUES("own", c->shape, 1);
+  else if (fit->family == VL_LENS_OPENCV)
+    lens = (vlCameraValue)VL_VALUES("own", brown, 5);
+  const double given = fit->record->camera.sensor_width_mm;
+  const double width = given > 0.0 ? given : 36.0; /* mm; 36: a full-frame sensor */
+  const double height = width * (c->fx / c->fy) * c->height / c->width;
+  const double sensor[] = {width, height, c->fx * width / c->width};
   const double middle[2] = {c->cx - 0.5 * c->width, c->cy - 0.5 * c->height};
   return VL_PUT_FORM(
       text, fit,
@@ -226,15 +251,8 @@ static vlResult write_meshroom(const vlFittedCamera *fit, vlCameraText *text) {
       "\"rotation\": "
       "[$axes:q],\n"
       "      \"center\": [$centre:q]}, \"locked\": \"0\"}}\n  ]\n}\n",
-      VL_VALUES("sensor", values, 3), VL_VALUES("middle", middle, 2),
-      VL_WORD("lens", words[fit->family]),
-      VL_VALUES("own",
-                fov     ? c->shape
-                : brown ? k
-                        : fit->k,
-                fov     ? 1
-                : brown ? 5
-                        : fit->count));
+      VL_VALUES("sensor", sensor, 3), VL_VALUES("middle", middle, 2),
+      VL_WORD("lens", lens_words[fit->family]), lens);
 }
 
 const vlCameraFormat vl_format_meshroom = {

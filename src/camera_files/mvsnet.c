@@ -18,11 +18,28 @@ static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, cons
   return VL_OK;
 }
 
+/* The size of the image, which is in a folder beside that of NAME_cam.txt. */
+static vlResult read_size(const vlCameraFile *file, vlCameraRecord *record) {
+  enum { MAX_NAME = 200 };
+  static const char *const folders[] = {"../images", "../blended_images"};
+  static const char *const suffixes[] = {"jpg", "png"};
+  char images[4][MAX_NAME + 40];
+  const char *slash = strrchr(file->path, '/');
+  const char *name = slash ? slash + 1 : file->path;
+  const char *end = strstr(name, "_cam.txt");
+  if (!end || end - name > MAX_NAME)
+    return vl_camera_size_beside(file, (const char *const[]){NULL}, record);
+  for (int i = 0; i < 4; i++)
+    snprintf(images[i], sizeof images[i], "%s/%.*s.%s", folders[i / 2], (int)(end - name), name,
+             suffixes[i % 2]);
+  return vl_camera_size_beside(
+      file, (const char *const[]){images[0], images[1], images[2], images[3], NULL}, record);
+}
+
 static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t size,
                             vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
   double m[16], k[9] = {0.0};
-  char images[4][300];
   VL_TRY(read_matrix(file, &lines, "extrinsic", 4, m));
   const vlCameraLines last = lines; /* of extrinsic */
   VL_TRY(read_matrix(file, &lines, "intrinsic", 3, k));
@@ -31,19 +48,7 @@ static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t s
                                 "\"intrinsic\" must be fx skew cx, 0 fy cy, 0 0 1");
   if (!vl_camera_set_matrix(&record->camera, m, true))
     return vl_camera_wrong_line(file, &last, last.text, "\"extrinsic\" is singular");
-  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path,
-             *end = strstr(name, "_cam.txt");
-  static const char *const folders[] = {"../images", "../blended_images"}, *const suffixes[] = {
-                                                                               "jpg", "png"};
-  for (int i = 0; i < 4; i++)
-    snprintf(images[i], sizeof images[i], "%s/%.200s", folders[i / 2], name);
-  if (!end || end - name > 200)
-    return vl_camera_size_beside(file, (const char *const[]){NULL}, record);
-  for (int i = 0; i < 4; i++)
-    snprintf(images[i], sizeof images[i], "%s/%.*s.%s", folders[i / 2], (int)(end - name), name,
-             suffixes[i % 2]);
-  return vl_camera_size_beside(
-      file, (const char *const[]){images[0], images[1], images[2], images[3], NULL}, record);
+  return read_size(file, record);
 }
 
 static bool is_mvsnet(const char *text, size_t size) {

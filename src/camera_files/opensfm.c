@@ -24,8 +24,10 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const 
     vl_camera_set_opencv(d, k, 4);
   } else if (vl_has_word("fisheye fisheye_opencv", type)) {
     VL_TRY(vl_camera_read_named(file, camera, fisheye, 4, true, k));
-    if (type[7] == 0)
-      k[2] = k[3] = 0.0;
+    if (vl_text_is(type, "fisheye")) { /* has k1 and k2 only */
+      k[2] = 0.0;
+      k[3] = 0.0;
+    }
     vl_camera_set_fisheye(d, k);
   } else if (vl_has_word("spherical equirectangular", type)) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
@@ -98,7 +100,8 @@ static vlResult read_models(const vlCameraFile *file, const json_t *cameras,
 /* Reads the shots of all reconstructions in the file, one reconstruction after the other. */
 static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
-  const json_t *list = json_object_get(tree, "[]"), *chosen = NULL, *of = NULL;
+  const json_t *list = json_object_get(tree, "[]");
+  const json_t *chosen = NULL, *cameras = NULL; /* the shot, and its reconstruction's cameras */
   const char *name, *chosen_name = NULL;
   json_t *shot;
   size_t count = list ? json_array_size(list) : 1;
@@ -113,14 +116,14 @@ static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree,
       if (wanted) {
         chosen = shot;
         chosen_name = name;
-        of = json_object_get(one, "cameras");
+        cameras = json_object_get(one, "cameras");
       }
       record->frames++;
     }
   }
   if (!chosen)
     return vl_camera_no_frame(file, "shot", record);
-  return read_shot(file, chosen, of, chosen_name, record);
+  return read_shot(file, chosen, cameras, chosen_name, record);
 }
 
 static bool is_opensfm(const json_t *tree) {
@@ -143,15 +146,20 @@ static bool is_sphere(const vlCamera *c) {
 
 static vlResult write_opensfm(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
-  bool bent = fit->family == VL_LENS_FISHEYE,
-       whole = fit->record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
+  const bool bent = fit->family == VL_LENS_FISHEYE;
+  const bool opencv = fit->family == VL_LENS_PINHOLE || fit->family == VL_LENS_OPENCV;
+  const bool whole = fit->record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
   if (whole && !is_sphere(c))
     return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
                       "opensfm holds the equirectangular image of the whole sphere only");
-  if (!whole && ((fit->family != VL_LENS_PINHOLE && fit->family != VL_LENS_OPENCV && !bent) ||
-                 fit->count > 5))
+  if (!whole && (!(opencv || bent) || fit->count > 5))
     return vl_camera_no_model(fit->file, &fit->record->camera);
-  const char *type = whole ? "spherical" : bent ? "fisheye_opencv" : "brown";
+  const char *type = bent ? "fisheye_opencv" : "brown";
+  uint32_t coefficients = bent ? 4 : 5;
+  if (whole) {
+    type = "spherical";
+    coefficients = 0;
+  }
   const double side = c->width > c->height ? c->width : c->height;
   const double f[4] = {c->fx / side, c->fy / side, (c->cx - 0.5 * c->width) / side,
                        (c->cy - 0.5 * c->height) / side};
@@ -166,11 +174,7 @@ static vlResult write_opensfm(const vlFittedCamera *fit, vlCameraText *text) {
       VL_PART("plane", !whole,
               ",\n        \"focal_x\": $f@0, \"focal_y\": $f@1, \"c_x\": $f@2, \"c_y\": $f@3"),
       VL_VALUES("f", f, 4),
-      VL_NAMED("lens", bent ? fisheye : brown, fit->k,
-               whole  ? 0
-               : bent ? 4
-                      : 5,
-               ", \"$item\": $value"));
+      VL_NAMED("lens", bent ? fisheye : brown, fit->k, coefficients, ", \"$item\": $value"));
 }
 
 const vlCameraFormat vl_format_opensfm = {

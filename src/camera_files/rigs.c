@@ -1,15 +1,18 @@
-/* camera_files/rigs.c: JSON of rigs and datasets. Axes: x right, y down, z forward. calib.io:
- * Calibration.cameras with OpenCV's lens by name and camera from world (rotation vector,
- * translation); fy = f ar; first pixel's centre (0, 0). nuScenes: a list of calibrated_sensor,
- * world (the vehicle's) from camera, quaternion w x y z; no image size; (0, 0). CMU Panoptic:
- * cameras with K, distCoef, R, t, camera from world, in centimetres; (0, 0). Nerfies:
- * orientation, camera from world, and position, the camera's centre; (0.5, 0.5). */
+/* camera_files/rigs.c: JSON of rigs and datasets. Axes: x right, y down, z forward.
+ *   calib.io      Calibration.cameras with OpenCV's lens by name; fy = f ar; pose: camera from
+ *                 world, as rotation vector and translation
+ *   nuScenes      a list of calibrated_sensor; pose: vehicle from camera, as quaternion w x y z
+ *                 and translation; no image size
+ *   CMU Panoptic  cameras with K, distCoef, R, t; pose: camera from world, in centimetres
+ *   Nerfies       orientation, camera from world, and position, the camera's centre
+ * The first pixel's centre is (0, 0); in Nerfies' files it is (0.5, 0.5). */
 
 #include "base/text.h"
 #include "camera_files/fields.h"
 
 /* ---- calib.io ---------------------------------------------------------------------------- */
 
+/* A parameter: a number, or an object that holds it as "val". */
 static vlResult read_value(const vlCameraFile *file, const json_t *parameters, const char *key,
                            bool needed, double *value) {
   const json_t *field = json_object_get(parameters, key);
@@ -23,13 +26,14 @@ static vlResult read_value(const vlCameraFile *file, const json_t *parameters, c
 /* Camera from world: a rotation vector and a translation; the origin without a transform. */
 static vlResult read_transform(const vlCameraFile *file, const json_t *transform,
                                vlCameraDef *d) {
-  static const char *const turns[] = {"rx", "ry", "rz"}, *const shifts[] = {"x", "y", "z"};
+  static const char *const angles[] = {"rx", "ry", "rz"};
+  static const char *const lengths[] = {"x", "y", "z"};
   const json_t *rotation = json_object_get(transform, "rotation");
   const json_t *translation = json_object_get(transform, "translation");
   double v[3] = {0.0}, t[3] = {0.0}, r[9];
   for (int i = 0; i < 3 && transform; i++) {
-    VL_TRY(vl_camera_number(file, rotation, turns[i], &v[i]));
-    VL_TRY(vl_camera_number(file, translation, shifts[i], &t[i]));
+    VL_TRY(vl_camera_number(file, rotation, angles[i], &v[i]));
+    VL_TRY(vl_camera_number(file, translation, lengths[i], &t[i]));
   }
   vl_rotation_from_vector(v, r);
   vl_camera_set_pose(d, r, t);
@@ -40,10 +44,11 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree,
                              vlCameraRecord *record) {
   static const char *const lens[] = {"k1", "k2", "p1", "p2", "k3", "k4",   "k5",
                                      "k6", "s1", "s2", "s3", "s4", "tauX", "tauY"};
-  const json_t *list = json_object_get(json_object_get(tree, "Calibration"), "cameras"),
-               *camera = vl_camera_choose(file, list, NULL, record);
+  const json_t *list = json_object_get(json_object_get(tree, "Calibration"), "cameras");
+  const json_t *camera = vl_camera_choose(file, list, NULL, record);
   vlCameraDef *d = &record->camera;
-  double f[4] = {0.0}, aspect = 1.0, k[14] = {0.0};
+  double f[4] = {0.0}; /* fx, fy, cx, cy */
+  double aspect = 1.0, k[14] = {0.0};
   if (!camera)
     return vl_camera_no_frame(file, "camera", record);
   const json_t *model, *parameters;

@@ -21,8 +21,8 @@ vlResult vl_frame_wrong(const vlCameraFile *file, const vlFrameLocation *locatio
                         const char *format, ...) {
   char message[300];
   VL_FORMAT(message, format);
-  const char *path = location->path ? location->path : file->path,
-             *name = location->name ? location->name : "";
+  const char *path = location->path ? location->path : file->path;
+  const char *name = location->name ? location->name : "";
   return vl_fail_at(file->error, VL_ERROR_SCENE, path, location->line, location->line ? 1 : 0,
                     "frame %u%s%s%s: %s", location->frame, *name ? " (" : "",
                     vl_short_text(name).text, *name ? ")" : "", message);
@@ -68,7 +68,8 @@ vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file,
   return VL_OK;
 }
 
-/* Clears padding, too, because records are compared bytewise. */
+/* The record of a default camera. Clears padding, too, because records are compared bytewise.
+ */
 void vl_trajectory_begin(vlCameraDialect dialect, vlCameraRecord *record) {
   memset(record, 0, sizeof *record);
   record->camera = vl_default_camera_def(1, 1);
@@ -91,8 +92,7 @@ vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file,
   vlCameraRecord *added = VL_PUSH(t->context, &t->cameras);
   if (!added)
     return vl_fail_memory(file->error);
-  memcpy(added, record,
-         sizeof *added); /* including padding, because records are compared bytewise */
+  memcpy(added, record, sizeof *added); /* with padding, as records are compared bytewise */
   *index = (int32_t)t->cameras.count - 1;
   return VL_OK;
 }
@@ -178,11 +178,10 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
       vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
   if (result != VL_OK)
     return result;
-  if (vl_camera_dialect_of_text(text, size)) {
-    single = true; /* KITTI's calib.txt is not a list of poses */
-  } else if (is_tree(file->path, text)) {
+  bool camera = vl_camera_dialect_of_text(text, size); /* KITTI's calib.txt is no list */
+  if (!camera && is_tree(file->path, text)) {
     result = read_tree(t, file, text, size, &single);
-  } else if (is_list(file->path, text)) {
+  } else if (!camera && is_list(file->path, text)) {
     result = vl_trajectory_read_csv(t, file, text, size);
     single = false;
   }
@@ -191,7 +190,8 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
                                    : result;
 }
 
-/* ---- the public face --------------------------------------------------------------------- */
+/* ---- public functions ---------------------------------------------------------------------
+ */
 
 vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCameraFileDef *def,
                             vlTrajectory **trajectory, vlError *error) {

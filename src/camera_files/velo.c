@@ -142,8 +142,8 @@ static const char *last_word(const char *member) {
   return dot ? dot + 1 : member;
 }
 
-/* From the last row on: the first rows are pbrt's cameras, in which some parameters have other
- * defaults. */
+/* The known fields, then those of the rows, from the last row on: the first rows are pbrt's
+ * cameras, in which some parameters have other defaults. */
 static void list_fields(Fields *fields) {
   const vlKindFamily *cameras = vl_kind_family_find("cameras");
   fields->count = VL_LENGTH(known_fields);
@@ -442,7 +442,8 @@ static void put_field(vlCameraText *text, const Field *field, const vlCameraDef 
 }
 
 void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text) {
-  const vlCameraDef *d = &record->camera, standard = vl_default_camera_def(1, 1);
+  const vlCameraDef *d = &record->camera;
+  const vlCameraDef standard = vl_default_camera_def(1, 1);
   Fields fields;
   list_fields(&fields);
   vl_camera_put(text, "{\n  \"velo_camera\": 1,\n");

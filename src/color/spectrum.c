@@ -9,8 +9,9 @@
 #include "math/elementary.h"
 
 static vlResult unknown_name(const char *name, vlError *error) {
-  const char *names[128];
-  uint32_t count = vl_table_named_count < 128 ? vl_table_named_count : 128;
+  enum { MAX_NAMES = 128 };
+  const char *names[MAX_NAMES];
+  uint32_t count = vl_table_named_count < MAX_NAMES ? vl_table_named_count : MAX_NAMES;
   for (uint32_t i = 0; i < count; i++)
     names[i] = vl_table_named[i].name;
   const char *nearest = name ? vl_nearest_name(name, names, count) : NULL;
@@ -62,16 +63,19 @@ static vlResult check(const vlSpectrum *s, vlError *error) {
   return vl_fail(error, VL_ERROR_ARGUMENT, "unknown kind of spectrum %d", (int)s->kind);
 }
 
-/* Planck's law divided by its maximum (at Wien's wavelength): (lm / l)^5 (e^xm - 1) / (e^x -
- * 1), x = hc / (l k T). */
+/* Planck's law, divided by its maximum: (x / xm)^5 (e^xm - 1) / (e^x - 1), x = hc / (lambda k
+ * T); xm is the x of the maximum, by Wien's displacement law. lambda: nm. */
 static float blackbody(double lambda, double kelvin) {
-  const double xm = 4.965114231744276, hc_k = 1.438776877e7 /* nm K */,
-               peak = 142.32492159405578; /* e^xm - 1 */
-  double x = hc_k / (lambda * kelvin);
-  double u = x / xm, value = u * u * (u * u) * u * peak / vl_precise_expm1(x);
+  const double hc_over_k = 1.438776877e7; /* nm K */
+  const double xm = 4.965114231744276;
+  const double peak = 142.32492159405578; /* e^xm - 1 */
+  double x = hc_over_k / (lambda * kelvin);
+  double u = x / xm;
+  double value = u * u * (u * u) * u * peak / vl_precise_expm1(x);
   return isfinite(value) ? (float)value : 0.0f; /* low temperatures give infinity / infinity */
 }
 
+/* Interpolates the samples linearly; 0 outside of them. */
 static void sampled(const vlSpectrum *s, float *dense) {
   uint32_t j = 0;
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
@@ -175,6 +179,8 @@ bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value) {
   return true;
 }
 
+/* X, Y, Z: sums over each nm of the CIE matching functions times the spectrum, and times a
+ * light unless that is null. */
 static void integrate(const float *dense, const float *light, double xyz[3]) {
   for (int k = 0; k < 3; k++) {
     xyz[k] = 0;

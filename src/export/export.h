@@ -67,13 +67,15 @@ typedef struct vlExport {
 
 /* ---- export.c ---------------------------------------------------------------------------- */
 
+/* Counts a loss of this text. */
 void vl_export_lose(vlExport *x, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Stores the error if it is the first one. Always returns false. */
 bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Whether the shape's material is "interface": light passes it as if it were not there. In glTF
- * and pbrt such a shape gives no light. */
+/* Whether the shape is only a boundary between media: its material is "interface": light passes
+ * it as if it were not there. In glTF and pbrt such a shape gives no light. */
 bool vl_export_parts_media(const vlExport *x, const vlShapeDef *d);
+/* Append bytes, and text. */
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size);
 void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -99,9 +101,10 @@ bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char 
 
 /* ---- values.c ---------------------------------------------------------------------------- */
 
-/* Converts the input to linear sRGB. Lights are divided by their luminance, as in the tracer. A
- * textured input gives the mean of its texture if that is easily computed. */
+/* A light's spectrum in linear sRGB, divided by its luminance, as in the tracer. */
 void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]);
+/* The input in linear sRGB, and an input's number. A textured input gives the mean of its
+ * texture if that is easily computed. */
 void vl_export_rgb(vlExport *x, const vlSpectrumInput *input, float rgb[3]);
 float vl_export_number(vlExport *x, const vlFloatInput *input);
 /* The texture of an input if it is an image texture; otherwise null. */

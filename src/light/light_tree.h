@@ -27,7 +27,7 @@ typedef struct vlLightNode {
   float power;
   float two_sided; /* 1 or 0 */
   uint32_t light;  /* of a leaf: index of the light; VL_INNER: an inner node with children at
-                      left  and left + 1 */
+                      left and left + 1 */
   uint32_t left;
   float low[3], high[3];
 } vlLightNode;

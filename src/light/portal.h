@@ -19,7 +19,7 @@ typedef struct vlPortal {
   float width, height;
   uint32_t size; /* the (u, v) square has size x size cells */
   double *sums;  /* summed-area table of (size + 1)^2 values: light of all cells below and left
-                    of a  cell corner, in rows  from v = 0 */
+                    of a cell corner, in rows from v = 0 */
 } vlPortal;
 
 /* The part of the (u, v) square that is visible from a point: a rectangle, in units of

@@ -31,10 +31,11 @@ static inline float vl_ggx_alpha(float alpha) {
   return alpha > VL_GGX_MIN_ALPHA ? alpha : VL_GGX_MIN_ALPHA;
 }
 
-/* Alpha after optional regularisation, as in pbrt-v4. */
+/* Alpha after optional regularisation, as pbrt-v4's TrowbridgeReitzDistribution::Regularize. */
 static inline float vl_ggx_widened(float alpha) {
   float twice = 2.0f * alpha;
-  twice = twice < 0.1f ? 0.1f : twice > 0.3f ? 0.3f : twice;
+  twice = twice > 0.3f ? 0.3f : twice;
+  twice = twice < 0.1f ? 0.1f : twice;
   return alpha < 0.3f ? twice : alpha;
 }
 
@@ -77,8 +78,7 @@ static inline vlVec3 vl_ggx_sample(vlVec3 w, float alpha_x, float alpha_y, float
   wz = wz * s;
   vlSinCos phi = vl_sincos_turn(u);
   float hz = (1.0f - v) * (1.0f + wz);
-  hz =
-      hz > 1e-7f ? hz : 1e-7f; /* h is above the surface also for the largest v: 1 - v = 6e-8 */
+  hz = hz > 1e-7f ? hz : 1e-7f; /* above the surface, even where 1 - v is only 6e-8 */
   float cz = hz - wz;
   float r2 = 1.0f - cz * cz;
   float r = __builtin_sqrtf(r2 > 0.0f ? r2 : 0.0f);

@@ -3,9 +3,11 @@
 
 #include "medium/medium.case.h"
 
-/* Eight layers of thickness .25, sigma_a .5 times .1, but 3 in the third from the back. The
- * last half of a layer at the box's side fades to half, so the layers at the sides count 7/8:
- * exp(-.5 * .25 * (3 + 5 * .1 + 2 * 7/8 * .1)). Of an even density: exp(-.5 * 1.75). */
+/* The transmittances below are exp(-sigma_a * the integral of the density along z, from -1 to
+ * 1), with sigma_a .5. At the box's sides the density fades to half over half a cell:
+ *   .transmittance: density 1 in two cells: exp(-.5 * 1.75)
+ *   .passes: eight layers of thickness .25, one of density 3, the others .1; the two at the
+ *     sides count 7/8: exp(-.5 * .25 * (3 + 5 * .1 + 2 * 7/8 * .1)) */
 static double density(const double p[3], PlainNoise *noise) {
   (void)noise;
   return 0.5 * fmin(1, 1.5 - fabs(p[2]));

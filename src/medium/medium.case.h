@@ -27,7 +27,7 @@ typedef struct MediumCase {
   const char *blocks;
   double (*density_of_blocks)(const double p[3], PlainNoise *noise);
   const char *hot[2];   /* all parameters of two descriptions of the same emission in the middle
-                           of   the box; null: has one */
+                           of the box; null: has one */
   const char *alike[2]; /* two ways to describe one coloured medium; null: has one */
   ParameterCase parameters[PARAMETER_CASES];
 } MediumCase;

@@ -39,7 +39,7 @@ typedef struct vlWorldMedium {
   float g;
   bool scatters, emits, grey; /* grey: the majorant is the same for all channels */
   bool by_channel;            /* absorption is given per channel of linear sRGB
-                                 (vlMediumDef.rgb_absorption)            and the mode is    spectral */
+                                 (vlMediumDef.rgb_absorption) and the mode is spectral */
   float sigma_rgb[3]; /* if by_channel: absorption coefficients multiplied by the scale; sigma_a
                          is then 0 */
   bool uniform;       /* the medium is the same everywhere: it has no box and no majorants */

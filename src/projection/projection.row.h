@@ -1,5 +1,6 @@
-/* projection/projection.row.h: for the files that hold rows of cameras and projections:
- * parameters by type, and those that all of velo's cameras share: MODEL stands for them. */
+/* projection/projection.row.h: for the files that hold rows of cameras and projections: macros
+ * for parameters by type, and lists of the parameters that several cameras share. MODEL is the
+ * list of all that velo's own cameras share. */
 #ifndef PROJECTION_PROJECTION_ROW_H
 #define PROJECTION_PROJECTION_ROW_H
 
@@ -164,8 +165,7 @@ extern const char *const vl_camera_readout_directions[];
       PARAMETER(                                                                          \
           DOUBLE, "maxangle", max_angle,                                                  \
           "angle from the axis to the edge of the image circle; unset: the projection's " \
-          "limit, or half of a "                                                          \
-          "fisheye's fov",                                                                \
+          "limit, or half of a fisheye's fov",                                            \
           ANGLE, VL_RANGE(0, PI), .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW)
 #define COEFFICIENTS                                      \
   BLOCK("coefficients", distortion_coefficients, "float", \

@@ -22,18 +22,19 @@
 #include "velo/tracer.h"
 
 enum {
-  LEAST_SAMPLES = 8,
+  LEAST_SAMPLES = 8, /* per pixel of a coarse image */
   MAX_SAMPLES = 32,
-  LEAST_PIXELS = 192,
-  MANY_PIXELS = 700,
-  BLOCK = 4,
-  AROUND = 2, /* pixels on each side */
-  QUARTER = 4,
+  LEAST_PIXELS = 192, /* of a coarse image; with fewer there is no race */
+  MANY_PIXELS = 700,  /* with more, samples are added instead of pixels */
+  BLOCK = 4,          /* side of the blocks that are compared with merging, pixels */
+  AROUND = 2,         /* neighbours that say how bright a pixel is: pixels on each side */
+  QUARTER = 4,        /* pixels per light path */
   MAX_LIGHT_PATHS = 1 << 20,
   FEW_FACES = 4096,
   TAIL_PATHS = 4 /* light paths per pixel and sample for the tail: few of those from the sun
                     enter a room */
 };
+/* The paths of all trials: at most this share of the render's, and at most MAX_PATHS. */
 static const double SHARE = 0.03, MAX_PATHS = 1 << 19;
 /* The work of another tracer must be below that of VL_TRACER_VOLPATH times SURE, that of a
  * biased one below that of the best unbiased one times BIASED. */
@@ -44,7 +45,7 @@ static const double SURE = 0.85, BIASED = 2.0 / 3.0;
 static const double BLUR = 0.002;
 static const uint32_t seeds[2] = {0x72616365u, 0x61676169u}, tail_seed = 0x7461696cu;
 /* A sample is rare if it alone makes a coarse pixel RARE times as bright as it should be
- * (tails.h). */
+ * (tails.h). DOUBT: standard errors that are taken from the tail. */
 static const double RARE = 4, DOUBT = 2;
 
 /* Rays are cheap in small worlds, and the rest of the work counts more. */
@@ -79,14 +80,14 @@ typedef struct Race {
   vlFilmDef film;
   vlCamera camera;
   vlRenderDef def;
-  uint32_t factor; /* of the coarse images */
-  uint32_t count;
+  uint32_t factor; /* side of a coarse image's pixel, pixels */
+  uint32_t count;  /* of trials */
   WorldSize size;
   vlImage *images[VL_MAX_TRIALS][2];
   size_t pixels;
-  double *base; /* by pixel and channel: what a relative error is relative to */
-  double *sorted;
-  double least; /* added to base^2, so that black pixels do not count too much */
+  double *base;   /* by pixel and channel: what a relative error is relative to */
+  double *sorted; /* room for 3 numbers per pixel, to be sorted */
+  double least;   /* added to base^2, so that black pixels do not count too much */
 } Race;
 
 /* ---- the size of the race ---------------------------------------------------------------- */
@@ -112,11 +113,12 @@ static WorldSize size_of(const vlWorld *world) {
 /* Chooses the number of samples and the size of the coarse images. False: the race would be too
  * short. */
 static bool choose_size(Race *race, const vlFilmDef *film) {
-  double each = 0, pixels = (double)film->width * film->height;
+  const double pixels = (double)film->width * film->height;
+  double each = 0; /* cost of a sample in both images of all trials */
   for (uint32_t i = 0; i < race->count; i++)
     each += 2 * rows[i].path;
-  double samples = fmin(SHARE * pixels * race->def.spp, MAX_PATHS) / each,
-         wanted = samples / LEAST_SAMPLES;
+  const double samples = fmin(SHARE * pixels * race->def.spp, MAX_PATHS) / each;
+  double wanted = samples / LEAST_SAMPLES; /* pixels of a coarse image */
   race->def.spp = LEAST_SAMPLES;
   for (; wanted > MANY_PIXELS && race->def.spp < MAX_SAMPLES; wanted /= 2)
     race->def.spp *= 2;
@@ -153,30 +155,39 @@ static bool looks_past(const vlWorld *world, vlTracer tracer) {
 
 /* ---- running ----------------------------------------------------------------------------- */
 
-static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *trial,
-                         vlError *error) {
+/* Renders a coarse image. film_def: that of the race, but for its max_component. */
+static vlResult render_coarse(const Race *race, const vlFilmDef *film_def, vlRenderDef *def,
+                              vlPilot *pilot, vlRenderStats *stats, vlImage **image,
+                              vlError *error) {
   vlFilm *film = NULL;
-  vlRenderStats stats;
-  vlPilot pilot = {.spread = 1.0f / (float)race->factor, .pass_seed = seeds[0]};
-  vlRenderDef def = race->def;
-  def.seed = seeds[half];
-  def.tracer = rows[i].tracer;
-  def.own_tracer = NULL;
-  def.light_paths =
-      rows[i].divisor > 1 ? (uint32_t)(race->pixels / rows[i].divisor) : VL_AS_MANY_AS_PIXELS;
-  vlResult result = vl_film_create(race->world->context, &race->film, &film);
+  pilot->spread = 1.0f / (float)race->factor;
+  def->own_tracer = NULL;
+  vlResult result = vl_film_create(race->world->context, film_def, &film);
   if (result != VL_OK)
     return vl_fail(error, result, "the race of the tracers has no film");
-  result = vl_render_pilot(race->world, &race->camera, film, &def, &pilot, &stats, error);
-  if (result == VL_OK) {
-    trial->cost +=
-        rows[i].ray[race->size] * (double)(stats.paths + stats.bounce_rays + stats.shadow_rays);
-    trial->cost += photon[race->size] * (double)pilot.merge_work;
-    if (vl_film_develop(film, NULL, &race->images[i][half]) != VL_OK)
-      result = vl_fail_memory(error);
-  }
+  result = vl_render_pilot(race->world, &race->camera, film, def, pilot, stats, error);
+  if (result == VL_OK && vl_film_develop(film, NULL, image) != VL_OK)
+    result = vl_fail_memory(error);
   vl_film_destroy(film);
   return result;
+}
+
+/* Renders one of a trial's two images, and adds up its cost. */
+static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *trial,
+                         vlError *error) {
+  const Row *row = &rows[i];
+  vlRenderStats stats;
+  vlPilot pilot = {.pass_seed = seeds[0]};
+  vlRenderDef def = race->def;
+  def.seed = seeds[half];
+  def.tracer = row->tracer;
+  def.light_paths =
+      row->divisor > 1 ? (uint32_t)(race->pixels / row->divisor) : VL_AS_MANY_AS_PIXELS;
+  VL_TRY(render_coarse(race, &race->film, &def, &pilot, &stats, &race->images[i][half], error));
+  const double rays = (double)(stats.paths + stats.bounce_rays + stats.shadow_rays);
+  trial->cost += row->ray[race->size] * rays;
+  trial->cost += photon[race->size] * (double)pilot.merge_work;
+  return VL_OK;
 }
 
 /* ---- errors ------------------------------------------------------------------------------ */
@@ -207,18 +218,21 @@ static double trimmed_mean(double *values, size_t n, size_t low, size_t high) {
  * y). */
 static double mean_around(const Race *race, uint32_t t, uint32_t x, uint32_t y, uint32_t c,
                           uint32_t around) {
-  uint32_t x0 = x > around ? x - around : 0, y0 = y > around ? y - around : 0, n = 0;
+  const uint32_t x0 = x > around ? x - around : 0;
+  const uint32_t y0 = y > around ? y - around : 0;
+  uint32_t n = 0;
   double sum = 0;
   for (uint32_t j = y0; j <= y + around && j < race->film.height; j++)
-    for (uint32_t i = x0; i <= x + around && i < race->film.width; i++, n++) {
+    for (uint32_t i = x0; i <= x + around && i < race->film.width; i++) {
       size_t pixel = (size_t)j * race->film.width + i;
+      n++;
       sum += 0.5 * (value_at(race, race->images[t][0], pixel, c) +
                     value_at(race, race->images[t][1], pixel, c));
     }
   return sum / n;
 }
 
-/* The median of mean_around over the tracers. */
+/* The median of mean_around over the tracers. i: 3 times the pixel plus the channel. */
 static double median_around(const Race *race, uint32_t count, size_t i, uint32_t around) {
   double means[VL_MAX_TRIALS];
   uint32_t x = (uint32_t)(i / 3 % race->film.width), y = (uint32_t)(i / 3 / race->film.width);
@@ -234,9 +248,11 @@ static double median_around(const Race *race, uint32_t count, size_t i, uint32_t
  * neighbours say how bright they are. */
 static void find_base(Race *race, uint32_t count) {
   size_t n = 3 * race->pixels;
-  for (size_t i = 0; i < n; i++)
-    race->base[i] = race->sorted[i] =
+  for (size_t i = 0; i < n; i++) {
+    race->base[i] =
         fmax(median_around(race, count, i, 0), median_around(race, count, i, AROUND));
+    race->sorted[i] = race->base[i];
+  }
   double mean = trimmed_mean(race->sorted, n, 0, n / 50); /* without lamps and fireflies */
   race->least = 0.1 * mean * mean;
 }
@@ -255,8 +271,8 @@ static void find_errors(Race *race, uint32_t t) {
   }
 }
 
-/* As the trimmed relMSE of a pair of seeds in bench/error.c, of pixels whose error is at most
- * `most`. */
+/* As the trimmed relMSE of a pair of seeds in bench/error.c; no pixel counts more than `most`.
+ */
 static double error_of(Race *race, uint32_t t, double most) {
   find_errors(race, t);
   for (size_t i = 0; i < race->pixels; i++)
@@ -273,32 +289,23 @@ static vlResult find_tail(Race *race, double *tail, vlError *error) {
                    race->least,
                    RARE * (double)race->def.spp,
                    (double)race->film.max_component};
-  vlPilot pilot = {
-      .spread = 1.0f / (float)race->factor, .pass_seed = tail_seed, .tails = &tails};
+  vlPilot pilot = {.pass_seed = tail_seed, .tails = &tails};
   vlFilmDef film_def = race->film;
   vlRenderDef def = race->def;
-  vlFilm *film = NULL;
   vlImage *image = NULL;
   film_def.max_component = INFINITY;
   def.seed = tail_seed;
   def.tracer = VL_TRACER_LIGHT_PATH;
-  def.own_tracer = NULL;
   def.light_paths = (uint32_t)(TAIL_PATHS * race->pixels);
-  vlResult result = vl_film_create(race->world->context, &film_def, &film);
-  if (result != VL_OK)
-    return vl_fail(error, result, "the race of the tracers has no film");
-  result = vl_render_pilot(race->world, &race->camera, film, &def, &pilot, NULL, error);
-  if (result == VL_OK && vl_film_develop(film, NULL, &image) != VL_OK)
-    result = vl_fail_memory(error);
+  VL_TRY(render_coarse(race, &film_def, &def, &pilot, NULL, &image, error));
   double sum = 0, squares = 0, samples = (double)race->pixels * race->def.spp;
-  for (size_t i = 0; result == VL_OK && i < race->pixels; i++) {
+  for (size_t i = 0; i < race->pixels; i++) {
     sum += value_at(race, image, i, 0) * race->def.spp;
     squares += value_at(race, image, i, 1) * race->def.spp / VL_TAIL_SQUARES;
   }
   *tail = fmax(sum - DOUBT * sqrt(fmax(squares, 0)), 0) / (samples * race->def.spp);
   vl_image_destroy(image);
-  vl_film_destroy(film);
-  return result;
+  return VL_OK;
 }
 
 /* The squared relative difference of block (x0, y0) between trial t and merging, trial m. It is
@@ -308,7 +315,7 @@ static double block_missing(const Race *race, uint32_t t, uint32_t m, uint32_t x
                             uint32_t y0) {
   double sum = 0;
   for (uint32_t c = 0; c < 3; c++) {
-    double mean[2][2] = {{0, 0}, {0, 0}}, both = 0;
+    double mean[2][2] = {{0, 0}, {0, 0}}; /* by trial (t, m) and image */
     for (uint32_t k = 0; k < BLOCK * BLOCK; k++) {
       size_t pixel = (size_t)(y0 + k / BLOCK) * race->film.width + x0 + k % BLOCK;
       for (int half = 0; half < 2; half++) {
@@ -316,7 +323,7 @@ static double block_missing(const Race *race, uint32_t t, uint32_t m, uint32_t x
         mean[1][half] += value_at(race, race->images[m][half], pixel, c) / (BLOCK * BLOCK);
       }
     }
-    both = 0.5 * (mean[1][0] + mean[1][1]);
+    const double both = 0.5 * (mean[1][0] + mean[1][1]);
     sum += (mean[1][0] - mean[0][0]) * (mean[1][1] - mean[0][1]) /
            (3 * (both * both + race->least));
   }
@@ -326,12 +333,12 @@ static double block_missing(const Race *race, uint32_t t, uint32_t m, uint32_t x
 /* The light that merging finds and trial t does not, without what may be blur; 0 unless it is
  * above three standard errors. */
 static double missing_of(Race *race, uint32_t t, uint32_t m) {
-  size_t n = 0, out;
+  size_t n = 0;
   double squares = 0;
   for (uint32_t y = 0; y + BLOCK <= race->film.height; y += BLOCK)
     for (uint32_t x = 0; x + BLOCK <= race->film.width; x += BLOCK)
       race->sorted[n++] = block_missing(race, t, m, x, y);
-  out = (n + 49) / 50;
+  const size_t out = (n + 49) / 50; /* outliers at each end */
   double mean = trimmed_mean(race->sorted, n, out, out);
   for (size_t i = out; i + out < n; i++)
     squares += (race->sorted[i] - mean) * (race->sorted[i] - mean);
@@ -365,7 +372,10 @@ void vl_choose_by_work(vlTracerChoice *choice, double samples) {
         (trials[0].error / samples + trials[0].missing);
   for (uint32_t i = 1; i < choice->count; i++) {
     double most = isfinite(trials[best].work) ? trials[best].work : INFINITY;
-    most *= trials[i].tracer == VL_TRACER_MERGING ? BIASED : best ? 1 : SURE;
+    if (trials[i].tracer == VL_TRACER_MERGING)
+      most *= BIASED;
+    else if (best == 0)
+      most *= SURE;
     if (trials[i].work < most)
       best = i;
   }

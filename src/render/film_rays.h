@@ -29,7 +29,7 @@ typedef struct vlFilmRays {
                    filter */
   bool middle;  /* all times are the middle of the shutter's time */
   bool moves;   /* true: the world has moving shapes, and ray times are world times, 0 to 1;
-                   false:   seconds */
+                   false: seconds */
 } vlFilmRays;
 
 /* One element per sample; memory for VL_PAD(n) of them. In: the pixel and the sample's index in

@@ -7,9 +7,9 @@
 #include "camera/own_rays.h"
 #include "math/double3.h"
 
-/* Points at a time, and rays for each: the film point itself, and STEP pixels to its left and
- * right, above and below. The error of a derivative is STEP^2 / 6 of the third derivative, 1e-7
- * where the map changes over 40 pixels. */
+/* Points at a time, and rays for each: of the film point itself (MIDDLE), and from SIDES on
+ * those STEP pixels to its left and right, above and below. The error of a derivative is STEP^2
+ * / 6 of the third derivative, 1e-7 where the map changes over 40 pixels. */
 enum { CHUNK = 128, MIDDLE = 0, SIDES = 1, RAYS = 5 };
 static const double STEP = 1.0 / 32;
 _Static_assert(CHUNK *RAYS <= VL_OWN_BATCH, "one call");
@@ -18,6 +18,7 @@ static double square(double x) {
   return x * x;
 }
 
+/* The squared distance of two rays: of their origins plus of their directions. */
 static double change(const vlOwnRay *a, const vlOwnRay *b) {
   double sum = 0;
   for (int k = 0; k < 3; k++)
@@ -51,7 +52,10 @@ static double triple(const double a[3], const double b[3], const double c[3]) {
   return vl_dot3(across, c);
 }
 
-/* rays: RAYS of one film point; p: world space. */
+/* Connects the point p, in world space, with the camera. rays: RAYS of its film point. A pixel
+ * sees at distance t the area |triple(ox + t dx, oy + t dy, d)|, where ox, dx and oy, dy are
+ * the derivatives of the ray's origin and direction by the film's axes: a polynomial in t. The
+ * point must lie on the ray of its film point, up to 1/16 of a pixel. */
 static void connect(const vlCameraCompiled *c, const vlOwnRay *rays, const float p[3],
                     vlCameraSample *s) {
   const vlOwnRay *at = &rays[MIDDLE];
@@ -64,8 +68,8 @@ static void connect(const vlCameraCompiled *c, const vlOwnRay *rays, const float
     return;
   for (int k = 0; k < 3; k++)
     to[k] = (double)p[k] - at->o[k];
-  double t = vl_dot3(to, at->d), near = c->near_plane * at->stretch,
-         far = c->far_plane * at->stretch;
+  double t = vl_dot3(to, at->d);
+  double near = c->near_plane * at->stretch, far = c->far_plane * at->stretch;
   double area[3] = {triple(ox, oy, at->d), triple(ox, dy, at->d) + triple(dx, oy, at->d),
                     triple(dx, dy, at->d)};
   double pixel = fabs(area[0] + t * (area[1] + t * area[2]));
@@ -88,8 +92,8 @@ static void look_at(const vlCameraView *view, uint32_t n, const float *x, const 
   static const double side[RAYS][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}};
   const vlCameraCompiled *c = view->camera;
   const double *m = c->camera_from_world;
-  double at[3][CHUNK], film_x[CHUNK], film_y[CHUNK], points_x[CHUNK * RAYS],
-      points_y[CHUNK * RAYS];
+  double at[3][CHUNK], film_x[CHUNK], film_y[CHUNK];
+  double points_x[CHUNK * RAYS], points_y[CHUNK * RAYS];
   vlOwnRay rays[CHUNK * RAYS];
   if (n == 0)
     return;
@@ -105,12 +109,12 @@ static void look_at(const vlCameraView *view, uint32_t n, const float *x, const 
     s->y = (float)film_y[i];
     s->seen =
         s->x > view->low_x && s->x < view->high_x && s->y > view->low_y && s->y < view->high_y;
-    for (int k = 0; k < RAYS;
-         k++) { /* of a point that is not seen: some rays, which are not used */
-      points_x[RAYS * i + (uint32_t)k] =
-          (s->seen ? film_x[i] : (double)view->low_x) + STEP * side[k][0];
-      points_y[RAYS * i + (uint32_t)k] =
-          (s->seen ? film_y[i] : (double)view->low_y) + STEP * side[k][1];
+    /* rays of a point that is not seen are not used */
+    const double middle_x = s->seen ? film_x[i] : (double)view->low_x;
+    const double middle_y = s->seen ? film_y[i] : (double)view->low_y;
+    for (uint32_t k = 0; k < RAYS; k++) {
+      points_x[RAYS * i + k] = middle_x + STEP * side[k][0];
+      points_y[RAYS * i + k] = middle_y + STEP * side[k][1];
     }
   }
   vl_own_world_rays(c, RAYS * n, points_x, points_y, rays);

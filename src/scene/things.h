@@ -9,7 +9,7 @@
 typedef struct vlThing {
   vlExtent box;
   vlExtent body;  /* of a needle (a face with one edge below a tenth of the two others) the box
-                     of  this edge: where the face is, but for its tip; of all others `box` */
+                     of this edge: where the face is, but for its tip; of all others `box` */
   double surface; /* of what is no face, that of its box */
 } vlThing;
 

@@ -57,7 +57,7 @@ typedef struct vlTextureNode {
   vlSpectrumRole role;
   float value;                /* of a constant number */
   vlSpectral spectrum;        /* of a constant spectrum; of VL_TEXTURE_IMAGE for the role of an
-                                 illuminant:        dense is the colour space's illuminant */
+                                 illuminant: dense is the colour space's illuminant */
   int32_t a, b, c, d, amount; /* node indices of the inputs; -1: none */
   const struct vlTextureDef *def; /* the numbers that some kinds alone have; without its
                                      inputs, names and data. Null: the texture has no def */

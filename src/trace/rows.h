@@ -148,7 +148,7 @@ typedef struct vlLightSamples {
       tz[VL_ROW_SIZE];                   /* point that must be visible */
   VL_ROW float radiance[4][VL_ROW_SIZE]; /* already divided by the pdf */
   VL_ROW float pdf[VL_ROW_SIZE];      /* per solid angle, times the probability of choosing the
-                                         light; 0:      no sample */
+                                         light; 0: no sample */
   VL_ROW uint32_t delta[VL_ROW_SIZE]; /* a delta light: a BSDF sample cannot hit it */
   VL_ROW uint32_t distant[VL_ROW_SIZE]; /* 1: the target is infinitely far, and tx, ty, tz hold
                                            the direction */

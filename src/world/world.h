@@ -164,7 +164,7 @@ typedef struct vlWorldMaterial {
                       by the world */
   bool no_cosine;  /* the path throughput is not multiplied by the cosine */
   bool one_sided;  /* light only leaves on the side on which it arrives: only lights on the
-                      viewer's  side count */
+                      viewer's side count */
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
   bool mixed; /* a mix of the materials mix[0] and mix[1], which come before it */
@@ -203,7 +203,7 @@ typedef struct vlWorldCoat {
 typedef struct vlEmitted {
   vlSpectral spectrum; /* normalised and scaled */
   int32_t image;       /* index of an image over uv (area lights) or over directions (infinite
-                          lights);       spectrum, the illuminant, multiplies it; -1: none */
+                          lights); spectrum, the illuminant, multiplies it; -1: none */
   int32_t node;        /* 1 + index of the texture node that reads image at uv; 0: none */
   float image_scale;
   vlColorSpace space;
@@ -220,7 +220,7 @@ typedef struct vlWorldLight {
   float area;           /* of an area light: area of the primitive in world space */
   float position[3];    /* of lights at a point, world space */
   float direction[3];   /* of a spot light: its axis, away from the light; of a distant light:
-                           towards   the light */
+                           towards the light */
   float cos_start,
       cos_end; /* of a spot light: full intensity within the angle `start`, none beyond `end` */
   bool cone_squared; /* the falloff between start and end is t^2; otherwise it is smooth */
@@ -244,7 +244,7 @@ typedef struct vlWorldLight {
   uint32_t image; /* of goniometric and projection lights: image index; their `corners` hold the
                      rotation from world to light directions */
   uint32_t lamp;  /* of a goniometric light with a lamp file: index into lamps, and `corners`
-                     holds  the rotation to the table's frame; else VL_NONE */
+                     holds the rotation to the table's frame; else VL_NONE */
   float own[4];   /* numbers that only this kind has; of a projection light: half the width and
                      height of the image at distance 1; of a spot light with a skewed cone: the
                      axis in the light's frame, unit */

@@ -8,7 +8,7 @@
 #include "scene/tray.h"
 #include "unit.h"
 
-/* The y-axis files' up and front, the other axis being tried. */
+/* The default up and front, +y and +z; a model that stands better along z gets that. */
 static vlCompleteDef guessed(void) {
   vlCompleteDef def = first_image();
   def.find_up = true;

@@ -19,6 +19,8 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* Collects the points that the pixels show, and the quantiles of their depths. flat: depth is
+ * along the axis; else along the ray. */
 static vlResult collect(const vlImage *image, bool flat, Seen *seen) {
   uint32_t w = vl_image_width(image), h = vl_image_height(image);
   seen->points = malloc(3 * (size_t)w * h * sizeof *seen->points);
@@ -88,7 +90,7 @@ static void choose_up(const vlCamera *of, double up[3]) {
     if (fabs(v[i]) > fabs(v[best]))
       best = i;
   for (int i = 0; i < 3; i++)
-    up[i] = i == best ? (v[best] < 0 ? -1 : 1) : 0;
+    up[i] = i == best ? copysign(1, v[best]) : 0;
 }
 
 /* The unit direction from the middle towards the outside eye. */
@@ -96,8 +98,9 @@ static void choose_direction(const vlCamera *of, const double up[3], const Outsi
                              double d[3]) {
   double level[3], right[3];
   const double *m = of->world_from_camera;
-  for (int k = 0; k < 2; k++) { /* a camera that looks straight up or down: its image's up is
-                                   the level direction */
+  /* the level part of the view direction or, of a camera that looks straight up or down, of its
+   * image's up */
+  for (int k = 0; k < 2; k++) {
     for (int i = 0; i < 3; i++)
       level[i] = k ? -m[4 * i + 1] : m[4 * i + 2];
     vector_along(level, -vector_dot(level, up), up, level);
@@ -144,7 +147,7 @@ static Bounds bounds_of(const vlCamera *c, const vlDrawing *drawing, const Seen 
 
 vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Seen *seen,
                           const OutsideDef *def, Outside *outside, vlError *error) {
-  const double margin = 0.9;
+  const double margin = 0.9; /* share of the image's side that the bounds fill */
   double up[3], d[3], middle[3], distance = 0;
   choose_up(of, up);
   choose_direction(of, up, def, d);
@@ -246,13 +249,15 @@ static vlResult render_view(vlContext *context, const vlWorld *world, const vlSc
 static vlResult render_images(vlContext *context, const vlWorld *world, const vlSceneDefs *defs,
                               const OutsideDef *def, const vlCamera *of, Outside *outside,
                               vlError *error) {
-  enum { SIDE = 320 };
+  enum { SIDE = 320 };      /* of the camera's own image, pixels */
+  const double pale = 0.82; /* opacity of the scene: lines must stand out */
+  const double stops = 0.8; /* that it is brighter than the meter says */
   TRY_RESULT(render_view(context, world, defs, def, &outside->camera, &outside->image, error));
   double ev =
-      isnan(def->exposure) ? 0.8 + (double)exposure_meter(outside->image) : def->exposure;
+      isnan(def->exposure) ? stops + (double)exposure_meter(outside->image) : def->exposure;
   if (!isfinite(ev))
     ev = 0;
-  put_on_paper(outside->image, ev, 0.82); /* pale: lines must stand out */
+  put_on_paper(outside->image, ev, pale);
   if (!def->own_image)
     return VL_OK;
   double scale = fmin(1.0, (double)SIDE / fmax(of->width, of->height));

@@ -6,12 +6,14 @@
 #include "cli/vector.h"
 #include "image/check.h"
 
+/* Where a pixel shows nothing, ids and vectors are 0, distances infinite, and the ray is the
+ * camera's. */
 static void check_miss(Check *c, bool in_domain, const double direction[3]) {
   double wrong = 0, v[3];
-  const int zeros[] = {c->object, c->material, c->primitive, c->instance},
-            vectors[] = {c->p, c->n, c->ng};
-  for (size_t i = 0; i < LENGTH(zeros); i++)
-    if (zeros[i] >= 0 && c->pixel[zeros[i]] != 0)
+  const int ids[] = {c->object, c->material, c->primitive, c->instance};
+  const int vectors[] = {c->p, c->n, c->ng};
+  for (size_t i = 0; i < LENGTH(ids); i++)
+    if (ids[i] >= 0 && c->pixel[ids[i]] != 0)
       wrong = INFINITY;
   for (size_t i = 0; i < LENGTH(vectors); i++) {
     if (vectors[i] < 0)
@@ -43,9 +45,12 @@ static void check_row(Check *c, const double p[3]) {
   check_note(c, RULE_ROWS, error / fmax(row.width, row.height));
 }
 
-/* Errors are relative to the largest number involved, which bounds the rounding of floats. */
+/* Checks the point that the pixel shows: P against the distance along the ray, depth against
+ * the camera, the projection against the film point. Errors are relative to the largest number
+ * involved, which bounds the rounding of floats. */
 static void check_point(Check *c, const double origin[3], const double direction[3]) {
-  double p[3], ray[3], t = c->distance >= 0 ? c->pixel[c->distance] : 0;
+  double p[3], ray[3];
+  const double t = c->distance >= 0 ? c->pixel[c->distance] : 0;
   if (c->ray >= 0)
     check_load3(c, c->ray, ray);
   else
@@ -98,7 +103,7 @@ static void check_plain(Check *c) {
     return;
   for (int k = 0; k < 2; k++) {
     double over = fabs((double)c->pixel[c->film + k] - 0.5) - c->reach[k];
-    check_note(c, RULE_FILM, over > 0 ? over : over <= 0 ? 0 : (double)INFINITY);
+    check_note(c, RULE_FILM, isnan(over) ? INFINITY : fmax(over, 0));
   }
 }
 

@@ -17,7 +17,7 @@
 #include "render/pattern.h"
 #include "render/receipt.h"
 
-enum { QUEUE = 4 };
+enum { QUEUE = 4 }; /* images that wait to be written, and the one that is being written */
 
 struct FrameWriter {
   vlContext *context;
@@ -29,9 +29,9 @@ struct FrameWriter {
   pthread_cond_t changed;
   FrameImage queue[QUEUE];
   uint32_t first, count; /* ring buffer: first entry and number of entries */
-  bool closed;
-  bool metered;
-  float exposure;
+  bool closed;           /* no image will be put any more */
+  bool metered;          /* exposure is known: that of the first image */
+  float exposure;        /* stops */
   int status;
   uint32_t written;
 };
@@ -61,8 +61,8 @@ static vlResult add_view(vlImage *image, const char *view, bool first) {
   return VL_OK;
 }
 
-/* Joins the colours of both eyes in one image, so that --half applies to both. The header is
- * the first eye's. */
+/* Joins the colours of both eyes, R G B A each, in one image, so that --half applies to both.
+ * The header is the first eye's. */
 static vlResult join(vlContext *context, vlImage *const images[2], const char *view,
                      vlImage **both) {
   static const char *const plain[4] = {"R", "G", "B", "A"};
@@ -141,8 +141,10 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path,
 static float exposure_of(FrameWriter *w, const vlImage *image) {
   if (!w->outputs->meter)
     return w->outputs->exposure;
-  if (!w->metered)
-    exposure_tell(w->exposure = exposure_meter(image));
+  if (!w->metered) {
+    w->exposure = exposure_meter(image);
+    exposure_tell(w->exposure);
+  }
   w->metered = true;
   return w->exposure;
 }
@@ -174,7 +176,7 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
   vlWriteDef def = vl_default_write_def();
   def.half = w->outputs->half;
   def.alone = true;
-  bool two = w->frames->views == 2;
+  bool join_views = w->frames->views == 2 && !by_view;
   int status = STATUS_OK;
   for (int view = 0; view < (by_view ? w->frames->views : 1); view++) {
     char name[4096], part[4200], *path = name;
@@ -184,10 +186,10 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
       path = part;
     int code = STATUS_OK;
     if (output_holds_layers(path))
-      code = channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL,
+      code = channels_write_ids(&p->channels[view], join_views ? &p->channels[1] : NULL,
                                 &p->jobs[view], path);
-    vlResult result = two && !by_view ? write_both(w, p, path, &def, &error)
-                                      : write_one(w, p, view, path, &def, &error);
+    vlResult result = join_views ? write_both(w, p, path, &def, &error)
+                                 : write_one(w, p, view, path, &def, &error);
     if (result != VL_OK)
       code = report_error(&error, result, path);
     if (code == STATUS_OK && p->stopped)
@@ -235,17 +237,18 @@ static int write_image(FrameWriter *w, FrameImage *p) {
       result = attributes_set_text(p->images[v], "view", w->frames->view_names[v]);
     if (result == VL_OK)
       result = channels_describe(&p->channels[v], p->images[v]);
-    const ReceiptImage which =
-        receipt_image(w, p, *w->frames->view_names[v] ? w->frames->view_names[v] : NULL);
+    const char *eye = w->frames->view_names[v];
+    const ReceiptImage which = receipt_image(w, p, *eye ? eye : NULL);
     if (result == VL_OK)
       result = receipt_set(&p->jobs[v], &which, p->images[v]);
     if (result != VL_OK)
       status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");
   }
-  for (int last = 0; last < 2; last++)
+  for (int joined = 0; joined < 2; joined++) /* joined files come last */
     for (int i = 0; i < w->outputs->count && status != STATUS_OTHER; i++) {
       bool by_view = pattern_has(w->outputs->paths[i], 'v');
-      if ((w->frames->views == 2 && !by_view) != last)
+      bool joins = w->frames->views == 2 && !by_view;
+      if (joins != joined)
         continue;
       int code = write_pattern(w, p, w->outputs->paths[i], by_view);
       if (status == STATUS_OK)
@@ -266,8 +269,8 @@ static void *work(void *user) {
       pthread_cond_wait(&w->changed, &w->mutex);
     if (w->count == 0)
       break;
-    FrameImage *image =
-        &w->queue[w->first]; /* still counted as queued, so that its slot is not reused */
+    /* still counted as queued, so that its slot is not reused */
+    FrameImage *image = &w->queue[w->first];
     pthread_mutex_unlock(&w->mutex);
     int status = write_image(w, image);
     bool stopped = image->stopped;

@@ -23,7 +23,8 @@ bool near_is_allowed(const Arguments *arguments) {
   return images_only;
 }
 
-/* The middle of the box in whole numbers. Returns how many of its sizes it is away. */
+/* The middle of the box in whole numbers. Returns its distance from the origin, divided by the
+ * box's size. */
 static double find_middle(const double low[3], const double high[3], double middle[3]) {
   double size = 0, most = 0;
   for (int i = 0; i < 3; i++) {
@@ -42,7 +43,8 @@ static void move_camera(vlCameraDef *camera, const double middle[3]) {
 }
 
 int near_move(vlScene *scene, const char *path, SceneOpening *opening) {
-  const double far = 100, single = 1.0 / 16777216; /* of a number, which a float loses */
+  const double far = 100;             /* sizes of the model */
+  const double float_error = 0x1p-24; /* largest relative rounding error of a float */
   double middle[3];
   const double away = find_middle(opening->low, opening->high, middle);
   if (!(away > far))
@@ -52,7 +54,7 @@ int near_move(vlScene *scene, const char *path, SceneOpening *opening) {
     report_note(
         "the model lies %.3g times its size from the origin: its positions are rounded to "
         "about %.2g; .png, .jpg and .tga alone are rendered about its middle, without this",
-        away, most * single);
+        away, most * float_error);
     return -1;
   }
   const double world_from_scene[16] = {1, 0, 0, -middle[0], 0, 1, 0, -middle[1],

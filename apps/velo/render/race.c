@@ -1,5 +1,5 @@
-/* render/race.c: see race.h. From then on the render has a tracer like any other: receipts and
- * film files name the chosen one, so that --continue, --again and velo film merge need no
+/* render/race.c: see race.h. After the race the render has a tracer like any other: receipts
+ * and film files name the chosen one, so that --continue, --again and velo film merge need no
  * race. */
 #include "render/race.h"
 
@@ -16,8 +16,8 @@ int race_check(const Render *render, const Arguments *arguments) {
   return race_check_options(arguments);
 }
 
-/* The film that is there names the tracer that won the race of its first samples. */
-static void take_films_own(Render *render, const FilmClaim *claim) {
+/* The film's file names the tracer that won the race of its first samples. */
+static void take_film_tracer(Render *render, const FilmClaim *claim) {
   Job *job = &render->job;
   vlRenderDef *own = &job->defs->render, *whole = &render->film_plan.whole.render;
   job->race = RACE_NONE;
@@ -39,7 +39,7 @@ int race_plan(Render *render, const Arguments *arguments) {
     render->job.race = race_kind(&render->film_plan.whole, arguments);
   for (int i = 0; i < 2 && render->job.race != RACE_NONE; i++)
     if (claims[i].earlier)
-      take_films_own(render, &claims[i]);
+      take_film_tracer(render, &claims[i]);
   return -1;
 }
 

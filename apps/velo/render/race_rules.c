@@ -29,13 +29,15 @@ int race_check_options(const Arguments *arguments) {
 
 uint32_t race_samples(const vlSceneDefs *defs) {
   const vlRenderDef *render = &defs->render;
-  double pixels = (double)defs->film.width * defs->film.height,
-         most = fmin(render->spp, MAX_SAMPLES);
+  double pixels = (double)defs->film.width * defs->film.height;
+  double most = fmin(render->spp, MAX_SAMPLES);
   if (render->time_limit > 0)
     most = fmin(most, render->time_limit * PATHS_PER_SECOND / pixels);
   return (uint32_t)most;
 }
 
+/* Whether there is a race that was not asked for: the tracer, or the number of a bidirectional
+ * tracer's light paths, is left open. */
 static bool is_default(const vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (v[RENDER_LIGHT_PATHS].given || v[RENDER_MERGE_RADIUS].given || defs->build.imitate_pbrt)
@@ -62,7 +64,8 @@ void race_take(vlRenderDef *def, RaceKind kind, const vlTracerChoice *choice) {
     def->light_paths = 0;
 }
 
-/* ---- the line ---------------------------------------------------------------------------- */
+/* ---- the report's line
+ * ---------------------------------------------------------------------------- */
 
 static void trial_name(const vlTracerTrial *trial, char *text, size_t size) {
   bool camera = trial->tracer == VL_TRACER_VOLPATH;

@@ -30,13 +30,15 @@ typedef struct Render {
   uint32_t begun_spp;   /* samples per pixel of a film that is continued */
   uint32_t written_spp; /* samples per pixel of the last progress image */
   bool part_named;      /* the paths of the NAME.part.EXT files were reported */
-  double last_write,
-      write_cost;    /* seconds: when, and for how long, a progress image was written */
-  double first_pass; /* seconds of the first pass, one sample; 0: not done */
-  double start, render_start; /* start of the command, start of the first pass; seconds */
-  double time_limit;          /* --time, seconds; 0: none */
-  Channels channels;          /* of the ground truth */
-  Frames frames;              /* of a trajectory, a rig or two eyes */
+  /* Times, in seconds. */
+  double last_write;   /* when a progress image was last written */
+  double write_cost;   /* how long that took */
+  double first_pass;   /* how long the first pass, of one sample, took; 0: not done */
+  double start;        /* when the command began */
+  double render_start; /* when the first pass began */
+  double time_limit;   /* --time; 0: none */
+  Channels channels;   /* of the ground truth */
+  Frames frames;       /* of a trajectory, a rig or two eyes */
   MemoryPlan memory;
   Denoised denoised;
   bool many; /* whether `frames` is used */
@@ -46,10 +48,9 @@ typedef struct Render {
   FilmKeeper keeper;
   FilmPlan film_plan;
   ReceiptPlan receipt;
-  Serve *serve; /* the page of --serve; null: none */
-  struct AnimateShared
-      *shared;    /* what the frames of an animation have in common; null: this is one image */
-  Videos *videos; /* what becomes of the frames; null: they stay images */
+  Serve *serve;                 /* the page of --serve; null: none */
+  struct AnimateShared *shared; /* of all frames of an animation; null: this is one image */
+  Videos *videos;               /* that the frames become; null: they stay images */
 } Render;
 
 /* Whether an output holds ground truth. */

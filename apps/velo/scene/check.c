@@ -14,7 +14,7 @@
 enum { CHECK_JSON, CHECK_NO_IMAGES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SEARCH, CHECK_SANDBOX };
 enum { SHOWN = 10 }; /* findings printed per kind without --all */
 
-/* Copies a finding, so that findings reported while loading are listed with the others. */
+/* A copy of a finding, so that findings reported while loading are listed with the others. */
 typedef struct Entry {
   vlFindingKind kind;
   vlSeverity severity;
@@ -39,7 +39,8 @@ static void add(List *list, vlFindingKind kind, vlSeverity severity, vlResult co
     list->items = grown;
     list->capacity = wanted;
   }
-  Entry *e = &list->items[list->count++];
+  Entry *e = &list->items[list->count];
+  list->count++;
   *e =
       (Entry){.kind = kind, .severity = severity, .code = code, .line = line, .column = column};
   text_set(e->file, "%s", file ? file : "");
@@ -47,11 +48,15 @@ static void add(List *list, vlFindingKind kind, vlSeverity severity, vlResult co
 }
 
 static void report_message(void *user, const vlError *e) {
-  vlFindingKind kind = e->code == VL_OK              ? VL_FINDING_OVERWRITTEN
-                       : e->code == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE
-                                                     : VL_FINDING_WRONG;
-  add(user, kind, e->code == VL_OK ? VL_SEVERITY_WARNING : VL_SEVERITY_ERROR, e->code, e->file,
-      e->line, e->column, e->message);
+  vlFindingKind kind = VL_FINDING_WRONG;
+  vlSeverity severity = VL_SEVERITY_ERROR;
+  if (e->code == VL_OK) {
+    kind = VL_FINDING_OVERWRITTEN;
+    severity = VL_SEVERITY_WARNING;
+  } else if (e->code == VL_ERROR_MISSING) {
+    kind = VL_FINDING_MISSING_FILE;
+  }
+  add(user, kind, severity, e->code, e->file, e->line, e->column, e->message);
 }
 
 /* The importer's warnings become findings; its notes do not. An error in its log does not end a
@@ -64,7 +69,8 @@ static void logged(void *user, vlLogLevel level, const vlError *where, const cha
         where ? where->line : 0, where ? where->column : 0, message);
 }
 
-/* Returns -1 when the whole scene was checked. */
+/* Lists the findings of reading the scene and of checking it. Returns -1, or the exit code
+ * after reporting that memory is lacking. */
 static int look(vlContext *context, const Arguments *arguments, List *list) {
   vlScene *scene = NULL;
   vlCheck *check = NULL;
@@ -154,21 +160,27 @@ static void print_json(const List *list, const char *path, int status) {
   json_close(json);
 }
 
-/* The exit code of `velo render` for this scene; 1 when it would render, but probably not as
- * intended. */
+static int status_of_error(vlResult code) {
+  switch (code) {
+    case VL_ERROR_MISSING:
+      return STATUS_MISSING;
+    case VL_ERROR_IO:
+      return STATUS_IO;
+    default:
+      return STATUS_SCENE;
+  }
+}
+
+/* The exit code of `velo render` for this scene, by its first error; 1 when it would render,
+ * but probably not as intended. */
 static int status_of(const List *list) {
   int status = STATUS_OK;
   for (size_t i = 0; i < list->count; i++) {
     const Entry *e = &list->items[i];
+    if (e->severity == VL_SEVERITY_ERROR)
+      return status_of_error(e->code);
     if (e->severity == VL_SEVERITY_WARNING)
       status = STATUS_OTHER;
-  }
-  for (size_t i = 0; i < list->count; i++) {
-    const Entry *e = &list->items[i];
-    if (e->severity == VL_SEVERITY_ERROR)
-      return e->code == VL_ERROR_MISSING ? STATUS_MISSING
-             : e->code == VL_ERROR_IO    ? STATUS_IO
-                                         : STATUS_SCENE;
   }
   return status;
 }

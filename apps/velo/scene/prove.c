@@ -36,7 +36,8 @@ static void close_shot(Shot *shot) {
   vl_scene_destroy(shot->scene);
 }
 
-/* Takes the scene's own camera and settings at a reduced size. alone: light of its own only. */
+/* Renders the scene with its own camera and settings at a reduced size. ids: also the material
+ * of each pixel. alone: no light is added. */
 static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlError *error) {
   vlSceneDefs *defs = vl_scene_defs(shot->scene);
   vlFilm *film = NULL;
@@ -45,8 +46,8 @@ static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlErr
   if (alone)
     complete.environment = VL_ENVIRONMENT_NONE;
   TRY_RESULT(vl_scene_complete(shot->scene, &complete, error));
-  const double most = fmax(defs->film.width, defs->film.height),
-               k = most > SIDE ? SIDE / most : 1;
+  const double most = fmax(defs->film.width, defs->film.height);
+  const double k = most > SIDE ? SIDE / most : 1;
   vlFilmDef film_def = vl_default_film_def((uint32_t)fmax(1, k * defs->film.width + 0.5),
                                            (uint32_t)fmax(1, k * defs->film.height + 0.5));
   vlRenderDef render = defs->render;
@@ -71,13 +72,14 @@ static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlErr
   return r;
 }
 
+/* Adds the pixels of the two images to the sums of their materials, by the ids of the first. */
 static void add_up(const Shot *before, const Shot *after, Sums *sums, uint32_t count) {
   const uint32_t *ids = vl_image_const_pixels(before->ids);
-  const float *a = vl_image_const_pixels(before->image),
-              *b = vl_image_const_pixels(after->image);
+  const float *a = vl_image_const_pixels(before->image);
+  const float *b = vl_image_const_pixels(after->image);
   const size_t pixels = (size_t)vl_image_width(before->image) * vl_image_height(before->image);
-  const size_t step = vl_image_channels(before->image),
-               id_step = vl_image_channels(before->ids);
+  const size_t step = vl_image_channels(before->image);
+  const size_t id_step = vl_image_channels(before->ids);
   for (size_t i = 0; i < pixels; i++) {
     const uint32_t id = ids[i * id_step];
     if (id > count)
@@ -105,10 +107,13 @@ static void print_ratios(const Shot *before, const Sums *sums, uint32_t count) {
         printf(" %7.3f", s->after[c] / s->before[c]);
       else
         printf(" %7s", s->after[c] > 0 ? "inf" : "-");
-    if (id)
+    const char *name = "(background)";
+    if (id) {
       vl_world_id_info(before->world, VL_ID_MATERIAL, id, &info);
+      name = info.name ? info.name : info.type;
+    }
     printf("  ");
-    text_print_plain(!id ? "(background)" : info.name ? info.name : info.type ? info.type : "");
+    text_print_plain(name ? name : "");
     if (id && !info.name)
       printf(".%u", id);
     putchar('\n');
@@ -141,9 +146,9 @@ int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, c
     if (sums) {
       add_up(&before, &after, sums, count);
       print_ratios(&before, sums, count);
-    }
-    if (!sums)
+    } else {
       r = VL_ERROR_MEMORY;
+    }
   }
   free(sums);
   close_shot(&before);

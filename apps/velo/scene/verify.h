@@ -97,7 +97,7 @@ typedef struct Verify {
 
   bool far_light; /* there is an infinite or distant light */
   double meets;   /* how much of the image a light path from the sky or a sun meets, as a number
-                     of   independent paths */
+                     of independent paths */
   double matrix[VERIFY_PLACES][16]; /* world of the copy from the world of the file */
   VerifyPose pose;                  /* the scene's state */
   VerifyLights lights;

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "export/pbrt/pbrt.h"
 
+/* The value in the unit of the file. */
 static double in_files(const vlParameter *p, double value) {
   return p->factor != 0 ? value / p->factor : value;
 }
@@ -64,9 +65,10 @@ void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all,
     const vlParameter *p = &row->parameters[i];
     if (!p->name || (p->flags & VL_PARAMETER_SHORTHAND) || (skip && vl_text_is(p->name, skip)))
       continue;
-    bool is_default = vl_parameter_is_default(p, def, false);
-    if (p->flags & VL_PARAMETER_UNSET ? is_default
-                                      : is_default && !all && !(p->flags & VL_PARAMETER_RGB))
+    /* defaults are left out, but for `all` and RGB colours; an unset value has no text */
+    const bool always =
+        !(p->flags & VL_PARAMETER_UNSET) && (all || p->flags & VL_PARAMETER_RGB);
+    if (!always && vl_parameter_is_default(p, def, false))
       continue;
     if (vl_pbrt_knows(x, row, p))
       vl_pbrt_parameter(x, p, def);

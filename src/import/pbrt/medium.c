@@ -15,14 +15,17 @@
 
 bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum *absorption,
                                  vlSpectrum *scattering, bool *given) {
-  const char *name = NULL, *names[64];
+  enum { MAX_PRESETS = 64 };
+  const char *name = NULL, *names[MAX_PRESETS];
   size_t count = 0;
   *given = false;
   if (!vl_dict_string(dict, parameter, &name))
     return vl_import_fine(dict->import);
   *given = name[0] != 0;
-  for (const vlScattering *s; *given && count < 64 && (s = vl_scattering_preset(count));
-       count++) {
+  if (!*given)
+    return true;
+  for (; count < MAX_PRESETS && vl_scattering_preset(count); count++) {
+    const vlScattering *s = vl_scattering_preset(count);
     names[count] = s->name;
     if (!vl_text_is(s->name, name))
       continue;
@@ -30,8 +33,6 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
     *scattering = vl_spectrum_rgb(s->scattering[0], s->scattering[1], s->scattering[2]);
     return true;
   }
-  if (!*given)
-    return true;
   vlSource at = vl_dict_find(dict, parameter, VL_BIT_STRING)->source;
   const char *near = vl_nearest_name(name, names, count);
   return vl_dict_fail_at(dict, at, "no preset is named \"%s\"%s", vl_short_text(name).text,
@@ -62,14 +63,15 @@ static void sort_box(vlMediumDef *def) {
   }
 }
 
-/* Reads a grid with `per` numbers per cell. The result is null when the parameter is not
- * given. */
+/* Reads a grid: for each cell a number or, of type RGB, three. *values is unchanged when the
+ * parameter is not given. */
 static bool read_cells(vlDict *dict, const char *name, vlParamType type, const vlMediumDef *def,
                        const float **values) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
   if (!p)
     return vl_import_fine(dict->import);
-  size_t per = type == VL_PARAM_RGB ? 3 : 1, count = p->floats.count / per;
+  size_t per = type == VL_PARAM_RGB ? 3 : 1; /* numbers per cell */
+  size_t count = p->floats.count / per;
   double cells = (double)def->nx * def->ny * def->nz;
   if (p->floats.count % per || (double)count != cells)
     return vl_dict_fail_at(
@@ -172,7 +174,8 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
   return vl_import_add_name(import, &import->media, name, id.index);
 }
 
-/* ---- who lies in them -------------------------------------------------------------------- */
+/* ---- the media of shapes, lights and the camera
+ * -------------------------------------------------------------------- */
 
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source) {
   const char *inside = target == 's' && import->state.inside ? import->state.inside : "";
@@ -186,6 +189,7 @@ bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSourc
   return vl_scene_copy_source(import->scene, &link->source);
 }
 
+/* The medium of this name; index 0 for "", which is vacuum. */
 static bool find(vlImport *import, const char *name, vlSource source, vlMediumId *id) {
   id->index = 0;
   if (!name[0] || vl_names_find(&import->media, name, &id->index))

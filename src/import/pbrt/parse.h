@@ -65,7 +65,7 @@ typedef struct vlStatement {
   double numbers[16];
   const char *names[3]; /* valid during the call */
   vlParamList *params;  /* parameters of a directive that has them; the callee may take the
-                           contents  and zero the list,  otherwise they are freed */
+                           contents and zero the list, otherwise they are freed */
 } vlStatement;
 
 typedef struct vlParseTarget {

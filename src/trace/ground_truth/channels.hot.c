@@ -15,24 +15,33 @@
 #include "trace/ground_truth/scratch.h"
 #include "velo/schema.h"
 
+/* Distance in double of hit i, which is that of the batch's lane. t: the distance in float. */
 static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *batch,
                              uint32_t lane, const vlHits *h, uint32_t i, double t) {
-  const double o[3] = {batch->o[0][lane], batch->o[1][lane], batch->o[2][lane]},
-               d[3] = {batch->d[0][lane], batch->d[1][lane], batch->d[2][lane]};
+  const double o[3] = {batch->o[0][lane], batch->o[1][lane], batch->o[2][lane]};
+  const double d[3] = {batch->d[0][lane], batch->d[1][lane], batch->d[2][lane]};
   return vl_exact_distance(world, batch->time[lane], o, d, h->shape[i], h->prim[i],
                            h->instance[i], h->t[i], t);
 }
 
 /* ---- albedo ------------------------------------------------------------------------------ */
 
+/* Keeps the shading frames; back: restores them. Bump and normal maps change them. */
 static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
   vlSurface *f = &s->trace.at.surface;
   float *rows[6] = {f->nx, f->ny, f->nz, f->ux, f->uy, f->uz};
-  for (int k = 0; k < 6; k++)
-    for (uint32_t i = 0; i < n; i++) {
-      float *from = back ? s->kept[k] : rows[k], *to = back ? rows[k] : s->kept[k];
-      to[i] = from[i];
-    }
+  for (int k = 0; k < 6; k++) {
+    const float *from = back ? s->kept[k] : rows[k];
+    memcpy(back ? rows[k] : s->kept[k], from, n * sizeof *from);
+  }
+}
+
+/* The end of the run of hits from `first` that have the same material. */
+static uint32_t run_end(const uint32_t *material, uint32_t first, uint32_t n) {
+  uint32_t last = first + 1;
+  while (last < n && material[last] == material[first])
+    last++;
+  return last;
 }
 
 /* Albedo of one lane at channel c, of a material without a reflectance. For conductors and
@@ -49,6 +58,7 @@ static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float
   if (!(m->traits & VL_MATERIAL_METAL))
     return 1.0f;
   float n = sh->eta[c][i], k = sh->k[c][i];
+  /* Fresnel's equations at normal incidence */
   return ((n - 1.0f) * (n - 1.0f) + k * k) / ((n + 1.0f) * (n + 1.0f) + k * k);
 }
 
@@ -58,28 +68,29 @@ static void add_albedo(const vlWorldMaterial *m, const vlGroundTruthDef *def, ui
                        uint32_t first, uint32_t last, const vlTraceScratch *s,
                        float sum[3][VL_ROW_SIZE]) {
   float values[VL_ROW_SIZE];
+  const bool textured = m->reflectance >= 0;
   for (int c = 0; c < 4; c++) {
-    const float *albedo = m->reflectance >= 0 ? s->at.shade.reflectance[c] : values,
-                *weight = def->weight[set][c];
-    for (uint32_t i = first; i < last && albedo == values; i++)
+    const float *albedo = textured ? s->at.shade.reflectance[c] : values;
+    for (uint32_t i = first; !textured && i < last; i++)
       values[i] = albedo_at(m, &s->at.shade, s->at.paths.lambda[c][i], c, i);
     for (int k = 0; k < 3; k++) {
-      float w = weight[k], *to = sum[k];
+      float w = def->weight[set][c][k], *to = sum[k];
       VL_SIMD for (uint32_t i = first; i < last; i++) to[i] += albedo[i] * w;
     }
   }
 }
 
+/* The same for all hits. */
 static void add_albedos(const vlWorld *world, const vlGroundTruthDef *def, uint32_t set,
                         uint32_t n, const vlTraceScratch *s, float sum[3][VL_ROW_SIZE]) {
   const uint32_t *material = s->at.hits.material;
   for (uint32_t first = 0, last; first < n; first = last) {
-    for (last = first + 1; last < n && material[last] == material[first];)
-      last++;
+    last = run_end(material, first, n);
     add_albedo(&world->materials.items[material[first]], def, set, first, last, s, sum);
   }
 }
 
+/* Evaluates the hits' materials at each set of wavelengths: shading normals and albedo. */
 static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
                   vlGroundTruthScratch *scratch, vlGroundTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
@@ -94,10 +105,8 @@ static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
         s->at.paths.beta[c][i] = 1.0f;
       }
     for (uint32_t first = 0, last; first < n; first = last) {
-      uint32_t material = s->at.hits.material[first];
-      for (last = first + 1; last < n && s->at.hits.material[last] == material;)
-        last++;
-      vl_stage_material(world, first, last, material, &s->at, s);
+      last = run_end(s->at.hits.material, first, n);
+      vl_stage_material(world, first, last, s->at.hits.material[first], &s->at, s);
     }
     if (def->albedo)
       add_albedos(world, def, set, n, s, scratch->albedo);
@@ -114,6 +123,7 @@ static void fill(float *row, uint32_t n, float value) {
   VL_SIMD for (uint32_t i = 0; i < n; i++) row[i] = value;
 }
 
+/* The rays, rounded to float, and the values of pixels that show nothing. */
 static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPaths *p) {
   uint32_t n = batch->n;
   float *const origin[3] = {p->ox, p->oy, p->oz}, *const direction[3] = {p->dx, p->dy, p->dz};
@@ -174,7 +184,8 @@ static void take_paths(const vlPaths *a, const uint32_t *order, uint32_t n, vlPa
   take_ids(a->lane, order, n, b->lane);
 }
 
-/* Copies those lanes of the rays that have a hit to s->at, without gaps. */
+/* Copies those lanes of the rays that have a hit to s->at, without gaps. Returns their
+ * number. */
 static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
                             vlGroundTruthBatch *batch) {
   const vlHits *h = &s->hits;
@@ -206,6 +217,19 @@ static void give(const float *from, const uint32_t *lane, uint32_t n, float *to)
     to[lane[i]] = from[i];
 }
 
+/* Finds what the first n rays of scratch->trace.rays hit. */
+static void find_hits(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
+                      const float *t_min, const float *t_max, vlGroundTruthScratch *scratch) {
+  vlTraceScratch *s = &scratch->trace;
+  vlTraceBatch rays = {.n = n, .t_min = t_min, .t_max = t_max};
+  for (int c = 0; c < 4; c++)
+    rays.radiance[c] = scratch->light[c]; /* not used */
+  const vlTraceDef trace_def = {
+      .isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
+  vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
+  vl_stage_hits(&tracing, n, true, NULL, &s->rays, &s->hits);
+}
+
 static void trace(const vlWorld *world, const vlGroundTruthDef *def,
                   vlGroundTruthScratch *scratch, vlGroundTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
@@ -215,14 +239,7 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def,
     scratch->time[i] = batch->time[i < batch->n ? i : 0];
   if (batch->n == 0)
     return;
-  /* The radiance of the rays is not used. */
-  vlTraceBatch rays = {.n = batch->n, .t_min = batch->t_min, .t_max = batch->t_max};
-  for (int c = 0; c < 4; c++)
-    rays.radiance[c] = scratch->light[c];
-  vlTraceDef trace_def = {
-      .isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
-  vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
-  vl_stage_hits(&tracing, batch->n, true, NULL, &s->rays, &s->hits);
+  find_hits(world, def, batch->n, batch->t_min, batch->t_max, scratch);
   uint32_t n = gather_hits(world, batch->n, s, batch);
   if (n == 0)
     return;
@@ -272,13 +289,7 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
     }
   }
   p->time = to->time;
-  vlTraceBatch rays = {.n = n, .t_min = to->t_min, .t_max = to->t_max};
-  for (int c = 0; c < 4; c++)
-    rays.radiance[c] = scratch->light[c];
-  vlTraceDef trace_def = {
-      .isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
-  vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
-  vl_stage_hits(&tracing, n, true, NULL, &s->rays, &s->hits);
+  find_hits(world, def, n, to->t_min, to->t_max, scratch);
   const vlHits *h = &s->hits;
   for (uint32_t i = 0; i < n; i++) {
     bool hit = h->shape[i] != VL_NONE;
@@ -297,8 +308,8 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
   }
 }
 
-/* Advances past each surface by the error bound of the hit point, as hits.hot.c does at
- * interfaces. */
+/* The objects along a lane's ray, each once, nearest first. Advances past each surface by the
+ * error bound of the hit point, as hits.hot.c does at interfaces. */
 static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane,
                    vlGroundTruthLayers *to) {
   float o[3], d[3], t_min = batch->t_min[lane];
@@ -325,11 +336,13 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
     vlVec3 from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
     vlPoint at =
         vl_point_at_time(world, batch->time[lane], from, along, shape, prim, instance, t);
-    uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
+    uint32_t object = shape + 1;
+    uint32_t placed = instance == VL_NONE ? 0 : instance + 1;
+    uint32_t k = 0;
     while (k < to->count && (to->object[k] != object || to->instance[k] != placed))
       k++;
-    bool seen = !(world->materials.items[world->shapes.items[shape].material].traits &
-                  VL_MATERIAL_ABSENT);
+    const vlWorldMaterial *m = &world->materials.items[world->shapes.items[shape].material];
+    bool seen = !(m->traits & VL_MATERIAL_ABSENT);
     if (k == to->count && seen) {
       to->object[k] = object;
       to->instance[k] = placed;

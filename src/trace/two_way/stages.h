@@ -48,7 +48,7 @@ typedef struct vlEnd {
   vlVec3 p, g, n; /* n: shading normal on the side of wo; in media, the direction of flight */
   float tint[4];  /* throughput; on diffuse surfaces times the reflectance */
   float ways;     /* the strategies on the camera's side, with merging; an estimate for surfaces
-                     that     are not diffuse; in media without a times the phase function */
+                     that are not diffuse; in media without a times the phase function */
   bool diffuse;
   uint32_t room;             /* largest number of bounces that a light path may have */
   bool inside;               /* in a medium; then: */

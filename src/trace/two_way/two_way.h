@@ -109,7 +109,7 @@ typedef struct vlLightVertex {
   float n[3]; /* the shading normal on the side of w; in media, -w */
   float power[4];
   float back;   /* the strategies on the light's side, with merging here, divided by P L at this
-                   vertex; in media without   a times the phase function */
+                   vertex; in media without a times the phase function */
   float offset; /* as vlSurface.offset */
   uint32_t path : 18, bounce : 8; /* number of the path in the pass; as vlPhoton */
   uint32_t alone : 1, inside : 1; /* as vlPhoton; the vertex is in a medium */
@@ -155,7 +155,7 @@ typedef struct vlTwoWay {
   float merged;        /* H = N pi radius^2; 0 without merging */
   float merged_volume; /* in media: H = N 4/3 pi radius^3 */
   float shared;  /* random number in [0, 1) that samples the wavelengths of all paths of the
-                    pass;  below 0: each path has  its own number */
+                    pass; below 0: each path has its own number */
   float connect; /* C: density of connections between inner vertices, relative to one light
                     path; 0: none */
   float turn; /* with connections: random number in [0, 1) of the pass, for the wavelengths of

@@ -15,8 +15,7 @@
 #include "velo/setting.h"
 
 /* By vlProjection; "" for those that the file cannot hold: a lens of many elements. */
-#define COUNT_ONE(kind, name, row) +1
-enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(COUNT_ONE) };
+enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(VL_COUNT_KIND) };
 static const char *projection_key(vlProjection kind) {
   const char *key = vl_projection_row(kind)->key;
   return key ? key : "";

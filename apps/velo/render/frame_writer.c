@@ -149,21 +149,27 @@ static float exposure_of(FrameWriter *w, const vlImage *image) {
   return w->exposure;
 }
 
+/* Writes an image as display values. exposure: stops. */
+static vlResult write_display(const FrameWriter *w, const Outputs *outputs,
+                              const vlImage *image, float exposure, const char *path,
+                              const vlWriteDef *def, vlError *error) {
+  vlImage *display = NULL;
+  vlResult result = display_image(w->context, image, outputs->view, exposure,
+                                  outputs->transparent && output_holds_alpha(path), &display);
+  const vlImage *layer = display;
+  if (result == VL_OK)
+    result = output_write_layers(&layer, 1, path, *def, error);
+  vl_image_destroy(display);
+  return result;
+}
+
 static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *path,
                           const vlWriteDef *def, vlError *error) {
   const vlImage *layers[1 + CHANNEL_LAYERS] = {p->images[view]};
   uint32_t count = 1;
-  if (output_is_display(path)) {
-    vlImage *display = NULL;
-    vlResult result = display_image(
-        w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]),
-        w->outputs->transparent && output_holds_alpha(path), &display);
-    const vlImage *one = display;
-    if (result == VL_OK)
-      result = output_write_layers(&one, 1, path, *def, error);
-    vl_image_destroy(display);
-    return result;
-  }
+  if (output_is_display(path))
+    return write_display(w, w->outputs, p->images[view], exposure_of(w, p->images[view]), path,
+                         def, error);
   for (int k = 0; k < CHANNEL_LAYERS && output_holds_layers(path); k++)
     if (p->channels[view].layers[k])
       layers[count++] = p->channels[view].layers[k];
@@ -212,17 +218,14 @@ static int write_clean(FrameWriter *w, FrameImage *p) {
   def.half = outputs->half;
   def.alone = true;
   vlError error = {0};
-  vlImage *display = NULL;
+  const vlImage *layer = p->clean;
   vlResult result = attributes_set_frame(p->clean, p->frame.number, pose->name, pose->time);
   frames_path(w->frames, &p->frame, pattern, 0, path, sizeof path);
-  const bool eight_bit = output_is_display(path);
-  if (result == VL_OK && eight_bit)
-    result = display_image(w->context, p->clean, outputs->view, exposure_of(w, p->images[0]),
-                           outputs->transparent && output_holds_alpha(path), &display);
-  const vlImage *one = eight_bit ? display : p->clean;
-  if (result == VL_OK)
-    result = output_write_layers(&one, 1, path, def, &error);
-  vl_image_destroy(display);
+  if (result == VL_OK && output_is_display(path))
+    result =
+        write_display(w, outputs, p->clean, exposure_of(w, p->images[0]), path, &def, &error);
+  else if (result == VL_OK)
+    result = output_write_layers(&layer, 1, path, def, &error);
   return report_finish(&error, result, path);
 }
 

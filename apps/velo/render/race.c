@@ -32,7 +32,7 @@ static void take_film_tracer(Render *render, const FilmClaim *claim) {
   }
 }
 
-int race_plan(Render *render, const Arguments *arguments) {
+void race_plan(Render *render, const Arguments *arguments) {
   const FilmClaim *claims = render->film_plan.claims;
   bool repeats = render->resumed.path || render->again.receipt;
   if (race_is_asked(arguments) || !repeats)
@@ -40,7 +40,6 @@ int race_plan(Render *render, const Arguments *arguments) {
   for (int i = 0; i < 2 && render->job.race != RACE_NONE; i++)
     if (claims[i].earlier)
       take_film_tracer(render, &claims[i]);
-  return -1;
 }
 
 /* ---- the race ---------------------------------------------------------------------------- */
@@ -108,12 +107,11 @@ static void take_all(Render *render, const vlTracerChoice *choice) {
 }
 
 /* The frames of an animation have the race of the first one of all. */
-static int take_shared(Render *render, const AnimateShared *shared) {
+static void take_shared(Render *render, const AnimateShared *shared) {
   render->job.race = shared->race;
   render->job.raced = shared->race != RACE_NONE;
   if (shared->race != RACE_NONE)
     take_all(render, &shared->choice);
-  return -1;
 }
 
 int race_run(Render *render, const Arguments *arguments) {
@@ -121,8 +119,10 @@ int race_run(Render *render, const Arguments *arguments) {
   AnimateShared *shared = render->shared;
   if (arguments->values[RENDER_DRY_RUN].given)
     return -1;
-  if (shared && shared->raced)
-    return take_shared(render, shared);
+  if (shared && shared->raced) {
+    take_shared(render, shared);
+    return -1;
+  }
   if (shared)
     shared->raced = true;
   if (job->race == RACE_NONE)

@@ -8,9 +8,8 @@
 /* Checks what --tracer auto cannot be combined with, before the scene is loaded. Returns -1, or
  * the exit code after reporting the error. */
 int race_check(const Render *render, const Arguments *arguments);
-/* Whether there is a race before the render: if it is asked for, or by default. Sets Job.race.
- * Returns -1, or the exit code after reporting the error. */
-int race_plan(Render *render, const Arguments *arguments);
+/* Sets Job.race: whether there is a race before the render, as asked for or by default. */
+void race_plan(Render *render, const Arguments *arguments);
 /* Runs the race, reports its result, and sets the tracer and the number of light paths. Returns
  * -1, or the exit code after reporting the error. */
 int race_run(Render *render, const Arguments *arguments);

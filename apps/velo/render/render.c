@@ -443,7 +443,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   }
   TRY(needs_check_render_scene(render, arguments));
   TRY(claim_films(render, arguments));
-  TRY(race_plan(render, arguments));
+  race_plan(render, arguments);
   TRY(build_world(render, path));
   vl_context_record_files(render->context, false);
   if (arguments->values[RENDER_VERBOSE].given && !kept)

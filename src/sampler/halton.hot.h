@@ -18,12 +18,11 @@ static inline uint32_t vl_scale16(uint32_t bits16, uint32_t range) {
 static inline uint32_t vl_scramble_digit(uint32_t digit, uint32_t b, float inverse,
                                          uint32_t h) {
   uint32_t g = vl_hash(h + 0x632be5abu);
-  uint32_t a = 1 + vl_scale16(h >> 16, b - 1), c = vl_scale16(h & 0xffffu, b),
-           k = vl_scale16(g >> 16, b);
+  uint32_t a = 1 + vl_scale16(h >> 16, b - 1), c = vl_scale16(h & 0xffffu, b);
+  uint32_t k = vl_scale16(g >> 16, b);
   uint32_t e = vl_divide(a * digit + c, b, inverse).remainder;
-  uint32_t f = k >= e
-                   ? k - e
-                   : k + b - e; /* e and f are partners: both make the same decision to swap */
+  /* e and f = k - e mod b are partners: both make the same decision to swap */
+  uint32_t f = k >= e ? k - e : k + b - e;
   uint32_t high = e > f ? e : f;
   e = vl_hash((g ^ h) + high) >> 31 ? f : e;
   return vl_divide(e * (1 + vl_scale16(g & 0xffffu, b - 1)) + k, b, inverse).remainder;

@@ -66,11 +66,12 @@ static bool read_model(const vlImage *image, const char *projection, vlCameraDef
     return false;
   while (*at) {
     char *end;
-    if (def->distortion_count == 14)
+    if (def->distortion_count == LENGTH(def->distortion_coefficients))
       return false;
-    def->distortion_coefficients[def->distortion_count++] = strtod(at, &end);
+    def->distortion_coefficients[def->distortion_count] = strtod(at, &end);
     if (end == at)
       return false;
+    def->distortion_count++;
     at = end;
   }
   return true;
@@ -114,12 +115,13 @@ static int read_def(const vlImage *image, const char *path, const double whole[4
   return -1;
 }
 
-/* Reads a lens of many elements, which determines the focal length. An image as aperture stop
- * is not in headers; it does not change ray directions. */
+/* Reads a lens of many elements, which determines the focal length: four numbers per surface.
+ * An image as aperture stop is not in headers; it does not change ray directions. */
 static int read_optics(vlContext *context, const vlImage *image, const char *path,
                        vlCameraDef *def, vlOptics **optics) {
   vlOpticsDef lens = vl_default_optics_def();
-  vlLensSurface surfaces[64];
+  enum { MAX_SURFACES = 64 };
+  vlLensSurface surfaces[MAX_SURFACES];
   const char *at;
   lens.focus_distance = INFINITY;
   lens.surfaces = surfaces;
@@ -133,12 +135,11 @@ static int read_optics(vlContext *context, const vlImage *image, const char *pat
     char *end;
     double value = strtod(at, &end);
     vlLensSurface *s = &surfaces[count / 4];
-    good = end != at && count < 256;
-    if (good)
-      *(count % 4 == 0   ? &s->radius
-        : count % 4 == 1 ? &s->thickness
-        : count % 4 == 2 ? &s->ior
-                         : &s->aperture) = value;
+    good = end != at && count < 4 * MAX_SURFACES;
+    if (good) {
+      double *const members[4] = {&s->radius, &s->thickness, &s->ior, &s->aperture};
+      *members[count % 4] = value;
+    }
     count++;
     at = end;
   }
@@ -201,9 +202,9 @@ static bool read_motion(const vlImage *image, double poses[2][16], double times[
 
 HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *rolling) {
   static const char *const directions[] = {"down", "up", "right", "left"};
-  double readout = 0.0, poses[2][16], times[2], first;
+  double readout = 0.0, first, shutter[2]; /* seconds */
+  double poses[2][16], times[2];
   const char *direction, *given = NULL;
-  double shutter[2];
   if (!number(image, "velo.readout", &readout) || !(readout > 0.0) ||
       !text(image, "velo.readoutDirection", &direction) || !read_motion(image, poses, times) ||
       vl_camera_travel(camera, poses[0], poses[1], times, rolling, NULL) != VL_OK)

@@ -24,10 +24,9 @@ bool verify_has_light(VerifyLights lights, vlLightKind kind) {
   switch (lights) {
     case VERIFY_ALL:
       return true;
-    case VERIFY_NOT_SMALL:
-      return !small;
     case VERIFY_SMALL:
       return small;
+    case VERIFY_NOT_SMALL:
     case VERIFY_SKY:
       return !small;
     case VERIFY_SURFACES:
@@ -54,10 +53,11 @@ typedef struct Features {
   bool textures;
 } Features;
 
-/* Whether a roughness may be so small that the surface is a mirror. A texture may have any
+/* Whether a roughness may be so small that the surface is like a mirror. A texture may have any
  * value. */
 static bool may_be_small(vlFloatInput roughness) {
-  return roughness.texture.index != 0 || roughness.value < 0.05f;
+  const float like_a_mirror = 0.05f;
+  return roughness.texture.index != 0 || roughness.value < like_a_mirror;
 }
 
 /* Whether the material may reflect or transmit like a mirror. The parts of a mixed one are
@@ -181,9 +181,10 @@ void verify_plan(Verify *v) {
   if (!caustics) {
     add_tracers(v, &f, VERIFY_ALL, volpath);
   } else {
-    verify_note(v,
-                "between tracers, point, spot, distant and similar lights are not compared: %s",
-                "only light paths find them through smooth surfaces");
+    verify_note(
+        v,
+        "between tracers, point, spot, distant and similar lights are not compared: only "
+        "light paths find them through smooth surfaces");
     if (f.sky || f.surfaces) {
       const int others = add_tracer(v, "volpath, without small lights", VL_TRACER_VOLPATH,
                                     VERIFY_NOT_SMALL, -1);

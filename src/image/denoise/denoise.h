@@ -21,8 +21,8 @@ enum {
   VL_DENOISE_NEIGHBOURS = 81, /* pixels of a window that are used */
   VL_DENOISE_STEP = 4, /* distance of the points of the lattice for wide windows in pixels */
   VL_DENOISE_FEATURES = 7, /* albedo, normal, logarithm of the disparity */
-  VL_DENOISE_UNKNOWNS = VL_DENOISE_FEATURES + 2 +
-                        1 /* slopes of the features, slopes of x and y, and the constant */
+  /* of a fit: slopes of the features, slopes of x and y, and the constant */
+  VL_DENOISE_UNKNOWNS = VL_DENOISE_FEATURES + 2 + 1
 };
 _Static_assert((int)VL_DENOISE_BORDER >= (int)VL_DENOISE_RADIUS + (int)VL_DENOISE_PATCH,
                "windows end in the border");

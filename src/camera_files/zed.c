@@ -18,7 +18,8 @@ static const Mode modes[] = {
     {"QHDPLUS", 3200, 1800}, {"4K", 3840, 2160},      {"HD1200", 1920, 1200},
     {"HD", 1280, 720},       {"SVGA", 960, 600},      {"VGA", 672, 376}};
 
-/* Returns the section's resolution; null: it is no camera. */
+/* Returns the section's resolution; null: it is no camera. right: set to whether it is the
+ * right camera's. */
 static const Mode *mode_of(const char *section, bool *right) {
   *right = strncmp(section, "RIGHT_CAM_", 10) == 0;
   if (!*right && strncmp(section, "LEFT_CAM_", 9) != 0)
@@ -36,7 +37,7 @@ static bool is_section(const char *line, char name[64]) {
   return true;
 }
 
-/* The lenses of newer files are in a section of their own. */
+/* Whether the file has this section: newer files have sections for the lenses. */
 static bool has_section(const char *text, size_t size, const char *section) {
   vlCameraLines lines = {.at = text, .end = text + size};
   char name[64];
@@ -69,8 +70,8 @@ static vlResult find_value(const vlCameraFile *file, const char *text, size_t si
 
 static vlResult read_right(const vlCameraFile *file, const char *text, size_t size,
                            const Mode *mode, vlCameraDef *d) {
-  static const char *const shifts[] = {"Baseline", "TY", "TZ"}, *const turns[] = {"RX", "CV",
-                                                                                  "RZ"};
+  static const char *const shifts[] = {"Baseline", "TY", "TZ"};
+  static const char *const turns[] = {"RX", "CV", "RZ"};
   double t[3] = {0.0}, v[3] = {0.0}, r[9];
   bool found;
   for (int i = 0; i < 3; i++) {
@@ -98,7 +99,8 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
   double v[9] = {0.0};
   record->frames = 0;
   while (vl_camera_next_line(&lines)) {
-    if (!is_section(lines.text, name) || !(found = mode_of(name, &other)))
+    found = is_section(lines.text, name) ? mode_of(name, &other) : NULL;
+    if (!found)
       continue;
     if (!mode && vl_camera_is_frame(file, record->frames, name)) {
       mode = found;

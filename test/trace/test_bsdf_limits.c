@@ -7,7 +7,7 @@
 #include "measured_file.h"
 #include "unit.h"
 
-/* What a test needs besides the coats of its state. */
+/* Measured materials, which build_all makes. */
 static vlMeasured *measured[2];
 
 static int build_all(void **state) {
@@ -95,9 +95,8 @@ static void reciprocity(void **state) {
       double n = all[i].kind == VL_BSDF_DIELECTRIC ? (double)all[i].eta_s : 1;
       f *= b->iz[j] < 0 ? n * n : 1;
       g *= b->oz[j] < 0 ? n * n : 1;
-      double off =
-          fabs(f - g) /
-          (fabs(f) + 1e-2); /* near the critical angle 1 - F is mostly rounding error */
+      /* near the critical angle 1 - F is mostly rounding error */
+      double off = fabs(f - g) / (fabs(f) + 1e-2);
       if (!(off < worst))
         worst = off;
       seen += f > 0;
@@ -171,16 +170,16 @@ static void fill(const State *s, Batch *b, statRng *rng, vlBsdfKind kind) {
       b->iy[j] = pick(rng, small, 7);
       b->iz[j] = pick(rng, small, 9);
     }
-    if (!(stat_bits(rng) & 7)) {
+    if (!(stat_bits(rng) & 7)) { /* no half vector */
       b->ix[j] = -b->ox[j];
       b->iy[j] = -b->oy[j];
       b->iz[j] = -b->oz[j];
-    } /* no half vector */
-    if (!(stat_bits(rng) & 15)) {
+    }
+    if (!(stat_bits(rng) & 15)) { /* mirror */
       b->ix[j] = -b->ox[j];
       b->iy[j] = -b->oy[j];
       b->iz[j] = b->oz[j];
-    } /* mirror */
+    }
   }
   batch_numbers(b, BATCH, rng);
   for (uint32_t j = 0; j < BATCH; j += 9) {
@@ -297,12 +296,12 @@ static void lanes_alone(void **state) {
       c->v[j] = b->v[i];
       c->seed[j] = b->seed[i];
     }
-    for (uint32_t j = 600; j < BATCH; j++) {
+    for (uint32_t j = 600; j < BATCH; j++) { /* garbage behind the batch */
       c->coat[j] = NULL;
       c->measured[j] = NULL;
       c->ox[j] = NAN;
       c->alpha_x[j] = NAN;
-    } /* padding is garbage */
+    }
     batch_sample(s->kernels, kind, BATCH, b);
     batch_sample(s->kernels, kind, 600, c);
     for (uint32_t j = 0; j < 600; j++) {

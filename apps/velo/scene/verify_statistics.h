@@ -29,8 +29,8 @@ typedef enum VerifyFamily {
 typedef struct VerifyDifference {
   double a, b;  /* the two means */
   double error; /* standard error of a - b */
-  double
-      p; /* probability of a difference at least as large if the means are equal; two-sided */
+  /* probability of a difference at least as large if the means are equal; two-sided */
+  double p;
   double z; /* the same as a number of standard deviations of a normal distribution, with the
                sign of a - b */
 } VerifyDifference;

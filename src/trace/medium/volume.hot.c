@@ -54,8 +54,8 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     float first = p->lambda[0][i], second = p->lambda[1][i];
     int alone = heroes & (second == first);
-    float u0 = v->u[0][i], u1 = alone ? u0 : v->u[1][i], u2 = alone ? u0 : v->u[2][i],
-          u3 = alone ? u0 : v->u[3][i];
+    float u0 = v->u[0][i], u1 = alone ? u0 : v->u[1][i];
+    float u2 = alone ? u0 : v->u[2][i], u3 = alone ? u0 : v->u[3][i];
     float inv = 1.0f / vl_flight_mean_of(u0, u1, u2, u3, 4);
     v->u[0][i] = u0 * inv;
     v->u[1][i] = u1 * inv;
@@ -93,8 +93,8 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     if (!(light->pdf[i] > 0.0f))
       continue;
     uint32_t medium = in->rows.medium[i];
-    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i),
-           w = vl_lane3(light->wx, light->wy, light->wz, i);
+    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlVec3 w = vl_lane3(light->wx, light->wy, light->wz, i);
     float phase = vl_phase(t->world->media.items[medium].g, vl_dot(d, w));
     vlShadowStart start = {
         vl_lane3(p->ox, p->oy, p->oz, i), {phase, phase, phase, phase}, phase, medium};
@@ -204,8 +204,8 @@ static void make_shadows(uint32_t n, const vlVertices *at, const vlLightSamples 
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i],
-          pdf = l->pdf[i];
+    float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i];
+    float pdf = l->pdf[i];
     vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
     vlVec3 o = vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
                                 vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
@@ -247,8 +247,8 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
                 (values->wi[2][i] < 0.0f) != (at->shade.wo[2][i] < 0.0f);
     if (into)
       continue;
-    vlVec3 g = vl_lane3(f->gx, f->gy, f->gz, i),
-           w = vl_lane3(light->wx, light->wy, light->wz, i);
+    vlVec3 g = vl_lane3(f->gx, f->gy, f->gz, i);
+    vlVec3 w = vl_lane3(light->wx, light->wy, light->wz, i);
     const vlWorldShape *shape = &t->world->shapes.items[at->hits.shape[i]];
     uint32_t k = count++;
     if (k != i)

@@ -30,7 +30,8 @@ static double sampled(const float *v, int count, int stride, int lambda) {
   return t > 0.0 ? a + t * ((double)v[(i + 1) * stride] - a) : a;
 }
 
-/* ---- daylight ---------------------------------------------------------------------------- */
+/* ---- daylight (CIE 15; pbrt's DenselySampledSpectrum::D)
+ * ---------------------------------------------------------------------------- */
 
 void vl_daylight_xy(double t, double xy[2]) {
   double x = t <= 7000.0
@@ -41,8 +42,10 @@ void vl_daylight_xy(double t, double xy[2]) {
 }
 
 void vl_daylight(double kelvin, double light[VL_LAMBDA_COUNT]) {
+  /* second radiation constant of Planck's law: today's over that of 1968, when CIE defined
+   * daylight */
   double t = kelvin * 1.4388 / 1.4380, xy[2];
-  if (t < 4000.0) {
+  if (t < 4000.0) { /* daylight is not defined: Planck's law, up to a factor */
     for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
       double metres = (VL_LAMBDA_MIN + i) * 1e-9;
       light[i] =
@@ -52,9 +55,9 @@ void vl_daylight(double kelvin, double light[VL_LAMBDA_COUNT]) {
   }
   vl_daylight_xy(t, xy);
   double m = 0.0241 + 0.2562 * xy[0] - 0.7341 * xy[1];
-  double m1 = (-1.3515 - 1.7703 * xy[0] + 5.9114 * xy[1]) / m,
-         m2 = (0.0300 - 31.4424 * xy[0] + 30.0717 * xy[1]) / m;
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+  double m1 = (-1.3515 - 1.7703 * xy[0] + 5.9114 * xy[1]) / m;
+  double m2 = (0.0300 - 31.4424 * xy[0] + 30.0717 * xy[1]) / m;
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++) { /* the table has a row every 10 nm */
     int j = i / 10 < VL_DAYLIGHT_COUNT - 2 ? i / 10 : VL_DAYLIGHT_COUNT - 2;
     double f = (i - 10 * j) / 10.0, at[2];
     for (int k = 0; k < 2; k++)
@@ -72,8 +75,8 @@ static void project(const float *patch, const double light[VL_LAMBDA_COUNT],
                     const float *const curves[3], int stride, double seen[3]) {
   memset(seen, 0, 3 * sizeof *seen);
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
-    double r = patch ? sampled(patch, VL_CHECKER_SAMPLES, 1, VL_LAMBDA_MIN + i) : 1.0,
-           w = r * light[i];
+    double r = patch ? sampled(patch, VL_CHECKER_SAMPLES, 1, VL_LAMBDA_MIN + i) : 1.0;
+    double w = r * light[i];
     for (int k = 0; k < 3; k++)
       seen[k] += w * (double)curves[k][i * stride];
   }
@@ -81,11 +84,13 @@ static void project(const float *patch, const double light[VL_LAMBDA_COUNT],
 
 void vl_sensor_make(const vlSensorCurves *sensor, double kelvin, vlColorSpace space,
                     float *observer, double xyz_from_sensor[9]) {
-  double light[VL_LAMBDA_COUNT], white[VL_LAMBDA_COUNT], lit[3], shown[3], output[3],
-      inverse[9], transposed[9];
+  double light[VL_LAMBDA_COUNT], white[VL_LAMBDA_COUNT];
+  double lit[3], shown[3],
+      output[3]; /* white patch: sensor and eye in the light; eye in white */
+  double inverse[9], transposed[9];
   const float *const eye[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()};
-  const float *const own[3] = {observer, observer + 1, observer + 2},
-                     *illuminant = vl_space_illuminant(space);
+  const float *const own[3] = {observer, observer + 1, observer + 2};
+  const float *illuminant = vl_space_illuminant(space);
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
     for (int k = 0; k < 3; k++)
       observer[4 * i + k] =
@@ -97,6 +102,7 @@ void vl_sensor_make(const vlSensorCurves *sensor, double kelvin, vlColorSpace sp
   project(NULL, light, own, 4, lit);
   project(NULL, light, eye, 1, shown);
   project(NULL, white, eye, 1, output);
+  /* the least-squares matrix from the sensor's values of the chart's patches to XYZ */
   double scale = shown[1] / lit[1], squares[9] = {0}, products[9] = {0};
   for (int p = 0; p < VL_CHECKER_PATCHES; p++) {
     double rgb[3], xyz[3];

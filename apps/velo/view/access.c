@@ -21,7 +21,7 @@ const char *access_path(const char *path, const char *token) {
   size_t n = strlen(token);
   if (path[0] != '/' || strlen(path) < n + 2)
     return NULL;
-  unsigned differs = path[n + 1] != '/';
+  unsigned differs = path[n + 1] != '/'; /* in a time that does not tell how much is right */
   for (size_t i = 0; i < n; i++)
     differs |= (unsigned)(path[1 + i] ^ token[i]);
   return differs ? NULL : path + n + 2;
@@ -29,9 +29,10 @@ const char *access_path(const char *path, const char *token) {
 
 /* The name in a Host header, without port and brackets. */
 static bool host_name(const char *host, char *name, size_t size) {
-  size_t n = host[0] == '[' ? strcspn(host, "]") : strcspn(host, ":");
-  size_t skip = host[0] == '[' ? 1 : 0;
-  const char *rest = host + n + (host[0] == '[' && host[n] == ']');
+  const bool bracketed = host[0] == '['; /* an IPv6 address */
+  const size_t n = strcspn(host, bracketed ? "]" : ":");
+  const size_t skip = bracketed ? 1 : 0;
+  const char *rest = host + n + (bracketed && host[n] == ']');
   if (n <= skip || n - skip >= size || (*rest && *rest != ':'))
     return false;
   if (*rest == ':' && (!rest[1] || rest[1 + strspn(rest + 1, "0123456789")]))

@@ -22,6 +22,7 @@ typedef struct Off {
   VL_ARRAY(uint32_t) corners;
 } Off;
 
+/* word: what was found, at the end of the message, or null. */
 static bool fail(Off *s, const char *what, const char *word) {
   return vl_import_plain_fail(s->scene, VL_ERROR_SCENE, s->path, s->line, what, word);
 }
@@ -42,8 +43,10 @@ static bool skip_blanks(Off *s, bool lines) {
     if (*s->at == '#')
       while (s->at < s->end && *s->at != '\n')
         s->at++;
-    else if (*s->at == '\n' ? !lines : !is_blank(*s->at))
-      return *s->at != '\n';
+    else if (*s->at == '\n' && !lines)
+      return false;
+    else if (*s->at != '\n' && !is_blank(*s->at))
+      return true;
     else
       s->line += *s->at++ == '\n';
   }
@@ -64,11 +67,15 @@ static bool number(Off *s, double *value) {
   return true;
 }
 
+/* Three 32-bit indices of each face, and numbers of each vertex, must fit into 31 bits. */
+enum { MAX_COUNT = 0x2aaaaaaa };
+
+/* Reads how many there are of something that has at least so many bytes in the file. */
 static bool count(Off *s, uint64_t bytes, size_t *n) {
   double value = 0;
   if (!number(s, &value))
     return false;
-  if (!(value >= 0 && value < 0x2aaaaaaa) || value != floor(value))
+  if (!(value >= 0 && value < MAX_COUNT) || value != floor(value))
     return fail(s, "OFF: a count makes no sense", NULL);
   if (value * (double)bytes > (double)(s->end - s->at) + 1)
     return fail(s, "OFF: the file is too short for its counts", NULL);
@@ -76,11 +83,11 @@ static bool count(Off *s, uint64_t bytes, size_t *n) {
   return true;
 }
 
-/* Integers count to 255; colours are sRGB. */
+/* A colour, sRGB, in linear light. integers: its numbers are 0 to 255; else 0 to 1. */
 static void to_linear(double color[4], bool integers, float linear[4]) {
   for (int k = 0; k < 4; k++) {
     double x = integers ? color[k] / 255 : color[k];
-    x = x < 0 ? 0 : x > 1 ? 1 : x;
+    x = fmin(fmax(x, 0), 1);
     linear[k] = (float)(k == 3 ? x : vl_srgb_to_linear(x));
   }
 }
@@ -162,9 +169,10 @@ static bool read_rows(Off *s) {
     if (s->colors) {
       if (n < 3)
         return fail(s, "OFF: a vertex has no colour", NULL);
-      bool alpha = n == 4 || n == 6;
-      for (int k = 0; k < 4; k++)
-        color[k] = k < 3 ? rest[k] : alpha ? rest[3] : s->integers ? 255 : 1;
+      bool alpha = n == 4 || n == 6; /* 6: texture coordinates follow */
+      memcpy(color, rest, sizeof color);
+      if (!alpha)
+        color[3] = s->integers ? 255 : 1;
       to_linear(color, s->integers, m->colors + 4 * i);
     }
     for (int k = 0; s->uvs && k < 2; k++) {
@@ -233,7 +241,7 @@ static bool read(Off *s) {
   for (size_t i = 0; i < faces; i++)
     if (!read_face(s, &colored))
       return false;
-  if (s->mesh.triangles > 0x2aaaaaaa)
+  if (s->mesh.triangles > MAX_COUNT)
     return fail(s, "OFF: too many faces", NULL);
   if (colored)
     return true;

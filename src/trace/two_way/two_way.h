@@ -149,8 +149,8 @@ typedef struct vlTwoWay {
                  pbrt's sppm) */
   bool light_only; /* no next-event estimation and no merging: weights are 1 */
   bool alone;      /* camera paths are not traced, but count in the weights */
-  float
-      pixel; /* lights that cover less than this part of a pixel are connected to the camera */
+  /* lights that cover less than this part of a pixel are connected to the camera */
+  float pixel;
   float paths;         /* N: light paths of a pass */
   float merged;        /* H = N pi radius^2; 0 without merging */
   float merged_volume; /* in media: H = N 4/3 pi radius^3 */
@@ -183,8 +183,8 @@ typedef struct vlLightBatch {
   const uint32_t *index;
   uint32_t first;    /* number of the batch's first path in the pass; the others follow */
   const float *time; /* the world's time, by path; null if nothing moves */
-  const vlCameraView
-      *eyes; /* the camera's view by path, if the camera moves; null: vlTwoWay.eye */
+  /* the camera's view by path, if the camera moves; null: vlTwoWay.eye */
+  const vlCameraView *eyes;
   void *user;
   /* Receives radiance for the film at points x, y (pixels from the top left corner). lambda and
    * inv_pdf: wavelengths and 1 / PDF in spectral mode, else undefined. odds: the density of all

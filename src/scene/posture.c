@@ -10,7 +10,11 @@
 #include "scene/faces.h"
 #include "scene/things.h"
 
-enum { CELLS = 16, SAMPLES = 65536, LOWEST = CELLS / 3 };
+enum {
+  CELLS = 16,         /* per axis of the grid that counts the surface */
+  LOWEST = CELLS / 3, /* layers of it that count as the lowest part */
+  SAMPLES = 65536     /* points on all faces together */
+};
 
 typedef struct Survey {
   vlExtent box;
@@ -24,7 +28,8 @@ typedef struct Survey {
 
 /* n: the unit normal; null: a point has none. */
 static void add_sample(Survey *s, const double p[3], const double *n, double weight) {
-  const double along = 0.98, outermost = 0.03;
+  const double along = 0.98;     /* cosine with an axis above which a face is flat */
+  const double outermost = 0.03; /* share of the box's size in which its ends lie */
   vlPosture *posture = s->posture;
   double at[3];
   int cell[3];
@@ -70,7 +75,9 @@ static void add_face(void *user, const vlShapeDef *shape, const vlFace *face) {
   const uint32_t count = 1 + (uint32_t)(SAMPLES * (area / s->whole));
   for (uint32_t k = 0; k < count; k++) {
     const double index = (double)(s->index++ % 1048576);
-    double u = index * 0.7548776662466927, v = index * 0.5698402909980532, p[3];
+    /* Roberts' constants of two dimensions: 1 / x and 1 / x^2, where x^3 = x + 1 */
+    double u = index * 0.7548776662466927, v = index * 0.5698402909980532;
+    double p[3];
     u -= floor(u);
     v -= floor(v);
     if (u + v > 1) {
@@ -105,6 +112,8 @@ static double cell_at(const Survey *s, const int at[3]) {
   return (double)s->cells[at[0]][at[1]][at[2]];
 }
 
+/* Finds what the cells tell of an axis: symmetry, how much they cover, the fullest low layer.
+ */
 static void compare_cells(Survey *s, int axis) {
   vlPosture *posture = s->posture;
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;

@@ -8,7 +8,10 @@
 #include "cli/text.h"
 #include "trace/hits_file.h"
 
+/* Bytes: of a name at most; of a member's header, its line in the directory, and the
+ * directory's end, without names. */
 enum { NAME = 32, LOCAL = 30, CENTRAL = 46, END = 22 };
+enum { MEMBER_MARK = 0x04034b50, LINE_MARK = 0x02014b50, END_MARK = 0x06054b50, VERSION = 20 };
 
 /* An array of the archive. */
 typedef struct Member {
@@ -57,8 +60,8 @@ static void put_number(Archive *a, uint32_t value, int size) {
 
 /* What the header of a member and its line in the directory have in common. */
 static void put_common(Archive *a, const Member *m) {
-  const uint32_t version = 20, first_day = 0x21; /* 1980-01-01 */
-  put_number(a, version, 2);
+  const uint32_t first_day = 0x21; /* 1980-01-01 */
+  put_number(a, VERSION, 2);
   put_number(a, 0, 2); /* flags */
   put_number(a, 0, 2); /* stored */
   put_number(a, 0, 2); /* time */
@@ -75,7 +78,7 @@ static void put_member(Archive *a, Member *m, const void *rows, size_t bytes) {
   m->crc = crc_of(a->table, 0, m->start, m->start_length);
   m->crc = crc_of(a->table, m->crc, rows, bytes);
   m->bytes = (uint32_t)(m->start_length + bytes);
-  put_number(a, 0x04034b50, 4);
+  put_number(a, MEMBER_MARK, 4);
   put_common(a, m);
   put(a, m->name, strlen(m->name));
   put(a, m->start, m->start_length);
@@ -86,8 +89,8 @@ static void put_directory(Archive *a, const Member *members, uint32_t count) {
   const uint32_t from = a->length;
   for (uint32_t i = 0; i < count; i++) {
     const Member *m = &members[i];
-    put_number(a, 0x02014b50, 4);
-    put_number(a, 20, 2); /* made by */
+    put_number(a, LINE_MARK, 4);
+    put_number(a, VERSION, 2); /* made by */
     put_common(a, m);
     put_number(a, 0, 2); /* no comment */
     put_number(a, 0, 2); /* the first disk */
@@ -97,7 +100,7 @@ static void put_directory(Archive *a, const Member *members, uint32_t count) {
     put(a, m->name, strlen(m->name));
   }
   const uint32_t length = a->length - from;
-  put_number(a, 0x06054b50, 4);
+  put_number(a, END_MARK, 4);
   put_number(a, 0, 4); /* the first disk */
   put_number(a, count, 2);
   put_number(a, count, 2);

@@ -34,7 +34,7 @@ export const groups = [
     { name: "projection", label: "projection", list: "projections" },
     { name: "shape", label: "shape", count: 2, title: "parameters of the projection", empty: true },
     { name: "max_angle", label: "circle °", title: "radius of the image circle", empty: true },
-    { name: "distortion", label: "distortion", choices: ["none", "opencv", "radial", "thin prism"] },
+    { name: "distortion", label: "distortion", choices: ["none", "opencv", "radial", "thin_prism", "rad_tan_thin_prism"] },
     { name: "coefficients", label: "coefficients", text: true, title: "in the order of the model" },
   ] },
   { title: "Lens", brief: lens, unusual: c => c.lens_radius > 0, fields: [

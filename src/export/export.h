@@ -38,7 +38,7 @@ typedef struct vlExportLook {
   vlFloatInput alpha;
   vlEmissionId emission;
   vlMediumId inside;
-  bool one_sided, colors, normal;
+  bool one_sided;
   json_int_t index;
 } vlExportLook;
 

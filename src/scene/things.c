@@ -8,8 +8,9 @@
 static const uint64_t MAX_FACES = 8000000;
 
 static double surface_of(const vlExtent *box) {
-  const double x = box->high[0] - box->low[0], y = box->high[1] - box->low[1],
-               z = box->high[2] - box->low[2];
+  const double x = box->high[0] - box->low[0];
+  const double y = box->high[1] - box->low[1];
+  const double z = box->high[2] - box->low[2];
   return 2 * (x * y + y * z + z * x);
 }
 
@@ -20,8 +21,8 @@ static void visit_box(const vlExtent *box, vlThingVisit *visit, void *user) {
 
 /* The box of a face without the tip of a needle. */
 static vlExtent body_of(const double p[3][3], const vlExtent *box) {
-  const double thin = 0.1;
-  double squared[3]; /* lengths of the edges that begin at each corner */
+  const double thin = 0.1; /* the shortest edge of a needle over its others */
+  double squared[3];       /* lengths of the edges that begin at each corner */
   vlExtent body = vl_extent_nothing;
   int least = 0;
   for (int k = 0; k < 3; k++) {

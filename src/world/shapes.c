@@ -41,8 +41,8 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
   const vlWorldMaterial *m = &world->materials.items[s->material];
   int32_t presence = m->presence, whole = s->alpha, none;
   for (; m->mixed; m = &world->materials.items[s->material]) { /* a part that is all there is */
-    const vlWorldMaterial *first = &world->materials.items[m->mix[0]],
-                          *second = &world->materials.items[m->mix[1]];
+    const vlWorldMaterial *first = &world->materials.items[m->mix[0]];
+    const vlWorldMaterial *second = &world->materials.items[m->mix[1]];
     if (!first->nothing && !second->nothing)
       break;
     s->material = m->mix[first->nothing && !second->nothing ? 1 : 0];
@@ -105,8 +105,9 @@ static vlResult add_geometry(vlWorld *world, const vlScene *scene, size_t index,
                              const vlMat4 *m, const vlMat4 *inverse, vlWorldShape *s,
                              vlError *error) {
   const vlShapeDef *def = &scene->shapes.items[index];
-  bool done,
-      arrays = vl_shape_is_mesh(def->kind) || def->kind == VL_SHAPE_CURVES || def->centers;
+  const bool arrays =
+      vl_shape_is_mesh(def->kind) || def->kind == VL_SHAPE_CURVES || def->centers;
+  bool done;
   world->shape_parts[index] = NULL;
   world->shape_from[index] = VL_NONE;
   if (!vl_shape_reuse(world, scene, index, s, &done))
@@ -204,8 +205,8 @@ static void set_group_bounds(const vlWorld *world, vlWorldGroup *group) {
 
 static void instance_bounds(const vlWorld *world, const vlWorldInstance *instance, float low[3],
                             float high[3]) {
-  const float *a = world->groups.items[instance->group].low,
-              *b = world->groups.items[instance->group].high;
+  const float *a = world->groups.items[instance->group].low;
+  const float *b = world->groups.items[instance->group].high;
   for (uint32_t key = 0; key == 0 || key < instance->keys; key++) {
     const float *m = instance->keys ? instance->path + 12 * (size_t)key : instance->from_group;
     for (int c = 0; a[0] <= b[0] && c < 8; c++) {
@@ -387,7 +388,8 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
   }
   for (size_t k = 0; k < group_count; k++) {
     vlWorldGroup *group = &world->groups.items[k];
-    if (!(group->shapes = vl_world_block(world, group->count, sizeof(uint32_t))))
+    group->shapes = vl_world_block(world, group->count, sizeof(uint32_t));
+    if (!group->shapes)
       return vl_fail_memory(error);
     group->count = 0;
   }

@@ -109,6 +109,9 @@ def test_camera(page):
     check("eye", new["world_from_camera"][3::4][:3] == [1, 2, 3], new["world_from_camera"])
     new = edit(page, distortion="opencv", coefficients=[-0.1, 0.01, 0, 0, 0])
     check("distortion", new["type"] == "state" and new["camera"]["distortion"] == "opencv", new)
+    for name, count in (("radial", 2), ("thin_prism", 8), ("rad_tan_thin_prism", 12), ("opencv", 5)):
+        new = edit(page, distortion=name).get("camera", {})
+        check("distortion_" + name, new.get("distortion") == name and new["coefficients"] == [0] * count, new)
     for name in ("equidistant fisheye", "equirectangular", "unified", "Panini", "orthographic", "perspective"):
         answer_ = edit(page, projection=name)
         check("projection_" + name.split()[0], answer_.get("camera", {}).get("projection") == name, answer_)

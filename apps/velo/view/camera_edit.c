@@ -2,6 +2,7 @@
  * member gets the field's number, or has a function that puts its value into the def, and says
  * which spellings the value replaces. */
 #include "view/camera_edit.h"
+#include "cli/macros.h"
 #include "cli/vector.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
@@ -176,7 +177,13 @@ static bool set_shape(Edit *e, const MessageField *f) {
   return true;
 }
 static bool set_distortion(Edit *e, const MessageField *f) {
-  static const uint32_t counts[] = {0, 5, 2, 8};
+  /* coefficients with which a distortion starts */
+  static const uint32_t counts[] = {[VL_DISTORTION_NONE] = 0,
+                                    [VL_DISTORTION_OPENCV] = 5,
+                                    [VL_DISTORTION_RADIAL] = 2,
+                                    [VL_DISTORTION_THIN_PRISM] = 8,
+                                    [VL_DISTORTION_RAD_TAN_THIN_PRISM] = 12};
+  _Static_assert(LENGTH(counts) == VL_DISTORTION_KIND_COUNT, "a number for each kind");
   if (e->def->distortion != (vlDistortion)f->choice) {
     e->def->distortion_count = counts[f->choice];
     memset(e->def->distortion_coefficients, 0, sizeof e->def->distortion_coefficients);
@@ -265,11 +272,10 @@ static void keep_motion(const ViewCamera *now, vlCameraDef *def) {
 /* In the order in which the fields of one message are applied. */
 static const struct {
   const char *name;
-  const char
-      *setting; /* its numbers, in the row's unit, are values of this setting; null: of none */
-  Setter *set;  /* null: one number, into the setting's member */
-  Before *before; /* null: nothing is to be done before */
-  bool needed;    /* the number may not be null */
+  const char *setting; /* whose values the numbers are, in the row's unit; null: of none */
+  Setter *set;         /* null: one number, into the setting's member */
+  Before *before;      /* null: nothing is to be done before */
+  bool needed;         /* the number may not be null */
 } setters[] = {{"projection", "projection", .set = set_projection},
                {"fov_axis", "fov_axis", .set = set_fov_axis},
                {"fov", "fov", .before = before_fov},

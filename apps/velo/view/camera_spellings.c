@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "camera/camera.h"
+#include "velo/distortion.h"
 #include "velo/projection.h"
 #include "view/camera_edit.h"
 
@@ -59,13 +60,11 @@ static void put_focal(Json *json, const ViewCamera *camera) {
 }
 
 static void put_projection(Json *json, const ViewCamera *camera) {
-  static const char *const distortions[] = {"none", "opencv", "radial", "thin prism"};
-  static const char *const kinds[] = {
   /* as settings have them; `projection` is for people to read */
-#define NAME(kind, name, row) #name,
-      VL_PROJECTION_KINDS(NAME)
+#define NAME(kind, name, ...) #name,
+  static const char *const distortions[] = {VL_DISTORTION_KINDS(NAME)};
+  static const char *const kinds[] = {VL_PROJECTION_KINDS(NAME)};
 #undef NAME
-  };
   const vlCameraDef *def = &camera->def;
   json_text(json, "projection", vl_projection_name(def->projection));
   if (def->projection != VL_PROJECTION_OWN)

@@ -16,12 +16,19 @@
 
 /* ---- inputs ------------------------------------------------------------------------------ */
 
+/* The object `name` of another one, which gets an empty one if it has none. */
+static json_t *child(json_t *parent, const char *name) {
+  json_t *one = json_object_get(parent, name);
+  if (one)
+    return one;
+  one = json_object();
+  json_object_set_new(parent, name, one);
+  return one;
+}
+
 static json_t *extension(vlExport *x, json_t *material, const char *name) {
-  json_t *all = json_object_get(material, "extensions"), *one = json_object_get(all, name);
-  if (!all)
-    json_object_set_new(material, "extensions", all = json_object());
-  if (!one)
-    json_object_set_new(all, name, one = json_object());
+  json_t *all = child(material, "extensions");
+  json_t *one = child(all, name);
   vl_gltf_use(x, name);
   return one;
 }
@@ -31,8 +38,9 @@ static void set_number(json_t *to, const char *key, double value) {
     json_object_set_new(to, key, json_real(value));
 }
 
+/* v, cut off at 0 and 1; NaN becomes 0. */
 static double unit(double v) {
-  return v > 0 ? v < 1 ? v : 1 : 0;
+  return fmin(fmax(v, 0), 1);
 }
 
 /* Writes a factor times a channel of an image. */
@@ -51,8 +59,8 @@ static void put_channel(vlExport *x, json_t *to, const char *factor_key,
     json_object_set_new(to, texture_key, info);
 }
 
-/* Writes a colour factor times an sRGB image. *alpha (may be null) receives the texture, for
- * its fourth channel. */
+/* Writes a colour factor times an sRGB image. coverage: the factor's fourth number; below 0:
+ * the factor has three. */
 static void put_color(vlExport *x, json_t *to, const char *factor_key, const char *texture_key,
                       bool bounded, const vlSpectrumInput *input, double coverage) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
@@ -118,8 +126,8 @@ static bool same_image(const vlTextureDef *a, const vlTextureDef *b) {
 }
 
 static void put_metal(vlExport *x, json_t *base, const vlPrincipledDef *p) {
-  const vlTextureDef *m = vl_export_texture(x, p->metallic.texture),
-                     *r = vl_export_texture(x, p->roughness.texture);
+  const vlTextureDef *m = vl_export_texture(x, p->metallic.texture);
+  const vlTextureDef *r = vl_export_texture(x, p->roughness.texture);
   bool good = m && r && same_image(m, r) && m->channel == 2 && r->channel == 1 &&
               m->bias == 0 && r->bias == 0;
   json_t *info = good ? vl_gltf_texture_info(x, m, true) : NULL;
@@ -164,15 +172,14 @@ static void put_volume(vlExport *x, json_t *material, vlMediumId inside) {
   if (!inside.index)
     return;
   const vlMediumDef *m = &x->scene->media.items[inside.index - 1];
-  float sigma[3], most;
-  vlSpectrum s = m->sigma_a;
-  vlSpectrumInput input = {.value = s};
+  float sigma[3];
+  vlSpectrumInput input = {.value = m->sigma_a};
   if (m->kind != VL_MEDIUM_HOMOGENEOUS || !is_zero(&m->sigma_s))
     vl_export_lose(x, "media that scatter or vary: what they absorb alone");
   vl_export_rgb(x, &input, sigma);
   for (int i = 0; i < 3; i++)
     sigma[i] *= m->scale;
-  most = fmaxf(sigma[0], fmaxf(sigma[1], sigma[2]));
+  const float most = fmaxf(sigma[0], fmaxf(sigma[1], sigma[2]));
   if (!(most > 0))
     return;
   json_t *color = json_array();

@@ -1077,6 +1077,10 @@ MISTAKES = [
      r"shapes trianglemesh: .*a moving object", "src/trace/surface/surface.hot.c",
      "r.n[k] = vl_affine_normal(q->to_group, r.n[k]);",
      "r.n[k] = vl_affine_vector(q->from_group, r.n[k]);"),
+    ("bumps: solid textures do not move", "shapes",
+     r"shapes .*bumps of space", "src/texture/batch.hot.c",
+     "    at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));\n",
+     ""),
     ]
 
 

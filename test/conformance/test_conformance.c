@@ -1,5 +1,6 @@
 /* test_conformance.c: every kind of every family obeys the laws of its family. The laws go over
  * the rows; what they need beyond a row is the kind's case. */
+#include "bumps.h"
 #include "cameras.h"
 #include "conformance.h"
 #include "densities.h"
@@ -62,6 +63,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_shapes),
       cmocka_unit_test(laws_of_surfaces),
       cmocka_unit_test(laws_of_instances),
+      cmocka_unit_test(laws_of_bumps),
       cmocka_unit_test(laws_of_textures),
       cmocka_unit_test(laws_of_footprints),
       cmocka_unit_test(laws_of_means),

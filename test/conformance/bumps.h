@@ -1,0 +1,124 @@
+/* conformance/bumps.h: the law of bumps: the shading normal is that of the points that the
+ * heights move along the normal, on each kind of shape, for heights of its coordinates and of
+ * space. */
+#ifndef TEST_CONFORMANCE_BUMPS_H
+#define TEST_CONFORMANCE_BUMPS_H
+
+#include "conformance.h"
+#include "shapes.h"
+#include "unit.h"
+
+/* The height at (s, t): bilinear, with these values at the corners of the unit square. */
+static double bump_height(double s, double t) {
+  return 0.1 + 0.3 * s + 0.4 * t;
+}
+#define BUMP_HEIGHTS                                                      \
+  "Texture \"h\" \"float\" \"bilerp\" \"float v00\" .1 \"float v01\" .5 " \
+  "\"float v10\" .4 \"float v11\" .8 "
+
+typedef struct Bumps {
+  bool solid; /* s and t are x and y of space */
+  uint32_t compared, wrong;
+  vlTraceRays *rays;
+  vlTraceHits *hits;
+} Bumps;
+
+/* Ray i's point, moved along the normal of the outside. */
+static void moved_point(const Bumps *b, uint32_t i, double moved[3]) {
+  const vlTraceHits *h = b->hits;
+  double outside = 0;
+  for (int k = 0; k < 3; k++)
+    outside += (double)h->normal[k][i] * (double)h->shading[k][i];
+  const double height = b->solid
+                            ? bump_height((double)h->position[0][i], (double)h->position[1][i])
+                            : bump_height((double)h->uv[0][i], (double)h->uv[1][i]);
+  for (int k = 0; k < 3; k++)
+    moved[k] =
+        (double)h->position[k][i] + (outside < 0 ? -height : height) * (double)h->normal[k][i];
+}
+
+/* Three rays close to each other. */
+static void compare_bumps(Bumps *b, uint32_t i, double step) {
+  double p[3][3];
+  double n[3];
+  double length = 0;
+  double same = 0;
+  double far = 0;
+  for (uint32_t j = 0; j < 3; j++) {
+    if (!isfinite(b->hits->t[i + j]))
+      return;
+    moved_point(b, i + j, p[j]);
+    for (int c = 0; c < 2; c++) /* a seam lies between them, or coordinates degenerate */
+      far = fmax(far, fabs((double)b->hits->uv[c][i + j] - (double)b->hits->uv[c][i]));
+    for (int k = 0; k < 3; k++)
+      far = fmax(far, fabs(p[j][k] - p[0][k]));
+  }
+  if (far > 4 * step)
+    return;
+  for (int k = 0; k < 3; k++) {
+    const int x = (k + 1) % 3;
+    const int y = (k + 2) % 3;
+    n[k] =
+        (p[1][x] - p[0][x]) * (p[2][y] - p[0][y]) - (p[1][y] - p[0][y]) * (p[2][x] - p[0][x]);
+    length += n[k] * n[k];
+  }
+  for (int k = 0; k < 3; k++)
+    same += n[k] * (double)b->hits->shading[k][i] / sqrt(length);
+  b->compared++;
+  b->wrong += !(fabs(same) > 0.9995);
+}
+
+static void ask_bumps(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)paths;
+  const double step = 1e-3;
+  Bumps *b = probe->user;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const uint32_t j = i % 3;
+    double d[3];
+    double x[3];
+    double y[3];
+    double at[2];
+    double origin[3];
+    even_direction(i - j, VL_OWN_BATCH, 0.3 + 0.7548776662 * probe->batch, d);
+    across(d, x, y);
+    even_disk(i - j, 0.2 + 0.618034 * probe->batch, at);
+    for (int k = 0; k < 3; k++)
+      origin[k] =
+          (at[0] + (j == 1) * step) * x[k] + (at[1] + (j == 2) * step) * y[k] - 2 * d[k];
+    set_ray(b->rays, i, origin, d);
+  }
+  vl_world_trace(trace, b->rays, b->hits);
+  for (uint32_t i = 0; i + 2 < VL_OWN_BATCH; i += 3)
+    compare_bumps(b, i, step);
+}
+
+static void check_bumps(const vlKindRow *row, const ShapeVariant *v, bool solid) {
+  static char text[TEXT];
+  char form[600];
+  Bumps b = {.solid = solid, .rays = new_rays(), .hits = calloc(1, sizeof *b.hits)};
+  assert_non_null(b.hits);
+  snprintf(form, sizeof form,
+           HEAD "WorldBegin LightSource \"infinite\" " BUMP_HEIGHTS
+                "%s Material \"diffuse\" \"texture displacement\" \"h\" Shape %%s",
+           solid ? "\"string mapping\" \"planar\" \"vector3 v1\" [1 0 0] \"vector3 v2\" [0 1 0]"
+                 : "");
+  scene_text(text, form, row->name, v->parameters);
+  Probe probe = {.ask = ask_bumps, .user = &b};
+  probe_world(text, &probe, NORMAL_BATCHES);
+  if (b.compared < 50 || b.wrong > b.compared / 50)
+    broken("shapes", row->name, "%s: bumps %s: %u of %u normals are not those of moved points",
+           v->parameters, solid ? "of space" : "of coordinates", b.wrong, b.compared);
+  free(b.rays);
+  free(b.hits);
+}
+
+static void laws_of_bumps(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("shapes");
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    for (int solid = 0; solid < 2 && !shape_cases[k]->variants[0].faces_rays; solid++)
+      check_bumps(family->rows[k], &shape_cases[k]->variants[0], solid);
+  expect_no_failures();
+}
+
+#endif

@@ -60,7 +60,7 @@ static inline int vl_outside_sphere(vlVec3 to_center, float radius) {
 }
 static inline bool vl_outside_plain_sphere(const vlWorldLight *light, vlVec3 from) {
   const float *q = light->corners;
-  return vl_outside_sphere(vl_sub(vl_vec3(q[0], q[1], q[2]), from), q[3]);
+  return vl_outside_sphere(vl_sub(vl_load3(q), from), q[3]);
 }
 
 /* 1 - cos of the half angle of the cone that a sphere fills when seen from outside, without

@@ -95,12 +95,11 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
   vlVec2 b01 = vl_warp_triangle(u, v);
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
   vlVec3 corner[3];
-  Spot r = {.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]),
-            .weights = {b[0], b[1], b[2]}};
+  Spot r = {.n = vl_load3(light->direction), .weights = {b[0], b[1], b[2]}};
   vlVec3 ns = vl_vec3(0, 0, 0);
   const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
   for (int k = 0; k < 3; k++) {
-    corner[k] = vl_vec3(q[3 * k], q[3 * k + 1], q[3 * k + 2]);
+    corner[k] = vl_load3(q + 3 * k);
     r.p = vl_add(r.p, vl_mul(corner[k], b[k]));
     const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
     r.u += b[k] * t[0];
@@ -108,7 +107,7 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
     if (light->one_sided_normals)
       continue;
     const float *x = s->normals + 3 * (size_t)f[k];
-    ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
+    ns = vl_add(ns, vl_mul(vl_load3(x), b[k]));
   }
   if (vl_dot(r.n, ns) < 0.0f)
     r.n = vl_neg(r.n);
@@ -190,7 +189,7 @@ void vl_light_emit_from_afar(const vlWorld *world, vlVec3 w, float u, float v,
   float r = world->radius;
   vlVec3 at = vl_add(vl_mul(frame.x, r * disk.x), vl_mul(frame.y, r * disk.y));
   at = vl_add(at, vl_mul(w, r));
-  out->o = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]), at);
+  out->o = vl_add(vl_load3(world->center), at);
   out->d = vl_neg(w);
   out->at = w;
   out->valid = true;

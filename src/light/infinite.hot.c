@@ -132,9 +132,9 @@ static void through_portal(const vlWorld *world, const vlWorldLight *light,
   float density = portal_density(portal, w);
   if (!(density > 0.0f))
     return;
-  vlVec3 at = vl_vec3(portal->corner[0], portal->corner[1], portal->corner[2]);
+  vlVec3 at = vl_load3(portal->corner);
   at = vl_add(at, vl_portal_world(portal, vl_vec3(u * portal->width, v * portal->height, 0)));
-  vlVec3 away = vl_sub(at, vl_vec3(world->center[0], world->center[1], world->center[2]));
+  vlVec3 away = vl_sub(at, vl_load3(world->center));
   out->o = vl_add(at, vl_mul(w, vl_length(away) + world->radius));
   out->d = vl_neg(w);
   out->at = w;

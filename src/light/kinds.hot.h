@@ -83,7 +83,7 @@ void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const v
 /* ---- lights at a point ------------------------------------------------------------------- */
 
 static inline vlVec3 vl_light_axis(const vlWorldLight *light) {
-  return vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+  return vl_load3(light->direction);
 }
 
 /* Transforms a world direction to the light's frame (`corners`); not normalized. */
@@ -95,9 +95,9 @@ static inline vlVec3 vl_light_local(const vlWorldLight *light, vlVec3 d) {
  * times a scale, or for skewed frames by its inverse. */
 static inline vlVec3 vl_light_from_local(const vlWorldLight *light, vlVec3 d) {
   const float *m = light->corners;
-  vlVec3 x = vl_vec3(m[0], m[1], m[2]);
-  vlVec3 y = vl_vec3(m[3], m[4], m[5]);
-  vlVec3 z = vl_vec3(m[6], m[7], m[8]);
+  vlVec3 x = vl_load3(m);
+  vlVec3 y = vl_load3(m + 3);
+  vlVec3 z = vl_load3(m + 6);
   vlVec3 a = vl_cross(y, z), b = vl_cross(z, x), c = vl_cross(x, y);
   float sign = vl_dot(x, a) < 0.0f ? -1.0f : 1.0f;
   vlVec3 sum = vl_add(vl_mul(a, d.x), vl_add(vl_mul(b, d.y), vl_mul(c, d.z)));
@@ -108,16 +108,16 @@ static inline vlVec3 vl_light_from_local(const vlWorldLight *light, vlVec3 d) {
  * world that is `local` = m d there, not normalized: |det m| / |m d|^3. 1 without skew. */
 static inline float vl_light_stretch(const vlWorldLight *light, vlVec3 local) {
   const float *m = light->corners;
-  vlVec3 x = vl_vec3(m[0], m[1], m[2]);
-  vlVec3 y = vl_vec3(m[3], m[4], m[5]);
-  vlVec3 z = vl_vec3(m[6], m[7], m[8]);
+  vlVec3 x = vl_load3(m);
+  vlVec3 y = vl_load3(m + 3);
+  vlVec3 z = vl_load3(m + 6);
   float length2 = vl_length2(local);
   return vl_abs(vl_dot(x, vl_cross(y, z))) / (length2 * __builtin_sqrtf(length2));
 }
 
 /* Sets target, direction and density of a sample of a point light. Returns 1 / distance^2. */
 static inline float vl_light_towards_point(const vlLightQuery *q, vlLightSample *out) {
-  out->target = vl_vec3(q->light->position[0], q->light->position[1], q->light->position[2]);
+  out->target = vl_load3(q->light->position);
   vlVec3 to = vl_sub(out->target, q->p);
   float d2 = vl_length2(to);
   out->w = vl_normalize(to);
@@ -139,8 +139,7 @@ static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float spa
     out->d = vl_normalize(vl_from_local(vl_frame_from_z(vl_light_axis(q->light)), local));
     c = local.z;
   }
-  out->o = out->at =
-      vl_vec3(q->light->position[0], q->light->position[1], q->light->position[2]);
+  out->o = out->at = vl_load3(q->light->position);
   out->density = 1.0f / (2.0f * VL_PI * span);
   out->delta = out->valid = true;
   return c;

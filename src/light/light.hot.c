@@ -87,21 +87,18 @@ static Near near_triangle(const vlWorldLight *light, vlVec3 from) {
 static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, bool with_uv,
                               vlVec3 from, float u, float v) {
   const float *q = light->corners;
-  vlVec3 p[3] = {vl_vec3(q[0], q[1], q[2]), vl_vec3(q[3], q[4], q[5]),
-                 vl_vec3(q[6], q[7], q[8])};
+  vlVec3 p[3] = {vl_load3(q), vl_load3(q + 3), vl_load3(q + 6)};
   vlVec2 b01 = vl_warp_triangle(u, v);
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
   Near near = near_triangle(light, from);
   if (near.near) {
     vlVec3 w = vl_triangle_weights(vl_triangle_from(q, from),
                                    vl_warp_spherical_triangle(near.cap, u, v));
-    b[0] = w.x;
-    b[1] = w.y;
-    b[2] = w.z;
+    vl_store3(b, w);
   }
   Sample r;
   r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
-  r.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+  r.n = vl_load3(light->direction);
   r.offset = vl_triangle_offset(r.n, r.p, p[0], p[1], p[2], b[0], b[1], b[2], 0.0f);
   r.u = r.v = 0;
   for (int k = 0; k < 3; k++)
@@ -114,7 +111,7 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
     vlVec3 ns = vl_vec3(0, 0, 0);
     for (int k = 0; k < 3; k++) {
       const float *x = s->normals + 3 * (size_t)f[k];
-      ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
+      ns = vl_add(ns, vl_mul(vl_load3(x), b[k]));
     }
     if (vl_dot(r.n, ns) < 0.0f)
       r.n = vl_neg(r.n);
@@ -137,8 +134,7 @@ vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlP
   if (!s->emission_uvs)
     return uv;
   const float *q = light->corners;
-  vlVec3 a = vl_vec3(q[0], q[1], q[2]), e1 = vl_sub(vl_vec3(q[3], q[4], q[5]), a),
-         e2 = vl_sub(vl_vec3(q[6], q[7], q[8]), a);
+  vlVec3 a = vl_load3(q), e1 = vl_sub(vl_load3(q + 3), a), e2 = vl_sub(vl_load3(q + 6), a);
   vlVec3 g = vl_cross(e1, e2), way = vl_sub(at->p, a);
   float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
   float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;

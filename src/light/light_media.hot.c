@@ -33,8 +33,7 @@ static bool surrounding_medium(const vlWorld *world, vlVec3 p, bool far, uint32_
     vlVec3 w = vl_warp_sphere(((float)k + 0.5f) / ASKED,
                               0.618034f * (float)k - (float)(int)(0.618034f * (float)k));
     if (far) {
-      vlVec3 to = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]),
-                         vl_mul(w, 0.5f * world->radius));
+      vlVec3 to = vl_add(vl_load3(world->center), vl_mul(w, 0.5f * world->radius));
       w = vl_normalize(vl_sub(to, p));
     }
     vlPoint at;
@@ -85,8 +84,7 @@ static vlVec3 beside(const vlWorld *world, const vlWorldLight *light) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlSurfacePoint point;
   double pdf;
-  vlVec3 p = vl_vec3(0, 0, 0),
-         n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+  vlVec3 p = vl_vec3(0, 0, 0), n = vl_load3(light->direction);
   if (s->triangles) {
     for (int k = 0; k < 9; k++)
       (&p.x)[k % 3] += light->corners[k] * (1.0f / 3.0f);
@@ -102,7 +100,7 @@ static vlVec3 beside(const vlWorld *world, const vlWorldLight *light) {
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium) {
   for (size_t i = 0; i < world->lights.count; i++) {
     const vlWorldLight *light = &world->lights.items[i];
-    vlVec3 p = vl_vec3(light->position[0], light->position[1], light->position[2]);
+    vlVec3 p = vl_load3(light->position);
     medium[i] = VL_NONE;
     if (light->shape != VL_NONE) {
       if (borders(&world->shapes.items[light->shape]))
@@ -115,11 +113,10 @@ void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium) 
     } else if (light->far) {
       vlVec3 w = vl_vec3(0, 0, 1);
       if (light->delta)
-        w = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
-      p = vl_add(vl_vec3(world->center[0], world->center[1], world->center[2]),
-                 vl_mul(w, 2.0f * world->radius));
+        w = vl_load3(light->direction);
+      p = vl_add(vl_load3(world->center), vl_mul(w, 2.0f * world->radius));
     }
     if (!surrounding_medium(world, p, light->far, &medium[i]))
-      medium[i] = on_the_way(world, vl_vec3(eye[0], eye[1], eye[2]), p);
+      medium[i] = on_the_way(world, vl_load3(eye), p);
   }
 }

@@ -160,8 +160,7 @@ static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLight
 static inline bool vl_light_reaches(const vlLightTree *tree, uint32_t k, vlReceiver at) {
   const float *w = tree->towards[k];
   bool everywhere = w[0] == 0.0f && w[1] == 0.0f && w[2] == 0.0f;
-  return everywhere || at.side == 0.0f ||
-         at.side * vl_dot(at.n, vl_vec3(w[0], w[1], w[2])) > -0x1p-12f;
+  return everywhere || at.side == 0.0f || at.side * vl_dot(at.n, vl_load3(w)) > -0x1p-12f;
 }
 
 /* The lights outside the tree that reach a receiver, and the tree if any of its lights does:

@@ -82,12 +82,10 @@ static void absorb(vlLightBounds *a, const vlLightBounds *b) {
     a->high[i] = b->high[i] > a->high[i] ? b->high[i] : a->high[i];
   }
   if (a->cos_o > -1) { /* otherwise a's cone is the whole sphere already */
-    Cone ca = {vl_vec3(a->axis[0], a->axis[1], a->axis[2]), a->cos_o, false};
-    Cone cb = {vl_vec3(b->axis[0], b->axis[1], b->axis[2]), b->cos_o, false};
+    Cone ca = {vl_load3(a->axis), a->cos_o, false};
+    Cone cb = {vl_load3(b->axis), b->cos_o, false};
     Cone c = cone_union(ca, cb);
-    a->axis[0] = c.axis.x;
-    a->axis[1] = c.axis.y;
-    a->axis[2] = c.axis.z;
+    vl_store3(a->axis, c.axis);
     a->cos_o = c.cos_o;
   }
   a->cos_e = b->cos_e < a->cos_e ? b->cos_e : a->cos_e;

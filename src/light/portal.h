@@ -37,8 +37,7 @@ static inline vlVec3 vl_portal_world(const vlPortal *portal, vlVec3 d) {
                  m[2] * d.x + m[5] * d.y + m[8] * d.z);
 }
 static inline vlVec3 vl_portal_corner_from(const vlPortal *portal, vlVec3 o) {
-  return vl_portal_local(
-      portal, vl_sub(vl_vec3(portal->corner[0], portal->corner[1], portal->corner[2]), o));
+  return vl_portal_local(portal, vl_sub(vl_load3(portal->corner), o));
 }
 
 /* Whether a ray from o along d passes through the portal from its inner side. */

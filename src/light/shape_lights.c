@@ -103,7 +103,7 @@ static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *l
   vlVec3 p[3];
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
-    p[k] = vl_vec3(x[0], x[1], x[2]);
+    p[k] = vl_load3(x);
     for (int i = 0; i < 3; i++)
       light->corners[3 * k + i] = x[i];
   }
@@ -111,15 +111,13 @@ static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *l
   int against = 0;
   for (int k = 0; s->normals && k < 3; k++) {
     const float *x = s->normals + 3 * (size_t)f[k];
-    against += vl_dot(g, vl_vec3(x[0], x[1], x[2])) < 0;
+    against += vl_dot(g, vl_load3(x)) < 0;
   }
   bool flip = s->normals ? against >= 2 : s->flip;
   light->one_sided_normals = against == 0 || against == 3;
   if (flip)
     g = vl_neg(g);
-  light->direction[0] = g.x;
-  light->direction[1] = g.y;
-  light->direction[2] = g.z;
+  vl_store3(light->direction, g);
 }
 
 /* Sets the numbers from which points are sampled, and the bound of the error of such a point: a

@@ -17,7 +17,7 @@ static float edge(const vlWorldLight *light, float c) {
 }
 
 static vlVec3 frame_axis(const vlWorldLight *light) {
-  return vl_vec3(light->own[0], light->own[1], light->own[2]);
+  return vl_load3(light->own);
 }
 
 /* Cosine between the axis and light that leaves along d (world space), in the light's frame. */

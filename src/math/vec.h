@@ -8,6 +8,15 @@
 static inline vlVec3 vl_vec3(float x, float y, float z) {
   return (vlVec3){x, y, z};
 }
+/* The vector of three numbers in memory, and back. */
+static inline vlVec3 vl_load3(const float v[3]) {
+  return vl_vec3(v[0], v[1], v[2]);
+}
+static inline void vl_store3(float to[3], vlVec3 v) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
 static inline vlVec3 vl_add(vlVec3 a, vlVec3 b) {
   return vl_vec3(a.x + b.x, a.y + b.y, a.z + b.z);
 }

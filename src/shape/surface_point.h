@@ -65,7 +65,7 @@ static inline double vl_similarity_error(const double m[12], double scale) {
 /* Centre and radius of a full sphere under a similarity, in group space; false for any other
  * shape. */
 static inline bool vl_whole_sphere(const vlWorldShape *s, vlVec3 *center, float *radius) {
-  *center = vl_vec3(s->whole_center[0], s->whole_center[1], s->whole_center[2]);
+  *center = vl_load3(s->whole_center);
   *radius = s->whole_radius;
   return s->whole_radius > 0.0f;
 }

@@ -9,7 +9,7 @@
  * node's direction. */
 static inline float vl_node_direction_mix(const vlTextureNode *node, vlTexturePoint at) {
   const float *d = node->def->direction;
-  return 1.0f - vl_abs(vl_dot(at.n, vl_vec3(d[0], d[1], d[2])));
+  return 1.0f - vl_abs(vl_dot(at.n, vl_load3(d)));
 }
 
 #endif

@@ -33,7 +33,7 @@ static inline vlVec3 vl_node_image_rgb(const vlTextureNode *node, const vlMipmap
   if (node->plain)
     return vl_plain_rgb(mip, vl_texture_image(node, mip, at));
   vlTexel t = vl_texture_rgba(node, mip, at);
-  return vl_vec3(t.c[0], t.c[1], t.c[2]);
+  return vl_load3(t.c);
 }
 
 #endif

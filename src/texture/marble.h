@@ -26,7 +26,7 @@ static inline vlVec3 vl_node_marble(const vlTextureNode *node, vlTexturePoint at
     out[k] =
         1.5f * (r * r * r * a + 3.0f * r * r * s * b + 3.0f * r * s * s * c + s * s * s * d);
   }
-  return vl_vec3(out[0], out[1], out[2]);
+  return vl_load3(out);
 }
 
 #endif

@@ -25,7 +25,7 @@ static inline float vl_node_vertex_color_float(const vlTextureNode *node, vlText
 
 static inline vlVec3 vl_node_vertex_color_rgb(const vlTextureNode *node, vlTexturePoint at) {
   vlTexel t = vl_texture_rgba(node, NULL, at);
-  return vl_vec3(t.c[0], t.c[1], t.c[2]);
+  return vl_load3(t.c);
 }
 
 #endif

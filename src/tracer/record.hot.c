@@ -27,12 +27,6 @@ static vlPathVertex *new_vertex(const vlTracing *t, uint32_t lane) {
   return v;
 }
 
-static void put3(float *to, vlVec3 v) {
-  to[0] = v.x;
-  to[1] = v.y;
-  to[2] = v.z;
-}
-
 static void put_ids(const vlHits *h, uint32_t i, vlPathVertex *v) {
   v->object = h->shape[i] + 1;
   v->material = h->material[i] + 1;
@@ -50,7 +44,7 @@ vlPathVertex *vl_record_arrival(vlTracing *t, const vlPaths *p, uint32_t i, uint
   v->fate = VL_PATH_LEFT;
   v->distance = VL_INFINITY;
   v->bounce = bounce;
-  put3(v->arrival, vl_lane3(p->dx, p->dy, p->dz, i));
+  vl_store3(v->arrival, vl_lane3(p->dx, p->dy, p->dz, i));
   for (int c = 0; c < 4; c++)
     v->throughput[c] = p->beta[c][i];
   return v;
@@ -62,8 +56,8 @@ void vl_record_surface(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t
   v->event = VL_PATH_SURFACE;
   v->fate = VL_PATH_ABSORBED;
   put_ids(h, i, v);
-  put3(v->position, at.p);
-  put3(v->normal, at.g);
+  vl_store3(v->position, at.p);
+  vl_store3(v->normal, at.g);
   v->uv[0] = at.u;
   v->uv[1] = at.v;
   v->distance = vl_length(vl_sub(at.p, vl_lane3(p->ox, p->oy, p->oz, i)));
@@ -122,7 +116,7 @@ static void record_hit(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
                           .bsdf_pdf = p->pdf[i],
                           .weight = weight};
   vl_record_name_light(t->world, met->light, &c);
-  put3(c.target, sky ? vl_lane3(p->dx, p->dy, p->dz, i) : met->at.p);
+  vl_store3(c.target, sky ? vl_lane3(p->dx, p->dy, p->dz, i) : met->at.p);
   for (int k = 0; k < 4; k++)
     c.radiance[k] = p->beta[k][i] * met->radiance[k] * weight;
   vl_record_light(t, p->lane[i], &c);
@@ -148,8 +142,8 @@ void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVe
         .weight = l->delta[i] ? 1.0f : vl_power_heuristic(l->pdf[i], values->pdf[i])};
     vl_record_name_light(t->world, l->light[i], &c);
     c.distant = l->distant[i];
-    put3(c.target,
-         c.distant ? vl_lane3(l->wx, l->wy, l->wz, i) : vl_lane3(l->tx, l->ty, l->tz, i));
+    vl_store3(c.target,
+              c.distant ? vl_lane3(l->wx, l->wy, l->wz, i) : vl_lane3(l->tx, l->ty, l->tz, i));
     for (int m = 0; m < 4; m++)
       c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k];
     vl_record_light(t, q->lane[k], &c);
@@ -192,7 +186,7 @@ void vl_record_shaded(vlTracing *t, uint32_t n, const vlVertices *at) {
       continue;
     const vlWorldMaterial *m = &t->world->materials.items[at->hits.material[i]];
     v->bsdf = t->bsdf->names[m->bsdf];
-    put3(v->shading, vl_lane3(at->surface.nx, at->surface.ny, at->surface.nz, i));
+    vl_store3(v->shading, vl_lane3(at->surface.nx, at->surface.ny, at->surface.nz, i));
     put_texture(t->world, m->reflectance, v);
     for (int c = 0; c < 4; c++) {
       v->throughput[c] = at->paths.beta[c][i];
@@ -232,7 +226,7 @@ void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t depth, const vlVertice
     if (!v)
       continue;
     v->fate = VL_PATH_ON;
-    put3(v->direction, vl_lane3(next->dx, next->dy, next->dz, i));
+    vl_store3(v->direction, vl_lane3(next->dx, next->dy, next->dz, i));
   }
 }
 
@@ -268,7 +262,7 @@ void vl_record_phase(vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *p,
       continue;
     v->fate = VL_PATH_ON;
     v->pdf = p->pdf[i];
-    put3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
+    vl_store3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
   }
 }
 
@@ -290,18 +284,18 @@ void vl_record_exits(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *h
     vlPathVertex *v = new_vertex(t, p->lane[i]);
     if (!v)
       continue;
-    vlVec3 from = vl_vec3(before.position[0], before.position[1], before.position[2]);
+    vlVec3 from = vl_load3(before.position);
     vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), way = vl_sub(at, from);
     v->event = VL_PATH_EXIT;
     v->bounce = before.bounce;
     v->bsdf = "subsurface";
     put_ids(hits, i, v);
-    put3(v->position, at);
+    vl_store3(v->position, at);
     v->distance = vl_length(way);
     if (v->distance > 0.0f)
-      put3(v->arrival, vl_mul(way, 1.0f / v->distance));
-    put3(v->normal, vl_lane3(f->gx, f->gy, f->gz, i));
-    put3(v->shading, vl_lane3(f->nx, f->ny, f->nz, i));
+      vl_store3(v->arrival, vl_mul(way, 1.0f / v->distance));
+    vl_store3(v->normal, vl_lane3(f->gx, f->gy, f->gz, i));
+    vl_store3(v->shading, vl_lane3(f->nx, f->ny, f->nz, i));
     v->uv[0] = f->u[i];
     v->uv[1] = f->v[i];
     for (int c = 0; c < 4; c++)
@@ -316,7 +310,7 @@ void vl_record_left(vlTracing *t, uint32_t n, const vlPaths *p, const uint8_t *a
       continue;
     v->fate = VL_PATH_ON;
     v->pdf = p->pdf[i];
-    put3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
+    vl_store3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
     for (int c = 0; c < 4; c++)
       v->factor[c] = v->throughput[c] > 0.0f ? p->beta[c][i] / v->throughput[c] : 0.0f;
   }

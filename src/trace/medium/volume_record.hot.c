@@ -13,9 +13,7 @@ static void record_met(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
                           .weight = inv / vl_volume_inverse_density(t, rows, i, 0.0f),
                           .target = {p->dx[i], p->dy[i], p->dz[i]}};
   if (!sky) {
-    c.target[0] = met->at.p.x;
-    c.target[1] = met->at.p.y;
-    c.target[2] = met->at.p.z;
+    vl_store3(c.target, met->at.p);
   }
   vl_record_name_light(t->world, met->light, &c);
   for (int k = 0; k < 4; k++)

@@ -97,7 +97,7 @@ static float cut_probe(const vlWorld *world, vlPaths *p, uint32_t j, vlVec3 o, v
                        float half) {
   const float *c = world->center;
   float radius = 1.001f * world->radius;
-  vlVec3 to = vl_sub(vl_vec3(c[0], c[1], c[2]), o);
+  vlVec3 to = vl_sub(vl_load3(c), o);
   float middle = vl_dot(to, along),
         inside = radius * radius - vl_length2(vl_sub(to, vl_mul(along, middle)));
   float reach = inside > 0.0f ? __builtin_sqrtf(inside) : 0.0f;

@@ -7,9 +7,6 @@
 #include "velo/shape.h"
 #include "world/moving.h"
 
-static inline vlVec3 point_at(const float *x) {
-  return vl_vec3(x[0], x[1], x[2]);
-}
 static inline float placing_error(const vlWorldInstance *q, const float *x) {
   return q->error[0] * vl_abs(x[0]) + q->error[1] * vl_abs(x[1]) + q->error[2] * vl_abs(x[2]) +
          q->error[3];
@@ -45,11 +42,11 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   c->flip[i] = s->flip != q->mirrored ? -1.0f : 1.0f;
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
-    set_corner(c->p, k, i, vl_affine_point(q->from_group, point_at(x)));
+    set_corner(c->p, k, i, vl_affine_point(q->from_group, vl_load3(x)));
     c->error[i] = vl_max(c->error[i], placing_error(q, x));
     if (s->normals)
       set_corner(c->n, k, i,
-                 vl_affine_normal(q->to_group, point_at(s->normals + 3 * (size_t)f[k])));
+                 vl_affine_normal(q->to_group, vl_load3(s->normals + 3 * (size_t)f[k])));
   }
 }
 
@@ -102,8 +99,8 @@ static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance 
     const float *x = vl_vertex_at(s, f[k], time, point_room);
     const float *y = s->normals ? vl_normal_at(s, f[k], time, normal_room) : NULL;
     float error = s->steps > 1 ? vl_moving_vertex_error(s, f[k], time) : 0.0f;
-    r.p[k] = point_at(x);
-    r.n[k] = y ? point_at(y) : vl_vec3(0, 0, 0);
+    r.p[k] = vl_load3(x);
+    r.n[k] = y ? vl_load3(y) : vl_vec3(0, 0, 0);
     if (q) {
       float size = 0;
       for (int i = 0; i < 9; i++)
@@ -331,7 +328,7 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   float w[3] = {1.0f - b1 - b2, b1, b2};
   vlVec3 t = vl_vec3(0, 0, 0);
   for (int j = 0; j < 3; j++)
-    t = vl_add(t, vl_mul(point_at(s->tangents + 3 * (size_t)f[j]), w[j]));
+    t = vl_add(t, vl_mul(vl_load3(s->tangents + 3 * (size_t)f[j]), w[j]));
   bool mirrored = false;
   if (hits->instance[i] != VL_NONE) {
     vlWorldInstance room;
@@ -447,7 +444,7 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
   r.error = 0;
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
-    r.p[k] = point_at(x);
+    r.p[k] = vl_load3(x);
     r.n[k] = vl_vec3(0, 0, 0);
     if (q) {
       r.p[k] = vl_affine_point(q->from_group, r.p[k]);
@@ -455,7 +452,7 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
     }
     if (s->normals) {
       const float *y = s->normals + 3 * (size_t)f[k];
-      r.n[k] = q ? vl_affine_normal(q->to_group, point_at(y)) : point_at(y);
+      r.n[k] = q ? vl_affine_normal(q->to_group, vl_load3(y)) : vl_load3(y);
     }
     for (int j = 0; j < 2; j++)
       uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];

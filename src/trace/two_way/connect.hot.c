@@ -217,10 +217,10 @@ static void push(const vlTracing *t, const vlPaths *p, const vlConnection *c, ui
   const vlTwoWay *way = t->def->two_way;
   const vlLightVertex *x = &way->inner.vertices[vertex];
   vlShadowRays *q = shadows->rays;
-  vlVec3 xg = vl_vec3(x->g[0], x->g[1], x->g[2]), xp = vl_vec3(x->p[0], x->p[1], x->p[2]);
+  vlVec3 xg = vl_load3(x->g), xp = vl_load3(x->p);
   uint32_t i = c->i;
   float inv2 = 1.0f / vl_length2(vl_sub(xp, c->at)), there = vl_abs(vl_dot(xg, c->w));
-  float back = -vl_dot(vl_vec3(x->n[0], x->n[1], x->n[2]), c->w) * VL_INV_PI;
+  float back = -vl_dot(vl_load3(x->n), c->w) * VL_INV_PI;
   shadows->strategies->own[count] = way->connect;
   shadows->strategies->others[count] =
       inv2 * (c->ways * back * c->cosine + x->back * c->forth * there);
@@ -245,7 +245,7 @@ static uint32_t aim(uint32_t n, const vlSurface *f, const vlLightVertices *inner
     vlVec3 w = vl_lane3(f->nx, f->ny, f->nz, i);
     if (chosen[i] != VL_NONE) {
       const float *p = inner->vertices[chosen[i]].p;
-      w = vl_normalize(vl_sub(vl_vec3(p[0], p[1], p[2]), vl_lane3(f->px, f->py, f->pz, i)));
+      w = vl_normalize(vl_sub(vl_load3(p), vl_lane3(f->px, f->py, f->pz, i)));
       found++;
     }
     vl_set_lane3(toward[0], toward[1], toward[2], i, w);

@@ -82,14 +82,14 @@ void vl_push_connection(const vlTracing *t, const vlPaths *p, const vlVolumeRows
   vlShadowRays *q = shadows->rays;
   vlShadowFlights *f = shadows->flights;
   float connect = t->def->two_way->connect, gives, back, ways = x->back, cosine;
-  vlVec3 end = vl_vec3(x->p[0], x->p[1], x->p[2]), n = vl_vec3(x->n[0], x->n[1], x->n[2]);
+  vlVec3 end = vl_load3(x->p), n = vl_load3(x->n);
   float inv2 = 1.0f / vl_length2(vl_sub(end, c->at)), there = -vl_dot(n, c->w);
   if (x->inside) {
     gives = back = vl_phase(x->asymmetry, there);
     ways += x->a * back;
     cosine = x->dense;
   } else {
-    vlVec3 g = vl_vec3(x->g[0], x->g[1], x->g[2]);
+    vlVec3 g = vl_load3(x->g);
     gives = cosine = vl_abs(vl_dot(g, c->w));
     back = there * VL_INV_PI;
     end = vl_offset_end(end, g, x->offset, c->w, c->at);
@@ -131,7 +131,7 @@ void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwo
     const vlLightVertex *x = &way->inner.vertices[chosen[i]];
     uint32_t medium = in->rows->medium[i], lane = p->lane[i];
     vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i);
-    vlVec3 w = vl_normalize(vl_sub(vl_vec3(x->p[0], x->p[1], x->p[2]), at));
+    vlVec3 w = vl_normalize(vl_sub(vl_load3(x->p), at));
     float phase =
         vl_phase(t->world->media.items[medium].g, vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), w));
     vlConnection c = {.i = i,

@@ -206,7 +206,7 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoW
                            most_bounces(t, lane, depth));
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       const vlPhoton *x = &map->photons[j];
-      float phase = vl_phase(g, vl_dot(d, vl_vec3(x->w[0], x->w[1], x->w[2])));
+      float phase = vl_phase(g, vl_dot(d, vl_load3(x->w)));
       float weight = pair_weight(t->def->two_way, v, i, x, phase, phase) * phase, power[4];
       joined_power(t, v, i, x, 0.0f, power);
       for (int c = 0; c < 4; c++)

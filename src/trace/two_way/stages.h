@@ -395,9 +395,7 @@ static inline void vl_leave_photon(const vlTracing *t, uint32_t depth,
                                    uint32_t medium, vlPhoton *x) {
   const vlPaths *p = v->paths;
   uint32_t lane = p->lane[i];
-  x->p[0] = at.x;
-  x->p[1] = at.y;
-  x->p[2] = at.z;
+  vl_store3(x->p, at);
   x->w[0] = -p->dx[i];
   x->w[1] = -p->dy[i];
   x->w[2] = -p->dz[i];

@@ -76,7 +76,7 @@ typedef struct Block {
 /* Rays first to first + n - 1. */
 static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t first, uint32_t n) {
   k->n = n;
-  vlVec3 center = vl_vec3(b->center[0], b->center[1], b->center[2]);
+  vlVec3 center = vl_load3(b->center);
   uint32_t padded = k->padded = n <= FEW_RAYS ? n : VL_PAD(n);
   float *const rows[8] = {k->ox, k->oy, k->oz, k->dx, k->dy, k->dz, k->low, k->height};
   vl_load_rays(r, first, n, padded, rows);
@@ -161,7 +161,7 @@ static void cross_few(Block *k, const vlBruteForce *b, bool any) {
 /* Which rays come near the bounding sphere of a primitive: 1. The bounds are wider than the
  * rounding errors, which grow with the distance. */
 static void approach(const Block *k, const float sphere[4], int32_t *near) {
-  vlVec3 c = vl_vec3(sphere[0], sphere[1], sphere[2]);
+  vlVec3 c = vl_load3(sphere);
   uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
@@ -177,8 +177,7 @@ static void approach(const Block *k, const float sphere[4], int32_t *near) {
 static bool is_second(const Block *k, const vlBruteForce *b, uint32_t j, uint32_t i) {
   const float *e = b->diagonal_edge[j], *m = b->diagonal_moment[j];
   vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]);
-  float side = side_of(vl_vec3(e[0], e[1], e[2]), vl_vec3(m[0], m[1], m[2]), d,
-                       vl_vec3(k->mx[i], k->my[i], k->mz[i]));
+  float side = side_of(vl_load3(e), vl_load3(m), d, vl_vec3(k->mx[i], k->my[i], k->mz[i]));
   float facing = vl_dot(at3(b->normal, j), d);
   return facing < 0.0f ? side < 0.0f : side > 0.0f;
 }

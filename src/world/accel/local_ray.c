@@ -70,7 +70,7 @@ bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r
   const float *corner[3];
   for (int k = 0; k < 3; k++) {
     const float *x = corner[k] = vl_vertex_at(s, f[k], r->time, room[k]);
-    c[k] = vl_sub(vl_vec3(x[0], x[1], x[2]), ray_o);
+    c[k] = vl_sub(vl_load3(x), ray_o);
   }
   float b0 = vl_dot(ray_d, vl_cross(c[1], c[2])), b1 = vl_dot(ray_d, vl_cross(c[2], c[0])),
         b2 = vl_dot(ray_d, vl_cross(c[0], c[1]));
@@ -91,7 +91,7 @@ bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r
   float p[3];
   for (int i = 0; i < 3; i++)
     p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
-  at->p = vl_vec3(p[0], p[1], p[2]);
+  at->p = vl_load3(p);
   at->n = vl_cross(vl_sub(c[1], c[0]), vl_sub(c[2], c[0]));
   return s->flip ? sum < 0
                  : sum > 0; /* sum is the direction times the normal of the face order */

@@ -22,7 +22,7 @@ static const float STEEP = 0x1p-5f, CLEAR = 0x1p-17f;
 
 /* Rays first to first + n - 1. A ray that begins too far away has no part that counts. */
 static void load(Block *k, const vlOccluders *o, const vlRays *r, uint32_t first, uint32_t n) {
-  vlVec3 center = vl_vec3(o->center[0], o->center[1], o->center[2]);
+  vlVec3 center = vl_load3(o->center);
   float reach2 = o->reach * o->reach;
   uint32_t padded = k->padded = VL_PAD(n);
   float *const rows[8] = {k->ox, k->oy, k->oz, k->dx, k->dy, k->dz, k->low, k->high};
@@ -40,10 +40,10 @@ static void load(Block *k, const vlOccluders *o, const vlRays *r, uint32_t first
 /* Marks the rays that a triangle blocks. clear: the least distance of a ray's ends from the
  * triangle's plane. */
 static void test_face(Block *k, const vlOccluder *f, float clear) {
-  vlVec3 corner = vl_vec3(f->corner[0], f->corner[1], f->corner[2]);
-  vlVec3 normal = vl_vec3(f->normal[0], f->normal[1], f->normal[2]);
-  vlVec3 e1 = vl_vec3(f->edge[0][0], f->edge[0][1], f->edge[0][2]);
-  vlVec3 e2 = vl_vec3(f->edge[1][0], f->edge[1][1], f->edge[1][2]);
+  vlVec3 corner = vl_load3(f->corner);
+  vlVec3 normal = vl_load3(f->normal);
+  vlVec3 e1 = vl_load3(f->edge[0]);
+  vlVec3 e2 = vl_load3(f->edge[1]);
   float inside = f->inside;
   uint32_t padded = k->padded;
   /* must vectorise */

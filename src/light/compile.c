@@ -59,6 +59,17 @@ vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSp
   return mip && mip->space_given ? mip->space : otherwise;
 }
 
+vlResult vl_light_set_frame(const vlLightDef *def, const int order[3], const float sign[3],
+                            vlWorldLight *light, vlError *error) {
+  vlMat4 inverse;
+  if (!vl_mat4_inverse(vl_mat4_load(def->world_from_light), &inverse))
+    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      light->corners[3 * i + j] = sign[i] * (float)inverse.m[4 * order[i] + j];
+  return VL_OK;
+}
+
 float vl_light_luminance(const vlSpectral *s) {
   if (s->kind == VL_SPECTRAL_RGB)
     return s->scale * (0.2126f * s->rgb[0] + 0.7152f * s->rgb[1] + 0.0722f * s->rgb[2]);

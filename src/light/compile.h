@@ -16,6 +16,10 @@ vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, v
 void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmitted *e);
 /* The colour space that the image declares; `otherwise` if it declares none. */
 vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSpace otherwise);
+/* Sets `corners` of a light at a point: the map from world directions to the light's. `order`
+ * and `sign` permute and flip the axes of the light. An error if its transform is singular. */
+vlResult vl_light_set_frame(const vlLightDef *def, const int order[3], const float sign[3],
+                            vlWorldLight *light, vlError *error);
 /* Luminance of a constant emitted spectrum. */
 float vl_light_luminance(const vlSpectral *spectrum);
 float vl_light_texel_luminance(vlTexel t, uint32_t channels);

@@ -19,19 +19,6 @@
 
 vlCompileLight vl_compile_light_goniometric, vl_compile_light_projection;
 
-/* Sets the rotation from world to light directions. `order` and `sign` permute and flip the
- * axes of the light. */
-static bool set_frame(const vlLightDef *def, const int order[3], const float sign[3],
-                      vlWorldLight *light) {
-  vlMat4 inverse;
-  if (!vl_mat4_inverse(vl_mat4_load(def->world_from_light), &inverse))
-    return false;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      light->corners[3 * i + j] = sign[i] * (float)inverse.m[4 * order[i] + j];
-  return true;
-}
-
 static float mean_of(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : (t.c[0] + t.c[1] + t.c[2]) / 3;
 }
@@ -81,8 +68,7 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
                    "%s: %u x %u: a goniometric light's image must be square (equal-area "
                    "octahedral map)",
                    def->path ? def->path : "the image", n, mip->levels[0].height);
-  if (!set_frame(def, order, sign, light))
-    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
+  VL_TRY(vl_light_set_frame(def, order, sign, light, error));
   const vlStretch stretch = vl_stretch(def->world_from_light);
   double sum = 0;
   for (uint32_t y = 0; y < n; y++)
@@ -137,8 +123,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   static const int order[3] = {0, 1, 2};
   static const float sign[3] = {1, -1, 1};
   uint32_t w = mip->levels[0].width, h = mip->levels[0].height;
-  if (!set_frame(def, order, sign, light))
-    return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
+  VL_TRY(vl_light_set_frame(def, order, sign, light, error));
   double aspect = (double)w / h, tangent = vl_precise_tan(0.5 * def->fov);
   light->own[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
   light->own[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));

@@ -23,24 +23,10 @@ static Sides *placed(const char *placing, const char *map, const char *directive
                      const char *parameters) {
   char scene[600];
   char form[1000];
-  static char text[TEXT];
-  Sides *s = calloc(1, sizeof *s);
-  assert_non_null(s);
-  s->rays = new_rays();
-  s->hits = calloc(1, sizeof *s->hits);
   snprintf(scene, sizeof scene,
            HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" %s", placing);
   snprintf(form, sizeof form, scene, map);
-  scene_text(text, form, directive, parameters);
-  Probe probe = {.ask = ask_sides, .user = s};
-  probe_world(text, &probe, 1);
-  return s;
-}
-
-static void free_placed(Sides *s) {
-  free(s->rays);
-  free(s->hits);
-  free(s);
+  return sides_of_scene(form, directive, parameters);
 }
 
 /* The largest difference of two normals; of two lines, if their sides do not count. */
@@ -81,8 +67,8 @@ static void check_placing(const vlKindRow *row, const char *parameters, int plac
            "%s: %s object, %s: of %u points %u are elsewhere, %u normals are others",
            parameters, placing == 1 ? "a still" : "a moving", map ? "mirrored" : "stretched",
            hit, far, turned);
-  free_placed(direct);
-  free_placed(other);
+  free_sides(direct);
+  free_sides(other);
 }
 
 static void check_placings(const vlKindRow *row, const char *parameters) {

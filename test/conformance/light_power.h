@@ -30,13 +30,19 @@ static vlEmission emitted_ray(const vlWorld *world, const vlTwoWay *way, uint32_
   return vl_emission_sample(world, way, lambda, 0.5f, u, v, s, t);
 }
 
-/* Luminance of what a light emits in all. The mean of samples: flux is radiance times the
- * cosine over the density of point and direction. */
-static Mean emitted_power(const vlWorld *world, uint32_t light) {
+/* A choice, to be freed, of this light alone. */
+static float *choice_of_light(const vlWorld *world, uint32_t light) {
   float *choice = calloc(world->lights.count + 1, sizeof *choice);
   assert_non_null(choice);
   for (size_t k = light + 1; k <= world->lights.count; k++)
-    choice[k] = 1; /* no other light is chosen */
+    choice[k] = 1;
+  return choice;
+}
+
+/* Luminance of what a light emits in all. The mean of samples: flux is radiance times the
+ * cosine over the density of point and direction. */
+static Mean emitted_power(const vlWorld *world, uint32_t light) {
+  float *choice = choice_of_light(world, light);
   const vlTwoWay way = {.choice = choice};
   Mean mean = {0};
   for (uint32_t i = 0; i < EMITTED; i++) {
@@ -78,10 +84,7 @@ static void check_emitted_density(const char *family, const char *kind, const ch
                                   const vlWorld *world, uint32_t light) {
   enum { RAYS = 1 << 10 };
   const float distance = 2; /* any */
-  float *choice = calloc(world->lights.count + 1, sizeof *choice);
-  assert_non_null(choice);
-  for (size_t k = light + 1; k <= world->lights.count; k++)
-    choice[k] = 1;
+  float *choice = choice_of_light(world, light);
   const vlTwoWay way = {.choice = choice};
   const bool at_point = world->lights.items[light].at_point;
   uint32_t valid = 0;

@@ -227,20 +227,31 @@ static void ask_sides(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   memcpy(s->shading, s->hits->shading, sizeof s->shading);
 }
 
-static Sides *sides_of(const char *before, const char *directive, const char *parameters) {
-  char form[400];
+/* form: a scene with %s for the shape. */
+static Sides *sides_of_scene(const char *form, const char *directive, const char *parameters) {
   static char text[TEXT];
   Sides *s = calloc(1, sizeof *s);
   assert_non_null(s);
   s->rays = new_rays();
   s->hits = calloc(1, sizeof *s->hits);
-  snprintf(form, sizeof form,
-           HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" %s Shape %%s",
-           before);
   scene_text(text, form, directive, parameters);
   Probe probe = {.ask = ask_sides, .user = s};
   probe_world(text, &probe, 1);
   return s;
+}
+
+static Sides *sides_of(const char *before, const char *directive, const char *parameters) {
+  char form[400];
+  snprintf(form, sizeof form,
+           HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" %s Shape %%s",
+           before);
+  return sides_of_scene(form, directive, parameters);
+}
+
+static void free_sides(Sides *s) {
+  free(s->rays);
+  free(s->hits);
+  free(s);
 }
 
 /* A surface that is turned inside out has its outside on the other side: its normals are the
@@ -262,12 +273,8 @@ static void check_sides(const vlKindRow *row, const ShapeVariant *v) {
   if (hit < 10 || wrong)
     broken("shapes", row->name, "%s, inside out: %u of %u normals are not the opposite",
            v->parameters, wrong, hit);
-  free(s->rays);
-  free(s->hits);
-  free(s);
-  free(reversed->rays);
-  free(reversed->hits);
-  free(reversed);
+  free_sides(s);
+  free_sides(reversed);
 }
 
 static void laws_of_shapes(void **state) {

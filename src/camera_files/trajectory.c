@@ -190,8 +190,7 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
                                    : result;
 }
 
-/* ---- public functions ---------------------------------------------------------------------
- */
+/* ---- public functions -------------------------------------------------------------------- */
 
 vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCameraFileDef *def,
                             vlTrajectory **trajectory, vlError *error) {

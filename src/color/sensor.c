@@ -30,9 +30,9 @@ static double sampled(const float *v, int count, int stride, int lambda) {
   return t > 0.0 ? a + t * ((double)v[(i + 1) * stride] - a) : a;
 }
 
-/* ---- daylight (CIE 15; pbrt's DenselySampledSpectrum::D)
- * ---------------------------------------------------------------------------- */
+/* ---- daylight ---------------------------------------------------------------------------- */
 
+/* CIE 15; pbrt's DenselySampledSpectrum::D. */
 void vl_daylight_xy(double t, double xy[2]) {
   double x = t <= 7000.0
                  ? -4.6070e9 / (t * t * t) + 2.9678e6 / (t * t) + 0.09911e3 / t + 0.244063
@@ -85,8 +85,8 @@ static void project(const float *patch, const double light[VL_LAMBDA_COUNT],
 void vl_sensor_make(const vlSensorCurves *sensor, double kelvin, vlColorSpace space,
                     float *observer, double xyz_from_sensor[9]) {
   double light[VL_LAMBDA_COUNT], white[VL_LAMBDA_COUNT];
-  double lit[3], shown[3],
-      output[3]; /* white patch: sensor and eye in the light; eye in white */
+  /* of a white patch: what the sensor and the eye see in the light, and the eye in white */
+  double lit[3], shown[3], output[3];
   double inverse[9], transposed[9];
   const float *const eye[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()};
   const float *const own[3] = {observer, observer + 1, observer + 2};

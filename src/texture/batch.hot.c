@@ -5,8 +5,7 @@
 #include "texture/kinds.h"
 #include "texture/run.hot.h"
 
-/* ---- the point of a lane ------------------------------------------------------------------
- */
+/* ---- the point of a lane ----------------------------------------------------------------- */
 
 /* Interpolates the vertex attributes (uv sets, colours) of lane i's triangle at the point. */
 static inline void lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,

@@ -82,8 +82,7 @@ typedef struct vlTextureNode {
   float texture_from_world[12];
 } vlTextureNode;
 
-/* ---- where a node is evaluated (pbrt book 10.2) -------------------------------------------
- */
+/* ---- where a node is evaluated (pbrt book 10.2) ------------------------------------------ */
 
 /* A point at which a texture is evaluated: uv, position and normal in world space, and the
  * footprint. The footprint has a width in world units and, for image lookups, the two axes of

@@ -5,6 +5,7 @@
 #define TEST_CONFORMANCE_BUMPS_H
 
 #include "conformance.h"
+#include "math/double3.h"
 #include "shapes.h"
 #include "unit.h"
 
@@ -40,9 +41,7 @@ static void moved_point(const Bumps *b, uint32_t i, double moved[3]) {
 /* Three rays close to each other. */
 static void compare_bumps(Bumps *b, uint32_t i, double step) {
   double p[3][3];
-  double n[3];
-  double length = 0;
-  double same = 0;
+  double along[3], up[3], n[3], shading[3];
   double far = 0;
   for (uint32_t j = 0; j < 3; j++) {
     if (!isfinite(b->hits->t[i + j]))
@@ -56,14 +55,12 @@ static void compare_bumps(Bumps *b, uint32_t i, double step) {
   if (far > 4 * step)
     return;
   for (int k = 0; k < 3; k++) {
-    const int x = (k + 1) % 3;
-    const int y = (k + 2) % 3;
-    n[k] =
-        (p[1][x] - p[0][x]) * (p[2][y] - p[0][y]) - (p[1][y] - p[0][y]) * (p[2][x] - p[0][x]);
-    length += n[k] * n[k];
+    along[k] = p[1][k] - p[0][k];
+    up[k] = p[2][k] - p[0][k];
+    shading[k] = (double)b->hits->shading[k][i];
   }
-  for (int k = 0; k < 3; k++)
-    same += n[k] * (double)b->hits->shading[k][i] / sqrt(length);
+  vl_cross3(along, up, n);
+  const double same = vl_dot3(n, shading) / vl_norm3(n);
   b->compared++;
   b->wrong += !(fabs(same) > 0.9995);
 }

@@ -201,8 +201,7 @@ static void halton_scrambles_branches_apart(void **state) {
     digits_of_branches(dimension, primes[dimension]);
 }
 
-/* ---- Sobol' points from their definition --------------------------------------------------
- */
+/* ---- Sobol' points from their definition ------------------------------------------------- */
 
 /* Arithmetic modulo 2^32 one bit at a time. */
 static uint32_t slow_sum(uint32_t a, uint32_t b) {

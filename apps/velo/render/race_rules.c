@@ -64,8 +64,7 @@ void race_take(vlRenderDef *def, RaceKind kind, const vlTracerChoice *choice) {
     def->light_paths = 0;
 }
 
-/* ---- the report's line
- * ---------------------------------------------------------------------------- */
+/* ---- the report's line ------------------------------------------------------------------- */
 
 static void trial_name(const vlTracerTrial *trial, char *text, size_t size) {
   bool camera = trial->tracer == VL_TRACER_VOLPATH;

@@ -26,9 +26,8 @@ int verify_folder_open(Verify *v) {
   return -1;
 }
 
-/* In the file exposure times are in ns, light in photons per pixel. */
-/* A series of frames. kind: 'b' bright, 'd' dark. time: exposure time, seconds. electrons: mean
- * number per pixel. */
+/* A series of frames. kind: 'b' bright, 'd' dark. time: exposure time, seconds; in the file in
+ * ns. electrons: mean number per pixel; in the file photons. */
 int verify_folder_series(Verify *v, char kind, double time, double electrons) {
   if (!v->descriptor)
     return -1;

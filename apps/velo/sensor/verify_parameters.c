@@ -86,8 +86,7 @@ static double peak(const Verify *v, bool expected) {
   return electrons;
 }
 
-/* ---- what is measured ---------------------------------------------------------------------
- */
+/* ---- what is measured -------------------------------------------------------------------- */
 
 /* Slope through the origin of y over x, up to 70 % of the saturation. */
 typedef double StepValue(const Verify *v, const VerifyStep *step);
@@ -171,8 +170,7 @@ static double linearity_error(const Verify *v, double saturation) {
   return sum / count;
 }
 
-/* ---- rows ---------------------------------------------------------------------------------
- */
+/* ---- rows -------------------------------------------------------------------------------- */
 
 /* Why dark frames cannot be measured; null: they can. */
 static const char *dark_problem(const Verify *v) {

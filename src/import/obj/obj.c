@@ -514,8 +514,7 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
   return vl_scene_result(scene, error);
 }
 
-/* ---- names of objects (o), groups (g) and materials become labels of shapes ---------------
- */
+/* ---- names of objects (o), groups (g) and materials become labels of shapes -------------- */
 
 /* A mesh of several materials is one part per material. */
 static bool has_neighbour(const vlObj *obj, size_t part) {

@@ -55,8 +55,7 @@ vlPending *vl_import_wait(vlImport *import, const vlStatement *s, vlAttributeTar
   return p;
 }
 
-/* ---- statements that need no file of their own --------------------------------------------
- */
+/* ---- statements that need no file of their own ------------------------------------------- */
 
 /* Records a directive that precedes WorldBegin. The last directive of a kind counts. */
 static bool choose(vlImport *import, const vlStatement *s) {

@@ -174,8 +174,7 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
   return vl_import_add_name(import, &import->media, name, id.index);
 }
 
-/* ---- the media of shapes, lights and the camera
- * -------------------------------------------------------------------- */
+/* ---- the media of shapes, lights and the camera ------------------------------------------ */
 
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source) {
   const char *inside = target == 's' && import->state.inside ? import->state.inside : "";

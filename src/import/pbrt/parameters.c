@@ -60,8 +60,7 @@ size_t vl_param_count(const vlParam *param) {
   return param->floats.count + param->integers.count + param->strings.count;
 }
 
-/* ---- the parameters of a directive --------------------------------------------------------
- */
+/* ---- the parameters of a directive ------------------------------------------------------- */
 
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
                       const vlParamList *own, const vlParamList *attributes) {

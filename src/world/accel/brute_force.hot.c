@@ -94,8 +94,10 @@ static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t firs
   }
 }
 
-/* The nearest crossing of each ray with face j, if it is nearer than that so far. */
-static void cross_closest(Block *k, const vlBruteForce *b, uint32_t j) {
+/* The nearest crossing of each ray with face j, if it is nearer than that so far. any: only
+ * marks the rays that the face blocks by id 0. */
+static inline __attribute__((always_inline)) void cross_many(Block *k, const vlBruteForce *b,
+                                                             uint32_t j, bool any) {
   Face q = face_at(b, j);
   uint32_t padded = k->padded;
   /* must vectorise */
@@ -103,30 +105,17 @@ static void cross_closest(Block *k, const vlBruteForce *b, uint32_t j) {
     Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]),
                              vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
                              vl_vec3(k->mx[i], k->my[i], k->mz[i]));
-    Crossing near = {k->height[i], k->speed[i]};
+    Crossing near = {k->height[i], any ? 1.0f : k->speed[i]};
     int nearer = is_between(at, k->low[i], near);
-    k->height[i] = nearer ? at.height : near.height;
-    k->speed[i] = nearer ? at.speed : near.speed;
-    k->id[i] = nearer ? (int32_t)j : k->id[i];
+    k->id[i] = nearer ? (any ? 0 : (int32_t)j) : k->id[i];
+    if (!any) {
+      k->height[i] = nearer ? at.height : near.height;
+      k->speed[i] = nearer ? at.speed : near.speed;
+    }
   }
 }
 
-/* Marks the rays that face j blocks: id 0. */
-static void cross_any(Block *k, const vlBruteForce *b, uint32_t j) {
-  Face q = face_at(b, j);
-  uint32_t padded = k->padded;
-  /* must vectorise */
-  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]),
-                             vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
-                             vl_vec3(k->mx[i], k->my[i], k->mz[i]));
-    Crossing end = {k->height[i], 1.0f};
-    k->id[i] = is_between(at, k->low[i], end) ? 0 : k->id[i];
-  }
-}
-
-/* The same for few rays: each against all faces, many at a time. any: marks rays as cross_any
- * does. */
+/* The same for few rays: each against all faces, many at a time. */
 static void cross_few(Block *k, const vlBruteForce *b, bool any) {
   _Alignas(64) float height[VL_BRUTE_FACES], speed[VL_BRUTE_FACES];
   uint32_t padded = VL_PAD(b->faces);
@@ -192,30 +181,41 @@ static bool meets_other(const Block *k, const vlWorldShape *s, uint32_t prim, ui
   return true;
 }
 
+/* What the rays of a block meet: the ids of the nearest crossings, and their distances in
+ * `height`. any: id 0 for the rays that something blocks. */
+static inline __attribute__((always_inline)) void meet(const vlWorld *world,
+                                                       const vlBruteForce *b, Block *k,
+                                                       bool any) {
+  _Alignas(64) int32_t near[BLOCK];
+  if (k->n <= FEW_RAYS)
+    cross_few(k, b, any);
+  else
+    for (uint32_t j = 0; j < b->faces; j++)
+      if (!any || !b->pass_shadow[j])
+        cross_many(k, b, j, any);
+  for (uint32_t i = 0; i < k->n; i++)
+    k->height[i] /= k->speed[i];
+  for (uint32_t id = b->faces; id < b->faces + b->others; id++) {
+    double met;
+    if (any && b->pass_shadow[id])
+      continue;
+    approach(k, b->sphere[id - b->faces], near);
+    for (uint32_t i = 0; i < k->n; i++)
+      if (near[i] && !(any && k->id[i] != NO_HIT) &&
+          meets_other(k, &world->shapes.items[b->shape[id]], b->prim[id], i, k->height[i],
+                      &met)) {
+        k->height[i] = (float)met;
+        k->id[i] = any ? 0 : (int32_t)id;
+      }
+  }
+}
+
 static void closest(const vlWorld *world, const vlBruteForce *b, uint32_t n, const vlRays *rays,
                     uint32_t *shape, uint32_t *prim, uint32_t *instance, float *t) {
   Block k;
-  _Alignas(64) int32_t near[BLOCK];
   for (uint32_t first = 0; first < n; first += BLOCK) {
     load(&k, b, rays, first, n - first < BLOCK ? n - first : BLOCK);
-    if (k.n <= FEW_RAYS)
-      cross_few(&k, b, false);
-    else
-      for (uint32_t j = 0; j < b->faces; j++)
-        cross_closest(&k, b, j);
-    for (uint32_t i = 0; i < k.n; i++)
-      k.height[i] /= k.speed[i];
-    for (uint32_t j = 0; j < b->others; j++) {
-      uint32_t id = b->faces + j;
-      double met;
-      approach(&k, b->sphere[j], near);
-      for (uint32_t i = 0; i < k.n; i++)
-        if (near[i] && meets_other(&k, &world->shapes.items[b->shape[id]], b->prim[id], i,
-                                   k.height[i], &met)) {
-          k.height[i] = (float)met;
-          k.id[i] = (int32_t)id;
-        }
-    }
+    meet(world, b, &k, false);
     for (uint32_t i = 0; i < k.n; i++) {
       bool hit = k.id[i] != NO_HIT;
       uint32_t face = (uint32_t)k.id[i],
@@ -231,27 +231,9 @@ static void closest(const vlWorld *world, const vlBruteForce *b, uint32_t n, con
 static void occluded(const vlWorld *world, const vlBruteForce *b, uint32_t n,
                      const vlRays *rays, uint8_t *blocked) {
   Block k;
-  _Alignas(64) int32_t near[BLOCK];
   for (uint32_t first = 0; first < n; first += BLOCK) {
     load(&k, b, rays, first, n - first < BLOCK ? n - first : BLOCK);
-    if (k.n <= FEW_RAYS)
-      cross_few(&k, b, true);
-    else
-      for (uint32_t j = 0; j < b->faces; j++)
-        if (!b->pass_shadow[j])
-          cross_any(&k, b, j);
-    for (uint32_t j = 0; j < b->others; j++) {
-      uint32_t id = b->faces + j;
-      double met;
-      if (b->pass_shadow[id])
-        continue;
-      approach(&k, b->sphere[j], near);
-      for (uint32_t i = 0; i < k.n; i++)
-        if (near[i] && k.id[i] == NO_HIT &&
-            meets_other(&k, &world->shapes.items[b->shape[id]], b->prim[id], i, k.height[i],
-                        &met))
-          k.id[i] = 0;
-    }
+    meet(world, b, &k, true);
     for (uint32_t i = 0; i < k.n; i++)
       blocked[first + i] = k.id[i] != NO_HIT;
   }

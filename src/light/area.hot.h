@@ -6,6 +6,21 @@
 #include "math/warp.h"
 #include "trace/stages.h"
 
+/* A point of an area light. */
+typedef struct vlLightPoint {
+  vlVec3 p, n;
+  float offset;     /* of p (trace/surface/offset.h) */
+  float pdf;        /* per area */
+  float u, v;       /* where the image of the emission is read */
+  float weights[3]; /* barycentric coordinates in a triangle */
+} vlLightPoint;
+/* The point of a triangle with the barycentric coordinates b. */
+vlLightPoint vl_light_point_at(const vlWorldLight *light, const vlWorldShape *shape,
+                               const float b[3]);
+/* A random point of a shape of another kind. */
+vlLightPoint vl_light_point_on(const vlWorldLight *light, const vlWorldShape *shape, float u,
+                               float v);
+
 /* ---- triangles --------------------------------------------------------------------------- */
 
 /* Corners of a triangle, relative to the point from which it is seen. */

@@ -17,14 +17,9 @@ static inline float vl_light_coverage(const vlWorld *world, const vlWorldLight *
   vlTextureQuery at = {u, v, p, n, &corner};
   if (s->triangles) { /* for triangles, the arguments u and v belong to the
                                           emission's image */
-    static const float unit[6] = {0, 0, 1, 0, 1, 1};
-    const uint32_t *f = s->indices + 3 * (size_t)light->prim;
-    at.u = at.v = 0;
-    for (int k = 0; k < 3; k++) {
-      const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
-      at.u += weights[k] * t[0];
-      at.v += weights[k] * t[1];
-    }
+    vlVec2 uv = vl_triangle_uv(s->uvs, s->indices + 3 * (size_t)light->prim, weights);
+    at.u = uv.x;
+    at.v = uv.y;
   }
   return vl_clamp(vl_texture_float_at(world, s->alpha, &at), 0.0f, 1.0f);
 }

@@ -1,6 +1,7 @@
 /* light/emission_sample.hot.c: samples rays that leave lights, and computes their densities, of
  * all kinds and of emissive shapes (pbrt book 12; 3rd edition 16.1.2). The code is scalar
  * because each lane has its own light. */
+#include "light/area.hot.h"
 #include "light/coverage.hot.h"
 #include "light/kinds.hot.h"
 #include "light/kinds.row.h"
@@ -82,52 +83,13 @@ float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t l
 
 /* ---- area lights ------------------------------------------------------------------------- */
 
-typedef struct Spot {
-  vlVec3 p, n;
-  float offset, pdf, u, v;
-  float weights[3]; /* barycentric coordinates in a triangle */
-} Spot;
-
-static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float u, float v) {
-  static const float unit[6] = {0, 0, 1, 0, 1, 1};
-  const float *q = light->corners;
-  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
-  vlVec2 b01 = vl_warp_triangle(u, v);
-  float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
-  vlVec3 corner[3];
-  Spot r = {.n = vl_load3(light->direction), .weights = {b[0], b[1], b[2]}};
-  vlVec3 ns = vl_vec3(0, 0, 0);
-  const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
-  for (int k = 0; k < 3; k++) {
-    corner[k] = vl_load3(q + 3 * k);
-    r.p = vl_add(r.p, vl_mul(corner[k], b[k]));
-    const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
-    r.u += b[k] * t[0];
-    r.v += b[k] * t[1];
-    if (light->one_sided_normals)
-      continue;
-    const float *x = s->normals + 3 * (size_t)f[k];
-    ns = vl_add(ns, vl_mul(vl_load3(x), b[k]));
-  }
-  if (vl_dot(r.n, ns) < 0.0f)
-    r.n = vl_neg(r.n);
-  r.offset =
-      vl_triangle_offset(r.n, r.p, corner[0], corner[1], corner[2], b[0], b[1], b[2], 0.0f);
-  r.pdf = light->area > 0.0f ? 1.0f / light->area : 0.0f;
-  return r;
-}
-
-static Spot on_shape(const vlWorldLight *light, const vlWorldShape *s, float u, float v) {
-  vlSurfacePoint point;
-  double pdf;
-  vl_shape_sample(s, light->prim, u, v, &point, &pdf);
-  return (Spot){vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
-                vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]),
-                vl_point_offset(&point),
-                (float)pdf,
-                point.uv[0],
-                point.uv[1],
-                {0, 0, 0}};
+static vlLightPoint random_point(const vlWorldLight *light, const vlWorldShape *s, float u,
+                                 float v) {
+  if (!s->triangles)
+    return vl_light_point_on(light, s, u, v);
+  vlVec2 b = vl_warp_triangle(u, v);
+  const float weights[3] = {b.x, b.y, 1.0f - b.x - b.y};
+  return vl_light_point_at(light, s, weights);
 }
 
 /* A direction of the cosine hemisphere about z, drawn together into the spread. */
@@ -144,8 +106,7 @@ static void emit_from_face(const vlEmissionQuery *q, vlEmission *out) {
   const vlEmitted *e = q->emitted;
   float s = q->s, t = q->t;
   const vlWorldShape *shape = &world->shapes.items[light->shape];
-  Spot at = shape->triangles ? on_triangle(light, shape, q->u, q->v)
-                             : on_shape(light, shape, q->u, q->v);
+  vlLightPoint at = random_point(light, shape, q->u, q->v);
   if (!(at.pdf > 0.0f) || (light->outer_side && !emits_outwards(world, light)))
     return;
   float sides = 1.0f;

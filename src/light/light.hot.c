@@ -49,13 +49,38 @@ void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[
 
 /* ---- area lights ------------------------------------------------------------------------- */
 
-typedef struct Sample {
-  vlVec3 p, n;  /* point and normal on the light */
-  float offset; /* of p (trace/surface/offset.h) */
-  float pdf;    /* per solid angle */
-  float u, v;
-  float weights[3]; /* barycentric coordinates in a triangle */
-} Sample;
+vlLightPoint vl_light_point_at(const vlWorldLight *light, const vlWorldShape *s,
+                               const float b[3]) {
+  const float *q = light->corners;
+  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
+  vlVec3 p0 = vl_load3(q), p1 = vl_load3(q + 3), p2 = vl_load3(q + 6), ns = {0, 0, 0};
+  vlVec2 uv = vl_triangle_uv(s->emission_uvs ? s->emission_uvs : s->uvs, f, b);
+  vlLightPoint r = {.n = vl_load3(light->direction),
+                    .pdf = light->area > 0.0f ? 1.0f / light->area : 0.0f,
+                    .u = uv.x,
+                    .v = uv.y,
+                    .weights = {b[0], b[1], b[2]}};
+  r.p = vl_add(vl_add(vl_mul(p0, b[0]), vl_mul(p1, b[1])), vl_mul(p2, b[2]));
+  r.offset = vl_triangle_offset(r.n, r.p, p0, p1, p2, b[0], b[1], b[2], 0.0f);
+  for (int k = 0; !light->one_sided_normals && k < 3; k++)
+    ns = vl_add(ns, vl_mul(vl_load3(s->normals + 3 * (size_t)f[k]), b[k]));
+  if (vl_dot(r.n, ns) < 0.0f)
+    r.n = vl_neg(r.n);
+  return r;
+}
+
+vlLightPoint vl_light_point_on(const vlWorldLight *light, const vlWorldShape *s, float u,
+                               float v) {
+  vlSurfacePoint at;
+  double pdf;
+  vl_shape_sample(s, light->prim, u, v, &at, &pdf);
+  return (vlLightPoint){.p = vl_vec3((float)at.p[0], (float)at.p[1], (float)at.p[2]),
+                        .n = vl_vec3((float)at.n[0], (float)at.n[1], (float)at.n[2]),
+                        .offset = vl_point_offset(&at),
+                        .pdf = (float)pdf,
+                        .u = at.uv[0],
+                        .v = at.uv[1]};
+}
 
 /* Whether a light is a whole sphere whose far side sends no light through the near one: it is
  * opaque, only its light is visible, or it is an interface and emits outwards only. As in
@@ -84,47 +109,16 @@ static Near near_triangle(const vlWorldLight *light, vlVec3 from) {
   return r;
 }
 
-static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, bool with_uv,
-                              vlVec3 from, float u, float v) {
-  const float *q = light->corners;
-  vlVec3 p[3] = {vl_load3(q), vl_load3(q + 3), vl_load3(q + 6)};
+static vlLightPoint sample_triangle(const vlWorldLight *light, const vlWorldShape *s,
+                                    vlVec3 from, float u, float v) {
   vlVec2 b01 = vl_warp_triangle(u, v);
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
   Near near = near_triangle(light, from);
-  if (near.near) {
-    vlVec3 w = vl_triangle_weights(vl_triangle_from(q, from),
-                                   vl_warp_spherical_triangle(near.cap, u, v));
-    vl_store3(b, w);
-  }
-  Sample r;
-  r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
-  r.n = vl_load3(light->direction);
-  r.offset = vl_triangle_offset(r.n, r.p, p[0], p[1], p[2], b[0], b[1], b[2], 0.0f);
-  r.u = r.v = 0;
-  for (int k = 0; k < 3; k++)
-    r.weights[k] = b[k];
-  r.pdf = near.near            ? 1.0f / near.cap.solid_angle
-          : light->area > 0.0f ? vl_solid_pdf(1.0f / light->area, from, r.p, r.n)
-                               : 0.0f;
-  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
-  if (!light->one_sided_normals) {
-    vlVec3 ns = vl_vec3(0, 0, 0);
-    for (int k = 0; k < 3; k++) {
-      const float *x = s->normals + 3 * (size_t)f[k];
-      ns = vl_add(ns, vl_mul(vl_load3(x), b[k]));
-    }
-    if (vl_dot(r.n, ns) < 0.0f)
-      r.n = vl_neg(r.n);
-  }
-  if (with_uv) {
-    static const float unit[6] = {0, 0, 1, 0, 1, 1};
-    const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
-    for (int k = 0; k < 3; k++) {
-      const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
-      r.u += b[k] * t[0];
-      r.v += b[k] * t[1];
-    }
-  }
+  if (near.near)
+    vl_store3(b, vl_triangle_weights(vl_triangle_from(light->corners, from),
+                                     vl_warp_spherical_triangle(near.cap, u, v)));
+  vlLightPoint r = vl_light_point_at(light, s, b);
+  r.pdf = near.near ? 1.0f / near.cap.solid_angle : vl_solid_pdf(r.pdf, from, r.p, r.n);
   return r;
 }
 
@@ -138,52 +132,36 @@ vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlP
   vlVec3 g = vl_cross(e1, e2), way = vl_sub(at->p, a);
   float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
   float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
-  const uint32_t *f = s->indices + 3 * (size_t)light->prim;
-  const float *t0 = s->emission_uvs + 2 * (size_t)f[0],
-              *t1 = s->emission_uvs + 2 * (size_t)f[1],
-              *t2 = s->emission_uvs + 2 * (size_t)f[2];
-  uv.x = (1.0f - b1 - b2) * t0[0] + b1 * t1[0] + b2 * t2[0];
-  uv.y = (1.0f - b1 - b2) * t0[1] + b1 * t1[1] + b2 * t2[1];
-  return uv;
+  const float b[3] = {1.0f - b1 - b2, b1, b2};
+  return vl_triangle_uv(s->emission_uvs, s->indices + 3 * (size_t)light->prim, b);
 }
 
-static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec3 from, float u,
-                          float v) {
+/* Samples a point of a light by the solid angle at `from`, which its pdf is per. */
+static vlLightPoint sample_area(const vlWorld *world, const vlWorldLight *light, vlVec3 from,
+                                float u, float v) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
-  bool with_uv = world->emitted.items[light->emitted].image >= 0;
   if (s->triangles)
-    return sample_triangle(light, s, with_uv, from, u, v);
+    return sample_triangle(light, s, from, u, v);
   vlVec3 center;
   float radius;
-  if (round_light(s, light, &center, &radius)) {
-    vlVec3 to = vl_sub(center, from);
-    if (vl_outside_sphere(to, radius)) {
-      vlSphereSample at = vl_sample_sphere(center, radius, s->flip ? -1.0f : 1.0f, from, u, v);
-      Sample r = {at.p, at.n, light->corners[5], at.pdf, 0, 0, {0, 0, 0}};
-      if (with_uv) { /* the shape computes uv */
-        vlShapeHit hit = {.t = 0};
-        vlSurfacePoint point;
-        for (int i = 0; i < 3; i++)
-          hit.p[i] = s->to_shape[4 * i] * r.p.x + s->to_shape[4 * i + 1] * r.p.y +
-                     s->to_shape[4 * i + 2] * r.p.z + s->to_shape[4 * i + 3];
-        vl_shape_point(s, light->prim, &hit, &point);
-        r.u = point.uv[0];
-        r.v = point.uv[1];
-      }
-      return r;
+  if (round_light(s, light, &center, &radius) &&
+      vl_outside_sphere(vl_sub(center, from), radius)) {
+    vlSphereSample at = vl_sample_sphere(center, radius, s->flip ? -1.0f : 1.0f, from, u, v);
+    vlLightPoint r = {.p = at.p, .n = at.n, .offset = light->corners[5], .pdf = at.pdf};
+    if (world->emitted.items[light->emitted].image >= 0) { /* the shape computes uv */
+      vlShapeHit hit = {.t = 0};
+      vlSurfacePoint point;
+      for (int i = 0; i < 3; i++)
+        hit.p[i] = s->to_shape[4 * i] * r.p.x + s->to_shape[4 * i + 1] * r.p.y +
+                   s->to_shape[4 * i + 2] * r.p.z + s->to_shape[4 * i + 3];
+      vl_shape_point(s, light->prim, &hit, &point);
+      r.u = point.uv[0];
+      r.v = point.uv[1];
     }
+    return r;
   }
-  vlSurfacePoint point;
-  double pdf;
-  vl_shape_sample(s, light->prim, u, v, &point, &pdf);
-  Sample r;
-  r.p = vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]);
-  r.n = vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]);
-  r.offset = vl_point_offset(&point);
-  r.u = point.uv[0];
-  r.v = point.uv[1];
-  r.weights[0] = r.weights[1] = r.weights[2] = 0;
-  r.pdf = vl_solid_pdf((float)pdf, from, r.p, r.n);
+  vlLightPoint r = vl_light_point_on(light, s, u, v);
+  r.pdf = vl_solid_pdf(r.pdf, from, r.p, r.n);
   return r;
 }
 
@@ -215,7 +193,7 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from,
 
 static void sample_face(const vlLightQuery *q, vlLightSample *out) {
   const vlWorldLight *light = q->light;
-  Sample at = sample_area(q->world, light, q->p, q->u, q->v);
+  vlLightPoint at = sample_area(q->world, light, q->p, q->u, q->v);
   vlVec3 w = vl_normalize(vl_sub(at.p, q->p));
   float facing = -vl_dot(w, at.n);
   if (!(facing > 0.0f) && !(q->emitted->two_sided && facing < 0.0f))

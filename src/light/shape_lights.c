@@ -78,17 +78,16 @@ static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_
   const vlTextureNode *node = &world->nodes.items[e->node - 1];
   const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
   const uint32_t *f = s->indices + 3 * (size_t)prim;
-  float unit[6] = {0, 0, 1, 0, 1, 1}, t[6];
-  for (int k = 0; k < 3; k++)
-    for (int j = 0; j < 2; j++)
-      t[2 * k + j] = uvs ? uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
-  float area = fabsf((t[2] - t[0]) * (t[5] - t[1]) - (t[4] - t[0]) * (t[3] - t[1])), sum = 0;
+  const float *a = vl_corner_uv(uvs, f, 0), *b = vl_corner_uv(uvs, f, 1),
+              *c = vl_corner_uv(uvs, f, 2);
+  float area = fabsf((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])), sum = 0;
   vlTexturePoint at = {0, 0, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
   float side = sqrtf(0.5f * area), axes[4] = {side, 0, 0, side};
   vl_texture_axes_of_uv(node, axes, &at);
   for (int i = 0; i < 4; i++) {
-    at.u = inside[i][0] * t[0] + inside[i][1] * t[2] + inside[i][2] * t[4];
-    at.v = inside[i][0] * t[1] + inside[i][1] * t[3] + inside[i][2] * t[5];
+    vlVec2 uv = vl_triangle_uv(uvs, f, inside[i]);
+    at.u = uv.x;
+    at.v = uv.y;
     vlTexel x = vl_texture_rgba(node, world->images.items[e->image].mipmap, at);
     sum += 0.25f * vl_light_texel_luminance(x, 4);
   }

@@ -71,6 +71,23 @@ typedef struct vlWorldShape {
       to_shape[12]; /* from_shape: group from shape; to_shape: its inverse; row-major 3x4 */
 } vlWorldShape;
 
+/* The uv of corner k of a triangle of these vertices, and of its point with the barycentric
+ * coordinates b. uvs: by vertex; null: those of pbrt. */
+static inline const float *vl_corner_uv(const float *uvs, const uint32_t vertices[3], int k) {
+  static const float none[3][2] = {{0, 0}, {1, 0}, {1, 1}};
+  return uvs ? uvs + 2 * (size_t)vertices[k] : none[k];
+}
+static inline vlVec2 vl_triangle_uv(const float *uvs, const uint32_t vertices[3],
+                                    const float b[3]) {
+  vlVec2 uv = {0, 0};
+  for (int k = 0; k < 3; k++) {
+    const float *corner = vl_corner_uv(uvs, vertices, k);
+    uv.x += b[k] * corner[0];
+    uv.y += b[k] * corner[1];
+  }
+  return uv;
+}
+
 /* The light of a prim, or VL_NONE. */
 static inline uint32_t vl_shape_light(const vlWorldShape *s, uint32_t prim) {
   if (s->first_light == VL_NONE)

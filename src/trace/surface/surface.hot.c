@@ -21,12 +21,11 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
   uint32_t instance = hits->instance[i];
-  static const float unit[6] = {0, 0, 1, 0, 1, 1};
   c->error[i] = 0;
   c->flip[i] = s->flip ? -1.0f : 1.0f;
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
-    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
+    const float *t = vl_corner_uv(s->uvs, f, k);
     for (int j = 0; j < 3; j++)
       c->p[3 * k + j][i] = x[j];
     c->uv[2 * k][i] = t[0];
@@ -435,12 +434,11 @@ typedef struct OneTriangle {
 
 static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_t shape,
                                        uint32_t prim, uint32_t instance) {
-  static const float unit[6] = {0, 0, 1, 0, 1, 1};
   const vlWorldShape *s = &world->shapes.items[shape];
   const uint32_t *f = s->indices + 3 * (size_t)prim;
   const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
   OneTriangle r;
-  float uv[6];
+  const float *uv[3];
   r.error = 0;
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
@@ -454,8 +452,7 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
       const float *y = s->normals + 3 * (size_t)f[k];
       r.n[k] = q ? vl_affine_normal(q->to_group, vl_load3(y)) : vl_load3(y);
     }
-    for (int j = 0; j < 2; j++)
-      uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
+    uv[k] = vl_corner_uv(s->uvs, f, k);
   }
   if (world->moves && triangle_moves(world, shape, instance)) {
     MovedTriangle moving = move_triangle(s, q, prim, time);
@@ -465,7 +462,7 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
     }
     r.error = moving.error;
   }
-  r.uv = (TriangleUv){uv[0], uv[1], uv[2], uv[3], uv[4], uv[5]};
+  r.uv = (TriangleUv){uv[0][0], uv[0][1], uv[1][0], uv[1][1], uv[2][0], uv[2][1]};
   r.flip = s->flip != (q && q->mirrored) ? -1.0f : 1.0f;
   return r;
 }

@@ -78,16 +78,12 @@ bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r
   b0 *= inv;
   b1 *= inv;
   b2 *= inv;
-  static const float unit[6] = {0, 0, 1, 0, 1, 1};
   b[0] = b0;
   b[1] = b1;
   b[2] = b2;
-  at->u = at->v = 0;
-  for (int k = 0; k < 3; k++) {
-    const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
-    at->u += b[k] * t[0];
-    at->v += b[k] * t[1];
-  }
+  vlVec2 uv = vl_triangle_uv(s->uvs, f, b);
+  at->u = uv.x;
+  at->v = uv.y;
   float p[3];
   for (int i = 0; i < 3; i++)
     p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];

@@ -164,6 +164,15 @@ typedef struct vlShadowRays {
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 
+/* Sets the way of shadow ray k, of path i. */
+static inline void vl_shadow_way(const vlPaths *p, uint32_t i, vlVec3 o, vlVec3 d, float t_max,
+                                 uint32_t k, vlShadowRays *q) {
+  vl_set_lane3(q->ox, q->oy, q->oz, k, o);
+  vl_set_lane3(q->dx, q->dy, q->dz, k, d);
+  q->t_max[k] = t_max;
+  q->time[k] = vl_path_time(p, i);
+  q->lane[k] = p->lane[i];
+}
 /* Moves the way and the radiance of shadow ray i to index k. */
 static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
   q->ox[k] = q->ox[i];

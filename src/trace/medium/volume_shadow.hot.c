@@ -13,9 +13,7 @@ void vl_volume_push_shadow(const vlTracing *t, const vlPaths *p, const vlVolumeR
     length = vl_length(to);
     w = vl_normalize(to);
   }
-  vl_set_lane3(q->ox, q->oy, q->oz, count, start->o);
-  vl_set_lane3(q->dx, q->dy, q->dz, count, w);
-  q->t_max[count] = length * VL_SHADOW_END;
+  vl_shadow_way(p, i, start->o, w, length * VL_SHADOW_END, count, q);
   for (int c = 0; c < 4; c++) {
     q->radiance[c][count] = p->beta[c][i] * start->value[c] * l->radiance[c][i] * l->pdf[i];
     f->density[c][count] = rows->u[c][i];
@@ -24,8 +22,6 @@ void vl_volume_push_shadow(const vlTracing *t, const vlPaths *p, const vlVolumeR
   f->pdf[count] = l->delta[i] ? 0.0f : start->pdf;
   f->medium[count] = start->medium;
   f->from[count] = i;
-  q->time[count] = vl_path_time(p, i);
-  q->lane[count] = p->lane[i];
   vl_shadow_from_medium(t, p->lane[i], count, f);
 }
 

@@ -103,13 +103,9 @@ static void push_shadow(const vlTracing *t, uint32_t i, vlVec3 o, uint32_t count
     return;
   }
   vlVec3 d = l->distant[i] ? w : vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
-  vl_set_lane3(q->ox, q->oy, q->oz, count, o);
-  vl_set_lane3(q->dx, q->dy, q->dz, count, d);
-  q->t_max[count] = l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
+  vl_shadow_way(p, i, o, d, l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON, count, q);
   for (int c = 0; c < 4; c++)
     q->radiance[c][count] = p->beta[c][i] * bsdf->value[c][i] * l->radiance[c][i] * l->pdf[i];
-  q->time[count] = vl_path_time(p, i);
-  q->lane[count] = p->lane[i];
 }
 
 /* Takes light samples at n vertices on surfaces, and adds the radiance of those that arrive.
@@ -117,20 +113,16 @@ static void push_shadow(const vlTracing *t, uint32_t i, vlVec3 o, uint32_t count
 static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
                          const vlTwoWayVertices *x, vlLightSamples *light, vlBsdfValues *bsdf,
                          vlBsdfValues *back, const vlTwoWayShadows *q) {
-  const vlWorld *world = t->world;
-  const vlTwoWay *way = t->def->two_way;
   const vlWays *ways = x->ways;
   const vlPaths *p = x->paths;
   const vlSurface *f = &x->at->surface;
   const vlLightSamples *l = light;
-  float light_pdf[VL_ROW_SIZE],
-      light_ways[VL_ROW_SIZE]; /* by shadow ray: density of the light sample by the BSDF; of the
-                                  light paths that arrive from there */
-  uint32_t count = 0, from[VL_ROW_SIZE];
-  if (world->lights.count == 0)
+  uint32_t count = 0;
+  if (t->world->lights.count == 0)
     return;
   vl_stage_light_samples(t, n, p, f, dimension, light);
   vl_stage_light_bsdf(t, n, x->at, light, bsdf);
+  vl_stage_reverse(t, n, x->at, bsdf->wi, back);
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f))
       continue;
@@ -139,23 +131,13 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
       continue;
     vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
     vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
-    vlPoint point;
-    __builtin_memset(&point, 0, sizeof point);
-    point.p = vl_lane3(l->tx, l->ty, l->tz, i);
-    light_ways[count] =
-        vl_abs(vl_dot(w, g)) *
-        vl_emission_density(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
-    light_pdf[count] = l->delta[i] ? 0.0f : bsdf->pdf[i];
     q->strategies->own[count] = l->pdf[i];
-    from[count] = i;
+    q->strategies->others[count] =
+        (l->delta[i] ? 0.0f : bsdf->pdf[i]) +
+        (t->def->two_way->merged + ways->a[i] * back->pdf[i] + ways->b[i]) *
+            (vl_abs(vl_dot(w, g)) * vl_sampled_density(t, l, i, at));
     push_shadow(t, i, vl_offset_origin(at, g, f->offset[i], w), count, x, l, bsdf, q);
     count++;
-  }
-  vl_stage_reverse(t, n, x->at, bsdf->wi, back);
-  for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = from[k];
-    q->strategies->others[k] =
-        light_pdf[k] + (way->merged + ways->a[i] * back->pdf[i] + ways->b[i]) * light_ways[k];
   }
   vl_two_way_shadows(t, p, count, depth, q);
 }

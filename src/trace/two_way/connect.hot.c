@@ -229,11 +229,7 @@ static void push(const vlTracing *t, const vlPaths *p, const vlConnection *c, ui
   for (int k = 0; k < 4; k++)
     q->radiance[k][count] = p->beta[k][i] * c->value[k] * x->power[k] * factor;
   vlVec3 d = vl_sub(vl_offset_end(xp, xg, x->offset, c->w, c->at), c->o);
-  vl_set_lane3(q->ox, q->oy, q->oz, count, c->o);
-  vl_set_lane3(q->dx, q->dy, q->dz, count, d);
-  q->t_max[count] = VL_ONE_MINUS_EPSILON;
-  q->time[count] = vl_path_time(p, i);
-  q->lane[count] = p->lane[i];
+  vl_shadow_way(p, i, c->o, d, VL_ONE_MINUS_EPSILON, count, q);
 }
 
 /* Directions from n vertices to those that they have chosen; along the normals where none.

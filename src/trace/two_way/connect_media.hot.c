@@ -104,13 +104,7 @@ void vl_push_connection(const vlTracing *t, const vlPaths *p, const vlVolumeRows
     f->density[k][count] = rows->u[k][c->i];
   }
   vlVec3 d = vl_sub(end, c->o);
-  float length = vl_length(d);
-  d = vl_normalize(d);
-  vl_set_lane3(q->ox, q->oy, q->oz, count, c->o);
-  vl_set_lane3(q->dx, q->dy, q->dz, count, d);
-  q->t_max[count] = length * VL_SHADOW_END;
-  q->time[count] = vl_path_time(p, c->i);
-  q->lane[count] = p->lane[c->i];
+  vl_shadow_way(p, c->i, c->o, vl_normalize(d), vl_length(d) * VL_SHADOW_END, count, q);
   f->medium[count] = c->medium;
   f->from[count] = c->i;
 }

@@ -114,7 +114,9 @@ static uint32_t set_out(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes
   return count;
 }
 
-float vl_light_sample_pdf(const vlTracing *t, uint32_t lane, vlReceiver to, vlVec3 w) {
+/* Density with which next-event estimation would have sampled the light that this lane's path
+ * came from. */
+static float light_sample_pdf(const vlTracing *t, uint32_t lane, vlReceiver to, vlVec3 w) {
   const vlWorld *world = t->world;
   const vlTwoWayLanes *x = t->lanes;
   vlVec3 p = to.p;
@@ -131,26 +133,49 @@ float vl_light_sample_pdf(const vlTracing *t, uint32_t lane, vlReceiver to, vlVe
   return pmf * vl_area_pdf(world, light, p, &at);
 }
 
-/* Sets the strategies that begin on the light's side, of n vertices on surfaces. */
+/* vl_emission_density of a light path's first ray, after `distance`. */
+static float light_density(const vlTracing *t, uint32_t lane, float distance) {
+  const vlTwoWayLanes *x = t->lanes;
+  return t->world->lights.items[x->light[lane]].at_point
+             ? x->density[lane] / (distance * distance)
+             : x->density[lane];
+}
+
+/* Takes away the light of a path whose first vertex, p, lies outside of its light's portal: a
+ * path through a portal starts beyond all shapes, but no point out there sees the light. */
+static void shade_outside_portal(const vlTracing *t, uint32_t lane, vlVec3 p) {
+  if (!vl_is_outside_portal(t->world, &t->world->lights.items[t->lanes->light[lane]], p))
+    return;
+  for (int c = 0; c < 4; c++)
+    t->lanes->flux[c][lane] = 0.0f;
+}
+
+void vl_arrive_from_light(const vlTracing *t, uint32_t depth, const vlPaths *p, uint32_t i,
+                          vlReceiver at, float cosine, float distance, const vlFlightEnds *ends,
+                          vlWays *to) {
+  uint32_t lane = p->lane[i];
+  float inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
+  to->cosine[i] = cosine;
+  if (depth > 0) {
+    to->b[i] = vl_linked(t, ends, lane, distance, inv);
+  } else {
+    float density = light_density(t, lane, distance);
+    inv = density > 0.0f ? inv / density : 0.0f;
+    shade_outside_portal(t, lane, at.p);
+    to->b[i] = inv / vl_last_odds(ends, lane) *
+               light_sample_pdf(t, lane, at, vl_neg(vl_lane3(p->dx, p->dy, p->dz, i)));
+  }
+  to->a[i] = t->lanes->carry[lane] * inv;
+}
+
 static void arrive(const vlTracing *t, uint32_t n, uint32_t depth, const vlVertices *at,
                    const vlFlightEnds *ends, vlWays *to) {
   const vlSurface *f = &at->surface;
   const vlPaths *p = &at->paths;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = p->lane[i];
-    vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
-    float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
-    float inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
-    to->cosine[i] = cosine;
-    to->b[i] = depth > 0 ? vl_linked(t, ends, lane, f->t[i], inv) : 0.0f;
-    if (depth == 0) {
-      float density = vl_light_density(t, lane, f->t[i]);
-      inv = density > 0.0f ? inv / density : 0.0f;
-      vl_shade_outside_portal(t, lane, vl_lane3(f->px, f->py, f->pz, i));
-      to->b[i] =
-          inv / vl_last_odds(ends, lane) * vl_light_sample_pdf(t, lane, vl_receiver(f, i), w);
-    }
-    to->a[i] = t->lanes->carry[lane] * inv;
+    float cosine =
+        vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
+    vl_arrive_from_light(t, depth, p, i, vl_receiver(f, i), cosine, f->t[i], ends, to);
   }
 }
 
@@ -197,16 +222,9 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
       continue;
     vlLightVertex *x = &vertices[count];
     float z = sh->wo[2][i], side = z < 0.0f ? -1.0f : 1.0f, rev = vl_abs(z) * VL_INV_PI;
-    vl_leave_path(t, depth, v, i, x, &passed[count]);
-    x->p[0] = f->px[i];
-    x->p[1] = f->py[i];
-    x->p[2] = f->pz[i];
-    x->g[0] = f->gx[i];
-    x->g[1] = f->gy[i];
-    x->g[2] = f->gz[i];
-    x->n[0] = side * f->nx[i];
-    x->n[1] = side * f->ny[i];
-    x->n[2] = side * f->nz[i];
+    vl_leave_path(t, depth, v, i, vl_lane3(f->px, f->py, f->pz, i), x, &passed[count]);
+    vl_store3(x->g, vl_lane3(f->gx, f->gy, f->gz, i));
+    vl_store3(x->n, vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), side));
     for (int c = 0; c < 4; c++)
       x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane] * sh->reflectance[c][i] * rev /
                     ways->cosine[i];

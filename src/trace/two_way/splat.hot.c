@@ -9,7 +9,8 @@
  * vertex. */
 enum { LIGHT_ITSELF = 1 << 16 };
 
-vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v) {
+/* The sample of a point by a perspective camera. */
+static vlCameraSample sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v) {
   vlCameraSample r;
   __builtin_memset(&r, 0, sizeof r);
   r.from = eye->position;
@@ -36,11 +37,21 @@ vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, floa
   return r;
 }
 
-void vl_look_from(const vlTracing *t, uint32_t n, const float *x, const float *y,
-                  const float *z, vlCameraSample *views) {
+void vl_look_from(const vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension,
+                  const float *x, const float *y, const float *z, vlCameraSample *views) {
   const vlCameraView *eye = &t->def->two_way->eye;
-  if (eye->look)
+  vlNumbers u;
+  bool lens = eye->lens_radius > 0.0f;
+  if (eye->look) {
     eye->look(eye, n, x, y, z, views);
+    return;
+  }
+  if (lens)
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV,
+                       u.u1, u.u2);
+  for (uint32_t i = 0; i < n; i++)
+    views[i] = sample_camera(vl_eye_of(t, p->lane[i]), vl_lane3(x, y, z, i),
+                             lens ? u.u1[i] : 0.0f, lens ? u.u2[i] : 0.0f);
 }
 
 /* A point of each camera ray is looked at from the camera. Where that gives the sample's own
@@ -57,7 +68,7 @@ void vl_measure_camera_rays(const vlTracing *t, vlCameraSample *views) {
     float far = 1.0f + vl_length(o); /* rounding of the point is small against the distance */
     vl_set_lane3(x, y, z, i, vl_add(o, vl_mul(vl_lane3(b->dx, b->dy, b->dz, i), far)));
   }
-  vl_look_from(t, b->n, x, y, z, views);
+  eye->look(eye, b->n, x, y, z, views);
   for (uint32_t i = 0; i < b->n; i++) {
     const vlCameraSample *v = &views[i];
     vlVec3 o = vl_lane3(b->ox, b->oy, b->oz, i), d = vl_lane3(b->dx, b->dy, b->dz, i);
@@ -134,18 +145,14 @@ void vl_two_way_splats(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t 
  * Returns its direction. */
 static vlVec3 push(const vlPaths *p, uint32_t i, uint32_t count, vlVec3 o, vlVec3 target,
                    float end, const vlTwoWayShadows *shadows) {
-  vlShadowRays *q = shadows->rays;
   vlVec3 d = vl_sub(target, o);
-  vl_set_lane3(q->ox, q->oy, q->oz, count, o);
-  q->t_max[count] = vl_min(end, VL_ONE_MINUS_EPSILON);
+  float t_max = vl_min(end, VL_ONE_MINUS_EPSILON);
   if (shadows->flights) { /* unit length: distances to interfaces on the way are needed */
-    q->t_max[count] = vl_min(end, VL_SHADOW_END) * vl_length(d);
+    t_max = vl_min(end, VL_SHADOW_END) * vl_length(d);
     d = vl_normalize(d);
     shadows->flights->from[count] = i;
   }
-  vl_set_lane3(q->dx, q->dy, q->dz, count, d);
-  q->time[count] = vl_path_time(p, i);
-  q->lane[count] = p->lane[i];
+  vl_shadow_way(p, i, o, d, t_max, count, shadows->rays);
   return d;
 }
 
@@ -164,28 +171,16 @@ static void start_in_media(const vlTracing *t, const vlTwoWayVertices *x, uint32
  * (0: not seen), and their local directions. */
 static void see(const vlTracing *t, uint32_t n, uint32_t dimension, const vlVertices *at,
                 vlCameraSample *views, float wi[3][VL_ROW_SIZE]) {
-  const vlPaths *p = &at->paths;
   const vlSurface *f = &at->surface;
-  const vlShade *sh = &at->shade;
-  vlNumbers u;
-  bool lens = t->def->two_way->eye.lens_radius > 0.0f;
-  if (lens)
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV,
-                       u.u1, u.u2);
-  vl_look_from(t, n, f->px, f->py, f->pz, views);
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    uint32_t k = i < n ? i : n - 1, lane = p->lane[k];
-    vlCameraSample view = vl_view_of(t, views, k, lane, vl_lane3(f->px, f->py, f->pz, i),
-                                     lens ? u.u1[i] : 0.0f, lens ? u.u2[i] : 0.0f);
-    vlVec3 w = view.w;
-    wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
-    wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
-    wi[2][i] = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
-    float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
-    view.per_square = view.seen ? cosine * view.per_square : 0.0f;
-    if (i < n)
-      views[i] = view;
+  VL_ROW float toward[3][VL_ROW_SIZE];
+  vl_look_from(t, n, &at->paths, dimension, f->px, f->py, f->pz, views);
+  for (uint32_t i = 0; i < n; i++) {
+    vlCameraSample *view = &views[i];
+    float cosine = vl_abs(vl_dot(view->w, vl_lane3(f->gx, f->gy, f->gz, i)));
+    view->per_square = view->seen ? cosine * view->per_square : 0.0f;
+    vl_set_lane3(toward[0], toward[1], toward[2], i, view->w);
   }
+  vl_stage_local(n, at, toward[0], toward[1], toward[2], wi);
 }
 
 void vl_connect_to_camera(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
@@ -238,34 +233,28 @@ void vl_show_lights(vlTracing *t, uint32_t n, const vlPaths *p, const vlLightSta
     return;
   const vlTwoWayLanes *r = t->lanes;
   VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE], z[VL_ROW_SIZE];
-  vlNumbers u;
-  bool lens = way->eye.lens_radius > 0.0f;
-  if (lens)
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index,
-                       VL_DIM_BOUNCE + VL_DIM_LIGHT_UV, u.u1, u.u2);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
     vl_set_lane3(x, y, z, i, vl_lane3(r->lx, r->ly, r->lz, p->lane[i]));
-  vl_look_from(t, n, x, y, z, views);
+  vl_look_from(t, n, p, VL_DIM_BOUNCE, x, y, z, views);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i], light = r->light[lane];
     if (!(starts->area_pdf[i] > 0.0f))
       continue;
     vlVec3 at = vl_lane3(r->lx, r->ly, r->lz, lane);
     vlVec3 g = vl_lane3(r->lnx, r->lny, r->lnz, lane);
-    vlCameraSample view =
-        vl_view_of(t, views, i, lane, at, lens ? u.u1[i] : 0.0f, lens ? u.u2[i] : 0.0f);
-    float cosine = vl_dot(view.w, g);
-    if (!view.seen || !(starts->side[i] * cosine >= 0.0f) || cosine == 0.0f)
+    const vlCameraSample *view = &views[i];
+    float cosine = vl_dot(view->w, g);
+    if (!view->seen || !(starts->side[i] * cosine >= 0.0f) || cosine == 0.0f)
       continue;
-    float shown = vl_shown(way, light, starts->area_pdf[i], view.per_square, vl_abs(cosine));
+    float shown = vl_shown(way, light, starts->area_pdf[i], view->per_square, vl_abs(cosine));
     if (!(shown > 0.0f))
       continue;
     const vlWorldLight *lamp = &t->world->lights.items[light];
     const vlEmitted *emitted = &t->world->emitted.items[lamp->emitted];
     float towards = vl_spread_at(emitted, vl_abs(cosine)) / starts->share[i];
-    vlVec3 o = vl_offset_origin(at, g, starts->offset[i], view.w);
-    vlVec3 d = push(p, i, count, o, view.from, view.end, q);
+    vlVec3 o = vl_offset_origin(at, g, starts->offset[i], view->w);
+    vlVec3 d = push(p, i, count, o, view->from, view->end, q);
     if (q->flights) {
       const vlWorldShape *shape = &t->world->shapes.items[lamp->shape];
       q->flights->medium[count] = vl_medium_beyond(shape, g, d, way->medium[light]);
@@ -276,9 +265,10 @@ void vl_show_lights(vlTracing *t, uint32_t n, const vlPaths *p, const vlLightSta
     q->strategies->own[count] = shown;
     q->strategies->others[count] = 1.0f;
     for (int c = 0; c < 4; c++)
-      q->rays->radiance[c][count] = r->flux[c][lane] * r->density[lane] * towards * view.weight;
-    splats->x[count] = view.x;
-    splats->y[count] = view.y;
+      q->rays->radiance[c][count] =
+          r->flux[c][lane] * r->density[lane] * towards * view->weight;
+    splats->x[count] = view->x;
+    splats->y[count] = view->y;
     count++;
   }
   vl_two_way_splats(t, p, count, LIGHT_ITSELF, splats, q);

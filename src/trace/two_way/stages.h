@@ -136,23 +136,16 @@ void vl_connect_to_camera(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
  * with weight own / (own + odds * others). */
 void vl_two_way_splats(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth,
                        vlSplatRows *splats, const vlTwoWayShadows *q);
-/* Density with which next-event estimation would have sampled the light that this lane's path
- * came from. */
-float vl_light_sample_pdf(const vlTracing *t, uint32_t lane, vlReceiver to, vlVec3 w);
-/* Takes away the light of a path whose first vertex, p, lies outside of its light's portal: a
- * path through a portal starts beyond all shapes, but no point out there sees the light. */
-static inline void vl_shade_outside_portal(const vlTracing *t, uint32_t lane, vlVec3 p) {
-  if (!vl_is_outside_portal(t->world, &t->world->lights.items[t->lanes->light[lane]], p))
-    return;
-  for (int c = 0; c < 4; c++)
-    t->lanes->flux[c][lane] = 0.0f;
-}
+/* Sets the strategies that begin on the light's side of vertex i, which receives the light of
+ * path i after `distance`. cosine: to the geometric normal; in media: the extinction. */
+void vl_arrive_from_light(const vlTracing *t, uint32_t depth, const vlPaths *p, uint32_t i,
+                          vlReceiver at, float cosine, float distance, const vlFlightEnds *ends,
+                          vlWays *to);
 
-/* For perspective cameras. */
-vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v);
-/* For cameras of one's own: fills the views of n points. For others it does nothing. */
-void vl_look_from(const vlTracing *t, uint32_t n, const float *x, const float *y,
-                  const float *z, vlCameraSample *views);
+/* Fills the views of n points, which belong to the paths p, with points on the lens by the
+ * random numbers of `dimension`. */
+void vl_look_from(const vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension,
+                  const float *x, const float *y, const float *z, vlCameraSample *views);
 /* For cameras of one's own: fills vlTwoWayLanes.area, by which the camera paths of the batch
  * weigh light paths. views: memory. */
 void vl_measure_camera_rays(const vlTracing *t, vlCameraSample *views);
@@ -198,6 +191,16 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
  * area only. The caller multiplies it by the cosine at the point. */
 float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w,
                           float distance, const vlPoint *at);
+/* The same for the light of sample i, seen from a point. */
+static inline float vl_sampled_density(const vlTracing *t, const vlLightSamples *l, uint32_t i,
+                                       vlVec3 from) {
+  vlPoint at;
+  __builtin_memset(&at, 0, sizeof at);
+  at.p = vl_lane3(l->tx, l->ty, l->tz, i);
+  return vl_emission_density(t->world, t->def->two_way, l->light[i],
+                             vl_lane3(l->wx, l->wy, l->wz, i), vl_length(vl_sub(at.p, from)),
+                             &at);
+}
 
 /* vlEmission.area_pdf at a point of an area light. */
 float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t light,
@@ -288,22 +291,6 @@ static inline float vl_linked(const vlTracing *t, const vlFlightEnds *ends, uint
  * are in the same air. */
 static inline uint32_t vl_air(const vlWorld *world, uint32_t medium) {
   return medium < 15 && world->media.items[medium].uniform ? medium + 1 : 0;
-}
-/* vl_emission_density of a light path's first ray, after `distance`. */
-static inline float vl_light_density(const vlTracing *t, uint32_t lane, float distance) {
-  const vlTwoWayLanes *x = t->lanes;
-  return t->world->lights.items[x->light[lane]].at_point
-             ? x->density[lane] / (distance * distance)
-             : x->density[lane];
-}
-
-/* The sample of point i (of vl_look_from), which belongs to a path's lane. u, v: random numbers
- * for the lens. */
-static inline vlCameraSample vl_view_of(const vlTracing *t, const vlCameraSample *views,
-                                        uint32_t i, uint32_t lane, vlVec3 at, float u,
-                                        float v) {
-  const vlCameraView *eye = vl_eye_of(t, lane);
-  return eye->look ? views[i] : vl_sample_camera(eye, at, u, v);
 }
 
 /* Solid angle of a pixel in a direction whose cosine with the camera's axis is c. At depth 1
@@ -396,9 +383,7 @@ static inline void vl_leave_photon(const vlTracing *t, uint32_t depth,
   const vlPaths *p = v->paths;
   uint32_t lane = p->lane[i];
   vl_store3(x->p, at);
-  x->w[0] = -p->dx[i];
-  x->w[1] = -p->dy[i];
-  x->w[2] = -p->dz[i];
+  vl_store3(x->w, vl_neg(vl_lane3(p->dx, p->dy, p->dz, i)));
   x->a = v->ways->a[i];
   x->b = v->ways->b[i];
   x->bounce = depth + 1;
@@ -408,11 +393,12 @@ static inline void vl_leave_photon(const vlTracing *t, uint32_t depth,
   x->medium = medium;
 }
 
-/* Sets what a vertex that camera paths connect to has of its light path: path, bounce, alone,
- * and vlPhoton.passed in *passed; `air` where there are media. */
+/* Sets what a vertex at `at` that camera paths connect to has of its light path: path, bounce,
+ * alone, and vlPhoton.passed in *passed; `air` where there are media. */
 static inline void vl_leave_path(const vlTracing *t, uint32_t depth, const vlTwoWayVertices *v,
-                                 uint32_t i, vlLightVertex *x, uint32_t *passed) {
+                                 uint32_t i, vlVec3 at, vlLightVertex *x, uint32_t *passed) {
   uint32_t lane = v->paths->lane[i];
+  vl_store3(x->p, at);
   x->path = (t->light->first + lane) & 0x3ffffu;
   x->bounce = (depth + 1) & 255u;
   x->alone = vl_hero_only(v->paths, i);

@@ -87,11 +87,7 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
       continue;
     vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
     float phase = phase_of(world, x, i, w);
-    vlPoint point;
-    __builtin_memset(&point, 0, sizeof point);
-    point.p = vl_lane3(l->tx, l->ty, l->tz, i);
-    float density =
-        vl_emission_density(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
+    float density = vl_sampled_density(t, l, i, at);
     q->strategies->own[count] = l->pdf[i];
     q->strategies->others[count] =
         (l->delta[i] ? 0.0f : phase) +
@@ -124,28 +120,14 @@ uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- light paths ------------------------------------------------------------------------- */
 
-/* Sets the strategies that begin on the light's side, of n vertices. */
 static void arrive_from_light(const vlTracing *t, uint32_t n, uint32_t depth,
                               const vlMediumVertices *in, const vlFlightEnds *ends,
                               vlWays *to) {
   const vlPaths *p = &in->paths;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = p->lane[i];
-    float dense = extinction(t->world, in, i), inv = 1.0f / dense,
-          distance = ends->t[in->ray[i]];
-    to->cosine[i] = dense;
-    to->b[i] = depth > 0 ? vl_linked(t, ends, lane, distance, inv) : 0.0f;
-    if (depth == 0) {
-      float density = vl_light_density(t, lane, distance);
-      vl_shade_outside_portal(t, lane, vl_lane3(p->ox, p->oy, p->oz, i));
-      vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
-      inv = density > 0.0f ? inv / density : 0.0f;
-      to->b[i] = inv / ends->odds[lane] *
-                 vl_light_sample_pdf(
-                     t, lane,
-                     (vlReceiver){vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), 0.0f}, w);
-    }
-    to->a[i] = t->lanes->carry[lane] * inv;
+    vlReceiver at = {vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), 0.0f};
+    vl_arrive_from_light(t, depth, p, i, at, extinction(t->world, in, i), ends->t[in->ray[i]],
+                         ends, to);
   }
 }
 
@@ -188,16 +170,11 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
     if (b->first + lane >= way->inner.paths)
       continue;
     vlLightVertex *x = &vertices[count];
-    vl_leave_path(t, depth, v, i, x, &passed[count]);
-    x->p[0] = p->ox[i];
-    x->p[1] = p->oy[i];
-    x->p[2] = p->oz[i];
+    vl_leave_path(t, depth, v, i, vl_lane3(p->ox, p->oy, p->oz, i), x, &passed[count]);
     x->a = ways->a[i];
     x->dense = ways->cosine[i];
     x->asymmetry = t->world->media.items[medium].g;
-    x->n[0] = p->dx[i];
-    x->n[1] = p->dy[i];
-    x->n[2] = p->dz[i];
+    vl_store3(x->n, vl_lane3(p->dx, p->dy, p->dz, i));
     for (int c = 0; c < 4; c++)
       x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane];
     x->back = ways->b[i] + way->merged_volume;
@@ -220,40 +197,32 @@ static void show(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
   const vlWays *ways = x->ways;
   vlShadowRays *q = shadows->rays;
   vlShadowFlights *f = shadows->flights;
-  vlNumbers u;
-  bool lens = way->eye.lens_radius > 0.0f;
-  if (lens)
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV,
-                       u.u1, u.u2);
   uint32_t count = 0;
-  vl_look_from(t, n, p->ox, p->oy, p->oz, views);
+  vl_look_from(t, n, p, dimension, p->ox, p->oy, p->oz, views);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i);
-    vlCameraSample view =
-        vl_view_of(t, views, i, lane, o, lens ? u.u1[i] : 0.0f, lens ? u.u2[i] : 0.0f);
-    if (!view.seen)
+    const vlCameraSample *view = &views[i];
+    if (!view->seen)
       continue;
-    float phase = phase_of(t->world, x, i, view.w);
-    vl_set_lane3(q->ox, q->oy, q->oz, count, o);
-    vl_set_lane3(q->dx, q->dy, q->dz, count, view.w);
-    q->t_max[count] = vl_min(view.end, VL_SHADOW_END) * vl_length(vl_sub(view.from, o));
-    q->time[count] = vl_path_time(p, i);
-    q->lane[count] = lane;
-    shadows->strategies->own[count] = way->paths / view.per_square;
+    float phase = phase_of(t->world, x, i, view->w);
+    vl_shadow_way(p, i, o, view->w,
+                  vl_min(view->end, VL_SHADOW_END) * vl_length(vl_sub(view->from, o)), count,
+                  q);
+    shadows->strategies->own[count] = way->paths / view->per_square;
     shadows->strategies->others[count] =
         way->light_only
             ? 0.0f
             : ways->cosine[i] * (way->merged_volume + ways->a[i] * phase + ways->b[i]);
     for (int c = 0; c < 4; c++) {
-      q->radiance[c][count] = p->beta[c][i] * t->lanes->flux[c][lane] * phase * view.weight;
+      q->radiance[c][count] = p->beta[c][i] * t->lanes->flux[c][lane] * phase * view->weight;
       f->density[c][count] = x->rows->u[c][i];
     }
     f->medium[count] = x->rows->medium[i];
     f->from[count] = i;
     vl_shadow_from_medium(t, lane, count, f);
-    splats->x[count] = view.x;
-    splats->y[count] = view.y;
+    splats->x[count] = view->x;
+    splats->y[count] = view->y;
     count++;
   }
   vl_two_way_splats(t, p, count, depth, splats, shadows);

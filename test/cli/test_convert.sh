@@ -230,6 +230,26 @@ check gltf_gltf "$VELO" scene convert scene.gltf second.gltf
 check own_extras_are_read test -z "$(grep 'extras of' <<<"$out")"
 check gltf_e "$VELO" render second.gltf --resolution 64x48 --spp 4 -o e.exr --quiet
 check gltf_same "$VELO" image diff d.exr e.exr --threshold maxabs=1e-5
+# A lamp that emits to one side, between a floor and a ceiling: the ceiling gets no light from it in glTF either.
+cat >lamp.pbrt <<'END'
+LookAt 0 1 6  0 1 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 24
+Sampler "sobol" "integer pixelsamples" 64
+WorldBegin
+Shape "trianglemesh" "point3 P" [ -2 0 -2  -2 0 2  2 0 2  2 0 -2 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -2 2 -2  -2 2 2  2 2 2  2 2 -2 ] "integer indices" [ 0 1 2 0 2 3 ]
+AreaLightSource "diffuse" "rgb L" [ 3 2 1 ]
+Shape "trianglemesh" "point3 P" [ -.5 1.8 -.5  .5 1.8 -.5  .5 1.8 .5  -.5 1.8 .5 ] "integer indices" [ 0 1 2 0 2 3 ]
+END
+check lamp_gltf "$VELO" scene convert lamp.pbrt lamp.glb
+expect_text lamp_tells 'not held: backs of area lights that emit to one side: not seen, as in glTF (1)'
+check lamp_a "$VELO" render lamp.pbrt -o a.exr --quiet
+check lamp_b "$VELO" render lamp.glb -o b.exr --environment none --quiet
+check lamp_near "$VELO" image diff a.exr b.exr --threshold relmse=0.01
+# An animation has moments at and before 0.
+check at_zero "$VELO" scene convert lamp.glb zero.glb --at 0
+check at_negative "$VELO" scene convert lamp.glb zero.glb --at -0.5
 # An environment, its image turned about an odd axis and beside a uniform one, in a world that mirrors and in one that does
 # not: the image's background and its light are the same. A white environment has an irradiance of pi in every direction.
 python3 - <<'END'

@@ -35,7 +35,7 @@ static Option convert_options[] = {
      "NAME"},
     {CONVERT_AT, "at",
      "glTF: time of the animation in seconds; default: the model without animation",
-     OPTION_TIME, "SECONDS", 0, 1e9},
+     OPTION_NUMBER, "SECONDS", -1e6, 1e6},
     {CONVERT_ANIMATION, "animation",
      "glTF: animation to play, by name or number from 0; several separated by commas, or all",
      OPTION_TEXT, "NAME"},
@@ -97,7 +97,7 @@ const Command scene_convert_command = {
     .usage = "A B [options]",
     .summary = "write a scene in another format: .gltf, .glb, .pbrt",
     .text =
-        "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of B's "
+        "Reads A (.pbrt .gltf .glb .obj .ply .stl .off) and writes it as B, in the format of B's "
         "suffix. What that\nformat cannot hold exactly is reported: one line per kind, with "
         "the number of occurrences.",
     .examples =

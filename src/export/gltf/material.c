@@ -381,7 +381,10 @@ static Put *const puts_of_kind[0 VL_MATERIAL_KINDS(VL_COUNT_KIND)] = {
 
 /* ---- emission ---------------------------------------------------------------------------- */
 
-static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) {
+/* Both sides of what glTF calls double-sided emit light. So a shape that emits to one side
+ * alone is written without doubleSided, whether or not it is one_sided. */
+static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e,
+                         bool one_sided) {
   float rgb[3];
   vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   const vlTextureDef *t = vl_export_texture(x, e->texture);
@@ -399,6 +402,8 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e) 
     return;
   if (!isnan(e->power))
     vl_export_lose(x, "area lights given by their power: radiance 1 is written");
+  if (!e->two_sided && !one_sided)
+    vl_export_lose(x, "backs of area lights that emit to one side: not seen, as in glTF");
   if (e->spread < 3.1415f)
     vl_export_lose(x, "spreads of area lights: the same radiance in all directions");
   json_t *factor = json_array(), *info = t ? vl_gltf_texture_info(x, t, false) : NULL;
@@ -471,12 +476,14 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors,
     if (info)
       json_object_set_new(json, "normalTexture", info);
   }
-  if (d->emission.index)
-    put_emission(x, json, &x->scene->emissions.items[d->emission.index - 1]);
+  const vlEmissionDef *e =
+      d->emission.index ? &x->scene->emissions.items[d->emission.index - 1] : NULL;
+  if (e)
+    put_emission(x, json, e, d->one_sided);
   /* rays hit transmissive surfaces from both sides */
   bool body =
       json_object_get(json_object_get(json, "extensions"), "KHR_materials_volume") != NULL;
-  if (!d->one_sided && !body)
+  if (!d->one_sided && !body && !(e && !e->two_sided))
     json_object_set_new(json, "doubleSided", json_true());
   if (!json_object_size(json_object_get(json, "extensions")))
     json_object_del(json, "extensions");

@@ -50,6 +50,34 @@ static void choose_law(vlWorld *world, const vlPrincipledDef *d, const vlWorldMa
   world->by_channel |= p->by_channel;
 }
 
+static bool is_black(const vlSpectrum *s) {
+  float grey;
+  if (vl_spectrum_is_constant(s, &grey))
+    return !(grey > 0.0f);
+  return s->kind == VL_SPECTRUM_RGB && !(s->rgb[0] + s->rgb[1] + s->rgb[2] > 0.0f);
+}
+
+/* The index of refraction and what follows from it. */
+static vlResult compile_index(const vlMaterialBuild *b, vlWorldPrincipled *p) {
+  const vlPrincipledDef *d = &b->def->principled;
+  vlWorldMaterial *m = b->m;
+  float ior;
+  if (!vl_spectrum_is_constant(&b->def->eta.value, &ior) || !(ior >= 0.0f) || !isfinite(ior))
+    return vl_fail(b->error, VL_ERROR_SCENE,
+                   "principled material: the index of refraction must be one number");
+  /* An index of 0 stands for infinity. The layers do not model indices below 1 (a solid within
+   * a denser medium). */
+  float root = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
+  p->f0 = root * root;
+  m->eta_s = ior > 0.0f ? ior : 1.5f;
+  p->thin =
+      d->thin_walled || fabsf(m->eta_s - 1.0f) < NO_REFRACTION || is_zero(d->transmission);
+  m->dispersive = !p->thin && d->dispersion > 0.0f && b->world->def.color == VL_COLOR_SPECTRAL;
+  if (m->dispersive)
+    cauchy(m->eta_s, d->dispersion, p);
+  return VL_OK;
+}
+
 vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   vlWorld *world = b->world;
   const vlScene *scene = b->scene;
@@ -62,20 +90,6 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
     return vl_fail_memory(error);
   m->bsdf = VL_BSDF_PRINCIPLED;
   m->principled = p;
-  float ior;
-  if (!vl_spectrum_is_constant(&def->eta.value, &ior) || !(ior >= 0.0f) || !isfinite(ior))
-    return vl_fail(error, VL_ERROR_SCENE,
-                   "principled material: the index of refraction must be one number");
-  /* An index of 0 stands for infinity. The layers do not model indices below 1 (a solid within
-   * a denser medium). */
-  float root = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
-  p->f0 = root * root;
-  m->eta_s = ior > 0.0f ? ior : 1.5f;
-  p->thin =
-      d->thin_walled || fabsf(m->eta_s - 1.0f) < NO_REFRACTION || is_zero(d->transmission);
-  m->dispersive = !p->thin && d->dispersion > 0.0f && world->def.color == VL_COLOR_SPECTRAL;
-  if (m->dispersive)
-    cauchy(m->eta_s, d->dispersion, p);
   p->film_index = d->iridescence_ior;
   p->normal_scale = d->normal_scale;
   p->coat_normal_scale = d->clearcoat_normal_scale;
@@ -91,7 +105,9 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
                                     {d->sheen_roughness, &p->sheen_roughness},
                                     {d->iridescence, &p->iridescence},
                                     {d->iridescence_thickness, &p->iridescence_thickness}};
-  vlResult r = vl_material_spectrum(b, &def->reflectance, &m->reflectance);
+  vlResult r = compile_index(b, p);
+  if (r == VL_OK)
+    r = vl_material_spectrum(b, &def->reflectance, &m->reflectance);
   if (r == VL_OK)
     r = vl_material_floats(b, floats, sizeof floats / sizeof *floats);
   if (r == VL_OK)
@@ -110,12 +126,7 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   p->has_anisotropy = !is_zero(d->anisotropy);
   p->has_transmission = !is_zero(d->diffuse_transmission);
   b->m->one_sided = !p->has_transmission && is_zero(d->transmission);
-  const vlSpectrum *sheen = &d->sheen_color.value;
-  float grey;
-  bool no_sheen = (vl_spectrum_is_constant(sheen, &grey) && !(grey > 0.0f)) ||
-                  (sheen->kind == VL_SPECTRUM_RGB &&
-                   !(sheen->rgb[0] + sheen->rgb[1] + sheen->rgb[2] > 0.0f));
-  p->has_sheen = d->sheen_color.texture.index || !no_sheen;
+  p->has_sheen = d->sheen_color.texture.index || !is_black(&d->sheen_color.value);
   if (r == VL_OK)
     choose_law(world, d, m, p);
   return r;

@@ -184,77 +184,95 @@ static bool count_edges(const vlScene *scene, const vlMeshSolid *b, Edges *e) {
   return true;
 }
 
-/* Welds corners of open edges that lie within the tolerance of each other. Grid cells are two
- * tolerances wide, so that a point's neighbours lie in the eight cells around the nearest cell
- * corner. */
-static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool *changed) {
-  double low[3], high[3], size = 0;
-  for (int k = 0; k < 3; k++) {
-    low[k] = INFINITY;
-    high[k] = -INFINITY;
+/* Corners that were kept, in a grid whose cells are two tolerances wide. */
+typedef struct Weld {
+  const double *points;
+  double low[3];   /* the lower corner of the mesh's bounds */
+  double reach;    /* the tolerance: corners no further apart along each axis are one */
+  uint32_t *table; /* hash table by cell: a corner plus 1; 0: empty */
+  uint32_t slots;
+} Weld;
+
+/* The first slot of the cell that contains p moved by `shift` cells along each axis. */
+static uint32_t first_slot(const Weld *w, const double *p, const double shift[3]) {
+  double cell[3];
+  for (int k = 0; k < 3; k++)
+    cell[k] = floor((p[k] - w->low[k]) / (2 * w->reach) + shift[k]);
+  return (uint32_t)hash_point(cell) & (w->slots - 1);
+}
+
+/* A kept corner within reach of p in the cells that begin with this slot, or UINT32_MAX. */
+static uint32_t find_in_cell(const Weld *w, const double *p, uint32_t slot) {
+  for (int tries = 0; w->table[slot] && tries < 64; tries++) {
+    const uint32_t corner = w->table[slot] - 1;
+    const double *q = w->points + 3 * (size_t)corner;
+    if (fabs(p[0] - q[0]) <= w->reach && fabs(p[1] - q[1]) <= w->reach &&
+        fabs(p[2] - q[2]) <= w->reach)
+      return corner;
+    slot = (slot + 1) & (w->slots - 1);
   }
+  return UINT32_MAX;
+}
+
+/* The corner that stands for this one: a kept corner within reach, or itself, which is then
+ * kept. Whatever is within reach lies in the eight cells around the nearest cell corner. */
+static uint32_t weld_corner(const Weld *w, uint32_t corner) {
+  const double *p = w->points + 3 * (size_t)corner;
+  for (int c = 0; c < 8; c++) {
+    const double shift[3] = {c & 1 ? 0.5 : -0.5, c & 2 ? 0.5 : -0.5, c & 4 ? 0.5 : -0.5};
+    const uint32_t found = find_in_cell(w, p, first_slot(w, p, shift));
+    if (found != UINT32_MAX)
+      return found;
+  }
+  uint32_t slot = first_slot(w, p, (double[3]){0, 0, 0});
+  while (w->table[slot])
+    slot = (slot + 1) & (w->slots - 1);
+  w->table[slot] = corner + 1;
+  return corner;
+}
+
+/* Sets low to the lower corner of the mesh's bounds. Returns their longest side. */
+static double bounds_of(const vlMeshSolid *b, double low[3]) {
+  double longest = 0;
+  for (int k = 0; k < 3; k++) {
+    double high = -INFINITY;
+    low[k] = INFINITY;
+    for (size_t i = 0; i < b->corners; i++) {
+      low[k] = fmin(low[k], b->points[3 * i + (size_t)k]);
+      high = fmax(high, b->points[3 * i + (size_t)k]);
+    }
+    longest = fmax(longest, high - low[k]);
+  }
+  return longest;
+}
+
+/* Welds corners of open edges that lie within the tolerance of each other. */
+static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool *changed) {
+  Weld w = {.points = b->points};
+  w.reach = 1e-6 * bounds_of(b, w.low);
   uint32_t *same = vl_alloc_array(scene->context, b->corners + 1, sizeof *same);
   uint8_t *open = vl_alloc_zero(scene->context, b->corners + 1, 1);
   size_t opens = 0;
   for (uint32_t i = 0; open && i <= e->mask; i++)
     if (e->slots[i].count == 1)
       open[e->slots[i].a] = open[e->slots[i].b] = 1;
-  for (uint32_t i = 0; same && open && i < b->corners; i++) {
-    same[i] = i;
+  for (uint32_t i = 0; open && i < b->corners; i++)
     opens += open[i];
-    for (int k = 0; k < 3; k++) {
-      double x = b->points[3 * (size_t)i + (size_t)k];
-      low[k] = x < low[k] ? x : low[k];
-      high[k] = x > high[k] ? x : high[k];
-    }
-  }
-  for (int k = 0; k < 3; k++)
-    size = high[k] - low[k] > size ? high[k] - low[k] : size;
-  uint32_t slots = table_size(opens),
-           *table = vl_alloc_zero(scene->context, slots, sizeof *table);
-  double reach = 1e-6 * size;
-  bool fine = same && open && table;
+  w.slots = table_size(opens);
+  w.table = vl_alloc_zero(scene->context, w.slots, sizeof *w.table);
+  const bool fine = same && open && w.table;
   *changed = false;
-  for (uint32_t i = 0; fine && reach > 0 && i < b->corners; i++) {
-    if (!open[i])
-      continue;
-    const double *p = b->points + 3 * (size_t)i;
-    uint32_t found = UINT32_MAX;
-    for (int c = 0; c < 8 && found == UINT32_MAX; c++) {
-      double cell[3];
-      for (int k = 0; k < 3; k++)
-        cell[k] = floor((p[k] - low[k]) / (2 * reach) + (c >> k & 1 ? 0.5 : -0.5));
-      uint32_t tries = 0;
-      for (uint32_t s = (uint32_t)hash_point(cell) & (slots - 1); table[s] && tries < 64;
-           s = (s + 1) & (slots - 1), tries++) {
-        const double *q = b->points + 3 * (size_t)(table[s] - 1);
-        if (fabs(p[0] - q[0]) <= reach && fabs(p[1] - q[1]) <= reach &&
-            fabs(p[2] - q[2]) <= reach) {
-          found = table[s] - 1;
-          break;
-        }
-      }
-    }
-    if (found != UINT32_MAX) {
-      same[i] = found;
-      *changed = true;
-      continue;
-    }
-    double cell[3];
-    for (int k = 0; k < 3; k++)
-      cell[k] = floor((p[k] - low[k]) / (2 * reach));
-    uint32_t s = (uint32_t)hash_point(cell) & (slots - 1);
-    while (table[s])
-      s = (s + 1) & (slots - 1);
-    table[s] = i + 1;
+  for (uint32_t i = 0; fine && i < b->corners; i++) {
+    same[i] = open[i] && w.reach > 0 ? weld_corner(&w, i) : i;
+    *changed = *changed || same[i] != i;
   }
-  uint32_t faces = b->faces;
+  const uint32_t faces = b->faces;
   b->faces = *changed ? 0 : faces;
   for (uint32_t i = 0; fine && *changed && i < faces; i++) {
     const uint32_t *f = b->faces3 + 3 * (size_t)i;
     add_face(b, same[f[0]], same[f[1]], same[f[2]], false);
   }
-  VL_FREE(scene->context, same, open, table);
+  VL_FREE(scene->context, same, open, w.table);
   return fine;
 }
 

@@ -120,14 +120,12 @@ static void print_contribution(const PathsReport *r, const vlPathContribution *c
 }
 
 static void print_lobe(const vlPathVertex *v) {
-  bool phase = v->event == VL_PATH_MEDIUM;
-  printf("       %s by %s%s%s: pdf %.4g, factor",
-         v->fate == VL_PATH_ON ? "scattered" : "sampled", v->bsdf,
-         v->lobe & VL_PATH_SPECULAR ? ", specular" : "",
-         phase                            ? ""
-         : v->lobe & VL_PATH_TRANSMISSION ? ", transmitted"
-                                          : ", reflected",
-         (double)v->pdf);
+  printf("       %s by %s", v->fate == VL_PATH_ON ? "scattered" : "sampled", v->bsdf);
+  if (v->lobe & VL_PATH_SPECULAR)
+    printf(", specular");
+  if (v->event != VL_PATH_MEDIUM)
+    printf(v->lobe & VL_PATH_TRANSMISSION ? ", transmitted" : ", reflected");
+  printf(": pdf %.4g, factor", (double)v->pdf);
   for (int k = 0; k < 4; k++)
     printf(" %.4g", (double)v->factor[k]);
   if (v->survival < 1.0f)

@@ -22,40 +22,45 @@ static double angle(const vlCamera *c, double x0, double y0, double x1, double y
   return degrees * camera_angle(c, x0, y0, x1, y1);
 }
 
+/* The name of the spelling that the camera was given in. */
+static const char *spelling_of(const vlCameraDef *def, bool orthographic) {
+  if (!isnan(def->fx) || !isnan(def->fy))
+    return "matrix";
+  if (!isnan(def->view_distance) || (orthographic && !isnan(def->pixel_size)))
+    return "lecture";
+  return isnan(def->focal_mm) ? "fov" : "focal";
+}
+
+/* Numbers that an orthographic camera has not are NAN. Numbers that were given are put as they
+ * were, so that rounding does not change them. */
 static void put_focal(Json *json, const ViewCamera *camera) {
   static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
   const vlCameraDef *def = &camera->def;
   const vlCamera *c = &camera->made;
   const CameraUnits u = camera->units;
-  bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  const bool orthographic = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double w = c->width, h = c->height;
-  double horizontal = angle(c, 0, c->cy, c->cx, c->cy) + angle(c, c->cx, c->cy, w, c->cy);
-  double vertical = angle(c, c->cx, 0, c->cx, c->cy) + angle(c, c->cx, c->cy, c->cx, h);
-  double diagonal = angle(c, 0, 0, c->cx, c->cy) + angle(c, c->cx, c->cy, w, h);
-  const double fields[] = {vertical, horizontal, diagonal, w < h ? horizontal : vertical,
-                           w < h ? vertical : horizontal};
-  const char *spelled = !isnan(def->fx) || !isnan(def->fy) ? "matrix"
-                        : !isnan(def->view_distance)       ? "lecture"
-                        : flat && !isnan(def->pixel_size)  ? "lecture"
-                        : !isnan(def->focal_mm)            ? "focal"
-                                                           : "fov";
+  double horizontal = NAN, vertical = NAN, diagonal = NAN, fov = NAN;
+  double view_distance = NAN, focal_mm = NAN, pixel_size = u.pixel_size;
+  if (!orthographic) {
+    horizontal = angle(c, 0, c->cy, c->cx, c->cy) + angle(c, c->cx, c->cy, w, c->cy);
+    vertical = angle(c, c->cx, 0, c->cx, c->cy) + angle(c, c->cx, c->cy, c->cx, h);
+    diagonal = angle(c, 0, 0, c->cx, c->cy) + angle(c, c->cx, c->cy, w, h);
+    const double fields[] = {vertical, horizontal, diagonal, w < h ? horizontal : vertical,
+                             w < h ? vertical : horizontal};
+    fov = isnan(def->fov) ? fields[def->fov_axis] : def->fov * degrees;
+    view_distance =
+        isnan(def->view_distance) ? c->fx * u.pixel_size / u.zoom : def->view_distance;
+    focal_mm = isnan(def->focal_mm) ? c->fx * u.sensor_mm / w : def->focal_mm;
+  } else if (isnan(def->pixel_size)) {
+    pixel_size = u.zoom / c->fx;
+  }
   json_put(
       json,
       "spelled %s, fov_axis %s, fov %g, fov_horizontal %g, fov_vertical %g, fov_diagonal %g",
-      spelled, axes[def->fov_axis],
-      flat              ? NAN
-      : isnan(def->fov) ? fields[def->fov_axis]
-                        : def->fov * degrees,
-      flat ? NAN : horizontal, flat ? NAN : vertical, flat ? NAN : diagonal);
-  json_put(json, "d %g, zoom %g, s %g, sensor_width_mm %g, focal_mm %g, fx %g",
-           flat                         ? NAN
-           : !isnan(def->view_distance) ? def->view_distance
-                                        : c->fx * u.pixel_size / u.zoom,
-           u.zoom, flat && isnan(def->pixel_size) ? u.zoom / c->fx : u.pixel_size, u.sensor_mm,
-           flat                    ? NAN
-           : !isnan(def->focal_mm) ? def->focal_mm
-                                   : c->fx * u.sensor_mm / w,
-           c->fx);
+      spelling_of(def, orthographic), axes[def->fov_axis], fov, horizontal, vertical, diagonal);
+  json_put(json, "d %g, zoom %g, s %g, sensor_width_mm %g, focal_mm %g, fx %g", view_distance,
+           u.zoom, pixel_size, u.sensor_mm, focal_mm, c->fx);
   json_put(json, "fy %g, cx %g, cy %g, skew %g", c->fy, c->cx, c->cy, c->skew);
 }
 

@@ -67,6 +67,36 @@ static void square_up(double m[16]) {
       m[4 * i + c] = a[c][i];
 }
 
+/* The glTF file of the camera alone, as the writer of camera files makes it: in a temporary
+ * file beside the scene's. *tree: null if glTF cannot hold the camera. */
+static bool camera_tree(vlExport *x, const vlCameraRecord *record, json_t **tree) {
+  char name[64], path[4096];
+  snprintf(name, sizeof name, ".velo-export-%ld.gltf", (long)getpid());
+  if (!vl_export_path(x, name, path, sizeof path))
+    return false;
+  vlUnfinished *unfinished =
+      vl_unfinished_add(vl_context_unfinished(x->context), path, -1, remove_file);
+  if (!unfinished)
+    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  vlResult r = write_camera(x, record, path, false);
+  if (r == VL_ERROR_UNSUPPORTED) {
+    vl_export_lose(x,
+                   "the camera's projection, lens or principal point: in the extras, which "
+                   "velo alone reads");
+    r = write_camera(x, record, path, true);
+  }
+  *tree = r == VL_OK ? json_load_file(path, 0, NULL) : NULL;
+  unlink(path);
+  vl_unfinished_drop(unfinished);
+  if (r == VL_ERROR_MEMORY)
+    return vl_export_fail(x, r, "out of memory");
+  if (r == VL_ERROR_IO || (r == VL_OK && !*tree))
+    return vl_export_fail(x, VL_ERROR_IO,
+                          "the camera cannot be written to a temporary file beside %.300s",
+                          x->path);
+  return true;
+}
+
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   const vlSceneDefs *defs = &x->scene->defs;
   if (defs->camera_missing)
@@ -92,32 +122,9 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
     record.camera.own = NULL;
     record.camera.projection = VL_PROJECTION_PERSPECTIVE;
   }
-  char name[64], path[4096];
-  snprintf(name, sizeof name, ".velo-export-%ld.gltf", (long)getpid());
-  if (!vl_export_path(x, name, path, sizeof path))
+  json_t *tree;
+  if (!camera_tree(x, &record, &tree))
     return false;
-  vlUnfinished *unfinished =
-      vl_unfinished_add(vl_context_unfinished(x->context), path, -1, remove_file);
-  if (!unfinished)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
-  vlResult r = write_camera(x, &record, path, false);
-  if (r == VL_ERROR_UNSUPPORTED) {
-    vl_export_lose(x,
-                   "the camera's projection, lens or principal point: in the extras, which "
-                   "velo alone reads");
-    r = write_camera(x, &record, path, true);
-  }
-  json_t *tree = r == VL_OK ? json_load_file(path, 0, NULL) : NULL;
-  unlink(path);
-  vl_unfinished_drop(unfinished);
-  if (r == VL_ERROR_MEMORY)
-    return vl_export_fail(x, r, "out of memory");
-  if (r == VL_ERROR_IO || (r == VL_OK && !tree)) {
-    json_decref(tree);
-    return vl_export_fail(x, VL_ERROR_IO,
-                          "the camera cannot be written to a temporary file beside %.300s",
-                          x->path);
-  }
   json_t *camera = json_array_get(json_object_get(tree, "cameras"), 0),
          *node = json_array_get(json_object_get(tree, "nodes"), 0);
   if (camera && node) {

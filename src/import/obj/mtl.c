@@ -226,6 +226,19 @@ static bool read_number(vlObj *obj, const char *name, float *value) {
   return true;
 }
 
+/* Reads the rest of newmtl NAME. */
+static bool begin_material(vlObj *obj, uint32_t *current) {
+  *current = vl_obj_material(obj, vl_obj_rest(obj));
+  if (*current == UINT32_MAX)
+    return false;
+  vlObjMaterial *material = &obj->materials.items[*current];
+  if (!material->defined)
+    material->mtl = vl_mtl_default();
+  material->defined = true;
+  return true;
+}
+
+/* current: the index of the material that the last newmtl began; 0: none yet. */
 static bool read_statement(vlObj *obj, uint32_t *current) {
   static const struct {
     const char *name;
@@ -239,16 +252,8 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
   size_t n = vl_obj_word(obj, &word);
   if (n == 0)
     return true;
-  if (is_word(word, n, "newmtl")) {
-    *current = vl_obj_material(obj, vl_obj_rest(obj));
-    if (*current == UINT32_MAX)
-      return false;
-    vlObjMaterial *fresh = &obj->materials.items[*current];
-    if (!fresh->defined)
-      fresh->mtl = vl_mtl_default();
-    fresh->defined = true;
-    return true;
-  }
+  if (is_word(word, n, "newmtl"))
+    return begin_material(obj, current);
   vlMtl *m = &obj->materials.items[*current].mtl, unused = vl_mtl_default();
   if (*current == 0)
     m = &unused; /* statements before the first newmtl have no effect */

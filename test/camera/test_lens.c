@@ -146,26 +146,52 @@ static void named_images(void **state) {
   assert_int_equal(vl_aperture_create(context, 2, 1, bad, &a, &error), VL_ERROR_ARGUMENT);
 }
 
-/* Lens points of whole cameras: ratio and rotation. */
-static void shapes_are_turned_and_squeezed(void **state) {
-  (void)state;
+/* The first points of the opening of a camera. */
+static void lens_points_of(const vlAperture *image, uint32_t blades, double rotation,
+                           double ratio, float px[CHUNK], float py[CHUNK]) {
   vlCameraDef def = vl_default_camera_def(64, 64);
   def.lens_radius = 0.5;
   def.focus_distance = 3;
-  def.lens.ratio = 2;
+  def.lens.aperture = image;
+  def.lens.blades = blades;
+  def.lens.rotation = rotation;
+  def.lens.ratio = ratio;
   vlCamera camera = make_or_fail(&def);
   vlCameraCompiled c;
   vl_camera_compile(&camera, &c);
   assert_true(c.shaped);
+  vl_lens_points(&c, CHUNK, u, v, px, py);
+}
+
+/* Openings are turned clockwise, then squeezed along x. A round one stays as it is when it is
+ * turned. */
+static void shapes_are_turned_and_squeezed(void **state) {
+  (void)state;
+  static const float dots[6] = {0, 1, 0, 0, 0, 2};
+  static float plain[2][CHUNK], changed[2][CHUNK];
+  const double rotation = 0.6, ratio = 2;
+  vlAperture *image = NULL;
+  assert_int_equal(vl_aperture_create(context, 3, 2, dots, &image, NULL), VL_OK);
   draw(5);
-  vl_lens_points(&c, N, u, v, x, y);
-  double inner = 0;
-  for (int i = 0; i < N; i++) {
-    double r2 = 4 * x[i] * x[i] + y[i] * y[i];
-    assert_true(r2 <= 1.000001);
-    inner += r2 < 0.5;
+  for (int opening = 0; opening < 3; opening++) {
+    const vlAperture *a = opening == 2 ? image : NULL;
+    const uint32_t blades = opening == 1 ? 5 : 0;
+    const double turn = opening ? rotation : 0;
+    if (opening)
+      lens_points_of(a, blades, 0, 1, plain[0], plain[1]);
+    for (int i = 0; i < CHUNK && !opening; i++) {
+      vlLensPoint p = vl_lens_disk(u[i], v[i]);
+      plain[0][i] = p.x;
+      plain[1][i] = p.y;
+    }
+    lens_points_of(a, blades, rotation, ratio, changed[0], changed[1]);
+    for (int i = 0; i < CHUNK; i++) {
+      double px = (double)plain[0][i], py = (double)plain[1][i];
+      assert_true(fabs(changed[0][i] - (cos(turn) * px - sin(turn) * py) / ratio) < 1e-6);
+      assert_true(fabs(changed[1][i] - (sin(turn) * px + cos(turn) * py)) < 1e-6);
+    }
   }
-  assert_true(fabs(inner / N - 0.5) < 4 * 0.5 / sqrt(N));
+  vl_aperture_destroy(image);
 }
 
 /* Any point of the tilted plane is met by the rays from all points of the lens; in double, to

@@ -88,6 +88,38 @@ static double end_of_view(const vlCamera *camera, double azimuth) {
   return low;
 }
 
+/* The direction of each film point has a film point, as far out as the film may reach: this
+ * one, or of panoramas another one of the same direction. */
+static void check_far_film(const char *family, const char *kind, const vlCamera *camera) {
+  enum { RADII = 60 };
+  uint32_t seen = 0;
+  uint32_t lost = 0;
+  double first = 0;
+  for (int i = 0; i < RADII * AZIMUTHS; i++) {
+    double o[3];
+    double d[3];
+    double again[3];
+    double film[2];
+    const double azimuth = 2 * PI * (i % AZIMUTHS + 0.3) / AZIMUTHS;
+    const double radius = camera->fx * pow(10, -1 + 3.0 * (i / AZIMUTHS) / RADII);
+    const double x = camera->cx + radius * cos(azimuth);
+    const double y = camera->cy + radius * sin(azimuth);
+    if (!vl_camera_unproject(camera, x, y, o, d))
+      continue;
+    const bool found = vl_camera_project(camera, d, film, NULL) &&
+                       vl_camera_unproject(camera, film[0], film[1], o, again) &&
+                       angle_between(d, again) < 1e-6;
+    first = !found && !lost ? radius / camera->fx : first;
+    seen++;
+    lost += !found;
+  }
+  if (lost)
+    broken(family, kind,
+           "%u of %u film points, the first %.2f focal lengths out, are not found "
+           "from their directions",
+           lost, seen, first);
+}
+
 static void check_ways(const char *family, const char *kind, const vlCamera *camera) {
   Ways ways = {0};
   double d[3];
@@ -103,6 +135,7 @@ static void check_ways(const char *family, const char *kind, const vlCamera *cam
       go_and_return(camera, d, &ways);
     }
   }
+  check_far_film(family, kind, camera);
   if (ways.lost)
     broken(family, kind, "%u of %u directions with a film point have no way back", ways.lost,
            ways.seen);

@@ -4,6 +4,7 @@
 #define TEST_CONFORMANCE_INSTANCES_H
 
 #include "conformance.h"
+#include "shading.h"
 #include "shapes.h"
 #include "surfaces.h"
 #include "unit.h"
@@ -77,6 +78,73 @@ static void check_placings(const vlKindRow *row, const char *parameters) {
       check_placing(row, parameters, placing, map);
 }
 
+/* ---- tangents ---------------------------------------------------------------------------- */
+
+/* What a metal with a normal map and brushed along given tangents sends under a map, where it
+ * is in a still (1) or in a moving object (2), or in none (0). */
+static Scattering *brushed(const double map[16], int placing, float sign) {
+  static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+  static const float normals[12] = {0.3f, 0, 1, 0, 0.2f, 1, -0.1f, 0, 1, 0, 0.4f, 1};
+  static const float tangents[12] = {1, 0.3f, 0, 1, 0.2f, 0, 0.8f, 0.4f, 0, 1, 0, 0};
+  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+  const float signs[4] = {sign, sign, sign, sign};
+  vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
+  vlImage *image;
+  vlMaterialDef metal = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
+  metal.principled.metallic.value = 1;
+  metal.principled.roughness.value = 0.6f;
+  metal.principled.anisotropy.value = 0.7f;
+  metal.principled.anisotropy_rotation.value = 0.5f;
+  metal.principled.normal = add_map(scene, &image, 1);
+  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  square.vertices = 4;
+  square.faces = 2;
+  square.positions = corners;
+  square.normals = normals;
+  square.tangents = tangents;
+  square.tangent_signs = signs;
+  square.indices = indices;
+  square.material = vl_scene_add_material(scene, &metal);
+  if (placing)
+    square.group = vl_scene_add_group(scene, "o");
+  else
+    memcpy(square.group_from_shape, map, sizeof square.group_from_shape);
+  vl_scene_add_shape(scene, &square);
+  static const double times[2] = {0, 1};
+  double poses[32];
+  memcpy(poses, map, 16 * sizeof *map);
+  memcpy(poses + 16, map, 16 * sizeof *map);
+  poses[16 + 11] += 1e-7; /* hardly moves, but is not at rest */
+  if (placing == 1)
+    vl_scene_add_instance(scene, square.group, map, (vlSource){0});
+  if (placing == 2)
+    vl_scene_add_moving_instance(scene, square.group, 2, times, poses, (vlSource){0});
+  assert_int_equal(vl_scene_result(scene, NULL), VL_OK);
+  Scattering *s = scattering_of(scene, "tangents");
+  vl_image_destroy(image);
+  return s;
+}
+
+/* The square keeps facing the ray, so that only a mirror of its plane turns its tangents. */
+static void check_tangents(float sign, bool mirrored) {
+  const double side = mirrored ? -1 : 1;
+  const double map[16] = {1.2, 0.3 * side, 0.1, 0, 0.2, 0.9 * side, 0, 0,
+                          0,   0,          1,   0, 0,   0,          0, 1};
+  Scattering *direct = brushed(map, 0, sign);
+  for (int placing = 1; placing < 3; placing++) {
+    Scattering *other = brushed(map, placing, sign);
+    uint32_t differ = 0;
+    for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+      differ += !close_to((double)direct->pdf[i], (double)other->pdf[i], 5e-3);
+    if (differ)
+      broken("shapes", "trianglemesh", "%s object, %s: %u of %u densities by tangents differ",
+             placing == 1 ? "a still" : "a moving", mirrored ? "mirrored" : "stretched", differ,
+             VL_OWN_BATCH);
+    free_scattering(other);
+  }
+  free_scattering(direct);
+}
+
 static void laws_of_instances(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("shapes");
@@ -94,6 +162,8 @@ static void laws_of_instances(void **state) {
       if (strcmp(family->rows[k]->name, with_normals[i][0]) == 0)
         check_placings(family->rows[k], parameters);
     }
+  for (int i = 0; i < 4; i++)
+    check_tangents(i & 1 ? -1 : 1, i & 2);
   expect_no_failures();
 }
 

@@ -107,6 +107,26 @@ static void check_emitted_density(const char *family, const char *kind, const ch
            parameters, wrong, valid);
 }
 
+/* Light paths leave only where light goes: of an even lamp nearly none is dark. One that starts
+ * in vain makes noise and no other image. Those of projected images fill the cone around the
+ * image. */
+static void check_dark_paths(const char *family, const char *kind, const char *parameters,
+                             const vlWorld *world, uint32_t light) {
+  enum { RAYS = 1 << 12 };
+  float *choice = choice_of_light(world, light);
+  const vlTwoWay way = {.choice = choice};
+  uint32_t dark = 0;
+  for (uint32_t i = 0; i < RAYS; i++) {
+    const vlEmission e = emitted_ray(world, &way, i);
+    dark += !(e.valid && luminance_of(e.flux) > 0);
+  }
+  free(choice);
+  const bool cone = world->lights.items[light].kind == VL_LIGHT_PROJECTION;
+  if (dark > (cone ? RAYS * 2 / 5 : RAYS / 200))
+    broken(family, kind, "%s: %u of %u light paths leave light %u in the dark", parameters,
+           dark, RAYS, light);
+}
+
 static void check_chosen_power(const char *family, const char *kind, const char *parameters,
                                const char *text) {
   char what[200];
@@ -128,6 +148,7 @@ static void check_chosen_power(const char *family, const char *kind, const char 
     const Sight sight = {(image ? 0.25 : 0.01) * power, (image ? 0.5 : 0.05) * power};
     check_mean(family, kind, what, &mean, power, sight);
     check_emitted_density(family, kind, parameters, world, i);
+    check_dark_paths(family, kind, parameters, world, i);
   }
   if (strcmp(family, "lights") == 0)
     check_stated_power(kind, parameters, scene, world);

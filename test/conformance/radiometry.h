@@ -259,9 +259,11 @@ static void light_paths(void **state) {
   for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++) {
     scene_text(text,
                HEAD "WorldBegin " SQUARE_FLOOR
-                    "Translate .3 1.2 .2 Rotate 70 1 .2 .1 AreaLightSource %s Shape "
-                    "\"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3]",
+                    "Translate .3 1.2 .2 Rotate 70 1 .2 .1 AreaLightSource %s",
                "diffuse", emissions[i]);
+    const char *const *shape = emitting_shapes[i == 0];
+    snprintf(text + strlen(text), sizeof text - strlen(text), " Shape \"%s\" %s", shape[0],
+             shape[1]);
     check_light_paths("emission", "diffuse", emissions[i], text);
   }
   expect_no_failures();

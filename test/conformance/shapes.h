@@ -277,6 +277,17 @@ static void check_sides(const vlKindRow *row, const ShapeVariant *v) {
   free_sides(reversed);
 }
 
+/* Inside out it sends its light to the other side: to a floor below it, and into itself. */
+static void check_emission_inside_out(const vlKindRow *row, const ShapeVariant *v) {
+  static char text[TEXT];
+  snprintf(text, sizeof text,
+           HEAD "WorldBegin " FLOOR
+                "ReverseOrientation AreaLightSource \"diffuse\" \"rgb L\" "
+                "[1 1 1] Translate .3 1.1 .2 Rotate 70 1 .2 .1 Shape \"%s\" %s",
+           row->name, v->parameters);
+  check_samples_of_light("shapes", row->name, "inside out", text);
+}
+
 static void laws_of_shapes(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("shapes");
@@ -286,6 +297,8 @@ static void laws_of_shapes(void **state) {
     for (int i = 0; i < SHAPE_VARIANTS && c->variants[i].parameters; i++)
       check_shape(family->rows[k], family->rows[k]->name, &c->variants[i]);
     check_sides(family->rows[k], &c->variants[0]);
+    if (family->rows[k]->traits & VL_SHAPE_TRAIT_EMITS)
+      check_emission_inside_out(family->rows[k], &c->variants[0]);
   }
   expect_no_failures();
 }

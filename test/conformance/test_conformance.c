@@ -6,6 +6,7 @@
 #include "densities.h"
 #include "files.h"
 #include "footprints.h"
+#include "furnaces.h"
 #include "hostile.h"
 #include "instances.h"
 #include "lamps.h"
@@ -83,6 +84,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_densities),
       cmocka_unit_test(laws_of_tracers),
       cmocka_unit_test(limits_of_kinds),
+      cmocka_unit_test(laws_of_furnaces),
       cmocka_unit_test(hostile_defs),
       cmocka_unit_test(hostile_cameras),
       cmocka_unit_test(hostile_files),

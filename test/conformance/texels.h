@@ -10,7 +10,7 @@
 #include "velo/material.h"
 #include "velo/texture.h"
 
-enum { TEXELS_WIDE = 5, TEXELS_HIGH = 3, TEXEL_WORLDS = 96 };
+enum { TEXELS_WIDE = 5, TEXELS_HIGH = 3, TEXEL_WORLDS = 112, FOLDED_WORLDS = 16 };
 /* The square's texture coordinates go from -TEXELS_OUT to 1 + TEXELS_OUT. */
 #define TEXELS_OUT 2.3
 
@@ -42,7 +42,23 @@ static int32_t index_inside(int32_t i, int32_t size, vlWrap wrap) {
   return i;
 }
 
+/* Beyond an edge of a sphere's octahedral square its own other half goes on (pbrt book 3.8.3):
+ * one goes on at the place that is mirrored along the edge. */
+static void fold(int32_t *across, int32_t size, int32_t *along, int32_t length) {
+  if (*across >= 0 && *across < size)
+    return;
+  *across = *across < 0 ? -1 - *across : 2 * size - 1 - *across;
+  *along = length - 1 - *along;
+}
+
 static double texel_at(const TexelCase *t, int32_t x, int32_t y, uint32_t channel) {
+  if (t->def.wrap == VL_WRAP_OCTAHEDRAL) {
+    fold(&x, TEXELS_WIDE, &y, TEXELS_HIGH);
+    fold(&y, TEXELS_HIGH, &x, TEXELS_WIDE);
+    x = index_inside(x, TEXELS_WIDE, VL_WRAP_CLAMP);
+    y = index_inside(y, TEXELS_HIGH, VL_WRAP_CLAMP);
+    return (double)t->texels[y][x][channel];
+  }
   int32_t column = index_inside(x, TEXELS_WIDE, t->def.wrap);
   int32_t row = index_inside(y, TEXELS_HIGH, t->def.wrap_t_given ? t->def.wrap_t : t->def.wrap);
   return column < 0 || row < 0 ? 0 : (double)t->texels[row][column][channel];
@@ -93,9 +109,13 @@ static double number_of(const TexelCase *t, const double rgba[4]) {
 
 /* ---- asking ------------------------------------------------------------------------------ */
 
-/* Near the edge of a texel, or of a cutoff, rounding decides. */
+/* Near the edge of a texel, or of a cutoff, rounding decides. A square that folds is defined up
+ * to its own size beyond its edges. */
 static bool is_decided(const TexelCase *t, double x, double y, double number) {
   double cutoff = t->def.cutoff;
+  if (t->def.wrap == VL_WRAP_OCTAHEDRAL &&
+      !(fabs(x / TEXELS_WIDE - 0.5) < 1.2 && fabs(y / TEXELS_HIGH - 0.5) < 1.2))
+    return false;
   if (!isnan(cutoff) && fabs(number - cutoff) < 1e-4)
     return false;
   return fabs(x - rint(x)) > 1e-3 && fabs(y - rint(y)) > 1e-3;
@@ -124,7 +144,7 @@ static void ask_texels(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
       worst = fmax(worst, fabs((double)t->hits->reflectance[c][i] - known));
     }
   }
-  if (compared < VL_OWN_BATCH / 2)
+  if (compared < VL_OWN_BATCH / (t->def.wrap == VL_WRAP_OCTAHEDRAL ? 8 : 2))
     broken("textures", "imagemap", "texels, world %u: %u points compared", t->index, compared);
   if (!(worst < 2e-3))
     broken("textures", "imagemap",
@@ -143,8 +163,9 @@ static void choose_texture(TexelCase *t, uint32_t index) {
   t->number = index / 4 % 2 == 1;
   t->channels = 1 + index / 8 % 4;
   t->def = vl_default_texture_def(VL_TEXTURE_IMAGE, !t->number);
-  t->def.wrap = wraps[index % 4];
-  t->def.wrap_t_given = index % 3 == 1;
+  bool folded = index >= TEXEL_WORLDS - FOLDED_WORLDS;
+  t->def.wrap = folded ? VL_WRAP_OCTAHEDRAL : wraps[index % 4];
+  t->def.wrap_t_given = !folded && index % 3 == 1;
   t->def.wrap_t = wraps[index / 3 % 4];
   t->def.filter = index / 32 == 1 ? VL_FILTER_POINT : VL_FILTER_BILINEAR;
   t->def.su = t->def.sv = (float)(1 + 2 * TEXELS_OUT);

@@ -13,12 +13,13 @@
 #include "velo/filter_kinds.h"
 #include "velo/tracer.h"
 
-/* The image of the scene by a tracer (null: the scene's own) and with a pixel filter. */
-static vlImage *filtered_image(const char *text, const char *tracer, vlPixelFilterKind filter,
-                               uint32_t spp) {
+/* The image of the scene by a tracer (null: the scene's own), in RGB or in wavelengths, and
+ * with a pixel filter. */
+static vlImage *image_in(vlColorMode color, const char *text, const char *tracer,
+                         vlPixelFilterKind filter, uint32_t spp) {
   vlScene *scene = need_scene(text);
   vlSceneDefs *defs = vl_scene_defs(scene);
-  defs->build.color = VL_COLOR_RGB;
+  defs->build.color = color;
   defs->film.filter = vl_default_pixel_filter(filter);
   defs->render.spp = spp;
   const vlKindFamily *family = vl_kind_family_find("tracers");
@@ -26,6 +27,11 @@ static vlImage *filtered_image(const char *text, const char *tracer, vlPixelFilt
     if (strcmp(family->rows[k]->name, tracer) == 0)
       defs->render.tracer = (vlTracer)k;
   return need_image(scene, text);
+}
+
+static vlImage *filtered_image(const char *text, const char *tracer, vlPixelFilterKind filter,
+                               uint32_t spp) {
+  return image_in(VL_COLOR_RGB, text, tracer, filter, spp);
 }
 
 static vlImage *image_of(const char *text, const char *tracer, uint32_t spp) {
@@ -80,12 +86,7 @@ static Mean mean_spectral(const char *kind, const MediumCase *c, const char *par
   char all[2000];
   snprintf(all, sizeof all, "%s%s", c->shape, parameters);
   scene_text(text, medium_form, kind, all);
-  vlScene *scene = need_scene(text);
-  vlSceneDefs *defs = vl_scene_defs(scene);
-  defs->build.color = VL_COLOR_SPECTRAL;
-  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
-  defs->render.spp = MEDIUM_SPP;
-  vlImage *image = need_image(scene, text);
+  vlImage *image = image_in(VL_COLOR_SPECTRAL, text, NULL, VL_PIXEL_FILTER_BOX, MEDIUM_SPP);
   Mean mean = mean_of_image(image);
   vl_image_destroy(image);
   return mean;
@@ -475,49 +476,65 @@ static void filters_of_light_paths(void **state) {
 
 /* ---- limits of a path's bounces of one kind ---------------------------------------------- */
 
-/* Worlds whose bounces are of one kind each: a bowl, or a cloud. */
+enum { DIFFUSE = 1, GLOSSY = 2, TRANSMITTED = 4, SCATTERED = 8 };
+
+/* Worlds with the kinds of their bounces: a bowl of a material, or a cloud. */
 #define BOWL(material)                                                       \
   "WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] Material " material \
   " Shape \"sphere\" \"float zmax\" .3 Translate 0 0 -.3 Shape \"sphere\" \"float radius\" .4\n"
 static const struct {
-  const char *parameter, *world;
-} limits[] = {
-    {"maxdiffusedepth", BOWL("\"diffuse\" \"rgb reflectance\" [.8 .8 .8]")},
-    {"maxglossydepth", BOWL("\"conductor\" \"float roughness\" .4")},
-    {"maxtransmissiondepth", BOWL("\"diffusetransmission\" \"rgb reflectance\" [0 0 0] "
-                                  "\"rgb transmittance\" [.9 .9 .9]")},
-    {"maxvolumedepth",
+  unsigned bounces;
+  const char *world;
+} limited_worlds[] = {
+    {DIFFUSE, BOWL("\"diffuse\" \"rgb reflectance\" [.8 .8 .8]")},
+    {GLOSSY, BOWL("\"conductor\" \"float roughness\" .4")},
+    {TRANSMITTED, BOWL("\"diffusetransmission\" \"rgb reflectance\" [0 0 0] "
+                       "\"rgb transmittance\" [.9 .9 .9]")},
+    {DIFFUSE | TRANSMITTED, BOWL("\"diffusetransmission\" \"rgb reflectance\" [.5 .5 .5] "
+                                 "\"rgb transmittance\" [.4 .4 .4]")},
+    {GLOSSY | TRANSMITTED, BOWL("\"dielectric\" \"float roughness\" .3")},
+    {GLOSSY | TRANSMITTED, BOWL("\"thindielectric\"")},
+    {DIFFUSE | GLOSSY,
+     BOWL("\"subsurface\" \"rgb reflectance\" [.8 .8 .8] \"rgb mfp\" [.05 .05 "
+          ".05]")},
+    {SCATTERED,
      "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.2 .2 .2] \"rgb "
      "sigma_s\" [3 3 3] WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] "
      "MediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"\n"},
 };
-enum { BOUNCE_KINDS = sizeof limits / sizeof *limits, SPP_OF_BOWL = 16 };
+static const char *const limits[] = {"maxdiffusedepth", "maxglossydepth",
+                                     "maxtransmissiondepth", "maxvolumedepth"};
+enum {
+  LIMITS = sizeof limits / sizeof *limits,
+  LIMITED_WORLDS = sizeof limited_worlds / sizeof *limited_worlds,
+  SPP_OF_BOWL = 16
+};
 
 /* The image of world `w` where bounces of kind `k` (-1: none) end after the first. */
 static vlImage *limited_image(int w, int k) {
   char text[TEXT];
   char limit[80] = "";
   if (k >= 0)
-    snprintf(limit, sizeof limit, "\"integer %s\" 1", limits[k].parameter);
+    snprintf(limit, sizeof limit, "\"integer %s\" 1", limits[k]);
   snprintf(text, sizeof text,
            "LookAt 0 -3 1.5 0 0 0 0 0 1 Camera \"perspective\" \"float fov\" 45\n" VIEW(
                "12") "Integrator \"volpath\" \"integer maxdepth\" 8 %s %s",
-           limit, limits[w].world);
+           limit, limited_worlds[w].world);
   return image_of(text, NULL, SPP_OF_BOWL);
 }
 
-/* The limit of a kind changes the world of that kind alone. */
+/* The limit of a kind changes the worlds that have bounces of that kind, and no others. */
 static void limits_of_kinds(void **state) {
   (void)state;
-  for (int w = 0; w < BOUNCE_KINDS; w++) {
+  for (int w = 0; w < LIMITED_WORLDS; w++) {
     vlImage *whole = limited_image(w, -1);
-    for (int k = 0; k < BOUNCE_KINDS; k++) {
+    for (int k = 0; k < LIMITS; k++) {
       vlImage *image = limited_image(w, k);
       Mean lost = mean_difference(whole, image);
       bool changes = mean_of(&lost) != 0;
-      if (changes != (k == w))
-        broken("tracers", "volpath", "\"%s\" %s bounces of \"%s\"", limits[k].parameter,
-               changes ? "limits" : "does not limit", limits[w].parameter);
+      if (changes != ((limited_worlds[w].bounces >> k & 1) != 0))
+        broken("tracers", "volpath", "\"%s\" %s bounces of world %d", limits[k],
+               changes ? "limits" : "does not limit", w);
       vl_image_destroy(image);
     }
     vl_image_destroy(whole);

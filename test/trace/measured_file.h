@@ -21,7 +21,8 @@ typedef struct mfSurface {
   uint32_t parts; /* 2, 4: only a half or a quarter of the circle is stored */
   uint32_t thetas, nodes, samples, lambdas;
   double theta_max;
-  bool plain; /* spectra hold f cos directly */
+  bool plain;  /* spectra hold f cos directly */
+  double turn; /* of the axis of alpha_x from x, radians */
 } mfSurface;
 
 static inline mfSurface mf_surface(double alpha_x, double alpha_y) {
@@ -42,12 +43,20 @@ static inline mfSurface mf_surface(double alpha_x, double alpha_y) {
 
 /* ---- the surface ---- */
 
+/* Along the axes of alpha_x and alpha_y. */
+static inline double mf_along(const mfSurface *s, const double w[3]) {
+  return cos(s->turn) * w[0] + sin(s->turn) * w[1];
+}
+static inline double mf_across(const mfSurface *s, const double w[3]) {
+  return cos(s->turn) * w[1] - sin(s->turn) * w[0];
+}
 static inline double mf_length(const mfSurface *s, const double w[3]) {
-  return sqrt(s->alpha_x * w[0] * s->alpha_x * w[0] + s->alpha_y * w[1] * s->alpha_y * w[1] +
-              w[2] * w[2]);
+  double x = s->alpha_x * mf_along(s, w), y = s->alpha_y * mf_across(s, w);
+  return sqrt(x * x + y * y + w[2] * w[2]);
 }
 static inline double mf_ndf(const mfSurface *s, const double m[3]) {
-  double x = m[0] / s->alpha_x, y = m[1] / s->alpha_y, e = x * x + y * y + m[2] * m[2];
+  double x = mf_along(s, m) / s->alpha_x, y = mf_across(s, m) / s->alpha_y;
+  double e = x * x + y * y + m[2] * m[2];
   return 1 / (MF_PI * s->alpha_x * s->alpha_y * e * e);
 }
 static inline double mf_sigma(const mfSurface *s, const double o[3]) { /* cos / G1 */

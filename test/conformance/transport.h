@@ -505,7 +505,7 @@ static const struct {
 static const char *const limits[] = {"maxdiffusedepth", "maxglossydepth",
                                      "maxtransmissiondepth", "maxvolumedepth"};
 enum {
-  LIMITS = sizeof limits / sizeof *limits,
+  BOUNCE_KINDS = sizeof limits / sizeof *limits,
   LIMITED_WORLDS = sizeof limited_worlds / sizeof *limited_worlds,
   SPP_OF_BOWL = 16
 };
@@ -528,7 +528,7 @@ static void limits_of_kinds(void **state) {
   (void)state;
   for (int w = 0; w < LIMITED_WORLDS; w++) {
     vlImage *whole = limited_image(w, -1);
-    for (int k = 0; k < LIMITS; k++) {
+    for (int k = 0; k < BOUNCE_KINDS; k++) {
       vlImage *image = limited_image(w, k);
       Mean lost = mean_difference(whole, image);
       bool changes = mean_of(&lost) != 0;

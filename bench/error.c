@@ -50,10 +50,10 @@ typedef struct Side {
 
 typedef struct Scene {
   char name[64], file[1024], size[32];
-  double efficiency[MEASURES], low[MEASURES],
-      high[MEASURES]; /* ratio B / A, with its 95 % confidence interval */
-  double seconds[2], error[2][MEASURES],
-      spread[2][MEASURES]; /* means, and half the widths of the 95 % intervals */
+  /* ratio B / A, with its 95 % confidence interval */
+  double efficiency[MEASURES], low[MEASURES], high[MEASURES];
+  /* means, and half the widths of the 95 % intervals */
+  double seconds[2], error[2][MEASURES], spread[2][MEASURES];
 } Scene;
 
 typedef struct Bench {

@@ -270,9 +270,8 @@ static inline statResult stat_grid_test(statGrid *g, statDensity *density, void 
     integral += mass;
     cells[k] = (statCell){g->counts[k], mass * g->tries};
   }
-  double rest =
-      (1.0 - integral) *
-      g->tries; /* expected number of rejected tries; not negative except for rounding */
+  /* expected number of rejected tries; not negative except for rounding */
+  double rest = (1.0 - integral) * g->tries;
   cells[n] = (statCell){g->rejected, rest > 0 || !(rest > -1e-3 * g->tries) ? rest : 0.0};
   statResult r = stat_chi2(cells, n + 1, 1);
   r.integral = integral;

@@ -282,8 +282,8 @@ int main(int argc, char **argv) {
     if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == 1 ? O_RDONLY : O_RDWR) < 0)
       return STATUS_IO;
   signal(SIGPIPE, SIG_IGN); /* a closed pipe must not end a render */
-  signal(SIGXFSZ,
-         SIG_IGN); /* a file that exceeds its size limit is an error like a full disk */
+  /* a file that exceeds its size limit is an error like a full disk */
+  signal(SIGXFSZ, SIG_IGN);
   signals_install();
   if (set_terminate)
     set_terminate(on_terminate);

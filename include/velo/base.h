@@ -68,9 +68,8 @@ typedef struct vlVersion {
 VL_API const vlVersion *vl_version(void);
 /** A library that libvelo was built with. */
 typedef struct vlLibrary {
-  const char *name,
-      *version; /**< "Embree", "3.13.5"; the version comes from the library's headers;
-                   "" if they have none */
+  /** "Embree", "3.13.5"; the version comes from the library's headers; "" if they have none */
+  const char *name, *version;
 } vlLibrary;
 /** Library `index`, from 0, of those that libvelo was built with; null past the end. The result
  * is constant. Callable from any thread. */
@@ -139,9 +138,8 @@ typedef void vlLogFn(void *user, vlLogLevel level, const vlError *where, const c
  * from several at once. */
 typedef struct vlAllocator {
   void *user; /**< passed to both functions */
-  void *(*allocate)(
-      void *user,
-      size_t size); /**< returns `size` bytes, aligned as by malloc; null on failure */
+  /** returns `size` bytes, aligned as by malloc; null on failure */
+  void *(*allocate)(void *user, size_t size);
   void (*release)(void *user, void *block); /**< frees what allocate returned */
 } vlAllocator;
 

@@ -113,15 +113,13 @@ typedef struct vlCameraDef {
   double view_distance, zoom,
       pixel_size;                   /**< d, zoom (unset: 1), s (unset: 1) of the lecture */
   double focal_mm, sensor_width_mm; /**< focal length and sensor width, millimetres */
-  double fx, fy, skew, cx,
-      cy; /**< calibration matrix, pixels: K = [fx skew cx; 0 fy cy; 0 0 1] */
-  double screen_min_x, screen_max_x, screen_min_y,
-      screen_max_y; /**< pbrt's screenwindow: the window at distance 1, y up, before fov scales
-                     * it
-                     */
+  /** calibration matrix, pixels: K = [fx skew cx; 0 fy cy; 0 0 1] */
+  double fx, fy, skew, cx, cy;
+  /** pbrt's screenwindow: the window at distance 1, y up, before fov scales it */
+  double screen_min_x, screen_max_x, screen_min_y, screen_max_y;
 
-  double eye[3], lookat[3],
-      up[3]; /**< world space: position, a point on the view axis, the direction of image up */
+  /** world space: position, a point on the view axis, the direction of image up */
+  double eye[3], lookat[3], up[3];
   double roll;     /**< radians about the view direction; positive turns the camera clockwise as
                       seen from behind it */
   bool has_matrix; /**< world_from_camera is given, in place of eye, lookat, up */
@@ -224,9 +222,9 @@ typedef struct vlCamera {
   double shutter_open, shutter_close, exposure_time, near_plane,
       far_plane;           /**< seconds; factor; scene units */
   uint32_t shutter_points; /**< number of points of the shutter curve */
-  double shutter_at[VL_SHUTTER_POINTS],
-      shutter_value[VL_SHUTTER_POINTS]; /**< points of the shutter curve */
-  double readout;                       /**< seconds */
+  /** points of the shutter curve */
+  double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS];
+  double readout;              /**< seconds */
   vlReadout readout_direction; /**< direction in which the rolling shutter reads the sensor */
   bool moves;                  /**< whether the camera has a second pose */
   double world_from_camera_close[16]; /**< the pose at pose_times[1] */

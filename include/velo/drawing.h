@@ -76,8 +76,8 @@ typedef struct vlDrawingDef {
   double reach;
   uint32_t grid; /**< largest number of grid lines in each direction; the lines are borders of
                     pixels; default 16 */
-  const double *
-      points; /**< points whose projectors are drawn: 3 numbers each, world space; null: none */
+  /** points whose projectors are drawn: 3 numbers each, world space; null: none */
+  const double *points;
   uint32_t point_count; /**< number of points */
 } vlDrawingDef;
 /** The default def. */

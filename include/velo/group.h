@@ -18,8 +18,8 @@ typedef struct vlLoadedGroup {
   uint32_t first_object;  /**< the id.object of the first; the others follow */
   double low[3], high[3]; /**< the bounding box, in the group's space: the world space of the
                              file; scene units */
-  uint32_t lights,
-      emitters; /**< what the group lacks: lights of the file; emission of its surfaces */
+  /** what the group lacks: lights of the file; emission of its surfaces */
+  uint32_t lights, emitters;
 } vlLoadedGroup;
 
 /** Adds a new group with the shapes of a file, placed as in the file's own world space;

@@ -138,8 +138,8 @@ struct vlMaterialDef {
   vlSpectrumInput transmittance; /**< diffuse transmission: its transmittance */
   float scale; /**< diffuse transmission: factor on reflectance and transmittance; subsurface:
                   see vlSubsurfaceDef */
-  vlFloatInput coat_u_roughness,
-      coat_v_roughness; /**< coated conductor: roughness of the coat */
+  /** coated conductor: roughness of the coat */
+  vlFloatInput coat_u_roughness, coat_v_roughness;
   vlSpectrumInput
       coat_eta;         /**< coated conductor: index of refraction of the coat; untextured */
   vlHairDef hair;       /**< parameters of hair */

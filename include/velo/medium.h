@@ -35,8 +35,8 @@ struct vlMediumDef {
   const char *name;  /**< for messages; may be null */
   vlSource source;   /**< where the file describes it */
   vlMediumKind kind; /**< which fields below are read */
-  vlSpectrum sigma_a,
-      sigma_s; /**< absorption and scattering coefficients; default 1; not read for RGB grids */
+  /** absorption and scattering coefficients; default 1; not read for RGB grids */
+  vlSpectrum sigma_a, sigma_s;
   float scale; /**< factor on both coefficients */
   float g;     /**< mean cosine of scattering, -1 to 1 */
   /** True: sigma_a acts on each channel of linear sRGB, as in glTF: the share exp(-sigma_a x)
@@ -60,8 +60,8 @@ struct vlMediumDef {
                                              emission (may be null) */
   const float *temperature; /**< grid: temperatures for black-body emission, which replaces
                                `emission`; may be null */
-  float temperature_offset,
-      temperature_scale; /**< kelvin = (value - offset) * scale; no emission below 100 K */
+  /** kelvin = (value - offset) * scale; no emission below 100 K */
+  float temperature_offset, temperature_scale;
   const float *rgb_a, *rgb_s, *rgb_emission; /**< RGB grid: 3 numbers per cell, in `space`;
                                                 rgb_a and rgb_s: null means 1 */
   vlColorSpace space;                        /**< colour space of the RGB grid */

@@ -46,8 +46,8 @@ typedef struct vlTraceHits {
   float shading[3][VL_OWN_BATCH];  /**< the material's: interpolated, with bump and normal maps;
                                       unit; its side is that of the surface's outside */
   float uv[2][VL_OWN_BATCH];       /**< texture coordinates */
-  uint32_t object[VL_OWN_BATCH],
-      material[VL_OWN_BATCH]; /**< ids as in ground truth (velo/channels.h); 0: nothing */
+  /** ids as in ground truth (velo/channels.h); 0: nothing */
+  uint32_t object[VL_OWN_BATCH], material[VL_OWN_BATCH];
   float reflectance[4][VL_OWN_BATCH]; /**< the material's reflectance there; 1 for materials
                                          that have none */
   float emission[4]

@@ -91,8 +91,8 @@ typedef struct vlWorldInfo {
   float bounds_min[3], bounds_max[3]; /**< corners of the bounding box, world space */
   double build_seconds;               /**< duration of the build */
   bool moves; /**< something moves: between the two following times only */
-  double time_open,
-      time_close; /**< first and last time of a motion, seconds; 0: nothing moves */
+  /** first and last time of a motion, seconds; 0: nothing moves */
+  double time_open, time_close;
 } vlWorldInfo;
 /** Fills *info. */
 VL_API void vl_world_info(const vlWorld *world, vlWorldInfo *info);

@@ -85,8 +85,8 @@ static bool to_given(const vlParameter *row, PyObject *value, vlGiven *given,
                                                : to_double(value, &given->number);
     if (read < 0)
       return false;
-    bool flag = row->type == VL_PARAMETER_BOOL &&
-                (given->number == 0 || given->number == 1); /* numpy's booleans */
+    /* numpy's booleans */
+    bool flag = row->type == VL_PARAMETER_BOOL && (given->number == 0 || given->number == 1);
     if (read)
       given->kind = flag ? VL_GIVEN_FLAG : VL_GIVEN_NUMBER;
   }

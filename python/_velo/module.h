@@ -289,8 +289,8 @@ bool own_check(const Own *own);
 
 /* False, with an exception: its object was removed. */
 bool handle_is_valid(const Handle *handle);
-PyObject *image_object(Context *context,
-                       vlImage *image); /* takes the image, also when it fails */
+/* takes the image, also when it fails */
+PyObject *image_object(Context *context, vlImage *image);
 /* The dict of a def. */
 PyObject *raw_values(const vlRawDef *def);
 bool scene_open(const Scene *self); /* false: an exception is set */
@@ -306,8 +306,8 @@ typedef struct Loading {
   vlLoadedGroup *loaded; /* null: it is added to the scene; else as a group */
   vlError error;
 } Loading;
-bool load_file(Scene *self, Loading *loading,
-               PyObject *callback); /* false: an exception is set */
+/* false: an exception is set */
+bool load_file(Scene *self, Loading *loading, PyObject *callback);
 PyObject *scene_add(Scene *self, PyObject *arguments);
 PyObject *scene_load_group(Scene *self, PyObject *arguments);
 PyObject *scene_add_instance(Scene *self, PyObject *arguments);

@@ -347,8 +347,8 @@ static vlResult merge_opened(Merge *m, const char *output) {
          b < m->parts[0].reader.blocks && result == VL_OK && !m->file.failed_errno; b++)
       result = merge_block(m);
     for (uint32_t i = 0; i < m->count && result == VL_OK && !m->file.failed_errno; i++)
-      result = vl_film_reader_next(
-          &m->parts[i].reader, m->error); /* checks that the file ends after the last block */
+      /* checks that the file ends after the last block */
+      result = vl_film_reader_next(&m->parts[i].reader, m->error);
     if (result == VL_OK)
       result = vl_file_commit(&m->file, m->error);
     else

@@ -72,8 +72,8 @@ static void allow(const Rules *rules, const char *path, uint64_t access) {
     if (!S_ISDIR(info.st_mode))
       access &= FS_OF_FILES;
     const PathBeneath rule = {access & rules->handled, fd};
-    syscall(ADD_RULE, rules->ruleset, RULE_PATH_BENEATH, &rule,
-            0); /* refuses pipes, which are not confined */
+    /* refuses pipes, which are not confined */
+    syscall(ADD_RULE, rules->ruleset, RULE_PATH_BENEATH, &rule, 0);
   }
   close(fd);
 }

@@ -210,8 +210,8 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, voi
 /* ---- the sandbox ------------------------------------------------------------------------- */
 
 bool vl_context_allows(const vlContext *context, const char *path) {
-  return vl_sandbox_allows((vlSandbox *)(uintptr_t)&context->sandbox,
-                           path); /* takes its mutex */
+  /* takes its mutex */
+  return vl_sandbox_allows((vlSandbox *)(uintptr_t)&context->sandbox, path);
 }
 
 vlSandbox *vl_context_sandbox(vlContext *context) {

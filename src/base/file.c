@@ -103,8 +103,8 @@ static vlResult gunzip_all(vlContext *context, const char *path, char **data, si
     uInt before_in = z.avail_in;
     status = inflate(&z, Z_NO_FLUSH);
     used += room - z.avail_out;
-    if (status == Z_STREAM_END &&
-        (z.avail_in || left)) { /* a gzip file may consist of several members */
+    /* a gzip file may consist of several members */
+    if (status == Z_STREAM_END && (z.avail_in || left)) {
       status = inflateReset2(&z, 15 + 16);
     } else if (status == Z_BUF_ERROR ||
                (status == Z_OK && before_in == 0 && left == 0 && room == z.avail_out)) {
@@ -145,9 +145,8 @@ static const char *not_a_file(const struct stat *info, bool pipes) {
  * then. */
 static int open_file(vlContext *context, const char *path, bool given, vlError *error) {
   struct stat info;
-  if (!given && !vl_context_allows(
-                    context, path)) /* asked first: the answer is the same for a missing file */
-  {
+  /* asked first: the answer is the same for a missing file */
+  if (!given && !vl_context_allows(context, path)) {
     vl_fail(error, VL_ERROR_IO, "cannot read %s: it lies outside of the sandbox", path);
     return -1;
   }

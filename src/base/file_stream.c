@@ -18,8 +18,8 @@
 /* A pipe that poll() calls writable takes PIPE (POSIX: PIPE_BUF, at least 512) bytes without
  * blocking. */
 enum { PIECE = 4096, WAIT_MS = 100 };
-static const double PATIENCE =
-    1; /* seconds that an interrupted write waits for the other end */
+/* seconds that an interrupted write waits for the other end */
+static const double PATIENCE = 1;
 
 /* A wait that goes on until the context is interrupted. */
 typedef struct Wait {

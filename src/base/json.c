@@ -7,8 +7,8 @@
 enum { MAX_PAD = 3 << 19 };
 
 static void lack_memory(json_error_t *error) {
-  error->text[JSON_ERROR_TEXT_LENGTH - 1] =
-      json_error_out_of_memory; /* where json_error_code looks */
+  /* where json_error_code looks */
+  error->text[JSON_ERROR_TEXT_LENGTH - 1] = json_error_out_of_memory;
 }
 
 /* What jansson reads: the text as the second element of an array, whose first is a string of x,

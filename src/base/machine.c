@@ -90,8 +90,8 @@ void vl_machine_large_pages(void *block, size_t size) {
   uintptr_t from = ((uintptr_t)block + page - 1) & ~(page - 1),
             to = ((uintptr_t)block + size) & ~(page - 1);
   if (to > from)
-    madvise((void *)from, to - from,
-            MADV_HUGEPAGE); /* only advice: if it fails, nothing changes but the speed */
+    /* only advice: if it fails, nothing changes but the speed */
+    madvise((void *)from, to - from, MADV_HUGEPAGE);
 #else
   (void)block;
   (void)size;

@@ -280,10 +280,8 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
     bool seen =
         vl_camera_plane_radius(camera, angle < pi ? angle : pi * (1.0 - 1e-9), false, &radius);
     if (seen)
-      limit = fmin(
-          limit,
-          radius *
-              (1.0 + 1e-12)); /* a margin for rounding, so that the angle itself is inside */
+      /* a margin for rounding, so that the angle itself is inside */
+      limit = fmin(limit, radius * (1.0 + 1e-12));
     else if (!vl_is_unset(def->max_angle) && kind != VL_PROJECTION_PERSPECTIVE)
       return vl_fail(error, VL_ERROR_ARGUMENT,
                      "camera: the %s projection does not see as far as max_angle, %g degrees",

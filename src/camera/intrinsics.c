@@ -12,8 +12,8 @@
 
 static const double pi = 3.14159265358979323846;
 static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
-static const double just_inside =
-    1.0 - 1e-15; /* factor that moves a singular angle inwards by about 9 rounding errors */
+/* factor that moves a singular angle inwards by about 9 rounding errors */
+static const double just_inside = 1.0 - 1e-15;
 
 /* A quantity that several parameters can determine: its first value, and the parameter that
  * gave it (for messages). */

@@ -129,9 +129,9 @@ static vlResult focus(vlOptics *o, vlError *error) {
    * scene) and to the front one (for a parallel ray from the film) */
   double rear = (1.0 - m.d) * f, front = length + (m.a - 1.0) * f, image = f;
   if (isfinite(o->def.focus_distance)) {
-    double rest = o->def.focus_distance -
-                  (front - rear); /* distance from the object to the front principal plane, plus
-                                     from the rear principal plane to the film */
+    /* distance from the object to the front principal plane, plus from the rear principal plane
+     * to the film */
+    double rest = o->def.focus_distance - (front - rear);
     if (!(rest >= 4.0 * f))
       return vl_fail(error, VL_ERROR_ARGUMENT,
                      "lens: it cannot focus at a distance of %g; the nearest for its focal "

@@ -131,9 +131,8 @@ static bool at_stop(const vlOptics *o, double radius, double p, double *x) {
 }
 
 bool vl_optics_chief(const vlOptics *o, double radius, double guess, vlChief *chief) {
-  double size = sqrt(o->surfaces[o->stop].aperture2),
-         step = 1e-4 *
-                size; /* large compared with rounding errors, small compared with the lens */
+  /* large compared with rounding errors, small compared with the lens */
+  double size = sqrt(o->surfaces[o->stop].aperture2), step = 1e-4 * size;
   double a = guess, b = guess + step, fa, fb;
   *chief = (vlChief){.pupil = guess};
   if (!at_stop(o, radius, a, &fa) || !at_stop(o, radius, b, &fb))

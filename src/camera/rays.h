@@ -40,8 +40,8 @@ typedef struct vlCameraCompiled {
   double inv_fx, inv_fy; /* orthographic: scene units per pixel */
   double rotation[9];    /* row-major 3x3 part of world_from_camera (may scale or mirror) */
   double position[3];    /* the camera's position in the world */
-  double lens_radius,
-      inv_focus; /* inv_focus: 1 / focus distance, or 0 if focused at infinity */
+  /* inv_focus: 1 / focus distance, or 0 if focused at infinity */
+  double lens_radius, inv_focus;
   /* Points p of the plane in focus satisfy p . focus = 1. Used by shaped lenses and if `ahead`
    * is set. */
   double focus[3];
@@ -115,10 +115,10 @@ typedef struct vlCameraPixels {
   double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], z[VL_CAMERA_CHUNK], valid[VL_CAMERA_CHUNK];
 } vlCameraPixels;
 typedef struct vlCameraPoints {
-  double ox[VL_CAMERA_CHUNK], oy[VL_CAMERA_CHUNK],
-      oz[VL_CAMERA_CHUNK]; /* unproject: origin of the ray */
-  double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK],
-      z[VL_CAMERA_CHUNK]; /* project: a point; unproject: a unit direction */
+  /* unproject: origin of the ray */
+  double ox[VL_CAMERA_CHUNK], oy[VL_CAMERA_CHUNK], oz[VL_CAMERA_CHUNK];
+  /* project: a point; unproject: a unit direction */
+  double x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK], z[VL_CAMERA_CHUNK];
   double valid[VL_CAMERA_CHUNK];
 } vlCameraPoints;
 

@@ -13,8 +13,8 @@
 typedef struct vlCameraTime {
   bool timed; /* time is not simply open + u (close - open) */
   bool moves; /* rays are made in camera space; `motion` transforms them to the world */
-  double per_column,
-      per_row; /* seconds by which a pixel's exposure begins after its neighbour's */
+  /* seconds by which a pixel's exposure begins after its neighbour's */
+  double per_column, per_row;
   double first_column, first_row; /* the pixel that is read first */
   double columns, rows;           /* the image's size */
   double pose_open, pose_rate; /* fraction of the motion at time t: (t - pose_open) * pose_rate,

@@ -46,8 +46,8 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree,
   double ratio = aspect_y / aspect_x, w = d->width, h = d->height;
   bool vertical = vl_text_is(fit, "VERTICAL");
   bool across = fit && !vl_text_is(fit, "AUTO") ? !vertical : w >= ratio * h;
-  double side =
-      across ? w : ratio * h; /* the side that the sensor is fitted to, in pixel widths */
+  /* the side that the sensor is fitted to, in pixel widths */
+  double side = across ? w : ratio * h;
   d->fx = flat ? side / ortho : lens / (vertical ? sensor_height : sensor_width) * side;
   d->fy = d->fx / ratio;
   d->cx = 0.5 * w - shift_x * side;

@@ -15,8 +15,8 @@
  * from the image's corner. */
 static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration,
                              vlCameraDef *d) {
-  static const char *const names[] = {"k1", "k2", "p2", "p1",
-                                      "k3", "k4"}; /* the order of VL_DISTORTION_THIN_PRISM */
+  /* the order of VL_DISTORTION_THIN_PRISM */
+  static const char *const names[] = {"k1", "k2", "p2", "p1", "k3", "k4"};
   double f = 0.0, c[2] = {VL_UNSET, VL_UNSET}, b[2] = {0.0, 0.0}, k[8] = {0.0},
          more[2] = {0.0, 0.0};
   bool old = vl_camera_child(calibration, "fx") != NULL;

@@ -7,8 +7,8 @@
 
 typedef struct vlNumpyArray {
   const char *data;
-  size_t count, sides[2],
-      bytes; /* of numbers; of the first two dimensions, or 1; of a number */
+  /* of numbers; of the first two dimensions, or 1; of a number */
+  size_t count, sides[2], bytes;
   int dimensions;
   bool whole, by_columns; /* whole numbers; Fortran's order, of at most two dimensions */
 } vlNumpyArray;

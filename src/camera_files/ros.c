@@ -80,8 +80,8 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
   Ini ini = {.file = file, .lines = {.at = text, .end = text + size}};
   vlCameraDef *d = &record->camera;
   double side[2] = {0, 0}, k[9], lens[8];
-  uint32_t count, lenses = 0, side_line = 1,
-                  matrix_line = 1; /* where a missing value should be */
+  /* where a missing value should be */
+  uint32_t count, lenses = 0, side_line = 1, matrix_line = 1;
   bool wanted = false, found = false, matrix = false;
   vlResult result = VL_OK;
   record->frames = 0;

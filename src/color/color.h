@@ -18,8 +18,8 @@ typedef struct vlSigmoid {
 static inline float vl_sigmoid(vlSigmoid s, float lambda) {
   float t = (lambda - 360.0f) * (1.0f / 470.0f);
   float x = (s.c0 * t + s.c1) * t + s.c2;
-  return 0.5f + 0.5f * (x / __builtin_sqrtf(
-                                1.0f + x * x)); /* within [0,1]: the root is never below |x| */
+  /* within [0,1]: the root is never below |x| */
+  return 0.5f + 0.5f * (x / __builtin_sqrtf(1.0f + x * x));
 }
 /* Coefficients of the reflectance spectrum of an RGB colour. r, g and b are clamped to [0,1].
  * Black, white and greys give constant spectra. A call takes some microseconds. The result is

@@ -64,8 +64,8 @@ vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **
   double color_unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS)),
          exposure = d.exposure;
   double alpha_unit = 1.0 / (double)(1 << (VL_ALPHA_BITS - VL_WEIGHT_BITS));
-  size_t count =
-      film->front ? vl_film_pixels(film) : 0; /* without samples the image stays zero */
+  /* without samples the image stays zero */
+  size_t count = film->front ? vl_film_pixels(film) : 0;
   for (size_t i = 0; i < count; i++) {
     const vlFilmPixel *p = film->front + i;
     if (p->weight <= 0)

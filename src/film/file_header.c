@@ -249,8 +249,8 @@ vlResult vl_film_header_read(vlContext *context, const char *path, const char *t
   if (result == VL_OK)
     result = take_text(context, path, tree, "attributes", &texts->attributes, error);
   json_decref(tree);
-  vlFilm *film =
-      NULL; /* vl_film_create checks the def; it allocates no memory for pixels yet */
+  /* vl_film_create checks the def; it allocates no memory for pixels yet */
+  vlFilm *film = NULL;
   if (result == VL_OK) {
     result = vl_film_create(context, &shape->def, &film);
     vl_film_destroy(film);

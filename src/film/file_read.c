@@ -152,8 +152,8 @@ vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm
     memcpy(def.crop, extent.crop, sizeof def.crop);
     result = vl_film_create(context, &def, &made);
     if (result != VL_OK)
-      result = vl_fail_memory(
-          error); /* the def was checked with the header, so only memory can be missing */
+      /* the def was checked with the header, so only memory can be missing */
+      result = vl_fail_memory(error);
   }
   bool blocks_differ = extent.joined && !extent.even;
   if (result == VL_OK)

@@ -55,8 +55,8 @@ typedef struct vlFilmSensor {
 } vlFilmSensor;
 /* The film's sensor; null: the standard observer. */
 const vlFilmSensor *vl_film_sensor(const vlFilm *film);
-void vl_film_set_spp(vlFilm *film,
-                     uint32_t spp); /* of all blocks; render calls it after each whole pass */
+/* of all blocks; render calls it after each whole pass */
+void vl_film_set_spp(vlFilm *film, uint32_t spp);
 
 /* Blocks: the cells of a grid over the whole image, 32 x 32 pixels each, clipped to a window
  * x0, y0, x1, y1 and numbered row by row. A film's blocks are those of its crop. All pixels of

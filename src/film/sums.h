@@ -67,8 +67,8 @@ struct vlFilm {
   vlComparedNoise *compared; /* of each block; null: all 0 */
   vlFilmSequence sequence;
   vlFilmPixel *front; /* committed sums; null: all zero */
-  vlFilmPixel *
-      back; /* sums of the running pass, valid where stamp == pass; null until the first pass */
+  /* sums of the running pass, valid where stamp == pass; null until the first pass */
+  vlFilmPixel *back;
   uint32_t *stamp; /* the pass in which the pixel's back was last written */
   uint32_t pass;   /* counts from 1 */
   bool in_pass;
@@ -124,8 +124,8 @@ vlResult vl_film_set_window(const vlFilm *film, vlImage *image);
 static inline vlInt128 vl_film_product(float value, int64_t weight) {
   uint32_t bits = vl_float_bits(value);
   int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
-  int64_t mantissa = (int64_t)(bits & 0x7fffffu) |
-                     (int64_t)(field > 0) << 23; /* value = mantissa 2^(exponent - 150) */
+  /* value = mantissa 2^(exponent - 150) */
+  int64_t mantissa = (int64_t)(bits & 0x7fffffu) | (int64_t)(field > 0) << 23;
   int64_t p = (bits >> 31 ? -mantissa : mantissa) * weight;
   int32_t shift = exponent - 150 - VL_WEIGHT_BITS + VL_COLOR_BITS;
   int32_t left = shift > 0 ? shift : 0, right = shift < 0 ? -shift : 0;
@@ -141,8 +141,8 @@ static inline void vl_film_add_square(uint64_t sum[3], float value) {
   int32_t field = (int32_t)(bits >> 23 & 255), exponent = field > 0 ? field : 1;
   uint64_t mantissa = (uint64_t)(bits & 0x7fffffu) | (uint64_t)(field > 0) << 23;
   uint64_t square = mantissa * mantissa;
-  int32_t shift =
-      2 * (exponent - 150) + VL_SQUARE_BITS; /* at most 2 * (166 - 150) + 80 = 112 */
+  /* at most 2 * (166 - 150) + 80 = 112 */
+  int32_t shift = 2 * (exponent - 150) + VL_SQUARE_BITS;
   if (shift < 0) {
     square = shift > -63 ? square >> -shift : 0;
     shift = 0;

@@ -56,8 +56,8 @@ static void numbers(Pair *p, vlImageDiff *diff) {
       diff->not_finite++;
       p->skip[n] = 1;
       for (int c = 0; c < 3; c++)
-        a[c] = b[c] =
-            0.0f; /* FLIP filters over neighbouring pixels, so this pixel must not differ */
+        /* FLIP filters over neighbouring pixels, so this pixel must not differ */
+        a[c] = b[c] = 0.0f;
       continue;
     }
     used++;

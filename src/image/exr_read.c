@@ -88,8 +88,8 @@ static bool headers_fit(const vlImageFile *file) {
       at = size_at + 4;
       if (size > file->size - at)
         return false;
-      if (vl_text_is((const char *)file->data + type,
-                     "preview")) { /* width, height, four bytes per pixel */
+      /* width, height, four bytes per pixel */
+      if (vl_text_is((const char *)file->data + type, "preview")) {
         if (size < 8 ||
             (double)vl_little32(file->data + at) * vl_little32(file->data + at + 4) * 4.0 >
                 size - 8.0)

@@ -229,8 +229,8 @@ static void combine(const Flip *f, float *flip) {
     d = d < knee ? d * (pt / knee) : pt + (d - knee) / (most - knee) * (1.0f - pt);
     d = clamp01(d);
     float feature = clamp01(__builtin_sqrtf(f->feature[0][n] * 0.707106781186547524f));
-    flip[n] =
-        vl_pow(d, 1.0f - feature); /* d = 0 gives 0, except when the feature difference is 1 */
+    /* d = 0 gives 0, except when the feature difference is 1 */
+    flip[n] = vl_pow(d, 1.0f - feature);
   }
 }
 
@@ -263,8 +263,8 @@ vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const floa
       f.color[i][2][n] = c.z;
     }
   }
-  feature_difference(
-      &f, padded); /* before the filter: features are those of the unfiltered images */
+  /* before the filter: features are those of the unfiltered images */
+  feature_difference(&f, padded);
   color_filter(&f, padded);
   combine(&f, flip);
   vl_free(context, planes);

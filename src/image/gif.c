@@ -97,10 +97,8 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
     }
     if (code == end)
       return vl_codec_broken(g->file, "ends too early");
-    if (code > next ||
-        (code == next &&
-         (old == CODES ||
-          next == CODES))) /* the code `next` stands for the string that is being defined */
+    /* the code `next` stands for the string that is being defined */
+    if (code > next || (code == next && (old == CODES || next == CODES)))
       return vl_codec_broken(g->file, "a code that is not defined");
     if (old != CODES && next < CODES) {
       z->before[next] = (uint16_t)old;

@@ -88,8 +88,8 @@ vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool p
     return VL_ERROR_ARGUMENT;
   if (def->encoding == VL_ENCODING_GAMMA && !(def->gamma > 0.0f && def->gamma < 100.0f))
     return VL_ERROR_ARGUMENT;
-  size_t row = (size_t)def->width * def->channels *
-               vl_pixel_size(def->type); /* at most 2^32 * 2^10 * 2^2 */
+  /* at most 2^32 * 2^10 * 2^2 */
+  size_t row = (size_t)def->width * def->channels * vl_pixel_size(def->type);
   if (row > SIZE_MAX / 4 / def->height)
     return VL_ERROR_MEMORY;
 
@@ -271,8 +271,8 @@ vlResult vl_image_rename_channel(vlImage *image, uint32_t channel, const char *n
   if (found >= 0)
     return (uint32_t)found == channel ? VL_OK : VL_ERROR_ARGUMENT;
   char **names, *before = image->names[channel];
-  image->names[channel] =
-      (char *)name; /* the string is owned by the image like the other names */
+  /* the string is owned by the image like the other names */
+  image->names[channel] = (char *)name;
   vlResult result =
       copy_names(image->context, (const char *const *)image->names, image->channels, &names);
   if (result == VL_OK) {

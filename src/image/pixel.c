@@ -4,8 +4,8 @@
 #include "color/color.h"
 
 uint8_t vl_linear_to_srgb8(float linear) {
-  uint32_t low =
-      0; /* last code that begins at or before the value; NaN compares false and gives 0 */
+  /* last code that begins at or before the value; NaN compares false and gives 0 */
+  uint32_t low = 0;
   for (uint32_t step = 128; step; step >>= 1)
     if (linear >= vl_srgb8_begin[low + step])
       low += step;

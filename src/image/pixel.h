@@ -38,8 +38,8 @@ static inline uint16_t vl_float_to_half(float f) {
     return (uint16_t)(sign | 0x7e00u);
   if (magnitude >= 0x477ff000u)
     return (uint16_t)(sign | 0x7c00u);
-  if (magnitude <
-      0x38800000u) { /* below 2^-14: a multiple of 2^-24; adding 0.5 makes the addition round */
+  /* below 2^-14: a multiple of 2^-24; adding 0.5 makes the addition round */
+  if (magnitude < 0x38800000u) {
     float a;
     memcpy(&a, &magnitude, 4);
     a += 0.5f;

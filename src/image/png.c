@@ -109,8 +109,8 @@ static vlResult decode(Png *p) {
            : p->memory ? vl_fail_memory(file->error)
                        : vl_codec_broken(file, p->message);
   png_set_read_fn(p->png, p, on_read);
-  png_set_user_limits(p->png, 0x7fffffff,
-                      0x7fffffff); /* the size is checked below against the file's size */
+  /* the size is checked below against the file's size */
+  png_set_user_limits(p->png, 0x7fffffff, 0x7fffffff);
   png_set_chunk_malloc_max(p->png, 8u << 20);
   png_set_chunk_cache_max(p->png, 16);
   ignore_chunks(p);

@@ -14,8 +14,8 @@ vlResult vl_qoi_read(const vlImageFile *file, vlImage **image) {
                  channels = d[12];
   if (channels != 3 && channels != 4)
     return vl_codec_broken(file, "neither 3 nor 4 channels");
-  vlResult result = vl_codec_promise(file, width, height, (double)width * height,
-                                     62.0); /* one byte encodes a run of up to 62 pixels */
+  /* one byte encodes a run of up to 62 pixels */
+  vlResult result = vl_codec_promise(file, width, height, (double)width * height, 62.0);
   vlEncoding encoding = d[13] == 1 ? VL_ENCODING_LINEAR : VL_ENCODING_SRGB;
   if (result == VL_OK)
     result = vl_codec_create(file, width, height, channels, VL_PIXEL_U8, encoding, image);

@@ -145,8 +145,8 @@ vlResult vl_tga_read(const vlImageFile *file, vlImage **image) {
     return vl_codec_broken(file, "ends in its palette");
   uint32_t depth = t.kind == PALETTE ? t.palette_depth : t.depth;
   uint32_t channels = t.kind == GREY ? depth / 8 : depth == 32 ? 4 : 3;
-  double stored = (double)t.width * t.height *
-                  ((t.depth + 7) / 8); /* a run: 128 pixels from a count byte and one pixel */
+  /* a run: 128 pixels from a count byte and one pixel */
+  double stored = (double)t.width * t.height * ((t.depth + 7) / 8);
   vlResult result = vl_codec_promise(file, t.width, t.height, stored, t.rle ? 128.0 : 1.0);
   if (result == VL_OK)
     result = vl_codec_create(file, t.width, t.height, channels, VL_PIXEL_U8, VL_ENCODING_SRGB,

@@ -22,8 +22,8 @@ static inline size_t vl_table_size(size_t items) {
     size *= 2;
   return size;
 }
-bool vl_names_add(vlContext *context, vlNameTable *table, const char *name,
-                  uint32_t index); /* false: out of memory */
+/* false: out of memory */
+bool vl_names_add(vlContext *context, vlNameTable *table, const char *name, uint32_t index);
 bool vl_names_find(const vlNameTable *table, const char *name, uint32_t *index);
 const char *vl_names_nearest(const vlNameTable *table, const char *name);
 

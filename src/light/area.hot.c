@@ -11,10 +11,10 @@ enum { BLOCK = VL_AREA_BLOCK };
  * lane. */
 typedef struct Block {
   VL_ROW uint32_t lane[BLOCK];
-  VL_ROW float px[BLOCK], py[BLOCK], pz[BLOCK], u[BLOCK],
-      v[BLOCK]; /* the point that receives light */
-  VL_ROW float corner[9][BLOCK], n[3][BLOCK],
-      area[BLOCK]; /* of spheres only `corner` (vlWorldLight.corners) */
+  /* the point that receives light */
+  VL_ROW float px[BLOCK], py[BLOCK], pz[BLOCK], u[BLOCK], v[BLOCK];
+  /* of spheres only `corner` (vlWorldLight.corners) */
+  VL_ROW float corner[9][BLOCK], n[3][BLOCK], area[BLOCK];
   VL_ROW float two_sided[BLOCK];
   VL_ROW float wx[BLOCK], wy[BLOCK], wz[BLOCK], tx[BLOCK], ty[BLOCK], tz[BLOCK];
   VL_ROW float pdf[BLOCK]; /* 0: no sample */

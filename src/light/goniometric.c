@@ -151,8 +151,8 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   for (int i = 0; i < 3; i++)
     light->direction[i] = (float)(axis[i] / l);
   light->cos_end = light->cos_start = (float)image_cone(&stretch, light->direction, light->own);
-  light->power = (float)(flux * factor / (2 * M_PI * (1 - light->cos_end)) * 4 *
-                         M_PI); /* as for a spot light */
+  /* as for a spot light */
+  light->power = (float)(flux * factor / (2 * M_PI * (1 - light->cos_end)) * 4 * M_PI);
   return VL_OK;
 }
 

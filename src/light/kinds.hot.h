@@ -38,8 +38,8 @@ typedef struct vlEmissionQuery {
   const vlWorldLight *light;
   const vlEmitted *emitted;
   const float *lambda;
-  float u, v, s,
-      t; /* random numbers in [0, 1): u, v for the position, s, t for the direction */
+  /* random numbers in [0, 1): u, v for the position, s, t for the direction */
+  float u, v, s, t;
 } vlEmissionQuery;
 
 /* emit fills *out, which is all zero on entry. *out stays invalid if the light emits nothing.

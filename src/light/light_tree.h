@@ -46,9 +46,9 @@ typedef struct vlLightTree {
   float (*towards)[3];    /* per light outside the tree: the one direction from which it shines;
                              zero: from all */
   uint32_t *slot;         /* per light: index in unbounded, or VL_INNER */
-  float *
-      cdf; /* for selection by power and uniform selection: cumulative distribution, light_count
-              + 1 values */
+  /* for selection by power and uniform selection: cumulative distribution, light_count + 1
+   * values */
+  float *cdf;
 } vlLightTree;
 
 vlResult vl_light_tree_build(struct vlWorld *world, vlError *error);
@@ -82,8 +82,8 @@ static inline __attribute__((always_inline)) float vl_light_importance(vlLightCl
   vlVec3 to = vl_sub(p, vl_vec3(b.cx, b.cy, b.cz));
   float d2 = vl_length2(to);
   float r = b.half_diagonal;
-  float d2_limited =
-      vl_max(d2, r); /* squared distance, limited from below as in the pbrt book */
+  /* squared distance, limited from below as in the pbrt book */
+  float d2_limited = vl_max(d2, r);
   vlVec3 wi = vl_normalize(to);
   float cos_w = vl_dot(vl_vec3(b.ax, b.ay, b.az), wi);
   cos_w = b.two_sided > 0.0f ? vl_abs(cos_w) : cos_w;

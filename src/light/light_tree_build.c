@@ -62,8 +62,8 @@ static Cone cone_union(Cone a, Cone b) {
   if (!(vl_length2(axis) > 0))
     return all;
   axis = vl_normalize(axis);
-  float turn = to - ta, s = (float)vl_sincos_double(turn).sin,
-        c = cosine(turn); /* rotate a's axis towards b's (Rodrigues; axis is normal to it) */
+  /* rotate a's axis towards b's (Rodrigues; axis is normal to it) */
+  float turn = to - ta, s = (float)vl_sincos_double(turn).sin, c = cosine(turn);
   vlVec3 w = vl_add(vl_mul(a.axis, c), vl_mul(vl_cross(axis, a.axis), s));
   return (Cone){vl_normalize(w), cosine(to), false};
 }
@@ -162,8 +162,8 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
       b = b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
       absorb(&buckets[b], &items[i].bounds);
     }
-    int filled[BUCKETS] = {0},
-        fill_count = 0; /* most nodes are small and fill two or three buckets */
+    /* most nodes are small and fill two or three buckets */
+    int filled[BUCKETS] = {0}, fill_count = 0;
     for (int b = 0; b < BUCKETS; b++)
       if (buckets[b].power != 0)
         filled[fill_count++] = b;
@@ -238,8 +238,8 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
       b->axis[i] = light->direction[i];
     float to = arccos(light->cos_start), te = arccos(light->cos_end);
     b->cos_o = light->cos_start;
-    b->cos_e =
-        fminf(cosine(te - to), 0.999f); /* 0.999 gives a hard edge some width, for rounding */
+    /* 0.999 gives a hard edge some width, for rounding */
+    b->cos_e = fminf(cosine(te - to), 0.999f);
   }
   if (light->shape != VL_NONE) {
     const vlWorldShape *shape = &world->shapes.items[light->shape];

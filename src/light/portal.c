@@ -120,8 +120,8 @@ vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironmen
     return vl_fail_memory(error);
   double mean = total / (2 * M_PI);
   *power = passes * (double)portal->width * (double)portal->height;
-  double *tangents = vl_alloc_array(world->context, n,
-                                    sizeof *tangents); /* at the middles of columns, of rows */
+  /* at the middles of columns, of rows */
+  double *tangents = vl_alloc_array(world->context, n, sizeof *tangents);
   if (!tangents)
     return vl_fail_memory(error);
   for (uint32_t i = 0; i < n; i++)

@@ -65,8 +65,8 @@ static double multiple(double albedo, double g, double eta, double r, const Beam
   if (!(sigma_s > 0))
     return 0;
   double reduced = sigma_s / sigma_t;
-  double diffusion =
-      (2 * sigma_a + sigma_s) / (3 * sigma_t * sigma_t); /* Grosjean's diffusion coefficient */
+  /* Grosjean's diffusion coefficient */
+  double diffusion = (2 * sigma_a + sigma_s) / (3 * sigma_t * sigma_t);
   double tr = sqrt(sigma_a / diffusion);
   double f1 = moment1(eta), f2 = moment2(eta);
   double extrapolated = -2 * diffusion * (1 + 3 * f2) / (1 - 2 * f1);
@@ -79,9 +79,8 @@ static double multiple(double albedo, double g, double eta, double r, const Beam
     double flux =
         (z * (1 + tr * d) * ed / (d * d * d) - mirrored * (1 + tr * m) * em / (m * m * m)) /
         (4 * pi);
-    double near =
-        1 - vl_exp_double(-2 * sigma_t *
-                          (d + z)); /* Habel's empirical correction close to the beam */
+    /* Habel's empirical correction close to the beam */
+    double near = 1 - vl_exp_double(-2 * sigma_t * (d + z));
     sum += near * reduced * reduced * (fluence * by_fluence + flux * by_flux);
   }
   return sum / POINTS;

@@ -86,8 +86,8 @@ static inline Row row_of(const vlCoatTable *table, float alpha_x, float alpha_y,
     float share = across > VL_MIN_POSITIVE ? rough / __builtin_sqrtf(across) : 0.0f;
     return row_at(__builtin_sqrtf(share) * (float)(VL_COAT_AZIMUTHS - 1), VL_COAT_AZIMUTHS);
   }
-  float alpha =
-      __builtin_sqrtf(vl_ggx_alpha(alpha_x) * vl_ggx_alpha(alpha_y)); /* textured roughness */
+  /* textured roughness */
+  float alpha = __builtin_sqrtf(vl_ggx_alpha(alpha_x) * vl_ggx_alpha(alpha_y));
   return row_at((__builtin_sqrtf(alpha) - table->row_start) * table->row_scale, VL_COAT_ALPHA);
 }
 

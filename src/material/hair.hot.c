@@ -177,9 +177,8 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     float lobe = random.lobe[i];
     for (; p < LOBES - 1 && !(lobe < h.share[p]); p++)
       lobe -= h.share[p];
-    lobe = vl_clamp(
-        lobe / vl_max(h.share[p], VL_MIN_POSITIVE), 0.0f,
-        VL_ONE_MINUS_EPSILON); /* the rest of the random number, uniform in [0, 1) again */
+    /* the rest of the random number, uniform in [0, 1) again */
+    lobe = vl_clamp(lobe / vl_max(h.share[p], VL_MIN_POSITIVE), 0.0f, VL_ONE_MINUS_EPSILON);
     float e = vl_exp(-2.0f / h.v[p]);
     float cosine = vl_clamp(
         1.0f + h.v[p] * vl_ln(vl_max(random.u[i] + (1.0f - random.u[i]) * e, VL_MIN_POSITIVE)),

@@ -23,8 +23,8 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
   vl_texture_float(r, l->g, rows[VL_L_G]);
   for (uint32_t i = r->first; i < r->last; i++) {
     rows[VL_L_METAL][i] = l->metal ? 1.0f : 0.0f;
-    rows[VL_L_THICKNESS][i] =
-        vl_max(rows[VL_L_THICKNESS][i], 0x1p-126f); /* the smallest normal float, as pbrt */
+    /* the smallest normal float, as pbrt */
+    rows[VL_L_THICKNESS][i] = vl_max(rows[VL_L_THICKNESS][i], 0x1p-126f);
     rows[VL_L_G][i] = vl_clamp(rows[VL_L_G][i], -0.999f, 0.999f);
     rows[VL_L_DEPTH][i] = (float)l->depth;
     rows[VL_L_WALKS][i] = (float)l->walks;

@@ -16,8 +16,8 @@ typedef struct Layers {
   int smooth;
   int metal, mirror; /* kind of the base; a mirror is a smooth metal */
   float bx, by, e[4], k[4], rho[4];
-  float thickness, g,
-      albedo[4]; /* the medium's optical thickness, asymmetry g and single-scattering albedo */
+  /* the medium's optical thickness, asymmetry g and single-scattering albedo */
+  float thickness, g, albedo[4];
   int scatters;
   uint32_t depth, walks;
 } Layers;
@@ -92,8 +92,8 @@ static inline Step coat_enter(const Layers *l, vlVec3 o, float u, float v) {
  * to o. */
 static inline float coat_transmit(const Layers *l, vlVec3 o, vlVec3 w, float *pdf) {
   float inverse = 1.0f / l->eta;
-  vlVec3 h = vl_normalize(vl_vec3(o.x + l->eta * w.x, o.y + l->eta * w.y,
-                                  o.z + l->eta * w.z)); /* away from the denser side */
+  /* away from the denser side */
+  vlVec3 h = vl_normalize(vl_vec3(o.x + l->eta * w.x, o.y + l->eta * w.y, o.z + l->eta * w.z));
   if (h.z < 0.0f)
     h = vl_neg(h);
   float oh = vl_dot(o, h), ih = vl_dot(w, h);

@@ -45,8 +45,8 @@ static inline vlBsdfSampled vl_sampled_from(vlBsdfSampled s, uint32_t first) {
 static inline vlVec3 vl_cosine_direction(float u, float v) {
   vlDiskPoint d = vl_warp_disk(u, v);
   float z2 = (1.0f - d.r) * (1.0f + d.r);
-  return vl_vec3(
-      d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f)); /* z is at least VL_MIN_FRACTION */
+  /* z is at least VL_MIN_FRACTION */
+  return vl_vec3(d.x, d.y, __builtin_sqrtf(z2 > 1e-12f ? z2 : 1e-12f));
 }
 
 /* A sample of the normals that are visible from o (vl_ggx_sample); of a smooth lane the

@@ -111,8 +111,8 @@ typedef struct Pair {
   float coat[VL_PRINCIPLED_CHUNK];         /* value of the clear coat */
   float cosine[VL_PRINCIPLED_CHUNK];       /* |wi.z| / pi */
   float again[VL_PRINCIPLED_CHUNK]; /* multiple scattering between microfacets, f cos_i */
-  float upper[VL_PRINCIPLED_CHUNK],
-      lower[VL_PRINCIPLED_CHUNK]; /* 1: wi is on the side of wo; 1: on the other side */
+  /* 1: wi is on the side of wo; 1: on the other side */
+  float upper[VL_PRINCIPLED_CHUNK], lower[VL_PRINCIPLED_CHUNK];
 } Pair;
 
 /* Computes the values of the pair and the density of sampling wi. has_coat is a compile-time
@@ -131,8 +131,8 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
     int reflect = w.z > 0.0f, valid = (o.z > 0.0f) & (vl_abs(w.z) > 0.0f);
     Facet facet = base_facet(o, w, vl_ggx_alpha(s->alpha_x[i]), vl_ggx_alpha(s->alpha_y[i]),
                              s->eta[i], inside, thin);
-    float bare = 1.0f - inside, coat_value = 0.0f,
-          coat_pdf = 0.0f; /* coat and sheen are only on the outside of a solid */
+    /* coat and sheen are only on the outside of a solid */
+    float bare = 1.0f - inside, coat_value = 0.0f, coat_pdf = 0.0f;
     if (has_coat) {
       float on = s->row[VL_P_COAT][i] * bare;
       Facet coat = coat_facet(o, w,
@@ -169,8 +169,8 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
     float through = inside > 0.0f ? both * (1.0f - mirrors) : l->refract[i];
     float above = forth * facet.pdf + l->diffuse[i] * cosine + l->coat[i] * coat_pdf;
     float below = through * facet.pdf + l->through[i] * cosine;
-    float on = valid ? 1.0f : 0.0f,
-          up = reflect ? on : 0.0f; /* products, because gcc would turn selects into branches */
+    /* products, because gcc would turn selects into branches */
+    float on = valid ? 1.0f : 0.0f, up = reflect ? on : 0.0f;
     out->upper[i] = up;
     out->lower[i] = on - up;
     pdf[i] = above * up + below * (on - up);
@@ -191,8 +191,8 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
     float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
     float f = m0 + (m90 - m0) * p->opaque[i];
     f = f + film * (l->film[c][i] - f);
-    float fd = f0 + (f90 - f0) * p->weight[i],
-          fo = f0 + (f90 - f0) * p->opaque[i]; /* reflectances of the dielectric only */
+    /* reflectances of the dielectric only */
+    float fd = f0 + (f90 - f0) * p->weight[i], fo = f0 + (f90 - f0) * p->opaque[i];
     fd = fd + film * (l->film[c][i] - fd);
     fo = fo + film * (l->film[c][i] - fo);
     float within = p->total[i] > 0.0f
@@ -206,9 +206,8 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
     float metal_again = metal_mean * metal_mean * l->one_mean[i] /
                         (1.0f - metal_mean * (1.0f - l->one_mean[i]));
     float sheet_again = dielectric * clear * s->row[VL_P_THIN][i] * again;
-    float body = dielectric * clear,
-          body_pass =
-              1.0f - sheet_mean; /* multiple scattering between microfacets, to both sides */
+    /* multiple scattering between microfacets, to both sides */
+    float body = dielectric * clear, body_pass = 1.0f - sheet_mean;
     float body_up = body * l->again_up[i] * (1.0f - l->again_pass[i] * body_pass);
     float body_down = body * l->again_down[i] * body_pass * tint;
     float bare = 1.0f - l->inside[i];

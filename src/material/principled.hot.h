@@ -15,8 +15,8 @@ typedef struct vlPrincipledSlice {
   const float *base[4], *tint[4], *alpha_x, *alpha_y, *eta;
   const float *lambda[4]; /* null in RGB mode */
   uint32_t count;         /* a multiple of the vector width */
-  bool film, sheen, coat,
-      solid; /* true if some lane has a thin film, sheen, coat, or transmissive solid */
+  /* true if some lane has a thin film, sheen, coat, or transmissive solid */
+  bool film, sheen, coat, solid;
 } vlPrincipledSlice;
 
 typedef struct vlPrincipledLanes {
@@ -24,16 +24,16 @@ typedef struct vlPrincipledLanes {
   float inside[VL_PRINCIPLED_CHUNK]; /* 1: wo lies inside a transmissive solid */
   float energy_o[4][VL_PRINCIPLED_CHUNK], energy_i[4][VL_PRINCIPLED_CHUNK],
       energy_mean[4][VL_PRINCIPLED_CHUNK];
-  float one_o[VL_PRINCIPLED_CHUNK], one_i[VL_PRINCIPLED_CHUNK],
-      one_mean[VL_PRINCIPLED_CHUNK]; /* the three energies above for F = 1 */
+  /* the three energies above for F = 1 */
+  float one_o[VL_PRINCIPLED_CHUNK], one_i[VL_PRINCIPLED_CHUNK], one_mean[VL_PRINCIPLED_CHUNK];
   /* albedo of the layers above the base: coat, then sheen */
   float coat_o[VL_PRINCIPLED_CHUNK], coat_i[VL_PRINCIPLED_CHUNK],
       coat_mean[VL_PRINCIPLED_CHUNK];
   float sheen_o[VL_PRINCIPLED_CHUNK], sheen_i[VL_PRINCIPLED_CHUNK],
       sheen_mean[VL_PRINCIPLED_CHUNK];
-  float sheen_raw[VL_PRINCIPLED_CHUNK],
-      sheen_value[VL_PRINCIPLED_CHUNK]; /* E(wo) without the cap; f cos_i of white sheen */
-  float film[4][VL_PRINCIPLED_CHUNK];   /* reflectance of the thin film at the microfacet */
+  /* E(wo) without the cap; f cos_i of white sheen */
+  float sheen_raw[VL_PRINCIPLED_CHUNK], sheen_value[VL_PRINCIPLED_CHUNK];
+  float film[4][VL_PRINCIPLED_CHUNK]; /* reflectance of the thin film at the microfacet */
   /* Multiple scattering between the microfacets of a transmissive solid. loss_mean: on this
    * side and on the other side. lost_up, lost_down: shares of the lost energy that are
    * reflected and transmitted, without those of a sheet. again_up, again_down: f cos_i of the

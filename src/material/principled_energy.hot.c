@@ -11,9 +11,8 @@ static float interfere(float first, float second, float phase) {
   float product = first * second,
         sum = first * first + second * second + 2.0f * product * phase;
   float down = 1.0f + product * product + 2.0f * product * phase;
-  float r =
-      sum / vl_max(down, VL_MIN_POSITIVE); /* numerator and denominator are 0 if two opposite
-                                              total reflections meet at grazing angles */
+  /* numerator and denominator are 0 if two opposite total reflections meet at grazing angles */
+  float r = sum / vl_max(down, VL_MIN_POSITIVE);
   return vl_clamp(r, 0.0f, 1.0f);
 }
 

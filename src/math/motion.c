@@ -52,8 +52,8 @@ static bool nearest_rotation(const Mat3 *a, Mat3 *r) {
     if (change < 1e-15)
       return true; /* a few roundings of 1.1e-16 */
   }
-  return fabs(fabs(vl_mat3_determinant(r->m)) - 1) <
-         1e-9; /* a rotation, though the last digits do not settle */
+  /* a rotation, though the last digits do not settle */
+  return fabs(fabs(vl_mat3_determinant(r->m)) - 1) < 1e-9;
 }
 
 /* Unit quaternion of a rotation; starts from its largest component (Shepperd 1978). */
@@ -124,9 +124,8 @@ bool vl_motion_make(const double open[16], const double close[16], vlMotion *mot
     together += (b + a) * (b + a);
   }
   double angle = 2 * vl_atan2_double(sqrt(apart), sqrt(together));
-  bool turns =
-      angle >
-      1e-9; /* below, linear interpolation errs by angle^2 = 1e-18, less than a rounding */
+  /* below, linear interpolation errs by angle^2 = 1e-18, less than a rounding */
+  bool turns = angle > 1e-9;
   motion->angle = turns ? angle : 0;
   motion->inv_sine = turns ? 1 / vl_sincos_double(angle).sin : 0;
   return true;

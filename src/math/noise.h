@@ -75,8 +75,8 @@ static inline float vl_smooth_step(float x, float low, float high) {
 
 /* Number of octaves that a footprint of this width resolves. Finer octaves would alias. */
 static inline float vl_noise_octaves(float width, uint32_t octaves) {
-  float n =
-      -1.0f - 1.44269504f * vl_ln(vl_max(width, VL_MIN_POSITIVE)); /* -1 - log2(width^2) / 2 */
+  /* -1 - log2(width^2) / 2 */
+  float n = -1.0f - 1.44269504f * vl_ln(vl_max(width, VL_MIN_POSITIVE));
   return vl_clamp(n, 0.0f, (float)octaves);
 }
 

@@ -19,8 +19,8 @@ vlMat4 vl_mat4_scale(double x, double y, double z);
 vlMat4 vl_mat4_rotate(double radians, double x, double y, double z);
 double vl_mat4_determinant3(vlMat4 a); /* of the upper left 3x3 */
 bool vl_mat4_is_finite(vlMat4 a);
-void vl_mat4_point(const vlMat4 *a, const double p[3],
-                   double result[3]); /* divides by w if it is not 1 */
+/* divides by w if it is not 1 */
+void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]);
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]);
 /* Transforms a normal by the transpose of the inverse matrix, which the caller passes. The
  * result is not normalised. */

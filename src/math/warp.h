@@ -103,8 +103,8 @@ static inline vlVec3 vl_warp_spherical_triangle(vlSphericalTriangle s, float u, 
   vlSinCos half = vl_sincos(0.5f * u * s.solid_angle);
   float y = half.sin * s.one_plus_ab, x = s.det * half.cos - s.bt * half.sin;
   float length2 = x * x + y * y, scale = length2 > 0.0f ? 1.0f / length2 : 0.0f;
-  vlVec3 move =
-      vl_sub(vl_mul(s.t, 2.0f * x * y * scale), vl_mul(s.a, 2.0f * y * y * scale)); /* c' - a */
+  /* c' - a */
+  vlVec3 move = vl_sub(vl_mul(s.t, 2.0f * x * y * scale), vl_mul(s.a, 2.0f * y * y * scale));
   vlVec3 c = vl_add(s.a, move), bc = vl_sub(c, s.b);
   float whole = 0.5f * vl_length2(bc), h = v * whole; /* 1 - b.c', 1 - b.w */
   vlVec3 side = vl_normalize(vl_sub(bc, vl_mul(s.b, vl_dot(bc, s.b))));

@@ -132,8 +132,8 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
                         vlError *error) {
   vlMat4 inverse;
   m->kind = def->kind;
-  m->g = vl_clamp(def->g, -0.99f,
-                  0.99f); /* as in pbrt-v4; beyond that, float directions are too coarse */
+  /* as in pbrt-v4; beyond that, float directions are too coarse */
+  m->g = vl_clamp(def->g, -0.99f, 0.99f);
   if (!vl_mat4_inverse(vl_mat4_load(def->world_from_medium), &inverse))
     return vl_fail(error, VL_ERROR_SCENE, "the medium's transform is singular");
   for (int i = 0; i < 12; i++)

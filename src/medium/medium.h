@@ -28,8 +28,8 @@ typedef struct vlSparseGrid {
   const uint32_t *bricks; /* 4096 entries per block, x fastest */
   const float *values;    /* 512 values per brick, x fastest */
   const float *tiles;     /* constant values; tile 0 is the background */
-  double box_low[3],
-      box_high[3]; /* box of all values that differ from the background, medium space */
+  /* box of all values that differ from the background, medium space */
+  double box_low[3], box_high[3];
 } vlSparseGrid;
 
 typedef struct vlWorldMedium {
@@ -46,15 +46,15 @@ typedef struct vlWorldMedium {
   bool own_sigma;     /* coefficients come from grids; sigma_a and sigma_s are not read */
   float extinction;   /* of a homogeneous medium: the result of vl_medium_extinction */
   float medium_from_world[12];
-  float low[3],
-      high[3]; /* box of the medium, in medium space; of all kinds except homogeneous */
+  /* box of the medium, in medium space; of all kinds except homogeneous */
+  float low[3], high[3];
   /* Majorants: upper bounds of the density (of sigma_t for an RGB grid) in equal cells of the
    * box. */
   uint32_t cells[3];
   const float *majorants;
   vlDenseGrid density, emission_scales, temperature;
-  vlDenseGrid rgb_a, rgb_s,
-      rgb_emission; /* 4 floats per cell: sigmoid and scale of a spectrum, or r, g, b, 0 */
+  /* 4 floats per cell: sigmoid and scale of a spectrum, or r, g, b, 0 */
+  vlDenseGrid rgb_a, rgb_s, rgb_emission;
   float rgb_scale, rgb_emission_scale;
   vlSpectral illuminant; /* of RGB grids: the illuminant of the colour space */
   const vlSparseGrid *sparse, *sparse_temperature;

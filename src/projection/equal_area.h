@@ -30,8 +30,8 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_equal_area(VL_PROJECT_INPUT) {
   double length = vl_length3(x, y, z), scale = 1.0 / vl_not_tiny(length);
   double ax = __builtin_fabs(x) * scale, ay = __builtin_fabs(y) * scale,
          az = __builtin_fabs(z) * scale;
-  double r =
-      __builtin_sqrt((ax * ax + ay * ay) / (1.0 + az)); /* sqrt(1 - |z|) without cancellation */
+  /* sqrt(1 - |z|) without cancellation */
+  double r = __builtin_sqrt((ax * ax + ay * ay) / (1.0 + az));
   double phi = vl_atan2_double(ay, ax) * 0.63661977236758134308;
   double v = phi * r, u = r - v;
   double uu = z < 0.0 ? 1.0 - v : u, vv = z < 0.0 ? 1.0 - u : v;

@@ -83,8 +83,8 @@ uint32_t vl_render_block_count(const vlRenderRun *r);
 typedef struct vlPilot {
   float spread;       /* vlFilmRays.spread; texture footprints are smaller by the same factor */
   uint32_t pass_seed; /* of the wavelengths and times that all paths of a pass share */
-  const vlTails *
-      tails; /* not null: VL_TRACER_LIGHT_PATH, and the film gets what vl_tails_measure finds */
+  /* not null: VL_TRACER_LIGHT_PATH, and the film gets what vl_tails_measure finds */
+  const vlTails *tails;
   bool irradiance; /* vlTraceDef.irradiance; the camera's factors on radiance do not count */
   uint64_t merge_work; /* result: as vlTraceBatch.merge_work */
 } vlPilot;

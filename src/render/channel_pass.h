@@ -184,7 +184,7 @@ uint32_t vl_channel_rays(const vlChannelPass *p, vlChannelWorker *w, uint32_t n)
  * rays. */
 void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n,
                      const vlChannelEnds *ends, float *t_min, float *t_max);
-void vl_channel_tile(void *pass, uint32_t tile,
-                     uint32_t worker); /* does nothing once the pass is stopped */
+/* does nothing once the pass is stopped */
+void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker);
 
 #endif

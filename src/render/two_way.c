@@ -552,8 +552,8 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   way->eye.camera = &rays->camera;
   if (result == VL_OK && way->eye.sees && rays->camera.when.moves)
     result = make_eyes(run, error);
-  if (result == VL_OK && way->merge &&
-      def->merge_radius > 0) /* clamped, so that its cube is finite */
+  /* clamped, so that its cube is finite */
+  if (result == VL_OK && way->merge && def->merge_radius > 0)
     run->first_radius = (float)fmin(fmax(def->merge_radius, 1e-12), 1e9);
   else if (result == VL_OK && way->merge)
     result = vl_first_radius(world, camera, trace, &run->first_radius, error);

@@ -28,8 +28,8 @@ void vl_sampler_init(vlSampler *sampler, uint32_t kind, uint32_t seed, uint32_t 
   if (set / rows > 2 * rows)
     rows = set - root * root > root ? root + 1 : root;
   uint32_t columns = (set + rows - 1) / rows;
-  uint32_t bits =
-      bits_for(set + 2 * root + 2); /* multi-jittered counts up to grid_x * grid_y */
+  /* multi-jittered counts up to grid_x * grid_y */
+  uint32_t bits = bits_for(set + 2 * root + 2);
   *sampler = (vlSampler){
       .kind = kind,
       .seed = seed,

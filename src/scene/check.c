@@ -106,8 +106,8 @@ void vl_check_destroy(vlCheck *check) {
   vlContext *c = check->context;
   for (size_t i = 0; i < check->findings.count; i++) {
     void *block;
-    memcpy(&block, &check->findings.items[i].message,
-           sizeof block); /* const for readers; the check owns it */
+    /* const for readers; the check owns it */
+    memcpy(&block, &check->findings.items[i].message, sizeof block);
     vl_free(c, block);
   }
   VL_ARRAY_FREE(c, &check->findings);

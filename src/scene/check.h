@@ -26,11 +26,11 @@ typedef void vlCheckPart(vlCheck *check);
  * them (api/check_coats.c). */
 vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart *more,
                        vlCheck **check, vlError *error);
-void vl_check_names(
-    vlCheck *check); /* finds unused and replaced names; fills the arrays `used` */
+/* finds unused and replaced names; fills the arrays `used` */
+void vl_check_names(vlCheck *check);
 void vl_check_images(vlCheck *check); /* checks image files, albedos and the power of lights */
-void vl_check_meshes(
-    vlCheck *check); /* finds degenerate faces, missing uvs, open and inverted solids */
+/* finds degenerate faces, missing uvs, open and inverted solids */
+void vl_check_meshes(vlCheck *check);
 void vl_check_inside(vlCheck *check); /* finds cameras inside solids, wrong media of nested
                                          solids, reversed portals */
 

@@ -24,8 +24,8 @@ static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   char *data = NULL;
   size_t size;
   vlError error = {0};
-  vlResult r = vl_file_read(c->context, path, false, &data, &size,
-                            &error); /* called for its error message */
+  /* called for its error message */
+  vlResult r = vl_file_read(c->context, path, false, &data, &size, &error);
   vl_free(c->context, data);
   if (r != VL_OK)
     vl_check_add(c, r == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE : VL_FINDING_BROKEN_FILE,
@@ -141,8 +141,8 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
       range[1] = 1;
     }
   vl_image_destroy(image);
-  return (t->invert ? 1.0f - t->scale * range[0] : t->scale * range[1]) *
-         tint; /* as in pbrt, values are first scaled, then inverted */
+  /* as in pbrt, values are first scaled, then inverted */
+  return (t->invert ? 1.0f - t->scale * range[0] : t->scale * range[1]) * tint;
 }
 
 static float larger(float a, float b) {
@@ -246,8 +246,8 @@ static void mark_needed(vlCheck *c, uint8_t *needed) {
 
 static void check_albedo(vlCheck *c) {
   const vlScene *s = c->scene;
-  const float most =
-      1.001f; /* largest value accepted; above 1 because scaled colours are rounded */
+  /* largest value accepted; above 1 because scaled colours are rounded */
+  const float most = 1.001f;
   uint8_t *needed = vl_alloc_zero(c->context, s->textures.count + 1, 1);
   float *known = vl_alloc_zero(c->context, s->textures.count + 1, sizeof *known);
   if (!needed || !known)

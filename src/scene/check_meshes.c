@@ -290,8 +290,8 @@ static void check_solids(vlCheck *c) {
       while (group_end < n && keys[group_end].group == keys[i].group)
         group_end++;
     }
-    bool round =
-        false; /* the solid has disks or cylinders, which may close it; this is not checked */
+    /* the solid has disks or cylinders, which may close it; this is not checked */
+    bool round = false;
     for (j = i; j < group_end && keys[j].material == keys[i].material; j++)
       round |= !vl_shape_is_mesh(s->shapes.items[keys[j].shape].kind);
     if (!round)

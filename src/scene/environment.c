@@ -156,8 +156,8 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
   channels = channels > 2 ? 3 : 1;
   ok = ok && (vl_image_to_float(from, channel, channels, &pixels) == VL_OK ||
               vl_scene_fail_memory(scene));
-  uint32_t side =
-      from->height + from->height / 4; /* pixels at the horizon keep about their solid angle */
+  /* pixels at the horizon keep about their solid angle */
+  uint32_t side = from->height + from->height / 4;
   ok = ok && new_image(scene, side > MAX_SIDE ? MAX_SIDE : side < 16 ? 16 : side, 3, image);
   if (ok)
     from_latitudes(from, pixels, channels, *image);

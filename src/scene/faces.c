@@ -28,8 +28,8 @@ void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user) {
     if (shape->kind != VL_SHAPE_TRIANGLES || shape->group.index)
       continue;
     const vlMat4 m = vl_mat4_load(shape->group_from_shape);
-    const bool mirrored =
-        vl_mat4_determinant3(m) < 0; /* it reverses the corners' order alone */
+    /* it reverses the corners' order alone */
+    const bool mirrored = vl_mat4_determinant3(m) < 0;
     const double sign = shape->reverse_orientation != mirrored ? -1 : 1;
     for (size_t i = 0; i < shape->faces; i++) {
       const vlFace face = face_of(shape, &m, sign, i);

@@ -154,8 +154,8 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
     vl_scene_reject(scene, def->source, what, "unknown colour space");
     return none;
   }
-  vlLightDef d = vl_default_light_def(
-      def->kind); /* members that the kind does not use keep their defaults */
+  /* members that the kind does not use keep their defaults */
+  vlLightDef d = vl_default_light_def(def->kind);
   vl_row_copy_members(row, def, &d);
   d.source = def->source;
   memcpy(d.world_from_light, def->world_from_light, sizeof d.world_from_light);

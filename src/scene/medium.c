@@ -115,8 +115,8 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
     return none;
   char what[120];
   snprintf(what, sizeof what, "medium \"%s\"", vl_short_text(def->name).text);
-  vlMediumDef d = vl_default_medium_def(
-      def->kind); /* members that the kind does not use keep their defaults */
+  /* members that the kind does not use keep their defaults */
+  vlMediumDef d = vl_default_medium_def(def->kind);
   vl_row_copy_members(row, def, &d);
   d.name = def->name;
   d.source = def->source;

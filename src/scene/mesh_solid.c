@@ -351,8 +351,8 @@ bool vl_mesh_solid_make(const vlScene *scene, const uint32_t *shapes, size_t cou
 }
 
 int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only) {
-  const double d[3] = {0.5773, 0.2113,
-                       0.7887}; /* direction of the ray, not along an axis or a diagonal */
+  /* direction of the ray, not along an axis or a diagonal */
+  const double d[3] = {0.5773, 0.2113, 0.7887};
   int winding = 0;
   for (uint32_t i = 0; i < b->faces; i++) {
     if (only != UINT32_MAX && b->part[i] != only)
@@ -363,8 +363,8 @@ int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only
       for (int k = 0; k < 3; k++)
         v[j][k] = b->points[3 * (size_t)f[j] + (size_t)k] - p[k];
     for (int j = 0; j < 3; j++)
-      s[j] =
-          vl_triple3(d, v[j], v[(j + 1) % 3]); /* on which side of each edge the ray passes */
+      /* on which side of each edge the ray passes */
+      s[j] = vl_triple3(d, v[j], v[(j + 1) % 3]);
     bool out = s[0] > 0 && s[1] > 0 && s[2] > 0, in = s[0] < 0 && s[1] < 0 && s[2] < 0;
     if (!out && !in)
       continue;

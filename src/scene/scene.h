@@ -101,8 +101,8 @@ struct vlScene {
   VL_ARRAY(double) frame_points;
   VL_ARRAY(vlSceneUnread) unread;
   const char *copyright; /* of the file, for those that are written from it; null: none */
-  uint32_t skinned,
-      morphed; /* numbers of meshes that the importer deformed by a skin, by morph targets */
+  /* numbers of meshes that the importer deformed by a skin, by morph targets */
+  uint32_t skinned, morphed;
   bool meshes_dropped; /* vl_scene_drop_meshes has freed the arrays of the shapes */
 };
 

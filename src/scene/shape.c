@@ -211,8 +211,8 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
     return check_mesh(scene, d);
   if (row->traits & VL_SHAPE_TRAIT_QUADRIC)
     return check_quadric(scene, d);
-  return d->kind != VL_SHAPE_CURVES ||
-         check_curves(scene, d); /* for other kinds the row is enough */
+  /* for other kinds the row is enough */
+  return d->kind != VL_SHAPE_CURVES || check_curves(scene, d);
 }
 
 /* Stores a def. The scene must own the def's arrays, or they are null. */
@@ -294,8 +294,8 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   vl_shape_arrays(&d, blocks);
   for (int i = 0; i < VL_SHAPE_ARRAYS; i++) {
     void *block;
-    memcpy(&block, &blocks[i],
-           sizeof block); /* the scene owns the array; const is for readers */
+    /* the scene owns the array; const is for readers */
+    memcpy(&block, &blocks[i], sizeof block);
     if (fine)
       fine = vl_scene_own(scene, block);
     else

@@ -187,8 +187,8 @@ vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16], v
   if (!take_apart(world_from_scene, &s))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "transform: not a rotation, a uniform scale and a shift");
-  scene->number = vl_context_number(
-      scene->context); /* for later worlds these are the shapes of another scene */
+  /* for later worlds these are the shapes of another scene */
+  scene->number = vl_context_number(scene->context);
   return transform_all(scene, &s) ? VL_OK : vl_scene_result(scene, error);
 }
 

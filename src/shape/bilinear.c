@@ -159,9 +159,8 @@ static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
   length = vl_normalize3(point->n);
   for (int i = 0; i < 3; i++)
     mixed[i] = q.p00[i] - q.p10[i] - q.p01[i] + q.p11[i];
-  vl_cross3(
-      point->dpdu, mixed,
-      point->dndu); /* derivatives of dpdu x dpdv: dpdu is constant along u, dpdv along v */
+  /* derivatives of dpdu x dpdv: dpdu is constant along u, dpdv along v */
+  vl_cross3(point->dpdu, mixed, point->dndu);
   vl_cross3(mixed, point->dpdv, point->dndv);
   vl_normal_derivative(point->n, length, point->dndu);
   vl_normal_derivative(point->n, length, point->dndv);

@@ -209,8 +209,8 @@ static void leaf(Search *q, const Cubic *c, double u0, double u1, double half) {
          distance2 = x * x + y * y;
   if (!(distance2 <= 0.25 * width * width) || !(z > q->z_min && z < q->z_max))
     return;
-  double side = bezier_slope(c->y, w) * x -
-                bezier_slope(c->x, w) * y; /* side of the curve on which the ray passes */
+  /* side of the curve on which the ray passes */
+  double side = bezier_slope(c->y, w) * x - bezier_slope(c->x, w) * y;
   double across = width > 0 ? sqrt(distance2) / width : 0;
   q->z_max = z;
   q->u = u;
@@ -333,11 +333,11 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
     double c[4] = {p[i], p[3 + i], p[6 + i], p[9 + i]};
     along[i] = bezier_slope(c, u);
     if (!(fabs(along[i]) > 0))
-      along[i] =
-          (c[3] - c[0]) * 1e-6; /* if control points coincide; only the direction counts */
+      /* if control points coincide; only the direction counts */
+      along[i] = (c[3] - c[0]) * 1e-6;
   }
-  if (!(vl_dot3(along, along) >
-        0)) { /* for a curve without length: any direction perpendicular to the ray */
+  /* for a curve without length: any direction perpendicular to the ray */
+  if (!(vl_dot3(along, along) > 0)) {
     double axis[3] = {fabs(hit->d[0]) < 0.6, fabs(hit->d[0]) >= 0.6, 0};
     vl_cross3(hit->d, axis, along);
   }
@@ -368,8 +368,8 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
   for (int i = 0; i < 3; i++)
     point->dndu[i] = point->dndv[i] = 0;
   vl_map_normal(s->to_shape, n, point->n);
-  double stretch =
-      vl_normalize3(point->n); /* the inverse of the factor for distances along n */
+  /* the inverse of the factor for distances along n */
+  double stretch = vl_normalize3(point->n);
   point->off = stretch > 0 ? width * (fabs(n[0]) + fabs(n[1]) + fabs(n[2])) / stretch : 0;
   double side = s->flip ? -1 : 1;
   for (int i = 0; i < 3; i++) {

@@ -166,8 +166,8 @@ static double least_triangles(const Cutter *c, const vlShapeDef *def) {
   for (size_t f = 0; f < def->faces; f++) {
     const uint32_t *v = def->indices + 3 * f;
     double a = length2(c, v[0], v[1]), b = length2(c, v[1], v[2]), d = length2(c, v[2], v[0]);
-    double area2 =
-        2 * (a * b + b * d + d * a) - a * a - b * b - d * d; /* Heron's formula: (4 area)^2 */
+    /* Heron's formula: (4 area)^2 */
+    double area2 = 2 * (a * b + b * d + d * a) - a * a - b * b - d * d;
     double longest = fmax(a, fmax(b, d)) / c->longest2;
     sum += fmax(sqrt(fmax(0, area2)) / (1.7320508 * c->longest2), sqrt(longest));
   }

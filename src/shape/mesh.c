@@ -122,8 +122,8 @@ vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
        !vl_world_copy_floats(world, def->more_uvs[1], 2 * n, &s->more_uvs[1]) ||
        !vl_world_copy_floats(world, def->more_uvs[2], 2 * n, &s->more_uvs[2])))
     return vl_fail_memory(error);
-  bool mirrored = vl_mat4_determinant3(*m) <
-                  0; /* if m mirrors, it reverses n x t relative to the mapped n and t */
+  /* if m mirrors, it reverses n x t relative to the mapped n and t */
+  bool mirrored = vl_mat4_determinant3(*m) < 0;
   for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++)
     s->tangent_signs[i] = -s->tangent_signs[i];
   if (same)

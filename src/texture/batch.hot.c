@@ -45,9 +45,8 @@ static inline void lane_axes(const vlTextureRun *r, const vlTextureNode *node, u
       lane_corner(r, node, i, &step);
     vlVec2 there = vl_texture_st(node, step);
     float s = there.x - here.x, t = there.y - here.y;
-    if (node->mapping == VL_MAPPING_SPHERICAL ||
-        node->mapping == VL_MAPPING_CYLINDRICAL) /* the shorter way across the mapping's seam */
-    {
+    /* the shorter way across the mapping's seam */
+    if (node->mapping == VL_MAPPING_SPHERICAL || node->mapping == VL_MAPPING_CYLINDRICAL) {
       s -= __builtin_rintf(s);
       t -= node->mapping == VL_MAPPING_SPHERICAL ? __builtin_rintf(t) : 0.0f;
     }

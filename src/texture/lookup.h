@@ -38,8 +38,8 @@ typedef struct vlTexel {
 static inline vlTexel vl_texel_2(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y,
                                  vlWrap wrap, vlWrap wrap_t) {
   int32_t w = (int32_t)mip->levels[level].width, h = (int32_t)mip->levels[level].height;
-  if (wrap ==
-      VL_WRAP_OCTAHEDRAL) { /* the square's edges fold onto themselves (pbrt book 3.8.3) */
+  /* the square's edges fold onto themselves (pbrt book 3.8.3) */
+  if (wrap == VL_WRAP_OCTAHEDRAL) {
     if (x < 0) {
       x = -x - 1;
       y = h - 1 - y;
@@ -195,13 +195,13 @@ static inline __attribute__((always_inline)) vlFilterPlan vl_filter_plan(float w
                                                                          float height,
                                                                          float last, vlVec2 a,
                                                                          vlVec2 b) {
-  float as = a.x * width, at = a.y * height, bs = b.x * width,
-        bt = b.y * height; /* axes in texels */
+  /* axes in texels */
+  float as = a.x * width, at = a.y * height, bs = b.x * width, bt = b.y * height;
   float a2 = as * as + at * at, b2 = bs * bs + bt * bt;
   int32_t first = a2 > b2;
   float long2 = first ? a2 : b2;
-  int32_t reduces =
-      (long2 > 1.0f) & (long2 < 1e30f); /* else magnification: no texel is skipped */
+  /* else magnification: no texel is skipped */
+  int32_t reduces = (long2 > 1.0f) & (long2 < 1e30f);
   float longer = __builtin_sqrtf(reduces ? long2 : 1.0f);
   float shorter = vl_max(vl_abs(as * bt - at * bs) / longer, 1.0f); /* ellipse of equal area */
   float level = vl_min(vl_log2_rough(shorter), last), whole = long2 >= 1e30f ? last : 0.0f;

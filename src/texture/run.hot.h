@@ -15,10 +15,10 @@ typedef struct vlTextureRun {
   vlTraceScratch *s;    /* corners and stack */
   uint32_t first, last; /* at most VL_MATERIAL_LANES lanes */
   uint32_t top;         /* first free row */
-  const float *shift_u, *shift_v, *shift_x, *shift_y,
-      *shift_z; /* offsets added to uv and position, for bump maps; or null */
-  bool rgb;     /* spectra are evaluated as linear sRGB, 0 in the fourth row, for nodes with
-                   vl_node_has_rgb_colors */
+  /* offsets added to uv and position, for bump maps; or null */
+  const float *shift_u, *shift_v, *shift_x, *shift_y, *shift_z;
+  bool rgb; /* spectra are evaluated as linear sRGB, 0 in the fourth row, for nodes with
+               vl_node_has_rgb_colors */
 } vlTextureRun;
 
 /* Evaluate a texture: a float; a spectrum at the four wavelengths; a spectrum times scale,
@@ -33,9 +33,8 @@ vlTexel vl_texture_texel(const vlTextureRun *r, const vlTextureNode *node, uint3
  * restoring r->top. The stack cannot overflow: texture/compile.c limits nesting. */
 static inline float *vl_texture_row(vlTextureRun *r) {
   uint32_t row = r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top;
-  float *stack =
-      (float *)(void *)((char *)r->s +
-                        offsetof(vlTraceScratch, textures)); /* within the scratch memory */
+  /* within the scratch memory */
+  float *stack = (float *)(void *)((char *)r->s + offsetof(vlTraceScratch, textures));
   return stack + row * VL_MATERIAL_LANES - r->first;
 }
 _Static_assert(offsetof(vlTraceScratch, textures) >= sizeof(float[VL_BATCH]),

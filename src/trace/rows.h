@@ -26,8 +26,8 @@ typedef struct vlPaths {
   VL_ROW float lambda[4][VL_ROW_SIZE];
   VL_ROW float pdf[VL_ROW_SIZE]; /* density per solid angle with which BSDF sampling drew the
                                     direction */
-  VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE],
-      from_nz[VL_ROW_SIZE]; /* surface normal at the ray's origin; the light tree uses it */
+  /* surface normal at the ray's origin; the light tree uses it */
+  VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE], from_nz[VL_ROW_SIZE];
   VL_ROW float from_side[VL_ROW_SIZE]; /* vlSurface.side at the ray's origin */
   VL_ROW float eta_scale[VL_ROW_SIZE];
   VL_ROW float cone[VL_ROW_SIZE];   /* width of the footprint at the ray's origin */
@@ -100,8 +100,8 @@ typedef struct vlTint {
 } vlTint;
 
 typedef struct vlShade {
-  VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE],
-      tz[VL_ROW_SIZE]; /* frame: tangent; bitangent = n x t */
+  /* frame: tangent; bitangent = n x t */
+  VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE];
   VL_ROW float bx[VL_ROW_SIZE], by[VL_ROW_SIZE], bz[VL_ROW_SIZE];
   VL_ROW float wo[3][VL_ROW_SIZE]; /* local */
   VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];

@@ -84,9 +84,9 @@ typedef struct vlTraceDef {
   float ao_distance;
   bool ao_cosine;
   bool same_wavelengths; /* all paths share the same four wavelengths */
-  float lambda_low,
-      lambda_span; /* nm; if the span is above 0, wavelengths are uniform in [low, low + span];
-                      else they are drawn from the visible response (pbrt book 4.5.4) */
+  /* nm; if the span is above 0, wavelengths are uniform in [low, low + span]; else they are
+   * drawn from the visible response (pbrt book 4.5.4) */
+  float lambda_low, lambda_span;
   float pixel_spread, pixel_width; /* width of a camera ray's footprint at distance t:
                                       pixel_width + pixel_spread * t */
   const vlCancel *cancel; /* once it is requested, tracers end early, and their results must not

@@ -8,8 +8,8 @@
 
 static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   (void)depth;
-  vl_stage_emission(t, n, &t->s->rays,
-                    &t->s->hits); /* all rays are marked specular, so that their weight is 1 */
+  /* all rays are marked specular, so that their weight is 1 */
+  vl_stage_emission(t, n, &t->s->rays, &t->s->hits);
   return true;
 }
 

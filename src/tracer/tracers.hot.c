@@ -107,8 +107,8 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
                      VL_DIM_BOUNCE + VL_DIM_BSDF_UV, u.u1, u.u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 nn = vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz,
-                         i); /* geometric normal, as in pbrt */
+    /* geometric normal, as in pbrt */
+    vlVec3 nn = vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz, i);
     vlVec3 d = vl_lane3(s->at.paths.dx, s->at.paths.dy, s->at.paths.dz, i);
     if (vl_dot(nn, d) > 0.0f)
       nn = vl_neg(nn);

@@ -54,8 +54,8 @@ uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
   for (uint32_t steps = 1; steps <= MAX_STEPS; steps++) {
     double a = (from - world->time_open) / span * steps,
            b = (to - world->time_open) / span * steps;
-    const double same =
-        1e-6; /* tolerance, relative to a step, since times are given with a few decimals */
+    /* tolerance, relative to a step, since times are given with a few decimals */
+    const double same = 1e-6;
     if (fabs(a - round(a)) < same && fabs(b - round(b)) < same)
       return steps;
   }
@@ -69,8 +69,8 @@ uint32_t vl_world_time_steps(const vlWorld *world, double from, double to) {
 typedef struct Motion {
   const vlSceneInstance *source;
   vlMotion *between;
-  double open,
-      span; /* the world's time 0 and the length of the world's time interval, in seconds */
+  /* the world's time 0 and the length of the world's time interval, in seconds */
+  double open, span;
 } Motion;
 
 static vlAffine true_pose(const Motion *motion, double time) {

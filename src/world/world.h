@@ -67,8 +67,8 @@ typedef struct vlWorldShape {
   uint32_t curve; /* vlCurveKind */
   uint32_t split; /* faces = segments << split */
   float *widths;
-  double from_shape[12],
-      to_shape[12]; /* from_shape: group from shape; to_shape: its inverse; row-major 3x4 */
+  /* from_shape: group from shape; to_shape: its inverse; row-major 3x4 */
+  double from_shape[12], to_shape[12];
 } vlWorldShape;
 
 /* The uv of corner k of a triangle of these vertices, and of its point with the barycentric
@@ -98,8 +98,8 @@ static inline uint32_t vl_shape_light(const vlWorldShape *s, uint32_t prim) {
 typedef struct vlWorldGroup {
   uint32_t *shapes; /* world shape index of each Embree geometry id */
   uint32_t count;
-  float low[3],
-      high[3]; /* bounding box over all times, in group space; an empty box has low > high */
+  /* bounding box over all times, in group space; an empty box has low > high */
+  float low[3], high[3];
 } vlWorldGroup;
 
 /* An instance of a group. The pose of a moving instance is interpolated linearly between its
@@ -107,8 +107,8 @@ typedef struct vlWorldGroup {
 typedef struct vlWorldInstance {
   uint32_t group;
   bool mirrored;
-  float from_group[12],
-      to_group[12]; /* world from group, and its inverse; if moving, at the world's time 0 */
+  /* world from group, and its inverse; if moving, at the world's time 0 */
+  float from_group[12], to_group[12];
   uint32_t keys; /* number of poses in path, at equal steps of the world's time; 0: at rest */
   const float *path; /* pose (world from group) of each key, 12 floats */
   /* Bound of the distance, world space, between a placed point and the surface that a ray
@@ -238,8 +238,8 @@ typedef struct vlWorldLight {
   float position[3];    /* of lights at a point, world space */
   float direction[3];   /* of a spot light: its axis, away from the light; of a distant light:
                            towards the light */
-  float cos_start,
-      cos_end; /* of a spot light: full intensity within the angle `start`, none beyond `end` */
+  /* of a spot light: full intensity within the angle `start`, none beyond `end` */
+  float cos_start, cos_end;
   bool cone_squared; /* the falloff between start and end is t^2; otherwise it is smooth */
   bool has_cone;     /* emits only into the cone of cos_end about its direction */
   bool skewed_cone;  /* the cone is round in the light's frame only: `corners` turns directions
@@ -350,15 +350,15 @@ struct vlWorld {
                                         channel of linear sRGB */
   uint32_t camera_medium;            /* index into media, VL_NONE: vacuum */
   bool moves;                        /* something moves; if false, rays need no time */
-  double time_open,
-      time_close; /* the world's times 0 and 1 in seconds; nothing moves before or after */
-  vlWorldOrigin *shape_origins, *material_origins,
-      *instance_origins; /* one per shape, material and instance */
-  vlSpectral white;      /* radiance that is displayed as white */
+  /* the world's times 0 and 1 in seconds; nothing moves before or after */
+  double time_open, time_close;
+  /* one per shape, material and instance */
+  vlWorldOrigin *shape_origins, *material_origins, *instance_origins;
+  vlSpectral white; /* radiance that is displayed as white */
   vlLightTree tree;
   vlAccel accel;
-  float bounds_min[3], bounds_max[3], center[3],
-      radius; /* bounds of all surfaces, and their bounding sphere */
+  /* bounds of all surfaces, and their bounding sphere */
+  float bounds_min[3], bounds_max[3], center[3], radius;
   vlWorldInfo info;
 };
 

@@ -234,8 +234,8 @@ static void edit(vlContext *context, Things *t, int k) {
       assert_int_equal(vl_scene_show_light(s, t->sky, false, &error), VL_OK);
       break;
     case 12: {
-      vlMaterialDef def =
-          vl_default_material_def(VL_MATERIAL_INTERFACE); /* shadow rays pass: other filters */
+      /* shadow rays pass: other filters */
+      vlMaterialDef def = vl_default_material_def(VL_MATERIAL_INTERFACE);
       assert_int_equal(vl_scene_set_material(s, t->paint, &def, &error), VL_OK);
       break;
     }
@@ -421,8 +421,8 @@ static void wrong_edits(void **state) {
   vlMaterialDef material = *vl_scene_material(t.scene, t.paint);
   material.materials[0] = material.materials[1] = t.paint;
   material.kind = VL_MATERIAL_MIX;
-  assert_int_equal(vl_scene_set_material(t.scene, t.paint, &material, &error),
-                   VL_ERROR_SCENE); /* of itself */
+  /* of itself */
+  assert_int_equal(vl_scene_set_material(t.scene, t.paint, &material, &error), VL_ERROR_SCENE);
   material = *vl_scene_material(t.scene, t.paint);
   material.cookie = 0;
   assert_int_equal(vl_scene_set_material(t.scene, t.paint, &material, &error),

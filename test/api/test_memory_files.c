@@ -173,8 +173,8 @@ static void coarse_images(void **state) {
           difference += fabs(mean - (double)c[4 * (y * def.width + x) + k]);
           sum += mean;
         }
-    assert_true(difference <
-                0.06 * sum); /* a shift by half a coarse pixel gives 0.2 and more */
+    /* a shift by half a coarse pixel gives 0.2 and more */
+    assert_true(difference < 0.06 * sum);
     vl_image_destroy(image);
   }
   vl_image_destroy(fine);

@@ -166,10 +166,10 @@ static void numbers_are_exact(void **state) {
     camera->has_matrix = true;
     for (int k = 0; k < 16; k++)
       camera->world_from_camera[k] = awkward[(i + (size_t)k) % 7];
-    camera->focus_distance =
-        awkward[i] > 0 ? awkward[i] : 2.0 / 3.0; /* a camera has no other */
-    camera->lens.tilt_x =
-        fmod(awkward[(i + 1) % 7], 1.5) + 0.0; /* less than a right angle; turns -0 into 0 */
+    /* a camera has no other */
+    camera->focus_distance = awkward[i] > 0 ? awkward[i] : 2.0 / 3.0;
+    /* less than a right angle; turns -0 into 0 */
+    camera->lens.tilt_x = fmod(awkward[(i + 1) % 7], 1.5) + 0.0;
     defs->film.filter.sigma = (float)awkward[i];
     vlReceiptDef def = vl_default_receipt_def();
     def.defs = defs;
@@ -397,8 +397,8 @@ static void wrong_receipts_are_refused(void **state) {
   }
   assert_int_equal(vl_receipt_make(f->context, NULL, &receipt, &error), VL_ERROR_ARGUMENT);
   vlReceiptDef def = vl_default_receipt_def();
-  assert_int_equal(vl_receipt_make(f->context, &def, &receipt, &error),
-                   VL_ERROR_ARGUMENT); /* the def has no defs */
+  /* the def has no defs */
+  assert_int_equal(vl_receipt_make(f->context, &def, &receipt, &error), VL_ERROR_ARGUMENT);
 }
 
 /* Members of a wrong type count as missing. */

@@ -54,8 +54,8 @@ static void a_def_of_another_abi_is_refused(void **state) {
   uint32_t good = context_def.cookie;
   context_def.cookie = next_abi(good);
   assert_int_equal(vl_context_create(&context_def, &context), VL_ERROR_ARGUMENT);
-  context_def = vl_default_context_def_abi(VL_ABI_VERSION +
-                                           1); /* a program compiled with other headers */
+  /* a program compiled with other headers */
+  context_def = vl_default_context_def_abi(VL_ABI_VERSION + 1);
   assert_int_equal(vl_context_create(&context_def, &context), VL_ERROR_ARGUMENT);
   assert_null(context);
   context_def = vl_default_context_def();

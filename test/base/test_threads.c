@@ -111,8 +111,8 @@ static void callers_own_loop(void **state) {
 }
 
 typedef struct Log {
-  int inside, lines,
-      twice; /* plain: the library promises never to call from two threads at once */
+  /* plain: the library promises never to call from two threads at once */
+  int inside, lines, twice;
 } Log;
 static void count_line(void *user, vlLogLevel level, const vlError *where,
                        const char *message) {

@@ -63,8 +63,8 @@ static void of_a_pinhole(void **state) {
   vlCamera camera = pinhole();
   camera.near_plane = 2;
   camera.far_plane = 20;
-  const double points[3] = {3, 3,
-                            -17}; /* depth 20: its image is a quarter as far from the axis */
+  /* depth 20: its image is a quarter as far from the axis */
+  const double points[3] = {3, 3, -17};
   vlDrawingDef def = vl_default_drawing_def();
   def.plane = 5;
   def.grid = 10;
@@ -77,8 +77,8 @@ static void of_a_pinhole(void **state) {
   assert_int_equal(count_of(d, VL_DRAWING_FAR), 4);
   assert_int_equal(count_of(d, VL_DRAWING_VOLUME), 4);
   assert_int_equal(count_of(d, VL_DRAWING_AXES), 3);
-  assert_int_equal(count_of(d, VL_DRAWING_GRID),
-                   2 * (7 + 5)); /* every 10 pixels, on the window and the film */
+  /* every 10 pixels, on the window and the film */
+  assert_int_equal(count_of(d, VL_DRAWING_GRID), 2 * (7 + 5));
   for (uint32_t i = 0; i < d->line_count; i++) {
     const vlDrawingLine *l = &d->lines[i];
     double depth = 3 - l->from[2], x = l->from[0] - 1, y = l->from[1] - 2;

@@ -34,8 +34,8 @@ static void check_chi2(const double *counts, const double *expected, int k) {
     chi2 += (counts[i] - expected[i]) * (counts[i] - expected[i]) / expected[i];
     cells++;
   }
-  double n = cells - 1, limit = n * pow(1 - 2 / (9 * n) + 4.76 * sqrt(2 / (9 * n)),
-                                        3); /* Wilson and Hilferty */
+  /* Wilson and Hilferty */
+  double n = cells - 1, limit = n * pow(1 - 2 / (9 * n) + 4.76 * sqrt(2 / (9 * n)), 3);
   if (!(chi2 < limit))
     fail_msg("chi2 %g of %d cells, limit %g", chi2, cells, limit);
 }
@@ -60,8 +60,8 @@ static void blades_are_even(void **state) {
     static double counts[GRID * GRID], expected[GRID * GRID];
     vlBlades b;
     vl_blades_make(count, 0.3, &b);
-    assert_true(fabs(b.x[0] - sin(0.3)) < 1e-6 &&
-                fabs(b.y[0] + cos(0.3)) < 1e-6); /* up, turned clockwise */
+    /* up, turned clockwise */
+    assert_true(fabs(b.x[0] - sin(0.3)) < 1e-6 && fabs(b.y[0] + cos(0.3)) < 1e-6);
     draw(count);
     vl_blades_points(&b, N, u, v, x, y);
     memset(counts, 0, sizeof counts);
@@ -125,8 +125,8 @@ static void named_images(void **state) {
     vlAperture *a = NULL;
     assert_int_equal(vl_aperture_create_named(context, names[i], &a, NULL), VL_OK);
     if (i == 2)
-      assert_true(vl_aperture_value(a, 0, -0.75) > 0 &&
-                  vl_aperture_value(a, 0, 0.75) == 0); /* upright */
+      /* upright */
+      assert_true(vl_aperture_value(a, 0, -0.75) > 0 && vl_aperture_value(a, 0, 0.75) == 0);
     if (i == 3)
       assert_true(vl_aperture_value(a, 0.5, 0) == 0 && vl_aperture_value(a, -0.9, 0) > 0);
     vl_aperture_destroy(a);

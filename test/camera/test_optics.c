@@ -224,8 +224,8 @@ static void batches_obey_snell(void **state) {
       assert_true(fabs(q[6][i] * -q[5][i] - o->info.length) < 1e-6 && isinf(q[7][i]));
     }
   }
-  assert_true(blocked > 0 &&
-              blocked < 19 * N * 3 / 10); /* for all that the pupil is cut at f/2 */
+  /* for all that the pupil is cut at f/2 */
+  assert_true(blocked > 0 && blocked < 19 * N * 3 / 10);
   vl_optics_destroy(o);
 }
 
@@ -392,8 +392,8 @@ static void magnification_is_the_thin_lens_equation(void **state) {
     if (!(fabs(got[0]) < 1e-8))
       fail_msg("%g: magnification off by %g", distance, got[0]);
     assert_true(fabs(got[2]) < (k % 2 ? 0.003 : 0.01));
-    assert_true(fabs(got[2] / got[1] - 4) <
-                0.2); /* third order: it grows as the square of the height */
+    /* third order: it grows as the square of the height */
+    assert_true(fabs(got[2] / got[1] - 4) < 0.2);
     vl_optics_destroy(o);
   }
 }

@@ -458,8 +458,8 @@ static void rays_of_all_sets(void **state) {
         continue;
       double off = fmax(fabs(pixel[0] - px[0][i] - (double)in[0][i]),
                         fabs(pixel[1] - px[1][i] - (double)in[1][i]));
-      if (off > 1e-3 && !(camera.projection == VL_PROJECTION_CUBE &&
-                          off > 1)) /* a seam: another face's pixel */
+      /* a seam: another face's pixel */
+      if (off > 1e-3 && !(camera.projection == VL_PROJECTION_CUBE && off > 1))
         fail_msg("model %d: a float ray leads %g pixels away", k / 2, off);
       if (off <= 1e-3)
         worst = fmax(worst, off);
@@ -563,8 +563,8 @@ static void solid_angles(void **state) {
       for (int j = 0; j < 3; j++)
         n[j] = a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3];
       double quad = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / (4 * h * h);
-      bool rim =
-          (k == 28 || k == 29) && r > 0.57; /* where it folds, differences see two sides */
+      /* where it folds, differences see two sides */
+      bool rim = (k == 28 || k == 29) && r > 0.57;
       if (!rim && fabs(got / quad - 1) > 1e-5)
         fail_msg("model %d at %g %g: %g, by rays %g", k, x, y, got, quad);
     }
@@ -734,8 +734,8 @@ static void error_messages(void **state) {
   assert_non_null(strstr(error.message, "the nearest is \"PINHOLE\""));
   assert_int_equal(vl_camera_def_colmap(&d, "A_MODEL_OF_MY_OWN", p, 4, &error),
                    VL_ERROR_ARGUMENT);
-  assert_non_null(
-      strstr(error.message, "\"A_MODEL_OF_MY_OWN\"")); /* the caller's own words are not cut */
+  /* the caller's own words are not cut */
+  assert_non_null(strstr(error.message, "\"A_MODEL_OF_MY_OWN\""));
   assert_int_equal(vl_camera_def_colmap(&d, "OPENCV", p, 7, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "8 parameters, not 7"));
   assert_int_equal(vl_camera_def_colmap(&d, "SIMPLE_RADIAL", p, 4, &error), VL_OK);

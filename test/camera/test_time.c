@@ -261,8 +261,8 @@ static void matrices_travel_too(void **state) {
   assert_false(moved.moves);
   vlStereo stereo = {VL_STEREO_PARALLEL, 0.2, VL_UNSET};
   assert_int_equal(vl_camera_eye(&moving, &stereo, VL_EYE_RIGHT, &moved, &error), VL_OK);
-  assert_true(fabs(moved.world_from_camera_close[7] - 2.1) <
-              1e-14); /* its right is the world's y there */
+  /* its right is the world's y there */
+  assert_true(fabs(moved.world_from_camera_close[7] - 2.1) < 1e-14);
   assert_int_equal(vl_camera_at(&moving, NAN, &held), VL_ERROR_ARGUMENT);
 }
 

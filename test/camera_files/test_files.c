@@ -291,8 +291,8 @@ static void test_pbrt(void **state) {
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   if (vl_scene_load(scene, path_of("s.pbrt"), NULL, &error) != VL_OK)
     fail_msg("%s", error.message);
-  compare(&r.camera, &vl_scene_defs(scene)->camera,
-          1e-3); /* pbrt's parameters are single precision */
+  /* pbrt's parameters are single precision */
+  compare(&r.camera, &vl_scene_defs(scene)->camera, 1e-3);
   vl_scene_destroy(scene);
 }
 

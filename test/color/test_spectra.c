@@ -256,8 +256,8 @@ static void test_meaning(void **state) {
   assert_true(dense[580 - 360] > 0.99999f);
   double xyz[3];
   xyz_of(dense, xyz);
-  assert_float_equal(xyz[0] / (xyz[0] + xyz[1] + xyz[2]), 0.3451,
-                     2e-4); /* Planckian locus at 5000 K */
+  /* Planckian locus at 5000 K */
+  assert_float_equal(xyz[0] / (xyz[0] + xyz[1] + xyz[2]), 0.3451, 2e-4);
   assert_float_equal(xyz[1] / (xyz[0] + xyz[1] + xyz[2]), 0.3516, 2e-4);
   static const float kelvin[4] = {1e-30f, 10, 1e9f, 3e38f};
   for (int i = 0; i < 4; i++) {

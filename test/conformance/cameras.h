@@ -340,8 +340,8 @@ static bool check_scene_file(const char *family, const char *kind, const vlCamer
   vlCameraDef read = vl_scene_defs(scene)->camera;
   read.width = def->width; /* glTF has no sizes of images */
   read.height = def->height;
-  read.exposure_time *=
-      (double)vl_scene_defs(scene)->develop.exposure; /* pbrt's is the film's */
+  /* pbrt's is the film's */
+  read.exposure_time *= (double)vl_scene_defs(scene)->develop.exposure;
   if (result == VL_OK)
     result = vl_camera_make(&read, &again, NULL, &error);
   if (result != VL_OK)

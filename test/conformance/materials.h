@@ -16,8 +16,8 @@ static const MaterialCase *const material_cases[] = {VL_MATERIAL_KINDS(MATERIAL_
 /* ---- asking ------------------------------------------------------------------------------ */
 
 /* Directions of the eye: angles from the normal; those above pi / 2 are below the square. */
-static const double material_angles[] = {0.2, 1.1,
-                                         PI - 0.6}; /* MaterialVariant.albedo: the first */
+/* MaterialVariant.albedo: the first */
+static const double material_angles[] = {0.2, 1.1, PI - 0.6};
 enum { MATERIAL_ANGLES = 3, MATERIAL_BATCHES = 28, GLASS_BATCHES = 80 };
 
 typedef struct MaterialLaws {
@@ -27,10 +27,10 @@ typedef struct MaterialLaws {
   vlTraceRays *rays, *back;
   vlTraceHits *hits;
   vlTraceBounce *next;
-  Mean weight[3],
-      value[3]; /* the mean weight of samples with a density; the integral of the BSDF */
-  Mean all[3],
-      stays; /* the mean weight of all samples; the share of it that stays on the eye's side */
+  /* the mean weight of samples with a density; the integral of the BSDF */
+  Mean weight[3], value[3];
+  /* the mean weight of all samples; the share of it that stays on the eye's side */
+  Mean all[3], stays;
   Mean density, has_density;
   Mean along; /* the samples' directions along x beyond what is known, by their weight */
   uint32_t compared, wrong_density, wrong_weight, both_ways, unequal;

@@ -450,8 +450,8 @@ static void check_filter(const vlPixelFilter *filter, const char *name, bool sha
   double worst = 0;
   double across[2 * FILTERED];
   double down[2 * FILTERED];
-  double least =
-      0; /* below 0: the filter has negative lobes, for which no samples are shared */
+  /* below 0: the filter has negative lobes, for which no samples are shared */
+  double least = 0;
   for (int k = 0; k < 2 * FILTERED; k++) {
     across[k] = filtered_share(filter, radius, k - FILTERED / 2);
     down[k] = filtered_share(filter, radius_y, k - FILTERED / 2);

@@ -135,8 +135,8 @@ static void test_order(void **state) {
         }
       }
       bool analytic = kind == VL_PIXEL_FILTER_BOX || kind == VL_PIXEL_FILTER_TRIANGLE;
-      double middle =
-          analytic ? 1 : table_.axis[1].sign[0]; /* the other axis' share of the weight */
+      /* the other axis' share of the weight */
+      double middle = analytic ? 1 : table_.axis[1].sign[0];
       if (!(fabs(sum / (64.0 * BATCH) - middle) < 1e-4 * middle))
         fail_msg("%s, variant %d: mean weight %.9g, not %.9g", NAMES[kind], k,
                  sum / (64.0 * BATCH), middle);

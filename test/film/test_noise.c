@@ -142,8 +142,8 @@ static vlFilm *stratified_film(vlContext *context, uint32_t strata, uint64_t see
       for (uint32_t s = first; s < end; s++) {
         if (s % strata == 0)
           places[i] = (uint32_t)(stat_float(&rng) * (float)strata);
-        uint32_t stratum =
-            (s * 5 + places[i]) % strata; /* s * 5 mod strata: each stratum once */
+        /* s * 5 mod strata: each stratum once */
+        uint32_t stratum = (s * 5 + places[i]) % strata;
         float value = ((float)stratum + stat_float(&rng)) / (float)strata, one = 1;
         int32_t x = i % WIDTH, y = i / WIDTH;
         vlFilmSamples samples = {1, &x, &y, &value, &value, &value, &one, &one, &s};
@@ -203,8 +203,8 @@ static void rare_light_is_not_missed(void **state) {
     probability *= (double)(SPP - k) / (k + 1) * p / (1 - p);
   }
   vlFilm *film = film_of(context, draw_rare, 0, 0, 5);
-  double apart = vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, 1),
-         alike[2]; /* the bound's distance from the mean */
+  /* the bound's distance from the mean */
+  double apart = vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, 1), alike[2];
   for (int k = 0; k < 2; k++)
     alike[k] = vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, k ? 4 : 0);
   double none = alike[0] * alike[0], one = apart * apart - none,

@@ -132,8 +132,8 @@ static void exact(void **state) {
 static void empty_buckets(void **state) {
   (void)state;
   vlFilm *film = new_film();
-  const float lambda[4] = {460, 500, 590, 640},
-              value[4] = {8, 2, 0, 3}; /* buckets 1, 2, 4, 5 */
+  /* buckets 1, 2, 4, 5 */
+  const float lambda[4] = {460, 500, 590, 640}, value[4] = {8, 2, 0, 3};
   const float expected[BUCKETS] = {8, 8, 2, 1, 0, 3, 3};
   px_[0] = 1;
   py_[0] = 0;

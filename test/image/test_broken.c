@@ -194,8 +194,8 @@ static void test_ratio(void **state) {
   put_be32(file + 41 + packed, (uint32_t)crc32(0, file + 37, (uInt)packed + 4));
   vlImage *image;
   vlError error;
-  assert_int_equal(read_bytes(context, file, 45 + packed, &image, &error),
-                   VL_OK); /* 25 MB from 24 kB: it is all there */
+  /* 25 MB from 24 kB: it is all there */
+  assert_int_equal(read_bytes(context, file, 45 + packed, &image, &error), VL_OK);
   assert_int_equal(image->width, 5000);
   vl_image_destroy(image);
   free(zeros);
@@ -267,8 +267,8 @@ static void make_exr(Bytes *b, int32_t sampling, int32_t version) {
   add(&list, "", 1);
   add_attribute(b, "channels", "chlist", list.data, (int32_t)list.size);
   add_attribute(b, "compression", "compression", "\0", 1);
-  const int32_t whole[4] = {-1, 5, 1, 6},
-                even[4] = {-2, 6, 1, 7}; /* OpenEXR wants it to suit the sampling */
+  /* OpenEXR wants it to suit the sampling */
+  const int32_t whole[4] = {-1, 5, 1, 6}, even[4] = {-2, 6, 1, 7};
   const int32_t *window = sampling == 1 ? whole : even;
   add_attribute(b, "dataWindow", "box2i", window, 16);
   add_attribute(b, "displayWindow", "box2i", window, 16);

@@ -77,8 +77,8 @@ static void test_extremes(void **state) {
               d.differing == 0);
   vlImage *black = plain(context, 40, 30, 0, 0, 0), *white = plain(context, 40, 30, 1, 1, 1);
   d = compare(black, white);
-  assert_true(d.flip > 0.96 &&
-              d.flip < 0.98); /* HyAB distance 100; only differences of hue are larger */
+  /* HyAB distance 100; only differences of hue are larger */
+  assert_true(d.flip > 0.96 && d.flip < 0.98);
   assert_true(isinf(d.mean_ratio) || d.mean_ratio > 1e30);
   vlImage *green = plain(context, 40, 30, 0, 1, 0), *blue = plain(context, 40, 30, 0, 0, 1);
   d = compare(green, blue);
@@ -276,8 +276,8 @@ static void test_heat(void **state) {
   vl_image_destroy(heat);
   assert_int_equal(vl_image_compare(a, b, &d, &heat, NULL), VL_OK);
   p = vl_image_const_pixels(heat);
-  assert_true(p[0] >= 248 && p[1] >= 245 && p[2] >= 180 &&
-              p[2] <= 196); /* and ends at (252, 253, 191) */
+  /* and ends at (252, 253, 191) */
+  assert_true(p[0] >= 248 && p[1] >= 245 && p[2] >= 180 && p[2] <= 196);
   vl_image_destroy(heat);
   vl_image_destroy(a);
   vl_image_destroy(b);

@@ -74,8 +74,8 @@ static void test_exr_half(void **state) {
   vl_image_destroy(back);
   vl_image_destroy(image);
 
-  image = make_image(context, 8, 8, 3, VL_PIXEL_U8,
-                     VL_ENCODING_SRGB); /* eight bits are written as light */
+  /* eight bits are written as light */
+  image = make_image(context, 8, 8, 3, VL_PIXEL_U8, VL_ENCODING_SRGB);
   back = round_trip(context, image, "light.exr", NULL);
   assert_int_equal(back->type, VL_PIXEL_F32);
   for (uint32_t y = 0; y < 8; y++)

@@ -64,8 +64,8 @@ static void test_get(void **state) {
   for (int i = 0; i < 256; i++) {
     double v = i / 255.0, light = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     assert_true(fabs(vl_image_get(image, (uint32_t)i, 0, 0) - light) < 1e-7);
-    assert_true(fabs(vl_image_get(image, (uint32_t)i, 0, 3) - v) <
-                1e-7); /* alpha has no curve */
+    /* alpha has no curve */
+    assert_true(fabs(vl_image_get(image, (uint32_t)i, 0, 3) - v) < 1e-7);
   }
   float row[256 * 2];
   vl_image_row_to_float(image, 0, (const uint32_t[]){2, 3}, 2, row);

@@ -109,8 +109,8 @@ static void pbrt_cameras(void **state) {
   assert_near(c.focus_distance, 7, 0);
   assert_near(c.shutter_open, 1, 0);
   assert_near(c.shutter_close, 3, 0);
-  assert_near(vl_scene_defs(l.scene)->develop.exposure, 2,
-              0); /* pbrt's imaging ratio counts the time */
+  /* pbrt's imaging ratio counts the time */
+  assert_near(vl_scene_defs(l.scene)->develop.exposure, 2, 0);
   end_load(&l);
   c = camera_of(&l, "Camera \"perspective\" \"float lensradius\" 0.5\n" W);
   assert_near(c.focus_distance, 1e6, 0);

@@ -67,8 +67,8 @@ static void materials(void **state) {
              W "AreaLightSource \"diffuse\" Material \"%s\" Shape \"sphere\"", nothing[i]);
     load_fine(&l, text);
     assert_int_equal(last_material(&l)->kind, VL_MATERIAL_INTERFACE);
-    assert_int_equal(l.scene->shapes.items[0].emission.index,
-                     0); /* as in pbrt, with a warning */
+    /* as in pbrt, with a warning */
+    assert_int_equal(l.scene->shapes.items[0].emission.index, 0);
     assert_non_null(strstr(l.log, "its area light is ignored"));
     end_load(&l);
   }
@@ -211,8 +211,8 @@ static void textures(void **state) {
   assert_int_equal(t[7].mapping, VL_MAPPING_SPHERICAL);
   assert_int_equal(last_material(&l)->reflectance.texture.index, 9);
   assert_int_equal(last_material(&l)->displacement.texture.index, 2);
-  assert_int_equal(l.scene->shapes.items[0].alpha.texture.index,
-                   1); /* the float one of the two named c */
+  /* the float one of the two named c */
+  assert_int_equal(l.scene->shapes.items[0].alpha.texture.index, 1);
   assert_near(l.scene->shapes.items[1].alpha.value, 0.25, 0);
   end_load(&l);
 }
@@ -388,8 +388,8 @@ static void attributes(void **state) {
   assert_near(s[6].positions[3], 1, 0);
   assert_ptr_not_equal(s[5].positions, s[6].positions);
   assert_near(last_material(&l)->reflectance.value.rgb[1], .2, 1e-7);
-  assert_int_equal(last_material(&l)->reflectance.value.space,
-                   VL_SPACE_SRGB); /* where the attribute stood */
+  /* where the attribute stood */
+  assert_int_equal(last_material(&l)->reflectance.value.space, VL_SPACE_SRGB);
   assert_near(l.scene->lights.items[0].scale, 9, 0);
   assert_near(l.scene->textures.items[0].float_a.value, 2, 0);
   end_load(&l);

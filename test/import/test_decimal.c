@@ -62,8 +62,8 @@ static void doubles_and_ties(void **state) {
       snprintf(tail, sizeof tail, "%s", e);
       n = (int)(e - text);
     }
-    snprintf(text + n, sizeof text - (size_t)n, "%s1%s", strchr(text, '.') ? "" : ".",
-             tail); /* above */
+    /* above */
+    snprintf(text + n, sizeof text - (size_t)n, "%s1%s", strchr(text, '.') ? "" : ".", tail);
     same(text);
   }
 }

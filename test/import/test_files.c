@@ -124,9 +124,8 @@ static void lists_across_files(void **state) {
   file_error(
       "main.pbrt", VL_ERROR_SCENE,
       "%/main.pbrt:3:2: Shape \"sphere\": unknown parameter \"zmni\" (did you mean \"zmin\"?)");
-  write_file(
-      "main.pbrt",
-      "WorldBegin\nImport \"parts/c.pbrt\"\n \"float zmin\" -1"); /* a world of its own */
+  /* a world of its own */
+  write_file("main.pbrt", "WorldBegin\nImport \"parts/c.pbrt\"\n \"float zmin\" -1");
   file_error("main.pbrt", VL_ERROR_SCENE,
              "%/main.pbrt:3:2: expected a directive, found \"float zmin\"");
 }
@@ -139,9 +138,8 @@ static void mistakes_in_parts(void **state) {
       "m.pbrt", VL_ERROR_SCENE,
       "%/parts/bad.pbrt:2:16: Shape \"sphere\": unknown parameter \"raduis\" (did you mean "
       "\"radius\"?)");
-  write_file("parts/bad.pbrt",
-             "Material \"diffuse\" \"float raduis\" 1\n"); /* found at the end, when the file is
-                                                              gone */
+  /* found at the end, when the file is gone */
+  write_file("parts/bad.pbrt", "Material \"diffuse\" \"float raduis\" 1\n");
   file_error("m.pbrt", VL_ERROR_SCENE,
              "%/parts/bad.pbrt:1:20: Material \"diffuse\": unknown parameter \"raduis\"");
   write_file("parts/bad.pbrt", "Shape \"sphere\" \"float radius\" [ 1");

@@ -40,8 +40,8 @@ static void containers(void **state) {
 static void arrays(void **state) {
   (void)state;
   Gltf *g = calloc(1, sizeof *g);
-  const int16_t quantised[] = {0, 0,  0, 99,     32767, 0,
-                               0, 99, 0, -32768, 0,     99}; /* 8 bytes apart */
+  /* 8 bytes apart */
+  const int16_t quantised[] = {0, 0, 0, 99, 32767, 0, 0, 99, 0, -32768, 0, 99};
   int view = gltf_view(g, quantised, sizeof quantised, 8);
   gltf_accessor(g, view, 5122, 3, "VEC3", ",\"normalized\":true");
   const uint8_t colors[] = {255, 0, 51, 0, 0, 255, 0, 0, 0, 0, 0, 0}; /* 4 bytes apart */
@@ -220,10 +220,10 @@ static void animation(void **state) {
       "\"nodes\":[{\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":2,\"output\":5}],"
       "\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"rotation\"}}]}]"
       "," SQUARE_MESH);
-  assert_near(at_time(g, rest, 1.5, 0), cos(3.14159265358979 / 4),
-              1e-6); /* half of a quarter turn */
-  assert_near(at_time(g, rest, 3, 4), sin(3.14159265358979 * 0.75),
-              1e-6); /* the short way on */
+  /* half of a quarter turn */
+  assert_near(at_time(g, rest, 1.5, 0), cos(3.14159265358979 / 4), 1e-6);
+  /* the short way on */
+  assert_near(at_time(g, rest, 3, 4), sin(3.14159265358979 * 0.75), 1e-6);
   free(g);
 }
 

@@ -105,8 +105,8 @@ static void vertex_alpha(void **state) {
 
 static void put_packed(Gltf *g, const unsigned char *data, size_t size, const char *filter,
                        size_t count, size_t stride) {
-  int view =
-      gltf_view(g, data, size, 0); /* its bytes; the view itself is replaced by the next */
+  /* its bytes; the view itself is replaced by the next */
+  int view = gltf_view(g, data, size, 0);
   char *text = strrchr(g->views, '{');
   unsigned offset = 0;
   sscanf(strstr(text, "byteOffset") + 12, "%u", &offset);

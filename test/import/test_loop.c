@@ -52,8 +52,8 @@ static void closed(void **state) {
         assert_near(m.positions[3 * i + k], octahedron[3 * i + k] * first, 2e-6);
     for (uint32_t i = 0; i < m.vertices; i++) {
       const float *p = &m.positions[3 * i], *n = &m.normals[3 * i];
-      assert_true(p[0] * n[0] + p[1] * n[1] + p[2] * n[2] <
-                  0); /* against the winding, as pbrt has them */
+      /* against the winding, as pbrt has them */
+      assert_true(p[0] * n[0] + p[1] * n[1] + p[2] * n[2] < 0);
     }
     for (uint32_t i = 0; i < 3 * m.triangles; i++)
       assert_true(m.indices[i] < m.vertices);

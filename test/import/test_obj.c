@@ -145,8 +145,8 @@ static void smoothing(void **state) {
   load_obj(&l, text);
   assert_null(l.scene->shapes.items[0].normals);
   end_load(&l);
-  snprintf(text, sizeof text, "%ss 1\nf 1 2 3 4\ns 0\nf 4 3 5 6\n",
-           roof); /* the second one flat beside it */
+  /* the second one flat beside it */
+  snprintf(text, sizeof text, "%ss 1\nf 1 2 3 4\ns 0\nf 4 3 5 6\n", roof);
   load_obj(&l, text);
   d = &l.scene->shapes.items[0];
   assert_int_equal(d->vertices, 10);

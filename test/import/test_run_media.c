@@ -41,9 +41,8 @@ static void runs_lie_in_their_media(void **state) {
     load_fine(&l, text);
     uint32_t seen[3] = {0};
     size_t shapes = l.scene->shapes.count - BEFORE;
-    assert_true(
-        shapes <=
-        4); /* 12 Shapes in 3 runs; for curves a change of state alone may also end a run */
+    /* 12 Shapes in 3 runs; for curves a change of state alone may also end a run */
+    assert_true(shapes <= 4);
     for (size_t i = 0; i < l.scene->shapes.count; i++) {
       const vlShapeDef *d = &l.scene->shapes.items[i];
       if (d->kind == VL_SHAPE_DISK)

@@ -462,8 +462,8 @@ static void statements(void **state) {
     snprintf(wanted, sizeof wanted, "Film \"rgb\"\nPixelFilter \"box\"\nWorldBegin\n%s",
              world[i].to);
     write_file("old/s.pbrt", text);
-    unlink(in_folder(
-        "new/around-equiarea.exr")); /* of another scene: it would not be overwritten */
+    /* of another scene: it would not be overwritten */
+    unlink(in_folder("new/around-equiarea.exr"));
     vlResult r = upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error);
     const char *got = r == VL_OK ? read_file("new/s.pbrt") : error.message;
     bool same = strcmp(got, wanted) == 0 && notes.lost == world[i].lost;

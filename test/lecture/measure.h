@@ -144,8 +144,8 @@ static inline Edge measure_edge(const Image *p, int channel, P2 a, P2 b, int at_
   double a0 = e.flat ? a.x : a.y, a1 = e.flat ? a.y : a.x, b0 = e.flat ? b.x : b.y,
          b1 = e.flat ? b.y : b.x;
   double slope = (b1 - a1) / (b0 - a0);
-  long first = (long)ceil(fmin(a0, b0) + 2),
-       last = (long)floor(fmax(a0, b0) - 2); /* away from the corners */
+  /* away from the corners */
+  long first = (long)ceil(fmin(a0, b0) + 2), last = (long)floor(fmax(a0, b0) - 2);
   long size = e.flat ? (long)p->width : (long)p->height,
        breadth = e.flat ? (long)p->height : (long)p->width;
   if (first < 0)

@@ -236,8 +236,8 @@ static void axes_meet_in_principal_vanishing_points(void **state) {
   P2 c = {p.camera.cx, p.camera.cy};
   for (int k = 0; k < 3; k++) {
     P2 a = v[k], q = v[(k + 1) % 3], r = v[(k + 2) % 3];
-    double height = (a.x - c.x) * (q.x - r.x) +
-                    (a.y - c.y) * (q.y - r.y); /* c lies on the height through a */
+    /* c lies on the height through a */
+    double height = (a.x - c.x) * (q.x - r.x) + (a.y - c.y) * (q.y - r.y);
     near_to("principal point on the triangle's height", height / hypot(q.x - r.x, q.y - r.y), 0,
             0.1);
     double f2 = -((q.x - c.x) * (r.x - c.x) + (q.y - c.y) * (r.y - c.y));

@@ -140,9 +140,8 @@ static void lens_blurs_what_is_out_of_focus(void **state) {
   double f = p.camera.fx, blur = 2 * 10 * f * (1 / 250.0 - 1 / 500.0);
   for (int k = 0; k < 2; k++) {
     P2 c = disk_centre(&p, k);
-    double edge =
-        c.x + f * 40 / distance[k] *
-                  (k == 0 ? -1 : 1); /* the edge that faces away from the other disks */
+    /* the edge that faces away from the other disks */
+    double edge = c.x + f * 40 / distance[k] * (k == 0 ? -1 : 1);
     long around = k == 0 ? 7 : 4;
     /* the width of the penumbra: partly covered pixels in the row beside the centre */
     double partial = 0, partial_sharp = 0;

@@ -81,8 +81,8 @@ static void test_owen(void **state) {
       uint32_t x = vl_hash(i), seed = vl_hash(i + 12345), up = 1u << 31 >> (bit / 2);
       uint32_t a = owen(x, seed) ^ x, b = owen(x ^ up, seed) ^ x ^ up;
       flips += a >> (31 - bit) & 1;
-      both += (a ^ b) >> (31 - bit) &
-              1; /* if a bit above differs, the flip differs half of the time */
+      /* if a bit above differs, the flip differs half of the time */
+      both += (a ^ b) >> (31 - bit) & 1;
     }
     assert_true(fabs(flips - N * 0.5) < 5 * sqrt(N * 0.25));
     if (bit > 4)

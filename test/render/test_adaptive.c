@@ -75,8 +75,8 @@ static void first_comparison(void **state) {
   vlRenderDef def = render_def(VL_TRACER_PATH, 0.9, 1000);
   vlRenderStats stats;
   assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, &stats, NULL), VL_OK);
-  assert_int_equal(stats.spp,
-                   9); /* compared at 8; one more that knows nothing of the decision */
+  /* compared at 8; one more that knows nothing of the decision */
+  assert_int_equal(stats.spp, 9);
   assert_true(stats.mean_spp == 9 && stats.noisy_blocks == 0);
   def.noise = 1e-9;
   def.spp = 24;

@@ -155,8 +155,8 @@ static void test_exact_distance_and_ids(void **state) {
       bool sphere_met = root > 0;
       on_sphere += sphere_met;
       assert_int_equal(id(&t, x, y, "id.object"), sphere_met ? 2 : 1);
-      assert_int_equal(id(&t, x, y, "id.material"),
-                       sphere_met ? 1 : 2); /* the sphere has the default material */
+      /* the sphere has the default material */
+      assert_int_equal(id(&t, x, y, "id.material"), sphere_met ? 1 : 2);
       double expected = sphere_met ? b - sqrt(root) : -9 / d[2];
       assert_near("distance", number(&t, x, y, "distance.Y"), expected,
                   1e-7 * expected + (sphere_met ? 2e-6 : 0));

@@ -66,8 +66,8 @@ static void test_sky_and_nowhere(void **state) {
   }
   ground_truth_free(&t);
   other = s.camera;
-  other.eye[0] =
-      100; /* the sky's flow depends on the camera's orientation, not on its position */
+  /* the sky's flow depends on the camera's orientation, not on its position */
+  other.eye[0] = 100;
   other.lookat[0] = 100 + 0.1;
   other.lookat[2] = -1;
   t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);

@@ -26,8 +26,8 @@ static void on_sphere(double u, double v, double p[3]) {
   p[1] = sin(theta) * sin(phi);
   p[2] = cos(theta);
 }
-static void on_part(double u, double v,
-                    double p[3]) { /* of a sphere: z from -0.5 to 0.8, three quarters round */
+/* of a sphere: z from -0.5 to 0.8, three quarters round */
+static void on_part(double u, double v, double p[3]) {
   double low = acos(-0.5), high = acos(0.8), theta = low + v * (high - low),
          phi = 1.5 * M_PI * u;
   p[0] = sin(theta) * cos(phi);
@@ -46,8 +46,8 @@ static void on_disk(double u, double v, double p[3]) {
   p[2] = 0;
 }
 static const float patch_corners[12] = {-1, -1, 0.4f, 1, -1, -0.5f, -1, 1, -0.4f, 1, 1, 0.6f};
-static const float patch_uvs[8] = {0, 1, 0, 0,
-                                   1, 1, 1, 0}; /* u = b, v = 1 - a of the patch's own a, b */
+/* u = b, v = 1 - a of the patch's own a, b */
+static const float patch_uvs[8] = {0, 1, 0, 0, 1, 1, 1, 0};
 static void on_patch(double u, double v, double p[3]) {
   double a = 1 - v, b = u;
   for (int i = 0; i < 3; i++)
@@ -222,8 +222,8 @@ static Image stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, bo
   def.filter = filter;
   def.mapping = mapping;
   def.sv = 12;
-  if (mapping ==
-      VL_MAPPING_PLANAR) { /* the same over the quad: s = (x + 1)/2, t = (y + 1) * 6 */
+  /* the same over the quad: s = (x + 1)/2, t = (y + 1) * 6 */
+  if (mapping == VL_MAPPING_PLANAR) {
     def.planar_v1[0] = 0.5f;
     def.planar_v1[1] = def.planar_v1[2] = 0;
     def.du = 0.5f;
@@ -259,9 +259,8 @@ static void fine_stripes_are_grey_and_wide_ones_sharp(void **state) {
         sum += f;
         square += f * f;
         double expected = (x / 4) & 1 ? 0.8 : 0.2, off = fabs(w - expected);
-        bool edge =
-            x % 4 == 0 ||
-            x % 4 == 3; /* the footprint reaches over: by no more than a quarter of a pixel */
+        /* the footprint reaches over: by no more than a quarter of a pixel */
+        bool edge = x % 4 == 0 || x % 4 == 3;
         if (!(off < (edge ? 0.6 * 0.15 : 1e-3)))
           fail_msg("%s: pixel (%u, %u) of the wide stripes is %.4f, expected %.1f", what, x, y,
                    w, expected);

@@ -59,8 +59,8 @@ static void point_and_spot(void **state) {
       for (int c = 0; c < 3; c++)
         assert_ratio("point", image_at(&point, x, y, c), 0.5 / M_PI * color[c] * e, 0.005);
       r2 = at[0] * at[0] + at[1] * at[1] + 4;
-      double r = sqrt(r2),
-             axis = (at[0] * sin(0.3) + 2 * cos(0.3)) / r; /* cosine to the spot's axis */
+      /* cosine to the spot's axis */
+      double r = sqrt(r2), axis = (at[0] * sin(0.3) + 2 * cos(0.3)) / r;
       double t = (axis - cos(0.45)) / (cos(0.2) - cos(0.45));
       t = t < 0 ? 0 : t > 1 ? 1 : t;
       dark += t == 0;
@@ -212,8 +212,8 @@ static void painted_walls(void **state) {
   write_image(s.context, path, 2, rgb);
   stage_close(&s);
   static const float corners[12] = {-2, -2, 0, 2, -2, 0, -2, 2, 0, 2, 2, 0};
-  static const float here[8] = {0.25f, 0.5f, 0.25f, 0.5f,
-                                0.25f, 0.5f, 0.25f, 0.5f}; /* all red */
+  /* all red */
+  static const float here[8] = {0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f};
   static const float across[8] = {0, 0, 1, 0, 0, 1, 1, 1};
   static const float tints[16] = {0.5f, 0.25f, 1, 0.5f, 0.5f, 0.25f, 1, 0.5f,
                                   0.5f, 0.25f, 1, 0.5f, 0.5f, 0.25f, 1, 0.5f};

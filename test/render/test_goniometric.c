@@ -113,8 +113,8 @@ static void projection(void **state) {
             continue;
           bool in = fabs(a) < half && fabs(b) < 0.4;
           double e = expected(x, y);
-          double want[3] = {in && a > 0 ? e : 0, in && b < 0 ? e : 0,
-                            in ? e : 0}; /* a world that is mirrored to pbrt's */
+          /* a world that is mirrored to pbrt's */
+          double want[3] = {in && a > 0 ? e : 0, in && b < 0 ? e : 0, in ? e : 0};
           for (int c = 0; c < 3; c++)
             assert_near("slide", image_at(&p, x, y, c), want[c], 0.02 * e);
         }

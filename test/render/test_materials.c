@@ -243,8 +243,8 @@ static void displacements(void **state) {
   for (int i = 0; i < 4; i++) {
     double a = slopes[i][0], b = slopes[i][1];
     Stage s = wall_stage(sun_at);
-    vlTextureDef h = vl_default_texture_def(VL_TEXTURE_BILERP,
-                                            false); /* u = (x + 1)/2: twice the slope over u */
+    /* u = (x + 1)/2: twice the slope over u */
+    vlTextureDef h = vl_default_texture_def(VL_TEXTURE_BILERP, false);
     h.float_a = vl_float_input(0.7f);
     h.float_b = vl_float_input((float)(0.7 + 2 * b));
     h.float_c = vl_float_input((float)(0.7 + 2 * a));
@@ -415,8 +415,8 @@ static void dispersion_keeps_energy(void **state) {
     Quad q = quad_at(0, 0, -3, 5, 0, 0, 0, 5, 0);
     q.material = vl_scene_add_material(s.scene, &narrow);
     add_quad(&s, &q);
-    Quad sheet = quad_at(0, 0, -2, 40, 0, 0, 0, 40,
-                         0); /* between the wall and the sky; the eye looks through too */
+    /* between the wall and the sky; the eye looks through too */
+    Quad sheet = quad_at(0, 0, -2, 40, 0, 0, 0, 40, 0);
     sheet.material = vl_scene_add_material(s.scene, &glass);
     s.camera.eye[2] = -2.5;
     s.camera.lookat[2] = -4;

@@ -294,8 +294,8 @@ static void crop_has_the_same_bits(uint32_t channels, vlChannelMode mode,
 
 static void test_same_bits(void **state) {
   (void)state;
-  const uint32_t any[4] = {7, 3, 41, 34},
-                 cells[4] = {8, 8, 45, 32}; /* errors are estimated in cells of 8 x 8 */
+  /* errors are estimated in cells of 8 x 8 */
+  const uint32_t any[4] = {7, 3, 41, 34}, cells[4] = {8, 8, 45, 32};
   uint32_t channels = VL_CHANNEL_ALL | MATTES | VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
   for (int mode = VL_CHANNEL_MODE_NEAREST; mode <= VL_CHANNEL_MODE_COVERAGE; mode++) {
     Stage s = stage_open(45, 35);

@@ -141,8 +141,8 @@ static void single_scattering(void **state) {
   const int n = 400000;
   for (int k = 0; k < n; k++) {
     double t = 60 * (k + 0.5) / n, to[3] = {lamp[0], lamp[1], lamp[2] + t};
-    double d = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]),
-           cosine = -to[2] / d; /* between lamp to fog and fog to eye */
+    /* between lamp to fog and fog to eye */
+    double d = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]), cosine = -to[2] / d;
     expected += 60.0 / n * sc * phase(g, cosine) * exp(-(a + sc) * (t + d)) / (d * d);
   }
   for (int kind = 0; kind < 2; kind++) {

@@ -67,8 +67,8 @@ static void equilibrium(void **state) {
         s.render.max_depth = 200;
         vlMediumDef def = fog(0.7f, 1.1f, 0.4f);
         def.emission = vl_spectrum_rgb(2, 2, 2);
-        def.emission_scale =
-            glass ? 1.5f * 1.5f : 1; /* radiance in glass is eta^2 times as high */
+        /* radiance in glass is eta^2 times as high */
+        def.emission_scale = glass ? 1.5f * 1.5f : 1;
         if (kind == 1) {
           def.kind = VL_MEDIUM_GRID;
           def.nx = def.ny = def.nz = 4;
@@ -292,8 +292,8 @@ static void emissive_fog(void **state) {
   (void)state;
   for (int kind = 0; kind < 2; kind++) {
     Stage s = narrow(4096, VL_COLOR_RGB);
-    s.render.max_depth =
-        1; /* emission at the end of the first flight, and of the one after one scattering */
+    /* emission at the end of the first flight, and of the one after one scattering */
+    s.render.max_depth = 1;
     vlMediumDef def = fog(0.3f, 0.2f, 0);
     def.emission = vl_spectrum_rgb(1, 1, 1);
     if (kind)

@@ -22,8 +22,8 @@ static Stage fill(double f) {
   s.camera.shutter_open = 0.2;
   s.camera.shutter_close = 0.6;
   set_matrix(a, 1, 0, 0, -0.6, 0, 1, 0, 0.1, 0, 0, 1, -3);
-  set_matrix(b, 1, 0, 0, 0.4, 0, 1.5, 0, 0.3, 0, 0, 1,
-             -2.5); /* no turn: the truth is known exactly */
+  /* no turn: the truth is known exactly */
+  set_matrix(b, 1, 0, 0, 0.4, 0, 1.5, 0, 0.3, 0, 0, 1, -2.5);
   memcpy(poses, a, sizeof a);
   memcpy(poses + 16, b, sizeof b);
   vlGroupId group = vl_scene_add_group(s.scene, "g");

@@ -159,8 +159,8 @@ static void many_elements(void **state) {
     if (k < 2)
       add_quad(&s, &q);
     if (k == 2) {
-      Quad hidden =
-          quad_at(0, 0, -0.02f, 50, 0, 0, 0, 50, 0); /* between film and lens: not seen */
+      /* between film and lens: not seen */
+      Quad hidden = quad_at(0, 0, -0.02f, 50, 0, 0, 0, 50, 0);
       hidden.emission = add_emission(&s, 9, true);
       add_quad(&s, &hidden);
     }

@@ -347,8 +347,8 @@ static void sampler_mean(void **state) {
   double z = (mean[1] - mean[0]) / hypot(error[0], error[1]);
   print_message("own sampler: mean %.5g, velo's %.5g, z = %.2f\n", mean[1], mean[0], z);
   assert_true(fabs(z) < 4);
-  assert_true(hypot(error[0], error[1]) <
-              0.01 * mean[0]); /* a difference of 5 % would be seen */
+  /* a difference of 5 % would be seen */
+  assert_true(hypot(error[0], error[1]) < 0.01 * mean[0]);
 }
 
 static void sampler_bits(void **state) {
@@ -577,8 +577,8 @@ static void what_the_world_answers(void **state) {
   Image p = image_in(render_traced, &own, 2, VL_ISA_AUTO);
   assert_int_equal(look.wrong, 0);
   assert_true(look.hits > 500 && look.misses > 500);
-  assert_true(p.stats.not_finite >=
-              SMALL_WIDTH * SMALL_HEIGHT * 2); /* NaN: all samples are left out */
+  /* NaN: all samples are left out */
+  assert_true(p.stats.not_finite >= SMALL_WIDTH * SMALL_HEIGHT * 2);
   image_free(&p);
 }
 

@@ -237,8 +237,8 @@ static void check_floor(const vlPath *p, bool point, int *sampled, int *hit) {
   assert_true(v->event == VL_PATH_SURFACE && v->bounce == 0 && fabs(at[2]) < 1e-5);
   assert_string_equal(v->bsdf, "diffuse");
   near("reflectance", v->reflectance[0], 0.5);
-  double sphere =
-      1 / (2 * M_PI * (1 - sqrt(1 - 0.0625 / d2))); /* 1 / the solid angle of the lamp */
+  /* 1 / the solid angle of the lamp */
+  double sphere = 1 / (2 * M_PI * (1 - sqrt(1 - 0.0625 / d2)));
   for (uint32_t i = 0; i < p->contribution_count; i++) {
     const vlPathContribution *c = &p->contributions[i];
     if (c->event == VL_PATH_LIGHT_HIT) {

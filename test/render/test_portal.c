@@ -37,8 +37,8 @@ static void add_imaged_sky(Stage *s, bool portal) {
   vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
   vlImage *image = make_image(s, SKY, SKY, sky);
   def.image = image;
-  set_matrix(def.world_from_light, 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0,
-             0); /* its zenith is the world's y */
+  /* its zenith is the world's y */
+  set_matrix(def.world_from_light, 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0);
   /* (last - first) x (second - first) = z x x = y */
   const float corners[4][3] = {
       {-0.2f, 1, -0.3f}, {0.6f, 1, -0.3f}, {0.6f, 1, 0.3f}, {-0.2f, 1, 0.3f}};

@@ -77,8 +77,8 @@ static void weights(void **state) {
     }
     double correlation = vl_reconstruction_correlation(&r);
     if (k == 0)
-      assert_true(fabs(correlation - 1.125 * 1.125) <
-                  1e-3); /* 1/4 one pixel away: (1/6) / (2/3) */
+      /* 1/4 one pixel away: (1/6) / (2/3) */
+      assert_true(fabs(correlation - 1.125 * 1.125) < 1e-3);
     assert_true(correlation > 1 && correlation < 25);
     if (fabs(mean - 1) > 2e-3)
       fail_msg("filter %d: weights sum to %g", k, mean);

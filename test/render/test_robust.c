@@ -168,8 +168,8 @@ static void eye_inside_and_on_things(void **state) {
                                    : 1 + 1e-7; /* in the middle, on the surface, just off it */
     s.camera.lookat[2] = s.camera.eye[2] - 1;
     add_point(&s, 0, 0, (float)s.camera.eye[2], 1); /* a light in the very eye */
-    done("eye inside", &s,
-         k % 3 == 0); /* on the surface the light is nearer than what a film can hold */
+    /* on the surface the light is nearer than what a film can hold */
+    done("eye inside", &s, k % 3 == 0);
   }
 }
 
@@ -218,8 +218,8 @@ static void dark_and_wild_lights(void **state) {
       if (k < 4)
         assert_int_equal(p.stats.not_finite, 0);
       if (k == 5)
-        assert_true(p.stats.not_finite >
-                    0); /* brighter than a film can hold: dropped, and counted */
+        /* brighter than a film can hold: dropped, and counted */
+        assert_true(p.stats.not_finite > 0);
       image_free(&p);
     }
 }

@@ -100,8 +100,8 @@ static void instances_are_baked_geometry(void **state) {
   set_matrix(outer[1], 0.6, -0.5, 0, 0, 0.5, 0.6, 0.3, 0.2, 0, -0.3, 1.4,
              -4);                                                      /* turned, stretched */
   set_matrix(outer[2], -1, 0, 0, 0, 0, 0.8, 0.4, 0, 0, -0.4, 0.8, -4); /* mirrored */
-  set_matrix(outer[3], 0.7, 0.1, 0.3, 0, 0.2, -1.2, 0, 0, 0.1, 0.3, 0.9,
-             -5); /* mirrored, sheared */
+  /* mirrored, sheared */
+  set_matrix(outer[3], 0.7, 0.1, 0.3, 0, 0.2, -1.2, 0, 0, 0.1, 0.3, 0.9, -5);
   for (int kind = 0; kind < KINDS; kind++)
     for (int m = 0; m < 4; m++) {
       /* Glass shows which side is which; only closed shapes have an inside. */
@@ -425,8 +425,8 @@ static void half_a_sphere_by_alpha(void **state) {
         def.alpha.texture = checks(&s, 2, 1, 1, 0);
       double place[16], identity[16];
       set_matrix(identity, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
-      set_matrix(place, 1, 0, 0, 0, 0, 0, 1, 0.1, 0, -1, 0,
-                 -3); /* the half y > 0 of the shape is turned to -z */
+      /* the half y > 0 of the shape is turned to -z */
+      set_matrix(place, 1, 0, 0, 0, 0, 0, 1, 0.1, 0, -1, 0, -3);
       def.group = instanced ? vl_scene_add_group(s.scene, "ball") : (vlGroupId){0};
       if (!instanced)
         memcpy(def.group_from_shape, place, sizeof place);

@@ -37,8 +37,8 @@ static void look(int kind, bool tells, vlColorSpace said, vlColorSpace film, dou
     def.space = said;
     q.material = add_textured(&s, vl_scene_add_texture(s.scene, &def));
     add_quad(&s, &q);
-    vlLightDef light =
-        vl_default_light_def(VL_LIGHT_DISTANT); /* white: comes back as it goes in */
+    /* white: comes back as it goes in */
+    vlLightDef light = vl_default_light_def(VL_LIGHT_DISTANT);
     light.from[2] = 1;
     light.to[2] = 0;
     light.scale = (float)M_PI;

@@ -122,8 +122,8 @@ static void emitter(void **state) {
     Spectrum r = take(&s);
     for (int k = 0; k < BUCKETS; k++) {
       double e = scale * expected(ranges[i][0], ranges[i][1], k, NULL);
-      if (!(fabs(r.mean[k] - e) <=
-            4.5 * r.error[k] + 4e-3 * e)) /* the table of Y has three digits */
+      /* the table of Y has three digits */
+      if (!(fabs(r.mean[k] - e) <= 4.5 * r.error[k] + 4e-3 * e))
         fail_msg("bucket %d: %g, expected %g, standard error %g", k, r.mean[k], e, r.error[k]);
     }
     release(&r);

@@ -161,8 +161,8 @@ static void rough(void **state) {
     image_free(&p);
   }
   assert_near("rough, black", mean[0], straight(1.33), 0.01);
-  assert_near("rough, white", mean[1] - mean[0], 0.8 * 0.999 * (1 - mean[0]),
-              0.012); /* microfacets lose some */
+  /* microfacets lose some */
+  assert_near("rough, white", mean[1] - mean[0], 0.8 * 0.999 * (1 - mean[0]), 0.012);
 }
 
 /* ---- white bodies ------------------------------------------------------------------------ */
@@ -185,9 +185,8 @@ static void white(void **state) {
     vl_scene_add_shape(s.scene, &ball);
     Image p = stage_finish(&s);
     double mean = image_region(&p, 8, 8, 16, 16, 1);
-    assert_true(mean < 1.005 &&
-                mean <
-                    before + 0.005); /* the smaller, the more passes by the profile's reach */
+    /* the smaller, the more passes by the profile's reach */
+    assert_true(mean < 1.005 && mean < before + 0.005);
     if (k == 0)
       assert_near("white ball", mean, 1, 0.01);
     before = mean;

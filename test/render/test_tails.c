@@ -18,8 +18,8 @@ static void by_numbers(void **state) {
   const double base[6] = {9, 9, 9, 1, 2, 3}, odds = 0.02;
   vlTails tails = {.width = 2, .height = 1, .base = base, .least = 0, .rare = 10, .most = 1e9};
   const float x = 1.5f, y = 0.5f, given = (float)odds;
-  double q = 0.3 * (1 + odds),
-         p = 0.3 * (1 + odds) / odds; /* f / q and f / p, relative to base: the same for all */
+  /* f / q and f / p, relative to base: the same for all */
+  double q = 0.3 * (1 + odds), p = 0.3 * (1 + odds) / odds;
   struct {
     double rare, most, expected;
   } cases[] = {

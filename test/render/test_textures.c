@@ -88,8 +88,8 @@ static void constants_scale_and_mix(void **state) {
     assert_constant("mix", show(&s, add(&s, &def)), 0.2 * (1 - amounts[i]) + 0.8 * amounts[i]);
   }
   s = stage();
-  vlTextureDef f =
-      vl_default_texture_def(VL_TEXTURE_MIX, false); /* a float texture as the amount */
+  /* a float texture as the amount */
+  vlTextureDef f = vl_default_texture_def(VL_TEXTURE_MIX, false);
   f.float_a = vl_float_input(0.1f);
   f.float_b = vl_float_input(0.9f);
   f.amount = vl_float_input(0.5f);
@@ -406,8 +406,8 @@ static void mappings(void **state) {
   Stage s = stage();
   vlTextureDef def = grey(VL_TEXTURE_CHECKERBOARD, 0.7, 0.2);
   def.mapping = VL_MAPPING_CYLINDRICAL;
-  assert_constant("checks on a cylinder", show(&s, add(&s, &def)),
-                  0.2); /* z = -1: an odd row */
+  /* z = -1: an odd row */
+  assert_constant("checks on a cylinder", show(&s, add(&s, &def)), 0.2);
 }
 
 /* Colours: reflectances of the two modes agree, and a texture in spectral mode shows the colour

@@ -58,8 +58,8 @@ static double room_mean(Room r, bool sky) {
   vlGroupId group = r.instanced ? vl_scene_add_group(s.scene, "room") : (vlGroupId){0};
   double k = r.size,
          own[3] = {r.instanced ? 0 : at[0], r.instanced ? 0 : at[1], r.instanced ? 0 : at[2]};
-  set_matrix(place, 0.8 * k, -0.6 * k, 0, own[0], 0.6 * k, 0.8 * k, 0, own[1], 0, 0, k,
-             own[2]); /* turned: no aligned walls */
+  /* turned: no aligned walls */
+  set_matrix(place, 0.8 * k, -0.6 * k, 0, own[0], 0.6 * k, 0.8 * k, 0, own[1], 0, 0, k, own[2]);
   float *block = NULL;
   if (r.kind < 3) {
     vlShapeDef def = r.kind < 2 ? mesh_sphere(12, 1, r.kind == 1, &block)

@@ -127,8 +127,8 @@ static vlImage *render(const Scene *s, vlTracer tracer, uint32_t spp, uint32_t s
 /* ---- comparing --------------------------------------------------------------------------- */
 
 typedef struct Means {
-  double mean[PARTS][CHANNELS],
-      error[PARTS][CHANNELS]; /* the image's quarters, then the whole of it */
+  /* the image's quarters, then the whole of it */
+  double mean[PARTS][CHANNELS], error[PARTS][CHANNELS];
 } Means;
 
 static void add_means(const vlImage *image, Means *m) {

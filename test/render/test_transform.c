@@ -86,8 +86,8 @@ static void expect_same(const char *text, double within) {
   assert_int_equal(vl_context_create(&def, &context), VL_OK);
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   snprintf(whole, sizeof whole, "%s%s", head, text);
-  const char *name =
-      VELO_SOURCE_DIR "/scenes/features/moved.pbrt"; /* its folder has textures */
+  /* its folder has textures */
+  const char *name = VELO_SOURCE_DIR "/scenes/features/moved.pbrt";
   if (vl_scene_load_memory(scene, name, whole, strlen(whole), NULL, &error) != VL_OK)
     fail_msg("%u: %s", error.line, error.message);
   means_of(context, scene, stay, before);

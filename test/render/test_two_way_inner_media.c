@@ -110,8 +110,8 @@ static Stage room(const void *user, vlTracer tracer) {
 static void rooms(void **state) {
   (void)state;
   for (int k = 0; k < AIRS; k++) {
-    Case what = {(Air)k, k == FOG ? 6 : 3, k != GRID && k != IN_GLASS,
-                 NULL}; /* volpath misses rare light in glass */
+    /* volpath misses rare light in glass */
+    Case what = {(Air)k, k == FOG ? 6 : 3, k != GRID && k != IN_GLASS, NULL};
     Measure path = measure(room, &what, VL_TRACER_VOLPATH),
             both = measure(room, &what, VL_TRACER_BIDIRECTIONAL);
     assert_agree(air_name[k], "bidirectional", &both, &path, k < IN_GLASS ? 0.002 : 0.015);

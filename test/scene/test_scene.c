@@ -107,8 +107,8 @@ static void everything_is_copied(void **state) {
   assert_true(scene->shapes.items[0].positions[3] == 1 && scene->shapes.items[0].uvs[3] == 1 &&
               scene->shapes.items[0].indices[2] == 2);
   assert_string_equal(scene->shapes.items[0].source.file, "a.pbrt");
-  assert_ptr_equal(scene->shapes.items[0].source.file,
-                   scene->textures.items[0].source.file); /* kept once */
+  /* kept once */
+  assert_ptr_equal(scene->shapes.items[0].source.file, scene->textures.items[0].source.file);
   assert_true(vl_image_get(scene->lights.items[0].image, 1, 0, 2) == value);
   assert_string_equal(scene->emissions.items[0].image, "x.png");
 }
@@ -242,8 +242,8 @@ static void bad_materials_and_lights(void **state) {
   m = vl_default_material_def(VL_MATERIAL_MIX);
   vl_scene_add_material(scene, &m);
   refuses(VL_ERROR_SCENE, "mix material: needs two materials");
-  m.materials[0].index = m.materials[1].index =
-      1; /* itself: what is not there yet cannot be named, so no circles */
+  /* itself: what is not there yet cannot be named, so no circles */
+  m.materials[0].index = m.materials[1].index = 1;
   vl_scene_add_material(scene, &m);
   refuses(VL_ERROR_SCENE, "mix material: there is no such material (add its parts first)");
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_SCALE, false);

@@ -23,8 +23,8 @@ static void well_formed(void **state) {
       const vlKindRow *row = family->rows[i];
       assert_non_null(row);
       assert_true(row->description && row->description[0] && family->words[i]);
-      assert_true(row->parameter_count <= 64 ||
-                  !family->directive); /* readers have room for so many */
+      /* readers have room for so many */
+      assert_true(row->parameter_count <= 64 || !family->directive);
       if (row->name)
         assert_int_equal(vl_kind_find(family, row->name), i);
       if (row->alias)

@@ -169,8 +169,8 @@ static inline void mf_put(mfFile *f, const void *data, size_t size) {
   memcpy(f->bytes + f->size, data, size);
   f->size += size;
 }
-static inline void mf_put_number(mfFile *f, uint64_t value,
-                                 size_t bytes) { /* little-endian, like the machine */
+/* little-endian, like the machine */
+static inline void mf_put_number(mfFile *f, uint64_t value, size_t bytes) {
   mf_put(f, &value, bytes);
 }
 

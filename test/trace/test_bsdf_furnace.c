@@ -16,8 +16,8 @@ static double furnace(const State *s, const Surface *surface, double theta) {
     for (uint32_t j = 0; j < BATCH; j++) {
       batch_surface(b, j, surface);
       batch_wo(b, j, theta, 0.3);
-      b->lobe[j] =
-          ((float)j + stat_float(&rng)) / BATCH; /* strata by lobe, lattice in the square */
+      /* strata by lobe, lattice in the square */
+      b->lobe[j] = ((float)j + stat_float(&rng)) / BATCH;
       b->u[j] = ((float)turn + stat_float(&rng)) / TURNS;
       double v = (double)j * 0.6180339887498949 + (double)turn * 0.7548776662466927;
       b->v[j] = (float)(v - floor(v)) * 0.999999f;

@@ -124,8 +124,8 @@ static void values(void **state) {
       batch_eval(s->kernels, VL_BSDF_MEASURED, BATCH, b);
       for (uint32_t i = 0; i < BATCH; i++)
         for (int c = 0; c < 4; c++) {
-          double flip =
-              b->oz[i] < 0 ? -1 : 1; /* from below: turned about a line in the surface */
+          /* from below: turned about a line in the surface */
+          double flip = b->oz[i] < 0 ? -1 : 1;
           double o[3] = {flip * (double)b->ox[i], flip * (double)b->oy[i],
                          flip * (double)b->oz[i]};
           double w[3] = {flip * (double)b->ix[i], flip * (double)b->iy[i],

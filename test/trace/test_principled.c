@@ -352,8 +352,8 @@ static void reciprocity(void **state) {
       for (int c = 0; c < 4; c++) {
         double forth = (double)a->value[c][j] / fabs((double)a->iz[j]),
                back = (double)b->value[c][j] / fabs((double)b->iz[j]);
-        if (looks[k].solid > 0 &&
-            a->oz[j] * a->iz[j] < 0) { /* radiance over the squared index of where it travels */
+        /* radiance over the squared index of where it travels */
+        if (looks[k].solid > 0 && a->oz[j] * a->iz[j] < 0) {
           double index = (double)surface.eta_s;
           forth /= a->oz[j] > 0 ? 1 : index * index;
           back /= b->oz[j] > 0 ? 1 : index * index;

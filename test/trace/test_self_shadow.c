@@ -196,8 +196,8 @@ static vlWorld *build(vlContext *context, const Kind *kind, Place place, bool sh
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlShapeDef def = shape_of(kind);
   memcpy(def.group_from_shape, shape, sizeof def.group_from_shape);
-  def.reverse_orientation =
-      vl_mat4_determinant3(vl_mat4_load(shape)) < 0; /* normals point outside */
+  /* normals point outside */
+  def.reverse_orientation = vl_mat4_determinant3(vl_mat4_load(shape)) < 0;
   if (place != PLACED)
     def.group = vl_scene_add_group(scene, NULL);
   if (shines) {
@@ -232,8 +232,8 @@ static void point_of_shape(const vlWorld *world, statRng *rng, double p[3]) {
         p[i] = (double)s->positions[i];
     return;
   }
-  if (s->kind ==
-      VL_SHAPE_CURVES) { /* in the box around the curve, so that rays meet its edges, too */
+  /* in the box around the curve, so that rays meet its edges, too */
+  if (s->kind == VL_SHAPE_CURVES) {
     double q[3] = {2 * stat_double(rng) - 1, 0.02 * (stat_double(rng) - 0.5),
                    0.02 * (stat_double(rng) - 0.5)};
     vl_map_point(s->from_shape, q, p);

@@ -154,8 +154,8 @@ static void equal_to_accelerator(float shift, int allowed) {
   make_rays(shift);
   assert_non_null(m.world->accel.brute_force);
   assert_int_equal(m.world->accel.brute_force->others, 2);
-  assert_int_equal(m.world->accel.brute_force->faces,
-                   4 * 6 + 3 + 2 * 3); /* 3 sides of the crooked box are plane */
+  /* 3 sides of the crooked box are plane */
+  assert_int_equal(m.world->accel.brute_force->faces, 4 * 6 + 3 + 2 * 3);
   unsigned state = vl_accel_enter();
   vlRays rays = rays_at(0, false), short_rays = rays_at(0, true);
   vl_accel_closest(m.world, RAYS, &rays, false, shape_[0], prim_[0], instance_[0], t_[0]);

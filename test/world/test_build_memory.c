@@ -133,8 +133,8 @@ static void build_without_memory(void **state) {
     for (int sampler = 0; sampler < 2; sampler++) {
       s.build.color = (vlColorMode)color;
       s.build.light_sampler = (vlLightSampler)sampler;
-      s.build.accelerator =
-          sampler ? VL_ACCELERATOR_AUTO : VL_ACCELERATOR_BVH; /* Embree's memory is its own */
+      /* Embree's memory is its own */
+      s.build.accelerator = sampler ? VL_ACCELERATOR_AUTO : VL_ACCELERATOR_BVH;
       long n = 0, step = color || sampler
                              ? 7
                              : 1; /* the first build at each allocation, the others at some */
@@ -173,8 +173,8 @@ static void render_without_memory(void **state) {
   fill(&s, path);
   remove(path);
   vlWorld *world = NULL;
-  assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL),
-                   VL_ERROR_MISSING); /* the file is gone */
+  /* the file is gone */
+  assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_ERROR_MISSING);
   assert_null(world);
   stage_close(&s);
   s = purse_stage(&purse);

@@ -93,8 +93,8 @@ static void moves_along_normals(void **state) {
   assert_true(fabsf(s->positions[14] - 2.2f) < 1e-6f);
   assert_true(fabsf(s->positions[17] + 2.0f) < 1e-6f);
   for (int i = 0; i < 4; i++) {
-    const float *p = s->positions + 3 * i,
-                *n = s->normals + 3 * i; /* at the rim the mean of two faces: 2 up, 1 out... */
+    /* at the rim the mean of two faces: 2 up, 1 out... */
+    const float *p = s->positions + 3 * i, *n = s->normals + 3 * i;
     double out = sqrt((double)p[0] * p[0] + (double)p[1] * p[1]) - 2;
     assert_true(fabs(out * out + (double)p[2] * p[2] - 0.04) < 1e-5 && p[2] > 0.05f);
     assert_true(fabs((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2] - 1) <

@@ -183,8 +183,8 @@ static void shaken(void **state) {
 
 /* ---- memory ------------------------------------------------------------------------------ */
 
-static void share_lower_nodes(
-    unsigned char *g) { /* all 32768 children are one node: 512 MB of bricks */
+/* all 32768 children are one node: 512 MB of bricks */
+static void share_lower_nodes(unsigned char *g) {
   memset(g + UPPER_AT + 32 + 4096, 0xff, 4096);
   for (size_t n = 0; n < 32768; n++)
     put_u64(g + UPPER_AT + UPPER_TABLE + 8 * n, LOWER_AT - UPPER_AT);

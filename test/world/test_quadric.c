@@ -136,9 +136,8 @@ static void samples_fit_the_area(void **state) {
         sum += 1 / pdf / N;
         if (i % 16 || v < 0.002f || v > 0.998f || u < 0.002f || u > 0.998f)
           continue;
-        double o[3], d[3],
-            side =
-                i % 32 ? 1 : -1; /* a ray from either side, aslant, must find the same point */
+        /* a ray from either side, aslant, must find the same point */
+        double o[3], d[3], side = i % 32 ? 1 : -1;
         for (int c = 0; c < 3; c++) {
           o[c] = at.p[c] + side * 1e-2 * (at.n[c] + 0.3 * (c == 0));
           d[c] = at.p[c] - o[c];

@@ -61,8 +61,8 @@ static void sums(void **state) {
     assert_true(fabs(vl_fractal_noise(p, 0, 0.6f, 4) - want) < 1e-4);
     /* of turbulence the next octave counts with its mean */
     assert_true(fabs(vl_turbulence(p, 0, 0.6f, 4) - absolute - 0.2 * strength) < 1e-4);
-    assert_true(vl_fractal_noise(p, 100, 0.6f, 4) ==
-                0); /* a footprint of many periods sees none */
+    /* a footprint of many periods sees none */
+    assert_true(vl_fractal_noise(p, 100, 0.6f, 4) == 0);
     /* ever fewer octaves, without a jump */
     float last = vl_fractal_noise(p, 0.01f, 0.6f, 8);
     for (float w = 0.01f; w < 1; w *= 1.01f) {

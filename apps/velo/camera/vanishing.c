@@ -126,8 +126,8 @@ static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3]
   double n[3], p[2], q[2], ends[2][3];
   const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7],
                          c->world_from_camera[11]};
-  if (c->projection ==
-      VL_PROJECTION_ORTHOGRAPHIC) { /* projects to a straight line, whatever its depth */
+  /* projects to a straight line, whatever its depth */
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) {
     vector_along(point, s0, d, ends[0]);
     vector_along(point, s1, d, ends[1]);
     if (vl_camera_project(c, ends[0], p, NULL) && vl_camera_project(c, ends[1], q, NULL))

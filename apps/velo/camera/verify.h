@@ -48,8 +48,8 @@ typedef struct Target {
 } Target;
 
 typedef struct Placement {
-  double center[3], x[3],
-      y[3]; /* centre of the board; its axes with the length of a square's side; world space */
+  /* centre of the board; its axes with the length of a square's side; world space */
+  double center[3], x[3], y[3];
 } Placement;
 
 typedef struct Random {

@@ -8,8 +8,8 @@ enum { CONFINE_MAX_PATHS = 2 * MAX_TEXTS + MAX_OPTIONS };
 
 /* What a command may open besides the folders of --sandbox. */
 typedef struct Confine {
-  const char *read[CONFINE_MAX_PATHS],
-      *write[CONFINE_MAX_PATHS]; /* paths; null ones are left out */
+  /* paths; null ones are left out */
+  const char *read[CONFINE_MAX_PATHS], *write[CONFINE_MAX_PATHS];
   uint32_t read_count, write_count;
   char folders[8][4096]; /* of files that are read with others beside them */
   uint32_t folder_count;

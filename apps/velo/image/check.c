@@ -102,8 +102,8 @@ static void find_channels(Check *c) {
   c->flow[1] = find_parts(image, "backward.", "UV");
   c->hidden[0] = find_whole(image, "forward.hidden");
   c->hidden[1] = find_whole(image, "backward.hidden");
-  c->albedo =
-      find_parts(image, "albedo.", "RGB"); /* in the order in which the reader sorts colours */
+  /* in the order in which the reader sorts colours */
+  c->albedo = find_parts(image, "albedo.", "RGB");
   c->error = find_parts(image, "error.", "RGB");
 }
 

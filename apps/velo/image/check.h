@@ -56,8 +56,8 @@ typedef struct Check {
    * RULE_ROWS compares with the row's. */
   HeaderRows rows;
   vlCamera rolling; /* with rows: the moving camera */
-  uint32_t x0, y0, x,
-      y; /* corner of the data window; position of the pixel in the whole image */
+  /* corner of the data window; position of the pixel in the whole image */
+  uint32_t x0, y0, x, y;
   /* channel indices; -1: not in the file */
   int z, distance, p, n, ng, ray, object, material, primitive, instance, uv, albedo, film,
       samples, error, alpha;

@@ -54,8 +54,8 @@ static int take_camera(Again *again) {
   if (result != VL_OK)
     return report_error(&error, result, again->path);
   camera->given = true;
-  v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given =
-      false; /* the receipt's film and camera include these settings */
+  /* the receipt's film and camera include these settings */
+  v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given = false;
   return -1;
 }
 

@@ -202,9 +202,9 @@ uint64_t channels_values(const Channels *c, uint32_t buckets) {
 
 double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, double sample,
                         double writing) {
-  const double ray = 0.3,
-               compressed = 0.5; /* measured: cost of a camera ray relative to a sample, and of
-                                    writing a channel relative to its uncompressed size */
+  /* measured: cost of a camera ray relative to a sample, and of writing a channel relative to
+   * its uncompressed size */
+  const double ray = 0.3, compressed = 0.5;
   const uint32_t mattes =
       VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
   uint32_t rays = c->bits || c->gbuffer ? 1 : 0;

@@ -122,8 +122,8 @@ static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
     ray[i] = (double)at(s, x, y, s->ray)[i];
     out[ALBEDO + i] = at(s, x, y, s->albedo)[i];
   }
-  bool away[2] = {vector_dot(n, ray) > 0,
-                  vector_dot(ns, ray) > 0}; /* normals are flipped to face the camera */
+  /* normals are flipped to face the camera */
+  bool away[2] = {vector_dot(n, ray) > 0, vector_dot(ns, ray) > 0};
   for (int i = 0; i < 3; i++) {
     n[i] = away[0] ? -n[i] : n[i];
     ns[i] = away[1] ? -ns[i] : ns[i];

@@ -247,8 +247,8 @@ bool job_sequence_is_planned(const Job *job, const Arguments *arguments) {
 static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t height) {
   vlError error = {0};
   vlCamera camera;
-  vlResult result = vl_camera_make(
-      &def, &camera, NULL, &error); /* its warnings were reported when the camera was read */
+  /* its warnings were reported when the camera was read */
+  vlResult result = vl_camera_make(&def, &camera, NULL, &error);
   if (result != VL_OK) {
     text_set(job->camera_location.message, "%s", error_text(&error, result));
     return report_error(error.file[0] ? &error : &job->camera_location, result, NULL);

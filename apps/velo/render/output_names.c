@@ -43,8 +43,8 @@ void output_names_add_image(OutputNames *names, const char *path, bool part, boo
   if (!part || !output_part_path(path, other, sizeof other))
     return;
   output_names_add(names, other, VL_OUTPUT_PLAIN);
-  if (ids && output_ids_path(other, described, sizeof described) &&
-      strcmp(own, described) != 0) /* cut alike */
+  /* cut alike */
+  if (ids && output_ids_path(other, described, sizeof described) && strcmp(own, described) != 0)
     output_names_add(names, described, VL_OUTPUT_PLAIN);
 }
 

@@ -256,8 +256,8 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
     exposure = known ? *shared : exposure_meter(image);
   if (outputs->meter && shared && stage != OUTPUT_PROGRESS)
     *shared = exposure;
-  vlImage *displays[2] = {NULL,
-                          NULL}; /* made when the first file needs it: without and with alpha */
+  /* made when the first file needs it: without and with alpha */
+  vlImage *displays[2] = {NULL, NULL};
   int status = STATUS_OK;
   for (int i = 0; i < outputs->count; i++) {
     const char *path = outputs->paths[i];

@@ -111,8 +111,8 @@ typedef struct Verify {
 
   VerifyCell *cells;
   uint32_t cell_count, families;
-  uint32_t *block_of,
-      *material_of; /* cell of each pixel; 0: none (cell 0 is the whole image) */
+  /* cell of each pixel; 0: none (cell 0 is the whole image) */
+  uint32_t *block_of, *material_of;
 
   VerifyMark *marks;
   uint32_t mark_count, compared; /* values that were compared in the first look */

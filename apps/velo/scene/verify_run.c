@@ -202,8 +202,8 @@ static void find_centre(const vlImage *floats, const vlCamera *camera, double ce
     const float *at = value + i * step; /* distance, then the position */
     if (!isfinite(at[0]))
       continue;
-    const double weight =
-        1 / fmax(1e-30, (double)at[0]); /* a few far points do not count much */
+    /* a few far points do not count much */
+    const double weight = 1 / fmax(1e-30, (double)at[0]);
     seen += weight;
     sum[0] += weight * (double)at[0];
     for (int k = 0; k < 3; k++)

@@ -16,8 +16,8 @@ typedef struct Curve {
   const vlCamera *camera;
   const char *name;
   double last[2];
-  bool open,
-      known; /* open: the array is begun; known: `last` is the end of it, or a first point */
+  /* open: the array is begun; known: `last` is the end of it, or a first point */
+  bool open, known;
 } Curve;
 
 static void curve_break(Curve *c) {

@@ -17,8 +17,8 @@
 static const double pass_seconds = 0.2; /* of a pass at the beginning; */
 static const double longest_pass = 1.0; /* later ones are longer */
 static const double step_seconds = 0.1; /* of a pass where nothing can interrupt it */
-static const double publish_share =
-    0.03; /* of the time, for frames, when the image is nearly done */
+/* of the time, for frames, when the image is nearly done */
+static const double publish_share = 0.03;
 static const double status_seconds = 0.25; /* between two states of the render */
 
 static double read_clock(clockid_t clock) {

@@ -78,8 +78,8 @@ char *lecture_text(const char *scene) {
 }
 
 const char *lecture_query(const Arguments *arguments) {
-  static const char *const variables[] = {"LC_ALL", "LC_MESSAGES",
-                                          "LANG"}; /* the first that is set, as POSIX has it */
+  /* the first that is set, as POSIX has it */
+  static const char *const variables[] = {"LC_ALL", "LC_MESSAGES", "LANG"};
   const OptionValue *chosen = &arguments->values[VIEW_LANGUAGE];
   bool italian = chosen->given && chosen->integer == LANGUAGE_ITALIAN;
   for (int i = 0; i < 3 && !chosen->given; i++) {

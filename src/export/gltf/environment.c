@@ -31,9 +31,9 @@ typedef struct Cube {
   VL_ARRAY(Sky) skies;
   bool mirror;
   uint32_t levels;
-  Level plain[LEVELS],
-      lobes[LEVELS]; /* means of four texels; filtered for a roughness. lobes[0] is plain[0] */
-  uint32_t level;    /* the level that rows are made of */
+  /* means of four texels; filtered for a roughness. lobes[0] is plain[0] */
+  Level plain[LEVELS], lobes[LEVELS];
+  uint32_t level; /* the level that rows are made of */
 } Cube;
 
 /* ---- what a direction sees --------------------------------------------------------------- */
@@ -227,8 +227,8 @@ static void filter_row(void *user, uint32_t row, uint32_t worker) {
             inner = c2 * (a2 - 1) + 1;
       if (!(z > 0))
         continue;
-      float share =
-          4 * 3.14159265f * inner * inner / (a2 * LOBE_SAMPLES); /* solid angle of the sample */
+      /* solid angle of the sample */
+      float share = 4 * 3.14159265f * inner * inner / (a2 * LOBE_SAMPLES);
       uint32_t from = 0;
       while (from + 1 < cube->levels &&
              share > 4 * 12.5663706f /

@@ -48,8 +48,8 @@ static bool fits_pbrt(const vlImage *image, vlPbrtFile kind, const char *name) {
     return false;
   if (have >= 3 || kind == VL_PBRT_COLORS)
     return have >= 3;
-  bool drops_alpha =
-      !vl_ends_with(name, ".exr") && !vl_ends_with(name, ".pfm"); /* of images with Y and A */
+  /* of images with Y and A */
+  bool drops_alpha = !vl_ends_with(name, ".exr") && !vl_ends_with(name, ".pfm");
   return image->channels == 1 || (have && drops_alpha);
 }
 
@@ -61,8 +61,8 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
   const vlImage *image = t->image ? t->image : decoded;
   bool fine = image != NULL;
   if (fine && !fits_pbrt(image, kind, name)) {
-    uint32_t channel[4] = {0},
-             have = vl_image_color(image, channel); /* else the first channel, whatever it is */
+    /* else the first channel, whatever it is */
+    uint32_t channel[4] = {0}, have = vl_image_color(image, channel);
     vlImageDef def = vl_default_image_def(image->width, image->height, 3);
     if (have < 3)
       channel[1] = channel[2] = channel[0];

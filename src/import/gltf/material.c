@@ -342,8 +342,8 @@ static bool read_material(const Reader *r) {
   bool passes = p->transmission.texture.index || p->transmission.value > 0.0f ||
                 p->diffuse_transmission.texture.index || p->diffuse_transmission.value > 0.0f;
   if (passes)
-    r->result->double_sided =
-        true; /* light inside the solid must hit the back side of the surface */
+    /* light inside the solid must hit the back side of the surface */
+    r->result->double_sided = true;
   return true;
 }
 
@@ -355,8 +355,8 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, size_t index, bool colors) {
   static const json_t *const nothing = NULL;
   const json_t *json = index == VL_GLTF_NONE ? nothing : vl_gltf_item(g, "materials", index);
   const char *name = index == VL_GLTF_NONE ? NULL : g->material_labels[index];
-  const vlGltfMaterial *other =
-      &g->materials[2 * (index + 1) + !colors]; /* the same with vertex colours */
+  /* the same with vertex colours */
+  const vlGltfMaterial *other = &g->materials[2 * (index + 1) + !colors];
   if (name && other->made &&
       !vl_label_make_unique(g->scene, &g->material_names, name, index, &name))
     return NULL;

@@ -346,8 +346,8 @@ bool vl_obj_read_libraries(vlObj *obj) {
   bool fine = true;
   if (!*rest)
     return vl_obj_fail(obj, "mtllib: the name of a file is missing");
-  if (vl_path_join(obj->path, rest, whole, sizeof whole) &&
-      exists(whole)) { /* the rest of the statement is one name with blanks */
+  /* the rest of the statement is one name with blanks */
+  if (vl_path_join(obj->path, rest, whole, sizeof whole) && exists(whole)) {
     fine = read_library(obj, rest);
   } else {
     char *next = rest;

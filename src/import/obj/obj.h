@@ -90,8 +90,8 @@ typedef struct vlObj {
   uint32_t line, more_lines; /* first line of the statement, and number of continued lines */
   char nothing[1];           /* target of the pointers of an empty statement */
   const char *data_end;      /* of the file */
-  char *line_start, *at,
-      *end; /* start of the line, reading position and end of the current statement */
+  /* start of the line, reading position and end of the current statement */
+  char *line_start, *at, *end;
   vlObjRows positions;           /* 3 per vertex, about `origin` */
   double origin[3];              /* 0, or the middle of vertices far away (far.h) */
   VL_ARRAY(float) colors;        /* 3 per vertex, linear; empty when no vertex has a colour */

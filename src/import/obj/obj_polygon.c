@@ -97,8 +97,8 @@ bool vl_obj_triangulate(vlObj *obj, uint32_t *triangles) {
   for (uint32_t k = 0; k < count; k++)
     left[k] = k;
   while (count > 3) {
-    if (is_ear(&p, left, count, i) ||
-        stuck >= count) { /* stuck: the polygon crosses itself or has no area */
+    /* stuck: the polygon crosses itself or has no area */
+    if (is_ear(&p, left, count, i) || stuck >= count) {
       put(obj, left[(i + count - 1) % count], left[i], left[(i + 1) % count]);
       for (size_t k = i; k + 1 < count; k++)
         left[k] = left[k + 1];

@@ -277,8 +277,8 @@ static bool skip_include(void *user, vlSource source) {
 
 static bool go_on(void *user, double fraction) {
   vlImport *import = user;
-  return !vl_scene_stopped(import->scene,
-                           0.5 * fraction); /* then the meshes of other files are read */
+  /* then the meshes of other files are read */
+  return !vl_scene_stopped(import->scene, 0.5 * fraction);
 }
 
 /* ---- the end of the file ----------------------------------------------------------------- */
@@ -455,8 +455,8 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
                           .texts = texts,
                           .text_count = text_count,
                           .skip = skip_include};
-  bool is_old =
-      !data && scene->problem && fail_old(import, path); /* its many errors are not listed */
+  /* its many errors are not listed */
+  bool is_old = !data && scene->problem && fail_old(import, path);
   bool fine = is_old ? false
               : data ? vl_parse_memory(import->context, data, size, path, &target)
                      : vl_parse_file(import->context, path, &target);

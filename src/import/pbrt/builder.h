@@ -217,9 +217,8 @@ vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name);
 /* Like vl_import_unknown; the known names are the kinds of the family. */
 bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family,
                             const char *name);
-const char *vl_import_keep(vlImport *import,
-                           const char *text); /* copy that lives until the end of the import;
-                                                 null when out of memory */
+/* copy that lives until the end of the import; null when out of memory */
+const char *vl_import_keep(vlImport *import, const char *text);
 /* Reports a name that is not in the table. Returns false. */
 bool vl_import_missing_name(vlImport *import, vlSource source, const char *thing,
                             const char *name, const vlNameTable *table);
@@ -314,8 +313,8 @@ bool vl_dict_row_choice(vlDict *dict, const char *name, int *value);
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source,
                           vlTextureId *id);
-bool vl_import_finish_texture(
-    vlImport *import, uint32_t index); /* first resolves the textures that this one refers to */
+/* first resolves the textures that this one refers to */
+bool vl_import_finish_texture(vlImport *import, uint32_t index);
 bool vl_import_finish_material(vlImport *import, uint32_t index);
 /* Finishes a texture or a material once. too_deep: the error where they refer to each other
  * more than VL_IMPORT_DEPTH deep. */

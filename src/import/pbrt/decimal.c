@@ -29,8 +29,8 @@ static bool by_pair(uint64_t mantissa, int exponent, double *value) {
   if (size > 2 * EXACT_POWER || mantissa >= UINT64_C(1) << 62)
     return false;
   double high = (double)mantissa, low = (double)((int64_t)mantissa - (int64_t)high);
-  double power = powers_of_ten[size > EXACT_POWER ? EXACT_POWER : size],
-         rest = 0; /* power + rest is exact */
+  /* power + rest is exact */
+  double power = powers_of_ten[size > EXACT_POWER ? EXACT_POWER : size], rest = 0;
   if (size > EXACT_POWER) {
     double a = power, b = powers_of_ten[size - EXACT_POWER];
     power = a * b;
@@ -230,8 +230,8 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
     return scan_hex(text, p + 2, end, negative, value);
   const char *digits_start = p;
   uint64_t mantissa = 0;
-  int digits = 0, exponent = 0,
-      written = 0; /* 10^exponent times the mantissa; the exponent that is written */
+  /* 10^exponent times the mantissa; the exponent that is written */
+  int digits = 0, exponent = 0, written = 0;
   bool exact = true, any = false;
   bool fraction = false;
   for (; p < end && (is_digit(*p) || (*p == '.' && !fraction)); p++) {

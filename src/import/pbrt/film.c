@@ -103,8 +103,8 @@ static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   vl_dict_string(dict, "filename", &output);
   import->film_diagonal = 35.0;
   vl_dict_double(dict, "diagonal", &import->film_diagonal); /* used by realistic cameras only */
-  vl_dict_bool(dict, "savefp16",
-               &half); /* ignored: the program decides how the file is written */
+  /* ignored: the program decides how the file is written */
+  vl_dict_bool(dict, "savefp16", &half);
   vl_dict_double(dict, "iso", &iso);
   vl_dict_double(dict, "exposuretime", &time);
   vl_dict_double(dict, "imagingratio", &ratio);

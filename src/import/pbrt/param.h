@@ -99,12 +99,12 @@ vlParam *vl_dict_find_counted(vlDict *dict, const char *name, uint32_t type_bits
 bool vl_dict_float(vlDict *dict, const char *name, float *value);
 bool vl_dict_double(vlDict *dict, const char *name, double *value);
 bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value);
-bool vl_dict_count(vlDict *dict, const char *name, int32_t least,
-                   uint32_t *value); /* integer >= least */
+/* integer >= least */
+bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *value);
 bool vl_dict_bool(vlDict *dict, const char *name, bool *value);
 bool vl_dict_string(vlDict *dict, const char *name, const char **value);
-bool vl_dict_floats(vlDict *dict, const char *name, size_t count,
-                    double *value); /* exactly count numbers, at most 16 */
+/* exactly count numbers, at most 16 */
+bool vl_dict_floats(vlDict *dict, const char *name, size_t count, double *value);
 /* *value becomes the index of the string among the names. */
 bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, size_t count,
                     int *value);

@@ -291,8 +291,8 @@ static bool read_choice(vlDict *dict, const char *name, const vlParameter *p, in
     *at = count;
     return true;
   }
-  return vl_dict_choice(dict, name, p->choices, (size_t)count,
-                        at); /* reports the accepted values */
+  /* reports the accepted values */
+  return vl_dict_choice(dict, name, p->choices, (size_t)count, at);
 }
 
 static bool read_string(vlDict *dict, const char *name, const vlParameter *p, const char **at) {

@@ -569,8 +569,8 @@ static bool read_active(vlParserFile *file, vlStatement *s) {
 static bool read_option(vlParserFile *file, vlStatement *s) {
   if (!take_string(file, "Option", "a name", &s->names[0]))
     return false;
-  const char *space =
-      strrchr(s->names[0], ' '); /* the type is optional: "bool name" or "name" */
+  /* the type is optional: "bool name" or "name" */
+  const char *space = strrchr(s->names[0], ' ');
   if (space)
     s->names[0] = space + 1;
   vlToken token = take_token(file);

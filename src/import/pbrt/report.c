@@ -167,8 +167,8 @@ bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t s
   char *data;
   size_t count;
   vlError error = {0};
-  vlResult result = vl_file_read(import->context, path, false, &data, &count,
-                                 &error); /* opened for its error message */
+  /* opened for its error message */
+  vlResult result = vl_file_read(import->context, path, false, &data, &count, &error);
   vl_free(import->context, data);
   if (result != VL_OK)
     return vl_import_fail(import, result, param->source, "%s", error.message);
@@ -195,8 +195,8 @@ bool vl_import_color_space(const char *name, vlColorSpace *space) {
                 {"rec2020", VL_SPACE_REC2020},
                 {"aces2065-1", VL_SPACE_ACES2065_1}};
   for (size_t i = 0; i < VL_LENGTH(spaces); i++) {
-    if (strlen(name) == strlen(spaces[i].name) &&
-        vl_ends_with(name, spaces[i].name)) { /* case is ignored, as in pbrt */
+    /* case is ignored, as in pbrt */
+    if (strlen(name) == strlen(spaces[i].name) && vl_ends_with(name, spaces[i].name)) {
       *space = spaces[i].space;
       return true;
     }

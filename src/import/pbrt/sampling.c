@@ -38,9 +38,8 @@ static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   if (!jitter)
     s->render.sampler = VL_SAMPLER_REGULAR;
   if (given || !spp_given)
-    s->render.spp =
-        x *
-        y; /* pbrt's stratified sampler has no pixelsamples; velo accepts it for all samplers */
+    /* pbrt's stratified sampler has no pixelsamples; velo accepts it for all samplers */
+    s->render.spp = x * y;
   return true;
 }
 

@@ -97,8 +97,8 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
   if (count / 3 > 0x7fffffffu)
     return vl_dict_fail_at(dict, p->source, "too many vertices");
   def->vertices = (uint32_t)(count / 3);
-  vl_dict_find(dict, "faceIndices",
-               VL_BIT_INTEGER); /* accepted and ignored: only pbrt's ptex textures use it */
+  /* accepted and ignored: only pbrt's ptex textures use it */
+  vl_dict_find(dict, "faceIndices", VL_BIT_INTEGER);
   if (!take_floats(import, p, &def->positions) || !take_indices(dict, def, per) ||
       !take_vertex_floats(dict, "uv", VL_PARAM_POINT2, 2, def->vertices, &def->uvs) ||
       !take_vertex_floats(dict, "N", VL_PARAM_NORMAL, 3, def->vertices, &def->normals) ||
@@ -106,8 +106,8 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
        !take_vertex_floats(dict, "S", VL_PARAM_VECTOR3, 3, def->vertices, &def->tangents)))
     return false;
   if (per == 4)
-    vl_dict_find(dict, "emissionfilename",
-                 VL_BIT_STRING); /* accepted and ignored: a hint for pbrt's light sampling */
+    /* accepted and ignored: a hint for pbrt's light sampling */
+    vl_dict_find(dict, "emissionfilename", VL_BIT_STRING);
   if (import->permissive && !vl_repair_mesh(import->context, &import->repairs, def))
     return vl_import_fail_memory(import);
   return vl_import_fine(import);
@@ -354,8 +354,8 @@ static bool unknown_shape(vlImport *import, const vlStatement *s) {
   size_t count = vl_kind_names(&vl_shape_family, names, 64 - MESHES);
   for (size_t i = 0; i < MESHES; i++)
     names[count++] = meshes[i].name;
-  return vl_import_unknown(import, s->source, "shape", s->names[0], names, count, NULL,
-                           0); /* permissive: skipped */
+  /* permissive: skipped */
+  return vl_import_unknown(import, s->source, "shape", s->names[0], names, count, NULL, 0);
 }
 
 /* Removes the emission of shapes that cannot emit light, with a warning. */

@@ -113,8 +113,8 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
 static bool finish_image(vlDict *dict, const vlMat4 *ctm, vlTextureDef *def) {
   (void)ctm;
   float anisotropy = 8.0f;
-  vl_dict_float(dict, "maxanisotropy",
-                &anisotropy); /* accepted and ignored: limit of pbrt's EWA filter */
+  /* accepted and ignored: limit of pbrt's EWA filter */
+  vl_dict_float(dict, "maxanisotropy", &anisotropy);
   if (!read_encoding(dict, def) || !vl_dict_done(dict))
     return false; /* a misspelt "filename" is reported first */
   if (dict->import->image_missing)

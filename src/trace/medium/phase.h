@@ -8,16 +8,16 @@
 /* Value per steradian. cosine: of the angle between the directions of flight before and after
  * scattering. */
 static inline float vl_phase(float g, float cosine) {
-  float denominator =
-      vl_max(1.0f + g * g - 2.0f * g * cosine, 1e-12f); /* at least (1 - |g|)^2 */
+  /* at least (1 - |g|)^2 */
+  float denominator = vl_max(1.0f + g * g - 2.0f * g * cosine, 1e-12f);
   return VL_INV_4PI * (1.0f - g * g) / (denominator * __builtin_sqrtf(denominator));
 }
 
 /* Samples the direction of flight after scattering. d: unit direction of flight before. */
 static inline vlVec3 vl_phase_sample(float g, vlVec3 d, float u, float v) {
   float square = (1.0f - g * g) / (1.0f - g + 2.0f * g * u);
-  float near = 1.0f - 2.0f * u,
-        cosine = -near + 1.5f * g * (1.0f - near * near); /* first order in g */
+  /* first order in g */
+  float near = 1.0f - 2.0f * u, cosine = -near + 1.5f * g * (1.0f - near * near);
   /* For smaller |g|, the exact formula subtracts numbers near 1 and has an error of 6e-8 / 2g,
    * which is larger than the error g^2 of the series. */
   if (vl_abs(g) > 1e-3f)

@@ -94,8 +94,8 @@ void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *o
                        uint32_t n);
 /* Normalises path i: the mean of its densities becomes 1, and beta becomes its weight. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
-void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v,
-                             uint32_t n); /* paths [0, n) */
+/* paths [0, n) */
+void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t n);
 /* Copies those of the n rays that scatter in media, normalised and moved to the scattering
  * points, which are also written to `points` for light sampling. Returns their number. */
 uint32_t vl_volume_gather(const vlTracing *t, uint32_t n, const vlPaths *rays,

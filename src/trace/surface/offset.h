@@ -40,8 +40,8 @@ static inline float vl_triangle_offset(vlVec3 g, vlVec3 p, vlVec3 p0, vlVec3 p1,
   vlVec3 e01 = vl_sub(p1, p0), e12 = vl_sub(p2, p1), e20 = vl_sub(p0, p2);
   float area = vl_length(vl_cross(e01, e12)), inv = area > 0.0f ? 1.0f / area : 0.0f;
   float q01 = vl_length2(e01) * inv, q12 = vl_length2(e12) * inv, q20 = vl_length2(e20) * inv;
-  float steep = __builtin_sqrtf(
-      vl_min(vl_min(q01 * q12, q12 * q20), q20 * q01)); /* 1 / sine of the largest angle */
+  /* 1 / sine of the largest angle */
+  float steep = __builtin_sqrtf(vl_min(vl_min(q01 * q12, q12 * q20), q20 * q01));
   return 2.0f *
          (VL_GAMMA(7) * vl_abs_dot(g, sum) + VL_GAMMA(5) * reach * vl_clamp(steep, 1.0f, most) +
           corner_error * (vl_abs(g.x) + vl_abs(g.y) + vl_abs(g.z)));

@@ -82,8 +82,8 @@ static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CAN
   _Alignas(64) float p[3][CANDIDATES], g[3][CANDIDATES], n[3][CANDIDATES], power[4][CANDIDATES];
   _Alignas(64) float back[CANDIDATES], near[CANDIDATES];
   vl_gather(way, e, at, p, g, n, power, back, near);
-  float cosines = e->diffuse ? 1.0f : 0.0f,
-        bents = 1.0f - cosines; /* a select would keep the loop from being a vector */
+  /* a select would keep the loop from being a vector */
+  float cosines = e->diffuse ? 1.0f : 0.0f, bents = 1.0f - cosines;
   /* one vector of 8 */
   VL_SIMD
   for (uint32_t k = 0; k < CANDIDATES; k++) {

@@ -52,8 +52,8 @@ void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL
     float lambert = there * VL_INV_PI;
     float back = inside ? phase_there : lambert;
     float gives = inside ? phase_there : flat_there;
-    float cosine_here = end.dense + flat_here,
-          cosine_there = inside ? dense[k] : flat_there; /* one of two is 0 here */
+    /* one of two is 0 here */
+    float cosine_here = end.dense + flat_here, cosine_there = inside ? dense[k] : flat_there;
     float ways = end.a * phase_here + end.ways, light_ways = a[k] * phase_there + b[k];
     float sum =
         end.tint[0] * power[0][k] + end.tint[1] * power[1][k] + end.tint[2] * power[2][k];

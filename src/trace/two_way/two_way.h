@@ -102,8 +102,8 @@ typedef struct vlLightVertex {
   union {
     float g[3];
     struct { /* in media */
-      float a, dense,
-          asymmetry; /* a: vlPhoton; vl_medium_extinction; g of the phase function */
+      /* a: vlPhoton; vl_medium_extinction; g of the phase function */
+      float a, dense, asymmetry;
     };
   };
   float n[3]; /* the shading normal on the side of w; in media, -w */

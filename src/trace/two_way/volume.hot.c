@@ -25,8 +25,8 @@ static float extinction(const vlWorld *world, const vlMediumVertices *in, uint32
                               vl_lane3(p->ox, p->oy, p->oz, i));
 }
 
-static float phase_of(const vlWorld *world, const vlTwoWayVertices *x, uint32_t i,
-                      vlVec3 w) { /* w: unit, away from the vertex */
+/* w: unit, away from the vertex */
+static float phase_of(const vlWorld *world, const vlTwoWayVertices *x, uint32_t i, vlVec3 w) {
   const vlPaths *p = x->paths;
   return vl_phase(world->media.items[x->rows->medium[i]].g,
                   vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), w));

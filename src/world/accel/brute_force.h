@@ -27,8 +27,8 @@ typedef struct vlBruteForce {
   _Alignas(64) float moment[4][3][VL_BRUTE_FACES]; /* of the edge: a x b of its ends, relative
                                                       to the centre */
   _Alignas(64) float normal[3][VL_BRUTE_FACES];    /* unit length; 0 where a face has no area */
-  _Alignas(
-      64) float corner[3][VL_BRUTE_FACES]; /* a point of the face, not relative to the centre */
+  /* a point of the face, not relative to the centre */
+  _Alignas(64) float corner[3][VL_BRUTE_FACES];
   /* Rounding may put a line through a corner on the wrong side of all edges that meet there. So
    * a line may be outside of an edge by this number times |normal . d|: about a rounding error,
    * which makes the face wider by 1e-7 of the world. */

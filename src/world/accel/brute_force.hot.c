@@ -68,8 +68,8 @@ typedef struct Block {
   _Alignas(64) float ox[BLOCK], oy[BLOCK], oz[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
   _Alignas(64) float mx[BLOCK], my[BLOCK], mz[BLOCK]; /* moments */
   _Alignas(64) float low[BLOCK];                      /* start of the ray */
-  _Alignas(64) float height[BLOCK],
-      speed[BLOCK]; /* the nearest crossing; at first the end of the ray */
+  /* the nearest crossing; at first the end of the ray */
+  _Alignas(64) float height[BLOCK], speed[BLOCK];
   _Alignas(64) int32_t id[BLOCK];
 } Block;
 

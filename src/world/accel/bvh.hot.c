@@ -17,8 +17,8 @@ enum { W = VL_BVH_WIDTH, F = VL_BVH_FOUR };
 /* A ray in the space of a tree. */
 typedef struct Ray {
   float o[3], d[3];
-  float near[3],
-      far[3]; /* origins for the sides of boxes where the ray enters, and where it leaves */
+  /* origins for the sides of boxes where the ray enters, and where it leaves */
+  float near[3], far[3];
   float inverse[3]; /* 1 / d; d is at least 1e-18 */
   int side[3];      /* row of vlBvhBoxes that a ray meets first */
 } Ray;

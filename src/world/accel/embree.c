@@ -407,8 +407,8 @@ static vlResult device_error(RTCDevice device, vlError *error) {
   enum RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_OUT_OF_MEMORY)
     return vl_fail_memory(error);
-  if (code ==
-      RTC_ERROR_UNKNOWN) /* Embree's scheduler reports this error when memory is short */
+  /* Embree's scheduler reports this error when memory is short */
+  if (code == RTC_ERROR_UNKNOWN)
     return vl_fail(error, VL_ERROR_MEMORY, "Embree cannot build the scene (error %d)",
                    (int)code);
   if (code != RTC_ERROR_NONE)

@@ -139,8 +139,8 @@ bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, ui
   while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
     if (shape->alpha >= 0 &&
         texture_passes(world, rays, i, instance, shape, prim, shadow, &hit)) {
-      t_min = hit.t *
-              (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
+      /* past this hit, by several thousand rounding errors of a double */
+      t_min = hit.t * (1 + 1e-12);
       continue;
     }
     *t = hit.t;

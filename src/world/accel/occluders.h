@@ -20,8 +20,8 @@ enum {
 /* A triangle in world space. inside: a ray must meet it so far from its edges, in barycentric
  * coordinates. */
 typedef struct vlOccluder {
-  float corner[3], edge[2][3],
-      normal[3]; /* edges divided by the length of their cross product; unit normal */
+  /* edges divided by the length of their cross product; unit normal */
+  float corner[3], edge[2][3], normal[3];
   float inside;
 } vlOccluder;
 

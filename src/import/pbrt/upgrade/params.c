@@ -194,8 +194,8 @@ static bool apply(vlOldStatement *s, const vlOldRow *row, bool *known) {
   }
   if (row->action != VL_OLD_DEFAULT || found)
     return true;
-  bool shared = s->word->rule == vl_old_filter ||
-                s->word->rule == vl_old_light; /* kinds that both pbrts have */
+  /* kinds that both pbrts have */
+  bool shared = s->word->rule == vl_old_filter || s->word->rule == vl_old_light;
   if (shared && !s->u->is_old)
     return true;
   vl_old_note(s, "with %s", row->to);

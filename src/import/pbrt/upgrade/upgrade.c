@@ -209,8 +209,8 @@ static bool check(vlUpgrade *u, const char *text) {
   vlContext *context = NULL;
   vlScene *scene = NULL;
   vlError error = {0};
-  vlResult r = vl_context_create_quiet(u->context,
-                                       &context); /* its notes would not be about the upgrade */
+  /* its notes would not be about the upgrade */
+  vlResult r = vl_context_create_quiet(u->context, &context);
   if (r == VL_OK)
     r = vl_scene_create(context, &scene);
   if (r == VL_OK) {

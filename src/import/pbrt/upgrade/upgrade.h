@@ -198,8 +198,8 @@ char *vl_old_render(vlOldFile *file, vlOldSpan span);
 
 /* ---- parameters (params.c) --------------------------------------------------------------- */
 
-vlOldParam *vl_old_find(vlOldStatement *s,
-                        const char *name); /* the last one that is not dropped; null: none */
+/* the last one that is not dropped; null: none */
+vlOldParam *vl_old_find(vlOldStatement *s, const char *name);
 /* Leaves the parameter out. */
 void vl_old_drop(vlOldStatement *s, vlOldParam *p);
 void vl_old_drop_all(vlOldStatement *s, const char *const *names, size_t count);

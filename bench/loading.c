@@ -157,8 +157,8 @@ int main(int argc, char **argv) {
   }
   double ratio[ROUNDS];
   Result velo = {0}, embree = {0}, bytes;
-  for (int i = 0; i < ROUNDS;
-       i++) { /* interleaved, so that changes of the machine's speed affect all alike */
+  /* interleaved, so that changes of the machine's speed affect all alike */
+  for (int i = 0; i < ROUNDS; i++) {
     bytes = in_child(run_read, argv[1]);
     embree = in_child(run_embree, argv[1]);
     velo = in_child(run_velo, argv[1]);

@@ -55,8 +55,8 @@ bool vl_optics_project(const vlOptics *o, double x, double y, double z, double f
     return false;
   /* regula falsi (Illinois): [a, b] brackets one root */
   int side = 0;
-  for (int step = 0; step < 100 && b - a > 1e-15 * o->half;
-       step++) { /* 1e-15: converges to the last digits */
+  /* 1e-15: converges to the last digits */
+  for (int step = 0; step < 100 && b - a > 1e-15 * o->half; step++) {
     double f;
     r = fb > fa ? (a * fb - b * fa) / (fb - fa) : 0.5 * (a + b);
     if (!(r > a && r < b))

@@ -54,8 +54,8 @@ bool vl_rotation_from_quaternion(const double q[4], double r[9]) {
   return true;
 }
 
-/* Starts from the largest component, which avoids division by small numbers (Shepperd 1978); w
- * >= 0. */
+/* Starts from the largest component, which avoids division by small numbers (Shepperd 1978).
+ * The scalar part is not negative. */
 void vl_rotation_to_quaternion(const double r[9], double q[4]) {
   double squares[4] = {1.0 + r[0] + r[4] + r[8], 1.0 + r[0] - r[4] - r[8],
                        1.0 - r[0] + r[4] - r[8], 1.0 - r[0] - r[4] + r[8]};

@@ -369,8 +369,8 @@ static bool unpack_channels(Dwa *d) {
       size_t at = plan->offset + (size_t)y * d->width * (plan->scheme == RUNS ? 1 : size);
       if (plan->scheme == UNKNOWN)
         memcpy(to, d->unknown + at, d->width * size);
-      for (size_t k = 0; plan->scheme == RUNS && k < d->width * size;
-           k++) /* the first bytes of all values, then all second bytes, ... */
+      /* the first bytes of all values, then all second bytes, ... */
+      for (size_t k = 0; plan->scheme == RUNS && k < d->width * size; k++)
         to[k] = d->runs[at + k / size + k % size * pixels];
     }
   }

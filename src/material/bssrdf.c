@@ -132,8 +132,8 @@ void vl_bssrdf_build(vlContext *context, float eta, float g, vlBssrdfTable *t) {
   t->radius[0] = 0.0f;
   for (uint32_t i = 1; i < VL_BSSRDF_RADII; i++)
     t->radius[i] = i > 1 ? t->radius[i - 1] * 1.2f : 2.5e-3f;
-  for (uint32_t i = 0; i < VL_BSSRDF_ALBEDOS;
-       i++) /* nodes are closer together at high albedos */
+  /* nodes are closer together at high albedos */
+  for (uint32_t i = 0; i < VL_BSSRDF_ALBEDOS; i++)
     t->albedo[i] = (float)((1 - vl_precise_exp(-8.0 * i / (VL_BSSRDF_ALBEDOS - 1))) /
                            (1 - vl_precise_exp(-8.0)));
   vl_parallel_for(context, VL_BSSRDF_ALBEDOS, fill_row, t);

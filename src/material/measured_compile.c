@@ -53,8 +53,8 @@ static vlResult find_field(Source *s, int which, vlError *error) {
                    s->path, name,
                    wanted[which].type == VL_TENSOR_U8 ? "bytes" : "32-bit floats",
                    wanted[which].rank, wanted[which].rank == 1 ? "" : "s");
-  for (uint32_t i = 0; i < f->rank;
-       i++) /* guards against overflow; after this all values lie within the file */
+  /* guards against overflow; after this all values lie within the file */
+  for (uint32_t i = 0; i < f->rank; i++)
     if (f->shape[i] > INT32_MAX)
       return vl_fail(error, VL_ERROR_SCENE, "%s: \"%s\" is too large", s->path, name);
   for (uint64_t i = 0; f->type == VL_TENSOR_F32 && i < f->count; i++)

@@ -26,10 +26,8 @@ static inline vlDiskPoint vl_warp_disk(float u, float v) {
   float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
   int flat = vl_abs(a) > vl_abs(b);
   float r = flat ? a : b, other = flat ? b : a;
-  float t =
-      other / (r == 0.0f
-                   ? 1.0f
-                   : r); /* in [-1, 1]: the angle in eighths of a turn, from the nearer axis */
+  /* in [-1, 1]: the angle in eighths of a turn, from the nearer axis */
+  float t = other / (r == 0.0f ? 1.0f : r);
   vlSinCos k = vl_sincos_kernel(0.785398163397448310f * t);
   float along = r * k.cos, across = r * k.sin;
   return (vlDiskPoint){flat ? along : across, flat ? across : along, r};

@@ -25,36 +25,42 @@ static inline double vl_cube_cell(double x, double y) {
   return (column >= 0.0 && column < 7.0 ? column : 7.0) + 8.0 * __builtin_floor(y);
 }
 
+/* The face that a cell of the cross shows, in the row's order; -1: none. */
+static inline double vl_cube_face_of_cross(double column, double row) {
+  double middle = column < 0.5 ? 1.0 : column < 1.5 ? 4.0 : column < 2.5 ? 0.0 : 5.0;
+  middle = column <= 3.0 ? middle : -1.0;
+  double upper = column == 1.0 ? 2.0 : -1.0;
+  double lower = column == 1.0 ? 3.0 : -1.0;
+  double other = row == 0.0 ? upper : row == 2.0 ? lower : -1.0;
+  return row == 1.0 ? middle : other;
+}
+
 VL_CAMERA_INLINE vlDirection vl_unproject_cube(VL_UNPROJECT_INPUT) {
   double cross = c->shape[0], over = c->over_y;
   double row = __builtin_floor(0.125 * cell), column = cell - 8.0 * row;
-  double middle = column < 0.5 ? 1.0 : column < 1.5 ? 4.0 : column < 2.5 ? 0.0 : 5.0;
-  middle = column <= 3.0 ? middle : -1.0;
-  double pole = column == 1.0 && row == 0.0 ? 2.0 : column == 1.0 && row == 2.0 ? 3.0 : -1.0;
-  double face = cross > 0.0 ? (row == 1.0 ? middle : pole) : column;
+  double face = cross > 0.0 ? vl_cube_face_of_cross(column, row) : column;
   double top = cross > 0.0 ? row : 0.0;
+  /* the place on the face, -1 to 1: to the right and downwards */
   double a = 2.0 * (x - column) - 1.0, b = 2.0 * (y - top) - 1.0;
-  double dx = face < 0.5 ? 1.0 : face < 1.5 ? -1.0 : face < 4.5 ? a : -a;
-  double dy = face < 1.5 ? b : face < 2.5 ? -1.0 : face < 3.5 ? 1.0 : b;
-  double dz = face < 0.5   ? -a
-              : face < 1.5 ? a
-              : face < 2.5 ? b
-              : face < 3.5 ? -b
-              : face < 4.5 ? 1.0
-                           : -1.0;
+  int right = face < 0.5, left = face == 1.0, up = face == 2.0;
+  int down = face == 3.0, back = face > 4.5;
+  double dx = right ? 1.0 : left ? -1.0 : back ? -a : a;
+  double dy = up ? -1.0 : down ? 1.0 : b;
+  double dz = right ? -a : left ? a : up ? b : 1.0;
+  dz = down ? -b : back ? -1.0 : dz;
   double inside = b >= -1.0 - 2.0 * over && b <= 1.0 + 2.0 * over ? 1.0 : 0.0;
   return (vlDirection){dx, dy, dz, face >= 0.0 && face <= 5.0 ? inside : 0.0};
 }
+
 VL_CAMERA_INLINE vlPlanePoint vl_project_cube(VL_PROJECT_INPUT) {
   double cross = c->shape[0];
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
   int side = ax >= ay && ax > az, pole = !side && ay > az;
   double major = side ? ax : pole ? ay : az, k = 1.0 / vl_not_tiny(major);
-  double face = side      ? (x > 0.0 ? 0.0 : 1.0)
-                : pole    ? (y < 0.0 ? 2.0 : 3.0)
-                : z > 0.0 ? 4.0
-                          : 5.0;
-  double a = side ? (x > 0.0 ? -z : z) : pole ? x : z > 0.0 ? x : -x;
+  double of_sides = x > 0.0 ? 0.0 : 1.0, of_poles = y < 0.0 ? 2.0 : 3.0;
+  double face = side ? of_sides : pole ? of_poles : z > 0.0 ? 4.0 : 5.0;
+  double on_side = x > 0.0 ? -z : z, ahead = z > 0.0 ? x : -x;
+  double a = side ? on_side : pole ? x : ahead;
   double b = pole ? (y < 0.0 ? z : -z) : y;
   double column = side ? (x > 0.0 ? 2.0 : 0.0) : pole || z > 0.0 ? 1.0 : 3.0;
   double row = pole ? (y < 0.0 ? 0.0 : 2.0) : 1.0;

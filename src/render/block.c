@@ -50,8 +50,8 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
   uint32_t pixels = r->span_x * r->span_y * TILE_PIXELS, x0, y0;
   block_corner(r, block, &x0, &y0);
   for (uint32_t s = first; s < first + count; s++)
-    for (uint32_t m = 0; m < pixels;
-         m++) { /* Morton order: two tiles lie side by side, four in a square */
+    /* Morton order: two tiles lie side by side, four in a square */
+    for (uint32_t m = 0; m < pixels; m++) {
       uint32_t x = x0 + morton_half(m), y = y0 + morton_half(m >> 1);
       if (x < r->crop[0] || y < r->crop[1] || x >= r->crop[2] || y >= r->crop[3])
         continue;
@@ -309,8 +309,8 @@ static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock 
     total -= skip_useless(r, w, b, &w->grids[s], first + s);
   uint32_t batches = (total + VL_BATCH - 1) / VL_BATCH;
   for (uint32_t s = first; s < first + count; s++)
-    for (uint32_t m = 0; m < slots;
-         m++) { /* tile by tile; in a tile in Morton order, for coherent packets */
+    /* tile by tile; in a tile in Morton order, for coherent packets */
+    for (uint32_t m = 0; m < slots; m++) {
       uint32_t tile = m / TILE_PIXELS, in = m % TILE_PIXELS;
       uint32_t x = tile % across * VL_RENDER_TILE + morton_half(in);
       uint32_t y = tile / across * VL_RENDER_TILE + morton_half(in >> 1);

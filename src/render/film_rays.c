@@ -118,8 +118,8 @@ void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) 
       r->lens_u[i] = r->lens_v[i] = 0.5f;
   vlCameraSamples samples = {r->film_x, r->film_y, r->px, r->py, r->lens_u, r->lens_v, r->time};
   f->camera_kernels->rays(&f->camera, n, &samples, &r->rays);
-  for (uint32_t i = 0; f->moves && i < VL_PAD(n);
-       i++) { /* times outside [0, 1] are clamped: the world is at rest there */
+  /* times outside [0, 1] are clamped: the world is at rest there */
+  for (uint32_t i = 0; f->moves && i < VL_PAD(n); i++) {
     float t = r->rays.time[i] > 0.0f ? r->rays.time[i] : 0.0f;
     r->rays.time[i] = t < 1.0f ? t : 1.0f;
   }

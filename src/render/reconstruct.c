@@ -125,8 +125,8 @@ void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g,
     float sums[5][VL_SHARED_SIDE];
     memset(sums, 0, sizeof sums);
     for (uint32_t v = 0; v <= 2 * by; v++)
-      for (uint32_t u = 0; u <= 2 * bx;
-           u++) { /* the sample of pixel (i + u - bx, j + v - by) */
+      /* the sample of pixel (i + u - bx, j + v - by) */
+      for (uint32_t u = 0; u <= 2 * bx; u++) {
         size_t at = (size_t)(j + v) * stride + u;
         add_neighbour(block->width, g->x[2 * bx - u] + at, g->y[2 * by - v] + at,
                       g->color[0] + at, g->color[1] + at, g->color[2] + at, g->color[3] + at,

@@ -305,8 +305,8 @@ static Gate gate_of(const vlLightDef *l) {
     x[i] = (double)l->portal[3][i] - g.corner[i];
     y[i] = (double)l->portal[1][i] - g.corner[i];
   }
-  for (int i = 0; i < 3;
-       i++) { /* y cross x: the sky is on the other side, where x cross y points to */
+  /* y cross x: the sky is on the other side, where x cross y points to */
+  for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     g.normal[i] = y[j] * x[k] - y[k] * x[j];
   }

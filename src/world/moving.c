@@ -207,8 +207,8 @@ vlResult vl_world_add_motion(vlWorld *world, const vlSceneInstance *source, cons
                    world->time_open, world->time_close - world->time_open};
   if (!motion.between)
     return vl_fail_memory(error);
-  for (uint32_t k = 0; k + 1 < source->keys;
-       k++) /* the scene has checked that a motion exists */
+  /* the scene has checked that a motion exists */
+  for (uint32_t k = 0; k + 1 < source->keys; k++)
     vl_motion_make(source->poses + 16 * (size_t)k, source->poses + 16 * (size_t)(k + 1),
                    &motion.between[k]);
   uint32_t steps = choose_steps(&motion, low, high);

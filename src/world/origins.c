@@ -60,8 +60,8 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
     if (!copy_label(world, &scene->shapes.items[i].label, &o->label))
       return VL_ERROR_MEMORY;
   }
-  for (size_t i = 0; i < scene->materials.count;
-       i++) { /* the world's first material is the default material */
+  /* the world's first material is the default material */
+  for (size_t i = 0; i < scene->materials.count; i++) {
     vlWorldOrigin *o = &world->material_origins[i + 1];
     const vlMaterialDef *def = &scene->materials.items[i];
     copy_source(files, scene, def->source, &o->source);

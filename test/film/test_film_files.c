@@ -564,8 +564,8 @@ static void memory_of_json_runs_out(void **state) {
   long total = LONG_MAX;
   json_set_alloc_funcs(json_allocate, json_release);
   for (json_at = 0; json_at <= total; json_at++)
-    for (int stays = 0; stays < (json_at % 4 == 0 ? 2 : 1);
-         stays++) { /* "and all later" at every fourth */
+    /* "and all later" at every fourth */
+    for (int stays = 0; stays < (json_at % 4 == 0 ? 2 : 1); stays++) {
       json_calls = 0;
       json_stays = stays && json_at;
       vlResult result = life_with_receipt();

@@ -75,8 +75,8 @@ static void expected_noise(void **state) {
   const double error = (double)deviation / sqrt(SPP);
   const double slope = 1.055 / 2.4 * pow(0.25, 1 / 2.4 - 1);
   vlFilm *film = noisy_film(context, mean, deviation, 1);
-  for (uint32_t i = 0; i < 6;
-       i++) { /* those of the lowest row have 6 lines: their bound is wider */
+  /* those of the lowest row have 6 lines: their bound is wider */
+  for (uint32_t i = 0; i < 6; i++) {
     double raw = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1, 1), standard;
     double bright = vl_film_block_noise(film, i, VL_VIEW_RAW, 1, 0.75f, 1);
     standard = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1, 1);

@@ -88,8 +88,8 @@ static void test_constant_stays(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  for (int noisy = 0; noisy < 2;
-       noisy++) { /* the second time with standard errors that claim large noise */
+  /* the second time with standard errors that claim large noise */
+  for (int noisy = 0; noisy < 2; noisy++) {
     vlImage *image = make(context, 7);
     for (uint32_t y = 0; y < H; y++)
       for (uint32_t x = 0; x < W; x++) {

@@ -75,8 +75,8 @@ static void test_bytes(void **state) {
   assert_true(map->is_bytes);
   assert_memory_equal(map->levels[0].bytes, image->pixels, 32 * 24 * 4);
   assert_true(vl_mipmap_bytes(map) < sizeof *map + 32 * 24 * 4 * 3 / 2);
-  for (uint32_t l = 1; l < map->level_count;
-       l++) /* against means straight from level 0: one rounding, in the code */
+  /* against means straight from level 0: one rounding, in the code */
+  for (uint32_t l = 1; l < map->level_count; l++)
     for (uint32_t y = 0; y < map->levels[l].height; y++)
       for (uint32_t x = 0; x < map->levels[l].width; x++)
         for (uint32_t c = 0; c < 4; c++) {

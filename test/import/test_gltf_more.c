@@ -237,8 +237,8 @@ static void surroundings(void **state) {
   Gltf *g = new_square();
   Loaded l;
   start_load(&l);
-  for (int face = 0; face < 6;
-       face++) { /* RGBD: 1 / 0.2 = 5 from above, elsewhere as many sixths as the face */
+  /* RGBD: 1 / 0.2 = 5 from above, elsewhere as many sixths as the face */
+  for (int face = 0; face < 6; face++) {
     vlImageDef def = vl_default_image_def(4, 4, 4);
     def.type = VL_PIXEL_U8;
     def.encoding = VL_ENCODING_SRGB;

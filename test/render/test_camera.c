@@ -147,8 +147,8 @@ static void depths(void **state) {
   for (uint32_t depth = 0; depth < 5; depth++) {
     expected += power;
     power *= 0.6;
-    for (int light = 0; light < 2;
-         light++) { /* every point emits light, or a point light's wall emits light: one less */
+    /* every point emits light, or a point light's wall emits light: one less */
+    for (int light = 0; light < 2; light++) {
       Stage s = stage_open(16, 16);
       s.render.max_depth = depth;
       s.render.spp = 64;

@@ -212,8 +212,8 @@ static Image stripes(bool along_v, vlTextureFilter filter, vlMapping mapping, bo
   float *texels = malloc(TEXELS * TEXELS * 3 * sizeof *texels);
   for (int y = 0; y < TEXELS; y++)
     for (int x = 0; x < TEXELS; x++)
-      for (int c = 0; c < 3;
-           c++) /* across the slope: stripes as wide as four pixels; along it: as two texels */
+      /* across the slope: stripes as wide as four pixels; along it: as two texels */
+      for (int c = 0; c < 3; c++)
         texels[3 * (y * TEXELS + x) + c] = (along_v ? y / 2 : x / 32) & 1 ? 0.8f : 0.2f;
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   vlImage *image = make_image(&s, TEXELS, TEXELS, texels);

@@ -45,8 +45,8 @@ static void goniometric(void **state) {
     Stage s = stage();
     vlImage *image = gradient_image(&s, 16, 16);
     for (uint32_t y = 0; y < 16; y++)
-      for (uint32_t x = 0; x < 16;
-           x++) { /* the diamond in the middle is the half about the axis */
+      /* the diamond in the middle is the half about the axis */
+      for (uint32_t x = 0; x < 16; x++) {
         bool upper = fabs(x + 0.5 - 8) + fabs(y + 0.5 - 8) < 8;
         float v = which == 0 || upper == (which != 2) ? 1 : 0;
         set(image, x, y, 3 * v, 0, 0); /* channels count by their mean */

@@ -9,8 +9,7 @@
 enum { SIZE = 32 };
 
 /* A floor of reflectance 1/2 in the plane z = 0, seen from straight above: pixel (x, y) shows
- * the point (2u - 1, 2v
- * - 1). */
+ * the point (at_x(x), at_y(y)) in [-1, 1] x [-1, 1]. */
 static Stage floor_stage(bool exact) {
   Stage s = stage_open(SIZE, SIZE);
   s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
@@ -173,8 +172,8 @@ static void photometric_scale(void **state) {
 /* The image shows the light itself: one-sided, two-sided, reversed. */
 static void sides(void **state) {
   (void)state;
-  for (int kind = 0; kind < 5;
-       kind++) /* triangles, patch, disk, sphere (from inside), cylinder (from inside) */
+  /* triangles, patch, disk, sphere (from inside), cylinder (from inside) */
+  for (int kind = 0; kind < 5; kind++)
     for (int mode = 0; mode < 8; mode++) {
       bool two_sided = mode & 1, reverse = mode & 2, mirrored = mode & 4;
       Stage s = stage_open(16, 16);
@@ -383,8 +382,8 @@ static void sky_light_against_the_integral(void **state) {
         if (z > 0)
           expected += z * sky[3 * (y / 8 * SKY + x / 8)] * 4 * M_PI / ((double)fine * fine);
       }
-    for (int kind = 0; kind < (way == 0 ? 4 : 3);
-         kind++) { /* the light samplers, and a large image */
+    /* the light samplers, and a large image */
+    for (int kind = 0; kind < (way == 0 ? 4 : 3); kind++) {
       Stage s = floor_stage(false);
       s.render.spp = 64;
       s.build.light_sampler =

@@ -278,8 +278,8 @@ static void ways_to_move_agree(void **state) {
  * each row sees it. */
 static void rolling_shutter_slants_edges(void **state) {
   (void)state;
-  for (int k = 0; k < 3;
-       k++) { /* down, up; exposed for long: the edge is soft, its middle the same */
+  /* down, up; exposed for long: the edge is soft, its middle the same */
+  for (int k = 0; k < 3; k++) {
     enum { WIDTH = 96, HEIGHT = 64 };
     Stage s = stage_open(WIDTH, HEIGHT);
     s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;

@@ -44,8 +44,7 @@ static void rendered(vlContext *context, const vlWorld *world, const vlCamera *c
   vl_film_destroy(made);
 }
 
-/* What a path must fulfil whatever the scene. exact: nothing but the contributions changes the
- * radiance. */
+/* What a path must fulfil whatever the scene. */
 static void check_path(const vlPath *p) {
   float sum[4] = {0, 0, 0, 0};
   double rgb[3] = {0, 0, 0}, size = 0;
@@ -167,8 +166,8 @@ static void check_sums(bool shared) {
         double expected[3];
         mean_of(paths, 3, expected);
         rendered(l.context, l.world, &l.camera, &film, &def, paths, 3, 4, rgb);
-        for (int c = 0; c < 3;
-             c++) /* the film holds multiples of 2^-24 of the weight, and 2^-64 of the sample */
+        /* the film holds multiples of 2^-24 of the weight, and 2^-64 of the sample */
+        for (int c = 0; c < 3; c++)
           if (fabs((double)rgb[c] - expected[c]) > 1e-6 * fabs(expected[c]) + 1e-12)
             fail_msg("%s (%u, %u): %g, rendered %g", cases[k].scene, x, y, expected[c],
                      (double)rgb[c]);

@@ -133,8 +133,8 @@ static void boxes_are_of_the_rows(void **state) {
                      VL_OK);
     const uint32_t *all = instance.all_box, edges[4] = {0, 0, W, H};
     outlines += instance.has_outline;
-    for (int k = 0; k < 4 && instance.has_outline;
-         k++) { /* the outline of all points, cut by the image's edges */
+    /* the outline of all points, cut by the image's edges */
+    for (int k = 0; k < 4 && instance.has_outline; k++) {
       double at = fmin(fmax(instance.outline[k], 0), k % 2 ? H : W);
       if (all[k] != edges[k])
         assert_near("outline", at, all[k], 1.0);

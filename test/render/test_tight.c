@@ -92,9 +92,8 @@ static double room_mean(Room r, bool sky) {
 static void rooms_are_tight(void **state) {
   (void)state;
   const double sizes[3] = {1e-3, 1, 1e4}, offsets[4] = {0, 1, 30, 1000};
-  for (int kind = 0; kind < 5;
-       kind +=
-       kind ? 1 : 2) /* not the smooth one: with shading normals light leaks, as in pbrt */
+  /* not the smooth one: with shading normals light leaks, as in pbrt */
+  for (int kind = 0; kind < 5; kind += kind ? 1 : 2)
     for (int instanced = 0; instanced < 2; instanced++)
       for (int o = 0; o < 4; o++)
         for (int k = 0; k < 3; k++) {

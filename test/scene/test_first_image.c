@@ -279,8 +279,8 @@ static void rooms(void **state) {
       assert_int_equal(m.scene->shapes.items[0].faces, hidden ? 6 : 12);
       assert_int_equal(m.scene->shapes.items[1].faces, 12);
       const vlShapeDef *d = &m.scene->shapes.items[0];
-      for (uint32_t i = 0; hidden && i < d->faces;
-           i++) { /* none lies in the planes x = 2, y = 2.5, z = 2 */
+      /* none lies in the planes x = 2, y = 2.5, z = 2 */
+      for (uint32_t i = 0; hidden && i < d->faces; i++) {
         for (int k = 0; k < 3; k++) {
           bool all = true;
           for (int c = 0; c < 3; c++)

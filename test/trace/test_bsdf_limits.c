@@ -314,19 +314,30 @@ static void lanes_alone(void **state) {
 
 /* ---- special cases ---- */
 
-static void special(void **state) {
+enum { LANES = 16 };
+
+/* The surface, seen from the angle theta from its normal, in all lanes. */
+static void fill_lanes(Batch *b, const Surface *surface, double theta) {
+  for (uint32_t j = 0; j < LANES; j++) {
+    batch_surface(b, j, surface);
+    batch_wo(b, j, theta, 0);
+  }
+}
+
+/* Glass reflects 4 %; a pane of it 2R / (1 + R); light that leaves glass is spread again. Lanes
+ * 0 and 1 transmit, 2 and 3 reflect; odd lanes are inside. */
+static void glass_at_normal_incidence(void **state) {
   const State *s = *state;
   Batch *b = s->batch;
-  /* normal incidence on glass: 4 %; a pane of it: 2R/(1+R); light leaving it is spread again */
   const Surface glass = {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f},
                 pane = {.kind = VL_BSDF_THIN_DIELECTRIC, .eta_s = 1.5f};
-  for (uint32_t j = 0; j < 16; j++) {
+  for (uint32_t j = 0; j < LANES; j++) {
     batch_surface(b, j, &glass);
     batch_wo(b, j, j & 1 ? 3.14159265358979 : 0.0, 0);
     b->lobe[j] = j & 2 ? 0.03f : 0.05f;
     b->u[j] = b->v[j] = 0.4f;
   }
-  batch_sample(s->kernels, VL_BSDF_DIELECTRIC, 16, b);
+  batch_sample(s->kernels, VL_BSDF_DIELECTRIC, LANES, b);
   assert_true(fabsf(b->pdf[2] - 0.04f) < 1e-6f && b->flags[2] == VL_SAMPLED_SPECULAR &&
               b->weight[0][2] == 1 && b->iz[2] == 1);
   assert_true(fabsf(b->pdf[0] - 0.96f) < 1e-6f && b->iz[0] == -1 &&
@@ -335,106 +346,139 @@ static void special(void **state) {
               fabsf(b->scale[0] - 2.25f) < 1e-6f);
   assert_true(b->iz[1] == 1 && fabsf(b->weight[0][1] - 2.25f) < 1e-5f &&
               fabsf(b->scale[1] * 2.25f - 1) < 1e-6f);
-  for (uint32_t j = 0; j < 16; j++)
+  for (uint32_t j = 0; j < LANES; j++)
     batch_surface(b, j, &pane);
-  batch_sample(s->kernels, VL_BSDF_THIN_DIELECTRIC, 16, b);
+  batch_sample(s->kernels, VL_BSDF_THIN_DIELECTRIC, LANES, b);
   assert_true(fabsf(b->pdf[2] - 0.08f / 1.04f) < 1e-6f && b->weight[0][2] == 1 &&
               b->scale[0] == 1);
-  /* total internal reflection: nothing is transmitted */
-  for (uint32_t j = 0; j < 16; j++) {
-    batch_surface(b, j, &glass);
-    batch_wo(b, j, 3.14159265358979 - 0.75, 0);
+}
+
+static void total_reflection_transmits_nothing(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch;
+  const Surface glass = {.kind = VL_BSDF_DIELECTRIC, .eta_s = 1.5f};
+  fill_lanes(b, &glass, 3.14159265358979 - 0.75);
+  for (uint32_t j = 0; j < LANES; j++)
     b->lobe[j] = 0.9999f;
-  }
-  batch_sample(s->kernels, VL_BSDF_DIELECTRIC, 16, b);
+  batch_sample(s->kernels, VL_BSDF_DIELECTRIC, LANES, b);
   assert_true(b->flags[0] == VL_SAMPLED_SPECULAR && b->pdf[0] == 1 && b->iz[0] < 0);
-  /* gold at normal incidence by the textbook's formula, and just rough enough to be no
-   * mirror */
-  Surface gold = {.kind = VL_BSDF_CONDUCTOR,
-                  .eta = 0.2f,
-                  .k = 3.9f,
-                  .alpha_x = 9.9e-4f,
-                  .alpha_y = 9.9e-4f};
+}
+
+/* By the textbook's formula; a mirror, and just rough enough to be none. */
+static void gold_at_normal_incidence(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch;
+  const float alphas[2] = {9.9e-4f, 1e-3f};
+  const double n = 0.2, k = 3.9;
+  const double r = ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
   for (int rough = 0; rough < 2; rough++) {
-    for (uint32_t j = 0; j < 16; j++) {
-      batch_surface(b, j, &gold);
-      batch_wo(b, j, 0, 0);
+    const Surface gold = {.kind = VL_BSDF_CONDUCTOR,
+                          .eta = (float)n,
+                          .k = (float)k,
+                          .alpha_x = alphas[rough],
+                          .alpha_y = alphas[rough]};
+    fill_lanes(b, &gold, 0);
+    for (uint32_t j = 0; j < LANES; j++)
       b->v[j] = 0;
-    }
-    batch_sample(s->kernels, VL_BSDF_CONDUCTOR, 16, b);
-    double n = 0.2, k = 3.9, r = ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
+    batch_sample(s->kernels, VL_BSDF_CONDUCTOR, LANES, b);
     assert_true(fabs((double)b->weight[0][0] - r) < 1e-5);
     assert_int_equal(b->flags[0], rough ? 0 : VL_SAMPLED_SPECULAR);
-    gold.alpha_x = gold.alpha_y = 1e-3f;
   }
-  /* a two-sided coat: from below as from above */
-  const Surface coat = {.kind = VL_BSDF_COATED_DIFFUSE,
-                        .reflectance = 0.5f,
-                        .eta_s = 1.5f,
-                        .alpha_x = 0.1f,
-                        .alpha_y = 0.1f,
-                        .coat = s->coats[1]};
-  for (uint32_t j = 0; j < 16; j++) {
-    batch_surface(b, j, &coat);
-    batch_wo(b, j, 0.5, 0);
+}
+
+/* ---- coats ---- */
+
+static Surface coat_on(float reflectance, const vlCoatTable *table) {
+  return (Surface){.kind = VL_BSDF_COATED_DIFFUSE,
+                   .reflectance = reflectance,
+                   .eta_s = 1.5f,
+                   .alpha_x = 0.1f,
+                   .alpha_y = 0.1f,
+                   .coat = table};
+}
+
+/* Both directions of all lanes above a coated surface. */
+static void fill_coat(Batch *b, const Surface *coat) {
+  fill_lanes(b, coat, 0.5);
+  for (uint32_t j = 0; j < LANES; j++) {
     b->ix[j] = 0.6f;
     b->iy[j] = 0;
     b->iz[j] = 0.8f;
-    if (j & 1) {
+  }
+}
+
+/* Odd lanes are seen from below; of every second pair the directions are on opposite sides. */
+static void coats_have_two_sides(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch;
+  const Surface coat = coat_on(0.5f, s->coats[1]);
+  fill_coat(b, &coat);
+  for (uint32_t j = 0; j < LANES; j++) {
+    if (j & 1)
       b->oz[j] = -b->oz[j];
-      b->iz[j] = -b->iz[j];
-    }
-    if (j & 2)
+    if ((j & 1) != (j >> 1 & 1))
       b->iz[j] = -b->iz[j];
   }
-  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
+  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, LANES, b);
   assert_true(b->value[0][0] > 0 && b->value[0][0] == b->value[0][1] && b->value[0][2] == 0 &&
               b->pdf[3] == 0);
-  /* the closed form itself */
-  const vlCoatTable *t = s->coats[1];
-  vlCoatCell p = vl_coat_cell(0.8f);
-  const float *q = t->transmittance[0] + p.first;
-  double ti = (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t);
-  p = vl_coat_cell(b->oz[0]);
-  q = t->transmittance[0] + p.first;
-  double to = (double)vl_coat_cubic(q[0], q[1], q[2], q[3], p.t), x = 0.5 * (double)t->back[0],
-         series = 1 + x + x * x + x * x * x + x * x * x * x;
-  const Surface black = {.kind = VL_BSDF_COATED_DIFFUSE,
-                         .eta_s = 1.5f,
-                         .alpha_x = 0.1f,
-                         .alpha_y = 0.1f,
-                         .coat = t};
-  double with = (double)b->value[0][0];
-  vlCoatTable as_pbrt = *t; /* imitate_pbrt: values are larger, samples are unchanged */
-  as_pbrt.imitate = true;
-  Surface imitator = coat;
-  imitator.coat = &as_pbrt;
-  Batch *c = s->other;
-  *c = *b;
-  for (uint32_t j = 0; j < 16; j++)
-    batch_surface(c, j, &imitator);
-  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, c);
-  assert_true((double)c->value[0][0] > with * 1.005 && (double)c->value[0][0] < with * 1.05 &&
-              c->pdf[0] == b->pdf[0]);
-  for (uint32_t j = 0; j < 16; j++)
-    batch_surface(b, j, &coat);
-  batch_sample(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
-  batch_sample(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, c);
-  assert_true(b->weight[0][0] > 0 && b->weight[0][0] == c->weight[0][0]);
-  for (uint32_t j = 0; j < 16; j++)
-    batch_surface(b, j, &black);
-  b->ix[0] = 0.6f;
-  b->iy[0] = 0;
-  b->iz[0] = 0.8f;
-  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, 16, b);
-  double base = with - (double)b->value[0][0],
-         want = to * ti * 0.5 / 3.14159265358979 / 2.25 * series * 0.8;
+}
+
+static double transmittance_of(const vlCoatTable *table, float cosine) {
+  const vlCoatCell cell = vl_coat_cell(cosine);
+  const float *q = table->transmittance[0] + cell.first;
+  return (double)vl_coat_cubic(q[0], q[1], q[2], q[3], cell.t);
+}
+
+/* The base seen through the coat is what a black base lacks: T(o) T(i) R / (pi eta^2) times the
+ * series of reflections between base and coat. */
+static void coats_have_their_closed_form(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch;
+  const vlCoatTable *table = s->coats[1];
+  const Surface coat = coat_on(0.5f, table), black = coat_on(0, table);
+  fill_coat(b, &coat);
+  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, LANES, b);
+  const double with = (double)b->value[0][0];
+  fill_coat(b, &black);
+  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, LANES, b);
+  const double base = with - (double)b->value[0][0], x = 0.5 * (double)table->back[0];
+  const double series = 1 + x + x * x + x * x * x + x * x * x * x;
+  const double want = transmittance_of(table, b->oz[0]) * transmittance_of(table, 0.8f) * 0.5 /
+                      3.14159265358979 / 2.25 * series * 0.8;
   assert_true(fabs(base / want - 1) < 1e-5);
 }
 
+/* imitate_pbrt: values are larger, samples are unchanged. */
+static void imitating_coats_are_brighter(void **state) {
+  const State *s = *state;
+  Batch *b = s->batch, *c = s->other;
+  vlCoatTable as_pbrt = *s->coats[1];
+  as_pbrt.imitate = true;
+  const Surface coat = coat_on(0.5f, s->coats[1]), imitator = coat_on(0.5f, &as_pbrt);
+  fill_coat(b, &coat);
+  *c = *b;
+  for (uint32_t j = 0; j < LANES; j++)
+    batch_surface(c, j, &imitator);
+  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, LANES, b);
+  batch_eval(s->kernels, VL_BSDF_COATED_DIFFUSE, LANES, c);
+  const double own = (double)b->value[0][0], imitated = (double)c->value[0][0];
+  assert_true(imitated > own * 1.005 && imitated < own * 1.05 && c->pdf[0] == b->pdf[0]);
+  batch_sample(s->kernels, VL_BSDF_COATED_DIFFUSE, LANES, b);
+  batch_sample(s->kernels, VL_BSDF_COATED_DIFFUSE, LANES, c);
+  assert_true(b->weight[0][0] > 0 && b->weight[0][0] == c->weight[0][0]);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(reciprocity), cmocka_unit_test(never_nan),
-                                     cmocka_unit_test(same_bits), cmocka_unit_test(lanes_alone),
-                                     cmocka_unit_test(special)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(reciprocity),
+                                     cmocka_unit_test(never_nan),
+                                     cmocka_unit_test(same_bits),
+                                     cmocka_unit_test(lanes_alone),
+                                     cmocka_unit_test(glass_at_normal_incidence),
+                                     cmocka_unit_test(total_reflection_transmits_nothing),
+                                     cmocka_unit_test(gold_at_normal_incidence),
+                                     cmocka_unit_test(coats_have_two_sides),
+                                     cmocka_unit_test(coats_have_their_closed_form),
+                                     cmocka_unit_test(imitating_coats_are_brighter)};
   return cmocka_run_group_tests(tests, build_all, free_all);
 }

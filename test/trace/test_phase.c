@@ -19,8 +19,8 @@ static void normalised(void **state) {
   for (int i = 0; i < GS; i++) {
     double sum = 0, mean = 0;
     const int n = 200000;
-    for (int k = 0; k < n;
-         k++) { /* finer where it is steep: cosine = 1 - 2 x^3 from both ends */
+    /* finer where it is steep: cosine = 1 - 2 x^3 from both ends */
+    for (int k = 0; k < n; k++) {
       double x = (k + 0.5) / n, cosine = 1 - 2 * x * x * x, width = 6 * x * x / n;
       sum += vl_phase(gs[i], (float)cosine) * 2 * M_PI * width * (gs[i] > 0);
       sum += vl_phase(gs[i], (float)-cosine) * 2 * M_PI * width * !(gs[i] > 0);

@@ -72,149 +72,109 @@ static uint64_t offset_of(const mfFile *file, const char *name) {
 
 /* ---- damages with a name ----------------------------------------------------------------- */
 
-static void set(mfFile *file, size_t at, uint64_t value, size_t size) {
-  memcpy(file->bytes + at, &value, size);
+/* Bytes that replace those of a file, and a word of the error that it then gives. */
+typedef struct Damage {
+  const char *word;
+  const char *field;          /* that they are in; null: `at` counts from the file's start */
+  enum { HEAD, VALUES } part; /* what `at` counts from */
+  int at;
+  uint64_t value;
+  size_t size;                 /* number of bytes of the value */
+  void (*function)(mfFile *f); /* does it in another way; null: by the members above */
+} Damage;
+
+static void cut_in_the_head(mfFile *f) {
+  f->size = 15;
 }
-static void set_float(mfFile *file, size_t at, float value) {
-  memcpy(file->bytes + at, &value, sizeof value);
+static void cut_at_the_end(mfFile *f) {
+  f->size -= 2;
+}
+static void put_values_behind_the_end(mfFile *f) {
+  const uint64_t at = f->size + 1;
+  memcpy(f->bytes + head_of(f, "vndf") + 3, &at, sizeof at);
+}
+static void name_a_field_twice(mfFile *f) {
+  memcpy(f->bytes + head_of(f, "phi_i") - 5, "sigma", 5);
+}
+/* A shorter name; the values stay where they are. */
+static void make_rgb(mfFile *f) {
+  size_t at = head_of(f, "spectra"), end = offset_of(f, "description");
+  const uint16_t length = 3;
+  memcpy(f->bytes + at - 7, "rgb", length);
+  memcpy(f->bytes + at - 9, &length, sizeof length);
+  memmove(f->bytes + at - 4, f->bytes + at, end - at);
+}
+
+/* floats, as their bits */
+enum {
+  THREE = 0x40400000,
+  HUNDRED = 0x42c80000,
+  NOT_A_NUMBER = 0x7fc00000,
+  TOO_LARGE = 0x7f800000
+};
+
+static const Damage damages_with_a_name[] = {
+    {"this is no tensor file", NULL, HEAD, 3, 'x', 1},
+    {"ends before what it announces", .function = cut_in_the_head},
+    {"version 2.0", NULL, HEAD, 12, 2, 1},
+    {"version 1.1", NULL, HEAD, 13, 1, 1},
+    {"announces 65 fields", NULL, HEAD, 14, 65, 4},
+    {"has no \"vndf\"", "vndf", HEAD, -1, 'x', 1},
+    {"unknown type 12", "vndf", HEAD, 2, 12, 1},
+    {"unknown type 0", "vndf", HEAD, 2, 0, 1},
+    {"has 9 dimensions", "vndf", HEAD, 0, 9, 2},
+    {"ends before what it announces", .function = put_values_behind_the_end},
+    {"ends before what it announces", "vndf", HEAD, 11, (uint64_t)1 << 62, 8},
+    {"ends before what it announces", "vndf", HEAD, 3, UINT64_MAX - 4, 8},
+    {"the same field twice", .function = name_a_field_twice},
+    {"should be 32-bit floats of 2 dimensions", "ndf", HEAD, 2, 5, 1},
+    {"should be 32-bit floats of 4 dimensions", "vndf", HEAD, 11, 0, 1},
+    {"kept as RGB", .function = make_rgb},
+    {"is not ascending", "theta_i", VALUES, 4, 0, 4},
+    {"is out of range", "theta_i", VALUES, 8, THREE, 4},
+    {"holds a value that is not finite", "luminance", VALUES, 40, NOT_A_NUMBER, 4},
+    {"does not fit \"theta_i\"", "luminance", HEAD, 19, 2, 8},
+    {"less than 2 x 2 values", "ndf", HEAD, 11, 1, 8},
+    {"should be bytes of 1 dimension", "jacobian", HEAD, 2, 2, 1},
+    {"ends before what it announces", .function = cut_at_the_end},
+    {"should be 32-bit floats of 1 dimension", "wavelengths", HEAD, 2, 5, 1},
+    {"holds a value that is not finite", "spectra", VALUES, 0, TOO_LARGE, 4},
+    {"is not ascending", "wavelengths", VALUES, 4, HUNDRED, 4}};
+
+static void do_damage(const Damage *d, mfFile *f) {
+  if (d->function) {
+    d->function(f);
+    return;
+  }
+  size_t start = 0;
+  if (d->field)
+    start = d->part == HEAD ? head_of(f, d->field) : offset_of(f, d->field);
+  memcpy(f->bytes + start + d->at, &d->value, d->size);
 }
 
 static void damages(void **state) {
   (void)state;
-  static const char *const words[] = {"this is no tensor file",
-                                      "ends before what it announces",
-                                      "version 2.0",
-                                      "version 1.1",
-                                      "announces 65 fields",
-                                      "has no \"vndf\"",
-                                      "unknown type 12",
-                                      "unknown type 0",
-                                      "has 9 dimensions",
-                                      "ends before what it announces",
-                                      "ends before what it announces",
-                                      "ends before what it announces",
-                                      "the same field twice",
-                                      "should be 32-bit floats of 2 dimensions",
-                                      "should be 32-bit floats of 4 dimensions",
-                                      "kept as RGB",
-                                      "is not ascending",
-                                      "is out of range",
-                                      "holds a value that is not finite",
-                                      "does not fit \"theta_i\"",
-                                      "less than 2 x 2 values",
-                                      "should be bytes of 1 dimension",
-                                      "ends before what it announces",
-                                      "should be 32-bit floats of 1 dimension",
-                                      "holds a value that is not finite",
-                                      "is not ascending"};
-  enum { KINDS = sizeof words / sizeof *words };
   Purse purse = {.left = -1};
   vlContext *context = open_context(&purse);
-  for (int kind = -1; kind < KINDS; kind++) {
+  vlMeasured *m = NULL;
+  vlError error = {0};
+  mfFile whole = small_file();
+  assert_true(mf_write(path, &whole));
+  assert_int_equal(vl_measured_read(context, path, false, &m, &error), VL_OK);
+  vl_measured_free(context, m);
+  free(whole.bytes);
+  for (size_t i = 0; i < sizeof damages_with_a_name / sizeof *damages_with_a_name; i++) {
+    const Damage *d = &damages_with_a_name[i];
     mfFile f = small_file();
-    size_t vndf = head_of(&f, "vndf"), ndf = head_of(&f, "ndf"), phi = head_of(&f, "phi_i");
-    switch (kind) {
-      case 0:
-        f.bytes[3] = 'x';
-        break;
-      case 1:
-        f.size = 15;
-        break;
-      case 2:
-        f.bytes[12] = 2;
-        break;
-      case 3:
-        f.bytes[13] = 1;
-        break;
-      case 4:
-        set(&f, 14, 65, 4);
-        break;
-      case 5:
-        f.bytes[vndf - 1] = 'x';
-        break;
-      case 6:
-        f.bytes[vndf + 2] = 12;
-        break;
-      case 7:
-        f.bytes[vndf + 2] = 0;
-        break;
-      case 8:
-        set(&f, vndf, 9, 2);
-        break;
-      case 9:
-        set(&f, vndf + 3, f.size + 1, 8);
-        break;
-      case 10:
-        set(&f, vndf + 11, (uint64_t)1 << 62, 8);
-        break;
-      case 11:
-        set(&f, vndf + 3, UINT64_MAX - 4, 8);
-        break;
-      case 12:
-        memcpy(f.bytes + phi - 5, "sigma", 5);
-        break;
-      case 13:
-        f.bytes[ndf + 2] = 5;
-        break;
-      case 14:
-        f.bytes[vndf + 11] = 0;
-        break;
-      case 15: { /* a shorter name; values stay where they are */
-        size_t at = head_of(&f, "spectra"), end = offset_of(&f, "description");
-        memcpy(f.bytes + at - 7, "rgb", 3);
-        set(&f, at - 9, 3, 2);
-        memmove(f.bytes + at - 4, f.bytes + at, end - at);
-        break;
-      }
-      case 16:
-        set_float(&f, offset_of(&f, "theta_i") + 4, 0);
-        break;
-      case 17:
-        set_float(&f, offset_of(&f, "theta_i") + 8, 3);
-        break;
-      case 18:
-        set_float(&f, offset_of(&f, "luminance") + 40, NAN);
-        break;
-      case 19:
-        set(&f, head_of(&f, "luminance") + 19, 2, 8);
-        break;
-      case 20:
-        set(&f, ndf + 11, 1, 8);
-        break;
-      case 21:
-        f.bytes[head_of(&f, "jacobian") + 2] = 2;
-        break;
-      case 22:
-        f.size -= 2;
-        break;
-      case 23:
-        f.bytes[head_of(&f, "wavelengths") + 2] = 5;
-        break;
-      case 24:
-        set_float(&f, offset_of(&f, "spectra"), INFINITY);
-        break;
-      case 25:
-        set_float(&f, offset_of(&f, "wavelengths") + 4, 100);
-        break;
-      default:
-        break;
-    }
-    vlMeasured *m = NULL;
-    vlError error = {0};
+    do_damage(d, &f);
     assert_true(mf_write(path, &f));
+    m = NULL;
     vlResult r = vl_measured_read(context, path, false, &m, &error);
-    if (kind < 0) {
-      assert_int_equal(r, VL_OK);
-      vl_measured_free(context, m);
-    } else {
-      if (r != VL_ERROR_SCENE || !strstr(error.message, words[kind]) ||
-          !strstr(error.message, path) || m)
-        fail_msg("damage %d: %d \"%s\", not \"%s\"", kind, (int)r, error.message, words[kind]);
-    }
+    if (r != VL_ERROR_SCENE || !strstr(error.message, d->word) ||
+        !strstr(error.message, path) || m)
+      fail_msg("damage %zu: %d \"%s\", not \"%s\"", i, (int)r, error.message, d->word);
     free(f.bytes);
   }
-  vlMeasured *m;
-  vlError error = {0};
   assert_int_equal(vl_measured_read(context, VELO_BINARY_DIR "/absent.bsdf", false, &m, &error),
                    VL_ERROR_MISSING);
   vl_context_destroy(context);

@@ -100,77 +100,94 @@ static double cell_area(const Part *q, const double m[16], double u0, double u1,
   return sum / (n * n) * (u1 - u0) * (v1 - v0);
 }
 
+enum { CELLS = 6, SAMPLES = 40000 };
+
+/* A ray from either side, aslant, finds the same point. above: on the side of the normal. */
+static void check_ray(const Part *q, const vlWorldShape *s, const vlSurfacePoint *at,
+                      bool above) {
+  double o[3], d[3], side = above ? 1 : -1;
+  for (int c = 0; c < 3; c++) {
+    o[c] = at->p[c] + side * 1e-2 * (at->n[c] + 0.3 * (c == 0));
+    d[c] = at->p[c] - o[c];
+  }
+  vlShapeHit hit;
+  vlSurfacePoint again;
+  if (!vl_shape_intersect(s, 0, o, d, 0, 1.5, &hit))
+    fail_msg("%s: a ray misses a sampled point", q->name);
+  vl_shape_point(s, 0, &hit, &again);
+  double same = 0, slope_u = 0, slope_v = 0;
+  for (int c = 0; c < 3; c++) {
+    same += again.n[c] * at->n[c];
+    slope_u += again.dpdu[c] * again.n[c];
+    slope_v += again.dpdv[c] * again.n[c];
+  }
+  if (!(fabs(hit.t - 1) < 1e-4 && same > 0.9999 && fabsf(again.uv[0] - at->uv[0]) < 1e-3f &&
+        fabsf(again.uv[1] - at->uv[1]) < 1e-3f))
+    fail_msg("%s: met at t %g, uv (%g, %g) for (%g, %g)", q->name, hit.t, again.uv[0],
+             again.uv[1], at->uv[0], at->uv[1]);
+  assert_true(fabs(slope_u) < 1e-4 && fabs(slope_v) < 1e-4);
+}
+
+/* The sample of two random numbers; returns its density per area. */
+static double check_sample(const Part *q, const vlWorldShape *s, const double m[16], float u,
+                           float v, vlSurfacePoint *at) {
+  double pdf, p[3];
+  vl_shape_sample(s, 0, u, v, at, &pdf);
+  assert_true(pdf > 0);
+  double found = vl_shape_pdf(s, 0, at);
+  if (!(fabs(found - pdf) < 1e-4 * pdf))
+    fail_msg("%s: density %g, found again %g", q->name, pdf, found);
+  formula(q, (double)at->uv[0], (double)at->uv[1], m, p);
+  for (int c = 0; c < 3; c++)
+    if (!(fabs(p[c] - at->p[c]) < 2e-4))
+      fail_msg("%s: uv (%g, %g) is elsewhere", q->name, at->uv[0], at->uv[1]);
+  return pdf;
+}
+
+static void check_part(const Part *q, const double m[16]) {
+  vlContext *context;
+  vlWorld *world = build(q, m, &context);
+  const vlWorldShape *s = &world->shapes.items[0];
+  double area[CELLS][CELLS], total = 0, weight[CELLS][CELLS], sum = 0;
+  memset(weight, 0, sizeof weight);
+  for (int i = 0; i < CELLS; i++)
+    for (int j = 0; j < CELLS; j++) {
+      area[i][j] = cell_area(q, m, i / (double)CELLS, (i + 1) / (double)CELLS,
+                             j / (double)CELLS, (j + 1) / (double)CELLS);
+      total += area[i][j];
+    }
+  /* a lattice of two dimensions, by the golden ratio's sequence */
+  for (int i = 0; i < SAMPLES; i++) {
+    float u = (float)((i + 0.5) / SAMPLES), v = (float)fmod(i * 0.6180339887498949, 1.0);
+    vlSurfacePoint at;
+    double share = 1 / check_sample(q, s, m, u, v, &at) / SAMPLES;
+    int x = (int)((double)at.uv[0] * CELLS), y = (int)((double)at.uv[1] * CELLS);
+    weight[x < CELLS ? x : CELLS - 1][y < CELLS ? y : CELLS - 1] += share;
+    sum += share;
+    bool rim = v < 0.002f || v > 0.998f || u < 0.002f || u > 0.998f;
+    if (i % 16 == 0 && !rim)
+      check_ray(q, s, &at, i % 32);
+  }
+  if (!(fabs(sum - total) < 2e-3 * total))
+    fail_msg("%s: area %g, expected %g", q->name, sum, total);
+  double told = (double)vl_world_prim_area(s, 0);
+  if (!(fabs(told - total) < 5e-3 * total))
+    fail_msg("%s: area told %g, expected %g", q->name, told, total);
+  for (int i = 0; i < CELLS; i++)
+    for (int j = 0; j < CELLS; j++)
+      if (!(fabs(weight[i][j] - area[i][j]) <
+            0.03 * area[i][j] + 2e-3 * total / (CELLS * CELLS)))
+        fail_msg("%s: cell (%d, %d) has %g, expected %g", q->name, i, j, weight[i][j],
+                 area[i][j]);
+  vl_world_destroy(world);
+  vl_context_destroy(context);
+}
+
 static void samples_fit_the_area(void **state) {
   (void)state;
-  enum { CELLS = 6, N = 40000 };
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-    for (int t = 0; t < 3; t++) {
-      const Part *q = &parts[k];
-      vlContext *context;
-      vlWorld *world = build(q, matrices[t], &context);
-      const vlWorldShape *s = &world->shapes.items[0];
-      double area[CELLS][CELLS], total = 0, weight[CELLS][CELLS], sum = 0;
-      memset(weight, 0, sizeof weight);
-      for (int i = 0; i < CELLS; i++)
-        for (int j = 0; j < CELLS; j++)
-          total += area[i][j] =
-              cell_area(q, matrices[t], i / (double)CELLS, (i + 1) / (double)CELLS,
-                        j / (double)CELLS, (j + 1) / (double)CELLS);
-      for (int i = 0; i < N;
-           i++) { /* a lattice of two dimensions, by the golden ratio's sequence */
-        vlSurfacePoint at, again;
-        double pdf;
-        float u = (float)((i + 0.5) / N), v = (float)fmod(i * 0.6180339887498949, 1.0);
-        vl_shape_sample(s, 0, u, v, &at, &pdf);
-        assert_true(pdf > 0);
-        double found = vl_shape_pdf(s, 0, &at);
-        if (!(fabs(found - pdf) < 1e-4 * pdf))
-          fail_msg("%s: density %g, found again %g", q->name, pdf, found);
-        double p[3];
-        formula(q, (double)at.uv[0], (double)at.uv[1], matrices[t], p);
-        for (int c = 0; c < 3; c++)
-          if (!(fabs(p[c] - at.p[c]) < 2e-4))
-            fail_msg("%s: uv (%g, %g) is elsewhere", q->name, at.uv[0], at.uv[1]);
-        int x = (int)((double)at.uv[0] * CELLS), y = (int)((double)at.uv[1] * CELLS);
-        weight[x < CELLS ? x : CELLS - 1][y < CELLS ? y : CELLS - 1] += 1 / pdf / N;
-        sum += 1 / pdf / N;
-        if (i % 16 || v < 0.002f || v > 0.998f || u < 0.002f || u > 0.998f)
-          continue;
-        /* a ray from either side, aslant, must find the same point */
-        double o[3], d[3], side = i % 32 ? 1 : -1;
-        for (int c = 0; c < 3; c++) {
-          o[c] = at.p[c] + side * 1e-2 * (at.n[c] + 0.3 * (c == 0));
-          d[c] = at.p[c] - o[c];
-        }
-        vlShapeHit hit;
-        if (!vl_shape_intersect(s, 0, o, d, 0, 1.5, &hit))
-          fail_msg("%s: a ray misses a sampled point", q->name);
-        vl_shape_point(s, 0, &hit, &again);
-        double dot = again.n[0] * at.n[0] + again.n[1] * at.n[1] + again.n[2] * at.n[2];
-        if (!(fabs(hit.t - 1) < 1e-4 && dot > 0.9999 && fabsf(again.uv[0] - at.uv[0]) < 1e-3f &&
-              fabsf(again.uv[1] - at.uv[1]) < 1e-3f))
-          fail_msg("%s: met at t %g, uv (%g, %g) for (%g, %g)", q->name, hit.t, again.uv[0],
-                   again.uv[1], at.uv[0], at.uv[1]);
-        double slope = again.dpdu[0] * again.n[0] + again.dpdu[1] * again.n[1] +
-                       again.dpdu[2] * again.n[2];
-        double slope_v = again.dpdv[0] * again.n[0] + again.dpdv[1] * again.n[1] +
-                         again.dpdv[2] * again.n[2];
-        assert_true(fabs(slope) < 1e-4 && fabs(slope_v) < 1e-4);
-      }
-      if (!(fabs(sum - total) < 2e-3 * total))
-        fail_msg("%s: area %g, expected %g", q->name, sum, total);
-      double told = (double)vl_world_prim_area(s, 0);
-      if (!(fabs(told - total) < 5e-3 * total))
-        fail_msg("%s: area told %g, expected %g", q->name, told, total);
-      for (int i = 0; i < CELLS; i++)
-        for (int j = 0; j < CELLS; j++)
-          if (!(fabs(weight[i][j] - area[i][j]) <
-                0.03 * area[i][j] + 2e-3 * total / (CELLS * CELLS)))
-            fail_msg("%s, matrix %d: cell (%d, %d) has %g, expected %g", q->name, t, i, j,
-                     weight[i][j], area[i][j]);
-      vl_world_destroy(world);
-      vl_context_destroy(context);
-    }
+    for (int t = 0; t < 3; t++)
+      check_part(&parts[k], matrices[t]);
 }
 
 int main(void) {

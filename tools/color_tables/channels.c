@@ -83,8 +83,8 @@ static bool solve_active(programme *p) {
     n += p->active[i];
   for (int i = 0; i < n; i++)
     memset(p->a[i], 0, sizeof p->a[i]);
-  for (int j = 0; j + 1 < KNOTS;
-       j++) /* adds the squared differences of red, of green and of their sum */
+  /* adds the squared differences of red, of green and of their sum */
+  for (int j = 0; j + 1 < KNOTS; j++)
     for (int u = 0; u < 2; u++)
       for (int v = 0; v < 2; v++) {
         double w = u == v ? 2.0 : 1.0;

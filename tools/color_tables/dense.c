@@ -242,10 +242,10 @@ static void make_space(const state *s, space *p, const double primaries[6],
 static void make_spaces(const state *s, space spaces[SPACE_COUNT]) {
   static const double srgb[6] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06}; /* ITU-R BT.709 */
   static const double p3[6] = {0.68, 0.32, 0.265, 0.69, 0.15, 0.06};  /* SMPTE EG 432-1, D65 */
-  static const double rec2020[6] = {0.708, 0.292, 0.17,
-                                    0.797, 0.131, 0.046}; /* ITU-R BT.2020 */
-  static const double aces[6] = {0.7347, 0.2653, 0.0,
-                                 1.0,    0.0001, -0.077}; /* SMPTE ST 2065-1 */
+  /* ITU-R BT.2020 */
+  static const double rec2020[6] = {0.708, 0.292, 0.17, 0.797, 0.131, 0.046};
+  /* SMPTE ST 2065-1 */
+  static const double aces[6] = {0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.077};
   make_space(s, &spaces[0], srgb, "stdillum-D65");
   make_space(s, &spaces[1], p3, "stdillum-D65");
   make_space(s, &spaces[2], rec2020, "stdillum-D65");

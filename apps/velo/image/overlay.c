@@ -48,19 +48,28 @@ void overlay_end(Overlay *o) {
   *o = (Overlay){0};
 }
 
-/* Returns the coverage of a pixel by a pen whose soft edge is one pixel wide. It depends on the
+/* The segment that a pen draws, in pixels. */
+typedef struct Stroke {
+  double start[2], run[2]; /* run: from the start to the end */
+  double width;
+} Stroke;
+
+/* Covers a pixel with a pen whose soft edge is one pixel wide. The coverage depends on the
  * distance between the pixel's centre and the segment. */
-static void touch(Overlay *o, long x, long y, const double a[2], const double d[2],
-                  double length2, double width) {
+static void touch(Overlay *o, const Stroke *stroke, long x, long y) {
   if (x < 0 || y < 0 || x >= (long)o->width || y >= (long)o->height)
     return;
-  double px = (double)x + 0.5 - a[0], py = (double)y + 0.5 - a[1];
-  double t = length2 > 0.0 ? (px * d[0] + py * d[1]) / length2 : 0.0;
-  t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
-  double distance = hypot(px - t * d[0], py - t * d[1]), c = 0.5 * width + 0.5 - distance;
+  const double *run = stroke->run;
+  const double length2 = run[0] * run[0] + run[1] * run[1];
+  const double px = (double)x + 0.5 - stroke->start[0];
+  const double py = (double)y + 0.5 - stroke->start[1];
+  double t = length2 > 0.0 ? (px * run[0] + py * run[1]) / length2 : 0.0;
+  t = fmin(fmax(t, 0.0), 1.0);
+  const double distance = hypot(px - t * run[0], py - t * run[1]);
+  const double covered = fmin(0.5 * stroke->width + 0.5 - distance, 1.0);
   float *cover = &o->coverage[(size_t)y * o->width + (size_t)x];
-  if (c > *cover)
-    *cover = (float)(c < 1.0 ? c : 1.0);
+  if (covered > *cover)
+    *cover = (float)covered;
 }
 
 /* Clips a segment to a box (Liang and Barsky). Returns false if nothing remains. */
@@ -88,20 +97,20 @@ void overlay_line(Overlay *o, double x0, double y0, double x1, double y1, double
   if (!isfinite(x0 + y0 + x1 + y1) ||
       !clip(p, -reach, -reach, o->width + reach, o->height + reach))
     return;
-  const double a[2] = {p[0], p[1]}, d[2] = {p[2] - p[0], p[3] - p[1]};
-  double length2 = d[0] * d[0] + d[1] * d[1];
-  /* one step per pixel of the longer axis; each step paints the pen's width along the other
-   * axis */
-  bool flat = fabs(d[0]) >= fabs(d[1]);
-  double slope = flat ? (d[0] != 0.0 ? d[1] / d[0] : 0.0) : d[0] / d[1];
-  double low = fmin(flat ? p[0] : p[1], flat ? p[2] : p[3]),
-         high = fmax(flat ? p[0] : p[1], flat ? p[2] : p[3]);
-  double across = reach * sqrt(1.0 + slope * slope);
+  const Stroke stroke = {{p[0], p[1]}, {p[2] - p[0], p[3] - p[1]}, width};
+  /* One step per pixel of the longer axis; each step paints the pen's width along the other
+   * axis. */
+  const int longer = fabs(stroke.run[0]) >= fabs(stroke.run[1]) ? 0 : 1;
+  const int other = 1 - longer;
+  const double slope = stroke.run[longer] != 0.0 ? stroke.run[other] / stroke.run[longer] : 0.0;
+  const double low = fmin(p[longer], p[longer + 2]);
+  const double high = fmax(p[longer], p[longer + 2]);
+  const double across = reach * sqrt(1.0 + slope * slope);
   for (long i = (long)floor(low - reach); i <= (long)ceil(high + reach); i++) {
-    double along = (double)i + 0.5 - (flat ? a[0] : a[1]),
-           middle = (flat ? a[1] : a[0]) + slope * along;
+    const double along = (double)i + 0.5 - stroke.start[longer];
+    const double middle = stroke.start[other] + slope * along;
     for (long j = (long)floor(middle - across); j <= (long)ceil(middle + across); j++)
-      touch(o, flat ? i : j, flat ? j : i, a, d, length2, width);
+      touch(o, &stroke, longer == 0 ? i : j, longer == 0 ? j : i);
   }
 }
 

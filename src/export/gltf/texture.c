@@ -23,8 +23,8 @@ json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const c
       json_decref(image);
       return -1;
     }
-    for (const char *p = name; *p;
-         p++) { /* escapes blanks and other characters not allowed in uris */
+    /* escapes blanks and other characters not allowed in uris */
+    for (const char *p = name; *p; p++) {
       bool plain = (*p >= 'a' && *p <= 'z') || (*p >= 'A' && *p <= 'Z') ||
                    (*p >= '0' && *p <= '9') || strchr("-._~", *p);
       to += plain ? (*to = *p, 1) : snprintf(to, 4, "%%%02X", (unsigned char)*p);

@@ -54,8 +54,8 @@ static bool add_light(vlGltf *g, size_t node, size_t index) {
   def.scale = (float)intensity;
   const double *m = g->nodes[node].world.m;
   double l = sqrt(m[2] * m[2] + m[6] * m[6] + m[10] * m[10]);
-  for (int i = 0; i < 3;
-       i++) { /* the light points along its node's -z; the node's scale has no effect */
+  /* the light points along its node's -z; the node's scale has no effect */
+  for (int i = 0; i < 3; i++) {
     def.from[i] = is_distant ? 0.0f : (float)m[4 * i + 3];
     def.to[i] = def.from[i] - (l > 0 ? (float)(m[4 * i + 2] / l) : (i == 2));
   }

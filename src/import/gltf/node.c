@@ -67,9 +67,9 @@ bool vl_gltf_read_nodes(vlGltf *g) {
   for (size_t i = 0; i < g->node_count; i++)
     if (!read_node(g, i))
       return false;
-  for (size_t i = 0; i < g->node_count;
-       i++) { /* a node has at most one parent, so a walk upwards
-                 from a node of a cycle never reaches a root */
+  /* a node has at most one parent, so a walk upwards from a node of a cycle never reaches a
+   * root */
+  for (size_t i = 0; i < g->node_count; i++) {
     size_t steps = 0;
     for (uint32_t k = g->nodes[i].parent; k != UINT32_MAX && !g->nodes[k].reached;
          k = g->nodes[k].parent)

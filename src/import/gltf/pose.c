@@ -26,9 +26,9 @@ bool vl_gltf_pose(vlGltf *g) {
   g->keys = vl_gltf_make(g, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
   if (!g->keys)
     return false;
-  for (int k = VL_GLTF_KEYS - 1; k >= 0;
-       k--) { /* the order of the times does not matter, since an
-                 animation sets the same properties at any time */
+  /* the order of the times does not matter, since an animation sets the same properties at any
+   * time */
+  for (int k = VL_GLTF_KEYS - 1; k >= 0; k--) {
     double f = (double)k / (VL_GLTF_KEYS - 1);
     if (!pose_at(g, k ? g->open + f * (g->close - g->open) : g->open))
       return false;

@@ -126,9 +126,8 @@ static bool join_edges(vlContext *context, Maker *m) {
     size_t slot = vl_hash2(to, from) & (size - 1);
     bool partner = false;
     int probes = MAX_PROBES;
-    for (; from != to && table[slot] && probes-- > 0;
-         slot = (slot + 1) &
-                (size - 1)) { /* looks for the reversed edge that has no partner yet */
+    /* looks for the reversed edge that has no partner yet */
+    for (; from != to && table[slot] && probes-- > 0; slot = (slot + 1) & (size - 1)) {
       uint32_t d = table[slot] - 1;
       if (d == UINT32_MAX - 1)
         continue;

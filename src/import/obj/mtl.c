@@ -84,8 +84,8 @@ static bool option_numbers(vlObj *obj, const char *name, uint32_t least, uint32_
                            double *values) {
   char *at = obj->at;
   uint32_t count = 0;
-  for (; count < most;
-       count++) { /* reads as many numbers as there are; a name or an option follows */
+  /* reads as many numbers as there are; a name or an option follows */
+  for (; count < most; count++) {
     uint32_t one;
     at = obj->at;
     if (!vl_obj_numbers(obj, 1, &values[count], &one) || !one) {

@@ -191,8 +191,8 @@ static void meet_light(vlTracing *t, const Rays *r, uint32_t i, float odds) {
 static void travel_block(vlTracing *t, const Rays *r, vlTravel *k, uint32_t first,
                          bool emission) {
   uint32_t *medium = r->rows->medium + first;
-  for (int step = 0; step < 1024 && k->count > 0;
-       step++) { /* a bound; no ray crosses so many interfaces */
+  /* a bound; no ray crosses so many interfaces */
+  for (int step = 0; step < 1024 && k->count > 0; step++) {
     uint32_t on = 0;
     aim_flights(t, k, medium);
     vl_fly(t, &k->f, emission);

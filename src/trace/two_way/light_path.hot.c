@@ -9,8 +9,8 @@ void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at,
                       const float wi[3][VL_ROW_SIZE], vlBsdfValues *back) {
   const vlShade *sh = &at->shade;
   const vlSurface *f = &at->surface;
-  for (uint32_t i = 0; i < VL_PAD(n);
-       i++) { /* wo in world space and back: as a light sample's direction is rounded */
+  /* wo in world space and back: as a light sample's direction is rounded */
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
     float a = sh->wo[0][i], b = sh->wo[1][i], c = sh->wo[2][i];
     float x = a * sh->tx[i] + b * sh->bx[i] + c * f->nx[i];
     float y = a * sh->ty[i] + b * sh->by[i] + c * f->ny[i];

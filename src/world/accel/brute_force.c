@@ -101,8 +101,8 @@ static void extend(Face *f, const vlWorldShape *s, uint32_t prim) {
   double next[3][3];
   corners_of(s, prim, next);
   for (int k = 0; k < 3; k++)
-    for (int j = 0; j < 3;
-         j++) { /* edge k of the first is edge j of the second, in the other direction */
+    /* edge k of the first is edge j of the second, in the other direction */
+    for (int j = 0; j < 3; j++) {
       if (!same_point(f->corner[k], next[(j + 1) % 3]) ||
           !same_point(f->corner[(k + 1) % 3], next[j]))
         continue;

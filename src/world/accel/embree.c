@@ -328,8 +328,8 @@ static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene targe
   rtcSetGeometryInstancedScene(geometry, target);
   uint32_t steps = q->keys ? q->keys : 1;
   rtcSetGeometryTimeStepCount(geometry, steps);
-  for (uint32_t k = 0; k < steps;
-       k++) /* matrices are interpolated linearly between keys, as in moving.c */
+  /* matrices are interpolated linearly between keys, as in moving.c */
+  for (uint32_t k = 0; k < steps; k++)
     rtcSetGeometryTransform(geometry, k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
                             q->keys ? q->path + 12 * (size_t)k : q->from_group);
   rtcCommitGeometry(geometry);

@@ -615,8 +615,8 @@ MISTAKES = [
     # chosen when these laws stood; four more that are not caught are in docs/testing.md
     ("cubes: the lower face upside down", "projections:cube",
      r"projections cube", "src/projection/cube.h",
-     ": face < 3.5 ? -b\n              : face < 4.5",
-     ": face < 3.5 ? b\n              : face < 4.5"),
+     "dz = down ? -b : back ? -1.0 : dz;",
+     "dz = down ? b : back ? -1.0 : dz;"),
     ("cubes as a cross: the upper face below", "projections:cube",
      r"projections cube", "src/projection/cube.h",
      "double row = pole ? (y < 0.0 ? 0.0 : 2.0) : 1.0;",

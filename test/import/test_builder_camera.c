@@ -174,7 +174,7 @@ static void lecture_cameras(void **state) {
   end_load(&l);
 }
 
-static void scene_defs(void **state) {
+static void defaults_are_those_of_pbrt(void **state) {
   (void)state;
   Loaded l;
   load_fine(&l, W);
@@ -190,21 +190,25 @@ static void scene_defs(void **state) {
   assert_near(s->film.filter.sigma, 0.5, 0);
   assert_near(s->develop.exposure, 1, 0);
   end_load(&l);
-  load_fine(
-      &l,
-      "Option \"seed\" 17\nColorSpace \"rec2020\"\n"
-      "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" [ 50 ] \"string "
-      "filename\" \"out.exr\" \"float "
-      "iso\" 200\n"
-      "  \"float cropwindow\" [ .101 .5 0 .21 ] \"bool savefp16\" false \"float diagonal\" "
-      "20 \"string sensor\" "
-      "\"cie1931\"\n"
-      "Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5\n"
-      "PixelFilter \"mitchell\" \"float xradius\" 3 \"float B\" .5 \"float C\" .25\n"
-      "Integrator \"volpath\" \"integer maxdepth\" 12 \"string lightsampler\" \"power\" "
-      "\"bool regularize\" true\n"
-      "Accelerator \"kdtree\" \"integer intersectcost\" 5\nTransformTimes 0 1\n" W);
-  s = vl_scene_defs(l.scene);
+}
+
+static void film_sampler_and_filter(void **state) {
+  (void)state;
+  Loaded l;
+  load_fine(&l,
+            "Option \"seed\" 17\n"
+            "ColorSpace \"rec2020\"\n"
+            "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" [ 50 ]\n"
+            "  \"string filename\" \"out.exr\" \"float iso\" 200\n"
+            "  \"float cropwindow\" [ .101 .5 0 .21 ] \"bool savefp16\" false\n"
+            "  \"float diagonal\" 20 \"string sensor\" \"cie1931\"\n"
+            "Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5\n"
+            "PixelFilter \"mitchell\" \"float xradius\" 3 \"float B\" .5 \"float C\" .25\n"
+            "Integrator \"volpath\" \"integer maxdepth\" 12\n"
+            "  \"string lightsampler\" \"power\" \"bool regularize\" true\n"
+            "Accelerator \"kdtree\" \"integer intersectcost\" 5\n"
+            "TransformTimes 0 1\n" W);
+  const vlSceneDefs *s = vl_scene_defs(l.scene);
   assert_int_equal(s->film.crop[0], 11); /* rounded up, as pbrt */
   assert_int_equal(s->film.crop[2], 50);
   assert_int_equal(s->film.crop[1], 0);
@@ -222,13 +226,19 @@ static void scene_defs(void **state) {
   assert_int_equal(s->build.light_sampler, VL_LIGHT_SAMPLER_POWER);
   assert_true(s->build.regularize);
   end_load(&l);
+}
+
+static void crop_in_pixels_and_ambient_occlusion(void **state) {
+  (void)state;
+  Loaded l;
   load_fine(&l,
-            "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 50 \"integer "
-            "pixelbounds\" [ 10 20 -5 500 ]\n"
-            "Integrator \"ambientocclusion\" \"float maxdistance\" 4 \"bool cossample\" false\n"
-            "Sampler \"paddedsobol\" \"integer pixelsamples\" 8 \"integer seed\" 3 \"string "
-            "randomization\" \"owen\"\n" W);
-  s = vl_scene_defs(l.scene);
+            "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 50 "
+            "\"integer pixelbounds\" [ 10 20 -5 500 ]\n"
+            "Integrator \"ambientocclusion\" \"float maxdistance\" 4 "
+            "\"bool cossample\" false\n"
+            "Sampler \"paddedsobol\" \"integer pixelsamples\" 8 \"integer seed\" 3 "
+            "\"string randomization\" \"owen\"\n" W);
+  const vlSceneDefs *s = vl_scene_defs(l.scene);
   assert_int_equal(s->film.crop[0], 10);
   assert_int_equal(s->film.crop[1], 0);
   assert_int_equal(s->film.crop[2], 20);
@@ -240,11 +250,21 @@ static void scene_defs(void **state) {
   assert_int_equal(s->render.seed, 3);
   assert_non_null(strstr(l.log, "info t.pbrt:3:1: sampler \"paddedsobol\""));
   end_load(&l);
+}
+
+static void rough_coats_are_noted(void **state) {
+  (void)state;
+  Loaded l;
   load_fine(&l, W
             "Material \"coateddiffuse\" \"float roughness\" 0.001\nShape \"sphere\"\n"
             "Material \"coateddiffuse\" \"float roughness\" 0.1\nShape \"sphere\"");
   assert_non_null(strstr(l.log, ": 1 rough coat: pbrt-v4 shows such 2 to 8 %"));
   end_load(&l);
+}
+
+static void samplers_by_name(void **state) {
+  (void)state;
+  Loaded l;
   const struct {
     const char *name;
     vlSamplerKind kind;
@@ -268,6 +288,11 @@ static void scene_defs(void **state) {
     assert_int_equal(vl_scene_defs(l.scene)->render.spp, 9);
     end_load(&l);
   }
+}
+
+static void filters_by_name(void **state) {
+  (void)state;
+  Loaded l;
   const struct {
     const char *name;
     vlPixelFilterKind kind;
@@ -290,8 +315,14 @@ static void scene_defs(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(pbrt_cameras), cmocka_unit_test(camera_system),
-      cmocka_unit_test(lecture_cameras), cmocka_unit_test(scene_defs)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(pbrt_cameras),
+                                     cmocka_unit_test(camera_system),
+                                     cmocka_unit_test(lecture_cameras),
+                                     cmocka_unit_test(defaults_are_those_of_pbrt),
+                                     cmocka_unit_test(film_sampler_and_filter),
+                                     cmocka_unit_test(crop_in_pixels_and_ambient_occlusion),
+                                     cmocka_unit_test(rough_coats_are_noted),
+                                     cmocka_unit_test(samplers_by_name),
+                                     cmocka_unit_test(filters_by_name)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -100,114 +100,136 @@ typedef struct {
   double sum[CELLS], square[CELLS], count;
 } Tally;
 static void tally(Tally *t, float x, float y, float z, float weight) {
-  int ring = z < 0.5f    ? 0
-             : z < 0.85f ? 1
-                         : 2,
-      sector = (int)((atan2((double)y, (double)x) / (2 * PI) + 0.5) * 3.9999);
-  int cells[2] = {ring * 4 + sector, CELLS - 1};
+  const int ring = (z >= 0.5f) + (z >= 0.85f);
+  const int sector = (int)((atan2((double)y, (double)x) / (2 * PI) + 0.5) * 3.9999);
+  const int cells[2] = {ring * 4 + sector, CELLS - 1};
   for (int k = 0; k < 2; k++) {
     t->sum[cells[k]] += (double)weight;
     t->square[cells[k]] += (double)(weight * weight);
   }
 }
 
+/* ---- light paths through the layers ------------------------------------------------------ */
+
+typedef enum Where { OUTSIDE, INSIDE, MOVED } Where; /* MOVED: inside, done for this step */
+
+typedef struct LightPaths {
+  float x[BATCH], y[BATCH], z[BATCH]; /* direction of flight */
+  float weight[BATCH], height[BATCH]; /* height: 0 at the base, the thickness at the coat */
+  bool alive[BATCH];
+  Where where[BATCH];
+} LightPaths;
+
+static void start(LightPaths *p, const Stack *t, double theta) {
+  for (uint32_t i = 0; i < BATCH; i++) {
+    p->x[i] = (float)-sin(theta);
+    p->y[i] = 0;
+    p->z[i] = (float)-cos(theta);
+    p->weight[i] = 1;
+    p->height[i] = t->thickness;
+    p->alive[i] = true;
+    p->where[i] = OUTSIDE;
+  }
+}
+
+/* Flies through the medium between base and coat: to where it scatters, which is the path's
+ * move of this step, or to the next surface. */
+static void fly(LightPaths *p, uint32_t i, const Stack *t, statRng *rng) {
+  const float far = t->thickness;
+  const float distance = -logf(fmaxf(1.0f - stat_float(rng), 1e-20f)) * fabsf(p->z[i]);
+  const float to = p->z[i] > 0 ? p->height[i] + distance : p->height[i] - distance;
+  if (t->albedo > 0 && to > 0 && to < far) {
+    vlVec3 d = vl_phase_sample(t->g, vl_vec3(p->x[i], p->y[i], p->z[i]), stat_float(rng),
+                               stat_float(rng));
+    p->x[i] = d.x;
+    p->y[i] = d.y;
+    p->z[i] = d.z;
+    p->height[i] = to;
+    p->weight[i] *= t->albedo;
+    p->where[i] = MOVED;
+    return;
+  }
+  if (!(t->albedo > 0))
+    p->weight[i] *= expf(-far / fabsf(p->z[i]));
+  p->height[i] = p->z[i] > 0 ? far : 0;
+}
+
+/* Takes the directions that the kernel sampled where `here`. Paths that leave are counted;
+ * after the last step no path goes on. */
+static void scatter(LightPaths *p, const Batch *b, const bool *here, bool at_coat, bool last,
+                    Tally *result) {
+  for (uint32_t i = 0; i < BATCH; i++) {
+    if (!here[i])
+      continue;
+    p->weight[i] *= b->weight[0][i];
+    p->x[i] = b->ix[i];
+    p->y[i] = b->iy[i];
+    p->z[i] = b->iz[i];
+    p->alive[i] = p->alive[i] && p->weight[i] > 0;
+    const bool leaves = at_coat && p->z[i] > 0;
+    if (leaves && p->alive[i])
+      tally(result, p->x[i], p->y[i], p->z[i], p->weight[i]);
+    if (leaves || last)
+      p->alive[i] = false;
+    if (!leaves)
+      p->where[i] = MOVED;
+  }
+}
+
+/* Gives the batch the paths that meet the surface now: all at first, later those inside that
+ * fly towards it. Says which in `here`. */
+static void arrive(LightPaths *p, Batch *b, const Stack *t, bool at_coat, bool first,
+                   statRng *rng, bool *here) {
+  const Surface coat = {.eta_s = t->eta_s, .alpha_x = t->alpha, .alpha_y = t->alpha};
+  const Surface base = {.reflectance = t->reflectance,
+                        .eta = t->eta,
+                        .k = t->k,
+                        .alpha_x = t->base_x,
+                        .alpha_y = t->base_y,
+                        .eta_s = 1};
+  batch_numbers(b, BATCH, rng);
+  for (uint32_t i = 0; i < BATCH; i++) {
+    batch_surface(b, i, at_coat ? &coat : &base);
+    b->ox[i] = 0;
+    b->oy[i] = 0;
+    b->oz[i] = 1;
+    here[i] = false;
+    if (!p->alive[i] || (!first && p->where[i] == OUTSIDE))
+      continue;
+    if (!first && at_coat)
+      fly(p, i, t, rng);
+    if (p->where[i] == MOVED)
+      continue;
+    here[i] = first || (p->z[i] > 0) == at_coat;
+    if (here[i]) {
+      b->ox[i] = -p->x[i];
+      b->oy[i] = -p->y[i];
+      b->oz[i] = -p->z[i];
+    }
+  }
+}
+
 /* Traces a batch of light paths through the layers (channel 0). Each surface is sampled by its
  * own kernel, which chooses reflection or transmission. A path may leave through the coat at
- * any step. */
+ * any step. Each step handles the paths at the coat, then those at the base; before the first
+ * all paths meet the coat from outside. */
 static void nature(const State *s, const Stack *t, double theta, statRng *rng, Tally *result) {
-  Batch *b = s->interface;
-  static float x[BATCH], y[BATCH], z[BATCH], weight[BATCH], height[BATCH];
-  static uint8_t alive[BATCH], inside[BATCH];
-  Surface coat = {.eta_s = t->eta_s, .alpha_x = t->alpha, .alpha_y = t->alpha};
-  Surface base = {.reflectance = t->reflectance,
-                  .eta = t->eta,
-                  .k = t->k,
-                  .alpha_x = t->base_x,
-                  .alpha_y = t->base_y,
-                  .eta_s = 1};
-  for (uint32_t i = 0; i < BATCH; i++) {
-    x[i] = (float)-sin(theta);
-    y[i] = 0;
-    z[i] = (float)-cos(theta); /* of flight */
-    weight[i] = 1;
-    height[i] = t->thickness;
-    alive[i] = 1;
-    inside[i] = 0;
-  }
-  for (int step = -1; step <= (int)t->depth; step++)
-    for (int at = 0; at < 2; at++) { /* those at the coat, those at the base */
-      if (step == -1 && at == 1)
-        continue;
-      bool here[BATCH];
-      batch_numbers(b, BATCH, rng);
-      for (uint32_t i = 0; i < BATCH; i++) {
-        batch_surface(b, i, at == 0 ? &coat : &base);
-        bool turn = alive[i] && (step == -1 || inside[i]);
-        here[i] = false;
-        b->ox[i] = 0;
-        b->oy[i] = 0;
-        b->oz[i] = 1;
-        if (!turn)
-          continue;
-        if (step >= 0 && at == 0) { /* the flight of this step */
-          float far = t->thickness,
-                distance = -logf(fmaxf(1.0f - stat_float(rng), 1e-20f)) * fabsf(z[i]);
-          float to = z[i] > 0 ? height[i] + distance : height[i] - distance;
-          if (t->albedo > 0 && to > 0 && to < far) {
-            vlVec3 d = vl_phase_sample(t->g, vl_vec3(x[i], y[i], z[i]), stat_float(rng),
-                                       stat_float(rng));
-            x[i] = d.x;
-            y[i] = d.y;
-            z[i] = d.z;
-            height[i] = to;
-            weight[i] *= t->albedo;
-            inside[i] = 2; /* done for this step */
-            continue;
-          }
-          if (!(t->albedo > 0))
-            weight[i] *= expf(-far / fabsf(z[i]));
-          height[i] = z[i] > 0 ? far : 0;
-        }
-        if (inside[i] == 2)
-          continue;
-        here[i] = step == -1 || (z[i] > 0) == (at == 0);
-        if (here[i]) {
-          b->ox[i] = -x[i];
-          b->oy[i] = -y[i];
-          b->oz[i] = -z[i];
-        }
-      }
-      batch_sample(s->kernels,
-                   at == 0    ? VL_BSDF_DIELECTRIC
-                   : t->metal ? VL_BSDF_CONDUCTOR
-                              : VL_BSDF_DIFFUSE,
-                   BATCH, b);
-      for (uint32_t i = 0; i < BATCH; i++) {
-        if (!here[i])
-          continue;
-        bool last = step == (int)t->depth;
-        weight[i] *= b->weight[0][i];
-        x[i] = b->ix[i];
-        y[i] = b->iy[i];
-        z[i] = b->iz[i];
-        if (!(weight[i] > 0))
-          alive[i] = 0;
-        if (at == 0 && z[i] > 0) { /* out */
-          if (alive[i])
-            tally(result, x[i], y[i], z[i], weight[i]);
-          alive[i] = 0;
-        } else {
-          if (last)
-            alive[i] = 0;
-          inside[i] = 2;
-        }
-      }
-      if (at == 0 && step >= 0)
-        continue;
-      for (uint32_t i = 0; i < BATCH; i++)
-        if (inside[i])
-          inside[i] = 1;
+  static LightPaths paths;
+  bool here[BATCH];
+  start(&paths, t, theta);
+  for (int step = -1; step <= (int)t->depth; step++) {
+    const bool first = step == -1, last = step == (int)t->depth;
+    for (int surface = 0; surface < (first ? 1 : 2); surface++) {
+      const bool at_coat = surface == 0;
+      const vlBsdfKind base = t->metal ? VL_BSDF_CONDUCTOR : VL_BSDF_DIFFUSE;
+      arrive(&paths, s->interface, t, at_coat, first, rng, here);
+      batch_sample(s->kernels, at_coat ? VL_BSDF_DIELECTRIC : base, BATCH, s->interface);
+      scatter(&paths, s->interface, here, at_coat, last, result);
     }
+    for (uint32_t i = 0; i < BATCH; i++)
+      if (paths.where[i] == MOVED)
+        paths.where[i] = INSIDE;
+  }
   result->count += BATCH;
 }
 

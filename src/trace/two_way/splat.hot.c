@@ -232,7 +232,7 @@ void vl_show_lights(vlTracing *t, uint32_t n, const vlPaths *p, const vlLightSta
   if (!way->eye.sees || way->light_only)
     return;
   const vlTwoWayLanes *r = t->lanes;
-  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE], z[VL_ROW_SIZE];
+  VL_ROW float x[VL_ROW_SIZE] = {0}, y[VL_ROW_SIZE] = {0}, z[VL_ROW_SIZE] = {0};
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
     vl_set_lane3(x, y, z, i, vl_lane3(r->lx, r->ly, r->lz, p->lane[i]));

@@ -10,7 +10,7 @@ typedef struct DistortionVariant {
   double k[14];
 } DistortionVariant;
 
-enum { DISTORTION_VARIANTS = 3 };
+enum { DISTORTION_VARIANTS = 5 };
 typedef struct DistortionCase {
   DistortionVariant
       variants[DISTORTION_VARIANTS]; /* but the first, without coefficients: unused */

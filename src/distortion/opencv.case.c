@@ -35,5 +35,8 @@ static void plain(const DistortionVariant *v, double x, double y, double at[2]) 
 const DistortionCase opencv_distortion = {
     .variants = {{12, {-.2, .05, .003, -.004, .01, .02, .01, .003, .002, .001, -.003, .002}},
                  {14, {.1, .02, .02, -.01, .01, 0, 0, 0, 0, 0, 0, 0, .1, -.15}},
+                 /* a sensor that is tilted about one axis */
+                 {14, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, .5, 0}},
+                 {14, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, .5}},
                  {5, {.1, .02, .02, -.01, .01}}},
     .plain = plain};

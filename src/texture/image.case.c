@@ -24,6 +24,13 @@ const TextureCase image_texture = {
              .low = 0,
              .high = 1,
              .filtered = true},
+            /* many of its footprints lie across its edges */
+            {.parameters =
+                 "\"string filename\" \"grain.pfm\" \"string filter\" \"trilinear\" "
+                 "\"float uscale\" 20 \"float vscale\" 20 \"float udelta\" -9.5 \"float vdelta\" -9.5 \"string wrap\" \"black\"",
+             .low = 0,
+             .high = 1,
+             .filtered = true},
         },
     .parameters =
         {{.base = "\"string filename\" \"a.pfm\""},

@@ -171,6 +171,20 @@ static void check_end(const char *kind, const vlCameraDef *def, double end, bool
   }
 }
 
+/* A distorted view ends on a circle, before the distortion folds in any direction. */
+static void check_round_end(const char *kind, const vlCamera *camera) {
+  double low = INFINITY;
+  double high = 0;
+  for (int a = 0; a < AZIMUTHS; a++) {
+    const double end = end_of_view(camera, 2 * PI * a / AZIMUTHS);
+    low = fmin(low, end);
+    high = fmax(high, end);
+  }
+  if (!(high - low < 1e-6))
+    broken("distortions", kind, "its view ends at %.6f radians, and at %.6f elsewhere", low,
+           high);
+}
+
 /* ---- the width of rays ------------------------------------------------------------------- */
 
 /* The angle that the central pixel subtends, which rays have as their width. The pixel is not
@@ -189,6 +203,75 @@ static void check_ray_width(const char *kind, const vlCamera *camera) {
   if (!(fabs(width - side) < 3e-3 * side))
     broken("projections", kind, "rays widen by %.6f; the central pixel's side is %.6f", width,
            side);
+}
+
+/* ---- motion ------------------------------------------------------------------------------ */
+
+typedef struct CameraRays {
+  float o[3][WAYS], d[3][WAYS], t_min[WAYS], t_max[WAYS], time[WAYS], valid[WAYS];
+} CameraRays;
+
+static void rays_of_film(const vlCamera *camera, CameraRays *r) {
+  static float x[WAYS], y[WAYS], u[WAYS], v[WAYS], time[WAYS];
+  static int32_t column[WAYS], row[WAYS];
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  for (uint32_t i = 0; i < WAYS; i++) {
+    column[i] = (int32_t)(i * 7 % camera->width);
+    row[i] = (int32_t)(i * 11 % camera->height);
+    x[i] = (float)(i % 5) / 5;
+    y[i] = (float)(i % 3) / 3;
+    u[i] = (float)(i % 13) / 13;
+    v[i] = (float)(i % 17) / 17;
+    time[i] = (float)(i % 19) / 19;
+  }
+  const vlCameraSamples samples = {x, y, column, row, u, v, time};
+  const vlCameraRays rays = {r->o[0],  r->o[1],  r->o[2], r->d[0],  r->d[1], r->d[2],
+                             r->t_min, r->t_max, r->time, r->valid, NULL};
+  vl_camera_kernels(VL_ISA_AUTO)->rays(&c, WAYS, &samples, &rays);
+}
+
+/* Below 0: the lens stops the ray. */
+static bool same_length(float a, float b) {
+  return a == b || (a < 0 && b < 0) || fabsf(a - b) <= 1e-4f * fabsf(a);
+}
+
+/* A camera that hardly moves has the rays of the one that is still, in a frame that is turned
+ * and stretched, too, through its lens and between its near and far planes. */
+static void check_moving(const char *kind, const vlCameraDef *def) {
+  static CameraRays still, moving;
+  static const double map[16] = {1.2, 0, 1.6, 3, 0, 2, 0, -2, -1.6, 0, 1.2, 5, 0, 0, 0, 1};
+  vlCameraDef changed = *def;
+  vlCamera camera;
+  uint32_t differ = 0;
+  if (def->projection != VL_PROJECTION_OPTICS) {
+    changed.lens_radius = 0.05;
+    changed.focus_distance = 2;
+  }
+  changed.near_plane = 0.5;
+  changed.far_plane = 3;
+  changed.has_matrix = true;
+  memcpy(changed.world_from_camera, map, sizeof map);
+  assert_int_equal(vl_camera_make(&changed, &camera, NULL, NULL), VL_OK);
+  rays_of_film(&camera, &still);
+  changed.has_matrix_close = true;
+  memcpy(changed.world_from_camera_close, map, sizeof map);
+  changed.world_from_camera_close[3] += 1e-9;
+  assert_int_equal(vl_camera_make(&changed, &camera, NULL, NULL), VL_OK);
+  assert_true(camera.moves);
+  rays_of_film(&camera, &moving);
+  for (uint32_t i = 0; i < WAYS; i++) {
+    bool same = still.valid[i] == moving.valid[i] &&
+                same_length(still.t_min[i], moving.t_min[i]) &&
+                same_length(still.t_max[i], moving.t_max[i]);
+    for (int k = 0; k < 3; k++)
+      same = same && fabsf(still.o[k][i] - moving.o[k][i]) < 1e-5f &&
+             fabsf(still.d[k][i] - moving.d[k][i]) < 1e-5f;
+    differ += !same && still.valid[i] > 0;
+  }
+  if (differ)
+    broken("projections", kind, "%u of %u rays are others where the camera moves", differ,
+           WAYS);
 }
 
 /* ---- derivatives ------------------------------------------------------------------------- */

@@ -453,6 +453,7 @@ static void laws_of_projections(void **state) {
       check_edges(name, &camera);
     }
     check_derivatives_in_film("projections", name, &camera);
+    check_moving(name, &def);
     if (!c->optics)
       check_file("projections", name, &def, &camera);
     if (!c->optics)
@@ -477,6 +478,7 @@ static void check_distortion(const char *name, const DistortionCase *c, vlDistor
     return;
   check_round_trip("distortions", name, &camera, 1e-8);
   check_ways("distortions", name, &camera);
+  check_round_end(name, &camera);
   check_derivatives_in_film("distortions", name, &camera);
   check_file("distortions", name, &def, &camera);
   check_scene_file("distortions", name, &def, "pbrt");

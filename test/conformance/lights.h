@@ -267,6 +267,68 @@ static void check_emitting_shape(const char *family, const char *kind, const cha
   check_hit_light(family, kind, emission, text, false);
 }
 
+/* The mean light on a floor of a lamp above it, by samples and by the path tracer. */
+static void light_of_lamp(const char *shape, double light[2]) {
+  static char text[TEXT];
+  snprintf(text, sizeof text,
+           HEAD "WorldBegin " FLOOR "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape %s",
+           shape);
+  const LightLaws l = ask_floor(text, 0.1, 0.2, 16);
+  const Mean seen = floor_seen(text, 0.1, 0.2);
+  light[0] = mean_of(&l.sampled[1]);
+  light[1] = mean_of(&seen);
+}
+
+/* Corners of a square at the height 1, in the order of a patch: above the floor its light
+ * shines up, by the order of its corners. */
+#define LAMP_CORNERS "\"point3 P\" [-1 1 1 1 1 1 -1 1 -1 1 1 -1] "
+
+/* A lamp of a coverage sends that share of its light; without any it is not seen, but shines
+ * (pbrt). */
+static void check_covered_lamps(void) {
+  static const char *const shapes[] = {
+      "\"bilinearmesh\" " LAMP_CORNERS "\"integer indices\" [1 0 3 2]",
+      "\"trianglemesh\" " LAMP_CORNERS "\"integer indices\" [1 0 3 0 2 3]"};
+  static const double coverage[] = {0.4, 0};
+  for (int i = 0; i < 2; i++)
+    for (int k = 0; k < 2; k++) {
+      char covered[300];
+      double whole[2];
+      double part[2];
+      const double share = k ? 1 : coverage[0];
+      snprintf(covered, sizeof covered, "%s \"float alpha\" %g", shapes[i], coverage[k]);
+      light_of_lamp(shapes[i], whole);
+      light_of_lamp(covered, part);
+      for (int by = 0; by < 2; by++)
+        if (!(whole[by] > 0 && fabs(part[by] / whole[by] - share) < 0.05))
+          broken("emission", "diffuse", "%s: by %s %.3f of its light, not %.3f", covered,
+                 by ? "the path tracer" : "samples", part[by] / whole[by], share);
+    }
+}
+
+/* Vertex normals tell which side shines, whatever the order of the corners. */
+static void check_sides_of_lamps(void) {
+  static const char *const shapes[] = {
+      "\"bilinearmesh\" " LAMP_CORNERS "\"integer indices\" [%s]",
+      "\"trianglemesh\" " LAMP_CORNERS "\"integer indices\" [%s]"};
+  static const char *const orders[2][2] = {{"0 1 2 3", "1 0 3 2"},
+                                           {"0 1 2 1 3 2", "0 2 1 1 2 3"}};
+  for (int i = 0; i < 8; i++) {
+    char shape[300];
+    char all[400];
+    double light[2];
+    const bool down = i & 1;
+    snprintf(shape, sizeof shape, shapes[i / 4], orders[i / 4][i / 2 % 2]);
+    snprintf(all, sizeof all, "%s \"normal N\" [0 %s .1 .1 %s 0 0 %s 0 0 %s 0]", shape,
+             down ? "-1" : "1", down ? "-1" : "1", down ? "-1" : "1", down ? "-1" : "1");
+    light_of_lamp(all, light);
+    for (int by = 0; by < 2; by++)
+      if ((light[by] > 0) != down)
+        broken("emission", "diffuse", "%s: %s the floor, by %s", all,
+               down ? "does not light" : "lights", by ? "the path tracer" : "samples");
+  }
+}
+
 static void laws_of_emission(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("emission");
@@ -274,6 +336,8 @@ static void laws_of_emission(void **state) {
     for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++)
       check_emitting_shape("emission", family->rows[k]->name, emitting_shapes[i == 0][0],
                            emitting_shapes[i == 0][1], emissions[i]);
+  check_covered_lamps();
+  check_sides_of_lamps();
   expect_no_failures();
 }
 

@@ -6,6 +6,7 @@
 
 #include "conformance.h"
 #include "materials.h"
+#include "schema/schema.h"
 #include "unit.h"
 #include "velo/material.h"
 #include "velo/texture.h"
@@ -85,26 +86,72 @@ static void check_normal(const char *kind, const Scattering *s, double factor) {
            s->shading[0], s->shading[1], s->shading[2], known[0], known[1], known[2]);
 }
 
-/* Each kind whose row has a normal map. */
-static void check_normal_maps(void) {
-  static char text[TEXT];
+/* Calls `check` with each kind whose row has a normal map, and its parameters with one. */
+static void for_each_mapped(const char *file, void (*check)(const vlKindRow *, const char *)) {
   char parameters[400];
   const vlKindFamily *family = vl_kind_family_find("materials");
   for (uint32_t k = 0; k < family->kind_count; k++) {
     const vlKindRow *row = family->rows[k];
-    bool mapped = false;
-    for (uint32_t i = 0; i < row->parameter_count; i++)
-      mapped = mapped ||
-               (row->parameters[i].name && strcmp(row->parameters[i].name, "normalmap") == 0);
-    if (!mapped || row->traits & VL_MATERIAL_ABSENT)
+    if (!vl_row_find(row, "normalmap") || row->traits & VL_MATERIAL_ABSENT)
       continue;
-    snprintf(parameters, sizeof parameters, "%s \"string normalmap\" \"tilted.pfm\"",
-             material_cases[k]->variants[0].parameters);
-    scene_text(text, material_form, row->name, parameters);
-    Scattering *s = scattering_of(need_scene(text), text);
-    check_normal(row->name, s, 1);
-    free_scattering(s);
+    snprintf(parameters, sizeof parameters, "%s \"string normalmap\" \"%s\"",
+             material_cases[k]->variants[0].parameters, file);
+    check(row, parameters);
   }
+}
+
+static void check_tilted_map(const vlKindRow *row, const char *parameters) {
+  static char text[TEXT];
+  scene_text(text, material_form, row->name, parameters);
+  Scattering *s = scattering_of(need_scene(text), text);
+  check_normal(row->name, s, 1);
+  free_scattering(s);
+}
+
+/* The shading normals over a square whose texture coordinates are moved by whole numbers. */
+static void ask_normals(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  Scattering *s = probe->user;
+  (void)paths;
+  set_rays_down(s->rays);
+  vl_world_trace(trace, s->rays, s->hits);
+}
+
+static Scattering *mapped_square(const vlKindRow *row, const char *parameters, int moved) {
+  static char text[TEXT];
+  char form[800];
+  snprintf(form, sizeof form,
+           HEAD
+           "WorldBegin LightSource \"infinite\" " NAMED
+           "Material %%s Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0] "
+           "\"point2 uv\" [%d %d %d %d %d %d %d %d]",
+           moved, -moved, 1 + moved, -moved, moved, 1 - moved, 1 + moved, 1 - moved);
+  scene_text(text, form, row->name, parameters);
+  Scattering *s = calloc(1, sizeof *s);
+  assert_non_null(s);
+  s->rays = new_rays();
+  s->hits = calloc(1, sizeof *s->hits);
+  Probe probe = {.ask = ask_normals, .user = s};
+  probe_world(text, &probe, 1);
+  return s;
+}
+
+/* Normal maps go on beyond their edges as they begin. */
+static void check_repeated_map(const vlKindRow *row, const char *parameters) {
+  Scattering *inside = mapped_square(row, parameters, 0);
+  Scattering *beyond = mapped_square(row, parameters, 3);
+  uint32_t differ = 0;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double off = 0;
+    for (int k = 0; k < 3; k++)
+      off = fmax(
+          off, fabs((double)inside->hits->shading[k][i] - (double)beyond->hits->shading[k][i]));
+    differ += !(off < 1e-3);
+  }
+  if (differ > VL_OWN_BATCH / 100)
+    broken("materials", row->name, "a normal map beyond its edges: %u of %u normals differ",
+           differ, VL_OWN_BATCH);
+  free_scattering(inside);
+  free_scattering(beyond);
 }
 
 /* A texture whose texels all are the map's, with x and y times a factor. */
@@ -122,18 +169,21 @@ static vlTextureId add_map(vlScene *scene, vlImage **image, float factor) {
   return vl_scene_add_texture(scene, &texture);
 }
 
-/* A coated surface; factors: on the texels of the two maps, and by the material. */
+/* A coated surface; factors: on the texels of the two maps (NaN: no map), and by the
+ * material. */
 static Scattering *coated(const float texels[2], const float factors[2]) {
   vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
-  vlImage *images[2];
+  vlImage *images[2] = {NULL, NULL};
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
+  vlTextureId *const maps[2] = {&def.principled.normal, &def.principled.clearcoat_normal};
+  for (int i = 0; i < 2; i++)
+    if (!isnan(texels[i]))
+      *maps[i] = add_map(scene, &images[i], texels[i]);
   def.principled.metallic.value = 0;
   def.principled.roughness.value = 0.5f;
   def.principled.clearcoat.value = 1;
   def.principled.clearcoat_roughness.value = 0.4f;
-  def.principled.normal = add_map(scene, &images[0], texels[0]);
   def.principled.normal_scale = factors[0];
-  def.principled.clearcoat_normal = add_map(scene, &images[1], texels[1]);
   def.principled.clearcoat_normal_scale = factors[1];
   Scattering *s = scattering_of_def(scene, &def);
   vl_image_destroy(images[0]);
@@ -141,22 +191,53 @@ static Scattering *coated(const float texels[2], const float factors[2]) {
   return s;
 }
 
+/* The number of values that differ. densities: are compared, too. */
+static uint32_t differing(const Scattering *a, const Scattering *b, bool densities) {
+  uint32_t differ = 0;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    differ += !close_to((double)a->value[1][i], (double)b->value[1][i], 1e-3) ||
+              (densities && !close_to((double)a->pdf[i], (double)b->pdf[i], 1e-3));
+  return differ;
+}
+
+/* Takes both. */
+static void check_same_scattering(const char *kind, const char *what, Scattering *a,
+                                  Scattering *b, bool densities) {
+  const uint32_t differ = differing(a, b, densities);
+  if (differ > VL_OWN_BATCH / 100) /* directions along the surface */
+    broken("materials", kind, "%s: %u of %u values differ", what, differ, VL_OWN_BATCH);
+  free_scattering(a);
+  free_scattering(b);
+}
+
 static void check_factors_of_maps(void) {
   static const float ones[2] = {1, 1};
   static const float factors[2] = {0.5f, -0.7f};
   Scattering *by_factors = coated(ones, factors);
-  Scattering *by_texels = coated(factors, ones);
-  uint32_t differ = 0;
   check_normal("principled", by_factors, 0.5);
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
-    differ +=
-        !close_to((double)by_factors->value[1][i], (double)by_texels->value[1][i], 1e-3) ||
-        !close_to((double)by_factors->pdf[i], (double)by_texels->pdf[i], 1e-3);
-  if (differ)
-    broken("materials", "principled", "factors on normal maps: %u of %u values differ", differ,
-           VL_OWN_BATCH);
-  free_scattering(by_factors);
-  free_scattering(by_texels);
+  check_same_scattering("principled", "factors on normal maps", by_factors,
+                        coated(factors, ones), true);
+}
+
+/* Base and coat without a map have the normal of one that is flat, whatever the other has, and
+ * the map of each changes how the whole scatters. */
+static void check_flat_maps(void) {
+  static const float ones[2] = {1, 1};
+  static const float flat[2][2] = {{1, 0}, {0, 1}};
+  static const float none[2][2] = {{1, NAN}, {NAN, 1}};
+  check_same_scattering("principled", "a coat without a map", coated(none[0], ones),
+                        coated(flat[0], ones), true);
+  check_same_scattering("principled", "a base without a map", coated(none[1], ones),
+                        coated(flat[1], ones), true);
+  for (int layer = 0; layer < 2; layer++) {
+    Scattering *one = coated(none[layer], ones);
+    Scattering *both = coated(ones, ones);
+    if (differing(one, both, false) < VL_OWN_BATCH / 4)
+      broken("materials", "principled", "the normal map of its %s changes nothing",
+             layer ? "base" : "coat");
+    free_scattering(one);
+    free_scattering(both);
+  }
 }
 
 /* ---- anisotropy -------------------------------------------------------------------------- */
@@ -262,8 +343,10 @@ static void check_mirrored_coordinates(void) {
 static void laws_of_shading(void **state) {
   (void)state;
   check_mirrored_coordinates();
-  check_normal_maps();
+  for_each_mapped("tilted.pfm", check_tilted_map);
+  for_each_mapped("normals.pfm", check_repeated_map);
   check_factors_of_maps();
+  check_flat_maps();
   check_anisotropy(0.6, 0);
   check_anisotropy(0.6, 0.7);
   expect_no_failures();

@@ -171,14 +171,17 @@ static void judge_surface(const SurfaceLaws *l, const char *parameters, double r
            parameters, l->bent_u, l->bent_v);
 }
 
-static void check_surface(const vlKindRow *row, const ShapeVariant *v) {
+/* before: statements before the shape. */
+static void check_surface(const vlKindRow *row, const ShapeVariant *v, const char *before) {
   static char text[TEXT];
+  static char form[TEXT];
   vlError error = {0};
   vlWorld *world;
-  scene_text(text,
-             HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" " STRETCHED
-                  "Shape %s",
-             row->name, v->parameters);
+  snprintf(form, sizeof form,
+           HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" " STRETCHED
+                "%s Shape %%s",
+           before);
+  scene_text(text, form, row->name, v->parameters);
   vlScene *scene = need_scene(text);
   assert_int_equal(vl_world_build(scene, NULL, &world, &error), VL_OK);
   assert_true(world->shapes.count > 0);
@@ -212,6 +215,32 @@ static void ask_displaced(Probe *probe, vlTrace *trace, const vlOwnPaths *paths)
     broken("shapes", s->kind, "displaced: %u of %u points are elsewhere", wrong, VL_OWN_BATCH);
 }
 
+/* Edges are cut until none is longer than asked for, as the world measures it; a half of that
+ * is never too long. */
+static void edges_of_displaced_meshes(void) {
+  static const char text[] = HEAD
+      "WorldBegin LightSource \"infinite\" Texture \"h\" \"float\" \"constant\" \"float value\" .1 "
+      "Scale 3 .5 2 Shape \"plymesh\" \"string filename\" \"a.ply\" "
+      "\"texture displacement\" \"h\" \"float edgelength\" .3";
+  vlError error = {0};
+  vlWorld *world;
+  vlScene *scene = need_scene(text);
+  assert_int_equal(vl_world_build(scene, &vl_scene_defs(scene)->build, &world, &error), VL_OK);
+  const vlWorldShape *s = &world->shapes.items[0];
+  double longest = 0;
+  for (uint32_t i = 0; i < 3 * s->faces; i++) {
+    const float *a = s->positions + 3 * (size_t)s->indices[i];
+    const float *b = s->positions + 3 * (size_t)s->indices[i / 3 * 3 + (i + 1) % 3];
+    longest = fmax(longest, hypot(hypot((double)(a[0] - b[0]), (double)(a[1] - b[1])),
+                                  (double)(a[2] - b[2])));
+  }
+  if (!(longest > 0.14 && longest < 0.3001))
+    broken("shapes", "trianglemesh", "displaced: the longest edge is %.3f, not up to .3",
+           longest);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+}
+
 static void displaced_meshes(void) {
   static const char text[] = HEAD
       "WorldBegin LightSource \"infinite\" Texture \"h\" \"float\" \"bilerp\" "
@@ -233,9 +262,10 @@ static void laws_of_surfaces(void **state) {
     const ShapeCase *c = shape_cases[k];
     bool sampled = family->rows[k]->traits & VL_SHAPE_TRAIT_EMITS;
     for (int i = 0; sampled && i < SHAPE_VARIANTS && c->variants[i].parameters; i++)
-      check_surface(family->rows[k], &c->variants[i]);
+      check_surface(family->rows[k], &c->variants[i], i % 2 ? "ReverseOrientation" : "");
   }
   displaced_meshes();
+  edges_of_displaced_meshes();
   expect_no_failures();
 }
 

@@ -4,6 +4,7 @@
 #include "cameras.h"
 #include "conformance.h"
 #include "densities.h"
+#include "descriptions.h"
 #include "files.h"
 #include "footprints.h"
 #include "furnaces.h"
@@ -53,6 +54,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(textures_of_parameters),
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(laws_of_shading),
+      cmocka_unit_test(laws_of_descriptions),
       cmocka_unit_test(laws_of_layers),
       cmocka_unit_test(laws_of_lights),
       cmocka_unit_test(laws_of_lamps),

@@ -21,7 +21,8 @@ typedef struct MediumCase {
   double passes;      /* the transmittance of that */
   double (*density)(const double p[3], PlainNoise *noise); /* the extinction of `absorbs` at a
                                            point of the box; null: not known */
-  const char *tall; /* all parameters of one higher than the box; null: it is like the others */
+  const char *tall; /* all parameters of one that is not like the others, such as one higher
+                       than the box; null: there is none */
   /* All parameters of a medium that reaches beyond one block of the kind's grid, and its
    * extinction; null: the kind has no blocks. */
   const char *blocks;

@@ -7,8 +7,8 @@ static double density(const double p[3], PlainNoise *noise) {
   return 0.003 * (2 * (p[0] + 2) + 10 * 2 * (p[1] + 2) + 100 * 2 * (p[2] + 2) + 1);
 }
 
-/* The voxels of the file are 1/128 wide, the first at (-1, -1, -1). Eight blocks of 128 voxels
- * in each direction meet at the origin, each with a density of its own. */
+/* The voxels of the file are 1/128 wide, the first, (-256, -256, -256), at (-1, -1, -1). Eight
+ * blocks of 128 voxels in each direction meet at the origin, each with a density of its own. */
 static double density_of_blocks(const double p[3], PlainNoise *noise) {
   (void)noise;
   const int block = (p[0] > 0) + 2 * (p[1] > 0) + 4 * (p[2] > 0);

@@ -27,6 +27,8 @@ const MediumCase rgb_grid_medium = {
     "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]",
     .passes = 0.631678,
     .density = density,
+    /* what is not given is 1 */
+    .tall = BLOCKS "\"rgb sigma_s\" " EIGHT_COLORS,
     .parameters =
         {
             {.parameter = "Lescale",

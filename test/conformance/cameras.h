@@ -455,6 +455,8 @@ static void laws_of_projections(void **state) {
     check_derivatives_in_film("projections", name, &camera);
     check_moving(name, &def);
     if (!c->optics)
+      check_focus_point(name, &def);
+    if (!c->optics)
       check_file("projections", name, &def, &camera);
     if (!c->optics)
       check_scene_file("projections", name, &def, "pbrt");

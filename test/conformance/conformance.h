@@ -23,6 +23,7 @@
 #include "velo/sampler.h"
 #include "velo/schema.h"
 #include "velo/shape_kinds.h"
+#include "velo/texture.h"
 #include "velo/trace.h"
 #include "velo/tracer.h"
 
@@ -81,6 +82,9 @@ static void scene_text(char text[TEXT], const char *form, const char *kind,
 /* Changes the first light of each scene that is loaded, while a law sets it. */
 static void (*change_light)(vlLightDef *def);
 
+/* The same of the texture "t" of its second directive. */
+static void (*change_texture)(vlTextureDef *def);
+
 static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(in, &scene), VL_OK);
@@ -95,6 +99,12 @@ static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
     vlLightDef light = *vl_scene_light(scene, first);
     change_light(&light);
     assert_int_equal(vl_scene_set_light(scene, first, &light, error), VL_OK);
+  }
+  if (change_texture) {
+    const vlTextureId second = {2};
+    vlTextureDef texture = *vl_scene_texture(scene, second);
+    change_texture(&texture);
+    assert_int_equal(vl_scene_set_texture(scene, second, &texture, error), VL_OK);
   }
   return scene;
 }

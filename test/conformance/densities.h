@@ -68,7 +68,8 @@ static vlWorld *world_of_medium(const char *kind, const char *parameters, vlColo
   vlScene *scene = need_scene(text);
   vlBuildDef def = vl_default_build_def();
   def.color = color;
-  assert_int_equal(vl_world_build(scene, &def, &world, &error), VL_OK);
+  if (vl_world_build(scene, &def, &world, &error) != VL_OK)
+    fail_msg("media %s: %s", kind, error.message);
   assert_int_equal(world->media.count, 1);
   vl_scene_destroy(scene);
   return world;

@@ -113,20 +113,26 @@ static bool write_nanovdb(const char *name, float last) {
 }
 
 /* A file of eight blocks of 128 voxels in each direction, of the densities 1 to 8: the number
- * grows along x, then y, then z. They are tiles of the upper node, whose table has x first. */
+ * grows along x, then y, then z. They are tiles of the upper node, whose table has x first; it
+ * ends at the origin, so that all coordinates of its voxels are negative. */
 static bool write_blocks(const char *name) {
   unsigned char *grid = make_grid();
   unsigned char *upper = grid + UPPER_AT;
-  upper[32 + 4096] = 0; /* the first tile is no lower node */
+  upper[32 + 4096] = 0;                            /* the first tile is no lower node */
+  put_u64(grid + ROOT_AT + ROOT, UINT64_MAX >> 1); /* the node before the origin */
+  put_u32(grid + ROOT_AT + 24, 2);                 /* a tile behind it: 4096^3 voxels of 1 */
+  put_f(grid + ROOT_AT + ROOT + TILE + 20, 1);
+  for (size_t i = 0; i < 2; i++)
+    put_u64(upper + UPPER_TABLE + 8 * (i << 10), 0);
   for (uint32_t i = 0; i < 8; i++) {
-    const size_t at = (size_t)(i & 1) << 10 | (i >> 1 & 1) << 5 | i >> 2;
+    const size_t at = (size_t)(30 + (i & 1)) << 10 | (30 + (i >> 1 & 1)) << 5 | (30 + (i >> 2));
     put_u64(upper + UPPER_TABLE + 8 * at, 0);
     put_f(upper + UPPER_TABLE + 8 * at, (float)(i + 1));
   }
   for (size_t i = 0; i < 3; i++) {
     put_d(grid + 296 + 88 + 8 * (4 * i), 1.0 / 128); /* the map, its inverse */
     put_d(grid + 296 + 160 + 8 * (4 * i), 128);
-    put_d(grid + 296 + 232 + 8 * i, -1);
+    put_d(grid + 296 + 232 + 8 * i, 1);
     put_d(grid + 560 + 8 * i, -1);
     put_d(grid + 584 + 8 * i, 1);
   }

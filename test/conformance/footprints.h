@@ -106,6 +106,13 @@ static void ask_footprints(Probe *probe, vlTrace *trace, const vlOwnPaths *paths
     check_width(trace, probe->user, width);
 }
 
+/* glTF's turn of texture coordinates, and a stretch. */
+static void turn_texture(vlTextureDef *def) {
+  static const float map[6] = {1.7f, -0.5f, 0.2f, 0.9f, 0.8f, -0.3f};
+  def->st_from_uv_given = true;
+  memcpy(def->st_from_uv, map, sizeof map);
+}
+
 static void check_footprints(const vlKindRow *row, const TextureVariant *variant) {
   static char text[TEXT];
   TextureLaws t = {.kind = row->name, .variant = variant};
@@ -113,6 +120,10 @@ static void check_footprints(const vlKindRow *row, const TextureVariant *variant
     return;
   textured_text(text, row, variant, "", SQUARE_UP);
   ask_textured(text, &t, ask_footprints);
+  change_texture = strcmp(row->name, "imagemap") == 0 ? turn_texture : NULL;
+  if (change_texture)
+    ask_textured(text, &t, ask_footprints);
+  change_texture = NULL;
 }
 
 static void laws_of_means(void **state) {

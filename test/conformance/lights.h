@@ -274,9 +274,10 @@ static void light_of_lamp(const char *shape, double light[2]) {
            HEAD "WorldBegin " FLOOR "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape %s",
            shape);
   const LightLaws l = ask_floor(text, 0.1, 0.2, 16);
-  const Mean seen = floor_seen(text, 0.1, 0.2);
+  vlImage *image = image_of_floor(text, VL_TRACER_PATH, 64, 0.1, 0.2, 0.02);
   light[0] = mean_of(&l.sampled[1]);
-  light[1] = mean_of(&seen);
+  light[1] = mean_of_green(image);
+  vl_image_destroy(image);
 }
 
 /* Corners of a square at the height 1, in the order of a patch: above the floor its light

@@ -207,7 +207,7 @@ static void check_shape(const vlKindRow *row, const char *directive, const Shape
   free(s.hits);
 }
 
-/* The shading normals that rays through the middle find, or 0. */
+/* The shading normals that rays near the middle find, or 0. */
 typedef struct Sides {
   float shading[3][VL_OWN_BATCH];
   vlTraceRays *rays;
@@ -219,8 +219,11 @@ static void ask_sides(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   (void)paths;
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     double d[3];
+    double at[2];
     even_direction(i, VL_OWN_BATCH, 0.2, d);
-    const double origin[3] = {0.05 - 2 * d[0], 0.02 - 2 * d[1], 0.03 - 2 * d[2]};
+    even_disk(i, 0.2, at);
+    const double origin[3] = {0.05 + 0.1 * at[0] - 2 * d[0], 0.02 + 0.1 * at[1] - 2 * d[1],
+                              0.03 - 2 * d[2]};
     set_ray(s->rays, i, origin, d);
   }
   vl_world_trace(trace, s->rays, s->hits);

@@ -6,9 +6,11 @@
 #define TEST_CONFORMANCE_TEXELS_H
 
 #include "conformance.h"
+#include "texture/node.h"
 #include "unit.h"
 #include "velo/material.h"
 #include "velo/texture.h"
+#include "world/world.h"
 
 enum { TEXELS_WIDE = 5, TEXELS_HIGH = 3, TEXEL_WORLDS = 112, FOLDED_WORLDS = 16 };
 /* The square's texture coordinates go from -TEXELS_OUT to 1 + TEXELS_OUT. */
@@ -222,6 +224,64 @@ static void check_texels(TexelCase *t) {
   probe_scene(scene, "texels", &probe, 1);
 }
 
+/* ---- at single points -------------------------------------------------------------------- */
+
+/* Coverage is read at single points, without a batch: vertex colours and other sets of texture
+ * coordinates count there, too. The square's second set is its first one, turned; its colours
+ * are linear in x and y. */
+static double covered_at(const vlTextureDef *texture, float x, float y) {
+  static const float corners[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+  static const float turned[8] = {0, 0, 0, 1, 1, 1, 1, 0};
+  static const float colors[16] = {.1f, .1f, .1f, 1, .5f, .5f, .5f, 1,
+                                   .9f, .9f, .9f, 1, .5f, .5f, .5f, 1};
+  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+  vlError error = {0};
+  vlWorld *world;
+  vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
+  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  square.vertices = 4;
+  square.faces = 2;
+  square.positions = corners;
+  square.uvs = uvs;
+  square.more_uvs[0] = turned;
+  square.colors = colors;
+  square.indices = indices;
+  square.alpha.texture = vl_scene_add_texture(scene, texture);
+  vl_scene_add_shape(scene, &square);
+  assert_int_equal(vl_world_build(scene, NULL, &world, &error), VL_OK);
+  /* a point of the first triangle, x >= y */
+  const vlTextureCorner corner = {&world->shapes.items[0], 0, {1 - x, x - y, y}};
+  const vlTextureQuery query = {x, y, {x, y, 0}, {0, 0, 1}, &corner};
+  const float value = vl_texture_float_at(world, world->shapes.items[0].alpha, &query);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+  return (double)value;
+}
+
+static void check_single_points(void) {
+  static const float points[3][2] = {{0.6f, 0.1f}, {0.8f, 0.3f}, {0.9f, 0.7f}};
+  vlTextureDef of_colors = vl_default_texture_def(VL_TEXTURE_VERTEX_COLOR, false);
+  vlTextureDef second = vl_default_texture_def(VL_TEXTURE_BILERP, false);
+  second.float_a.value = 0;
+  second.float_b.value = 0.1f; /* (0, 1) */
+  second.float_c.value = 0.7f; /* (1, 0) */
+  second.float_d.value = 0.8f;
+  second.uv_set = 1;
+  for (int i = 0; i < 3; i++) {
+    const float x = points[i][0];
+    const float y = points[i][1];
+    const double by_color = 0.1 + 0.4 * (double)(x + y);
+    const double by_second = 0.7 * (double)y + 0.1 * (double)x;
+    if (!(fabs(covered_at(&of_colors, x, y) - by_color) < 1e-5))
+      broken("textures", "vertex color", "at one point %.4f, not %.4f",
+             covered_at(&of_colors, x, y), by_color);
+    if (!(fabs(covered_at(&second, x, y) - by_second) < 1e-5))
+      broken("textures", "bilerp", "by the second set of coordinates %.4f, not %.4f",
+             covered_at(&second, x, y), by_second);
+  }
+}
+
 static void laws_of_texels(void **state) {
   (void)state;
   TexelCase *t = calloc(1, sizeof *t);
@@ -235,6 +295,7 @@ static void laws_of_texels(void **state) {
   free(t->rays);
   free(t->hits);
   free(t);
+  check_single_points();
   expect_no_failures();
 }
 

@@ -95,6 +95,31 @@ static void bright_colours_are_scaled(void **state) {
   assert_true(scaled > 0 && scaled < N);
 }
 
+/* A white balance does not change by how much a colour is scaled. */
+static void white_balance_keeps_limits(void **state) {
+  (void)state;
+  static const vlColorSpace spaces[] = {VL_SPACE_SRGB, VL_SPACE_REC2020};
+  float plain[3][N], limited[3][N], balanced[3][N], both[3][N];
+  int scaled = 0;
+  for (int k = 0; k < 2; k++) {
+    vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT), low = def;
+    def.space = low.space = spaces[k];
+    low.max_component = 1.5f;
+    expose(def, 1.0f, plain);
+    expose(low, 1.0f, limited);
+    def.white_balance = low.white_balance = 3000;
+    expose(def, 1.0f, balanced);
+    expose(low, 1.0f, both);
+    for (int i = 0; i < N; i++) {
+      double by = (double)limited[1][i] / (double)plain[1][i];
+      scaled += by < 0.99;
+      for (int c = 0; c < 3; c++)
+        assert_true(fabs((double)both[c][i] - by * (double)balanced[c][i]) < 2e-3);
+    }
+  }
+  assert_true(scaled > 0 && scaled < 2 * N);
+}
+
 static void sensors_have_names(void **state) {
   (void)state;
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
@@ -116,6 +141,7 @@ static void sensors_have_names(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rec709_stays_as_it_is), cmocka_unit_test(rec2020_is_that_of_bt_2087),
-      cmocka_unit_test(bright_colours_are_scaled), cmocka_unit_test(sensors_have_names)};
+      cmocka_unit_test(bright_colours_are_scaled), cmocka_unit_test(white_balance_keeps_limits),
+      cmocka_unit_test(sensors_have_names)};
   return cmocka_run_group_tests(tests, begin, end);
 }

@@ -159,20 +159,23 @@ static vlResult write_openmvg(const vlFittedCamera *fit, vlCameraText *text) {
   const bool fisheye = fit->family == VL_LENS_FISHEYE, bent = fit->family == VL_LENS_OPENCV;
   return VL_PUT_FORM(
       text, fit,
-      "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": "
-      "0, \"value\": {\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, "
-      "\"data\": {\"local_path\": \"\", \"filename\": $name"
-      ", \"width\": $width, \"height\": $height, \"id_view\": 0, \"id_intrinsic\": 0, "
-      "\"id_pose\": "
-      "0}}}}],\n"
-      "  \"intrinsics\": [{\"key\": 0, \"value\": {\"polymorphic_id\": 2147483649, "
-      "\"polymorphic_name\": \"$model\", "
-      "\"ptr_wrapper\": {\"id\": 2147483650, \"data\": {\"width\": $width, \"height\": "
-      "$height, "
-      "\"focal_length\": $fx, \"principal_point\": [$cx, $cy]$before$k$after}}}}],\n"
-      "  \"extrinsics\": [{\"key\": 0, \"value\": {\"rotation\": [$R:3], \"center\": "
-      "[$center]}}],\n"
-      "  \"structure\": [],\n  \"control_points\": []\n}\n",
+      "{\n"
+      "  \"sfm_data_version\": \"0.3\",\n"
+      "  \"root_path\": \"\",\n"
+      "  \"views\": [{\"key\": 0, \"value\": {"
+      "\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, \"data\": {"
+      "\"local_path\": \"\", \"filename\": $name, \"width\": $width, \"height\": $height, "
+      "\"id_view\": 0, \"id_intrinsic\": 0, \"id_pose\": 0}}}}],\n"
+      "  \"intrinsics\": [{\"key\": 0, \"value\": {"
+      "\"polymorphic_id\": 2147483649, \"polymorphic_name\": \"$model\", \"ptr_wrapper\": {"
+      "\"id\": 2147483650, \"data\": {"
+      "\"width\": $width, \"height\": $height, \"focal_length\": $fx, \"principal_point\": "
+      "[$cx, $cy]$before$k$after}}}}],\n"
+      "  \"extrinsics\": [{\"key\": 0, \"value\": {"
+      "\"rotation\": [$R:3], \"center\": [$center]}}],\n"
+      "  \"structure\": [],\n"
+      "  \"control_points\": []\n"
+      "}\n",
       VL_WORD("model", fisheye ? "fisheye"
                        : bent  ? "pinhole_brown_t2"
                                : "pinhole"),

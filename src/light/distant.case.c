@@ -7,9 +7,8 @@ const LightCase distant_light = {
             {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 2 1]",
              .known = {{0, 0, {3, 2, 1}}, {1, 1, {3, 2, 1}}},
              .known_count = 2},
-            {.parameters =
-                 "\"point3 from\" [1 1 0] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1] \"float "
-                 "illuminance\" 5",
+            {.parameters = "\"point3 from\" [1 1 0] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1] "
+                           "\"float illuminance\" 5",
              .known = {{0, 0, {5, 5, 5}}},
              .known_count = 1},
         },

@@ -13,8 +13,8 @@ const MaterialCase coated_conductor_material = {{
     {.parameters = "\"float conductor.roughness\" .3 \"float interface.roughness\" .1",
      .reflected = 1,
      .walks = true},
-    {.parameters = "\"rgb reflectance\" [.9 .5 .2] \"float conductor.roughness\" .5 \"float "
-                   "interface.roughness\" .4",
+    {.parameters = "\"rgb reflectance\" [.9 .5 .2] \"float conductor.roughness\" .5 "
+                   "\"float interface.roughness\" .4",
      .reflected = 1,
      .walks = true},
     {.parameters = SMOOTH, .albedo = {.771430, .771430, .771430}, .reflected = 1},

@@ -8,8 +8,8 @@ const MaterialCase coated_diffuse_material = {{
          "\"rgb reflectance\" [1 1 1] \"float uroughness\" .1 \"float vroughness\" .5",
      .reflected = 1},
     {.parameters =
-         "\"rgb reflectance\" [.5 .5 .5] \"float thickness\" .5 \"rgb albedo\" [.9 .5 "
-         ".1] \"float g\" .3",
+         "\"rgb reflectance\" [.5 .5 .5] \"float thickness\" .5 \"rgb albedo\" [.9 .5 .1] "
+         "\"float g\" .3",
      .reflected = 1,
      .walks = true},
 }};

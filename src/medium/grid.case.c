@@ -16,21 +16,19 @@ static double density(const double p[3], PlainNoise *noise) {
 const MediumCase grid_medium = {
     .shape = BLOCKS,
     .scatters =
-        "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" -.5 \"float density\" [1 "
-        ".5 "
-        ".2 1 .7 .1 .4 .9]",
+        "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" -.5 "
+        "\"float density\" [1 .5 .2 1 .7 .1 .4 .9]",
     .emits =
-        "\"rgb sigma_a\" [.7 .7 .7] \"rgb sigma_s\" [.5 .5 .5] \"rgb Le\" [.5 .5 .5] \"float "
-        "Lescale\" 2 \"float "
-        "density\" [1 .5 .2 1 .7 .1 .4 .9]",
+        "\"rgb sigma_a\" [.7 .7 .7] \"rgb sigma_s\" [.5 .5 .5] \"rgb Le\" [.5 .5 .5] "
+        "\"float Lescale\" 2 \"float density\" [1 .5 .2 1 .7 .1 .4 .9]",
     /* the scale fades at the box's sides as rgb_grid.case.c's */
     .emits_by_cell =
-        "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"rgb Le\" [.5 .5 .5] \"float "
-        "Lescale\" [2 2 2 2 2 2 2 2] \"float density\" [1 1 1 1 1 1 1 1]",
+        "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"rgb Le\" [.5 .5 .5] "
+        "\"float Lescale\" [2 2 2 2 2 2 2 2] \"float density\" [1 1 1 1 1 1 1 1]",
     .emission_by_cell = 0.942249,
     .absorbs =
-        "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [1 1 1 1 1 1 1 "
-        "1]",
+        "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] "
+        "\"float density\" [1 1 1 1 1 1 1 1]",
     .transmittance = 0.416862,
     .layers = LAYERS
     "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [" FOUR_THIN FOUR_THIN
@@ -38,11 +36,11 @@ const MediumCase grid_medium = {
     .passes = 0.631678,
     .density = density,
     /* (temperature - 300) 1.4 */
-    .hot = {BLOCKS
-            "\"float density\" " EIGHT " \"float temperature\" [900 1500 2000 2500 900 "
-            "1500 1200 3000] \"float temperatureoffset\" 300 \"float temperaturescale\" 1.4",
-            BLOCKS "\"float density\" " EIGHT " \"float temperature\" [840 1680 2380 3080 840 "
-                   "1680 1260 3780]"},
+    .hot = {BLOCKS "\"float density\" " EIGHT
+                   " \"float temperature\" [900 1500 2000 2500 900 1500 1200 3000] "
+                   "\"float temperatureoffset\" 300 \"float temperaturescale\" 1.4",
+            BLOCKS "\"float density\" " EIGHT
+                   " \"float temperature\" [840 1680 2380 3080 840 1680 1260 3780]"},
     .alike = {"\"rgb sigma_a\" [.2 .5 .9] \"rgb sigma_s\" [.1 .3 .2] \"float density\" " EIGHT,
               "\"rgb sigma_a\" [.1 .25 .45] \"rgb sigma_s\" [.05 .15 .1] \"float scale\" 2 "
               "\"float density\" " EIGHT},

@@ -11,8 +11,8 @@ const MediumCase homogeneous_medium = {
     .shape = "",
     .scatters = "\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1] \"float g\" .6",
     .emits =
-        "\"rgb sigma_a\" [.7 .7 .7] \"rgb sigma_s\" [.5 .5 .5] \"rgb Le\" [.5 .5 .5] \"float "
-        "Lescale\" 2",
+        "\"rgb sigma_a\" [.7 .7 .7] \"rgb sigma_s\" [.5 .5 .5] \"rgb Le\" [.5 .5 .5] "
+        "\"float Lescale\" 2",
     .absorbs = "\"rgb sigma_a\" [.2 .2 .2] \"rgb sigma_s\" [0 0 0] \"float scale\" 2",
     .transmittance = 0.44932896,
     .density = density,

@@ -33,21 +33,15 @@ const MediumCase nanovdb_medium = {
              .no_effect = "the file has one grid"},
             {.parameter = "temperaturename", .value = "\"string temperaturename\" \"density\""},
             {.parameter = "Lescale",
-             .base =
-                 "\"string filename\" \"a.nvdb\";\"float scale\" .003;\"string temperaturename\" "
-                 "\"density\";\"float "
-                 "temperaturescale\" 9"},
+             .base = "\"string filename\" \"a.nvdb\";\"float scale\" .003;"
+                     "\"string temperaturename\" \"density\";\"float temperaturescale\" 9"},
             {.parameter = "temperatureoffset",
-             .base =
-                 "\"string filename\" \"a.nvdb\";\"float scale\" .003;\"string temperaturename\" "
-                 "\"density\";\"float "
-                 "temperaturescale\" 9",
+             .base = "\"string filename\" \"a.nvdb\";\"float scale\" .003;"
+                     "\"string temperaturename\" \"density\";\"float temperaturescale\" 9",
              .value = "\"float temperatureoffset\" 50"},
             {.parameter = "temperaturescale",
-             .base =
-                 "\"string filename\" \"a.nvdb\";\"float scale\" .003;\"string temperaturename\" "
-                 "\"density\";\"float "
-                 "temperaturescale\" 9",
+             .base = "\"string filename\" \"a.nvdb\";\"float scale\" .003;"
+                     "\"string temperaturename\" \"density\";\"float temperaturescale\" 9",
              .value = "\"float temperaturescale\" 12"},
         },
 };

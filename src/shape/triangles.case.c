@@ -4,17 +4,15 @@
 const ShapeCase triangles_shape = {
     .variants =
         {
-            {.parameters =
-                 "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"point2 uv\" [0 0 1 0 0 1] \"integer "
-                 "indices\" [0 1 2]",
+            {.parameters = "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"point2 uv\" [0 0 1 0 0 1] "
+                           "\"integer indices\" [0 1 2]",
              .area = 0.5,
              .reach = 1.01,
              .known = {{{.2, .3, 1}, {0, 0, -1}, 1, .2, .3},
                        {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
              .known_count = 2},
-            {.parameters =
-                 "\"point3 P\" [-.5 -.5 0 .5 -.5 0 .5 .5 .4 -.5 .5 .4] \"integer indices\" "
-                 "[0 1 2 0 2 3]",
+            {.parameters = "\"point3 P\" [-.5 -.5 0 .5 -.5 0 .5 .5 .4 -.5 .5 .4] "
+                           "\"integer indices\" [0 1 2 0 2 3]",
              .area = 1.0770330,
              .known = {{{.1, 0, 1}, {0, 0, -1}, .8, NAN, NAN}},
              .known_count = 1},

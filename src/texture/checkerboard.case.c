@@ -4,9 +4,8 @@
 const TextureCase checkerboard_texture = {
     .variants =
         {
-            {.parameters =
-                 "\"float uscale\" 2 \"float vscale\" 2 \"rgb tex1\" [.8 .7 .6] \"rgb "
-                 "tex2\" [.1 .2 .3]",
+            {.parameters = "\"float uscale\" 2 \"float vscale\" 2 \"rgb tex1\" [.8 .7 .6] "
+                           "\"rgb tex2\" [.1 .2 .3]",
              .low = .1,
              .high = .8,
              .known = {{.25, .25, {.8, .7, .6}},
@@ -14,9 +13,8 @@ const TextureCase checkerboard_texture = {
                        {.25, .75, {.1, .2, .3}},
                        {.75, .75, {.8, .7, .6}}},
              .known_count = 4},
-            {.parameters =
-                 "\"float uscale\" 1 \"float udelta\" .5 \"rgb tex1\" [.8 .8 .8] \"rgb "
-                 "tex2\" [.1 .1 .1]",
+            {.parameters = "\"float uscale\" 1 \"float udelta\" .5 \"rgb tex1\" [.8 .8 .8] "
+                           "\"rgb tex2\" [.1 .1 .1]",
              .low = .1,
              .high = .8,
              .known = {{.25, .25, {.8, .8, .8}}, {.75, .25, {.1, .1, .1}}},

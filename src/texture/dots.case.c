@@ -21,9 +21,8 @@ static void formula(const TextureAt *at, double rgb[3]) {
 const TextureCase dots_texture = {
     .variants =
         {
-            {.parameters =
-                 "\"float uscale\" 9 \"float vscale\" 9 \"rgb inside\" [.8 .7 .6] \"rgb "
-                 "outside\" [.1 .2 .3]",
+            {.parameters = "\"float uscale\" 9 \"float vscale\" 9 \"rgb inside\" [.8 .7 .6] "
+                           "\"rgb outside\" [.1 .2 .3]",
              .low = .1,
              .high = .8,
              .formula = formula},

@@ -12,9 +12,8 @@ const TextureCase image_texture = {
                        {.25, .75, {.2, .2, .2}},
                        {.75, .75, {.4, .4, .4}}},
              .known_count = 4},
-            {.parameters = "\"string filename\" \"quarters.pfm\" \"bool invert\" true \"float "
-                           "scale\" .5 \"string "
-                           "filter\" \"point\"",
+            {.parameters = "\"string filename\" \"quarters.pfm\" \"bool invert\" true "
+                           "\"float scale\" .5 \"string filter\" \"point\"",
              .low = .6,
              .high = .9,
              .known = {{.25, .25, {.7, .7, .7}}, {.75, .75, {.8, .8, .8}}},

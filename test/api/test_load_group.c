@@ -10,14 +10,21 @@
 #include "unit.h"
 
 static const char model[] =
-    "Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 7 \"integer yresolution\" 5\n"
-    "WorldBegin\nLightSource \"point\"\n"
-    "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float radius\" 0.5\n"
-    "ObjectBegin \"part\"\nTranslate 0 1 0\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 "
-    "1 "
-    "0] "
-    "\"integer indices\" [0 1 2]\nShape \"sphere\" \"float radius\" 0.2\nObjectEnd\n"
-    "ObjectInstance \"part\"\nTranslate 2 0 0\nScale -1 1 1\nObjectInstance \"part\"\n";
+    "Camera \"perspective\"\n"
+    "Film \"rgb\" \"integer xresolution\" 7 \"integer yresolution\" 5\n"
+    "WorldBegin\n"
+    "LightSource \"point\"\n"
+    "AreaLightSource \"diffuse\"\n"
+    "Shape \"sphere\" \"float radius\" 0.5\n"
+    "ObjectBegin \"part\"\n"
+    "Translate 0 1 0\n"
+    "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n"
+    "Shape \"sphere\" \"float radius\" 0.2\n"
+    "ObjectEnd\n"
+    "ObjectInstance \"part\"\n"
+    "Translate 2 0 0\n"
+    "Scale -1 1 1\n"
+    "ObjectInstance \"part\"\n";
 
 static vlScene *load_model(vlContext *context, const char *path, vlLoadedGroup *loaded) {
   FILE *file = fopen(path, "w");

@@ -335,16 +335,13 @@ static void test_gltf_example(void **state) {
   (void)state;
   const char *text =
       "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"name\":\"root\",\"children\":[1,2],"
-      "\"translation\":[0,10,0]},"
-      "{\"rotation\":[-0.3826834323650898,0,0,0.9238795325112867],\"translation\":[0.5,0.5,3.0]"
-      ","
-      "\"camera\":0},"
-      "{\"name\":\"flat\",\"translation\":[0.5,0.5,3.0],\"camera\":1}],\"cameras\":[{\"type\":"
-      "\"perspective\","
-      "\"perspective\":{\"aspectRatio\":1.0,\"yfov\":0.7,\"zfar\":100,\"znear\":0.01}},{"
-      "\"type\":"
-      "\"orthographic\","
-      "\"orthographic\":{\"xmag\":2.0,\"ymag\":1.0,\"zfar\":100,\"znear\":0.01}}]}";
+      "\"translation\":[0,10,0]},{\"rotation\":[-0.3826834323650898,0,0,0.9238795325112867],"
+      "\"translation\":[0.5,0.5,3.0],\"camera\":0},"
+      "{\"name\":\"flat\",\"translation\":[0.5,0.5,3.0],\"camera\":1}],"
+      "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"aspectRatio\":1.0,"
+      "\"yfov\":0.7,\"zfar\":100,\"znear\":0.01}},"
+      "{\"type\":\"orthographic\",\"orthographic\":{\"xmag\":2.0,\"ymag\":1.0,\"zfar\":100,"
+      "\"znear\":0.01}}]}";
   vlCameraFileDef def = vl_default_camera_file_def();
   def.width = def.height = 200;
   vlCameraRecord r = read_with(put("x.gltf", text), &def);
@@ -437,35 +434,42 @@ static void test_mitsuba_example(void **state) {
 static void test_usd_example(void **state) {
   (void)state;
   const char *text =
-      "#usda 1.0\n(\n    \"a comment\"\n    upAxis = \"Y\"\n    customLayerData = { string a = "
-      "\"}\" }\n)\n"
-      "def Mesh \"m\" ( prepend apiSchemas = [\"MaterialBindingAPI\"] )\n{\n    point3f[] "
-      "points = "
-      "[(0, 0, 0), (1, 2, "
-      "3)]\n"
-      "    rel material:binding = </a/b>\n    uniform token subdivisionScheme = \"none\" ( doc "
-      "= "
-      "\"x\" )\n}\n"
-      "def Xform \"rig\"\n{\n    double3 xformOp:translate = (1, 2, 3)\n    float3 "
-      "xformOp:rotateXYZ = (0, 90, 0)\n"
-      "    uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:rotateXYZ\"]\n\n   "
-      " "
-      "def Camera \"cam\"\n   "
-      " {\n"
-      "        float focalLength = 50\n        float horizontalAperture = 36 # mm of a cm\n"
-      "        float verticalAperture = 24\n        float horizontalApertureOffset = 3.6\n"
-      "        float verticalApertureOffset = 2.4\n        float2 clippingRange = (1, 10000)\n "
-      "    "
-      "   float fStop = "
-      "2.5\n"
-      "        float focusDistance = 12\n        token projection = \"perspective\"\n"
-      "        matrix4d xformOp:transform = ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, "
-      "4, "
-      "1) )\n"
-      "        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n    }\n}\n"
-      "def Scope \"Render\" { def RenderSettings \"s\" { uniform int2 resolution = (360, 240) "
-      "} "
-      "}\n";
+      "#usda 1.0\n"
+      "(\n"
+      "    \"a comment\"\n"
+      "    upAxis = \"Y\"\n"
+      "    customLayerData = { string a = \"}\" }\n"
+      ")\n"
+      "def Mesh \"m\" ( prepend apiSchemas = [\"MaterialBindingAPI\"] )\n"
+      "{\n"
+      "    point3f[] points = [(0, 0, 0), (1, 2, 3)]\n"
+      "    rel material:binding = </a/b>\n"
+      "    uniform token subdivisionScheme = \"none\" ( doc = \"x\" )\n"
+      "}\n"
+      "def Xform \"rig\"\n"
+      "{\n"
+      "    double3 xformOp:translate = (1, 2, 3)\n"
+      "    float3 xformOp:rotateXYZ = (0, 90, 0)\n"
+      "    uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:rotateXYZ\"]\n"
+      "\n"
+      "    def Camera \"cam\"\n"
+      "    {\n"
+      "        float focalLength = 50\n"
+      "        float horizontalAperture = 36 # mm of a cm\n"
+      "        float verticalAperture = 24\n"
+      "        float horizontalApertureOffset = 3.6\n"
+      "        float verticalApertureOffset = 2.4\n"
+      "        float2 clippingRange = (1, 10000)\n"
+      "        float fStop = 2.5\n"
+      "        float focusDistance = 12\n"
+      "        token projection = \"perspective\"\n"
+      "        matrix4d xformOp:transform = ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, "
+      "0, 4, 1) )\n"
+      "        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n"
+      "    }\n"
+      "}\n"
+      "def Scope \"Render\" { def RenderSettings \"s\" { uniform int2 resolution = (360, "
+      "240) } }\n";
   vlCameraRecord r = read_with(put("x.usda", text), NULL);
   assert_string_equal(r.name, "cam");
   vlCamera c = make_or_fail(&r.camera);
@@ -551,10 +555,9 @@ static void test_matrices_of_others(void **state) {
   assert_float_equal(c.world_from_camera[10], -1, 0);
   /* Vulkan, y down and z forward in view space, reversed z without an end */
   r = read_with(put("vk.json",
-                    "{\"graphics_api\":\"vulkan\",\"width\":200,\"height\":100,\"order\":"
-                    "\"column-major\","
-                    "\"vectors\":\"column\",\"projection_matrix\":[0.5,0,0,0, 0,1,0,0, "
-                    "0,0,0,1, 0,0,0.1,0],"
+                    "{\"graphics_api\":\"vulkan\",\"width\":200,\"height\":100,"
+                    "\"order\":\"column-major\",\"vectors\":\"column\","
+                    "\"projection_matrix\":[0.5,0,0,0, 0,1,0,0, 0,0,0,1, 0,0,0.1,0],"
                     "\"view_matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}"),
                 NULL);
   c = make_or_fail(&r.camera);

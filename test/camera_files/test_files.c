@@ -172,13 +172,20 @@ static void test_velo_is_exact(void **state) {
 }
 
 static const char *const opencv_text =
-    "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n   "
-    "rows: "
-    "3\n   cols: 3\n"
-    "   dt: d\n   data: [ 500., 0., 319.5, 0., 501., 239.5, 0., 0., 1. ]\n"
-    "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ "
-    "0., "
-    "0., 0., 0., 0. ]\n";
+    "%YAML:1.0\n"
+    "---\n"
+    "image_width: 640\n"
+    "image_height: 480\n"
+    "camera_matrix: !!opencv-matrix\n"
+    "   rows: 3\n"
+    "   cols: 3\n"
+    "   dt: d\n"
+    "   data: [ 500., 0., 319.5, 0., 501., 239.5, 0., 0., 1. ]\n"
+    "distortion_coefficients: !!opencv-matrix\n"
+    "   rows: 1\n"
+    "   cols: 5\n"
+    "   dt: d\n"
+    "   data: [ 0., 0., 0., 0., 0. ]\n";
 
 /* One camera whose axis goes through the image's centre, in every dialect's own numbers. */
 static void test_half_pixel_table(void **state) {
@@ -186,12 +193,11 @@ static void test_half_pixel_table(void **state) {
   mkdir(path_of("half"), 0700); /* no images.txt beside */
   const vlCameraRecord records[] = {
       read_as(put("o.yaml", opencv_text), 0, NULL),
-      read_as(
-          put("o.json",
-              "{\"image_width\":640,\"image_height\":480,\"camera_matrix\":[[500,0,319.5],[0,"
-              "501,239.5],[0,"
-              "0,1]],\"distortion_coefficients\":[]}"),
-          0, NULL),
+      read_as(put("o.json",
+                  "{\"image_width\":640,\"image_height\":480,"
+                  "\"camera_matrix\":[[500,0,319.5],[0,501,239.5],[0,0,1]],"
+                  "\"distortion_coefficients\":[]}"),
+              0, NULL),
       read_as(
           put("r.yaml",
               "image_width: 640\nimage_height: 480\ncamera_name: x\ncamera_matrix:\n  rows: "
@@ -266,15 +272,23 @@ static void test_colmap_images(void **state) {
 
 static void test_kalibr_chain(void **state) {
   (void)state;
-  const char *path = put(
-      "chain.yaml",
-      "cam0:\n  camera_model: pinhole\n  intrinsics: [500, 501, 319.5, 239.5]\n  "
-      "distortion_model: none\n"
-      "  resolution: [640, 480]\ncam1:\n  T_cn_cnm1:\n  - [1.0, 0.0, 0.0, -0.11]\n  - [0.0, "
-      "1.0, 0.0, 0.0]\n"
-      "  - [0.0, 0.0, 1.0, 0.0]\n  - [0.0, 0.0, 0.0, 1.0]\n  camera_model: pinhole\n"
-      "  distortion_model: equidistant\n  distortion_coeffs: [0.01, 0.0, 0.0, 0.0]\n"
-      "  intrinsics: [500, 501, 319.5, 239.5]\n  resolution: [640, 480]\n");
+  const char *path = put("chain.yaml",
+                         "cam0:\n"
+                         "  camera_model: pinhole\n"
+                         "  intrinsics: [500, 501, 319.5, 239.5]\n"
+                         "  distortion_model: none\n"
+                         "  resolution: [640, 480]\n"
+                         "cam1:\n"
+                         "  T_cn_cnm1:\n"
+                         "  - [1.0, 0.0, 0.0, -0.11]\n"
+                         "  - [0.0, 1.0, 0.0, 0.0]\n"
+                         "  - [0.0, 0.0, 1.0, 0.0]\n"
+                         "  - [0.0, 0.0, 0.0, 1.0]\n"
+                         "  camera_model: pinhole\n"
+                         "  distortion_model: equidistant\n"
+                         "  distortion_coeffs: [0.01, 0.0, 0.0, 0.0]\n"
+                         "  intrinsics: [500, 501, 319.5, 239.5]\n"
+                         "  resolution: [640, 480]\n");
   vlCameraRecord r = read_as(path, 0, "cam1");
   assert_float_equal(r.camera.world_from_camera[3], 0.11, 1e-15);
   assert_int_equal(r.camera.projection, VL_PROJECTION_EQUIDISTANT);

@@ -106,14 +106,23 @@ static void kalibr_is_a_rig(void **state) {
 
 static void opencv_calibrations_have_views(void **state) {
   (void)state;
-  vlTrajectory *t = load(
-      put("calibration.yml",
-          "%YAML:1.0\n---\nimage_width: 64\nimage_height: 48\ncamera_matrix: !!opencv-matrix\n"
-          "  rows: 3\n  cols: 3\n  dt: d\n  data: [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]\n"
-          "distortion_coefficients: [0.1, 0, 0, 0]\nextrinsic_parameters: !!opencv-matrix\n"
-          "  rows: 2\n  cols: 6\n  dt: d\n  data: [0, 0, 0, 1, 2, 3, 0, 1.5707963267948966, 0, "
-          "0, 0, "
-          "4]\n"));
+  vlTrajectory *t =
+      load(put("calibration.yml",
+               "%YAML:1.0\n"
+               "---\n"
+               "image_width: 64\n"
+               "image_height: 48\n"
+               "camera_matrix: !!opencv-matrix\n"
+               "  rows: 3\n"
+               "  cols: 3\n"
+               "  dt: d\n"
+               "  data: [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]\n"
+               "distortion_coefficients: [0.1, 0, 0, 0]\n"
+               "extrinsic_parameters: !!opencv-matrix\n"
+               "  rows: 2\n"
+               "  cols: 6\n"
+               "  dt: d\n"
+               "  data: [0, 0, 0, 1, 2, 3, 0, 1.5707963267948966, 0, 0, 0, 4]\n"));
   assert_int_equal(vl_trajectory_frames(t), 2);
   assert_int_equal(vl_trajectory_cameras(t), 1);
   vlTrajectoryFrame a = frame_of(t, 0), b = frame_of(t, 1);

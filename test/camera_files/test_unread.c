@@ -141,8 +141,8 @@ static void names_of_one_dialect(void **state) {
   (void)state;
   const vlCameraFileDef def = sized();
   static const char view[] =
-      "{\"0\":{\"cam_K\":[500,0,320,0,500,240,0,0,1],\"cam_R_w2c\":[1,0,0,0,1,"
-      "0,0,0,1],\"cam_t_w2c\":[0,0,0]%s},\"crop\":{\"depth_scale\":1}}";
+      "{\"0\":{\"cam_K\":[500,0,320,0,500,240,0,0,1],\"cam_R_w2c\":[1,0,0,0,1,0,0,0,1],"
+      "\"cam_t_w2c\":[0,0,0]%s},\"crop\":{\"depth_scale\":1}}";
   char text[400];
   snprintf(text, sizeof text, view, "");
   assert_int_equal(read_with(put("scene_camera.json", text), &def).unread, 0);
@@ -159,8 +159,8 @@ static void names_of_one_dialect(void **state) {
 static void what_changes_the_image_is_refused(void **state) {
   (void)state;
   static const char lists[] =
-      "[{\"id\":0,\"img_name\":\"a\",\"width\":64,\"height\":48,\"position\":[0,0,0],\"rotation\":"
-      "[[1,0,0],[0,1,0],[0,0,1]],\"fx\":50,\"fy\":50,\"cx\":30,\"cy\":24}]";
+      "[{\"id\":0,\"img_name\":\"a\",\"width\":64,\"height\":48,\"position\":[0,0,0],"
+      "\"rotation\":[[1,0,0],[0,1,0],[0,0,1]],\"fx\":50,\"fy\":50,\"cx\":30,\"cy\":24}]";
   static const char blender[] =
       "{\"lens\":50,\"resolution_x\":64,\"resolution_y\":48,%s,"
       "\"matrix_world\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}";
@@ -209,8 +209,8 @@ static void what_changes_the_image_is_refused(void **state) {
 static void trajectories_have_the_note(void **state) {
   (void)state;
   static const char frames[] =
-      "{\"w\":64,\"h\":48,\"fl_x\":50,%s\"frames\":[{\"file_path\":\"a\",\"transform_matrix\":"
-      "[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}";
+      "{\"w\":64,\"h\":48,\"fl_x\":50,%s\"frames\":[{\"file_path\":\"a\","
+      "\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}";
   char text[300];
   vlTrajectory *trajectory = NULL;
   vlError error;
@@ -239,8 +239,8 @@ static void cameras_of_scenes(void **state) {
        "\"perspective\":{\"yfov\":1,\"znear\":1%s}}]}",
        ",\"%s\":%d"},
       {"node.gltf",
-       "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"camera\":0%s}],\"cameras\":[{\"type\":"
-       "\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}]}",
+       "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"camera\":0%s}],"
+       "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}]}",
        ",\"%s\":%d"},
       {"s.dae",
        "<COLLADA version=\"1.4.1\"><library_cameras><camera id=\"c\"><optics><technique_common>"
@@ -322,9 +322,9 @@ static void names_are_counted(void **state) {
     used += (size_t)snprintf(text + used, sizeof text - used, "\"field %d\":%d,", i, i);
   static char whole[16384];
   snprintf(whole, sizeof whole,
-           "{%s\"w\":64,\"h\":48,\"fl_x\":50,\"frames\":[{\"twice\":1,\"transform_matrix\":"
-           "[[1,0,0,0],[0,1,0,0],[0,0,1,0]]},{\"twice\":1,\"transform_matrix\":"
-           "[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}",
+           "{%s\"w\":64,\"h\":48,\"fl_x\":50,\"frames\":[{\"twice\":1,"
+           "\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]},"
+           "{\"twice\":1,\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}",
            text);
   const vlCameraRecord back = read_with(put("transforms.json", whole), NULL);
   if (back.unread != 42)

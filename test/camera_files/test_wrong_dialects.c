@@ -23,18 +23,17 @@ static void test_gltf(void **state) {
           "1e300}}]}",
           "aspect ratio");
   REFUSED("a.gltf", 1,
-          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"children\":[0]}],\"cameras\":[{\"type\":"
-          "\"perspective\"," LENS "}]}",
+          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"children\":[0]}],"
+          "\"cameras\":[{\"type\":\"perspective\"," LENS "}]}",
           "among its own children");
   REFUSED("a.gltf", 1,
-          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"children\":[7]}],\"cameras\":[{\"type\":"
-          "\"perspective\"," LENS "}]}",
+          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"children\":[7]}],"
+          "\"cameras\":[{\"type\":\"perspective\"," LENS "}]}",
           "a child that does not exist");
-  REFUSED(
-      "a.gltf", 1,
-      "{\"asset\":{},\"nodes\":[{\"camera\":0,\"rotation\":[0,0,0,0]}],\"cameras\":[{\"type\":"
-      "\"perspective\"," LENS "}]}",
-      "no rotation");
+  REFUSED("a.gltf", 1,
+          "{\"asset\":{},\"nodes\":[{\"camera\":0,\"rotation\":[0,0,0,0]}],"
+          "\"cameras\":[{\"type\":\"perspective\"," LENS "}]}",
+          "no rotation");
   REFUSED("a.gltf", 2, "{\n\"asset\": }", "not JSON");
   REFUSED("a.gltf", 1, "glTF\2", "");
   /* glTF's own members were changed, but the extras were not */
@@ -182,8 +181,7 @@ static void test_matrices(void **state) {
           "clip_z");
   REFUSED("m.json", 1,
           "{\"graphics_api\":\"opengl\"," M "\"projection_matrix\":" LENS_MATRIX
-          ",\"view_matrix\":[0,0,0,0,0,0,0,0,0,0,0,"
-          "0,0,0,0,1]}",
+          ",\"view_matrix\":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]}",
           "no pose");
 }
 

@@ -23,8 +23,8 @@
 /* What absorbs nothing. Dispersion: at its two surfaces in turn. */
 static const char *const lossless[] = {
     CLEAR
-    "\"float roughness\" 0 \"float transmission\" 1 \"float dispersion\" 2 \"bool "
-    "thinwalled\" false",
+    "\"float roughness\" 0 \"float transmission\" 1 \"float dispersion\" 2 "
+    "\"bool thinwalled\" false",
     CLEAR "\"float roughness\" 0 \"float transmission\" 1",
     CLEAR "\"float roughness\" .5 \"float specular\" 0 \"float diffusetransmission\" .5",
     "\"dielectric\" \"spectrum eta\" [360 1.6 560 1.55 830 1.5]",

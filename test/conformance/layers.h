@@ -50,8 +50,8 @@ static void check_holes(const char *materials, double amount, double grey) {
   snprintf(text, sizeof text,
            HEAD "WorldBegin LightSource \"infinite\" " NAMED
                 "MakeNamedMaterial \"air\" \"string type\" \"interface\"\n"
-                "MakeNamedMaterial \"holes\" \"string type\" \"mix\" \"string materials\" "
-                "[\"air\" \"red\"] \"float amount\" %g\n"
+                "MakeNamedMaterial \"holes\" \"string type\" \"mix\" "
+                "\"string materials\" [\"air\" \"red\"] \"float amount\" %g\n"
                 "Material \"mix\" \"string materials\" [%s] \"float amount\" %g " SQUARE_UP,
            red, materials, amount);
   Probe probe = {.ask = ask_holes, .user = &f};
@@ -327,16 +327,16 @@ static void check_dispersion(double dispersion) {
 /* Layers that absorb nothing over what absorbs nothing send all light back. */
 static const char *const whites[] = {
     "\"float metallic\" 0 \"float roughness\" .5",
-    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"float clearcoat\" 1 \"float "
-    "clearcoatroughness\" .5",
+    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 "
+    "\"float clearcoat\" 1 \"float clearcoatroughness\" .5",
     "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"float clearcoat\" 1",
     "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"rgb sheencolor\" [1 1 1] "
     "\"float sheenroughness\" .5",
     /* the strongest channel alone */
-    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"rgb sheencolor\" [0 1 "
-    "0] \"float sheenroughness\" .5",
-    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 \"rgb sheencolor\" [0 1 "
-    "0] \"float sheenroughness\" 1",
+    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 "
+    "\"rgb sheencolor\" [0 1 0] \"float sheenroughness\" .5",
+    "\"float metallic\" 0 \"float roughness\" .5 \"float specular\" 0 "
+    "\"rgb sheencolor\" [0 1 0] \"float sheenroughness\" 1",
     "\"float metallic\" 1 \"float roughness\" .6",
 };
 

@@ -233,8 +233,8 @@ static void chosen_powers(void **state) {
   for_each_light(AROUND, check_given_power);
   static const char *const shapes[] = {
       "\"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3]",
-      "\"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 .5 1 1 .5] \"integer indices\" [0 1 "
-      "2 2 1 3] \"point2 uv\" [0 0 1 0 0 1 1 1]",
+      "\"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 .5 1 1 .5] "
+      "\"integer indices\" [0 1 2 2 1 3] \"point2 uv\" [0 0 1 0 0 1 1 1]",
       "\"sphere\" \"float radius\" .7", "\"disk\" \"float radius\" .7",
       "\"cylinder\" \"float radius\" .4"};
   for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++)

@@ -249,8 +249,8 @@ static const char *const emissions[] = {
 static const char *const emitting_shapes[][2] = {
     {"bilinearmesh", "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3]"},
     {"trianglemesh",
-     "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3] \"integer indices\" [0 1 2 2 1 "
-     "3] \"normal N\" [.1 .2 1 .2 0 -.6 0 .1 1 .2 .1 1]"},
+     "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3] \"integer indices\" [0 1 2 2 1 3] "
+     "\"normal N\" [.1 .2 1 .2 0 -.6 0 .1 1 .2 .1 1]"},
 };
 
 /* The light of a shape that is placed above the floor. */

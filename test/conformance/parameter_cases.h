@@ -80,8 +80,8 @@ static const ParameterCase parameter_cases[] = {
     {.family = "materials",
      .kind = "principled",
      .parameter = "dispersion",
-     .base = "\"float metallic\" 0;\"float transmission\" 1;\"float roughness\" .2;\"bool "
-             "thinwalled\" false"},
+     .base = "\"float metallic\" 0;\"float transmission\" 1;\"float roughness\" .2;"
+             "\"bool thinwalled\" false"},
     {.family = "materials",
      .kind = "principled",
      .parameter = "diffusetransmissioncolor",
@@ -145,8 +145,7 @@ static const ParameterCase parameter_cases[] = {
     {.family = "media", .parameter = "preset", .value = "\"string preset\" \"Skin1\""},
     {.family = "media",
      .parameter = "density",
-     .value = "\"float density\" "
-              "[.1 .5 .9 .3 1 .6 .8 .2]"},
+     .value = "\"float density\" [.1 .5 .9 .3 1 .6 .8 .2]"},
     /* tracers */
     {.family = "tracers", .parameter = "maxdepth", .value = "\"integer maxdepth\" 1"},
     {.family = "tracers", .parameter = "radius", .value = "\"float radius\" .4"},

@@ -192,12 +192,12 @@ static const Family families[] = {
     {"media", HEAD "WorldBegin " LIGHTS GROUND
                    "AttributeBegin MakeNamedMedium \"m\" \"string type\" %s AttributeEnd\n"
                    "MediumInterface \"m\" \"\" Material \"interface\" " BALL},
-    {"shapes", HEAD
-     "WorldBegin " LIGHTS NAMED GROUND
-     "Texture \"c\" \"spectrum\" \"checkerboard\" \"float uscale\" 5 \"float vscale\" 5\n"
-     "Rotate 20 1 .3 .2 Material \"conductor\" \"float uroughness\" .4 \"float vroughness\" "
-     ".1 Shape %s "
-     "Translate .4 .2 .3 Material \"diffuse\" \"texture reflectance\" \"c\" Shape %s"},
+    {"shapes",
+     HEAD "WorldBegin " LIGHTS NAMED GROUND
+          "Texture \"c\" \"spectrum\" \"checkerboard\" \"float uscale\" 5 \"float vscale\" 5\n"
+          "Rotate 20 1 .3 .2 Material \"conductor\" \"float uroughness\" .4 "
+          "\"float vroughness\" .1 Shape %s Translate .4 .2 .3 Material \"diffuse\" "
+          "\"texture reflectance\" \"c\" Shape %s"},
     {"filters", HEAD "PixelFilter %s WorldBegin " LIGHTS GROUND "Material \"diffuse\" " BALL},
     {"tracers", HEAD "Integrator %s WorldBegin " TRACED},
 };
@@ -213,9 +213,8 @@ static const char *const lamps =
 
 static const char *const float_texture =
     HEAD "WorldBegin " LIGHTS NAMED GROUND
-         "Texture \"t\" \"float\" %s "
-         "Material \"mix\" \"string materials\" [\"grey\" \"red\"] \"texture amount\" "
-         "\"t\" " BALL;
+         "Texture \"t\" \"float\" %s Material \"mix\" \"string materials\" [\"grey\" \"red\"] "
+         "\"texture amount\" \"t\" " BALL;
 
 static bool is_float_texture(const Family *family, const vlKindRow *row) {
   return strcmp(family->name, "textures") == 0 && (row->traits & VL_TEXTURE_FLOAT_ONLY);
@@ -275,12 +274,13 @@ static const char *const meshes[][2] = {
      "Material \"diffuse\" Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] "
      "\"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3]\n"},
     {BALL,
-     "Rotate 70 1 .3 .2 Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2 0 2 4 2 3 4 1 "
-     "0 5 3 1 5 0 4 5 4 3 5] \"point3 P\" [.8 0 0 0 .8 0 0 0 .8 -.8 0 0 0 -.8 0 0 0 -.8] "
+     "Rotate 70 1 .3 .2 Shape \"trianglemesh\" "
+     "\"integer indices\" [0 1 2 1 3 2 0 2 4 2 3 4 1 0 5 3 1 5 0 4 5 4 3 5] "
+     "\"point3 P\" [.8 0 0 0 .8 0 0 0 .8 -.8 0 0 0 -.8 0 0 0 -.8] "
      "\"point2 uv\" [0 0 1 0 .5 1 0 1 .3 .6 .8 .4]\n"},
     {"Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0]",
-     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 "
-     "1 1 0]"},
+     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] "
+     "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0]"},
 };
 
 static void with_meshes(const char *text, char out[2 * TEXT]) {

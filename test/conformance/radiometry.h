@@ -116,8 +116,8 @@ static void powers(void **state) {
   for (int i = 0; i < 3; i++)
     check_power("emission", "diffuse",
                 HEAD "WorldBegin " AROUND
-                     "AreaLightSource %s Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 "
-                     "-1 1 0 1 1 .3]",
+                     "AreaLightSource %s Shape \"bilinearmesh\" "
+                     "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3]",
                 emitted[i]);
   expect_no_failures();
 }
@@ -183,8 +183,8 @@ static void illuminances(void **state) {
       snprintf(parameters, sizeof parameters, "%s \"float illuminance\" 5", c->illuminated[i]);
       scene_text(text,
                  HEAD
-                 "WorldBegin LightSource %s Material \"diffuse\" Shape \"sphere\" \"float "
-                 "radius\" 1",
+                 "WorldBegin LightSource %s Material \"diffuse\" Shape \"sphere\" "
+                 "\"float radius\" 1",
                  row->name, parameters);
       Mean light = receive(text, normal, ask_ball, 24);
       /* of an image, it is summed over the centres of its few pixels */

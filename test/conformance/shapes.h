@@ -285,8 +285,8 @@ static void check_emission_inside_out(const vlKindRow *row, const ShapeVariant *
   static char text[TEXT];
   snprintf(text, sizeof text,
            HEAD "WorldBegin " FLOOR
-                "ReverseOrientation AreaLightSource \"diffuse\" \"rgb L\" "
-                "[1 1 1] Translate .3 1.1 .2 Rotate 70 1 .2 .1 Shape \"%s\" %s",
+                "ReverseOrientation AreaLightSource \"diffuse\" "
+                "\"rgb L\" [1 1 1] Translate .3 1.1 .2 Rotate 70 1 .2 .1 Shape \"%s\" %s",
            row->name, v->parameters);
   check_samples_of_light("shapes", row->name, "inside out", text);
 }

@@ -291,8 +291,8 @@ static void textured_text(char text[TEXT], const vlKindRow *row, const TextureVa
   static const char color[] = "Texture \"t\" \"spectrum\" %s\n";
   char form[TEXT];
   snprintf(form, sizeof form,
-           "%sAttributeBegin %s %sAttributeEnd Material \"diffuse\" \"texture reflectance\" "
-           "\"t\" %s",
+           "%sAttributeBegin %s %sAttributeEnd Material \"diffuse\" "
+           "\"texture reflectance\" \"t\" %s",
            head, space, row->traits & VL_TEXTURE_FLOAT_ONLY ? number : color, shape);
   scene_text(text, form, row->name, variant->parameters);
 }

@@ -49,9 +49,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   }
   if (begins(data, size, "NanoVDB")) {
     build(
-        "WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" "
-        "\"input\"\n"
-        "MediumInterface \"m\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+        "WorldBegin\n"
+        "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"input\"\n"
+        "MediumInterface \"m\" \"\"\n"
+        "Material \"interface\"\n"
+        "Shape \"sphere\"\n");
     return 0;
   }
   read_lamp(data, size);

@@ -54,22 +54,20 @@ static void transforms(void **state) {
 static void shapes(void **state) {
   (void)state;
   Loaded l;
-  load_fine(
-      &l, W
-      "Shape \"sphere\" \"float radius\" 2 \"float phimax\" 180\n"
-      "Shape \"sphere\" \"float radius\" 2 \"float zmin\" -1 \"float zmax\" 1.5\n"
-      "Shape \"disk\" \"float height\" 3 \"float innerradius\" .5\n"
-      "Shape \"cylinder\" \"float zmin\" 4 \"float zmax\" -4\n"
-      "ReverseOrientation\n"
-      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 "
-      "1 2 1 3 2]\n"
-      "  \"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1] \"vector3 S\" [1 0 0 1 0 0 1 0 0 1 0 0] "
-      "\"point2 uv\" [0 0 1 0 0 "
-      "1 1 1]\n"
-      "  \"integer faceIndices\" [0 1]\n"
-      "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n"
-      "Shape \"sphere\" \"float zmin\" 9 \"float zmax\" -.5\n");
+  load_fine(&l, W
+            "Shape \"sphere\" \"float radius\" 2 \"float phimax\" 180\n"
+            "Shape \"sphere\" \"float radius\" 2 \"float zmin\" -1 \"float zmax\" 1.5\n"
+            "Shape \"disk\" \"float height\" 3 \"float innerradius\" .5\n"
+            "Shape \"cylinder\" \"float zmin\" 4 \"float zmax\" -4\n"
+            "ReverseOrientation\n"
+            "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] "
+            "\"integer indices\" [0 1 2 1 3 2]\n"
+            "  \"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1] \"vector3 S\" [1 0 0 1 0 0 1 0 0 1 0 0] "
+            "\"point2 uv\" [0 0 1 0 0 1 1 1]\n"
+            "  \"integer faceIndices\" [0 1]\n"
+            "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0]\n"
+            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n"
+            "Shape \"sphere\" \"float zmin\" 9 \"float zmax\" -.5\n");
   const vlShapeDef *s = l.scene->shapes.items;
   assert_near(s[0].z_min, -2, 0);
   assert_near(s[0].z_max, 2, 0);

@@ -42,9 +42,9 @@ static void pbrt_cameras(void **state) {
   (void)state;
   Loaded l;
   vlCamera c = camera_of(&l,
-                         "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" "
-                         "100\nCamera \"perspective\" "
-                         "\"float fov\" 90\n" W);
+                         "Film \"rgb\" \"integer xresolution\" 200 "
+                         "\"integer yresolution\" 100\n"
+                         "Camera \"perspective\" \"float fov\" 90\n" W);
   assert_seen(&c, 0, 0, 1, 100, 50);
   assert_seen(&c, 1, 0, 1, 150, 50);
   assert_seen(&c, 0, 1, 1, 100, 0);
@@ -60,18 +60,18 @@ static void pbrt_cameras(void **state) {
   end_load(&l);
   /* LookAt: from (0,0,-5) to the origin; right is +x in pbrt's numbers */
   c = camera_of(&l,
-                "LookAt 0 0 -5 0 0 0 0 1 0\nFilm \"rgb\" \"integer xresolution\" 100 \"integer "
-                "yresolution\" "
-                "100\nCamera \"perspective\"\n" W);
+                "LookAt 0 0 -5 0 0 0 0 1 0\n"
+                "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100\n"
+                "Camera \"perspective\"\n" W);
   assert_seen(&c, 5, 0, 0, 100, 50);
   assert_seen(&c, 0, 5, 0, 50, 0);
   assert_near(c.world_from_camera[11], -5, 1e-12);
   end_load(&l);
   /* a mirroring transform before the camera swaps left and right */
-  c = camera_of(
-      &l,
-      "Scale -1 1 1\nFilm \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" "
-      "100\nCamera \"perspective\"\n" W);
+  c = camera_of(&l,
+                "Scale -1 1 1\n"
+                "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100\n"
+                "Camera \"perspective\"\n" W);
   assert_seen(&c, 1, 0, 1, 0, 50);
   end_load(&l);
   /* screen window: x 0..1, y 0..1 at fov 90: the quadrant right and above */
@@ -83,15 +83,13 @@ static void pbrt_cameras(void **state) {
   end_load(&l);
   /* a frame of another shape than the image: pixels are not square */
   c = camera_of(&l,
-                "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100\nCamera "
-                "\"perspective\" \"float "
-                "frameaspectratio\" 2\n" W);
+                "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 100\n"
+                "Camera \"perspective\" \"float frameaspectratio\" 2\n" W);
   assert_seen(&c, 2, 1, 1, 100, 0);
   end_load(&l);
   c = camera_of(&l,
-                "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\nCamera "
-                "\"orthographic\" \"float "
-                "screenwindow\" [-4 4 -2 2]\n" W);
+                "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\n"
+                "Camera \"orthographic\" \"float screenwindow\" [-4 4 -2 2]\n" W);
   assert_int_equal(c.projection, VL_PROJECTION_ORTHOGRAPHIC);
   assert_seen(&c, 2, 1, 7, 150, 25);
   end_load(&l);
@@ -100,11 +98,9 @@ static void pbrt_cameras(void **state) {
                 "\"orthographic\"\n" W);
   assert_seen(&c, 2, 1, 7, 200, 0);
   end_load(&l);
-  c = camera_of(
-      &l,
-      "Camera \"perspective\" \"float lensradius\" 0.5 \"float focaldistance\" 7 \"float "
-      "shutteropen\" 1 "
-      "\"float shutterclose\" 3\n" W);
+  c = camera_of(&l,
+                "Camera \"perspective\" \"float lensradius\" 0.5 \"float focaldistance\" 7 "
+                "\"float shutteropen\" 1 \"float shutterclose\" 3\n" W);
   assert_near(c.lens_radius, 0.5, 0);
   assert_near(c.focus_distance, 7, 0);
   assert_near(c.shutter_open, 1, 0);
@@ -146,10 +142,9 @@ static void lecture_cameras(void **state) {
       camera_of(&l,
                 "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 300\n"
                 "Camera \"pinhole\" \"point3 eye\" [0 0 500] \"point3 lookat\" [0 0 0] "
-                "\"vector3 up\" [0 1 "
-                "0] \"float d\" 400\n"
-                "  \"float zoom\" 1.5 \"float pixelsize\" 0.5 \"float exposuretime\" 2 \"float "
-                "roll\" 0\n" W);
+                "\"vector3 up\" [0 1 0] \"float d\" 400\n"
+                "  \"float zoom\" 1.5 \"float pixelsize\" 0.5 \"float exposuretime\" 2 "
+                "\"float roll\" 0\n" W);
   assert_seen(&c, 0, 0, 0, 200, 150);
   assert_seen(&c, 10, 20, 0, 200 + 1.5 * 400 / 0.5 * 10 / 500,
               150 - 1.5 * 400 / 0.5 * 20 / 500);
@@ -157,16 +152,14 @@ static void lecture_cameras(void **state) {
   end_load(&l);
   c = camera_of(&l,
                 "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 300\n"
-                "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"float fov\" 90 \"string fovaxis\" "
-                "\"horizontal\" \"float "
-                "roll\" 90\n" W);
+                "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"float fov\" 90 "
+                "\"string fovaxis\" \"horizontal\" \"float roll\" 90\n" W);
   assert_near(c.fx, 200, 1e-9);
   assert_seen(&c, 0, 1, 4, 0, 150); /* the camera turned clockwise: up is on the left */
   end_load(&l);
   c = camera_of(&l,
-                "Camera \"thinlens\" \"float lensradius\" 2 \"float focusdistance\" 30 \"float "
-                "fx\" 100 \"float cx\" 3 "
-                "\"float cy\" 4\n" W);
+                "Camera \"thinlens\" \"float lensradius\" 2 \"float focusdistance\" 30 "
+                "\"float fx\" 100 \"float cx\" 3 \"float cy\" 4\n" W);
   assert_near(c.lens_radius, 2, 0);
   assert_near(c.focus_distance, 30, 0);
   assert_near(c.fy, 100, 0);

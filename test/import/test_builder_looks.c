@@ -19,15 +19,11 @@ static void materials(void **state) {
   load_fine(&l, W "Material \"diffuse\"");
   assert_near(last_material(&l)->reflectance.value.value, 0.5, 0);
   end_load(&l);
-  load_fine(
-      &l, W
-      "Material \"coateddiffuse\" \"rgb reflectance\" [.1 .2 .3] \"float roughness\" .3 "
-      "\"float uroughness\" .2 "
-      "\"float thickness\" .5"
-      " \"spectrum eta\" \"glass-BK7\" \"float g\" .7 \"rgb albedo\" [.9 .9 .9] \"integer "
-      "maxdepth\" 3 \"integer "
-      "nsamples\" 2"
-      " \"bool remaproughness\" false");
+  load_fine(&l, W
+            "Material \"coateddiffuse\" \"rgb reflectance\" [.1 .2 .3] \"float roughness\" .3 "
+            "\"float uroughness\" .2 \"float thickness\" .5 \"spectrum eta\" \"glass-BK7\" "
+            "\"float g\" .7 \"rgb albedo\" [.9 .9 .9] \"integer maxdepth\" 3 "
+            "\"integer nsamples\" 2 \"bool remaproughness\" false");
   const vlMaterialDef *m = last_material(&l);
   assert_int_equal(m->kind, VL_MATERIAL_COATED_DIFFUSE);
   assert_near(m->reflectance.value.rgb[1], .2, 1e-7);
@@ -53,8 +49,8 @@ static void materials(void **state) {
   assert_true(last_material(&l)->use_reflectance);
   end_load(&l);
   load_fine(&l, W
-            "Material \"dielectric\" \"float eta\" 1.33 Material \"thindielectric\" \"spectrum "
-            "eta\" [400 1.5 700 1.4]");
+            "Material \"dielectric\" \"float eta\" 1.33 Material \"thindielectric\" "
+            "\"spectrum eta\" [400 1.5 700 1.4]");
   assert_near(l.scene->materials.items[0].eta.value.value, 1.33, 1e-6);
   assert_int_equal(last_material(&l)->eta.value.count, 2);
   assert_near(last_material(&l)->eta.value.wavelengths[1], 700, 0);
@@ -100,12 +96,10 @@ static void bodies(void **state) {
   assert_near(m->g.value, 0, 0);
   assert_non_null(strstr(l.log, "\"g\" is ignored beside \"name\""));
   end_load(&l);
-  load_fine(
-      &l, W
-      "Texture \"t\" \"spectrum\" \"checkerboard\" Material \"subsurface\" \"texture "
-      "sigma_a\" \"t\""
-      " \"spectrum sigma_s\" [400 1 700 2] \"float g\" -.5 \"float uroughness\" .2 \"bool "
-      "remaproughness\" false");
+  load_fine(&l, W
+            "Texture \"t\" \"spectrum\" \"checkerboard\" Material \"subsurface\" "
+            "\"texture sigma_a\" \"t\" \"spectrum sigma_s\" [400 1 700 2] \"float g\" -.5 "
+            "\"float uroughness\" .2 \"bool remaproughness\" false");
   m = last_material(&l);
   assert_int_equal(m->subsurface.sigma_a.texture.index, 1);
   assert_near(m->subsurface.sigma_s.value.values[1], 2, 0);
@@ -159,8 +153,8 @@ static void dots(void **state) {
       &l, W
       "Texture \"d\" \"float\" \"dots\"\n"
       "Texture \"e\" \"spectrum\" \"dots\" \"rgb inside\" [1 0 0] \"rgb outside\" [0 1 0]\n"
-      "Material \"diffuse\" \"texture reflectance\" \"e\"\nShape \"sphere\" \"texture "
-      "alpha\" \"d\"\n");
+      "Material \"diffuse\" \"texture reflectance\" \"e\"\n"
+      "Shape \"sphere\" \"texture alpha\" \"d\"\n");
   const vlTextureDef *t = l.scene->textures.items; /* a: between the dots, b: in them */
   assert_near(t[0].float_a.value, 1, 0);
   assert_near(t[0].float_b.value, 0, 0);
@@ -225,8 +219,8 @@ static void plain_portal(void **state) {
   load_fine(&l, W
             "LightSource \"infinite\" \"rgb L\" [3 2 1] \"float scale\" 4 "
             "\"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]\n"
-            "LightSource \"infinite\" \"blackbody L\" 3000 \"point3 portal\" [0 0 0 0 1 0 1 1 "
-            "0 1 0 0]");
+            "LightSource \"infinite\" \"blackbody L\" 3000 "
+            "\"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]");
   const vlLightDef *d = l.scene->lights.items;
   assert_true(d[0].has_portal && d[1].has_portal);
   assert_int_equal(vl_image_width(d[0].image), 1);
@@ -244,17 +238,15 @@ static void lights(void **state) {
   (void)state;
   Loaded l;
   load_fine(
-      &l,
-      "ColorSpace \"rec2020\"\n" W
-      "LightSource \"point\" \"rgb I\" [1 2 3] \"float scale\" 4 \"float power\" 60 \"point3 "
-      "from\" [1 2 3]\n"
-      "LightSource \"spot\" \"blackbody I\" 3000 \"float coneangle\" 45 \"float "
-      "conedeltaangle\" 10 \"point3 "
-      "to\" [0 1 0]\n"
-      "ColorSpace \"srgb\" Translate 5 0 0\n"
-      "LightSource \"distant\" \"float illuminance\" 100 \"point3 from\" [0 0 5]\n"
-      "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\" \"float illuminance\" -1\n"
-      "LightSource \"infinite\"\n");
+      &l, "ColorSpace \"rec2020\"\n" W
+          "LightSource \"point\" \"rgb I\" [1 2 3] \"float scale\" 4 \"float power\" 60 "
+          "\"point3 from\" [1 2 3]\n"
+          "LightSource \"spot\" \"blackbody I\" 3000 \"float coneangle\" 45 "
+          "\"float conedeltaangle\" 10 \"point3 to\" [0 1 0]\n"
+          "ColorSpace \"srgb\" Translate 5 0 0\n"
+          "LightSource \"distant\" \"float illuminance\" 100 \"point3 from\" [0 0 5]\n"
+          "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\" \"float illuminance\" -1\n"
+          "LightSource \"infinite\"\n");
   const vlLightDef *d = l.scene->lights.items;
   assert_int_equal(d[0].kind, VL_LIGHT_POINT);
   assert_int_equal(d[0].color.space, VL_SPACE_REC2020);
@@ -283,9 +275,8 @@ static void area_lights(void **state) {
   vlSceneInfo info;
   load_fine(
       &l, W
-      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] \"float scale\" 2 \"bool "
-      "twosided\" true "
-      "\"float power\" 7\n"
+      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] \"float scale\" 2 "
+      "\"bool twosided\" true \"float power\" 7\n"
       "Shape \"sphere\" Shape \"disk\" AreaLightSource \"\" Shape \"sphere\" AttributeEnd "
       "Shape \"cylinder\"\n"
       "ObjectBegin \"o\" AreaLightSource \"diffuse\" Shape \"sphere\" ObjectEnd\n");
@@ -306,9 +297,10 @@ static void media(void **state) {
   (void)state;
   Loaded l;
   load_fine(&l,
-            "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 "
-            "1]\nMediumInterface \"\" \"fog\"\n"
-            "Camera \"perspective\"\nIntegrator \"path\"\n" W "Shape \"sphere\"");
+            "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 1]\n"
+            "MediumInterface \"\" \"fog\"\n"
+            "Camera \"perspective\"\n"
+            "Integrator \"path\"\n" W "Shape \"sphere\"");
   assert_non_null(strstr(
       l.log,
       "warning t.pbrt:3:1: integrator \"path\" looks past participating media (here \"fog\")"));
@@ -319,21 +311,24 @@ static void media(void **state) {
   end_load(&l);
   /* Every kind; named before they are made; who lies in them. */
   load_fine(
-      &l,
-      "MediumInterface \"\" \"air\"\nCamera \"perspective\"\n" W
-      "MakeNamedMedium \"air\" \"string type\" \"homogeneous\" \"string preset\" \"Skin1\" "
-      "\"float scale\" 2\n"
-      "LightSource \"point\"\nMediumInterface \"grid\" \"air\"\nShape \"sphere\"\n"
-      "AttributeBegin Translate 1 2 3\n"
-      "MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"integer "
-      "nz\" 2 \"float density\" "
-      "[1 2 3 4] \"float Lescale\" [5 6 7 8] \"rgb Le\" [1 2 3] \"point3 p0\" [4 5 6] \"float "
-      "g\" -.5\nAttributeEnd\n"
-      "MakeNamedMedium \"rgb\" \"string type\" \"rgbgrid\" \"rgb sigma_a\" [1 2 3] \"rgb Le\" "
-      "[3 2 1] \"float "
-      "Lescale\" 7\nMakeNamedMedium \"cloud\" \"string type\" \"cloud\" \"float wispiness\" 3\n"
-      "MediumInterface \"rgb\"\nShape \"disk\"\nMediumInterface \"cloud\" \"cloud\"\nShape "
-      "\"disk\"\n");
+      &l, "MediumInterface \"\" \"air\"\nCamera \"perspective\"\n" W
+          "MakeNamedMedium \"air\" \"string type\" \"homogeneous\" \"string preset\" \"Skin1\" "
+          "\"float scale\" 2\n"
+          "LightSource \"point\"\n"
+          "MediumInterface \"grid\" \"air\"\n"
+          "Shape \"sphere\"\n"
+          "AttributeBegin Translate 1 2 3\n"
+          "MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
+          "\"integer nz\" 2 \"float density\" [1 2 3 4] \"float Lescale\" [5 6 7 8] "
+          "\"rgb Le\" [1 2 3] \"point3 p0\" [4 5 6] \"float g\" -.5\n"
+          "AttributeEnd\n"
+          "MakeNamedMedium \"rgb\" \"string type\" \"rgbgrid\" \"rgb sigma_a\" [1 2 3] "
+          "\"rgb Le\" [3 2 1] \"float Lescale\" 7\n"
+          "MakeNamedMedium \"cloud\" \"string type\" \"cloud\" \"float wispiness\" 3\n"
+          "MediumInterface \"rgb\"\n"
+          "Shape \"disk\"\n"
+          "MediumInterface \"cloud\" \"cloud\"\n"
+          "Shape \"disk\"\n");
   const vlMediumDef *m = l.scene->media.items;
   const vlShapeDef *s = l.scene->shapes.items;
   assert_int_equal(l.scene->media.count, 4);

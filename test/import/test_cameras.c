@@ -61,8 +61,8 @@ static void kinds(void **state) {
     vlProjection projection;
   } cases[] = {
       {"\"fisheye\" \"float fov\" 180", VL_PROJECTION_EQUIDISTANT},
-      {"\"fisheye\" \"string mapping\" \"equisolid\" \"float fov\" 220 \"string fovaxis\" "
-       "\"diagonal\"",
+      {"\"fisheye\" \"string mapping\" \"equisolid\" \"float fov\" 220 "
+       "\"string fovaxis\" \"diagonal\"",
        VL_PROJECTION_EQUISOLID},
       {"\"fisheye\" \"string mapping\" \"orthographic\"", VL_PROJECTION_SINE},
       {"\"fisheye\" \"string mapping\" \"stereographic\" \"float maxangle\" 80",
@@ -115,11 +115,9 @@ static void kinds(void **state) {
 static void stereo_and_the_cross(void **state) {
   (void)state;
   Loaded l;
-  load_fine(
-      &l, FILM
-      "Camera \"pinhole\" \"string stereo\" \"off-axis\" \"float interocular\" 0.2 \"float "
-      "convergence\" 4 "
-      "\"string stereoeye\" \"left\"\n" W);
+  load_fine(&l, FILM
+            "Camera \"pinhole\" \"string stereo\" \"off-axis\" \"float interocular\" 0.2 "
+            "\"float convergence\" 4 \"string stereoeye\" \"left\"\n" W);
   const vlCameraDef *def = &vl_scene_defs(l.scene)->camera;
   assert_true(def->stereo.mode == VL_STEREO_OFF_AXIS && def->stereo_eye == VL_EYE_LEFT);
   assert_true(def->stereo.interocular == (double)0.2f || def->stereo.interocular == 0.2);

@@ -168,9 +168,8 @@ static const struct {
     {W "Material \"subsurface\" \"string name\" \"skin1\"",
      "t.pbrt:2:23: Material \"subsurface\": no preset is named \"skin1\" (did you mean "
      "\"Skin1\"?)"},
-    {W "Material \"subsurface\" \"string name\" \"Skin1\" \"rgb sigma_a\" [1 1 1] \"rgb "
-       "sigma_s\" "
-       "[1 1 1]",
+    {W "Material \"subsurface\" \"string name\" \"Skin1\" \"rgb sigma_a\" [1 1 1] "
+       "\"rgb sigma_s\" [1 1 1]",
      "t.pbrt:2:1: Material \"subsurface\": give only one of \"name\", \"sigma_a\" and "
      "\"sigma_s\", "
      "\"reflectance\" "
@@ -198,11 +197,11 @@ static const struct {
      "t.pbrt:2:1: Material \"measured\": \"string filename\" is missing"},
     {W "MakeNamedMaterial \"a\"",
      "t.pbrt:2:1: MakeNamedMaterial \"a\": \"string type\" is missing"},
-    {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string "
-       "type\" \"diffuse\"",
+    {W "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
+       "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"",
      "t.pbrt:3:1: material \"a\" is made a second time (first in line 2)"},
-    {W "NamedMaterial \"wals\" Shape \"sphere\" MakeNamedMaterial \"walls\" \"string type\" "
-       "\"diffuse\"",
+    {W "NamedMaterial \"wals\" Shape \"sphere\" MakeNamedMaterial \"walls\" "
+       "\"string type\" \"diffuse\"",
      "t.pbrt:2:1: there is no material \"wals\" (did you mean \"walls\"?)"},
     {W "Shape \"curve\" \"point3 P\" [0 0 0]",
      "t.pbrt:2:15: Shape \"curve\": 1 points, but Bezier curves of degree 3 need 4, or that "
@@ -264,16 +263,14 @@ static const struct {
     {"Option \"seed\" x", "t.pbrt:1:1: Option \"seed\": \"x\" is not an integer"},
     {"Option \"sede\" 1", "t.pbrt:1:1: unknown option \"sede\" (did you mean \"seed\"?)"},
     /* references */
-    {W "Texture \"a\" \"spectrum\" \"scale\" \"texture tex\" \"b\"\nTexture \"b\" \"spectrum\" "
-       "\"scale\" \"texture "
-       "tex\" \"a\"",
+    {W "Texture \"a\" \"spectrum\" \"scale\" \"texture tex\" \"b\"\n"
+       "Texture \"b\" \"spectrum\" \"scale\" \"texture tex\" \"a\"",
      "t.pbrt:3:32: texture \"a\" refers to itself"},
     {W
      "Texture \"a\" \"float\" \"constant\"\nMaterial \"diffuse\" \"texture reflectance\" \"a\"",
      "t.pbrt:3:20: texture \"a\" is a float texture; a spectrum texture is needed here"},
-    {W
-     "Texture \"wood\" \"spectrum\" \"constant\"\nMaterial \"diffuse\" \"texture reflectance\" "
-     "\"wod\"",
+    {W "Texture \"wood\" \"spectrum\" \"constant\"\n"
+       "Material \"diffuse\" \"texture reflectance\" \"wod\"",
      "t.pbrt:3:20: there is no spectrum texture \"wod\" (did you mean \"wood\"?)"},
     {W "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"]",
      "t.pbrt:2:43: material \"a\" is mixed of itself"},
@@ -326,9 +323,8 @@ static const struct {
     {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1e39 0]",
      "t.pbrt:2:1: position of vertex 2 is not finite (y is inf)"},
     {W "Shape \"plymesh\"", "t.pbrt:2:1: Shape \"plymesh\": \"string filename\" is missing"},
-    {W "Shape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 1 2 "
-       "0 1 "
-       "3]",
+    {W "Shape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] "
+       "\"integer indices\" [0 1 2 0 1 3]",
      "t.pbrt:2:1: Shape \"loopsubdiv\": faces 0 and 1 run along their common edge (vertices 0, "
      "1) "
      "in the same "
@@ -421,27 +417,24 @@ static const struct {
      "is -2"},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float density\" 2",
      "t.pbrt:1:49: MakeNamedMedium \"m\": unknown parameter \"density\""},
-    {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"float density\" "
-     "[1 "
-     "2 3]",
+    {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
+     "\"float density\" [1 2 3]",
      "t.pbrt:1:64: MakeNamedMedium \"m\": \"density\" holds 3 numbers, but nx * ny * nz = 2 * "
      "1 * "
      "1 cells need 2"},
-    {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"float density\" "
-     "[1 "
-     "-2]",
+    {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
+     "\"float density\" [1 -2]",
      "t.pbrt:1:1: medium \"m\": density: value 1 is negative (-2)"},
     {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\"",
      "t.pbrt:1:1: MakeNamedMedium \"m\": \"float density\" is missing"},
-    {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float density\" 1 \"float "
-     "temperature\" 1 \"rgb Le\" [1 "
-     "1 1]",
+    {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float density\" 1 "
+     "\"float temperature\" 1 \"rgb Le\" [1 1 1]",
      "t.pbrt:1:1: MakeNamedMedium \"m\": give either \"Le\" or \"temperature\", not both"},
     {"MakeNamedMedium \"m\" \"string type\" \"rgbgrid\" \"rgb Le\" [1 1 1]",
      "t.pbrt:1:1: MakeNamedMedium \"m\": \"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each "
      "cell) is missing"},
-    {"MakeNamedMedium \"m\" \"string type\" \"rgbgrid\" \"rgb sigma_s\" [1 1 1] \"rgb Le\" [1 "
-     "1 1]",
+    {"MakeNamedMedium \"m\" \"string type\" \"rgbgrid\" \"rgb sigma_s\" [1 1 1] "
+     "\"rgb Le\" [1 1 1]",
      "t.pbrt:1:1: medium \"m\": a grid that emits needs sigma_a on the grid, too"},
     {"MakeNamedMedium \"m\" \"string type\" \"cloud\" \"point3 p1\" [0 1 1]",
      "t.pbrt:1:1: medium \"m\": its box has no room: p0 must be below p1 in x, y and z"},
@@ -484,20 +477,23 @@ static void permissive(void **state) {
   (void)state;
   Loaded l;
   vlSceneInfo info;
-  load_text(
-      &l,
-      "Film \"rgb\"\nCamera \"future\" \"string lensfile\" \"wide.dat\"\n"
-      "Integrator \"function\" \"integer maxdepth\" 9\nOption \"forcediffuse\" true\nSampler "
-      "\"future\" \"integer n\" "
-      "1\n" W
-      "Material \"velvet\" \"rgb mfp\" [1 1 1]\nShape \"sphere\"\nShape \"heightfield\"\n"
-      "LightSource \"projector\"\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" "
-      "\"texture reflectance\" "
-      "\"t\"\n"
-      "MakeNamedMedium \"m\" \"string type\" \"smoke\"\nMediumInterface "
-      "\"m\"\nActiveTransform EndTime Translate 1 1 "
-      "1\nShape \"disk\"\n",
-      true);
+  load_text(&l,
+            "Film \"rgb\"\n"
+            "Camera \"future\" \"string lensfile\" \"wide.dat\"\n"
+            "Integrator \"function\" \"integer maxdepth\" 9\n"
+            "Option \"forcediffuse\" true\n"
+            "Sampler \"future\" \"integer n\" 1\n" W
+            "Material \"velvet\" \"rgb mfp\" [1 1 1]\n"
+            "Shape \"sphere\"\n"
+            "Shape \"heightfield\"\n"
+            "LightSource \"projector\"\n"
+            "Texture \"t\" \"spectrum\" \"ptex\"\n"
+            "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+            "MakeNamedMedium \"m\" \"string type\" \"smoke\"\n"
+            "MediumInterface \"m\"\n"
+            "ActiveTransform EndTime Translate 1 1 1\n"
+            "Shape \"disk\"\n",
+            true);
   assert_int_equal(l.result, VL_OK);
   vl_scene_info(l.scene, &info);
   assert_int_equal(info.shapes, 2);

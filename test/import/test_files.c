@@ -82,9 +82,10 @@ static void includes(void **state) {
              "\"disk\"\nNamedMaterial \"m\" Shape \"disk\"");
   write_file("parts/a.pbrt", "Translate 2 0 0\nInclude \"c.pbrt\"\nInclude \"main-c.pbrt\"");
   write_file("parts/b.pbrt",
-             "Translate 5 0 0\nReverseOrientation\nShape \"cylinder\"\nMakeNamedMaterial \"m\" "
-             "\"string type\" "
-             "\"dielectric\"");
+             "Translate 5 0 0\n"
+             "ReverseOrientation\n"
+             "Shape \"cylinder\"\n"
+             "MakeNamedMaterial \"m\" \"string type\" \"dielectric\"");
   write_file("parts/c.pbrt", "Shape \"sphere\" \"float radius\" 2");
   write_file("main-c.pbrt", "Shape \"sphere\" \"float radius\" 7"); /* beside the first file */
   file_fine(&l, "main.pbrt");

@@ -59,12 +59,10 @@ static void arrays(void **state) {
   Loaded l;
   fine(&l, g,
        SCENE
-       "\"extensionsUsed\":[\"KHR_mesh_quantization\"],\"extensionsRequired\":[\"KHR_mesh_"
-       "quantization\"],"
-       "\"nodes\":[{\"mesh\":0}],"
-       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1,\"NORMAL\":"
-       "2}}]}"
-       "]");
+       "\"extensionsUsed\":[\"KHR_mesh_quantization\"],"
+       "\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"nodes\":[{\"mesh\":0}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1,"
+       "\"NORMAL\":2}}]}]");
   const vlShapeDef *s = shape(&l, 0);
   assert_int_equal(s->vertices, 3);
   const float positions[] = {0, 0, 0, 1, 0, 0, 0, -1, 0},
@@ -238,11 +236,8 @@ static void morph_and_skin(void **state) {
   fine(&l, g,
        SCENE
        "\"nodes\":[{\"mesh\":0,\"weights\":[0.5,2]}],\"meshes\":[{\"weights\":[9,9],"
-       "\"primitives\":"
-       "[{"
-       "\"attributes\":{\"POSITION\":0},\"indices\":1,\"targets\":[{\"POSITION\":2},{"
-       "\"POSITION\":"
-       "3}]}]}]");
+       "\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+       "\"indices\":1,\"targets\":[{\"POSITION\":2},{\"POSITION\":3}]}]}]");
   assert_near((double)shape(&l, 0)->positions[2], 0.5, 0);
   assert_near((double)shape(&l, 0)->positions[0], 2, 0);
   end_load(&l);
@@ -255,12 +250,12 @@ static void morph_and_skin(void **state) {
   gltf_floats(g, weights, 4, "VEC4", 4);                                           /* 5 */
   gltf_floats(g, bind, 2, "MAT4", 16);                                             /* 6 */
   fine(&l, g,
-       "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":["
-       "100,0,"
-       "0]},"
-       "{\"translation\":[0,8,0]},{\"translation\":[4,0,16]}],"
-       "\"skins\":[{\"joints\":[1,2],\"inverseBindMatrices\":6}],\"meshes\":[{\"primitives\":[{"
-       "\"attributes\":{\"POSITION\":0,\"JOINTS_0\":4,\"WEIGHTS_0\":5},\"indices\":1}]}]");
+       "\"scenes\":[{\"nodes\":[0,1,2]}],"
+       "\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":[100,0,0]},"
+       "{\"translation\":[0,8,0]},{\"translation\":[4,0,16]}],\"skins\":[{\"joints\":[1,2],"
+       "\"inverseBindMatrices\":6}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":4,"
+       "\"WEIGHTS_0\":5},\"indices\":1}]}]");
   const float *p =
       shape(&l, 0)
           ->positions; /* 1/4 of 8 up, 3/4 of 16 ahead; the node's own place does not count */
@@ -292,12 +287,10 @@ static void tangents(void **state) {
   fine(&l, g,
        SCENE
        "\"nodes\":[{\"mesh\":0}],\"images\":[{\"bufferView\":4,\"mimeType\":\"image/png\"}],"
-       "\"textures\":[{\"source\":0}],\"materials\":[{\"normalTexture\":{\"index\":0,\"scale\":"
-       "0.5}}"
-       "],"
-       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_"
-       "0\":2},"
-       "\"indices\":3,\"material\":0}]}]");
+       "\"textures\":[{\"source\":0}],"
+       "\"materials\":[{\"normalTexture\":{\"index\":0,\"scale\":0.5}}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,"
+       "\"TEXCOORD_0\":2},\"indices\":3,\"material\":0}]}]");
   const vlShapeDef *s = shape(&l, 0);
   assert_int_equal(s->vertices, 8);
   for (size_t f = 0; f < 4; f++)
@@ -325,16 +318,13 @@ static void cameras(void **state) {
   (void)state;
   Gltf *g = new_square();
   const char *rest =
-      "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"name\":\"front\",\"camera\":"
-      "0,"
-      "\"translation\":[0,0,"
-      "5]},"
-      "{\"camera\":1,\"scale\":[2,2,2]}],\"cameras\":[{\"type\":\"perspective\","
-      "\"perspective\":{"
-      "\"yfov\":0.5,"
-      "\"aspectRatio\":0.5,\"znear\":0.1}},{\"name\":\"flat\",\"type\":\"orthographic\","
-      "\"orthographic\":{\"xmag\":2,"
-      "\"ymag\":1,\"znear\":0,\"zfar\":10}}]," SQUARE_MESH;
+      "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},"
+      "{\"name\":\"front\",\"camera\":0,\"translation\":[0,0,5]},"
+      "{\"camera\":1,\"scale\":[2,2,2]}],"
+      "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,"
+      "\"aspectRatio\":0.5,\"znear\":0.1}},"
+      "{\"name\":\"flat\",\"type\":\"orthographic\",\"orthographic\":{\"xmag\":2,\"ymag\":1,"
+      "\"znear\":0,\"zfar\":10}}]," SQUARE_MESH;
   static const char *const wanted[] = {NULL, "front", "0", "flat", "1"};
   for (int i = 0; i < 5; i++) {
     Loaded l;

@@ -37,17 +37,14 @@ static void errors(void **state) {
       {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
              "\"POSITION\":1}}]}]",
        "meshes[0].primitives[0].attributes.POSITION: must be of type VEC3"},
-      {SCENE
-       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
-       "0},\"indices\":0}]}]",
+      {SCENE "\"nodes\":[{\"mesh\":0}],"
+             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":0}]}]",
        "meshes[0].primitives[0].indices: must be SCALAR of unsigned whole numbers"},
-      {SCENE
-       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
-       "0},\"mode\":9}]}]",
+      {SCENE "\"nodes\":[{\"mesh\":0}],"
+             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":9}]}]",
        "meshes[0].primitives[0].mode: 9 is not from 0 to 6"},
-      {SCENE
-       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
-       "0},\"indices\":2}]}]",
+      {SCENE "\"nodes\":[{\"mesh\":0}],"
+             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":2}]}]",
        "accessors[2]: 100 elements of 2 bytes do not fit into bufferViews[1], which has 12 "
        "bytes"},
       {SCENE "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{"

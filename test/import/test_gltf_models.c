@@ -31,20 +31,13 @@ static void skins(void **state) {
   Loaded l;
   fine(&l, g,
        SCENE
-       "\"nodes\":[{\"children\":[1,4]},{\"translation\":[4,0,0],\"children\":[2]},{"
-       "\"translation\":[0,4,0],"
-       "\"children\":[3]},"
+       "\"nodes\":[{\"children\":[1,4]},{\"translation\":[4,0,0],\"children\":[2]},"
+       "{\"translation\":[0,4,0],\"children\":[3]},"
        "{\"mesh\":0,\"skin\":0,\"translation\":[100,0,0]},{\"translation\":[0,0,-8],"
-       "\"children\":["
-       "5]},{\"scale\":[2,2,"
-       "2],"
-       "\"children\":[6]},{\"mesh\":0,\"skin\":1}],\"skins\":[{\"joints\":[1,2],"
-       "\"inverseBindMatrices\":4},{\"joints\":"
-       "[4,5],"
-       "\"inverseBindMatrices\":4,\"skeleton\":4}],\"meshes\":[{\"primitives\":[{"
-       "\"attributes\":{"
-       "\"POSITION\":0,"
-       "\"JOINTS_0\":2,"
+       "\"children\":[5]},{\"scale\":[2,2,2],\"children\":[6]},{\"mesh\":0,\"skin\":1}],"
+       "\"skins\":[{\"joints\":[1,2],\"inverseBindMatrices\":4},{\"joints\":[4,5],"
+       "\"inverseBindMatrices\":4,\"skeleton\":4}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":2,"
        "\"WEIGHTS_0\":3},\"indices\":1}]}]");
   assert_int_equal(l.scene->shapes.count, 2);
   const float *a = shape(&l, 0)->positions, *b = shape(&l, 1)->positions;
@@ -243,10 +236,8 @@ static void next_to_nothing(void **state) {
       "{\"asset\":{\"version\":\"2.0\"}}",
       "{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.0\","
       "\"extras\":null},\"scenes\":[{}],\"scene\":0}",
-      ("{\"asset\":{\"version\":\"2.1\",\"generator\":\"\"},"
-       "\"nodes\":[{}],\"scenes\":[{\"nodes\":[0]}],\"materials\":["
-       "{"
-       "}]}")};
+      ("{\"asset\":{\"version\":\"2.1\",\"generator\":\"\"},\"nodes\":[{}],"
+       "\"scenes\":[{\"nodes\":[0]}],\"materials\":[{}]}")};
   for (int i = 0; i < 3; i++) {
     gltf_file(in_folder("n.gltf"), texts[i], strlen(texts[i]));
     Loaded l;

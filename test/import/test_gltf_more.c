@@ -297,15 +297,13 @@ static void lamps(void **state) {
   (void)state;
   Gltf *g = new_square();
   Loaded l;
-  fine_with(
-      &l, g,
-      SCENE
-      "\"extensionsUsed\":[\"KHR_lights_punctual\"],\"nodes\":[{\"extensions\":{\"KHR_lights_"
-      "punctual\":{"
-      "\"light\":0}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":"
-      "\"spot\",\"intensity\":3,"
-      "\"spot\":{\"innerConeAngle\":0.2,\"outerConeAngle\":0.5}}]}}",
-      NULL);
+  fine_with(&l, g,
+            SCENE
+            "\"extensionsUsed\":[\"KHR_lights_punctual\"],"
+            "\"nodes\":[{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],"
+            "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\","
+            "\"intensity\":3,\"spot\":{\"innerConeAngle\":0.2,\"outerConeAngle\":0.5}}]}}",
+            NULL);
   const vlLightDef *light = &l.scene->lights.items[0];
   assert_true(light->cone_squared);
   is_near((double)light->cone_angle, 0.5, 1e-6);
@@ -319,14 +317,13 @@ static void variants(void **state) {
   Gltf *g = new_square();
   const char *rest = SCENE
       "\"extensionsUsed\":[\"KHR_materials_variants\",\"EXT_unheard_of\"],"
-      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"red\"},{\"name\":"
-      "\"blue\"}]}},"
-      "\"materials\":[{\"name\":\"own\"},{\"name\":\"sea\",\"doubleSided\":true}],\"nodes\":[{"
-      "\"mesh\":0}],"
-      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,"
-      "\"material\":0,"
-      "\"extensions\":{"
-      "\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,\"variants\":[1]}]}}}]}]";
+      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"red\"},"
+      "{\"name\":\"blue\"}]}},\"materials\":[{\"name\":\"own\"},"
+      "{\"name\":\"sea\",\"doubleSided\":true}],\"nodes\":[{\"mesh\":0}],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+      "\"indices\":1,\"material\":0,"
+      "\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,"
+      "\"variants\":[1]}]}}}]}]";
   static const char *const names[] = {NULL, "red", "blue"}, *const expected[] = {"own", "own",
                                                                                  "sea"};
   for (int i = 0; i < 3; i++) {
@@ -445,16 +442,13 @@ static void no_uri(void **state) {
     int file = mkstemps(path, 5);
     assert_true(file >= 0);
     FILE *f = fdopen(file, "w");
-    fprintf(
-        f,
-        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36}],\"bufferViews\":[{"
-        "\"buffer\":0,"
-        "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":"
-        "3,\"type\":"
-        "\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
-        "\"nodes\":[{%s}],"
-        "\"scenes\":[{\"nodes\":[0]}],\"scene\":0}",
-        read ? "\"mesh\":0" : "");
+    fprintf(f,
+            "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36}],"
+            "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+            "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+            "\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+            "\"POSITION\":0}}]}],\"nodes\":[{%s}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0}",
+            read ? "\"mesh\":0" : "");
     fclose(f);
     start_load(&l);
     l.result = vl_scene_load(l.scene, path, NULL, &l.error);

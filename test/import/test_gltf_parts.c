@@ -110,13 +110,12 @@ static void put_packed(Gltf *g, const unsigned char *data, size_t size, const ch
   char *text = strrchr(g->views, '{');
   unsigned offset = 0;
   sscanf(strstr(text, "byteOffset") + 12, "%u", &offset);
-  snprintf(
-      text, sizeof g->views - (size_t)(text - g->views),
-      "{\"buffer\":0,\"byteLength\":%zu,\"extensions\":{\"EXT_meshopt_compression\":{"
-      "\"buffer\":0,\"byteOffset\":%u,"
-      "\"byteLength\":%zu,\"byteStride\":%zu,\"count\":%zu,\"mode\":\"ATTRIBUTES\",\"filter\":"
-      "\"%s\"}}}",
-      count * stride, offset, size, stride, count, filter);
+  snprintf(text, sizeof g->views - (size_t)(text - g->views),
+           "{\"buffer\":0,\"byteLength\":%zu,"
+           "\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%u,"
+           "\"byteLength\":%zu,\"byteStride\":%zu,\"count\":%zu,\"mode\":\"ATTRIBUTES\","
+           "\"filter\":\"%s\"}}}",
+           count * stride, offset, size, stride, count, filter);
   (void)view;
 }
 
@@ -242,14 +241,13 @@ static void faces(void **state) {
   }
   end_load(&l);
   fine(&l, g,
-       "\"scenes\":[{\"nodes\":[0],\"extensions\":{\"EXT_lights_image_based\":{\"light\":0}}}],"
+       "\"scenes\":[{\"nodes\":[0],"
+       "\"extensions\":{\"EXT_lights_image_based\":{\"light\":0}}}],"
        "\"extensionsUsed\":[\"EXT_lights_image_based\"],\"nodes\":[{\"mesh\":0}],"
-       "\"images\":[{\"uri\":\"f0.png\"},{\"uri\":\"f1.png\"},{\"uri\":\"f2.png\"},{\"uri\":"
-       "\"f3."
-       "png\"},"
-       "{\"uri\":\"f4.png\"},{\"uri\":\"f5.png\"}],\"extensions\":{\"EXT_lights_image_based\":{"
-       "\"lights\":[{"
-       "\"specularImageSize\":32,\"specularImages\":[[0,1,2,3,4,5]]}]}}," SQUARE_MESH);
+       "\"images\":[{\"uri\":\"f0.png\"},{\"uri\":\"f1.png\"},{\"uri\":\"f2.png\"},"
+       "{\"uri\":\"f3.png\"},{\"uri\":\"f4.png\"},{\"uri\":\"f5.png\"}],"
+       "\"extensions\":{\"EXT_lights_image_based\":{\"lights\":[{\"specularImageSize\":32,"
+       "\"specularImages\":[[0,1,2,3,4,5]]}]}}," SQUARE_MESH);
   /* table 8.19: along the face's axis, with s and t running as below; top left is s = t = -1 */
   static const struct {
     vlVec3 axis, s, t;
@@ -282,14 +280,11 @@ static void variants(void **state) {
   Gltf *g = new_square();
   const char *rest = SCENE
       "\"nodes\":[{\"mesh\":0}],\"extensionsUsed\":[\"KHR_materials_variants\"],"
-      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"day\"},{\"name\":"
-      "\"night\"},{\"name\":"
-      "\"dusk\"}]}},"
-      "\"materials\":[{\"name\":\"own\"},{\"name\":\"dark\"}],\"meshes\":[{\"primitives\":[{"
-      "\"attributes\":{"
-      "\"POSITION\":0},"
-      "\"indices\":1,\"material\":0,\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{"
-      "\"material\":1,"
+      "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"day\"},"
+      "{\"name\":\"night\"},{\"name\":\"dusk\"}]}},\"materials\":[{\"name\":\"own\"},"
+      "{\"name\":\"dark\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+      "\"indices\":1,\"material\":0,"
+      "\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,"
       "\"variants\":[1,2]}]}}}]}]";
   static const char *const cases[][2] = {
       {NULL, "own"}, {"day", "own"}, {"night", "dark"}, {"dusk", "dark"}};
@@ -330,20 +325,15 @@ static void anisotropy(void **state) {
   Gltf *g = new_square();
   gltf_floats(g, uvs, 4, "VEC2", 2);
   Loaded l;
-  fine(
-      &l, g,
-      SCENE
-      "\"nodes\":[{\"mesh\":0}],\"images\":[{\"uri\":\"directions.png\"}],\"textures\":[{"
-      "\"source\":0}],"
-      "\"extensionsUsed\":[\"KHR_materials_anisotropy\"],\"materials\":[{\"extensions\":{\"KHR_"
-      "materials_anisotropy\":"
-      "{\"anisotropyStrength\":0.5,\"anisotropyRotation\":0.25,\"anisotropyTexture\":{"
-      "\"index\":0}"
-      "}}}],"
-      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},"
-      "\"indices\":"
-      "1,"
-      "\"material\":0}]}]");
+  fine(&l, g,
+       SCENE
+       "\"nodes\":[{\"mesh\":0}],\"images\":[{\"uri\":\"directions.png\"}],"
+       "\"textures\":[{\"source\":0}],\"extensionsUsed\":[\"KHR_materials_anisotropy\"],"
+       "\"materials\":[{\"extensions\":{\"KHR_materials_anisotropy\":{"
+       "\"anisotropyStrength\":0.5,\"anisotropyRotation\":0.25,"
+       "\"anisotropyTexture\":{\"index\":0}}}}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},"
+       "\"indices\":1,\"material\":0}]}]");
   const vlPrincipledDef *p = &l.scene->materials.items[l.scene->materials.count - 1].principled;
   const vlTextureDef *strength = &l.scene->textures.items[p->anisotropy.texture.index - 1];
   const vlTextureDef *turn = &l.scene->textures.items[p->anisotropy_rotation.texture.index - 1];

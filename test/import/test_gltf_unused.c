@@ -65,9 +65,9 @@ static void good(void **state) {
   Loaded l;
   diagnose(&l, g,
            SCENE
-           "\"nodes\":[{\"mesh\":0}],\"materials\":[{}],\"meshes\":[{\"primitives\":[{"
-           "\"attributes\":"
-           "{\"POSITION\":0},\"indices\":1,\"material\":0}]}]");
+           "\"nodes\":[{\"mesh\":0}],\"materials\":[{}],"
+           "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+           "\"indices\":1,\"material\":0}]}]");
   assert_string_equal(l.log, "");
   end_load(&l);
   free(g);

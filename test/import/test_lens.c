@@ -10,16 +10,12 @@
 static void thin_lens_words(void **state) {
   (void)state;
   Loaded l;
-  load_fine(
-      &l, FILM
-      "Camera \"thinlens\" \"point3 eye\" [1 2 3] \"point3 lookat\" [1 2 -9] \"float "
-      "focallength\" "
-      "50 "
-      "\"float sensorwidth\" 36 \"float fnumber\" 2 \"float focuspixel\" [10 20] \"integer "
-      "blades\" 6 "
-      "\"float bladerotation\" 30 \"float apertureratio\" 2 \"float tiltx\" 10 \"float tilty\" "
-      "-5 "
-      "\"bool vignetting\" true \"float iso\" 200 \"float seconds\" 0.01\n" W);
+  load_fine(&l, FILM
+            "Camera \"thinlens\" \"point3 eye\" [1 2 3] \"point3 lookat\" [1 2 -9] "
+            "\"float focallength\" 50 \"float sensorwidth\" 36 \"float fnumber\" 2 "
+            "\"float focuspixel\" [10 20] \"integer blades\" 6 \"float bladerotation\" 30 "
+            "\"float apertureratio\" 2 \"float tiltx\" 10 \"float tilty\" -5 "
+            "\"bool vignetting\" true \"float iso\" 200 \"float seconds\" 0.01\n" W);
   const vlCameraDef *d = &vl_scene_defs(l.scene)->camera;
   vlCamera c;
   vlError error;
@@ -32,10 +28,9 @@ static void thin_lens_words(void **state) {
   assert_true(c.lens.focus_pixel[0] == 10 && c.lens.focus_pixel[1] == 20);
   assert_true(fabs(c.exposure_time - 0.01 * 200 / 480) < 1e-12);
   end_load(&l);
-  load_fine(
-      &l, FILM
-      "Camera \"fisheye\" \"float lensradius\" 0.1 \"point3 focuspoint\" [0 0 -3] \"string "
-      "aperture\" \"star\"\n" W);
+  load_fine(&l, FILM
+            "Camera \"fisheye\" \"float lensradius\" 0.1 \"point3 focuspoint\" [0 0 -3] "
+            "\"string aperture\" \"star\"\n" W);
   if (vl_camera_make(&vl_scene_defs(l.scene)->camera, &c, NULL, &error) != VL_OK)
     fail_msg("%s", error.message);
   assert_true(c.focus_distance == 3 && c.lens.aperture);
@@ -54,12 +49,11 @@ static void realistic(void **state) {
   (void)state;
   Loaded l;
   load_fine(&l,
-            "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 300 \"float "
-            "diagonal\" 43\n"
+            "Film \"rgb\" \"integer xresolution\" 400 \"integer yresolution\" 300 "
+            "\"float diagonal\" 43\n"
             "Camera \"realistic\" \"string lensfile\" \"" GAUSS
-            "\" \"float aperturediameter\" 8 \"float focusdistance\" 1.5 \"string aperture\" "
-            "\"pentagon\" "
-            "\"float shutterclose\" 0.5\n" W);
+            "\" \"float aperturediameter\" 8 \"float focusdistance\" 1.5 "
+            "\"string aperture\" \"pentagon\" \"float shutterclose\" 0.5\n" W);
   const vlSceneDefs *s = vl_scene_defs(l.scene);
   vlCamera c;
   vlError error;

@@ -26,8 +26,8 @@ static char *text_of(int before) {
     if (i == 30)
       at += sprintf(at, "AreaLightSource \"diffuse\"\n");
     at += sprintf(at,
-                  "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0.5 0 1 %d] \"integer "
-                  "indices\" [0 1 2 0 2 3]",
+                  "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0.5 0 1 %d] "
+                  "\"integer indices\" [0 1 2 0 2 3]",
                   i % 11);
     if (i % 6 < 2)
       at += sprintf(at, " \"point2 uv\" [0 0 1 0 1 1 0 %d]", i);

@@ -82,10 +82,10 @@ static void cameras_move(void **state) {
   assert_pose(camera.world_from_camera_close, -2, 0, -5);
   end_load(&l);
   load_fine(&l,
-            "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"point3 eyeclose\" [1 0 5] \"float "
-            "rollclose\" 90\n"
-            "\"float shutteropen\" 1 \"float shutterclose\" 2 \"float readout\" 0.5 \"string "
-            "readoutdirection\" \"up\"\n"
+            "Camera \"pinhole\" \"point3 eye\" [0 0 5] \"point3 eyeclose\" [1 0 5] "
+            "\"float rollclose\" 90\n"
+            "\"float shutteropen\" 1 \"float shutterclose\" 2 \"float readout\" 0.5 "
+            "\"string readoutdirection\" \"up\"\n"
             "\"string shuttercurve\" \"trapezoid\" \"float shutterrise\" 0.25\n" W);
   def = &vl_scene_defs(l.scene)->camera;
   assert_int_equal(vl_camera_make(def, &camera, NULL, NULL), VL_OK);

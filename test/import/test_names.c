@@ -21,13 +21,11 @@ static void gltf_nodes(void **state) {
   Gltf *g = new_square();
   Loaded l;
   fine(&l, g,
-       "\"scenes\":[{\"nodes\":[0,3,6,7,8,9]}],\"nodes\":["
-       "{\"name\":\"Hall\",\"children\":[1,2]},{\"name\":\"Chair\",\"mesh\":0},{\"name\":"
-       "\"Table\","
-       "\"mesh\":1},"
-       "{\"name\":\"Kitchen\",\"children\":[4,5]},{\"name\":\"Chair\",\"mesh\":2},{\"mesh\":3},"
-       "{\"name\":\"Lamp\",\"mesh\":4},{\"name\":\"Lamp\",\"mesh\":5},{\"mesh\":6},{\"name\":"
-       "\"Lamp#7\",\"mesh\":7}],"
+       "\"scenes\":[{\"nodes\":[0,3,6,7,8,9]}],"
+       "\"nodes\":[{\"name\":\"Hall\",\"children\":[1,2]},{\"name\":\"Chair\",\"mesh\":0},"
+       "{\"name\":\"Table\",\"mesh\":1},{\"name\":\"Kitchen\",\"children\":[4,5]},"
+       "{\"name\":\"Chair\",\"mesh\":2},{\"mesh\":3},{\"name\":\"Lamp\",\"mesh\":4},"
+       "{\"name\":\"Lamp\",\"mesh\":5},{\"mesh\":6},{\"name\":\"Lamp#7\",\"mesh\":7}],"
        "\"meshes\":[{\"primitives\":[" PRIMITIVE
        "}]},"
        "{\"name\":\"Top\",\"primitives\":[" PRIMITIVE ",\"material\":0}," PRIMITIVE
@@ -106,12 +104,9 @@ static void choices(void **state) {
        "\"nodes\":[{\"mesh\":0,\"children\":[1]},{\"name\":\"Front\",\"camera\":0}],"
        "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":0.1}}],"
        "\"animations\":[{\"name\":\"Walk\",\"samplers\":[{\"input\":2,\"output\":3}],"
-       "\"channels\":["
-       "]}],"
-       "\"extensionsUsed\":[\"KHR_materials_variants\"],"
-       "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"red\"},{\"name\":"
-       "\"blue\"}]}}"
-       "," SQUARE_MESH);
+       "\"channels\":[]}],\"extensionsUsed\":[\"KHR_materials_variants\"],"
+       "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"red\"},"
+       "{\"name\":\"blue\"}]}}," SQUARE_MESH);
   vlChoiceInfo info;
   assert_int_equal(vl_scene_choice_count(l.scene, VL_CHOICE_VARIANT), 2);
   assert_int_equal(vl_scene_choice_info(l.scene, VL_CHOICE_VARIANT, 1, &info), VL_OK);

@@ -341,9 +341,8 @@ static void through_a_scene(void **state) {
   close(fd);
   Loaded l;
   snprintf(text, sizeof text,
-           "WorldBegin Translate 1 2 3 Material \"dielectric\" Shape \"plymesh\" \"string "
-           "filename\" \"%s\" \"float "
-           "alpha\" .5",
+           "WorldBegin Translate 1 2 3 Material \"dielectric\" Shape \"plymesh\" "
+           "\"string filename\" \"%s\" \"float alpha\" .5",
            path);
   load_fine(&l, text);
   assert_int_equal(l.scene->shapes.count, 2);

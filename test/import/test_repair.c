@@ -87,9 +87,8 @@ static void zero_normals(void **state) {
   (void)state;
   Loaded l;
   const char *text = W
-      "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  2 0 0  0 1 0  0 0 1 ] \"integer indices\" "
-      "[ 0 "
-      "1 2  0 3 1 ]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  2 0 0  0 1 0  0 0 1 ] "
+      "\"integer indices\" [ 0 1 2  0 3 1 ]\n"
       "\"normal N\" [ 0 0 0  0 0 1  0 0 1  0 1 0 ]";
   load_text(&l, text, false);
   assert_int_equal(l.result, VL_OK);

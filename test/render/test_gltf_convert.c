@@ -70,15 +70,13 @@ static void balls(void **state) {
   put_ball(g);
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     char rest[1000];
-    snprintf(
-        rest, sizeof rest,
-        NODES
-        ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[%g,%g,%g,1],"
-        "\"metallicFactor\":%g,"
-        "\"roughnessFactor\":%g}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
-        "0,\"NORMAL\":0,"
-        "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}]",
-        cases[i].base, cases[i].base, cases[i].base, cases[i].metal, cases[i].rough);
+    snprintf(rest, sizeof rest,
+             NODES
+             ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[%g,%g,%g,1],"
+             "\"metallicFactor\":%g,\"roughnessFactor\":%g}}],"
+             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0,"
+             "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}]",
+             cases[i].base, cases[i].base, cases[i].base, cases[i].metal, cases[i].rough);
     Image own, written;
     both_ways(g, rest, &own, &written);
     assert_near("ball", image_mean(&written, 1), image_mean(&own, 1), cases[i].most);
@@ -98,11 +96,9 @@ static void wall(void **state) {
   gltf_floats(g, uv, 4, "VEC2", 2);
   gltf_shorts(g, faces, 6);
   static const char *const materials[] = {
-      "\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0},\"pbrMetallicRoughness\":{"
-      "\"baseColorFactor\":[0,0,"
-      "0,1],"
-      "\"metallicFactor\":0},\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}"
-      "}",
+      "\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0},"
+      "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1],\"metallicFactor\":0},"
+      "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}",
       "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"metallicFactor\":0,"
       "\"roughnessFactor\":0.1}"};
   for (int i = 0; i < 2; i++) {

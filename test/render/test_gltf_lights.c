@@ -171,13 +171,13 @@ static void emissive_image(void **state) {
         "{\"mesh\":1}]," SHOT_CAMERA
         ",\"images\":[{\"uri\":\"%s\"}],\"samplers\":[{\"magFilter\":9728}],"
         "\"textures\":[{\"source\":0,\"sampler\":0}],\"materials\":[{" PAPER
-        "},{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1]},\"emissiveFactor\":[1,1,"
-        "1],\"extensions\":{"
-        "\"KHR_materials_emissive_strength\":{\"emissiveStrength\":50}}%s}],"
-        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,"
-        "\"material\":0}]},"
-        "{\"primitives\":[{\"attributes\":{\"POSITION\":2,\"TEXCOORD_0\":3},\"indices\":4,"
-        "\"material\":1}]}]",
+        "},{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1]},"
+        "\"emissiveFactor\":[1,1,1],"
+        "\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":50}}%s}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+        "\"indices\":1,\"material\":0}]},"
+        "{\"primitives\":[{\"attributes\":{\"POSITION\":2,\"TEXCOORD_0\":3},"
+        "\"indices\":4,\"material\":1}]}]",
         path + 5, panels[i].textured ? ",\"emissiveTexture\":{\"index\":0}" : "");
     Shot shot = {.room = VL_ENVIRONMENT_NONE, .spp = panels[i].spp};
     p[i] = shoot(g, rest, &shot);
@@ -229,18 +229,14 @@ static void painted_walls(void **state) {
        {0.4f, 0.2f, 0.8f},
        {0.4f, 0.2f, 0.8f}},
       {"\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
-       "\"baseColorFactor\":"
-       "[0,0,0,0.8]},"
-       "\"extensions\":{"
-       "\"KHR_materials_specular\":{\"specularFactor\":0}}",
+       "\"baseColorFactor\":[0,0,0,0.8]},"
+       "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}",
        ",\"COLOR_0\":3",
        {0.6f, 0.6f, 0.6f},
        {0.6f, 0.6f, 0.6f}},
       {"\"alphaMode\":\"MASK\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
-       "\"baseColorFactor\":["
-       "0,0,0,0.8]},"
-       "\"extensions\":{"
-       "\"KHR_materials_specular\":{\"specularFactor\":0}}",
+       "\"baseColorFactor\":[0,0,0,0.8]},"
+       "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}",
        ",\"COLOR_0\":3",
        {1, 1, 1},
        {1, 1, 1}},
@@ -258,10 +254,9 @@ static void painted_walls(void **state) {
        {1, 0, 0},
        {0, 1, 0}},
       {"\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0,"
-       "\"texCoord\":0,\"extensions\":"
-       "{"
-       "\"KHR_texture_transform\":{\"texCoord\":1,\"offset\":[0.5,0]}}}},\"extensions\":{"
-       "\"KHR_materials_specular\":{\"specularFactor\":0}}",
+       "\"texCoord\":0,\"extensions\":{\"KHR_texture_transform\":{\"texCoord\":1,"
+       "\"offset\":[0.5,0]}}}},"
+       "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}",
        "",
        {0, 1, 0},
        {1, 0, 0}},

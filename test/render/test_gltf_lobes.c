@@ -165,9 +165,8 @@ static void normal_incidence(void **state) {
        {1 / 9.0, 1 / 9.0, 1 / 9.0}},
       {"ior 1", BLACK ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":1}}", {0, 0, 0}},
       {"ior 0",
-       BLACK ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":0},\"KHR_materials_specular\":{"
-             "\"specularColorFactor\":"
-             "[0.5,0.25,1]}}",
+       BLACK ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":0},"
+             "\"KHR_materials_specular\":{\"specularColorFactor\":[0.5,0.25,1]}}",
        {0.5, 0.25, 1}},
       {"specular",
        BLACK ",\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,"
@@ -178,9 +177,9 @@ static void normal_incidence(void **state) {
              ",\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.75}}",
        {0.03, 0.03, 0.03}},
       {"specular-glossiness",
-       "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.4,0.2,0."
-       "8,1],"
-       "\"specularFactor\":[0.2,0.2,0.2],\"glossinessFactor\":1}}",
+       "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{"
+       "\"diffuseFactor\":[0.4,0.2,0.8,1],\"specularFactor\":[0.2,0.2,0.2],"
+       "\"glossinessFactor\":1}}",
        {0.2 + 0.4 * 0.8, 0.2 + 0.2 * 0.8, 0.2 + 0.8 * 0.8}},
       {"diffuse transmission",
        "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.8,0.8,0.8,1],\"metallicFactor\":0},"
@@ -247,11 +246,10 @@ static void attenuation(void **state) {
   char more[400];
   for (size_t i = 0; i < sizeof slabs / sizeof *slabs; i++) {
     snprintf(more, sizeof more,
-             "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_"
-             "materials_ior\":{\"ior\":%g},"
+             "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"
+             "\"KHR_materials_ior\":{\"ior\":%g},"
              "\"KHR_materials_volume\":{\"thicknessFactor\":0.1,\"attenuationDistance\":%g,"
-             "\"attenuationColor\":[0.25,0.5,0."
-             "9]}}",
+             "\"attenuationColor\":[0.25,0.5,0.9]}}",
              slabs[i].ior, slabs[i].distance);
     double f = pow((slabs[i].ior - 1) / (slabs[i].ior + 1), 2), rgb[3];
     for (int c = 0; c < 3; c++) {

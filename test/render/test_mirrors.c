@@ -41,19 +41,15 @@ static const Kind kinds[] = {
     {"\"bilinearmesh\" " SQUARE DOWN, NORMALS, {.1, .2, .1}, {0, 0, -1}, 0},
     /* Corner 0's ring in pbrt's order: +x -y -x +y, so S = 2x, T = -2y, and S x T points
      * down. */
-    {"\"loopsubdiv\" \"integer levels\" 3 \"point3 P\" [0 0 1 1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 "
-     "-1] "
-     "\"integer indices\" "
-     "[0 1 2 0 2 3 0 3 4 0 4 1 5 2 1 5 3 2 5 4 3 5 1 4]",
+    {"\"loopsubdiv\" \"integer levels\" 3 "
+     "\"point3 P\" [0 0 1 1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 -1] "
+     "\"integer indices\" [0 1 2 0 2 3 0 3 4 0 4 1 5 2 1 5 3 2 5 4 3 5 1 4]",
      NORMALS,
      {0, 0, .5},
      {0, 0, -1},
      -1},
-    {"\"curve\" \"string type\" \"ribbon\" \"point3 P\" [-1 0 0 -.3 0 0 .3 0 0 1 0 0] \"normal "
-     "N\" "
-     "[0 0 1 0 0 1] "
-     "\"float "
-     "width\" 1",
+    {"\"curve\" \"string type\" \"ribbon\" \"point3 P\" [-1 0 0 -.3 0 0 .3 0 0 1 0 0] "
+     "\"normal N\" [0 0 1 0 0 1] \"float width\" 1",
      QUADRIC,
      {.1, .1, 0},
      {0, 0, 1},
@@ -65,8 +61,7 @@ static const Kind kinds[] = {
      {0, 0, 1},
      0},
     {"\"curve\" \"string type\" \"cylinder\" \"point3 P\" [-1 0 0 -.3 0 0 .3 0 0 1 0 0] "
-     "\"float "
-     "width\" .5",
+     "\"float width\" .5",
      CURVE,
      {.1, 0, 0},
      {0, 0, 1},
@@ -188,15 +183,18 @@ static void put_scene(FILE *f, const Scene *s, const double eye[3], const double
                       const char *extra, const char *attributes) {
   bool group = s->place == INSTANCE || s->place == OWN_IN_INSTANCE || s->place == OWN_IN_MOVING;
   fprintf(f,
-          "LookAt %.9g %.9g %.9g %.9g %.9g %.9g .31 .82 .47\nCamera \"perspective\" \"float "
-          "fov\" 2\n",
+          "LookAt %.9g %.9g %.9g %.9g %.9g %.9g .31 .82 .47\n"
+          "Camera \"perspective\" \"float fov\" 2\n",
           eye[0], eye[1], eye[2], to[0], to[1], to[2]);
-  fprintf(
-      f,
-      "WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 "
-      "1] \"rgb sigma_s\" "
-      "[0 0 0]\n%s\nAttributeBegin\n%s\n%s",
-      extra, attributes, s->reverse ? "ReverseOrientation\n" : "");
+  fprintf(f,
+          "WorldBegin\n"
+          "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1] "
+          "\"rgb sigma_s\" [0 0 0]\n"
+          "%s\n"
+          "AttributeBegin\n"
+          "%s\n"
+          "%s",
+          extra, attributes, s->reverse ? "ReverseOrientation\n" : "");
   if (group) {
     fprintf(f, "AttributeBegin\n");
     put_map(f, s->own, NULL);

@@ -15,21 +15,18 @@ typedef struct Material {
 } Material;
 
 static const char quad[] =
-    "Shape \"trianglemesh\" \"point3 P\" [-2 -2 -3  2 -2 -3  2 2 -3  -2 2 -3] \"integer "
-    "indices\" "
-    "[0 1 2 0 2 3]";
+    "Shape \"trianglemesh\" \"point3 P\" [-2 -2 -3  2 -2 -3  2 2 -3  -2 2 -3] "
+    "\"integer indices\" [0 1 2 0 2 3]";
 static const char slab[] =
-    "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -3  9 -9 -3  9 9 -3  -9 9 -3] \"integer "
-    "indices\" "
-    "[0 1 2 0 2 3]\n"
+    "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -3  9 -9 -3  9 9 -3  -9 9 -3] "
+    "\"integer indices\" [0 1 2 0 2 3]\n"
     "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -3.1  9 -9 -3.1  9 9 -3.1  -9 9 -3.1] "
-    "\"integer "
-    "indices\" [0 2 1 0 3 "
-    "2]";
+    "\"integer indices\" [0 2 1 0 3 2]";
 static const char hairs[] =
-    "Shape \"curve\" \"point3 P\" [-1 -3 -3  -1 -1 -3  -1 1 -3  -1 3 -3] \"float width\" 1.2\n"
-    "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [1 -3 -3  1 -1 -3  1 1 -3  1 3 "
-    "-3] \"float width\" 1.2";
+    "Shape \"curve\" \"point3 P\" [-1 -3 -3  -1 -1 -3  -1 1 -3  -1 3 -3] "
+    "\"float width\" 1.2\n"
+    "Shape \"curve\" \"string type\" \"cylinder\" "
+    "\"point3 P\" [1 -3 -3  1 -1 -3  1 1 -3  1 3 -3] \"float width\" 1.2";
 
 static const Material materials[] = {
     {"diffuse", "\"diffuse\"", quad, false, true},

@@ -22,10 +22,11 @@ static const double similarity[16] = {0, -3, 0, 11, 0, 0, 3, -7, -3, 0, 0, 5, 0,
 
 static const char head[] =
     "LookAt 20 6 31.5  20 10 30.2  0 0 1\n"
-    "Camera \"perspective\" \"float fov\" 40 \"float lensradius\" 0.1 \"float focaldistance\" "
-    "4\n"
-    "WorldBegin\nTranslate 20 10 30\n"; /* rounding is the same before and after: nothing is at
-                                           the origin */
+    "Camera \"perspective\" \"float fov\" 40 \"float lensradius\" 0.1 "
+    "\"float focaldistance\" 4\n"
+    "WorldBegin\n"
+    "Translate 20 10 30\n"; /* rounding is the same before and after: nothing is at
+                                               the origin */
 static const char floor_and_ball[] =
     "Shape \"bilinearmesh\" \"point3 P\" [-3 -3 0 3 -3 0 -3 3 0 3 3 0]\n"
     "AttributeBegin Translate 0 0 0.5 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n";
@@ -119,19 +120,15 @@ static void test_lights(void **state) {
   static const char *const lights[] = {
       "LightSource \"point\" \"point3 from\" [1 -1 2] \"rgb I\" [9 8 7]\n",
       "Translate 0.5 0 0 LightSource \"point\" \"point3 from\" [1 -1 2] \"float power\" 100\n",
-      "Translate 0.5 0 0 LightSource \"spot\" \"point3 from\" [1 -1 2] \"point3 to\" [0 0 0] "
-      "\"rgb "
-      "I\" [9 8 7] \"float "
-      "coneangle\" 25\n",
-      "LightSource \"distant\" \"point3 from\" [1 -1 2] \"point3 to\" [0 0 0] \"float "
-      "illuminance\" 3\n",
-      "LightSource \"projection\" \"string filename\" \"textures/letters.png\" \"float scale\" "
-      "20 "
-      "\"float fov\" 70\n",
-      "AttributeBegin AreaLightSource \"diffuse\" \"float power\" 90 Translate 1 -1 2 Shape "
-      "\"sphere\" \"float "
-      "radius\" "
-      "0.2 AttributeEnd\n"};
+      "Translate 0.5 0 0 LightSource \"spot\" \"point3 from\" [1 -1 2] "
+      "\"point3 to\" [0 0 0] \"rgb I\" [9 8 7] \"float coneangle\" 25\n",
+      "LightSource \"distant\" \"point3 from\" [1 -1 2] \"point3 to\" [0 0 0] "
+      "\"float illuminance\" 3\n",
+      "LightSource \"projection\" \"string filename\" \"textures/letters.png\" "
+      "\"float scale\" 20 \"float fov\" 70\n",
+      "AttributeBegin AreaLightSource \"diffuse\" "
+      "\"float power\" 90 Translate 1 -1 2 Shape \"sphere\" "
+      "\"float radius\" 0.2 AttributeEnd\n"};
   for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
     char light[512];
     const bool placed = strstr(lights[i], "projection") != NULL; /* it looks along z */
@@ -144,60 +141,53 @@ static void test_lights(void **state) {
 static void test_sky_through_a_portal(void **state) {
   (void)state;
   expect_same_of(
-      "AttributeBegin Rotate 30 1 2 3 LightSource \"infinite\" \"string filename\" "
-      "\"textures/sky.pfm\" AttributeEnd\n",
+      "AttributeBegin Rotate 30 1 2 3 LightSource \"infinite\" "
+      "\"string filename\" \"textures/sky.pfm\" AttributeEnd\n",
       "", floor_and_ball, 0.002);
   expect_same_of(
-      "LightSource \"infinite\" \"string filename\" \"textures/sky.pfm\" \"point3 portal\" [19 "
-      "9 "
-      "33 19 11 33 21 11 33 "
-      "21 9 33]\n",
+      "LightSource \"infinite\" \"string filename\" \"textures/sky.pfm\" "
+      "\"point3 portal\" [19 9 33 19 11 33 21 11 33 21 9 33]\n",
       floor_and_ball, "", 0.002);
 }
 
 static void test_media(void **state) {
   (void)state;
   expect_same_of(lamp, floor_and_ball,
-                 "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.2 "
-                 "0.4 0.6] \"rgb "
-                 "sigma_s\" "
-                 "[1 1 1.5] \"float g\" 0.4 \"rgb Le\" [0.2 0.1 0]\n"
-                 "AttributeBegin Material \"interface\" MediumInterface \"fog\" \"\" Translate "
-                 "1 0 0.6 Shape "
-                 "\"sphere\" \"float radius\" 0.5 AttributeEnd\n",
+                 "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" "
+                 "\"rgb sigma_a\" [0.2 0.4 0.6] \"rgb sigma_s\" [1 1 1.5] \"float g\" 0.4 "
+                 "\"rgb Le\" [0.2 0.1 0]\n"
+                 "AttributeBegin Material \"interface\" MediumInterface \"fog\" \"\" "
+                 "Translate 1 0 0.6 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n",
                  0.004);
   expect_same_of(
       lamp, floor_and_ball,
-      "AttributeBegin Translate 0.6 0 0.2 MakeNamedMedium \"cloud\" \"string type\" \"cloud\" "
-      "\"rgb sigma_s\" "
-      "[9 9 9] \"rgb sigma_a\" [0 1 2] \"float density\" 2 \"float frequency\" 3 AttributeEnd\n"
-      "AttributeBegin Material \"interface\" MediumInterface \"cloud\" \"\" Translate 1 0 0.6 "
-      "Shape "
-      "\"sphere\" \"float radius\" 0.5 AttributeEnd\n",
+      "AttributeBegin Translate 0.6 0 0.2 MakeNamedMedium \"cloud\" "
+      "\"string type\" \"cloud\" \"rgb sigma_s\" [9 9 9] \"rgb sigma_a\" [0 1 2] "
+      "\"float density\" 2 \"float frequency\" 3 AttributeEnd\n"
+      "AttributeBegin Material \"interface\" MediumInterface \"cloud\" \"\" Translate 1 0 "
+      "0.6 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n",
       0.01);
 }
 
 static void test_textures(void **state) {
   (void)state;
-  expect_same_of(
-      lamp,
-      "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3 \"rgb tex1\" "
-      "[.9 .2 .2] \"rgb "
-      "tex2\" [.1 .8 .3]\n"
-      "Material \"diffuse\" \"texture reflectance\" \"t\"\nTranslate 0.03 0.07 0.04\n",
-      floor_and_ball, 0.004);
+  expect_same_of(lamp,
+                 "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3 "
+                 "\"rgb tex1\" [.9 .2 .2] \"rgb tex2\" [.1 .8 .3]\n"
+                 "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+                 "Translate 0.03 0.07 0.04\n",
+                 floor_and_ball, 0.004);
   expect_same_of(
       lamp,
       "Translate .2 .1 0 Scale .7 .7 .7 Texture \"t\" \"float\" \"fbm\" Translate .3 0 0\n"
       "Texture \"c\" \"spectrum\" \"mix\" \"texture amount\" \"t\" \"rgb tex1\" [.1 .1 .1] "
-      "\"rgb "
-      "tex2\" [.9 .8 .7]\n"
+      "\"rgb tex2\" [.9 .8 .7]\n"
       "Material \"diffuse\" \"texture reflectance\" \"c\"\n",
       floor_and_ball, 0.004);
   expect_same_of(lamp,
-                 "Texture \"c\" \"spectrum\" \"directionmix\" \"vector3 dir\" [0 0.3 1] \"rgb "
-                 "tex1\" [.1 .1 .1] \"rgb tex2\" "
-                 "[.9 .8 .7]\nMaterial \"diffuse\" \"texture reflectance\" \"c\"\n",
+                 "Texture \"c\" \"spectrum\" \"directionmix\" \"vector3 dir\" [0 0.3 1] "
+                 "\"rgb tex1\" [.1 .1 .1] \"rgb tex2\" [.9 .8 .7]\n"
+                 "Material \"diffuse\" \"texture reflectance\" \"c\"\n",
                  floor_and_ball, 0.004);
 }
 
@@ -211,10 +201,10 @@ static void test_heights(void **state) {
                  floor_and_ball, 0.004);
   expect_same_of(lamp,
                  "Texture \"h\" \"float\" \"fbm\"\n"
-                 "Texture \"b\" \"float\" \"scale\" \"texture tex\" \"h\" \"float scale\" 0.4\n"
-                 "Translate 0 -0.5 0 Scale 2 2 2 Shape \"plymesh\" \"string filename\" "
-                 "\"tetrahedron.ply\" \"texture "
-                 "displacement\" \"b\" "
+                 "Texture \"b\" \"float\" \"scale\" \"texture tex\" \"h\" "
+                 "\"float scale\" 0.4\n"
+                 "Translate 0 -0.5 0 Scale 2 2 2 Shape \"plymesh\" "
+                 "\"string filename\" \"tetrahedron.ply\" \"texture displacement\" \"b\" "
                  "\"float edgelength\" 0.1\n",
                  "", 0.01);
 }
@@ -230,9 +220,8 @@ static void test_subsurface_and_hair(void **state) {
       ball, 0.1);
   expect_same_of(lamp,
                  "Material \"hair\" \"rgb sigma_a\" [3 1 .3]\n"
-                 "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-1 0 0 -.3 0 .6 "
-                 ".3 .2 .6 1 0 1] "
-                 "\"float width\" .5\n",
+                 "Shape \"curve\" \"string type\" \"cylinder\" "
+                 "\"point3 P\" [-1 0 0 -.3 0 .6 .3 .2 .6 1 0 1] \"float width\" .5\n",
                  "", 0.004);
 }
 

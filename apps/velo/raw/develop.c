@@ -75,11 +75,12 @@ const Command raw_develop_command = {
     .usage = "FILE -o IMAGE [options]",
     .summary = "develop a raw file into an image",
     .text =
-        "Develops a DNG file that velo wrote, in five steps:\nblack     the black level is 0, "
-        "the white level 1\nwhite     white balance: a white surface has 1 : 1 : 1; what is "
-        "above 1 is cut\ndemosaic  all colours of each pixel, by bilinear interpolation\ncolor "
-        "    linear sRGB, by the colour matrices of the file\ntone      exposure, cut to [0, "
-        "1], sRGB's curve",
+        "Develops a DNG file that velo wrote, in five steps:\n"
+        "black     the black level is 0, the white level 1\n"
+        "white     white balance: a white surface has 1 : 1 : 1; what is above 1 is cut\n"
+        "demosaic  all colours of each pixel, by bilinear interpolation\n"
+        "color     linear sRGB, by the colour matrices of the file\n"
+        "tone      exposure, cut to [0, 1], sRGB's curve",
     .examples =
         "velo raw develop room.dng -o room.png\n"
         "velo raw develop room.dng -o mosaic.exr --stop-at black",

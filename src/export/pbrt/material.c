@@ -111,8 +111,8 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
     PUT("\"coateddiffuse\"");
     vl_pbrt_put_color(x, "reflectance", &color);
     vl_pbrt_put_number(x, "roughness", &alpha);
-    PUT(" \"bool remaproughness\" false \"float eta\" [%.9g] \"float thickness\" [0] \"integer "
-        "maxdepth\" [100]",
+    PUT(" \"bool remaproughness\" false \"float eta\" [%.9g] \"float thickness\" [0] "
+        "\"integer maxdepth\" [100]",
         eta);
   }
   bool fine = put_normal(x, m);

@@ -235,13 +235,13 @@ static void put_mapping(vlExport *x, const vlTextureDef *t) {
   if (t->mapping == VL_MAPPING_UV) {
     if (m[1] != 0 || m[3] != 0)
       vl_export_lose(x, "textures that are turned: only moved and scaled");
-    PUT(" \"float uscale\" [%.9g] \"float vscale\" [%.9g] \"float udelta\" [%.9g] \"float "
-        "vdelta\" [%.9g]",
+    PUT(" \"float uscale\" [%.9g] \"float vscale\" [%.9g] \"float udelta\" [%.9g] "
+        "\"float vdelta\" [%.9g]",
         m[0], m[4], m[2], m[5]);
   }
   if (t->mapping == VL_MAPPING_PLANAR)
-    PUT(" \"vector3 v1\" [%.9g %.9g %.9g] \"vector3 v2\" [%.9g %.9g %.9g] \"float udelta\" "
-        "[%.9g] \"float vdelta\" [%.9g]",
+    PUT(" \"vector3 v1\" [%.9g %.9g %.9g] \"vector3 v2\" [%.9g %.9g %.9g] "
+        "\"float udelta\" [%.9g] \"float vdelta\" [%.9g]",
         (double)t->planar_v1[0], (double)t->planar_v1[1], (double)t->planar_v1[2],
         (double)t->planar_v2[0], (double)t->planar_v2[1], (double)t->planar_v2[2],
         (double)t->du, (double)t->dv);

@@ -149,8 +149,8 @@ static bool image_rule(vlOldStatement *s) {
 /* Red is u, green v: the corners of a bilinear interpolation. */
 static bool uv_rule(vlOldStatement *s) {
   return vl_old_add(s,
-                    "\"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb v10\" [ 1 0 0 ] \"rgb "
-                    "v11\" [ 1 1 0 ]");
+                    "\"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb v10\" [ 1 0 0 ] "
+                    "\"rgb v11\" [ 1 1 0 ]");
 }
 
 /* Notes that the colour texture `name` is a mix by the float texture `copy`. */
@@ -177,8 +177,8 @@ static bool noise_rule(vlOldStatement *s) {
   return vl_old_edit(s, s->names[0], "\"%s\"", name) &&
          vl_old_edit(s, s->names[1], "\"float\"") &&
          vl_old_insert(s, VL_OLD_AFTER,
-                       "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb "
-                       "tex2\" [ 1 1 1 ] \"texture amount\" \"%s\"",
+                       "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] "
+                       "\"rgb tex2\" [ 1 1 1 ] \"texture amount\" \"%s\"",
                        s->name[0], name);
 }
 

@@ -74,12 +74,16 @@ void vl_list_name(char *list, size_t size, const char *name) {
 /* Number of bytes of the UTF-8 character at text; 0 if the bytes are not valid or incomplete.
  * *code: its code point. */
 static size_t utf8_length(const unsigned char *text, size_t length, uint32_t *code) {
+  /* by the number of bytes: the smallest code point; the highest bits of the first byte */
   static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
-  unsigned char c = text[0];
-  size_t n = c < 0x80 ? 1 : c >> 5 == 6 ? 2 : c >> 4 == 14 ? 3 : c >> 3 == 30 ? 4 : 0;
-  if (n == 0 || n > length)
+  static const unsigned char lead[5] = {0, 0x00, 0xc0, 0xe0, 0xf0},
+                             mask[5] = {0, 0x80, 0xe0, 0xf0, 0xf8};
+  size_t n = 1;
+  while (n <= 4 && (text[0] & mask[n]) != lead[n])
+    n++;
+  if (n > 4 || n > length)
     return 0;
-  *code = n == 1 ? c : c & (0x7fu >> n);
+  *code = text[0] & ~(uint32_t)mask[n];
   for (size_t i = 1; i < n; i++) {
     if (text[i] >> 6 != 2)
       return 0;

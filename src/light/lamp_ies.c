@@ -174,10 +174,13 @@ static bool read_candela(vlLampText *t, double factor, vlLampData *data) {
 }
 
 static bool read_table(vlLampText *t, double factor, vlLampData *data) {
-  bool c = data->type == 'C';
-  return read_angles(t, "vertical angle", data->angles, c ? 0 : -90, c ? 180 : 90,
+  /* Degrees. Type C: from the nadir up, and all around; A and B: up and down, left and right.
+   */
+  const bool around = data->type == 'C';
+  const double low = around ? 0 : -90;
+  return read_angles(t, "vertical angle", data->angles, low, around ? 180 : 90,
                      data->vertical) &&
-         read_angles(t, "horizontal angle", data->planes, c ? 0 : -90, c ? 360 : 90,
+         read_angles(t, "horizontal angle", data->planes, low, around ? 360 : 90,
                      data->horizontal) &&
          vl_lamp_check_angles(t, data) && read_candela(t, factor, data);
 }

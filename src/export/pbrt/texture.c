@@ -200,10 +200,10 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
     vl_image_row_to_float(from, y, channel, have, row);
     for (uint32_t i = 0; i < from->width; i++) {
       const float *v = row + (size_t)i * have;
-      float rgba[4] = {v[0], have > 2 ? v[1] : v[0], have > 2 ? v[2] : v[0],
-                       have == 4   ? v[3]
-                       : have == 2 ? v[1]
-                                   : 1.0f};
+      /* of one or two channels: grey, and coverage */
+      const bool colored = have > 2, covered = have == 2 || have == 4;
+      const float rgba[4] = {v[0], v[colored ? 1 : 0], v[colored ? 2 : 0],
+                             covered ? v[have - 1] : 1.0f};
       if (per == 3) {
         for (int k = 0; k < 3; k++)
           to[3 * i + (uint32_t)k] = change_color(rgba[k] * t->tint[k], change);

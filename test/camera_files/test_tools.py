@@ -777,6 +777,7 @@ def check_written(case, folder, work, written, suffixes=SUFFIXES):
 
 
 def main(cases=None, suffixes=SUFFIXES, extra=("copy.xml", "copy.ini", "bin/cameras.bin")):
+    only_skipped = os.environ.get("VELO_ONLY_SKIPPED") is not None  # the rest does not need OpenCV
     with tempfile.TemporaryDirectory() as work:
         written = {}
         for case in cases or CASES:
@@ -784,13 +785,15 @@ def main(cases=None, suffixes=SUFFIXES, extra=("copy.xml", "copy.ini", "bin/came
             write(folder, case.files)
             why = compare(case, folder, work)
             result(why is None, "reads " + case.name, why)
+            if only_skipped:
+                continue
             if why is None:
                 why = check_written(case, folder, work, written, suffixes)
                 result(why is None, "writes what it read of " + case.name, why)
             if case.damage:
                 why = check_damage(case, folder, work)
                 result(why is None, "survives a damaged " + case.name, why)
-        for name in list(suffixes) + list(extra):
+        for name in [] if only_skipped else list(suffixes) + list(extra):
             result(written.get(name, 0) > 0, "some camera is written as " + name)
         if not cv2:
             print("skip opencv's own functions: python3-opencv is not installed")

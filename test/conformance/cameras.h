@@ -1,10 +1,12 @@
 /* conformance/cameras.h: the laws of projections and distortions: a film point's ray leads back
  * to it; many points at once give the same bits as one; the solid angle is the derivative's;
- * known radii; velo's camera files hold the camera. Those of the whole domain: camera_ways.h.
+ * known radii; velo's camera files hold the camera. Those of the whole domain: camera_ways.h;
+ * those of rays: camera_rays.h.
  */
 #ifndef TEST_CONFORMANCE_CAMERAS_H
 #define TEST_CONFORMANCE_CAMERAS_H
 
+#include "camera_rays.h"
 #include "camera_ways.h"
 #include "conformance.h"
 #include "distortion/distortion.case.h"

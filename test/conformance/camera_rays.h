@@ -1,0 +1,138 @@
+/* conformance/camera_rays.h: laws of the rays that cameras give in batches: those of a camera
+ * that hardly moves are those of a still one, and those through the point in focus meet there.
+ */
+#ifndef TEST_CONFORMANCE_CAMERA_RAYS_H
+#define TEST_CONFORMANCE_CAMERA_RAYS_H
+
+#include "camera/rays.h"
+#include "camera_ways.h"
+#include "conformance.h"
+#include "unit.h"
+#include "velo/camera.h"
+#include "velo/projection.h"
+
+/* ---- motion ------------------------------------------------------------------------------ */
+
+typedef struct CameraRays {
+  float o[3][WAYS], d[3][WAYS], t_min[WAYS], t_max[WAYS], time[WAYS], valid[WAYS];
+} CameraRays;
+
+/* film: the point that all rays leave; null: they leave many. */
+static void rays_of_film(const vlCamera *camera, const double *film, CameraRays *r) {
+  static float x[WAYS], y[WAYS], u[WAYS], v[WAYS], time[WAYS];
+  static int32_t column[WAYS], row[WAYS];
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  for (uint32_t i = 0; i < WAYS; i++) {
+    column[i] = film ? (int32_t)floor(film[0]) : (int32_t)(i * 7 % camera->width);
+    row[i] = film ? (int32_t)floor(film[1]) : (int32_t)(i * 11 % camera->height);
+    x[i] = film ? (float)(film[0] - floor(film[0])) : (float)(i % 5) / 5;
+    y[i] = film ? (float)(film[1] - floor(film[1])) : (float)(i % 3) / 3;
+    u[i] = (float)(i % 13) / 13;
+    v[i] = (float)(i % 17) / 17;
+    time[i] = (float)(i % 19) / 19;
+  }
+  const vlCameraSamples samples = {x, y, column, row, u, v, time};
+  const vlCameraRays rays = {r->o[0],  r->o[1],  r->o[2], r->d[0],  r->d[1], r->d[2],
+                             r->t_min, r->t_max, r->time, r->valid, NULL};
+  vl_camera_kernels(VL_ISA_AUTO)->rays(&c, WAYS, &samples, &rays);
+}
+
+/* Below 0: the lens stops the ray. */
+static bool same_length(float a, float b) {
+  return a == b || (a < 0 && b < 0) || fabsf(a - b) <= 1e-4f * fabsf(a);
+}
+
+/* A camera that hardly moves has the rays of the one that is still, in a frame that is turned
+ * and stretched, too, through its lens and between its near and far planes. */
+static void check_moving(const char *kind, const vlCameraDef *def) {
+  static CameraRays still, moving;
+  static const double map[16] = {1.2, 0, 1.6, 3, 0, 2, 0, -2, -1.6, 0, 1.2, 5, 0, 0, 0, 1};
+  vlCameraDef changed = *def;
+  vlCamera camera;
+  uint32_t differ = 0;
+  if (def->projection != VL_PROJECTION_OPTICS) {
+    changed.lens_radius = 0.05;
+    changed.focus_distance = 2;
+  }
+  changed.near_plane = 0.5;
+  changed.far_plane = 3;
+  changed.has_matrix = true;
+  memcpy(changed.world_from_camera, map, sizeof map);
+  assert_int_equal(vl_camera_make(&changed, &camera, NULL, NULL), VL_OK);
+  rays_of_film(&camera, NULL, &still);
+  changed.has_matrix_close = true;
+  memcpy(changed.world_from_camera_close, map, sizeof map);
+  changed.world_from_camera_close[3] += 1e-9;
+  assert_int_equal(vl_camera_make(&changed, &camera, NULL, NULL), VL_OK);
+  assert_true(camera.moves);
+  rays_of_film(&camera, NULL, &moving);
+  for (uint32_t i = 0; i < WAYS; i++) {
+    bool same = still.valid[i] == moving.valid[i] &&
+                same_length(still.t_min[i], moving.t_min[i]) &&
+                same_length(still.t_max[i], moving.t_max[i]);
+    for (int k = 0; k < 3; k++)
+      same = same && fabsf(still.o[k][i] - moving.o[k][i]) < 1e-5f &&
+             fabsf(still.d[k][i] - moving.d[k][i]) < 1e-5f;
+    differ += !same && still.valid[i] > 0;
+  }
+  if (differ)
+    broken("projections", kind, "%u of %u rays are others where the camera moves", differ,
+           WAYS);
+}
+
+/* ---- focus ------------------------------------------------------------------------------- */
+
+/* The largest distance of a point from the rays through the lens that leave its film point. */
+static double blur_of_point(const vlCamera *camera, const double point[3]) {
+  static CameraRays r;
+  double film[2];
+  double worst = 0;
+  if (!vl_camera_project(camera, point, film, NULL))
+    return INFINITY;
+  rays_of_film(camera, film, &r);
+  for (uint32_t i = 0; i < WAYS; i++) {
+    double to[3];
+    double along = 0;
+    double far2 = 0;
+    for (int k = 0; k < 3; k++) {
+      to[k] = point[k] - (double)r.o[k][i];
+      along += to[k] * (double)r.d[k][i];
+    }
+    for (int k = 0; k < 3; k++)
+      far2 += pow(to[k] - along * (double)r.d[k][i], 2);
+    worst = fmax(worst, sqrt(far2));
+  }
+  return worst;
+}
+
+/* The point on which a camera is focused is sharp, beside the axis and with a lens or a plane
+ * of focus that is tilted, too. */
+static void check_focus_point(const char *kind, const vlCameraDef *def) {
+  static const double tilts[4][4] = {
+      {0, 0, 0, 0}, {0.2, -0.3, 0, 0}, {0, 0, 0.04, -0.03}, {0, 0, 0, 0.05}};
+  static const double point[3] = {0.3, 0.4, 2};
+  for (int i = 0; i < 4; i++) {
+    vlError error = {0};
+    vlCameraDef focused = *def;
+    vlCamera camera;
+    focused.lens_radius = 0.1;
+    focused.focus_distance = VL_UNSET;
+    memcpy(focused.lens.focus_point, point, sizeof point);
+    focused.lens.tilt_x = tilts[i][0];
+    focused.lens.tilt_y = tilts[i][1];
+    focused.lens.lens_tilt_x = tilts[i][2];
+    focused.lens.lens_tilt_y = tilts[i][3];
+    focused.focal_mm = i > 1 ? 50 : focused.focal_mm;
+    if (vl_camera_make(&focused, &camera, NULL, &error) != VL_OK) {
+      if (i == 0 || def->projection == VL_PROJECTION_PERSPECTIVE) /* others have no tilts */
+        broken("projections", kind, "focused on a point: %s", error.message);
+      continue;
+    }
+    const double blur = blur_of_point(&camera, point);
+    if (!(blur < 1e-4))
+      broken("projections", kind, "tilt %d: the point in focus is blurred by %.5f", i, blur);
+  }
+}
+
+#endif

@@ -97,13 +97,19 @@ static vlResult write_basalt(const vlFittedCamera *fit, vlCameraText *text) {
   vl_rotation_to_quaternion(r, q);
   return VL_PUT_FORM(
       text, fit,
-      "{\n  \"value0\": {\n    \"T_imu_cam\": [\n      {\"px\": $centre@0, \"py\": "
-      "$centre@1, \"pz\": $centre@2, "
-      "\"qx\": $q@1, \"qy\": $q@2, \"qz\": $q@3, \"qw\": $q@0}\n    ],\n"
-      "    \"intrinsics\": [\n      {\"camera_type\": \"$type\", \"intrinsics\": {\"fx\": "
-      "$fx, \"fy\": $fy, "
-      "\"cx\": $cx0, \"cy\": $cy0$shapes$lens$limit"
-      "}}\n    ],\n    \"resolution\": [[$width, $height]]\n  }\n}\n",
+      "{\n"
+      "  \"value0\": {\n"
+      "    \"T_imu_cam\": [\n"
+      "      {\"px\": $centre@0, \"py\": $centre@1, \"pz\": $centre@2, \"qx\": $q@1, "
+      "\"qy\": $q@2, \"qz\": $q@3, \"qw\": $q@0}\n"
+      "    ],\n"
+      "    \"intrinsics\": [\n"
+      "      {\"camera_type\": \"$type\", \"intrinsics\": {"
+      "\"fx\": $fx, \"fy\": $fy, \"cx\": $cx0, \"cy\": $cy0$shapes$lens$limit}}\n"
+      "    ],\n"
+      "    \"resolution\": [[$width, $height]]\n"
+      "  }\n"
+      "}\n",
       VL_WORD("type", model->name), VL_VALUES("q", q, 4),
       VL_NAMED("shapes", model->shapes, c->shape, 2, ", \"$item\": $value"),
       VL_NAMED("lens", model->lens, fit->k, 8, ", \"$item\": $value"),

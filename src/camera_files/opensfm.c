@@ -165,11 +165,20 @@ static vlResult write_opensfm(const vlFittedCamera *fit, vlCameraText *text) {
                        (c->cy - 0.5 * c->height) / side};
   return VL_PUT_FORM(
       text, fit,
-      "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": "
-      "\"$type\", \"width\": $width, \"height\": $height$plane$lens"
-      "}\n    },\n    \"shots\": {\n      $name: {\"camera\": \"camera\",\n"
-      "        \"rotation\": [$V],\n        \"translation\": [$t]}\n    },\n"
-      "    \"points\": {}\n  }\n]\n",
+      "[\n"
+      "  {\n"
+      "    \"cameras\": {\n"
+      "      \"camera\": {\"projection_type\": \"$type\", \"width\": $width, \"height\": "
+      "$height$plane$lens}\n"
+      "    },\n"
+      "    \"shots\": {\n"
+      "      $name: {\"camera\": \"camera\",\n"
+      "        \"rotation\": [$V],\n"
+      "        \"translation\": [$t]}\n"
+      "    },\n"
+      "    \"points\": {}\n"
+      "  }\n"
+      "]\n",
       VL_WORD("type", type),
       VL_PART("plane", !whole,
               ",\n        \"focal_x\": $f@0, \"focal_y\": $f@1, \"c_x\": $f@2, \"c_y\": $f@3"),

@@ -213,10 +213,8 @@ static void test_half_pixel_table(void **state) {
       read_as(put("half/cameras.txt", "# one\n1 PINHOLE 640 480 500 501 320 240\n"), 0, NULL),
       read_as(put("n.json",
                   "{\"w\":640,\"h\":480,\"fl_x\":500,\"fl_y\":501,\"cx\":320,\"cy\":240,"
-                  "\"frames\":[{"
-                  "\"file_"
-                  "path\":\"a\",\"transform_matrix\":[[1,0,0,0],[0,-1,0,0],[0,0,-1,0],[0,0,0,1]"
-                  "]}]}"),
+                  "\"frames\":[{\"file_path\":\"a\","
+                  "\"transform_matrix\":[[1,0,0,0],[0,-1,0,0],[0,0,-1,0],[0,0,0,1]]}]}"),
               0, NULL)};
   for (size_t i = 0; i < sizeof records / sizeof *records; i++) {
     vlCamera c;

@@ -125,8 +125,8 @@ static void named_materials(void **state) {
       "Shape \"sphere\"\n"
       "NamedMaterial \"later\" Shape \"sphere\"\n"
       "AttributeBegin Material \"diffuse\" Shape \"sphere\" AttributeEnd Shape \"sphere\"\n"
-      "MakeNamedMaterial \"later\" \"string type\" \"mix\" \"string materials\" [ \"a\" "
-      "\"b\" ] \"float amount\" 0.25\n"
+      "MakeNamedMaterial \"later\" \"string type\" \"mix\" "
+      "\"string materials\" [ \"a\" \"b\" ] \"float amount\" 0.25\n"
       "MakeNamedMaterial \"a\" \"string type\" \"conductor\"\n"
       "MakeNamedMaterial \"b\" \"string type\" \"dielectric\"\n");
   const vlScene *s = l.scene;

@@ -72,15 +72,11 @@ static void eight_influences(void **state) {
                 ",\"normalized\":true");
   Loaded l;
   fine(&l, g,
-       "\"scenes\":[{\"nodes\":[0,1,2,3,4,5,6,7,8]}],\"nodes\":[{\"mesh\":0,\"skin\":0},{},{},{"
-       "},{}"
-       ",{},{},{},"
-       "{\"translation\":[8,0,0]}],\"skins\":[{\"joints\":[1,2,3,4,5,6,7,8]}],\"meshes\":[{"
-       "\"primitives\":[{"
-       "\"attributes\":{"
-       "\"POSITION\":0,\"JOINTS_0\":2,\"WEIGHTS_0\":3,\"JOINTS_1\":4,\"WEIGHTS_1\":5},"
-       "\"indices\":"
-       "1}]}]");
+       "\"scenes\":[{\"nodes\":[0,1,2,3,4,5,6,7,8]}],\"nodes\":[{\"mesh\":0,\"skin\":0},{},"
+       "{},{},{},{},{},{},{\"translation\":[8,0,0]}],"
+       "\"skins\":[{\"joints\":[1,2,3,4,5,6,7,8]}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":2,"
+       "\"WEIGHTS_0\":3,\"JOINTS_1\":4,\"WEIGHTS_1\":5},\"indices\":1}]}]");
   is_near((double)shape(&l, 0)->positions[0] + shape(&l, 0)->group_from_shape[3], 1, 1e-3);
   end_load(&l);
   free(g);

@@ -148,14 +148,12 @@ static void filters(void **state) {
     Loaded l;
     fine(&l, g,
          SCENE
-         "\"extensionsUsed\":[\"EXT_meshopt_compression\",\"EXT_mesh_gpu_instancing\",\"KHR_"
-         "mesh_"
-         "quantization\"],"
-         "\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{"
-         "\"ROTATION\":2}}}}],"
+         "\"extensionsUsed\":[\"EXT_meshopt_compression\",\"EXT_mesh_gpu_instancing\","
+         "\"KHR_mesh_quantization\"],"
+         "\"nodes\":[{\"mesh\":0,"
+         "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"ROTATION\":2}}}}],"
          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},"
-         "\"indices\":3}"
-         "]}]");
+         "\"indices\":3}]}]");
     const vlShapeDef *s = shape(&l, 0);
     for (int i = 0; i < 4; i++) {
       const float *p = s->normals + 3 * i;

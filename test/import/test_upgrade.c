@@ -87,8 +87,9 @@ static const struct {
      "Material \"diffuse\" \"rgb reflectance\" [ .5 .25 1e-2 ] # kept\n", 0},
     {"Material \"matte\" \"float sigma\" 0\n", "Material \"diffuse\"\n", 0},
     {"Material \"matte\" \"float sigma\" 20\n", "Material \"diffuse\"\n", 1},
-    {"Material \"plastic\"\n  \"rgb Kd\" [ .1 .2 .3 ]\n  \"bool remaproughness\" [ \"false\" "
-     "]\n",
+    {"Material \"plastic\"\n"
+     "  \"rgb Kd\" [ .1 .2 .3 ]\n"
+     "  \"bool remaproughness\" [ \"false\" ]\n",
      "Material \"coateddiffuse\"\n"
      "  \"rgb reflectance\" [ .1 .2 .3 ]\n"
      "  \"bool remaproughness\" [ false ]\n"
@@ -110,8 +111,8 @@ static const struct {
      "Material \"coateddiffuse\" \"rgb reflectance\" [ .3 .3 .3 ] \"float uroughness\" .05 "
      "\"float vroughness\" 0.1\n",
      0},
-    {"Material \"uber\" \"rgb Kd\" [ .3 .3 .3 ] \"rgb Ks\" [ 0 0 0 ] \"rgb opacity\" [ 1 1 1 "
-     "]\n",
+    {"Material \"uber\" \"rgb Kd\" [ .3 .3 .3 ] \"rgb Ks\" [ 0 0 0 ] "
+     "\"rgb opacity\" [ 1 1 1 ]\n",
      "Material \"diffuse\" \"rgb reflectance\" [ .3 .3 .3 ]\n", 0},
     {"  Material \"uber\" \"rgb Kd\" [ .3 .3 .3 ] \"rgb opacity\" [ .25 .25 .25 ]\n",
      "  MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\n"
@@ -197,8 +198,8 @@ static const struct {
      "\"spectrum I\" [ 300 2 400 2 500 2 600 2 700 2 710 2 720 2 730 2 740 2 900 2 ] "
      "\"float scale\" 2\n",
      0},
-    {"LightSource \"infinite\" \"integer nsamples\" 4 \"integer samples\" 4 \"rgb L\" [ 1 1 1 "
-     "]\n",
+    {"LightSource \"infinite\" \"integer nsamples\" 4 \"integer samples\" 4 "
+     "\"rgb L\" [ 1 1 1 ]\n",
      "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n", 0},
     {"AreaLightSource \"area\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" \"true\" "
      "\"integer nsamples\" [ 8 ]\n",
@@ -218,8 +219,10 @@ static const struct {
     {"Shape \"nurbs\" \"integer nu\" 4\n", "", 1},
     {"TransformBegin\nTranslate [ 1 2 3 ]\nTransform 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 "
      "1\nTransformEnd\n",
-     "AttributeBegin\nTranslate  1 2 3 \nTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 "
-     "]\nAttributeEnd\n",
+     "AttributeBegin\n"
+     "Translate  1 2 3 \n"
+     "Transform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ]\n"
+     "AttributeEnd\n",
      0},
     {"TransformBegin\n"
      "  AttributeBegin\n"
@@ -640,8 +643,10 @@ static void black_bodies(void **state) {
   Notes notes;
   vlError error;
   write_file("old/s.pbrt",
-             "PixelFilter \"box\"\nWorldBegin\nLightSource \"point\" \"blackbody I\" [ 3000 2 "
-             "]\nWorldEnd\n");
+             "PixelFilter \"box\"\n"
+             "WorldBegin\n"
+             "LightSource \"point\" \"blackbody I\" [ 3000 2 ]\n"
+             "WorldEnd\n");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error), VL_OK);
   const char *text = read_file("new/s.pbrt"), *scale = strstr(text, "\"float scale\" ");
   assert_non_null(strstr(text, "\"blackbody I\" 3000"));
@@ -680,12 +685,13 @@ static void solids(void **state) {
   Notes notes;
   vlError error;
   Loaded l;
-  write_file(
-      "old/s.pbrt",
-      "WorldBegin\nShape \"cone\" \"float radius\" 2 \"float height\" 3\n"
-      "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 3 \"float Pz\" [ 0 1 2 3 4 5 ]\n"
-      "Shape \"paraboloid\"\nShape \"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 0 1 1 "
-      "]\n");
+  write_file("old/s.pbrt",
+             "WorldBegin\n"
+             "Shape \"cone\" \"float radius\" 2 \"float height\" 3\n"
+             "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 3 "
+             "\"float Pz\" [ 0 1 2 3 4 5 ]\n"
+             "Shape \"paraboloid\"\n"
+             "Shape \"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 0 1 1 ]\n");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error), VL_OK);
   start_load(&l);
   l.result = vl_scene_load(l.scene, in_folder("new/s.pbrt"), NULL, &l.error);

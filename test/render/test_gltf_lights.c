@@ -20,18 +20,15 @@ static Image lamp_image(const char *node, const char *light) {
   Gltf *g = calloc(1, sizeof *g);
   put_box(g, 0);
   char rest[2000];
-  snprintf(
-      rest, sizeof rest,
-      "\"scene\":0,\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"camera\":0,"
-      "\"translation\":[0,0,10]"
-      "},{%s,"
-      "\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],\"extensions\":{\"KHR_lights_"
-      "punctual\":{"
-      "\"lights\":[{%s"
-      "}]}}," SHOT_CAMERA ",\"materials\":[{" PAPER
-      "}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,"
-      "\"material\":0}]}]",
-      node, light);
+  snprintf(rest, sizeof rest,
+           "\"scene\":0,\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},"
+           "{\"camera\":0,\"translation\":[0,0,10]},"
+           "{%s,\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],"
+           "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{%s}]}}," SHOT_CAMERA
+           ",\"materials\":[{" PAPER
+           "}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,"
+           "\"material\":0}]}]",
+           node, light);
   Shot shot = {.room = VL_ENVIRONMENT_NONE, .spp = 16};
   Image p = shoot(g, rest, &shot);
   free(g);
@@ -271,9 +268,8 @@ static void painted_walls(void **state) {
     char rest[2400];
     snprintf(
         rest, sizeof rest,
-        "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"camera\":0,"
-        "\"translation\":[0,0,10]"
-        "}]," SHOT_CAMERA
+        "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},"
+        "{\"camera\":0,\"translation\":[0,0,10]}]," SHOT_CAMERA
         ",\"images\":[{\"uri\":\"%s\"}],\"samplers\":[{\"magFilter\":9728,\"minFilter\":9728}],"
         "\"textures\":[{\"source\":0,\"sampler\":0}],\"materials\":[{%s}],\"meshes\":[{"
         "\"primitives\":[{"

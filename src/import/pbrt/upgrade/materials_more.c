@@ -56,11 +56,10 @@ static bool mix_with_nothing(vlOldStatement *s, const vlOldParam *opacity) {
   s->renamed = 0; /* the name is written here */
   if (!vl_old_edit(s, s->names[0], "\"%s\"", solid))
     return false;
-  return vl_old_insert(
-      s, VL_OLD_AFTER,
-      "MakeNamedMaterial \"%s\" \"string type\" \"mix\" \"string materials\" [ "
-      "\"see-through\" \"%s\" ] %s",
-      s->name[0], solid, amount);
+  return vl_old_insert(s, VL_OLD_AFTER,
+                       "MakeNamedMaterial \"%s\" \"string type\" \"mix\" "
+                       "\"string materials\" [ \"see-through\" \"%s\" ] %s",
+                       s->name[0], solid, amount);
 }
 
 static void drop_black(vlOldStatement *s, const char *name) {

@@ -37,11 +37,14 @@ static const Command help_command = {
     .summary = "print the options of a command",
     .text =
         "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options "
-        "in sections\n(of render the most used ones, --all prints all), and examples. For "
-        "image, scene, camera, film or raw, prints this for each command of that group.",
+        "in sections\n"
+        "(of render the most used ones, --all prints all), and examples. For image, scene, "
+        "camera, film or raw, prints this for each command of that group.",
     .examples =
-        "velo help render\nvelo help render --all\nvelo help image diff\nvelo help --man "
-        "render | man -l -",
+        "velo help render\n"
+        "velo help render --all\n"
+        "velo help image diff\n"
+        "velo help --man render | man -l -",
     .options = help_options,
     .max_operands = MAX_OPERANDS,
     .run = help,

@@ -69,19 +69,27 @@ static vlResult write_blender(const vlFittedCamera *fit, vlCameraText *text) {
   const double lens = flat ? side / c->fx : c->fx * sensor / side;
   const double shift[2] = {(0.5 * w - c->cx) / side, (c->cy - 0.5 * h) * ratio / side};
   const double aspect[2] = {ratio < 1.0 ? 1.0 / ratio : 1.0, ratio < 1.0 ? 1.0 : ratio};
-  return VL_PUT_FORM(
-      text, fit,
-      "{\n  \"name\": $name,\n  \"type\": \"$type\",\n  \"$kind\": $lens,\n"
-      "  \"sensor_fit\": \"AUTO\",\n  \"sensor_width\": $sensor,\n  \"shift_x\": $shift@0,\n"
-      "  \"shift_y\": $shift@1,\n$start$end"
-      "  \"resolution_x\": $width,\n  \"resolution_y\": $height,\n"
-      "  \"pixel_aspect_x\": $pixel@0,\n  \"pixel_aspect_y\": $pixel@1,\n"
-      "  \"matrix_world\": [$flipped:4]\n}\n",
-      VL_WORD("type", flat ? "ORTHO" : "PERSP"), VL_WORD("kind", flat ? "ortho_scale" : "lens"),
-      VL_VALUES("lens", &lens, 1), VL_VALUES("sensor", &sensor, 1),
-      VL_VALUES("shift", shift, 2), VL_VALUES("pixel", aspect, 2),
-      VL_PART("start", c->near_plane > 0.0, "  \"clip_start\": $near,\n"),
-      VL_PART("end", !isinf(c->far_plane), "  \"clip_end\": $far,\n"));
+  return VL_PUT_FORM(text, fit,
+                     "{\n"
+                     "  \"name\": $name,\n"
+                     "  \"type\": \"$type\",\n"
+                     "  \"$kind\": $lens,\n"
+                     "  \"sensor_fit\": \"AUTO\",\n"
+                     "  \"sensor_width\": $sensor,\n"
+                     "  \"shift_x\": $shift@0,\n"
+                     "  \"shift_y\": $shift@1,\n"
+                     "$start$end  \"resolution_x\": $width,\n"
+                     "  \"resolution_y\": $height,\n"
+                     "  \"pixel_aspect_x\": $pixel@0,\n"
+                     "  \"pixel_aspect_y\": $pixel@1,\n"
+                     "  \"matrix_world\": [$flipped:4]\n"
+                     "}\n",
+                     VL_WORD("type", flat ? "ORTHO" : "PERSP"),
+                     VL_WORD("kind", flat ? "ortho_scale" : "lens"),
+                     VL_VALUES("lens", &lens, 1), VL_VALUES("sensor", &sensor, 1),
+                     VL_VALUES("shift", shift, 2), VL_VALUES("pixel", aspect, 2),
+                     VL_PART("start", c->near_plane > 0.0, "  \"clip_start\": $near,\n"),
+                     VL_PART("end", !isinf(c->far_plane), "  \"clip_end\": $far,\n"));
 }
 
 const vlCameraFormat vl_format_blender = {

@@ -82,6 +82,13 @@ const vlCameraFormat vl_format_bop = {
     .holds = VL_HOLDS_POSE,
     .lenses = 1 << VL_LENS_PINHOLE,
     .form =
-        "{\n  \"0\": {\n    \"cam_K\": [$K],\n    \"cam_R_w2c\": [$R],\n    \"cam_t_w2c\": "
-        "[$t],\n"
-        "    \"depth_scale\": 1.0,\n    \"width\": $width,\n    \"height\": $height\n  }\n}\n"};
+        "{\n"
+        "  \"0\": {\n"
+        "    \"cam_K\": [$K],\n"
+        "    \"cam_R_w2c\": [$R],\n"
+        "    \"cam_t_w2c\": [$t],\n"
+        "    \"depth_scale\": 1.0,\n"
+        "    \"width\": $width,\n"
+        "    \"height\": $height\n"
+        "  }\n"
+        "}\n"};

@@ -160,8 +160,14 @@ static vlResult write_camodocal(const vlFittedCamera *fit, vlCameraText *text) {
   const bool fisheye = family == VL_LENS_FISHEYE;
   return VL_PUT_FORM(
       text, fit,
-      "%YAML:1.0\n---\nmodel_type: $model\ncamera_name: $name\nimage_width: $width\n"
-      "image_height: $height\n$mirror$before:\n$lens$between$plane",
+      "%YAML:1.0\n"
+      "---\n"
+      "model_type: $model\n"
+      "camera_name: $name\n"
+      "image_width: $width\n"
+      "image_height: $height\n"
+      "$mirror$before:\n"
+      "$lens$between$plane",
       VL_WORD("model", model->name),
       VL_PART("mirror", family == VL_LENS_UNIFIED, "mirror_parameters:\n  xi: $xi\n"),
       VL_VALUES("xi", &xi, 1),

@@ -50,7 +50,14 @@ const vlCameraFormat vl_format_euroc = {
     .most = 5,
     .lens_words = {"radial-tangential", "radial-tangential", "equidistant"},
     .form =
-        "sensor_type: camera\ncomment: $name\nT_BS:\n  cols: 4\n  rows: 4\n  data: [$pose]\n"
-        "resolution: [$width, $height]\ncamera_model: pinhole\nintrinsics: [$fx, $fy, $cx0, "
-        "$cy0]\n"
-        "distortion_model: $lens\ndistortion_coefficients: [$k]\n"};
+        "sensor_type: camera\n"
+        "comment: $name\n"
+        "T_BS:\n"
+        "  cols: 4\n"
+        "  rows: 4\n"
+        "  data: [$pose]\n"
+        "resolution: [$width, $height]\n"
+        "camera_model: pinhole\n"
+        "intrinsics: [$fx, $fy, $cx0, $cy0]\n"
+        "distortion_model: $lens\n"
+        "distortion_coefficients: [$k]\n"};

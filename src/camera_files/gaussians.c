@@ -31,6 +31,9 @@ const vlCameraFormat vl_format_gaussians = {
     .centred = true,
     .lenses = 1 << VL_LENS_PINHOLE,
     .form =
-        "[\n  {\"id\": 0, \"img_name\": $name, \"width\": $width, \"height\": $height,\n"
-        "   \"position\": [$centre],\n   \"rotation\": [$axes:3],\n   \"fy\": $fy, \"fx\": "
-        "$fx}\n]\n"};
+        "[\n"
+        "  {\"id\": 0, \"img_name\": $name, \"width\": $width, \"height\": $height,\n"
+        "   \"position\": [$centre],\n"
+        "   \"rotation\": [$axes:3],\n"
+        "   \"fy\": $fy, \"fx\": $fx}\n"
+        "]\n"};

@@ -284,19 +284,26 @@ static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
       c->near_plane > 0.0 || n.flat ? c->near_plane : fmin(0.01, 1e-3 * c->far_plane);
   const double planes[2] = {near_plane, isinf(c->far_plane) ? near_plane + 1e4 : c->far_plane};
   const double sides[4] = {n.xmag, n.ymag, n.aspect, n.yfov};
-  VL_PUT_FORM(
-      text, fit,
-      "{\n  \"asset\": {\"version\": \"2.0\", \"generator\": \"velo\"},\n  \"scene\": 0,\n"
-      "  \"scenes\": [{\"nodes\": [0]}],\n  \"nodes\": [{\n    \"name\": $name"
-      ",\n    \"camera\": 0,\n    \"matrix\": [$flippedcolumns]\n  }],\n  \"cameras\": [{\n"
-      "    \"type\": \"$type\",\n    \"$type\": {$sides, \"znear\": $planes@0$end},\n"
-      "    \"extras\": {\"velo\": ",
-      VL_WORD("type", n.flat ? "orthographic" : "perspective"),
-      {.key = "sides",
-       .part = n.flat ? "\"xmag\": $own@0, \"ymag\": $own@1"
-                      : "\"aspectRatio\": $own@2, \"yfov\": $own@3"},
-      VL_VALUES("own", sides, 4), VL_VALUES("planes", planes, 2),
-      VL_PART("end", !isinf(c->far_plane) || n.flat, ", \"zfar\": $planes@1"));
+  VL_PUT_FORM(text, fit,
+              "{\n"
+              "  \"asset\": {\"version\": \"2.0\", \"generator\": \"velo\"},\n"
+              "  \"scene\": 0,\n"
+              "  \"scenes\": [{\"nodes\": [0]}],\n"
+              "  \"nodes\": [{\n"
+              "    \"name\": $name,\n"
+              "    \"camera\": 0,\n"
+              "    \"matrix\": [$flippedcolumns]\n"
+              "  }],\n"
+              "  \"cameras\": [{\n"
+              "    \"type\": \"$type\",\n"
+              "    \"$type\": {$sides, \"znear\": $planes@0$end},\n"
+              "    \"extras\": {\"velo\": ",
+              VL_WORD("type", n.flat ? "orthographic" : "perspective"),
+              {.key = "sides",
+               .part = n.flat ? "\"xmag\": $own@0, \"ymag\": $own@1"
+                              : "\"aspectRatio\": $own@2, \"yfov\": $own@3"},
+              VL_VALUES("own", sides, 4), VL_VALUES("planes", planes, 2),
+              VL_PART("end", !isinf(c->far_plane) || n.flat, ", \"zfar\": $planes@1"));
   vlCameraText whole = {.context = text->context};
   const vlResult result = vl_camera_write_velo(fit, &whole);
   vl_camera_put_text(text, &whole);

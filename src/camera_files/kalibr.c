@@ -145,27 +145,31 @@ static vlResult write_kalibr(const vlFittedCamera *fit, vlCameraText *text) {
   for (int i = 0; i < 16; i++)
     posed = posed || c->camera_from_world[i] != (i % 5 == 0 ? 1.0 : 0.0);
   /* the world's space is the IMU's */
-  return VL_PUT_FORM(
-      text, fit,
-      "cam0:\n  camera_model: $model\n  intrinsics: [$shapes$fx, $fy, $cx0, $cy0]\n"
-      "  distortion_model: $lens\n  distortion_coeffs: [$k]\n"
-      "  resolution: [$width, $height]\n$imu",
-      VL_WORD("model", model->name),
-      {.key = "shapes",
-       .part = model->shapes == 2   ? "$shape, "
-               : model->shapes == 1 ? "$shape@0, "
-                                    : ""},
-      VL_VALUES("shape", c->shape, 2),
-      VL_WORD("lens", fov    ? "fov"
-                      : equi ? "equidistant"
-                      : n    ? "radtan"
-                             : "none"),
-      VL_VALUES("k", fit->k, n),
-      VL_PART("imu", posed,
-              "  T_cam_imu:\n  - [$view@0, $view@1, $view@2, $view@3]\n"
-              "  - [$view@4, $view@5, $view@6, $view@7]\n"
-              "  - [$view@8, $view@9, $view@10, $view@11]\n"
-              "  - [$view@12, $view@13, $view@14, $view@15]\n"));
+  return VL_PUT_FORM(text, fit,
+                     "cam0:\n"
+                     "  camera_model: $model\n"
+                     "  intrinsics: [$shapes$fx, $fy, $cx0, $cy0]\n"
+                     "  distortion_model: $lens\n"
+                     "  distortion_coeffs: [$k]\n"
+                     "  resolution: [$width, $height]\n"
+                     "$imu",
+                     VL_WORD("model", model->name),
+                     {.key = "shapes",
+                      .part = model->shapes == 2   ? "$shape, "
+                              : model->shapes == 1 ? "$shape@0, "
+                                                   : ""},
+                     VL_VALUES("shape", c->shape, 2),
+                     VL_WORD("lens", fov    ? "fov"
+                                     : equi ? "equidistant"
+                                     : n    ? "radtan"
+                                            : "none"),
+                     VL_VALUES("k", fit->k, n),
+                     VL_PART("imu", posed,
+                             "  T_cam_imu:\n"
+                             "  - [$view@0, $view@1, $view@2, $view@3]\n"
+                             "  - [$view@4, $view@5, $view@6, $view@7]\n"
+                             "  - [$view@8, $view@9, $view@10, $view@11]\n"
+                             "  - [$view@12, $view@13, $view@14, $view@15]\n"));
 }
 
 const vlCameraFormat vl_format_kalibr = {

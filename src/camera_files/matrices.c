@@ -237,18 +237,25 @@ static vlResult write_matrices(const vlFittedCamera *fit, vlCameraText *text) {
   for (int i = 4; i < 12; i++)
     view.m[i] = 0.0 - view.m[i];
   bool transposed = api->rows_first == api->row_vectors;
-  VL_PUT_FORM(
-      text, fit,
-      "{\n  \"graphics_api\": \"$api\",\n$named"
-      "  \"width\": $width,\n  \"height\": $height,\n  \"pixel_origin\": \"corner\",\n"
-      "  \"view_axes\": \"x right, y up, z back\",\n  \"order\": \"$order\",\n"
-      "  \"vectors\": \"$vectors\",\n  \"clip_y\": \"$clip\",\n  \"clip_z\": [$lowest, 1],\n"
-      "  \"near_plane\": $near,\n  \"far_plane\": $end,\n",
-      VL_WORD("api", api->name), VL_PART("named", fit->record->name[0], "  \"name\": $name,\n"),
-      VL_WORD("order", api->rows_first ? "row-major" : "column-major"),
-      VL_WORD("vectors", api->row_vectors ? "row" : "column"),
-      VL_WORD("clip", api->down ? "down" : "up"), VL_VALUES("lowest", &api->z_near, 1),
-      {.key = "end", .part = isinf(c->far_plane) ? "null" : "$far"});
+  VL_PUT_FORM(text, fit,
+              "{\n"
+              "  \"graphics_api\": \"$api\",\n"
+              "$named  \"width\": $width,\n"
+              "  \"height\": $height,\n"
+              "  \"pixel_origin\": \"corner\",\n"
+              "  \"view_axes\": \"x right, y up, z back\",\n"
+              "  \"order\": \"$order\",\n"
+              "  \"vectors\": \"$vectors\",\n"
+              "  \"clip_y\": \"$clip\",\n"
+              "  \"clip_z\": [$lowest, 1],\n"
+              "  \"near_plane\": $near,\n"
+              "  \"far_plane\": $end,\n",
+              VL_WORD("api", api->name),
+              VL_PART("named", fit->record->name[0], "  \"name\": $name,\n"),
+              VL_WORD("order", api->rows_first ? "row-major" : "column-major"),
+              VL_WORD("vectors", api->row_vectors ? "row" : "column"),
+              VL_WORD("clip", api->down ? "down" : "up"), VL_VALUES("lowest", &api->z_near, 1),
+              {.key = "end", .part = isinf(c->far_plane) ? "null" : "$far"});
   put_matrix(text, "projection_matrix", &projection, transposed);
   vl_camera_put(text, ",\n");
   put_matrix(text, "view_matrix", &view, transposed);

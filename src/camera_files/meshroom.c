@@ -234,23 +234,29 @@ static vlResult write_meshroom(const vlFittedCamera *fit, vlCameraText *text) {
   const double middle[2] = {c->cx - 0.5 * c->width, c->cy - 0.5 * c->height};
   return VL_PUT_FORM(
       text, fit,
-      "{\n  \"version\": [\"1\", \"2\", \"8\"],\n  \"views\": [\n    {\"viewId\": \"1\", "
-      "\"poseId\": \"1\", "
-      "\"frameId\": \"0\", \"intrinsicId\": \"1\",\n     \"path\": $name, \"width\": $width:q, "
-      "\"height\": $height:q}\n  ],\n"
-      "  \"intrinsics\": [\n    {\"intrinsicId\": \"1\", \"width\": $width:q, \"height\": "
-      "$height:q,\n"
+      "{\n"
+      "  \"version\": [\"1\", \"2\", \"8\"],\n"
+      "  \"views\": [\n"
+      "    {\"viewId\": \"1\", \"poseId\": \"1\", \"frameId\": \"0\", \"intrinsicId\": "
+      "\"1\",\n"
+      "     \"path\": $name, \"width\": $width:q, \"height\": $height:q}\n"
+      "  ],\n"
+      "  \"intrinsics\": [\n"
+      "    {\"intrinsicId\": \"1\", \"width\": $width:q, \"height\": $height:q,\n"
       "     \"sensorWidth\": $sensor@0:q, \"sensorHeight\": $sensor@1:q, \"serialNumber\": "
       "\"\",\n"
       "     \"type\": \"pinhole\", \"initializationMode\": \"calibrated\", \"focalLength\": "
       "$sensor@2:q,\n"
       "     \"pixelRatio\": $aspect:q, \"principalPoint\": [$middle:q],\n"
       "     \"distortionType\": \"$lens\", \"distortionParams\": [$own:q], \"locked\": "
-      "\"false\"}\n  ],\n"
-      "  \"poses\": [\n    {\"poseId\": \"1\", \"pose\": {\"transform\": {\n      "
-      "\"rotation\": "
-      "[$axes:q],\n"
-      "      \"center\": [$centre:q]}, \"locked\": \"0\"}}\n  ]\n}\n",
+      "\"false\"}\n"
+      "  ],\n"
+      "  \"poses\": [\n"
+      "    {\"poseId\": \"1\", \"pose\": {\"transform\": {\n"
+      "      \"rotation\": [$axes:q],\n"
+      "      \"center\": [$centre:q]}, \"locked\": \"0\"}}\n"
+      "  ]\n"
+      "}\n",
       VL_VALUES("sensor", sensor, 3), VL_VALUES("middle", middle, 2),
       VL_WORD("lens", lens_words[fit->family]), lens);
 }

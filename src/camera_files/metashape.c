@@ -215,18 +215,30 @@ static vlResult write_metashape(const vlFittedCamera *fit, vlCameraText *text) {
                            c->skew};
   return VL_PUT_FORM(
       text, fit,
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<document version=\"2.0.0\">\n  "
-      "<chunk label=\"Chunk\" enabled=\"true\">\n    <sensors next_id=\"1\">\n"
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<document version=\"2.0.0\">\n"
+      "  <chunk label=\"Chunk\" enabled=\"true\">\n"
+      "    <sensors next_id=\"1\">\n"
       "      <sensor id=\"0\" label=\"sensor\" type=\"$type\">\n"
       "        <resolution width=\"$width\" height=\"$height\"/>\n"
       "        <calibration type=\"$type\" class=\"adjusted\">\n"
-      "          <resolution width=\"$width\" height=\"$height\"/>\n          <f>$fy</f>\n"
-      "          <cx>$plane@0</cx>\n          <cy>$plane@1</cy>\n"
-      "          <b1>$plane@2</b1>\n          <b2>$plane@3</b2>\n$lens"
-      "        </calibration>\n      </sensor>\n    </sensors>\n    <cameras next_id=\"1\">\n"
+      "          <resolution width=\"$width\" height=\"$height\"/>\n"
+      "          <f>$fy</f>\n"
+      "          <cx>$plane@0</cx>\n"
+      "          <cy>$plane@1</cy>\n"
+      "          <b1>$plane@2</b1>\n"
+      "          <b2>$plane@3</b2>\n"
+      "$lens"
+      "        </calibration>\n"
+      "      </sensor>\n"
+      "    </sensors>\n"
+      "    <cameras next_id=\"1\">\n"
       "      <camera id=\"0\" sensor_id=\"0\" label=\"$own\">\n"
       "        <transform>$pose:s</transform>\n"
-      "      </camera>\n    </cameras>\n  </chunk>\n</document>\n",
+      "      </camera>\n"
+      "    </cameras>\n"
+      "  </chunk>\n"
+      "</document>\n",
       VL_WORD("type", fisheye ? "fisheye" : "frame"), VL_VALUES("plane", plane, 4),
       VL_NAMED("lens", names, k, 6, "          <$item>$value</$item>\n"), VL_WORD("own", name));
 }

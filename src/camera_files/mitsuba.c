@@ -471,7 +471,9 @@ static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
   vl_camera_put(
       text,
       "<!-- pixels count from the film's upper left corner; camera axes x left, y up, z "
-      "forward -->\n<scene version=\"3.0.0\">\n  <sensor type=\"%s\"",
+      "forward -->\n"
+      "<scene version=\"3.0.0\">\n"
+      "  <sensor type=\"%s\"",
       flat   ? "orthographic"
       : lens ? "thinlens"
              : "perspective");
@@ -481,8 +483,11 @@ static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
     vl_camera_put(text, "\"");
   }
   VL_PUT_FORM(text, fit,
-              ">\n    <transform name=\"to_world\">\n      <matrix value=\"$matrix:s\"/>\n"
-              "    </transform>\n$axis",
+              ">\n"
+              "    <transform name=\"to_world\">\n"
+              "      <matrix value=\"$matrix:s\"/>\n"
+              "    </transform>\n"
+              "$axis",
               VL_VALUES("matrix", m, 16),
               VL_PART("axis", !flat, "    <string name=\"fov_axis\" value=\"x\"/>\n"));
   for (size_t i = 0; i < VL_LENGTH(numbers); i++)
@@ -490,9 +495,12 @@ static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
       vl_camera_put(text, "    <float name=\"%s\" value=\"%.17g\"/>\n", numbers[i].name,
                     numbers[i].value + 0.0);
   return vl_camera_put_form(text, fit, NULL,
-                            "    <film type=\"hdrfilm\">\n      <integer name=\"width\" "
-                            "value=\"$width\"/>\n      <integer name=\"height\" "
-                            "value=\"$height\"/>\n    </film>\n  </sensor>\n</scene>\n");
+                            "    <film type=\"hdrfilm\">\n"
+                            "      <integer name=\"width\" value=\"$width\"/>\n"
+                            "      <integer name=\"height\" value=\"$height\"/>\n"
+                            "    </film>\n"
+                            "  </sensor>\n"
+                            "</scene>\n");
 }
 
 static bool is_mitsuba(const char *text, size_t size) {

@@ -189,23 +189,31 @@ static vlResult write_nerf(const vlFittedCamera *fit, vlCameraText *text) {
   const bool fisheye = fit->family == VL_LENS_FISHEYE;
   if ((!aria && fit->family > VL_LENS_FISHEYE) || !vl_camera_all_zero(fit->k + 5, 9))
     return vl_camera_no_model(fit->file, d);
-  return VL_PUT_FORM(
-      text, fit,
-      "{\n  \"camera_model\": \"$model\",\n  \"w\": $width,\n  \"h\": $height,\n  "
-      "\"fl_x\": $fx,\n"
-      "  \"fl_y\": $fy,\n  \"cx\": $cx,\n  \"cy\": $cy$lens$aria,\n  \"frames\": [\n"
-      "    {\"file_path\": $name,\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n",
-      VL_WORD("model", aria         ? "FISHEYE624"
-                       : fisheye    ? "OPENCV_FISHEYE"
-                       : fit->count ? "OPENCV"
-                                    : "PINHOLE"),
-      VL_NAMED("lens", fisheye ? radial : brown, fit->k,
-               fisheye      ? 4
-               : fit->count ? 5
-                            : 0,
-               ",\n  \"$item\": $value"),
-      VL_PART("aria", aria, ",\n  \"distortion_params\": [$params]"),
-      VL_VALUES("params", d->distortion_coefficients, 12));
+  return VL_PUT_FORM(text, fit,
+                     "{\n"
+                     "  \"camera_model\": \"$model\",\n"
+                     "  \"w\": $width,\n"
+                     "  \"h\": $height,\n"
+                     "  \"fl_x\": $fx,\n"
+                     "  \"fl_y\": $fy,\n"
+                     "  \"cx\": $cx,\n"
+                     "  \"cy\": $cy$lens$aria,\n"
+                     "  \"frames\": [\n"
+                     "    {\"file_path\": $name,\n"
+                     "     \"transform_matrix\": [$flipped:4]}\n"
+                     "  ]\n"
+                     "}\n",
+                     VL_WORD("model", aria         ? "FISHEYE624"
+                                      : fisheye    ? "OPENCV_FISHEYE"
+                                      : fit->count ? "OPENCV"
+                                                   : "PINHOLE"),
+                     VL_NAMED("lens", fisheye ? radial : brown, fit->k,
+                              fisheye      ? 4
+                              : fit->count ? 5
+                                           : 0,
+                              ",\n  \"$item\": $value"),
+                     VL_PART("aria", aria, ",\n  \"distortion_params\": [$params]"),
+                     VL_VALUES("params", d->distortion_coefficients, 12));
 }
 
 const vlCameraFormat vl_format_nerf = {

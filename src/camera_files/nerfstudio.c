@@ -62,8 +62,15 @@ const vlCameraFormat vl_format_nerfstudio = {
     .square = true,
     .lenses = 1 << VL_LENS_PINHOLE,
     .form =
-        "{\n  \"camera_type\": \"perspective\",\n  \"render_width\": $width,\n"
-        "  \"render_height\": $height,\n  \"fps\": 24,\n  \"seconds\": 1,\n  \"keyframes\": "
-        "[],\n"
-        "  \"camera_path\": [\n    {\"camera_to_world\": [$flipped],\n"
-        "     \"fov\": $yfov, \"aspect\": $ratio}\n  ]\n}\n"};
+        "{\n"
+        "  \"camera_type\": \"perspective\",\n"
+        "  \"render_width\": $width,\n"
+        "  \"render_height\": $height,\n"
+        "  \"fps\": 24,\n"
+        "  \"seconds\": 1,\n"
+        "  \"keyframes\": [],\n"
+        "  \"camera_path\": [\n"
+        "    {\"camera_to_world\": [$flipped],\n"
+        "     \"fov\": $yfov, \"aspect\": $ratio}\n"
+        "  ]\n"
+        "}\n"};

@@ -36,15 +36,17 @@ static vlResult read_okvis(const vlCameraFile *file, const json_t *tree,
 static vlResult write_okvis(const vlFittedCamera *fit, vlCameraText *text) {
   const bool full = fit->count > 4;
   const char *brown = full ? "radialtangential8" : "radialtangential";
-  return VL_PUT_FORM(
-      text, fit,
-      "%YAML:1.0\ncameras:\n  - {T_SC: [$pose],\n     image_dimension: [$width, $height],\n"
-      "     distortion_coefficients: [$k],\n     distortion_type: $lens,\n     focal_length: "
-      "[$fx, "
-      "$fy],\n"
-      "     principal_point: [$cx0, $cy0]}\n",
-      VL_VALUES("k", fit->k, full ? 8 : 4),
-      VL_WORD("lens", fit->family == VL_LENS_FISHEYE ? "equidistant" : brown));
+  return VL_PUT_FORM(text, fit,
+                     "%YAML:1.0\n"
+                     "cameras:\n"
+                     "  - {T_SC: [$pose],\n"
+                     "     image_dimension: [$width, $height],\n"
+                     "     distortion_coefficients: [$k],\n"
+                     "     distortion_type: $lens,\n"
+                     "     focal_length: [$fx, $fy],\n"
+                     "     principal_point: [$cx0, $cy0]}\n",
+                     VL_VALUES("k", fit->k, full ? 8 : 4),
+                     VL_WORD("lens", fit->family == VL_LENS_FISHEYE ? "equidistant" : brown));
 }
 
 const vlCameraFormat vl_format_okvis = {

@@ -77,8 +77,14 @@ const vlCameraFormat vl_format_open3d = {
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
     .lenses = 1 << VL_LENS_PINHOLE,
     .form =
-        "{\n  \"class_name\": \"PinholeCameraParameters\",\n  \"extrinsic\": [$viewcolumns],\n"
-        "  \"intrinsic\": {\n    \"height\": $height,\n"
-        "    \"intrinsic_matrix\": [$fx, 0, 0, $skew, $fy, 0, $cx0, $cy0, 1],\n    \"width\": "
-        "$width\n"
-        "  },\n  \"version_major\": 1,\n  \"version_minor\": 0\n}\n"};
+        "{\n"
+        "  \"class_name\": \"PinholeCameraParameters\",\n"
+        "  \"extrinsic\": [$viewcolumns],\n"
+        "  \"intrinsic\": {\n"
+        "    \"height\": $height,\n"
+        "    \"intrinsic_matrix\": [$fx, 0, 0, $skew, $fy, 0, $cx0, $cy0, 1],\n"
+        "    \"width\": $width\n"
+        "  },\n"
+        "  \"version_major\": 1,\n"
+        "  \"version_minor\": 0\n"
+        "}\n"};

@@ -272,28 +272,68 @@ static bool is_opencv(const json_t *tree) {
 /* ---- writing ----------------------------------------------------------------------------- */
 
 static const char json_form[] =
-    "{\n  \"image_width\": $width,\n  \"image_height\": $height,\n  \"camera_matrix\": [$K:3]"
-    "$model,\n  \"distortion_coefficients\": [$k],\n  \"rvec\": [$V],\n  \"tvec\": [$t]\n}\n";
+    "{\n"
+    "  \"image_width\": $width,\n"
+    "  \"image_height\": $height,\n"
+    "  \"camera_matrix\": [$K:3]$model,\n"
+    "  \"distortion_coefficients\": [$k],\n"
+    "  \"rvec\": [$V],\n"
+    "  \"tvec\": [$t]\n"
+    "}\n";
 
 static const char xml_form[] =
-    "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>$width</image_width>\n"
+    "<?xml version=\"1.0\"?>\n"
+    "<opencv_storage>\n"
+    "<image_width>$width</image_width>\n"
     "<image_height>$height</image_height>\n"
-    "<camera_matrix type_id=\"opencv-matrix\">\n  <rows>3</rows>\n  <cols>3</cols>\n"
-    "  <dt>d</dt>\n  <data>$K:s</data></camera_matrix>\n$model"
-    "<distortion_coefficients type_id=\"opencv-matrix\">\n  <rows>$count</rows>\n"
-    "  <cols>1</cols>\n  <dt>d</dt>\n  <data>$k:s</data></distortion_coefficients>\n"
-    "<rvec type_id=\"opencv-matrix\">\n  <rows>3</rows>\n  <cols>1</cols>\n"
-    "  <dt>d</dt>\n  <data>$V:s</data></rvec>\n"
-    "<tvec type_id=\"opencv-matrix\">\n  <rows>3</rows>\n  <cols>1</cols>\n"
-    "  <dt>d</dt>\n  <data>$t:s</data></tvec>\n</opencv_storage>\n";
+    "<camera_matrix type_id=\"opencv-matrix\">\n"
+    "  <rows>3</rows>\n"
+    "  <cols>3</cols>\n"
+    "  <dt>d</dt>\n"
+    "  <data>$K:s</data></camera_matrix>\n"
+    "$model"
+    "<distortion_coefficients type_id=\"opencv-matrix\">\n"
+    "  <rows>$count</rows>\n"
+    "  <cols>1</cols>\n"
+    "  <dt>d</dt>\n"
+    "  <data>$k:s</data></distortion_coefficients>\n"
+    "<rvec type_id=\"opencv-matrix\">\n"
+    "  <rows>3</rows>\n"
+    "  <cols>1</cols>\n"
+    "  <dt>d</dt>\n"
+    "  <data>$V:s</data></rvec>\n"
+    "<tvec type_id=\"opencv-matrix\">\n"
+    "  <rows>3</rows>\n"
+    "  <cols>1</cols>\n"
+    "  <dt>d</dt>\n"
+    "  <data>$t:s</data></tvec>\n"
+    "</opencv_storage>\n";
 
 static const char yaml_form[] =
-    "%YAML:1.0\n---\nimage_width: $width\nimage_height: $height\n"
-    "camera_matrix: !!opencv-matrix\n  rows: 3\n  cols: 3\n  dt: d\n  data: [$K]$model\n"
-    "distortion_coefficients: !!opencv-matrix\n  rows: $count\n  cols: 1\n  dt: d\n"
+    "%YAML:1.0\n"
+    "---\n"
+    "image_width: $width\n"
+    "image_height: $height\n"
+    "camera_matrix: !!opencv-matrix\n"
+    "  rows: 3\n"
+    "  cols: 3\n"
+    "  dt: d\n"
+    "  data: [$K]$model\n"
+    "distortion_coefficients: !!opencv-matrix\n"
+    "  rows: $count\n"
+    "  cols: 1\n"
+    "  dt: d\n"
     "  data: [$k]\n"
-    "rvec: !!opencv-matrix\n  rows: 3\n  cols: 1\n  dt: d\n  data: [$V]\n"
-    "tvec: !!opencv-matrix\n  rows: 3\n  cols: 1\n  dt: d\n  data: [$t]\n";
+    "rvec: !!opencv-matrix\n"
+    "  rows: 3\n"
+    "  cols: 1\n"
+    "  dt: d\n"
+    "  data: [$V]\n"
+    "tvec: !!opencv-matrix\n"
+    "  rows: 3\n"
+    "  cols: 1\n"
+    "  dt: d\n"
+    "  data: [$t]\n";
 
 static vlResult write_opencv(const vlFittedCamera *fit, vlCameraText *text) {
   const bool json = vl_ends_with(fit->file->path, ".json");

@@ -72,14 +72,24 @@ static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree,
 
 static vlResult write_orbslam(const vlFittedCamera *fit, vlCameraText *text) {
   const bool fisheye = fit->family == VL_LENS_FISHEYE;
-  return VL_PUT_FORM(
-      text, fit,
-      "%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"$type\"\n\nCamera1.fx: "
-      "$fx\nCamera1.fy: $fy\n"
-      "Camera1.cx: $cx0\nCamera1.cy: $cy0\n\n$lens\nCamera.width: $width\nCamera.height: $height\n",
-      VL_WORD("type", fisheye ? "KannalaBrandt8" : "PinHole"),
-      VL_NAMED("lens", fisheye ? radial : pinhole, fit->k, fit->count,
-               "Camera1.$item: $value\n"));
+  return VL_PUT_FORM(text, fit,
+                     "%YAML:1.0\n"
+                     "\n"
+                     "File.version: \"1.0\"\n"
+                     "\n"
+                     "Camera.type: \"$type\"\n"
+                     "\n"
+                     "Camera1.fx: $fx\n"
+                     "Camera1.fy: $fy\n"
+                     "Camera1.cx: $cx0\n"
+                     "Camera1.cy: $cy0\n"
+                     "\n"
+                     "$lens\n"
+                     "Camera.width: $width\n"
+                     "Camera.height: $height\n",
+                     VL_WORD("type", fisheye ? "KannalaBrandt8" : "PinHole"),
+                     VL_NAMED("lens", fisheye ? radial : pinhole, fit->k, fit->count,
+                              "Camera1.$item: $value\n"));
 }
 
 const vlCameraFormat vl_format_orbslam = {

@@ -95,14 +95,16 @@ const vlCameraFormat vl_format_polycam = {
     .holds = VL_HOLDS_POSE,
     .lenses = 1 << VL_LENS_PINHOLE,
     .form =
-        "{\n  \"width\": $width, \"height\": $height,\n"
+        "{\n"
+        "  \"width\": $width, \"height\": $height,\n"
         "  \"fx\": $fx, \"fy\": $fy, \"cx\": $cx, \"cy\": $cy,\n"
         "  \"t_00\": $flipped@0, \"t_01\": $flipped@1, \"t_02\": $flipped@2, \"t_03\": "
         "$flipped@3,\n"
         "  \"t_10\": $flipped@4, \"t_11\": $flipped@5, \"t_12\": $flipped@6, \"t_13\": "
         "$flipped@7,\n"
         "  \"t_20\": $flipped@8, \"t_21\": $flipped@9, \"t_22\": $flipped@10, \"t_23\": "
-        "$flipped@11\n}\n"};
+        "$flipped@11\n"
+        "}\n"};
 
 /* ---- 3D Scanner App ---------------------------------------------------------------------- */
 

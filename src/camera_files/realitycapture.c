@@ -128,13 +128,16 @@ static vlResult write_xmp(const vlFittedCamera *fit, vlCameraText *text) {
       "  <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n"
       "    <rdf:Description xcr:Version=\"3\" xcr:PosePrior=\"initial\" "
       "xcr:Coordinates=\"absolute\"\n"
-      "       xcr:DistortionModel=\"$model\" xcr:FocalLength35mm=\"$plane@0\" xcr:Skew=\"0\" "
-      "xcr:AspectRatio=\"1\"\n"
+      "       xcr:DistortionModel=\"$model\" xcr:FocalLength35mm=\"$plane@0\" "
+      "xcr:Skew=\"0\" xcr:AspectRatio=\"1\"\n"
       "       xcr:PrincipalPointU=\"$plane@1\" xcr:PrincipalPointV=\"$plane@2\"\n"
       "       xmlns:xcr=\"http://www.capturingreality.com/ns/xcr/1.1#\">\n"
-      "      <xcr:Rotation>$R:s</xcr:Rotation>\n      <xcr:Position>$centre:s</xcr:Position>\n"
+      "      <xcr:Rotation>$R:s</xcr:Rotation>\n"
+      "      <xcr:Position>$centre:s</xcr:Position>\n"
       "      <xcr:DistortionCoeficients>$brown:s</xcr:DistortionCoeficients>\n"
-      "    </rdf:Description>\n  </rdf:RDF>\n</x:xmpmeta>\n",
+      "    </rdf:Description>\n"
+      "  </rdf:RDF>\n"
+      "</x:xmpmeta>\n",
       VL_WORD("model", c->distortion.steps == 0     ? "perspective"
                        : k[2] == 0.0 && k[3] == 0.0 ? "brown3"
                                                     : "brown3t2"),

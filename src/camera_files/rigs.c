@@ -165,10 +165,12 @@ const vlCameraFormat vl_format_panoptic = {
     .form =
         "{\"cameras\": [\n"
         "  {\"name\": $name, \"type\": \"hd\", \"resolution\": [$width, $height], \"panel\": "
-        "0, "
-        "\"node\": 0,\n"
-        "   \"K\": [$K:3],\n   \"distCoef\": [$k],\n   \"R\": [$R:3],\n   \"t\": "
-        "[$t:1]}\n]}\n"};
+        "0, \"node\": 0,\n"
+        "   \"K\": [$K:3],\n"
+        "   \"distCoef\": [$k],\n"
+        "   \"R\": [$R:3],\n"
+        "   \"t\": [$t:1]}\n"
+        "]}\n"};
 
 /* ---- Nerfies ----------------------------------------------------------------------------- */
 
@@ -206,9 +208,14 @@ const vlCameraFormat vl_format_nerfies = {
     .least = 5,
     .most = 5,
     .form =
-        "{\n  \"orientation\": [$R:3],\n  \"position\": [$centre],\n  \"focal_length\": $fx,\n"
-        "  \"principal_point\": [$cx, $cy],\n  \"skew\": $skew,\n  \"pixel_aspect_ratio\": "
-        "$aspect,\n"
-        "  \"radial_distortion\": [$k@0, $k@1, $k@4],\n  \"tangential_distortion\": [$k@2, "
-        "$k@3],\n"
-        "  \"image_size\": [$width, $height]\n}\n"};
+        "{\n"
+        "  \"orientation\": [$R:3],\n"
+        "  \"position\": [$centre],\n"
+        "  \"focal_length\": $fx,\n"
+        "  \"principal_point\": [$cx, $cy],\n"
+        "  \"skew\": $skew,\n"
+        "  \"pixel_aspect_ratio\": $aspect,\n"
+        "  \"radial_distortion\": [$k@0, $k@1, $k@4],\n"
+        "  \"tangential_distortion\": [$k@2, $k@3],\n"
+        "  \"image_size\": [$width, $height]\n"
+        "}\n"};

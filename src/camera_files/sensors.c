@@ -246,6 +246,10 @@ const vlCameraFormat vl_format_realsense = {
     .most = 5,
     .lens_words = {"brown_conrady", "brown_conrady", "kannala_brandt4"},
     .form =
-        "{\n  \"width\": $width, \"height\": $height,\n  \"ppx\": $cx0, \"ppy\": $cy0,\n"
-        "  \"fx\": $fx, \"fy\": $fy,\n  \"model\": \"distortion.$lens\",\n  \"coeffs\": "
-        "[$k]\n}\n"};
+        "{\n"
+        "  \"width\": $width, \"height\": $height,\n"
+        "  \"ppx\": $cx0, \"ppy\": $cy0,\n"
+        "  \"fx\": $fx, \"fy\": $fy,\n"
+        "  \"model\": \"distortion.$lens\",\n"
+        "  \"coeffs\": [$k]\n"
+        "}\n"};

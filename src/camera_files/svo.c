@@ -107,20 +107,34 @@ static vlResult write_svo(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   const bool unified = fit->family == VL_LENS_UNIFIED;
   const double xi = c->shape[0], numbers[2] = {unified ? 5.0 : 4.0, fit->count};
-  return VL_PUT_FORM(
-      text, fit,
-      "label: rig\ncameras:\n- camera:\n    label: $name\n    type: $type\n"
-      "    image_width: $width\n    image_height: $height\n    intrinsics:\n      cols: 1\n"
-      "      rows: $numbers@0\n      data: [$mirror$fx, $fy, $cx0, $cy0]\n"
-      "    distortion:\n      type: $lens\n$coefficients"
-      "  T_B_C:\n    cols: 4\n    rows: 4\n    data: [$pose]\n",
-      VL_WORD("type", unified ? "omni" : "pinhole"), VL_VALUES("numbers", numbers, 2),
-      VL_PART("mirror", unified, "$xi, "), VL_VALUES("xi", &xi, 1),
-      VL_WORD("lens", lens_words[unified ? fit->count > 0 : fit->family]),
-      VL_PART("coefficients", fit->count,
-              "      parameters:\n        cols: 1\n        rows: $numbers@1\n"
-              "        data: [$k]\n"),
-      VL_VALUES("k", fit->k, fit->count));
+  return VL_PUT_FORM(text, fit,
+                     "label: rig\n"
+                     "cameras:\n"
+                     "- camera:\n"
+                     "    label: $name\n"
+                     "    type: $type\n"
+                     "    image_width: $width\n"
+                     "    image_height: $height\n"
+                     "    intrinsics:\n"
+                     "      cols: 1\n"
+                     "      rows: $numbers@0\n"
+                     "      data: [$mirror$fx, $fy, $cx0, $cy0]\n"
+                     "    distortion:\n"
+                     "      type: $lens\n"
+                     "$coefficients  T_B_C:\n"
+                     "    cols: 4\n"
+                     "    rows: 4\n"
+                     "    data: [$pose]\n",
+                     VL_WORD("type", unified ? "omni" : "pinhole"),
+                     VL_VALUES("numbers", numbers, 2), VL_PART("mirror", unified, "$xi, "),
+                     VL_VALUES("xi", &xi, 1),
+                     VL_WORD("lens", lens_words[unified ? fit->count > 0 : fit->family]),
+                     VL_PART("coefficients", fit->count,
+                             "      parameters:\n"
+                             "        cols: 1\n"
+                             "        rows: $numbers@1\n"
+                             "        data: [$k]\n"),
+                     VL_VALUES("k", fit->k, fit->count));
 }
 
 const vlCameraFormat vl_format_svo = {

@@ -76,11 +76,13 @@ static vlResult write_threejs(const vlFittedCamera *fit, vlCameraText *text) {
                             c->far_plane < 1e30 ? c->far_plane : 10000.0};
   return VL_PUT_FORM(
       text, fit,
-      "{\n  \"metadata\": {\"version\": 4.6, \"type\": \"Object\", \"generator\": \"velo\"},\n"
+      "{\n"
+      "  \"metadata\": {\"version\": 4.6, \"type\": \"Object\", \"generator\": \"velo\"},\n"
       "  \"object\": {\"type\": \"PerspectiveCamera\", \"fov\": $yfov, \"zoom\": 1, "
-      "\"aspect\": "
-      "$own,\n"
-      "    \"near\": $planes@0, \"far\": $planes@1,\n    \"matrix\": [$flippedcolumns]}\n}\n",
+      "\"aspect\": $own,\n"
+      "    \"near\": $planes@0, \"far\": $planes@1,\n"
+      "    \"matrix\": [$flippedcolumns]}\n"
+      "}\n",
       VL_VALUES("own", &aspect, 1), VL_VALUES("planes", planes, 2));
 }
 

@@ -116,11 +116,22 @@ static vlResult write_visp(const vlFittedCamera *fit, vlCameraText *text) {
   const double inverse = -k[0];
   return VL_PUT_FORM(
       text, fit,
-      "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>$own</name>\n"
-      "    <image_width>$width</image_width>\n    <image_height>$height</image_height>\n"
-      "    <model>\n      <type>$type</type>\n      <px>$fx</px>\n      <py>$fy</py>\n"
-      "      <u0>$cx0</u0>\n      <v0>$cy0</v0>\n$bent$lens"
-      "    </model>\n  </camera>\n</root>\n",
+      "<?xml version=\"1.0\"?>\n"
+      "<root>\n"
+      "  <camera>\n"
+      "    <name>$own</name>\n"
+      "    <image_width>$width</image_width>\n"
+      "    <image_height>$height</image_height>\n"
+      "    <model>\n"
+      "      <type>$type</type>\n"
+      "      <px>$fx</px>\n"
+      "      <py>$fy</py>\n"
+      "      <u0>$cx0</u0>\n"
+      "      <v0>$cy0</v0>\n"
+      "$bent$lens"
+      "    </model>\n"
+      "  </camera>\n"
+      "</root>\n",
       VL_WORD("own", name),
       VL_WORD("type", fisheye ? kannala_brandt
                       : bent  ? with_distortion

@@ -291,11 +291,13 @@ const Command camera_draw_command = {
     .usage = "SCENE -o FILE [options]",
     .summary = "draw a camera from outside: eye, view plane, pyramid",
     .text =
-        "Renders the scene small, from outside, and draws the scene's camera over it: the eye, "
-        "the view plane\nwith its grid of pixels, the view volume with near and far planes, "
-        "the axes u v w, projectors from\npoints to their images, the plane in focus. Fisheyes "
-        "and distorted lenses show their true rays. Lines\nbehind the scene are faint and "
-        "dashed (docs/draw.md).",
+        "Renders the scene small, from outside, and draws the scene's camera over it: the "
+        "eye, the view plane\n"
+        "with its grid of pixels, the view volume with near and far planes, the axes u v w, "
+        "projectors from\n"
+        "points to their images, the plane in focus. Fisheyes and distorted lenses show their "
+        "true rays. Lines\n"
+        "behind the scene are faint and dashed (docs/draw.md).",
     .examples =
         "velo camera draw room.pbrt -o outside.png\n"
         "velo camera draw room.pbrt --near 1 --far 6 --from 90,10 -o frustum.png",

@@ -132,7 +132,8 @@ const Command camera_info_command = {
     .summary = "print all equivalent parameters of a camera",
     .text =
         "FILE is a camera file in any dialect of `velo camera convert`, or a scene. If it "
-        "gives no sensor width,\na width of 36 mm is assumed.",
+        "gives no sensor width,\n"
+        "a width of 36 mm is assumed.",
     .examples = "velo camera info camera.yaml\nvelo camera info --json room.pbrt",
     .options = info_options,
     .min_operands = 1,

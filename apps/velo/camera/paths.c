@@ -145,12 +145,14 @@ const Command camera_paths_command = {
     .usage = "SCENE --pixel x,y [options]",
     .summary = "print the paths of a pixel, vertex by vertex",
     .text =
-        "Traces the samples that count in one pixel again (those of the pixels around, too, if "
-        "pixels share\nsamples), with the random numbers of `velo render`, and prints each "
-        "path: what it met, the sampled\nlobes with their densities, the lights with their "
-        "weights, and what each\nadds. The path with the largest share of the pixel comes "
-        "first: so a firefly shows where it is from.\nThe options of the image must be those "
-        "of the render (docs/tracers.md).",
+        "Traces the samples that count in one pixel again (those of the pixels around, too, "
+        "if pixels share\n"
+        "samples), with the random numbers of `velo render`, and prints each path: what it "
+        "met, the sampled\n"
+        "lobes with their densities, the lights with their weights, and what each\n"
+        "adds. The path with the largest share of the pixel comes first: so a firefly shows "
+        "where it is from.\n"
+        "The options of the image must be those of the render (docs/tracers.md).",
     .examples =
         "velo camera paths room.pbrt --pixel 320,200\n"
         "velo camera paths room.pbrt --pixel 320,200 --samples 4096 --show 1 --json",

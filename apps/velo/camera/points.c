@@ -181,10 +181,11 @@ const Command camera_project_command = {
     .usage = "--camera FILE POINTS.csv [options]",
     .summary = "map world points to pixels",
     .text =
-        "POINTS.csv (- is stdin) has one line x,y,z per world point. Prints u,v,z,valid,inside "
-        "for each: column\nand row in the image plane; depth along the view axis; valid, 1 if "
-        "the camera's equations map the point\n(then unproject returns its ray); inside, 1 if "
-        "u,v is in the image.",
+        "POINTS.csv (- is stdin) has one line x,y,z per world point. Prints "
+        "u,v,z,valid,inside for each: column\n"
+        "and row in the image plane; depth along the view axis; valid, 1 if the camera's "
+        "equations map the point\n"
+        "(then unproject returns its ray); inside, 1 if u,v is in the image.",
     .examples =
         "velo camera project --camera camera.yaml points.csv\n"
         "velo camera project --camera room.pbrt points.csv",

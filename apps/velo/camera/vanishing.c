@@ -394,10 +394,13 @@ const Command camera_vanishing_command = {
     .summary = "compute vanishing points, or a camera from them",
     .text =
         "Prints the vanishing points of the world's axes in the image of FILE's camera (a "
-        "camera file of any\ndialect, or a scene), in pixels from the image's corner, and the "
-        "horizon. --overlay draws them: lines\nalong x red, y green, z blue, the horizon "
-        "yellow. With --from, computes focal length, principal point\nand rotation from two "
-        "vanishing points and a known principal point, or from three vanishing points.",
+        "camera file of any\n"
+        "dialect, or a scene), in pixels from the image's corner, and the horizon. --overlay "
+        "draws them: lines\n"
+        "along x red, y green, z blue, the horizon yellow. With --from, computes focal "
+        "length, principal point\n"
+        "and rotation from two vanishing points and a known principal point, or from three "
+        "vanishing points.",
     .examples =
         "velo camera vanishing room.pbrt\n"
         "velo camera vanishing --from 10,200 900,210 --size 640x480",

@@ -120,8 +120,9 @@ static void print_text(const Verification *v, const char *path, const char *agai
   if (m->found > m->unseen) {
     uint32_t covered, seeing = count_cells(v, &covered);
     printf(
-        "\nall   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels "
-        "(pose %u, at %.1f, %.1f)\n",
+        "\n"
+        "all   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels (pose "
+        "%u, at %.1f, %.1f)\n",
         m->found, m->expected, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)), m->most, m->pose,
         m->at_x, m->at_y);
     printf("shift found - projected, mean: %+.5f, %+.5f pixels%s\n", mean_of(m->sum_x, m),
@@ -268,9 +269,10 @@ const Command camera_verify_command = {
     .summary = "render a chessboard through a camera and measure its corners",
     .text =
         "Renders a board in many poses through the camera, finds the corners in the images to "
-        "a hundredth of a\npixel, and compares them with an independent implementation of the "
-        "camera's equations. Exit code 1 if\nthe error of a corner is above the threshold, or "
-        "corners are missing.",
+        "a hundredth of a\n"
+        "pixel, and compares them with an independent implementation of the camera's "
+        "equations. Exit code 1 if\n"
+        "the error of a corner is above the threshold, or corners are missing.",
     .examples =
         "velo camera verify --camera camera.yaml\nvelo camera verify --camera room.pbrt",
     .options = verify_options,

@@ -135,20 +135,39 @@ static void put_clause(const char *text, const char *escaped, bool fish) {
 /* ---- bash -------------------------------------------------------------------------------- */
 
 static const char bash_head[] =
-    "# bash completion of velo; written by `velo help --completion bash`\n_velo() {\n  local "
-    "cur=${COMP_WORDS[COMP_CWORD]} option= command= at=2 kind=files names= options=\n  "
-    "((COMP_CWORD > 1)) && option=${COMP_WORDS[COMP_CWORD - 1]}\n  # --option=value is three "
-    "words\n  if [[ $cur == = ]]; then\n    cur=\n  elif [[ $option == = ]]; then\n    "
-    "option=${COMP_WORDS[COMP_CWORD - 2]}\n  fi\n  command=${COMP_WORDS[1]}\n  case $command "
-    "in\n";
+    "# bash completion of velo; written by `velo help --completion bash`\n"
+    "_velo() {\n"
+    "  local cur=${COMP_WORDS[COMP_CWORD]} option= command= at=2 kind=files names= "
+    "options=\n"
+    "  ((COMP_CWORD > 1)) && option=${COMP_WORDS[COMP_CWORD - 1]}\n"
+    "  # --option=value is three words\n"
+    "  if [[ $cur == = ]]; then\n"
+    "    cur=\n"
+    "  elif [[ $option == = ]]; then\n"
+    "    option=${COMP_WORDS[COMP_CWORD - 2]}\n"
+    "  fi\n"
+    "  command=${COMP_WORDS[1]}\n"
+    "  case $command in\n";
 
 static const char bash_tail[] =
-    "  esac\n  if [[ $kind != value* && $kind != names && $cur == -* ]]; then\n    kind=names "
-    "names=$options\n  fi\n  COMPREPLY=()\n  case ${kind#value} in\n    names | operand) "
-    "mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$cur\") ;;\n    files)\n      compopt "
-    "-o filenames 2>/dev/null\n      mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n      "
-    ";;\n    folders)\n      compopt -o filenames 2>/dev/null\n      mapfile -t COMPREPLY < "
-    "<(compgen -d -- \"$cur\")\n      ;;\n  esac\n}\ncomplete -F _velo velo\n";
+    "  esac\n"
+    "  if [[ $kind != value* && $kind != names && $cur == -* ]]; then\n"
+    "    kind=names names=$options\n"
+    "  fi\n"
+    "  COMPREPLY=()\n"
+    "  case ${kind#value} in\n"
+    "    names | operand) mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$cur\") ;;\n"
+    "    files)\n"
+    "      compopt -o filenames 2>/dev/null\n"
+    "      mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n"
+    "      ;;\n"
+    "    folders)\n"
+    "      compopt -o filenames 2>/dev/null\n"
+    "      mapfile -t COMPREPLY < <(compgen -d -- \"$cur\")\n"
+    "      ;;\n"
+    "  esac\n"
+    "}\n"
+    "complete -F _velo velo\n";
 
 static void bash_option(const Option *o) {
   static const char *const words[] = {[VALUES_UNKNOWN] = "value",
@@ -180,8 +199,9 @@ static void bash_command(const Command *const *commands, const Command *command)
   }
   if (takes_command(command)) {
     printf(
-        "      kind=operand\n      case ${COMP_WORDS[COMP_CWORD - 1]} in\n        help) "
-        "names='");
+        "      kind=operand\n"
+        "      case ${COMP_WORDS[COMP_CWORD - 1]} in\n"
+        "        help) names='");
     put_first_words(commands);
     printf("' ;;\n");
     for (const Command *const *c = commands; *c; c++) {
@@ -218,8 +238,10 @@ static void print_bash(const Command *const *commands) {
   printf("  esac\n  if ((COMP_CWORD == 1)); then\n    names='");
   put_first_words(commands);
   printf(
-      " --version --help'\n  fi\n  ((COMP_CWORD < at)) && command= kind=names\n  case $command "
-      "in\n");
+      " --version --help'\n"
+      "  fi\n"
+      "  ((COMP_CWORD < at)) && command= kind=names\n"
+      "  case $command in\n");
   for (const Command *const *c = commands; *c; c++)
     bash_command(commands, *c);
   fputs(bash_tail, stdout);
@@ -301,8 +323,11 @@ static void zsh_command(const Command *const *commands, const Command *command) 
 
 static void print_zsh(const Command *const *commands) {
   printf(
-      "#compdef velo\n# written by `velo help --completion zsh`\n_velo() {\n  local "
-      "command=$words[2]\n  local -a names\n");
+      "#compdef velo\n"
+      "# written by `velo help --completion zsh`\n"
+      "_velo() {\n"
+      "  local command=$words[2]\n"
+      "  local -a names\n");
   printf("  if ((CURRENT == 2)); then\n");
   zsh_describe(commands, NULL);
   printf("  fi\n");
@@ -325,9 +350,17 @@ static void print_zsh(const Command *const *commands) {
     gap = " | ";
   }
   printf(
-      ")\n      command+=\" $words[3]\"\n      shift 2 words\n      ((CURRENT -= 2))\n      "
-      ";;\n    *)\n      shift words\n      ((CURRENT -= 1))\n      ;;\n  esac\n  case "
-      "$command in\n");
+      ")\n"
+      "      command+=\" $words[3]\"\n"
+      "      shift 2 words\n"
+      "      ((CURRENT -= 2))\n"
+      "      ;;\n"
+      "    *)\n"
+      "      shift words\n"
+      "      ((CURRENT -= 1))\n"
+      "      ;;\n"
+      "  esac\n"
+      "  case $command in\n");
   for (const Command *const *c = commands; *c; c++)
     zsh_command(commands, *c);
   printf("  esac\n}\n_velo \"$@\"\n");
@@ -336,12 +369,20 @@ static void print_zsh(const Command *const *commands) {
 /* ---- fish -------------------------------------------------------------------------------- */
 
 static const char fish_head[] =
-    "# fish completion of velo; written by `velo help --completion fish`\nfunction "
-    "__velo_words_are --description 'whether the words before the cursor are exactly these'\n  "
-    "set -l words (commandline -opc)\n  set -e words[1]\n  test \"$words\" = \"$argv\"\nend\n"
-    "function __velo_command_is --description 'whether the words before the cursor begin with "
-    "these'\n  set -l words (commandline -opc)\n  set -e words[1]\n  set -l n (count $argv)\n  "
-    "test (count $words) -ge $n; and test \"$words[1..$n]\" = \"$argv\"\nend\n";
+    "# fish completion of velo; written by `velo help --completion fish`\n"
+    "function __velo_words_are --description 'whether the words before the cursor are "
+    "exactly these'\n"
+    "  set -l words (commandline -opc)\n"
+    "  set -e words[1]\n"
+    "  test \"$words\" = \"$argv\"\n"
+    "end\n"
+    "function __velo_command_is --description 'whether the words before the cursor begin "
+    "with these'\n"
+    "  set -l words (commandline -opc)\n"
+    "  set -e words[1]\n"
+    "  set -l n (count $argv)\n"
+    "  test (count $words) -ge $n; and test \"$words[1..$n]\" = \"$argv\"\n"
+    "end\n";
 
 static void fish_option(const Command *command, const Option *o) {
   static const char *const words[] = {

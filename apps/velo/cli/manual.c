@@ -231,8 +231,12 @@ void manual_print_command(const Command *command) {
 void manual_print_program(const Command *const *commands) {
   put_title("", "photorealistic renderer");
   printf(
-      ".SH SYNOPSIS\n\\fBvelo\\fR COMMAND ...\n.br\n\\fBvelo help\\fR [COMMAND]\n.br\n\\fBvelo "
-      "\\-\\-version\\fR\n");
+      ".SH SYNOPSIS\n"
+      "\\fBvelo\\fR COMMAND ...\n"
+      ".br\n"
+      "\\fBvelo help\\fR [COMMAND]\n"
+      ".br\n"
+      "\\fBvelo \\-\\-version\\fR\n");
   printf(".SH DESCRIPTION\n");
   put_prose(
       "velo renders scenes of pbrt-v4, glTF, OBJ, PLY, STL and OFF by spectral path tracing, "

@@ -147,11 +147,12 @@ const Command film_develop_command = {
     .summary = "write the images of a film file",
     .text =
         "Writes the image of a film file, which may be incomplete. An .exr also has the "
-        "standard errors and\nthe spectrum, if the film has their sums. Ground truth requires "
-        "the scene:\nvelo render --continue FILE -o IMAGE.exr --channels LIST.",
+        "standard errors and\n"
+        "the spectrum, if the film has their sums. Ground truth requires the scene:\n"
+        "velo render --continue FILE -o IMAGE.exr --channels LIST.",
     .examples =
-        "velo film develop room.film -o room.exr\nvelo film develop room.film -o room.png "
-        "--view agx",
+        "velo film develop room.film -o room.exr\n"
+        "velo film develop room.film -o room.png --view agx",
     .options = develop_options,
     .min_operands = 1,
     .max_operands = 1,

@@ -39,11 +39,12 @@ const Command film_merge_command = {
     .summary = "merge the parts of a render into one film",
     .text =
         "Merges film files of one render that have different samples or pixels. The order of "
-        "the files does\nnot matter, and a file that is given twice counts once: the result "
-        "has the bytes of a single render.",
+        "the files does\n"
+        "not matter, and a file that is given twice counts once: the result has the bytes of "
+        "a single render.",
     .examples =
-        "velo film merge part-*.film -o room.film\nvelo film merge room.film late.film -o "
-        "room.film",
+        "velo film merge part-*.film -o room.film\n"
+        "velo film merge room.film late.film -o room.film",
     .options = merge_options,
     .min_operands = 1,
     .max_operands = INT_MAX,

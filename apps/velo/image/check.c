@@ -349,12 +349,15 @@ const Command image_check_command = {
     .usage = "FILE.exr [options]",
     .summary = "check ground truth channels against the camera in the header",
     .text =
-        "Computes depths, positions, rays and pixels of FILE's ground truth channels from each "
-        "other and from\nthe camera in its header, in double precision, and prints the largest "
-        "relative errors. Errors of\npositions and depths are relative to the largest of |P|, "
-        "|origin| and distance, those of pixels to the\nlarger side of the image. Cryptomatte "
-        "ids are compared with the manifest, and coverages with alpha.\nExit code 1 if an "
-        "error is above the threshold.",
+        "Computes depths, positions, rays and pixels of FILE's ground truth channels from "
+        "each other and from\n"
+        "the camera in its header, in double precision, and prints the largest relative "
+        "errors. Errors of\n"
+        "positions and depths are relative to the largest of |P|, |origin| and distance, "
+        "those of pixels to the\n"
+        "larger side of the image. Cryptomatte ids are compared with the manifest, and "
+        "coverages with alpha.\n"
+        "Exit code 1 if an error is above the threshold.",
     .examples = "velo image check channels.exr\nvelo image check --json channels.exr",
     .options = check_options,
     .min_operands = 1,

@@ -273,7 +273,8 @@ const Command image_convert_command = {
     .summary = "write an image in another format",
     .text =
         "Writes FILE as RESULT; the suffix of RESULT chooses the format: .exr .hdr .pfm "
-        "(linear),\n.png .jpg .tga (display).",
+        "(linear),\n"
+        ".png .jpg .tga (display).",
     .examples =
         "velo image convert room.exr room.png --view agx --exposure 1\n"
         "velo image convert room.exr depth.png --channel Z --scale 1000",

@@ -101,8 +101,9 @@ const Command image_denoise_command = {
     .summary = "write a denoised copy of a rendered image",
     .text =
         "Removes most of the noise of the image FILE and writes the result. FILE is an .exr "
-        "that was rendered\nwith velo render --channels error,features. The denoised image is "
-        "biased; FILE is not changed.",
+        "that was rendered\n"
+        "with velo render --channels error,features. The denoised image is biased; FILE is "
+        "not changed.",
     .examples =
         "velo render room.pbrt --spp 16 --channels error,features -o room.exr\n"
         "velo image denoise room.exr -o clean.png",

@@ -166,13 +166,15 @@ const Command image_diff_command = {
     .usage = "REFERENCE IMAGE [options]",
     .summary = "measure the difference between an image and a reference",
     .text =
-        "Prints differences between IMAGE and REFERENCE in linear R, G, B (or Y):\n  mse       "
-        " mean squared error\n  relmse     mean of squared errors, each divided by reference^2 "
-        "+ 0.01\n  psnr       peak signal-to-noise ratio in dB, for a peak of 1\n  flip       "
-        "mean FLIP error at 67 pixels per degree\n  meanratio  ratio of the mean luminances, "
-        "IMAGE divided by REFERENCE\n  maxabs     largest absolute difference of a value\n  "
-        "differing  number of pixels that are not equal\n  notfinite  number of pixels with "
-        "inf or nan; the other measures omit them",
+        "Prints differences between IMAGE and REFERENCE in linear R, G, B (or Y):\n"
+        "  mse        mean squared error\n"
+        "  relmse     mean of squared errors, each divided by reference^2 + 0.01\n"
+        "  psnr       peak signal-to-noise ratio in dB, for a peak of 1\n"
+        "  flip       mean FLIP error at 67 pixels per degree\n"
+        "  meanratio  ratio of the mean luminances, IMAGE divided by REFERENCE\n"
+        "  maxabs     largest absolute difference of a value\n"
+        "  differing  number of pixels that are not equal\n"
+        "  notfinite  number of pixels with inf or nan; the other measures omit them",
     .examples =
         "velo image diff reference.exr room.exr\n"
         "velo image diff reference.png room.png --threshold flip=0.01 -o heat.png",

@@ -76,9 +76,10 @@ static void write_svg(FILE *out, const vlLamp *lamp, const vlLampInfo *info,
                       const char *title) {
   double step = info->max_intensity > 0 ? ring_step(info->max_intensity) : 1;
   fprintf(out,
-          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
-          "viewBox=\"%d %d %d %d\">\n<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" "
-          "fill=\"white\"/>\n<title>",
+          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"%d "
+          "%d %d %d\">\n"
+          "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"white\"/>\n"
+          "<title>",
           SIDE, SIDE + 40, -SIDE / 2, -SIDE / 2, SIDE, SIDE + 40, -SIDE / 2, -SIDE / 2, SIDE,
           SIDE + 40);
   write_text(out, title);
@@ -88,8 +89,9 @@ static void write_svg(FILE *out, const vlLamp *lamp, const vlLampInfo *info,
   write_curve(out, lamp, 0, RINGS * step, "stroke=\"#c30\"");
   fprintf(out,
           "<g font-size=\"13\" font-family=\"sans-serif\"><text x=\"%d\" y=\"%d\" "
-          "fill=\"#c30\">C 0\u2013C 180</text><text x=\"%d\" y=\"%d\" fill=\"#06c\">C 90\u2013"
-          "C 270 (dashed)</text><text x=\"%d\" y=\"%d\">cd; %.4g lm</text></g>\n</svg>\n",
+          "fill=\"#c30\">C 0\u2013C 180</text><text x=\"%d\" y=\"%d\" fill=\"#06c\">C "
+          "90\u2013C 270 (dashed)</text><text x=\"%d\" y=\"%d\">cd; %.4g lm</text></g>\n"
+          "</svg>\n",
           -RADIUS, SIDE / 2 + 16, -RADIUS + 110, SIDE / 2 + 16, RADIUS - 100, SIDE / 2 + 16,
           info->flux);
 }

@@ -21,12 +21,19 @@
 enum { PATH_SIZE = 4096, WORD_SIZE = 64 };
 
 static const char PROGRAM[] =
-    "import os, sys\nwords = sys.argv[sys.argv.index('--') + 1:]\nfolders = words[:2] + "
-    "os.environ.get('PYTHONPATH', '').split(os.pathsep)\nsys.path[:0] = [folder for folder in "
-    "folders if folder]\ntry:\n    from velo_blender import headless\nexcept ImportError as "
-    "error:\n    text = ' '.join(('the add-on velo_blender is not installed in Blender (%s)' % "
-    "error).split())\n    os.write(3, ('error\\t4\\t' + text + '\\n').encode())\n    "
-    "os._exit(0)\nheadless.main(words[2:])\n";
+    "import os, sys\n"
+    "words = sys.argv[sys.argv.index('--') + 1:]\n"
+    "folders = words[:2] + os.environ.get('PYTHONPATH', '').split(os.pathsep)\n"
+    "sys.path[:0] = [folder for folder in folders if folder]\n"
+    "try:\n"
+    "    from velo_blender import headless\n"
+    "except ImportError as error:\n"
+    "    text = ' '.join(('the add-on velo_blender is not installed in Blender (%s)' % "
+    "error).split())\n"
+    "    os.write(3, ('error\\t4\\t' + text + '\\n"
+    "').encode())\n"
+    "    os._exit(0)\n"
+    "headless.main(words[2:])\n";
 
 /* ---- where things are -------------------------------------------------------------------- */
 

@@ -597,32 +597,40 @@ const Command render_command = {
     .summary = "render a scene: .pbrt .gltf .glb .obj .ply .stl .off",
     .text =
         "Renders FILE. Options override the settings in the file. After the first pass, and "
-        "then about every\nten seconds, the unfinished image is written to NAME.part.EXT; at "
-        "the end it becomes NAME.EXT.\nA .blend file is rendered by Blender, where it is "
-        "installed (docs/blender.md).\nCtrl-C ends the render; the samples so far are in "
-        "NAME.part.EXT, and in the film file of --film,\nwhich the same command again "
-        "continues, or --continue.",
+        "then about every\n"
+        "ten seconds, the unfinished image is written to NAME.part.EXT; at the end it becomes "
+        "NAME.EXT.\n"
+        "A .blend file is rendered by Blender, where it is installed (docs/blender.md).\n"
+        "Ctrl-C ends the render; the samples so far are in NAME.part.EXT, and in the film "
+        "file of --film,\n"
+        "which the same command again continues, or --continue.",
     .examples =
         "velo render room.pbrt -o room.exr -o room.png --spp 256\n"
         "velo render model.glb --resolution 1280x720 --time 5m -o model.png",
     .options = render_options,
     .sections = render_sections,
     .brief =
-        "  velo render room.pbrt -o room.png              as the scene's file says\n  velo "
-        "render model.glb --resolution 1280x720 --time 5m -o model.png\n  velo render "
-        "room.pbrt --spp 256 -o room.exr -o room.png\n  velo render room.pbrt --noise 1% "
-        "--film room.film -o room.exr  stop, go on\n\n  -o, --output FILE       .exr .hdr .pfm "
-        "(linear), .png .jpg .tga (display); several\n      --spp N             samples per "
-        "pixel\n      --time TIME         time limit: 30s, 5m, 1h30m\n      --noise PERCENT    "
-        " sample until the noise is below this, such as 1%\n      --resolution WxH    image "
-        "size in pixels\n      --denoise FILE      also write a denoised copy\n      --film "
-        "FILE         keep the samples; the same command again goes on\n      --channels LIST  "
-        "   depth, normals, ids and more in the .exr\n      --exposure EV       brightness of "
-        ".png and .jpg in stops, or auto\n      --environment NAME  light of a model: studio, "
-        "window, evening, sky ...\n      --camera FILE       another camera; --trajectory "
-        "FILE: many poses\n  -t, --threads N         default: all processors\n\nOptions "
-        "override the settings in the file. Ctrl-C ends the render and keeps\nthe image so "
-        "far.",
+        "  velo render room.pbrt -o room.png              as the scene's file says\n"
+        "  velo render model.glb --resolution 1280x720 --time 5m -o model.png\n"
+        "  velo render room.pbrt --spp 256 -o room.exr -o room.png\n"
+        "  velo render room.pbrt --noise 1% --film room.film -o room.exr  stop, go on\n"
+        "\n"
+        "  -o, --output FILE       .exr .hdr .pfm (linear), .png .jpg .tga (display); "
+        "several\n"
+        "      --spp N             samples per pixel\n"
+        "      --time TIME         time limit: 30s, 5m, 1h30m\n"
+        "      --noise PERCENT     sample until the noise is below this, such as 1%\n"
+        "      --resolution WxH    image size in pixels\n"
+        "      --denoise FILE      also write a denoised copy\n"
+        "      --film FILE         keep the samples; the same command again goes on\n"
+        "      --channels LIST     depth, normals, ids and more in the .exr\n"
+        "      --exposure EV       brightness of .png and .jpg in stops, or auto\n"
+        "      --environment NAME  light of a model: studio, window, evening, sky ...\n"
+        "      --camera FILE       another camera; --trajectory FILE: many poses\n"
+        "  -t, --threads N         default: all processors\n"
+        "\n"
+        "Options override the settings in the file. Ctrl-C ends the render and keeps\n"
+        "the image so far.",
     .min_operands = 0, /* --again and --continue need none */
     .max_operands = 1,
     .run = run_render,

@@ -222,12 +222,17 @@ const Command scene_check_command = {
     .summary = "find errors and likely mistakes in a scene",
     .text =
         "Reads a scene, continues after errors, and prints all findings, each with its kind "
-        "and its location\nin the file: missing, damaged and invalid files; unused and "
-        "overwritten names; solids of glass\nthat are open or inside out; media that overlap; "
-        "faces without area; textures over uv on a mesh\nwithout uv; surfaces that reflect "
-        "more light than they receive; a camera inside a solid; lights\nof power 0. Renders "
-        "nothing.\n\nexit codes: 0 only notes or no findings; 1 warnings; 3, 4, 5 an error "
-        "that would end velo render",
+        "and its location\n"
+        "in the file: missing, damaged and invalid files; unused and overwritten names; "
+        "solids of glass\n"
+        "that are open or inside out; media that overlap; faces without area; textures over "
+        "uv on a mesh\n"
+        "without uv; surfaces that reflect more light than they receive; a camera inside a "
+        "solid; lights\n"
+        "of power 0. Renders nothing.\n"
+        "\n"
+        "exit codes: 0 only notes or no findings; 1 warnings; 3, 4, 5 an error that would end "
+        "velo render",
     .examples = "velo scene check room.pbrt\nvelo scene check --json --no-images model.glb",
     .options = options,
     .min_operands = 1,

@@ -97,9 +97,10 @@ const Command scene_convert_command = {
     .usage = "A B [options]",
     .summary = "write a scene in another format: .gltf, .glb, .pbrt",
     .text =
-        "Reads A (.pbrt .gltf .glb .obj .ply .stl .off) and writes it as B, in the format of B's "
-        "suffix. What that\nformat cannot hold exactly is reported: one line per kind, with "
-        "the number of occurrences.",
+        "Reads A (.pbrt .gltf .glb .obj .ply .stl .off) and writes it as B, in the format of "
+        "B's suffix. What that\n"
+        "format cannot hold exactly is reported: one line per kind, with the number of "
+        "occurrences.",
     .examples =
         "velo scene convert room.pbrt room.glb\nvelo scene convert model.gltf model.pbrt",
     .options = convert_options,

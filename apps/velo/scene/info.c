@@ -376,9 +376,11 @@ const Command scene_info_command = {
     .usage = "FILE [options]",
     .summary = "print what a scene contains: counts, bounds, camera, lights",
     .text =
-        "Reads a scene and prints its contents, without building or rendering it. The power of "
-        "a light is the\nluminance that it emits, integrated over area and solid angle; of "
-        "distant and infinite lights, the\npart that enters a sphere around the scene.",
+        "Reads a scene and prints its contents, without building or rendering it. The power "
+        "of a light is the\n"
+        "luminance that it emits, integrated over area and solid angle; of distant and "
+        "infinite lights, the\n"
+        "part that enters a sphere around the scene.",
     .examples = "velo scene info room.pbrt\nvelo scene info --json model.glb",
     .options = options,
     .min_operands = 1,

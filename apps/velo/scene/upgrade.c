@@ -113,10 +113,13 @@ const Command scene_upgrade_command = {
     .summary = "rewrite a pbrt-v3 scene as a pbrt-v4 scene",
     .text =
         "Reads the pbrt-v3 scene OLD and the files that it includes, and writes the pbrt-v4 "
-        "scene NEW.\nComments, layout and numbers are kept. Included files that change are "
-        "written to NEW's folder, and\nfile names are adapted to it. Images of infinite lights "
-        "become equal-area octahedral maps (.exr).\nPrints each change, and everything that "
-        "has no counterpart in pbrt-v4, with its line in OLD.",
+        "scene NEW.\n"
+        "Comments, layout and numbers are kept. Included files that change are written to "
+        "NEW's folder, and\n"
+        "file names are adapted to it. Images of infinite lights become equal-area octahedral "
+        "maps (.exr).\n"
+        "Prints each change, and everything that has no counterpart in pbrt-v4, with its line "
+        "in OLD.",
     .examples =
         "velo scene upgrade old/room.pbrt room.pbrt\n"
         "velo scene upgrade --strict scene.pbrt scene-v4.pbrt",

@@ -189,13 +189,19 @@ const Command scene_verify_command = {
     .summary = "check that the tracers agree about the light of a scene",
     .text =
         "Renders the scene at a small size with each unbiased tracer that claims its light, "
-        "with the whole\nscene shifted, turned and scaled, and by the reference renderer, 32 "
-        "times each, and compares the\nmeans of the image, of blocks of 8 x 8 pixels, of the "
-        "pixels of each material, and of each kind of\nlight. What differs is rendered again "
-        "with other seeds and four times the samples; it counts only\nif it differs again. One "
-        "run in a thousand or fewer reports a difference where there is none\n"
-        "(docs/verify.md).\n\nexit codes: 0 all agree; 1 a difference beyond chance; 5 the "
-        "reference renderer failed",
+        "with the whole\n"
+        "scene shifted, turned and scaled, and by the reference renderer, 32 times each, and "
+        "compares the\n"
+        "means of the image, of blocks of 8 x 8 pixels, of the pixels of each material, and "
+        "of each kind of\n"
+        "light. What differs is rendered again with other seeds and four times the samples; "
+        "it counts only\n"
+        "if it differs again. One run in a thousand or fewer reports a difference where there "
+        "is none\n"
+        "(docs/verify.md).\n"
+        "\n"
+        "exit codes: 0 all agree; 1 a difference beyond chance; 5 the reference renderer "
+        "failed",
     .examples = "velo scene verify room.pbrt\nvelo scene verify room.pbrt --rays 5 --json",
     .options = options,
     .sections = sections,

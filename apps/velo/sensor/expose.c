@@ -362,9 +362,11 @@ const Command sensor_expose_command = {
     .usage = "FILE.exr -o FILE [options]",
     .summary = "expose a sensor to a stored spectral image",
     .text =
-        "Reads an image with a spectrum (velo render --spectrum N --filter box) and "
-        "computes what a\nsensor makes of it: photons, electrons and whole numbers, with "
-        "noise. docs/sensor.md has the\nmodel and the form of sensor files.",
+        "Reads an image with a spectrum (velo render --spectrum N --filter box) and computes "
+        "what a\n"
+        "sensor makes of it: photons, electrons and whole numbers, with noise. docs/sensor.md "
+        "has the\n"
+        "model and the form of sensor files.",
     .examples =
         "velo sensor expose room.exr --sensor generic_rggb --iso 400 -o raw.dng\n"
         "velo sensor expose room.exr --sensor my.yaml --bracket -4,-2,0 -o raw_%d.png",

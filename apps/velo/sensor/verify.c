@@ -151,9 +151,10 @@ const Command sensor_verify_command = {
     .summary = "measure a sensor by EMVA 1288 and compare it with itself",
     .text =
         "Exposes the sensor to flat fields, dark frames and a slanted edge, which are "
-        "computed, not\nrendered, and measures gain, noise, dark current, saturation, "
-        "DSNU, PRNU, linearity and MTF.\nExit code 1: a parameter differs by more than "
-        "1 % (linearity: 0.1 %, MTF: 2 %).",
+        "computed, not\n"
+        "rendered, and measures gain, noise, dark current, saturation, DSNU, PRNU, linearity "
+        "and MTF.\n"
+        "Exit code 1: a parameter differs by more than 1 % (linearity: 0.1 %, MTF: 2 %).",
     .examples =
         "velo sensor verify generic_mono --plot transfer.svg\n"
         "velo sensor verify my.yaml --frames emva",

@@ -28,10 +28,11 @@ static double round_up(double x) {
 
 static void put_axes(FILE *file, const Axes *a) {
   fprintf(file,
-          "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n<path d=\"M%d %dV%dH%d\" "
-          "fill=\"none\" stroke=\"#000\"/>\n<text x=\"%d\" y=\"24\">photon transfer</text>\n"
-          "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">mean of the light, DN</text>\n<text "
-          "x=\"8\" y=\"%d\">variance, DN²</text>\n",
+          "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n"
+          "<path d=\"M%d %dV%dH%d\" fill=\"none\" stroke=\"#000\"/>\n"
+          "<text x=\"%d\" y=\"24\">photon transfer</text>\n"
+          "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">mean of the light, DN</text>\n"
+          "<text x=\"8\" y=\"%d\">variance, DN²</text>\n",
           LEFT, TOP, HEIGHT - BOTTOM, WIDTH - RIGHT, LEFT, WIDTH - RIGHT, HEIGHT - 8, TOP - 8);
   for (int i = 0; i <= 5; i++) {
     double x = a->x * i / 5;

@@ -182,11 +182,14 @@ const Command trace_command = {
     .usage = "SCENE RAYS.csv|RAYS.npy [options]",
     .summary = "print what rays of your own hit",
     .text =
-        "RAYS.csv (- is stdin) has a line ox,oy,oz,dx,dy,dz for each ray: origin and direction "
-        "(of any length)\nin world space; then, where given, t_max, time, t_min. t counts "
-        "lengths of the direction, time seconds.\nA header may name the columns in any order. "
-        "RAYS.npy is an array of such rows. Prints for each hit its\nray (from 0), t, "
-        "distance, position, normals, uv, velocity and ids; rays without a hit have valid 0\n"
+        "RAYS.csv (- is stdin) has a line ox,oy,oz,dx,dy,dz for each ray: origin and "
+        "direction (of any length)\n"
+        "in world space; then, where given, t_max, time, t_min. t counts lengths of the "
+        "direction, time seconds.\n"
+        "A header may name the columns in any order. RAYS.npy is an array of such rows. "
+        "Prints for each hit its\n"
+        "ray (from 0), t, distance, position, normals, uv, velocity and ids; rays without a "
+        "hit have valid 0\n"
         "(docs/rays.md).",
     .examples =
         "velo trace room.pbrt rays.csv -o hits.csv\n"

@@ -184,15 +184,20 @@ const Command view_command = {
     .summary = "see and steer a scene in the browser while it renders",
     .text =
         "Prints the address of a page and opens it in a browser. The page shows the scene "
-        "while it renders,\nmoves the camera, edits it in every spelling, shows ground truth, "
-        "and saves cameras and images\n(docs/view.md). The address has a random token; only "
-        "this machine can reach it. Through ssh, the\nprinted ssh -L line brings the page to "
-        "your own machine. Ctrl-C ends it.\n\nWith --lecture the page is the lecture on "
-        "perspective (docs/lecture.md), whose images are live: a slider\nmoves d, e, zoom, s "
-        "or roll, and image, formulas and the view from outside follow.",
+        "while it renders,\n"
+        "moves the camera, edits it in every spelling, shows ground truth, and saves cameras "
+        "and images\n"
+        "(docs/view.md). The address has a random token; only this machine can reach it. "
+        "Through ssh, the\n"
+        "printed ssh -L line brings the page to your own machine. Ctrl-C ends it.\n"
+        "\n"
+        "With --lecture the page is the lecture on perspective (docs/lecture.md), whose "
+        "images are live: a slider\n"
+        "moves d, e, zoom, s or roll, and image, formulas and the view from outside follow.",
     .examples =
-        "velo view scenes/lecture/pinhole.pbrt\nvelo view model.glb --resolution 1280x720 "
-        "--port 8800 --no-open\nvelo view --lecture --language it",
+        "velo view scenes/lecture/pinhole.pbrt\n"
+        "velo view model.glb --resolution 1280x720 --port 8800 --no-open\n"
+        "velo view --lecture --language it",
     .options = view_options,
     .sections = view_sections,
     .min_operands = 0,

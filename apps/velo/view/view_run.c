@@ -47,9 +47,13 @@ static void handle_signals(void (*handler)(int)) {
  * would be seen by other users of the machine in the arguments of a program. */
 static bool write_page(const char *address, char path[PRIVATE_PATH]) {
   static const char format[] =
-      "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>velo</title>\n"
-      "<meta http-equiv=\"refresh\" content=\"0;url=%s\">\n<p><a href=\"%s\">velo "
-      "view</a></p>\n</html>\n";
+      "<!doctype html>\n"
+      "<html lang=\"en\">\n"
+      "<meta charset=\"utf-8\">\n"
+      "<title>velo</title>\n"
+      "<meta http-equiv=\"refresh\" content=\"0;url=%s\">\n"
+      "<p><a href=\"%s\">velo view</a></p>\n"
+      "</html>\n";
   FILE *out = private_file_make("velo-view-", ".html", path);
   if (!out)
     return false;

@@ -246,6 +246,23 @@ static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
       l->blades || l->aperture || l->ratio != 1.0 || c->focus[0] != 0.0 || c->focus[1] != 0.0;
 }
 
+/* How wide a pixel is: spread, per unit of distance; width, in the world. */
+static void measure_pixels(const vlCamera *camera, vlCameraCompiled *c) {
+  /* a pixel's side at z = 1, or its width in camera units */
+  const double size = 1.0 / sqrt(camera->fx * camera->fy);
+  const double scale = scale_of(camera->world_from_camera);
+  if (camera->projection == VL_PROJECTION_PERSPECTIVE) {
+    c->pixel_spread = (float)size;
+  } else if (camera->projection == VL_PROJECTION_ORTHOGRAPHIC) {
+    c->pixel_width = (float)(size * scale);
+  } else if (c->own) {
+    c->pixel_spread = (float)(size * camera->own_pixel[0]);
+    c->pixel_width = (float)(size * camera->own_pixel[1] * scale);
+  } else {
+    c->pixel_spread = (float)central_spread(c);
+  }
+}
+
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   const double *m = camera->world_from_camera;
   *c = (vlCameraCompiled){
@@ -297,17 +314,5 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   compile_lens(camera, c);
   vl_camera_compile_time(camera, &c->when);
   memcpy(c->camera_from_world, camera->camera_from_world, sizeof c->camera_from_world);
-  double size =
-      1.0 /
-      sqrt(camera->fx * camera->fy); /* a pixel's side at z = 1, or its width in camera units */
-  if (perspective) {
-    c->pixel_spread = (float)size;
-  } else if (orthographic) {
-    c->pixel_width = (float)(size * scale_of(m));
-  } else if (c->own) {
-    c->pixel_spread = (float)(size * camera->own_pixel[0]);
-    c->pixel_width = (float)(size * camera->own_pixel[1] * scale_of(m));
-  } else {
-    c->pixel_spread = (float)central_spread(c);
-  }
+  measure_pixels(camera, c);
 }

@@ -257,18 +257,8 @@ static int32_t compile_inputs(Compile *c, const vlTextureDef *def, int role, int
   return n;
 }
 
-static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting) {
-  const vlTextureDef *def = &c->scene->textures.items[index - 1];
-  if (!def->spectrum)
-    role = ROLE_FLOAT;
-  int32_t *memo = &c->memo[(index - 1) * ROLES + (uint32_t)role];
-  if (*memo)
-    return *memo - 1;
-  if (nesting > MAX_NESTING) {
-    vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-               "textures are nested more than %d deep", MAX_NESTING);
-    return -1;
-  }
+/* What the def alone says. Its inputs and numbers follow. */
+static vlTextureNode node_of(const vlTextureDef *def, int role) {
   vlTextureNode node = empty_node(VL_TEXTURE_CONSTANT);
   node.is_spectrum = def->spectrum;
   node.role = def->spectrum ? (vlSpectrumRole)role : VL_ROLE_UNBOUNDED;
@@ -283,6 +273,22 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   for (int i = 0; i < 12; i++)
     node.texture_from_world[i] = (float)def->texture_from_world[i];
   fill_image_node(def, &node);
+  return node;
+}
+
+static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting) {
+  const vlTextureDef *def = &c->scene->textures.items[index - 1];
+  if (!def->spectrum)
+    role = ROLE_FLOAT;
+  int32_t *memo = &c->memo[(index - 1) * ROLES + (uint32_t)role];
+  if (*memo)
+    return *memo - 1;
+  if (nesting > MAX_NESTING) {
+    vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+               "textures are nested more than %d deep", MAX_NESTING);
+    return -1;
+  }
+  vlTextureNode node = node_of(def, role);
   if (def->kind == VL_TEXTURE_CONSTANT) { /* a constant texture compiles to its input's node */
     int32_t n = compile_input(c, def, def->float_a, def->spectrum_a, role, nesting);
     if (n >= 0)

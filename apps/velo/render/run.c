@@ -356,6 +356,45 @@ static int plan_reached(Render *render, uint32_t end) {
   return film_keeper_describe(&render->keeper, &render->film_plan, &render->job, NULL);
 }
 
+/* Writes what was rendered. Returns the exit code. */
+static int finish_image(Render *render, vlResult result, const vlRenderStats *stats) {
+  Job *job = &render->job;
+  int reached;
+  uint32_t spp = vl_film_spp(render->film);
+  OutputStage stage = result == VL_OK ? OUTPUT_FINISHED : OUTPUT_STOPPED;
+  if (!spp) {
+    report_failure(128 + signals_pending(),
+                   "interrupted before the first pass was done; nothing is written");
+    return 128 + signals_pending();
+  }
+  if (stage == OUTPUT_STOPPED)
+    report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
+  if (stage == OUTPUT_FINISHED &&
+      (reached = plan_reached(render, job->defs->render.first_sample + spp)) >= 0)
+    return reached;
+  int kept = film_keeper_finish(&render->keeper, render->film);
+  /* The image's receipt states the samples that its blocks needed at most; the film's states
+   * the limit. */
+  if (job->defs->render.noise > 0)
+    job->defs->render.spp = spp;
+  if (is_only_kept(render)) {
+    int done = stage == OUTPUT_FINISHED
+                   ? denoised_write(&render->denoised, job, render->film, stage)
+                   : STATUS_OK;
+    return done == STATUS_OK && signals_pending() ? 128 + signals_pending() : done;
+  }
+  int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
+  if (kept != STATUS_OK && (status == STATUS_OK || status > 128))
+    status = kept;
+  if (status == STATUS_OK)
+    report_late(render, spp);
+  if (signals_pending() && status == STATUS_OK)
+    status = 128 + signals_pending();
+  if (status == STATUS_OK || status > 128)
+    report_result(render, stats, stage, status);
+  return status;
+}
+
 int run_image(Render *render) {
   Job *job = &render->job;
   vlError error = {0};
@@ -385,38 +424,5 @@ int run_image(Render *render) {
   noise_report(&job->defs->render, &stats);
   if (result != VL_OK && result != VL_CANCELLED)
     return report_error(&error, result, job->path);
-
-  uint32_t spp = vl_film_spp(render->film);
-  OutputStage stage = result == VL_OK ? OUTPUT_FINISHED : OUTPUT_STOPPED;
-  if (!spp) {
-    report_failure(128 + signals_pending(),
-                   "interrupted before the first pass was done; nothing is written");
-    return 128 + signals_pending();
-  }
-  if (stage == OUTPUT_STOPPED)
-    report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
-  if (stage == OUTPUT_FINISHED &&
-      (opened = plan_reached(render, job->defs->render.first_sample + spp)) >= 0)
-    return opened;
-  int kept = film_keeper_finish(&render->keeper, render->film);
-  /* The image's receipt states the samples that its blocks needed at most; the film's states
-   * the limit. */
-  if (job->defs->render.noise > 0)
-    job->defs->render.spp = spp;
-  if (is_only_kept(render)) {
-    int done = stage == OUTPUT_FINISHED
-                   ? denoised_write(&render->denoised, job, render->film, stage)
-                   : STATUS_OK;
-    return done == STATUS_OK && signals_pending() ? 128 + signals_pending() : done;
-  }
-  int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
-  if (kept != STATUS_OK && (status == STATUS_OK || status > 128))
-    status = kept;
-  if (status == STATUS_OK)
-    report_late(render, spp);
-  if (signals_pending() && status == STATUS_OK)
-    status = 128 + signals_pending();
-  if (status == STATUS_OK || status > 128)
-    report_result(render, &stats, stage, status);
-  return status;
+  return finish_image(render, result, &stats);
 }

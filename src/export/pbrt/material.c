@@ -56,66 +56,103 @@ static float specular_albedo(vlExport *x, const vlPrincipledDef *p, double eta, 
   return (float)(e > 0 ? e < 1 ? e : 1 : 0);
 }
 
+/* The materials of pbrt that stand for the non-metallic part of the principled material. */
+typedef enum Stand {
+  STAND_GLASS,
+  STAND_LEAF,
+  STAND_MATTE, /* pbrt's rough coats lose energy; diffuse is the closer approximation */
+  STAND_COATED
+} Stand;
+
+static void put_clear(vlExport *x, const vlMaterialDef *m, float transmission, double eta,
+                      const vlPbrtInput *alpha) {
+  const vlPrincipledDef *p = &m->principled;
+  float rgb[3];
+  vl_export_rgb(x, &m->reflectance, rgb);
+  if (m->reflectance.texture.index || rgb[0] != 1 || rgb[1] != 1 || rgb[2] != 1)
+    vl_export_lose(x, "colour of glass at its surface: left out");
+  if (transmission < 1 || p->transmission.texture.index)
+    vl_export_lose(x, "surfaces that pass a part of light: glass");
+  PUT("\"%s\" \"float eta\" [%.9g]", p->thin_walled ? "thindielectric" : "dielectric", eta);
+  if (!p->thin_walled) {
+    vl_pbrt_put_number(x, "roughness", alpha);
+    PUT(" \"bool remaproughness\" false");
+  } else if (alpha->texture[0] || alpha->number > 1e-4f) {
+    vl_export_lose(x, "rough sheets of glass: smooth");
+  }
+}
+
+static void put_half_leaf(vlExport *x, const vlPbrtInput *color, const vlPbrtInput *passed) {
+  vl_export_lose(x,
+                 "diffuse transmission: without reflection at the surface, halves of the "
+                 "light each way");
+  PUT("\"diffusetransmission\"");
+  vl_pbrt_put_color(x, "reflectance", color);
+  vl_pbrt_put_color(x, "transmittance", passed);
+  PUT(" \"float scale\" [0.5]");
+}
+
+static void put_coat(vlExport *x, float transmission, double eta, const vlPbrtInput *color,
+                     const vlPbrtInput *alpha) {
+  vl_export_lose(x, "principled dielectrics: as coateddiffuse, brighter below the coat");
+  if (transmission > 0)
+    vl_export_lose(x, "surfaces that pass a part of light: opaque");
+  PUT("\"coateddiffuse\"");
+  vl_pbrt_put_color(x, "reflectance", color);
+  vl_pbrt_put_number(x, "roughness", alpha);
+  PUT(" \"bool remaproughness\" false \"float eta\" [%.9g] \"float thickness\" [0] "
+      "\"integer maxdepth\" [100]",
+      eta);
+}
+
 /* The non-metallic part of the principled material. name: the material's. */
 static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name) {
   const vlPrincipledDef *p = &m->principled;
   vlPbrtInput color, passed, alpha;
-  float transmission = vl_export_number(x, &p->transmission), rgb[3];
+  const float transmission = vl_export_number(x, &p->transmission);
   double eta = (double)vl_export_eta(&m->eta.value);
-  vl_export_rgb(x, &m->reflectance, rgb);
   eta = eta > 1 ? eta : 1.5;
-  bool clear = transmission >= 0.5f, leaf = is_on(&p->diffuse_transmission);
-  const float mean_alpha = clear || leaf ? 0 : vl_export_mean_square(x, &p->roughness);
-  bool dull = !p->specular.texture.index && p->specular.value == 0,
-       bare = dull || mean_alpha > 0.15f;
-  bool coated = !clear && !leaf && !bare;
+  const bool shines = p->specular.texture.index || p->specular.value != 0;
+  float mean_alpha = 0;
+  Stand stand = STAND_COATED;
+  if (transmission >= 0.5f) {
+    stand = STAND_GLASS;
+  } else if (is_on(&p->diffuse_transmission)) {
+    stand = STAND_LEAF;
+  } else {
+    mean_alpha = vl_export_mean_square(x, &p->roughness);
+    if (!shines || mean_alpha > 0.15f)
+      stand = STAND_MATTE;
+  }
+  /* the albedo of the reflection that a diffuse surface lacks is added to its colour */
   const float white =
-      bare && !dull && !clear && !leaf ? specular_albedo(x, p, eta, mean_alpha) : 0;
-  if (!(coated      ? vl_pbrt_prepare_under_coat(x, &m->reflectance, eta, &color)
-        : white > 0 ? vl_pbrt_prepare_raised(x, &m->reflectance, white, &color)
-                    : vl_pbrt_prepare_color(x, &m->reflectance, &color)) ||
-      !vl_pbrt_prepare_color(x, &p->diffuse_transmission_color, &passed) ||
-      !vl_pbrt_prepare_number(x, &p->roughness, true, &alpha))
+      stand == STAND_MATTE && shines ? specular_albedo(x, p, eta, mean_alpha) : 0;
+  bool fine = stand == STAND_COATED
+                  ? vl_pbrt_prepare_under_coat(x, &m->reflectance, eta, &color)
+                  : vl_pbrt_prepare_raised(x, &m->reflectance, white, &color);
+  fine = fine && vl_pbrt_prepare_color(x, &p->diffuse_transmission_color, &passed) &&
+         vl_pbrt_prepare_number(x, &p->roughness, true, &alpha);
+  if (!fine)
     return false;
   PUT("MakeNamedMaterial \"%s\" \"string type\" ", name);
-  if (clear) {
-    if (m->reflectance.texture.index || rgb[0] != 1 || rgb[1] != 1 || rgb[2] != 1)
-      vl_export_lose(x, "colour of glass at its surface: left out");
-    if (transmission < 1 || p->transmission.texture.index)
-      vl_export_lose(x, "surfaces that pass a part of light: glass");
-    PUT("\"%s\" \"float eta\" [%.9g]", p->thin_walled ? "thindielectric" : "dielectric", eta);
-    if (!p->thin_walled) {
-      vl_pbrt_put_number(x, "roughness", &alpha);
-      PUT(" \"bool remaproughness\" false");
-    } else if (alpha.texture[0] || alpha.number > 1e-4f) {
-      vl_export_lose(x, "rough sheets of glass: smooth");
-    }
-  } else if (leaf) {
-    vl_export_lose(x,
-                   "diffuse transmission: without reflection at the surface, halves of the "
-                   "light each way");
-    PUT("\"diffusetransmission\"");
-    vl_pbrt_put_color(x, "reflectance", &color);
-    vl_pbrt_put_color(x, "transmittance", &passed);
-    PUT(" \"float scale\" [0.5]");
-  } else if (bare) {
-    /* pbrt's rough coats lose energy; diffuse is the closer approximation */
-    if (!dull)
-      vl_export_lose(x, "rough principled dielectrics: as diffuse of the same albedo");
-    PUT("\"diffuse\"");
-    vl_pbrt_put_color(x, "reflectance", &color);
-  } else {
-    vl_export_lose(x, "principled dielectrics: as coateddiffuse, brighter below the coat");
-    if (transmission > 0)
-      vl_export_lose(x, "surfaces that pass a part of light: opaque");
-    PUT("\"coateddiffuse\"");
-    vl_pbrt_put_color(x, "reflectance", &color);
-    vl_pbrt_put_number(x, "roughness", &alpha);
-    PUT(" \"bool remaproughness\" false \"float eta\" [%.9g] \"float thickness\" [0] "
-        "\"integer maxdepth\" [100]",
-        eta);
+  switch (stand) {
+    case STAND_GLASS:
+      put_clear(x, m, transmission, eta, &alpha);
+      break;
+    case STAND_LEAF:
+      put_half_leaf(x, &color, &passed);
+      break;
+    case STAND_MATTE:
+      if (shines)
+        vl_export_lose(x, "rough principled dielectrics: as diffuse of the same albedo");
+      PUT("\"diffuse\"");
+      vl_pbrt_put_color(x, "reflectance", &color);
+      break;
+    case STAND_COATED:
+      put_coat(x, transmission, eta, &color, &alpha);
+      break;
   }
-  bool fine = put_normal(x, m);
+  fine = put_normal(x, m);
   PUT("\n");
   return fine;
 }

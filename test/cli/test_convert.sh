@@ -247,6 +247,22 @@ expect_text lamp_tells 'not held: backs of area lights that emit to one side: no
 check lamp_a "$VELO" render lamp.pbrt -o a.exr --quiet
 check lamp_b "$VELO" render lamp.glb -o b.exr --environment none --quiet
 check lamp_near "$VELO" image diff a.exr b.exr --threshold relmse=0.01
+# A computed texture of a principled material is written as it is; that is what is told.
+for roughness in 0.1 0.6; do
+  cat >computed.pbrt <<END
+LookAt 0 1 6  0 1 0  0 1 0
+Camera "perspective"
+WorldBegin
+LightSource "infinite"
+Texture "checks" "spectrum" "checkerboard" "float uscale" 4
+Material "principled" "texture basecolor" "checks" "float roughness" $roughness "float metallic" 0
+Shape "sphere"
+END
+  check "computed_$roughness" "$VELO" scene convert computed.pbrt computed2.pbrt
+  expect_text "computed_${roughness}_tells" "not held: colours of computed textures: not adapted to pbrt's materials (1)"
+  check "computed_${roughness}_no_mean" test -z "$(grep 'its mean stands in' <<<"$out$err")"
+  check "computed_${roughness}_kept" grep -q '"spectrum" "checkerboard"' computed2.pbrt
+done
 # An animation has moments at and before 0.
 check at_zero "$VELO" scene convert lamp.glb zero.glb --at 0
 check at_negative "$VELO" scene convert lamp.glb zero.glb --at -0.5

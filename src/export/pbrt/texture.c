@@ -331,6 +331,8 @@ static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char
   }
   if (!image && !vl_pbrt_prepare(x, row, t, t->spectrum, wish, depth + 1, list))
     return false;
+  if (!image && changes_color(change))
+    vl_export_lose(x, "colours of computed textures: not adapted to pbrt's materials");
   snprintf(name, 64, "texture%u-%zu", id, x->text.data.count);
   vlMat4 world_from_texture;
   bool placed = is_placed(t, row, &world_from_texture);

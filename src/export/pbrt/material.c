@@ -112,7 +112,7 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
   const float transmission = vl_export_number(x, &p->transmission);
   double eta = (double)vl_export_eta(&m->eta.value);
   eta = eta > 1 ? eta : 1.5;
-  const bool shines = p->specular.texture.index || p->specular.value != 0;
+  const bool reflects = p->specular.texture.index || p->specular.value != 0;
   float mean_alpha = 0;
   Stand stand = STAND_COATED;
   if (transmission >= 0.5f) {
@@ -121,12 +121,12 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
     stand = STAND_LEAF;
   } else {
     mean_alpha = vl_export_mean_square(x, &p->roughness);
-    if (!shines || mean_alpha > 0.15f)
+    if (!reflects || mean_alpha > 0.15f)
       stand = STAND_MATTE;
   }
   /* the albedo of the reflection that a diffuse surface lacks is added to its colour */
   const float white =
-      stand == STAND_MATTE && shines ? specular_albedo(x, p, eta, mean_alpha) : 0;
+      stand == STAND_MATTE && reflects ? specular_albedo(x, p, eta, mean_alpha) : 0;
   bool fine = stand == STAND_COATED
                   ? vl_pbrt_prepare_under_coat(x, &m->reflectance, eta, &color)
                   : vl_pbrt_prepare_raised(x, &m->reflectance, white, &color);
@@ -143,7 +143,7 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
       put_half_leaf(x, &color, &passed);
       break;
     case STAND_MATTE:
-      if (shines)
+      if (reflects)
         vl_export_lose(x, "rough principled dielectrics: as diffuse of the same albedo");
       PUT("\"diffuse\"");
       vl_pbrt_put_color(x, "reflectance", &color);

@@ -30,5 +30,9 @@ same any_threads one/frame_0100.png three/frame_0100.png
 same any_threads_descriptor one/EMVA1288_Data.txt three/EMVA1288_Data.txt
 expect_code 5 not_over "$VELO" sensor verify generic_mono --size 64 --stack 3 --frames one
 expect_text not_over_says 'needs a new or an empty folder'
+mkdir -p torn/frame_0002.png
+expect_code 5 frame_in_the_way "$VELO" sensor verify generic_mono --size 64 --stack 3 --frames torn
+check named_are_there grep -q frame_0001.png torn/EMVA1288_Data.txt
+expect_code 1 not_there_not_named grep frame_0002.png torn/EMVA1288_Data.txt
 expect_code 2 no_preset "$VELO" sensor verify generic_mon
 finish

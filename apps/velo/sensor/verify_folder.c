@@ -57,7 +57,8 @@ int verify_folder_frame(Verify *v, int which) {
     result = vl_image_write(image, path, NULL, &error);
   }
   vl_image_destroy(image);
-  fprintf(v->descriptor, "i %s\n", name);
+  if (result == VL_OK)
+    fprintf(v->descriptor, "i %s\n", name);
   return report_error(&error, result, path);
 }
 

@@ -15,9 +15,8 @@ void vl_light_sample_distant(const vlLightQuery *q, vlLightSample *out) {
 
 void vl_light_emit_distant(const vlEmissionQuery *q, vlEmission *out) {
   vl_light_emit_from_afar(q->world, vl_light_axis(q->light), q->u, q->v, out);
-  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
-  for (int c = 0; c < 4; c++)
-    out->flux[c] *= vl_light_disk(q->world);
+  vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, vl_light_disk(q->world),
+                    out->flux);
   out->density = 1.0f / vl_light_disk(q->world);
   out->delta = true;
 }

@@ -30,9 +30,7 @@ static float intensity_factor(const vlWorld *world, const vlWorldLight *light, v
 void vl_light_sample_goniometric(const vlLightQuery *q, vlLightSample *out) {
   float factor = vl_light_towards_point(q, out);
   factor *= intensity_factor(q->world, q->light, vl_neg(out->w));
-  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->radiance);
-  for (int c = 0; c < 4; c++)
-    out->radiance[c] *= factor;
+  vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, factor, out->radiance);
 }
 
 /* A ray of the lamp: its direction has the density of the flux of the table's cells. */
@@ -49,9 +47,7 @@ static void emit_lamp(const vlEmissionQuery *q, const vlLampTable *table, vlEmis
   out->density = density;
   out->valid = density > 0.0f;
   float factor = out->valid ? vl_lamp_candela(table, local) / density : 0.0f;
-  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
-  for (int c = 0; c < 4; c++)
-    out->flux[c] *= factor;
+  vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, factor, out->flux);
 }
 
 void vl_light_emit_goniometric(const vlEmissionQuery *q, vlEmission *out) {
@@ -63,9 +59,7 @@ void vl_light_emit_goniometric(const vlEmissionQuery *q, vlEmission *out) {
   const float span = 2.0f;
   vl_light_emit_from_point(q, span, out);
   float factor = 2.0f * VL_PI * span * intensity_factor(q->world, q->light, out->d);
-  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
-  for (int c = 0; c < 4; c++)
-    out->flux[c] *= factor;
+  vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, factor, out->flux);
 }
 
 float vl_light_emit_pdf_goniometric(const vlWorld *world, const vlWorldLight *light, float p,

@@ -51,6 +51,15 @@ typedef void vlEmitLight(const vlEmissionQuery *q, vlEmission *out);
 typedef float vlLightDensity(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
                              float distance, const vlPoint *at);
 
+/* The emission at (s, t) of its image, which lights without do not read, times a factor. */
+static inline void vl_light_emission(const vlWorld *world, const vlEmitted *emitted,
+                                     const float lambda[4], vlVec2 st, float factor,
+                                     float out[4]) {
+  vl_emitted_at(world, emitted, lambda, st.x, st.y, true, out);
+  for (int c = 0; c < 4; c++)
+    out[c] *= factor;
+}
+
 /* ---- many lanes at once ------------------------------------------------------------------ */
 
 /* Largest number of lanes for the functions below. With it, their data stays in the L1

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "math/elementary.h"
 
 vlResult vl_lamp_fail(const vlLampText *t, uint32_t line, const char *format, ...) {
   char message[400];
@@ -47,10 +48,6 @@ bool vl_lamp_line(vlLampText *t, vlLampLine *line) {
     pass_end(t);
   return true;
 }
-
-static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                       1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                       1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 bool vl_lamp_decimal(const char *text, size_t length, bool comma, double *value) {
   const char *at = text, *end = text + length;
@@ -94,7 +91,7 @@ bool vl_lamp_decimal(const char *text, size_t length, bool comma, double *value)
     return false;
   while (exponent < 0 && digits > 0) {
     int step = exponent < -22 ? 22 : -exponent;
-    digits /= powers_of_ten[step];
+    digits /= vl_powers_of_ten[step];
     exponent += step;
   }
   for (; exponent > 0 && digits > 0 && digits <= 1e30; exponent--)

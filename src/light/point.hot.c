@@ -8,17 +8,14 @@ vlLightDensity vl_light_emit_pdf_point;
 
 void vl_light_sample_point(const vlLightQuery *q, vlLightSample *out) {
   float factor = vl_light_towards_point(q, out);
-  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->radiance);
-  for (int c = 0; c < 4; c++)
-    out->radiance[c] *= factor;
+  vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, factor, out->radiance);
 }
 
 void vl_light_emit_point(const vlEmissionQuery *q, vlEmission *out) {
   const float span = 2.0f;
   vl_light_emit_from_point(q, span, out);
-  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
-  for (int c = 0; c < 4; c++)
-    out->flux[c] *= 2.0f * VL_PI * span;
+  vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, 2.0f * VL_PI * span,
+                    out->flux);
 }
 
 float vl_light_emit_pdf_point(const vlWorld *world, const vlWorldLight *light, float p,

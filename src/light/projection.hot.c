@@ -30,9 +30,7 @@ void vl_light_sample_projection(const vlLightQuery *q, vlLightSample *out) {
   vlVec2 st;
   float factor = vl_light_towards_point(q, out);
   factor *= image_point(q->light, vl_neg(out->w), &st);
-  vl_emitted_at(q->world, q->emitted, q->lambda, st.x, st.y, true, out->radiance);
-  for (int c = 0; c < 4; c++)
-    out->radiance[c] *= factor;
+  vl_light_emission(q->world, q->emitted, q->lambda, st, factor, out->radiance);
 }
 
 void vl_light_emit_projection(const vlEmissionQuery *q, vlEmission *out) {
@@ -40,9 +38,7 @@ void vl_light_emit_projection(const vlEmissionQuery *q, vlEmission *out) {
   vlVec2 st;
   vl_light_emit_from_point(q, span, out);
   factor *= image_point(q->light, out->d, &st);
-  vl_emitted_at(q->world, q->emitted, q->lambda, st.x, st.y, true, out->flux);
-  for (int c = 0; c < 4; c++)
-    out->flux[c] *= factor;
+  vl_light_emission(q->world, q->emitted, q->lambda, st, factor, out->flux);
 }
 
 float vl_light_emit_pdf_projection(const vlWorld *world, const vlWorldLight *light, float p,

@@ -29,9 +29,7 @@ static float axis_cosine(const vlWorldLight *light, vlVec3 d) {
 void vl_light_sample_spot(const vlLightQuery *q, vlLightSample *out) {
   float factor = vl_light_towards_point(q, out);
   factor *= edge(q->light, axis_cosine(q->light, vl_neg(out->w)));
-  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->radiance);
-  for (int c = 0; c < 4; c++)
-    out->radiance[c] *= factor;
+  vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, factor, out->radiance);
 }
 
 /* Samples a ray of a skewed cone, uniformly in the light's frame. Returns the cosine there. */
@@ -53,9 +51,7 @@ void vl_light_emit_spot(const vlEmissionQuery *q, vlEmission *out) {
     cosine = axis_cosine(q->light, out->d);
   float factor = q->light->skewed_cone ? 1.0f / out->density : 2.0f * VL_PI * span;
   factor *= edge(q->light, cosine);
-  vl_emitted_at(q->world, q->emitted, q->lambda, 0, 0, false, out->flux);
-  for (int c = 0; c < 4; c++)
-    out->flux[c] *= factor;
+  vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, factor, out->flux);
 }
 
 float vl_light_emit_pdf_spot(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,

@@ -8,6 +8,10 @@
 #ifndef MATH_ELEMENTARY_H
 #define MATH_ELEMENTARY_H
 
+/* 1 to 10^22, the powers of ten that are doubles. */
+enum { VL_EXACT_POWER = 22 };
+extern const double vl_powers_of_ten[VL_EXACT_POWER + 1];
+
 /* Radians; |x| <= 2^20 for the accuracy above. */
 double vl_precise_sin(double x);
 double vl_precise_cos(double x);

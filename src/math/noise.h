@@ -68,11 +68,6 @@ static inline float vl_noise(float x, float y, float z) {
   return vl_noise_mix(w, a, b);
 }
 
-static inline float vl_smooth_step(float x, float low, float high) {
-  float t = vl_clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
-}
-
 /* Number of octaves that a footprint of this width resolves. Finer octaves would alias. */
 static inline float vl_noise_octaves(float width, uint32_t octaves) {
   /* -1 - log2(width^2) / 2 */

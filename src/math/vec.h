@@ -90,6 +90,11 @@ static inline float vl_largest4(float a, float b, float c, float d) {
 static inline float vl_clamp(float x, float low, float high) {
   return x < low ? low : x > high ? high : x;
 }
+/* 0 below `low`, 1 above `high`, and a cubic with a level end on both sides between. */
+static inline float vl_smooth_step(float x, float low, float high) {
+  float t = vl_clamp((x - low) / (high - low), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
 static inline float vl_abs(float x) {
   return __builtin_fabsf(x);
 }

@@ -29,9 +29,7 @@ static bool is_convex(const vlShapeDef *d) {
   size_t step = d->faces / CONVEX + 1, vertex_step = d->vertices / CONVEX + 1;
   for (size_t face = 0; face < d->faces; face += step) {
     double c[3][3], n[3], low = 0, high = 0, length = 0;
-    for (int k = 0; k < 3; k++)
-      vl_mesh_corner(d, face, k, c[k]);
-    vl_mesh_face_normal((const double(*)[3])c, n);
+    vl_mesh_face(d, NULL, face, c, n);
     for (size_t i = 0; i < d->vertices; i += vertex_step) {
       double q[3] = {(double)d->positions[3 * i] - c[0][0],
                      (double)d->positions[3 * i + 1] - c[0][1],
@@ -56,9 +54,7 @@ static bool normals_disagree(const vlProbeMesh *p) {
     return false;
   for (size_t face = 0; face < d->faces; face += d->faces / CONVEX + 1) {
     double c[3][3], n[3];
-    for (int k = 0; k < 3; k++)
-      vl_mesh_corner(d, face, k, c[k]);
-    vl_mesh_face_normal((const double(*)[3])c, n);
+    vl_mesh_face(d, NULL, face, c, n);
     const float *own = d->normals + 3 * (size_t)d->indices[3 * face];
     const double v[3] = {own[0], own[1], own[2]};
     against += vl_dot3(n, v) < 0;
@@ -303,14 +299,10 @@ bool vl_closed_reach(vlScene *scene, const double (*from)[3], const double (*tow
  * also show the eye its back: what stands in a room, and is a part of the same mesh, stays. */
 static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face,
                            const vlClosed *closed, const double eye[3]) {
-  double c[3][3], n[3], p[3], to_eye[3], to_middle[3];
-  for (int k = 0; k < 3; k++) {
-    vl_mesh_corner(d, face, k, p);
-    vl_mat4_point(m, p, c[k]);
-  }
+  double c[3][3], n[3], to_eye[3], to_middle[3];
+  vl_mesh_face(d, m, face, c, n);
   if (closed->walls)
     return vl_thick_hides(&closed->thick, (const double(*)[3])c, eye);
-  vl_mesh_face_normal((const double(*)[3])c, n);
   for (int i = 0; i < 3; i++) {
     to_eye[i] = eye[i] - c[0][i];
     to_middle[i] = closed->middle[i] - c[0][i];

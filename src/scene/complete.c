@@ -411,8 +411,8 @@ static void place_ground(vlCompleteDef *def, const View *v, const vlExtent *box,
     size = 1;
   double lowest = INFINITY;
   for (int k = 0; k < 8; k++) {
-    double corner[3] = {k & 1 ? box->low[0] : box->high[0], k & 2 ? box->low[1] : box->high[1],
-                        k & 4 ? box->low[2] : box->high[2]};
+    double corner[3];
+    vl_extent_corner(box, k, corner);
     for (int i = 0; i < 3; i++)
       corner[i] -= center[i];
     lowest = fmin(lowest, vl_dot3(corner, v->up));

@@ -11,6 +11,7 @@
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/octahedral.h"
+#include "math/vec.h"
 #include "scene/studio.h"
 #include "velo/light.h"
 
@@ -35,12 +36,6 @@ bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], doub
 }
 
 /* ---- built-in environments --------------------------------------------------------------- */
-
-static float ramp(float x, float from, float to) {
-  float t = (x - from) / (to - from);
-  t = t < 0 ? 0 : t > 1 ? 1 : t;
-  return t * t * (3 - 2 * t);
-}
 
 /* Fills an image of direction. */
 typedef struct StudioFill {
@@ -76,7 +71,7 @@ static void fill_sky(vlImage *image) {
       vlVec3 d = vl_octahedral_decode(((float)x + 0.5f) / (float)image->width,
                                       ((float)y + 0.5f) / (float)image->height);
       float height = 1 - (1 - (d.z > 0 ? d.z : 0)) * (1 - (d.z > 0 ? d.z : 0)),
-            above = ramp(d.z, -0.02f, 0.02f);
+            above = vl_smooth_step(d.z, -0.02f, 0.02f);
       for (int c = 0; c < 3; c++) {
         float sky = horizon[c] + (zenith[c] - horizon[c]) * height;
         row[3 * x + (uint32_t)c] = ground[c] + (sky - ground[c]) * above;

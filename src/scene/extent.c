@@ -2,17 +2,47 @@
 #include "scene/extent.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "math/double3.h"
 #include "math/transform.h"
 #include "schema/schema.h"
 #include "velo/shape.h"
 
+vlExtent vl_extent_of_sphere(const vlShapeDef *shape, size_t i) {
+  const double *c = shape->centers + 3 * i;
+  const double r = shape->radii[i];
+  return (vlExtent){{c[0] - r, c[1] - r, c[2] - r}, {c[0] + r, c[1] + r, c[2] + r}};
+}
+
+void vl_extent_corner(const vlExtent *box, int k, double corner[3]) {
+  for (int i = 0; i < 3; i++)
+    corner[i] = k >> i & 1 ? box->low[i] : box->high[i];
+}
+
+void vl_mesh_face(const vlShapeDef *shape, const vlMat4 *m, size_t face, double p[3][3],
+                  double n[3]) {
+  double a[3], b[3];
+  for (size_t k = 0; k < 3; k++) {
+    const float *v = shape->positions + 3 * (size_t)shape->indices[3 * face + k];
+    const double q[3] = {v[0], v[1], v[2]};
+    if (m)
+      vl_mat4_point(m, q, p[k]);
+    else
+      memcpy(p[k], q, sizeof q);
+  }
+  for (int i = 0; i < 3; i++) {
+    a[i] = p[1][i] - p[0][i];
+    b[i] = p[2][i] - p[0][i];
+  }
+  vl_cross3(a, b, n);
+}
+
 void vl_extent_visit_box(const vlMat4 *m, const vlExtent *box, vlPointVisit *visit,
                          void *user) {
   for (int k = 0; k < 8; k++) {
-    double corner[3] = {k & 1 ? box->low[0] : box->high[0], k & 2 ? box->low[1] : box->high[1],
-                        k & 4 ? box->low[2] : box->high[2]},
-           p[3];
+    double corner[3], p[3];
+    vl_extent_corner(box, k, corner);
     vl_mat4_point(m, corner, p);
     visit(user, p);
   }
@@ -22,9 +52,7 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
                         vlPointVisit *visit, void *user) {
   vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
   for (size_t i = 0; d->centers && i < d->faces; i += d->faces / most + 1) {
-    const double *c = d->centers + 3 * i;
-    const double r = d->radii[i];
-    const vlExtent box = {{c[0] - r, c[1] - r, c[2] - r}, {c[0] + r, c[1] + r, c[2] + r}};
+    const vlExtent box = vl_extent_of_sphere(d, i);
     vl_extent_visit_box(&m, &box, visit, user);
   }
   if (d->centers)

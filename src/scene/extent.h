@@ -21,6 +21,14 @@ void vl_extent_join(vlExtent *whole, const vlExtent *box);
 bool vl_extent_holds(const vlExtent *whole, const vlExtent *box);
 /* 0 of an empty box. */
 double vl_extent_diagonal(const vlExtent *box);
+/* The box of one of many spheres, in the shape's space. */
+vlExtent vl_extent_of_sphere(const vlShapeDef *shape, size_t i);
+/* Corner k of a box, of eight. */
+void vl_extent_corner(const vlExtent *box, int k, double corner[3]);
+/* The corners of a triangle under a map (null: in the shape's space), and its normal as their
+ * order gives it; its length is twice the area. */
+void vl_mesh_face(const vlShapeDef *shape, const vlMat4 *m, size_t face, double p[3][3],
+                  double n[3]);
 /* Calls `visit` with the eight corners of a box, transformed. */
 void vl_extent_visit_box(const vlMat4 *m, const vlExtent *box, vlPointVisit *visit, void *user);
 /* Calls `visit` with all points of a shape, or the corners of its box, in group space. */

@@ -105,17 +105,8 @@ typedef struct EmitterMeter {
 static double area_of(const vlShapeDef *d, const vlMat4 *m) {
   double sum = 0;
   for (size_t face = 0; face < d->faces; face++) {
-    double p[3][3], a[3], b[3], n[3];
-    for (int c = 0; c < 3; c++) {
-      const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)c];
-      const double q[3] = {(double)v[0], (double)v[1], (double)v[2]};
-      vl_mat4_point(m, q, p[c]);
-    }
-    for (int i = 0; i < 3; i++) {
-      a[i] = p[1][i] - p[0][i];
-      b[i] = p[2][i] - p[0][i];
-    }
-    vl_cross3(a, b, n);
+    double p[3][3], n[3];
+    vl_mesh_face(d, m, face, p, n);
     sum += 0.5 * vl_norm3(n);
   }
   return sum;

@@ -15,21 +15,6 @@ enum {
   BLOCK = 32           /* faces in a row that have a box */
 };
 
-void vl_mesh_corner(const vlShapeDef *d, size_t face, int k, double p[3]) {
-  const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)k];
-  for (int i = 0; i < 3; i++)
-    p[i] = v[i];
-}
-
-void vl_mesh_face_normal(const double p[3][3], double n[3]) {
-  double a[3], b[3];
-  for (int i = 0; i < 3; i++) {
-    a[i] = p[1][i] - p[0][i];
-    b[i] = p[2][i] - p[0][i];
-  }
-  vl_cross3(a, b, n);
-}
-
 /* ---- rays -------------------------------------------------------------------------------- */
 
 static bool meets_box(const double low[3], const double high[3], const double o[3],
@@ -54,9 +39,7 @@ static void meet_block(const vlProbeMesh *p, size_t first, const double o[3], co
   size_t last = first + BLOCK < p->def->faces ? first + BLOCK : p->def->faces;
   for (size_t face = first; face < last; face++) {
     double c[3][3], n[3], q[3], r[3];
-    for (int k = 0; k < 3; k++)
-      vl_mesh_corner(p->def, face, k, c[k]);
-    vl_mesh_face_normal((const double(*)[3])c, n);
+    vl_mesh_face(p->def, NULL, face, c, n);
     double along = vl_dot3(n, d);
     for (int i = 0; i < 3; i++)
       q[i] = o[i] - c[0][i];
@@ -151,12 +134,12 @@ static bool make_blocks(vlContext *context, vlProbe *s, const vlShapeDef *d, siz
   for (size_t first = 0; first < d->faces; first += BLOCK) {
     vlExtent *b = &blocks[first / BLOCK];
     *b = vl_extent_nothing;
-    for (size_t face = first; face < d->faces && face < first + BLOCK; face++)
-      for (int k = 0; k < 3; k++) {
-        double c[3];
-        vl_mesh_corner(d, face, k, c);
-        vl_extent_grow(b, c);
-      }
+    for (size_t face = first; face < d->faces && face < first + BLOCK; face++) {
+      double c[3][3], n[3];
+      vl_mesh_face(d, NULL, face, c, n);
+      for (int k = 0; k < 3; k++)
+        vl_extent_grow(b, c[k]);
+    }
     double margin = 0;
     for (int i = 0; i < 3; i++)
       margin += 1e-6 * (b->high[i] - b->low[i]);

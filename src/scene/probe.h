@@ -38,10 +38,6 @@ typedef struct vlProbe {
   vlSeen seen[VL_PROBE_RAYS];
 } vlProbe;
 
-/* Corner k of a face, and the normal of three corners as their order gives it; its length is
- * twice the area. Both in the space of the shape. */
-void vl_mesh_corner(const vlShapeDef *d, size_t face, int k, double p[3]);
-void vl_mesh_face_normal(const double p[3][3], double n[3]);
 /* Makes the meshes of a scene ready for rays. False: memory is exhausted, or there are none or
  * more than 8 million faces. *s is zero before, and freed by vl_probe_free in either case. */
 bool vl_probe_make(const vlScene *scene, vlProbe *s);

@@ -42,19 +42,11 @@ static vlExtent body_of(const double p[3][3], const vlExtent *box) {
 static void visit_faces(const vlShapeDef *shape, vlThingVisit *visit, void *user) {
   const vlMat4 m = vl_mat4_load(shape->group_from_shape);
   for (size_t i = 0; i < shape->faces; i++) {
-    double p[3][3], b[3], c[3], n[3];
+    double p[3][3], n[3];
     vlThing thing = {.box = vl_extent_nothing};
-    for (size_t k = 0; k < 3; k++) {
-      const float *v = shape->positions + 3 * (size_t)shape->indices[3 * i + k];
-      const double q[3] = {v[0], v[1], v[2]};
-      vl_mat4_point(&m, q, p[k]);
+    vl_mesh_face(shape, &m, i, p, n);
+    for (int k = 0; k < 3; k++)
       vl_extent_grow(&thing.box, p[k]);
-    }
-    for (int k = 0; k < 3; k++) {
-      b[k] = p[1][k] - p[0][k];
-      c[k] = p[2][k] - p[0][k];
-    }
-    vl_cross3(b, c, n);
     thing.body = body_of((const double(*)[3])p, &thing.box);
     thing.surface = 0.5 * vl_norm3(n);
     visit(user, &thing);
@@ -64,9 +56,7 @@ static void visit_faces(const vlShapeDef *shape, vlThingVisit *visit, void *user
 static void visit_spheres(const vlShapeDef *shape, vlThingVisit *visit, void *user) {
   const vlMat4 m = vl_mat4_load(shape->group_from_shape);
   for (size_t i = 0; i < shape->faces; i++) {
-    const double *c = shape->centers + 3 * i;
-    const double r = shape->radii[i];
-    const vlExtent own = {{c[0] - r, c[1] - r, c[2] - r}, {c[0] + r, c[1] + r, c[2] + r}};
+    const vlExtent own = vl_extent_of_sphere(shape, i);
     vlExtent box = vl_extent_nothing;
     vl_extent_visit_box(&m, &own, vl_extent_grow, &box);
     visit_box(&box, visit, user);

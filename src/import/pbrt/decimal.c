@@ -7,12 +7,9 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* ---- doubles and pairs of them ----------------------------------------------------------- */
+#include "math/elementary.h"
 
-static const double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                       1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                       1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-enum { EXACT_POWER = 22 };
+/* ---- doubles and pairs of them ----------------------------------------------------------- */
 
 /* The rounding error of a * b (Dekker 1971). */
 static double product_error(double a, double b, double product) {
@@ -26,13 +23,13 @@ static double product_error(double a, double b, double product) {
  * certain, that is, another double may be nearer. */
 static bool by_pair(uint64_t mantissa, int exponent, double *value) {
   int size = exponent < 0 ? -exponent : exponent;
-  if (size > 2 * EXACT_POWER || mantissa >= UINT64_C(1) << 62)
+  if (size > 2 * VL_EXACT_POWER || mantissa >= UINT64_C(1) << 62)
     return false;
   double high = (double)mantissa, low = (double)((int64_t)mantissa - (int64_t)high);
   /* power + rest is exact */
-  double power = powers_of_ten[size > EXACT_POWER ? EXACT_POWER : size], rest = 0;
-  if (size > EXACT_POWER) {
-    double a = power, b = powers_of_ten[size - EXACT_POWER];
+  double power = vl_powers_of_ten[size > VL_EXACT_POWER ? VL_EXACT_POWER : size], rest = 0;
+  if (size > VL_EXACT_POWER) {
+    double a = power, b = vl_powers_of_ten[size - VL_EXACT_POWER];
     power = a * b;
     rest = product_error(a, b, power);
   }
@@ -155,9 +152,10 @@ static double nearest(uint64_t mantissa, int exponent) {
     return 0.0;
   if (exponent > 400)
     return HUGE_VAL;
-  if (mantissa <= UINT64_C(1) << 53 && exponent >= -EXACT_POWER && exponent <= EXACT_POWER) {
+  if (mantissa <= UINT64_C(1) << 53 && exponent >= -VL_EXACT_POWER &&
+      exponent <= VL_EXACT_POWER) {
     v = (double)mantissa;
-    return exponent < 0 ? v / powers_of_ten[-exponent] : v * powers_of_ten[exponent];
+    return exponent < 0 ? v / vl_powers_of_ten[-exponent] : v * vl_powers_of_ten[exponent];
   }
   if (by_pair(mantissa, exponent, &v))
     return v;

@@ -29,11 +29,8 @@ double vl_seconds(void) {
 static void nearest_file(const char *path, char *result, size_t size) {
   result[0] = 0;
   char folder[4096];
-  const char *slash = strrchr(path, '/');
-  const char *name = slash ? slash + 1 : path;
-  int n = slash ? snprintf(folder, sizeof folder, "%.*s/", (int)(slash - path), path)
-                : snprintf(folder, sizeof folder, ".");
-  if (n < 0 || (size_t)n >= sizeof folder)
+  const char *name = path + vl_folder_length(path);
+  if (!vl_folder_of(path, folder, sizeof folder))
     return;
   DIR *directory = opendir(folder);
   if (!directory)

@@ -2,6 +2,7 @@
  * realpath tells a missing folder outside from one that is there
  * ("outside/folder/../../inside/file"). */
 #include "base/sandbox.h"
+#include "base/file.h"
 #include "base/text.h"
 
 #include <limits.h>
@@ -177,10 +178,7 @@ void vl_sandbox_pass(vlSandbox *sandbox, const char *path) {
   char folder[PATH_MAX], real[PATH_MAX];
   if (!sandbox->count)
     return;
-  const char *slash = strrchr(path, '/');
-  int n = slash ? snprintf(folder, sizeof folder, "%.*s/", (int)(slash - path), path)
-                : snprintf(folder, sizeof folder, ".");
-  if (n < 0 || (size_t)n >= sizeof folder || !realpath(folder, real))
+  if (!vl_folder_of(path, folder, sizeof folder) || !realpath(folder, real))
     return;
   pthread_mutex_lock(&sandbox->mutex);
   bool known = false;

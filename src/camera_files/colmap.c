@@ -273,8 +273,7 @@ static bool find_files(const char *path, bool to_read, char cameras[4096], char 
   } else {
     const char *suffix = vl_ends_with(path, ".bin") ? "bin" : "txt";
     bool is_images = vl_ends_with(path, "images.txt") || vl_ends_with(path, "images.bin");
-    const char *slash = strrchr(path, '/');
-    int folder_length = slash ? (int)(slash - path) + 1 : 0;
+    int folder_length = (int)vl_folder_length(path);
     a = is_images ? snprintf(cameras, 4096, "%.*scameras.%s", folder_length, path, suffix)
                   : snprintf(cameras, 4096, "%s", path);
     b = is_images ? snprintf(images, 4096, "%s", path)

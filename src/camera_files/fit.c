@@ -60,14 +60,6 @@ vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool pres
       file->dialect, field);
 }
 
-/* m: 4 x 4, row-major. */
-static bool is_identity(const double m[16]) {
-  for (int i = 0; i < 16; i++)
-    if (m[i] != (i % 5 == 0 ? 1.0 : 0.0))
-      return false;
-  return true;
-}
-
 /* Returns whether the matrix consists of a rotation and a translation only: the products of its
  * columns differ from those of a rotation's by less than 1e-9, what numbers of ten digits
  * give. */
@@ -118,7 +110,7 @@ static vlResult hold(const vlCameraFile *file, const vlCameraDef *d, uint32_t ho
     const char *field;
     bool present;
   } fields[] = {
-      {"pose", !posed && !is_identity(camera->world_from_camera)},
+      {"pose", !posed && !vl_mat4_is_identity(camera->world_from_camera)},
       {"skew", !(holds & VL_HOLDS_SKEW) && camera->skew != 0.0},
       {"lens_radius", !(holds & VL_HOLDS_LENS) && camera->lens_radius != 0.0},
       {"focus_distance", !(holds & VL_HOLDS_LENS) && !isinf(camera->focus_distance)},

@@ -1,5 +1,6 @@
 /* import/labels.c: see labels.h. */
 #include "import/labels.h"
+#include "base/file.h"
 #include "base/text.h"
 
 #include <stdio.h>
@@ -40,8 +41,7 @@ bool vl_label_make_unique(vlScene *scene, vlNameTable *table, const char *name, 
 }
 
 void vl_label_of_file(const char *path, char name[VL_LABEL_SIZE]) {
-  const char *slash = strrchr(path, '/'), *start = slash ? slash + 1 : path,
-             *dot = strrchr(start, '.');
+  const char *start = path + vl_folder_length(path), *dot = strrchr(start, '.');
   if (dot && dot > start && vl_text_is(dot, ".gz"))
     while (dot > start && *--dot != '.') {
     }

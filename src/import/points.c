@@ -17,11 +17,6 @@ enum {
 /* A disc is a hexagon; a ball an octahedron with the normals of a sphere. */
 enum { CORNERS = 6, DISC_FACES = 4, BALL_FACES = 8 };
 
-static int ascending(const void *a, const void *b) {
-  const double *x = a, *y = b;
-  return (*x > *y) - (*x < *y);
-}
-
 static double distance2(const float *a, const float *b) {
   double sum = 0;
   for (int i = 0; i < 3; i++)
@@ -53,7 +48,7 @@ static double spacing(const vlMesh *m) {
   }
   if (n == 0)
     return 0;
-  qsort(nearest, n, sizeof *nearest, ascending);
+  qsort(nearest, n, sizeof *nearest, vl_by_value);
   return nearest[n / 2];
 }
 

@@ -97,6 +97,13 @@ bool vl_mat4_is_finite(vlMat4 a) {
   return true;
 }
 
+bool vl_mat4_is_identity(const double m[16]) {
+  for (int i = 0; i < 16; i++)
+    if (m[i] != (i % 5 == 0 ? 1.0 : 0.0))
+      return false;
+  return true;
+}
+
 void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]) {
   const double *m = a->m;
   double r[4];
@@ -125,8 +132,25 @@ double vl_mat4_scale_of(const vlMat4 *a) {
   return vl_precise_cbrt(fabs(vl_mat4_determinant3(*a)));
 }
 
-void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3],
-                           float result[3]) {
+bool vl_mat4_points(const vlMat4 *a, size_t count, const float *from, float *to) {
+  bool finite = true;
+  for (size_t i = 0; i < 3 * count; i += 3) {
+    double p[3] = {from[i], from[i + 1], from[i + 2]}, q[3];
+    vl_mat4_point(a, p, q);
+    for (size_t k = 0; k < 3; k++) {
+      to[i + k] = (float)q[k];
+      finite = finite && isfinite(to[i + k]);
+    }
+  }
+  return finite;
+}
+
+/* The normal of a mesh's vertex. Its length is a weight where normals are interpolated, as in
+ * pbrt: a mesh looks the same whether it or its instance is stretched. scale: the transform's
+ * mean factor on lengths, which keeps unit normals near length 1. A length of 1 but for
+ * rounding becomes 1, and so do lengths whose square a float cannot hold. */
+static void vertex_normal(const vlMat4 *inverse, double scale, const float n[3],
+                          float result[3]) {
   const double rounding = 1e-4, most = 1e12;
   double given[3] = {(double)n[0], (double)n[1], (double)n[2]}, q[3];
   vl_mat4_normal(inverse, given, q);
@@ -136,6 +160,16 @@ void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3]
   double factor = length > 0 ? weight / length : 0;
   for (int k = 0; k < 3; k++)
     result[k] = (float)(q[k] * factor);
+}
+
+void vl_mat4_vertex_normals(const vlMat4 *a, const vlMat4 *inverse, bool flip, size_t count,
+                            const float *from, float *to) {
+  double scale = vl_mat4_scale_of(a);
+  for (size_t i = 0; i < 3 * count; i += 3) {
+    vertex_normal(inverse, scale, from + i, to + i);
+    for (size_t k = 0; flip && k < 3; k++)
+      to[i + k] = -to[i + k];
+  }
 }
 
 void vl_mat3_multiply(const double a[9], const double b[9], double r[9]) {

@@ -19,18 +19,18 @@ vlMat4 vl_mat4_scale(double x, double y, double z);
 vlMat4 vl_mat4_rotate(double radians, double x, double y, double z);
 double vl_mat4_determinant3(vlMat4 a); /* of the upper left 3x3 */
 bool vl_mat4_is_finite(vlMat4 a);
+bool vl_mat4_is_identity(const double m[16]);
 /* divides by w if it is not 1 */
 void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]);
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]);
 /* Transforms a normal by the transpose of the inverse matrix, which the caller passes. The
  * result is not normalised. */
 void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]);
-/* The same for the normal of a mesh's vertex, whose length is a weight where normals are
- * interpolated, as in pbrt: a mesh looks the same whether it or its instance is stretched.
- * scale: vl_mat4_scale_of the transform, which keeps unit normals near length 1. A length of 1
- * but for rounding becomes 1, and so do lengths whose square a float cannot hold. */
-void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3],
-                           float result[3]);
+/* All points of a mesh, and all its normals. False: a point leaves the range of floats. flip:
+ * normals turn around. */
+bool vl_mat4_points(const vlMat4 *a, size_t count, const float *from, float *to);
+void vl_mat4_vertex_normals(const vlMat4 *a, const vlMat4 *inverse, bool flip, size_t count,
+                            const float *from, float *to);
 /* The mean factor of the transform on lengths: the cube root of its determinant's absolute
  * value. */
 double vl_mat4_scale_of(const vlMat4 *a);

@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "camera/rays.h"
+#include "math/double3.h"
 #include "render/own_view.h"
 #include "trace/ground_truth/ground_truth.h"
 #include "velo/render.h"
@@ -71,11 +72,6 @@ void vl_camera_view_move(vlCameraView *view, vlAffine at) {
   view->ahead = (vlVec3){(float)(m[2] * s), (float)(m[5] * s), (float)(m[8] * s)};
 }
 
-static int compare(const void *a, const void *b) {
-  float x = *(const float *)a, y = *(const float *)b;
-  return (x > y) - (x < y);
-}
-
 vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlTraceDef *trace,
                          float *radius, vlError *error) {
   enum { SIDE = 16 };
@@ -104,16 +100,16 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
     unsigned state = vl_accel_enter();
     vl_ground_truth_kernels(trace->isa)->trace(world, &def, scratch, batch);
     vl_accel_leave(state);
-    float t[SIDE * SIDE];
+    double t[SIDE * SIDE];
     uint32_t count = 0;
     for (uint32_t i = 0; i < batch->n; i++)
       if (batch->object[i] && isfinite(batch->distance[i]))
-        t[count++] = (float)batch->distance[i];
-    qsort(t, count, sizeof *t, compare);
+        t[count++] = batch->distance[i];
+    qsort(t, count, sizeof *t, vl_by_value);
     vlCameraCompiled c;
     vl_camera_compile(camera, &c);
     if (count)
-      *radius = 2.0f * (c.pixel_width + c.pixel_spread * t[count / 2]);
+      *radius = 2.0f * (c.pixel_width + c.pixel_spread * (float)t[count / 2]);
     if (!(*radius < VL_INFINITY))
       *radius = 0;
   }

@@ -15,6 +15,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/unset.h"
+#include "math/double3.h"
 #include "render/block.h"
 #include "render/support.h"
 #include "velo/camera.h"
@@ -192,11 +193,6 @@ static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *t
 
 /* ---- errors ------------------------------------------------------------------------------ */
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static double value_at(const Race *race, const vlImage *image, size_t pixel, uint32_t channel) {
   uint32_t width = race->film.width;
   return (double)vl_image_get(image, (uint32_t)(pixel % width), (uint32_t)(pixel / width),
@@ -208,7 +204,7 @@ static double trimmed_mean(double *values, size_t n, size_t low, size_t high) {
   double sum = 0;
   if (low + high >= n)
     return 0;
-  qsort(values, n, sizeof *values, ascending);
+  qsort(values, n, sizeof *values, vl_by_value);
   for (size_t i = low; i < n - high; i++)
     sum += values[i];
   return sum / (double)(n - low - high);
@@ -238,7 +234,7 @@ static double median_around(const Race *race, uint32_t count, size_t i, uint32_t
   uint32_t x = (uint32_t)(i / 3 % race->film.width), y = (uint32_t)(i / 3 / race->film.width);
   for (uint32_t t = 0; t < count; t++)
     means[t] = mean_around(race, t, x, y, (uint32_t)(i % 3), around);
-  qsort(means, count, sizeof *means, ascending);
+  qsort(means, count, sizeof *means, vl_by_value);
   return 0.5 * (means[(count - 1) / 2] + means[count / 2]);
 }
 

@@ -20,23 +20,15 @@ void vl_shape_arrays(const vlShapeDef *d, const void *arrays[VL_SHAPE_ARRAYS]) {
 }
 
 static void forget(vlShapeDef *d) {
-  d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close =
-      d->tangent_signs = NULL;
-  d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = d->widths = NULL;
-  d->indices = NULL;
+  vl_shape_drop_attributes(d);
+  d->positions = d->normals = d->widths = d->radii = NULL;
   d->centers = NULL;
-  d->radii = NULL;
 }
 
 void vl_scene_drop_meshes(vlScene *scene) {
   size_t n = 0, kept = 0;
   const void *arrays[VL_SHAPE_ARRAYS];
-  size_t room = 1;
-  for (size_t i = 0; i < scene->shapes.count; i++) {
-    vl_shape_arrays(&scene->shapes.items[i], arrays);
-    for (int k = 0; k < VL_SHAPE_ARRAYS; k++)
-      room += arrays[k] != NULL;
-  }
+  size_t room = VL_SHAPE_ARRAYS * scene->shapes.count + 1;
   const void **all = vl_alloc_array(scene->context, room, sizeof *all);
   if (!all)
     return;

@@ -177,6 +177,8 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
 /* The arrays of a shape: those that are null, too. */
 enum { VL_SHAPE_ARRAYS = 15 };
 void vl_shape_arrays(const vlShapeDef *def, const void *arrays[VL_SHAPE_ARRAYS]);
+/* Sets all arrays of a mesh to null but its positions and normals. */
+void vl_shape_drop_attributes(vlShapeDef *def);
 /* Frees what the changes of an object have allocated (edit.c): the first `end` entries of
  * scene->edits, as far as they are those of this id in the family. */
 void vl_scene_free_edits(vlScene *scene, vlSceneFamily family, uint32_t id, size_t end);

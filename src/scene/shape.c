@@ -223,6 +223,12 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
   return id;
 }
 
+void vl_shape_drop_attributes(vlShapeDef *d) {
+  d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
+  d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
+  d->indices = NULL;
+}
+
 static void drop_unused(vlShapeDef *d) {
   if (d->kind != VL_SHAPE_SPHERE) {
     d->centers = NULL;
@@ -235,19 +241,15 @@ static void drop_unused(vlShapeDef *d) {
   if (d->kind == VL_SHAPE_CURVES) {
     if (d->curve != VL_CURVE_RIBBON)
       d->normals = NULL;
-    d->tangents = d->uvs = d->positions_close = d->normals_close = NULL;
-    d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
-    d->indices = NULL;
+    vl_shape_drop_attributes(d);
     return;
   }
   d->widths = NULL;
   d->vertices = 0;
   if (!d->centers && !d->radii)
     d->faces = 0;
-  d->positions = d->normals = d->tangents = d->uvs = d->positions_close = d->normals_close =
-      NULL;
-  d->tangent_signs = d->colors = d->more_uvs[0] = d->more_uvs[1] = d->more_uvs[2] = NULL;
-  d->indices = NULL;
+  d->positions = d->normals = NULL;
+  vl_shape_drop_attributes(d);
 }
 
 vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {

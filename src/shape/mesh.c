@@ -8,43 +8,6 @@
 #include "velo/shape_kinds.h"
 #include "world/moving.h"
 
-static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
-  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line,
-                    def->source.column, "%s", what);
-}
-
-static bool is_identity(const vlMat4 *m) {
-  vlMat4 e = vl_mat4_identity();
-  return memcmp(e.m, m->m, sizeof e.m) == 0;
-}
-
-/* Positions at one end of a motion, transformed to group space. False: one leaves the range of
- * floats. */
-static bool move_positions(const vlShapeDef *def, const vlMat4 *m, const float *from,
-                           float *to) {
-  bool fine = true;
-  for (size_t i = 0; i < def->vertices; i++) {
-    double p[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]}, q[3];
-    vl_mat4_point(m, p, q);
-    for (int k = 0; k < 3; k++) {
-      to[3 * i + k] = (float)q[k];
-      fine = fine && isfinite(to[3 * i + k]);
-    }
-  }
-  return fine;
-}
-
-/* Vertex normals at one end of a motion, transformed to group space. */
-static void move_normals(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse,
-                         const float *from, float *to) {
-  double scale = vl_mat4_scale_of(m);
-  for (size_t i = 0; i < 3 * (size_t)def->vertices; i += 3) {
-    vl_mat4_vertex_normal(inverse, scale, from + i, to + i);
-    for (size_t k = 0; def->reverse_orientation && k < 3; k++)
-      to[i + k] = -to[i + k];
-  }
-}
-
 /* Fills the sets of rows between the two ends of a motion by interpolation. On entry the ends
  * are in the first and the last of `steps` sets. */
 static void spread(const vlWorld *world, const vlShapeDef *def, float *rows, uint32_t steps) {
@@ -79,15 +42,16 @@ static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const v
     return vl_fail_memory(error);
   memset(positions + s->steps * n, 0, 4 * sizeof(float));
   memcpy(positions, s->positions, n * sizeof(float));
-  if (!move_positions(def, m, def->positions_close, positions + steps * n))
-    return fail_shape(def, error,
-                      "a vertex leaves the range of floats under the shape's transform");
+  if (!vl_mat4_points(m, def->vertices, def->positions_close, positions + steps * n))
+    return vl_fail_shape(def, error,
+                         "a vertex leaves the range of floats under the shape's transform");
   spread(world, def, positions, s->steps);
   s->positions = positions;
   if (!normals)
     return VL_OK;
   memcpy(normals, s->normals, n * sizeof(float));
-  move_normals(def, m, inverse, def->normals_close, normals + steps * n);
+  vl_mat4_vertex_normals(m, inverse, def->reverse_orientation, def->vertices,
+                         def->normals_close, normals + steps * n);
   spread(world, def, normals, s->steps);
   s->normals = normals;
   return VL_OK;
@@ -96,7 +60,7 @@ static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const v
 vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
                          const vlMat4 *inverse, vlWorldShape *s, vlError *error) {
   size_t n = def->vertices, corners = def->kind == VL_SHAPE_BILINEAR ? 4 : 3;
-  bool same = is_identity(m);
+  bool same = vl_mat4_is_identity(m->m);
   s->vertices = def->vertices;
   s->faces = def->faces;
   s->positions = vl_world_block(world, 3 * n + 4, sizeof(float));
@@ -128,11 +92,11 @@ vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
     s->tangent_signs[i] = -s->tangent_signs[i];
   if (same)
     memcpy(s->positions, def->positions, 3 * n * sizeof(float));
-  if (!same && !move_positions(def, m, def->positions, s->positions))
-    return fail_shape(def, error,
-                      "a vertex leaves the range of floats under the shape's transform");
+  if (!same && !vl_mat4_points(m, n, def->positions, s->positions))
+    return vl_fail_shape(def, error,
+                         "a vertex leaves the range of floats under the shape's transform");
   if (def->normals)
-    move_normals(def, m, inverse, def->normals, s->normals);
+    vl_mat4_vertex_normals(m, inverse, def->reverse_orientation, n, def->normals, s->normals);
   for (size_t i = 0; def->tangents && i < n; i++) {
     double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]},
            q[3];

@@ -40,6 +40,9 @@ static inline void vl_normal_derivative(const double n[3], double length, double
     d[i] = length > 0 ? (d[i] - along * n[i]) / length : 0;
 }
 
+/* Reports what is wrong with a shape at its place in the file. */
+vlResult vl_fail_shape(const vlShapeDef *def, vlError *error, const char *what);
+
 /* Relative error of what is computed in double precision from the numbers of a shape: thousands
  * of roundings, so that there is room for maps with a condition number of as much. */
 #define VL_SHAPE_ERROR 0x1p-40

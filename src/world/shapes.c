@@ -24,7 +24,7 @@ static void store_affine_d(const vlMat4 *m, double r[12]) {
     r[i] = m->m[i];
 }
 
-static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
+vlResult vl_fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
   return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line,
                     def->source.column, "%s", what);
 }
@@ -50,7 +50,7 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
   if (presence < 0)
     return VL_OK;
   if (def->inside.index != def->outside.index)
-    return fail_shape(def, error, "a mix with an interface cannot divide two media");
+    return vl_fail_shape(def, error, "a mix with an interface cannot divide two media");
   vlResult r = constant_node(world, scene, 0.0f, &none, error);
   if (r == VL_OK && whole < 0)
     r = constant_node(world, scene, 1.0f, &whole, error);
@@ -132,7 +132,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   vlWorldShape *s = &world->shapes.items[index];
   vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
   if (!vl_mat4_inverse(m, &inverse))
-    return fail_shape(def, error, "the shape's transform is singular");
+    return vl_fail_shape(def, error, "the shape's transform is singular");
   bool mirrored = vl_mat4_determinant3(m) < 0;
   memset(s, 0, sizeof *s);
   s->kind = def->kind;

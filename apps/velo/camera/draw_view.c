@@ -14,11 +14,6 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 /* ---- what the camera sees ---------------------------------------------------------------- */
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Collects the points that the pixels show, and the quantiles of their depths. flat: depth is
  * along the axis; else along the ray. */
 static vlResult collect(const vlImage *image, bool flat, Seen *seen) {
@@ -44,7 +39,7 @@ static vlResult collect(const vlImage *image, bool flat, Seen *seen) {
     return VL_OK;
   double *sorted = seen->depths + seen->count;
   memcpy(sorted, seen->depths, seen->count * sizeof *sorted);
-  qsort(sorted, seen->count, sizeof *sorted, ascending);
+  qsort(sorted, seen->count, sizeof *sorted, by_value);
   seen->near = sorted[seen->count / 20];
   seen->middle = sorted[seen->count / 2];
   seen->far = sorted[(uint32_t)(0.9 * seen->count)];

@@ -6,6 +6,12 @@
 #include <stdbool.h>
 #include <string.h>
 
+/* For qsort: numbers, the smallest first. */
+static inline int by_value(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
 static inline double vector_dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -8,6 +8,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/vector.h"
 #include "image/image.h"
 #include "velo/channels.h"
 #include "velo/edit.h"
@@ -88,11 +89,6 @@ typedef struct ModelLight {
   size_t count, all_count;
 } ModelLight;
 
-static int ascending(const void *a, const void *b) {
-  const double *x = a, *y = b;
-  return (*x > *y) - (*x < *y);
-}
-
 /* Radiance per albedo of a model's pixels. SHEEN counts as albedo, too. A pixel counts at most
  * as four times the median: lamps and highlights. 0: there are no pixels. */
 static double mean_light(ModelLight *light) {
@@ -104,7 +100,7 @@ static double mean_light(ModelLight *light) {
     light->albedo[i] += SHEEN;
     light->ratio[i] = light->radiance[i] / light->albedo[i];
   }
-  qsort(light->ratio, n, sizeof *light->ratio, ascending);
+  qsort(light->ratio, n, sizeof *light->ratio, by_value);
   double most = 4 * light->ratio[n / 2];
   for (size_t i = 0; i < n; i++) {
     double limit = most > 0 ? most * light->albedo[i] : INFINITY;
@@ -116,7 +112,7 @@ static double mean_light(ModelLight *light) {
 
 /* The luminance that a tenth of the pixels exceeds; sorts them. */
 static double bright(double *pixels, size_t count) {
-  qsort(pixels, count, sizeof *pixels, ascending);
+  qsort(pixels, count, sizeof *pixels, by_value);
   return pixels[count * 9 / 10];
 }
 

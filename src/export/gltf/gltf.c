@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "export/export.h"
+#include "math/transform.h"
 #include "schema/schema.h"
 #include "velo/shape.h"
 
@@ -243,14 +244,10 @@ static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
 /* ---- nodes ------------------------------------------------------------------------------- */
 
 static json_t *node_of(const double m[16]) {
-  static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   json_t *node = json_object(), *matrix = json_array();
-  bool plain = true;
-  for (int i = 0; i < 16; i++)
-    plain = plain && m[i] == identity[i];
   for (int i = 0; i < 16; i++)
     json_array_append_new(matrix, json_real(m[4 * (i % 4) + i / 4]));
-  if (!plain)
+  if (!vl_mat4_is_identity(m))
     json_object_set(node, "matrix", matrix);
   json_decref(matrix);
   return node;

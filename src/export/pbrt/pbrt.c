@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "color/color.h"
 #include "export/pbrt/pbrt.h"
+#include "math/transform.h"
 #include "velo/camera_file.h"
 #include "velo/filter_kinds.h"
 #include "velo/light.h"
@@ -18,11 +19,7 @@
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 
 void vl_pbrt_matrix(vlExport *x, const double m[16]) {
-  static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  bool plain = true;
-  for (int i = 0; i < 16; i++)
-    plain = plain && m[i] == identity[i];
-  if (plain)
+  if (vl_mat4_is_identity(m))
     return;
   PUT("  ConcatTransform [");
   for (int i = 0; i < 16; i++)

@@ -3,6 +3,7 @@
  * get those of their parents: Hall/Chair. */
 #include <stdio.h>
 
+#include "base/file.h"
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "import/labels.h"
@@ -178,8 +179,7 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapeIndices *at, vlLabel *label
     n = (size_t)print_node(g, at->node, location, sizeof location);
     location[n++] = '.';
   }
-  const char *last = strrchr(path, '/');
-  if (mesh && !vl_text_is(last ? last + 1 : path, mesh))
+  if (mesh && !vl_text_is(path + vl_folder_length(path), mesh))
     vl_label_append(path, mesh);
   vl_label_append(path, material);
   snprintf(location + n, sizeof location - n, "meshes[%zu].primitives[%zu]", at->mesh,

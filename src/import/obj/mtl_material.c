@@ -5,6 +5,7 @@
 #include "import/far.h"
 #include "import/obj/obj.h"
 
+#include "base/file.h"
 #include "base/text.h"
 #include "math/elementary.h"
 #include "velo/light.h"
@@ -68,7 +69,7 @@ static bool number(vlObj *obj, const vlMtlMap *map, float factor, vlFloatInput *
  * bump maps. */
 static bool is_normal_map(const char *path) {
   static const char *const signs[] = {"normal", "_nrm", "_nor.", "_n.", "_ddn", "-n.", "_norm"};
-  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+  const char *name = path + vl_folder_length(path);
   for (size_t i = 0; i < VL_LENGTH(signs); i++)
     if (strcasestr(name, signs[i]))
       return true;

@@ -8,30 +8,6 @@
 
 enum { MAX_FACES = 256 };
 
-/* Transforms points as the world's builder does (world/shapes.c). False when a result
- * exceeds the range of floats. */
-static bool move_points(const vlMat4 *m, const float *from, size_t count, float *to) {
-  for (size_t i = 0; i < count; i++) {
-    double p[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]}, q[3];
-    vl_mat4_point(m, p, q);
-    for (int k = 0; k < 3; k++)
-      to[3 * i + (size_t)k] = (float)q[k];
-  }
-  return vl_import_all_finite(to, 3 * count);
-}
-
-/* Transforms normals. A transform that mirrors moves the mirroring to reverse_orientation,
- * which also flips normals. */
-static void move_normals(const vlMat4 *m, const vlMat4 *inverse, bool mirrored,
-                         const float *from, size_t count, float *to) {
-  double scale = vl_mat4_scale_of(m);
-  for (size_t i = 0; i < 3 * count; i += 3) {
-    vl_mat4_vertex_normal(inverse, scale, from + i, to + i);
-    for (size_t k = 0; mirrored && k < 3; k++)
-      to[i + k] = -to[i + k];
-  }
-}
-
 /* Whether the mesh is small and sound. */
 static bool is_small(const vlShapeDef *def, vlMat4 m) {
   const size_t n = def->vertices;
@@ -64,14 +40,16 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlSh
       (def.uvs && !VL_RESERVE(context, &run->uvs, 2 * n)) ||
       !VL_RESERVE(context, &run->indices, 3 * (size_t)def.faces))
     return vl_import_fail_memory(import);
-  if (!move_points(&m, def.positions, n, run->positions.items + run->positions.count)) {
+  if (!vl_mat4_points(&m, n, def.positions, run->positions.items + run->positions.count)) {
     run->open = run->faces > 0;
     return true; /* kept as its own shape; the world reports the error */
   }
   run->positions.count += 3 * n;
   if (def.normals) {
-    move_normals(&m, &inverse, mirrored, def.normals, n,
-                 run->normals.items + run->normals.count);
+    /* a transform that mirrors moves the mirroring to reverse_orientation, which also flips
+     * normals */
+    vl_mat4_vertex_normals(&m, &inverse, mirrored, n, def.normals,
+                           run->normals.items + run->normals.count);
     run->normals.count += 3 * n;
   }
   if (def.uvs) {

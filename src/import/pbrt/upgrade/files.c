@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "base/context.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
@@ -111,7 +112,7 @@ static bool new_name(vlUpgrade *u, const char *name, const char *path, char *res
   const char *from =
       name[0] == '/' || strncmp(name, "../", 3) == 0 || strstr(name, "/../") ? NULL : name;
   if (!from)
-    from = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    from = path + vl_folder_length(path);
   while (strncmp(from, "./", 2) == 0)
     from += 2;
   size_t length = strlen(from);

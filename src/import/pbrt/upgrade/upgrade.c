@@ -163,12 +163,8 @@ static bool write_files(vlUpgrade *u, const char *text) {
 
 static bool folder_of(const char *path, char result[4096]) {
   char folder[4096], real[PATH_MAX];
-  const char *slash = strrchr(path, '/');
-  int n = snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 1,
-                   slash ? path : ".");
-  if (slash == path)
-    n = snprintf(folder, sizeof folder, "/");
-  if (n < 0 || (size_t)n >= sizeof folder || !realpath(folder, real) || strlen(real) >= 4096)
+  if (!vl_folder_of(path, folder, sizeof folder) || !realpath(folder, real) ||
+      strlen(real) >= 4096)
     return false;
   memcpy(result, real, strlen(real) + 1);
   return true;

@@ -26,13 +26,7 @@ static bool look_at(const double v[9], vlMat4 *m) {
   for (int i = 0; i < 3; i++)
     x[i] /= length;
   vl_cross3(z, x, y);
-  *m = vl_mat4_identity();
-  for (int i = 0; i < 3; i++) {
-    m->m[4 * i] = x[i];
-    m->m[4 * i + 1] = y[i];
-    m->m[4 * i + 2] = z[i];
-    m->m[4 * i + 3] = v[i];
-  }
+  *m = vl_mat4_axes(x, y, z, v);
   return vl_mat4_is_finite(*m);
 }
 

@@ -150,16 +150,10 @@ static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
     return vl_camera_wrong_element(scene->file, op,
                                    "origin, target and up of <%s> give no direction",
                                    vl_short_text(tag_of(op)).text);
-  *m = vl_mat4_identity();
   for (int i = 0; i < 3; i++)
     x[i] /= across;
   vl_cross3(z, x, y);
-  for (int i = 0; i < 3; i++) {
-    m->m[4 * i] = x[i];
-    m->m[4 * i + 1] = y[i];
-    m->m[4 * i + 2] = z[i];
-    m->m[4 * i + 3] = o[i];
-  }
+  *m = vl_mat4_axes(x, y, z, o);
   return VL_OK;
 }
 

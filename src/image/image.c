@@ -1,6 +1,7 @@
 /* image/image.c: creation of images, their attributes, and access to their values. */
 #include "image/image.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -405,4 +406,19 @@ vlResult vl_image_find_attribute(const vlImage *image, const char *name,
     return VL_ERROR_MISSING;
   attribute_out(kept, attribute);
   return VL_OK;
+}
+
+void vl_map_add_at(const float *pixels, uint32_t width, uint32_t height, uint32_t channels,
+                   double u, double v, double sum[3]) {
+  const double fu = floor(u), fv = floor(v);
+  const int64_t w = width, h = height;
+  for (int c = 0; c < 4; c++) {
+    int64_t i = (int64_t)fu + (c & 1), j = (int64_t)fv + (c >> 1);
+    i = i < 0 ? i + w : i >= w ? i - w : i;
+    j = j < 0 ? 0 : j >= h ? h - 1 : j;
+    const double weight = (c & 1 ? u - fu : 1 - (u - fu)) * (c >> 1 ? v - fv : 1 - (v - fv));
+    const float *p = pixels + (size_t)(j * w + i) * channels;
+    for (uint32_t n = 0; n < 3; n++)
+      sum[n] += weight * p[channels < 3 ? 0 : n];
+  }
 }

@@ -53,6 +53,11 @@ void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *cha
 vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32_t count,
                            float **result);
 
+/* Adds the colour of a map over longitude and latitude at (u, v), in pixels, interpolated
+ * between four of them. channels: of each pixel; of fewer than three the first is grey. */
+void vl_map_add_at(const float *pixels, uint32_t width, uint32_t height, uint32_t channels,
+                   double u, double v, double sum[3]);
+
 /* Like vl_image_read, for a file that a scene names: pipes are rejected, and the context's
  * sandbox and pixel limit apply. task: of the load or the build that reads it, which stops with
  * CANCELLED; null: none. */

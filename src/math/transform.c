@@ -17,6 +17,18 @@ vlMat4 vl_mat4_load(const double m[16]) {
   return r;
 }
 
+vlMat4 vl_mat4_axes(const double x[3], const double y[3], const double z[3],
+                    const double origin[3]) {
+  vlMat4 r = vl_mat4_identity();
+  for (int i = 0; i < 3; i++) {
+    r.m[4 * i] = x[i];
+    r.m[4 * i + 1] = y[i];
+    r.m[4 * i + 2] = z[i];
+    r.m[4 * i + 3] = origin[i];
+  }
+  return r;
+}
+
 vlMat4 vl_mat4_multiply(vlMat4 a, vlMat4 b) {
   vlMat4 r;
   for (int i = 0; i < 4; i++)

@@ -11,6 +11,9 @@ typedef struct vlMat4 {
 
 vlMat4 vl_mat4_identity(void);
 vlMat4 vl_mat4_load(const double m[16]);
+/* The columns of the matrix. */
+vlMat4 vl_mat4_axes(const double x[3], const double y[3], const double z[3],
+                    const double origin[3]);
 vlMat4 vl_mat4_multiply(vlMat4 a, vlMat4 b);
 /* Inverse. False (and the identity) if the matrix is singular. */
 bool vl_mat4_inverse(vlMat4 a, vlMat4 *inverse);

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "camera/parts.h"
 #include "camera/rays.h"
-#include "trace/ground_truth/ground_truth.h"
+#include "render/camera_view.h"
 
 /* The part of the ray between the near and far planes (t_min, t_max), from the kernel that
  * makes the image's camera rays. */
@@ -43,29 +43,23 @@ static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, flo
 static vlResult look(const vlWorld *world, const vlCamera *camera, double x, double y,
                      double point[3], vlError *error) {
   vlIsa isa = vl_context_isa(world->context);
-  vlCamera pinhole = *camera;
-  pinhole.lens_radius = 0;
-  pinhole.moves = false; /* when it opens, as the world */
+  vlCamera pinhole = vl_opening_pinhole(camera);
   double o[3], d[3];
   if (!vl_camera_unproject(&pinhole, x, y, o, d))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: focus on pixel %g, %g: the camera sees nothing there", x, y);
-  vlGroundTruthScratch *scratch =
-      vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
   vlGroundTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
-  vlResult result = scratch && batch ? VL_OK : vl_fail_memory(error);
+  vlResult result = batch ? VL_OK : vl_fail_memory(error);
   if (result == VL_OK) {
-    vlGroundTruthDef def = {.isa = isa};
-    vl_ground_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
     batch->n = 1;
     for (int i = 0; i < 3; i++) {
       batch->o[i][0] = o[i];
       batch->d[i][0] = d[i];
     }
     find_ends(&pinhole, isa, x, y, &batch->t_min[0], &batch->t_max[0]);
-    unsigned state = vl_accel_enter();
-    vl_ground_truth_kernels(isa)->trace(world, &def, scratch, batch);
-    vl_accel_leave(state);
+    result = vl_first_hits(world, isa, batch, error);
+  }
+  if (result == VL_OK) {
     double t = batch->distance[0];
     for (int i = 0; i < 3; i++)
       point[i] = o[i] + t * d[i];
@@ -73,7 +67,6 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
       result = vl_fail(error, VL_ERROR_ARGUMENT,
                        "camera: focus on pixel %g, %g: nothing is seen there", x, y);
   }
-  vl_free(world->context, scratch);
   vl_free(world->context, batch);
   return result;
 }

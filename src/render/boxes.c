@@ -159,7 +159,6 @@ vlBoxesDef vl_default_boxes_def(uint32_t width, uint32_t height) {
 static vlResult make_room(Pass *p, vlError *error) {
   vlChannelPass *c = &p->channels;
   vlContext *context = c->world->context;
-  uint32_t threads = vl_context_threads(context);
   bool whole = true;
   for (int k = 0; k < 2; k++)
     if (p->boxes[k]) {
@@ -167,24 +166,13 @@ static vlResult make_room(Pass *p, vlError *error) {
       whole = whole && p->counts[k];
     }
   p->grouped = vl_alloc_zero(context, (size_t)p->ids[0] + 1, 1);
-  c->workers = vl_alloc_zero(context, threads, sizeof *c->workers);
-  for (uint32_t i = 0; c->workers && i < threads; i++) {
-    vlChannelWorker *w = &c->workers[i];
-    w->scratch = vl_alloc_zero(context, 1, vl_ground_truth_scratch_size());
-    w->batch = vl_alloc_zero(context, 1, sizeof *w->batch);
-    w->rows = vl_alloc_zero(context, (size_t)VL_CHANNEL_ROWS * VL_ROW_SIZE, sizeof(float));
-    whole = whole && w->scratch && w->batch && w->rows;
-  }
-  return whole && p->grouped && c->workers ? VL_OK : vl_fail_memory(error);
+  return whole && p->grouped ? vl_channel_make_workers(c, error) : vl_fail_memory(error);
 }
 
 static void free_room(Pass *p) {
   vlChannelPass *c = &p->channels;
   vlContext *context = c->world->context;
-  for (uint32_t i = 0; c->workers && i < vl_context_threads(context); i++) {
-    VL_FREE(context, c->workers[i].scratch, c->workers[i].batch, c->workers[i].rows);
-  }
-  vl_free(context, c->workers);
+  vl_channel_free_workers(c);
   vl_free(context, p->grouped);
   for (int k = 0; k < 2; k++)
     vl_free(context, p->counts[k]);

@@ -10,7 +10,6 @@
 #include "camera/rays.h"
 #include "math/double3.h"
 #include "render/own_view.h"
-#include "trace/ground_truth/ground_truth.h"
 #include "velo/render.h"
 
 /* Length of the camera's axes if all have the same length and are at right angles; else 0. */
@@ -72,20 +71,36 @@ void vl_camera_view_move(vlCameraView *view, vlAffine at) {
   view->ahead = (vlVec3){(float)(m[2] * s), (float)(m[5] * s), (float)(m[8] * s)};
 }
 
+vlCamera vl_opening_pinhole(const vlCamera *camera) {
+  vlCamera pinhole = *camera;
+  pinhole.lens_radius = 0;
+  pinhole.moves = false;
+  return pinhole;
+}
+
+vlResult vl_first_hits(const vlWorld *world, vlIsa isa, vlGroundTruthBatch *batch,
+                       vlError *error) {
+  vlGroundTruthScratch *scratch =
+      vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
+  vlGroundTruthDef def = {.isa = isa};
+  if (!scratch)
+    return vl_fail_memory(error);
+  vl_ground_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
+  unsigned state = vl_accel_enter();
+  vl_ground_truth_kernels(isa)->trace(world, &def, scratch, batch);
+  vl_accel_leave(state);
+  vl_free(world->context, scratch);
+  return VL_OK;
+}
+
 vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlTraceDef *trace,
                          float *radius, vlError *error) {
   enum { SIDE = 16 };
   *radius = 0;
-  vlCamera pinhole = *camera;
-  pinhole.lens_radius = 0;
-  pinhole.moves = false; /* when it opens, as the world */
-  vlGroundTruthScratch *scratch =
-      vl_alloc_zero(world->context, 1, vl_ground_truth_scratch_size());
+  vlCamera pinhole = vl_opening_pinhole(camera);
   vlGroundTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
-  vlResult result = scratch && batch ? VL_OK : vl_fail_memory(error);
+  vlResult result = batch ? VL_OK : vl_fail_memory(error);
   if (result == VL_OK) {
-    vlGroundTruthDef def = {.isa = trace->isa};
-    vl_ground_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
     for (int i = 0; i < SIDE * SIDE; i++) {
       double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width,
                          y = (i / SIDE + 0.5) / SIDE * camera->height;
@@ -97,9 +112,9 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
       }
       batch->t_max[batch->n++] = VL_INFINITY;
     }
-    unsigned state = vl_accel_enter();
-    vl_ground_truth_kernels(trace->isa)->trace(world, &def, scratch, batch);
-    vl_accel_leave(state);
+    result = vl_first_hits(world, trace->isa, batch, error);
+  }
+  if (result == VL_OK) {
     double t[SIDE * SIDE];
     uint32_t count = 0;
     for (uint32_t i = 0; i < batch->n; i++)
@@ -113,7 +128,6 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
     if (!(*radius < VL_INFINITY))
       *radius = 0;
   }
-  vl_free(world->context, scratch);
   vl_free(world->context, batch);
   return result;
 }

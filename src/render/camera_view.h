@@ -4,6 +4,7 @@
 #define RENDER_CAMERA_VIEW_H
 
 #include "math/motion.h"
+#include "trace/ground_truth/ground_truth.h"
 #include "trace/two_way/two_way.h"
 #include "velo/render.h"
 
@@ -14,6 +15,11 @@
 void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView *view);
 /* Moves the view to another pose; at: world from camera. */
 void vl_camera_view_move(vlCameraView *view, vlAffine at);
+/* The camera without a lens, when its shutter opens, as the world. */
+vlCamera vl_opening_pinhole(const vlCamera *camera);
+/* Finds the exact first hits of a batch of rays. */
+vlResult vl_first_hits(const vlWorld *world, vlIsa isa, vlGroundTruthBatch *batch,
+                       vlError *error);
 /* The radius (world units) that merging starts from: two pixels wide at the median distance at
  * which the camera's rays meet a surface. 0: no ray meets one. */
 vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlTraceDef *trace,

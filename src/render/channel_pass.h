@@ -162,6 +162,10 @@ static inline float *vl_channel_row(vlChannelWorker *w, uint32_t row) {
 
 /* In channels.c: sets cameras, kernels and tiles from def and world. */
 void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera);
+/* Allocates the workers, with what the pass's channels need; vl_channel_free_workers frees them
+ * whatever the result. */
+vlResult vl_channel_make_workers(vlChannelPass *p, vlError *error);
+void vl_channel_free_workers(vlChannelPass *p);
 /* In channel_samples.c: traces the image's samples of one tile; fills film_x and film_y of the
  * tile and writes Cryptomatte. */
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile);

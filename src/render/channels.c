@@ -220,7 +220,7 @@ static vlResult copy_luminance(const vlChannelPass *p, vlError *error) {
 
 /* ---- the pass ---------------------------------------------------------------------------- */
 
-static vlResult make_workers(vlChannelPass *p, vlError *error) {
+vlResult vl_channel_make_workers(vlChannelPass *p, vlError *error) {
   vlContext *context = p->world->context;
   uint32_t threads = vl_context_threads(context);
   bool counts = p->spp > 0,
@@ -268,7 +268,7 @@ static vlResult describe_mattes(vlChannelPass *p, vlError *error) {
   return VL_OK;
 }
 
-static void free_all(vlChannelPass *p) {
+void vl_channel_free_workers(vlChannelPass *p) {
   vlContext *context = p->world->context;
   for (uint32_t i = 0; p->workers && i < vl_context_threads(context); i++) {
     vlChannelWorker *w = &p->workers[i];
@@ -276,8 +276,12 @@ static void free_all(vlChannelPass *p) {
             w->lanes);
   }
   vl_free(context, p->workers);
+}
+
+static void free_all(vlChannelPass *p) {
+  vl_channel_free_workers(p);
   for (int k = 0; k < 3; k++)
-    vl_cryptomatte_close(context, &p->crypto[k]);
+    vl_cryptomatte_close(p->world->context, &p->crypto[k]);
 }
 
 /* Prepares two sets of rays for the image's samples: unchanged ones, and ones through the
@@ -384,7 +388,7 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
   vl_channel_prepare(p, camera);
   result = make_images(p, error);
   if (result == VL_OK)
-    result = make_workers(p, error);
+    result = vl_channel_make_workers(p, error);
   if (result == VL_OK)
     result = open_mattes(p, error);
   if (result == VL_OK) {

@@ -4,6 +4,7 @@
 #include "base/context.h"
 #include "base/free.h"
 #include "camera/rays.h"
+#include "render/camera_view.h"
 #include "render/support.h"
 #include "trace/trace.h"
 #include "velo/sampler.h"
@@ -20,9 +21,7 @@ _Static_assert(SIDE *SIDE == VL_BATCH, "one batch");
 /* Rays through the image's middle of the shutter's time. Returns their number. */
 static uint32_t make_rays(const vlCamera *camera, float (*row)[VL_ROW_SIZE], int32_t *px,
                           int32_t *py, uint32_t *index) {
-  vlCamera pinhole = *camera;
-  pinhole.lens_radius = 0;
-  pinhole.moves = false; /* when it opens */
+  vlCamera pinhole = vl_opening_pinhole(camera);
   uint32_t n = 0;
   for (uint32_t i = 0; i < SIDE * SIDE; i++) {
     double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width,

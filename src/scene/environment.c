@@ -101,22 +101,10 @@ static void from_latitudes(const vlImage *from, const float *pixels, uint32_t ch
                                              : (double)d.z) /
                        3.141592653589793 * h -
                    0.5;
-        double fu = floor(u), fv = floor(v);
-        for (int c = 0; c < 4; c++) {
-          int64_t i = (int64_t)fu + (c & 1), j = (int64_t)fv + (c >> 1);
-          i = i < 0                       ? i + (int64_t)from->width
-              : i >= (int64_t)from->width ? i - (int64_t)from->width
-                                          : i;
-          j = j < 0 ? 0 : j >= (int64_t)from->height ? (int64_t)from->height - 1 : j;
-          double weight =
-              (c & 1 ? u - fu : 1 - (u - fu)) * (c >> 1 ? v - fv : 1 - (v - fv)) * 0.25;
-          const float *p = pixels + ((size_t)j * from->width + (size_t)i) * channels;
-          for (uint32_t n = 0; n < 3; n++)
-            sum[n] += weight * p[channels < 3 ? 0 : n];
-        }
+        vl_map_add_at(pixels, from->width, from->height, channels, u, v, sum);
       }
       for (int n = 0; n < 3; n++)
-        row[3 * x + (uint32_t)n] = sum[n] > 0 ? (float)sum[n] : 0.0f;
+        row[3 * x + (uint32_t)n] = sum[n] > 0 ? (float)(0.25 * sum[n]) : 0.0f;
     }
   }
 }

@@ -144,12 +144,8 @@ static void paint_image(const Canvas *c, const double q[4][2], bool behind) {
   const float opacity = 0.85F;
   const vlCamera *inside = &c->outside->inside;
   Overlay *o = c->overlay;
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-  for (int i = 0; i < 4; i++)
-    for (int k = 0; k < 2; k++) {
-      low[k] = fmin(low[k], q[i][k]);
-      high[k] = fmax(high[k], q[i][k]);
-    }
+  double low[2], high[2];
+  overlay_bounds(q, low, high);
   for (long y = (long)fmax(0, low[1] - 1); y < (long)fmin(o->height, high[1] + 1); y++)
     for (long x = (long)fmax(0, low[0] - 1); x < (long)fmin(o->width, high[0] + 1); x++) {
       size_t at = (size_t)y * o->width + (size_t)x;

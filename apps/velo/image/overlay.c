@@ -135,14 +135,21 @@ static bool inside(const double q[4][2], double x, double y) {
   return in;
 }
 
-void overlay_quad(Overlay *o, const double q[4][2], OverlaySeen *seen, void *user) {
-  enum { SIDE = 4 };
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-  for (int i = 0; i < 4; i++)
-    for (int k = 0; k < 2; k++) {
+void overlay_bounds(const double q[4][2], double low[2], double high[2]) {
+  for (int k = 0; k < 2; k++) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+    for (int i = 0; i < 4; i++) {
       low[k] = fmin(low[k], q[i][k]);
       high[k] = fmax(high[k], q[i][k]);
     }
+  }
+}
+
+void overlay_quad(Overlay *o, const double q[4][2], OverlaySeen *seen, void *user) {
+  enum { SIDE = 4 };
+  double low[2], high[2];
+  overlay_bounds(q, low, high);
   if (!isfinite(low[0] + low[1] + high[0] + high[1]))
     return;
   long x0 = (long)fmax(0, floor(low[0])), x1 = (long)fmin(o->width, ceil(high[0]));

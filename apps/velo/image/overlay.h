@@ -25,6 +25,8 @@ void overlay_ring(Overlay *overlay, double x, double y, double radius, double wi
  * are orthogonal unit vectors in world space. */
 void overlay_arc(Overlay *overlay, const vlCamera *camera, const double d[3], const double n[3],
                  double from, double to, double width);
+/* The bounds of a quadrilateral. */
+void overlay_bounds(const double corners[4][2], double low[2], double high[2]);
 /* Adds a quadrilateral; seen is called with each pixel's centre: 0 where it is hidden. Null: it
  * is not hidden. */
 typedef bool OverlaySeen(void *user, double x, double y);

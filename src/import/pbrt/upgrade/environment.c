@@ -20,21 +20,6 @@ typedef struct Work {
   vlImage *to;
 } Work;
 
-/* Adds the value at longitude u and latitude v, in pixels, interpolated between four of
- * them. */
-static void look(const Work *w, double u, double v, double sum[3]) {
-  double fu = floor(u), fv = floor(v);
-  for (int c = 0; c < 4; c++) {
-    int64_t i = (int64_t)fu + (c & 1), j = (int64_t)fv + (c >> 1);
-    i = i < 0 ? i + (int64_t)w->width : i >= (int64_t)w->width ? i - (int64_t)w->width : i;
-    j = j < 0 ? 0 : j >= (int64_t)w->height ? (int64_t)w->height - 1 : j;
-    double weight = (c & 1 ? u - fu : 1 - (u - fu)) * (c >> 1 ? v - fv : 1 - (v - fv));
-    const float *p = w->pixels + 3 * ((size_t)j * w->width + (size_t)i);
-    for (int n = 0; n < 3; n++)
-      sum[n] += weight * p[n];
-  }
-}
-
 /* Longitude 0 is the x axis and grows towards y; latitude 0, the first row, is the z axis. */
 static void fill_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
@@ -52,7 +37,8 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
                                                                                 : (double)d.z);
       if (phi < 0)
         phi += 2 * pi;
-      look(w, phi / (2 * pi) * w->width - 0.5, theta / pi * w->height - 0.5, sum);
+      vl_map_add_at(w->pixels, w->width, w->height, 3, phi / (2 * pi) * w->width - 0.5,
+                    theta / pi * w->height - 0.5, sum);
     }
     for (uint32_t n = 0; n < 3; n++)
       row[3 * x + n] = (float)(sum[n] * w->factor[n] / (LOOKS * LOOKS));

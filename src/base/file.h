@@ -66,10 +66,6 @@ void vl_file_abandon(vlFileWriter *writer);
 
 /* Resolves the symbolic links of `path`; the target need not exist. False: errno is set. */
 bool vl_follow_links(const char *path, char *target, size_t size);
-/* Length of the folder's part of a path, including its slash; 0: the current folder. */
-size_t vl_folder_length(const char *path);
-/* The folder's part of a path, or ".". False: it is too long. */
-bool vl_folder_of(const char *path, char *folder, size_t size);
 
 double vl_seconds(void); /* seconds of a monotonic clock */
 

@@ -12,17 +12,6 @@
 
 enum { MAX_LINKS = 40, MAX_NAME = 255 };
 
-size_t vl_folder_length(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-bool vl_folder_of(const char *path, char *folder, size_t size) {
-  const size_t length = vl_folder_length(path);
-  const int n = snprintf(folder, size, "%.*s", length ? (int)length : 1, length ? path : ".");
-  return n >= 0 && (size_t)n < size;
-}
-
 bool vl_follow_links(const char *path, char *target, size_t size) {
   char link[4096];
   if (strlen(path) >= size) {

@@ -2,7 +2,6 @@
  * realpath tells a missing folder outside from one that is there
  * ("outside/folder/../../inside/file"). */
 #include "base/sandbox.h"
-#include "base/file.h"
 #include "base/text.h"
 
 #include <limits.h>

@@ -198,6 +198,17 @@ bool vl_has_word(const char *words, const char *word) {
   return vl_has_word_of(words, word, strlen(word));
 }
 
+size_t vl_folder_length(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+bool vl_folder_of(const char *path, char *folder, size_t size) {
+  const size_t length = vl_folder_length(path);
+  const int n = snprintf(folder, size, "%.*s", length ? (int)length : 1, length ? path : ".");
+  return n >= 0 && (size_t)n < size;
+}
+
 bool vl_ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);
   return n >= m && strcasecmp(text + n - m, suffix) == 0;

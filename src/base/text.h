@@ -62,6 +62,10 @@ bool vl_has_word(const char *words, const char *word);
 /* The same for a word of `length` bytes. */
 bool vl_has_word_of(const char *words, const char *word, size_t length);
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */
+/* Length of the folder's part of a path, including its slash; 0: the current folder. */
+size_t vl_folder_length(const char *path);
+/* The folder's part of a path, or ".". False: it is too long. */
+bool vl_folder_of(const char *path, char *folder, size_t size);
 /* Whether a path names a lamp file, by its end: .ies or .ldt. Null: it does not. */
 bool vl_names_lamp(const char *path);
 /* result = folder of the file base_file + name; name alone if it is absolute. False: it does

@@ -1,6 +1,5 @@
 /* import/labels.c: see labels.h. */
 #include "import/labels.h"
-#include "base/file.h"
 #include "base/text.h"
 
 #include <stdio.h>

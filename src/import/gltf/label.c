@@ -3,7 +3,6 @@
  * get those of their parents: Hall/Chair. */
 #include <stdio.h>
 
-#include "base/file.h"
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "import/labels.h"

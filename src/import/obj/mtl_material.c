@@ -5,7 +5,6 @@
 #include "import/far.h"
 #include "import/obj/obj.h"
 
-#include "base/file.h"
 #include "base/text.h"
 #include "math/elementary.h"
 #include "velo/light.h"

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include "base/context.h"
-#include "base/file.h"
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 

@@ -1,0 +1,311 @@
+/* schema/check.c: checks a value by the row of its parameter or setting: one that somebody
+ * gave, or a member of a def. All messages about values of rows are written here: the name,
+ * what it must be, the value, the nearest name. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "base/unset.h"
+#include "schema/member.h"
+#include "velo/setting.h"
+
+/* ---- what a value must be ---------------------------------------------------------------- */
+
+static bool has_range(const vlParameter *row) {
+  return (row->low != 0 || row->high != 0) && !(row->flags & VL_PARAMETER_CLAMPED);
+}
+
+static double low_of(const vlParameter *row) {
+  if (row->type == VL_PARAMETER_COUNT && !(has_range(row) && row->low > 0))
+    return 0;
+  return has_range(row) ? row->low : (double)-INFINITY;
+}
+
+static double high_of(const vlParameter *row) {
+  bool counts = row->type == VL_PARAMETER_COUNT;
+  if (counts && !(has_range(row) && row->high < UINT32_MAX))
+    return UINT32_MAX;
+  return has_range(row) ? row->high : (double)INFINITY;
+}
+
+/* Whether the member that holds the number is a float. */
+static bool is_single(const vlParameter *row) {
+  return row->type != VL_PARAMETER_DOUBLE && row->type != VL_PARAMETER_DOUBLE3 &&
+         row->type != VL_PARAMETER_COUNT;
+}
+
+/* Writes a whole number without an exponent, others with up to 6 digits: angles in degrees are
+ * rounded. */
+static const char *put_number(char text[40], double number) {
+  bool whole = fabs(number) < 1e15 && number == floor(number);
+  snprintf(text, 40, whole ? "%.0f" : "%.6g", number);
+  return text;
+}
+
+/* Writes "a whole number from 1 to 64", "a number above 0, or infinity". factor: as in
+ * vlGiven. */
+static void put_number_rule(const vlParameter *row, double factor, char *rule, size_t size) {
+  const char *const thing = row->type == VL_PARAMETER_COUNT ? "whole number" : "number";
+  char low[40];
+  char high[40];
+  put_number(low, low_of(row) / factor);
+  put_number(high, high_of(row) / factor);
+  bool above = row->flags & VL_PARAMETER_ABOVE_LOW;
+  bool below = row->flags & VL_PARAMETER_BELOW_HIGH;
+  bool has_low = isfinite(low_of(row));
+  bool has_high = isfinite(high_of(row));
+  if (has_low && has_high && !above && !below)
+    snprintf(rule, size, "a %s from %s to %s", thing, low, high);
+  else if (has_low && has_high)
+    snprintf(rule, size, "a %s %s %s and %s %s", thing, above ? "above" : "of at least", low,
+             below ? "below" : "at most", high);
+  else if (has_low)
+    snprintf(rule, size, "a %s %s %s", thing, above ? "above" : "of at least", low);
+  else if (has_high)
+    snprintf(rule, size, "a %s %s %s", thing, below ? "below" : "of at most", high);
+  else
+    snprintf(rule, size, "a finite %s", thing);
+  size_t used = strlen(rule);
+  const bool in_radians =
+      factor == 1 && row->factor != 0 && row->unit && strcmp(row->unit, "degrees") == 0;
+  const char *unit = in_radians ? "radians" : factor != 1 ? row->unit : NULL;
+  if (unit)
+    used += (size_t)snprintf(rule + used, size - used, " %s", unit);
+  if (row->flags & VL_PARAMETER_INFINITE)
+    snprintf(rule + used, size - used, ", or infinity");
+}
+
+/* As many whole names as fit; "..." stands for the others. */
+static void put_choices(const char *const *choices, char *rule, size_t size) {
+  const char *const more = ", ...";
+  size_t used = (size_t)snprintf(rule, size, "one of ");
+  for (int i = 0; choices[i]; i++) {
+    const size_t rest = choices[i + 1] ? strlen(more) : 0;
+    if (used + 2 + strlen(choices[i]) + rest >= size) {
+      snprintf(rule + used, size - used, "%s", more);
+      return;
+    }
+    used += (size_t)snprintf(rule + used, size - used, "%s%s", i ? ", " : "", choices[i]);
+  }
+}
+
+static void put_rule(const vlParameter *row, double factor, char *rule, size_t size) {
+  const char *known = vl_member_types[row->type].rule;
+  if (known)
+    snprintf(rule, size, "%s", known);
+  else if (row->type == VL_PARAMETER_CHOICE)
+    put_choices(row->choices, rule, size);
+  else
+    put_number_rule(row, factor, rule, size);
+}
+
+/* ---- whether it is that ------------------------------------------------------------------ */
+
+/* Whether a number in the def's unit is finite (or may be infinite, or unset), whole if it must
+ * be, and in range. */
+static bool in_range(const vlParameter *row, double x) {
+  if ((row->flags & VL_PARAMETER_UNSET) && vl_is_unset(x))
+    return true;
+  if (isnan(x))
+    return false;
+  if (isinf(x))
+    return row->flags & VL_PARAMETER_INFINITE && (x > 0 || isinf(low_of(row)));
+  if (is_single(row) && fabs(x) > (double)FLT_MAX)
+    return false;
+  if (row->type == VL_PARAMETER_COUNT && x != floor(x))
+    return false;
+  double low = low_of(row);
+  double high = high_of(row);
+  if (row->flags & VL_PARAMETER_ABOVE_LOW && has_range(row) ? !(x > low) : !(x >= low))
+    return false;
+  return row->flags & VL_PARAMETER_BELOW_HIGH && has_range(row) ? x < high : x <= high;
+}
+
+/* Compares letters and digits only, whatever their case: "off-axis" is "OFF_AXIS". */
+static bool same_word(const char *a, const char *b) {
+  for (;; a++, b++) {
+    while (*a == '_' || *a == '-' || *a == ' ')
+      a++;
+    while (*b == '_' || *b == '-' || *b == ' ')
+      b++;
+    char x = *a >= 'A' && *a <= 'Z' ? (char)(*a + 32) : *a;
+    char y = *b >= 'A' && *b <= 'Z' ? (char)(*b + 32) : *b;
+    if (x != y)
+      return false;
+    if (!x)
+      return true;
+  }
+}
+
+static int find_word(const char *const *choices, const char *word) {
+  for (int i = 0; choices[i]; i++)
+    if (same_word(choices[i], word))
+      return i;
+  return -1;
+}
+
+static bool fits_text(const vlParameter *row, const vlGiven *given) {
+  if (given->kind == VL_GIVEN_NOTHING)
+    return !(row->flags & VL_PARAMETER_REQUIRED);
+  return given->kind == VL_GIVEN_TEXT && (given->text[0] || row->type == VL_PARAMETER_STRING);
+}
+
+static bool fits_number(const vlParameter *row, const vlGiven *given, double number) {
+  if (given->kind == VL_GIVEN_NOTHING)
+    return row->flags & VL_PARAMETER_UNSET;
+  /* A NaN that somebody gives is a wrong number, also if its bits are those of VL_UNSET. */
+  return given->kind == VL_GIVEN_NUMBER && !isnan(given->number) && in_range(row, number);
+}
+
+static bool fits(const vlParameter *row, const vlGiven *given, double factor, double *number) {
+  const vlMemberType *t = &vl_member_types[row->type];
+  *number = 0;
+  if (row->type == VL_PARAMETER_BOOL) {
+    *number = given->number != 0;
+    return given->kind == VL_GIVEN_FLAG;
+  }
+  if (row->type == VL_PARAMETER_CHOICE) {
+    *number = given->kind == VL_GIVEN_TEXT ? find_word(row->choices, given->text) : -1;
+    return *number >= 0;
+  }
+  if (t->text)
+    return fits_text(row, given);
+  if (!t->numbers && !t->spectral) /* a texture or a block */
+    return t->textured && given->kind == VL_GIVEN_NOTHING;
+  *number = given->kind == VL_GIVEN_NOTHING ? VL_UNSET : factor * given->number;
+  return fits_number(row, given, *number);
+}
+
+/* ---- messages ---------------------------------------------------------------------------- */
+
+static void put_value(const vlParameter *row, const vlGiven *given, char *value, size_t size) {
+  bool unit = given->factor != 0 && given->factor != 1 && row->unit;
+  char number[40];
+  switch (given->kind) {
+    case VL_GIVEN_NOTHING:
+      snprintf(value, size, "nothing");
+      break;
+    case VL_GIVEN_FLAG:
+      snprintf(value, size, "%s", given->number != 0 ? "true" : "false");
+      break;
+    case VL_GIVEN_NUMBER:
+      snprintf(value, size, "%s%s%s", put_number(number, given->number), unit ? " " : "",
+               unit ? row->unit : "");
+      break;
+    case VL_GIVEN_TEXT:
+      snprintf(value, size, "\"%s\"", vl_argument_text(given->text).text);
+      break;
+    case VL_GIVEN_OTHER:
+      snprintf(value, size, "of another type");
+      break;
+  }
+}
+
+static uint32_t count_of(const char *const *choices) {
+  uint32_t n = 0;
+  while (choices && choices[n])
+    n++;
+  return n;
+}
+
+static void put_near(const char *name, const char *const *names, size_t count,
+                     const char *prefix, char *text, size_t size) {
+  const char *near = vl_near_name(name, names, count);
+  text[0] = 0;
+  if (near)
+    snprintf(text, size, "; did you mean \"%s%s\"?", prefix, near);
+}
+
+/* Writes `NAME must be RULE; it is VALUE`. */
+static void put_wrong(const vlParameter *row, const char *name, const vlGiven *given,
+                      char *message, size_t size) {
+  char rule[256];
+  char value[270];
+  char near[80] = "";
+  double factor = given->factor != 0 ? given->factor : 1;
+  put_rule(row, factor, rule, sizeof rule);
+  if (row->flags & VL_PARAMETER_UNSET && given->kind == VL_GIVEN_NOTHING)
+    snprintf(rule + strlen(rule), sizeof rule - strlen(rule), ", or nothing");
+  put_value(row, given, value, sizeof value);
+  if (row->type == VL_PARAMETER_CHOICE && given->kind == VL_GIVEN_TEXT)
+    put_near(given->text, row->choices, count_of(row->choices), "", near, sizeof near);
+  snprintf(message, size, "%s must be %s; it is %s%s", name, rule,
+           given->shown ? given->shown : value, near);
+}
+
+bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *given,
+                    double *number, char message[VL_GIVEN_MESSAGE]) {
+  double unused;
+  if (fits(row, given, given->factor != 0 ? given->factor : 1, number ? number : &unused))
+    return true;
+  put_wrong(row, name, given, message, VL_GIVEN_MESSAGE);
+  return false;
+}
+
+const char *vl_near_name(const char *name, const char *const *names, size_t count) {
+  size_t length = strlen(name);
+  const char *near = vl_nearest_name(name, names, count);
+  for (size_t i = 0; i < count && !near && length >= 2; i++)
+    if (strncmp(names[i], name, length) == 0)
+      near = names[i]; /* an abbreviation */
+  return near;
+}
+
+void vl_unknown_name(const char *thing, const char *prefix, const char *name,
+                     const char *const *names, size_t count, char message[VL_GIVEN_MESSAGE]) {
+  int used = snprintf(message, VL_GIVEN_MESSAGE, "unknown %s \"%s%s\"", thing, prefix,
+                      vl_argument_text(name).text);
+  size_t room = VL_GIVEN_MESSAGE - (size_t)used;
+  put_near(name, names, count, prefix, message + used, room);
+  if (message[used])
+    return;
+  char list[VL_GIVEN_MESSAGE] = "";
+  for (size_t i = 0; i < count; i++)
+    vl_list_name(list, room > 20 ? room - 20 : 0, names[i]);
+  snprintf(message + used, room, "; known are%s", list + (list[0] == ':'));
+}
+
+/* ---- members of defs --------------------------------------------------------------------- */
+
+static bool check_number(const vlParameter *p, double x, const char *name,
+                         char message[VL_GIVEN_MESSAGE]) {
+  if (p->type == VL_PARAMETER_CHOICE ? x >= 0 && x < count_of(p->choices) : in_range(p, x))
+    return true;
+  double factor = p->factor != 0 ? p->factor : 1;
+  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = x / factor, .factor = factor};
+  put_wrong(p, name, &given, message, VL_GIVEN_MESSAGE);
+  return false;
+}
+
+bool vl_parameter_check(const vlParameter *p, const void *def, const char *name,
+                        char message[VL_GIVEN_MESSAGE]) {
+  const vlMemberType *t = &vl_member_types[p->type];
+  const void *at = (const char *)def + p->offset;
+  double number;
+  if (t->text && p->flags & VL_PARAMETER_REQUIRED && !*(const char *const *)at) {
+    snprintf(message, VL_GIVEN_MESSAGE, "%s is missing", name);
+    return false;
+  }
+  if (t->spectral)
+    return !vl_parameter_number(p, def, &number) || check_number(p, number, name, message);
+  for (int i = 0; i < t->numbers && !vl_member_texture(t, at); i++)
+    if (!check_number(p, vl_member_number(t, at, i), name, message))
+      return false;
+  return true;
+}
+
+bool vl_choices_check(vlSettingGroup group, size_t begin, size_t size, const void *part,
+                      char message[VL_GIVEN_MESSAGE]) {
+  const vlKindRow *row = vl_settings(group);
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    vlParameter p = row->parameters[i];
+    if (p.type != VL_PARAMETER_CHOICE || p.offset < begin || p.offset >= begin + size)
+      continue;
+    p.offset -= begin;
+    if (!vl_parameter_check(&p, part, vl_setting_keyword(&row->parameters[i]), message))
+      return false;
+  }
+  return true;
+}

@@ -49,14 +49,12 @@ static inline __attribute__((always_inline)) void ray_loop(
 /* Finishes the rays of a chunk from known directions, for samples from `first` on. */
 static inline __attribute__((always_inline)) void world_loop(
     const int lens, const int eyes, const vlCameraCompiled *camera, uint32_t first,
-    uint32_t count, const vlDirections *d, const vlCameraSamples *s, const vlCameraRays *r) {
+    uint32_t count, const vlDirections *d, const vlCameraSamples *s, const vlCameraRays *all) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   const float *lens_u = s->lens_u + (lens == DISC ? first : 0),
               *lens_v = s->lens_v + (lens == DISC ? first : 0);
   const float *time = s->time + first;
-  float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
-  float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
-  float *t_min = r->t_min + first, *t_max = r->t_max + first, *seconds = r->time + first;
+  const vlCameraRays r = vl_camera_rays_from(all, first);
   const double near_z = c->near_plane, far_z = c->far_plane;
   const double flat = c->ahead && !c->inclined ? 1.0 : 0.0;
   /* must vectorise */
@@ -78,15 +76,15 @@ static inline __attribute__((always_inline)) void world_loop(
     if (eyes)
       w = vl_camera_offset_eye(c, vl_eye_offset(c->eye_circle, d->dx[i], d->dz[i]), w);
     int good = d->valid[i] > 0.0;
-    ox[i] = (float)w.ox;
-    oy[i] = (float)w.oy;
-    oz[i] = (float)w.oz;
-    dx[i] = (float)(w.dx * w.inv_length);
-    dy[i] = (float)(w.dy * w.inv_length);
-    dz[i] = (float)(w.dz * w.inv_length);
-    t_min[i] = (float)(good ? near_z / depth * w.length : 0.0);
-    t_max[i] = (float)(good ? far_z / depth * w.length : -1.0);
-    seconds[i] = (float)(c->shutter_open + c->shutter_time * (double)time[i]);
+    r.ox[i] = (float)w.ox;
+    r.oy[i] = (float)w.oy;
+    r.oz[i] = (float)w.oz;
+    r.dx[i] = (float)(w.dx * w.inv_length);
+    r.dy[i] = (float)(w.dy * w.inv_length);
+    r.dz[i] = (float)(w.dz * w.inv_length);
+    r.t_min[i] = (float)(good ? near_z / depth * w.length : 0.0);
+    r.t_max[i] = (float)(good ? far_z / depth * w.length : -1.0);
+    r.time[i] = (float)(c->shutter_open + c->shutter_time * (double)time[i]);
   }
 }
 
@@ -158,15 +156,7 @@ static void shaped_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
     vl_lens_points(c, n, s->lens_u + k, s->lens_v + k, x, y);
     vlCameraSamples samples = {
         s->film_x + k, s->film_y + k, s->pixel_x + k, s->pixel_y + k, x, y, s->time + k};
-    vlCameraRays out = {.ox = r->ox + k,
-                        .oy = r->oy + k,
-                        .oz = r->oz + k,
-                        .dx = r->dx + k,
-                        .dy = r->dy + k,
-                        .dz = r->dz + k,
-                        .t_min = r->t_min + k,
-                        .t_max = r->t_max + k,
-                        .time = r->time + k};
+    const vlCameraRays out = vl_camera_rays_from(r, k);
     if (c->projection == VL_PROJECTION_ORTHOGRAPHIC)
       ray_loop(1, POINTS, c, n, &samples, &out);
     else
@@ -195,12 +185,10 @@ static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
 /* A ray that is not finite, or whose weight is negative, stands for a sample that is left out:
  * weight NaN. */
 static void own_world_loop(const vlCameraCompiled *camera, uint32_t count,
-                           const vlOwnRows *rows, const vlCameraRays *r, uint32_t first,
+                           const vlOwnRows *rows, const vlCameraRays *all, uint32_t first,
                            float *valid, float *weight) {
   const vlCameraCompiled copy = *camera, *c = &copy;
-  float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
-  float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
-  float *t_min = r->t_min + first, *t_max = r->t_max + first;
+  const vlCameraRays r = vl_camera_rays_from(all, first);
   const double near_plane = c->near_plane, far_plane = c->far_plane;
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double x = rows->dx[i], y = rows->dy[i], z = rows->dz[i], factor = rows->weight[i];
@@ -209,14 +197,14 @@ static void own_world_loop(const vlCameraCompiled *camera, uint32_t count,
     double sum = w.ox + w.oy + w.oz + length + factor;
     int none = length == 0.0, bad = !(sum - sum == 0.0) || !(factor >= 0.0);
     int good = !none && !bad;
-    ox[i] = (float)(good ? w.ox : 0.0);
-    oy[i] = (float)(good ? w.oy : 0.0);
-    oz[i] = (float)(good ? w.oz : 0.0);
-    dx[i] = (float)(good ? w.dx * w.inv_length : 0.0);
-    dy[i] = (float)(good ? w.dy * w.inv_length : 0.0);
-    dz[i] = (float)(good ? w.dz * w.inv_length : 1.0);
-    t_min[i] = (float)(good ? near_plane / length * w.length : 0.0);
-    t_max[i] = (float)(good && factor > 0.0 ? far_plane / length * w.length : -1.0);
+    r.ox[i] = (float)(good ? w.ox : 0.0);
+    r.oy[i] = (float)(good ? w.oy : 0.0);
+    r.oz[i] = (float)(good ? w.oz : 0.0);
+    r.dx[i] = (float)(good ? w.dx * w.inv_length : 0.0);
+    r.dy[i] = (float)(good ? w.dy * w.inv_length : 0.0);
+    r.dz[i] = (float)(good ? w.dz * w.inv_length : 1.0);
+    r.t_min[i] = (float)(good ? near_plane / length * w.length : 0.0);
+    r.t_max[i] = (float)(good && factor > 0.0 ? far_plane / length * w.length : -1.0);
     valid[i] = none ? 0.0f : 1.0f;
     weight[i] = (float)(bad ? (double)__builtin_nan("") : factor);
   }

@@ -108,6 +108,21 @@ typedef struct vlCameraRays {
   float *valid;
   float *weight;
 } vlCameraRays;
+/* The rays from number `first` on. */
+static inline __attribute__((always_inline)) vlCameraRays vl_camera_rays_from(
+    const vlCameraRays *r, uint32_t first) {
+  return (vlCameraRays){.ox = r->ox + first,
+                        .oy = r->oy + first,
+                        .oz = r->oz + first,
+                        .dx = r->dx + first,
+                        .dy = r->dy + first,
+                        .dz = r->dz + first,
+                        .t_min = r->t_min + first,
+                        .t_max = r->t_max + first,
+                        .time = r->time + first,
+                        .valid = r->valid ? r->valid + first : NULL,
+                        .weight = r->weight ? r->weight + first : NULL};
+}
 
 /* A chunk of points or pixels in double: VL_PAD(n) elements are computed, n <=
  * VL_CAMERA_CHUNK. */

@@ -24,27 +24,25 @@ static inline Moved move_ray(vlAffine a, double ox, double oy, double oz, double
 /* Transforms each ray from camera space to the world at the ray's own time. t_min and t_max are
  * rescaled so that they denote the same points. */
 static void move_chunk(const vlCameraTime *time, uint32_t count, const double *when,
-                       const vlCameraRays *r, uint32_t first) {
+                       const vlCameraRays *all, uint32_t first) {
   const vlCameraTime copy = *time, *t = &copy;
-  float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
-  float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
-  float *t_min = r->t_min + first, *t_max = r->t_max + first;
+  const vlCameraRays r = vl_camera_rays_from(all, first);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double f = (when[i] - t->pose_open) * t->pose_rate;
     f = f > 0.0 ? f : 0.0;
     f = f < 1.0 ? f : 1.0;
-    Moved w = move_ray(vl_motion_between(&t->motion, f), (double)ox[i], (double)oy[i],
-                       (double)oz[i], (double)dx[i], (double)dy[i], (double)dz[i]);
+    Moved w = move_ray(vl_motion_between(&t->motion, f), (double)r.ox[i], (double)r.oy[i],
+                       (double)r.oz[i], (double)r.dx[i], (double)r.dy[i], (double)r.dz[i]);
     double inverse = 1.0 / w.length;
-    ox[i] = (float)w.ox;
-    oy[i] = (float)w.oy;
-    oz[i] = (float)w.oz;
-    dx[i] = (float)(w.dx * inverse);
-    dy[i] = (float)(w.dy * inverse);
-    dz[i] = (float)(w.dz * inverse);
-    t_min[i] = (float)((double)t_min[i] * w.length);
-    t_max[i] = (float)((double)t_max[i] * w.length);
+    r.ox[i] = (float)w.ox;
+    r.oy[i] = (float)w.oy;
+    r.oz[i] = (float)w.oz;
+    r.dx[i] = (float)(w.dx * inverse);
+    r.dy[i] = (float)(w.dy * inverse);
+    r.dz[i] = (float)(w.dz * inverse);
+    r.t_min[i] = (float)((double)r.t_min[i] * w.length);
+    r.t_max[i] = (float)((double)r.t_max[i] * w.length);
   }
 }
 

@@ -143,11 +143,6 @@ static void occluded(vlTrace *w, const vlTraceRays *r, uint8_t *result) {
 
 /* ---- from the hits ----------------------------------------------------------------------- */
 
-static vlVec3 origin_towards(const vlSurface *f, uint32_t k, vlVec3 d) {
-  return vl_offset_origin(vl_lane3(f->px, f->py, f->pz, k), vl_lane3(f->gx, f->gy, f->gz, k),
-                          f->offset[k], d);
-}
-
 static void leave(vlTrace *w, float (*direction)[VL_OWN_BATCH], vlTraceRays *r) {
   const vlSurface *f = &w->t.s->at.surface;
   float d[3][VL_OWN_BATCH];
@@ -157,7 +152,7 @@ static void leave(vlTrace *w, float (*direction)[VL_OWN_BATCH], vlTraceRays *r) 
     uint32_t lane = w->t.s->at.paths.lane[k];
     vlVec3 to = get3(d, lane);
     put3(r->direction, lane, to);
-    put3(r->origin, lane, origin_towards(f, k, to));
+    put3(r->origin, lane, vl_surface_origin(f, k, to));
     r->t_max[lane] = VL_INFINITY;
     r->width[lane] = f->width[k];
   }
@@ -180,7 +175,7 @@ static void lights(vlTrace *w, uint32_t bounce, vlTraceLights *out) {
     uint32_t lane = s->at.paths.lane[k];
     if (!(l->pdf[k] > 0.0f))
       continue;
-    vlVec3 to = vl_lane3(l->wx, l->wy, l->wz, k), o = origin_towards(f, k, to);
+    vlVec3 to = vl_lane3(l->wx, l->wy, l->wz, k), o = vl_surface_origin(f, k, to);
     put3(out->direction, lane, to);
     for (int c = 0; c < 4; c++)
       out->radiance[c][lane] = l->radiance[c][k];

@@ -114,14 +114,12 @@ static uint32_t make_shadow_rays(uint32_t n, const vlVertices *at, const vlLight
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i];
     vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
-    vlVec3 o = vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
-                                vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+    vlVec3 o = vl_surface_origin(f, i, w);
     int distant = l->distant[i], delta = l->delta[i];
     float x = l->tx[i] - o.x, y = l->ty[i] - o.y, z = l->tz[i] - o.z;
     float mis = vl_power_heuristic(l->pdf[i], bsdf->pdf[i]), weight = delta ? 1.0f : mis;
-    lit[i] = (l->pdf[i] > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
+    lit[i] = (l->pdf[i] > 0.0f) & vl_has_value(bsdf, i) ? 1 : 0;
     vl_set_lane3(q->ox, q->oy, q->oz, i, o);
     q->dx[i] = distant ? w.x : x;
     q->dy[i] = distant ? w.y : y;
@@ -261,8 +259,7 @@ static void make_rays(const vlTracing *t, uint32_t n, uint32_t depth, const vlVe
                        x * sh->ty[i] + y * sh->by[i] + z * f->ny[i],
                        x * sh->tz[i] + y * sh->bz[i] + z * f->nz[i]);
     w = vl_normalize(w);
-    vlVec3 o = vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
-                                vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+    vlVec3 o = vl_surface_origin(f, i, w);
     float b0 = p->beta[0][i] * s->weight[0][i], b1 = p->beta[1][i] * s->weight[1][i];
     float b2 = p->beta[2][i] * s->weight[2][i], b3 = p->beta[3][i] * s->weight[3][i];
     float eta = p->eta_scale[i] * s->eta_scale[i];

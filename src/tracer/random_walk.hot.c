@@ -40,8 +40,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
     vlVec3 d = vl_normalize(vl_lane3(w[0], w[1], w[2], i));
-    vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i),
-                                vl_lane3(f->gx, f->gy, f->gz, i), f->offset[i], d);
+    vlVec3 o = vl_surface_origin(f, i, d);
     for (int c = 0; c < 4; c++)
       next->beta[c][k] *= bsdf->value[c][i] * (4.0f * VL_PI);
     vl_set_lane3(next->ox, next->oy, next->oz, k, o);

@@ -116,22 +116,15 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
     vlVec3 local = cosine ? vl_warp_cosine_hemisphere(u.u1[i], u.u2[i])
                           : vl_warp_hemisphere(u.u1[i], u.u2[i]);
     vlVec3 w = vl_from_local(vl_frame_from_z(nn), local);
-    vlVec3 o =
-        vl_offset_origin(vl_lane3(s->at.surface.px, s->at.surface.py, s->at.surface.pz, i),
-                         vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz, i),
-                         s->at.surface.offset[i], w);
     float lambda[4];
     vl_path_lambda(&s->at.paths, i, lambda);
-    vl_set_lane3(q->ox, q->oy, q->oz, i, o);
-    vl_set_lane3(q->dx, q->dy, q->dz, i, w);
-    q->t_max[i] = t->def->ao_distance;
+    vl_shadow_way(&s->at.paths, i, vl_surface_origin(&s->at.surface, i, w), w,
+                  t->def->ao_distance, i, q);
     /* Uniform sampling: cos / pi over the density 1 / (2 pi). */
     for (int c = 0; c < 4; c++)
       q->radiance[c][i] =
           (cosine ? 1.0f : 2.0f * local.z) * vl_spectral_at(&world->white, c, lambda[c]);
   }
-  for (uint32_t i = 0; s->at.paths.time && i < n; i++)
-    q->time[i] = vl_path_time(&s->at.paths, i);
   vl_stage_occluded(t, n, &s->at.paths, q);
   t->batch->shadow_rays += n;
   for (uint32_t i = 0; i < n; i++)

@@ -144,9 +144,7 @@ static void begin_flights(const vlTracing *t, const vlPaths *p, const float *u, 
       f->passed[c][i] = t->passed[c][p->lane[first + i]];
 }
 
-/* The next flights of the open lanes: each leads to the surface ahead or to the end of the
- * ray. */
-static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium) {
+void vl_travel_aim(const vlTracing *t, vlTravel *k, const uint32_t *medium) {
   vlFlights *f = &k->f;
   uint32_t lanes[VL_FLIGHTS], count = 0;
   for (uint32_t j = 0; j < k->count; j++) {
@@ -194,7 +192,7 @@ static void travel_block(vlTracing *t, const Rays *r, vlTravel *k, uint32_t firs
   /* a bound; no ray crosses so many interfaces */
   for (int step = 0; step < 1024 && k->count > 0; step++) {
     uint32_t on = 0;
-    aim_flights(t, k, medium);
+    vl_travel_aim(t, k, medium);
     vl_fly(t, &k->f, emission);
     for (uint32_t j = 0; j < k->count; j++) {
       uint32_t i = k->open[j];

@@ -69,6 +69,9 @@ static inline bool vl_meets_interface(const vlWorld *world, const vlCrossings *x
 void vl_travel_start(vlTravel *k);
 /* The surfaces that the open rays meet beyond f.from. */
 void vl_travel_closest(const vlTracing *t, vlTravel *k);
+/* The next flights of the open lanes: each leads to the surface ahead or to the end of the
+ * ray. */
+void vl_travel_aim(const vlTracing *t, vlTravel *k, const uint32_t *medium);
 /* Lane i passes the interface that it has met: f.from moves past it. Returns the medium that
  * follows. */
 uint32_t vl_travel_pass(const vlTracing *t, vlTravel *k, uint32_t i, uint32_t medium);

@@ -204,15 +204,13 @@ static void make_shadows(uint32_t n, const vlVertices *at, const vlLightSamples 
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i];
     float pdf = l->pdf[i];
     vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
-    vlVec3 o = vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
-                                vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+    vlVec3 o = vl_surface_origin(f, i, w);
     vlVec3 to = vl_sub(vl_vec3(l->tx[i], l->ty[i], l->tz[i]), o), d = vl_normalize(to);
     int distant = l->distant[i], delta = l->delta[i];
     float length = distant ? VL_INFINITY : vl_length(to), own = bsdf->pdf[i];
-    lit[i] = (pdf > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
+    lit[i] = (pdf > 0.0f) & vl_has_value(bsdf, i) ? 1 : 0;
     vl_set_lane3(q->ox, q->oy, q->oz, i, o);
     q->dx[i] = distant ? w.x : d.x;
     q->dy[i] = distant ? w.y : d.y;

@@ -63,23 +63,6 @@ static void begin_block(const vlTracing *t, const vlPaths *p, const vlShadowRays
   }
 }
 
-/* The next flights of the open rays: each leads to the interface ahead or to the light. */
-static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium) {
-  vlFlights *f = &k->f;
-  uint32_t lanes[VL_FLIGHTS], count = 0;
-  for (uint32_t j = 0; j < k->count; j++) {
-    uint32_t i = k->open[j];
-    f->medium[i] = medium[i];
-    f->to[i] = f->rays.t_max[i];
-    if (k->x.shape[i] != VL_NONE)
-      lanes[count++] = i;
-  }
-  if (count)
-    vl_stage_crossings(t->world, f->n, &f->rays, lanes, count, &k->x);
-  for (uint32_t j = 0; j < count; j++)
-    f->to[lanes[j]] = k->x.t[lanes[j]];
-}
-
 static void pass_block(vlTracing *t, vlTravel *k, uint32_t *medium) {
   vlFlights *f = &k->f;
   for (int step = 0; step < 1024 && k->count > 0; step++) {
@@ -88,7 +71,7 @@ static void pass_block(vlTracing *t, vlTravel *k, uint32_t *medium) {
       vl_travel_closest(t, k);
       t->batch->shadow_rays += k->count;
     }
-    aim_flights(t, k, medium);
+    vl_travel_aim(t, k, medium);
     vl_attenuate(t, f);
     for (uint32_t j = 0; j < k->count; j++) {
       uint32_t i = k->open[j];

@@ -320,11 +320,10 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
       continue;
     float v = exit_value(table_at(t->world, hits, i), cosine) * cosine;
     const vlWorldShape *shape = &t->world->shapes.items[hits->shape[i]];
-    vlShadowStart start = {
-        vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w),
-        {v, v, v, v},
-        cosine * VL_INV_PI,
-        vl_medium_beyond(shape, g, w, rows->medium[i])};
+    vlShadowStart start = {vl_surface_origin(f, i, w),
+                           {v, v, v, v},
+                           cosine * VL_INV_PI,
+                           vl_medium_beyond(shape, g, w, rows->medium[i])};
     vl_volume_push_shadow(t, p, rows, light, i, &start, count++, q, flights);
   }
   vl_volume_shadows(t, p, light, count, depth, q, flights);
@@ -346,7 +345,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension, const vlHits *hi
       continue;
     vlVec3 nn = vl_lane3(f->nx, f->ny, f->nz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
     vlVec3 w = vl_normalize(vl_from_local(vl_frame_from_z(nn), local));
-    vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
+    vlVec3 o = vl_surface_origin(f, i, w);
     float weight = exit_value(table_at(t->world, hits, i), local.z) * VL_PI,
           pdf = local.z * VL_INV_PI;
     vl_set_lane3(p->ox, p->oy, p->oz, i, o);

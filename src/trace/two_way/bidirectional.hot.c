@@ -124,10 +124,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
   vl_stage_light_bsdf(t, n, x->at, light, bsdf);
   vl_stage_reverse(t, n, x->at, bsdf->wi, back);
   for (uint32_t i = 0; i < n; i++) {
-    if (!(l->pdf[i] > 0.0f))
-      continue;
-    float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i];
-    if (!(sum > 0.0f) && sum == sum)
+    if (!(l->pdf[i] > 0.0f) || !vl_has_value(bsdf, i))
       continue;
     vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
     vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
@@ -136,7 +133,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
         (l->delta[i] ? 0.0f : bsdf->pdf[i]) +
         (t->def->two_way->merged + ways->a[i] * back->pdf[i] + ways->b[i]) *
             (vl_abs(vl_dot(w, g)) * vl_sampled_density(t, l, i, at));
-    push_shadow(t, i, vl_offset_origin(at, g, f->offset[i], w), count, x, l, bsdf, q);
+    push_shadow(t, i, vl_surface_origin(f, i, w), count, x, l, bsdf, q);
     count++;
   }
   vl_two_way_shadows(t, p, count, depth, q);

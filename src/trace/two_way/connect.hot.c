@@ -201,7 +201,7 @@ static vlConnection connection(const vlTracing *t, uint32_t i, vlVec3 w, float f
   return (vlConnection){
       .i = i,
       .at = at,
-      .o = vl_offset_origin(at, g, f->offset[i], w),
+      .o = vl_surface_origin(f, i, w),
       .w = w,
       .value = {there->value[0][i], there->value[1][i], there->value[2][i], there->value[3][i]},
       .forth = there->pdf[i],
@@ -253,7 +253,6 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVe
                       vlBsdfValues *there, vlBsdfValues *back, const vlTwoWayShadows *q) {
   VL_ROW float toward[3][VL_ROW_SIZE], factor[VL_ROW_SIZE];
   uint32_t chosen[VL_ROW_SIZE], count = 0;
-  const float(*value)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])there->value;
   if (depth + 2 > t->def->max_depth)
     return;
   vl_choose_vertices(t, n, depth, x, chosen, factor);
@@ -261,10 +260,7 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVe
     return;
   vl_stage_there_and_back(t, n, x->at, toward, there, back);
   for (uint32_t i = 0; i < n; i++) {
-    if (chosen[i] == VL_NONE)
-      continue;
-    float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
-    if (!(sum > 0.0f) && sum == sum)
+    if (chosen[i] == VL_NONE || !vl_has_value(there, i))
       continue;
     vlVec3 w = vl_lane3(toward[0], toward[1], toward[2], i);
     vlConnection c = connection(t, i, w, factor[i], x, there, back);

@@ -205,8 +205,8 @@ void vl_connect_to_camera(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
     if (!(view->per_square > 0.0f) || !(sum > 0.0f) || !(ways->cosine[i] > 0.0f))
       continue;
-    vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
-    vlVec3 o = vl_offset_origin(at, g, f->offset[i], vl_sub(view->from, at));
+    vlVec3 at = vl_lane3(f->px, f->py, f->pz, i);
+    vlVec3 o = vl_surface_origin(f, i, vl_sub(view->from, at));
     vlVec3 d = push(p, i, count, o, view->from, view->end, q);
     if (q->flights)
       start_in_media(t, x, i, count, d, wi[2][i], q->flights);

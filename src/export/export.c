@@ -124,6 +124,31 @@ bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size) 
          keep_result(x, vl_file_set_write(&x->files, name, data, size, x->error));
 }
 
+static const void *data_of(const vlTextureDef *t) {
+  return t->data ? t->data : (const void *)t->image;
+}
+
+vlExportImage *vl_export_find_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
+  const void *data = data_of(t);
+  for (size_t i = 0; i < x->images.count; i++) {
+    vlExportImage *p = &x->images.items[i];
+    if (p->variant == variant && p->data == data &&
+        (data || (p->path && t->path && vl_text_is(p->path, t->path))))
+      return p;
+  }
+  return NULL;
+}
+
+vlExportImage *vl_export_add_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
+  const void *data = data_of(t);
+  vlExportImage *slot = VL_PUSH(x->context, &x->images);
+  if (slot)
+    *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .variant = variant};
+  else
+    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  return slot;
+}
+
 vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
   vlImage *image = NULL;
   vlError error;

@@ -88,6 +88,10 @@ bool vl_export_main(vlExport *x, const void *data, size_t size);
 bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size);
 /* Path of a file in the folder of the scene file. */
 bool vl_export_path(vlExport *x, const char *name, char *path, size_t size);
+/* The image of a texture that was written already with these changes; null: none. */
+vlExportImage *vl_export_find_image(vlExport *x, const vlTextureDef *t, uint32_t variant);
+/* Notes that it is written now. Null: the export has failed. */
+vlExportImage *vl_export_add_image(vlExport *x, const vlTextureDef *t, uint32_t variant);
 /* The decoded image of a texture. */
 vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t);
 /* The texture's image as bytes of an image file: the original bytes of a PNG or JPEG, otherwise

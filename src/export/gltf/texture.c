@@ -37,12 +37,9 @@ json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const c
 
 /* Index of the image in "images"; -1 after an error. */
 static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
-  const void *data = t->data ? t->data : (const void *)t->image;
-  for (size_t i = 0; i < x->images.count; i++) {
-    const vlExportImage *p = &x->images.items[i];
-    if (p->data == data && (data || (p->path && t->path && vl_text_is(p->path, t->path))))
-      return p->index;
-  }
+  vlExportImage *image = vl_export_find_image(x, t, 0);
+  if (image)
+    return image->index;
   char *bytes;
   const char *suffix;
   size_t size;
@@ -50,10 +47,10 @@ static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
     return -1;
   const json_int_t index = vl_gltf_put_file(x, bytes, size, suffix);
   vl_free(x->context, bytes);
-  vlExportImage *slot = index < 0 ? NULL : VL_PUSH(x->context, &x->images);
-  if (slot)
-    *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .index = index};
-  return index;
+  image = index < 0 ? NULL : vl_export_add_image(x, t, 0);
+  if (image)
+    image->index = index;
+  return image ? index : -1;
 }
 
 static json_int_t put_once(vlExport *x, const char *key, json_t *value) {

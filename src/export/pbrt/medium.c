@@ -11,10 +11,8 @@ static void put_cells(vlExport *x, const char *parameter, const vlMediumDef *m, 
   size_t count = per * m->nx * m->ny * m->nz;
   if (!v)
     return;
-  PUT("\n  \"%s\" [", parameter);
-  for (size_t i = 0; i < count; i++)
-    PUT("%s%.9g", i ? " " : "", (double)v[i]);
-  PUT("]");
+  PUT("\n  \"%s\" ", parameter);
+  vl_pbrt_floats(x, v, count);
 }
 
 /* The arrays of the row: numbers or colours per cell. */

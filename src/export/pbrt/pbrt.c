@@ -18,6 +18,13 @@
 
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 
+void vl_pbrt_floats(vlExport *x, const float *v, size_t count) {
+  PUT("[");
+  for (size_t i = 0; i < count; i++)
+    PUT("%s%.9g", i ? " " : "", (double)v[i]);
+  PUT("]");
+}
+
 void vl_pbrt_matrix(vlExport *x, const double m[16]) {
   if (vl_mat4_is_identity(m))
     return;

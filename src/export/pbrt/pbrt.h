@@ -7,6 +7,8 @@
 
 #define PUT(...) vl_bytes_print(x->context, &x->text, __VA_ARGS__)
 
+/* Writes numbers in brackets. */
+void vl_pbrt_floats(vlExport *x, const float *v, size_t count);
 /* Writes ConcatTransform unless the matrix is the identity. */
 void vl_pbrt_matrix(vlExport *x, const double m[16]);
 /* Starts a spectrum parameter of that name. */

@@ -14,10 +14,8 @@ static void put_floats(vlExport *x, const char *type, const char *name, const fl
                        size_t count) {
   if (!v)
     return;
-  PUT("\n    \"%s %s\" [", type, name);
-  for (size_t i = 0; i < count; i++)
-    PUT("%s%.9g", i ? " " : "", (double)v[i]);
-  PUT("]");
+  PUT("\n    \"%s %s\" ", type, name);
+  vl_pbrt_floats(x, v, count);
 }
 
 static void put_inline(vlExport *x, const vlShapeDef *d) {

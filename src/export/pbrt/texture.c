@@ -9,25 +9,12 @@
 #include "math/fresnel.h"
 #include "velo/texture.h"
 
-static vlExportImage *find_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
-  const void *data = t->data ? t->data : (const void *)t->image;
-  for (size_t i = 0; i < x->images.count; i++) {
-    vlExportImage *p = &x->images.items[i];
-    if (p->variant == variant && p->data == data &&
-        (data || (p->path && t->path && vl_text_is(p->path, t->path))))
-      return p;
-  }
-  return NULL;
-}
-
 static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, const char *bytes,
                         size_t size, const char *suffix, char name[300]) {
   snprintf(name, 300, "%.200s-%zu%s", x->stem, x->images.count, suffix);
-  vlExportImage *slot = VL_PUSH(x->context, &x->images);
+  vlExportImage *slot = vl_export_add_image(x, t, variant);
   if (!slot)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
-  const void *data = t->data ? t->data : (const void *)t->image;
-  *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .variant = variant};
+    return false;
   bool fine = vl_export_data(x, name, bytes, size);
   memcpy(slot->name, name, sizeof slot->name);
   return fine;
@@ -82,7 +69,7 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
 bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]) {
   const uint32_t variant =
       (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0);
-  vlExportImage *known = find_image(x, t, variant);
+  vlExportImage *known = vl_export_find_image(x, t, variant);
   if (known) {
     memcpy(name, known->name, sizeof known->name);
     return true;
@@ -177,7 +164,7 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
                          change.raised,     change.lost,      change.metal ? 1 : 0};
   for (size_t i = 0; i < sizeof key; i++)
     variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 16u;
-  vlExportImage *known = find_image(x, t, variant);
+  vlExportImage *known = vl_export_find_image(x, t, variant);
   if (known) {
     memcpy(name, known->name, sizeof known->name);
     return true;

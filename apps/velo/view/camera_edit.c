@@ -123,17 +123,10 @@ static const struct {
               {VL_PROJECTION_EUCM, 0, {0.6, 1.1}},
               {VL_PROJECTION_DOUBLE_SPHERE, 0, {-0.2, 0.6}}};
 
-/* From the eye to the point that it looks at. */
-static double arm_of(const CameraPose *pose) {
-  double arm[3];
-  vector_subtract(pose->lookat, pose->eye, arm);
-  return vector_length(arm);
-}
-
 static void start_projection(const ViewCamera *now, vlCameraDef *def) {
   const double field = 2.0 * atan(0.5 * now->made.height / now->made.fy);
   const CameraPose pose = camera_pose(now);
-  const double distance = arm_of(&pose);
+  const double distance = camera_arm(&pose);
   drop_focal(def);
   def->screen_min_x = def->screen_max_x = def->screen_min_y = def->screen_max_y = VL_UNSET;
   def->cx = def->cy = def->skew = def->shape[0] = def->shape[1] = def->max_angle = VL_UNSET;
@@ -497,7 +490,7 @@ vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCame
   if (status == VL_OK && edit.pose.given)
     camera_place(now, &edit.pose.pose, &next.def);
   note_units(&next.def, &next.units);
-  const double arm = arm_of(&edit.pose.pose);
+  const double arm = camera_arm(&edit.pose.pose);
   if (arm > 0)
     next.units.lookat = arm;
   tidy_sensor(&next.units, &next.def);

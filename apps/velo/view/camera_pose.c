@@ -87,3 +87,9 @@ void camera_place(const ViewCamera *now, const CameraPose *pose, vlCameraDef *de
     def->world_from_camera[4 * row + 3] = pose->eye[row];
   }
 }
+
+double camera_arm(const CameraPose *pose) {
+  double arm[3];
+  vector_subtract(pose->lookat, pose->eye, arm);
+  return vector_length(arm);
+}

@@ -28,4 +28,7 @@ CameraPose camera_pose(const ViewCamera *camera);
 /* Gives the def this pose. A pose that mirrors or scales keeps doing so: it stays a matrix. */
 void camera_place(const ViewCamera *now, const CameraPose *pose, vlCameraDef *def);
 
+/* From the eye to the point that it looks at. */
+double camera_arm(const CameraPose *pose);
+
 #endif

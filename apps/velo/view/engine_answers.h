@@ -13,6 +13,9 @@ bool engine_take_task(const Engine *engine, TaskList *tasks, ViewMessage *first)
 bool engine_answer_question(Engine *engine);
 /* Begins the answer to a task, as json_text_begin. */
 Json *engine_reply_begin(const ViewMessage *message, const char *type);
+/* Begins the answer with a result, or posts why there is none. Null: nothing is to be sent. */
+Json *engine_reply_with(Engine *engine, const ViewMessage *message, const char *type,
+                        vlResult result, const vlError *error);
 /* Whether a message's point is in the image; if not, that is posted. */
 bool engine_is_in_image(Engine *engine, const ViewMessage *message, const vlCamera *camera);
 /* Posts why a message is not answered. */

@@ -54,12 +54,8 @@ static void put_drawing(Json *json, const vlDrawing *d) {
 static double plane_distance(const ViewCamera *camera, const MessageField *given) {
   double d = camera->def.view_distance, arm = camera->units.lookat;
   const CameraPose pose = camera_pose(camera);
-  if (!camera->def.has_matrix) {
-    arm = 0;
-    for (int i = 0; i < 3; i++)
-      arm += (pose.lookat[i] - pose.eye[i]) * (pose.lookat[i] - pose.eye[i]);
-    arm = sqrt(arm);
-  }
+  if (!camera->def.has_matrix)
+    arm = camera_arm(&pose);
   if (given && given->numbers[0] > 0.02 * arm && given->numbers[0] < 4 * arm)
     return given->numbers[0];
   return d > 0.02 * arm && d < 4 * arm ? d : 0.4 * arm;
@@ -76,9 +72,7 @@ void engine_outline(Engine *e, const ViewMessage *m) {
   def.points = point ? point->numbers : NULL;
   def.point_count = point ? 1 : 0;
   vlResult result = vl_camera_outline(e->def.context, &camera.made, 1, &def, &drawing, &error);
-  if (result != VL_OK)
-    engine_refuse(e, m, error.message);
-  Json *json = result == VL_OK ? engine_reply_begin(m, "outline") : NULL;
+  Json *json = engine_reply_with(e, m, "outline", result, &error);
   if (json) {
     json_put(json, "plane %g, d %g", def.plane, camera.def.view_distance);
     put_drawing(json, drawing);
@@ -99,9 +93,7 @@ void engine_cameras(Engine *e, const ViewMessage *m) {
   if (model->camera_count)
     result = vl_camera_outline(e->def.context, model->cameras, model->camera_count, &def,
                                &drawing, &error);
-  if (result != VL_OK)
-    engine_refuse(e, m, error.message);
-  Json *json = result == VL_OK ? engine_reply_begin(m, "cameras") : NULL;
+  Json *json = engine_reply_with(e, m, "cameras", result, &error);
   if (json) {
     if (drawing)
       put_drawing(json, drawing);

@@ -19,6 +19,13 @@ void engine_refuse(Engine *e, const ViewMessage *m, const char *why) {
               m->id, m->field_count ? m->fields[0].name : "", why);
 }
 
+Json *engine_reply_with(Engine *e, const ViewMessage *m, const char *type, vlResult result,
+                        const vlError *error) {
+  if (result != VL_OK)
+    engine_refuse(e, m, error->message);
+  return result == VL_OK ? engine_reply_begin(m, type) : NULL;
+}
+
 ViewCamera engine_camera(Engine *e) {
   engine_lock(e);
   ViewCamera camera = e->wanted.camera;
@@ -76,9 +83,7 @@ void engine_pick(Engine *e, const ViewMessage *m) {
   vlImage *floats = NULL, *ids = NULL;
   vlError error = {0};
   vlResult result = vl_render_channels(e->model.world, c, &def, &floats, &ids, &error);
-  Json *json = result == VL_OK ? engine_reply_begin(m, "picked") : NULL;
-  if (result != VL_OK)
-    engine_refuse(e, m, error.message);
+  Json *json = engine_reply_with(e, m, "picked", result, &error);
   if (json) {
     static const char *const vectors[][4] = {{"P", "P.X", "P.Y", "P.Z"},
                                              {"N", "N.X", "N.Y", "N.Z"},

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "base/unset.h"
 #include "schema/member.h"
+#include "schema/schema.h"
 #include "velo/setting.h"
 
 /* ---- what a value must be ---------------------------------------------------------------- */

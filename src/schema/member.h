@@ -2,7 +2,9 @@
 #ifndef SCHEMA_MEMBER_H
 #define SCHEMA_MEMBER_H
 
-#include "schema/schema.h"
+#include "velo/scene_base.h"
+#include "velo/schema.h"
+#include "velo/spectrum.h"
 
 /* How the value of a parameter is stored. Offsets are from the value's begin. */
 typedef struct vlMemberType {

@@ -10,194 +10,138 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* One of each, some with distortion; their poses are of no matter here but not trivial. */
-enum { MODELS = 32 };
+/* One of each, some with distortion. What is 0 or null stays at its default. */
+typedef struct Model {
+  vlProjection projection;
+  double shape[2];
+  double fov; /* radians */
+  vlFovAxis fov_axis;
+  double fx;
+  vlDistortion distortion;
+  uint32_t count; /* of coefficients */
+  double k[14];
+  const char *colmap; /* COLMAP's model with the parameters p, in place of all above */
+  double p[12];
+  uint32_t parameters;
+} Model;
+
+#define FULL_TURN 6.28318530717958647692
+/* The models that tests name; they have indices of their own in the table. */
+enum {
+  PLAIN = 0,
+  WINDOW = 6,
+  CUBE = 9,
+  ALL_OF_OPENCV = 21,
+  FOLDS = 28,
+  FOLDS_ASLANT = 29,
+  ORTHOGRAPHIC = 30,
+  MODELS = 32
+};
+
+static const Model models[MODELS] = {
+    [PLAIN] = {VL_PROJECTION_PERSPECTIVE},
+    {VL_PROJECTION_EQUIDISTANT},
+    {VL_PROJECTION_EQUISOLID, .fov = FULL_TURN, .fov_axis = VL_FOV_DIAGONAL},
+    {VL_PROJECTION_STEREOGRAPHIC, .fov = 4.5, .fov_axis = VL_FOV_HORIZONTAL},
+    {VL_PROJECTION_SINE},
+    {VL_PROJECTION_EQUIRECTANGULAR},
+    [WINDOW] = {VL_PROJECTION_EQUIRECTANGULAR},
+    {VL_PROJECTION_EQUAL_AREA},
+    {VL_PROJECTION_CYLINDRICAL},
+    [CUBE] = {VL_PROJECTION_CUBE},
+    {VL_PROJECTION_PANINI, .fov = 4, .fov_axis = VL_FOV_HORIZONTAL},
+    {VL_PROJECTION_PANINI, {0.5}, .fov = 3, .fov_axis = VL_FOV_HORIZONTAL},
+    {VL_PROJECTION_PANINI, {3}},
+    {VL_PROJECTION_FOV, {0.9}},
+    {VL_PROJECTION_DIVISION, {-0.3}, .fov = 3.6},
+    {VL_PROJECTION_DIVISION, {0.1}},
+    {VL_PROJECTION_UNIFIED, {0.8}, .fov = 3.5},
+    {VL_PROJECTION_UNIFIED, {1.7}, .fov = 3.5},
+    {VL_PROJECTION_EUCM, {0.6, 1.1}, .fov = 3.3},
+    {VL_PROJECTION_DOUBLE_SPHERE, {-0.2, 0.58}, .fov = 3.3},
+    {VL_PROJECTION_DOUBLE_SPHERE, {0.3, 0.4}},
+    [ALL_OF_OPENCV] = {.fx = 500,
+                       .distortion = VL_DISTORTION_OPENCV,
+                       .count = 14,
+                       .k = {-0.28, 0.07, 1e-3, -2e-3, 0.01, 0.02, -0.01, 0.003, 1e-3, -5e-4,
+                             2e-3, 3e-4, 0.03, -0.02}},
+    /* strong barrel that does not fold within the image; pincushion */
+    {.fx = 500, .distortion = VL_DISTORTION_OPENCV, .count = 5, .k = {-0.3, 0.1, 0, 0, 0.02}},
+    {.fx = 600, .distortion = VL_DISTORTION_OPENCV, .count = 4, .k = {0.4, 0.2}},
+    /* OpenCV's fisheye */
+    {VL_PROJECTION_EQUIDISTANT, .fx = 210, .distortion = VL_DISTORTION_RADIAL, .count = 4,
+     .k = {0.03, -0.02, 0.004, -0.0003}},
+    {.colmap = "THIN_PRISM_FISHEYE",
+     .p = {220, 225, 310, 240, 0.02, -0.01, 1e-3, -5e-4, 2e-3, -2e-4, 3e-4, -4e-4},
+     .parameters = 12},
+    {.colmap = "RADIAL", .p = {450, 320, 240, -0.12, 0.05}, .parameters = 5},
+    /* unified with distortion: Mei's whole model */
+    {VL_PROJECTION_UNIFIED,
+     {0.9},
+     .fx = 400,
+     .distortion = VL_DISTORTION_OPENCV,
+     .count = 4,
+     .k = {-0.2, 0.04, 1e-3}},
+    /* these fold inside the image, the second with tangential terms */
+    [FOLDS] = {.fx = 300, .distortion = VL_DISTORTION_RADIAL, .count = 1, .k = {-0.4}},
+    [FOLDS_ASLANT] = {.fx = 300,
+                      .distortion = VL_DISTORTION_OPENCV,
+                      .count = 4,
+                      .k = {-0.4, 0, 0.02, 0.01}},
+    [ORTHOGRAPHIC] = {VL_PROJECTION_ORTHOGRAPHIC},
+    {VL_PROJECTION_EQUIDISTANT, .fov = FULL_TURN}};
+
+/* The model's def, with a pose that is of no matter here but not trivial. */
 static vlCameraDef model_def(int index) {
+  const Model *m = &models[index];
   vlCameraDef d = vl_default_camera_def(641, 479);
   set3(d.eye, 1, 2, 3);
   set3(d.lookat, -3, 4, 5);
   d.roll = 0.3;
-  double *k = d.distortion_coefficients;
-  const double opencv[14] = {-0.28, 0.07, 1e-3,  -2e-3, 0.01, 0.02, -0.01,
-                             0.003, 1e-3, -5e-4, 2e-3,  3e-4, 0.03, -0.02};
+  if (m->colmap) {
+    assert_int_equal(vl_camera_def_colmap(&d, m->colmap, m->p, m->parameters, NULL), VL_OK);
+    return d;
+  }
+  d.projection = m->projection;
+  for (int i = 0; i < 2; i++)
+    if (m->shape[i] != 0)
+      d.shape[i] = m->shape[i];
+  if (m->fov > 0)
+    d.fov = m->fov;
+  if (m->fov_axis)
+    d.fov_axis = m->fov_axis;
+  if (m->fx > 0)
+    d.fx = m->fx;
+  if (m->count)
+    d.distortion = m->distortion;
+  d.distortion_count = m->count;
+  memcpy(d.distortion_coefficients, m->k, sizeof m->k);
   switch (index) {
-    case 0:
-      break;
-    case 1:
-      d.projection = VL_PROJECTION_EQUIDISTANT;
-      break;
-    case 2:
-      d.projection = VL_PROJECTION_EQUISOLID;
-      d.fov = 2 * pi;
-      d.fov_axis = VL_FOV_DIAGONAL;
-      break;
-    case 3:
-      d.projection = VL_PROJECTION_STEREOGRAPHIC;
-      d.fov = 4.5;
-      d.fov_axis = VL_FOV_HORIZONTAL;
-      break;
-    case 4:
-      d.projection = VL_PROJECTION_SINE;
-      break;
-    case 5:
-      d.projection = VL_PROJECTION_EQUIRECTANGULAR;
-      break;
-    case 6:
-      d.projection = VL_PROJECTION_EQUIRECTANGULAR;
+    case WINDOW:
       d.screen_min_x = -2;
       d.screen_max_x = 1;
       d.screen_min_y = -0.5;
       d.screen_max_y = 1.4;
       break;
-    case 7:
-      d.projection = VL_PROJECTION_EQUAL_AREA;
-      break;
-    case 8:
-      d.projection = VL_PROJECTION_CYLINDRICAL;
-      break;
-    case 9:
-      d.projection = VL_PROJECTION_CUBE;
+    case CUBE:
       d.width = 600;
       d.height = 100;
       break;
-    case 10:
-      d.projection = VL_PROJECTION_PANINI;
-      d.fov = 4;
-      d.fov_axis = VL_FOV_HORIZONTAL;
-      break;
-    case 11:
-      d.projection = VL_PROJECTION_PANINI;
-      d.shape[0] = 0.5;
-      d.fov = 3;
-      d.fov_axis = VL_FOV_HORIZONTAL;
-      break;
-    case 12:
-      d.projection = VL_PROJECTION_PANINI;
-      d.shape[0] = 3;
-      break;
-    case 13:
-      d.projection = VL_PROJECTION_FOV;
-      d.shape[0] = 0.9;
-      break;
-    case 14:
-      d.projection = VL_PROJECTION_DIVISION;
-      d.shape[0] = -0.3;
-      d.fov = 3.6;
-      break;
-    case 15:
-      d.projection = VL_PROJECTION_DIVISION;
-      d.shape[0] = 0.1;
-      break;
-    case 16:
-      d.projection = VL_PROJECTION_UNIFIED;
-      d.shape[0] = 0.8;
-      d.fov = 3.5;
-      break;
-    case 17:
-      d.projection = VL_PROJECTION_UNIFIED;
-      d.shape[0] = 1.7;
-      d.fov = 3.5;
-      break;
-    case 18:
-      d.projection = VL_PROJECTION_EUCM;
-      d.shape[0] = 0.6;
-      d.shape[1] = 1.1;
-      d.fov = 3.3;
-      break;
-    case 19:
-      d.projection = VL_PROJECTION_DOUBLE_SPHERE;
-      d.shape[0] = -0.2;
-      d.shape[1] = 0.58;
-      d.fov = 3.3;
-      break;
-    case 20:
-      d.projection = VL_PROJECTION_DOUBLE_SPHERE;
-      d.shape[0] = 0.3;
-      d.shape[1] = 0.4;
-      break;
-    case 21: /* OpenCV, all fourteen, full intrinsics */
-      d.fx = 500;
+    case ALL_OF_OPENCV:
       d.fy = 510;
       d.cx = 300;
       d.cy = 250;
       d.skew = 0.7;
-      d.distortion = VL_DISTORTION_OPENCV;
-      d.distortion_count = 14;
-      memcpy(k, opencv, sizeof opencv);
       break;
-    case 22: /* strong barrel that does not fold within the image */
-      d.fx = 500;
-      d.distortion = VL_DISTORTION_OPENCV;
-      d.distortion_count = 5;
-      k[0] = -0.3;
-      k[1] = 0.1;
-      k[4] = 0.02;
-      break;
-    case 23: /* pincushion */
-      d.fx = 600;
-      d.distortion = VL_DISTORTION_OPENCV;
-      d.distortion_count = 4;
-      k[0] = 0.4;
-      k[1] = 0.2;
-      break;
-    case 24: /* OpenCV fisheye */
-      d.fx = 210;
-      d.projection = VL_PROJECTION_EQUIDISTANT;
-      d.distortion = VL_DISTORTION_RADIAL;
-      d.distortion_count = 4;
-      k[0] = 0.03;
-      k[1] = -0.02;
-      k[2] = 0.004;
-      k[3] = -0.0003;
-      break;
-    case 25: { /* COLMAP's thin prism fisheye */
-      const double p[12] = {220,  225,   310,  240,   0.02, -0.01,
-                            1e-3, -5e-4, 2e-3, -2e-4, 3e-4, -4e-4};
-      assert_int_equal(vl_camera_def_colmap(&d, "THIN_PRISM_FISHEYE", p, 12, NULL), VL_OK);
-      break;
-    }
-    case 26: { /* RADIAL */
-      const double p[5] = {450, 320, 240, -0.12, 0.05};
-      assert_int_equal(vl_camera_def_colmap(&d, "RADIAL", p, 5, NULL), VL_OK);
-      break;
-    }
-    case 27: /* unified with distortion: Mei's whole model */
-      d.projection = VL_PROJECTION_UNIFIED;
-      d.shape[0] = 0.9;
-      d.fx = 400;
-      d.distortion = VL_DISTORTION_OPENCV;
-      d.distortion_count = 4;
-      k[0] = -0.2;
-      k[1] = 0.04;
-      k[2] = 1e-3;
-      break;
-    case 28: /* folds inside the image */
-      d.fx = 300;
-      d.distortion = VL_DISTORTION_RADIAL;
-      d.distortion_count = 1;
-      k[0] = -0.4;
-      break;
-    case 29: /* folds, with tangential terms */
-      d.fx = 300;
-      d.distortion = VL_DISTORTION_OPENCV;
-      d.distortion_count = 4;
-      k[0] = -0.4;
-      k[2] = 0.02;
-      k[3] = 0.01;
-      break;
-    case 30:
-      d.projection = VL_PROJECTION_ORTHOGRAPHIC;
+    case ORTHOGRAPHIC:
       d.pixel_size = 0.01;
-      break;
-    case 31:
-      d.projection = VL_PROJECTION_EQUIDISTANT;
-      d.fov = 2 * pi;
       break;
     default:
       break;
   }
   return d;
 }
+
 static vlCamera model(int index) {
   vlCameraDef def = model_def(index);
   vlCamera camera;
@@ -254,7 +198,7 @@ static void there_and_back(void **state) {
 static void back_and_there(void **state) {
   (void)state;
   for (int k = 0; k < MODELS; k++) {
-    if (k == 30)
+    if (k == ORTHOGRAPHIC)
       continue;
     vlCamera camera = model(k);
     uint64_t random = 9;
@@ -318,7 +262,7 @@ static void valid_points_have_rays(void **state) {
   static double points[POINTS][3], pixels[POINTS][2], depth[POINTS], directions[POINTS][3];
   static uint8_t valid[POINTS], answered[POINTS];
   for (int k = 0; k < MODELS + 4; k++) {
-    vlCameraDef def = model_def(k < MODELS ? k : 0);
+    vlCameraDef def = model_def(k < MODELS ? k : PLAIN);
     if (k >= MODELS) {
       def.fx = 500;
       def.distortion = VL_DISTORTION_OPENCV;
@@ -545,7 +489,7 @@ static void solid_angles(void **state) {
         continue; /* creases */
       if (wanted >= 0 && fabs(got / wanted - 1) > 1e-7)
         fail_msg("model %d: %g, not %g", k, got, wanted);
-      if (k == 9 || k == 30 || got == 0)
+      if (k == CUBE || k == ORTHOGRAPHIC || got == 0)
         continue;
       /* and a little quadrilateral of rays */
       const double h = 1e-3;
@@ -564,7 +508,7 @@ static void solid_angles(void **state) {
         n[j] = a[(j + 1) % 3] * b[(j + 2) % 3] - a[(j + 2) % 3] * b[(j + 1) % 3];
       double quad = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / (4 * h * h);
       /* where it folds, differences see two sides */
-      bool rim = (k == 28 || k == 29) && r > 0.57;
+      bool rim = (k == FOLDS || k == FOLDS_ASLANT) && r > 0.57;
       if (!rim && fabs(got / quad - 1) > 1e-5)
         fail_msg("model %d at %g %g: %g, by rays %g", k, x, y, got, quad);
     }
@@ -649,7 +593,7 @@ static void folding_is_found(void **state) {
   /* r (1 + k r^2) turns where 1 + 3 k r^2 = 0 */
   vlCamera c = model(28);
   assert_true(fabs(c.distortion.radius - sqrt(1 / 1.2)) < 1e-9);
-  vlCameraDef def = model_def(28);
+  vlCameraDef def = model_def(FOLDS);
   const char *warning = NULL;
   assert_int_equal(vl_camera_make(&def, &c, &warning, NULL), VL_OK);
   assert_non_null(warning);
@@ -678,7 +622,7 @@ static void folding_is_found(void **state) {
   assert_int_equal(vl_camera_make(&def, &c, NULL, NULL), VL_OK);
   assert_true(fabs(c.distortion.radius - 2) < 1e-9);
   /* the general search agrees with the polynomial's root when the tangential terms vanish */
-  def = model_def(29);
+  def = model_def(FOLDS_ASLANT);
   def.distortion_coefficients[2] = 1e-12;
   def.distortion_coefficients[3] = 0;
   assert_int_equal(vl_camera_make(&def, &c, NULL, NULL), VL_OK);

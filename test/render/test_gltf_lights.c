@@ -4,10 +4,10 @@
 #include "render/gltf_shots.h"
 #include "velo/load.h"
 
+#define MATT "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}"
 #define PAPER                                                                           \
   "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.5,0.5,1],\"metallicFactor\":0," \
-  "\"roughnessFactor\":1},"                                                             \
-  "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}"
+  "\"roughnessFactor\":1}," MATT
 
 /* The wall is the plane z = 0 and the camera is at z = 10. Computes the point that pixel (x, y)
  * shows. */
@@ -106,60 +106,65 @@ static double spread(const Image *a, const Image *b) {
   return sqrt(sum / 1024);
 }
 
+/* Makes a new PNG file of one row. path: a template for mkstemps, ending in XXXXXX.png. */
+static void make_png(char *path, uint32_t width, const uint8_t *rgb) {
+  int file = mkstemps(path, 4);
+  assert_true(file >= 0);
+  close(file);
+  Stage s = stage_open(8, 8);
+  write_image(s.context, path, width, rgb);
+  stage_close(&s);
+}
+
+typedef struct Panel {
+  float low, high; /* the part of the image, along u, that it shows */
+  int strips;
+  bool textured;
+  uint32_t spp;
+} Panel;
+
+/* Strips along y, from -2 to 2, beside the wall; they face -x. */
+static void put_panel(Gltf *g, const Panel *panel) {
+  float corners[17 * 6], uv[17 * 4];
+  uint16_t faces[16 * 6];
+  for (int k = 0; k <= panel->strips; k++)
+    for (int top = 0; top < 2; top++) {
+      float u = panel->low + (panel->high - panel->low) * (float)k / (float)panel->strips;
+      float *to = corners + 6 * k + 3 * top;
+      to[0] = 2;
+      to[1] = 4 * u - 2;
+      to[2] = top ? 2.5f : 0.5f;
+      uv[4 * k + 2 * top] = u;
+      uv[4 * k + 2 * top + 1] = 0.5f;
+    }
+  static const uint16_t two[6] = {0, 1, 2, 2, 1, 3};
+  for (int k = 0; k < panel->strips; k++)
+    for (int i = 0; i < 6; i++)
+      faces[6 * k + i] = (uint16_t)(2 * k + two[i]);
+  size_t count = 2 * (size_t)panel->strips + 2;
+  gltf_floats(g, corners, count, "VEC3", 3);
+  gltf_floats(g, uv, count, "VEC2", 2);
+  gltf_shorts(g, faces, 6 * (size_t)panel->strips);
+}
+
 /* A panel beside the wall emits in one sixteenth of its emission image. It lights the wall as a
  * panel of that sixteenth alone. As a mesh of strips only the emissive strips are sampled, so
  * the noise is hardly larger; a single quadrilateral is sampled uniformly. */
 static void emissive_image(void **state) {
   (void)state;
   char path[] = "/tmp/velo-emission-XXXXXX.png";
-  int file = mkstemps(path, 4);
-  assert_true(file >= 0);
-  close(file);
   uint8_t rgb[48] = {0};
   rgb[15] = rgb[16] = rgb[17] = 255; /* the sixth of sixteen columns */
-  Stage s = stage_open(8, 8);
-  write_image(s.context, path, 16, rgb);
-  stage_close(&s);
-  static const struct {
-    float low, high;
-    int strips;
-    bool textured;
-    uint32_t spp;
-  } panels[4] = {{0, 1, 1, true, 64},
-                 {0, 1, 16, true, 64},
-                 {5 / 16.0f, 6 / 16.0f, 1, false, 64},
-                 {5 / 16.0f, 6 / 16.0f, 1, false, 512}};
+  make_png(path, 16, rgb);
+  static const Panel panels[4] = {{0, 1, 1, true, 64},
+                                  {0, 1, 16, true, 64},
+                                  {5 / 16.0f, 6 / 16.0f, 1, false, 64},
+                                  {5 / 16.0f, 6 / 16.0f, 1, false, 512}};
   Image p[4];
   for (int i = 0; i < 4; i++) {
     Gltf *g = calloc(1, sizeof *g);
     put_box(g, 0);
-    float corners[17 * 6], uv[17 * 4]; /* along y, from -2 to 2, beside the wall; it faces -x */
-    uint16_t faces[16 * 6];
-    for (int k = 0; k <= panels[i].strips; k++)
-      for (int top = 0; top < 2; top++) {
-        float u = panels[i].low +
-                  (panels[i].high - panels[i].low) * (float)k / (float)panels[i].strips;
-        float *to = corners + 6 * k + 3 * top;
-        to[0] = 2;
-        to[1] = 4 * u - 2;
-        to[2] = top ? 2.5f : 0.5f;
-        uv[4 * k + 2 * top] = u;
-        uv[4 * k + 2 * top + 1] = 0.5f;
-      }
-    for (int k = 0; k < panels[i].strips; k++) {
-      uint16_t a = (uint16_t)(2 * k);
-      const uint16_t two[6] = {a,
-                               (uint16_t)(a + 1),
-                               (uint16_t)(a + 2),
-                               (uint16_t)(a + 2),
-                               (uint16_t)(a + 1),
-                               (uint16_t)(a + 3)};
-      memcpy(faces + 6 * k, two, sizeof two);
-    }
-    size_t count = 2 * (size_t)panels[i].strips + 2;
-    gltf_floats(g, corners, count, "VEC3", 3);
-    gltf_floats(g, uv, count, "VEC2", 2);
-    gltf_shorts(g, faces, 6 * (size_t)panels[i].strips);
+    put_panel(g, &panels[i]);
     char rest[2400];
     snprintf(
         rest, sizeof rest,
@@ -198,16 +203,42 @@ static void emissive_image(void **state) {
 
 /* ---- colours, coverage, uv sets ---------------------------------------------------------- */
 
+/* Materials of a wall, and what is seen of its left and right half. */
+#define METAL_0 "\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
+
+static const struct {
+  const char *material, *attributes;
+  float left[3], right[3]; /* the image of a white room */
+} walls[] = {
+    {METAL_0 "\"baseColorFactor\":[0.8,0.8,0.8,1]}," MATT,
+     ",\"COLOR_0\":3",
+     {0.4f, 0.2f, 0.8f},
+     {0.4f, 0.2f, 0.8f}},
+    {"\"alphaMode\":\"BLEND\"," METAL_0 "\"baseColorFactor\":[0,0,0,0.8]}," MATT,
+     ",\"COLOR_0\":3",
+     {0.6f, 0.6f, 0.6f},
+     {0.6f, 0.6f, 0.6f}},
+    {"\"alphaMode\":\"MASK\"," METAL_0 "\"baseColorFactor\":[0,0,0,0.8]}," MATT,
+     ",\"COLOR_0\":3",
+     {1, 1, 1},
+     {1, 1, 1}},
+    {METAL_0 "\"baseColorTexture\":{\"index\":0}}," MATT, "", {1, 0, 0}, {1, 0, 0}},
+    {METAL_0 "\"baseColorTexture\":{\"index\":0,\"texCoord\":1}}," MATT,
+     "",
+     {1, 0, 0},
+     {0, 1, 0}},
+    {METAL_0 "\"baseColorTexture\":{\"index\":0,\"texCoord\":0,\"extensions\":{"
+             "\"KHR_texture_transform\":{\"texCoord\":1,\"offset\":[0.5,0]}}}}," MATT,
+     "",
+     {0, 1, 0},
+     {1, 0, 0}},
+};
+
 static void painted_walls(void **state) {
   (void)state;
   char path[] = "/tmp/velo-tint-XXXXXX.png";
-  int file = mkstemps(path, 4);
-  assert_true(file >= 0);
-  close(file);
   static const uint8_t rgb[6] = {255, 0, 0, 0, 255, 0};
-  Stage s = stage_open(8, 8);
-  write_image(s.context, path, 2, rgb);
-  stage_close(&s);
+  make_png(path, 2, rgb);
   static const float corners[12] = {-2, -2, 0, 2, -2, 0, -2, 2, 0, 2, 2, 0};
   /* all red */
   static const float here[8] = {0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f};
@@ -215,49 +246,6 @@ static void painted_walls(void **state) {
   static const float tints[16] = {0.5f, 0.25f, 1, 0.5f, 0.5f, 0.25f, 1, 0.5f,
                                   0.5f, 0.25f, 1, 0.5f, 0.5f, 0.25f, 1, 0.5f};
   static const uint16_t faces[6] = {0, 1, 2, 2, 1, 3};
-  static const struct {
-    const char *material, *attributes;
-    float left[3], right[3]; /* the image of a white room */
-  } walls[] = {
-      {"\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"baseColorFactor\":[0.8,0.8,0.8,1]},"
-       "\"extensions\":{"
-       "\"KHR_materials_specular\":{\"specularFactor\":0}}",
-       ",\"COLOR_0\":3",
-       {0.4f, 0.2f, 0.8f},
-       {0.4f, 0.2f, 0.8f}},
-      {"\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
-       "\"baseColorFactor\":[0,0,0,0.8]},"
-       "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}",
-       ",\"COLOR_0\":3",
-       {0.6f, 0.6f, 0.6f},
-       {0.6f, 0.6f, 0.6f}},
-      {"\"alphaMode\":\"MASK\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
-       "\"baseColorFactor\":[0,0,0,0.8]},"
-       "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}",
-       ",\"COLOR_0\":3",
-       {1, 1, 1},
-       {1, 1, 1}},
-      {"\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0}},"
-       "\"extensions\":{"
-       "\"KHR_materials_specular\":{\"specularFactor\":0}}",
-       "",
-       {1, 0, 0},
-       {1, 0, 0}},
-      {"\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0,"
-       "\"texCoord\":1}},"
-       "\"extensions\":{"
-       "\"KHR_materials_specular\":{\"specularFactor\":0}}",
-       "",
-       {1, 0, 0},
-       {0, 1, 0}},
-      {"\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0,"
-       "\"texCoord\":0,\"extensions\":{\"KHR_texture_transform\":{\"texCoord\":1,"
-       "\"offset\":[0.5,0]}}}},"
-       "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}",
-       "",
-       {0, 1, 0},
-       {1, 0, 0}},
-  };
   for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
     Gltf *g = calloc(1, sizeof *g);
     gltf_floats(g, corners, 4, "VEC3", 3);

@@ -11,11 +11,11 @@ typedef struct vlLightPoint {
   vlVec3 p, n;
   float offset;     /* of p (trace/surface/offset.h) */
   float pdf;        /* per area */
-  float u, v;       /* where the image of the emission is read */
+  float u, v;       /* where the image of the emission is read; 0: a triangle without one */
   float weights[3]; /* barycentric coordinates in a triangle */
 } vlLightPoint;
 /* The point of a triangle with the barycentric coordinates b. */
-vlLightPoint vl_light_point_at(const vlWorldLight *light, const vlWorldShape *shape,
+vlLightPoint vl_light_point_at(const vlWorld *world, const vlWorldLight *light,
                                const float b[3]);
 /* A random point of a shape of another kind. */
 vlLightPoint vl_light_point_on(const vlWorldLight *light, const vlWorldShape *shape, float u,

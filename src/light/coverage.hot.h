@@ -15,8 +15,8 @@ static inline float vl_light_coverage(const vlWorld *world, const vlWorldLight *
   const vlWorldShape *s = &world->shapes.items[light->shape];
   vlTextureCorner corner = {s, light->prim, {weights[0], weights[1], weights[2]}};
   vlTextureQuery at = {u, v, p, n, &corner};
-  if (s->triangles) { /* for triangles, the arguments u and v belong to the
-                                          emission's image */
+  /* for triangles, the arguments u and v belong to the emission's image */
+  if (s->triangles) {
     vlVec2 uv = vl_triangle_uv(s->uvs, s->indices + 3 * (size_t)light->prim, weights);
     at.u = uv.x;
     at.v = uv.y;

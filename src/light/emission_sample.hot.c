@@ -83,13 +83,14 @@ float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t l
 
 /* ---- area lights ------------------------------------------------------------------------- */
 
-static vlLightPoint random_point(const vlWorldLight *light, const vlWorldShape *s, float u,
+static vlLightPoint random_point(const vlWorld *world, const vlWorldLight *light, float u,
                                  float v) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
   if (!s->triangles)
     return vl_light_point_on(light, s, u, v);
   vlVec2 b = vl_warp_triangle(u, v);
   const float weights[3] = {b.x, b.y, 1.0f - b.x - b.y};
-  return vl_light_point_at(light, s, weights);
+  return vl_light_point_at(world, light, weights);
 }
 
 /* A direction of the cosine hemisphere about z, drawn together into the spread. */
@@ -106,7 +107,7 @@ static void emit_from_face(const vlEmissionQuery *q, vlEmission *out) {
   const vlEmitted *e = q->emitted;
   float s = q->s, t = q->t;
   const vlWorldShape *shape = &world->shapes.items[light->shape];
-  vlLightPoint at = random_point(light, shape, q->u, q->v);
+  vlLightPoint at = random_point(world, light, q->u, q->v);
   if (!(at.pdf > 0.0f) || (light->outer_side && !emits_outwards(world, light)))
     return;
   float sides = 1.0f;

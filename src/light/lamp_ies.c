@@ -174,8 +174,7 @@ static bool read_candela(vlLampText *t, double factor, vlLampData *data) {
 }
 
 static bool read_table(vlLampText *t, double factor, vlLampData *data) {
-  /* Degrees. Type C: from the nadir up, and all around; A and B: up and down, left and right.
-   */
+  /* degrees; type C: from the nadir up, and all around; A and B: up and down, left and right */
   const bool around = data->type == 'C';
   const double low = around ? 0 : -90;
   return read_angles(t, "vertical angle", data->angles, low, around ? 180 : 90,

@@ -49,16 +49,14 @@ void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[
 
 /* ---- area lights ------------------------------------------------------------------------- */
 
-vlLightPoint vl_light_point_at(const vlWorldLight *light, const vlWorldShape *s,
+vlLightPoint vl_light_point_at(const vlWorld *world, const vlWorldLight *light,
                                const float b[3]) {
+  const vlWorldShape *s = &world->shapes.items[light->shape];
   const float *q = light->corners;
   const uint32_t *f = s->indices + 3 * (size_t)light->prim;
   vlVec3 p0 = vl_load3(q), p1 = vl_load3(q + 3), p2 = vl_load3(q + 6), ns = {0, 0, 0};
-  vlVec2 uv = vl_triangle_uv(s->emission_uvs ? s->emission_uvs : s->uvs, f, b);
   vlLightPoint r = {.n = vl_load3(light->direction),
                     .pdf = light->area > 0.0f ? 1.0f / light->area : 0.0f,
-                    .u = uv.x,
-                    .v = uv.y,
                     .weights = {b[0], b[1], b[2]}};
   r.p = vl_add(vl_add(vl_mul(p0, b[0]), vl_mul(p1, b[1])), vl_mul(p2, b[2]));
   r.offset = vl_triangle_offset(r.n, r.p, p0, p1, p2, b[0], b[1], b[2], 0.0f);
@@ -66,6 +64,11 @@ vlLightPoint vl_light_point_at(const vlWorldLight *light, const vlWorldShape *s,
     ns = vl_add(ns, vl_mul(vl_load3(s->normals + 3 * (size_t)f[k]), b[k]));
   if (vl_dot(r.n, ns) < 0.0f)
     r.n = vl_neg(r.n);
+  if (world->emitted.items[light->emitted].image >= 0) {
+    vlVec2 uv = vl_triangle_uv(s->emission_uvs ? s->emission_uvs : s->uvs, f, b);
+    r.u = uv.x;
+    r.v = uv.y;
+  }
   return r;
 }
 
@@ -109,7 +112,7 @@ static Near near_triangle(const vlWorldLight *light, vlVec3 from) {
   return r;
 }
 
-static vlLightPoint sample_triangle(const vlWorldLight *light, const vlWorldShape *s,
+static vlLightPoint sample_triangle(const vlWorld *world, const vlWorldLight *light,
                                     vlVec3 from, float u, float v) {
   vlVec2 b01 = vl_warp_triangle(u, v);
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
@@ -117,7 +120,7 @@ static vlLightPoint sample_triangle(const vlWorldLight *light, const vlWorldShap
   if (near.near)
     vl_store3(b, vl_triangle_weights(vl_triangle_from(light->corners, from),
                                      vl_warp_spherical_triangle(near.cap, u, v)));
-  vlLightPoint r = vl_light_point_at(light, s, b);
+  vlLightPoint r = vl_light_point_at(world, light, b);
   r.pdf = near.near ? 1.0f / near.cap.solid_angle : vl_solid_pdf(r.pdf, from, r.p, r.n);
   return r;
 }
@@ -141,7 +144,7 @@ static vlLightPoint sample_area(const vlWorld *world, const vlWorldLight *light,
                                 float u, float v) {
   const vlWorldShape *s = &world->shapes.items[light->shape];
   if (s->triangles)
-    return sample_triangle(light, s, from, u, v);
+    return sample_triangle(world, light, from, u, v);
   vlVec3 center;
   float radius;
   if (round_light(s, light, &center, &radius) &&

@@ -24,9 +24,9 @@ const TextureCase image_texture = {
              .high = 1,
              .filtered = true},
             /* many of its footprints lie across its edges */
-            {.parameters =
-                 "\"string filename\" \"grain.pfm\" \"string filter\" \"trilinear\" "
-                 "\"float uscale\" 20 \"float vscale\" 20 \"float udelta\" -9.5 \"float vdelta\" -9.5 \"string wrap\" \"black\"",
+            {.parameters = "\"string filename\" \"grain.pfm\" \"string filter\" \"trilinear\" "
+                           "\"float uscale\" 20 \"float vscale\" 20 \"float udelta\" -9.5 "
+                           "\"float vdelta\" -9.5 \"string wrap\" \"black\"",
              .low = 0,
              .high = 1,
              .filtered = true},

@@ -591,7 +591,7 @@ static void framing_and_image_circles(void **state) {
 static void folding_is_found(void **state) {
   (void)state;
   /* r (1 + k r^2) turns where 1 + 3 k r^2 = 0 */
-  vlCamera c = model(28);
+  vlCamera c = model(FOLDS);
   assert_true(fabs(c.distortion.radius - sqrt(1 / 1.2)) < 1e-9);
   vlCameraDef def = model_def(FOLDS);
   const char *warning = NULL;

@@ -1,6 +1,5 @@
 /* conformance/camera_rays.h: laws of the rays that cameras give in batches: those of a camera
- * that hardly moves are those of a still one, and those through the point in focus meet there.
- */
+ * that hardly moves are those of a still one, and those through a focused point meet there. */
 #ifndef TEST_CONFORMANCE_CAMERA_RAYS_H
 #define TEST_CONFORMANCE_CAMERA_RAYS_H
 

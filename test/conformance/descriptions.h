@@ -11,10 +11,10 @@
 /* ---- parameters -------------------------------------------------------------------------- */
 
 /* Of hair whose reflectance is given, absorption by Chiang et al. 2016, equation 9: of the
- * reflectance c and the roughness b, (ln c / (5.969 - .215 b + 2.532 b^2 - 10.73 b^3 + 5.574
- * b^4
- * + .245 b^5))^2. Pigments: pbrt book 9.9.7. A metal of the reflectance r has the index 1 and
- * the absorption 2 sqrt(r / (1 - r)). */
+ * reflectance c and the roughness b,
+ * (ln c / (5.969 - .215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + .245 b^5))^2. Pigments: pbrt
+ * book 9.9.7. A metal of the reflectance r has the index 1 and the absorption 2 sqrt(r / (1 -
+ * r)). */
 static const struct {
   const char *kind, *one, *other;
 } described[] = {

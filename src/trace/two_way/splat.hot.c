@@ -180,6 +180,8 @@ static void see(const vlTracing *t, uint32_t n, uint32_t dimension, const vlVert
     view->per_square = view->seen ? cosine * view->per_square : 0.0f;
     vl_set_lane3(toward[0], toward[1], toward[2], i, view->w);
   }
+  for (uint32_t i = n; i < VL_PAD(n); i++)
+    vl_set_lane3(toward[0], toward[1], toward[2], i, views[n - 1].w);
   vl_stage_local(n, at, toward[0], toward[1], toward[2], wi);
 }
 

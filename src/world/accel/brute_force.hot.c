@@ -100,6 +100,7 @@ static inline __attribute__((always_inline)) void cross_many(Block *k, const vlB
                                                              uint32_t j, bool any) {
   Face q = face_at(b, j);
   uint32_t padded = k->padded;
+  const int32_t found = any ? 0 : (int32_t)j;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]),
@@ -107,7 +108,7 @@ static inline __attribute__((always_inline)) void cross_many(Block *k, const vlB
                              vl_vec3(k->mx[i], k->my[i], k->mz[i]));
     Crossing near = {k->height[i], any ? 1.0f : k->speed[i]};
     int nearer = is_between(at, k->low[i], near);
-    k->id[i] = nearer ? (any ? 0 : (int32_t)j) : k->id[i];
+    k->id[i] = nearer ? found : k->id[i];
     if (!any) {
       k->height[i] = nearer ? at.height : near.height;
       k->speed[i] = nearer ? at.speed : near.speed;

@@ -25,3 +25,9 @@ bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t co
   *capacity = grown;
   return true;
 }
+
+void *vl_array_open(void *items, size_t count, size_t size, size_t at) {
+  char *slot = (char *)items + at * size;
+  memmove(slot + size, slot, (count - 1 - at) * size);
+  return slot;
+}

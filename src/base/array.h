@@ -23,6 +23,11 @@
                   sizeof *(array)->items, 1))                                              \
        ? &(array)->items[(array)->count++]                                                 \
        : NULL)
+/* Pointer to a new element at an index, not zeroed; the elements from there on move up. */
+#define VL_INSERT(context, array, at)                                                \
+  (VL_PUSH((context), (array))                                                       \
+       ? vl_array_open((array)->items, (array)->count, sizeof *(array)->items, (at)) \
+       : NULL)
 /* Reserves capacity for n more elements. False if memory is exhausted. */
 #define VL_RESERVE(context, array, n)                                                    \
   vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, \
@@ -33,5 +38,7 @@
 
 bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count,
                    size_t size, size_t more);
+/* Moves the elements from `at` to the last but one up by one. Returns the address of `at`. */
+void *vl_array_open(void *items, size_t count, size_t size, size_t at);
 
 #endif

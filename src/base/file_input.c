@@ -47,13 +47,11 @@ static bool insert(vlContext *context, vlFileInputs *inputs, const char *path,
     return true;
   }
   char *copy = vl_strdup(context, path);
-  const vlFileInput *last = copy ? VL_PUSH(context, &inputs->list) : NULL;
-  if (!last) {
+  vlFileInput *slot = copy ? VL_INSERT(context, &inputs->list, at) : NULL;
+  if (!slot) {
     vl_free(context, copy);
     return false;
   }
-  vlFileInput *slot = inputs->list.items + at;
-  memmove(slot + 1, slot, (inputs->list.count - 1 - at) * sizeof *slot);
   *slot = (vlFileInput){copy, *stamp, other};
   return true;
 }

@@ -34,13 +34,11 @@ static bool insert(vlContext *context, vlFileRecords *records, const vlFileRecor
     return true;
   }
   char *path = vl_strdup(context, record->path);
-  const vlFileRecord *last = path ? VL_PUSH(context, &records->files) : NULL;
-  if (!last) {
+  vlFileRecord *slot = path ? VL_INSERT(context, &records->files, at) : NULL;
+  if (!slot) {
     vl_free(context, path);
     return false;
   }
-  vlFileRecord *slot = records->files.items + at;
-  memmove(slot + 1, slot, (records->files.count - 1 - at) * sizeof *slot);
   *slot = *record;
   slot->path = path;
   return true;

@@ -15,7 +15,7 @@
 
 /* ---- intensity --------------------------------------------------------------------------- */
 
-/* As vl_lamp_interval and vl_lamp_candela, in double. */
+/* As vl_lamp_candela, in double. */
 static double bilinear(const vlLampTable *t, double azimuth, double polar) {
   const double edge = (double)VL_LAMP_EDGE;
   if (azimuth < (double)t->azimuth[0] - edge)
@@ -24,8 +24,8 @@ static double bilinear(const vlLampTable *t, double azimuth, double polar) {
       !(polar <= (double)t->polar[t->polars - 1] + edge) ||
       !(azimuth <= (double)t->azimuth[t->azimuths - 1] + edge))
     return 0;
-  uint32_t i = vl_lamp_interval(t->azimuth, t->azimuths, (float)azimuth);
-  uint32_t j = vl_lamp_interval(t->polar, t->polars, (float)polar);
+  uint32_t i = vl_find_interval(t->azimuth, t->azimuths - 1, (float)azimuth);
+  uint32_t j = vl_find_interval(t->polar, t->polars - 1, (float)polar);
   const float *a = t->azimuth + i, *b = t->polar + j;
   double across = (azimuth - (double)a[0]) / ((double)a[1] - (double)a[0]);
   double down = (polar - (double)b[0]) / ((double)b[1] - (double)b[0]);

@@ -6,6 +6,7 @@
 #include "light/lamp.h"
 #include "math/approx.h"
 #include "math/vec.h"
+#include "math/warp.h"
 
 /* Directions this far outside of the table (radians) are at its edge: rounding. */
 #define VL_LAMP_EDGE 1e-5f
@@ -16,19 +17,6 @@ typedef struct vlLampCell {
   float across, down;      /* from 0 to 1 */
   bool inside;             /* false: outside of the table; the rest is not set */
 } vlLampCell;
-
-/* The last i < count - 1 with at[i] <= x, at least 0. at: ascending. */
-static inline uint32_t vl_lamp_interval(const float *at, uint32_t count, float x) {
-  uint32_t low = 0, high = count - 1;
-  while (high - low > 1) {
-    uint32_t middle = (low + high) / 2;
-    if (at[middle] <= x)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
 
 /* d: unit, in the table's own frame. */
 static inline vlLampCell vl_lamp_cell(const vlLampTable *t, vlVec3 d) {
@@ -41,8 +29,8 @@ static inline vlLampCell vl_lamp_cell(const vlLampTable *t, vlVec3 d) {
       !(polar <= t->polar[t->polars - 1] + VL_LAMP_EDGE) ||
       !(azimuth <= t->azimuth[t->azimuths - 1] + VL_LAMP_EDGE))
     return p;
-  p.azimuth = vl_lamp_interval(t->azimuth, t->azimuths, azimuth);
-  p.polar = vl_lamp_interval(t->polar, t->polars, polar);
+  p.azimuth = vl_find_interval(t->azimuth, t->azimuths - 1, azimuth);
+  p.polar = vl_find_interval(t->polar, t->polars - 1, polar);
   const float *a = t->azimuth + p.azimuth, *b = t->polar + p.polar;
   p.across = vl_clamp((azimuth - a[0]) / (a[1] - a[0]), 0.0f, 1.0f);
   p.down = vl_clamp((polar - b[0]) / (b[1] - b[0]), 0.0f, 1.0f);
@@ -71,7 +59,7 @@ static inline float vl_lamp_density(const vlLampTable *t, vlVec3 d) {
 /* The interval of a cumulative distribution of `count` numbers from 0 to 1 that u is in; u
  * becomes the position in it, from 0 to 1. */
 static inline uint32_t vl_lamp_choose(const float *below, uint32_t count, float *u) {
-  uint32_t i = vl_lamp_interval(below, count, *u);
+  uint32_t i = vl_find_interval(below, count - 1, *u);
   float width = below[i + 1] - below[i];
   *u = width > 0.0f ? vl_clamp((*u - below[i]) / width, 0.0f, 1.0f) : 0.5f;
   return i;

@@ -7,6 +7,7 @@
 #define LIGHT_LIGHT_TREE_H
 
 #include "math/vec.h"
+#include "math/warp.h"
 #include "velo/world.h"
 
 /* Bounds of the light that a set of lights emits: position, cone of directions, power. */
@@ -124,16 +125,9 @@ typedef struct vlLightChoice {
 } vlLightChoice;
 
 static inline vlLightChoice vl_light_choose_cdf(const vlLightTree *tree, float u) {
-  uint32_t low = 0, high = tree->light_count; /* invariant: cdf[low] <= u < cdf[high] */
-  while (high - low > 1) {
-    uint32_t mid = (low + high) / 2;
-    if (tree->cdf[mid] <= u)
-      low = mid;
-    else
-      high = mid;
-  }
-  float pmf = tree->cdf[low + 1] - tree->cdf[low];
-  return (vlLightChoice){low, pmf, vl_min((u - tree->cdf[low]) / pmf, VL_ONE_MINUS_EPSILON)};
+  uint32_t i = vl_find_interval(tree->cdf, tree->light_count, u);
+  float pmf = tree->cdf[i + 1] - tree->cdf[i];
+  return (vlLightChoice){i, pmf, vl_min((u - tree->cdf[i]) / pmf, VL_ONE_MINUS_EPSILON)};
 }
 
 /* Traverses the tree from an inner node that was reached with probability pmf; the random

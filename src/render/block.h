@@ -94,9 +94,9 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
                          vlError *error);
 /* Makes a run from world, film, def and sequence: rays, sampler, tracer, crop. In render.c. */
 void vl_render_prepare(vlRenderRun *r, const vlCamera *camera);
-/* Checks that the def's tracer, sampler and other choices are known. If the result is false,
- * message holds the reason. In render.c. */
-bool vl_render_choices_check(const vlRenderDef *def, char message[VL_GIVEN_MESSAGE]);
+/* Checks the def's cookie, and that its tracer, sampler and other choices are known. what: the
+ * beginning of the message. In render.c. */
+vlResult vl_render_def_check(const vlRenderDef *def, const char *what, vlError *error);
 /* Checks the arguments of a render. In render.c. */
 vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film,
                          const vlRenderDef *def, vlError *error);

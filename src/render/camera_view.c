@@ -93,6 +93,13 @@ vlResult vl_first_hits(const vlWorld *world, vlIsa isa, vlGroundTruthBatch *batc
   return VL_OK;
 }
 
+bool vl_pinhole_ray(const vlCamera *pinhole, int side, int i, double origin[3],
+                    double direction[3]) {
+  double x = (i % side + 0.5) / side * pinhole->width;
+  double y = (i / side + 0.5) / side * pinhole->height;
+  return vl_camera_unproject(pinhole, x, y, origin, direction);
+}
+
 vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlTraceDef *trace,
                          float *radius, vlError *error) {
   enum { SIDE = 16 };
@@ -102,9 +109,8 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
   vlResult result = batch ? VL_OK : vl_fail_memory(error);
   if (result == VL_OK) {
     for (int i = 0; i < SIDE * SIDE; i++) {
-      double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width,
-                         y = (i / SIDE + 0.5) / SIDE * camera->height;
-      if (!vl_camera_unproject(&pinhole, x, y, o, d))
+      double o[3], d[3];
+      if (!vl_pinhole_ray(&pinhole, SIDE, i, o, d))
         continue;
       for (int k = 0; k < 3; k++) {
         batch->o[k][batch->n] = o[k];

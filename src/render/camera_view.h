@@ -17,6 +17,10 @@ void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView 
 void vl_camera_view_move(vlCameraView *view, vlAffine at);
 /* The camera without a lens, when its shutter opens, as the world. */
 vlCamera vl_opening_pinhole(const vlCamera *camera);
+/* The ray of such a camera through the middle of cell i of side x side cells of the image.
+ * False: it has none there. */
+bool vl_pinhole_ray(const vlCamera *pinhole, int side, int i, double origin[3],
+                    double direction[3]);
 /* Finds the exact first hits of a batch of rays. */
 vlResult vl_first_hits(const vlWorld *world, vlIsa isa, vlGroundTruthBatch *batch,
                        vlError *error);

@@ -86,13 +86,8 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
         "ground truth: Cryptomatte, features, standard errors, luminance, illuminance and "
         "modes other than the centre need the image's film and how it was rendered");
   const vlFilmDef *film = vl_film_def(def->film);
-  if (counts && def->render->cookie != VL_COOKIE_RENDER)
-    return vl_fail(
-        error, VL_ERROR_ARGUMENT,
-        "ground truth: def.render.cookie is not that of a default def of this version");
-  char wrong[VL_GIVEN_MESSAGE];
-  if (counts && !vl_render_choices_check(def->render, wrong))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: %s", wrong);
+  if (counts)
+    VL_TRY(vl_render_def_check(def->render, "ground truth: def.render", error));
   if (film->width != camera->width || film->height != camera->height)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "ground truth: camera (%u x %u) and film (%u x %u) differ", camera->width,

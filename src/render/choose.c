@@ -426,11 +426,7 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
   vl_error_clear(error);
   if (!world || !camera || !film || !def || !choice)
     return vl_fail(error, VL_ERROR_ARGUMENT, "choose: an argument is null");
-  if (def->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "choose: " VL_BAD_COOKIE);
-  char wrong[VL_GIVEN_MESSAGE];
-  if (!vl_render_choices_check(def, wrong))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "choose: %s", wrong);
+  VL_TRY(vl_render_def_check(def, "choose", error));
   memset(choice, 0, sizeof *choice);
   choice->tracer = VL_TRACER_VOLPATH;
   choice->light_paths = def->light_paths;

@@ -23,10 +23,9 @@ static uint32_t make_rays(const vlCamera *camera, float (*row)[VL_ROW_SIZE], int
                           int32_t *py, uint32_t *index) {
   vlCamera pinhole = vl_opening_pinhole(camera);
   uint32_t n = 0;
-  for (uint32_t i = 0; i < SIDE * SIDE; i++) {
-    double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width,
-                       y = (i / SIDE + 0.5) / SIDE * camera->height;
-    if (!vl_camera_unproject(&pinhole, x, y, o, d))
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    double o[3], d[3];
+    if (!vl_pinhole_ray(&pinhole, SIDE, i, o, d))
       continue;
     for (int k = 0; k < 3; k++) {
       row[k][n] = (float)o[k];
@@ -35,8 +34,8 @@ static uint32_t make_rays(const vlCamera *camera, float (*row)[VL_ROW_SIZE], int
     row[6][n] = 0.0f;
     row[7][n] = VL_INFINITY;
     row[8][n] = 0.5f;
-    px[n] = (int32_t)(i % SIDE);
-    py[n] = (int32_t)(i / SIDE);
+    px[n] = i % SIDE;
+    py[n] = i / SIDE;
     index[n] = 0;
     n++;
   }

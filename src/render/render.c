@@ -70,20 +70,21 @@ static vlFilmOwn own_names(const vlCamera *camera, const vlRenderDef *def) {
   return own;
 }
 
-bool vl_render_choices_check(const vlRenderDef *def, char message[VL_GIVEN_MESSAGE]) {
-  return vl_choices_check(VL_SETTING_RENDER, offsetof(vlSceneDefs, render), sizeof *def, def,
-                          message);
+vlResult vl_render_def_check(const vlRenderDef *def, const char *what, vlError *error) {
+  char wrong[VL_GIVEN_MESSAGE];
+  if (def->cookie != VL_COOKIE_RENDER)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: " VL_BAD_COOKIE, what);
+  if (!vl_choices_check(VL_SETTING_RENDER, offsetof(vlSceneDefs, render), sizeof *def, def,
+                        wrong))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: %s", what, wrong);
+  return VL_OK;
 }
 
 vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film,
                          const vlRenderDef *def, vlError *error) {
   if (!world || !camera || !film)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: world, camera or film is null");
-  if (def->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: " VL_BAD_COOKIE);
-  char wrong[VL_GIVEN_MESSAGE];
-  if (!vl_render_choices_check(def, wrong))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: %s", wrong);
+  VL_TRY(vl_render_def_check(def, "render", error));
   const vlFilmDef *f = vl_film_def(film);
   if (camera->width != f->width || camera->height != f->height)
     return vl_fail(error, VL_ERROR_ARGUMENT,

@@ -219,13 +219,9 @@ static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKin
 /* Members that the kind's row does not describe are not stored. */
 static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool adopt) {
   const vlTextureId none = {0};
-  if (!vl_scene_may_add(scene, VL_SCENE_TEXTURES, def))
+  const vlKindRow *row = vl_scene_row_to_add(scene, VL_SCENE_TEXTURES, def);
+  if (!row)
     return none;
-  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
-  if (!row) {
-    vl_scene_reject(scene, def->source, "texture", "unknown kind");
-    return none;
-  }
   char what[64];
   snprintf(what, sizeof what, "%s texture", row->name ? row->name : "vertex colour");
   vlTextureDef d = vl_default_texture_def(def->kind, def->spectrum);
@@ -282,13 +278,9 @@ bool vl_principled_transmits(const vlMaterialDef *def) {
 /* Members that the kind's row does not describe are not stored. */
 vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   const vlMaterialId none = {0};
-  if (!vl_scene_may_add(scene, VL_SCENE_MATERIALS, def))
+  const vlKindRow *row = vl_scene_row_to_add(scene, VL_SCENE_MATERIALS, def);
+  if (!row)
     return none;
-  const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
-  if (!row) {
-    vl_scene_reject(scene, def->source, "material", "unknown kind");
-    return none;
-  }
   if (def->kind == VL_MATERIAL_MIX && !check_mix(scene, def))
     return none;
   char what[64];

@@ -183,15 +183,14 @@ typedef struct Flatness {
   double area, flat;
 } Flatness;
 
-static void add_flatness(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_flatness(void *user, const vlFace *face) {
   const double along = 0.99;
   Flatness *f = user;
-  const double area = vl_norm3(face->area);
-  if (shape != f->shape || !(area > 0) || !isfinite(area))
+  if (face->shape != f->shape)
     return;
   const double most = fmax(fabs(face->area[0]), fmax(fabs(face->area[1]), fabs(face->area[2])));
-  f->area += area;
-  f->flat += most > along * area ? area : 0;
+  f->area += face->size;
+  f->flat += most > along * face->size ? face->size : 0;
 }
 
 /* Whether the shell is one convex shape without flat walls: a sphere, a dome on a disk. */

@@ -1,11 +1,14 @@
 /* scene/faces.c: see faces.h. */
 #include "scene/faces.h"
 
+#include <math.h>
+
+#include "math/double3.h"
 #include "math/transform.h"
 
 /* sign: 1, or -1 where the outside is opposite to the side that the corners' order gives. */
 static vlFace face_of(const vlShapeDef *shape, const vlMat4 *m, double sign, size_t index) {
-  vlFace face;
+  vlFace face = {.shape = shape};
   for (int c = 0; c < 3; c++) {
     const float *v = shape->positions + 3 * (size_t)shape->indices[3 * index + (size_t)c];
     const double q[3] = {v[0], v[1], v[2]};
@@ -19,6 +22,7 @@ static vlFace face_of(const vlShapeDef *shape, const vlMat4 *m, double sign, siz
         ((p[1][j] - p[0][j]) * (p[2][k] - p[0][k]) - (p[1][k] - p[0][k]) * (p[2][j] - p[0][j]));
     face.middle[i] = (p[0][i] + p[1][i] + p[2][i]) / 3;
   }
+  face.size = vl_norm3(face.area);
   return face;
 }
 
@@ -33,7 +37,8 @@ void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user) {
     const double sign = shape->reverse_orientation != mirrored ? -1 : 1;
     for (size_t i = 0; i < shape->faces; i++) {
       const vlFace face = face_of(shape, &m, sign, i);
-      visit(user, shape, &face);
+      if (face.size > 0 && isfinite(face.size))
+        visit(user, &face);
     }
   }
 }

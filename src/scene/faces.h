@@ -6,13 +6,16 @@
 #include "velo/shape_kinds.h"
 
 typedef struct vlFace {
+  const vlShapeDef *shape;
   double corners[3][3];
   double area[3];   /* half of the cross product of the edges: the outside's direction, and its
                        length is the area */
+  double size;      /* the length of `area`, which is finite and more than 0 */
   double middle[3]; /* the corners' mean */
 } vlFace;
 
-typedef void vlFaceVisit(void *user, const vlShapeDef *shape, const vlFace *face);
+/* Triangles without an area are not visited. */
+typedef void vlFaceVisit(void *user, const vlFace *face);
 void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user);
 
 #endif

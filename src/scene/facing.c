@@ -14,12 +14,12 @@ typedef struct Mean {
   double area;
 } Mean;
 
-static void add_normal(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_normal(void *user, const vlFace *face) {
   Mean *mean = user;
-  const double counts = mean->one_sided && !shape->one_sided ? 0 : 1;
+  const double counts = mean->one_sided && !face->shape->one_sided ? 0 : 1;
   for (int i = 0; i < 3; i++)
     mean->sum[i] += counts * face->area[i];
-  mean->area += vl_norm3(face->area);
+  mean->area += face->size;
 }
 
 void vl_facing_mean_normal(const vlScene *scene, bool one_sided, double n[3]) {
@@ -38,13 +38,9 @@ typedef struct Detail {
   size_t faces;
 } Detail;
 
-static void add_detail(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_detail(void *user, const vlFace *face) {
   Detail *d = user;
-  (void)shape;
-  const double area = vl_norm3(face->area);
-  if (!(area > 0) || !isfinite(area))
-    return;
-  const double cosine = vl_dot3(face->area, d->front) / area;
+  const double cosine = vl_dot3(face->area, d->front) / face->size;
   d->ahead += fmax(cosine, 0);
   d->behind += fmax(-cosine, 0);
   for (int i = 0; i < 3; i++)
@@ -77,13 +73,10 @@ typedef struct Blocks {
   double surface, flat, walls, layers[LAYERS];
 } Blocks;
 
-static void add_block(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_block(void *user, const vlFace *face) {
   const double along = 0.996, across = 0.087; /* within 5 degrees */
   Blocks *b = user;
-  (void)shape;
-  const double area = vl_norm3(face->area), cosine = fabs(face->area[b->axis]);
-  if (!(area > 0) || !isfinite(area))
-    return;
+  const double area = face->size, cosine = fabs(face->area[b->axis]);
   b->surface += area;
   if (cosine < across * area)
     b->walls += area;

@@ -195,6 +195,12 @@ const void *vl_scene_item(const vlScene *scene, vlSceneFamily family, uint32_t i
   return vl_scene_has(scene, family, index) ? vl_scene_at(unchanged, family, index) : NULL;
 }
 
+/* The row of a def's kind; null: unknown, or the family has no kinds. */
+static const vlKindRow *def_row(vlSceneFamily family, const void *def) {
+  const vlKindFamily *kinds = vl_scene_rows[family].kinds;
+  return kinds ? vl_kind_row(kinds, vl_scene_def_kind(family, def)) : NULL;
+}
+
 /* ---- adding ------------------------------------------------------------------------------ */
 
 enum { MAX_OBJECTS = 0x7fffffff };
@@ -212,6 +218,19 @@ bool vl_scene_may_add(vlScene *scene, vlSceneFamily family, const void *def) {
     return true;
   vl_scene_fail(scene, VL_ERROR_SCENE, nowhere, "too many objects");
   return false;
+}
+
+const vlKindRow *vl_scene_row_to_add(vlScene *scene, vlSceneFamily family, const void *def) {
+  if (!vl_scene_may_add(scene, family, def))
+    return NULL;
+  const vlSceneRow *row = &vl_scene_rows[family];
+  const vlKindRow *of_kind = def_row(family, def);
+  if (!of_kind) {
+    vlSource source;
+    memcpy(&source, (const char *)def + row->source, sizeof source);
+    vl_scene_reject(scene, source, row->thing, "unknown kind");
+  }
+  return of_kind;
 }
 
 uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def) {
@@ -236,12 +255,6 @@ int vl_scene_def_kind(vlSceneFamily family, const void *def) {
   if (offset)
     memcpy(&kind, (const char *)def + offset, sizeof kind);
   return kind;
-}
-
-/* The row of a def's kind; null: unknown, or the family has no kinds. */
-static const vlKindRow *def_row(vlSceneFamily family, const void *def) {
-  const vlKindFamily *kinds = vl_scene_rows[family].kinds;
-  return kinds ? vl_kind_row(kinds, vl_scene_def_kind(family, def)) : NULL;
 }
 
 uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind) {

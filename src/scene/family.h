@@ -41,6 +41,8 @@ const char *vl_scene_def_name(vlSceneFamily family, const void *def);
 /* For functions that add an object. Whether one more can be added: the scene has no error, the
  * def is not null, and its cookie is right. Otherwise it reports the reason. */
 bool vl_scene_may_add(vlScene *scene, vlSceneFamily family, const void *def);
+/* The same for defs of kinds. Returns the kind's row; null: it cannot be added (reported). */
+const vlKindRow *vl_scene_row_to_add(vlScene *scene, vlSceneFamily family, const void *def);
 /* Adds a def, which the scene owns, at the end of its array. Returns its index; 0: memory is
  * exhausted (reported). */
 uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def);

@@ -141,13 +141,9 @@ static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *ro
 
 vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   const vlLightId none = {0};
-  if (!vl_scene_may_add(scene, VL_SCENE_LIGHTS, def))
+  const vlKindRow *row = vl_scene_row_to_add(scene, VL_SCENE_LIGHTS, def);
+  if (!row)
     return none;
-  const vlKindRow *row = vl_kind_row(&vl_light_family, (int)def->kind);
-  if (!row) {
-    vl_scene_reject(scene, def->source, "light", "unknown kind");
-    return none;
-  }
   char what[80];
   snprintf(what, sizeof what, "%s light", row->name);
   if ((unsigned)def->space > VL_SPACE_ACES2065_1) {

@@ -100,13 +100,9 @@ static void copy_cells(const vlMediumDef *from, vlMediumDef *to) {
 
 vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
   const vlMediumId none = {0};
-  if (!vl_scene_may_add(scene, VL_SCENE_MEDIA, def))
+  const vlKindRow *row = vl_scene_row_to_add(scene, VL_SCENE_MEDIA, def);
+  if (!row)
     return none;
-  const vlKindRow *row = vl_kind_row(&vl_medium_family, (int)def->kind);
-  if (!row) {
-    bad(scene, def, "unknown kind");
-    return none;
-  }
   if ((unsigned)def->space > VL_SPACE_ACES2065_1) {
     bad(scene, def, "unknown colour space");
     return none;

@@ -41,12 +41,9 @@ typedef struct Parts {
   Part *items; /* of each shape */
 } Parts;
 
-static void add_face(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_face(void *user, const vlFace *face) {
   Parts *parts = user;
-  Part *part = &parts->items[shape - parts->scene->shapes.items];
-  const double area = vl_norm3(face->area);
-  if (!(area > 0) || !isfinite(area))
-    return;
+  Part *part = &parts->items[face->shape - parts->scene->shapes.items];
   const bool first = !(part->area > 0);
   const double *origin = first ? face->middle : part->box.low;
   for (int i = 0; i < 3; i++) {
@@ -54,7 +51,7 @@ static void add_face(void *user, const vlShapeDef *shape, const vlFace *face) {
     part->volume += face->area[i] * (face->middle[i] - origin[i]);
     part->sum[i] += face->area[i];
   }
-  part->area += area;
+  part->area += face->size;
   vlExtent grown = first ? vl_extent_nothing : part->box;
   for (int k = 0; k < 3; k++)
     vl_extent_grow(&grown, face->corners[k]);

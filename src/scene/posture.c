@@ -57,20 +57,14 @@ static void add_sample(Survey *s, const double p[3], const double *n, double wei
   }
 }
 
-static void add_surface(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_surface(void *user, const vlFace *face) {
   Survey *s = user;
-  (void)shape;
-  const double area = vl_norm3(face->area);
-  if (area > 0 && isfinite(area))
-    s->whole += area;
+  s->whole += face->size;
 }
 
-static void add_face(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_face(void *user, const vlFace *face) {
   Survey *s = user;
-  (void)shape;
-  const double area = vl_norm3(face->area);
-  if (!(area > 0) || !isfinite(area))
-    return;
+  const double area = face->size;
   const double n[3] = {face->area[0] / area, face->area[1] / area, face->area[2] / area};
   const uint32_t count = 1 + (uint32_t)(SAMPLES * (area / s->whole));
   for (uint32_t k = 0; k < count; k++) {

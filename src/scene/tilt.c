@@ -15,12 +15,9 @@ typedef struct Moments {
   double area, first[3], second[3][3];
 } Moments;
 
-static void add_face(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_face(void *user, const vlFace *face) {
   Moments *m = user;
-  (void)shape;
-  const double area = vl_norm3(face->area);
-  if (!(area > 0) || !isfinite(area))
-    return;
+  const double area = face->size;
   double p[4][3];
   for (int i = 0; i < 3; i++) {
     p[3][i] = 0;

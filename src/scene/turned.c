@@ -20,17 +20,14 @@ typedef struct Solids {
   Part parts[2]; /* contents, shell */
 } Solids;
 
-static void add_face(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_face(void *user, const vlFace *face) {
   Solids *s = user;
-  const double area = vl_norm3(face->area);
-  if (!(area > 0) || !isfinite(area))
-    return;
-  Part *part = &s->parts[s->shell[shape - s->scene->shapes.items]];
+  Part *part = &s->parts[s->shell[face->shape - s->scene->shapes.items]];
   for (int i = 0; i < 3; i++) {
     part->volume += face->area[i] * (face->middle[i] - s->center[i]);
     part->sum[i] += face->area[i];
   }
-  part->area += area;
+  part->area += face->size;
 }
 
 /* Whether three ends of the box are flat walls: floor, and walls on two sides. */

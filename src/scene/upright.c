@@ -263,21 +263,18 @@ static void end_part(Standing *s) {
                   height >= tall * size_of(s->e, s->other) && middle <= heavy * height;
 }
 
-static void add_part_face(void *user, const vlShapeDef *shape, const vlFace *face) {
+static void add_part_face(void *user, const vlFace *face) {
   Standing *s = user;
-  if (shape != s->shape) {
+  if (face->shape != s->shape) {
     end_part(s);
-    s->shape = shape;
+    s->shape = face->shape;
     s->box = vl_extent_nothing;
     s->area = s->moment = 0;
   }
-  const double area = vl_norm3(face->area);
   for (int k = 0; k < 3; k++)
     vl_extent_grow(&s->box, face->corners[k]);
-  if (!(area > 0) || !isfinite(area))
-    return;
-  s->area += area;
-  s->moment += area * face->middle[s->other];
+  s->area += face->size;
+  s->moment += face->size * face->middle[s->other];
 }
 
 /* Whether the model consists of many parts that stand side by side along `other`, each heavier

@@ -108,15 +108,16 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
   return found;
 }
 
-/* Derivatives of the interpolated vertex normals, before normalisation. */
-static void normal_slopes(const vlWorldShape *s, const Patch *q, double u, double v,
-                          double dndu[3], double dndv[3]) {
-  for (int i = 0; i < 3; i++) {
+/* Derivatives of what is interpolated between the vertices: normals before normalisation, or
+ * texture coordinates. of: `count` numbers for each vertex. */
+static void slopes(const float *of, int count, const Patch *q, double u, double v, double *du,
+                   double *dv) {
+  for (int i = 0; i < count; i++) {
     double n[4];
     for (int k = 0; k < 4; k++)
-      n[k] = s->normals[3 * (size_t)q->index[k] + i];
-    dndu[i] = (1 - v) * (n[1] - n[0]) + v * (n[3] - n[2]);
-    dndv[i] = (1 - u) * (n[2] - n[0]) + u * (n[3] - n[1]);
+      n[k] = of[(size_t)count * q->index[k] + (size_t)i];
+    du[i] = (1 - v) * (n[1] - n[0]) + v * (n[3] - n[2]);
+    dv[i] = (1 - u) * (n[2] - n[0]) + u * (n[3] - n[1]);
   }
 }
 
@@ -125,13 +126,7 @@ static void normal_slopes(const vlWorldShape *s, const Patch *q, double u, doubl
 static void over_texture(const vlWorldShape *s, const Patch *q, double u, double v,
                          vlSurfacePoint *point) {
   double du[2], dv[2];
-  for (int i = 0; i < 2; i++) {
-    double t[4];
-    for (int k = 0; k < 4; k++)
-      t[k] = s->uvs[2 * (size_t)q->index[k] + i];
-    du[i] = (1 - v) * (t[1] - t[0]) + v * (t[3] - t[2]);
-    dv[i] = (1 - u) * (t[2] - t[0]) + u * (t[3] - t[1]);
-  }
+  slopes(s->uvs, 2, q, u, v, du, dv);
   double det = du[0] * dv[1] - du[1] * dv[0];
   if (!(fabs(det) > parallel * (fabs(du[0] * dv[1]) + fabs(du[1] * dv[0]))))
     return;
@@ -190,7 +185,7 @@ static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
       for (int i = 0; i < 3; i++)
         ns[i] += w[k] * s->normals[3 * (size_t)q.index[k] + i];
     if ((length = vl_normalize3(ns)) > 0) {
-      normal_slopes(s, &q, u, v, point->dndu, point->dndv);
+      slopes(s->normals, 3, &q, u, v, point->dndu, point->dndv);
       vl_normal_derivative(ns, length, point->dndu);
       vl_normal_derivative(ns, length, point->dndv);
       /* The geometric normal is flipped to the side of the shading normal. */

@@ -175,12 +175,8 @@ static inline void vl_shadow_way(const vlPaths *p, uint32_t i, vlVec3 o, vlVec3 
 }
 /* Moves the way and the radiance of shadow ray i to index k. */
 static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
-  q->ox[k] = q->ox[i];
-  q->oy[k] = q->oy[i];
-  q->oz[k] = q->oz[i];
-  q->dx[k] = q->dx[i];
-  q->dy[k] = q->dy[i];
-  q->dz[k] = q->dz[i];
+  vl_set_lane3(q->ox, q->oy, q->oz, k, vl_lane3(q->ox, q->oy, q->oz, i));
+  vl_set_lane3(q->dx, q->dy, q->dz, k, vl_lane3(q->dx, q->dy, q->dz, i));
   q->t_max[k] = q->t_max[i];
   for (int c = 0; c < 4; c++)
     q->radiance[c][k] = q->radiance[c][i];
@@ -204,30 +200,53 @@ static inline vlReceiver vl_receiver_before(const vlPaths *p, uint32_t i) {
   return r;
 }
 /* Copies element i of a to element k of b. */
-static inline void vl_path_copy(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
-  b->ox[k] = a->ox[i];
-  b->oy[k] = a->oy[i];
-  b->oz[k] = a->oz[i];
-  b->dx[k] = a->dx[i];
-  b->dy[k] = a->dy[i];
-  b->dz[k] = a->dz[i];
-  for (int c = 0; c < 4; c++) {
-    b->beta[c][k] = a->beta[c][i];
+static inline void vl_hit_copy(const vlHits *a, uint32_t i, vlHits *b, uint32_t k) {
+  b->shape[k] = a->shape[i];
+  b->prim[k] = a->prim[i];
+  b->instance[k] = a->instance[i];
+  b->material[k] = a->material[i];
+  b->t[k] = a->t[i];
+}
+/* Starts path k, which the camera or a light sends: nothing lies before it. Ray, beta, lambda,
+ * cone and spread are left to the caller. */
+static inline void vl_path_start(vlPaths *p, uint32_t k, int32_t px, int32_t py, uint32_t index,
+                                 uint32_t lane) {
+  p->pdf[k] = p->eta_scale[k] = 1.0f;
+  p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = p->from_side[k] = 0.0f;
+  p->specular[k] = 1;
+  p->px[k] = px;
+  p->py[k] = py;
+  p->index[k] = index;
+  p->lane[k] = lane;
+}
+/* Copies what stays the same along a path, from element i of a to element k of b. */
+static inline void vl_path_copy_constants(const vlPaths *a, uint32_t i, vlPaths *b,
+                                          uint32_t k) {
+  for (int c = 0; c < 4; c++)
     b->lambda[c][k] = a->lambda[c][i];
-  }
+  b->px[k] = a->px[i];
+  b->py[k] = a->py[i];
+  b->index[k] = a->index[i];
+  b->lane[k] = a->lane[i];
+}
+/* Copies what each bounce changes. */
+static inline void vl_path_copy_ray(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
+  vl_set_lane3(b->ox, b->oy, b->oz, k, vl_lane3(a->ox, a->oy, a->oz, i));
+  vl_set_lane3(b->dx, b->dy, b->dz, k, vl_lane3(a->dx, a->dy, a->dz, i));
+  vl_set_lane3(b->from_nx, b->from_ny, b->from_nz, k,
+               vl_lane3(a->from_nx, a->from_ny, a->from_nz, i));
+  for (int c = 0; c < 4; c++)
+    b->beta[c][k] = a->beta[c][i];
   b->pdf[k] = a->pdf[i];
-  b->from_nx[k] = a->from_nx[i];
-  b->from_ny[k] = a->from_ny[i];
-  b->from_nz[k] = a->from_nz[i];
   b->from_side[k] = a->from_side[i];
   b->eta_scale[k] = a->eta_scale[i];
   b->cone[k] = a->cone[i];
   b->spread[k] = a->spread[i];
   b->specular[k] = a->specular[i];
-  b->px[k] = a->px[i];
-  b->py[k] = a->py[i];
-  b->index[k] = a->index[i];
-  b->lane[k] = a->lane[i];
+}
+static inline void vl_path_copy(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
+  vl_path_copy_constants(a, i, b, k);
+  vl_path_copy_ray(a, i, b, k);
 }
 
 #endif

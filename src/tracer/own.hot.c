@@ -41,23 +41,14 @@ static void start(vlTrace *w, const vlTraceRays *r, uint32_t count) {
   const vlTraceBatch *b = &w->batch;
   for (uint32_t i = 0; i < VL_PAD(count); i++) {
     uint32_t k = i < count ? i : count - 1;
-    p->ox[i] = r->origin[0][k];
-    p->oy[i] = r->origin[1][k];
-    p->oz[i] = r->origin[2][k];
-    p->dx[i] = r->direction[0][k];
-    p->dy[i] = r->direction[1][k];
-    p->dz[i] = r->direction[2][k];
+    vl_path_start(p, i, b->px[k], b->py[k], b->index[k], k);
+    vl_set_lane3(p->ox, p->oy, p->oz, i, vl_lane3(r->origin[0], r->origin[1], r->origin[2], k));
+    vl_set_lane3(p->dx, p->dy, p->dz, i,
+                 vl_lane3(r->direction[0], r->direction[1], r->direction[2], k));
     w->t_min[i] = r->t_min[k];
     w->t_max[i] = i < count ? r->t_max[k] : -1.0f;
-    p->pdf[i] = p->eta_scale[i] = 1.0f;
-    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = p->from_side[i] = 0.0f;
     p->cone[i] = r->width[k];
     p->spread[i] = w->t.def->pixel_spread;
-    p->specular[i] = 1; /* all of a light's radiance counts */
-    p->px[i] = b->px[k];
-    p->py[i] = b->py[k];
-    p->index[i] = b->index[k];
-    p->lane[i] = k;
     for (int c = 0; c < 4; c++) {
       p->beta[c][i] = 1.0f;
       p->lambda[c][i] = b->lambda[c] ? b->lambda[c][k] : 0.0f;

@@ -38,47 +38,15 @@ void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint3
   }
 }
 static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint32_t n) {
-  for (uint32_t k = 0; k < n; k++) {
-    uint32_t i = order[k];
-    b->shape[k] = a->shape[i];
-    b->prim[k] = a->prim[i];
-    b->instance[k] = a->instance[i];
-    b->material[k] = a->material[i];
-    b->t[k] = a->t[i];
-  }
-}
-
-/* The rows that stay the same along a path. */
-static void complete_ray(const vlPaths *p, uint32_t i, vlPaths *to, uint32_t k) {
-  for (int c = 0; c < 4; c++)
-    to->lambda[c][k] = p->lambda[c][i];
-  to->px[k] = p->px[i];
-  to->py[k] = p->py[i];
-  to->index[k] = p->index[i];
-  to->lane[k] = p->lane[i];
-}
-
-/* Moves ray i to index k <= i, without what complete_ray sets. */
-static void move_ray(vlPaths *r, uint32_t i, uint32_t k) {
-  vl_set_lane3(r->ox, r->oy, r->oz, k, vl_lane3(r->ox, r->oy, r->oz, i));
-  vl_set_lane3(r->dx, r->dy, r->dz, k, vl_lane3(r->dx, r->dy, r->dz, i));
-  vl_set_lane3(r->from_nx, r->from_ny, r->from_nz, k,
-               vl_lane3(r->from_nx, r->from_ny, r->from_nz, i));
-  for (int c = 0; c < 4; c++)
-    r->beta[c][k] = r->beta[c][i];
-  r->pdf[k] = r->pdf[i];
-  r->from_side[k] = r->from_side[i];
-  r->eta_scale[k] = r->eta_scale[i];
-  r->cone[k] = r->cone[i];
-  r->spread[k] = r->spread[i];
-  r->specular[k] = r->specular[i];
+  for (uint32_t k = 0; k < n; k++)
+    vl_hit_copy(a, order[k], b, k);
 }
 
 void vl_gather_rays(const vlPaths *p, const uint32_t *order, uint32_t n, vlPaths *to) {
   for (uint32_t k = 0; k < n; k++) {
     if (order[k] != k)
-      move_ray(to, order[k], k);
-    complete_ray(p, order[k], to, k);
+      vl_path_copy_ray(to, order[k], to, k);
+    vl_path_copy_constants(p, order[k], to, k);
   }
 }
 

@@ -35,22 +35,11 @@ static void start_paths(vlTracing *t) {
     vl_stage_groups(t, padded, u);
   }
   for (uint32_t i = 0; i < padded; i++) {
-    p->ox[i] = b->ox[i];
-    p->oy[i] = b->oy[i];
-    p->oz[i] = b->oz[i];
-    p->dx[i] = b->dx[i];
-    p->dy[i] = b->dy[i];
-    p->dz[i] = b->dz[i];
-    p->pdf[i] = 1.0f;
-    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = p->from_side[i] = 0.0f;
-    p->eta_scale[i] = 1.0f;
+    vl_path_start(p, i, b->px[i], b->py[i], b->index[i], i);
+    vl_set_lane3(p->ox, p->oy, p->oz, i, vl_lane3(b->ox, b->oy, b->oz, i));
+    vl_set_lane3(p->dx, p->dy, p->dz, i, vl_lane3(b->dx, b->dy, b->dz, i));
     p->cone[i] = t->def->pixel_width;
     p->spread[i] = t->def->pixel_spread;
-    p->specular[i] = 1;
-    p->px[i] = b->px[i];
-    p->py[i] = b->py[i];
-    p->index[i] = b->index[i];
-    p->lane[i] = i;
     t->scattered[i] = 0;
   }
   vl_passed_start(t, padded);

@@ -273,12 +273,8 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
   if (n == 0)
     return;
   for (uint32_t i = 0; i < n; i++) {
-    p->ox[i] = to->ox[i];
-    p->oy[i] = to->oy[i];
-    p->oz[i] = to->oz[i];
-    p->dx[i] = to->dx[i];
-    p->dy[i] = to->dy[i];
-    p->dz[i] = to->dz[i];
+    vl_set_lane3(p->ox, p->oy, p->oz, i, vl_lane3(to->ox, to->oy, to->oz, i));
+    vl_set_lane3(p->dx, p->dy, p->dz, i, vl_lane3(to->dx, to->dy, to->dz, i));
     p->cone[i] = def->pixel_width;
     p->spread[i] = def->pixel_spread;
     p->specular[i] = 1;

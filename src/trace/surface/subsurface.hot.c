@@ -60,12 +60,8 @@ static uint32_t find_entries(const vlWorld *world, uint32_t n, const vlVertices 
     uint32_t j = count++;
     to->path[j] = k;
     to->material[j] = material;
-    to->px[j] = f->px[i];
-    to->py[j] = f->py[i];
-    to->pz[j] = f->pz[i];
-    to->nx[j] = f->nx[i];
-    to->ny[j] = f->ny[i];
-    to->nz[j] = f->nz[i];
+    vl_set_lane3(to->px, to->py, to->pz, j, vl_lane3(f->px, f->py, f->pz, i));
+    vl_set_lane3(to->nx, to->ny, to->nz, j, vl_lane3(f->nx, f->ny, f->nz, i));
     for (int c = 0; c < 4; c++) {
       to->sigma[c][j] = sh->own[VL_S_SIGMA + c][i];
       to->albedo[c][j] = sh->own[VL_S_ALBEDO + c][i];
@@ -187,12 +183,8 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth, const vlEntr
   for (int step = 0; active > 0 && step < MAX_CROSSINGS; step++) {
     for (uint32_t k = 0; k < active; k++) {
       uint32_t j = under_way[k];
-      q->ox[k] = p->ox[j];
-      q->oy[k] = p->oy[j];
-      q->oz[k] = p->oz[j];
-      q->dx[k] = p->dx[j];
-      q->dy[k] = p->dy[j];
-      q->dz[k] = p->dz[j];
+      vl_set_lane3(q->ox, q->oy, q->oz, k, vl_lane3(p->ox, p->oy, p->oz, j));
+      vl_set_lane3(q->dx, q->dy, q->dz, k, vl_lane3(p->dx, p->dy, p->dz, j));
       from[k] = t_min[j];
       q->t_max[k] = to->length[j];
       q->time[k] = vl_path_time(p, j);
@@ -238,10 +230,7 @@ static uint32_t gather_exits(const vlWorld *world, uint32_t n, const vlEntries *
   vl_volume_permute(from_rows, rows, probe, count);
   for (uint32_t i = 0; i < count; i++) {
     uint32_t j = probe[i];
-    hits->shape[i] = chosen->shape[j];
-    hits->prim[i] = chosen->prim[j];
-    hits->instance[i] = chosen->instance[j];
-    hits->t[i] = chosen->t[j];
+    vl_hit_copy(chosen, j, hits, i);
     hits->material[i] = x->material[j];
   }
   if (count)

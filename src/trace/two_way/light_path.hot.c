@@ -86,15 +86,8 @@ static uint32_t set_out(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes
     uint32_t k = count++;
     vl_set_lane3(p->ox, p->oy, p->oz, k, e.o);
     vl_set_lane3(p->dx, p->dy, p->dz, k, e.d);
-    p->pdf[k] = 1.0f;
-    p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = p->from_side[k] = 0.0f;
-    p->eta_scale[k] = 1.0f;
+    vl_path_start(p, k, b->px[i], b->py[i], b->index[i], i);
     p->cone[k] = p->spread[k] = 0.0f;
-    p->specular[k] = 1;
-    p->px[k] = b->px[i];
-    p->py[k] = b->py[i];
-    p->index[k] = b->index[i];
-    p->lane[k] = i;
     for (int c = 0; c < 4; c++) {
       p->beta[c][k] = 1.0f;
       p->lambda[c][k] = lambda[c];

@@ -81,8 +81,7 @@ static void label(Pen *p, vlDrawingPart part, const double at[3], const char *te
 
 /* to = from + s d */
 static void go(const double from[3], const double d[3], double s, double to[3]) {
-  for (int i = 0; i < 3; i++)
-    to[i] = from[i] + s * d[i];
+  vl_along3(from, s, d, to);
 }
 
 static void eye_of(const vlCamera *c, double eye[3]) {

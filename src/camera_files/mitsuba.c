@@ -139,8 +139,7 @@ static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
   VL_TRY(numbers(scene, op, "origin", 3, o, NULL));
   VL_TRY(numbers(scene, op, "target", 3, t, NULL));
   VL_TRY(numbers(scene, op, "up", 3, up, &found));
-  for (int i = 0; i < 3; i++)
-    z[i] = t[i] - o[i];
+  vl_sub3(t, o, z);
   double length = vl_norm3(z);
   for (int i = 0; i < 3; i++)
     z[i] /= length;

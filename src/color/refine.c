@@ -5,6 +5,7 @@
 
 #include "color/rgb_table.h"
 #include "color/tables.h"
+#include "math/double3.h"
 
 /* Sums are accumulated in four fixed parts, so that the compiler may vectorise them without
  * reassociation. */
@@ -101,12 +102,10 @@ vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b) {
   double factor = 1;
   for (int round = 0; round < 12 && error < 3e-3 && error > 1e-9 && factor > 0.05; round++) {
     double miss[3], step[3], next[3], next_value[3], next_jacobian[9];
-    for (int k = 0; k < 3; k++)
-      miss[k] = target[k] - value[k];
+    vl_sub3(target, value, miss);
     if (!solve(jacobian, miss, step))
       break;
-    for (int k = 0; k < 3; k++)
-      next[k] = c[k] + factor * step[k];
+    vl_along3(c, factor, step, next);
     shown(weight, next, next_value, next_jacobian);
     double next_error = worst_of(next_value, target);
     if (!(next_error < error)) {

@@ -1,14 +1,14 @@
 /* import/far.c: see far.h. */
 #include "import/far.h"
 
-bool vl_far_origin(const double low[3], const double high[3], double origin[3]) {
+bool vl_far_origin(const vlExtent *box, double origin[3]) {
   const double far = 100;
-  double size = 0, most = 0;
+  double size = 0, most = 0, middle[3];
+  vl_extent_middle(box, middle);
   for (int i = 0; i < 3; i++) {
-    const double middle = 0.5 * (low[i] + high[i]);
-    size = fmax(size, high[i] - low[i]);
-    most = fmax(most, fabs(middle));
-    origin[i] = floor(middle + 0.5);
+    size = fmax(size, box->high[i] - box->low[i]);
+    most = fmax(most, fabs(middle[i]));
+    origin[i] = floor(middle[i] + 0.5);
   }
   if (size > 0 && most >= VL_FAR_LEAST && most > far * size && isfinite(most + size))
     return true;
@@ -16,24 +16,17 @@ bool vl_far_origin(const double low[3], const double high[3], double origin[3]) 
   return false;
 }
 
-void vl_grow_box(const float *positions, size_t vertices, double low[3], double high[3]) {
-  for (size_t i = 0; i < 3 * vertices; i++) {
-    low[i % 3] = fmin(low[i % 3], (double)positions[i]);
-    high[i % 3] = fmax(high[i % 3], (double)positions[i]);
+void vl_grow_box(const float *positions, size_t vertices, vlExtent *box) {
+  for (size_t i = 0; i < vertices; i++) {
+    const float *v = positions + 3 * i;
+    vl_extent_grow(box, (double[3]){v[0], v[1], v[2]});
   }
 }
 
-double vl_box_diagonal(const double low[3], const double high[3]) {
-  double sum = 0;
-  for (int i = 0; i < 3; i++)
-    sum += (high[i] - low[i]) * (high[i] - low[i]);
-  return sqrt(sum);
-}
-
 bool vl_far_vertices(const float *positions, size_t vertices, double origin[3]) {
-  VL_NO_BOX(low, high);
-  vl_grow_box(positions, vertices, low, high);
-  return vl_far_origin(low, high, origin);
+  vlExtent box = vl_extent_nothing;
+  vl_grow_box(positions, vertices, &box);
+  return vl_far_origin(&box, origin);
 }
 
 void vl_far_place(const double origin[3], vlShapeDef *shape) {

@@ -4,8 +4,7 @@
 #ifndef IMPORT_FAR_H
 #define IMPORT_FAR_H
 
-#include <math.h>
-
+#include "math/extent.h"
 #include "velo/shape.h"
 
 /* Coordinates below this lose nothing that is seen. */
@@ -14,15 +13,11 @@ static const double VL_FAR_LEAST = 1000;
 /* The point about which vertices in a box are stored: whole numbers near its middle, or 0 on
  * all axes: the box is not far from the origin, compared with its size. Returns whether it is
  * far. */
-bool vl_far_origin(const double low[3], const double high[3], double origin[3]);
+bool vl_far_origin(const vlExtent *box, double origin[3]);
 /* The same, of vertices. */
 bool vl_far_vertices(const float *positions, size_t vertices, double origin[3]);
 /* Grows a box by vertices, of which those that are not numbers do not count. */
-void vl_grow_box(const float *positions, size_t vertices, double low[3], double high[3]);
-double vl_box_diagonal(const double low[3], const double high[3]);
-/* A box that holds nothing. */
-#define VL_NO_BOX(low, high) \
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}
+void vl_grow_box(const float *positions, size_t vertices, vlExtent *box);
 /* Moves a shape, which has no transform yet, to the point. */
 void vl_far_place(const double origin[3], vlShapeDef *shape);
 

@@ -121,9 +121,9 @@ bool vl_import_points(vlContext *context, const char *path, vlMesh *m) {
   const bool discs = m->normals;
   if (count * BALL_FACES > 0x3fffffff)
     return false;
-  VL_NO_BOX(low, high);
-  vl_grow_box(m->positions, count, low, high);
-  double size = vl_box_diagonal(low, high), radius = spacing(m);
+  vlExtent box = vl_extent_nothing;
+  vl_grow_box(m->positions, count, &box);
+  double size = vl_extent_diagonal(&box), radius = spacing(m);
   radius = fmin(fmax(radius, size / 2000), size / 50);
   radius = radius > 0 ? radius : 1;
   bool ok = repeat_points(context, m, discs);

@@ -234,8 +234,7 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
   b->cos_o = -1; /* point lights emit in all directions */
   b->cos_e = 0;
   if (light->has_cone) {
-    for (int i = 0; i < 3; i++)
-      b->axis[i] = light->direction[i];
+    memcpy(b->axis, light->direction, 3 * sizeof *b->axis);
     float to = arccos(light->cos_start), te = arccos(light->cos_end);
     b->cos_o = light->cos_start;
     /* 0.999 gives a hard edge some width, for rounding */
@@ -250,8 +249,7 @@ static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLigh
     b->cos_o = -1;
     if (shape->triangles || shape->kind == VL_SHAPE_DISK) {
       b->cos_o = 1;
-      for (int i = 0; i < 3; i++)
-        b->axis[i] = light->direction[i];
+      memcpy(b->axis, light->direction, 3 * sizeof *b->axis);
     }
   }
 }

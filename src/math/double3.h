@@ -25,6 +25,16 @@ static inline void vl_cross3(const double a[3], const double b[3], double r[3]) 
   r[1] = a[2] * b[0] - a[0] * b[2];
   r[2] = a[0] * b[1] - a[1] * b[0];
 }
+/* r = a - b; it may be one of them. */
+static inline void vl_sub3(const double a[3], const double b[3], double r[3]) {
+  for (int i = 0; i < 3; i++)
+    r[i] = a[i] - b[i];
+}
+/* r = p + t d; it may be one of them. */
+static inline void vl_along3(const double p[3], double t, const double d[3], double r[3]) {
+  for (int i = 0; i < 3; i++)
+    r[i] = p[i] + t * d[i];
+}
 static inline double vl_norm3(const double a[3]) {
   return sqrt(vl_dot3(a, a));
 }

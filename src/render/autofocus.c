@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "camera/parts.h"
 #include "camera/rays.h"
+#include "math/double3.h"
 #include "render/camera_view.h"
 
 /* The part of the ray between the near and far planes (t_min, t_max), from the kernel that
@@ -61,8 +62,7 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
   }
   if (result == VL_OK) {
     double t = batch->distance[0];
-    for (int i = 0; i < 3; i++)
-      point[i] = o[i] + t * d[i];
+    vl_along3(o, t, d, point);
     if (batch->object[0] == 0 || !isfinite(t))
       result = vl_fail(error, VL_ERROR_ARGUMENT,
                        "camera: focus on pixel %g, %g: nothing is seen there", x, y);

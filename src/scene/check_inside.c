@@ -13,17 +13,6 @@
 #include "velo/shape.h"
 #include "velo/tracer.h"
 
-typedef struct Box {
-  double low[3], high[3];
-} Box;
-
-static bool box_holds(const Box *b, const double p[3]) {
-  bool in = true;
-  for (int k = 0; k < 3; k++)
-    in = in && b->low[k] < p[k] && p[k] < b->high[k];
-  return in;
-}
-
 /* ---- the camera -------------------------------------------------------------------------- */
 
 static void eye_of(const vlCameraDef *d, double eye[3]) {
@@ -120,8 +109,8 @@ static void judge(vlCheck *c, const vlSolid *solid, const double *eye,
 }
 
 /* Checks one instance of a group. Shapes of one material may together form a solid. */
-static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const double world_eye[3],
-                        const double *pose) {
+static void check_group(vlCheck *c, uint32_t group, const vlExtent *boxes,
+                        const double world_eye[3], const double *pose) {
   const vlScene *s = c->scene;
   vlMat4 inverse = vl_mat4_identity();
   double eye[3];
@@ -134,7 +123,7 @@ static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const doub
     c->no_memory = true;
   for (size_t i = 0; i < s->shapes.count && !c->no_memory; i++) {
     const vlShapeDef *d = &s->shapes.items[i];
-    if (d->group.index != group || !box_holds(&boxes[i], eye))
+    if (d->group.index != group || !vl_extent_surrounds(&boxes[i], eye))
       continue;
     bool meshed = vl_shape_is_mesh(d->kind);
     size_t count = 0;
@@ -164,27 +153,19 @@ static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const doub
 
 /* The boxes of the groups, in their spaces; that of an empty one has low > high. Null: no
  * memory. */
-static Box *group_boxes(vlCheck *c, const Box *boxes) {
+static vlExtent *group_boxes(vlCheck *c, const vlExtent *boxes) {
   const vlScene *s = c->scene;
-  Box *groups = vl_alloc_array(c->context, s->groups.count + 1, sizeof *groups);
+  vlExtent *groups = vl_alloc_array(c->context, s->groups.count + 1, sizeof *groups);
   if (!groups)
     c->no_memory = true;
   for (size_t g = 0; groups && g <= s->groups.count; g++)
-    for (int k = 0; k < 3; k++) {
-      groups[g].low[k] = INFINITY;
-      groups[g].high[k] = -INFINITY;
-    }
-  for (size_t i = 0; groups && i < s->shapes.count; i++) {
-    Box *b = &groups[s->shapes.items[i].group.index];
-    for (int k = 0; k < 3; k++) {
-      b->low[k] = boxes[i].low[k] < b->low[k] ? boxes[i].low[k] : b->low[k];
-      b->high[k] = boxes[i].high[k] > b->high[k] ? boxes[i].high[k] : b->high[k];
-    }
-  }
+    groups[g] = vl_extent_nothing;
+  for (size_t i = 0; groups && i < s->shapes.count; i++)
+    vl_extent_join(&groups[s->shapes.items[i].group.index], &boxes[i]);
   return groups;
 }
 
-static void check_camera(vlCheck *c, const Box *boxes, const Box *groups) {
+static void check_camera(vlCheck *c, const vlExtent *boxes, const vlExtent *groups) {
   const vlScene *s = c->scene;
   double eye[3], p[3];
   if (s->defs.camera_missing)
@@ -197,7 +178,7 @@ static void check_camera(vlCheck *c, const Box *boxes, const Box *groups) {
     if (instance->keys || !vl_mat4_inverse(vl_mat4_load(instance->world_from_group), &inverse))
       continue;
     vl_mat4_point(&inverse, eye, p);
-    if (box_holds(&groups[instance->group.index], p))
+    if (vl_extent_surrounds(&groups[instance->group.index], p))
       check_group(c, instance->group.index, boxes, eye, instance->world_from_group);
   }
 }
@@ -206,7 +187,7 @@ static void check_camera(vlCheck *c, const Box *boxes, const Box *groups) {
 
 enum { MAX_SOLIDS = 128, SAMPLES = 64 };
 
-static bool apart(const Box *a, const Box *b) {
+static bool apart(const vlExtent *a, const vlExtent *b) {
   bool away = false;
   for (int k = 0; k < 3; k++) {
     double hair = 1e-4 * (a->high[k] - a->low[k]);
@@ -225,11 +206,11 @@ static uint32_t samples_in(const vlSolid *a, const vlSolid *b) {
   return n;
 }
 
-static double box_volume(const Box *b) {
+static double box_volume(const vlExtent *b) {
   return (b->high[0] - b->low[0]) * (b->high[1] - b->low[1]) * (b->high[2] - b->low[2]);
 }
 
-static void check_nesting(vlCheck *c, const vlSolid *solids, const Box *boxes,
+static void check_nesting(vlCheck *c, const vlSolid *solids, const vlExtent *boxes,
                           const uint32_t *shape, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {
     const vlShapeDef *d = solids[i].shape;
@@ -261,7 +242,7 @@ static void check_nesting(vlCheck *c, const vlSolid *solids, const Box *boxes,
 }
 
 /* Checks the media of shapes outside of groups, one by one. */
-static void check_media(vlCheck *c, const Box *boxes) {
+static void check_media(vlCheck *c, const vlExtent *boxes) {
   const vlScene *s = c->scene;
   vlSolid *solids = vl_alloc_zero(c->context, MAX_SOLIDS, sizeof *solids);
   uint32_t shape[MAX_SOLIDS], n = 0;
@@ -305,14 +286,9 @@ static Gate gate_of(const vlLightDef *l) {
     x[i] = (double)l->portal[3][i] - g.corner[i];
     y[i] = (double)l->portal[1][i] - g.corner[i];
   }
-  /* y cross x: the sky is on the other side, where x cross y points to */
-  for (int i = 0; i < 3; i++) {
-    int j = (i + 1) % 3, k = (i + 2) % 3;
-    g.normal[i] = y[j] * x[k] - y[k] * x[j];
-  }
-  double length = vl_norm3(g.normal);
-  for (int i = 0; i < 3; i++)
-    g.normal[i] /= length > 0 ? length : 1;
+  /* the sky is on the other side, where x cross y points to */
+  vl_cross3(y, x, g.normal);
+  vl_normalize3(g.normal);
   return g;
 }
 
@@ -325,23 +301,20 @@ static double height_of(const Gate *g, const double p[3]) {
 
 /* The heights of the lowest and of the highest corner of a box, placed by `pose` (null: in the
  * world). */
-static void heights(const Gate *g, const Box *b, const double *pose, double *low,
+static void heights(const Gate *g, const vlExtent *b, const double *pose, double *low,
                     double *high) {
-  for (int k = 0; k < 8 && b->low[0] <= b->high[0]; k++) {
-    double p[3] = {k & 1 ? b->high[0] : b->low[0], k & 2 ? b->high[1] : b->low[1],
-                   k & 4 ? b->high[2] : b->low[2]};
-    if (pose) {
-      vlMat4 m = vl_mat4_load(pose);
-      double q[3] = {p[0], p[1], p[2]};
-      vl_mat4_point(&m, q, p);
-    }
-    double h = height_of(g, p);
+  const vlMat4 m = pose ? vl_mat4_load(pose) : vl_mat4_identity();
+  for (int k = 0; k < 8 && !vl_extent_is_empty(b); k++) {
+    double corner[3], p[3];
+    vl_extent_corner(b, k, corner);
+    vl_mat4_point(&m, corner, p);
+    const double h = height_of(g, p);
     *low = fmin(*low, h);
     *high = fmax(*high, h);
   }
 }
 
-static void check_portals(vlCheck *c, const Box *boxes, const Box *groups) {
+static void check_portals(vlCheck *c, const vlExtent *boxes, const vlExtent *groups) {
   const vlScene *s = c->scene;
   for (size_t i = 0; i < s->lights.count; i++) {
     const vlLightDef *l = &s->lights.items[i];
@@ -375,12 +348,12 @@ static void check_portals(vlCheck *c, const Box *boxes, const Box *groups) {
 
 void vl_check_inside(vlCheck *c) {
   const vlScene *s = c->scene;
-  Box *boxes = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *boxes);
+  vlExtent *boxes = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *boxes);
   if (!boxes)
     c->no_memory = true;
   for (size_t i = 0; i < s->shapes.count && !c->no_memory; i++)
-    vl_shape_box(&s->shapes.items[i], boxes[i].low, boxes[i].high);
-  Box *groups = c->no_memory ? NULL : group_boxes(c, boxes);
+    boxes[i] = vl_shape_box(&s->shapes.items[i]);
+  vlExtent *groups = c->no_memory ? NULL : group_boxes(c, boxes);
   if (!c->no_memory)
     check_camera(c, boxes, groups);
   if (!c->no_memory)

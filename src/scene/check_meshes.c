@@ -178,18 +178,10 @@ static int by_key(const void *a, const void *b) {
   return x->shape < y->shape ? -1 : x->shape > y->shape;
 }
 
-/* Whether the box of q contains the box of p. */
-static bool box_contains(const vlMeshSolidPart *q, const vlMeshSolidPart *p) {
-  bool within = true;
-  for (int k = 0; k < 3; k++)
-    within = within && q->low[k] <= p->low[k] && q->high[k] >= p->high[k];
-  return within;
-}
-
 /* Whether the box of another part contains this part. Then this part may be a cavity. */
 static bool lies_in_another(const vlMeshSolid *b, uint32_t part) {
   for (uint32_t i = 0; i < b->part_count; i++)
-    if (i != part && box_contains(&b->parts[i], &b->parts[part]))
+    if (i != part && vl_extent_holds(&b->parts[i].box, &b->parts[part].box))
       return true;
   return false;
 }
@@ -205,7 +197,8 @@ static void close_by_others(vlCheck *c, const uint32_t *group, size_t count,
   for (uint32_t i = 0; i < solid->part_count && !c->no_memory; i++) {
     bool open = false;
     for (uint32_t j = 0; j < all.part_count && !open; j++)
-      open = all.parts[j].open_edges && box_contains(&all.parts[j], &solid->parts[i]);
+      open =
+          all.parts[j].open_edges && vl_extent_holds(&all.parts[j].box, &solid->parts[i].box);
     if (!open)
       solid->parts[i].open_edges = 0;
   }

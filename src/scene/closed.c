@@ -89,7 +89,7 @@ static int best_point(const vlProbe *s, double *covered, double *front) {
 static bool has_contents(const vlScene *scene, const vlExtent *boxes, const bool *shell) {
   vlExtent inner = vl_extent_nothing;
   vl_extent_visit(scene, boxes, shell, vl_extent_grow, &inner);
-  return inner.low[0] <= inner.high[0];
+  return !vl_extent_is_empty(&inner);
 }
 
 /* What rays from the eye say of the faces that show it their backs. */
@@ -239,8 +239,7 @@ static bool find_thick(const vlScene *scene, const vlProbe *s, const vlExtent *b
 bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes,
                     const double eye[3], bool objects, vlClosed *closed) {
   *closed = (vlClosed){.kind = VL_CLOSED_NOT};
-  for (int i = 0; i < 3; i++)
-    closed->middle[i] = 0.5 * (box->low[i] + box->high[i]);
+  vl_extent_middle(box, closed->middle);
   if (!(vl_extent_diagonal(box) > 0))
     return true;
   vlProbe *s = vl_alloc_zero(scene->context, 1, sizeof *s);
@@ -302,10 +301,8 @@ static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face,
   vl_mesh_face(d, m, face, c, n);
   if (closed->walls)
     return vl_thick_hides(&closed->thick, (const double(*)[3])c, eye);
-  for (int i = 0; i < 3; i++) {
-    to_eye[i] = eye[i] - c[0][i];
-    to_middle[i] = closed->middle[i] - c[0][i];
-  }
+  vl_sub3(eye, c[0], to_eye);
+  vl_sub3(closed->middle, c[0], to_middle);
   double a = vl_dot3(n, to_eye), b = vl_dot3(n, to_middle);
   const bool mirrored = vl_mat4_determinant3(*m) < 0; /* it reverses the order of the corners */
   if (closed->inward && (a < 0) == (d->reverse_orientation != mirrored))

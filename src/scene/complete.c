@@ -217,11 +217,9 @@ static void set_camera(vlScene *scene, const double up[3], double fov, const dou
   camera.shutter_close = s->camera.shutter_close;
   camera.fov = fov;
   camera.fov_axis = VL_FOV_SMALLER;
-  for (int i = 0; i < 3; i++) {
-    camera.lookat[i] = lookat[i];
-    camera.eye[i] = eye[i];
-    camera.up[i] = up[i];
-  }
+  memcpy(camera.lookat, lookat, 3 * sizeof *camera.lookat);
+  memcpy(camera.eye, eye, 3 * sizeof *camera.eye);
+  memcpy(camera.up, up, 3 * sizeof *camera.up);
   s->camera = camera;
   s->camera_source = (vlSource){0};
   s->camera_missing = false;
@@ -277,8 +275,7 @@ static void frame_closed(vlScene *scene, const View *v, bool camera, const vlClo
       frame_camera(scene, v, box, boxes, closed->shell);
   }
   if (closed->kind == VL_CLOSED_EMPTY && camera) {
-    for (int i = 0; i < 3; i++)
-      ahead[i] = closed->middle[i] - v->front[i];
+    vl_sub3(closed->middle, v->front, ahead);
     set_camera(scene, v->up, 1.2, closed->middle, ahead);
   }
 }
@@ -413,8 +410,7 @@ static void place_ground(vlCompleteDef *def, const View *v, const vlExtent *box,
   for (int k = 0; k < 8; k++) {
     double corner[3];
     vl_extent_corner(box, k, corner);
-    for (int i = 0; i < 3; i++)
-      corner[i] -= center[i];
+    vl_sub3(corner, center, corner);
     lowest = fmin(lowest, vl_dot3(corner, v->up));
   }
   if (!isfinite(lowest))

@@ -15,11 +15,6 @@ vlExtent vl_extent_of_sphere(const vlShapeDef *shape, size_t i) {
   return (vlExtent){{c[0] - r, c[1] - r, c[2] - r}, {c[0] + r, c[1] + r, c[2] + r}};
 }
 
-void vl_extent_corner(const vlExtent *box, int k, double corner[3]) {
-  for (int i = 0; i < 3; i++)
-    corner[i] = k >> i & 1 ? box->low[i] : box->high[i];
-}
-
 void vl_mesh_face(const vlShapeDef *shape, const vlMat4 *m, size_t face, double p[3][3],
                   double n[3]) {
   double a[3], b[3];
@@ -31,10 +26,8 @@ void vl_mesh_face(const vlShapeDef *shape, const vlMat4 *m, size_t face, double 
     else
       memcpy(p[k], q, sizeof q);
   }
-  for (int i = 0; i < 3; i++) {
-    a[i] = p[1][i] - p[0][i];
-    b[i] = p[2][i] - p[0][i];
-  }
+  vl_sub3(p[1], p[0], a);
+  vl_sub3(p[2], p[0], b);
   vl_cross3(a, b, n);
 }
 
@@ -60,7 +53,7 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
   if (!d->positions) {
     vlExtent box;
     vl_shape_own_box(d, box.low, box.high);
-    if (box.low[0] <= box.high[0])
+    if (!vl_extent_is_empty(&box))
       vl_extent_visit_box(&m, &box, visit, user);
     return;
   }
@@ -71,36 +64,6 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
     visit(user, p);
   }
 }
-
-void vl_extent_grow(void *user, const double p[3]) {
-  vlExtent *b = user;
-  for (int i = 0; i < 3; i++) { /* a NaN is ignored */
-    b->low[i] = p[i] < b->low[i] ? p[i] : b->low[i];
-    b->high[i] = p[i] > b->high[i] ? p[i] : b->high[i];
-  }
-}
-
-void vl_extent_join(vlExtent *whole, const vlExtent *box) {
-  vl_extent_grow(whole, box->low);
-  vl_extent_grow(whole, box->high);
-}
-
-bool vl_extent_holds(const vlExtent *whole, const vlExtent *box) {
-  bool inside = true;
-  for (int i = 0; i < 3; i++)
-    inside = inside && box->low[i] >= whole->low[i] && box->high[i] <= whole->high[i];
-  return inside;
-}
-
-double vl_extent_diagonal(const vlExtent *box) {
-  double sum = 0;
-  for (int i = 0; i < 3; i++)
-    sum += (box->high[i] - box->low[i]) * (box->high[i] - box->low[i]);
-  return box->low[0] <= box->high[0] ? sqrt(sum) : 0;
-}
-
-const vlExtent vl_extent_nothing = {{INFINITY, INFINITY, INFINITY},
-                                    {-INFINITY, -INFINITY, -INFINITY}};
 
 void vl_extent_visit_shape(const vlShapeDef *shape, vlPointVisit *visit, void *user) {
   const vlMat4 identity = vl_mat4_identity();
@@ -116,10 +79,8 @@ typedef struct Within {
 
 static void visit_within(void *user, const double p[3]) {
   const Within *w = user;
-  bool inside = true;
-  for (int i = 0; i < 3; i++)
-    inside = inside && p[i] >= w->limits->low[i] && p[i] <= w->limits->high[i];
-  if (inside)
+  const vlExtent point = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}};
+  if (vl_extent_holds(w->limits, &point))
     w->visit(w->user, p);
 }
 
@@ -138,7 +99,7 @@ void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *wi
     const vlSceneInstance *instance = &scene->instances.items[i];
     const vlExtent *b = &boxes[instance->group.index - 1];
     vlMat4 m = vl_mat4_load(instance->world_from_group);
-    if (!instance->hidden && b->low[0] <= b->high[0])
+    if (!instance->hidden && !vl_extent_is_empty(b))
       vl_extent_visit_box(&m, b, visit_within, &within);
   }
 }

@@ -1,30 +1,15 @@
-/* scene/extent.h: where the things of a scene are: points on them, and bounding boxes. */
+/* scene/extent.h: where the things of a scene are: points on them, and their bounding boxes. */
 #ifndef SCENE_EXTENT_H
 #define SCENE_EXTENT_H
 
+#include "math/extent.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 
-/* A bounding box; low > high if it is empty. */
-typedef struct vlExtent {
-  double low[3], high[3];
-} vlExtent;
-extern const vlExtent vl_extent_nothing;
-
 /* Receives a point in world space. */
 typedef void vlPointVisit(void *user, const double p[3]);
-/* Grows the box `user`, a vlExtent. */
-void vl_extent_grow(void *user, const double p[3]);
-/* Grows a box by another one, which is not empty. */
-void vl_extent_join(vlExtent *whole, const vlExtent *box);
-/* Whether a box is within another one. */
-bool vl_extent_holds(const vlExtent *whole, const vlExtent *box);
-/* 0 of an empty box. */
-double vl_extent_diagonal(const vlExtent *box);
 /* The box of one of many spheres, in the shape's space. */
 vlExtent vl_extent_of_sphere(const vlShapeDef *shape, size_t i);
-/* Corner k of a box, of eight. */
-void vl_extent_corner(const vlExtent *box, int k, double corner[3]);
 /* The corners of a triangle under a map (null: in the shape's space), and its normal as their
  * order gives it; its length is twice the area. */
 void vl_mesh_face(const vlShapeDef *shape, const vlMat4 *m, size_t face, double p[3][3],

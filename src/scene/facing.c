@@ -2,6 +2,7 @@
 #include "scene/facing.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "math/double3.h"
 #include "scene/faces.h"
@@ -17,8 +18,7 @@ typedef struct Mean {
 static void add_normal(void *user, const vlFace *face) {
   Mean *mean = user;
   const double counts = mean->one_sided && !face->shape->one_sided ? 0 : 1;
-  for (int i = 0; i < 3; i++)
-    mean->sum[i] += counts * face->area[i];
+  vl_along3(mean->sum, counts, face->area, mean->sum);
   mean->area += face->size;
 }
 
@@ -53,10 +53,8 @@ bool vl_facing_is_behind(const vlScene *scene, const vlExtent *box, const double
   const double clearly = 0.75;
   const size_t few = 500;
   Detail d = {.faces = 0};
-  for (int i = 0; i < 3; i++) {
-    d.front[i] = front[i];
-    d.center[i] = 0.5 * (box->low[i] + box->high[i]);
-  }
+  memcpy(d.front, front, sizeof d.front);
+  vl_extent_middle(box, d.center);
   vl_faces_visit(scene, add_detail, &d);
   if (d.faces < few || d.volume == 0 || !isfinite(d.volume))
     return false;

@@ -37,9 +37,7 @@ static void direction(uint32_t k, uint32_t n, double lowest, const double up[3],
   least = fabs(up[2]) < fabs(up[least]) ? 2 : least;
   ahead[least] = 1; /* not parallel to `up` */
   vl_cross3(ahead, up, right);
-  const double length = vl_norm3(right);
-  for (int i = 0; i < 3; i++)
-    right[i] /= length;
+  vl_normalize3(right);
   vl_cross3(up, right, ahead);
   for (int i = 0; i < 3; i++)
     d[i] = height * up[i] +
@@ -67,12 +65,9 @@ static bool find_eye(const vlScene *scene, const vlExtent *box, double eye[3]) {
   def.height = scene->defs.film.height;
   if (scene->defs.camera_missing || vl_camera_make(&def, &camera, NULL, NULL) != VL_OK)
     return false;
-  bool inside = true;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 3; i++)
     eye[i] = camera.world_from_camera[4 * i + 3];
-    inside = inside && eye[i] > box->low[i] && eye[i] < box->high[i];
-  }
-  return inside;
+  return vl_extent_surrounds(box, eye);
 }
 
 /* The point near the middle with the most room around it. */
@@ -80,8 +75,7 @@ static bool find_free_point(vlScene *scene, const vlExtent *box, const double up
                             double most, double best[3]) {
   double middle[3], room = -1;
   r->count = 0;
-  for (int i = 0; i < 3; i++)
-    middle[i] = 0.5 * (box->low[i] + box->high[i]);
+  vl_extent_middle(box, middle);
   for (int point = 0; point < POINTS; point++) {
     double p[3] = {middle[0], middle[1], middle[2]};
     const int axis = (point - 1) / 2;
@@ -123,10 +117,8 @@ bool vl_scene_add_lamps(vlScene *scene, const vlExtent *boxes, const double up[3
                         float strength) {
   vlExtent box = vl_extent_nothing;
   vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &box);
-  double most = 0, center[3], lamps[LAMPS][3];
-  for (int i = 0; i < 3; i++)
-    most += (box.high[i] - box.low[i]) * (box.high[i] - box.low[i]);
-  most = sqrt(most);
+  const double most = vl_extent_diagonal(&box);
+  double center[3], lamps[LAMPS][3];
   if (!(most > 0) || !isfinite(most))
     return true; /* there is nothing to light */
   Rays *r = vl_alloc(scene->context, sizeof *r);

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "color/color.h"
 #include "math/double3.h"
+#include "scene/extent.h"
 #include "scene/lamps.h"
 #include "scene/solid.h"
 #include "schema/schema.h"
@@ -15,41 +16,23 @@
 static const double pi = 3.14159265358979323846;
 
 void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
-  for (int k = 0; k < 3; k++) {
-    low[k] = INFINITY;
-    high[k] = -INFINITY;
+  const size_t n = s->groups.count + 1;
+  vlExtent *boxes = vl_alloc_array(s->context, n, sizeof *boxes);
+  for (size_t g = 0; boxes && g < n; g++)
+    boxes[g] = vl_extent_nothing;
+  for (size_t i = 0; boxes && i < s->shapes.count; i++) {
+    const vlExtent own = vl_shape_box(&s->shapes.items[i]);
+    vl_extent_join(&boxes[s->shapes.items[i].group.index], &own);
   }
-  size_t n = s->groups.count + 1;
-  double(*boxes)[6] = vl_alloc_array(s->context, n, sizeof *boxes);
-  if (!boxes)
-    return;
-  for (size_t g = 0; g < n; g++)
-    for (int k = 0; k < 3; k++) {
-      boxes[g][k] = INFINITY;
-      boxes[g][3 + k] = -INFINITY;
-    }
-  for (size_t i = 0; i < s->shapes.count; i++) {
-    double a[3], b[3], *box = boxes[s->shapes.items[i].group.index];
-    vl_shape_box(&s->shapes.items[i], a, b);
-    for (int k = 0; k < 3; k++) {
-      box[k] = a[k] < box[k] ? a[k] : box[k];
-      box[3 + k] = b[k] > box[3 + k] ? b[k] : box[3 + k];
-    }
+  vlExtent whole = boxes ? boxes[0] : vl_extent_nothing;
+  for (size_t i = 0; boxes && i < s->instances.count; i++) {
+    const vlExtent *box = &boxes[s->instances.items[i].group.index];
+    const vlMat4 m = vl_mat4_load(s->instances.items[i].world_from_group);
+    if (!vl_extent_is_empty(box))
+      vl_extent_visit_box(&m, box, vl_extent_grow, &whole);
   }
-  memcpy(low, boxes[0], 3 * sizeof *low);
-  memcpy(high, boxes[0] + 3, 3 * sizeof *high);
-  for (size_t i = 0; i < s->instances.count; i++) {
-    const double *box = boxes[s->instances.items[i].group.index];
-    vlMat4 m = vl_mat4_load(s->instances.items[i].world_from_group);
-    for (int c = 0; box[0] <= box[3] && c < 8; c++) {
-      double p[3] = {box[c & 1 ? 3 : 0], box[c & 2 ? 4 : 1], box[c & 4 ? 5 : 2]}, q[3];
-      vl_mat4_point(&m, p, q);
-      for (int k = 0; k < 3; k++) {
-        low[k] = q[k] < low[k] ? q[k] : low[k];
-        high[k] = q[k] > high[k] ? q[k] : high[k];
-      }
-    }
-  }
+  memcpy(low, whole.low, sizeof whole.low);
+  memcpy(high, whole.high, sizeof whole.high);
   vl_free(s->context, boxes);
 }
 
@@ -57,10 +40,8 @@ void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
 
 static double triangle_area(const double p[3][3]) {
   double e[2][3], n[3];
-  for (int k = 0; k < 3; k++) {
-    e[0][k] = p[1][k] - p[0][k];
-    e[1][k] = p[2][k] - p[0][k];
-  }
+  vl_sub3(p[1], p[0], e[0]);
+  vl_sub3(p[2], p[0], e[1]);
   vl_cross3(e[0], e[1], n);
   return 0.5 * vl_norm3(n);
 }

@@ -130,8 +130,7 @@ static bool take_emitter(const vlScene *scene, const vlShapeDef *d, Emitter *emi
     vl_mat4_point(&m, q, p);
     vl_extent_grow(&box, p);
   }
-  for (int i = 0; i < 3; i++)
-    emitter->middle[i] = 0.5 * (box.low[i] + box.high[i]);
+  vl_extent_middle(&box, emitter->middle);
   emitter->area = area_of(d, &m);
   emitter->candela = radiance * emitter->area;
   return true;

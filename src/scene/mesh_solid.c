@@ -233,16 +233,13 @@ static uint32_t weld_corner(const Weld *w, uint32_t corner) {
 
 /* Sets low to the lower corner of the mesh's bounds. Returns their longest side. */
 static double bounds_of(const vlMeshSolid *b, double low[3]) {
+  vlExtent box = vl_extent_nothing;
   double longest = 0;
-  for (int k = 0; k < 3; k++) {
-    double high = -INFINITY;
-    low[k] = INFINITY;
-    for (size_t i = 0; i < b->corners; i++) {
-      low[k] = fmin(low[k], b->points[3 * i + (size_t)k]);
-      high = fmax(high, b->points[3 * i + (size_t)k]);
-    }
-    longest = fmax(longest, high - low[k]);
-  }
+  for (size_t i = 0; i < b->corners; i++)
+    vl_extent_grow(&box, b->points + 3 * i);
+  for (int k = 0; k < 3; k++)
+    longest = fmax(longest, box.high[k] - box.low[k]);
+  memcpy(low, box.low, sizeof box.low);
   return longest;
 }
 
@@ -306,23 +303,17 @@ static bool find_parts(const vlScene *scene, vlMeshSolid *b, const Edges *e) {
     fine =
         (b->parts = vl_alloc_zero(scene->context, b->part_count + 1, sizeof *b->parts)) != NULL;
   for (uint32_t i = 0; fine && i < b->part_count; i++)
-    for (int k = 0; k < 3; k++) {
-      b->parts[i].low[k] = INFINITY;
-      b->parts[i].high[k] = -INFINITY;
-    }
+    b->parts[i].box = vl_extent_nothing;
   for (uint32_t i = 0; fine && i < b->faces; i++) {
     vlMeshSolidPart *part = &b->parts[b->part[i]];
     const uint32_t *f = b->faces3 + 3 * (size_t)i;
-    const double *o = b->points, *p[3]; /* volume relative to a nearby point, for precision */
+    const double *o = b->points; /* volume relative to a nearby point, for precision */
     double v[3][3];
     part->faces++;
     for (int j = 0; j < 3; j++) {
-      p[j] = b->points + 3 * (size_t)f[j];
-      for (int k = 0; k < 3; k++) {
-        v[j][k] = p[j][k] - o[k];
-        part->low[k] = p[j][k] < part->low[k] ? p[j][k] : part->low[k];
-        part->high[k] = p[j][k] > part->high[k] ? p[j][k] : part->high[k];
-      }
+      const double *p = b->points + 3 * (size_t)f[j];
+      vl_sub3(p, o, v[j]);
+      vl_extent_grow(&part->box, p);
     }
     part->volume += vl_triple3(v[0], v[1], v[2]) / 6;
   }
@@ -360,8 +351,7 @@ int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only
     const uint32_t *f = b->faces3 + 3 * (size_t)i;
     double v[3][3], s[3];
     for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++)
-        v[j][k] = b->points[3 * (size_t)f[j] + (size_t)k] - p[k];
+      vl_sub3(b->points + 3 * (size_t)f[j], p, v[j]);
     for (int j = 0; j < 3; j++)
       /* on which side of each edge the ray passes */
       s[j] = vl_triple3(d, v[j], v[(j + 1) % 3]);

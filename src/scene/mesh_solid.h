@@ -4,6 +4,7 @@
 #ifndef SCENE_MESH_SOLID_H
 #define SCENE_MESH_SOLID_H
 
+#include "math/extent.h"
 #include "scene/scene.h"
 
 /* A part of a solid: the faces that are connected by shared corners. */
@@ -11,7 +12,7 @@ typedef struct vlMeshSolidPart {
   uint32_t faces, open_edges;
   double volume; /* signed volume: positive if normals point outwards; meaningless for open
                     parts */
-  double low[3], high[3];
+  vlExtent box;
 } vlMeshSolidPart;
 
 typedef struct vlMeshSolid {

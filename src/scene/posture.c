@@ -184,8 +184,7 @@ bool vl_posture_find(const vlScene *scene, const vlExtent *box, vlPosture *postu
     return false; /* a guess that is not made */
   s->box = *box;
   s->posture = posture;
-  for (int i = 0; i < 3; i++)
-    s->size[i] = box->high[i] - box->low[i];
+  vl_sub3(box->high, box->low, s->size);
   vl_faces_visit(scene, add_surface, s);
   posture->points = !(s->whole > 0);
   if (posture->points)

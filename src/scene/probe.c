@@ -17,11 +17,11 @@ enum {
 
 /* ---- rays -------------------------------------------------------------------------------- */
 
-static bool meets_box(const double low[3], const double high[3], const double o[3],
-                      const double d[3], double t_max) {
+static bool meets_box(const vlExtent *box, const double o[3], const double d[3], double t_max) {
   double t0 = 0, t1 = t_max;
   for (int i = 0; i < 3; i++) {
-    double inverse = 1 / d[i], a = (low[i] - o[i]) * inverse, b = (high[i] - o[i]) * inverse;
+    double inverse = 1 / d[i], a = (box->low[i] - o[i]) * inverse,
+           b = (box->high[i] - o[i]) * inverse;
     if (a > b) {
       double c = a;
       a = b;
@@ -41,8 +41,7 @@ static void meet_block(const vlProbeMesh *p, size_t first, const double o[3], co
     double c[3][3], n[3], q[3], r[3];
     vl_mesh_face(p->def, NULL, face, c, n);
     double along = vl_dot3(n, d);
-    for (int i = 0; i < 3; i++)
-      q[i] = o[i] - c[0][i];
+    vl_sub3(o, c[0], q);
     double t = -vl_dot3(n, q) / along;
     if (!(t > 0 && t < seen->t))
       continue;
@@ -67,7 +66,7 @@ static void meet_faces(const vlProbeMesh *p, const double world_o[3], const doub
   vl_mat4_vector(&p->to_shape, world_d, d);
   for (size_t first = 0; first < p->def->faces; first += BLOCK) {
     const vlExtent *block = &p->blocks[first / BLOCK];
-    if (meets_box(block->low, block->high, o, d, seen->t))
+    if (meets_box(block, o, d, seen->t))
       meet_block(p, first, o, d, seen);
   }
 }
@@ -79,7 +78,7 @@ static void cast(void *user, uint32_t ray, uint32_t worker) {
   *seen = (vlSeen){.t = INFINITY};
   for (size_t i = 0; i < s->count; i++) {
     const vlProbeMesh *p = &s->placed[i];
-    if (meets_box(p->low, p->high, s->o[ray], s->d[ray], seen->t))
+    if (meets_box(&p->box, s->o[ray], s->d[ray], seen->t))
       meet_faces(p, s->o[ray], s->d[ray], seen);
   }
 }
@@ -95,10 +94,8 @@ static double radical_inverse(uint32_t i, uint32_t base) {
 
 void vl_probe_aim(vlProbe *s, const vlExtent *box, const double eye[3]) {
   double size[3], middle[3];
-  for (int i = 0; i < 3; i++) {
-    size[i] = box->high[i] - box->low[i];
-    middle[i] = 0.5 * (box->low[i] + box->high[i]);
-  }
+  vl_sub3(box->high, box->low, size);
+  vl_extent_middle(box, middle);
   for (uint32_t k = 0; k < VL_PROBE_OUTSIDE; k++)
     for (int i = 0; i < 3; i++) {
       static const uint32_t bases[3] = {2, 3, 5};
@@ -164,14 +161,12 @@ static bool survey_mesh(vlContext *context, vlProbe *s, const vlShapeDef *d, siz
   p->shape = shape;
   p->fixed = fixed;
   p->flip = d->reverse_orientation; /* mirroring keeps the side: rays are met in shape space */
-  vlExtent box = vl_extent_nothing;
+  p->box = vl_extent_nothing;
   for (size_t i = 0; i < d->vertices; i++) {
     double v[3] = {d->positions[3 * i], d->positions[3 * i + 1], d->positions[3 * i + 2]}, q[3];
     vl_mat4_point(&m, v, q);
-    vl_extent_grow(&box, q);
+    vl_extent_grow(&p->box, q);
   }
-  memcpy(p->low, box.low, sizeof p->low);
-  memcpy(p->high, box.high, sizeof p->high);
   return ++s->count < MAX_PLACED;
 }
 

@@ -20,7 +20,7 @@ typedef struct vlProbeMesh {
   size_t shape;           /* its index */
   vlMat4 to_shape;
   bool flip, fixed; /* fixed: not an instance */
-  double low[3], high[3];
+  vlExtent box;
 } vlProbeMesh;
 
 typedef struct vlSeen {

@@ -6,15 +6,9 @@
 
 #include "math/double3.h"
 #include "math/elementary.h"
+#include "scene/extent.h"
 #include "schema/schema.h"
 #include "velo/shape_kinds.h"
-
-static void grow(double low[3], double high[3], const double p[3]) {
-  for (int k = 0; k < 3; k++) {
-    low[k] = p[k] < low[k] ? p[k] : low[k];
-    high[k] = p[k] > high[k] ? p[k] : high[k];
-  }
-}
 
 vlShapeDef vl_shape_one_sphere(const vlShapeDef *d, uint32_t k) {
   const double *c = d->centers + 3 * (size_t)k;
@@ -31,38 +25,16 @@ vlShapeDef vl_shape_one_sphere(const vlShapeDef *d, uint32_t k) {
   return one;
 }
 
-void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
-  vlMat4 m = vl_mat4_load(d->group_from_shape);
-  double p[3], q[3];
-  for (int k = 0; k < 3; k++) {
-    low[k] = INFINITY;
-    high[k] = -INFINITY;
-  }
-  if (d->vertices && d->positions) {
-    for (uint32_t i = 0; i < d->vertices; i++) {
-      for (int k = 0; k < 3; k++)
-        p[k] = d->positions[3 * (size_t)i + (size_t)k];
-      vl_mat4_point(&m, p, q);
-      grow(low, high, q);
-    }
-    return;
-  }
+vlExtent vl_shape_box(const vlShapeDef *d) {
+  vlExtent box = vl_extent_nothing;
   for (uint32_t i = 0; d->centers && i < d->faces; i++) {
-    double a[3], b[3];
-    vlShapeDef one = vl_shape_one_sphere(d, i);
-    vl_shape_box(&one, a, b);
-    grow(low, high, a);
-    grow(low, high, b);
+    const vlShapeDef one = vl_shape_one_sphere(d, i);
+    const vlExtent own = vl_shape_box(&one);
+    vl_extent_join(&box, &own);
   }
-  if (d->centers)
-    return;
-  double a[3], b[3];
-  vl_shape_own_box(d, a, b);
-  for (int c = 0; c < 8; c++) {
-    const double corner[3] = {c & 1 ? b[0] : a[0], c & 2 ? b[1] : a[1], c & 4 ? b[2] : a[2]};
-    vl_mat4_point(&m, corner, q);
-    grow(low, high, q);
-  }
+  if (!d->centers)
+    vl_extent_visit_shape(d, vl_extent_grow, &box);
+  return box;
 }
 
 static bool is_whole_sphere(const vlShapeDef *d) {
@@ -93,10 +65,7 @@ bool vl_solid_holds(const vlSolid *s, const double p[3]) {
   int winding = 0;
   for (uint32_t i = 0; i < s->meshes.part_count; i++) {
     const vlMeshSolidPart *part = &s->meshes.parts[i];
-    bool near = part->open_edges == 0;
-    for (int k = 0; k < 3 && near; k++)
-      near = part->low[k] < p[k] && p[k] < part->high[k];
-    if (near)
+    if (part->open_edges == 0 && vl_extent_surrounds(&part->box, p))
       winding += vl_mesh_solid_winding(&s->meshes, p, i);
   }
   return winding != 0;
@@ -120,6 +89,6 @@ void vl_solid_sample(const vlSolid *s, uint32_t i, uint32_t n, double p[3]) {
       sum +=
           s->meshes
               .points[3 * (size_t)s->meshes.faces3[3 * (size_t)face + (size_t)j] + (size_t)k];
-    p[k] = 0.999 * sum / 3 + 0.0005 * (part->low[k] + part->high[k]);
+    p[k] = 0.999 * sum / 3 + 0.0005 * (part->box.low[k] + part->box.high[k]);
   }
 }

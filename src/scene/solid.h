@@ -22,7 +22,7 @@ bool vl_solid_holds(const vlSolid *solid, const double p[3]);
 /* Sphere k of a shape of many spheres (vlShapeDef.centers), as a separate shape. */
 vlShapeDef vl_shape_one_sphere(const vlShapeDef *d, uint32_t k);
 /* The bounding box of a shape, in group space. */
-void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]);
+vlExtent vl_shape_box(const vlShapeDef *d);
 /* Gives point i of n points on the solid's surface, in group space. The points are moved
  * towards the solid's centre by a thousandth of their distance from it. */
 void vl_solid_sample(const vlSolid *solid, uint32_t i, uint32_t n, double p[3]);

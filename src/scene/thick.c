@@ -2,6 +2,7 @@
 #include "scene/thick.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { SIDES = 6 };
 
@@ -113,8 +114,7 @@ bool vl_thick_find(const vlProbe *s, const vlExtent *box, vlThick *thick, double
     if (!find_walls(s, box, first, &thick->inner))
       continue;
     thick->outer = *box;
-    for (int i = 0; i < 3; i++)
-      middle[i] = s->o[first][i];
+    memcpy(middle, s->o[first], 3 * sizeof *middle);
     return true;
   }
   return false;

@@ -79,7 +79,7 @@ void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *
       continue;
     }
     vl_extent_visit_shape(shape, vl_extent_grow, &box);
-    if (box.low[0] <= box.high[0])
+    if (!vl_extent_is_empty(&box))
       visit_box(&box, visit, user);
   }
   for (size_t i = 0; i < scene->instances.count; i++) {
@@ -87,7 +87,7 @@ void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *
     const vlExtent *own = &boxes[instance->group.index - 1];
     const vlMat4 m = vl_mat4_load(instance->world_from_group);
     vlExtent box = vl_extent_nothing;
-    if (instance->hidden || !(own->low[0] <= own->high[0]))
+    if (instance->hidden || vl_extent_is_empty(own))
       continue;
     vl_extent_visit_box(&m, own, vl_extent_grow, &box);
     visit_box(&box, visit, user);

@@ -64,8 +64,7 @@ bool vl_tilt_find(const vlScene *scene, const vlExtent *box, double n[3]) {
   const double thin = 1.0 / 64;
   Moments m = {.area = 0};
   double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (int i = 0; i < 3; i++)
-    m.center[i] = 0.5 * (box->low[i] + box->high[i]);
+  vl_extent_middle(box, m.center);
   vl_faces_visit(scene, add_face, &m);
   if (!(m.area > 0))
     return false;

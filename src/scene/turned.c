@@ -48,8 +48,7 @@ bool vl_turned_is(const vlScene *scene, const vlExtent *box, const bool *shell, 
                   bool surrounds) {
   Solids s = {.scene = scene, .shell = shell};
   vlPosture posture;
-  for (int i = 0; i < 3; i++)
-    s.center[i] = 0.5 * (box->low[i] + box->high[i]);
+  vl_extent_middle(box, s.center);
   vl_faces_visit(scene, add_face, &s);
   const Part *inner = &s.parts[0], *outer = &s.parts[1];
   if (contents && !(inner->volume < 0 && is_closed(inner->sum, inner->area)))

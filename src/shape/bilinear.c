@@ -1,6 +1,7 @@
 /* shape/bilinear.c: the bilinear patch: intersection, surface at given parameters, uniform
  * sampling of the parameters. */
 #include <math.h>
+#include <string.h>
 
 #include "shape/mesh.h"
 #include "velo/shape.h"
@@ -82,10 +83,8 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
       continue;
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     double base[3], e[3], x[3];
-    for (int i = 0; i < 3; i++) {
-      base[i] = a0[i] + u * a1[i];
-      e[i] = e0[i] + u * e1[i];
-    }
+    vl_along3(a0, u, a1, base);
+    vl_along3(e0, u, e1, e);
     /* Solves base + v e = t d with the normal of the plane that d and e span. */
     vl_cross3(d, e, x);
     double den = vl_dot3(x, x);
@@ -177,8 +176,7 @@ static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
       point->dndu[i] = -point->dndu[i];
       point->dndv[i] = -point->dndv[i];
     }
-  for (int i = 0; i < 3; i++)
-    point->ns[i] = point->n[i];
+  memcpy(point->ns, point->n, 3 * sizeof *point->ns);
   if (s->normals) {
     double ns[3] = {0, 0, 0};
     for (int k = 0; k < 4; k++)
@@ -225,8 +223,7 @@ static double patch_pdf(const vlWorldShape *shape, uint32_t prim, const double a
     double p[3], du[3], dv[3], r[3];
     patch_position(&q, u, v, p);
     patch_derivatives(&q, u, v, du, dv);
-    for (int i = 0; i < 3; i++)
-      r[i] = at[i] - p[i];
+    vl_sub3(at, p, r);
     double a = vl_dot3(du, du), b = vl_dot3(du, dv), c = vl_dot3(dv, dv), e = vl_dot3(du, r),
            f = vl_dot3(dv, r);
     double det = a * c - b * b;

@@ -309,10 +309,8 @@ static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double g
   hit->t = q.z_max / length;
   hit->a = q.u;
   hit->b = q.v;
-  for (int i = 0; i < 3; i++) {
-    hit->p[i] = o[i] + q.z_max * q.d[i];
-    hit->d[i] = q.d[i];
-  }
+  vl_along3(o, q.z_max, q.d, hit->p);
+  memcpy(hit->d, q.d, 3 * sizeof *hit->d);
   return hit->t > t_min && hit->t < t_max;
 }
 
@@ -360,8 +358,7 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
   }
   vl_cross3(along, across, n);
   if (!(vl_normalize3(n) > 0))
-    for (int i = 0; i < 3; i++)
-      n[i] = hit->d[i];
+    memcpy(n, hit->d, 3 * sizeof *n);
   vl_map_point(s->from_shape, hit->p, point->p);
   vl_map_vector(s->from_shape, along, point->dpdu);
   vl_map_vector(s->from_shape, across, point->dpdv);

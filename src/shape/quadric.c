@@ -83,8 +83,7 @@ static bool try_root(const Quadric *s, const double o[3], const double d[3], dou
   if (!inside_limits(s, p))
     return false;
   hit->t = t;
-  for (int i = 0; i < 3; i++)
-    hit->p[i] = p[i];
+  memcpy(hit->p, p, 3 * sizeof *hit->p);
   return true;
 }
 

@@ -168,10 +168,8 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
     vl_world_destroy(world);
     return r;
   }
-  for (int i = 0; i < 3; i++) {
-    world->info.bounds_min[i] = world->bounds_min[i];
-    world->info.bounds_max[i] = world->bounds_max[i];
-  }
+  memcpy(world->info.bounds_min, world->bounds_min, 3 * sizeof *world->info.bounds_min);
+  memcpy(world->info.bounds_max, world->bounds_max, 3 * sizeof *world->info.bounds_max);
   world->info.build_seconds = vl_seconds() - start;
   for (size_t i = 0; i < world->images.count; i++)
     world->info.texture_bytes += vl_mipmap_bytes(world->images.items[i].mipmap);

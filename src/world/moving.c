@@ -310,11 +310,9 @@ static void corners(const vlWorldShape *s, uint32_t prim, float time, double c[3
  * False: the triangle has no area. */
 static bool weights_in(const double c[3][3], const double p[3], double w[3]) {
   double a[3], b[3], r[3], n[3], x[3];
-  for (int i = 0; i < 3; i++) {
-    a[i] = c[1][i] - c[0][i];
-    b[i] = c[2][i] - c[0][i];
-    r[i] = p[i] - c[0][i];
-  }
+  vl_sub3(c[1], c[0], a);
+  vl_sub3(c[2], c[0], b);
+  vl_sub3(p, c[0], r);
   vl_cross3(a, b, n);
   double area = vl_dot3(n, n);
   if (!(area > 0))

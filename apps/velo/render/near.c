@@ -5,6 +5,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/vector.h"
 #include "render/job.h"
 #include "render/outputs.h"
 #include "velo/edit.h"
@@ -36,10 +37,8 @@ static double find_middle(const double low[3], const double high[3], double midd
 }
 
 static void move_camera(vlCameraDef *camera, const double middle[3]) {
-  for (int i = 0; i < 3; i++) {
-    camera->eye[i] -= middle[i];
-    camera->lookat[i] -= middle[i];
-  }
+  vector_subtract(camera->eye, middle, camera->eye);
+  vector_subtract(camera->lookat, middle, camera->lookat);
 }
 
 int near_move(vlScene *scene, const char *path, SceneOpening *opening) {
@@ -62,11 +61,9 @@ int near_move(vlScene *scene, const char *path, SceneOpening *opening) {
   vlError error = {0};
   TRY(report_error(&error, vl_scene_transform(scene, world_from_scene, &error), path));
   move_camera(&vl_scene_defs(scene)->camera, middle);
-  for (int i = 0; i < 3; i++) {
-    opening->low[i] -= middle[i];
-    opening->high[i] -= middle[i];
-    opening->moved[i] = middle[i];
-  }
+  vector_subtract(opening->low, middle, opening->low);
+  vector_subtract(opening->high, middle, opening->high);
+  memcpy(opening->moved, middle, 3 * sizeof *opening->moved);
   if (!opening->silent)
     report_note(
         "the model lies %.3g times its size from the origin: it is rendered about "

@@ -3,74 +3,60 @@
 #include <math.h>
 
 #include "import/gltf/gltf.h"
+#include "math/double3.h"
 #include "math/elementary.h"
+#include "scene/extent.h"
 
 /* Rows of the image for which the size is chosen. */
 enum { POINT_ROWS = 720 };
 
-static bool bounds(const json_t *accessor, double low[3], double high[3]) {
+static bool bounds(const json_t *accessor, vlExtent *box) {
   const json_t *min = json_object_get(accessor, "min"), *max = json_object_get(accessor, "max");
   for (size_t i = 0; i < 3; i++) {
     const json_t *a = json_array_get(min, i), *b = json_array_get(max, i);
     if (!json_is_number(a) || !json_is_number(b))
       return false;
-    low[i] = json_number_value(a);
-    high[i] = json_number_value(b);
-    if (!(fabs(low[i]) < 1e30) || !(fabs(high[i]) < 1e30))
+    box->low[i] = json_number_value(a);
+    box->high[i] = json_number_value(b);
+    if (!(fabs(box->low[i]) < 1e30) || !(fabs(box->high[i]) < 1e30))
       return false;
   }
   return true;
 }
 
-static void grow(const vlMat4 *world, const double low[3], const double high[3],
-                 double box[6]) {
-  for (int k = 0; k < 8; k++) {
-    double p[3] = {k & 1 ? low[0] : high[0], k & 2 ? low[1] : high[1],
-                   k & 4 ? low[2] : high[2]},
-           q[3];
-    vl_mat4_point(world, p, q);
-    for (int i = 0; i < 3; i++) {
-      box[i] = fmin(box[i], q[i]);
-      box[3 + i] = fmax(box[3 + i], q[i]);
-    }
-  }
-}
-
 /* Height of an image row, in the world, at the centre of the box, for the file's camera. 0: the
  * file has none. */
-static double row_height(const vlGltf *g, const double box[6], double diagonal) {
+static double row_height(const vlGltf *g, const vlExtent *box) {
   const vlSceneDefs *s = vl_scene_defs(g->scene);
   const vlCameraDef *c = &s->camera;
   if (s->camera_missing)
     return 0;
   if (c->projection == VL_PROJECTION_ORTHOGRAPHIC)
     return (c->screen_max_y - c->screen_min_y) / POINT_ROWS;
-  double distance2 = 0;
-  for (int i = 0; i < 3; i++) {
-    double d = 0.5 * (box[i] + box[3 + i]) - c->world_from_camera[4 * i + 3];
-    distance2 += d * d;
-  }
+  double away[3];
+  vl_extent_middle(box, away);
+  for (int i = 0; i < 3; i++)
+    away[i] -= c->world_from_camera[4 * i + 3];
   /* A camera inside sees most things at a distance of this order. */
-  double distance = fmax(sqrt(distance2), 0.25 * diagonal);
+  double distance = fmax(vl_norm3(away), 0.25 * vl_extent_diagonal(box));
   return 2 * distance * vl_precise_tan(0.5 * c->fov) / POINT_ROWS;
 }
 
 double vl_gltf_point_radius(const vlGltf *g, const uint32_t *order, size_t count) {
-  double box[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, sum = 0;
+  vlExtent box = vl_extent_nothing;
   for (size_t k = 0; k < count; k++) {
     const vlGltfNode *node = &g->nodes[order[k]];
     const json_t *mesh = vl_gltf_item(g, "meshes", vl_gltf_mesh_of(g, node));
     const json_t *primitives = json_object_get(mesh, "primitives");
     for (size_t i = 0; i < json_array_size(primitives); i++) {
-      double low[3], high[3];
-      if (bounds(vl_gltf_peek_positions(g, json_array_get(primitives, i)), low, high))
-        grow(&node->world, low, high, box);
+      vlExtent own;
+      if (bounds(vl_gltf_peek_positions(g, json_array_get(primitives, i)), &own))
+        vl_extent_visit_box(&node->world, &own, vl_extent_grow, &box);
     }
   }
-  for (int i = 0; i < 3; i++)
-    sum += (box[3 + i] - box[i]) * (box[3 + i] - box[i]);
-  if (!(box[0] <= box[3]) || !isfinite(sum))
+  const double diagonal = vl_extent_diagonal(&box);
+  if (!isfinite(diagonal) || vl_extent_is_empty(&box))
     return 0;
-  double row = row_height(g, box, sqrt(sum));
-  return row > 0 ? row : 0.0015 * sqrt(sum);
+  const double row = row_height(g, &box);
+  return row > 0 ? row : 0.0015 * diagonal;
 }

@@ -9,20 +9,15 @@ enum {
   MAX_VERTICES = 4000000
 }; /* vertices of deforming meshes that are posed at all times together */
 
-typedef struct Box {
-  double low[3], high[3];
-} Box;
-
 /* Adds the corners of the box in world space. */
-static bool add_corners(vlGltf *g, const Box *b, const vlMat4 *world) {
-  if (!(b->low[0] <= b->high[0]))
+static bool add_corners(vlGltf *g, const vlExtent *b, const vlMat4 *world) {
+  if (vl_extent_is_empty(b))
     return true;
   if (!VL_RESERVE(g->context, &g->scene->frame_points, 24))
     return vl_gltf_fail_memory(g);
   for (int k = 0; k < 8; k++) {
-    const double corner[3] = {k & 1 ? b->low[0] : b->high[0], k & 2 ? b->low[1] : b->high[1],
-                              k & 4 ? b->low[2] : b->high[2]};
-    double p[3];
+    double corner[3], p[3];
+    vl_extent_corner(b, k, corner);
     vl_mat4_point(world, corner, p);
     for (int i = 0; i < 3; i++)
       g->scene->frame_points.items[g->scene->frame_points.count++] = p[i];
@@ -59,7 +54,7 @@ static bool longest(vlGltf *g, size_t animation) {
 }
 
 /* The box of a mesh that does not deform is the same at all times. */
-static bool frame_node(vlGltf *g, size_t node, Box *boxes, bool first) {
+static bool frame_node(vlGltf *g, size_t node, vlExtent *boxes, bool first) {
   const vlGltfNode *n = &g->nodes[node];
   const size_t mesh = vl_gltf_mesh_of(g, n);
   const vlMat4 identity = vl_mat4_identity();
@@ -67,11 +62,8 @@ static bool frame_node(vlGltf *g, size_t node, Box *boxes, bool first) {
     return true;
   const bool deforms = vl_gltf_deforms(g, n);
   if (first || deforms) {
-    for (int k = 0; k < 3; k++) {
-      boxes[node].low[k] = INFINITY;
-      boxes[node].high[k] = -INFINITY;
-    }
-    if (!vl_gltf_mesh_box(g, mesh, n, boxes[node].low, boxes[node].high))
+    boxes[node] = vl_extent_nothing;
+    if (!vl_gltf_mesh_box(g, mesh, n, &boxes[node]))
       return false;
   }
   return add_corners(g, &boxes[node], json_object_get(n->json, "skin") ? &identity : &n->world);
@@ -85,7 +77,7 @@ bool vl_gltf_frame_animation(vlGltf *g) {
     return false;
   const double end = g->time;
   const int times = choose_times(g);
-  Box *boxes = vl_gltf_make(g, g->node_count + 1, sizeof *boxes);
+  vlExtent *boxes = vl_gltf_make(g, g->node_count + 1, sizeof *boxes);
   bool ok = boxes;
   for (int k = 0; ok && k < times; k++) {
     g->time = end * k / (times - 1);

@@ -13,6 +13,7 @@
 #include "import/mesh.h"
 #include "import/names.h"
 #include "import/repair.h"
+#include "math/extent.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 
@@ -342,8 +343,7 @@ double vl_gltf_point_radius(const vlGltf *g, const uint32_t *order, size_t count
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index,
                       vlGroupId group, vlMat4 pose);
 /* Grows the box by the primitives of the mesh as the node poses it. */
-bool vl_gltf_mesh_box(vlGltf *g, size_t mesh, const vlGltfNode *node, double low[3],
-                      double high[3]);
+bool vl_gltf_mesh_box(vlGltf *g, size_t mesh, const vlGltfNode *node, vlExtent *box);
 /* The node's mesh; VL_GLTF_NONE: it has none. */
 size_t vl_gltf_mesh_of(const vlGltf *g, const vlGltfNode *node);
 /* Whether the node deforms its mesh by a skin or morph targets. */

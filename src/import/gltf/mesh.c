@@ -286,7 +286,7 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
 /* Grows the box by one primitive's positions, in the node's space; those of a skin are in the
  * world. */
 static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mesh,
-                          const vlGltfNode *node, double low[3], double high[3]) {
+                          const vlGltfNode *node, vlExtent *box) {
   size_t position;
   vlMesh p = {0};
   if (!vl_gltf_index(VL_GLTF_KEY(at, "attributes"), "POSITION", g->accessor_count, &position))
@@ -296,13 +296,12 @@ static bool primitive_box(vlGltf *g, const vlGltfLocation *at, const json_t *mes
   bool ok = vl_gltf_unpack_primitive(g, at) && read_attributes(g, at, position, &p) &&
             deform(g, at, mesh, node, &p);
   if (ok)
-    vl_grow_box(p.positions, p.vertices, low, high);
+    vl_grow_box(p.positions, p.vertices, box);
   vl_mesh_free(g->context, &p);
   return ok;
 }
 
-bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double low[3],
-                      double high[3]) {
+bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, vlExtent *box) {
   const vlGltfLocation *at = VL_GLTF_ROOT(g, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
@@ -310,7 +309,7 @@ bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double lo
   if (!vl_gltf_array(at, "primitives", &primitives, &count))
     return false;
   for (size_t i = 0; i < count; i++)
-    if (!primitive_box(g, VL_GLTF_ITEM(at, "primitives", i), mesh, node, low, high))
+    if (!primitive_box(g, VL_GLTF_ITEM(at, "primitives", i), mesh, node, box))
       return false;
   g->spent = spent;
   return true;

@@ -113,9 +113,9 @@ static float point_radius(const vlGltf *g, const vlMesh *p) {
   double radius = g->scale > 0 ? g->point_radius / g->scale : 0;
   if (radius > 1e-30 && radius < 1e30)
     return (float)radius;
-  VL_NO_BOX(low, high);
-  vl_grow_box(p->positions, p->vertices, low, high);
-  const double d = vl_box_diagonal(low, high);
+  vlExtent box = vl_extent_nothing;
+  vl_grow_box(p->positions, p->vertices, &box);
+  const double d = vl_extent_diagonal(&box);
   return d > 0 && isfinite(d) ? (float)(0.003 * d) : 0.003f;
 }
 

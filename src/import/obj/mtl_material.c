@@ -47,8 +47,7 @@ static bool color(vlObj *obj, const vlMtlMap *map, const float tint[3], bool ver
   vlTextureDef def = map->path ? texture_def(obj, map, true)
                                : vl_default_texture_def(VL_TEXTURE_VERTEX_COLOR, true);
   def.colors = vertices;
-  for (int i = 0; i < 3; i++)
-    def.tint[i] = tint[i];
+  memcpy(def.tint, tint, 3 * sizeof *tint);
   input->texture = vl_scene_add_texture(obj->scene, &def);
   return input->texture.index != 0;
 }
@@ -92,7 +91,7 @@ static bool normal_or_bump_map(vlObj *obj, const vlMtl *m, vlMaterialDef *def) {
   if (!bump->path)
     return true;
   vlTextureDef texture = texture_def(obj, bump, false);
-  texture.scale *= (float)(0.002 * vl_box_diagonal(obj->low, obj->high)) * bump->bump;
+  texture.scale *= (float)(0.002 * vl_extent_diagonal(&obj->box)) * bump->bump;
   texture.bias = 0;
   def->displacement.texture = vl_scene_add_texture(obj->scene, &texture);
   return def->displacement.texture.index != 0;
@@ -157,8 +156,7 @@ static bool emission(vlObj *obj, const vlMtl *m, vlObjMaterial *material) {
   def.radiance = vl_spectrum_rgb(ke[0], ke[1], ke[2]);
   if (map->path) {
     vlTextureDef texture = texture_def(obj, map, true);
-    for (int i = 0; i < 3; i++)
-      texture.tint[i] = ke[i];
+    memcpy(texture.tint, ke, 3 * sizeof *texture.tint);
     def.texture = vl_scene_add_texture(obj->scene, &texture);
     if (!def.texture.index)
       return false;

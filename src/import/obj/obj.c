@@ -12,6 +12,7 @@
 #include "import/import.h"
 #include "import/pbrt/decimal.h"
 #include "import/plain.h"
+#include "math/double3.h"
 
 enum { MAX_PARTS = 4096, MAX_MATERIALS = 1 << 20 };
 enum { REPORTED_CURVES = 1, REPORTED_UNKNOWN = 2 };
@@ -168,14 +169,10 @@ static bool read_vertex(vlObj *obj) {
   size_t before = obj->positions.count;
   if (!before && fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))) >= VL_FAR_LEAST)
     vl_obj_find_origin(obj);
-  for (int i = 0; i < 3; i++)
-    v[i] -= obj->origin[i];
+  vl_sub3(v, obj->origin, v);
   if (!vl_obj_push(obj, &obj->positions, 3, v, "vertices"))
     return false;
-  for (int i = 0; i < 3; i++) {
-    obj->low[i] = fmin(obj->low[i], v[i]);
-    obj->high[i] = fmax(obj->high[i], v[i]);
-  }
+  vl_extent_grow(&obj->box, v);
   if (count < 6 && obj->colors.count == 0)
     return true;
   size_t missing = before - obj->colors.count;
@@ -488,10 +485,7 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
     obj->search_path = def->search_path;
   }
   obj->data_end = data + size;
-  for (int i = 0; i < 3; i++) {
-    obj->low[i] = INFINITY;
-    obj->high[i] = -INFINITY;
-  }
+  obj->box = vl_extent_nothing;
   bool fine = vl_obj_material(obj, "") == 0;
   if (fine)
     obj->materials.items[0].defined = true;

@@ -8,6 +8,7 @@
 
 #include "import/labels.h"
 #include "import/repair.h"
+#include "math/extent.h"
 #include "scene/scene.h"
 
 /* Indices of a corner's position, uv and normal, counted from 1; 0: none. */
@@ -111,7 +112,7 @@ typedef struct vlObj {
   uint32_t material, smooth, part;
   bool part_open;
   uint32_t reported; /* bit mask of warnings that are given only once and were given */
-  double low[3], high[3];
+  vlExtent box;      /* of the vertices */
 } vlObj;
 
 /* Finds `origin` from all vertices. Call at the first one. */

@@ -102,7 +102,7 @@ static bool add_lines(vlObj *obj, const vlObjMark *marks, size_t count, float ra
 }
 
 bool vl_obj_add_marks(vlObj *obj) {
-  const double diagonal = vl_box_diagonal(obj->low, obj->high);
+  const double diagonal = vl_extent_diagonal(&obj->box);
   const float radius = diagonal > 0 ? (float)(THIN * diagonal) : 1;
   vlObjMark *marks = obj->marks.items;
   if (obj->marks.count > 0x1fffffff)

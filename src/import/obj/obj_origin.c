@@ -28,18 +28,15 @@ static bool read_vertex(const char *p, const char *end, double v[3]) {
 }
 
 void vl_obj_find_origin(vlObj *obj) {
-  VL_NO_BOX(low, high);
+  vlExtent box = vl_extent_nothing;
   const char *next = obj->line_start;
   while (next && next < obj->data_end) {
     double v[3];
     const char *stop = memchr(next, '\n', (size_t)(obj->data_end - next));
     const char *end = stop ? stop : obj->data_end;
-    const bool vertex = read_vertex(next, end, v);
-    for (int i = 0; i < 3 && vertex; i++) {
-      low[i] = fmin(low[i], v[i]);
-      high[i] = fmax(high[i], v[i]);
-    }
+    if (read_vertex(next, end, v))
+      vl_extent_grow(&box, v);
     next = stop ? stop + 1 : NULL;
   }
-  vl_far_origin(low, high, obj->origin);
+  vl_far_origin(&box, obj->origin);
 }

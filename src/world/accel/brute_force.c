@@ -37,10 +37,8 @@ static bool is_eligible(const vlWorld *world) {
 /* (q - p) x (r - q) . n: positive if the corner q of a polygon with the normal n is convex. */
 static double turn(const double p[3], const double q[3], const double r[3], const double n[3]) {
   double in[3], out[3], across[3];
-  for (int i = 0; i < 3; i++) {
-    in[i] = q[i] - p[i];
-    out[i] = r[i] - q[i];
-  }
+  vl_sub3(q, p, in);
+  vl_sub3(r, q, out);
   vl_cross3(in, out, across);
   return vl_dot3(across, n);
 }
@@ -65,10 +63,8 @@ static Face triangle_face(const vlWorldShape *s, uint32_t prim) {
   Face f = {.corners = 3};
   corners_of(s, prim, f.corner);
   double one[3], two[3];
-  for (int i = 0; i < 3; i++) {
-    one[i] = f.corner[1][i] - f.corner[0][i];
-    two[i] = f.corner[2][i] - f.corner[0][i];
-  }
+  vl_sub3(f.corner[1], f.corner[0], one);
+  vl_sub3(f.corner[2], f.corner[0], two);
   vl_cross3(one, two, f.normal);
   vl_normalize3(f.normal);
   return f;
@@ -84,8 +80,7 @@ static bool is_good_quadrilateral(const Face *f) {
   double size = 0, height = 0;
   for (int k = 0; k < 4; k++) {
     double from[3];
-    for (int i = 0; i < 3; i++)
-      from[i] = f->corner[k][i] - f->corner[0][i];
+    vl_sub3(f->corner[k], f->corner[0], from);
     height = fmax(height, fabs(vl_dot3(from, f->normal)));
     for (int i = 0; i < 3; i++)
       size = fmax(size, fabs(f->corner[k][i]));

@@ -21,9 +21,12 @@ static float image_point(const vlWorldLight *light, vlVec3 d, vlVec2 *st) {
   return 1.0f;
 }
 
-/* 1 - cosine of the half angle of a cone around the image. */
-static float image_span(const vlWorldLight *light) {
-  return vl_min(1.001f * (1.0f - light->cos_end), 2.0f);
+/* Density per solid angle of light paths, which are spread evenly over the image in the plane
+ * z = 1. local: the direction in the light's frame, not normalized. */
+static float image_density(const vlWorldLight *light, vlVec3 local) {
+  float cosine = local.z / vl_length(local);
+  float area = 4.0f * light->own[0] * light->own[1];
+  return vl_light_stretch(light, local) / (area * cosine * cosine * cosine);
 }
 
 void vl_light_sample_projection(const vlLightQuery *q, vlLightSample *out) {
@@ -34,10 +37,14 @@ void vl_light_sample_projection(const vlLightQuery *q, vlLightSample *out) {
 }
 
 void vl_light_emit_projection(const vlEmissionQuery *q, vlEmission *out) {
-  float span = image_span(q->light), factor = 2.0f * VL_PI * span;
+  const vlWorldLight *light = q->light;
+  const float whole = 2.0f;
   vlVec2 st;
-  vl_light_emit_from_point(q, span, out);
-  factor *= image_point(q->light, out->d, &st);
+  vl_light_emit_from_point(q, whole, out);
+  float x = (2.0f * q->s - 1.0f) * light->own[0], y = (2.0f * q->t - 1.0f) * light->own[1];
+  out->d = vl_light_from_local(light, vl_vec3(x, y, 1.0f));
+  out->density = image_density(light, vl_light_local(light, out->d));
+  float factor = image_point(light, out->d, &st) / out->density;
   vl_light_emission(q->world, q->emitted, q->lambda, st, factor, out->flux);
 }
 
@@ -45,5 +52,9 @@ float vl_light_emit_pdf_projection(const vlWorld *world, const vlWorldLight *lig
                                    vlVec3 w, float distance, const vlPoint *at) {
   (void)world;
   (void)at;
-  return vl_light_emit_pdf_from_point(light, image_span(light), p, w, distance);
+  vlVec2 st;
+  vlVec3 d = vl_neg(w);
+  if (image_point(light, d, &st) == 0.0f)
+    return 0.0f;
+  return p * image_density(light, vl_light_local(light, d)) / (distance * distance);
 }

@@ -6,9 +6,9 @@ static void square(vlLightDef *def) {
 }
 
 /* Straight down, from a height of 1. */
-#define CONE                                                                      \
-  "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"float coneangle\" 40 \"float " \
-  "conedeltaangle\" 20 "
+#define CONE                                       \
+  "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] " \
+  "\"float coneangle\" 40 \"float conedeltaangle\" 20 "
 
 #define UNEVEN "ConcatTransform [2 0 0 0 .3 1 0 0 0 0 .6 0 0 0 0 1]"
 

@@ -378,14 +378,12 @@ static double mean_of_green(const vlImage *image) {
   "LightSource \"distant\" \"point3 from\" [2 3 1.5] \"rgb L\" [2 1.9 1.7]\n"
 #define NAMED                                                                           \
   "Texture \"bumps\" \"float\" \"checkerboard\" \"float uscale\" 5 \"float vscale\" 5 " \
-  "\"float "                                                                            \
-  "tex1\" .1\n"                                                                         \
+  "\"float tex1\" .1\n"                                                                 \
   "MakeNamedMaterial \"grey\" \"string type\" \"diffuse\"\n"                            \
   "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [.8 .1 .1]\n"
-#define GROUND                                                                              \
-  "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 " \
-  "-.6 "                                                                                    \
-  "-3]\n"
+#define GROUND                                                \
+  "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" " \
+  "[-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3]\n"
 #define BALL "Rotate 70 1 .3 .2 Shape \"sphere\" \"float radius\" .8\n"
 
 #endif

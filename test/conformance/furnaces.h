@@ -61,8 +61,8 @@ static void check_furnace(const char *tracer, const char *material, uint32_t spp
   "[-4 -4 -1 4 -4 -1 4 4 -1 -4 4 -1 -4 -4 1 4 -4 1 4 4 1 -4 4 1] \"integer indices\" "       \
   "[0 1 2 0 2 3 4 6 5 4 7 6] AttributeEnd\n" \
   "Translate 0 0 .6 LightSource \"point\" \"point3 from\" [0 .7 -.6] Material \"dielectric\" "       \
-  "%s Shape \"sphere\" \"float radius\" .2 Translate 0 .7 -.6 Shape \"sphere\" \"float "    \
-  "radius\" .3\n"
+  "%s Shape \"sphere\" \"float radius\" .2 Translate 0 .7 -.6 "    \
+  "Shape \"sphere\" \"float radius\" .3\n"
 
 /* Dispersion spreads wavelengths, and takes no light away. */
 static void check_dispersed_light(const char *tracer, const TracerCase *c) {

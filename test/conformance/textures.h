@@ -24,7 +24,7 @@ typedef struct TextureLaws {
 /* What the formula of a kind says. */
 typedef struct Formulas {
   uint32_t points, wrong;
-  double is, not ; /* of one of the wrong values */
+  double value, expected; /* of one of the wrong ones */
 } Formulas;
 
 /* Compares the value at hit i with the formula at a point. */
@@ -39,8 +39,8 @@ static void compare_formula(const TextureLaws *t, uint32_t i, const TextureAt *a
     if (fabs(value - known) <= 3e-3)
       continue;
     wrong = true;
-    f->is = value;
-    f->not = known;
+    f->value = value;
+    f->expected = known;
   }
   f->points++;
   f->wrong += wrong;
@@ -48,7 +48,7 @@ static void compare_formula(const TextureLaws *t, uint32_t i, const TextureAt *a
 static void judge_formula(const TextureLaws *t, const char *what, const Formulas *f) {
   if (f->wrong > f->points / 50)
     broken("textures", t->kind, "%s: %s%u of %u values, such as %.4f, not %.4f",
-           t->variant->parameters, what, f->wrong, f->points, f->is, f->not );
+           t->variant->parameters, what, f->wrong, f->points, f->value, f->expected);
 }
 
 /* The square spans -1 to 1; its texture coordinates are 0 to 1. */
@@ -96,11 +96,10 @@ static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
     broken("textures", t->kind, "%s: no pattern", v->parameters);
 }
 
-#define HALVES                                                                           \
-  "Texture \"halves\" \"float\" \"checkerboard\" \"float uscale\" 2 \"float vscale\" 0 " \
-  "\"float "                                                                             \
-  "tex1\" .1 "                                                                           \
-  "\"float tex2\" .8\n"
+#define HALVES                                     \
+  "Texture \"halves\" \"float\" \"checkerboard\" " \
+  "\"float uscale\" 2 \"float vscale\" 0 "         \
+  "\"float tex1\" .1 \"float tex2\" .8\n"
 
 /* ---- on a ball --------------------------------------------------------------------------- */
 

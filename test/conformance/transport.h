@@ -61,8 +61,8 @@ static const char *const medium_form =
     "LookAt 0 0 3 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [-.5 .5 -.5 .5]\n" VIEW("16") "WorldBegin "
     "LightSource \"infinite\" \"rgb L\" [1 1 1] MakeNamedMedium \"m\" \"string type\" %s\n"
     "MediumInterface \"m\" \"\" Material \"interface\"\n"
-    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"integer "
-    "indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n";
+    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] "
+    "\"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n";
 
 enum { MEDIUM_SPP = 384 };
 
@@ -273,10 +273,8 @@ static void laws_of_media(void **state) {
 static const char *const below_sky = PLATE "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 /* A ball of radius .5, two away along the normal, and radiance 4. */
 static const char *const below_lamp = PLATE
-    "Translate 0 -1.7320508 1 AreaLightSource \"diffuse\" \"rgb L\" [4 4 4] Material "
-    "\"diffuse\" "
-    "\"rgb "
-    "reflectance\" [0 0 0] Shape \"sphere\" \"float radius\" .5\n";
+    "Translate 0 -1.7320508 1 AreaLightSource \"diffuse\" \"rgb L\" [4 4 4] "
+    "Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"sphere\" \"float radius\" .5\n";
 
 enum { PLATE_SIDE = 12, PLATE_STEPS = 8, PLATE_EYE = 100 };
 
@@ -316,8 +314,8 @@ static const TracerCase *const tracer_cases[] = {VL_TRACER_KINDS(TRACER_CASE)};
 static const char *const room_text =
     "LookAt 0 0 .9 0 0 -1 0 1 0 Camera \"perspective\" \"float fov\" 80\n" VIEW("12")
     "Integrator \"path\" \"integer maxdepth\" 3 WorldBegin Material \"diffuse\" \"rgb reflectance\" [.7 .7 .7]\n"
-    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"integer "
-    "indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n"
+    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] "
+    "\"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n"
     "AreaLightSource \"diffuse\" \"rgb L\" [20 20 20] Shape \"bilinearmesh\" \"point3 P\" "
     "[-.2 .6 .2 .2 .6 .2 -.2 .6 -.2 .2 .6 -.2]\n";
 
@@ -389,8 +387,8 @@ static void check_merging(const char *name) {
 /* The floor y = 0 below a pane, which lies below the camera; the sun stands above, where a
  * plate hides it from all points with x < 0. Merging alone finds its light. */
 static const char *const below_edge = HEAD
-    "WorldBegin LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb "
-    "L\" [3.1415927 3.1415927 3.1415927]\n"
+    "WorldBegin LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] "
+    "\"rgb L\" [3.1415927 3.1415927 3.1415927]\n"
     "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5] Shape \"bilinearmesh\" \"point3 P\" "
     "[-1.4 0 1.4 1.4 0 1.4 -1.4 0 -1.4 1.4 0 -1.4]\n"
     "Material \"thindielectric\" \"float eta\" 1 Shape \"bilinearmesh\" \"point3 P\" "
@@ -451,8 +449,8 @@ static void check_splats(const char *name, vlPixelFilterKind kind) {
     char text[TEXT];
     char film[200];
     snprintf(film, sizeof film,
-             "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d \"string "
-             "filename\" \"x.pfm\"",
+             "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d "
+             "\"string filename\" \"x.pfm\"",
              SIDE_OF_SPLATS, SIDE_OF_SPLATS);
     with_seed(below_sun, film, seed + 1, text);
     vlImage *image = filtered_image(text, "lightpath", kind, SPP_OF_SPLATS);
@@ -494,12 +492,11 @@ static const struct {
                                  "\"rgb transmittance\" [.4 .4 .4]")},
     {GLOSSY | TRANSMITTED, BOWL("\"dielectric\" \"float roughness\" .3")},
     {GLOSSY | TRANSMITTED, BOWL("\"thindielectric\"")},
-    {DIFFUSE | GLOSSY,
-     BOWL("\"subsurface\" \"rgb reflectance\" [.8 .8 .8] \"rgb mfp\" [.05 .05 "
-          ".05]")},
+    {DIFFUSE | GLOSSY, BOWL("\"subsurface\" \"rgb reflectance\" [.8 .8 .8] "
+                            "\"rgb mfp\" [.05 .05 .05]")},
     {SCATTERED,
-     "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.2 .2 .2] \"rgb "
-     "sigma_s\" [3 3 3] WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] "
+     "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.2 .2 .2] "
+     "\"rgb sigma_s\" [3 3 3] WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] "
      "MediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"\n"},
 };
 static const char *const limits[] = {"maxdiffusedepth", "maxglossydepth",

@@ -265,7 +265,7 @@ static void probe_world(const char *text, Probe *probe, uint32_t batches) {
 }
 
 /* Adds the square from -1 to 1 with this material; its texture coordinates are 0 to 1, of
- * `mirrored` squares u is 1 to 0. */
+ * `mirrored` squares u is 1 to 0. Its second set of coordinates is the other one of these. */
 static void add_square_of(vlScene *scene, const vlMaterialDef *material, bool mirrored) {
   static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   static const float upright[8] = {0, 0, 1, 0, 1, 1, 0, 1};
@@ -276,6 +276,7 @@ static void add_square_of(vlScene *scene, const vlMaterialDef *material, bool mi
   square.faces = 2;
   square.positions = corners;
   square.uvs = mirrored ? turned : upright;
+  square.more_uvs[0] = mirrored ? upright : turned;
   square.indices = indices;
   square.material = vl_scene_add_material(scene, material);
   vl_scene_add_shape(scene, &square);
@@ -337,13 +338,13 @@ static void look_down(vlCameraDef *def, double x, double z, double size) {
   def->up[2] = -1;
 }
 
-/* The image of a square of the floor, `size` wide, around (x, 0, z), in RGB and with the box
- * filter, by light that comes straight from the lights. */
-static vlImage *image_of_floor(const char *text, vlTracer tracer, uint32_t spp, double x,
-                               double z, double size) {
+/* The image of a square of the floor, `size` wide, around (x, 0, z), with the box filter, by
+ * light that comes straight from the lights; in RGB unless told otherwise. */
+static vlImage *image_of_floor_in(vlColorMode color, const char *text, vlTracer tracer,
+                                  uint32_t spp, double x, double z, double size) {
   vlScene *scene = need_scene(text);
   vlSceneDefs *defs = vl_scene_defs(scene);
-  defs->build.color = VL_COLOR_RGB;
+  defs->build.color = color;
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   defs->render.tracer = tracer;
   defs->render.max_depth = 1;
@@ -351,14 +352,21 @@ static vlImage *image_of_floor(const char *text, vlTracer tracer, uint32_t spp, 
   look_down(&defs->camera, x, z, size);
   return need_image(scene, text);
 }
+static vlImage *image_of_floor(const char *text, vlTracer tracer, uint32_t spp, double x,
+                               double z, double size) {
+  return image_of_floor_in(VL_COLOR_RGB, text, tracer, spp, x, z, size);
+}
 
-/* The mean of green over the image, each pixel a number of its own. */
-static Mean mean_of_image(const vlImage *image) {
+/* The mean of a channel over the image, each pixel a number of its own. */
+static Mean mean_of_channel(const vlImage *image, uint32_t channel) {
   Mean mean = {0};
   for (uint32_t y = 0; y < vl_image_height(image); y++)
     for (uint32_t x = 0; x < vl_image_width(image); x++)
-      mean_add(&mean, (double)vl_image_get(image, x, y, 1));
+      mean_add(&mean, (double)vl_image_get(image, x, y, channel));
   return mean;
+}
+static Mean mean_of_image(const vlImage *image) { /* of green */
+  return mean_of_channel(image, 1);
 }
 
 static double mean_of_green(const vlImage *image) {

@@ -113,6 +113,30 @@ static void turn_texture(vlTextureDef *def) {
   memcpy(def->st_from_uv, map, sizeof map);
 }
 
+/* By the shape's second set of texture coordinates. The square of the text, out of the way,
+ * only uses the texture. */
+static void check_second_set(const vlKindRow *row, const TextureVariant *variant) {
+  static char text[TEXT];
+  TextureLaws t = {.kind = row->name, .variant = variant};
+  t.rays = new_rays();
+  t.hits = calloc(1, sizeof *t.hits);
+  assert_non_null(t.hits);
+  Probe probe = {.ask = ask_footprints, .user = &t};
+  textured_text(text, row, variant, "", "Translate 0 0 9 " SQUARE_UP);
+  vlScene *scene = need_scene(text);
+  const vlTextureId id = {2};
+  vlError error = {0};
+  vlTextureDef texture = *vl_scene_texture(scene, id);
+  texture.uv_set = 1;
+  assert_int_equal(vl_scene_set_texture(scene, id, &texture, &error), VL_OK);
+  vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  material.reflectance.texture = id;
+  add_square(scene, &material);
+  probe_scene(scene, text, &probe, 1);
+  free(t.rays);
+  free(t.hits);
+}
+
 static void check_footprints(const vlKindRow *row, const TextureVariant *variant) {
   static char text[TEXT];
   TextureLaws t = {.kind = row->name, .variant = variant};
@@ -120,6 +144,7 @@ static void check_footprints(const vlKindRow *row, const TextureVariant *variant
     return;
   textured_text(text, row, variant, "", SQUARE_UP);
   ask_textured(text, &t, ask_footprints);
+  check_second_set(row, variant);
   change_texture = strcmp(row->name, "imagemap") == 0 ? turn_texture : NULL;
   if (change_texture)
     ask_textured(text, &t, ask_footprints);

@@ -253,17 +253,21 @@ static const char *const emitting_shapes[][2] = {
      "\"normal N\" [.1 .2 1 .2 0 -.6 0 .1 1 .2 .1 1]"},
 };
 
-/* The light of a shape that is placed above the floor. */
-static void check_emitting_shape(const char *family, const char *kind, const char *shape,
-                                 const char *parameters, const char *emission) {
-  static char text[TEXT];
+/* A shape that is placed above the floor, and emits. */
+static void emitting_text(char text[TEXT], const char *shape, const char *parameters,
+                          const char *emission) {
   snprintf(
-      text, sizeof text,
+      text, TEXT,
       HEAD
       "WorldBegin " FLOOR
       "AttributeBegin AreaLightSource \"diffuse\" %s Translate .3 1.1 .2 Rotate 70 1 .2 .1 "
       "Shape \"%s\" %s AttributeEnd\n",
       emission, shape, parameters);
+}
+static void check_emitting_shape(const char *family, const char *kind, const char *shape,
+                                 const char *parameters, const char *emission) {
+  static char text[TEXT];
+  emitting_text(text, shape, parameters, emission);
   check_hit_light(family, kind, emission, text, false);
 }
 
@@ -339,6 +343,46 @@ static void laws_of_emission(void **state) {
                            emitting_shapes[i == 0][1], emissions[i]);
   check_covered_lamps();
   check_sides_of_lamps();
+  expect_no_failures();
+}
+
+/* ---- in wavelengths ---------------------------------------------------------------------- */
+
+/* In wavelengths a light has the colour that it has in RGB. Both images are of the same paths,
+ * so that they differ by the noise of wavelengths alone. */
+static void check_colors_of_light(const char *family, const char *kind, const char *parameters,
+                                  const char *text) {
+  enum { COLOR_SPP = 16 };
+  vlImage *images[2];
+  for (int i = 0; i < 2; i++)
+    images[i] = image_of_floor_in(i ? VL_COLOR_SPECTRAL : VL_COLOR_RGB, text, VL_TRACER_PATH,
+                                  COLOR_SPP, 0.1, 0.2, 2);
+  const double whole = mean_of_green(images[0]);
+  for (uint32_t channel = 0; channel < 3; channel++) {
+    const Mean rgb = mean_of_channel(images[0], channel);
+    const Mean spectral = mean_of_channel(images[1], channel);
+    if (!(fabs(mean_of(&spectral) - mean_of(&rgb)) < 0.02 * whole))
+      broken(family, kind, "%s: channel %u of the floor is %.4f, in wavelengths %.4f",
+             parameters, channel, mean_of(&rgb), mean_of(&spectral));
+  }
+  vl_image_destroy(images[0]);
+  vl_image_destroy(images[1]);
+}
+
+static void check_colors(const vlKindRow *row, const LightVariant *v, const char *form) {
+  static char text[TEXT];
+  scene_text(text, form, row->name, v->parameters);
+  check_colors_of_light("lights", row->name, v->parameters, text);
+}
+
+static void colors_of_lights(void **state) {
+  (void)state;
+  for_each_light(FLOOR, check_colors);
+  for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++) {
+    static char text[TEXT];
+    emitting_text(text, emitting_shapes[0][0], emitting_shapes[0][1], emissions[i]);
+    check_colors_of_light("emission", "diffuse", emissions[i], text);
+  }
   expect_no_failures();
 }
 

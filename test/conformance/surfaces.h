@@ -303,6 +303,38 @@ static void displaced_meshes(void) {
   free(s.hits);
 }
 
+/* Texture coordinates that are equal at all corners, or along a line, give no directions: they
+ * change nothing in a patch of brushed metal; those of triangles count as any other of that
+ * sort.
+ */
+static void degenerate_coordinates(void) {
+  static const struct {
+    const char *kind, *parameters, *as;
+  } shapes[] = {
+      {"bilinearmesh", "", ""},
+      {"trianglemesh", "\"integer indices\" [0 1 2 2 1 3]", "\"point2 uv\" [0 0 0 0 0 0 0 0]"}};
+  static const char *const coordinates[] = {"\"point2 uv\" [.3 .6 .3 .6 .3 .6 .3 .6]",
+                                            "\"point2 uv\" [0 0 .25 .5 .5 1 1 2]"};
+  static char text[TEXT];
+  for (int i = 0; i < 4; i++) {
+    float pixels[2][PIXELS];
+    vlError error = {0};
+    for (int k = 0; k < 2; k++) {
+      snprintf(text, sizeof text,
+               HEAD "WorldBegin " LIGHTS
+                    "Material \"conductor\" \"float uroughness\" .1 "
+                    "\"float vroughness\" .6 Shape \"%s\" \"point3 P\" "
+                    "[-1 -1 0 1 -1 .5 -1 1 0 1 1 -.3] %s %s\n",
+               shapes[i / 2].kind, shapes[i / 2].parameters,
+               k ? coordinates[i % 2] : shapes[i / 2].as);
+      assert_true(render_text(text, pixels[k], &error));
+    }
+    if (memcmp(pixels[0], pixels[1], sizeof pixels[0]) != 0)
+      broken("shapes", shapes[i / 2].kind, "brushed metal with %s is another one",
+             coordinates[i % 2]);
+  }
+}
+
 static void laws_of_surfaces(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("shapes");
@@ -313,6 +345,7 @@ static void laws_of_surfaces(void **state) {
   }
   displaced_meshes();
   edges_of_displaced_meshes();
+  degenerate_coordinates();
   expect_no_failures();
 }
 

@@ -15,6 +15,7 @@
 #include "light_power.h"
 #include "lights.h"
 #include "materials.h"
+#include "neighbours.h"
 #include "parameters.h"
 #include "radiometry.h"
 #include "sampling.h"
@@ -85,6 +86,8 @@ int main(int argc, char **argv) {
       cmocka_unit_test(filters_of_light_paths),
       cmocka_unit_test(laws_of_media),
       cmocka_unit_test(neighbouring_media),
+      cmocka_unit_test(neighbouring_materials),
+      cmocka_unit_test(neighbouring_textures),
       cmocka_unit_test(laws_of_densities),
       cmocka_unit_test(laws_of_tracers),
       cmocka_unit_test(limits_of_kinds),

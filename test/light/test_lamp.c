@@ -360,6 +360,8 @@ static void wrong_files(void **state) {
       {HEAD "0 200\n0\n50 50\n", 4, "vertical angle 200 is not between"},
       {HEAD "0 100\n0\n50 50\n", 5, "vertical angles go from 0 to 100"},
       {HEAD "0 180\n10\n50 50\n", 5, "horizontal angles go from 10 to 10"},
+      {"TILT=NONE\n1 1000 1 2 4 1 1 0 0 0\n1 1 0\n0 180\n0 90 180 200\n1 1 1 1 1 1 1 1\n", 5,
+       "horizontal angles go from 0 to 200"},
       {HEAD "0 180\n", 5, "it ends before the horizontal angle"},
       {"a\n1\n7\n", 3, "symmetry is 7"},
       {"a\n1\n4\n6\n15\n3\n", 7, "ends before the distance of intensities"},

@@ -1,0 +1,102 @@
+/* conformance/neighbours.h: two materials of one kind, or two textures, beside each other in
+ * one plane: each has the bits that it has beside itself. So nothing of a kind is shared
+ * between two of its things. */
+#ifndef TEST_CONFORMANCE_NEIGHBOURS_H
+#define TEST_CONFORMANCE_NEIGHBOURS_H
+
+#include "materials.h"
+#include "textures.h"
+#include "transport.h"
+
+/* Two rectangles that do not see each other; the border goes through blocks of pixels. */
+#define LEFT_PART "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 -.1 -1 0 -1 1 0 -.1 1 0]\n"
+#define RIGHT_PART "Shape \"bilinearmesh\" \"point3 P\" [-.1 -1 0 1 -1 0 -.1 1 0 1 1 0]\n"
+#define PARTS_SEEN                                                                       \
+  "LookAt 0 0 3 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [-.5 .5 -.5 " \
+  ".5]\n" VIEW("16") "WorldBegin LightSource \"infinite\" \"rgb L\" [.5 1 2] " NAMED HALVES
+
+/* What a part is made of, as statements. */
+typedef void PartText(char text[TEXT], const vlKindRow *row, const char *parameters,
+                      int number);
+
+static void material_part(char text[TEXT], const vlKindRow *row, const char *parameters,
+                          int number) {
+  (void)number;
+  snprintf(text, TEXT, "Material \"%s\" %s\n", row->name, parameters);
+}
+static void texture_part(char text[TEXT], const vlKindRow *row, const char *parameters,
+                         int number) {
+  static const char *const forms[] = {
+      "Texture \"t%d\" \"spectrum\" \"%s\" %s "
+      "Material \"diffuse\" \"texture reflectance\" \"t%d\"\n",
+      "Texture \"f%d\" \"float\" \"%s\" %s Texture \"t%d\" \"spectrum\" \"scale\" "
+      "\"rgb tex\" [1 1 1] \"texture scale\" \"f%d\" "
+      "Material \"diffuse\" \"texture reflectance\" \"t%d\"\n"};
+  const bool float_only = row->traits & VL_TEXTURE_FLOAT_ONLY;
+  snprintf(text, TEXT, forms[float_only], number, row->name, parameters, number, number,
+           number);
+}
+
+static vlImage *image_of_parts(const vlKindRow *row, PartText *part, const char *left,
+                               const char *right) {
+  static char text[TEXT];
+  static char parts[2][TEXT];
+  part(parts[0], row, left, 0);
+  part(parts[1], row, right, 1);
+  int length = snprintf(text, sizeof text, "%s%s" LEFT_PART "%s" RIGHT_PART, PARTS_SEEN,
+                        parts[0], parts[1]);
+  assert_true(length > 0 && length < TEXT);
+  return image_of(text, NULL, SAMPLES);
+}
+
+static uint32_t other_numbers(const vlImage *image, const vlImage *other, uint32_t first,
+                              uint32_t last) {
+  uint32_t others = 0;
+  for (uint32_t y = 0; y < vl_image_height(image); y++)
+    for (uint32_t x = first; x < last; x++)
+      for (uint32_t channel = 0; channel < 3; channel++)
+        others += vl_image_get(image, x, y, channel) != vl_image_get(other, x, y, channel);
+  return others;
+}
+
+static void check_parts(const char *family, const vlKindRow *row, PartText *part,
+                        const char *left, const char *right) {
+  vlImage *both = image_of_parts(row, part, left, right);
+  vlImage *lefts = image_of_parts(row, part, left, left);
+  vlImage *rights = image_of_parts(row, part, right, right);
+  /* x grows to the left; the border is in the tenth column */
+  uint32_t others =
+      other_numbers(both, rights, 0, 9) + other_numbers(both, lefts, 10, vl_image_width(both));
+  if (others)
+    broken(family, row->name, "%s beside %s: %u numbers are others than beside itself", left,
+           right, others);
+  vl_image_destroy(both);
+  vl_image_destroy(lefts);
+  vl_image_destroy(rights);
+}
+
+static void neighbouring_materials(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("materials");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const MaterialVariant *v = material_cases[k]->variants;
+    for (int i = 0; i + 1 < MATERIAL_VARIANTS && v[i].parameters && v[i + 1].parameters; i++)
+      check_parts("materials", family->rows[k], material_part, v[i].parameters,
+                  v[i + 1].parameters);
+  }
+  expect_no_failures();
+}
+
+static void neighbouring_textures(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("textures");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const TextureVariant *v = texture_cases[k]->variants;
+    for (int i = 0; i + 1 < TEXTURE_VARIANTS && v[i].parameters && v[i + 1].parameters; i++)
+      check_parts("textures", family->rows[k], texture_part, v[i].parameters,
+                  v[i + 1].parameters);
+  }
+  expect_no_failures();
+}
+
+#endif

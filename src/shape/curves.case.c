@@ -46,8 +46,8 @@ const ShapeCase curves_shape = {
              /* the normal turns by 90 degrees from the middle to an edge */
              .known = {{{.3, .025, 1}, {0, 0, -1}, 1, .75, .25, .70710678}},
              .known_count = 1},
-            /* it widens from .05 to .15 */
-            {.parameters = TAPERED "\"string type\" \"flat\"",
+            /* it widens from .05 to .15, in one piece */
+            {.parameters = TAPERED "\"string type\" \"flat\" \"integer splitdepth\" 0",
              .area = 0.12 * HALF_TURN / 2,
              .reach = 0.61,
              .faces_rays = true,

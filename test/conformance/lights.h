@@ -334,6 +334,25 @@ static void check_sides_of_lamps(void) {
   }
 }
 
+/* A sphere that is stretched along one axis is none any more, whichever axis it is: there is
+ * light beyond the cone of the sphere. */
+static void check_stretched_spheres(void) {
+  static const char *const maps[] = {"Scale 1.8 1 1", "Rotate 90 0 0 1 Scale 1 1.8 1",
+                                     "Scale 1 1 1.8"};
+  static char text[TEXT];
+  for (int i = 0; i < 3; i++) {
+    snprintf(text, sizeof text,
+             HEAD "WorldBegin " FLOOR
+                  "Translate .3 1.1 .2 %s AreaLightSource \"diffuse\" "
+                  "\"rgb L\" [1 1 1] Shape \"sphere\" \"float radius\" .5",
+             maps[i]);
+    const LightLaws l = ask_floor(text, 0.1, 0.2, 16);
+    const double whole = mean_of(&l.integral[1]);
+    check_same_mean("shapes", "sphere", maps[i], &l.sampled[1], &l.integral[1],
+                    (Sight){0.02 * whole, 0.3 * whole});
+  }
+}
+
 static void laws_of_emission(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("emission");
@@ -343,6 +362,7 @@ static void laws_of_emission(void **state) {
                            emitting_shapes[i == 0][1], emissions[i]);
   check_covered_lamps();
   check_sides_of_lamps();
+  check_stretched_spheres();
   expect_no_failures();
 }
 

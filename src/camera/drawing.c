@@ -212,20 +212,20 @@ static uint32_t grid_step(uint32_t size, uint32_t most) {
         return (uint32_t)(factors[i] * ten);
 }
 
-static void grid(Pen *p, vlDrawingPart part, double depth) {
+static void grid(Pen *p, double depth) {
   const vlCamera *c = p->camera;
   if (p->def->grid == 0)
     return;
   uint32_t step = grid_step(c->width > c->height ? c->width : c->height, p->def->grid);
   for (uint32_t x = step; x < c->width; x += step)
-    curve(p, part, x, 0, x, c->height, depth);
+    curve(p, VL_DRAWING_GRID, x, 0, x, c->height, depth);
   for (uint32_t y = step; y < c->height; y += step)
-    curve(p, part, 0, y, c->width, y, depth);
+    curve(p, VL_DRAWING_GRID, 0, y, c->width, y, depth);
 }
 
-/* Lines along the edges of the view volume between two depths: through the corners; of curved
+/* Lines along the edges of the view volume, up to a depth: through the corners; of curved
  * surfaces also through the middles of the edges, and around the image circle. */
-static void edges(Pen *p, vlDrawingPart part, double from, double to) {
+static void edges(Pen *p, vlDrawingPart part, double to) {
   const vlCamera *c = p->camera;
   double a[3], b[3], xy[2];
   bool circle = on_circle(c, 0, xy) || on_circle(c, 0.25, xy);
@@ -238,7 +238,7 @@ static void edges(Pen *p, vlDrawingPart part, double from, double to) {
       xy[0] = square[i][0] * c->width;
       xy[1] = square[i][1] * c->height;
     }
-    if (at_depth(p, xy[0], xy[1], from, a) && at_depth(p, xy[0], xy[1], to, b))
+    if (at_depth(p, xy[0], xy[1], 0, a) && at_depth(p, xy[0], xy[1], to, b))
       line(p, part, a, b);
   }
 }
@@ -337,8 +337,8 @@ static void draw_film(Pen *p) {
     return;
   surface(p, VL_DRAWING_FILM, depth);
   border(p, VL_DRAWING_FILM, depth);
-  grid(p, VL_DRAWING_GRID, depth);
-  edges(p, VL_DRAWING_FILM, 0, depth);
+  grid(p, depth);
+  edges(p, VL_DRAWING_FILM, depth);
   if (at_depth(p, 0, p->camera->height, depth, at))
     label(p, VL_DRAWING_FILM, at, "film");
 }
@@ -349,7 +349,7 @@ static void draw_volume(Pen *p) {
   double end = has_far ? c->far_plane : p->def->reach, at[3];
   if (!has_far && (!p->flat || end < p->def->plane))
     end = p->def->plane;
-  edges(p, VL_DRAWING_VOLUME, 0, end);
+  edges(p, VL_DRAWING_VOLUME, end);
   if (has_near) {
     surface(p, VL_DRAWING_NEAR, c->near_plane);
     border(p, VL_DRAWING_NEAR, c->near_plane);
@@ -371,7 +371,7 @@ static void draw_whole(Pen *p) {
   eye_of(c, eye);
   draw_volume(p);
   surface(p, VL_DRAWING_WINDOW, plane);
-  grid(p, VL_DRAWING_GRID, plane);
+  grid(p, plane);
   border(p, VL_DRAWING_WINDOW, plane);
   go(eye, p->forward, plane, centre);
   go(eye, p->forward, 0.5 * plane, middle);
@@ -385,7 +385,7 @@ static void draw_whole(Pen *p) {
 }
 
 static void draw_small(Pen *p) {
-  edges(p, VL_DRAWING_VOLUME, 0, p->def->plane);
+  edges(p, VL_DRAWING_VOLUME, p->def->plane);
   surface(p, VL_DRAWING_WINDOW, p->def->plane);
   border(p, VL_DRAWING_WINDOW, p->def->plane);
   draw_eye(p);

@@ -11,7 +11,7 @@ static vlResult next_numbers(const vlCameraFile *file, vlCameraLines *lines, dou
                              uint32_t count) {
   if (!vl_camera_next_line(lines))
     return vl_camera_wrong(file, "bundler: the file ends within a camera");
-  return vl_camera_line_numbers(file, lines, lines->text, values, count, count, NULL);
+  return vl_camera_line_numbers(file, lines, lines->text, values, count, count);
 }
 
 static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t size,

@@ -26,7 +26,7 @@ static vlResult find_row(const vlCameraFile *file, const char *text, size_t size
       continue;
     *found = true;
     return vl_camera_line_numbers(file, &row->line, line + length + 1, row->values, least,
-                                  least, NULL);
+                                  least);
   }
   return VL_OK;
 }

@@ -37,8 +37,8 @@ vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lin
 }
 
 vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *lines,
-                                const char *from, double *values, uint32_t least, uint32_t most,
-                                uint32_t *count) {
+                                const char *from, double *values, uint32_t least,
+                                uint32_t most) {
   uint32_t found = 0;
   const char *at = from + strspn(from, " \t");
   while (*at) {
@@ -54,8 +54,6 @@ vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *l
   }
   if (found < least)
     return vl_camera_wrong_line(file, lines, from, "%u numbers; it must be %u", found, least);
-  if (count)
-    *count = found;
   return VL_OK;
 }
 

@@ -25,7 +25,7 @@ static vlResult read_number(const vlCameraFile *file, const char *text, size_t s
   if (found)
     *found = at != NULL;
   if (at)
-    return vl_camera_line_numbers(file, &line, at, value, 1, 1, NULL);
+    return vl_camera_line_numbers(file, &line, at, value, 1, 1);
   return found ? VL_OK
                : vl_camera_wrong_at(file, 1, 1, "middlebury: the line \"%s=\" is missing", key);
 }

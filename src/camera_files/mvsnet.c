@@ -13,7 +13,7 @@ static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, cons
   for (uint32_t i = 0; i < n; i++) {
     if (!vl_camera_next_line(lines))
       return vl_camera_wrong(file, "mvsnet: \"%s\" must have %u rows", word, n);
-    VL_TRY(vl_camera_line_numbers(file, lines, lines->text, m + (size_t)n * i, n, n, NULL));
+    VL_TRY(vl_camera_line_numbers(file, lines, lines->text, m + (size_t)n * i, n, n));
   }
   return VL_OK;
 }

@@ -48,10 +48,10 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
   vl_camera_next_line(&lines);
   const char *k = strstr(lines.text, "FixedK");
   if (k)
-    VL_TRY(vl_camera_line_numbers(file, &lines, k + 6, fixed, 4, 5, NULL));
+    VL_TRY(vl_camera_line_numbers(file, &lines, k + 6, fixed, 4, 5));
   if (!vl_camera_next_line(&lines))
     return vl_camera_wrong(file, "visualsfm: the file has no camera");
-  VL_TRY(vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1, NULL));
+  VL_TRY(vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1));
   if (!(count >= 1.0 && count <= 1e7))
     return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
   record->frames = (uint32_t)count;
@@ -68,7 +68,7 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
     if (!taken)
       continue;
     /* the name is in front of the last ten numbers */
-    VL_TRY(vl_camera_line_numbers(file, &lines, lines.text + length, v, 10, 10, NULL));
+    VL_TRY(vl_camera_line_numbers(file, &lines, lines.text + length, v, 10, 10));
     vl_camera_name(record, name);
   }
   if (!taken)

@@ -63,7 +63,7 @@ static vlResult find_value(const vlCameraFile *file, const char *text, size_t si
     if (*sign != '=')
       continue;
     *found = true;
-    return vl_camera_line_numbers(file, &lines, sign + 1, value, 1, 1, NULL);
+    return vl_camera_line_numbers(file, &lines, sign + 1, value, 1, 1);
   }
   return VL_OK;
 }

@@ -1,8 +1,7 @@
-/* color/kernels.h: batch kernels for colour: wavelengths, spectra at the wavelengths of each
- * path, radiance to RGB. Channel c of path i is stored at [c][i]. All arrays hold VL_PAD(n)
- * elements. Padding elements are computed too, so they must hold finite numbers or, in index
- * arrays, valid offsets. Results have the same bits on every instruction set. Sources: pbrt
- * book 4.5, 4.6. */
+/* color/kernels.h: batch kernels for colour: wavelengths, radiance to RGB. Channel c of path i
+ * is stored at [c][i]. All arrays hold VL_PAD(n) elements. Padding elements are computed too,
+ * so they must hold finite numbers. Results have the same bits on every instruction set.
+ * Sources: pbrt book 4.5, 4.6. */
 #ifndef COLOR_KERNELS_H
 #define COLOR_KERNELS_H
 
@@ -24,31 +23,6 @@ typedef struct vlColorKernels {
   void (*rgb_from_radiance)(const float *cmf, const float m[9], uint32_t n,
                             const float *const radiance[4], const float *const lambda[4],
                             const float *const inv_pdf[4], float *r, float *g, float *b);
-  /* out = scale * sigmoid(c0, c1, c2; lambda), with one set of coefficients per path. A null
-   * scale means 1. */
-  void (*sigmoid_eval)(uint32_t n, const float *c0, const float *c1, const float *c2,
-                       const float *scale, const float *const lambda[4], float *const out[4]);
-  /* Like sigmoid_eval, times a dense spectrum such as the illuminant of a colour space. A null
-   * scale means 1. */
-  void (*light_eval)(uint32_t n, const float *c0, const float *c1, const float *c2,
-                     const float *scale, const float *dense, const float *const lambda[4],
-                     float *const out[4]);
-  /* Evaluates one dense spectrum (VL_LAMBDA_COUNT values) for all paths. */
-  void (*dense_eval)(uint32_t n, const float *dense, const float *const lambda[4],
-                     float *const out[4]);
-  /* Evaluates one dense spectrum per path: the spectrum of path i starts at
-   * dense[offset[i]]. */
-  void (*dense_gather)(uint32_t n, const float *dense, const uint32_t *offset,
-                       const float *const lambda[4], float *const out[4]);
-  /* Converts RGB reflectances, clamped to [0,1], to sigmoid coefficients. */
-  void (*sigmoid_from_rgb)(const vlRgbTable *table, uint32_t n, const float *r, const float *g,
-                           const float *b, float *c0, float *c1, float *c2);
-  /* Converts RGB colours of lights to sigmoid coefficients and scale = 2 max(r, g, b). Negative
-   * values count as 0. The spectrum of the light is scale * sigmoid times the illuminant of the
-   * colour space. */
-  void (*sigmoid_from_light)(const vlRgbTable *table, uint32_t n, const float *r,
-                             const float *g, const float *b, float *scale, float *c0, float *c1,
-                             float *c2);
 } vlColorKernels;
 VL_KERNEL_TABLE(vlColorKernels, vl_color)
 

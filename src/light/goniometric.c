@@ -159,7 +159,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
 /* Adds the image of a light. Null on error. */
 static const vlMipmap *add_image(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
                                  vlError *error) {
-  int32_t image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
+  int32_t image = vl_world_add_image(world, def->path, def->image, NULL, false, error);
   light->image = (uint32_t)image;
   return image < 0 ? NULL : world->images.items[image].mipmap;
 }

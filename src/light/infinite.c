@@ -58,7 +58,7 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
     light->power = 4 * VL_PI * area * vl_light_luminance(&e->spectrum);
     return r;
   }
-  e->image = vl_world_add_image(world, def->path, def->image, NULL, 1, false, error);
+  e->image = vl_world_add_image(world, def->path, def->image, NULL, false, error);
   if (e->image < 0)
     return error && error->code ? error->code : VL_ERROR_SCENE;
   vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), def->scale, e);

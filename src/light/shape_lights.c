@@ -51,7 +51,7 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
   }
   if (!def->image)
     return vl_light_color(world, &def->radiance, def->scale, e, error);
-  e->image = vl_world_add_image(world, def->image, NULL, NULL, 1, true, error);
+  e->image = vl_world_add_image(world, def->image, NULL, NULL, true, error);
   if (e->image < 0)
     return error && error->code ? error->code : VL_ERROR_SCENE;
   vl_light_image_color(world, vl_light_image_space(world, e->image, VL_SPACE_SRGB), def->scale,

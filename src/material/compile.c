@@ -370,7 +370,7 @@ static vlResult bumps(const vlMaterialBuild *b) {
     return r;
   vlEncoding linear = VL_ENCODING_LINEAR;
   b->m->normal_map =
-      vl_world_add_image(b->world, b->def->normal_map, NULL, &linear, 1, false, b->error);
+      vl_world_add_image(b->world, b->def->normal_map, NULL, &linear, false, b->error);
   return b->m->normal_map >= 0        ? VL_OK
          : b->error && b->error->code ? b->error->code
                                       : VL_ERROR_SCENE;

@@ -109,8 +109,8 @@ static void from_latitudes(const vlImage *from, const float *pixels, uint32_t ch
   }
 }
 
-static bool new_image(vlScene *scene, uint32_t side, uint32_t channels, vlImage **image) {
-  vlImageDef def = vl_default_image_def(side, side, channels);
+static bool new_image(vlScene *scene, uint32_t side, vlImage **image) {
+  vlImageDef def = vl_default_image_def(side, side, 3);
   def.type = VL_PIXEL_F32;
   return vl_image_create(scene->context, &def, image) == VL_OK || vl_scene_fail_memory(scene);
 }
@@ -141,7 +141,7 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
               vl_scene_fail_memory(scene));
   /* pixels at the horizon keep about their solid angle */
   uint32_t side = from->height + from->height / 4;
-  ok = ok && new_image(scene, side > MAX_SIDE ? MAX_SIDE : side < 16 ? 16 : side, 3, image);
+  ok = ok && new_image(scene, side > MAX_SIDE ? MAX_SIDE : side < 16 ? 16 : side, image);
   if (ok)
     from_latitudes(from, pixels, channels, *image);
   vl_free(scene->context, pixels);
@@ -183,9 +183,9 @@ bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def,
   if (kind == VL_ENVIRONMENT_FILE)
     ok = read_environment(scene, def->path, &image);
   const vlStudio *studio = vl_studio(kind);
-  if (studio && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image)))
+  if (studio && (ok = new_image(scene, BUILT_IN_SIDE, &image)))
     fill_studio(scene, studio, image);
-  if (kind == VL_ENVIRONMENT_SKY && (ok = new_image(scene, BUILT_IN_SIDE, 3, &image)))
+  if (kind == VL_ENVIRONMENT_SKY && (ok = new_image(scene, BUILT_IN_SIDE, &image)))
     fill_sky(image);
   light.image = image;
   ok = ok && vl_scene_add_light(scene, &light).index != 0;

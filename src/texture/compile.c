@@ -215,8 +215,6 @@ static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
   memcpy(node->tint, def->tint, sizeof node->tint);
   node->st_given = def->st_from_uv_given;
   memcpy(node->st, def->st_from_uv, sizeof node->st);
-  node->st_scale = sqrtf(fmaxf(node->st[0] * node->st[0] + node->st[3] * node->st[3],
-                               node->st[1] * node->st[1] + node->st[4] * node->st[4]));
   bool tinted =
       def->tint[0] != 1 || def->tint[1] != 1 || def->tint[2] != 1 || def->tint[3] != 1;
   node->plain =

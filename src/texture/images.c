@@ -211,12 +211,11 @@ static int32_t obtain_image(vlWorld *world, const Image *p, vlError *error) {
 }
 
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given,
-                           const vlEncoding *encoding, float gamma, bool pyramid,
-                           vlError *error) {
+                           const vlEncoding *encoding, bool pyramid, vlError *error) {
   Image p = {.path = path,
              .given = given,
              .encoding = encoding,
-             .gamma = gamma,
+             .gamma = 1,
              .pyramid = pyramid,
              .owner = given ? given->number : 0};
   return obtain_image(world, &p, error);

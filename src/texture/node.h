@@ -76,8 +76,7 @@ typedef struct vlTextureNode {
   uint32_t mapping; /* vlMapping */
   bool st_given;    /* the map st gives s and t, instead of su, sv, du, dv */
   float su, sv, du, dv;
-  float st[6], st_scale; /* map from uv to (s, t); st_scale: the largest factor by which it
-                            stretches a length */
+  float st[6]; /* map from uv to (s, t) */
   float v1[3], v2[3];
   float texture_from_world[12];
 } vlTextureNode;

@@ -375,8 +375,7 @@ vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount,
 /* Reads an image (or uses the given one). encoding null: the file's own. pyramid: also makes
  * the smaller levels of the MIP map. Returns the image's index, or -1 with the error set. */
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given,
-                           const vlEncoding *encoding, float gamma, bool pyramid,
-                           vlError *error);
+                           const vlEncoding *encoding, bool pyramid, vlError *error);
 /* Reads the scene's images on all workers. Errors of an image are ignored here: the code that
  * uses the image reports them. */
 vlResult vl_world_preload_images(vlWorld *world, const struct vlScene *scene, vlError *error);

@@ -10,9 +10,8 @@
 enum { N = 1000, PAD = VL_PAD(N) };
 
 typedef struct batch {
-  float u[PAD], r[PAD], g[PAD], b[PAD], c0[PAD], c1[PAD], c2[PAD], scale[PAD];
+  float u[PAD], r[PAD], g[PAD], b[PAD];
   float lambda[4][PAD], inv_pdf[4][PAD], out[4][PAD];
-  uint32_t offset[PAD];
 } batch;
 
 static uint32_t seed = 1;
@@ -36,70 +35,41 @@ static float visible_pdf(float lambda) {
   { a[0], a[1], a[2], a[3] }
 
 /* All kernels one after another; results go into all[] for comparison. */
-enum { RESULTS = 34 };
+enum { RESULTS = 19 };
 static float all[3][RESULTS][PAD];
-static float dense_pool[3 * VL_LAMBDA_COUNT];
 static batch input;
 
 static void run(const vlColorKernels *k, float (*result)[PAD]) {
   static batch x;
   x = input;
-  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf), *out[4] = ROWS(x.out);
+  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf);
   const float *l[4] = ROWS(x.lambda), *p[4] = ROWS(x.inv_pdf), *o[4] = ROWS(x.out);
   int at = 0;
 #define KEEP(a) memcpy(result[at++], a, sizeof x.u)
 #define KEEP4(a) KEEP(a[0]), KEEP(a[1]), KEEP(a[2]), KEEP(a[3])
+  k->uniform_wavelengths(400, 300, N, x.u, lambda, inv_pdf);
+  KEEP4(x.lambda);
+  KEEP4(x.inv_pdf);
   k->visible_wavelengths(N, x.u, lambda, inv_pdf);
   KEEP4(x.lambda);
   KEEP4(x.inv_pdf);
-  k->sigmoid_from_light(vl_rgb_table(VL_SPACE_REC2020), N, x.r, x.g, x.b, x.scale, x.c0, x.c1,
-                        x.c2);
-  KEEP(x.scale);
-  KEEP(x.c0);
-  KEEP(x.c1);
-  KEEP(x.c2);
-  k->light_eval(N, x.c0, x.c1, x.c2, x.scale, vl_space_illuminant(VL_SPACE_REC2020), l, out);
-  KEEP4(x.out);
   float m[9];
   vl_rgb_from_xyz(VL_SPACE_SRGB, m);
   k->rgb_from_radiance(vl_cie_xyz0, m, N, o, l, p, x.r, x.g, x.b);
   KEEP(x.r);
   KEEP(x.g);
   KEEP(x.b);
-  k->sigmoid_from_rgb(vl_rgb_table(VL_SPACE_SRGB), N, input.r, input.g, input.b, x.c0, x.c1,
-                      x.c2);
-  KEEP(x.c0);
-  KEEP(x.c1);
-  KEEP(x.c2);
-  k->sigmoid_eval(N, x.c0, x.c1, x.c2, NULL, l, out);
-  KEEP4(x.out);
-  k->dense_eval(N, dense_pool, l, out);
-  KEEP4(x.out);
-  k->dense_gather(N, dense_pool, x.offset, l, out);
-  KEEP4(x.out);
   assert_int_equal(at, RESULTS);
 }
 
 static void fill(void) {
   for (int i = 0; i < PAD; i++) {
     input.u[i] = uniform();
-    input.r[i] = uniform();
-    input.g[i] = uniform();
-    input.b[i] = uniform();
-    if (i % 7 == 0)
-      input.r[i] = input.g[i] = input.b[i];
-    if (i % 11 == 0)
-      input.b[i] = 0;
-    if (i % 13 == 0)
-      input.g[i] = 1;
-    input.offset[i] = (uint32_t)(i % 3) * VL_LAMBDA_COUNT;
+    for (int c = 0; c < 4; c++)
+      input.out[c][i] = uniform();
   }
-  input.r[0] = input.g[0] = input.b[0] = 0;
-  input.r[1] = input.g[1] = input.b[1] = 1;
   input.u[0] = 0;
   input.u[1] = 0x1.fffffep-1f;
-  for (int i = 0; i < 3 * VL_LAMBDA_COUNT; i++)
-    dense_pool[i] = uniform();
 }
 
 static void test_bits(void **state) {
@@ -116,37 +86,31 @@ static void test_bits(void **state) {
   }
 }
 
-/* Each result is compared with that of the inline functions in the headers, which other code
+/* Each wavelength is compared with that of the inline function in the header, which other code
  * uses. */
 static void test_inline(void **state) {
   (void)state;
   fill();
   run(vl_color_kernels(vl_isa_best()), all[0]);
   float(*x)[PAD] = all[0];
-  for (int i = 0; i < N; i++) {
-    vlSigmoid s =
-        vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), input.r[i], input.g[i], input.b[i]);
-    assert_true(s.c0 == x[19][i] && s.c1 == x[20][i] && s.c2 == x[21][i]);
-    float high = fmaxf(fmaxf(input.r[i], input.g[i]), input.b[i]);
-    assert_true(x[8][i] == 2 * high);
+  for (int i = 0; i < N; i++)
     for (int c = 0; c < 4; c++) {
-      float lambda = x[c][i], v = input.u[i] + 0.25f * (float)c, inv_pdf;
+      float lambda = x[8 + c][i], v = input.u[i] + 0.25f * (float)c, inv_pdf;
+      v = v >= 1 ? v - 1 : v;
+      assert_true(x[c][i] == 400 + 300 * v && x[4 + c][i] == 300);
       assert_true(lambda >= 360 && lambda <= 830);
-      assert_true(lambda == vl_visible_lambda(v >= 1 ? v - 1 : v, &inv_pdf) &&
-                  x[4 + c][i] == inv_pdf);
-      assert_float_equal(x[4 + c][i] * visible_pdf(lambda), 1.0, 2e-4);
-      assert_true(x[22 + c][i] == vl_sigmoid(s, lambda));
-      assert_true(x[26 + c][i] == vl_dense_at(dense_pool, lambda));
-      assert_true(x[30 + c][i] == vl_dense_at(dense_pool + input.offset[i], lambda));
-      vlSigmoid light = {x[9][i], x[10][i], x[11][i]};
-      assert_true(x[12 + c][i] ==
-                  x[8][i] * vl_sigmoid(light, lambda) *
-                      vl_dense_at(vl_space_illuminant(VL_SPACE_REC2020), lambda));
+      assert_true(lambda == vl_visible_lambda(v, &inv_pdf) && x[12 + c][i] == inv_pdf);
+      assert_float_equal(x[12 + c][i] * visible_pdf(lambda), 1.0, 2e-4);
     }
-  }
-  assert_true(vl_dense_at(dense_pool, 359.9f) == 0 && vl_dense_at(dense_pool, 830.1f) == 0);
-  assert_true(vl_dense_at(dense_pool, 830) == dense_pool[470] &&
-              vl_dense_at(dense_pool, 360) == dense_pool[0]);
+}
+
+static void test_dense(void **state) {
+  (void)state;
+  float dense[VL_LAMBDA_COUNT];
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+    dense[i] = uniform();
+  assert_true(vl_dense_at(dense, 359.9f) == 0 && vl_dense_at(dense, 830.1f) == 0);
+  assert_true(vl_dense_at(dense, 830) == dense[470] && vl_dense_at(dense, 360) == dense[0]);
 }
 
 /* The share of wavelengths below l is the integral of the density up to l. */
@@ -222,26 +186,21 @@ static double colour_noise(float (*sample)(float, float *), const float reflecta
   enum { STEPS = 4096 };
   static batch x;
   const vlColorKernels *k = vl_color_kernels(vl_isa_best());
-  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf), *out[4] = ROWS(x.out);
   const float *l[4] = ROWS(x.lambda), *p[4] = ROWS(x.inv_pdf), *o[4] = ROWS(x.out);
   float m[9], *rgb[3] = {x.r, x.g, x.b};
+  const float *light = vl_space_illuminant(VL_SPACE_SRGB);
+  vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), reflectance[0], reflectance[1],
+                                    reflectance[2]);
   vl_rgb_from_xyz(VL_SPACE_SRGB, m);
   double sum[3] = {0}, squares[3] = {0}, noise = 0;
   for (int first = 0; first < STEPS; first += PAD) {
     int n = STEPS - first < PAD ? STEPS - first : PAD;
     for (int i = 0; i < PAD; i++)
-      for (int c = 0; c < 4; c++)
-        lambda[c][i] =
-            sample((float)fmod(((float)(first + i) + 0.5f) / STEPS + 0.25f * (float)c, 1),
-                   &inv_pdf[c][i]);
-    vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), reflectance[0],
-                                      reflectance[1], reflectance[2]);
-    for (int i = 0; i < PAD; i++) {
-      x.c0[i] = s.c0;
-      x.c1[i] = s.c1;
-      x.c2[i] = s.c2;
-    }
-    k->light_eval(PAD, x.c0, x.c1, x.c2, NULL, vl_space_illuminant(VL_SPACE_SRGB), l, out);
+      for (int c = 0; c < 4; c++) {
+        const float u = ((float)(first + i) + 0.5f) / STEPS + 0.25f * (float)c;
+        const float lambda = x.lambda[c][i] = sample((float)fmod(u, 1), &x.inv_pdf[c][i]);
+        x.out[c][i] = vl_sigmoid(s, lambda) * vl_dense_at(light, lambda);
+      }
     k->rgb_from_radiance(vl_cie_xyz0, m, PAD, o, l, p, x.r, x.g, x.b);
     for (int c = 0; c < 3; c++)
       for (int i = 0; i < n; i++) {
@@ -276,7 +235,7 @@ static void test_white(void **state) {
   (void)state;
   static batch x;
   const vlColorKernels *k = vl_color_kernels(vl_isa_best());
-  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf), *out[4] = ROWS(x.out);
+  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf);
   const float *l[4] = ROWS(x.lambda), *p[4] = ROWS(x.inv_pdf), *o[4] = ROWS(x.out);
   for (int space = VL_SPACE_SRGB; space <= VL_SPACE_ACES2065_1; space++) {
     vlSpectrum white = vl_spectrum_rgb(1, 1, 1);
@@ -285,10 +244,10 @@ static void test_white(void **state) {
     for (int i = 0; i < PAD; i++)
       x.u[i] = ((float)i + 0.5f) / (float)PAD;
     k->visible_wavelengths(PAD, x.u, lambda, inv_pdf);
-    k->dense_eval(PAD, vl_space_illuminant((vlColorSpace)space), l, out);
+    const float *light = vl_space_illuminant((vlColorSpace)space);
     for (int c = 0; c < 4; c++)
       for (int i = 0; i < PAD; i++)
-        x.out[c][i] *= scale;
+        x.out[c][i] = scale * vl_dense_at(light, x.lambda[c][i]);
     vl_rgb_from_xyz((vlColorSpace)space, m);
     k->rgb_from_radiance(vl_cie_xyz0, m, PAD, o, l, p, x.r, x.g, x.b);
     double sum[3] = {0};
@@ -304,9 +263,10 @@ static void test_white(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bits),         cmocka_unit_test(test_inline),
-      cmocka_unit_test(test_density),      cmocka_unit_test(test_samples),
-      cmocka_unit_test(test_colour_noise), cmocka_unit_test(test_white),
+      cmocka_unit_test(test_bits),    cmocka_unit_test(test_inline),
+      cmocka_unit_test(test_dense),   cmocka_unit_test(test_density),
+      cmocka_unit_test(test_samples), cmocka_unit_test(test_colour_noise),
+      cmocka_unit_test(test_white),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -82,7 +82,6 @@ static BlenderEvent take_line(Blender *b, char *line) {
     text_set(b->version, "%s", next_word(&line));
     b->first = next_number(&line);
     b->last = next_number(&line);
-    b->current = next_number(&line);
     return EVENT_SCENE;
   }
   if (strcmp(kind, "done") == 0) {

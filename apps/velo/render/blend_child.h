@@ -16,12 +16,12 @@ typedef struct Blender {
   size_t held_count; /* of bytes that were read and not looked at */
   const char *scene; /* path of the file */
   char program[4096], version[64];
-  long first, last, current; /* frames of the scene */
-  long width, height, spp;   /* of the last image */
-  int failed;                /* exit code of the error that it has told and that was reported;
-                                0: none */
-  FrameProgress *shown;      /* of the frame that is rendered; null: none */
-  uint32_t number;           /* of that frame */
+  long first, last;        /* frames of the scene */
+  long width, height, spp; /* of the last image */
+  int failed;              /* exit code of the error that it has told and that was reported;
+                              0: none */
+  FrameProgress *shown;    /* of the frame that is rendered; null: none */
+  uint32_t number;         /* of that frame */
 } Blender;
 
 /* Starts Blender, which opens the file and takes the options of the command. Returns -1, or the

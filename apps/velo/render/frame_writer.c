@@ -21,7 +21,6 @@ enum { QUEUE = 4 }; /* images that wait to be written, and the one that is being
 
 struct FrameWriter {
   vlContext *context;
-  const vlWorld *world;
   const Frames *frames;
   const Outputs *outputs, *denoised;
   pthread_t thread;
@@ -291,13 +290,12 @@ static void *work(void *user) {
   return NULL;
 }
 
-FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames,
+FrameWriter *frame_writer_start(vlContext *context, const Frames *frames,
                                 const Outputs *outputs, const Outputs *denoised) {
   FrameWriter *w = calloc(1, sizeof *w);
   if (!w)
     return NULL;
   w->context = context;
-  w->world = world;
   w->frames = frames;
   w->outputs = outputs;
   w->denoised = denoised;

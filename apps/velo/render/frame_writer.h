@@ -19,7 +19,7 @@ typedef struct FrameImage {
 typedef struct FrameWriter FrameWriter;
 
 /* denoised: of the denoised copies. Null: out of memory or of threads. */
-FrameWriter *frame_writer_start(vlContext *context, const vlWorld *world, const Frames *frames,
+FrameWriter *frame_writer_start(vlContext *context, const Frames *frames,
                                 const Outputs *outputs, const Outputs *denoised);
 /* Queues an image and takes ownership of its data. Waits while the queue is full. */
 void frame_writer_put(FrameWriter *writer, const FrameImage *image);

@@ -255,7 +255,7 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
   int checked = check_films(&run);
   if (checked >= 0)
     return checked;
-  FrameWriter *writer = frame_writer_start(context, world, frames, outputs, &denoised->outputs);
+  FrameWriter *writer = frame_writer_start(context, frames, outputs, &denoised->outputs);
   if (!writer)
     return report_error(NULL, VL_ERROR_MEMORY, NULL);
   signals_remember();

@@ -48,7 +48,7 @@ _Static_assert(LENGTH(names) == COUNT, "a name for each");
 
 /* The images that the values come from, and the indices of their channels. */
 typedef struct Source {
-  const vlImage *geometry, *rendered;
+  const vlImage *rendered;
   const float *values, *errors; /* errors: of independent samples, 3 floats of each pixel */
   uint32_t width, height, channels;
   int p, n, ng, uv, albedo, ray, distance;
@@ -184,7 +184,6 @@ int gbuffer_render(const Job *job, const vlFilm *film, vlImage **image) {
     Source s = {
         .camera = &job->camera,
         .seconds = job_channels_time(job),
-        .geometry = geometry,
         .rendered = rendered,
         .values = vl_image_const_pixels(geometry),
         .errors = vl_image_const_pixels(errors),

@@ -19,9 +19,8 @@ typedef struct VerifyStep {
 
 /* Spatial statistics of a stack of frames. */
 typedef struct VerifyStack {
-  double mean;     /* DN */
-  double spatial;  /* variance of the pixels' means, without what is left of the noise; DN^2 */
-  double temporal; /* DN^2 */
+  double mean;    /* DN */
+  double spatial; /* variance of the pixels' means, without what is left of the noise; DN^2 */
 } VerifyStack;
 
 /* A parameter: what the sensor says and what the frames say. */

@@ -81,7 +81,7 @@ static int make_stack(Verify *v, char kind, double electrons, double time, Verif
   for (size_t i = 0; i < count && status < 0; i++)
     spatial += (sums[i] / frames - mean) * (sums[i] / frames - mean);
   spatial = spatial / ((double)count - 1.0) - temporal / frames;
-  *stack = (VerifyStack){mean, spatial, temporal};
+  *stack = (VerifyStack){mean, spatial};
   free(sums);
   free(squares);
   return status;

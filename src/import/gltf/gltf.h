@@ -375,9 +375,8 @@ typedef struct vlGltfTextureUse {
   int channel; /* 0 to 3 for a float texture; -1: a colour */
   bool srgb;   /* the image's colour channels are sRGB */
   float tint[4];
-  bool colors; /* multiplied by the vertex colour */
-  float scale; /* float textures only: value = bias + scale * channel */
-  float bias;
+  bool colors;   /* multiplied by the vertex colour */
+  float bias;    /* float textures only: value = bias + tint * channel */
   double cutoff; /* unless unset: the value becomes 1 from the cutoff on and 0 below it */
 } vlGltfTextureUse;
 vlGltfTextureUse vl_gltf_use_color(void);

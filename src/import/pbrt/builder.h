@@ -292,9 +292,9 @@ bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *i
 /* The parameters of a directive, and what messages call it (parameters.c). */
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space,
                       const vlParamList *own, const vlParamList *attributes);
-/* The same for the directive of a statement that names a kind. */
-vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
-                           const vlStatement *s, vlAttributeTarget target);
+/* The same for the directive of a light, which names a kind. */
+vlDict vl_import_light_dict(vlImport *import, const char *directive, const vlKindFamily *family,
+                            const vlStatement *s);
 /* The same for a directive that a file has once; standard: its kind where the file lacks it. */
 vlDict vl_import_choice_dict(vlImport *import, const char *directive,
                              const vlKindFamily *family, const vlChoice *choice,

@@ -75,7 +75,7 @@ static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
 }
 
 bool vl_import_light(vlImport *import, const vlStatement *s) {
-  vlDict dict = vl_import_kind_dict(import, "LightSource", &vl_light_family, s, VL_ATTR_LIGHT);
+  vlDict dict = vl_import_light_dict(import, "LightSource", &vl_light_family, s);
   const vlKindRow *row = dict.row;
   if (!row) /* permissive: skipped */
     return vl_import_unknown_kind(import, s->source, &vl_light_family, s->names[0]);
@@ -104,8 +104,7 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {
-  vlDict dict =
-      vl_import_kind_dict(import, "AreaLightSource", &vl_emission_family, s, VL_ATTR_LIGHT);
+  vlDict dict = vl_import_light_dict(import, "AreaLightSource", &vl_emission_family, s);
   import->state.emission = (vlEmissionId){0};
   if (s->names[0][0] == 0)
     return true; /* as in pbrt, an empty name ends the current area light */

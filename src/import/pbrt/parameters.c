@@ -86,10 +86,10 @@ static vlDict kind_dict(vlImport *import, const char *directive, const vlKindFam
   return dict;
 }
 
-vlDict vl_import_kind_dict(vlImport *import, const char *directive, const vlKindFamily *family,
-                           const vlStatement *s, vlAttributeTarget target) {
+vlDict vl_import_light_dict(vlImport *import, const char *directive, const vlKindFamily *family,
+                            const vlStatement *s) {
   return kind_dict(import, directive, family, s->names[0], s->source, import->state.space,
-                   s->params, &import->attributes[target]);
+                   s->params, &import->attributes[VL_ATTR_LIGHT]);
 }
 
 vlDict vl_import_choice_dict(vlImport *import, const char *directive,

@@ -49,7 +49,6 @@ static bool read_values(vlOldFile *file, vlTokenizer *tokens, vlOldParam *p) {
   }
   if (token.kind != VL_TOKEN_OPEN)
     return bad_token(file, &token, "a value");
-  p->bracket = true;
   p->value.start = offset(file, token.text);
   for (;;) {
     token = vl_token_next(tokens);

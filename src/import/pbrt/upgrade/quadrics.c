@@ -26,7 +26,6 @@ static bool put(vlContext *context, Text *text, const char *format, double a, do
 /* A grid of points: u around or along x, v from 0 to 1. */
 typedef struct Grid {
   uint32_t nu, nv;
-  const vlOldParam *heights;
   double radius, z[2], phi, p1[3], p2[3];
   int kind; /* 0 cone, 1 paraboloid, 2 hyperboloid, 3 heightfield */
   double *z_values;

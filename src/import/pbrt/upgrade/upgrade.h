@@ -26,7 +26,7 @@ typedef struct vlOldParam {
   char new_value[VL_OLD_VALUE]; /* empty: as written */
   vlOldSpan decl, value;        /* value includes its brackets */
   size_t count;
-  bool bracket, strings, dropped;
+  bool strings, dropped;
   vlOldSpan span[VL_OLD_FIRST];
   const char *text[VL_OLD_FIRST]; /* strings without quotes; null for other values */
   double number[VL_OLD_FIRST];

@@ -79,11 +79,6 @@ static void label(Pen *p, vlDrawingPart part, const double at[3], const char *te
   snprintf(l->text, sizeof l->text, "%s", text);
 }
 
-/* to = from + s d */
-static void go(const double from[3], const double d[3], double s, double to[3]) {
-  vl_along3(from, s, d, to);
-}
-
 static void eye_of(const vlCamera *c, double eye[3]) {
   for (int i = 0; i < 3; i++)
     eye[i] = c->world_from_camera[4 * i + 3];
@@ -111,7 +106,7 @@ static bool at_depth(const Pen *p, double x, double y, double depth, double poin
   double along = p->flat ? vl_dot3(d, p->forward) : 1.0;
   if (!(along > 1e-6))
     return false;
-  go(o, d, depth / along, point);
+  vl_along3(o, depth / along, d, point);
   return true;
 }
 
@@ -255,8 +250,8 @@ static void draw_eye(Pen *p) {
   label(p, VL_DRAWING_EYE, eye, "e");
   for (int i = 0; c->lens_radius > 0 && i <= STEPS; i++) {
     double t = 2 * 3.14159265358979323846 * i / STEPS;
-    go(eye, right, c->lens_radius * vl_precise_cos(t), next);
-    go(next, down, c->lens_radius * vl_precise_sin(t), next);
+    vl_along3(eye, c->lens_radius * vl_precise_cos(t), right, next);
+    vl_along3(next, c->lens_radius * vl_precise_sin(t), down, next);
     if (i)
       line(p, VL_DRAWING_EYE, last, next);
     memcpy(last, next, sizeof last);
@@ -270,7 +265,7 @@ static void draw_axes(Pen *p, double length) {
   eye_of(p->camera, eye);
   for (int i = 0; i < 3; i++) {
     axis_of(p->camera, i, axis);
-    go(eye, axis, sign[i] * length, end);
+    vl_along3(eye, sign[i] * length, axis, end);
     line(p, VL_DRAWING_AXES, eye, end);
     label(p, VL_DRAWING_AXES, end, names[i]);
   }
@@ -293,7 +288,7 @@ static void draw_focus(Pen *p) {
                  at[1] * (c->lens.tilt[1] * inv + c->lens.hinge[1]);
     if (!(per > 1e-9))
       return;
-    go(o, d, 1 / per, q[k]);
+    vl_along3(o, 1 / per, d, q[k]);
   }
   face(p, VL_DRAWING_FOCUS, q[0], q[1], q[2], q[3]);
   for (int k = 0; k < 4; k++)
@@ -373,8 +368,8 @@ static void draw_whole(Pen *p) {
   surface(p, VL_DRAWING_WINDOW, plane);
   grid(p, plane);
   border(p, VL_DRAWING_WINDOW, plane);
-  go(eye, p->forward, plane, centre);
-  go(eye, p->forward, 0.5 * plane, middle);
+  vl_along3(eye, plane, p->forward, centre);
+  vl_along3(eye, 0.5 * plane, p->forward, middle);
   line(p, VL_DRAWING_DISTANCE, eye, centre);
   label(p, VL_DRAWING_DISTANCE, middle, "d");
   draw_film(p);

@@ -332,14 +332,6 @@ static void apply(const double m[9], const double p[3], const double v[3], doubl
     result[i] = vl_dot3(m + 3 * (size_t)i, v) + p[i];
 }
 
-/* The 3 x 3 part of a 3 x 4 matrix, and its last column. */
-static void split(const double m[12], double part[9], double last[3]) {
-  for (int i = 0; i < 3; i++) {
-    memcpy(part + 3 * (size_t)i, m + 4 * (size_t)i, 3 * sizeof *m);
-    last[i] = m[4 * i + 3];
-  }
-}
-
 /* The film point f = F(camera_from_world(t(f)) point, ...), so that its derivatives are those
  * of the camera held at its time, times (1 - F' d(camera_from_world point)/dt dt/df)^-1. */
 static bool project_moving(const vlCameraCompiled *c, const double point[3], double *rows) {
@@ -349,7 +341,7 @@ static bool project_moving(const vlCameraCompiled *c, const double point[3], dou
     return false;
   double back[9], last[3], x[3], moved[3], slip[3], by[2], speed[2];
   vlAffine rate = vl_camera_rate_at(c, held.shutter_open);
-  split(held.camera_from_world, back, last);
+  vl_split_map(held.camera_from_world, back, last);
   apply(back, last, point, x);
   vlPlanePoint film = vl_camera_film_point(&held, x[0], x[1], x[2]);
   time_by_film(c, (const double[2]){film.x, film.y}, by);

@@ -33,10 +33,7 @@ double vl_camera_film_time(const vlCameraCompiled *c, double x, double y) {
 void vl_camera_hold(vlCameraCompiled *c, double seconds) {
   double world_from_camera[12], camera_from_world[12];
   vl_camera_pose_at(c, seconds, world_from_camera, camera_from_world);
-  for (size_t i = 0; i < 3; i++) {
-    memcpy(c->rotation + 3 * i, world_from_camera + 4 * i, 3 * sizeof(double));
-    c->position[i] = world_from_camera[4 * i + 3];
-  }
+  vl_split_map(world_from_camera, c->rotation, c->position);
   memcpy(c->camera_from_world, camera_from_world, sizeof camera_from_world);
   c->when.moves = false;
   c->when.timed = false;

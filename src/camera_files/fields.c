@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/double3.h"
 #include "math/elementary.h"
 
 /* ---- reading ----------------------------------------------------------------------------- */
@@ -168,10 +169,7 @@ static Values values_of(const vlCamera *c) {
   vl_camera_flip_axes(m, v.flipped);
   vl_camera_transpose(v.flipped, v.flipped_columns);
   vl_camera_transpose(c->camera_from_world, v.view_columns);
-  for (int i = 0; i < 9; i++)
-    v.axes[i] = m[4 * (i / 3) + i % 3];
-  for (int i = 0; i < 3; i++)
-    v.centre[i] = m[4 * i + 3];
+  vl_split_map(m, v.axes, v.centre);
   return v;
 }
 

@@ -1,7 +1,6 @@
 /* camera_files/rotation.c: rotations in the representations of files: vectors (Rodrigues),
  * quaternions, matrices; conversion of poses between directions and axes. */
 #include <math.h>
-#include <string.h>
 
 #include "camera_files/files.h"
 
@@ -88,10 +87,7 @@ void vl_camera_set_pose(vlCameraDef *def, const double r[9], const double t[3]) 
 }
 
 void vl_camera_get_pose(const vlCamera *camera, double r[9], double t[3]) {
-  for (int i = 0; i < 3; i++) {
-    memcpy(r + 3 * i, camera->camera_from_world + 4 * i, 3 * sizeof *r);
-    t[i] = camera->camera_from_world[4 * i + 3];
-  }
+  vl_split_map(camera->camera_from_world, r, t);
 }
 
 void vl_camera_flip_columns(const double m[16], double x, double y, double z,

@@ -71,6 +71,14 @@ static inline double vl_mat3_determinant(const double m[9]) {
   return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
          m[2] * (m[3] * m[7] - m[4] * m[6]);
 }
+/* The 3x3 part of an affine map, and its last column. */
+static inline void vl_split_map(const double m[12], double part[9], double last[3]) {
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++)
+      part[3 * i + j] = m[4 * i + j];
+    last[i] = m[4 * i + 3];
+  }
+}
 /* For qsort: doubles, the smallest first. */
 static inline int vl_by_value(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;

@@ -315,8 +315,7 @@ static int run_inverse(const Arguments *arguments, vlContext *context) {
   return STATUS_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------------
- */
+/* ---- the command ------------------------------------------------------------------------- */
 
 static int run_vanishing(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;

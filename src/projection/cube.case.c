@@ -6,4 +6,5 @@ const ProjectionCase cube_projection = {
     .has_other = true,
     .other = {1, VL_UNSET},
     .solid_angle = 4 * CASE_PI,
+    .seen = {.7, .4, 4.92114419023, 0.776392454396},
 };

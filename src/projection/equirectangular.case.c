@@ -6,4 +6,5 @@ const ProjectionCase equirectangular_projection = {
     .solid_angle = 4 * CASE_PI,
     .known = {{CASE_PI / 3, CASE_PI / 3}, {-2.5, -2.5}},
     .end = CASE_PI,
+    .seen = {.7, .4, 0.7, 0.4},
 };

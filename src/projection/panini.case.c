@@ -9,4 +9,5 @@ const ProjectionCase panini_projection = {
     .other = {1.5, VL_UNSET},
     .known = {{CASE_PI / 3, 1.5 * HALF_SQRT3}, {-CASE_PI / 6, -0.75 / (0.5 + HALF_SQRT3)}},
     .end = 2 * CASE_PI / 3,
+    .seen = {.7, .4, 0.763989800918, 0.501398383516},
 };

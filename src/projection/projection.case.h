@@ -13,6 +13,13 @@ typedef struct ProjectionKnown {
   double theta, r;
 } ProjectionKnown;
 
+/* A direction at a longitude, towards +x, and a latitude, towards +y (down), radians, is seen
+ * at this point of the plane. */
+typedef struct ProjectionSeen {
+  double longitude, latitude;
+  double x, y; /* focal lengths from the principal point */
+} ProjectionSeen;
+
 typedef struct ProjectionCase {
   double fov;         /* degrees over the smaller side; 0: by fx */
   double focal;       /* fx = fy, pixels; 0: by fov or by the projection itself */
@@ -22,6 +29,7 @@ typedef struct ProjectionCase {
   bool optics;        /* the camera gets a lens of many elements */
   double solid_angle; /* of the whole image, steradians; 0: not known */
   ProjectionKnown known[2];
+  ProjectionSeen seen; /* of projections that are not symmetric about the axis: required */
   double end; /* by fx: the angle to the axis, towards +x, up to which directions have film
                  points, radians; 0: not known */
 } ProjectionCase;

@@ -161,18 +161,43 @@ static void check_solid_angle(const char *kind, const vlCamera *camera, double k
     broken("projections", kind, "the image covers %.4f steradians, not %.4f", sum, known);
 }
 
-static void check_known(const char *kind, const vlCamera *camera, const ProjectionCase *c) {
-  for (int i = 0; i < 2 && c->known[i].r != 0; i++) {
-    double theta = c->known[i].theta;
-    const double point[3] = {sin(theta), 0, cos(theta)};
-    double at[2];
-    double z;
-    if (!vl_camera_project(camera, point, at, &z))
-      broken("projections", kind, "does not see %.3f radians", theta);
-    else if (fabs((at[0] - camera->cx) / camera->fx - c->known[i].r) > 2e-7)
-      broken("projections", kind, "%.3f radians are at %.8f focal lengths, not %.8f", theta,
-             (at[0] - camera->cx) / camera->fx, c->known[i].r);
+/* The point of the plane where a direction is seen. */
+static void check_seen(const char *kind, const vlCamera *camera, const double direction[3],
+                       double x, double y) {
+  double at[2];
+  double z;
+  if (!vl_camera_project(camera, direction, at, &z)) {
+    broken("projections", kind, "does not see (%.3f, %.3f, %.3f)", direction[0], direction[1],
+           direction[2]);
+    return;
   }
+  at[0] = (at[0] - camera->cx) / camera->fx;
+  at[1] = (at[1] - camera->cy) / camera->fy;
+  if (fabs(at[0] - x) > 2e-7 || fabs(at[1] - y) > 2e-7)
+    broken("projections", kind,
+           "(%.3f, %.3f, %.3f) is at %.8f, %.8f focal lengths, not %.8f, %.8f", direction[0],
+           direction[1], direction[2], at[0], at[1], x, y);
+}
+
+/* Known radii are those to the right; of projections that are symmetric about the axis they are
+ * those around it, the others have a known point besides. */
+static void check_known(const char *kind, const vlCamera *camera, const ProjectionCase *c,
+                        bool radial) {
+  for (int i = 0; i < 2 && c->known[i].r != 0; i++)
+    for (int turn = 0; turn < (radial ? 5 : 1); turn++) {
+      const double theta = c->known[i].theta;
+      const double across = cos(1.3 * turn);
+      const double down = sin(1.3 * turn);
+      const double point[3] = {sin(theta) * across, sin(theta) * down, cos(theta)};
+      check_seen(kind, camera, point, c->known[i].r * across, c->known[i].r * down);
+    }
+  const ProjectionSeen *s = &c->seen;
+  const double aside[3] = {sin(s->longitude) * cos(s->latitude), sin(s->latitude),
+                           cos(s->longitude) * cos(s->latitude)};
+  if (s->latitude != 0)
+    check_seen(kind, camera, aside, s->x, s->y);
+  else if (!radial)
+    broken("projections", kind, "its case has no point off the horizontal (seen)");
 }
 
 /* velo's camera file gives the same rays. */
@@ -449,7 +474,8 @@ static void laws_of_projections(void **state) {
     check_round_trip("projections", name, &camera, c->optics ? 1e-6 : 1e-8);
     if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
       check_solid_angle(name, &camera, c->solid_angle);
-    check_known(name, &camera, c);
+    const vlProjectionRow *row = vl_projection_row((vlProjection)p);
+    check_known(name, &camera, c, row->traits & VL_PROJECTION_RADIAL);
     if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics) {
       check_domain(name, &def, &camera, c->end);
       check_edges(name, &camera);

@@ -131,6 +131,12 @@ enum {
       4 /**< can go on without end; the others lay out a fixed number of samples */
 };
 
+/** Traits of pixel filters. */
+enum {
+  VL_FILTER_TRAIT_POSITIVE =
+      4 /**< nowhere below 0, whatever its parameters: neighbouring pixels can share samples */
+};
+
 /** X(kind, name) for each film of pbrt files. */
 #define VL_FILM_KINDS(X)      \
   X(VL_FILM_RGB, rgb)         \

@@ -5,6 +5,7 @@
 const vlKindRow vl_filter_row_blackman_harris = {
     .name = "blackmanharris",
     .alias = "blackman-harris",
+    .traits = VL_FILTER_TRAIT_POSITIVE,
     .description = "the Blackman-Harris window",
     VL_PARAMETERS(RADII(2)),
 };

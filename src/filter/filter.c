@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "filter/kinds.row.h"
 #include "filter/value.h"
+#include "schema/schema.h"
 #include "velo/filter_kinds.h"
 
 /* ---- shapes ------------------------------------------------------------------------------ */
@@ -230,28 +231,15 @@ static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *a
   return true;
 }
 
-static bool in_range(float x, float low, float high) {
-  return x > low && x <= high; /* false for NaN */
-}
-
 /* ---- the whole table --------------------------------------------------------------------- */
 
 static bool is_valid(const vlPixelFilter *filter) {
-#define COUNT(kind, name) +1
-  if ((unsigned)filter->kind >= 0 VL_PIXEL_FILTER_KINDS(COUNT))
-    return false;
-#undef COUNT
-  if (!in_range(filter->radius_x, 0, VL_MAX_FILTER_RADIUS) ||
-      !in_range(filter->radius_y, 0, VL_MAX_FILTER_RADIUS))
-    return false;
-  if (filter->kind == VL_PIXEL_FILTER_GAUSSIAN && !in_range(filter->sigma, 0, 1e6f))
-    return false;
-  if (filter->kind == VL_PIXEL_FILTER_LANCZOS && !in_range(filter->tau, 0, 1e6f))
-    return false;
-  if (filter->kind == VL_PIXEL_FILTER_MITCHELL &&
-      (!in_range(filter->b, -10, 10) || !in_range(filter->c, -10, 10)))
-    return false;
-  return true;
+  const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, (int)filter->kind);
+  char message[VL_GIVEN_MESSAGE];
+  for (uint32_t i = 0; row && i < row->parameter_count; i++)
+    if (!vl_parameter_check(&row->parameters[i], filter, row->parameters[i].name, message))
+      return false;
+  return row != NULL;
 }
 
 static vlResult make_curve(vlContext *context, const vlPixelFilter *f, int axis,

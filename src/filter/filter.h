@@ -36,8 +36,8 @@ struct vlFilterTable {
   vlFilterCurve curve[2]; /* along x and y; both have the same values if the radii are equal */
 };
 
-/* Errors: ARGUMENT if the parameters are not valid (not finite, radius not in (0, 32], no
- * mass), MEMORY. */
+/* Errors: ARGUMENT if the parameters are not valid (those that the row of the kind allows
+ * are), or it has no mass; MEMORY. */
 vlResult vl_filter_compile(vlContext *context, const vlPixelFilter *filter,
                            vlFilterTable *table);
 /* A table of zeros is allowed. */

@@ -4,16 +4,15 @@
 #include <math.h>
 #include <string.h>
 
-#include "velo/filter_kinds.h"
+#include "schema/schema.h"
 
 static uint32_t border_of(double radius) {
   return (uint32_t)ceil(radius - 0.5);
 }
 
 static bool filter_shares(const vlPixelFilter *f) {
-  bool positive = f->kind == VL_PIXEL_FILTER_BOX || f->kind == VL_PIXEL_FILTER_TRIANGLE ||
-                  f->kind == VL_PIXEL_FILTER_GAUSSIAN ||
-                  f->kind == VL_PIXEL_FILTER_BLACKMAN_HARRIS;
+  const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, (int)f->kind);
+  bool positive = row && row->traits & VL_FILTER_TRAIT_POSITIVE;
   bool wide = f->radius_x > 0.5f || f->radius_y > 0.5f,
        own = f->radius_x >= 0.5f && f->radius_y >= 0.5f;
   return positive && wide && own && border_of(f->radius_x) <= VL_SHARED_BORDER &&

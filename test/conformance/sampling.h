@@ -470,10 +470,43 @@ static void check_filter(const vlPixelFilter *filter, const char *name, bool sha
     broken("filters", name, "%s: a pixel is off by %.4f", share ? "shared" : "own", worst);
 }
 
+/* The row says that the filter is positive if, and only if, its formula is with the defaults.
+ */
+static void check_sign(const vlKindRow *row, vlPixelFilterKind kind) {
+  enum { STEPS = 4000 };
+  const vlPixelFilter filter = vl_default_pixel_filter(kind);
+  const double radius = (double)filter.radius_x;
+  double least = 0;
+  for (int i = 0; i <= STEPS; i++)
+    least = fmin(least, filter_shapes[kind](&filter, radius * i / STEPS, radius));
+  const bool positive = row->traits & VL_FILTER_TRAIT_POSITIVE;
+  if (positive != (least > -1e-9))
+    broken("filters", row->name,
+           "VL_FILTER_TRAIT_POSITIVE is %s in its row, its least value %.4f",
+           positive ? "set" : "not set", least);
+}
+
+/* The largest radii that the row allows have films. */
+static void check_radii(const vlKindRow *row, vlPixelFilterKind kind) {
+  for (uint32_t i = 0; i < RADII_ALONE; i++) {
+    const vlParameter *p = &row->parameters[i];
+    vlFilmDef def = vl_default_film_def(4, 4);
+    vlFilm *film = NULL;
+    def.filter = vl_default_pixel_filter(kind);
+    const float most = (float)p->high;
+    memcpy((char *)&def.filter + p->offset, &most, sizeof most);
+    if (vl_film_create(context, &def, &film) != VL_OK)
+      broken("filters", row->name, "no film with \"%s\" %.9g", p->name, p->high);
+    vl_film_destroy(film);
+  }
+}
+
 static void laws_of_filters(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("filters");
-  for (uint32_t k = 0; k < family->kind_count; k++)
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    check_sign(family->rows[k], (vlPixelFilterKind)k);
+    check_radii(family->rows[k], (vlPixelFilterKind)k);
     for (int share = 0; share < 2; share++) {
       vlPixelFilter filter = vl_default_pixel_filter((vlPixelFilterKind)k);
       filter.radius_y = 0.75f * filter.radius_x;
@@ -485,6 +518,7 @@ static void laws_of_filters(void **state) {
       if (family->rows[k]->parameter_count > RADII_ALONE)
         check_filter(&filter, family->rows[k]->name, share == 1);
     }
+  }
   expect_no_failures();
 }
 

@@ -190,7 +190,9 @@ static void check_shape(const vlKindRow *row, const char *directive, const Shape
   Mean area = s.crossings;
   area.sum *= lines;
   area.squares *= lines * lines;
-  snprintf(what, sizeof what, "%s: area by crossings", v->parameters);
+  snprintf(what, sizeof what,
+           "%s: area by crossings of lines through a ball of radius %g (`reach`)",
+           v->parameters, s.reach);
   check_mean("shapes", row->name, what, &area, v->area,
              (Sight){0.002 * v->area, 0.05 * v->area});
   if (s.backwards > 0)

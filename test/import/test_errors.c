@@ -387,7 +387,7 @@ static const struct {
     {"PixelFilter \"box\" \"float xradius\" 0\n" W,
      "t.pbrt:1:19: PixelFilter \"box\": parameter \"xradius\" must be a number above 0 and at "
      "most "
-     "64; it is 0"},
+     "32; it is 0"},
     {"PixelFilter \"box\" \"float sigma\" 1\n" W,
      "t.pbrt:1:19: PixelFilter \"box\": unknown parameter \"sigma\""},
     {"Integrator \"path\" \"bool regularise\" true\n" W,

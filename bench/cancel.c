@@ -89,9 +89,8 @@ static bool measure(vlContext *context, const char *path) {
     return false;
   qsort(late, ROUNDS, sizeof *late, by_value);
   printf(
-      "%s: load %.0f ms, build %.0f ms; stops after %.1f ms (median), %.1f ms (longest, asked "
-      "at "
-      "%.0f ms)\n",
+      "%s: load %.0f ms, build %.0f ms; stops after %.1f ms (median), %.1f ms (longest, "
+      "asked at %.0f ms)\n",
       path, load, whole - load, late[ROUNDS / 2], worst, worst_at);
   return true;
 }

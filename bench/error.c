@@ -21,18 +21,15 @@ extern char **environ;
 
 static const char usage[] =
     "usage: script/bench error A B SCENE... [--pairs N] [--both \"OPTIONS\"] [--reference "
-    "FOLDER] "
-    "[--json FILE]\n"
+    "FOLDER] [--json FILE]\n"
     "  A, B       \"PROGRAM OPTIONS\" or \"OPTIONS\" of this build's velo render; %o stands "
-    "for "
-    "the image that is\n"
+    "for the image that is\n"
     "             measured (default: -o %o), %n for the scene's name\n"
     "  SCENE      FILE or NAME=FILE[@WIDTHxHEIGHT]\n"
     "  --pairs    pairs of seeds for each scene, default 4\n"
     "  --both     options of both\n"
-    "  --reference  a folder with NAME.exr: errors against these images; default: within the "
-    "pairs "
-    "of seeds\n"
+    "  --reference  a folder with NAME.exr: errors against these images; default: within "
+    "the pairs of seeds\n"
     "  --json     default bench/results/error.json\n";
 
 /* The error of one image or pair: relMSE without the worst 0.1 % of pixels, relMSE of all, mean

@@ -367,10 +367,8 @@ int main(int argc, char **argv) {
   printf("Embree %-20s %9.3f M rays %8.3f s %8.2f M rays/s\n", "all", 1e-6 * (double)rays, b,
          1e-6 * (double)rays / b);
   printf(
-      "velo   %-20s %9.3f M rays %8.3f s %8.2f M rays/s %8.2f M paths/s; shading and all else "
-      "%.0f "
-      "ns a ray and "
-      "thread\n",
+      "velo   %-20s %9.3f M rays %8.3f s %8.2f M rays/s %8.2f M paths/s; shading and all "
+      "else %.0f ns a ray and thread\n",
       "all", 1e-6 * (double)rays, o, 1e-6 * (double)rays / o, 1e-6 * (double)first.paths / o,
       1e9 * (o - b) * vl_context_threads(context) / (double)rays);
   printf("by processor time (all threads; where the machine has other work): %.2f\n",

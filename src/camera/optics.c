@@ -44,9 +44,9 @@ static vlResult check(const vlOpticsDef *d, const vlLensSurface *s, vlError *err
         !(s[i].ior == 0.0 || (s[i].ior >= 1.0 && s[i].ior < 10.0)))
       return vl_fail(
           error, VL_ERROR_ARGUMENT,
-          "lens: surface %u: radius %g, thickness %g, ior %g, aperture %g: the radius "
-          "must be finite, the "
-          "thickness 0 or above, the ior 0 (air) or 1 to 10, the aperture above 0",
+          "lens: surface %u: radius %g, thickness %g, ior %g, aperture %g: the radius must "
+          "be finite, the thickness 0 or above, the ior 0 (air) or 1 to 10, the aperture "
+          "above 0",
           i + 1, s[i].radius, s[i].thickness, s[i].ior, s[i].aperture);
     stops += s[i].radius == 0.0;
   }

@@ -11,10 +11,8 @@ const vlKindRow vl_medium_row_rgb_grid = {
                "absorption coefficient, one RGB colour per cell"),
         VALUES("sigma_s", rgb_s, "rgb array",
                "scattering coefficient, one RGB colour per cell"),
-        VALUES(
-            "Le", rgb_emission, "rgb array",
-            "emission, one RGB colour per cell: the medium emits the radiance sigma_a * Le per "
-            "unit "
-            "of length"),
+        VALUES("Le", rgb_emission, "rgb array",
+               "emission, one RGB colour per cell: the medium emits the radiance sigma_a * Le "
+               "per unit of length"),
         FACTOR("Lescale", emission_scale, "factor on the emission", 1)),
 };

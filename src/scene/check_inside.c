@@ -341,8 +341,8 @@ static void check_portals(vlCheck *c, const vlExtent *boxes, const vlExtent *gro
       vl_check_add(
           c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, l->source,
           "the camera is on the side of this light's portal that the sky is on, where the "
-          "light is not seen; if "
-          "it should be, give the portal's corners in the opposite order");
+          "light is not seen; if it should be, give the portal's corners in the opposite "
+          "order");
   }
 }
 

@@ -30,8 +30,7 @@ static const vlParameter parameters[] = {
     BOOL("invert", invert, "true: the value becomes 1 - value, after scale"),
     BLOCK("encoding", encoding,
           "encoding of the image's numbers: sRGB, linear, or gamma and a number; unset: the "
-          "file's "
-          "own",
+          "file's own",
           .flags = VL_PARAMETER_RULE),
     BOOL(NULL, encoding_given, "true: encoding and gamma replace the file's own encoding"),
     FLOAT(NULL, gamma, "exponent of the encoding gamma", VL_DEFAULT(2.2), VL_FROM(0),

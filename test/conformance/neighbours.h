@@ -30,8 +30,8 @@ static void texture_part(char text[TEXT], const vlKindRow *row, const char *para
       "Texture \"t%d\" \"spectrum\" \"%s\" %s "
       "Material \"diffuse\" \"texture reflectance\" \"t%d\"\n",
       "Texture \"f%d\" \"float\" \"%s\" %s Texture \"t%d\" \"spectrum\" \"scale\" "
-      "\"rgb tex\" [1 1 1] \"texture scale\" \"f%d\" "
-      "Material \"diffuse\" \"texture reflectance\" \"t%d\"\n"};
+      "\"rgb tex\" [1 1 1] \"texture scale\" \"f%d\" Material \"diffuse\" "
+      "\"texture reflectance\" \"t%d\"\n"};
   const bool float_only = row->traits & VL_TEXTURE_FLOAT_ONLY;
   snprintf(text, TEXT, forms[float_only], number, row->name, parameters, number, number,
            number);

@@ -267,8 +267,8 @@ static void ask_displaced(Probe *probe, vlTrace *trace, const vlOwnPaths *paths)
  * is never too long. */
 static void edges_of_displaced_meshes(void) {
   static const char text[] = HEAD
-      "WorldBegin LightSource \"infinite\" Texture \"h\" \"float\" \"constant\" \"float value\" .1 "
-      "Scale 3 .5 2 Shape \"plymesh\" \"string filename\" \"a.ply\" "
+      "WorldBegin LightSource \"infinite\" Texture \"h\" \"float\" \"constant\" "
+      "\"float value\" .1 Scale 3 .5 2 Shape \"plymesh\" \"string filename\" \"a.ply\" "
       "\"texture displacement\" \"h\" \"float edgelength\" .3";
   vlError error = {0};
   vlWorld *world;
@@ -322,9 +322,8 @@ static void degenerate_coordinates(void) {
     for (int k = 0; k < 2; k++) {
       snprintf(text, sizeof text,
                HEAD "WorldBegin " LIGHTS
-                    "Material \"conductor\" \"float uroughness\" .1 "
-                    "\"float vroughness\" .6 Shape \"%s\" \"point3 P\" "
-                    "[-1 -1 0 1 -1 .5 -1 1 0 1 1 -.3] %s %s\n",
+                    "Material \"conductor\" \"float uroughness\" .1 \"float vroughness\" .6 "
+                    "Shape \"%s\" \"point3 P\" [-1 -1 0 1 -1 .5 -1 1 0 1 1 -.3] %s %s\n",
                shapes[i / 2].kind, shapes[i / 2].parameters,
                k ? coordinates[i % 2] : shapes[i / 2].as);
       assert_true(render_text(text, pixels[k], &error));

@@ -935,7 +935,7 @@ MISTAKES = [
      "static double image_cone(const vlStretch *stretch, const float axis[3], const float half[2]) {\n  if (axis)"),
     ("lamp files in skewed frames: light paths have the density of straight ones", "lights:goniometric",
      r"lights goniometric:.*ies", "src/light/goniometric.hot.c",
-     "  density *= vl_light_stretch(q->light, vl_light_local(q->light, out->d));\n",
+     "  density *= vl_light_stretch(q->light, vl_light_local(q->light, d));\n",
      ""),
     ("skewed spots: light paths uniform in the world", "lights:spot",
      r"lights spot:", "src/light/spot.hot.c",

@@ -35,16 +35,13 @@ void vl_light_sample_goniometric(const vlLightQuery *q, vlLightSample *out) {
 
 /* A ray of the lamp: its direction has the density of the flux of the table's cells. */
 static void emit_lamp(const vlEmissionQuery *q, const vlLampTable *table, vlEmission *out) {
-  const float span = 2.0f;
-  vl_light_emit_from_point(q, span, out);
-  out->valid = table->flux > 0.0f;
-  if (!out->valid)
+  if (!(table->flux > 0.0f))
     return;
   float density;
   vlVec3 local = vl_lamp_sample(table, q->s, q->t, &density);
-  out->d = vl_light_from_local(q->light, local);
-  density *= vl_light_stretch(q->light, vl_light_local(q->light, out->d));
-  out->density = density;
+  vlVec3 d = vl_light_from_local(q->light, local);
+  density *= vl_light_stretch(q->light, vl_light_local(q->light, d));
+  vl_light_emit_along(q, d, density, out);
   out->valid = density > 0.0f;
   float factor = out->valid ? vl_lamp_candela(table, local) / density : 0.0f;
   vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, factor, out->flux);

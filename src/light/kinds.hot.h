@@ -135,22 +135,29 @@ static inline float vl_light_towards_point(const vlLightQuery *q, vlLightSample 
   return d2 > 0.0f ? 1.0f / d2 : 0.0f;
 }
 
+/* Sends a ray from a point light along d (unit), with this density per solid angle. */
+static inline void vl_light_emit_along(const vlEmissionQuery *q, vlVec3 d, float density,
+                                       vlEmission *out) {
+  out->o = out->at = vl_load3(q->light->position);
+  out->d = d;
+  out->density = density;
+  out->delta = out->valid = true;
+}
+
 /* Samples a ray from a point light, uniformly in a cone around the light's axis. span: 1 -
  * cosine of the cone's half angle; 2 for the whole sphere. For a cone, returns the cosine
  * between ray and axis. The ray's flux is the intensity times 2 pi span. */
 static inline float vl_light_emit_from_point(const vlEmissionQuery *q, float span,
                                              vlEmission *out) {
-  float c = 1.0f;
+  float c = 1.0f, density = 1.0f / (2.0f * VL_PI * span);
   if (span == 2.0f) {
-    out->d = vl_warp_sphere(q->s, q->t);
+    vl_light_emit_along(q, vl_warp_sphere(q->s, q->t), density, out);
   } else {
     vlVec3 local = vl_warp_cone(q->s, q->t, span);
-    out->d = vl_normalize(vl_from_local(vl_frame_from_z(vl_light_axis(q->light)), local));
+    vlVec3 d = vl_from_local(vl_frame_from_z(vl_light_axis(q->light)), local);
+    vl_light_emit_along(q, vl_normalize(d), density, out);
     c = local.z;
   }
-  out->o = out->at = vl_load3(q->light->position);
-  out->density = 1.0f / (2.0f * VL_PI * span);
-  out->delta = out->valid = true;
   return c;
 }
 

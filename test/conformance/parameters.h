@@ -274,8 +274,9 @@ static const char *const meshes[][2] = {
      "Material \"diffuse\" Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] "
      "\"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3]\n"},
     {BALL,
-     "Rotate 70 1 .3 .2 Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2 0 2 4 2 3 4 "
-     "1 0 5 3 1 5 0 4 5 4 3 5] \"point3 P\" [.8 0 0 0 .8 0 0 0 .8 -.8 0 0 0 -.8 0 0 0 -.8] "
+     "Rotate 70 1 .3 .2 Shape \"trianglemesh\" "
+     "\"integer indices\" [0 1 2 1 3 2 0 2 4 2 3 4 1 0 5 3 1 5 0 4 5 4 3 5] "
+     "\"point3 P\" [.8 0 0 0 .8 0 0 0 .8 -.8 0 0 0 -.8 0 0 0 -.8] "
      "\"point2 uv\" [0 0 1 0 .5 1 0 1 .3 .6 .8 .4]\n"},
     {"Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0]",
      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] "

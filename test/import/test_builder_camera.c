@@ -227,8 +227,8 @@ static void crop_in_pixels_and_ambient_occlusion(void **state) {
   load_fine(&l,
             "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 50 "
             "\"integer pixelbounds\" [ 10 20 -5 500 ]\n"
-            "Integrator \"ambientocclusion\" \"float maxdistance\" 4 \"bool cossample\" "
-            "false\n"
+            "Integrator \"ambientocclusion\" \"float maxdistance\" 4 "
+            "\"bool cossample\" false\n"
             "Sampler \"paddedsobol\" \"integer pixelsamples\" 8 \"integer seed\" 3 "
             "\"string randomization\" \"owen\"\n" W);
   const vlSceneDefs *s = vl_scene_defs(l.scene);

@@ -125,8 +125,8 @@ static void named_materials(void **state) {
       "Shape \"sphere\"\n"
       "NamedMaterial \"later\" Shape \"sphere\"\n"
       "AttributeBegin Material \"diffuse\" Shape \"sphere\" AttributeEnd Shape \"sphere\"\n"
-      "MakeNamedMaterial \"later\" \"string type\" \"mix\" \"string materials\" [ \"a\" "
-      "\"b\" ] \"float amount\" 0.25\n"
+      "MakeNamedMaterial \"later\" \"string type\" \"mix\" "
+      "\"string materials\" [ \"a\" \"b\" ] \"float amount\" 0.25\n"
       "MakeNamedMaterial \"a\" \"string type\" \"conductor\"\n"
       "MakeNamedMaterial \"b\" \"string type\" \"dielectric\"\n");
   const vlScene *s = l.scene;
@@ -175,9 +175,11 @@ static void textures(void **state) {
       "Translate 1 0 0\n"
       "Texture \"k\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3\n"
       "Texture \"q\" \"spectrum\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 5 "
-      "\"float udelta\" 6 \"float vdelta\" 7\n"
+      "\"float udelta\" 6 "
+      "\"float vdelta\" 7\n"
       "Texture \"p\" \"float\" \"bilerp\" \"float v00\" 9 \"string mapping\" \"planar\" "
-      "\"vector3 v1\" [2 0 0] \"vector3 v2\" [0 3 0]\n"
+      "\"vector3 v1\" [2 0 0] "
+      "\"vector3 v2\" [0 3 0]\n"
       "Texture \"y\" \"float\" \"bilerp\" \"string mapping\" \"spherical\"\n"
       "Texture \"c\" \"spectrum\" \"constant\" \"rgb value\" [.5 .5 .5]\n"
       "Material \"diffuse\" \"texture reflectance\" \"c\" \"texture displacement\" \"s\"\n"
@@ -215,10 +217,10 @@ static void plain_portal(void **state) {
   (void)state;
   Loaded l;
   load_fine(&l, W
-            "LightSource \"infinite\" \"rgb L\" [3 2 1] \"float scale\" 4 \"point3 portal\" "
-            "[0 0 0 0 1 0 1 1 0 1 0 0]\n"
-            "LightSource \"infinite\" \"blackbody L\" 3000 \"point3 portal\" [0 0 0 0 1 0 1 "
-            "1 0 1 0 0]");
+            "LightSource \"infinite\" \"rgb L\" [3 2 1] \"float scale\" 4 "
+            "\"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]\n"
+            "LightSource \"infinite\" \"blackbody L\" 3000 "
+            "\"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]");
   const vlLightDef *d = l.scene->lights.items;
   assert_true(d[0].has_portal && d[1].has_portal);
   assert_int_equal(vl_image_width(d[0].image), 1);
@@ -365,10 +367,10 @@ static void attributes(void **state) {
       "Attribute \"shape\" \"float radius\" 3 \"float nonsense\" 1\n"
       "Shape \"sphere\" Shape \"sphere\" \"float radius\" 4\n"
       "AttributeBegin Attribute \"shape\" \"float radius\" 5 Shape \"sphere\" AttributeEnd "
-      "Shape \"sphere\"\n"
+      "Shape "
+      "\"sphere\"\n"
       "Attribute \"material\" \"rgb reflectance\" [.1 .2 .3]\n"
-      "AttributeBegin ColorSpace \"rec2020\" Material \"diffuse\" Shape \"disk\" "
-      "AttributeEnd\n"
+      "AttributeBegin ColorSpace \"rec2020\" Material \"diffuse\" Shape \"disk\" AttributeEnd\n"
       "Attribute \"light\" \"float scale\" 9 LightSource \"point\"\n"
       "Attribute \"texture\" \"float value\" 2 Texture \"t\" \"float\" \"constant\"\n"
       "Attribute \"shape\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\nShape \"trianglemesh\" Shape "

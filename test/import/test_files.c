@@ -77,9 +77,9 @@ static void includes(void **state) {
   (void)state;
   Loaded l;
   write_file("main.pbrt",
-             "WorldBegin\nTranslate 1 0 0\nInclude \"parts/a.pbrt\"\nShape "
-             "\"sphere\"\nImport \"parts/b.pbrt\"\nShape \"disk\"\nNamedMaterial \"m\" "
-             "Shape \"disk\"");
+             "WorldBegin\nTranslate 1 0 0\nInclude \"parts/a.pbrt\"\nShape \"sphere\"\nImport "
+             "\"parts/b.pbrt\"\nShape "
+             "\"disk\"\nNamedMaterial \"m\" Shape \"disk\"");
   write_file("parts/a.pbrt", "Translate 2 0 0\nInclude \"c.pbrt\"\nInclude \"main-c.pbrt\"");
   write_file("parts/b.pbrt",
              "Translate 5 0 0\n"
@@ -266,7 +266,8 @@ static void missing(void **state) {
   file_error(
       "scene.fbx", VL_ERROR_SCENE,
       ":0:0: %/scene.fbx: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb, "
-      ".obj, .obj.gz, .ply, .ply.gz, .stl, .stl.gz, .off, .off.gz)");
+      ".obj, .obj.gz, .ply, "
+      ".ply.gz, .stl, .stl.gz, .off, .off.gz)");
 }
 
 static void packed(void **state) {
@@ -276,9 +277,10 @@ static void packed(void **state) {
       *text = "WorldBegin\nShape \"plymesh\" \"string filename\" \"t.ply.gz\"",
       *ply =
           "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
-          "y\nproperty float z\nelement face 1\n"
-          "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 "
-          "2\n";
+          "y\nproperty "
+          "float "
+          "z\nelement face 1\n"
+          "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   gzFile f = gzopen(in_folder("packed.pbrt.gz"), "wb");
   gzwrite(f, text, (unsigned)strlen(text));
   gzclose(f);
@@ -300,7 +302,8 @@ static void packed(void **state) {
              ":0:0: %/bomb.pbrt.gz: unpacks to more than 200 times its size");
   write_file("bad.ply",
              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
-             "y\nproperty float z\nend_header\n0 0 0 1 0 0 0 x 0\n");
+             "y\nproperty float "
+             "z\nend_header\n0 0 0 1 0 0 0 x 0\n");
   write_file("m.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"bad.ply\"");
   file_error("m.pbrt", VL_ERROR_SCENE, "%/bad.ply:8:1: PLY: expected a number, found \"x\"");
 }

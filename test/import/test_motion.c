@@ -43,10 +43,11 @@ static void instances_move(void **state) {
   Loaded l;
   load_fine(&l, W
             "ObjectBegin \"o\"\nShape \"sphere\"\nAttributeBegin\nActiveTransform "
-            "EndTime\nTranslate 0 0 4\n"
+            "EndTime\nTranslate 0 0 "
+            "4\n"
             "Shape \"disk\"\nAttributeEnd\nObjectEnd\n"
-            "ObjectInstance \"o\"\nActiveTransform StartTime\nTranslate 1 2 "
-            "0\nObjectInstance \"o\"\n");
+            "ObjectInstance \"o\"\nActiveTransform StartTime\nTranslate 1 2 0\nObjectInstance "
+            "\"o\"\n");
   /* the object's own group, and that of its part; two instances of each */
   assert_int_equal(l.scene->groups.count, 2);
   assert_int_equal(l.scene->instances.count, 4);

@@ -82,9 +82,9 @@ static void write_pyramid(Buffer *b, int format, const char *real, const char *i
   say(b, line);
   if (rich)
     say(b,
-        "property list uchar int marks\nproperty float nx\nproperty float ny\nproperty "
-        "float nz\nproperty double s\nproperty float t\nelement edge 2\nproperty int "
-        "a\nproperty list ushort double w\n");
+        "property list uchar int marks\nproperty float nx\nproperty float ny\nproperty float "
+        "nz\nproperty double "
+        "s\nproperty float t\nelement edge 2\nproperty int a\nproperty list ushort double w\n");
   snprintf(line, sizeof line, "element face 6\nproperty list %s %s %s\n", count, index,
            rich ? "vertex_indices" : "vertex_index");
   say(b, line);
@@ -247,20 +247,23 @@ static const struct {
      "p.ply:11:1: PLY: vertex 1: z is not finite (1e+40)"},
     {HEAD "0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "p.ply:0:0: PLY: the mesh has no faces"},
     {"ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty "
-     "float z\nend_header\n",
+     "float "
+     "z\nend_header\n",
      "p.ply:0:0: PLY: the mesh has no vertices"},
     {"ply\nformat ascii 1.0\nelement vertex 2147483648\nproperty float x\nproperty float "
-     "y\nproperty float z\nelement face 1\nproperty list uchar int "
-     "vertex_indices\nend_header\n",
+     "y\nproperty float z\nelement "
+     "face 1\nproperty list uchar int vertex_indices\nend_header\n",
      "p.ply:10:1: PLY: the header promises 2147483648 of element vertex, but only 0 bytes "
      "follow"},
     {"ply\nformat binary_little_endian 1.0\nelement vertex 2147483648\nproperty float "
-     "x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
-     "vertex_indices\nend_header\n",
+     "x\nproperty "
+     "float y\nproperty "
+     "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
      "p.ply:0:0: PLY: the header promises 2147483648 of element vertex, but only 0 bytes "
      "follow"},
-    {"ply\nformat binary_little_endian 1.0\nelement face 999999999999999999999\nproperty "
-     "list uchar int vertex_indices\nend_header\nabc",
+    {"ply\nformat binary_little_endian 1.0\nelement face 999999999999999999999\nproperty list "
+     "uchar int "
+     "vertex_indices\nend_header\nabc",
      "p.ply:3:1: PLY: element face: \"999999999999…\" is not a count"},
 };
 

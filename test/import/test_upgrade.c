@@ -116,8 +116,8 @@ static const struct {
      "Material \"diffuse\" \"rgb reflectance\" [ .3 .3 .3 ]\n", 0},
     {"  Material \"uber\" \"rgb Kd\" [ .3 .3 .3 ] \"rgb opacity\" [ .25 .25 .25 ]\n",
      "  MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\n"
-     "  MakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"rgb reflectance\" "
-     "[ .3 .3 .3 ] \"float roughness\" 0.1\n"
+     "  MakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" "
+     "\"rgb reflectance\" [ .3 .3 .3 ] \"float roughness\" 0.1\n"
      "  Material \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] "
      "\"float amount\" 0.25\n",
      0},
@@ -130,8 +130,8 @@ static const struct {
      "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" "
      "\"rgb amount\" [ .75 .75 .75 ]\n",
      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
-     "MakeNamedMaterial \"b\" \"string type\" [ \"conductor\" ] \"rgb reflectance\" [ 0.9 "
-     "0.9 0.9 ]\n"
+     "MakeNamedMaterial \"b\" \"string type\" [ \"conductor\" ] "
+     "\"rgb reflectance\" [ 0.9 0.9 0.9 ]\n"
      "Material \"mix\" \"string materials\" [ \"b\" \"a\" ] \"float amount\" .75\n",
      0},
     {"Material \"kdsubsurface\" \"color Kd\" [ .8 .7 .6 ] \"color mfp\" [ .1 .1 .1 ]\n",
@@ -156,7 +156,8 @@ static const struct {
      "\"rgb v10\" [ 1 0 0 ] \"rgb v11\" [ 1 1 0 ]\n",
      0},
     {"Texture \"a\" \"color\" \"constant\"\n"
-     "Texture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"color tex2\" [ .5 .5 .5 ]\n",
+     "Texture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" "
+     "\"color tex2\" [ .5 .5 .5 ]\n",
      "Texture \"a\" \"spectrum\" \"constant\"\n"
      "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float scale\" .5\n",
      0},
@@ -171,7 +172,9 @@ static const struct {
      "\"texture amount\" \"t-float\"\n",
      0},
     {"Texture \"w\" \"color\" \"windy\"\nTexture \"c\" \"color\" \"checkerboard\"\nTexture "
-     "\"t\" \"color\" \"scale\" \"texture tex1\" \"w\" \"texture tex2\" \"c\"\n",
+     "\"t\" "
+     "\"color\" \"scale\" "
+     "\"texture tex1\" \"w\" \"texture tex2\" \"c\"\n",
      "Texture \"w-float\" \"float\" \"windy\"\n"
      "Texture \"w\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" [ 1 1 1 ] "
      "\"texture amount\" \"w-float\"\n"
@@ -264,8 +267,8 @@ static const struct {
      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\n"
      "Texture \"t-float\" \"float\" \"imagemap\" \"string filename\" \"../old/a.png\"\n"
      "MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\n"
-     "MakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"float roughness\" "
-     "0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 ]\n"
+     "MakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" "
+     "\"float roughness\" 0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 ]\n"
      "Material \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] "
      "\"texture amount\" \"t-float\"\n",
      0},
@@ -280,24 +283,30 @@ static const struct {
      "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float scale\" 0.5\n",
      1},
     {"Texture \"a\" \"color\" \"constant\"\n"
-     "Texture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"spectrum tex2\" [ 400 1 "
-     "700 2 ]\n",
+     "Texture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" "
+     "\"spectrum tex2\" [ 400 1 700 2 ]\n",
      "Texture \"a\" \"spectrum\" \"constant\"\n"
      "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\"\n",
      1},
     {"Texture \"a\" \"color\" \"constant\"\nTexture \"b\" \"color\" \"constant\"\nTexture "
-     "\"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
+     "\"t\" "
+     "\"color\" \"scale\" "
+     "\"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
      "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"b\" \"spectrum\" "
-     "\"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\"\n",
+     "\"constant\"\nTexture "
+     "\"t\" \"spectrum\" "
+     "\"scale\" \"texture tex\" \"a\"\n",
      1},
     {"Texture \"a\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\nTexture \"b\" "
-     "\"color\" \"imagemap\" \"string filename\" \"a.png\"\nTexture \"t\" \"color\" "
-     "\"scale\" \"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
+     "\"color\" "
+     "\"imagemap\" "
+     "\"string filename\" \"a.png\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" "
+     "\"texture tex2\" \"b\"\n",
      "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\n"
      "Texture \"b\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\n"
      "Texture \"b-float\" \"float\" \"imagemap\" \"string filename\" \"../old/a.png\"\n"
-     "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"texture scale\" "
-     "\"b-float\"\n",
+     "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" "
+     "\"texture scale\" \"b-float\"\n",
      1},
     {"LightSource \"goniometric\" \"string mapname\" \"around.exr\" \"rgb I\" [ 1 2 3 ] "
      "\"rgb scale\" [ 2 1 1 ]\n",
@@ -331,17 +340,17 @@ static const struct {
      "\"rgb Kr\" [ 0 0 0 ]\n"
      "NamedMaterial \"m\"\n",
      "MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\n"
-     "MakeNamedMaterial \"m-solid\" \"string type\" \"coateddiffuse\" \"float roughness\" "
-     "0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 ]\n"
-     "MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [ "
-     "\"see-through\" \"m-solid\" ] \"float amount\" 0.5\n"
+     "MakeNamedMaterial \"m-solid\" \"string type\" \"coateddiffuse\" "
+     "\"float roughness\" 0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 ]\n"
+     "MakeNamedMaterial \"m\" \"string type\" \"mix\" "
+     "\"string materials\" [ \"see-through\" \"m-solid\" ] \"float amount\" 0.5\n"
      "NamedMaterial \"m\"\n",
      1},
     {"Texture \"a\" \"color\" \"constant\"\nMaterial \"uber\" \"texture opacity\" \"a\"\n",
      "Texture \"a\" \"spectrum\" \"constant\"\n"
      "MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\n"
-     "MakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"float roughness\" "
-     "0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 ]\n"
+     "MakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" "
+     "\"float roughness\" 0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 ]\n"
      "Material \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] "
      "\"float amount\" 0.5\n",
      1},
@@ -437,8 +446,8 @@ static void settings(void **state) {
              "LookAt 0 0 -5  0 0 0  0 1 0\n"
              "Camera \"perspective\" \"float halffov\" 30 \"float shutterclose\" .5\n"
              "Film \"image\" \"integer xresolution\" [ 64 ] \"integer yresolution\" 48\n"
-             "     \"float scale\" 2 \"float maxsampleluminance\" 10 \"string filename\" "
-             "\"a.exr\"\n"
+             "     \"float scale\" 2 \"float maxsampleluminance\" 10 "
+             "\"string filename\" \"a.exr\"\n"
              "Sampler \"02sequence\" \"integer pixelsamples\" 4\n"
              "PixelFilter \"gaussian\" \"float xwidth\" 1.5 \"float alpha\" 2\n"
              "Integrator \"directlighting\" \"integer maxdepth\" 3\n"
@@ -679,8 +688,8 @@ static void solids(void **state) {
   write_file("old/s.pbrt",
              "WorldBegin\n"
              "Shape \"cone\" \"float radius\" 2 \"float height\" 3\n"
-             "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 3 \"float Pz\" [ 0 1 2 "
-             "3 4 5 ]\n"
+             "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 3 "
+             "\"float Pz\" [ 0 1 2 3 4 5 ]\n"
              "Shape \"paraboloid\"\n"
              "Shape \"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 0 1 1 ]\n");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error), VL_OK);

@@ -41,8 +41,9 @@ static const Kind kinds[] = {
     {"\"bilinearmesh\" " SQUARE DOWN, NORMALS, {.1, .2, .1}, {0, 0, -1}, 0},
     /* Corner 0's ring in pbrt's order: +x -y -x +y, so S = 2x, T = -2y, and S x T points
      * down. */
-    {"\"loopsubdiv\" \"integer levels\" 3 \"point3 P\" [0 0 1 1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 "
-     "-1] \"integer indices\" [0 1 2 0 2 3 0 3 4 0 4 1 5 2 1 5 3 2 5 4 3 5 1 4]",
+    {"\"loopsubdiv\" \"integer levels\" 3 "
+     "\"point3 P\" [0 0 1 1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 -1] "
+     "\"integer indices\" [0 1 2 0 2 3 0 3 4 0 4 1 5 2 1 5 3 2 5 4 3 5 1 4]",
      NORMALS,
      {0, 0, .5},
      {0, 0, -1},
@@ -269,9 +270,9 @@ static void lights_shine_to_the_side_of_the_normal(void **state) {
         name_scene(&s, map, side, "seen", name);
         assert_near(name, shoot(&s, eye, s.p, "", one, 1, 0), side > 0, 1e-3);
         snprintf(bead, sizeof bead,
-                 "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [.8 .8 .8] "
-                 "Translate %.9g %.9g %.9g Shape \"sphere\" \"float radius\" .03 "
-                 "AttributeEnd",
+                 "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [.8 .8 .8] Translate "
+                 "%.9g %.9g %.9g Shape "
+                 "\"sphere\" \"float radius\" .03 AttributeEnd",
                  at[0], at[1], at[2]);
         name_scene(&s, map, side, "sampled", name);
         double both = shoot(&s, eye, at, bead, two, 32, 1);

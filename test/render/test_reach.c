@@ -23,10 +23,10 @@ static const char slab[] =
     "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -3.1  9 -9 -3.1  9 9 -3.1  -9 9 -3.1] "
     "\"integer indices\" [0 2 1 0 3 2]";
 static const char hairs[] =
-    "Shape \"curve\" \"point3 P\" [-1 -3 -3  -1 -1 -3  -1 1 -3  -1 3 -3] \"float width\" "
-    "1.2\n"
-    "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [1 -3 -3  1 -1 -3  1 1 -3  1 "
-    "3 -3] \"float width\" 1.2";
+    "Shape \"curve\" \"point3 P\" [-1 -3 -3  -1 -1 -3  -1 1 -3  -1 3 -3] "
+    "\"float width\" 1.2\n"
+    "Shape \"curve\" \"string type\" \"cylinder\" "
+    "\"point3 P\" [1 -3 -3  1 -1 -3  1 1 -3  1 3 -3] \"float width\" 1.2";
 
 static const Material materials[] = {
     {"diffuse", "\"diffuse\"", quad, false, true},

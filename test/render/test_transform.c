@@ -126,8 +126,9 @@ static void test_lights(void **state) {
       "\"float illuminance\" 3\n",
       "LightSource \"projection\" \"string filename\" \"textures/letters.png\" "
       "\"float scale\" 20 \"float fov\" 70\n",
-      "AttributeBegin AreaLightSource \"diffuse\" \"float power\" 90 Translate 1 -1 2 Shape "
-      "\"sphere\" \"float radius\" 0.2 AttributeEnd\n"};
+      "AttributeBegin AreaLightSource \"diffuse\" "
+      "\"float power\" 90 Translate 1 -1 2 Shape \"sphere\" "
+      "\"float radius\" 0.2 AttributeEnd\n"};
   for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
     char light[512];
     const bool placed = strstr(lights[i], "projection") != NULL; /* it looks along z */
@@ -194,16 +195,17 @@ static void test_heights(void **state) {
   (void)state;
   expect_same_of(lamp,
                  "Texture \"h\" \"float\" \"wrinkled\"\nTexture \"b\" \"float\" \"scale\" "
-                 "\"texture tex\" \"h\" \"float scale\" 0.3\n"
+                 "\"texture tex\" \"h\" "
+                 "\"float scale\" 0.3\n"
                  "Material \"diffuse\" \"texture displacement\" \"b\"\n",
                  floor_and_ball, 0.004);
   expect_same_of(lamp,
                  "Texture \"h\" \"float\" \"fbm\"\n"
-                 "Texture \"b\" \"float\" \"scale\" \"texture tex\" \"h\" \"float scale\" "
-                 "0.4\n"
-                 "Translate 0 -0.5 0 Scale 2 2 2 Shape \"plymesh\" \"string filename\" "
-                 "\"tetrahedron.ply\" \"texture displacement\" \"b\" \"float edgelength\" "
-                 "0.1\n",
+                 "Texture \"b\" \"float\" \"scale\" \"texture tex\" \"h\" "
+                 "\"float scale\" 0.4\n"
+                 "Translate 0 -0.5 0 Scale 2 2 2 Shape \"plymesh\" "
+                 "\"string filename\" \"tetrahedron.ply\" \"texture displacement\" \"b\" "
+                 "\"float edgelength\" 0.1\n",
                  "", 0.01);
 }
 
@@ -218,8 +220,8 @@ static void test_subsurface_and_hair(void **state) {
       ball, 0.1);
   expect_same_of(lamp,
                  "Material \"hair\" \"rgb sigma_a\" [3 1 .3]\n"
-                 "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-1 0 0 -.3 0 "
-                 ".6 .3 .2 .6 1 0 1] \"float width\" .5\n",
+                 "Shape \"curve\" \"string type\" \"cylinder\" "
+                 "\"point3 P\" [-1 0 0 -.3 0 .6 .3 .2 .6 1 0 1] \"float width\" .5\n",
                  "", 0.004);
 }
 
@@ -231,7 +233,8 @@ static void test_instances(void **state) {
       "ObjectEnd AttributeEnd\n"
       "AttributeBegin Translate 0.5 0 0.3 Scale 1 1 2 ObjectInstance \"ball\" AttributeEnd\n",
       "AttributeBegin ActiveTransform EndTime Translate -1 0 0.5 Rotate 40 0 1 1 "
-      "ActiveTransform All\n"
+      "ActiveTransform "
+      "All\n"
       "ObjectInstance \"ball\" AttributeEnd\n",
       0.004);
 }

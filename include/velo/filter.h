@@ -9,6 +9,8 @@
 extern "C" {
 #endif
 
+enum { VL_MAX_FILTER_RADIUS = 32 /**< of pixel filters, pixels */ };
+
 /** A pixel reconstruction filter (pbrt book 8.8). */
 typedef struct vlPixelFilter {
   uint32_t kind; /**< a vlPixelFilterKind (velo/filter_kinds.h): which fields below are read */

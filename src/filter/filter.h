@@ -9,7 +9,7 @@
 #include "film/film.h"
 #include "velo/filter_kinds.h"
 
-enum { VL_FILTER_SEGMENTS = 240, VL_FILTER_EDGES = 12288, VL_MAX_FILTER_RADIUS = 32 };
+enum { VL_FILTER_SEGMENTS = 240, VL_FILTER_EDGES = 12288 };
 
 typedef struct vlFilterAxis {
   float radius;

@@ -9,10 +9,10 @@
 #define PARAMETER(name, member, text, ...) \
   VL_PARAMETER(FLOAT, vlPixelFilter, name, member, text, __VA_ARGS__)
 #define PIXELS(...) VL_DEFAULT(__VA_ARGS__), .unit = "pixels", .flags = VL_PARAMETER_ABOVE_LOW
-/* The widest: VL_MAX_FILTER_RADIUS. */
-#define RADII(size)                                                                            \
-  PARAMETER("xradius", radius_x, "half of the filter's width", PIXELS(size), VL_RANGE(0, 32)), \
-      PARAMETER("yradius", radius_y, "half of the filter's height", PIXELS(size),              \
-                VL_RANGE(0, 32))
+#define RADII(size)                                                               \
+  PARAMETER("xradius", radius_x, "half of the filter's width", PIXELS(size),      \
+            VL_RANGE(0, VL_MAX_FILTER_RADIUS)),                                   \
+      PARAMETER("yradius", radius_y, "half of the filter's height", PIXELS(size), \
+                VL_RANGE(0, VL_MAX_FILTER_RADIUS))
 
 #endif

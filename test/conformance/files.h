@@ -146,8 +146,7 @@ static bool write_blocks(const char *name) {
 
 static const char ply[] =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
-    "float "
-    "z\n"
+    "float z\n"
     "property float u\nproperty float v\nelement face 2\nproperty list uchar int "
     "vertex_indices\n"
     "end_header\n-1 -1 0 0 0\n1 -1 0 1 0\n-1 1 0 0 1\n1 1 0 1 1\n3 0 1 2\n3 1 3 2\n";

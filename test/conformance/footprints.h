@@ -118,10 +118,6 @@ static void turn_texture(vlTextureDef *def) {
 static void check_second_set(const vlKindRow *row, const TextureVariant *variant) {
   static char text[TEXT];
   TextureLaws t = {.kind = row->name, .variant = variant};
-  t.rays = new_rays();
-  t.hits = calloc(1, sizeof *t.hits);
-  assert_non_null(t.hits);
-  Probe probe = {.ask = ask_footprints, .user = &t};
   textured_text(text, row, variant, "", "Translate 0 0 9 " SQUARE_UP);
   vlScene *scene = need_scene(text);
   const vlTextureId id = {2};
@@ -132,9 +128,7 @@ static void check_second_set(const vlKindRow *row, const TextureVariant *variant
   vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   material.reflectance.texture = id;
   add_square(scene, &material);
-  probe_scene(scene, text, &probe, 1);
-  free(t.rays);
-  free(t.hits);
+  ask_textured_scene(scene, text, &t, ask_footprints);
 }
 
 static void check_footprints(const vlKindRow *row, const TextureVariant *variant) {

@@ -50,8 +50,8 @@ static void check_holes(const char *materials, double amount, double grey) {
   snprintf(text, sizeof text,
            HEAD "WorldBegin LightSource \"infinite\" " NAMED
                 "MakeNamedMaterial \"air\" \"string type\" \"interface\"\n"
-                "MakeNamedMaterial \"holes\" \"string type\" \"mix\" \"string materials\" "
-                "[\"air\" \"red\"] \"float amount\" %g\n"
+                "MakeNamedMaterial \"holes\" \"string type\" \"mix\" "
+                "\"string materials\" [\"air\" \"red\"] \"float amount\" %g\n"
                 "Material \"mix\" \"string materials\" [%s] \"float amount\" %g " SQUARE_UP,
            red, materials, amount);
   Probe probe = {.ask = ask_holes, .user = &f};
@@ -363,7 +363,7 @@ static void laws_of_layers(void **state) {
   check_coats();
   check_textured_coat();
   check_film();
-  check_dispersion(1, 1.5);
+  check_dispersion(1, BASE_INDEX);
   check_dispersion(2, 1.9);
   check_whites();
   expect_no_failures();

@@ -1,12 +1,67 @@
 /* conformance/neighbours.h: two materials of one kind, or two textures, beside each other in
- * one plane: each has the bits that it has beside itself. So nothing of a kind is shared
- * between two of its things. */
+ * one plane: each has the bits that it has beside itself; a medium those that it has alone. So
+ * nothing of a kind is shared between two of its things. */
 #ifndef TEST_CONFORMANCE_NEIGHBOURS_H
 #define TEST_CONFORMANCE_NEIGHBOURS_H
 
 #include "materials.h"
 #include "textures.h"
 #include "transport.h"
+
+/* How many numbers of two images differ in the columns from `first` to before `last`. */
+static uint32_t other_numbers(const vlImage *image, const vlImage *other, uint32_t first,
+                              uint32_t last) {
+  uint32_t others = 0;
+  for (uint32_t y = 0; y < vl_image_height(image); y++)
+    for (uint32_t x = first; x < last; x++)
+      for (uint32_t channel = 0; channel < 3; channel++)
+        others += vl_image_get(image, x, y, channel) != vl_image_get(other, x, y, channel);
+  return others;
+}
+
+/* ---- media ------------------------------------------------------------------------------- */
+
+/* A box of glow beside a box of the medium: the same random numbers meet the medium whether or
+ * not there is glow, so its part of the image has the same bits. The border between them goes
+ * through the blocks of pixels whose paths fly together. */
+static const char *const neighbour_form =
+    "LookAt 0 0 3 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [-.5 .5 -.5 .5]\n" VIEW("16") "WorldBegin "
+    "LightSource \"infinite\" \"rgb L\" [1 1 1] "
+    "MakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.3 .6 .2] "
+    "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [2 3 4] MakeNamedMedium \"m\" \"string type\" %s\n"
+    "Material \"interface\" MediumInterface \"m\" \"\"\n" BOX_FROM("-.1", "1")
+    "MediumInterface \"glow\" \"\"\n" BOX_FROM("-1", "-.11");
+
+static void check_neighbour(const char *name, const MediumCase *c, vlColorMode color) {
+  static char text[TEXT];
+  char all[2000];
+  vlImage *images[2];
+  snprintf(all, sizeof all, "%s%s", c->shape, c->absorbs);
+  scene_text(text, neighbour_form, name, all);
+  images[0] = image_in(color, text, NULL, VL_PIXEL_FILTER_BOX, SAMPLES);
+  char *glow = strstr(text, "MediumInterface \"glow\"");
+  assert_non_null(glow);
+  memcpy(strstr(glow, "\"glow\""), "\"\"    ", 6);
+  images[1] = image_in(color, text, NULL, VL_PIXEL_FILTER_BOX, SAMPLES);
+  /* x grows to the left; the ninth column ends at -.06 */
+  const uint32_t others = other_numbers(images[0], images[1], 0, 9);
+  if (others)
+    broken("media", name, "%u numbers of its image are others beside another medium", others);
+  vl_image_destroy(images[0]);
+  vl_image_destroy(images[1]);
+}
+
+static void neighbouring_media(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("media");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    check_neighbour(family->rows[k]->name, medium_cases[k], VL_COLOR_RGB);
+    check_neighbour(family->rows[k]->name, medium_cases[k], VL_COLOR_SPECTRAL);
+  }
+  expect_no_failures();
+}
+
+/* ---- materials and textures -------------------------------------------------------------- */
 
 /* Two rectangles that do not see each other; the border goes through blocks of pixels. */
 #define LEFT_PART "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 -.1 -1 0 -1 1 0 -.1 1 0]\n"
@@ -49,16 +104,6 @@ static vlImage *image_of_parts(const vlKindRow *row, PartText *part, const char 
   return image_of(text, NULL, SAMPLES);
 }
 
-static uint32_t other_numbers(const vlImage *image, const vlImage *other, uint32_t first,
-                              uint32_t last) {
-  uint32_t others = 0;
-  for (uint32_t y = 0; y < vl_image_height(image); y++)
-    for (uint32_t x = first; x < last; x++)
-      for (uint32_t channel = 0; channel < 3; channel++)
-        others += vl_image_get(image, x, y, channel) != vl_image_get(other, x, y, channel);
-  return others;
-}
-
 static void check_parts(const char *family, const vlKindRow *row, PartText *part,
                         const char *left, const char *right) {
   vlImage *both = image_of_parts(row, part, left, right);
@@ -75,28 +120,32 @@ static void check_parts(const char *family, const vlKindRow *row, PartText *part
   vl_image_destroy(rights);
 }
 
+/* The parameters of variant i of kind k; null: it has no more. */
+typedef const char *VariantOf(uint32_t k, int i);
+
+static const char *material_variant(uint32_t k, int i) {
+  return i < MATERIAL_VARIANTS ? material_cases[k]->variants[i].parameters : NULL;
+}
+static const char *texture_variant(uint32_t k, int i) {
+  return i < TEXTURE_VARIANTS ? texture_cases[k]->variants[i].parameters : NULL;
+}
+
+static void check_neighbours(const char *name, PartText *part, VariantOf *variant) {
+  const vlKindFamily *family = vl_kind_family_find(name);
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    for (int i = 0; variant(k, i) && variant(k, i + 1); i++)
+      check_parts(name, family->rows[k], part, variant(k, i), variant(k, i + 1));
+  expect_no_failures();
+}
+
 static void neighbouring_materials(void **state) {
   (void)state;
-  const vlKindFamily *family = vl_kind_family_find("materials");
-  for (uint32_t k = 0; k < family->kind_count; k++) {
-    const MaterialVariant *v = material_cases[k]->variants;
-    for (int i = 0; i + 1 < MATERIAL_VARIANTS && v[i].parameters && v[i + 1].parameters; i++)
-      check_parts("materials", family->rows[k], material_part, v[i].parameters,
-                  v[i + 1].parameters);
-  }
-  expect_no_failures();
+  check_neighbours("materials", material_part, material_variant);
 }
 
 static void neighbouring_textures(void **state) {
   (void)state;
-  const vlKindFamily *family = vl_kind_family_find("textures");
-  for (uint32_t k = 0; k < family->kind_count; k++) {
-    const TextureVariant *v = texture_cases[k]->variants;
-    for (int i = 0; i + 1 < TEXTURE_VARIANTS && v[i].parameters && v[i + 1].parameters; i++)
-      check_parts("textures", family->rows[k], texture_part, v[i].parameters,
-                  v[i + 1].parameters);
-  }
-  expect_no_failures();
+  check_neighbours("textures", texture_part, texture_variant);
 }
 
 #endif

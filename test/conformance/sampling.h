@@ -470,7 +470,7 @@ static void check_filter(const vlPixelFilter *filter, const char *name, bool sha
     broken("filters", name, "%s: a pixel is off by %.4f", share ? "shared" : "own", worst);
 }
 
-/* The row says that the filter is positive if, and only if, its formula is with the defaults.
+/* The row says that the filter is positive if, and only if, its formula with the defaults is.
  */
 static void check_sign(const vlKindRow *row, vlPixelFilterKind kind) {
   enum { STEPS = 4000 };

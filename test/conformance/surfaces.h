@@ -304,9 +304,7 @@ static void displaced_meshes(void) {
 }
 
 /* Texture coordinates that are equal at all corners, or along a line, give no directions: they
- * change nothing in a patch of brushed metal; those of triangles count as any other of that
- * sort.
- */
+ * change nothing in a patch of brushed metal; all such coordinates of triangles are alike. */
 static void degenerate_coordinates(void) {
   static const struct {
     const char *kind, *parameters, *as;

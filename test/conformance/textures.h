@@ -182,15 +182,19 @@ static void ask_wide_rays(Probe *probe, vlTrace *trace, const vlOwnPaths *paths)
 }
 
 /* Asks a world, by rays and hits that live as long as that. */
-static void ask_textured(const char *text, TextureLaws *t,
-                         void (*ask)(Probe *, vlTrace *, const vlOwnPaths *)) {
+static void ask_textured_scene(vlScene *scene, const char *text, TextureLaws *t,
+                               void (*ask)(Probe *, vlTrace *, const vlOwnPaths *)) {
   Probe probe = {.ask = ask, .user = t};
   t->rays = new_rays();
   t->hits = calloc(1, sizeof *t->hits);
   assert_non_null(t->hits);
-  probe_world(text, &probe, 1);
+  probe_scene(scene, text, &probe, 1);
   free(t->rays);
   free(t->hits);
+}
+static void ask_textured(const char *text, TextureLaws *t,
+                         void (*ask)(Probe *, vlTrace *, const vlOwnPaths *)) {
+  ask_textured_scene(need_scene(text), text, t, ask);
 }
 
 /* A mapping with its formula. q: a point of texture space. */

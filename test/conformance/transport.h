@@ -53,6 +53,13 @@ static Mean mean_difference(const vlImage *image, const vlImage *other) {
   " \"string filename\" \"x.pfm\"\n"                                            \
   "Sampler \"independent\" Integrator \"volpath\" \"integer maxdepth\" 200\n"
 
+/* A box with these limits along x, and -1 to 1 along y and z; the outside faces out. */
+#define BOX_FROM(low, high)                                                              \
+  "Shape \"trianglemesh\" \"point3 P\" [" low " -1 -1 " high " -1 -1 " high " 1 -1 " low \
+  " 1 -1 " low " -1 1 " high " -1 1 " high " 1 1 " low                                   \
+  " 1 1] \"integer indices\" "                                                           \
+  "[0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n"
+
 /* ---- media ------------------------------------------------------------------------------- */
 
 /* The medium fills a box from -1 to 1, seen along z by parallel rays that all cross it from
@@ -61,17 +68,9 @@ static const char *const medium_form =
     "LookAt 0 0 3 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [-.5 .5 -.5 .5]\n" VIEW("16") "WorldBegin "
     "LightSource \"infinite\" \"rgb L\" [1 1 1] MakeNamedMedium \"m\" \"string type\" %s\n"
     "MediumInterface \"m\" \"\" Material \"interface\"\n"
-    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] "
-    "\"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n";
+    BOX_FROM("-1", "1");
 
 enum { MEDIUM_SPP = 384 };
-
-/* The box with other limits along x. */
-#define HALF_BOX(low, high)                                                                   \
-  "Shape \"trianglemesh\" \"point3 P\" [" low " -1 -1 " high " -1 -1 " high " 1 -1 " low      \
-  " 1 -1 " low " -1 1 " high " -1 1 " high " 1 1 " low                                        \
-  " 1 1] \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 " \
-  "4 7 0 7 3]\n"
 
 static vlImage *image_of_medium(const char *kind, const MediumCase *c, const char *parameters) {
   static char text[TEXT];
@@ -265,50 +264,6 @@ static void laws_of_media(void **state) {
   expect_no_failures();
 }
 
-/* A box of glow beside a box of the medium: the same random numbers meet the medium whether or
- * not there is glow, so its part of the image has the same bits. The border between them goes
- * through the blocks of pixels whose paths fly together. */
-static const char *const neighbour_form =
-    "LookAt 0 0 3 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [-.5 .5 -.5 .5]\n" VIEW("16") "WorldBegin "
-    "LightSource \"infinite\" \"rgb L\" [1 1 1] "
-    "MakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.3 .6 .2] "
-    "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [2 3 4] MakeNamedMedium \"m\" \"string type\" %s\n"
-    "Material \"interface\" MediumInterface \"m\" \"\"\n" HALF_BOX("-.1", "1")
-    "MediumInterface \"glow\" \"\"\n" HALF_BOX("-1", "-.11");
-
-static void check_neighbour(const char *name, const MediumCase *c, vlColorMode color) {
-  static char text[TEXT];
-  char all[2000];
-  vlImage *images[2];
-  uint32_t others = 0;
-  snprintf(all, sizeof all, "%s%s", c->shape, c->absorbs);
-  scene_text(text, neighbour_form, name, all);
-  images[0] = image_in(color, text, NULL, VL_PIXEL_FILTER_BOX, SAMPLES);
-  char *glow = strstr(text, "MediumInterface \"glow\"");
-  assert_non_null(glow);
-  memcpy(strstr(glow, "\"glow\""), "\"\"    ", 6);
-  images[1] = image_in(color, text, NULL, VL_PIXEL_FILTER_BOX, SAMPLES);
-  for (uint32_t y = 0; y < vl_image_height(images[0]); y++)
-    for (uint32_t x = 0; x < 9; x++) /* it grows to the left; the ninth column ends at -.06 */
-      for (uint32_t channel = 0; channel < 3; channel++)
-        others +=
-            vl_image_get(images[0], x, y, channel) != vl_image_get(images[1], x, y, channel);
-  if (others)
-    broken("media", name, "%u numbers of its image are others beside another medium", others);
-  vl_image_destroy(images[0]);
-  vl_image_destroy(images[1]);
-}
-
-static void neighbouring_media(void **state) {
-  (void)state;
-  const vlKindFamily *family = vl_kind_family_find("media");
-  for (uint32_t k = 0; k < family->kind_count; k++) {
-    check_neighbour(family->rows[k]->name, medium_cases[k], VL_COLOR_RGB);
-    check_neighbour(family->rows[k]->name, medium_cases[k], VL_COLOR_SPECTRAL);
-  }
-  expect_no_failures();
-}
-
 /* ---- tracers ----------------------------------------------------------------------------- */
 
 /* A plate that reflects half of the light, turned by 60 degrees from the eye; its normal is
@@ -365,8 +320,7 @@ static const TracerCase *const tracer_cases[] = {VL_TRACER_KINDS(TRACER_CASE)};
 static const char *const room_text =
     "LookAt 0 0 .9 0 0 -1 0 1 0 Camera \"perspective\" \"float fov\" 80\n" VIEW("12")
     "Integrator \"path\" \"integer maxdepth\" 3 WorldBegin Material \"diffuse\" \"rgb reflectance\" [.7 .7 .7]\n"
-    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] "
-    "\"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3]\n"
+    BOX_FROM("-1", "1")
     "AreaLightSource \"diffuse\" \"rgb L\" [20 20 20] Shape \"bilinearmesh\" \"point3 P\" "
     "[-.2 .6 .2 .2 .6 .2 -.2 .6 -.2 .2 .6 -.2]\n";
 

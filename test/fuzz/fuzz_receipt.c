@@ -35,14 +35,11 @@ static void ask(const vlReceipt *receipt) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   static const char other[] =
-      "{\"velo_receipt\": 1, \"velo\": {\"version\": \"0.1.0\"}, \"command\": [\"velo\", "
-      "\"render\", \"a.pbrt\"], "
-      "\"files\": "
-      "[{\"path\": \"a.pbrt\", \"size\": 3, \"murmur3\": "
-      "\"00112233445566778899aabbccddeeff\"}], "
-      "\"camera\": {\"fov\": "
-      "0.5}, "
-      "\"render\": {\"spp\": 4, \"seed\": 0}, \"samples\": 4}";
+      "{\"velo_receipt\": 1, \"velo\": {\"version\": \"0.1.0\"}, "
+      "\"command\": [\"velo\", \"render\", \"a.pbrt\"], "
+      "\"files\": [{\"path\": \"a.pbrt\", \"size\": 3, \"murmur3\": "
+      "\"00112233445566778899aabbccddeeff\"}], \"camera\": {\"fov\": 0.5}, \"render\": "
+      "{\"spp\": 4, \"seed\": 0}, \"samples\": 4}";
   vlContext *context = fuzz_context();
   vlReceipt *receipt = NULL, *fixed = NULL;
   vlError error;

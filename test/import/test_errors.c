@@ -91,9 +91,7 @@ static const struct {
      "t.pbrt:2:20: \"rgb reflectance\" has a negative value"},
     {W "Material \"diffuse\" \"float reflectance\" 0.5",
      "t.pbrt:2:20: Material \"diffuse\": parameter \"reflectance\" must be of type "
-     "\"spectrum\" or "
-     "\"rgb\" or "
-     "\"blackbody\" or \"texture\", not \"float\""},
+     "\"spectrum\" or \"rgb\" or \"blackbody\" or \"texture\", not \"float\""},
     {W "Material \"diffuse\" \"spectrum reflectance\" [ 400 1 500 ]",
      "t.pbrt:2:20: a spectrum holds pairs of wavelength and value; found 3 numbers"},
     {W "Material \"diffuse\" \"spectrum reflectance\" [ 400 1 300 1 ]",
@@ -145,21 +143,14 @@ static const struct {
     {"TransformTimes 1 1",
      "t.pbrt:1:1: TransformTimes: the end (1) must be after the start (1)"},
     {"Camera \"pinhole\" \"float shutterpoints\" [0 1 1]\n" W,
-     "t.pbrt:1:18: Camera \"pinhole\": \"shutterpoints\" are 2 to 16 pairs (share of the time, "
-     "how "
-     "far open), instead "
-     "of "
-     "\"shuttercurve\""},
+     "t.pbrt:1:18: Camera \"pinhole\": \"shutterpoints\" are 2 to 16 pairs (share of the "
+     "time, how far open), instead of \"shuttercurve\""},
     {"Camera \"pinhole\" \"float shutterrise\" 0.7\n" W,
-     "t.pbrt:1:1: Camera \"pinhole\": \"shutterrise\" is the share, above 0 and at most 0.5, "
-     "in "
-     "which a trapezoid "
-     "rises "
-     "and falls"},
+     "t.pbrt:1:1: Camera \"pinhole\": \"shutterrise\" is the share, above 0 and at most "
+     "0.5, in which a trapezoid rises and falls"},
     {"Camera \"pinhole\" \"float readout\" -1\n" W,
-     "t.pbrt:1:18: Camera \"pinhole\": parameter \"readout\" must be a number of at least 0; "
-     "it is "
-     "-1"},
+     "t.pbrt:1:18: Camera \"pinhole\": parameter \"readout\" must be a number of at least "
+     "0; it is -1"},
     /* names of kinds */
     {W "Material \"difuse\"",
      "t.pbrt:2:1: unknown material \"difuse\" (did you mean \"diffuse\"?)"},
@@ -171,9 +162,7 @@ static const struct {
     {W "Material \"subsurface\" \"string name\" \"Skin1\" \"rgb sigma_a\" [1 1 1] "
        "\"rgb sigma_s\" [1 1 1]",
      "t.pbrt:2:1: Material \"subsurface\": give only one of \"name\", \"sigma_a\" and "
-     "\"sigma_s\", "
-     "\"reflectance\" "
-     "(and \"mfp\"): each says all"},
+     "\"sigma_s\", \"reflectance\" (and \"mfp\"): each says all"},
     {W "Material \"subsurface\" \"rgb sigma_a\" [1 1 1]",
      "t.pbrt:2:1: Material \"subsurface\": \"sigma_s\" is missing beside \"sigma_a\""},
     {W "Material \"subsurface\" \"rgb sigma_s\" [1 1 1]",
@@ -181,18 +170,14 @@ static const struct {
     {W "Material \"subsurface\" \"rgb mfp\" [1 1 1]",
      "t.pbrt:2:1: Material \"subsurface\": \"reflectance\" is missing beside \"mfp\""},
     {W "Material \"subsurface\" \"float mfp\" 1",
-     "t.pbrt:2:23: Material \"subsurface\": parameter \"mfp\" must be of type \"spectrum\" or "
-     "\"rgb\" or \"blackbody\" "
-     "or "
-     "\"texture\", not \"float\""},
+     "t.pbrt:2:23: Material \"subsurface\": parameter \"mfp\" must be of type \"spectrum\" "
+     "or \"rgb\" or \"blackbody\" or \"texture\", not \"float\""},
     {W "Material \"subsurface\" \"float eta\" 4",
      "t.pbrt:2:23: Material \"subsurface\": parameter \"eta\" must be a number from 0.5 to "
-     "2.5; it "
-     "is 4"},
+     "2.5; it is 4"},
     {W "Material \"subsurface\" \"float g\" 1",
      "t.pbrt:2:23: Material \"subsurface\": parameter \"g\" must be a number above -1 and "
-     "below 1; "
-     "it is 1"},
+     "below 1; it is 1"},
     {W "Material \"measured\"",
      "t.pbrt:2:1: Material \"measured\": \"string filename\" is missing"},
     {W "MakeNamedMaterial \"a\"",
@@ -205,9 +190,7 @@ static const struct {
      "t.pbrt:2:1: there is no material \"wals\" (did you mean \"walls\"?)"},
     {W "Shape \"curve\" \"point3 P\" [0 0 0]",
      "t.pbrt:2:15: Shape \"curve\": 1 points, but Bezier curves of degree 3 need 4, or that "
-     "and a "
-     "multiple of "
-     "the degree"},
+     "and a multiple of the degree"},
     {W "Shape \"curve\"", "t.pbrt:2:1: Shape \"curve\": \"point3 P\" is missing"},
     {W "Shape \"curve\" \"integer degree\" 4",
      "t.pbrt:2:1: Shape \"curve\": the degree must be 2 or 3, not 4"},
@@ -237,8 +220,7 @@ static const struct {
      "t.pbrt:1:1: Camera \"realistic\": \"string lensfile\" is missing"},
     {"Film \"spectral\" \"float lambdamin\" 300\n" W,
      "t.pbrt:1:17: Film \"spectral\": parameter \"lambdamin\" must be a number from 360 to "
-     "830; it "
-     "is 300"},
+     "830; it is 300"},
     {"Film \"spectral\" \"float lambdamin\" 700 \"float lambdamax\" 600\n" W,
      "t.pbrt:1:1: Film \"spectral\": \"lambdamin\" is 700, it must be below \"lambdamax\", "
      "600"},
@@ -280,16 +262,14 @@ static const struct {
      "t.pbrt:2:1: Material \"mix\": \"string materials\" (two names) is missing"},
     {W "Material \"conductor\" \"rgb reflectance\" [1 1 1] \"rgb k\" [1 1 1]",
      "t.pbrt:2:1: Material \"conductor\": give either \"reflectance\" or \"eta\" and \"k\", "
-     "not "
-     "both"},
+     "not both"},
     {W "Material \"dielectric\" \"texture eta\" \"a\"",
      "t.pbrt:2:23: Material \"dielectric\": parameter \"eta\" must be of type \"float\" or "
      "\"spectrum\" or \"rgb\" or "
      "\"blackbody\", not \"texture\""},
     {W "Texture \"a\" \"spectrum\" \"checkerboard\" \"integer dimension\" 4",
      "t.pbrt:2:39: Texture \"a\" (checkerboard): parameter \"dimension\" must be a whole "
-     "number "
-     "from 2 to 3; it is 4"},
+     "number from 2 to 3; it is 4"},
     {W "Texture \"a\" \"spectrum\" \"imagemap\"",
      "t.pbrt:2:1: Texture \"a\" (imagemap): \"string filename\" is missing"},
     {W "Texture \"a\" \"spectrum\" \"imagemap\" \"string filname\" \"x.png\"",
@@ -311,13 +291,11 @@ static const struct {
     {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1]",
      "t.pbrt:2:53: Shape \"trianglemesh\": \"indices\" holds 2 numbers, not a multiple of 3"},
     {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
-     "t.pbrt:2:53: Shape \"trianglemesh\": \"indices\": number 2 names vertex 3, but there are "
-     "3 "
-     "vertices (0 to 2)"},
+     "t.pbrt:2:53: Shape \"trianglemesh\": \"indices\": number 2 names vertex 3, but there "
+     "are 3 vertices (0 to 2)"},
     {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 -1]",
      "t.pbrt:2:53: Shape \"trianglemesh\": \"indices\": number 2 names vertex -1, but there "
-     "are 3 "
-     "vertices (0 to 2)"},
+     "are 3 vertices (0 to 2)"},
     {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"point2 uv\" [0 0]",
      "t.pbrt:2:53: Shape \"trianglemesh\": \"uv\" holds 2 numbers, but 3 vertices need 6"},
     {W "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1e39 0]",
@@ -325,10 +303,8 @@ static const struct {
     {W "Shape \"plymesh\"", "t.pbrt:2:1: Shape \"plymesh\": \"string filename\" is missing"},
     {W "Shape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] "
        "\"integer indices\" [0 1 2 0 1 3]",
-     "t.pbrt:2:1: Shape \"loopsubdiv\": faces 0 and 1 run along their common edge (vertices 0, "
-     "1) "
-     "in the same "
-     "direction"},
+     "t.pbrt:2:1: Shape \"loopsubdiv\": faces 0 and 1 run along their common edge (vertices "
+     "0, 1) in the same direction"},
     {W "Shape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer levels\" 30",
      "t.pbrt:2:1: Shape \"loopsubdiv\": 30 levels of 1 faces are too many"},
     /* lights */
@@ -339,18 +315,15 @@ static const struct {
     {W "LightSource \"infinite\" \"point3 portal\" [0 0 0]",
      "t.pbrt:2:24: LightSource \"infinite\": \"portal\" takes 4 points, found 3 numbers"},
     {W "LightSource \"spot\" \"float coneangle\" 200",
-     "t.pbrt:2:20: LightSource \"spot\": parameter \"coneangle\" must be a number above 0 and "
-     "at "
-     "most 180 degrees; it "
-     "is 200 degrees"},
+     "t.pbrt:2:20: LightSource \"spot\": parameter \"coneangle\" must be a number above 0 "
+     "and at most 180 degrees; it is 200 degrees"},
     /* image */
     {"Film \"rgb\" \"integer xresolution\" 0\n" W,
      "t.pbrt:1:12: Film \"rgb\": parameter \"xresolution\" must be a whole number from 1 to "
      "4294967295; it is 0"},
     {"Film \"rgb\" \"integer xresolution\" 2000000\n" W,
      "t.pbrt:1:12: Film \"rgb\": parameter \"xresolution\" must be a whole number from 1 to "
-     "65536; "
-     "it is 2000000"},
+     "65536; it is 2000000"},
     {"Film \"rgb\" \"float cropwindow\" [0.5 0.5 0 1]\n" W,
      "t.pbrt:1:1: Film \"rgb\": the crop window holds no pixel"},
     {"Film \"rgb\" \"string sensor\" \"canon_eos_5e\"\n" W,
@@ -362,9 +335,7 @@ static const struct {
      "kelvin"},
     {"Camera \"perspective\" \"float fov\" 200\n" W,
      "t.pbrt:1:1: Camera \"perspective\": fov is 3.49066 radians (200 degrees); a flat view "
-     "plane "
-     "needs less than 180 "
-     "degrees"},
+     "plane needs less than 180 degrees"},
     {"Camera \"perspective\" \"float shutterclose\" 0\n" W,
      "t.pbrt:1:1: Camera \"perspective\": the shutter does not open: it closes at 0, opens at "
      "0"},
@@ -373,21 +344,17 @@ static const struct {
      "direction to look in"},
     {"LookAt 1 0 0 0 0 1 0 1 0 Camera \"pinhole\"\n" W,
      "t.pbrt:1:26: Camera \"pinhole\": its pose is given by eye, lookat and up; transforms "
-     "before "
-     "it have no meaning"},
+     "before it have no meaning"},
     {"Sampler \"zsobol\" \"integer pixelsamples\" 0\n" W,
-     "t.pbrt:1:18: Sampler \"zsobol\": parameter \"pixelsamples\" must be a whole number from "
-     "1 to "
-     "4294967295; it is "
-     "0"},
+     "t.pbrt:1:18: Sampler \"zsobol\": parameter \"pixelsamples\" must be a whole number "
+     "from 1 to 4294967295; it is 0"},
     {"Sampler \"halton\" \"string randomization\" \"some\"\n" W,
      "t.pbrt:1:18: Sampler \"halton\": \"randomization\" cannot be \"some\" (known: none, "
      "permutedigits, fastowen, "
      "owen)"},
     {"PixelFilter \"box\" \"float xradius\" 0\n" W,
-     "t.pbrt:1:19: PixelFilter \"box\": parameter \"xradius\" must be a number above 0 and at "
-     "most "
-     "32; it is 0"},
+     "t.pbrt:1:19: PixelFilter \"box\": parameter \"xradius\" must be a number above 0 and "
+     "at most 32; it is 0"},
     {"PixelFilter \"box\" \"float sigma\" 1\n" W,
      "t.pbrt:1:19: PixelFilter \"box\": unknown parameter \"sigma\""},
     {"Integrator \"path\" \"bool regularise\" true\n" W,
@@ -402,26 +369,22 @@ static const struct {
      "t.pbrt:1:49: MakeNamedMedium \"m\": no preset is named \"Whole milk\" (did you mean "
      "\"Wholemilk\"?)"},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float sigma_a\" 1",
-     "t.pbrt:1:49: MakeNamedMedium \"m\": parameter \"sigma_a\" must be of type \"spectrum\" "
-     "or "
-     "\"rgb\" or "
-     "\"blackbody\", not \"float\""},
+     "t.pbrt:1:49: MakeNamedMedium \"m\": parameter \"sigma_a\" must be of type "
+     "\"spectrum\" or \"rgb\" or \"blackbody\", not \"float\""},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 -1 1]",
      "t.pbrt:1:49: \"rgb sigma_s\" has a negative value"},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 2",
      "t.pbrt:1:49: MakeNamedMedium \"m\": parameter \"g\" must be a number from -1 to 1; it is "
      "2"},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float scale\" -2",
-     "t.pbrt:1:49: MakeNamedMedium \"m\": parameter \"scale\" must be a number of at least 0; "
-     "it "
-     "is -2"},
+     "t.pbrt:1:49: MakeNamedMedium \"m\": parameter \"scale\" must be a number of at least "
+     "0; it is -2"},
     {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float density\" 2",
      "t.pbrt:1:49: MakeNamedMedium \"m\": unknown parameter \"density\""},
     {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
      "\"float density\" [1 2 3]",
-     "t.pbrt:1:64: MakeNamedMedium \"m\": \"density\" holds 3 numbers, but nx * ny * nz = 2 * "
-     "1 * "
-     "1 cells need 2"},
+     "t.pbrt:1:64: MakeNamedMedium \"m\": \"density\" holds 3 numbers, but nx * ny * nz = 2 "
+     "* 1 * 1 cells need 2"},
     {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
      "\"float density\" [1 -2]",
      "t.pbrt:1:1: medium \"m\": density: value 1 is negative (-2)"},

@@ -277,9 +277,7 @@ static void packed(void **state) {
       *text = "WorldBegin\nShape \"plymesh\" \"string filename\" \"t.ply.gz\"",
       *ply =
           "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
-          "y\nproperty "
-          "float "
-          "z\nelement face 1\n"
+          "y\nproperty float z\nelement face 1\n"
           "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   gzFile f = gzopen(in_folder("packed.pbrt.gz"), "wb");
   gzwrite(f, text, (unsigned)strlen(text));
@@ -302,8 +300,7 @@ static void packed(void **state) {
              ":0:0: %/bomb.pbrt.gz: unpacks to more than 200 times its size");
   write_file("bad.ply",
              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
-             "y\nproperty float "
-             "z\nend_header\n0 0 0 1 0 0 0 x 0\n");
+             "y\nproperty float z\nend_header\n0 0 0 1 0 0 0 x 0\n");
   write_file("m.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"bad.ply\"");
   file_error("m.pbrt", VL_ERROR_SCENE, "%/bad.ply:8:1: PLY: expected a number, found \"x\"");
 }

@@ -47,14 +47,11 @@ static const char *const scene_text =
 
 static const char ply_text[] =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
-    "float "
-    "z\nproperty float nx\n"
+    "float z\nproperty float nx\n"
     "property float ny\nproperty float nz\nproperty float u\nproperty float v\nelement face "
-    "2\nproperty list uchar int "
-    "vertex_indices\n"
-    "end_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n1 1 0 0 0 1 1 1\n0 1 0 0 0 1 0 1\n4 0 1 2 "
-    "3\n3 "
-    "0 1 2\n";
+    "2\nproperty list uchar int vertex_indices\n"
+    "end_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n1 1 0 0 0 1 1 1\n0 1 0 0 0 1 0 1\n4 0 1 "
+    "2 3\n3 0 1 2\n";
 
 static vlResult load_scene(vlContext *context, void *user) {
   vlScene *scene;

@@ -358,9 +358,8 @@ static void errors(void **state) {
 static void damaged(void **state) {
   (void)state;
   static const char whole[] =
-      "mtllib d.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 1\nvt 0 0\nvt 1 0.5\nvn "
-      "0 0 "
-      "1\no a\nusemtl a\n"
+      "mtllib d.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 1\nvt 0 0\nvt 1 "
+      "0.5\nvn 0 0 1\no a\nusemtl a\n"
       "s 1\nf 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -1 -2 -3\ng b\nusemtl b\nf 1//1 2//1 \\\n "
       "3//1\n";
   static const char library[] =

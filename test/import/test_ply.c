@@ -247,8 +247,7 @@ static const struct {
      "p.ply:11:1: PLY: vertex 1: z is not finite (1e+40)"},
     {HEAD "0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "p.ply:0:0: PLY: the mesh has no faces"},
     {"ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty "
-     "float "
-     "z\nend_header\n",
+     "float z\nend_header\n",
      "p.ply:0:0: PLY: the mesh has no vertices"},
     {"ply\nformat ascii 1.0\nelement vertex 2147483648\nproperty float x\nproperty float "
      "y\nproperty float z\nelement "
@@ -256,14 +255,12 @@ static const struct {
      "p.ply:10:1: PLY: the header promises 2147483648 of element vertex, but only 0 bytes "
      "follow"},
     {"ply\nformat binary_little_endian 1.0\nelement vertex 2147483648\nproperty float "
-     "x\nproperty "
-     "float y\nproperty "
-     "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
+     "x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
+     "vertex_indices\nend_header\n",
      "p.ply:0:0: PLY: the header promises 2147483648 of element vertex, but only 0 bytes "
      "follow"},
-    {"ply\nformat binary_little_endian 1.0\nelement face 999999999999999999999\nproperty list "
-     "uchar int "
-     "vertex_indices\nend_header\nabc",
+    {"ply\nformat binary_little_endian 1.0\nelement face 999999999999999999999\nproperty "
+     "list uchar int vertex_indices\nend_header\nabc",
      "p.ply:3:1: PLY: element face: \"999999999999…\" is not a count"},
 };
 

@@ -172,9 +172,7 @@ static const struct {
      "\"texture amount\" \"t-float\"\n",
      0},
     {"Texture \"w\" \"color\" \"windy\"\nTexture \"c\" \"color\" \"checkerboard\"\nTexture "
-     "\"t\" "
-     "\"color\" \"scale\" "
-     "\"texture tex1\" \"w\" \"texture tex2\" \"c\"\n",
+     "\"t\" \"color\" \"scale\" \"texture tex1\" \"w\" \"texture tex2\" \"c\"\n",
      "Texture \"w-float\" \"float\" \"windy\"\n"
      "Texture \"w\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" [ 1 1 1 ] "
      "\"texture amount\" \"w-float\"\n"
@@ -289,19 +287,13 @@ static const struct {
      "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\"\n",
      1},
     {"Texture \"a\" \"color\" \"constant\"\nTexture \"b\" \"color\" \"constant\"\nTexture "
-     "\"t\" "
-     "\"color\" \"scale\" "
-     "\"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
+     "\"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
      "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"b\" \"spectrum\" "
-     "\"constant\"\nTexture "
-     "\"t\" \"spectrum\" "
-     "\"scale\" \"texture tex\" \"a\"\n",
+     "\"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\"\n",
      1},
     {"Texture \"a\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\nTexture \"b\" "
-     "\"color\" "
-     "\"imagemap\" "
-     "\"string filename\" \"a.png\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" "
-     "\"texture tex2\" \"b\"\n",
+     "\"color\" \"imagemap\" \"string filename\" \"a.png\"\nTexture \"t\" \"color\" "
+     "\"scale\" \"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
      "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\n"
      "Texture \"b\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\n"
      "Texture \"b-float\" \"float\" \"imagemap\" \"string filename\" \"../old/a.png\"\n"

@@ -233,8 +233,7 @@ static void test_instances(void **state) {
       "ObjectEnd AttributeEnd\n"
       "AttributeBegin Translate 0.5 0 0.3 Scale 1 1 2 ObjectInstance \"ball\" AttributeEnd\n",
       "AttributeBegin ActiveTransform EndTime Translate -1 0 0.5 Rotate 40 0 1 1 "
-      "ActiveTransform "
-      "All\n"
+      "ActiveTransform All\n"
       "ObjectInstance \"ball\" AttributeEnd\n",
       0.004);
 }

@@ -234,11 +234,9 @@ static void bad_materials_and_lights(void **state) {
   m = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
   m.eta.value = vl_spectrum_named("metal-MgO-etta");
   vl_scene_add_material(scene, &m);
-  refuses(
-      VL_ERROR_SCENE,
-      "conductor material: parameter \"eta\": no spectrum is named \"metal-MgO-etta\" (did you "
-      "mean "
-      "\"metal-MgO-eta\"?)");
+  refuses(VL_ERROR_SCENE,
+          "conductor material: parameter \"eta\": no spectrum is named "
+          "\"metal-MgO-etta\" (did you mean \"metal-MgO-eta\"?)");
   m = vl_default_material_def(VL_MATERIAL_MIX);
   vl_scene_add_material(scene, &m);
   refuses(VL_ERROR_SCENE, "mix material: needs two materials");

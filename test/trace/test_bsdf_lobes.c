@@ -132,8 +132,7 @@ static void look_at(Lobe *l, const char *name, double edge, uint64_t seed) {
   if (!stat_accept(r, TESTS) || !(fabs(r.integral - share) < 1e-3 + error))
     fail_msg(
         "%s, alpha %g %g, cos %g%s: p %g, density integrates to %.5f, share of the samples "
-        "%.5f "
-        "(%.4f lost)",
+        "%.5f (%.4f lost)",
         name, l->alpha_x, l->alpha_y, l->o[2], l->eta > 0 ? ", through" : "", r.p, r.integral,
         share, none);
 }

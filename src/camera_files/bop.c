@@ -53,9 +53,8 @@ static vlResult read_bop(const vlCameraFile *file, const json_t *tree, vlCameraR
       json_is_object(json_object_get(tree, file->def->frame)))
     chosen = file->def->frame;
   json_object_foreach((json_t *)tree, name, image) {
-    if (!chosen && vl_camera_is_frame(file, record->frames, name))
+    if (vl_camera_count(file, chosen, name, record))
       chosen = name;
-    record->frames++;
   }
   if (!chosen)
     return vl_camera_no_frame(file, "image", record);

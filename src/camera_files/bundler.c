@@ -30,7 +30,7 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
     if (v[0] == 0.0)
       continue;
     snprintf(name, sizeof name, "%u", i);
-    if (!taken && vl_camera_is_frame(file, record->frames, name)) {
+    if (vl_camera_count(file, taken, name, record)) {
       taken = true;
       vl_camera_name(record, name);
       vl_camera_set_opencv(&record->camera, (double[]){v[1], v[2], 0, 0}, 4);
@@ -39,7 +39,6 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
       vl_camera_set_pose(&record->camera, v + 3, v + 12);
       record->camera.fx = record->camera.fy = v[0];
     }
-    record->frames++;
   }
   if (!taken)
     return vl_camera_no_frame(file, "camera", record);

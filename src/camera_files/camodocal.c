@@ -130,9 +130,8 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree,
     snprintf(name, sizeof name, "cam%u", i);
     if (!vl_camera_has(tree, key))
       break;
-    if (found == UINT32_MAX && vl_camera_is_frame(file, i, name))
+    if (vl_camera_count(file, found != UINT32_MAX, name, record))
       found = i;
-    record->frames++;
   }
   if (found == UINT32_MAX)
     return vl_camera_no_frame(file, "camera", record);

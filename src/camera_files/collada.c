@@ -66,8 +66,7 @@ typedef struct {
   const json_t *camera;           /* <instance_camera> of the chosen node */
   const json_t *stops[MAX_DEPTH]; /* the nodes down to it */
   int depth;
-  const char *name;
-  uint32_t count;
+  vlCameraRecord *record; /* gets the name, and counts the cameras */
 } Search;
 
 static vlResult search(const vlCameraFile *file, const json_t *node, const json_t **stops,
@@ -80,17 +79,15 @@ static vlResult search(const vlCameraFile *file, const json_t *node, const json_
   if (!name)
     name = vl_camera_text(node, "id");
   VL_EACH_CHILD(child, node) {
-    if (vl_camera_has_tag(child, "instance_camera") && !s->camera &&
-        vl_camera_is_frame(file, s->count, name)) {
+    if (vl_camera_has_tag(child, "instance_camera") &&
+        vl_camera_count(file, s->camera, name, s->record)) {
       s->camera = child;
       s->depth = depth + 1;
-      s->name = name;
+      vl_camera_name(s->record, name);
       memcpy(s->stops, stops, sizeof s->stops);
     }
-    s->count += vl_camera_has_tag(child, "instance_camera");
-    if (!vl_camera_has_tag(child, "node"))
-      continue;
-    VL_TRY(search(file, child, stops, depth + 1, s));
+    if (vl_camera_has_tag(child, "node"))
+      VL_TRY(search(file, child, stops, depth + 1, s));
   }
   return VL_OK;
 }
@@ -180,11 +177,11 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
       "orthographic xfov yfov xmag ymag aspect_ratio znear zfar "
       "asset! extra! technique! imager!";
   vlCameraDef *d = &record->camera;
-  Search s = {.camera = NULL};
+  Search s = {.record = record};
   vlMat4 world = vl_mat4_identity();
   double half[2];
+  record->frames = 0;
   VL_TRY(search_scenes(file, tree, &s));
-  record->frames = s.count;
   if (!s.camera)
     return vl_camera_no_frame(file, "camera", record);
   const json_t *camera = find_camera(tree, vl_camera_text(s.camera, "url"));
@@ -211,7 +208,6 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree,
   d->fx = 0.5 * d->width / half[0];
   d->fy = 0.5 * d->height / half[1];
   vl_camera_set_flipped(d, world.m);
-  vl_camera_name(record, s.name);
   return vl_camera_check_part(file, known, camera, record);
 }
 

@@ -60,18 +60,16 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path,
   char *model = next_word(&rest);
   double size[2], parameters[16];
   uint32_t count = 0;
-  for (int i = 0; i < 2; i++)
-    if (!next_number(&rest, &size[i]) || !vl_camera_is_side(size[i]))
-      return wrong_line(file, path, lines->number,
-                        "after the model come width and height in whole pixels");
+  if (!next_number(&rest, &size[0]) || !next_number(&rest, &size[1]) ||
+      !vl_camera_set_sides(d, size))
+    return wrong_line(file, path, lines->number,
+                      "after the model come width and height in whole pixels");
   for (rest += strspn(rest, " \t"); *rest; rest += strspn(rest, " \t")) {
     if (count == VL_LENGTH(parameters))
       return wrong_line(file, path, lines->number, "more than 16 parameters");
     if (!next_number(&rest, &parameters[count++]))
       return wrong_line(file, path, lines->number, "a parameter is no finite number");
   }
-  d->width = (uint32_t)size[0];
-  d->height = (uint32_t)size[1];
   vlError error = {0};
   if (vl_camera_def_colmap(d, model, parameters, count, &error) == VL_OK)
     return VL_OK;

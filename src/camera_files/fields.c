@@ -53,11 +53,10 @@ vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object,
 
 void vl_camera_offer(const vlCameraFile *file, const json_t *camera, const char *name,
                      vlCameraRecord *record, const json_t **chosen) {
-  if (!*chosen && vl_camera_is_frame(file, record->frames, name)) {
+  if (vl_camera_count(file, *chosen, name, record)) {
     *chosen = camera;
     vl_camera_name(record, name);
   }
-  record->frames++;
 }
 
 const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,

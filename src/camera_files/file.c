@@ -109,10 +109,8 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
   if (sink)
     file->ordinal = &i;
   for (; i < frames && result == VL_OK; i++) {
-    if (sink)
-      memset(record, 0, sizeof *record);
     if (sink) {
-      record->camera = vl_default_camera_def(1, 1);
+      vl_trajectory_begin(dialect, record);
       record->frames = 1;
     }
     record->dialect = dialect;

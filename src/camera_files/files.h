@@ -125,12 +125,19 @@ vlResult vl_camera_size_pair(const vlCameraFile *file, const json_t *object, con
  * {rows, cols, data}. */
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
                            double *values, uint32_t least, uint32_t most, uint32_t *count);
+/* The same of a value of the file, which messages call by the key. */
+vlResult vl_camera_numbers_of(const vlCameraFile *file, const json_t *object, const char *key,
+                              const json_t *field, double *values, uint32_t least,
+                              uint32_t most, uint32_t *count);
 /* The same for exactly `count` numbers. */
 vlResult vl_camera_list(const vlCameraFile *file, const json_t *object, const char *key,
                         double *values, uint32_t count);
 /* Parses the next number of a text, after blanks and commas. If there is no number, *end is
  * text. */
 double vl_camera_parse(const char *text, char **end);
+/* Parses the numbers of a text, `most` at most. Returns their count; most + 1: there are more,
+ * one is not finite, or the text holds something else. */
+uint32_t vl_camera_parse_all(const char *text, double *values, uint32_t most);
 /* Returns the string at key, or null if it is missing or not a string. */
 const char *vl_camera_text(const json_t *object, const char *key);
 /* The row of a table with this name, which is the row's first member and may be null where it
@@ -144,6 +151,10 @@ const void *vl_camera_row(const void *rows, size_t count, size_t size, const cha
 /* Returns whether the camera or pose with this index and name is the requested one. The name
  * may be null. */
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name);
+/* Counts a camera of the file in record->frames. Returns whether it is the requested one,
+ * unless one was taken before. */
+bool vl_camera_count(const vlCameraFile *file, bool taken, const char *name,
+                     vlCameraRecord *record);
 void vl_camera_name(vlCameraRecord *record, const char *name);
 /* The camera that the caller asked for, as messages show it; `otherwise` if none was. */
 vlArgumentText vl_camera_asked(const vlCameraFile *file, const char *otherwise);
@@ -273,6 +284,9 @@ void vl_camera_set_origin(vlCameraDef *def);
 /* Returns an error if the pose, given as a matrix, scales, shears or mirrors by more than the
  * rounding of numbers with two digits. */
 vlResult vl_camera_check_rotation(const vlCameraFile *file, const vlCameraRecord *record);
+/* How far the columns of the 3x3 part are from length 1 and right angles: the largest
+ * difference of their products from those of a rotation's. */
+double vl_rotation_error(const double m[12]);
 /* Converts a world-from-camera matrix between the camera axes x right, y up, z back and velo's
  * axes, in either direction. It negates columns y and z. */
 void vl_camera_flip_axes(const double m[16], double result[16]);

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "camera_files/files.h"
 #include "distortion/distortion.row.h"
+#include "math/double3.h"
 #include "math/transform.h"
 #include "velo/distortion.h"
 
@@ -60,19 +61,6 @@ vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool pres
       file->dialect, field);
 }
 
-/* Returns whether the matrix consists of a rotation and a translation only: the products of its
- * columns differ from those of a rotation's by less than 1e-9, what numbers of ten digits
- * give. */
-static bool is_rigid(const double m[16]) {
-  for (int i = 0; i < 3; i++)
-    for (int j = i; j < 3; j++) {
-      double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
-      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < 1e-9))
-        return false;
-    }
-  return vl_mat4_determinant3(vl_mat4_load(m)) > 0.0;
-}
-
 /* The same view with the image mirrored horizontally: negates the x axis. For left-handed
  * worlds such as pbrt's. */
 static void unmirror(vlCamera *c) {
@@ -87,12 +75,13 @@ static void unmirror(vlCamera *c) {
 /* For dialects whose poses are rotations and translations: a mirrored camera becomes one that
  * is not, with the same view in the mirror, if "mirror" is dropped. Other poses are errors. */
 static vlResult make_rigid(const vlCameraFile *file, vlCamera *camera) {
-  const bool mirrors = vl_mat4_determinant3(vl_mat4_load(camera->world_from_camera)) < 0.0;
-  if (mirrors && camera->distortion.steps == 0) {
+  const double *m = camera->world_from_camera;
+  if (vl_determinant3(m) < 0.0 && camera->distortion.steps == 0) {
     VL_TRY(vl_camera_refuse(file, "mirror", true));
     unmirror(camera);
   }
-  if (is_rigid(camera->world_from_camera))
+  /* 1e-9: numbers of ten digits */
+  if (vl_rotation_error(m) < 1e-9 && vl_determinant3(m) > 0.0)
     return VL_OK;
   return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
                     "%s cannot hold a pose that scales or mirrors", file->dialect);

@@ -230,11 +230,10 @@ static vlResult find_holder(const vlCameraFile *file, const json_t *cameras,
     const char *name = vl_camera_text(node, "name");
     if (!name)
       name = vl_camera_text(camera, "name");
-    if (!chosen->node && vl_camera_is_frame(file, record->frames, name)) {
+    if (vl_camera_count(file, chosen->node, name, record)) {
       *chosen = (Holder){i, node, camera};
       vl_camera_name(record, name);
     }
-    record->frames++;
   }
   if (record->frames == 0)
     return vl_camera_wrong(file, "gltf: no node holds a camera (\"cameras\" has %zu)",

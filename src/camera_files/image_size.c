@@ -101,14 +101,10 @@ vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, con
                              vlCameraRecord *record) {
   double size[2] = {0};
   VL_TRY(vl_camera_list(file, object, key, size, 2));
-  for (int i = 0; i < 2; i++)
-    if (!vl_camera_is_side(size[i]))
-      return vl_camera_wrong_in(file, object, key,
-                                "%s: \"%s\" is %g x %g; it must be whole pixels", file->dialect,
-                                key, size[0], size[1]);
-  record->camera.width = (uint32_t)size[0];
-  record->camera.height = (uint32_t)size[1];
-  return VL_OK;
+  if (vl_camera_set_sides(&record->camera, size))
+    return VL_OK;
+  return vl_camera_wrong_in(file, object, key, "%s: \"%s\" is %g x %g; it must be whole pixels",
+                            file->dialect, key, size[0], size[1]);
 }
 
 vlResult vl_camera_size_pair(const vlCameraFile *file, const json_t *object, const char *key,

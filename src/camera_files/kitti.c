@@ -100,13 +100,12 @@ static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t si
       continue;
     char name[16];
     snprintf(name, sizeof name, unrectified ? "%02u" : "P%u", i);
-    if (taken == UINT32_MAX && vl_camera_is_frame(file, record->frames, name)) {
+    if (vl_camera_count(file, taken != UINT32_MAX, name, record)) {
       taken = i;
       raw = unrectified;
       chosen = row;
       vl_camera_name(record, name);
     }
-    record->frames++;
   }
   if (!record->frames)
     return missing(file, "P0");

@@ -142,13 +142,10 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree,
   VL_TRY(numbers(file, intrinsic, "width", &size[0], 1));
   VL_TRY(numbers(file, intrinsic, "height", &size[1], 1));
   VL_TRY(numbers(file, intrinsic, "principalPoint", c, 2));
-  for (int i = 0; i < 2; i++)
-    if (!vl_camera_is_side(size[i]))
-      return vl_camera_wrong_in(file, intrinsic, i ? "height" : "width",
-                                "meshroom: the image is %g x %g; it must be whole pixels",
-                                size[0], size[1]);
-  d->width = (uint32_t)size[0];
-  d->height = (uint32_t)size[1];
+  if (!vl_camera_set_sides(d, size))
+    return vl_camera_wrong_in(file, intrinsic, vl_camera_is_side(size[0]) ? "height" : "width",
+                              "meshroom: the image is %g x %g; it must be whole pixels",
+                              size[0], size[1]);
   double middle = is_before(version, 2, 1) ? 0.0 : 0.5;
   d->cx = c[0] + middle * d->width;
   d->cy = c[1] + middle * d->height;

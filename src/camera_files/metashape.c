@@ -120,7 +120,6 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *chunk, const
   VL_TRY(vl_camera_element_numbers(file, vl_camera_child(camera, "transform"), m, 16));
   if (!vl_camera_set_matrix(&record->camera, m, false))
     return vl_camera_wrong_element(file, camera, "no pose");
-  vl_camera_name(record, vl_camera_text(camera, "label"));
   VL_EACH_CHILD(sensor, vl_camera_child(chunk, "sensors")) {
     const char *own = vl_camera_text(sensor, "id");
     if (id && own && vl_text_is(id, own))
@@ -130,24 +129,16 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *chunk, const
                                  vl_short_text(id).text);
 }
 
-typedef struct {
-  const vlCameraFile *file;
-  const json_t *chosen;
-  uint32_t count;
-} Search;
-
 /* Cameras may be in groups. A camera without <transform> was not aligned and is skipped. */
-static void search(Search *s, const json_t *list, int depth) {
+static void search(const vlCameraFile *file, const json_t *list, int depth,
+                   vlCameraRecord *record, const json_t **chosen) {
   const json_t *camera;
   VL_EACH_CHILD(camera, list) {
     const char *tag = vl_camera_text(camera, "<");
     if (vl_text_is(tag, "group") && depth > 0)
-      search(s, camera, depth - 1);
-    if (!vl_text_is(tag, "camera") || !vl_camera_child(camera, "transform"))
-      continue;
-    if (!s->chosen && vl_camera_is_frame(s->file, s->count, vl_camera_text(camera, "label")))
-      s->chosen = camera;
-    s->count++;
+      search(file, camera, depth - 1, record, chosen);
+    if (vl_text_is(tag, "camera") && vl_camera_child(camera, "transform"))
+      vl_camera_offer(file, camera, vl_camera_text(camera, "label"), record, chosen);
   }
 }
 
@@ -168,16 +159,15 @@ static vlResult read_calibration(const vlCameraFile *file, const json_t *root,
 
 static vlResult read_document(const vlCameraFile *file, const json_t *root,
                               vlCameraRecord *record) {
-  const json_t *chunk = vl_camera_child(root, "chunk");
+  const json_t *chunk = vl_camera_child(root, "chunk"), *chosen = NULL;
   if (!chunk)
     return vl_camera_wrong_element(file, root, "the document has no <chunk>");
-  Search s = {.file = file};
-  search(&s, vl_camera_child(chunk, "cameras"), 8);
-  record->frames = s.count;
-  if (s.chosen)
-    return read_camera(file, chunk, s.chosen, record);
+  record->frames = 0;
+  search(file, vl_camera_child(chunk, "cameras"), 8, record, &chosen);
+  if (chosen)
+    return read_camera(file, chunk, chosen, record);
   return vl_camera_wrong_element(file, chunk, "there is no aligned camera \"%s\" among the %u",
-                                 vl_camera_asked(file, "0").text, s.count);
+                                 vl_camera_asked(file, "0").text, record->frames);
 }
 
 static vlResult read_metashape(const vlCameraFile *file, const json_t *root,

@@ -52,11 +52,9 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
   int chosen = -1;
   record->frames = 0;
   for (int i = 0; i < 2; i++) {
-    if (!find(text, size, names[i], &line))
-      continue;
-    if (chosen < 0 && vl_camera_is_frame(file, record->frames, names[i]))
+    if (find(text, size, names[i], &line) &&
+        vl_camera_count(file, chosen >= 0, names[i], record))
       chosen = i;
-    record->frames++;
   }
   if (chosen < 0)
     return vl_camera_no_frame(file, "camera", record);
@@ -75,13 +73,10 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
   if (!vl_camera_set_intrinsics(&record->camera, k, false))
     return vl_camera_wrong_line(file, &line, line.text, "%s must be [fx 0 cx; 0 fy cy; 0 0 1]",
                                 names[chosen]);
-  const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  double t[3] = {0, 0, 0};
-  if (chosen == 1) {
-    VL_TRY(read_number(file, text, size, "baseline", &t[0], NULL));
-    t[0] = -t[0];
-  }
-  vl_camera_set_pose(&record->camera, r, t);
+  vl_camera_set_origin(&record->camera);
+  if (chosen == 1)
+    VL_TRY(
+        read_number(file, text, size, "baseline", &record->camera.world_from_camera[3], NULL));
   vl_camera_name(record, names[chosen]);
   return read_size(file, text, size, chosen, record);
 }

@@ -73,20 +73,11 @@ static vlResult numbers(const Scene *scene, const json_t *element, const char *k
     *found = text != NULL;
   if (!text && found)
     return VL_OK;
-  uint32_t n = 0;
-  char *end = (char *)text;
-  for (const char *at = text; at && n < count; at = end, n++) {
-    values[n] = vl_camera_parse(at, &end);
-    if (end == at)
-      break;
-  }
-  bool whole = text && end[strspn(end, " \t\r\n,")] == 0;
-  for (uint32_t i = 0; i < n; i++)
-    whole = whole && isfinite(values[i]);
-  if (whole && n == 1)
+  uint32_t n = text ? vl_camera_parse_all(text, values, count) : 0;
+  if (n == 1)
     for (; n < count; n++)
       values[n] = values[0];
-  if (whole && n == count)
+  if (n == count)
     return VL_OK;
   return vl_camera_wrong_element(
       scene->file, element, "\"%s\" of <%s> must hold %u finite number%s", key,
@@ -392,18 +383,16 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
   const json_t *item, *chosen = NULL;
   bool root = vl_camera_has_tag(tree, "sensor"), includes = false;
   record->frames = root;
-  if (root)
+  if (root) {
     chosen = tree;
+    vl_camera_name(record, vl_camera_text(tree, "id"));
+  }
   VL_EACH_CHILD(item, tree) {
     includes = includes || vl_camera_has_tag(item, "include");
-    if (root || !vl_camera_has_tag(item, "sensor"))
-      continue;
-    if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(item, "id")))
-      chosen = item;
-    record->frames++;
+    if (!root && vl_camera_has_tag(item, "sensor"))
+      vl_camera_offer(file, item, vl_camera_text(item, "id"), record, &chosen);
   }
   if (chosen) {
-    vl_camera_name(record, vl_camera_text(chosen, "id"));
     result = read_sensor(&scene, chosen, record);
   } else if (record->frames) {
     result = vl_camera_no_frame(file, "sensor", record);

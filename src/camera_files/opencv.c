@@ -186,20 +186,21 @@ static bool among(const char *name, const char *const *names, size_t count) {
 }
 #define AMONG(name, names) among(name, names, VL_LENGTH(names))
 
-bool vl_opencv_is_lens(const char *name) {
-  bool lens = AMONG(name, lens_names);
+/* Whether it is the name of a matrix (of: 0) or a distortion (1) of either camera of a pair. */
+static bool is_stereo_name(const char *name, int of) {
   for (int i = 0; i < STEREO_NAMES; i++)
-    lens = lens || vl_text_is(name, stereo_names[i][1]) || vl_text_is(name, stereo_names[i][3]);
-  return lens;
+    if (vl_text_is(name, stereo_names[i][of]) || vl_text_is(name, stereo_names[i][2 + of]))
+      return true;
+  return false;
+}
+
+bool vl_opencv_is_lens(const char *name) {
+  return AMONG(name, lens_names) || is_stereo_name(name, 1);
 }
 
 bool vl_opencv_is_field(const char *name) {
-  bool matrix = AMONG(name, matrix_names);
-  for (int i = 0; i < STEREO_NAMES; i++)
-    matrix =
-        matrix || vl_text_is(name, stereo_names[i][0]) || vl_text_is(name, stereo_names[i][2]);
-  return matrix || vl_opencv_is_lens(name) || AMONG(name, width_names) ||
-         AMONG(name, height_names) || AMONG(name, size_names) ||
+  return AMONG(name, matrix_names) || is_stereo_name(name, 0) || vl_opencv_is_lens(name) ||
+         AMONG(name, width_names) || AMONG(name, height_names) || AMONG(name, size_names) ||
          vl_has_word("R T rvec tvec xi", name);
 }
 

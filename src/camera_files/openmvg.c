@@ -133,11 +133,10 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree,
     const json_t *own = item_of(extrinsics, id_of(view, "id_pose"));
     if (!view || !own)
       continue; /* not reconstructed */
-    if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(view, "filename"))) {
+    if (vl_camera_count(file, chosen, vl_camera_text(view, "filename"), record)) {
       chosen = view;
       pose = json_object_get(own, "value");
     }
-    record->frames++;
   }
   if (chosen)
     return read_view(file, tree, chosen, pose, record);

@@ -112,13 +112,11 @@ static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree,
   for (size_t i = 0; i < count; i++) {
     const json_t *one = list ? json_array_get(list, i) : tree;
     json_object_foreach(json_object_get(one, "shots"), name, shot) {
-      bool wanted = !chosen && vl_camera_is_frame(file, record->frames, name);
-      if (wanted) {
+      if (vl_camera_count(file, chosen, name, record)) {
         chosen = shot;
         chosen_name = name;
         cameras = json_object_get(one, "cameras");
       }
-      record->frames++;
     }
   }
   if (!chosen)

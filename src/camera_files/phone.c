@@ -25,31 +25,22 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree,
     }
   if (!pose)
     return vl_camera_no_frame(file, "camera", record);
-  json_t *holder =
-      json_pack("{sO*sO*}", "poses", pose, "perFrameIntrinsicCoeffs", coefficients);
-  if (!holder)
-    return vl_fail_memory(file->error);
-  vlResult result = vl_camera_list(file, holder, "poses", v, 7);
-  bool single = vl_camera_has(holder, "perFrameIntrinsicCoeffs");
-  if (result == VL_OK && single)
-    result = vl_camera_list(file, holder, "perFrameIntrinsicCoeffs", f, 4);
-  json_decref(holder);
-  if (result == VL_OK)
-    result = vl_camera_list(file, tree, "K", k, 9);
-  if (result == VL_OK)
-    result = vl_camera_sides(file, tree, "w", "h", record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_numbers_of(file, tree, "poses", pose, v, 7, 7, NULL));
+  if (coefficients)
+    VL_TRY(vl_camera_numbers_of(file, tree, "perFrameIntrinsicCoeffs", coefficients, f, 4, 4,
+                                NULL));
+  VL_TRY(vl_camera_list(file, tree, "K", k, 9));
+  VL_TRY(vl_camera_sides(file, tree, "w", "h", record));
   const double q[4] = {v[3], v[0], v[1], v[2]};
   if (!vl_rotation_from_quaternion(q, r))
     return vl_camera_wrong_in(file, pose, NULL,
                               "record3d: the quaternion of \"poses\" is no rotation");
   vl_camera_set_rigid(d, r, v + 4);
   vl_camera_set_flipped(d, d->world_from_camera);
-  d->fx = single ? f[0] : k[0];
-  d->fy = single ? f[1] : k[4];
-  d->cx = single ? f[2] : k[6];
-  d->cy = single ? f[3] : k[7];
+  d->fx = coefficients ? f[0] : k[0];
+  d->fy = coefficients ? f[1] : k[4];
+  d->cx = coefficients ? f[2] : k[6];
+  d->cy = coefficients ? f[3] : k[7];
   return VL_OK;
 }
 

@@ -53,19 +53,11 @@ static const char *property(const json_t *description, const char *name) {
 static vlResult read_property(const vlCameraFile *file, const json_t *description,
                               const char *name, uint32_t count, bool needed, double *values) {
   const char *text = property(description, name);
-  uint32_t found = 0;
   if (!text && !needed)
     return VL_OK;
   if (!text)
     return vl_camera_wrong_element(file, description, "there is no %s", name);
-  for (char *end; found <= count; text = end, found++) {
-    double value = vl_camera_parse(text, &end);
-    if (end == text || !isfinite(value))
-      break;
-    if (found < count)
-      values[found] = value;
-  }
-  if (found == count && text[strspn(text, " \t\r\n")] == 0)
+  if (vl_camera_parse_all(text, values, count) == count)
     return VL_OK;
   return vl_camera_wrong_element(file, description, "%s must hold %u finite number%s", name,
                                  count, count == 1 ? "" : "s");
@@ -282,9 +274,10 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
       return vl_camera_wrong_at(file, row.number, 1,
                                 "realitycapture: the column \"%s\" is missing", columns[k]);
   }
-  for (record->frames = 0; next_row(&row); record->frames++) {
+  record->frames = 0;
+  while (next_row(&row)) {
     const char *name = of[NAME] < row.count ? row.fields[of[NAME]] : "";
-    if (chosen.count || !vl_camera_is_frame(file, record->frames, name))
+    if (!vl_camera_count(file, chosen.count, name, record))
       continue;
     vl_camera_name(record, name);
     copy_row(&chosen, &row);

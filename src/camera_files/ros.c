@@ -94,13 +94,12 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
         side_line = ini.lines.number;
       if (vl_has_word("image externals", name))
         continue;
-      wanted = !found && vl_camera_is_frame(file, record->frames, name);
-      if (wanted)
-        vl_camera_name(record, name);
-      if (wanted)
-        matrix_line = ini.lines.number;
-      found = found || wanted;
-      record->frames++;
+      wanted = vl_camera_count(file, found, name, record);
+      if (!wanted)
+        continue;
+      found = true;
+      vl_camera_name(record, name);
+      matrix_line = ini.lines.number;
     } else if (vl_text_is(line, "width") || vl_text_is(line, "height")) {
       side_line = ini.lines.number;
       result = ini_numbers(&ini, line[0] == 'w' ? "width" : "height", &side[line[0] == 'h'], 1,

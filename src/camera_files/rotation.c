@@ -74,6 +74,16 @@ void vl_rotation_to_quaternion(const double r[9], double q[4]) {
     q[i] = products[best][i] / length;
 }
 
+double vl_rotation_error(const double m[12]) {
+  double worst = 0.0;
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      const double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+      worst = fmax(worst, fabs(dot - (i == j ? 1.0 : 0.0)));
+    }
+  return worst;
+}
+
 void vl_camera_set_pose(vlCameraDef *def, const double r[9], const double t[3]) {
   def->has_matrix = true;
   double *m = def->world_from_camera;

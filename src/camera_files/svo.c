@@ -20,8 +20,7 @@ static vlResult read_version_1(const vlCameraFile *file, const json_t *tree,
     return vl_camera_unknown(file, tree, "cam_model", model, "there are Pinhole, ATAN");
   VL_TRY(vl_camera_sides(file, tree, "cam_width", "cam_height", record));
   VL_TRY(vl_camera_read_named(file, tree, names, 4, false, f));
-  for (int i = 0; i < (atan ? 1 : 4); i++)
-    VL_TRY(vl_camera_optional(file, tree, lens[i], &k[i]));
+  VL_TRY(vl_camera_read_named(file, tree, lens, atan ? 1 : 4, true, k));
   vl_camera_set_origin(d);
   if (atan) {
     d->fx = f[0] * d->width;
@@ -49,14 +48,12 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
   const json_t *camera;
   vlCameraDef *d = &record->camera;
   double k[5], m[16];
-  uint32_t n = 0;
   VL_TRY(vl_camera_field(file, item, "camera", &camera));
   const char *type = vl_camera_text(camera, "type");
   bool unified = vl_text_is(type, "omni"); /* its intrinsics begin with xi */
-  const uint32_t intrinsics = unified ? 5 : 4;
   if (!unified && type && !vl_text_is(type, "pinhole"))
     return vl_camera_unknown(file, camera, "type", type, "there are pinhole, omni");
-  VL_TRY(vl_camera_numbers(file, camera, "intrinsics", k, intrinsics, intrinsics, &n));
+  VL_TRY(vl_camera_list(file, camera, "intrinsics", k, unified ? 5 : 4));
   VL_TRY(vl_camera_sides(file, camera, "image_width", "image_height", record));
   if (unified) {
     d->projection = VL_PROJECTION_UNIFIED;

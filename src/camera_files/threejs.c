@@ -26,12 +26,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *object,
   if (shift != 0.0)
     return vl_camera_wrong_in(file, object, "filmOffset",
                               "threejs: a \"filmOffset\" other than 0 is not taken");
-  if (!flat)
-    VL_TRY(vl_camera_number(file, object, "fov", &fov));
-  if (!flat)
-    VL_TRY(vl_camera_number(file, object, "aspect", &aspect));
-  for (int i = 0; i < 4 && flat; i++)
-    VL_TRY(vl_camera_number(file, object, sides[i], &s[i]));
+  VL_TRY(
+      flat ? vl_camera_read_named(file, object, sides, 4, false, s)
+           : VL_READ_FIELDS(file, object, VL_FIELD("fov", &fov), VL_FIELD("aspect", &aspect)));
   VL_TRY(VL_READ_FIELDS(file, object, VL_FIELD_OPTIONAL("near", &d->near_plane),
                         VL_FIELD_OPTIONAL("far", &d->far_plane)));
   if (flat)

@@ -34,12 +34,8 @@ static const char *pose_fault(const double m[16]) {
   for (int i = 0; i < 12; i++)
     if (!isfinite(m[i]))
       return "the pose holds a value that is not finite";
-  for (int i = 0; i < 3; i++)
-    for (int j = i; j < 3; j++) {
-      double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
-      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) <= rotation_tolerance))
-        return "the pose is no rotation: its axes are not of length 1 and at right angles";
-    }
+  if (vl_rotation_error(m) > rotation_tolerance)
+    return "the pose is no rotation: its axes are not of length 1 and at right angles";
   return vl_determinant3(m) > 0.0 ? NULL : "the pose is no rotation: it mirrors";
 }
 

@@ -9,8 +9,10 @@
 
 #include "base/context.h"
 #include "base/text.h"
+#include "camera_files/fields.h"
 #include "camera_files/lines.h"
 #include "camera_files/trajectory.h"
+#include "math/double3.h"
 
 enum { MAX_COLUMNS = 64 };
 
@@ -266,29 +268,14 @@ static vlResult pose_of(const Csv *csv, const vlFrameLocation *location,
                             "the quaternion's length is %g; a rotation's is 1", length);
     memcpy(t, v + TX, sizeof t);
   } else {
-    for (int i = 0; i < 3; i++) {
-      memcpy(r + 3 * i, v + M00 + 4 * i, 3 * sizeof *r);
-      t[i] = v[M00 + 4 * i + 3];
-    }
+    vl_split_map(v + M00, r, t);
   }
-  double axes = csv->opengl ? -1.0 : 1.0; /* y up, z back: negates the camera's y and z axes */
-  if (csv->from_world) {
-    for (int i = 1; i < 3; i++) {
-      for (int k = 0; k < 3; k++)
-        r[3 * i + k] *= axes;
-      t[i] *= axes;
-    }
+  if (csv->from_world)
     vl_camera_set_pose(&def, r, t);
-    memcpy(m, def.world_from_camera, sizeof def.world_from_camera);
-    return VL_OK;
-  }
-  for (int i = 0; i < 3; i++) {
-    for (int k = 0; k < 3; k++)
-      m[4 * i + k] = r[3 * i + k] * (k ? axes : 1.0) + 0.0;
-    m[4 * i + 3] = t[i];
-    m[12 + i] = 0.0;
-  }
-  m[15] = 1.0;
+  else
+    vl_camera_set_rigid(&def, r, t);
+  double axes = csv->opengl ? -1.0 : 1.0; /* y up, z back: negates the camera's y and z axes */
+  vl_camera_flip_columns(def.world_from_camera, 1.0, axes, axes, m);
   return VL_OK;
 }
 

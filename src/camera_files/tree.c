@@ -164,6 +164,21 @@ double vl_camera_parse(const char *text, char **end) {
   return value;
 }
 
+uint32_t vl_camera_parse_all(const char *text, double *values, uint32_t most) {
+  for (uint32_t count = 0; count <= most; count++) {
+    char *end;
+    const double value = vl_camera_parse(text, &end);
+    if (end == text)
+      return text[strspn(text, " \t\r\n,;")] ? most + 1 : count;
+    if (!isfinite(value))
+      break;
+    if (count < most)
+      values[count] = value;
+    text = end;
+  }
+  return most + 1;
+}
+
 /* Reads a number at object[key], or in a list of lists there. */
 static vlResult number_of(const vlCameraFile *file, const json_t *object, const json_t *value,
                           const char *key, double *number) {
@@ -257,8 +272,14 @@ static vlResult collect(const vlCameraFile *file, const json_t *list, const char
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
                            double *values, uint32_t least, uint32_t most, uint32_t *count) {
   const json_t *field;
-  uint32_t found = 0;
   VL_TRY(vl_camera_field(file, object, key, &field));
+  return vl_camera_numbers_of(file, object, key, field, values, least, most, count);
+}
+
+vlResult vl_camera_numbers_of(const vlCameraFile *file, const json_t *object, const char *key,
+                              const json_t *field, double *values, uint32_t least,
+                              uint32_t most, uint32_t *count) {
+  uint32_t found = 0;
   double rows = VL_UNSET, columns = VL_UNSET;
   if (json_is_object(field)) {
     VL_TRY(vl_camera_number(file, field, "rows", &rows));
@@ -309,6 +330,12 @@ bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *na
     return true;
   snprintf(number, sizeof number, "%u", index);
   return vl_text_is(wish, number);
+}
+
+bool vl_camera_count(const vlCameraFile *file, bool taken, const char *name,
+                     vlCameraRecord *record) {
+  const uint32_t index = record->frames++;
+  return !taken && vl_camera_is_frame(file, index, name);
 }
 
 void vl_camera_name(vlCameraRecord *record, const char *name) {

@@ -39,16 +39,16 @@ static vlResult operation(const Operation *op, vlMat4 *m) {
     return vl_camera_wrong(op->file, "usd: \"%s\" in xformOpOrder is no xformOp",
                            vl_short_text(op->name).text);
   size_t n = strcspn(kind, ":");
-  if (n == 9 && strncmp(kind, "transform", n) == 0) {
+  if (vl_has_word_of("transform", kind, n)) {
     VL_TRY(op_numbers(op, key, v, 16));
     vl_camera_transpose(v, m->m);
-  } else if (n == 9 && strncmp(kind, "translate", n) == 0) {
+  } else if (vl_has_word_of("translate", kind, n)) {
     VL_TRY(op_numbers(op, key, v, 3));
     *m = vl_mat4_translate(v[0], v[1], v[2]);
-  } else if (n == 5 && strncmp(kind, "scale", n) == 0) {
+  } else if (vl_has_word_of("scale", kind, n)) {
     VL_TRY(op_numbers(op, key, v, 3));
     *m = vl_mat4_scale(v[0], v[1], v[2]);
-  } else if (n == 6 && strncmp(kind, "orient", n) == 0) {
+  } else if (vl_has_word_of("orient", kind, n)) {
     VL_TRY(op_numbers(op, key, v, 4)); /* w x y z */
     if (!vl_rotation_from_quaternion(v, r))
       return vl_camera_wrong(op->file, "usd: \"%s\" is no rotation", vl_short_text(key).text);
@@ -203,14 +203,11 @@ static vlResult read_resolution(const Search *s, double aspect, vlCameraRecord *
   if (!s->resolution)
     return vl_camera_size(s->file, aspect, record);
   VL_TRY(vl_camera_list(s->file, s->resolution, "resolution", size, 2));
-  for (int i = 0; i < 2; i++)
-    if (!vl_camera_is_side(size[i]))
-      return vl_camera_wrong(
-          s->file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels",
-          size[i]);
-  record->camera.width = (uint32_t)size[0];
-  record->camera.height = (uint32_t)size[1];
-  return VL_OK;
+  if (vl_camera_set_sides(&record->camera, size))
+    return VL_OK;
+  return vl_camera_wrong(
+      s->file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels",
+      size[vl_camera_is_side(size[0])]);
 }
 
 /* Attributes of the camera that velo does not know. Those of Omniverse's fisheyes have no

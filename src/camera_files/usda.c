@@ -54,6 +54,11 @@ static bool skip(Parser *p) {
   return false;
 }
 
+/* Whether a string begins here. */
+static bool at_string(const Parser *p) {
+  return *p->at == '"' || *p->at == '\'';
+}
+
 static bool next_is(Parser *p, char c) {
   return skip(p) && *p->at == c;
 }
@@ -73,8 +78,9 @@ static size_t word(Parser *p) {
   return (size_t)(s - p->at);
 }
 
-static bool equals(const char *text, size_t length, const char *wanted) {
-  return strlen(wanted) == length && memcmp(text, wanted, length) == 0;
+/* Whether the word at the current position begins a prim. */
+static bool begins_prim(const Parser *p, size_t length) {
+  return vl_has_word_of("def over class", p->at, length);
 }
 
 /* Parses a string after its opening quote (one or three). *text, *length: its contents. */
@@ -135,7 +141,7 @@ static bool braces(Parser *p) {
     size_t length;
     if (!skip(p))
       return fail(p, "a brace is not closed");
-    if (*p->at == '"' || *p->at == '\'') {
+    if (at_string(p)) {
       if (!string(p, &text, &length))
         return false;
       continue;
@@ -159,7 +165,7 @@ static bool value(Parser *p, int depth, json_t **result) {
       *result = json_true(); /* time samples: only their presence is recorded */
     return braces(p);
   }
-  if (c == '"' || c == '\'') {
+  if (at_string(p)) {
     if (!string(p, &text, &length))
       return false;
     if (result)
@@ -198,6 +204,16 @@ static bool value(Parser *p, int depth, json_t **result) {
   return true;
 }
 
+/* Parses a value, and stores it unless `into` is null. */
+static bool named_value(Parser *p, const char *name, size_t length, json_t *into) {
+  json_t *item = NULL;
+  if (!value(p, 4, into ? &item : NULL)) {
+    json_decref(item);
+    return false;
+  }
+  return !item || json_object_setn_new(into, name, length, item) == 0 || memory(p);
+}
+
 /* Parses ( ... ) after a prim or property, or at the layer's head; values of the head are
  * stored in `into`. */
 static bool metadata(Parser *p, json_t *into) {
@@ -208,7 +224,7 @@ static bool metadata(Parser *p, json_t *into) {
     size_t length;
     if (!skip(p))
       return fail(p, "a parenthesis is not closed");
-    if (*p->at == '"' || *p->at == '\'') { /* a comment string */
+    if (at_string(p)) { /* a comment */
       if (!string(p, &name, &length))
         return false;
       continue;
@@ -220,13 +236,8 @@ static bool metadata(Parser *p, json_t *into) {
     p->at += length;
     if (!take(p, '='))
       continue; /* `prepend`, `delete`, ... precede the name */
-    json_t *item = NULL;
-    if (!value(p, 4, into ? &item : NULL)) {
-      json_decref(item);
+    if (!named_value(p, name, length, into))
       return false;
-    }
-    if (item && json_object_setn_new(into, name, length, item) != 0)
-      return memory(p);
   }
   return true;
 }
@@ -254,15 +265,9 @@ static bool property(Parser *p, json_t *prim) {
     p->at += more ? more : 1;
   }
   if (p->at < p->end && *p->at == '=') {
-    bool kept = is_kept(prim, name, length);
-    json_t *item = NULL;
     p->at++;
-    if (!value(p, 4, kept ? &item : NULL)) {
-      json_decref(item);
+    if (!named_value(p, name, length, is_kept(prim, name, length) ? prim : NULL))
       return false;
-    }
-    if (item && json_object_setn_new(prim, name, length, item) != 0)
-      return memory(p);
   }
   return metadata(p, NULL);
 }
@@ -276,12 +281,11 @@ static bool body(Parser *p, json_t *self, int depth) {
     size_t length = word(p);
     if (length == 0)
       return fail(p, "something stands where a property or a prim should");
-    bool is_prim = equals(p->at, length, "def") || equals(p->at, length, "over") ||
-                   equals(p->at, length, "class");
-    if (equals(p->at, length, "variantSet")) {
+    bool is_prim = begins_prim(p, length);
+    if (vl_has_word_of("variantSet", p->at, length)) {
       p->at += length;
       const char *text;
-      if (!skip(p) || (*p->at != '"' && *p->at != '\''))
+      if (!skip(p) || !at_string(p))
         return fail(p, "a variant set has no name");
       if (!string(p, &text, &length) || !take(p, '=') || !next_is(p, '{'))
         return fail(p, "a variant set is empty");
@@ -298,7 +302,7 @@ static bool body(Parser *p, json_t *self, int depth) {
 static bool prim(Parser *p, json_t *parent, int depth) {
   const char *text = "", *type;
   size_t length = word(p), type_length;
-  bool stored = !equals(p->at, length, "class");
+  bool stored = !vl_has_word_of("class", p->at, length);
   if (depth == 0 || ++p->prims > MAX_PRIMS)
     return fail(p, depth == 0 ? "nested too deeply" : "too many prims");
   p->at += length;
@@ -308,7 +312,7 @@ static bool prim(Parser *p, json_t *parent, int depth) {
   type_length = word(p);
   p->at += type_length;
   uint32_t line = p->line, column = column_of(p);
-  if (!skip(p) || (*p->at != '"' && *p->at != '\''))
+  if (!skip(p) || !at_string(p))
     return fail(p, "a prim has no name");
   if (!string(p, &text, &length))
     return false;
@@ -340,9 +344,7 @@ vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size,
   if (p.result == VL_OK)
     metadata(&p, root);
   while (p.result == VL_OK && skip(&p)) {
-    size_t length = word(&p);
-    if (equals(p.at, length, "def") || equals(p.at, length, "over") ||
-        equals(p.at, length, "class"))
+    if (begins_prim(&p, word(&p)))
       prim(&p, root, MAX_DEPTH);
     else
       fail(&p, "something stands where a prim should");

@@ -88,11 +88,10 @@ static vlResult read_visp(const vlCameraFile *file, const json_t *root,
     VL_EACH_CHILD(model, camera) {
       if (!vl_camera_has_tag(model, "model"))
         continue;
-      if (!chosen && vl_camera_is_frame(file, record->frames, name)) {
+      if (vl_camera_count(file, chosen, name, record)) {
         chosen = model;
         of = camera;
       }
-      record->frames++;
     }
   }
   if (chosen)

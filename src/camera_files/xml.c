@@ -222,18 +222,7 @@ vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element
 vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element,
                                    double *values, uint32_t count) {
   const char *text = vl_camera_text(element, "$"), *tag = vl_camera_text(element, "<");
-  uint32_t found = 0;
-  for (char *end; text && found <= count; text = end) {
-    double value = vl_camera_parse(text, &end);
-    if (end == text)
-      break;
-    if (!isfinite(value))
-      found = count;
-    if (found < count)
-      values[found] = value;
-    found++;
-  }
-  if (found == count && text && text[strspn(text, " \t\r\n,;")] == 0)
+  if (text && vl_camera_parse_all(text, values, count) == count)
     return VL_OK;
   return vl_camera_wrong_element(file, element, "<%s> must hold %u finite number%s",
                                  vl_short_text(tag).text, count, count == 1 ? "" : "s");

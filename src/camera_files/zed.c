@@ -100,14 +100,11 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
   record->frames = 0;
   while (vl_camera_next_line(&lines)) {
     found = is_section(lines.text, name) ? mode_of(name, &other) : NULL;
-    if (!found)
-      continue;
-    if (!mode && vl_camera_is_frame(file, record->frames, name)) {
+    if (found && vl_camera_count(file, mode, name, record)) {
       mode = found;
       right = other;
       memcpy(section, name, sizeof section);
     }
-    record->frames++;
   }
   if (!mode)
     return vl_camera_no_frame(file, "camera", record);

@@ -110,7 +110,7 @@ typedef struct {
   const vlCameraFile *file;
   const json_t *camera, *resolution; /* the chosen prim, and the first resolution of the file */
   vlMat4 pose;
-  uint32_t frames;
+  vlCameraRecord *record;
   const json_t *path[64]; /* the prims from the root to the current one */
   int depth;
 } Search;
@@ -133,9 +133,7 @@ static vlResult walk(Search *s, const json_t *prim) {
   const char *type = vl_camera_text(prim, "<");
   const json_t *child;
   if (vl_text_is(type, "Camera")) {
-    bool wanted =
-        !s->camera && vl_camera_is_frame(s->file, s->frames++, vl_camera_text(prim, "@"));
-    if (wanted) {
+    if (vl_camera_count(s->file, s->camera, vl_camera_text(prim, "@"), s->record)) {
       s->camera = prim;
       VL_TRY(pose_of(s));
     }
@@ -294,10 +292,10 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
   vlResult result = vl_camera_usda(file, text, size, &tree);
   if (result != VL_OK)
     return result;
-  Search search = {.file = file, .pose = vl_mat4_identity()};
+  Search search = {.file = file, .pose = vl_mat4_identity(), .record = record};
+  record->frames = 0;
   result = walk(&search, tree);
-  record->frames = search.frames;
-  if (result == VL_OK && !search.frames)
+  if (result == VL_OK && !record->frames)
     result = vl_camera_wrong(
         file, "usd: the file holds no Camera (references and payloads are not followed)");
   else if (result == VL_OK && !search.camera)

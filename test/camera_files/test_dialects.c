@@ -667,6 +667,20 @@ static void test_refusals(void **state) {
     }
 }
 
+/* A file of two cameras has two, whichever is read. */
+static void test_usd_counts(void **state) {
+  (void)state;
+  static const char usd[] = "#usda 1.0\ndef Camera \"a\" {\n}\ndef Camera \"b\" {\n}\n";
+  vlCameraFileDef def = vl_default_camera_file_def();
+  const vlCameraRecord first = read_with(put("two.usda", usd), &def);
+  def.frame = "b";
+  const vlCameraRecord second = read_with(path_of("two.usda"), &def);
+  assert_int_equal(first.frames, 2);
+  assert_string_equal(first.name, "a");
+  assert_int_equal(second.frames, 2);
+  assert_string_equal(second.name, "b");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trips),
@@ -678,6 +692,7 @@ int main(void) {
       cmocka_unit_test(test_matrices_land_on_the_pixel),
       cmocka_unit_test(test_matrices_of_others),
       cmocka_unit_test(test_usd_conforms),
+      cmocka_unit_test(test_usd_counts),
       cmocka_unit_test(test_refusals),
   };
   return cmocka_run_group_tests(tests, files_setup, files_teardown);

@@ -290,15 +290,34 @@ bool vl_camera_writes_folder(const char *path, vlCameraDialect dialect) {
   return format && format->write_folder;
 }
 
-static vlResult write_plainly(vlContext *context, const char *path, const vlCameraFileDef *def,
-                              const vlCameraRecord *record, vlError *error) {
-  vlCameraFileDef standard;
-  VL_TRY(begin(context, path, record, &def, &standard, error));
+static vlResult check_record(const vlCameraFileDef *def, const vlCameraRecord *record,
+                             vlError *error) {
   if (record->camera.own)
     return vl_fail(error, VL_ERROR_UNSUPPORTED,
                    "camera file: none can hold a camera of one's own, \"%s\"",
                    vl_short_text(record->camera.own->name).text);
-  VL_TRY(vl_camera_check_drop(def, error));
+  return vl_camera_check_drop(def, error);
+}
+
+static vlResult make_text(const vlCameraFile *file, const vlCameraFormat *format,
+                          const vlCameraRecord *record, vlCameraText *text) {
+  vlFittedCamera fit;
+  VL_TRY(vl_camera_fit(file, record, format, &fit));
+  VL_TRY(format->form ? vl_camera_write_form(format, &fit, text) : format->write(&fit, text));
+  return text->failed ? vl_fail_memory(file->error) : VL_OK;
+}
+
+vlResult vl_camera_write_memory(const vlCameraFile *file, const vlCameraRecord *record,
+                                vlCameraText *text) {
+  VL_TRY(check_record(file->def, record, file->error));
+  return make_text(file, vl_camera_formats[file->def->dialect], record, text);
+}
+
+static vlResult write_plainly(vlContext *context, const char *path, const vlCameraFileDef *def,
+                              const vlCameraRecord *record, vlError *error) {
+  vlCameraFileDef standard;
+  VL_TRY(begin(context, path, record, &def, &standard, error));
+  VL_TRY(check_record(def, record, error));
   vlCameraDialect dialect = def->dialect ? def->dialect : dialect_of_name(path);
   if (!dialect)
     return vl_fail(error, VL_ERROR_ARGUMENT,
@@ -313,11 +332,7 @@ static vlResult write_plainly(vlContext *context, const char *path, const vlCame
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: %s is not written: %s",
                    format->name, format->not_written);
   vlCameraText text = {.context = context};
-  vlFittedCamera fit;
-  vlResult result = vl_camera_fit(&file, record, format, &fit);
-  if (result == VL_OK)
-    result =
-        format->form ? vl_camera_write_form(format, &fit, &text) : format->write(&fit, &text);
+  vlResult result = make_text(&file, format, record, &text);
   if (result == VL_OK)
     result = vl_camera_write_text(&file, path, &text);
   VL_ARRAY_FREE(context, &text.text);

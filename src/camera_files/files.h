@@ -193,6 +193,10 @@ void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count);
 /* Writes a text as a whole file. */
 vlResult vl_camera_write_text(const vlCameraFile *file, const char *path,
                               const vlCameraText *text);
+/* Writes the text of a camera's file in the dialect of file->def, which must not be one of
+ * folders. Errors: as of vl_camera_write. */
+vlResult vl_camera_write_memory(const vlCameraFile *file, const vlCameraRecord *record,
+                                vlCameraText *text);
 /* Appends all of another text. */
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other);
 /* Appends a quoted string, for JSON and YAML. */

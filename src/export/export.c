@@ -68,11 +68,28 @@ bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) {
   return false;
 }
 
+bool vl_export_no_memory(vlExport *x) {
+  return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+}
+
+void *vl_export_alloc(vlExport *x, size_t count, size_t size) {
+  void *block = vl_alloc_array(x->context, count, size);
+  if (!block)
+    vl_export_no_memory(x);
+  return block;
+}
+
+bool vl_export_read(vlExport *x, const char *path, char **data, size_t *size) {
+  vlError error = {0};
+  const vlResult r = vl_file_read(x->context, path, false, data, size, &error);
+  return r == VL_OK || vl_export_fail(x, r, "%s", error.message);
+}
+
 /* ---- bytes ------------------------------------------------------------------------------- */
 
 bool vl_export_parts_media(const vlExport *x, const vlShapeDef *d) {
-  return d->material.index &&
-         x->scene->materials.items[d->material.index - 1].kind == VL_MATERIAL_INTERFACE;
+  const vlMaterialDef *m = vl_scene_material(x->scene, d->material);
+  return m && m->kind == VL_MATERIAL_INTERFACE;
 }
 
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size) {
@@ -99,11 +116,6 @@ void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
 
 /* ---- files ------------------------------------------------------------------------------- */
 
-bool vl_export_path(vlExport *x, const char *name, char *path, size_t size) {
-  return vl_path_join(x->path, name, path, size) ||
-         vl_export_fail(x, VL_ERROR_IO, "the file's name is too long");
-}
-
 /* Keeps the first error of the export. Returns whether this result is none. */
 static bool keep_result(vlExport *x, vlResult result) {
   if (result != VL_OK && x->result == VL_OK)
@@ -122,6 +134,34 @@ bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size) 
     return true;
   return keep_result(x, vl_file_set_name(&x->files, name, 300, data, size, x->error)) &&
          keep_result(x, vl_file_set_write(&x->files, name, data, size, x->error));
+}
+
+bool vl_export_camera(vlExport *x, vlCameraDialect dialect, const vlCameraRecord *record,
+                      const char *lost, vlCameraText *text) {
+  static const char *const all[] = {"all"};
+  vlCameraFileDef def = vl_default_camera_file_def();
+  vlError error = {0};
+  const vlCameraFile file = {.context = x->context,
+                             .path = x->path,
+                             .dialect = vl_camera_dialect_name(dialect),
+                             .def = &def,
+                             .error = &error};
+  *text = (vlCameraText){.context = x->context};
+  def.dialect = dialect;
+  vlResult r = vl_camera_write_memory(&file, record, text);
+  if (r == VL_ERROR_UNSUPPORTED) {
+    if (lost)
+      vl_export_lose(x, "%s", lost);
+    else
+      vl_export_lose(x, "the camera: %.120s", error.message);
+    VL_ARRAY_FREE(x->context, &text->text);
+    def.drop = all;
+    def.drop_count = 1;
+    r = vl_camera_write_memory(&file, record, text);
+  }
+  if (r != VL_OK)
+    VL_ARRAY_FREE(x->context, &text->text);
+  return r != VL_ERROR_MEMORY || vl_export_fail(x, r, "out of memory");
 }
 
 static const void *data_of(const vlTextureDef *t) {
@@ -145,22 +185,23 @@ vlExportImage *vl_export_add_image(vlExport *x, const vlTextureDef *t, uint32_t 
   if (slot)
     *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .variant = variant};
   else
-    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    vl_export_no_memory(x);
   return slot;
 }
 
-vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
-  vlImage *image = NULL;
-  vlError error;
-  vl_error_clear(&error);
+const vlImage *vl_export_pixels(vlExport *x, const vlTextureDef *t, vlImage **own) {
+  *own = NULL;
+  if (t->image)
+    return t->image;
+  vlError error = {0};
   vlResult r = t->data ? vl_image_read_memory(x->context, t->name ? t->name : "image", t->data,
-                                              t->data_size, &image, &error)
-                       : vl_image_read_named(x->context, NULL, t->path, &image, &error);
+                                              t->data_size, own, &error)
+                       : vl_image_read_named(x->context, NULL, t->path, own, &error);
   /* the scene's image is at fault, not the file that is written: the error is at the image */
   if (r != VL_OK && x->result == VL_OK)
     x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s",
                            error.message);
-  return image;
+  return *own;
 }
 
 bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data,
@@ -186,17 +227,13 @@ bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *si
                      const char **suffix) {
   *data = NULL;
   if (t->data) {
-    *data = vl_alloc_array(x->context, t->data_size + 1, 1);
+    *data = vl_export_alloc(x, t->data_size + 1, 1);
     if (!*data)
-      return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+      return false;
     memcpy(*data, t->data, t->data_size);
     *size = t->data_size;
-  } else if (t->path) {
-    vlError error;
-    vl_error_clear(&error);
-    vlResult r = vl_file_read(x->context, t->path, false, data, size, &error);
-    if (r != VL_OK)
-      return vl_export_fail(x, r, "%s", error.message);
+  } else if (t->path && !vl_export_read(x, t->path, data, size)) {
+    return false;
   }
   *suffix = *data ? suffix_of(*data, *size) : NULL;
   if (*suffix)
@@ -205,11 +242,10 @@ bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *si
   *data = NULL;
   *suffix = ".png";
   vl_export_lose(x, "image of a kind other than PNG and JPEG: packed as PNG, 0 to 1 only");
-  if (t->image)
-    return vl_export_pack(x, t->image, ".png", data, size);
-  vlImage *image = vl_export_decode(x, t);
+  vlImage *own;
+  const vlImage *image = vl_export_pixels(x, t, &own);
   bool fine = image && vl_export_pack(x, image, ".png", data, size);
-  vl_image_destroy(image);
+  vl_image_destroy(own);
   return fine;
 }
 

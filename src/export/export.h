@@ -7,6 +7,7 @@
 #include <jansson.h>
 
 #include "base/file_set.h"
+#include "camera_files/files.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "velo/export.h"
@@ -63,6 +64,7 @@ typedef struct vlExport {
   VL_ARRAY(vlExportLook) looks;
   /* pbrt */
   vlBytes text;
+  double shutter; /* seconds that it is open, to which pbrt's exposure is proportional */
 } vlExport;
 
 /* ---- export.c ---------------------------------------------------------------------------- */
@@ -75,6 +77,12 @@ bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...)
 /* Whether the shape is only a boundary between media: its material is "interface": light passes
  * it as if it were not there. In glTF and pbrt such a shape gives no light. */
 bool vl_export_parts_media(const vlExport *x, const vlShapeDef *d);
+/* Reports that memory is lacking. Always returns false. */
+bool vl_export_no_memory(vlExport *x);
+/* vl_alloc_array that reports it if there is no memory. */
+void *vl_export_alloc(vlExport *x, size_t count, size_t size);
+/* vl_file_read, with its error as that of the export. */
+bool vl_export_read(vlExport *x, const char *path, char **data, size_t *size);
 /* Append bytes, and text. */
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size);
 void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
@@ -86,14 +94,18 @@ bool vl_export_main(vlExport *x, const void *data, size_t size);
  * `name` becomes a free one ("room-2.bin"). A file that has these bytes already is taken as it
  * is. */
 bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size);
-/* Path of a file in the folder of the scene file. */
-bool vl_export_path(vlExport *x, const char *name, char *path, size_t size);
+/* The camera as a file of the dialect. What the dialect cannot hold is left out and counted as
+ * a loss: `lost`, or the dialect's message. The text stays empty where the dialect cannot hold
+ * the camera at all. Returns false after an error. The caller frees text->text. */
+bool vl_export_camera(vlExport *x, vlCameraDialect dialect, const vlCameraRecord *record,
+                      const char *lost, vlCameraText *text);
 /* The image of a texture that was written already with these changes; null: none. */
 vlExportImage *vl_export_find_image(vlExport *x, const vlTextureDef *t, uint32_t variant);
 /* Notes that it is written now. Null: the export has failed. */
 vlExportImage *vl_export_add_image(vlExport *x, const vlTextureDef *t, uint32_t variant);
-/* The decoded image of a texture. */
-vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t);
+/* The image of a texture: the scene's, or decoded into *own, which the caller destroys. Null
+ * after an error. */
+const vlImage *vl_export_pixels(vlExport *x, const vlTextureDef *t, vlImage **own);
 /* The texture's image as bytes of an image file: the original bytes of a PNG or JPEG, otherwise
  * the image encoded as PNG. *suffix receives the format. The bytes are a block of the
  * context. */
@@ -111,6 +123,9 @@ void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]);
  * texture if that is easily computed. */
 void vl_export_rgb(vlExport *x, const vlSpectrumInput *input, float rgb[3]);
 float vl_export_number(vlExport *x, const vlFloatInput *input);
+/* Whether the input is white everywhere; whether it is not 0 everywhere. */
+bool vl_export_is_white(vlExport *x, const vlSpectrumInput *input);
+bool vl_export_is_on(const vlFloatInput *input);
 /* The texture of an input if it is an image texture; otherwise null. */
 const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id);
 /* The uv transform: (s, t) = 2x3 matrix times (u, v, 1). */
@@ -153,7 +168,15 @@ bool vl_export_gltf(vlExport *x);
 json_int_t vl_gltf_put_view(vlExport *x, const void *data, size_t size, int target);
 /* Appends to the array `key` of the root and returns the index. Takes ownership of value. */
 json_int_t vl_gltf_put(vlExport *x, const char *key, json_t *value);
+/* Appends a node, and its index to a list of nodes. Takes ownership of node. */
+void vl_gltf_put_node(vlExport *x, json_t *list, json_t *node);
+/* The object `key` of another one, which gets an empty one if it has none. */
+json_t *vl_gltf_child(json_t *parent, const char *key);
+/* Names an object, unless the name is null or empty. */
+void vl_gltf_name(json_t *object, const char *name);
 void vl_gltf_use(vlExport *x, const char *extension);
+/* Adds an extension of the whole file. Takes ownership of value. */
+void vl_gltf_put_extension(vlExport *x, const char *name, json_t *value);
 /* A JSON array of numbers. */
 json_t *vl_gltf_array_of(const float *values, size_t count);
 /* Index of the shape's material in the glTF file; -1: none. */

@@ -18,9 +18,9 @@ void vl_export_free_mesh(vlExport *x, vlExportMesh *mesh) {
 }
 
 static bool patches(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
-  uint32_t *indices = vl_alloc_array(x->context, d->faces, 6 * sizeof *indices);
+  uint32_t *indices = vl_export_alloc(x, d->faces, 6 * sizeof *indices);
   if (!indices)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return false;
   for (size_t i = 0; i < d->faces; i++) {
     const uint32_t *q = d->indices + 4 * i; /* p00 p10 p01 p11 */
     const uint32_t two[6] = {q[0], q[1], q[3], q[0], q[3], q[2]};
@@ -79,7 +79,7 @@ static bool facets(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
   mesh->own[3] = indices;
   if (!p || !n || !uv || !indices) {
     vl_export_free_mesh(x, mesh);
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return vl_export_no_memory(x);
   }
   bool cap = d->kind == VL_SHAPE_SPHERE && d->z_max >= d->radius,
        cup = d->kind == VL_SHAPE_SPHERE && d->z_min <= -d->radius;
@@ -143,9 +143,9 @@ static bool unweld(vlExport *x, const vlExportMesh *m, size_t per, const float *
                    void **own) {
   if (!*values)
     return true;
-  float *to = vl_alloc_array(x->context, 3 * (size_t)m->faces, per * sizeof *to);
+  float *to = vl_export_alloc(x, 3 * (size_t)m->faces, per * sizeof *to);
   if (!to)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return false;
   for (size_t i = 0; i < 3 * (size_t)m->faces; i++)
     memcpy(to + per * i, *values + per * m->indices[i], per * sizeof *to);
   *own = to;
@@ -168,7 +168,7 @@ static bool own_uvs(vlExport *x, const vlShapeDef *d, vlExportMesh *m) {
   m->own[9] = indices;
   m->own[10] = uvs;
   if (!indices || !uvs)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return vl_export_no_memory(x);
   for (size_t i = 0; i < count; i++)
     indices[i] = (uint32_t)i;
   for (size_t i = 0; i < m->faces; i++)

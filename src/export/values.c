@@ -29,17 +29,14 @@ void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]) {
 }
 
 const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id) {
-  if (!id.index)
-    return NULL;
-  const vlTextureDef *t = &x->scene->textures.items[id.index - 1];
-  return t->kind == VL_TEXTURE_IMAGE ? t : NULL;
+  const vlTextureDef *t = vl_scene_texture(x->scene, id);
+  return t && t->kind == VL_TEXTURE_IMAGE ? t : NULL;
 }
 
 /* The approximate mean of a texture that is not an image. depth limits the nesting of
  * textures. */
 static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth, float rgb[3]) {
-  const vlTextureDef *t =
-      input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
+  const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
   float a[3], b[3];
   if (!t || depth > 8) {
     to_rgb(&input->value, VL_ROLE_ALBEDO, rgb);
@@ -59,17 +56,25 @@ static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth,
 }
 
 void vl_export_rgb(vlExport *x, const vlSpectrumInput *input, float rgb[3]) {
-  const vlTextureDef *t =
-      input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
+  const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
   if (t && t->kind != VL_TEXTURE_IMAGE && t->kind != VL_TEXTURE_VERTEX_COLOR &&
       t->kind != VL_TEXTURE_CONSTANT)
     vl_export_lose(x, "computed texture (checkerboard, mix, noise, ...): its mean stands in");
   mean_rgb(x, input, 0, rgb);
 }
 
+bool vl_export_is_white(vlExport *x, const vlSpectrumInput *input) {
+  float rgb[3];
+  vl_export_rgb(x, input, rgb);
+  return !input->texture.index && rgb[0] == 1 && rgb[1] == 1 && rgb[2] == 1;
+}
+
+bool vl_export_is_on(const vlFloatInput *input) {
+  return input->texture.index || input->value > 0;
+}
+
 float vl_export_number(vlExport *x, const vlFloatInput *input) {
-  const vlTextureDef *t =
-      input->texture.index ? &x->scene->textures.items[input->texture.index - 1] : NULL;
+  const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
   if (!t)
     return input->value;
   if (t->kind == VL_TEXTURE_CONSTANT)
@@ -83,8 +88,8 @@ float vl_export_number(vlExport *x, const vlFloatInput *input) {
 float vl_export_mean_square(vlExport *x, const vlFloatInput *input) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
   const float value = vl_export_number(x, input);
-  vlImage *image = t && !t->image ? vl_export_decode(x, t) : NULL;
-  const vlImage *from = t && t->image ? t->image : image;
+  vlImage *own = NULL;
+  const vlImage *from = t ? vl_export_pixels(x, t, &own) : NULL;
   if (!from)
     return value * value;
   uint32_t channel[4], have = vl_image_color(from, channel);
@@ -104,7 +109,7 @@ float vl_export_mean_square(vlExport *x, const vlFloatInput *input) {
   const double mean =
       row ? sum / ((double)from->width * from->height) : (double)value * (double)value;
   vl_free(x->context, row);
-  vl_image_destroy(image);
+  vl_image_destroy(own);
   return (float)mean;
 }
 

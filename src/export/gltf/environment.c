@@ -160,7 +160,7 @@ static bool add_sky(Cube *cube, const vlLightDef *d) {
     return true;
   }
   vl_mipmap_destroy(sky.map);
-  return vl_export_fail(cube->x, VL_ERROR_MEMORY, "out of memory");
+  return vl_export_no_memory(cube->x);
 }
 
 /* ---- the cube ---------------------------------------------------------------------------- */
@@ -249,9 +249,8 @@ static void filter_row(void *user, uint32_t row, uint32_t worker) {
 
 static bool new_level(Cube *cube, Level *level, uint32_t side) {
   level->side = side;
-  level->texels =
-      vl_alloc_array(cube->x->context, 18 * (size_t)side * side, sizeof *level->texels);
-  return level->texels || vl_export_fail(cube->x, VL_ERROR_MEMORY, "out of memory");
+  level->texels = vl_export_alloc(cube->x, 18 * (size_t)side * side, sizeof *level->texels);
+  return level->texels != NULL;
 }
 
 static void halve(const Level *from, Level *to) {
@@ -331,7 +330,7 @@ static json_int_t put_face(vlExport *x, const Level *level, uint32_t face, doubl
   def.names = names;
   vlImage *image = NULL;
   if (vl_image_create(x->context, &def, &image) != VL_OK) {
-    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    vl_export_no_memory(x);
     return -1;
   }
   const size_t count = (size_t)level->side * level->side;
@@ -385,13 +384,9 @@ static bool put_cube(const Cube *cube, json_t *scene) {
       json_pack("{s:f,s:o,s:I,s:o}", "intensity", intensity, "irradianceCoefficients",
                 irradiance(cube, intensity), "specularImageSize", (json_int_t)finest->side,
                 "specularImages", levels);
-  json_t *all = json_object_get(x->root, "extensions");
-  if (!all)
-    json_object_set_new(x->root, "extensions", all = json_object());
-  json_object_set_new(all, "EXT_lights_image_based", json_pack("{s:[o]}", "lights", light));
+  vl_gltf_put_extension(x, "EXT_lights_image_based", json_pack("{s:[o]}", "lights", light));
   json_object_set_new(scene, "extensions",
                       json_pack("{s:{s:i}}", "EXT_lights_image_based", "light", 0));
-  vl_gltf_use(x, "EXT_lights_image_based");
   return true;
 }
 

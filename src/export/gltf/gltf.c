@@ -35,6 +35,27 @@ json_int_t vl_gltf_put(vlExport *x, const char *key, json_t *value) {
   return (json_int_t)json_array_size(array) - 1;
 }
 
+void vl_gltf_put_node(vlExport *x, json_t *list, json_t *node) {
+  json_array_append_new(list, json_integer(vl_gltf_put(x, "nodes", node)));
+}
+
+json_t *vl_gltf_child(json_t *parent, const char *key) {
+  json_t *child = json_object_get(parent, key);
+  if (!child)
+    json_object_set_new(parent, key, child = json_object());
+  return child;
+}
+
+void vl_gltf_name(json_t *object, const char *name) {
+  if (name && name[0])
+    json_object_set_new(object, "name", json_string(name));
+}
+
+void vl_gltf_put_extension(vlExport *x, const char *name, json_t *value) {
+  json_object_set_new(vl_gltf_child(x->root, "extensions"), name, value);
+  vl_gltf_use(x, name);
+}
+
 void vl_gltf_use(vlExport *x, const char *extension) {
   json_t *used = json_object_get(x->root, "extensionsUsed");
   if (!used)
@@ -80,11 +101,9 @@ static json_int_t put_floats(vlExport *x, const float *values, size_t count,
 static json_int_t put_indices(vlExport *x, const vlExportMesh *m, bool turned) {
   size_t count = 3 * (size_t)m->faces;
   bool small = m->vertices < 65535;
-  uint32_t *wide = vl_alloc_array(x->context, count, sizeof *wide);
-  if (!wide) {
-    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  uint32_t *wide = vl_export_alloc(x, count, sizeof *wide);
+  if (!wide)
     return -1;
-  }
   uint16_t *narrow = (uint16_t *)wide;
   for (size_t i = 0; i < count; i++) {
     size_t from = turned && i % 3 ? i + (i % 3 == 1 ? 1 : (size_t)-1) : i;
@@ -112,11 +131,9 @@ static void make_unit(const float *v, float sign, float *to) {
 
 static float *vectors(vlExport *x, const vlExportMesh *m, bool tangents, bool turned) {
   size_t per = tangents ? 4 : 3;
-  float *to = vl_alloc_array(x->context, m->vertices, per * sizeof *to);
-  if (!to) {
-    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  float *to = vl_export_alloc(x, m->vertices, per * sizeof *to);
+  if (!to)
     return NULL;
-  }
   for (size_t i = 0; i < m->vertices; i++) {
     make_unit((tangents ? m->tangents : m->normals) + 3 * i, turned && !tangents ? -1 : 1,
               to + per * i);
@@ -151,9 +168,9 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
   for (int k = 0; k < 4; k++) {
     if (!m->uvs[k])
       break;
-    float *v = vl_alloc_array(x->context, m->vertices, 2 * sizeof *v);
+    float *v = vl_export_alloc(x, m->vertices, 2 * sizeof *v);
     if (!v)
-      return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+      return false;
     for (size_t i = 0; i < m->vertices; i++) {
       v[2 * i] = m->uvs[k][2 * i];
       v[2 * i + 1] = 1.0f - m->uvs[k][2 * i + 1];
@@ -163,9 +180,9 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
   }
   if (!m->colors || !colors)
     return true;
-  float *v = vl_alloc_array(x->context, m->vertices, 4 * sizeof *v);
+  float *v = vl_export_alloc(x, m->vertices, 4 * sizeof *v);
   if (!v)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return false;
   for (size_t i = 0; i < 4 * (size_t)m->vertices; i++)
     v[i] = fminf(1, fmaxf(0, m->colors[i]));
   put_attribute(x, attributes, "COLOR_0", v, m, 4);
@@ -234,8 +251,7 @@ static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
   if (material >= 0)
     json_object_set_new(primitive, "material", json_integer(material));
   json_t *json = json_pack("{s:[o]}", "primitives", primitive);
-  if (d->label.name && d->label.name[0])
-    json_object_set_new(json, "name", json_string(d->label.name));
+  vl_gltf_name(json, d->label.name);
   *index = vl_gltf_put(x, "meshes", json);
   vl_export_free_mesh(x, &mesh);
   return indices >= 0;
@@ -251,11 +267,6 @@ static json_t *node_of(const double m[16]) {
     json_object_set(node, "matrix", matrix);
   json_decref(matrix);
   return node;
-}
-
-static void set_name(json_t *json, const vlLabel *label) {
-  if (label->name && label->name[0])
-    json_object_set_new(json, "name", json_string(label->name));
 }
 
 static bool is_sheared(const double m[16]) {
@@ -284,9 +295,9 @@ static void put_nodes(vlExport *x, const vlShapeDef *d, json_int_t mesh, json_t 
           m, vl_mat4_multiply(vl_mat4_translate(c[0], c[1], c[2]), vl_mat4_scale(r, r, r)));
     }
     json_t *node = node_of(m.m);
-    set_name(node, &d->label);
+    vl_gltf_name(node, d->label.name);
     json_object_set_new(node, "mesh", json_integer(mesh));
-    json_array_append_new(list, json_integer(vl_gltf_put(x, "nodes", node)));
+    vl_gltf_put_node(x, list, node);
   }
 }
 
@@ -317,7 +328,7 @@ static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of)
     if (instance->hidden)
       continue;
     json_t *node = node_of(instance->world_from_group), *children = json_array();
-    set_name(node, &instance->label);
+    vl_gltf_name(node, instance->label.name);
     if (instance->keys)
       vl_export_lose(x, "instances that move: as they stand at first");
     if (is_sheared(instance->world_from_group))
@@ -337,7 +348,7 @@ static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of)
     if (json_array_size(children))
       json_object_set(node, "children", children);
     json_decref(children);
-    json_array_append_new(roots, json_integer(vl_gltf_put(x, "nodes", node)));
+    vl_gltf_put_node(x, roots, node);
   }
   return true;
 }
@@ -351,9 +362,9 @@ static bool is_mirrored(const vlExport *x) {
 }
 
 static bool put_scene(vlExport *x) {
-  json_int_t *mesh_of = vl_alloc_array(x->context, x->scene->shapes.count + 1, sizeof *mesh_of);
+  json_int_t *mesh_of = vl_export_alloc(x, x->scene->shapes.count + 1, sizeof *mesh_of);
   if (!mesh_of)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return false;
   json_t *roots = json_array(), *nodes = roots;
   bool mirror = is_mirrored(x);
   if (mirror)
@@ -363,7 +374,7 @@ static bool put_scene(vlExport *x) {
   if (mirror && json_array_size(nodes)) {
     json_t *root = json_pack("{s:s,s:[i,i,i],s:O}", "name", "left-handed", "scale", 1, 1, -1,
                              "children", nodes);
-    json_array_append_new(roots, json_integer(vl_gltf_put(x, "nodes", root)));
+    vl_gltf_put_node(x, roots, root);
   }
   if (mirror)
     json_decref(nodes);
@@ -405,7 +416,7 @@ static bool write_files(vlExport *x) {
   char *text = length ? vl_alloc_array(x->context, length, 1) : NULL;
   if (!text || x->buffer.full || json_dumpb(x->root, text, length, flags) != length) {
     vl_free(x->context, text);
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return vl_export_no_memory(x);
   }
   bool fine;
   if (x->binary && (uint64_t)length + size > 0xffffff00u) {
@@ -427,7 +438,7 @@ static bool write_files(vlExport *x) {
       put_little(x, &file, 0x004E4942);
       vl_bytes_put(x->context, &file, x->buffer.data.items, size);
     }
-    fine = file.full ? vl_export_fail(x, VL_ERROR_MEMORY, "out of memory")
+    fine = file.full ? vl_export_no_memory(x)
                      : vl_export_main(x, file.data.items, file.data.count);
     VL_ARRAY_FREE(x->context, &file.data);
   } else {
@@ -440,7 +451,7 @@ static bool write_files(vlExport *x) {
 bool vl_export_gltf(vlExport *x) {
   x->root = json_pack("{s:{s:s,s:s}}", "asset", "version", "2.0", "generator", "velo");
   if (!x->root)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return vl_export_no_memory(x);
   if (x->scene->copyright)
     json_object_set_new(json_object_get(x->root, "asset"), "copyright",
                         json_string(x->scene->copyright));

@@ -16,21 +16,9 @@
 
 /* ---- inputs ------------------------------------------------------------------------------ */
 
-/* The object `name` of another one, which gets an empty one if it has none. */
-static json_t *child(json_t *parent, const char *name) {
-  json_t *one = json_object_get(parent, name);
-  if (one)
-    return one;
-  one = json_object();
-  json_object_set_new(parent, name, one);
-  return one;
-}
-
 static json_t *extension(vlExport *x, json_t *material, const char *name) {
-  json_t *all = child(material, "extensions");
-  json_t *one = child(all, name);
   vl_gltf_use(x, name);
-  return one;
+  return vl_gltf_child(vl_gltf_child(material, "extensions"), name);
 }
 
 static void set_number(json_t *to, const char *key, double value) {
@@ -97,8 +85,7 @@ static void put_normal(vlExport *x, json_t *to, const char *key, vlTextureId id,
 
 static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alpha,
                          double *factor) {
-  const vlTextureDef *t =
-      alpha->texture.index ? &x->scene->textures.items[alpha->texture.index - 1] : NULL;
+  const vlTextureDef *t = vl_scene_texture(x->scene, alpha->texture);
   *factor = t ? (double)t->tint[3] : (double)alpha->value;
   if (!t && alpha->value >= 1)
     return;
@@ -139,18 +126,6 @@ static void put_metal(vlExport *x, json_t *base, const vlPrincipledDef *p) {
              unit(info ? (double)r->tint[1] : (double)vl_export_number(x, &p->roughness)));
   if (info)
     json_object_set_new(base, "metallicRoughnessTexture", info);
-}
-
-static bool is_on(const vlFloatInput *input) {
-  return input->texture.index || input->value > 0;
-}
-
-static bool is_white(vlExport *x, const vlSpectrumInput *input) {
-  float rgb[3];
-  if (input->texture.index)
-    return false;
-  vl_export_rgb(x, input, rgb);
-  return rgb[0] == 1 && rgb[1] == 1 && rgb[2] == 1;
 }
 
 static void put_ior(vlExport *x, json_t *material, float eta) {
@@ -199,7 +174,7 @@ static void put_sheen_coat(vlExport *x, json_t *material, const vlPrincipledDef 
     put_color(x, e, "sheenColorFactor", "sheenColorTexture", true, &p->sheen_color, -1);
     put_channel(x, e, "sheenRoughnessFactor", "sheenRoughnessTexture", 3, &p->sheen_roughness);
   }
-  if (!is_on(&p->clearcoat))
+  if (!vl_export_is_on(&p->clearcoat))
     return;
   json_t *e = extension(x, material, "KHR_materials_clearcoat");
   put_channel(x, e, "clearcoatFactor", "clearcoatTexture", 0, &p->clearcoat);
@@ -209,7 +184,7 @@ static void put_sheen_coat(vlExport *x, json_t *material, const vlPrincipledDef 
 }
 
 static void put_film(vlExport *x, json_t *material, const vlPrincipledDef *p) {
-  if (is_on(&p->iridescence)) {
+  if (vl_export_is_on(&p->iridescence)) {
     json_t *e = extension(x, material, "KHR_materials_iridescence");
     put_channel(x, e, "iridescenceFactor", "iridescenceTexture", 0, &p->iridescence);
     set_number(e, "iridescenceIor", p->iridescence_ior);
@@ -222,7 +197,7 @@ static void put_film(vlExport *x, json_t *material, const vlPrincipledDef *p) {
     if (info)
       json_object_set_new(e, "iridescenceThicknessTexture", info);
   }
-  if (!is_on(&p->anisotropy))
+  if (!vl_export_is_on(&p->anisotropy))
     return;
   json_t *e = extension(x, material, "KHR_materials_anisotropy");
   put_channel(x, e, "anisotropyStrength", "anisotropyTexture", 2, &p->anisotropy);
@@ -231,17 +206,18 @@ static void put_film(vlExport *x, json_t *material, const vlPrincipledDef *p) {
 
 static void put_passing(vlExport *x, json_t *material, const vlPrincipledDef *p,
                         vlMediumId inside) {
-  if (is_on(&p->transmission))
+  if (vl_export_is_on(&p->transmission))
     put_channel(x, extension(x, material, "KHR_materials_transmission"), "transmissionFactor",
                 "transmissionTexture", 0, &p->transmission);
-  if (is_on(&p->diffuse_transmission)) {
+  if (vl_export_is_on(&p->diffuse_transmission)) {
     json_t *e = extension(x, material, "KHR_materials_diffuse_transmission");
     put_channel(x, e, "diffuseTransmissionFactor", "diffuseTransmissionTexture", 3,
                 &p->diffuse_transmission);
     put_color(x, e, "diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture", true,
               &p->diffuse_transmission_color, -1);
   }
-  if (!p->thin_walled && (is_on(&p->transmission) || is_on(&p->diffuse_transmission))) {
+  if (!p->thin_walled &&
+      (vl_export_is_on(&p->transmission) || vl_export_is_on(&p->diffuse_transmission))) {
     put_volume(x, material, inside);
     if (p->dispersion > 0)
       set_number(extension(x, material, "KHR_materials_dispersion"), "dispersion",
@@ -255,7 +231,8 @@ static void put_principled(vlExport *x, json_t *material, const vlMaterialDef *m
   put_base(x, material, &m->reflectance, coverage, 1, 1);
   put_metal(x, json_object_get(material, "pbrMetallicRoughness"), p);
   put_ior(x, material, vl_export_eta(&m->eta.value));
-  if (p->specular.texture.index || p->specular.value != 1 || !is_white(x, &p->specular_color)) {
+  if (p->specular.texture.index || p->specular.value != 1 ||
+      !vl_export_is_white(x, &p->specular_color)) {
     json_t *e = extension(x, material, "KHR_materials_specular");
     put_channel(x, e, "specularFactor", "specularTexture", 3, &p->specular);
     put_color(x, e, "specularColorFactor", "specularColorTexture", false, &p->specular_color,
@@ -421,23 +398,20 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e,
 /* ---- the whole --------------------------------------------------------------------------- */
 
 static const vlMaterialDef *material_of(const vlExport *x, const vlShapeDef *d) {
-  const vlMaterialDef *m =
-      d->material.index ? &x->scene->materials.items[d->material.index - 1] : NULL;
+  const vlMaterialDef *m = vl_scene_material(x->scene, d->material);
   for (int depth = 0; m && m->kind == VL_MATERIAL_MIX && depth < 16; depth++)
-    m = m->materials[0].index ? &x->scene->materials.items[m->materials[0].index - 1] : NULL;
+    m = vl_scene_material(x->scene, m->materials[0]);
   return m;
 }
 
 static bool wants_colors(const vlExport *x, const vlMaterialDef *m) {
-  const vlTextureDef *t = m && m->reflectance.texture.index
-                              ? &x->scene->textures.items[m->reflectance.texture.index - 1]
-                              : NULL;
+  const vlTextureDef *t = m ? vl_scene_texture(x->scene, m->reflectance.texture) : NULL;
   return t && (t->kind == VL_TEXTURE_VERTEX_COLOR || t->colors);
 }
 
 json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors,
                                 bool *tangents) {
-  const vlMaterialDef *m = material_of(x, d);
+  const vlMaterialDef *own = vl_scene_material(x->scene, d->material), *m = material_of(x, d);
   vlExportLook look = {.material = d->material,
                        .alpha = d->alpha,
                        .emission = d->emission,
@@ -445,7 +419,7 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors,
                        .one_sided = d->one_sided};
   *colors = wants_colors(x, m);
   *tangents = m && (m->principled.normal.index || m->principled.clearcoat_normal.index ||
-                    is_on(&m->principled.anisotropy));
+                    vl_export_is_on(&m->principled.anisotropy));
   for (size_t i = 0; i < x->looks.count; i++) {
     const vlExportLook *l = &x->looks.items[i];
     if (l->material.index == look.material.index && l->emission.index == look.emission.index &&
@@ -456,10 +430,9 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors,
   }
   json_t *json = json_object();
   double coverage;
-  if (m && m->name && m->name[0])
-    json_object_set_new(json, "name", json_string(m->name));
-  if (d->material.index &&
-      x->scene->materials.items[d->material.index - 1].kind == VL_MATERIAL_MIX)
+  if (m)
+    vl_gltf_name(json, m->name);
+  if (own && own->kind == VL_MATERIAL_MIX)
     vl_export_lose(x, "material mix: its first alone");
   put_coverage(x, json, &d->alpha, &coverage);
   vlMaterialDef plain = vl_default_material_def(VL_MATERIAL_DIFFUSE);

@@ -2,38 +2,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/text.h"
-#include "base/unfinished.h"
 #include "export/export.h"
 #include "math/elementary.h"
 #include "math/stretch.h"
-#include "velo/camera_file.h"
 #include "velo/light.h"
-
-/* What of a camera glTF cannot hold is dropped. Velo's own description in the extras keeps
- * it. */
-static const char *const beyond[] = {"all"};
-
-static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const char *path,
-                             bool drop) {
-  vlCameraFileDef def = vl_default_camera_file_def();
-  vlError error;
-  vl_error_clear(&error);
-  def.dialect = VL_CAMERA_DIALECT_GLTF;
-  if (drop) {
-    def.drop = beyond;
-    def.drop_count = VL_LENGTH(beyond);
-  }
-  return vl_camera_write(x->context, path, &def, record, &error);
-}
-
-static void remove_file(int descriptor, const char *path) {
-  (void)descriptor;
-  unlink(path);
-}
 
 /* Makes axes exactly orthogonal if they are orthogonal except for rounding, since readers of
  * glTF decompose transforms. */
@@ -67,34 +42,19 @@ static void square_up(double m[16]) {
       m[4 * i + c] = a[c][i];
 }
 
-/* The glTF file of the camera alone, as the writer of camera files makes it: in a temporary
- * file beside the scene's. *tree: null if glTF cannot hold the camera. */
+/* The glTF file of the camera alone, as the writer of camera files makes it. Velo's own
+ * description in the extras keeps what glTF cannot hold. *tree: null if it cannot hold the
+ * camera at all. */
 static bool camera_tree(vlExport *x, const vlCameraRecord *record, json_t **tree) {
-  char name[64], path[4096];
-  snprintf(name, sizeof name, ".velo-export-%ld.gltf", (long)getpid());
-  if (!vl_export_path(x, name, path, sizeof path))
+  static const char lost[] =
+      "the camera's projection, lens or principal point: in the extras, which velo alone reads";
+  vlCameraText text;
+  if (!vl_export_camera(x, VL_CAMERA_DIALECT_GLTF, record, lost, &text))
     return false;
-  vlUnfinished *unfinished =
-      vl_unfinished_add(vl_context_unfinished(x->context), path, -1, remove_file);
-  if (!unfinished)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
-  vlResult r = write_camera(x, record, path, false);
-  if (r == VL_ERROR_UNSUPPORTED) {
-    vl_export_lose(x,
-                   "the camera's projection, lens or principal point: in the extras, which "
-                   "velo alone reads");
-    r = write_camera(x, record, path, true);
-  }
-  *tree = r == VL_OK ? json_load_file(path, 0, NULL) : NULL;
-  unlink(path);
-  vl_unfinished_drop(unfinished);
-  if (r == VL_ERROR_MEMORY)
-    return vl_export_fail(x, r, "out of memory");
-  if (r == VL_ERROR_IO || (r == VL_OK && !*tree))
-    return vl_export_fail(x, VL_ERROR_IO,
-                          "the camera cannot be written to a temporary file beside %.300s",
-                          x->path);
-  return true;
+  const bool held = text.text.count > 0;
+  *tree = held ? json_loadb(text.text.items, text.text.count, 0, NULL) : NULL;
+  VL_ARRAY_FREE(x->context, &text.text);
+  return !held || *tree || vl_export_no_memory(x);
 }
 
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
@@ -131,7 +91,7 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
     json_t *copy = json_deep_copy(node);
     json_object_set_new(copy, "camera",
                         json_integer(vl_gltf_put(x, "cameras", json_deep_copy(camera))));
-    json_array_append_new(nodes, json_integer(vl_gltf_put(x, "nodes", copy)));
+    vl_gltf_put_node(x, nodes, copy);
   } else {
     vl_export_lose(x, "the camera: left out");
   }
@@ -142,10 +102,9 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
 /* Orients the node so that its -z is the light's direction. */
 static json_t *light_node(const vlLightDef *d, json_int_t index) {
   vlMat4 m = vl_mat4_load(d->world_from_light);
-  double from[3], to[3], a[3] = {d->from[0], d->from[1], d->from[2]},
-                         b[3] = {d->to[0], d->to[1], d->to[2]}, z[3], l = 0;
-  vl_mat4_point(&m, a, from);
-  vl_mat4_point(&m, b, to);
+  double from[3], to[3], z[3], l = 0;
+  vl_mat4_vertex(&m, d->from, from);
+  vl_mat4_vertex(&m, d->to, to);
   for (int i = 0; i < 3; i++) {
     z[i] = from[i] - to[i];
     l += z[i] * z[i];
@@ -169,15 +128,6 @@ static json_t *light_node(const vlLightDef *d, json_int_t index) {
   return node;
 }
 
-/* Adds an extension of the whole file. Takes ownership of value. */
-static void put_extension(vlExport *x, const char *name, json_t *value) {
-  json_t *all = json_object_get(x->root, "extensions");
-  if (!all)
-    json_object_set_new(x->root, "extensions", all = json_object());
-  json_object_set_new(all, name, value);
-  vl_gltf_use(x, name);
-}
-
 /* ---- lamp files -------------------------------------------------------------------------- */
 
 /* The contents of a light's lamp file. *owned: the block to free, or null. */
@@ -188,10 +138,9 @@ static bool lamp_file(vlExport *x, const vlLightDef *d, const char **data, size_
   *owned = NULL;
   if (d->lamp_data)
     return true;
-  vlError error = {0};
-  vlResult r = vl_file_read(x->context, d->path, false, owned, size, &error);
+  const bool fine = vl_export_read(x, d->path, owned, size);
   *data = *owned;
-  return r == VL_OK || vl_export_fail(x, r, "%s", error.message);
+  return fine;
 }
 
 /* The profile of a lamp: a buffer view, or a file beside the scene. Null after an error. */
@@ -209,8 +158,8 @@ static json_t *lamp_profile(vlExport *x, size_t number, const char *data, size_t
 static json_t *lamp_node(const vlLightDef *d, json_int_t index, const float color[3],
                          double multiplier) {
   vlMat4 m = vl_mat4_load(d->world_from_light);
-  double from[3] = {d->from[0], d->from[1], d->from[2]}, position[3];
-  vl_mat4_point(&m, from, position);
+  double position[3];
+  vl_mat4_vertex(&m, d->from, position);
   float matrix[16] = {[15] = 1};
   for (int i = 0; i < 3; i++) {
     matrix[i] = (float)m.m[4 * i];
@@ -254,7 +203,7 @@ static bool put_lamp(vlExport *x, const vlLightDef *d, json_t *lights, json_t *n
   json_t *node =
       lamp_node(d, (json_int_t)json_array_size(lights), color, (double)most * (double)d->scale);
   json_array_append_new(lights, profile);
-  json_array_append_new(nodes, json_integer(vl_gltf_put(x, "nodes", node)));
+  vl_gltf_put_node(x, nodes, node);
   return true;
 }
 
@@ -273,7 +222,7 @@ static bool put_lamps(vlExport *x, json_t *nodes) {
       fine = put_lamp(x, d, lights, nodes);
   }
   if (json_array_size(lights))
-    put_extension(x, "EXT_lights_ies", json_pack("{s:O}", "lights", lights));
+    vl_gltf_put_extension(x, "EXT_lights_ies", json_pack("{s:O}", "lights", lights));
   json_decref(lights);
   return fine;
 }
@@ -319,11 +268,10 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
                     "outerConeAngle", outer));
     }
     json_array_append_new(lights, light);
-    json_t *node = light_node(d, (json_int_t)json_array_size(lights) - 1);
-    json_array_append_new(nodes, json_integer(vl_gltf_put(x, "nodes", node)));
+    vl_gltf_put_node(x, nodes, light_node(d, (json_int_t)json_array_size(lights) - 1));
   }
   if (json_array_size(lights))
-    put_extension(x, "KHR_lights_punctual", json_pack("{s:O}", "lights", lights));
+    vl_gltf_put_extension(x, "KHR_lights_punctual", json_pack("{s:O}", "lights", lights));
   json_decref(lights);
   return put_lamps(x, nodes);
 }

@@ -41,19 +41,17 @@ static void put_text(vlExport *x, const vlParameter *p, const char *text) {
     PUT("  \"string %s\" \"%s\"\n", p->name, text);
 }
 
-typedef void Rule(vlExport *x, const vlParameter *p, double shutter);
+typedef void Rule(vlExport *x, const vlParameter *p);
 
-static void put_system(vlExport *x, const vlParameter *p, double shutter) {
-  (void)shutter;
+static void put_system(vlExport *x, const vlParameter *p) {
   if (x->scene->defs.gbuffer == VL_GBUFFER_WORLD)
     PUT("  \"string %s\" \"%s\"\n", p->name, p->choices[1]);
 }
 
 /* The number of buckets and their limits in one line, which is always written. */
-static void put_buckets(vlExport *x, const vlParameter *p, double shutter) {
+static void put_buckets(vlExport *x, const vlParameter *p) {
   static const char *const limits[] = {"lambdamin", "lambdamax"};
   const vlKindRow *row = vl_kind_row(&vl_film_family, VL_FILM_SPECTRAL);
-  (void)shutter;
   PUT(" ");
   put_number(x, p, number_of(x, p));
   for (int i = 0; i < 2; i++) {
@@ -64,42 +62,37 @@ static void put_buckets(vlExport *x, const vlParameter *p, double shutter) {
 }
 
 /* All factors of the exposure in one. */
-static void put_iso(vlExport *x, const vlParameter *p, double shutter) {
+static void put_iso(vlExport *x, const vlParameter *p) {
   const vlSceneDefs *defs = &x->scene->defs;
-  double exposure = (double)defs->develop.exposure * defs->camera.exposure_time / shutter;
+  double exposure = (double)defs->develop.exposure * defs->camera.exposure_time / x->shutter;
   if (fabs(exposure - 1) > 1e-7)
     put_line(x, p, p->value[0] * exposure);
 }
 
-static void put_sensor(vlExport *x, const vlParameter *p, double shutter) {
-  (void)shutter;
+static void put_sensor(vlExport *x, const vlParameter *p) {
   put_text(x, p, x->scene->defs.film.sensor);
 }
 
-static void put_white_balance(vlExport *x, const vlParameter *p, double shutter) {
-  (void)shutter;
+static void put_white_balance(vlExport *x, const vlParameter *p) {
   if (number_of(x, p) > 0)
     put_line(x, p, number_of(x, p));
 }
 
 /* pbrt clamps the sensor's output, velo's film its input. */
-static void put_max_component(vlExport *x, const vlParameter *p, double shutter) {
+static void put_max_component(vlExport *x, const vlParameter *p) {
   const float exposure = x->scene->defs.develop.exposure;
-  (void)shutter;
   if (number_of(x, p) < 1e30)
     put_line(x, p, number_of(x, p) * (exposure > 0 ? (double)exposure : 1));
 }
 
-static void put_bounds(vlExport *x, const vlParameter *p, double shutter) {
+static void put_bounds(vlExport *x, const vlParameter *p) {
   const vlFilmDef *film = &x->scene->defs.film;
   const uint32_t *crop = film->crop;
-  (void)shutter;
   if (crop[0] || crop[1] || crop[2] != film->width || crop[3] != film->height)
     PUT("  \"integer %s\" [%u %u %u %u]\n", p->name, crop[0], crop[2], crop[1], crop[3]);
 }
 
-static void put_file_name(vlExport *x, const vlParameter *p, double shutter) {
-  (void)shutter;
+static void put_file_name(vlExport *x, const vlParameter *p) {
   put_text(x, p, x->scene->defs.output);
 }
 
@@ -136,13 +129,13 @@ static bool has_rule(const vlParameter *p) {
   return false;
 }
 
-void vl_pbrt_film(vlExport *x, double shutter) {
+void vl_pbrt_film(vlExport *x) {
   const vlSceneDefs *defs = &x->scene->defs;
   const vlKindRow *row = vl_kind_row(&vl_film_family, (int)kind_of(defs));
   for (size_t i = 0; i < RULES; i++) {
     const vlParameter *p = vl_row_find(row, rules[i].name);
     if (p && rules[i].put)
-      rules[i].put(x, p, shutter);
+      rules[i].put(x, p);
   }
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];

@@ -8,27 +8,22 @@
 
 /* ---- principled -------------------------------------------------------------------------- */
 
-static bool is_on(const vlFloatInput *input) {
-  return input->texture.index || input->value > 0;
-}
-
 static void count_losses(vlExport *x, const vlMaterialDef *m) {
   const vlPrincipledDef *p = &m->principled;
   float rgb[3];
-  if (is_on(&p->clearcoat))
+  if (vl_export_is_on(&p->clearcoat))
     vl_export_lose(x, "clear coats: left out");
   vl_export_rgb(x, &p->sheen_color, rgb);
   if (p->sheen_color.texture.index || rgb[0] + rgb[1] + rgb[2] > 0)
     vl_export_lose(x, "sheen: left out");
-  if (is_on(&p->iridescence))
+  if (vl_export_is_on(&p->iridescence))
     vl_export_lose(x, "iridescence: left out");
-  if (is_on(&p->anisotropy))
+  if (vl_export_is_on(&p->anisotropy))
     vl_export_lose(x, "anisotropy of principled materials: left out");
   if (p->dispersion > 0)
     vl_export_lose(x, "dispersion: left out");
-  vl_export_rgb(x, &p->specular_color, rgb);
-  if (p->specular_color.texture.index || rgb[0] != 1 || rgb[1] != 1 || rgb[2] != 1 ||
-      p->specular.texture.index || (p->specular.value != 1 && p->specular.value != 0))
+  if (!vl_export_is_white(x, &p->specular_color) || p->specular.texture.index ||
+      (p->specular.value != 1 && p->specular.value != 0))
     vl_export_lose(x, "strength and colour of dielectrics' reflection: left out");
   if (p->clearcoat_normal.index || (p->normal.index && p->normal_scale != 1))
     vl_export_lose(x, "normal maps' scale, and those of coats: left out");
@@ -67,9 +62,7 @@ typedef enum Stand {
 static void put_clear(vlExport *x, const vlMaterialDef *m, float transmission, double eta,
                       const vlPbrtInput *alpha) {
   const vlPrincipledDef *p = &m->principled;
-  float rgb[3];
-  vl_export_rgb(x, &m->reflectance, rgb);
-  if (m->reflectance.texture.index || rgb[0] != 1 || rgb[1] != 1 || rgb[2] != 1)
+  if (!vl_export_is_white(x, &m->reflectance))
     vl_export_lose(x, "colour of glass at its surface: left out");
   if (transmission < 1 || p->transmission.texture.index)
     vl_export_lose(x, "surfaces that pass a part of light: glass");
@@ -117,7 +110,7 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
   Stand stand = STAND_COATED;
   if (transmission >= 0.5f) {
     stand = STAND_GLASS;
-  } else if (is_on(&p->diffuse_transmission)) {
+  } else if (vl_export_is_on(&p->diffuse_transmission)) {
     stand = STAND_LEAF;
   } else {
     mean_alpha = vl_export_mean_square(x, &p->roughness);

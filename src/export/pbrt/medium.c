@@ -47,12 +47,8 @@ static bool put_rgb_grid(vlExport *x, const vlMediumDef *m) {
 static bool put_nanovdb(vlExport *x, const vlMediumDef *m) {
   char name[300], *data = NULL;
   size_t size = 0, index = (size_t)(m - x->scene->media.items) + 1;
-  vlError error;
-  vl_error_clear(&error);
   snprintf(name, sizeof name, "%.200s-medium%zu.nvdb", x->stem, index);
-  vlResult r = vl_file_read(x->context, m->path, false, &data, &size, &error);
-  bool fine = r == VL_OK ? vl_export_data(x, name, data, size)
-                         : vl_export_fail(x, r, "%s", error.message);
+  bool fine = vl_export_read(x, m->path, &data, &size) && vl_export_data(x, name, data, size);
   vl_free(x->context, data);
   PUT(" \"string filename\" \"%s\"", name);
   return fine;

@@ -2,13 +2,11 @@
  * the rest, lights. */
 #include <math.h>
 #include <stdio.h>
-#include <unistd.h>
 
 #include "base/text.h"
 #include "color/color.h"
 #include "export/pbrt/pbrt.h"
 #include "math/transform.h"
-#include "velo/camera_file.h"
 #include "velo/filter_kinds.h"
 #include "velo/light.h"
 #include "velo/sampler.h"
@@ -78,57 +76,35 @@ static void put_options(vlExport *x) {
 }
 
 /* The text of the camera is a whole scene. This function copies its part before WorldBegin. */
-static void put_head(vlExport *x, const char *text, size_t size) {
+static void put_head(vlExport *x, const char *text) {
   static const char film[] = "Film \"rgb\"";
   const char *world = strstr(text, "WorldBegin"), *at = strstr(text, film);
-  size_t end = world ? (size_t)(world - text) : size, start = 0;
-  if (at && (size_t)(at - text) < end) {
-    vl_bytes_put(x->context, &x->text, text, (size_t)(at - text));
-    PUT("Film \"%s\"", vl_pbrt_film_kind(&x->scene->defs));
-    start = (size_t)(at - text) + sizeof film - 1;
-  }
-  vl_bytes_put(x->context, &x->text, text + start, end - start);
+  const char *rest = at + sizeof film - 1;
+  vl_bytes_put(x->context, &x->text, text, (size_t)(at - text));
+  PUT("Film \"%s\"", vl_pbrt_film_kind(&x->scene->defs));
+  vl_bytes_put(x->context, &x->text, rest, (size_t)(world - rest));
 }
 
 static bool put_camera(vlExport *x) {
-  static const char *const beyond[] = {"all"};
   const vlSceneDefs *defs = &x->scene->defs;
   vlCameraRecord record = {.camera = defs->camera};
   record.camera.exposure_time = 1; /* the film's iso holds it */
-  vlCameraFileDef def = vl_default_camera_file_def();
-  def.dialect = VL_CAMERA_DIALECT_PBRT;
-  char name[64], path[4096], *text = NULL;
-  size_t size = 0;
-  snprintf(name, sizeof name, ".velo-export-%ld.pbrt", (long)getpid());
-  if (!vl_export_path(x, name, path, sizeof path))
+  vlCameraText text;
+  if (!vl_export_camera(x, VL_CAMERA_DIALECT_PBRT, &record, NULL, &text))
     return false;
-  vlError error;
-  vl_error_clear(&error);
-  vlResult r = vl_camera_write(x->context, path, &def, &record, &error);
-  if (r == VL_ERROR_UNSUPPORTED) {
-    vl_export_lose(x, "the camera: %.120s", error.message);
-    def.drop = beyond;
-    def.drop_count = VL_LENGTH(beyond);
-    r = vl_camera_write(x->context, path, &def, &record, &error);
-  }
-  if (r == VL_OK)
-    r = vl_file_read_given(x->context, path, false, &text, &size, &error);
-  unlink(path);
-  if (r == VL_ERROR_MEMORY)
-    return vl_export_fail(x, r, "out of memory");
-  if (r == VL_ERROR_IO || r == VL_ERROR_MISSING)
-    return vl_export_fail(x, VL_ERROR_IO, "%s", error.message);
-  if (r == VL_OK) {
-    put_head(x, text, size);
+  const bool held = text.text.count > 0;
+  if (held) {
+    put_head(x, text.text.items);
   } else {
     vl_export_lose(x, "the camera: left out");
     PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n",
         vl_pbrt_film_kind(defs), defs->film.width, defs->film.height);
   }
   double shutter = defs->camera.shutter_close - defs->camera.shutter_open;
-  bool has_shutter = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");
-  vl_free(x->context, text);
-  vl_pbrt_film(x, has_shutter ? shutter : 1);
+  bool has_shutter = held && shutter > 0 && strstr(text.text.items, "shutterclose");
+  VL_ARRAY_FREE(x->context, &text.text);
+  x->shutter = has_shutter ? shutter : 1;
+  vl_pbrt_film(x);
   put_options(x);
   return true;
 }
@@ -299,6 +275,6 @@ bool vl_export_pbrt(vlExport *x) {
   if (!put_groups(x))
     return false;
   if (x->text.full)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return vl_export_no_memory(x);
   return vl_export_main(x, x->text.data.items, x->text.data.count);
 }

@@ -25,9 +25,8 @@ bool vl_pbrt_knows(vlExport *x, const vlKindRow *row, const vlParameter *p);
 void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def);
 /* The name of the film's kind. */
 const char *vl_pbrt_film_kind(const vlSceneDefs *defs);
-/* Writes the film's parameters except its size, which the camera's text holds. shutter: time in
- * seconds that the shutter is open; pbrt's exposure is proportional to it. */
-void vl_pbrt_film(vlExport *x, double shutter);
+/* Writes the film's parameters except its size, which the camera's text holds. */
+void vl_pbrt_film(vlExport *x);
 /* Writes "medium<index + 1>", before WorldBegin. */
 bool vl_pbrt_medium(vlExport *x, size_t index);
 /* Writes "material<id>" and everything it refers to. */

@@ -37,16 +37,13 @@ static void put_inline(vlExport *x, const vlShapeDef *d) {
 static bool put_ply(vlExport *x, const vlShapeDef *d, size_t index) {
   vlBytes b = {0};
   size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
-  vl_bytes_print(x->context, &b, "ply\nformat binary_little_endian 1.0\nelement vertex %u\n",
-                 d->vertices);
-  vl_bytes_print(x->context, &b, "property float x\nproperty float y\nproperty float z\n");
-  if (d->normals)
-    vl_bytes_print(x->context, &b, "property float nx\nproperty float ny\nproperty float nz\n");
-  if (d->uvs)
-    vl_bytes_print(x->context, &b, "property float u\nproperty float v\n");
   vl_bytes_print(x->context, &b,
+                 "ply\nformat binary_little_endian 1.0\nelement vertex %u\n"
+                 "property float x\nproperty float y\nproperty float z\n%s%s"
                  "element face %u\nproperty list uchar int vertex_indices\nend_header\n",
-                 d->faces);
+                 d->vertices,
+                 d->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+                 d->uvs ? "property float u\nproperty float v\n" : "", d->faces);
   for (size_t i = 0; i < d->vertices; i++) {
     vl_bytes_put(x->context, &b, d->positions + 3 * i, 3 * sizeof(float));
     if (d->normals)
@@ -63,8 +60,8 @@ static bool put_ply(vlExport *x, const vlShapeDef *d, size_t index) {
   }
   char name[300];
   snprintf(name, sizeof name, "%.200s-mesh%zu.ply", x->stem, index + 1);
-  bool fine = b.full ? vl_export_fail(x, VL_ERROR_MEMORY, "out of memory")
-                     : vl_export_data(x, name, b.data.items, b.data.count);
+  bool fine =
+      b.full ? vl_export_no_memory(x) : vl_export_data(x, name, b.data.items, b.data.count);
   VL_ARRAY_FREE(x->context, &b.data);
   PUT("  Shape \"plymesh\" \"string filename\" \"%s\"", name);
   return fine;
@@ -129,9 +126,9 @@ static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
     vl_export_lose(x, "images that emit light again and again: at the first place only");
     return true;
   }
-  float *uvs = vl_alloc_array(x->context, d->vertices, 2 * sizeof *uvs);
+  float *uvs = vl_export_alloc(x, d->vertices, 2 * sizeof *uvs);
   if (!uvs)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return false;
   for (size_t i = 0; i < 2 * (size_t)d->vertices; i++)
     uvs[i] = d->uvs[i] - by[i % 2];
   *moved = uvs;

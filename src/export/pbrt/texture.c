@@ -20,6 +20,14 @@ static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, co
   return fine;
 }
 
+/* Whether the image with these changes was written already, to the file of this name. */
+static bool is_written(vlExport *x, const vlTextureDef *t, uint32_t variant, char name[300]) {
+  const vlExportImage *known = vl_export_find_image(x, t, variant);
+  if (known)
+    memcpy(name, known->name, sizeof known->name);
+  return known != NULL;
+}
+
 /* Whether pbrt reads files of this name. (velo recognises images by their content.) */
 static bool is_name_for_pbrt(const char *name) {
   static const char *const known[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tga"};
@@ -44,8 +52,8 @@ static bool fits_pbrt(const vlImage *image, vlPbrtFile kind, const char *name) {
  * when it would not. */
 static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const char *name,
                    char **bytes, size_t *size) {
-  vlImage *decoded = t->image ? NULL : vl_export_decode(x, t), *rgb = NULL;
-  const vlImage *image = t->image ? t->image : decoded;
+  vlImage *decoded, *rgb = NULL;
+  const vlImage *image = vl_export_pixels(x, t, &decoded);
   bool fine = image != NULL;
   if (fine && !fits_pbrt(image, kind, name)) {
     /* else the first channel, whatever it is */
@@ -55,8 +63,7 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
       channel[1] = channel[2] = channel[0];
     if (decoded && t->encoding_given)
       decoded->encoding = t->encoding;
-    fine = vl_image_create(x->context, &def, &rgb) == VL_OK ||
-           vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    fine = vl_image_create(x->context, &def, &rgb) == VL_OK || vl_export_no_memory(x);
     for (uint32_t y = 0; fine && y < image->height; y++)
       vl_image_row_to_float(image, y, channel, 3, vl_image_row(rgb, y));
     fine = fine && vl_export_pack(x, rgb, ".exr", bytes, size);
@@ -69,11 +76,8 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
 bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]) {
   const uint32_t variant =
       (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0);
-  vlExportImage *known = vl_export_find_image(x, t, variant);
-  if (known) {
-    memcpy(name, known->name, sizeof known->name);
+  if (is_written(x, t, variant, name))
     return true;
-  }
   char *bytes = NULL;
   size_t size = 0;
   const char *suffix = ".exr", *dot = t->path ? strrchr(t->path, '.') : NULL;
@@ -83,10 +87,7 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char nam
   if (fine && !bytes && t->image) {
     fine = vl_export_pack(x, t->image, ".exr", &bytes, &size);
   } else if (fine && !bytes && copied) { /* unchanged, whatever its format */
-    vlError error;
-    vl_error_clear(&error);
-    vlResult r = vl_file_read(x->context, t->path, false, &bytes, &size, &error);
-    fine = r == VL_OK || vl_export_fail(x, r, "%s", error.message);
+    fine = vl_export_read(x, t->path, &bytes, &size);
     suffix = dot;
   } else if (fine && !bytes) {
     fine = vl_export_image(x, t, &bytes, &size, &suffix);
@@ -164,13 +165,10 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
                          change.raised,     change.lost,      change.metal ? 1 : 0};
   for (size_t i = 0; i < sizeof key; i++)
     variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 16u;
-  vlExportImage *known = vl_export_find_image(x, t, variant);
-  if (known) {
-    memcpy(name, known->name, sizeof known->name);
+  if (is_written(x, t, variant, name))
     return true;
-  }
-  vlImage *image = t->image ? NULL : vl_export_decode(x, t), *made = NULL;
-  const vlImage *from = t->image ? t->image : image;
+  vlImage *image, *made = NULL;
+  const vlImage *from = vl_export_pixels(x, t, &image);
   if (!from)
     return false;
   uint32_t channel[4], have = vl_image_color(from, channel), per = t->spectrum ? 3 : 1;
@@ -179,7 +177,7 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
   def.type = VL_PIXEL_F32;
   bool fine = row && vl_image_create(x->context, &def, &made) == VL_OK;
   if (!fine)
-    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    vl_export_no_memory(x);
   if (fine && t->encoding_given && image)
     image->encoding = t->encoding;
   for (uint32_t y = 0; fine && y < from->height; y++) {

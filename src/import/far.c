@@ -6,7 +6,7 @@ bool vl_far_origin(const vlExtent *box, double origin[3]) {
   double size = 0, most = 0, middle[3];
   vl_extent_middle(box, middle);
   for (int i = 0; i < 3; i++) {
-    size = fmax(size, box->high[i] - box->low[i]);
+    size = fmax(size, vl_extent_size(box, i));
     most = fmax(most, fabs(middle[i]));
     origin[i] = floor(middle[i] + 0.5);
   }

@@ -56,9 +56,8 @@ static bool color_faces(vlContext *context, vlMesh *m) {
 bool vl_import_plain_fail(vlScene *scene, vlResult code, const char *path, uint32_t line,
                           const char *what, const char *word) {
   const vlSource source = {.file = path, .line = line, .column = line ? 1 : 0};
-  vl_scene_fail(scene, code, source, "%s%s%s%s", what, word ? " \"" : "", word ? word : "",
-                word ? "\"" : "");
-  return false;
+  return vl_scene_fail(scene, code, source, "%s%s%s%s", what, word ? " \"" : "",
+                       word ? word : "", word ? "\"" : "");
 }
 
 bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const char **at,
@@ -67,10 +66,8 @@ bool vl_import_plain_read(vlScene *scene, const char *path, char **data, const c
   vlError inside = {0};
   vl_import_plain_settings(scene);
   vlResult r = vl_file_read_given(scene->context, path, true, data, &size, &inside);
-  if (r != VL_OK) {
-    vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
-    return false;
-  }
+  if (r != VL_OK)
+    return vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
   *at = *data;
   *end = *data + size;
   return true;

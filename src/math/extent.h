@@ -16,6 +16,9 @@ static const vlExtent vl_extent_nothing = {{INFINITY, INFINITY, INFINITY},
 static inline bool vl_extent_is_empty(const vlExtent *box) {
   return !(box->low[0] <= box->high[0]);
 }
+static inline double vl_extent_size(const vlExtent *box, int axis) {
+  return box->high[axis] - box->low[axis];
+}
 /* Grows a box by another one. A NaN is ignored. */
 static inline void vl_extent_join(vlExtent *whole, const vlExtent *box) {
   for (int i = 0; i < 3; i++) {

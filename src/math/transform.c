@@ -126,6 +126,10 @@ void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]) {
     result[i] = r[i] * s;
 }
 
+void vl_mat4_vertex(const vlMat4 *a, const float p[3], double result[3]) {
+  vl_mat4_point(a, (const double[3]){p[0], p[1], p[2]}, result);
+}
+
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]) {
   double r[3];
   vl_map_vector(a->m, v, r);

@@ -25,6 +25,8 @@ bool vl_mat4_is_finite(vlMat4 a);
 bool vl_mat4_is_identity(const double m[16]);
 /* divides by w if it is not 1 */
 void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]);
+/* The same of a point in single precision. */
+void vl_mat4_vertex(const vlMat4 *a, const float p[3], double result[3]);
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]);
 /* Transforms a normal by the transpose of the inverse matrix, which the caller passes. The
  * result is not normalised. */

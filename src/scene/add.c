@@ -8,14 +8,14 @@
 #include "base/text.h"
 #include "color/color.h"
 #include "color/named.h"
+#include "math/transform.h"
 #include "scene/family.h"
 #include "schema/schema.h"
 #include "velo/material.h"
 #include "velo/texture.h"
 
 bool vl_scene_reject(vlScene *scene, vlSource source, const char *what, const char *why) {
-  vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s: %s", what, why);
-  return false;
+  return vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s: %s", what, why);
 }
 
 /* ---- what a row describes ---------------------------------------------------------------- */
@@ -29,11 +29,10 @@ static bool check_name(vlScene *scene, const char *name, vlSource source, const 
     names[count] = known;
   }
   const char *near = vl_nearest_name(name, names, count);
-  vl_scene_fail(scene, VL_ERROR_SCENE, source,
-                near ? "%s: no spectrum is named \"%s\" (did you mean \"%s\"?)"
-                     : "%s: no spectrum is named \"%s\"",
-                what, vl_argument_text(name).text, near);
-  return false;
+  return vl_scene_fail(scene, VL_ERROR_SCENE, source,
+                       near ? "%s: no spectrum is named \"%s\" (did you mean \"%s\"?)"
+                            : "%s: no spectrum is named \"%s\"",
+                       what, vl_argument_text(name).text, near);
 }
 
 static bool copy_spectrum(vlScene *scene, vlSpectrum *s, vlSource source, const char *what) {
@@ -77,10 +76,8 @@ static bool copy_spectrum(vlScene *scene, vlSpectrum *s, vlSource source, const 
       bad = "unknown kind of spectrum";
       break;
   }
-  if (bad) {
-    vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s: %s", what, bad);
-    return false;
-  }
+  if (bad)
+    return vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s: %s", what, bad);
   if (s->kind == VL_SPECTRUM_SAMPLED)
     return vl_scene_copy_block(scene, s->wavelengths, s->count, sizeof(float),
                                &s->wavelengths) &&
@@ -99,9 +96,8 @@ typedef struct Take {
 } Take;
 
 static bool refuse(const Take *t, const vlParameter *p, const char *why) {
-  vl_scene_fail(t->scene, VL_ERROR_SCENE, t->source, "%s: parameter \"%s\" %s", t->what,
-                vl_parameter_label(p), why);
-  return false;
+  return vl_scene_fail(t->scene, VL_ERROR_SCENE, t->source, "%s: parameter \"%s\" %s", t->what,
+                       vl_parameter_label(p), why);
 }
 
 static bool take_texture(const Take *t, const vlParameter *p, vlTextureId id, bool spectrum) {
@@ -179,8 +175,7 @@ bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum,
     snprintf(name, sizeof name, "%s: parameter \"%s\"", what, vl_parameter_label(p));
     if (vl_parameter_check(p, def, name, message))
       continue;
-    vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s", message);
-    return false;
+    return vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s", message);
   }
   return true;
 }
@@ -198,9 +193,8 @@ static bool all_finite(const float *numbers, size_t count) {
 static bool check_texture_def(vlScene *scene, const vlTextureDef *d, const vlKindRow *row) {
   char what[64];
   snprintf(what, sizeof what, "%s texture", row->name ? row->name : "vertex colour");
-  for (int i = 0; i < 16; i++)
-    if (!isfinite(d->texture_from_world[i]))
-      return vl_scene_reject(scene, d->source, what, "transform is not finite");
+  if (!vl_mat4_is_finite(vl_mat4_load(d->texture_from_world)))
+    return vl_scene_reject(scene, d->source, what, "transform is not finite");
   if (!all_finite(d->tint, 4) || !all_finite(d->st_from_uv, 6))
     return vl_scene_reject(scene, d->source, what, "a number is not finite");
   if (d->spectrum && (row->traits & VL_TEXTURE_FLOAT_ONLY))

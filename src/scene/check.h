@@ -36,8 +36,6 @@ void vl_check_inside(vlCheck *check); /* finds cameras inside solids, wrong medi
 
 /* ---- helpers ----------------------------------------------------------------------------- */
 
-/* The material of a shape; null: the default diffuse material. */
-const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id);
 /* Gives the textures that a material reads directly, at most VL_CHECK_INPUTS. Id 0: none. */
 enum { VL_CHECK_INPUTS = 48 };
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]);

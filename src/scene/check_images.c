@@ -33,43 +33,28 @@ static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
   return r == VL_OK;
 }
 
-/* Checks that the files exist which the parameters of a def name. kind: its row in the
- * family. */
-static void look_for_files_of(vlCheck *c, const vlKindFamily *family, int kind, const void *def,
-                              vlSource source) {
-  const vlKindRow *row = vl_kind_row(family, kind);
+/* Checks that the files exist which the parameters of a def name. */
+static void look_for_files_of(vlCheck *c, vlSceneFamily family, const void *def) {
+  const vlKindRow *row = vl_scene_def_row(family, def);
   for (uint32_t i = 0; row && i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (p->type != VL_PARAMETER_FILE)
       continue;
     const char *path = *(const char *const *)(const void *)((const char *)def + p->offset);
     if (path)
-      file_is_there(c, path, source);
+      file_is_there(c, path, vl_scene_def_source(family, def));
   }
 }
 
 static void look_for_files(vlCheck *c) {
-  const vlScene *s = c->scene;
-  for (size_t i = 0; i < s->textures.count; i++) {
-    const vlTextureDef *d = &s->textures.items[i];
-    look_for_files_of(c, &vl_texture_family, (int)d->kind, d, d->source);
-  }
-  for (size_t i = 0; i < s->materials.count; i++) {
-    const vlMaterialDef *d = &s->materials.items[i];
-    look_for_files_of(c, &vl_material_family, (int)d->kind, d, d->source);
-  }
-  for (size_t i = 0; i < s->lights.count; i++) {
-    const vlLightDef *d = &s->lights.items[i];
-    look_for_files_of(c, &vl_light_family, (int)d->kind, d, d->source);
-  }
-  for (size_t i = 0; i < s->emissions.count; i++) {
-    const vlEmissionDef *d = &s->emissions.items[i];
-    look_for_files_of(c, &vl_emission_family, 0, d, d->source);
-  }
-  for (size_t i = 0; i < s->media.count; i++) {
-    const vlMediumDef *d = &s->media.items[i];
-    look_for_files_of(c, &vl_medium_family, (int)d->kind, d, d->source);
-  }
+  static const vlSceneFamily order[] = {VL_SCENE_TEXTURES, VL_SCENE_MATERIALS, VL_SCENE_LIGHTS,
+                                        VL_SCENE_EMISSIONS, VL_SCENE_MEDIA};
+  for (size_t k = 0; k < VL_LENGTH(order); k++)
+    for (uint32_t i = 1; i <= vl_scene_highest(c->scene, order[k]); i++) {
+      const void *def = vl_scene_item(c->scene, order[k], i);
+      if (def)
+        look_for_files_of(c, order[k], def);
+    }
 }
 
 /* ---- greatest values --------------------------------------------------------------------- */

@@ -22,7 +22,7 @@ static void eye_of(const vlCameraDef *d, double eye[3]) {
 
 /* Whether the surface is transmissive or absent (interface). */
 static bool lets_light_pass(const vlCheck *c, const vlShapeDef *d) {
-  const vlMaterialDef *m = vl_check_material(c, d->material);
+  const vlMaterialDef *m = vl_scene_material(c->scene, d->material);
   if (d->alpha.texture.index || d->alpha.value < 1 || d->one_sided)
     return true;
   if (!m)
@@ -42,9 +42,7 @@ static bool holds_light(const vlCheck *c, const vlSolid *solid,
         (vl_kind_row(&vl_light_family, (int)l->kind)->traits & VL_LIGHT_TRAIT_FAR))
       continue;
     vlMat4 m = vl_mat4_load(l->world_from_light);
-    for (int k = 0; k < 3; k++)
-      p[k] = l->from[k];
-    vl_mat4_point(&m, p, q);
+    vl_mat4_vertex(&m, l->from, q);
     vl_mat4_point(group_from_world, q, p);
     if (vl_solid_holds(solid, p))
       return true;
@@ -60,9 +58,7 @@ static bool holds_light(const vlCheck *c, const vlSolid *solid,
       if (d->positions) {
         const float *x = d->positions + 3 * (size_t)((uint64_t)k * d->vertices / 16);
         vlMat4 m = vl_mat4_load(d->group_from_shape);
-        for (int j = 0; j < 3; j++)
-          q[j] = x[j];
-        vl_mat4_point(&m, q, p);
+        vl_mat4_vertex(&m, x, p);
       } else {
         vl_solid_sample(&emission, k, 16, p);
       }
@@ -82,7 +78,7 @@ static const char *medium_name(const vlCheck *c, vlMediumId id) {
 static void judge(vlCheck *c, const vlSolid *solid, const double *eye,
                   const vlMat4 *group_from_world) {
   const vlShapeDef *d = solid->shape;
-  const vlMaterialDef *m = vl_check_material(c, d->material);
+  const vlMaterialDef *m = vl_scene_material(c->scene, d->material);
   vlCheckName name = vl_check_material_name(m);
   vlMediumId medium = c->scene->defs.camera_medium;
   bool media = d->inside.index != d->outside.index;
@@ -190,7 +186,7 @@ enum { MAX_SOLIDS = 128, SAMPLES = 64 };
 static bool apart(const vlExtent *a, const vlExtent *b) {
   bool away = false;
   for (int k = 0; k < 3; k++) {
-    double hair = 1e-4 * (a->high[k] - a->low[k]);
+    double hair = 1e-4 * vl_extent_size(a, k);
     away = away || a->high[k] <= b->low[k] + hair || b->high[k] <= a->low[k] + hair;
   }
   return away;
@@ -207,7 +203,7 @@ static uint32_t samples_in(const vlSolid *a, const vlSolid *b) {
 }
 
 static double box_volume(const vlExtent *b) {
-  return (b->high[0] - b->low[0]) * (b->high[1] - b->low[1]) * (b->high[2] - b->low[2]);
+  return vl_extent_size(b, 0) * vl_extent_size(b, 1) * vl_extent_size(b, 2);
 }
 
 static void check_nesting(vlCheck *c, const vlSolid *solids, const vlExtent *boxes,

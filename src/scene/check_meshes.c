@@ -159,7 +159,7 @@ static void check_uv(vlCheck *c, const vlShapeDef *d, const Needs *n) {
 /* ---- solids ------------------------------------------------------------------------------ */
 
 static bool is_solid(const vlCheck *c, const vlShapeDef *d) {
-  const vlMaterialDef *m = vl_check_material(c, d->material);
+  const vlMaterialDef *m = vl_scene_material(c->scene, d->material);
   return m &&
          ((vl_kind_row(&vl_material_family, (int)m->kind)->traits & VL_MATERIAL_REFRACTS) ||
           (vl_principled_transmits(m) && !m->principled.thin_walled));
@@ -229,7 +229,7 @@ static void check_solid(vlCheck *c, const uint32_t *shapes, size_t count, const 
     edges += solid.parts[i].open_edges;
     open += solid.parts[i].open_edges > 0;
   }
-  vlCheckName name = vl_check_material_name(vl_check_material(c, first->material));
+  vlCheckName name = vl_check_material_name(vl_scene_material(c->scene, first->material));
   if (open)
     vl_check_add(
         c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, first->source,
@@ -245,7 +245,7 @@ static void check_solid(vlCheck *c, const uint32_t *shapes, size_t count, const 
 
 static void check_sphere(vlCheck *c, const vlShapeDef *d) {
   const double whole = 2 * 3.14159265358979 - 1e-5;
-  vlCheckName name = vl_check_material_name(vl_check_material(c, d->material));
+  vlCheckName name = vl_check_material_name(vl_scene_material(c->scene, d->material));
   if (!d->centers &&
       ((double)d->phi_max < whole || d->z_min > -d->radius || d->z_max < d->radius))
     vl_check_add(c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, d->source,

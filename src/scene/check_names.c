@@ -11,10 +11,6 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id) {
-  return id.index ? &check->scene->materials.items[id.index - 1] : NULL;
-}
-
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]) {
   return vl_row_textures(vl_kind_row(&vl_material_family, (int)m->kind), m, inputs,
                          VL_CHECK_INPUTS);

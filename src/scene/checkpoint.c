@@ -30,18 +30,6 @@ void vl_scene_checkpoint_destroy(vlSceneCheckpoint *checkpoint) {
     vl_free(checkpoint->scene.context, checkpoint);
 }
 
-/* Frees the objects that the scene owns since the checkpoint. */
-static void free_added(const vlScene *scene, const vlScene *before) {
-  for (size_t i = before->blocks.count; i < scene->blocks.count; i++)
-    vl_free(scene->context, scene->blocks.items[i]);
-  for (size_t i = before->images.count; i < scene->images.count; i++)
-    vl_image_destroy(scene->images.items[i]);
-  for (size_t i = before->apertures.count; i < scene->apertures.count; i++)
-    vl_aperture_destroy(scene->apertures.items[i]);
-  for (size_t i = before->optics.count; i < scene->optics.count; i++)
-    vl_optics_destroy(scene->optics.items[i]);
-}
-
 /* What the remaining shapes and instances add up to in their groups. */
 static void count_groups(vlScene *scene) {
   for (size_t i = 0; i < scene->groups.count; i++) {
@@ -63,9 +51,10 @@ static void count_groups(vlScene *scene) {
 void vl_scene_roll_back(vlScene *scene, vlSceneCheckpoint *checkpoint) {
   if (!scene || !checkpoint || checkpoint->scene.number != scene->number)
     return;
-  const vlScene after = *scene;
-  free_added(scene, &checkpoint->scene);
-  *scene = checkpoint->scene;
+  const vlScene after = *scene, *before = &checkpoint->scene;
+  vl_scene_free_beyond(scene, (vlSceneCounts){before->blocks.count, before->images.count,
+                                              before->apertures.count, before->optics.count});
+  *scene = *before;
 #define KEEP_ARRAY(array)                                               \
   scene->array.items = after.array.items; /* it may have moved since */ \
   scene->array.capacity = after.array.capacity;

@@ -89,7 +89,7 @@ typedef struct View {
 static double extent_along(const vlExtent *box, const double axis[3]) {
   double sum = 0;
   for (int i = 0; i < 3; i++)
-    sum += fabs(axis[i]) * (box->high[i] - box->low[i]);
+    sum += fabs(axis[i]) * vl_extent_size(box, i);
   return sum;
 }
 
@@ -296,7 +296,7 @@ static bool choose_walls(vlScene *scene, const View *v, const vlExtent *whole,
   vlExtent box = *whole;
   frame_closed(scene, v, true, closed, &box, boxes);
   for (int i = 0; i < 3; i++)
-    size += whole->high[i] - whole->low[i];
+    size += vl_extent_size(whole, i);
   for (int i = 0; i < 3; i++) {
     double away = closed->kind == VL_CLOSED_EMPTY
                       ? v->front[i]
@@ -366,8 +366,7 @@ static bool open_walls(vlScene *scene, const View *v, bool camera, vlExtent *box
 
 static void tell_camera(const vlScene *scene, const char *view, const vlExtent *box) {
   vl_log(scene->context, VL_LOG_DEBUG, NULL, "camera: %s; the model is %.4g x %.4g x %.4g",
-         view, box->high[0] - box->low[0], box->high[1] - box->low[1],
-         box->high[2] - box->low[2]);
+         view, vl_extent_size(box, 0), vl_extent_size(box, 1), vl_extent_size(box, 2));
 }
 
 /* ---- the ground -------------------------------------------------------------------------- */
@@ -401,7 +400,7 @@ static void place_ground(vlCompleteDef *def, const View *v, const vlExtent *box,
   for (int i = 0; i < 3; i++) {
     bool some = box->low[i] <= box->high[i];
     center[i] = some ? 0.5 * (box->low[i] + box->high[i]) : 0;
-    size += some ? (box->high[i] - box->low[i]) * (box->high[i] - box->low[i]) : 1;
+    size += some ? vl_extent_size(box, i) * vl_extent_size(box, i) : 1;
   }
   size = sqrt(size);
   if (!(size > 0))

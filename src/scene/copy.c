@@ -115,7 +115,6 @@ bool vl_scene_copy_image(vlScene *scene, const vlImage **image) {
   vl_free(scene->context, names);
   if (result == VL_OK)
     return true;
-  vl_scene_fail(scene, result, (vlSource){0},
-                result == VL_ERROR_MEMORY ? "out of memory" : "image cannot be copied");
-  return false;
+  return vl_scene_fail(scene, result, (vlSource){0},
+                       result == VL_ERROR_MEMORY ? "out of memory" : "image cannot be copied");
 }

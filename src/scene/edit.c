@@ -133,10 +133,8 @@ static vlResult finish(vlScene *scene, vlSceneFamily family, uint32_t id, size_t
   }
   if (done)
     return VL_OK; /* no memory for the list: the blocks stay with the scene */
-  for (size_t i = blocks; i < scene->blocks.count; i++)
-    vl_free(scene->context, scene->blocks.items[i]);
-  for (size_t i = images; i < scene->images.count; i++)
-    vl_image_destroy(scene->images.items[i]);
+  vl_scene_free_beyond(
+      scene, (vlSceneCounts){blocks, images, scene->apertures.count, scene->optics.count});
   scene->blocks.count = blocks;
   scene->images.count = images;
   return take_error(scene, error);
@@ -182,8 +180,7 @@ static vlResult set_object(vlScene *scene, vlSceneFamily family, uint32_t id, co
     return vl_fail_memory(error);
   if (!def)
     return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", row->thing);
-  vlSource source; /* its file's name outlives the change */
-  memcpy(&source, (const char *)def + row->source, sizeof source);
+  vlSource source = vl_scene_def_source(family, def); /* its file's name outlives the change */
   if (!vl_scene_copy_source(scene, &source))
     return take_error(scene, error);
   const size_t blocks = scene->blocks.count;

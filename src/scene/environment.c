@@ -18,21 +18,12 @@
 enum { BUILT_IN_SIDE = 512, MAX_SIDE = 2048 };
 
 bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], double front[3]) {
-  double l = 0, d = 0, f = 0;
-  for (int i = 0; i < 3; i++)
-    l += def->up[i] * def->up[i];
-  for (int i = 0; i < 3; i++)
-    up[i] = l > 0 ? def->up[i] / sqrt(l) : 0;
-  for (int i = 0; i < 3; i++)
-    d += def->front[i] * up[i];
-  for (int i = 0; i < 3; i++) {
-    front[i] = def->front[i] - d * up[i];
-    f += front[i] * front[i];
-  }
-  for (int i = 0; i < 3; i++)
-    front[i] /= f > 0 ? sqrt(f) : 1;
+  memcpy(up, def->up, sizeof def->up);
+  const double height = vl_normalize3(up);
+  vl_along3(def->front, -vl_dot3(def->front, up), up, front);
+  const double length = vl_normalize3(front);
   vl_cross3(up, front, right);
-  return l > 0 && f > 1e-12 && isfinite(l + f);
+  return height > 0 && length > 1e-6 && isfinite(height + length);
 }
 
 /* ---- built-in environments --------------------------------------------------------------- */
@@ -120,10 +111,8 @@ static bool read_environment(vlScene *scene, const char *path, vlImage **image) 
   vl_error_clear(&error);
   vlImage *from = NULL;
   vlResult r = vl_image_read(scene->context, path ? path : "", &from, &error);
-  if (r != VL_OK) {
-    vl_scene_fail(scene, r, (vlSource){0}, "%s", error.message);
-    return false;
-  }
+  if (r != VL_OK)
+    return vl_scene_fail(scene, r, (vlSource){0}, "%s", error.message);
   if (from->width == from->height) {
     *image = from;
     return true;
@@ -167,11 +156,9 @@ bool vl_scene_add_environment(vlScene *scene, const vlCompleteDef *def,
   vlLightDef light = vl_default_light_def(VL_LIGHT_INFINITE);
   double right[3], up[3], front[3], c = vl_precise_cos(def->rotation),
                                     s = vl_precise_sin(def->rotation);
-  if (!vl_scene_axes(def, right, up, front) || !isfinite(def->strength) || !isfinite(c)) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0},
-                  "environment: its axes, rotation or strength make no sense");
-    return false;
-  }
+  if (!vl_scene_axes(def, right, up, front) || !isfinite(def->strength) || !isfinite(c))
+    return vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0},
+                         "environment: its axes, rotation or strength make no sense");
   for (int i = 0; i < 3; i++) { /* axes: x right, y ahead, rotated about z */
     light.world_from_light[4 * i] = c * right[i] - s * front[i];
     light.world_from_light[4 * i + 1] = -s * right[i] - c * front[i];

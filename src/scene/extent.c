@@ -20,11 +20,10 @@ void vl_mesh_face(const vlShapeDef *shape, const vlMat4 *m, size_t face, double 
   double a[3], b[3];
   for (size_t k = 0; k < 3; k++) {
     const float *v = shape->positions + 3 * (size_t)shape->indices[3 * face + k];
-    const double q[3] = {v[0], v[1], v[2]};
+    for (int i = 0; i < 3; i++)
+      p[k][i] = v[i];
     if (m)
-      vl_mat4_point(m, q, p[k]);
-    else
-      memcpy(p[k], q, sizeof q);
+      vl_mat4_vertex(m, v, p[k]);
   }
   vl_sub3(p[1], p[0], a);
   vl_sub3(p[2], p[0], b);
@@ -59,8 +58,8 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
   }
   size_t step = d->vertices / most + 1;
   for (size_t i = 0; i < d->vertices; i += step) {
-    double v[3] = {d->positions[3 * i], d->positions[3 * i + 1], d->positions[3 * i + 2]}, p[3];
-    vl_mat4_point(&m, v, p);
+    double p[3];
+    vl_mat4_vertex(&m, d->positions + 3 * i, p);
     visit(user, p);
   }
 }

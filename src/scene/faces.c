@@ -4,22 +4,15 @@
 #include <math.h>
 
 #include "math/double3.h"
-#include "math/transform.h"
+#include "scene/extent.h"
 
 /* sign: 1, or -1 where the outside is opposite to the side that the corners' order gives. */
 static vlFace face_of(const vlShapeDef *shape, const vlMat4 *m, double sign, size_t index) {
   vlFace face = {.shape = shape};
-  for (int c = 0; c < 3; c++) {
-    const float *v = shape->positions + 3 * (size_t)shape->indices[3 * index + (size_t)c];
-    const double q[3] = {v[0], v[1], v[2]};
-    vl_mat4_point(m, q, face.corners[c]);
-  }
-  const double(*p)[3] = (const double(*)[3])face.corners;
+  double n[3], (*p)[3] = face.corners;
+  vl_mesh_face(shape, m, index, p, n);
   for (int i = 0; i < 3; i++) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    face.area[i] =
-        0.5 * sign *
-        ((p[1][j] - p[0][j]) * (p[2][k] - p[0][k]) - (p[1][k] - p[0][k]) * (p[2][j] - p[0][j]));
+    face.area[i] = 0.5 * sign * n[i];
     face.middle[i] = (p[0][i] + p[1][i] + p[2][i]) / 3;
   }
   face.size = vl_norm3(face.area);

@@ -87,7 +87,7 @@ static void add_block(void *user, const vlFace *face) {
 }
 
 vlBlocks vl_facing_blocks(const vlScene *scene, const vlExtent *box, int axis) {
-  Blocks b = {.axis = axis, .low = box->low[axis], .size = box->high[axis] - box->low[axis]};
+  Blocks b = {.axis = axis, .low = box->low[axis], .size = vl_extent_size(box, axis)};
   vlBlocks blocks = {.levels = 0};
   vl_faces_visit(scene, add_block, &b);
   if (!(b.surface > 0))

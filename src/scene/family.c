@@ -195,12 +195,6 @@ const void *vl_scene_item(const vlScene *scene, vlSceneFamily family, uint32_t i
   return vl_scene_has(scene, family, index) ? vl_scene_at(unchanged, family, index) : NULL;
 }
 
-/* The row of a def's kind; null: unknown, or the family has no kinds. */
-static const vlKindRow *def_row(vlSceneFamily family, const void *def) {
-  const vlKindFamily *kinds = vl_scene_rows[family].kinds;
-  return kinds ? vl_kind_row(kinds, vl_scene_def_kind(family, def)) : NULL;
-}
-
 /* ---- adding ------------------------------------------------------------------------------ */
 
 enum { MAX_OBJECTS = 0x7fffffff };
@@ -211,26 +205,21 @@ bool vl_scene_may_add(vlScene *scene, vlSceneFamily family, const void *def) {
   if (scene->error.code != VL_OK)
     return false;
   if (!def || *(const uint32_t *)def != row->cookie) { /* the first member of each def */
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, nowhere, "%s: " VL_BAD_COOKIE, row->thing);
-    return false;
+    return vl_scene_fail(scene, VL_ERROR_ARGUMENT, nowhere, "%s: " VL_BAD_COOKIE, row->thing);
   }
   if (*vl_scene_count_of(scene, family) < MAX_OBJECTS)
     return true;
-  vl_scene_fail(scene, VL_ERROR_SCENE, nowhere, "too many objects");
-  return false;
+  return vl_scene_fail(scene, VL_ERROR_SCENE, nowhere, "too many objects");
 }
 
 const vlKindRow *vl_scene_row_to_add(vlScene *scene, vlSceneFamily family, const void *def) {
   if (!vl_scene_may_add(scene, family, def))
     return NULL;
-  const vlSceneRow *row = &vl_scene_rows[family];
-  const vlKindRow *of_kind = def_row(family, def);
-  if (!of_kind) {
-    vlSource source;
-    memcpy(&source, (const char *)def + row->source, sizeof source);
-    vl_scene_reject(scene, source, row->thing, "unknown kind");
-  }
-  return of_kind;
+  const vlKindRow *row = vl_scene_def_row(family, def);
+  if (!row)
+    vl_scene_reject(scene, vl_scene_def_source(family, def), vl_scene_rows[family].thing,
+                    "unknown kind");
+  return row;
 }
 
 uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def) {
@@ -255,6 +244,17 @@ int vl_scene_def_kind(vlSceneFamily family, const void *def) {
   if (offset)
     memcpy(&kind, (const char *)def + offset, sizeof kind);
   return kind;
+}
+
+const vlKindRow *vl_scene_def_row(vlSceneFamily family, const void *def) {
+  const vlKindFamily *kinds = vl_scene_rows[family].kinds;
+  return kinds ? vl_kind_row(kinds, vl_scene_def_kind(family, def)) : NULL;
+}
+
+vlSource vl_scene_def_source(vlSceneFamily family, const void *def) {
+  vlSource source;
+  memcpy(&source, (const char *)def + vl_scene_rows[family].source, sizeof source);
+  return source;
 }
 
 uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind) {
@@ -287,7 +287,7 @@ uint32_t vl_scene_uses(vlSceneFamily family, const void *def,
                        vlSceneUse uses[VL_SCENE_MAX_USES]) {
   enum { MAX_IDS = sizeof ids / sizeof *ids };
   vlTextureId inputs[VL_SCENE_MAX_USES - MAX_IDS];
-  const vlKindRow *row = def_row(family, def);
+  const vlKindRow *row = vl_scene_def_row(family, def);
   const uint32_t most = VL_SCENE_MAX_USES - MAX_IDS;
   uint32_t count = row ? vl_row_textures(row, def, inputs, most) : 0;
   for (uint32_t i = 0; i < count; i++)
@@ -342,7 +342,7 @@ static void own_row(vlSceneOwned *owned, const vlKindRow *row, const void *def) 
 }
 
 void vl_scene_owned(vlSceneFamily family, const void *def, vlSceneOwned *owned) {
-  const vlKindRow *row = def_row(family, def);
+  const vlKindRow *row = vl_scene_def_row(family, def);
   owned->count = 0;
   if (row)
     own_row(owned, row, def);

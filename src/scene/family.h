@@ -35,6 +35,10 @@ vlSceneMarks *vl_scene_marks(vlScene *scene, vlSceneFamily family);
 
 /* The kind of a def; 0: the family has one kind. */
 int vl_scene_def_kind(vlSceneFamily family, const void *def);
+/* The row of a def's kind; null: unknown, or the family has no kinds. */
+const vlKindRow *vl_scene_def_row(vlSceneFamily family, const void *def);
+/* Where a def of a family with kinds comes from. */
+vlSource vl_scene_def_source(vlSceneFamily family, const void *def);
 /* The name of a def; null: it has none. */
 const char *vl_scene_def_name(vlSceneFamily family, const void *def);
 

@@ -80,7 +80,7 @@ static bool find_free_point(vlScene *scene, const vlExtent *box, const double up
     double p[3] = {middle[0], middle[1], middle[2]};
     const int axis = (point - 1) / 2;
     if (point)
-      p[axis] += (point & 1 ? 0.23 : -0.23) * (box->high[axis] - box->low[axis]);
+      p[axis] += (point & 1 ? 0.23 : -0.23) * vl_extent_size(box, axis);
     add_rays_around(r, p, up);
   }
   if (!cast(scene, r))

@@ -61,11 +61,8 @@ static double shape_area(const vlShapeDef *d) {
   uint32_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   for (uint32_t i = 0; i < d->faces; i++) {
     double p[4][3];
-    for (uint32_t k = 0; k < per; k++) {
-      const float *x = d->positions + 3 * (size_t)d->indices[per * (size_t)i + k];
-      const double q[3] = {x[0], x[1], x[2]};
-      vl_mat4_point(&m, q, p[k]);
-    }
+    for (uint32_t k = 0; k < per; k++)
+      vl_mat4_vertex(&m, d->positions + 3 * (size_t)d->indices[per * (size_t)i + k], p[k]);
     sum += triangle_area((const double(*)[3])p);
     if (per == 4)
       sum += triangle_area((const double(*)[3])(p + 1));

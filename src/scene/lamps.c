@@ -124,10 +124,8 @@ static bool take_emitter(const vlScene *scene, const vlShapeDef *d, Emitter *emi
   const vlMat4 m = vl_mat4_load(d->group_from_shape);
   vlExtent box = vl_extent_nothing;
   for (size_t i = 0; i < d->vertices; i++) {
-    const float *v = d->positions + 3 * i;
-    const double q[3] = {(double)v[0], (double)v[1], (double)v[2]};
     double p[3];
-    vl_mat4_point(&m, q, p);
+    vl_mat4_vertex(&m, d->positions + 3 * i, p);
     vl_extent_grow(&box, p);
   }
   vl_extent_middle(&box, emitter->middle);

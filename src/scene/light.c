@@ -5,6 +5,7 @@
 
 #include "base/unset.h"
 #include "color/color.h"
+#include "math/transform.h"
 #include "scene/family.h"
 #include "schema/schema.h"
 #include "velo/light.h"
@@ -125,9 +126,8 @@ static bool check_light(vlScene *scene, const vlLightDef *d, const vlKindRow *ro
     return vl_scene_reject(scene, d->source, "light", "power must not be negative");
   if (d->illuminance < 0.0)
     return vl_scene_reject(scene, d->source, "light", "illuminance must not be negative");
-  for (int i = 0; i < 16; i++)
-    if (!isfinite(d->world_from_light[i]))
-      return vl_scene_reject(scene, d->source, "light", "transform is not finite");
+  if (!vl_mat4_is_finite(vl_mat4_load(d->world_from_light)))
+    return vl_scene_reject(scene, d->source, "light", "transform is not finite");
   bool same = d->from[0] == d->to[0] && d->from[1] == d->to[1] && d->from[2] == d->to[2];
   if ((row->traits & VL_LIGHT_TRAIT_AIMS) && same)
     return vl_scene_reject(scene, d->source, "light",

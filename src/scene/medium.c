@@ -3,14 +3,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "math/transform.h"
 #include "scene/family.h"
 #include "schema/schema.h"
 #include "velo/medium.h"
 
 static bool bad(vlScene *scene, const vlMediumDef *d, const char *why) {
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s",
-                vl_short_text(d->name).text, why);
-  return false;
+  return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s",
+                       vl_short_text(d->name).text, why);
 }
 
 /* Checks the values of a grid: finite and, for most kinds, not negative. */
@@ -20,10 +20,10 @@ static bool check_values(vlScene *scene, const vlMediumDef *d, const float *v, s
   for (size_t i = 0; i < count; i++) {
     if (isfinite(v[i]) && (signs || v[i] >= 0.0f))
       continue;
-    vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s: value %zu is %s (%g)",
-                  vl_short_text(d->name).text, what, i / per,
-                  isfinite(v[i]) ? "negative" : "not finite", (double)v[i]);
-    return false;
+    return vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                         "medium \"%s\": %s: value %zu is %s (%g)", vl_short_text(d->name).text,
+                         what, i / per, isfinite(v[i]) ? "negative" : "not finite",
+                         (double)v[i]);
   }
   return true;
 }
@@ -51,9 +51,8 @@ static bool check_spectrum(vlScene *scene, const vlMediumDef *d, const vlSpectru
     negative = negative || s->values[i] < 0.0f;
   if (!negative)
     return true;
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s is negative",
-                vl_short_text(d->name).text, what);
-  return false;
+  return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s is negative",
+                       vl_short_text(d->name).text, what);
 }
 
 static bool check_rgb_absorption(vlScene *scene, const vlMediumDef *d) {
@@ -68,9 +67,8 @@ static bool check_rgb_absorption(vlScene *scene, const vlMediumDef *d) {
 }
 
 static bool check_medium(vlScene *scene, const vlMediumDef *d, const vlKindRow *row) {
-  for (int i = 0; i < 16; i++)
-    if (!isfinite(d->world_from_medium[i]))
-      return bad(scene, d, "transform is not finite");
+  if (!vl_mat4_is_finite(vl_mat4_load(d->world_from_medium)))
+    return bad(scene, d, "transform is not finite");
   if (!check_spectrum(scene, d, &d->sigma_a, "sigma_a") ||
       !check_spectrum(scene, d, &d->sigma_s, "sigma_s") ||
       !check_spectrum(scene, d, &d->emission, "emission"))

@@ -51,10 +51,8 @@ static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t 
                  uint32_t *welded) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   for (uint32_t i = 0; i < d->vertices; i++) {
-    double p[3] = {d->positions[3 * (size_t)i], d->positions[3 * (size_t)i + 1],
-                   d->positions[3 * (size_t)i + 2]},
-           q[3];
-    vl_mat4_point(&m, p, q);
+    double q[3];
+    vl_mat4_vertex(&m, d->positions + 3 * (size_t)i, q);
     for (int k = 0; k < 3; k++)
       q[k] = (double)(float)q[k] + 0.0; /* rounded to float as in the renderer */
     uint32_t slot = (uint32_t)hash_point(q) & mask;
@@ -238,7 +236,7 @@ static double bounds_of(const vlMeshSolid *b, double low[3]) {
   for (size_t i = 0; i < b->corners; i++)
     vl_extent_grow(&box, b->points + 3 * i);
   for (int k = 0; k < 3; k++)
-    longest = fmax(longest, box.high[k] - box.low[k]);
+    longest = fmax(longest, vl_extent_size(&box, k));
   memcpy(low, box.low, sizeof box.low);
   return longest;
 }

@@ -13,12 +13,8 @@ typedef struct Survey {
   double surface, flat; /* of what is low; of what lies flat of that */
 } Survey;
 
-static double size(const vlExtent *box, int axis) {
-  return box->high[axis] - box->low[axis];
-}
-
 static double widest(const vlExtent *box, int axis) {
-  return fmax(size(box, (axis + 1) % 3), size(box, (axis + 2) % 3));
+  return fmax(vl_extent_size(box, (axis + 1) % 3), vl_extent_size(box, (axis + 2) % 3));
 }
 
 static void visit(void *user, const vlThing *thing) {
@@ -31,7 +27,7 @@ static void visit(void *user, const vlThing *thing) {
   vl_extent_join(low ? &s->low : &s->model, box);
   if (low && surface > 0)
     s->surface += surface;
-  if (low && surface > 0 && size(box, s->axis) <= 0.15 * widest(box, s->axis))
+  if (low && surface > 0 && vl_extent_size(box, s->axis) <= 0.15 * widest(box, s->axis))
     s->flat += surface;
 }
 
@@ -41,7 +37,7 @@ static bool find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain 
   if (scene->frame_points.count || !vl_things_are_few(scene))
     return false;
   vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &whole);
-  const double height = size(&whole, axis);
+  const double height = vl_extent_size(&whole, axis);
   if (!(height > 0) || !isfinite(height))
     return false;
   Survey s = {.limits = boxes[scene->groups.count],
@@ -52,8 +48,9 @@ static bool find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain 
   vl_things_visit(scene, boxes, visit, &s);
   if (!(s.flat > most * s.surface) || !(s.model.low[0] <= s.model.high[0]))
     return false;
-  const double model = fmax(widest(&s.model, axis), size(&s.model, axis));
-  const double footprint = size(&s.low, (axis + 1) % 3) * size(&s.low, (axis + 2) % 3);
+  const double model = fmax(widest(&s.model, axis), vl_extent_size(&s.model, axis));
+  const double footprint =
+      vl_extent_size(&s.low, (axis + 1) % 3) * vl_extent_size(&s.low, (axis + 2) % 3);
   if (!(widest(&s.low, axis) >= wide * model) || !(s.flat >= covered * footprint))
     return false;
   plain->model = plain->shown = s.model;

@@ -92,10 +92,8 @@ static void add_points(Survey *s, const vlScene *scene) {
       continue;
     const vlMat4 m = vl_mat4_load(shape->group_from_shape);
     for (size_t i = 0; i < shape->faces; i++) {
-      const double *c = shape->centers + 3 * i;
-      const double q[3] = {c[0], c[1], c[2]};
       double p[3];
-      vl_mat4_point(&m, q, p);
+      vl_mat4_point(&m, shape->centers + 3 * i, p);
       add_sample(s, p, NULL, 1);
     }
   }
@@ -177,7 +175,7 @@ bool vl_posture_find(const vlScene *scene, const vlExtent *box, vlPosture *postu
   if (!vl_things_are_few(scene))
     return false;
   for (int i = 0; i < 3; i++)
-    if (!(box->high[i] > box->low[i]) || !isfinite(box->high[i] - box->low[i]))
+    if (!(box->high[i] > box->low[i]) || !isfinite(vl_extent_size(box, i)))
       return false;
   Survey *s = vl_alloc_zero(scene->context, 1, sizeof *s);
   if (!s)

@@ -139,7 +139,7 @@ static bool make_blocks(vlContext *context, vlProbe *s, const vlShapeDef *d, siz
     }
     double margin = 0;
     for (int i = 0; i < 3; i++)
-      margin += 1e-6 * (b->high[i] - b->low[i]);
+      margin += 1e-6 * vl_extent_size(b, i);
     for (int i = 0; i < 3; i++) {
       b->low[i] -= margin;
       b->high[i] += margin;
@@ -163,8 +163,8 @@ static bool survey_mesh(vlContext *context, vlProbe *s, const vlShapeDef *d, siz
   p->flip = d->reverse_orientation; /* mirroring keeps the side: rays are met in shape space */
   p->box = vl_extent_nothing;
   for (size_t i = 0; i < d->vertices; i++) {
-    double v[3] = {d->positions[3 * i], d->positions[3 * i + 1], d->positions[3 * i + 2]}, q[3];
-    vl_mat4_point(&m, v, q);
+    double q[3];
+    vl_mat4_vertex(&m, d->positions + 3 * i, q);
     vl_extent_grow(&p->box, q);
   }
   return ++s->count < MAX_PLACED;

@@ -10,18 +10,17 @@
 #include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
-vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format,
-                       ...) {
+bool vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...) {
   if (scene->error.code != VL_OK)
-    return scene->error.code;
+    return false;
   char text[sizeof scene->error.message];
   VL_FORMAT(text, format);
-  return vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
+  vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
+  return false;
 }
 
 bool vl_scene_fail_memory(vlScene *scene) {
-  vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-  return false;
+  return vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
 }
 
 bool vl_scene_stopped(vlScene *scene, double fraction) {
@@ -54,18 +53,22 @@ vlResult vl_scene_create(vlContext *context, vlScene **result) {
   return VL_OK;
 }
 
+void vl_scene_free_beyond(const vlScene *scene, vlSceneCounts counts) {
+  for (size_t i = counts.blocks; i < scene->blocks.count; i++)
+    vl_free(scene->context, scene->blocks.items[i]);
+  for (size_t i = counts.images; i < scene->images.count; i++)
+    vl_image_destroy(scene->images.items[i]);
+  for (size_t i = counts.apertures; i < scene->apertures.count; i++)
+    vl_aperture_destroy(scene->apertures.items[i]);
+  for (size_t i = counts.optics; i < scene->optics.count; i++)
+    vl_optics_destroy(scene->optics.items[i]);
+}
+
 void vl_scene_destroy(vlScene *scene) {
   if (!scene)
     return;
   vlContext *context = scene->context;
-  for (size_t i = 0; i < scene->blocks.count; i++)
-    vl_free(context, scene->blocks.items[i]);
-  for (size_t i = 0; i < scene->images.count; i++)
-    vl_image_destroy(scene->images.items[i]);
-  for (size_t i = 0; i < scene->apertures.count; i++)
-    vl_aperture_destroy(scene->apertures.items[i]);
-  for (size_t i = 0; i < scene->optics.count; i++)
-    vl_optics_destroy(scene->optics.items[i]);
+  vl_scene_free_beyond(scene, (vlSceneCounts){0});
   for (size_t i = 0; i < scene->edits.count; i++) {
     vl_free(context, scene->edits.items[i].block);
     vl_image_destroy(scene->edits.items[i].image);

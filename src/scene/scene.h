@@ -160,10 +160,10 @@ bool vl_coat_in_closed_form(const vlMaterialDef *def);
 /* Whether it is a principled material that transmits light. */
 bool vl_principled_transmits(const vlMaterialDef *def);
 
-/* Stores the error in the scene if it is the first one. Returns the code. */
-vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
+/* Stores the error in the scene if it is the first one. Returns false. */
+bool vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* The same for memory that is exhausted. Returns false. */
+/* The same for memory that is exhausted. */
 bool vl_scene_fail_memory(vlScene *scene);
 
 /* True: the load that is running must stop; the scene then has the error CANCELLED. fraction:
@@ -186,6 +186,11 @@ void vl_scene_free_edits(vlScene *scene, vlSceneFamily family, uint32_t id, size
 vlSceneMark *vl_scene_mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id);
 /* Gives an object a new generation; a removed one is there again. */
 void vl_scene_note_change(vlScene *scene, vlSceneMark *mark);
+/* Frees the blocks, images and lenses that the scene owns beyond these numbers of them. */
+typedef struct vlSceneCounts {
+  size_t blocks, images, apertures, optics;
+} vlSceneCounts;
+void vl_scene_free_beyond(const vlScene *scene, vlSceneCounts counts);
 /* Frees those of the scene's blocks that are in a list. */
 void vl_scene_free_blocks(vlScene *scene, const void *const *own, int count);
 /* Takes an id out of the list of removed shapes. */

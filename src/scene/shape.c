@@ -7,13 +7,13 @@
 #include "base/text.h"
 #include "math/double3.h"
 #include "math/motion.h"
+#include "math/transform.h"
 #include "scene/family.h"
 #include "schema/schema.h"
 #include "velo/shape_kinds.h"
 
 static bool bad(vlScene *scene, const vlShapeDef *d, const char *why) {
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
-  return false;
+  return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
 }
 
 /* Index of the first element that is not finite, or count. x - x is 0 for finite x and NaN
@@ -44,9 +44,9 @@ static bool check_floats(vlScene *scene, const vlShapeDef *d, const float *v, si
   size_t count = (size_t)d->vertices * per, i = first_not_finite(v, count);
   if (i == count)
     return true;
-  vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s of vertex %zu is not finite (%c is %f)",
-                what, i / per, per == 2 ? "uv"[i % per] : "xyz"[i % per], (double)v[i]);
-  return false;
+  return vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                       "%s of vertex %zu is not finite (%c is %f)", what, i / per,
+                       per == 2 ? "uv"[i % per] : "xyz"[i % per], (double)v[i]);
 }
 
 static bool check_motion(vlScene *scene, const vlShapeDef *d) {
@@ -58,11 +58,10 @@ static bool check_motion(vlScene *scene, const vlShapeDef *d) {
     return bad(scene, d, "normals move, but positions do not");
   if (!d->normals != !d->normals_close)
     return bad(scene, d, "normals are needed at both ends of a motion or at neither");
-  if (!isfinite(d->times[0]) || !isfinite(d->times[1]) || !(d->times[0] < d->times[1])) {
-    vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
-                  "vertices cannot move from %g to %g seconds", d->times[0], d->times[1]);
-    return false;
-  }
+  if (!isfinite(d->times[0]) || !isfinite(d->times[1]) || !(d->times[0] < d->times[1]))
+    return vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                         "vertices cannot move from %g to %g seconds", d->times[0],
+                         d->times[1]);
   return check_floats(scene, d, d->positions_close, 3, "position at the end") &&
          check_floats(scene, d, d->normals_close, 3, "normal at the end");
 }
@@ -91,10 +90,9 @@ static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
     size_t i = 0;
     while (d->indices[i] < d->vertices)
       i++;
-    vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
-                  "%s %zu names vertex %u, but there are only %u vertices (0 to %u)", face,
-                  i / per, d->indices[i], d->vertices, d->vertices - 1);
-    return false;
+    return vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                         "%s %zu names vertex %u, but there are only %u vertices (0 to %u)",
+                         face, i / per, d->indices[i], d->vertices, d->vertices - 1);
   }
   return check_floats(scene, d, d->positions, 3, "position") &&
          check_floats(scene, d, d->normals, 3, "normal") &&
@@ -134,17 +132,13 @@ static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
     return bad(scene, d, "many spheres as one shape cannot be area lights");
   for (size_t i = 0; i < d->faces; i++) {
     const double *c = d->centers + 3 * i;
-    if (!isfinite(c[0] + c[1] + c[2])) {
-      vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the center of sphere %zu is not finite",
-                    i);
-      return false;
-    }
-    if (!(d->radii[i] > 0.0f) || !isfinite(d->radii[i])) {
-      vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
-                    "the radius of sphere %zu must be above 0, it is %g", i,
-                    (double)d->radii[i]);
-      return false;
-    }
+    if (!isfinite(c[0] + c[1] + c[2]))
+      return vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                           "the center of sphere %zu is not finite", i);
+    if (!(d->radii[i] > 0.0f) || !isfinite(d->radii[i]))
+      return vl_scene_fail(scene, VL_ERROR_SCENE, d->source,
+                           "the radius of sphere %zu must be above 0, it is %g", i,
+                           (double)d->radii[i]);
   }
   return true;
 }
@@ -201,9 +195,8 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
   if (!check_displacement(scene, d))
     return false;
   const double *m = d->group_from_shape;
-  for (int i = 0; i < 16; i++)
-    if (!isfinite(m[i]))
-      return bad(scene, d, "transform of the shape is not finite");
+  if (!vl_mat4_is_finite(vl_mat4_load(m)))
+    return bad(scene, d, "transform of the shape is not finite");
   double det = vl_determinant3(m);
   if (det == 0.0 || !isfinite(det))
     return bad(scene, d, "transform of the shape is singular: it flattens the shape");
@@ -322,8 +315,7 @@ static bool check_pose(vlScene *scene, const double *m, vlSource source) {
   for (int i = 0; i < 16; i++) {
     if (m && isfinite(m[i]))
       continue;
-    vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: transform is not finite");
-    return false;
+    return vl_scene_fail(scene, VL_ERROR_SCENE, source, "instance: transform is not finite");
   }
   return true;
 }
@@ -371,18 +363,17 @@ static bool check_keys(vlScene *scene, uint32_t keys, const double *times, const
       return false;
     if (isfinite(times[k]) && (k == 0 || times[k] > times[k - 1]))
       continue;
-    vl_scene_fail(scene, VL_ERROR_SCENE, source,
-                  "instance: the times of its poses do not ascend (%g)", times[k]);
-    return false;
+    return vl_scene_fail(scene, VL_ERROR_SCENE, source,
+                         "instance: the times of its poses do not ascend (%g)", times[k]);
   }
   for (uint32_t k = 0; k + 1 < keys; k++) {
     vlMotion motion;
     if (vl_motion_make(poses + 16 * (size_t)k, poses + 16 * (size_t)(k + 1), &motion))
       continue;
-    vl_scene_fail(scene, VL_ERROR_SCENE, source,
-                  "instance: no motion leads from one pose to the next: one is singular, not "
-                  "affine, or mirrors alone");
-    return false;
+    return vl_scene_fail(
+        scene, VL_ERROR_SCENE, source,
+        "instance: no motion leads from one pose to the next: one is singular, not "
+        "affine, or mirrors alone");
   }
   return true;
 }

@@ -38,7 +38,7 @@ static void weigh(void *user, const vlThing *thing) {
   if (!vl_extent_holds(&s->limits, box) || !(surface > 0) || !isfinite(surface))
     return;
   for (int i = 0; i < 3; i++) {
-    const double size = s->box.high[i] - s->box.low[i],
+    const double size = vl_extent_size(&s->box, i),
                  at = 0.5 * (box->low[i] + box->high[i]) - s->box.low[i];
     const int bin = size > 0 ? (int)(at / size * BINS) : 0;
     s->histogram[i][bin < BINS ? bin : BINS - 1] += surface;
@@ -78,7 +78,7 @@ static int core_end(const double histogram[BINS], double surface, int bin, int s
 
 static void find_core(Survey *s) {
   for (int i = 0; i < 3; i++) {
-    const double size = s->box.high[i] - s->box.low[i];
+    const double size = vl_extent_size(&s->box, i);
     const int first = core_end(s->histogram[i], s->surface, 0, 1),
               last = core_end(s->histogram[i], s->surface, BINS - 1, -1);
     s->core.low[i] = s->box.low[i] + size * first / BINS;

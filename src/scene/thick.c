@@ -6,10 +6,6 @@
 
 enum { SIDES = 6 };
 
-static double size_of(const vlExtent *box, int axis) {
-  return box->high[axis] - box->low[axis];
-}
-
 static void point_at(const vlProbe *s, int ray, double p[3]) {
   for (int i = 0; i < 3; i++)
     p[i] = s->o[ray][i] + s->seen[ray].t * s->d[ray][i];
@@ -20,7 +16,7 @@ static bool is_on(const vlExtent *box, const double p[3]) {
   const double near = 0.01;
   bool on = false;
   for (int i = 0; i < 3; i++) {
-    const double margin = near * size_of(box, i);
+    const double margin = near * vl_extent_size(box, i);
     on = on || p[i] <= box->low[i] + margin || p[i] >= box->high[i] - margin;
   }
   return on;
@@ -45,7 +41,7 @@ static bool is_box(const vlProbe *s, const vlExtent *box) {
  * wall. Returns the number of rays that meet it. */
 static int find_wall(const vlProbe *s, const vlExtent *box, int first, int side, double *at) {
   const int axis = side / 2;
-  const double size = size_of(box, axis), third = size / 3, same = 0.005 * size;
+  const double size = vl_extent_size(box, axis), third = size / 3, same = 0.005 * size;
   const double end = side % 2 ? box->high[axis] : box->low[axis];
   int most = 0;
   *at = end;
@@ -74,7 +70,7 @@ static bool is_inside(const vlExtent *inner, const double p[3]) {
   const double away = 0.02;
   bool inside = true;
   for (int i = 0; i < 3; i++) {
-    const double margin = away * size_of(inner, i);
+    const double margin = away * vl_extent_size(inner, i);
     inside = inside && p[i] >= inner->low[i] + margin && p[i] <= inner->high[i] - margin;
   }
   return inside;
@@ -90,7 +86,7 @@ static bool find_walls(const vlProbe *s, const vlExtent *box, int first, vlExten
     double *at = side % 2 ? &inner->high[axis] : &inner->low[axis];
     const double end = side % 2 ? box->high[axis] : box->low[axis];
     walls += find_wall(s, box, first, side, at) >= few;
-    if (fabs(*at - end) > thickest * size_of(box, axis))
+    if (fabs(*at - end) > thickest * vl_extent_size(box, axis))
       return false;
   }
   for (int k = first; k < first + VL_PROBE_AROUND; k++) {
@@ -128,7 +124,7 @@ bool vl_thick_hides(const vlThick *thick, const double corners[3][3], const doub
     const double sign = side % 2 ? 1 : -1;
     const double outer = side % 2 ? thick->outer.high[axis] : thick->outer.low[axis];
     const double inner = side % 2 ? thick->inner.high[axis] : thick->inner.low[axis];
-    const double from = sign * inner - margin * size_of(&thick->outer, axis);
+    const double from = sign * inner - margin * vl_extent_size(&thick->outer, axis);
     if (!(sign * (eye[axis] - outer) > 0))
       continue;
     bool in_wall = true;

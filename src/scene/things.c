@@ -8,9 +8,9 @@
 static const uint64_t MAX_FACES = 8000000;
 
 static double surface_of(const vlExtent *box) {
-  const double x = box->high[0] - box->low[0];
-  const double y = box->high[1] - box->low[1];
-  const double z = box->high[2] - box->low[2];
+  const double x = vl_extent_size(box, 0);
+  const double y = vl_extent_size(box, 1);
+  const double z = vl_extent_size(box, 2);
   return 2 * (x * y + y * z + z * x);
 }
 

@@ -34,6 +34,12 @@ static void add_face(void *user, const vlFace *face) {
         m->second[i][j] += area / 12 * p[k][i] * p[k][j];
 }
 
+static void turn(double *i, double *j, double cosine, double sine) {
+  const double x = *i, y = *j;
+  *i = cosine * x - sine * y;
+  *j = sine * x + cosine * y;
+}
+
 /* Turns the axes i and j of the symmetric matrix a so that a[i][j] becomes 0; the columns of v
  * turn along. */
 static void rotate(double a[3][3], double v[3][3], int i, int j) {
@@ -43,20 +49,11 @@ static void rotate(double a[3][3], double v[3][3], int i, int j) {
   const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
   const double c = 1 / sqrt(t * t + 1);
   const double s = t * c;
+  for (int k = 0; k < 3; k++)
+    turn(&a[k][i], &a[k][j], c, s);
   for (int k = 0; k < 3; k++) {
-    const double x = a[k][i], y = a[k][j];
-    a[k][i] = c * x - s * y;
-    a[k][j] = s * x + c * y;
-  }
-  for (int k = 0; k < 3; k++) {
-    const double x = a[i][k], y = a[j][k];
-    a[i][k] = c * x - s * y;
-    a[j][k] = s * x + c * y;
-  }
-  for (int k = 0; k < 3; k++) {
-    const double x = v[k][i], y = v[k][j];
-    v[k][i] = c * x - s * y;
-    v[k][j] = s * x + c * y;
+    turn(&a[i][k], &a[j][k], c, s);
+    turn(&v[k][i], &v[k][j], c, s);
   }
 }
 

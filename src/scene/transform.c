@@ -114,10 +114,8 @@ static void transform_light(vlLightDef *light, const Similarity *s) {
   if (is_near(light))
     light->scale = (float)(light->scale * s->scale * s->scale);
   for (int corner = 0; light->has_portal && corner < 4; corner++) {
-    const double from[3] = {light->portal[corner][0], light->portal[corner][1],
-                            light->portal[corner][2]};
     double to[3];
-    vl_mat4_point(&s->matrix, from, to);
+    vl_mat4_vertex(&s->matrix, light->portal[corner], to);
     for (int i = 0; i < 3; i++)
       light->portal[corner][i] = (float)to[i];
   }
@@ -170,9 +168,8 @@ static bool transform_all(vlScene *scene, const Similarity *s) {
   for (size_t i = 0; good && i < scene->lights.count; i++)
     transform_light(&scene->lights.items[i], s);
   for (size_t i = 0; good && i + 3 <= scene->frame_points.count; i += 3) {
-    const double from[3] = {scene->frame_points.items[i], scene->frame_points.items[i + 1],
-                            scene->frame_points.items[i + 2]};
-    vl_mat4_point(&s->matrix, from, &scene->frame_points.items[i]);
+    double *point = &scene->frame_points.items[i];
+    vl_mat4_point(&s->matrix, point, point);
   }
   return good;
 }

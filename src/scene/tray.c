@@ -17,8 +17,8 @@ bool vl_tray_is(const vlScene *scene, const vlExtent *box, int axis) {
   const double floor_least = 0.8, wall_least = 0.5, ceiling = 0.3, hollow = 3, sheet = 1.3,
                lower = 0.85;
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-  const double height = box->high[axis] - box->low[axis];
-  const double width = fmin(box->high[i] - box->low[i], box->high[j] - box->low[j]);
+  const double height = vl_extent_size(box, axis);
+  const double width = fmin(vl_extent_size(box, i), vl_extent_size(box, j));
   vlPosture p;
   if (!(height <= lower * width) || !vl_posture_find(scene, box, &p))
     return false;

@@ -34,7 +34,7 @@ static void grow(const Ends *e, Hull *hull, double x, double y) {
 static void add_arm(Ends *e, const double p[3]) {
   double at[3];
   for (int i = 0; i < 3; i++)
-    at[i] = (p[i] - e->box.low[i]) / (e->box.high[i] - e->box.low[i]);
+    at[i] = (p[i] - e->box.low[i]) / vl_extent_size(&e->box, i);
   if (at[0] > 0.02 && at[0] < 0.98)
     return;
   e->arms[0]++;
@@ -95,7 +95,7 @@ static bool measure(const vlScene *scene, const vlExtent *boxes, Ends *e) {
 }
 
 static double size_of(const Ends *e, int axis) {
-  return e->box.high[axis] - e->box.low[axis];
+  return vl_extent_size(&e->box, axis);
 }
 
 /* Whether the model looks turned about the axis: the other two have the same ends. */

@@ -62,9 +62,9 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
       return vl_gltf_fail_memory(g);
     uint32_t line = error.line > 0 ? (uint32_t)error.line : 0,
              column = error.column > 0 ? (uint32_t)error.column : 1;
-    vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, line, column},
-                  "broken JSON: %.*s", (int)vl_json_problem_length(error.text), error.text);
-    return false;
+    return vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, line, column},
+                         "broken JSON: %.*s", (int)vl_json_problem_length(error.text),
+                         error.text);
   }
   if (!json_is_object(g->root))
     return vl_gltf_fail(&g->top, "not glTF: the JSON is not an object");
@@ -144,10 +144,8 @@ bool vl_gltf_open(vlGltf *g) {
   vlError error;
   vl_error_clear(&error);
   vlResult r = vl_file_read_given(g->context, g->path, false, &data, &g->file_size, &error);
-  if (r != VL_OK) {
-    vl_scene_fail(g->scene, r, (vlSource){0}, "%s", error.message);
-    return false;
-  }
+  if (r != VL_OK)
+    return vl_scene_fail(g->scene, r, (vlSource){0}, "%s", error.message);
   g->file = (uint8_t *)data;
   if (!own(g, data))
     return false;

@@ -51,8 +51,7 @@ bool vl_gltf_fail_code(vlResult code, const vlGltfLocation *location, const char
   char text[MESSAGE], message[MESSAGE];
   VL_FORMAT(text, format);
   write_message(location, text, message);
-  vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", message);
-  return false;
+  return vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", message);
 }
 
 bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...) {

@@ -52,9 +52,8 @@ static bool report_missing(vlObj *obj, const char *what, const char *name) {
     vl_obj_warn(obj, VL_LOG_WARNING, "%s \"%.200s\"; done without", what, name);
     return true;
   }
-  vl_scene_fail(obj->scene, VL_ERROR_MISSING, (vlSource){obj->path, obj->line, 1},
-                "%s \"%.200s\"", what, name);
-  return false;
+  return vl_scene_fail(obj->scene, VL_ERROR_MISSING, (vlSource){obj->path, obj->line, 1},
+                       "%s \"%.200s\"", what, name);
 }
 
 /* Finds an image. When there is none, the result is null and a warning is given. */
@@ -320,10 +319,9 @@ static bool read_library(vlObj *obj, char *name) {
   char *data;
   size_t size;
   vlResult r = vl_file_read(obj->context, path, true, &data, &size, &error);
-  if (r != VL_OK) {
-    vl_scene_fail(obj->scene, r, (vlSource){obj->path, obj->line, 1}, "%s", error.message);
-    return false;
-  }
+  if (r != VL_OK)
+    return vl_scene_fail(obj->scene, r, (vlSource){obj->path, obj->line, 1}, "%s",
+                         error.message);
   /* Errors name the library's line; the OBJ file's own line is restored afterwards. */
   const char *own_path = obj->path;
   uint32_t own_line = obj->line, own_more = obj->more_lines, current = 0;

@@ -23,9 +23,8 @@ bool vl_obj_fail(vlObj *obj, const char *format, ...) {
   char text[500];
   VL_FORMAT(text, format);
   uint32_t column = obj->line ? (uint32_t)(obj->at - obj->line_start) + 1 : 0;
-  vl_scene_fail(obj->scene, VL_ERROR_SCENE, (vlSource){obj->path, obj->line, column}, "%s",
-                text);
-  return false;
+  return vl_scene_fail(obj->scene, VL_ERROR_SCENE, (vlSource){obj->path, obj->line, column},
+                       "%s", text);
 }
 
 void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) {

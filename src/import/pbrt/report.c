@@ -11,8 +11,7 @@
 bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...) {
   char text[512];
   VL_FORMAT(text, format);
-  vl_scene_fail(import->scene, code, source, "%s", text);
-  return false;
+  return vl_scene_fail(import->scene, code, source, "%s", text);
 }
 
 bool vl_import_wrong(vlImport *import, vlSource source, const char *format, ...) {

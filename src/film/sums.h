@@ -154,15 +154,6 @@ static inline void vl_film_add_square(uint64_t sum[3], float value) {
   sum[2] += (shift > 80 ? square >> (128 - shift) : 0) + (now < old);
 }
 
-/* Adds a sample's colour to a pixel's moments. */
-static inline void vl_film_add_moments(vlFilmMoments *m, const float color[3]) {
-  for (int c = 0; c < 3; c++) {
-    m->plain[c] += vl_film_product(color[c], INT64_C(1) << VL_WEIGHT_BITS);
-    vl_film_add_square(m->squares[c], color[c]);
-  }
-  m->samples++;
-}
-
 static inline size_t vl_film_pixels(const vlFilm *film) {
   return (size_t)film->width * film->height;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "api/receipt.h"
+#include "base/text.h"
 #include "base/unset.h"
 #include "sampler/sampler.h"
 #include "velo/schema.h"
@@ -109,7 +110,7 @@ static bool put_member(json_t *object, const char *key, const vlParameter *p, co
 }
 
 static bool is_left_out(const char *member) {
-  for (size_t i = 0; i < sizeof left_out / sizeof *left_out; i++)
+  for (size_t i = 0; i < VL_LENGTH(left_out); i++)
     if (strncmp(member, left_out[i], strlen(left_out[i])) == 0)
       return true;
   return false;
@@ -164,7 +165,7 @@ static bool put_build(json_t *tree, const vlSceneDefs *defs) {
 static bool put_adaptive(json_t *render, const vlSceneDefs *defs) {
   json_t *object = json_object();
   bool good = vl_receipt_put(render, "adaptive", object);
-  for (size_t i = 0; i < sizeof adaptive / sizeof *adaptive && good; i++)
+  for (size_t i = 0; i < VL_LENGTH(adaptive) && good; i++)
     good = put_member(object, adaptive[i], vl_setting(VL_SETTING_RENDER, adaptive[i]), defs);
   return good;
 }

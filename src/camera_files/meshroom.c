@@ -85,7 +85,7 @@ static const Model *find_model(const char *name) {
       {.names = {"brown", "brownt2"}, .family = VL_LENS_OPENCV, .count = 5, .tangential = true},
       {.names = {"fisheye4", "fisheye"}, .family = VL_LENS_FISHEYE, .count = 4},
       {.names = {"fisheye1"}, .family = VL_LENS_FOV, .count = 1}};
-  for (size_t i = 0; i < sizeof models / sizeof *models; i++)
+  for (size_t i = 0; i < VL_LENGTH(models); i++)
     for (int j = 0; j < 2 && models[i].names[j]; j++)
       if (vl_text_is(name, models[i].names[j]))
         return &models[i];

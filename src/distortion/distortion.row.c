@@ -2,6 +2,7 @@
  * kind. */
 #include "distortion/distortion.row.h"
 
+#include "base/text.h"
 #include "distortion/kinds.row.h"
 #include "velo/distortion.h"
 
@@ -10,7 +11,7 @@ VL_DISTORTION_FUNCTIONS(DECLARE)
 
 #define ROW(kind, row, compile) [kind] = &row,
 static const vlDistortionRow *const rows[] = {VL_DISTORTION_FUNCTIONS(ROW)};
-enum { KINDS = sizeof rows / sizeof *rows };
+enum { KINDS = VL_LENGTH(rows) };
 
 const vlDistortionRow *vl_distortion_row(vlDistortion kind) {
   return kind < KINDS ? rows[kind] : NULL;

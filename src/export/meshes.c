@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "export/export.h"
 
 #include "math/elementary.h"
@@ -12,7 +13,7 @@
 enum { ALONG = 64, ACROSS = 32 };
 
 void vl_export_free_mesh(vlExport *x, vlExportMesh *mesh) {
-  for (size_t i = 0; i < sizeof mesh->own / sizeof *mesh->own; i++)
+  for (size_t i = 0; i < VL_LENGTH(mesh->own); i++)
     vl_free(x->context, mesh->own[i]);
   *mesh = (vlExportMesh){0};
 }

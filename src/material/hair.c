@@ -1,4 +1,5 @@
 /* material/hair.c: inputs of the hair material. */
+#include "base/text.h"
 #include "material/compile.h"
 
 static vlResult compile_color(const vlMaterialBuild *b, vlWorldHair *h) {
@@ -39,5 +40,5 @@ vlResult vl_compile_hair_material(const vlMaterialBuild *b) {
                                     {d->beta_n, &h->beta_n},
                                     {d->alpha, &h->alpha}};
   vlResult r = compile_color(b, h);
-  return r == VL_OK ? vl_material_floats(b, floats, sizeof floats / sizeof *floats) : r;
+  return r == VL_OK ? vl_material_floats(b, floats, VL_LENGTH(floats)) : r;
 }

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "base/text.h"
 #include "material/compile.h"
 
 /* Coefficients of Cauchy's n = a + b / lambda^2 (lambda in nm), such that n is n_d at the line
@@ -109,7 +110,7 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   if (r == VL_OK)
     r = vl_material_spectrum(b, &def->reflectance, &m->reflectance);
   if (r == VL_OK)
-    r = vl_material_floats(b, floats, sizeof floats / sizeof *floats);
+    r = vl_material_floats(b, floats, VL_LENGTH(floats));
   if (r == VL_OK)
     r = vl_material_spectrum(b, &d->specular_color, &p->specular_color);
   if (r == VL_OK)

@@ -53,7 +53,7 @@ static vlResult read_field(const vlTensor *t, const char *path, Reader *r, vlTen
     return vl_fail(error, VL_ERROR_SCENE,
                    "%s: the tensor file is damaged: a field is of the unknown type %u", path,
                    f->type);
-  if (f->rank > VL_TENSOR_RANK)
+  if (f->rank > VL_MAX_TENSOR_RANK)
     return vl_fail(error, VL_ERROR_SCENE,
                    "%s: the tensor file is damaged: a field has %u dimensions", path, f->rank);
   f->count = 1;
@@ -92,7 +92,7 @@ vlResult vl_tensor_read(vlContext *context, const char *path, vlTensor *tensor,
       result = vl_fail(error, VL_ERROR_SCENE,
                        "%s: tensor files of version %u.%u are not understood (known: 1.0)",
                        path, major, minor);
-    else if (count > VL_TENSOR_FIELDS)
+    else if (count > VL_MAX_TENSOR_FIELDS)
       result = vl_fail(error, VL_ERROR_SCENE,
                        "%s: the tensor file is damaged: it announces %u fields", path, count);
   }

@@ -10,7 +10,7 @@
 
 #include "base/context.h"
 
-enum { VL_TENSOR_FIELDS = 64, VL_TENSOR_RANK = 8 };
+enum { VL_MAX_TENSOR_FIELDS = 64, VL_MAX_TENSOR_RANK = 8 };
 
 /* The types that velo reads; the format has 11 of them. */
 enum { VL_TENSOR_U8 = 1, VL_TENSOR_F32 = 10 };
@@ -19,7 +19,7 @@ typedef struct vlTensorField {
   const char *name; /* name_size bytes, not zero-terminated */
   size_t name_size;
   uint32_t type, rank;
-  uint64_t shape[VL_TENSOR_RANK];
+  uint64_t shape[VL_MAX_TENSOR_RANK];
   uint64_t count;     /* number of values; all of them lie within the file */
   const char *values; /* unaligned */
 } vlTensorField;
@@ -28,7 +28,7 @@ typedef struct vlTensor {
   char *data; /* the whole file */
   size_t size;
   uint32_t count;
-  vlTensorField fields[VL_TENSOR_FIELDS];
+  vlTensorField fields[VL_MAX_TENSOR_FIELDS];
 } vlTensor;
 
 /* Reads a file. Errors: MISSING, IO, MEMORY; SCENE if the file is damaged (the message names

@@ -1,5 +1,6 @@
 /* render/cast.c: rays of the caller (velo/rays.h): reads them from the caller's arrays batch by
  * batch, has them traced on the workers, and writes what is wanted to the caller's arrays. */
+#include "base/text.h"
 #include "velo/rays.h"
 
 #include <math.h>
@@ -128,7 +129,7 @@ static void clear_rows(const vlCastHits *h, uint64_t first, uint64_t count) {
              {h->shading_normal, 3 * sizeof(float)},
              {h->uv, 2 * sizeof(float)},
              {h->velocity, 3 * sizeof(double)}};
-  for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+  for (size_t k = 0; k < VL_LENGTH(all); k++)
     if (all[k].rows)
       memset((char *)all[k].rows + first * all[k].size, 0, count * all[k].size);
   for (uint64_t i = first; h->t && i < first + count; i++)

@@ -2,6 +2,7 @@
  * for vl_render, the race and vl_tracer_lacks; docs/tracers.md lists the rows. */
 #include "render/support.h"
 
+#include "base/text.h"
 #include "render/camera_view.h"
 #include "velo/shape_kinds.h"
 #include "velo/tracer.h"
@@ -132,7 +133,7 @@ vlResult vl_tracers_lack(const vlWorld *world, const vlCamera *camera, const vlF
                          uint32_t tracers, const char **lack) {
   Scene scene = {world, camera, film, VL_OK};
   *lack = NULL;
-  for (size_t i = 0; !*lack && i < sizeof features / sizeof *features; i++)
+  for (size_t i = 0; !*lack && i < VL_LENGTH(features); i++)
     if (features[i].lacking & tracers && features[i].present(&scene))
       *lack = features[i].name;
   return scene.result;

@@ -89,7 +89,7 @@ vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart 
   check->no_memory = !make_used(check);
   vlCheckPart *const parts[] = {vl_check_names, vl_check_images, vl_check_meshes,
                                 vl_check_inside, more};
-  size_t count = check->def.names_only ? 1 : sizeof parts / sizeof *parts;
+  size_t count = check->def.names_only ? 1 : VL_LENGTH(parts);
   for (size_t i = 0; i < count && !check->no_memory; i++)
     parts[i](check);
   if (check->no_memory || !sort(check)) {

@@ -3,6 +3,7 @@
  * to earlier ones, so one pass from the last to the first suffices. */
 #include <stdio.h>
 
+#include "base/text.h"
 #include "scene/check.h"
 #include "schema/schema.h"
 #include "velo/light.h"
@@ -58,12 +59,12 @@ static void find_used(vlCheck *c) {
   const vlSceneFamily roots[] = {VL_SCENE_SHAPES, VL_SCENE_LIGHTS, VL_SCENE_EMISSIONS,
                                  VL_SCENE_INSTANCES};
   const vlSceneFamily readers[] = {VL_SCENE_MATERIALS, VL_SCENE_TEXTURES};
-  for (size_t k = 0; k < sizeof roots / sizeof *roots; k++)
+  for (size_t k = 0; k < VL_LENGTH(roots); k++)
     for (size_t i = 1; i <= vl_scene_highest(s, roots[k]); i++)
       mark_uses(s, roots[k], i, c->used);
   if (s->defs.camera_medium.index)
     c->used[VL_SCENE_MEDIA][s->defs.camera_medium.index - 1] = 1;
-  for (size_t k = 0; k < sizeof readers / sizeof *readers; k++)
+  for (size_t k = 0; k < VL_LENGTH(readers); k++)
     for (size_t i = vl_scene_highest(s, readers[k]); i > 0; i--)
       if (c->used[readers[k]][i - 1])
         mark_uses(s, readers[k], i, c->used);

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "scene/family.h"
 #include "velo/light.h"
 #include "velo/material.h"
@@ -389,7 +390,7 @@ vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *erro
   *slot = id.index;
   const void *const own[] = {instance->times, instance->poses, instance->label.name,
                              instance->label.path, instance->label.place};
-  vl_scene_free_blocks(scene, own, sizeof own / sizeof *own);
+  vl_scene_free_blocks(scene, own, VL_LENGTH(own));
   instance->times = instance->poses = NULL;
   instance->keys = 0;
   instance->label = (vlLabel){0};

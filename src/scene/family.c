@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/text.h"
 #include "schema/schema.h"
 #include "velo/light.h"
 #include "velo/material.h"
@@ -285,7 +286,7 @@ const char *vl_scene_def_name(vlSceneFamily family, const void *def) {
 
 uint32_t vl_scene_uses(vlSceneFamily family, const void *def,
                        vlSceneUse uses[VL_SCENE_MAX_USES]) {
-  enum { MAX_IDS = sizeof ids / sizeof *ids };
+  enum { MAX_IDS = VL_LENGTH(ids) };
   vlTextureId inputs[VL_SCENE_MAX_USES - MAX_IDS];
   const vlKindRow *row = vl_scene_def_row(family, def);
   const uint32_t most = VL_SCENE_MAX_USES - MAX_IDS;
@@ -306,7 +307,7 @@ uint32_t vl_scene_uses(vlSceneFamily family, const void *def,
 /* ---- what a def owns --------------------------------------------------------------------- */
 
 void vl_scene_own_block(vlSceneOwned *owned, const void *block) {
-  const int most = (int)(sizeof owned->items / sizeof *owned->items);
+  const int most = (int)(VL_LENGTH(owned->items));
   if (block && owned->count < most)
     owned->items[owned->count++] = block;
 }
@@ -347,7 +348,7 @@ void vl_scene_owned(vlSceneFamily family, const void *def, vlSceneOwned *owned) 
   if (row)
     own_row(owned, row, def);
   vl_scene_own_block(owned, vl_scene_def_name(family, def));
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+  for (size_t i = 0; i < VL_LENGTH(blocks); i++)
     if (blocks[i].family == family)
       vl_scene_own_block(owned, pointer_at(def, blocks[i].at));
 }

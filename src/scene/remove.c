@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "scene/family.h"
 #include "velo/light.h"
 #include "velo/material.h"
@@ -43,7 +44,7 @@ static void put_user(vlSceneFamily family, const void *def, uint32_t index,
 /* The number of users of an object; first: what messages call the first one. */
 static uint32_t find_users(const vlScene *scene, vlSceneUse object, char first[USER_TEXT]) {
   uint32_t count = 0;
-  for (size_t k = 0; k < sizeof users / sizeof *users; k++) {
+  for (size_t k = 0; k < VL_LENGTH(users); k++) {
     const uint32_t highest = vl_scene_highest(scene, users[k]);
     for (uint32_t i = 1; i <= highest; i++) {
       const void *def = vl_scene_item(scene, users[k], i);

@@ -183,7 +183,7 @@ const vlKindRow vl_camera_settings_row = {
     .name = "camera",
     .description = "a camera, in calls and in the messages of the page",
     .parameters = camera_settings_parameters,
-    .parameter_count = sizeof camera_settings_parameters / sizeof *camera_settings_parameters};
+    .parameter_count = VL_LENGTH(camera_settings_parameters)};
 
 #define ROW_OF_PROJECTION(kind, name, row) [VL_CAMERA_OF_PROJECTION + kind] = &row.in_files,
 #define CAMERA_ROWS(X)                                  \

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/text.h"
 #include "base/unset.h"
 #include "color/color.h"
 #include "color/named.h"
@@ -25,11 +26,11 @@ static const vlKindFamily *const families[] = {
     &vl_tracer_family,   &vl_film_family,    &vl_camera_family,       &vl_setting_family};
 
 const vlKindFamily *vl_kind_family(uint32_t index) {
-  return index < sizeof families / sizeof *families ? families[index] : NULL;
+  return index < VL_LENGTH(families) ? families[index] : NULL;
 }
 
 const vlKindFamily *vl_kind_family_find(const char *name) {
-  for (size_t i = 0; i < sizeof families / sizeof *families; i++)
+  for (size_t i = 0; i < VL_LENGTH(families); i++)
     if (strcmp(families[i]->name, name) == 0)
       return families[i];
   return NULL;

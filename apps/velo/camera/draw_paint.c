@@ -256,8 +256,7 @@ static void draw_labels(const Canvas *c, const vlDrawing *d, vlDrawingPart part)
   }
 }
 
-/* ------------------------------------------------------------------------------------------------------------------
- */
+/* ---- the order -------------------------------------------------------------------------- */
 
 void draw_paint(Overlay *overlay, const Outside *outside, const vlDrawing *drawing) {
   static const vlDrawingPart order[] = {

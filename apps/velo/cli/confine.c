@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/confine.h"
 
@@ -16,7 +17,7 @@ void confine_read_folder(Confine *confine, const char *path) {
   if (!path)
     return;
   confine_read(confine, path);
-  if (confine->folder_count == sizeof confine->folders / sizeof *confine->folders)
+  if (confine->folder_count == LENGTH(confine->folders))
     return;
   char *folder = confine->folders[confine->folder_count];
   const char *slash = strrchr(path, '/');

@@ -136,7 +136,7 @@ static void start_projection(const ViewCamera *now, vlCameraDef *def) {
     def->fov = field < 120 * degree ? field : 60 * degree;
   if (def->projection == VL_PROJECTION_ORTHOGRAPHIC)
     def->fx = now->made.fx / (distance > 0 ? distance : 1);
-  for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
+  for (size_t i = 0; i < LENGTH(starts); i++) {
     if (starts[i].projection != def->projection)
       continue;
     if (starts[i].fov_degrees > 0) {
@@ -305,7 +305,7 @@ static const struct {
                {"shutter_open", "shutter_open", .before = keep_motion, .needed = true},
                {"shutter_close", "shutter_close", .before = keep_motion, .needed = true},
                {"exposure_time", "exposure_time", .needed = true}};
-enum { SETTERS = sizeof setters / sizeof *setters };
+enum { SETTERS = LENGTH(setters) };
 
 enum { PROJECTIONS = VL_PROJECTION_OPTICS + 1 };
 

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/attributes.h"
 #include "render/channels.h"
@@ -52,7 +53,7 @@ static int take_camera(const Engine *e, FilmCommand *c) {
   vlResult result = vl_camera_write(e->def.context, c->camera, &def, &record, &error);
   if (result != VL_OK)
     return report_error(&error, result, c->camera);
-  for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++)
+  for (size_t i = 0; i < LENGTH(replaced); i++)
     set_option(c, replaced[i], NULL);
   set_option(c, RENDER_CAMERA, c->camera);
   snprintf(c->resolution, sizeof c->resolution, "%ux%u", made->width, made->height);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "velo/channels.h"
 #include "view/engine_status.h"
 #include "view/lecture.h"
@@ -322,7 +323,7 @@ const MessageType message_types[] = {
     {"outside", MEMBER_SIZE | MEMBER_EXPOSURE | MEMBER_SET, MESSAGE_ASKS, engine_outside,
      .harmless = true},
     {.name = NULL}};
-_Static_assert(sizeof message_types / sizeof *message_types <= MESSAGE_TYPES, "too many types");
+_Static_assert(LENGTH(message_types) <= MESSAGE_TYPES, "too many types");
 
 void engine_message(void *user, bool steers, const ViewMessage *m) {
   Engine *e = user;

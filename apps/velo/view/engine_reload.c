@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "view/camera_edit.h"
 #include "view/camera_pose.h"
@@ -21,7 +22,7 @@ static const size_t focal[] = {
     offsetof(vlCameraDef, cy),           offsetof(vlCameraDef, screen_min_x),
     offsetof(vlCameraDef, screen_max_x), offsetof(vlCameraDef, screen_min_y),
     offsetof(vlCameraDef, screen_max_y)};
-enum { FOCAL = sizeof focal / sizeof *focal };
+enum { FOCAL = LENGTH(focal) };
 
 static double number_at(const vlCameraDef *def, size_t offset) {
   double value;

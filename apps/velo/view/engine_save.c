@@ -9,6 +9,7 @@
 
 #include "camera/camera.h"
 #include "cli/kinds.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/added.h"
@@ -218,7 +219,7 @@ static bool option_is_replaced(int id) {
       RENDER_MAX_MEMORY, RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,
       RENDER_TRAJECTORY, RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS,
       RENDER_AT,         RENDER_SHUTTER};
-  return option_is_in(id, replaced, sizeof replaced / sizeof *replaced);
+  return option_is_in(id, replaced, LENGTH(replaced));
 }
 
 /* Options that were given, and those that say what velo chose. */

@@ -1,6 +1,8 @@
 /* view/message.c: see message.h. */
 #include "view/message.h"
 
+#include "cli/macros.h"
+
 #include <jansson.h>
 #include <math.h>
 #include <stddef.h>
@@ -209,7 +211,7 @@ static bool read_member(const Reader *r, const Member *member, ViewMessage *mess
 
 static bool read_members(const Reader *r, ViewMessage *message) {
   const uint32_t wanted = message->type->members | MEMBER_CHANGE | MEMBER_ID;
-  for (size_t i = 0; i < sizeof members / sizeof *members; i++)
+  for (size_t i = 0; i < LENGTH(members); i++)
     if ((wanted & (uint32_t)members[i].member) && !read_member(r, &members[i], message))
       return false;
   return true;

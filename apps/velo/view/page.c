@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/job.h"
 #include "view/engine.h"
@@ -96,7 +97,7 @@ const char *lecture_scene(const char *name) {
   size_t n = sizeof folder - 1;
   if (strncmp(name, folder, n) != 0 || strchr(name + n, '/') || access(name, R_OK) != 0)
     return NULL;
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+  for (size_t i = 0; i < LENGTH(names); i++) {
     if (!names[i][0])
       strncpy(names[i], name, sizeof names[i] - 1);
     if (strcmp(names[i], name) == 0)

@@ -4,14 +4,15 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "velo/setting.h"
 
 static const char *const whites[] = {"D65", "A", "auto"};
-enum { WHITES = sizeof whites / sizeof *whites };
+enum { WHITES = LENGTH(whites) };
 /* Those of an exposure that pages may set. */
 static const char *const rows[] = {"exposure_time", "f_number", "iso",  "gain",
                                    "temperature",   "seed",     "frame"};
-enum { ROWS = sizeof rows / sizeof *rows };
+enum { ROWS = LENGTH(rows) };
 
 ViewSensor sensor_default(void) {
   ViewSensor sensor = {.metered = true, .exposure = vl_default_exposure_def()};

@@ -1,6 +1,7 @@
 /* view/server_http.c: the server's answers to HTTP requests: the files of the page. */
 #include <string.h>
 
+#include "cli/macros.h"
 #include "view/server_parts.h"
 #include "view/web_files.h"
 
@@ -33,7 +34,7 @@ static bool add_headers(struct lws *wsi, unsigned char **p, unsigned char *end) 
       {"content-security-policy:",
        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"}};
-  for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
+  for (size_t i = 0; i < LENGTH(headers); i++)
     if (lws_add_http_header_by_name(wsi, (const unsigned char *)headers[i][0],
                                     (const unsigned char *)headers[i][1],
                                     (int)strlen(headers[i][1]), p, end))

@@ -3,6 +3,7 @@
 #include "view/view.h"
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "render/needs.h"
 #include "render/race_rules.h"
@@ -13,7 +14,7 @@ static bool goes_with_lecture(int option) {
   static const int all[] = {VIEW_PORT,          VIEW_LISTEN,       VIEW_NO_OPEN,   VIEW_LECTURE,
                             VIEW_LANGUAGE,      RENDER_SPP,        RENDER_THREADS, RENDER_BITS,
                             RENDER_ACCELERATOR, RENDER_MAX_MEMORY, RENDER_QUIET};
-  return option_is_in(option, all, sizeof all / sizeof *all);
+  return option_is_in(option, all, LENGTH(all));
 }
 
 /* Returns -1, or the exit code after reporting the error. */

@@ -13,6 +13,7 @@
 
 #include "cli/confine.h"
 #include "cli/context.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/film_claim.h"
@@ -37,7 +38,7 @@ enum { NO_PROGRAM = 127, NO_FILE = 126 };
 static const int ignored[] = {SIGINT, SIGHUP, SIGQUIT, SIGTERM};
 
 static void handle_signals(void (*handler)(int)) {
-  for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
+  for (size_t i = 0; i < LENGTH(ignored); i++)
     signal(ignored[i], handler);
 }
 
@@ -211,7 +212,7 @@ static void confine(const Arguments *arguments) {
   Confine c = {.listens = true};
   if (arguments->operand_count)
     confine_read_folder(&c, arguments->operands[0]);
-  for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
+  for (size_t i = 0; i < LENGTH(inputs); i++)
     if (v[inputs[i]].given)
       confine_read_folder(&c, v[inputs[i]].text);
   if (v[VIEW_EXPOSE].given && sensor_is_file(v[VIEW_EXPOSE].text))

@@ -140,7 +140,7 @@ vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t bits) {
   bool known = false;
   for (uint32_t i = 0; i < dict->asked_count; i++)
     known = known || vl_text_is(dict->asked[i], name);
-  if (!known && dict->asked_count < sizeof dict->asked / sizeof *dict->asked)
+  if (!known && dict->asked_count < VL_LENGTH(dict->asked))
     dict->asked[dict->asked_count++] = name;
   vlParam *found = find_in(dict, dict->own, name, bits, NULL);
   if (dict->attributes && dict->import->scene->error.code == VL_OK)

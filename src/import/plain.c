@@ -119,8 +119,9 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load,
   vl_import_plain_settings(scene);
   vlMesh mesh = {0};
   vlError inside = {0};
-  vlResult r =
-      vl_ply_read_given(context, scene->task, path, load && load->permissive, &mesh, &inside);
+  const vlPlyOptions options = {
+      .task = scene->task, .given = true, .broken = load && load->permissive};
+  vlResult r = vl_ply_read(context, path, &options, &mesh, &inside);
   if (r == VL_OK && !vl_mesh_split_quads(context, &mesh))
     r = VL_ERROR_MEMORY;
   const vlSource source = {inside.file[0] ? inside.file : NULL, inside.line, inside.column};

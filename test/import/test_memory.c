@@ -80,7 +80,8 @@ static void scene(void **state) {
 static vlResult read_ply(vlContext *context, void *user) {
   (void)user;
   vlMesh mesh;
-  vlResult result = vl_ply_parse(context, "p.ply", ply_text, sizeof ply_text - 1, &mesh, NULL);
+  vlResult result = vl_ply_parse(context, "p.ply", ply_text, sizeof ply_text - 1,
+                                 &(vlPlyOptions){0}, &mesh, NULL);
   if (result == VL_OK)
     vl_mesh_free(context, &mesh);
   return result;

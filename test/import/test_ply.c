@@ -8,6 +8,7 @@
 #include "velo/shape_kinds.h"
 
 static vlContext *context;
+static const vlPlyOptions plain; /* a file that a scene names */
 
 static int open_context(void **state) {
   (void)state;
@@ -131,7 +132,7 @@ static void write_pyramid(Buffer *b, int format, const char *real, const char *i
 static void check_pyramid(const Buffer *b, bool rich) {
   vlMesh m;
   vlError error;
-  vlResult result = vl_ply_parse(context, "p.ply", b->data, b->size, &m, &error);
+  vlResult result = vl_ply_parse(context, "p.ply", b->data, b->size, &plain, &m, &error);
   if (result != VL_OK)
     print_message("%s:%u: %s\n", error.file, error.line, error.message);
   assert_int_equal(result, VL_OK);
@@ -184,7 +185,7 @@ static void cut_short(void **state) {
       copy[n] = 0;
       vlMesh m;
       vlError error;
-      vlResult result = vl_ply_parse(context, "p.ply", copy, n, &m, &error);
+      vlResult result = vl_ply_parse(context, "p.ply", copy, n, &plain, &m, &error);
       if (result == VL_OK)
         assert_true(f == 0 && n + 3 > b.size);
       else
@@ -273,8 +274,8 @@ static void bad_files(void **state) {
     char said[1200];
     size_t before, peak;
     before = vl_context_memory(context, NULL);
-    vlResult result =
-        vl_ply_parse(context, "p.ply", mistakes[i].text, strlen(mistakes[i].text), &m, &error);
+    vlResult result = vl_ply_parse(context, "p.ply", mistakes[i].text, strlen(mistakes[i].text),
+                                   &plain, &m, &error);
     snprintf(said, sizeof said, "%s:%u:%u: %s", error.file, error.line, error.column,
              error.message);
     if (result != VL_ERROR_SCENE || strcmp(said, mistakes[i].error) != 0) {
@@ -296,7 +297,7 @@ static void promises_are_refused_at_once(void **state) {
   struct timespec a, b;
   clock_gettime(CLOCK_MONOTONIC, &a);
   for (int i = 0; i < 1000; i++)
-    assert_int_equal(vl_ply_parse(context, "p.ply", text, strlen(text), &m, NULL),
+    assert_int_equal(vl_ply_parse(context, "p.ply", text, strlen(text), &plain, &m, NULL),
                      VL_ERROR_SCENE);
   clock_gettime(CLOCK_MONOTONIC, &b);
   double seconds = (double)(b.tv_sec - a.tv_sec) + 1e-9 * (double)(b.tv_nsec - a.tv_nsec);
@@ -320,7 +321,7 @@ static void damaged(void **state) {
       }
       vlMesh m;
       vlError error;
-      if (vl_ply_parse(context, "p.ply", copy, b.size, &m, &error) == VL_OK)
+      if (vl_ply_parse(context, "p.ply", copy, b.size, &plain, &m, &error) == VL_OK)
         vl_mesh_free(context, &m);
       free(copy);
     }
@@ -380,15 +381,16 @@ static void a_file_stops(void **state) {
   fclose(f);
   vlCancel *cancel;
   vlTask task;
+  const vlPlyOptions options = {.task = &task};
   vlMesh mesh;
   vlError error;
   assert_int_equal(vl_cancel_create(context, &cancel), VL_OK);
   vl_task_start(&task, cancel, request, cancel);
-  assert_int_equal(vl_ply_read(context, &task, path, false, &mesh, &error), VL_CANCELLED);
+  assert_int_equal(vl_ply_read(context, path, &options, &mesh, &error), VL_CANCELLED);
   assert_null(mesh.positions);
   vl_cancel_clear(cancel);
   vl_task_start(&task, cancel, NULL, NULL);
-  assert_int_equal(vl_ply_read(context, &task, path, false, &mesh, &error), VL_OK);
+  assert_int_equal(vl_ply_read(context, path, &options, &mesh, &error), VL_OK);
   assert_int_equal(mesh.vertices, 20000);
   vl_mesh_free(context, &mesh);
   vl_cancel_destroy(cancel);

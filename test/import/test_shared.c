@@ -120,7 +120,7 @@ static void all_meshes(void **state) {
       if (!vl_ends_with(model->d_name, ".ply"))
         continue;
       snprintf(path, sizeof path, "%s/%s", folder, model->d_name);
-      vlResult result = vl_ply_read(context, NULL, path, false, &mesh, &error);
+      vlResult result = vl_ply_read(context, path, &(vlPlyOptions){0}, &mesh, &error);
       if (result != VL_OK)
         print_message("%s: %s\n", path, error.message);
       assert_int_equal(result, VL_OK);

@@ -62,16 +62,12 @@ static bool read_sparse(vlGltf *g, const vlGltfLocation *up, vlGltfAccessor *a, 
   size_t index_offset = 0, value_offset = 0, type = 0;
   if (!vl_gltf_size(at, "count", &a->sparse_count) ||
       !vl_gltf_object(at, "indices", &indices) || !vl_gltf_object(at, "values", &values) ||
-      !vl_gltf_index(at_i, "bufferView", g->view_count, &index_view) ||
+      !vl_gltf_need_index(at_i, "bufferView", g->view_count, &index_view) ||
       !vl_gltf_size(at_i, "byteOffset", &index_offset) ||
       !vl_gltf_size(at_i, "componentType", &type) ||
-      !vl_gltf_index(at_v, "bufferView", g->view_count, &value_view) ||
+      !vl_gltf_need_index(at_v, "bufferView", g->view_count, &value_view) ||
       !vl_gltf_size(at_v, "byteOffset", &value_offset))
     return false;
-  if (index_view == VL_GLTF_NONE)
-    return vl_gltf_fail(at_i, "\"bufferView\" is missing");
-  if (value_view == VL_GLTF_NONE)
-    return vl_gltf_fail(at_v, "\"bufferView\" is missing");
   if (type != VL_GLTF_UBYTE && type != VL_GLTF_USHORT && type != VL_GLTF_UINT)
     return vl_gltf_fail_key(at_i, "componentType", "%zu is not 5121, 5123 or 5125", type);
   if (a->sparse_count > a->count)

@@ -20,10 +20,6 @@ typedef struct {
   Mode mode;
 } Track;
 
-static void free_track(vlContext *context, Track *t) {
-  VL_FREE(context, t->times, t->values);
-}
-
 static bool read_track(vlGltf *g, const vlGltfLocation *at, uint32_t components, Track *t) {
   size_t input, output;
   static const char *const modes[] = {"STEP", "LINEAR", "CUBICSPLINE"};
@@ -198,7 +194,7 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
            v, components[what] * sizeof *v);
     n->has_matrix = false;
   }
-  free_track(g->context, &track);
+  VL_FREE(g->context, track.times, track.values);
   return ok;
 }
 
@@ -249,8 +245,4 @@ bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
     from += n + 1;
   }
   return true;
-}
-
-bool vl_gltf_animate(vlGltf *g) {
-  return !(g->time == g->time) || vl_gltf_each_animation(g, vl_gltf_apply_animation);
 }

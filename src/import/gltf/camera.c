@@ -21,16 +21,19 @@ static void set_size(vlGltf *g, double aspect) {
   memcpy(s->film.crop, whole, sizeof whole);
 }
 
-static bool set_planes(vlCameraDef *def, double near_plane, double far_plane) {
+static bool take_planes(const vlGltfLocation *at, vlCameraDef *def) {
+  double near_plane = 0, far_plane = INFINITY;
+  if (!vl_gltf_number(at, "znear", &near_plane) || !vl_gltf_number(at, "zfar", &far_plane))
+    return false;
   def->near_plane = near_plane > 0 ? near_plane : 0;
   def->far_plane = far_plane > def->near_plane ? far_plane : INFINITY;
   return true;
 }
 
 static bool take_perspective(vlGltf *g, const vlGltfLocation *at, vlCameraDef *def) {
-  double yfov = 0, aspect = 16.0 / 9.0, near_plane = 0, far_plane = INFINITY;
+  double yfov = 0, aspect = 16.0 / 9.0;
   if (!vl_gltf_number(at, "yfov", &yfov) || !vl_gltf_number(at, "aspectRatio", &aspect) ||
-      !vl_gltf_number(at, "znear", &near_plane) || !vl_gltf_number(at, "zfar", &far_plane))
+      !take_planes(at, def))
     return false;
   if (!(yfov > 0 && yfov < 3.1415926))
     return vl_gltf_fail_key(at, "yfov", "must lie between 0 and pi");
@@ -41,13 +44,13 @@ static bool take_perspective(vlGltf *g, const vlGltfLocation *at, vlCameraDef *d
   set_size(g, aspect);
   def->fov = yfov;
   def->fov_axis = VL_FOV_VERTICAL;
-  return set_planes(def, near_plane, far_plane);
+  return true;
 }
 
 static bool take_orthographic(vlGltf *g, const vlGltfLocation *at, vlCameraDef *def) {
-  double x = 0, y = 0, near_plane = 0, far_plane = INFINITY;
+  double x = 0, y = 0;
   if (!vl_gltf_number(at, "xmag", &x) || !vl_gltf_number(at, "ymag", &y) ||
-      !vl_gltf_number(at, "znear", &near_plane) || !vl_gltf_number(at, "zfar", &far_plane))
+      !take_planes(at, def))
     return false;
   x = fabs(x);
   y = fabs(y); /* some exporters write negative values */
@@ -59,7 +62,7 @@ static bool take_orthographic(vlGltf *g, const vlGltfLocation *at, vlCameraDef *
   def->screen_max_x = x;
   def->screen_min_y = -y;
   def->screen_max_y = y;
-  return set_planes(def, near_plane, far_plane);
+  return true;
 }
 
 /* A glTF camera has y up and looks along -z. The position and orientation of the node are used;

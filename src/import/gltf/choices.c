@@ -58,21 +58,18 @@ static bool list_cameras(vlGltf *g) {
   }
 }
 
+static bool list(vlGltf *g, vlChoiceKind kind, const json_t *items) {
+  for (size_t i = 0; i < json_array_size(items); i++) {
+    const double end = kind == VL_CHOICE_ANIMATION ? vl_gltf_animation_end(g, i) : 0;
+    if (!vl_scene_add_choice(g->scene, kind, vl_gltf_name(json_array_get(items, i)), end))
+      return false;
+  }
+  return true;
+}
+
 bool vl_gltf_list_choices(vlGltf *g) {
-  const json_t *variants =
-      json_object_get(vl_gltf_extension(g->root, "KHR_materials_variants"), "variants");
-  for (size_t i = 0; i < g->scene_count; i++)
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_SCENE,
-                             vl_gltf_name(vl_gltf_item(g, "scenes", i)), 0))
-      return false;
-  for (size_t i = 0; i < g->animation_count; i++)
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_ANIMATION,
-                             vl_gltf_name(vl_gltf_item(g, "animations", i)),
-                             vl_gltf_animation_end(g, i)))
-      return false;
-  for (size_t i = 0; i < json_array_size(variants); i++)
-    if (!vl_scene_add_choice(g->scene, VL_CHOICE_VARIANT,
-                             vl_gltf_name(json_array_get(variants, i)), 0))
-      return false;
-  return list_cameras(g);
+  const json_t *variants = vl_gltf_extension(g->root, "KHR_materials_variants");
+  return list(g, VL_CHOICE_SCENE, json_object_get(g->root, "scenes")) &&
+         list(g, VL_CHOICE_ANIMATION, json_object_get(g->root, "animations")) &&
+         list(g, VL_CHOICE_VARIANT, json_object_get(variants, "variants")) && list_cameras(g);
 }

@@ -72,28 +72,28 @@ static bool fail_required(const vlGltfLocation *at, const char *name) {
                            near ? near : "", near ? ")" : "");
 }
 
-bool vl_gltf_check_extensions(vlGltf *g) {
-  const json_t *used, *required;
-  size_t used_count, required_count;
-  if (!vl_gltf_array(&g->top, "extensionsUsed", &used, &used_count) ||
-      !vl_gltf_array(&g->top, "extensionsRequired", &required, &required_count))
+/* Looks at a list of extensions of the file's root. */
+static bool check_list(vlGltf *g, const char *key, bool required) {
+  const json_t *list;
+  size_t count;
+  if (!vl_gltf_array(&g->top, key, &list, &count))
     return false;
-  for (size_t i = 0; i < required_count; i++) {
-    const char *name = json_string_value(json_array_get(required, i));
-    const vlGltfLocation *at = VL_GLTF_ROOT(g, "extensionsRequired", i);
+  for (size_t i = 0; i < count; i++) {
+    const char *name = json_string_value(json_array_get(list, i));
+    const vlGltfLocation *at = VL_GLTF_ROOT(g, key, i);
     if (!name)
       return vl_gltf_fail(at, "must be a string");
-    if (!vl_gltf_reads_extension(name))
+    if (vl_gltf_reads_extension(name))
+      continue;
+    if (required)
       return fail_required(at, name);
-  }
-  for (size_t i = 0; i < used_count; i++) {
-    const char *name = json_string_value(json_array_get(used, i));
-    const vlGltfLocation *at = VL_GLTF_ROOT(g, "extensionsUsed", i);
-    if (!name)
-      return vl_gltf_fail(at, "must be a string");
-    if (!vl_gltf_reads_extension(name) && !vl_gltf_passes_extension(name))
+    if (!vl_gltf_passes_extension(name))
       vl_gltf_warn(VL_LOG_WARNING, at, "%s is ignored: velo does not read it",
                    vl_gltf_extension_text(name).text);
   }
   return true;
+}
+
+bool vl_gltf_check_extensions(vlGltf *g) {
+  return check_list(g, "extensionsRequired", true) && check_list(g, "extensionsUsed", false);
 }

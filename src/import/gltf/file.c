@@ -270,29 +270,24 @@ static bool read_buffer(vlGltf *g, size_t i) {
   size_t length = 0, size = 0;
   if (!vl_gltf_text(at, "uri", &uri) || !vl_gltf_size(at, "byteLength", &length))
     return false;
+  if (!uri && (i || !g->chunk))
+    return true; /* a fallback of compressed views, or bytes that only another program has */
   if (!uri) {
-    if (i == 0 && g->chunk) {
-      b->data = g->chunk;
-      size = g->chunk_size;
-    } else {
-      return true; /* legal: a fallback of compressed views, or bytes that only another program
-                    * has
-                    */
-    }
-  } else {
-    if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &b->data, &size, &path))
+    b->data = g->chunk;
+    size = g->chunk_size;
+  } else if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &b->data, &size, &path)) {
+    return false;
+  }
+  if (path) {
+    char *data;
+    vlError error;
+    vl_error_clear(&error);
+    vlResult r = vl_file_read(g->context, path, false, &data, &size, &error);
+    if (r != VL_OK)
+      return vl_gltf_fail_code(r, VL_GLTF_KEY(at, "uri"), "%s", error.message);
+    if (!own(g, data))
       return false;
-    if (path) {
-      char *data;
-      vlError error;
-      vl_error_clear(&error);
-      vlResult r = vl_file_read(g->context, path, false, &data, &size, &error);
-      if (r != VL_OK)
-        return vl_gltf_fail_code(r, VL_GLTF_KEY(at, "uri"), "%s", error.message);
-      if (!own(g, data))
-        return false;
-      b->data = (const uint8_t *)data;
-    }
+    b->data = (const uint8_t *)data;
   }
   if (size < length)
     return vl_gltf_fail_key(at, "byteLength", "%zu, but there are only %zu bytes", length,

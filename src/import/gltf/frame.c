@@ -80,10 +80,7 @@ bool vl_gltf_frame_animation(vlGltf *g) {
   vlExtent *boxes = vl_gltf_make(g, g->node_count + 1, sizeof *boxes);
   bool ok = boxes;
   for (int k = 0; ok && k < times; k++) {
-    g->time = end * k / (times - 1);
-    for (size_t i = 0; i < g->node_count; i++)
-      g->nodes[i].has_pose = false;
-    ok = vl_gltf_animate(g) && vl_gltf_pose_nodes(g);
+    ok = vl_gltf_pose_at(g, end * k / (times - 1));
     for (size_t i = 0; ok && i < g->node_count; i++)
       ok = frame_node(g, i, boxes, k == 0);
   }

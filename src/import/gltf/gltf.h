@@ -277,13 +277,14 @@ bool vl_gltf_spend(const vlGltfLocation *at, uint64_t bytes);
 /* ---- the tree (node.c, animation.c) ------------------------------------------------------ */
 
 bool vl_gltf_read_nodes(vlGltf *g);
-bool vl_gltf_animate(vlGltf *g); /* applies the animations at g->time */
 /* Applies animation `index` at g->time. */
 bool vl_gltf_apply_animation(vlGltf *g, size_t index);
 /* Visits the animations that the def chooses, in order. False after an error, also that there
  * is no such animation. */
 bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index));
 bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all nodes */
+/* Applies the animations at a time, NaN: none, and poses all nodes. */
+bool vl_gltf_pose_at(vlGltf *g, double time);
 /* Poses all nodes at def->time and, for motion blur, at the key times up to def->time_close. */
 bool vl_gltf_pose(vlGltf *g);
 /* Whether the node's world matrix changes between shutter open and shutter close. */

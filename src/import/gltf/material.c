@@ -13,7 +13,6 @@
 typedef struct Reader {
   vlGltf *g;
   const vlGltfLocation *at; /* of the object that is read: the material or a part of it */
-  const json_t *json;       /* of the material */
   vlMaterialDef *def;
   vlGltfMaterial *result;
   bool colors; /* the mesh has vertex colours */
@@ -46,6 +45,22 @@ static bool read_color(const Reader *r, const char *key, size_t count, float col
   return true;
 }
 
+/* The texture that the part names; where there is none, vertex colours if the use has them. */
+static bool take_texture(const Reader *r, const vlGltfLocation *at, const char *key,
+                         const vlGltfTextureUse *use, vlTextureId *id) {
+  if (!vl_gltf_texture(at, key, use, id))
+    return false;
+  if (id->index || !use->colors)
+    return true;
+  vlTextureDef def = vl_default_texture_def(VL_TEXTURE_VERTEX_COLOR, use->spectrum);
+  def.source.file = r->g->path;
+  def.channel = use->channel;
+  def.cutoff = use->cutoff;
+  memcpy(def.tint, use->tint, sizeof def.tint);
+  *id = vl_scene_add_texture(r->g->scene, &def);
+  return id->index != 0;
+}
+
 /* A colour times an sRGB texture (times the vertex colours). */
 static bool color_input(const Reader *r, const char *texture_key, const float color[4],
                         bool vertex_colors, vlSpectrumInput *input) {
@@ -53,15 +68,7 @@ static bool color_input(const Reader *r, const char *texture_key, const float co
   memcpy(use.tint, color, sizeof use.tint);
   use.colors = vertex_colors;
   *input = vl_spectrum_input(vl_spectrum_rgb(color[0], color[1], color[2]));
-  if (!vl_gltf_texture(r->at, texture_key, &use, &input->texture))
-    return false;
-  if (input->texture.index || !vertex_colors)
-    return true;
-  vlTextureDef def = vl_default_texture_def(VL_TEXTURE_VERTEX_COLOR, true);
-  memcpy(def.tint, color, sizeof def.tint);
-  def.source.file = r->g->path;
-  input->texture = vl_scene_add_texture(r->g->scene, &def);
-  return input->texture.index != 0;
+  return take_texture(r, r->at, texture_key, &use, &input->texture);
 }
 
 /* A colour's factor, whose default is `first`, times its texture. */
@@ -108,18 +115,7 @@ static bool read_alpha(const Reader *r, const vlGltfLocation *at, const char *te
   if (mask)
     use.cutoff = cutoff;
   r->result->alpha.value = mask ? factor >= cutoff : factor > 1 ? 1 : factor;
-  if (!vl_gltf_texture(at, texture_key, &use, &r->result->alpha.texture))
-    return false;
-  if (r->result->alpha.texture.index || !r->colors)
-    return true;
-  vlTextureDef def = vl_default_texture_def(VL_TEXTURE_VERTEX_COLOR, false);
-  def.source.file = r->g->path;
-  def.channel = 3;
-  def.tint[3] = factor;
-  if (mask)
-    def.cutoff = cutoff;
-  r->result->alpha.texture = vl_scene_add_texture(r->g->scene, &def);
-  return r->result->alpha.texture.index != 0;
+  return take_texture(r, at, texture_key, &use, &r->result->alpha.texture);
 }
 
 /* ---- the base ---------------------------------------------------------------------------- */
@@ -330,9 +326,10 @@ static bool read_material(const Reader *r) {
   vlPrincipledDef *p = &r->def->principled;
   if (!vl_gltf_bool(r->at, "doubleSided", &r->result->double_sided))
     return false;
-  if (vl_gltf_extension(r->json, "KHR_materials_unlit"))
+  const json_t *json = vl_gltf_json(r->at);
+  if (vl_gltf_extension(json, "KHR_materials_unlit"))
     return read_unlit(r);
-  const json_t *glossy = vl_gltf_extension(r->json, "KHR_materials_pbrSpecularGlossiness");
+  const json_t *glossy = vl_gltf_extension(json, "KHR_materials_pbrSpecularGlossiness");
   if (!(glossy ? read_specular_glossiness(r, base) : read_metallic_roughness(r, base)))
     return false;
   if (!normal_input(r, "normalTexture", &p->normal, &p->normal_scale))
@@ -352,8 +349,6 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, size_t index, bool colors) {
   if (result->made)
     return result;
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
-  static const json_t *const nothing = NULL;
-  const json_t *json = index == VL_GLTF_NONE ? nothing : vl_gltf_item(g, "materials", index);
   const char *name = index == VL_GLTF_NONE ? NULL : g->material_labels[index];
   /* the same with vertex colours */
   const vlGltfMaterial *other = &g->materials[2 * (index + 1) + !colors];
@@ -362,10 +357,9 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, size_t index, bool colors) {
     return NULL;
   char location[40];
   snprintf(location, sizeof location, "materials[%zu]", index);
-  Reader r = {
-      g,      VL_GLTF_ROOT(g, "materials", index == VL_GLTF_NONE ? g->material_count : index),
-      json,   &def,
-      result, colors};
+  Reader r = {g,
+              VL_GLTF_ROOT(g, "materials", index == VL_GLTF_NONE ? g->material_count : index),
+              &def, result, colors};
   def.source.file = g->path;
   if (!read_material(&r))
     return NULL;

@@ -108,10 +108,11 @@ static bool choose_material(vlGltf *g, const vlGltfLocation *at, size_t *materia
 /* Applies a singular pose to the vertices, since it cannot be a transform of the scene. */
 static void bake(vlMesh *p, vlMat4 pose, vlContext *context) {
   for (size_t i = 0; i < p->vertices; i++) {
-    double q[3] = {p->positions[3 * i], p->positions[3 * i + 1], p->positions[3 * i + 2]}, w[3];
-    vl_mat4_point(&pose, q, w);
+    float *v = p->positions + 3 * i;
+    double w[3];
+    vl_mat4_vertex(&pose, v, w);
     for (int k = 0; k < 3; k++)
-      p->positions[3 * i + (size_t)k] = (float)w[k];
+      v[k] = (float)w[k];
   }
   vl_mesh_drop(
       context, p,

@@ -1,14 +1,16 @@
 /* import/gltf/pose.c: node poses at one moment, or at several while the shutter is open. The
  * scene's time 0 is shutter open; times are in seconds. */
+#include <math.h>
 #include <string.h>
 
 #include "import/gltf/gltf.h"
 
-static bool pose_at(vlGltf *g, double time) {
+bool vl_gltf_pose_at(vlGltf *g, double time) {
   g->time = time;
   for (size_t i = 0; i < g->node_count; i++)
     g->nodes[i].has_pose = false;
-  return vl_gltf_animate(g) && vl_gltf_pose_nodes(g);
+  return (isnan(time) || vl_gltf_each_animation(g, vl_gltf_apply_animation)) &&
+         vl_gltf_pose_nodes(g);
 }
 
 bool vl_gltf_pose(vlGltf *g) {
@@ -20,7 +22,7 @@ bool vl_gltf_pose(vlGltf *g) {
                         g->close, g->open);
   g->moves = both && g->close > g->open && g->animation_count > 0;
   if (!g->moves)
-    return pose_at(g, g->open);
+    return vl_gltf_pose_at(g, g->open);
   if (!vl_gltf_spend(&g->top, (uint64_t)g->node_count * VL_GLTF_KEYS * sizeof *g->keys))
     return false;
   g->keys = vl_gltf_make(g, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
@@ -30,7 +32,7 @@ bool vl_gltf_pose(vlGltf *g) {
    * time */
   for (int k = VL_GLTF_KEYS - 1; k >= 0; k--) {
     double f = (double)k / (VL_GLTF_KEYS - 1);
-    if (!pose_at(g, k ? g->open + f * (g->close - g->open) : g->open))
+    if (!vl_gltf_pose_at(g, k ? g->open + f * (g->close - g->open) : g->open))
       return false;
     for (size_t i = 0; i < g->node_count; i++) {
       vlGltfNode *n = &g->nodes[i];

@@ -140,8 +140,8 @@ static void set_word(vlMtlMap *map, const char *option, const char *word, size_t
     map->channel = channel ? (int)(channel - "rgbm") : -1;
 }
 
-/* Reads one option before an image's name. Returns false when there is none, or when it is
- * broken; *fine is then false. */
+/* Reads one option before an image's name. Returns false when there is none. *fine: it is not
+ * broken. */
 static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
   const char *word, *value;
   char *at = obj->at;
@@ -173,8 +173,6 @@ static bool read_map(vlObj *obj, vlMtl *m, vlMtlMapKind kind) {
   while (read_option(obj, &map, &fine))
     if (!fine)
       return false;
-  if (!fine)
-    return false;
   char *name = vl_obj_rest(obj);
   if (!*name)
     return vl_obj_fail(obj, "the name of an image is missing");

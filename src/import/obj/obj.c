@@ -202,20 +202,13 @@ static bool is_broken(vlObj *obj, double v[3]) {
   return broken;
 }
 
-static bool read_uv(vlObj *obj) {
+/* Reads a uv or a normal, of which `size` numbers are kept. */
+static bool read_row(vlObj *obj, const char *what, uint32_t least, vlObjRows *rows,
+                     uint32_t size, const char *plural) {
   double v[3] = {0, 0, 0};
   uint32_t count;
-  if (!is_broken(obj, v) && !numbers(obj, "vt", 1, 3, v, &count))
-    return false;
-  return vl_obj_push(obj, &obj->uvs, 2, v, "uvs");
-}
-
-static bool read_normal(vlObj *obj) {
-  double v[3] = {0};
-  uint32_t count;
-  if (!is_broken(obj, v) && !numbers(obj, "vn", 3, 3, v, &count))
-    return false;
-  return vl_obj_push(obj, &obj->normals, 3, v, "normals");
+  return (is_broken(obj, v) || numbers(obj, what, least, 3, v, &count)) &&
+         vl_obj_push(obj, rows, size, v, plural);
 }
 
 /* ---- faces ------------------------------------------------------------------------------- */
@@ -428,9 +421,9 @@ static bool read_statement(vlObj *obj) {
         break;
     }
   if (n == 2 && word[0] == 'v' && word[1] == 't')
-    return read_uv(obj);
+    return read_row(obj, "vt", 1, &obj->uvs, 2, "uvs");
   if (n == 2 && word[0] == 'v' && word[1] == 'n')
-    return read_normal(obj);
+    return read_row(obj, "vn", 3, &obj->normals, 3, "normals");
   if (n == 2 && word[0] == 'f' && word[1] == 'o')
     return read_face(obj); /* "fo": the obsolete form of "f" */
   if (n == 6 && memcmp(word, "usemtl", 6) == 0)

@@ -13,10 +13,6 @@ static const double degrees = 0.017453292519943295;
 
 /* ---- lenses: aperture images and lens files become objects owned by the scene ------------ */
 
-static bool scene_ok(const vlDict *dict) {
-  return vl_import_fine(dict->import);
-}
-
 static bool fail_with(vlDict *dict, vlSource source, vlResult code, const vlError *error) {
   if (code == VL_ERROR_MEMORY)
     return vl_import_fail_memory(dict->import);
@@ -61,7 +57,7 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
   vlParam *p = vl_dict_find(dict, "aperture", VL_BIT_STRING);
   if (!vl_dict_string(dict, "aperture", &name) || vl_text_is(name, "circle") ||
       vl_text_is(name, "circular") || name[0] == 0)
-    return scene_ok(dict);
+    return vl_import_fine(import);
   vlAperture **slot = VL_IMPORT_PUSH(import, &import->scene->apertures);
   if (!slot)
     return false;
@@ -108,7 +104,7 @@ static bool read_optics(vlDict *dict, vlCameraDef *def, double film_diagonal) {
   vl_dict_double(dict, "focusdistance", &optics.focus_distance);
   vlParam *p = vl_dict_find(dict, "lensfile", VL_BIT_STRING);
   vl_dict_string(dict, "lensfile", &file);
-  if (!scene_ok(dict))
+  if (!vl_import_fine(import))
     return false;
   if (!p)
     return vl_dict_fail(dict, "\"string lensfile\" is missing");

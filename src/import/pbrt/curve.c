@@ -75,12 +75,8 @@ static bool finite(const vlParam *p) {
 }
 
 static bool read_points(vlDict *dict, Curve *c) {
-  vlImport *import = dict->import;
-  if (!(c->points = vl_dict_find(dict, "P", VL_BIT_POINT3))) {
-    if (!vl_import_fine(import) || !vl_dict_done(dict))
-      return false;
-    return vl_dict_fail(dict, "\"point3 P\" is missing");
-  }
+  if (!(c->points = vl_dict_find(dict, "P", VL_BIT_POINT3)))
+    return vl_dict_missing(dict, "\"point3 P\"");
   size_t numbers = c->points->floats.count, n = numbers / 3;
   if (numbers % 3)
     return vl_dict_fail_at(dict, c->points->source,

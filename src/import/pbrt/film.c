@@ -208,10 +208,6 @@ static bool read_edge_scale(vlImport *import, const vlStatement *s, const char *
                          name, vl_short_text(value).text);
 }
 
-/* Options that do not change the image. */
-static const char harmless[] =
-    "msereferenceimage msereferenceout pixelstats wavefront rendercoordsys";
-
 bool vl_import_option(vlImport *import, const vlStatement *s) {
   vlRenderDef *render = &vl_scene_defs(import->scene)->render;
   const Switch switches[] = {{"disablepixeljitter", &render->centred},
@@ -227,8 +223,6 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   for (size_t i = 0; i < VL_LENGTH(switches); i++)
     if (vl_text_is(name, switches[i].name))
       return read_switch(import, s, &switches[i]);
-  if (vl_has_word(harmless, name))
-    return true;
   static const char *const known[] = {"seed",
                                       "displacementedgescale",
                                       "disablepixeljitter",
@@ -240,6 +234,9 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
                                       "pixelstats",
                                       "wavefront",
                                       "rendercoordsys"};
+  for (size_t i = 0; i < VL_LENGTH(known); i++)
+    if (vl_text_is(name, known[i]))
+      return true; /* it does not change the image */
   return vl_import_unknown(import, s->source, "option", s->names[0], known, VL_LENGTH(known),
                            NULL, 0);
 }

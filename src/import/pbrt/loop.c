@@ -114,25 +114,16 @@ static void add(float sum[3], float weight, const float *p) {
     sum[i] += weight * p[i];
 }
 
+/* The weighted mean of a vertex and its n neighbours; on a border, of the two along it. */
 static void weight_ring(const Level *l, uint32_t vertex, uint32_t n, float weight,
                         float result[3]) {
+  const bool border = l->border[vertex];
   float sum[3] = {0, 0, 0};
-  add(sum, 1.0f - (float)n * weight, &l->p[3 * (size_t)vertex]);
+  add(sum, 1.0f - (border ? 2.0f : (float)n) * weight, &l->p[3 * (size_t)vertex]);
   Ring r = ring_start(l, vertex);
-  for (uint32_t u; (u = ring_next(&r)) != NONE;)
-    add(sum, weight, &l->p[3 * (size_t)u]);
-  memcpy(result, sum, sizeof sum);
-}
-
-static void weight_border(const Level *l, uint32_t vertex, float weight, float result[3]) {
-  float sum[3] = {0, 0, 0};
-  add(sum, 1.0f - 2.0f * weight, &l->p[3 * (size_t)vertex]);
-  Ring r = ring_start(l, vertex);
-  uint32_t first = ring_next(&r), last = first;
-  for (uint32_t u; (u = ring_next(&r)) != NONE;)
-    last = u;
-  add(sum, weight, &l->p[3 * (size_t)first]);
-  add(sum, weight, &l->p[3 * (size_t)last]);
+  for (uint32_t u, k = 0; (u = ring_next(&r)) != NONE; k++)
+    if (!border || k == 0 || k == n - 1)
+      add(sum, weight, &l->p[3 * (size_t)u]);
   memcpy(result, sum, sizeof sum);
 }
 
@@ -225,14 +216,13 @@ static uint32_t number_edges(const Level *l, uint32_t *odd) {
 
 /* The position of vertex i after one subdivision, or after infinitely many. */
 static void weigh(const Level *l, uint32_t i, bool limit, float *p) {
-  if (l->start[i] == NONE) {
+  const uint32_t n = valence(l, i);
+  if (l->start[i] == NONE)
     memcpy(p, &l->p[3 * (size_t)i], 3 * sizeof *p);
-  } else if (l->border[i]) {
-    weight_border(l, i, limit ? 1.0f / 5.0f : 1.0f / 8.0f, p);
-  } else {
-    uint32_t n = valence(l, i);
+  else if (l->border[i])
+    weight_ring(l, i, n, limit ? 1.0f / 5.0f : 1.0f / 8.0f, p);
+  else
     weight_ring(l, i, n, limit ? 1.0f / ((float)n + 3.0f / (8.0f * beta(n))) : beta(n), p);
-  }
 }
 
 static void move_vertices(const Level *l, Level *c) {
@@ -310,12 +300,6 @@ static bool refine(vlContext *context, Level *l) {
 
 /* ---- the limit --------------------------------------------------------------------------- */
 
-static void push_to_limit(const Level *l, float *limit) {
-  for (uint32_t i = 0; i < l->vertices; i++) {
-    weigh(l, i, true, &limit[3 * (size_t)i]);
-  }
-}
-
 static float sine(float x) {
   return (float)vl_sincos_double((double)x).sin;
 }
@@ -358,7 +342,8 @@ static vlResult finish(vlContext *context, Level *l, vlMesh *mesh, vlError *erro
     VL_FREE(context, limit, normals);
     return vl_fail_memory(error);
   }
-  push_to_limit(l, limit);
+  for (uint32_t i = 0; i < l->vertices; i++)
+    weigh(l, i, true, &limit[3 * (size_t)i]);
   vl_free(context, l->p);
   l->p = limit;
   for (uint32_t i = 0; i < l->vertices; i++) {

@@ -83,8 +83,7 @@ static bool finish_mix(vlDict *dict, vlMaterialDef *def) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find_counted(dict, "materials", VL_BIT_STRING, 2);
   if (!p)
-    return vl_dict_done(dict) &&
-           vl_dict_fail(dict, "\"string materials\" (two names) is missing");
+    return vl_dict_missing(dict, "\"string materials\" (two names)");
   for (int i = 0; i < 2; i++) {
     bool is_interface;
     if (!vl_import_material_id(import, p->strings.items[i], p->source, &def->materials[i],

@@ -82,12 +82,6 @@ static bool read_cells(vlDict *dict, const char *name, vlParamType type, const v
   return true;
 }
 
-static bool missing(vlDict *dict, const char *what) {
-  if (!vl_dict_done(dict))
-    return false; /* a misspelt parameter is reported first */
-  return vl_dict_fail(dict, "%s is missing", what);
-}
-
 /* Rules that the rows do not express, by kind; null: none. */
 typedef bool ReadMedium(vlDict *dict, vlMediumDef *def);
 
@@ -99,12 +93,12 @@ static bool read_grid(vlDict *dict, vlMediumDef *def) {
     return false;
   if (vl_import_given(dict, "Le") && def->temperature)
     return vl_dict_fail(dict, "give either \"Le\" or \"temperature\", not both");
-  return def->density || missing(dict, "\"float density\"");
+  return def->density || vl_dict_missing(dict, "\"float density\"");
 }
 
 static bool read_rgb_grid(vlDict *dict, vlMediumDef *def) {
   return def->rgb_a || def->rgb_s ||
-         missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
+         vl_dict_missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
 }
 
 static ReadMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {

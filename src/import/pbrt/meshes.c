@@ -51,9 +51,9 @@ static void read_one(void *user, uint32_t index, uint32_t worker) {
     job->result = vl_fail(&job->error, VL_CANCELLED, "stopped");
     return;
   }
-  job->result = vl_ply_read(import->context, import->scene->task,
-                            import->mesh_files.items[work->first + index].path,
-                            import->permissive, &job->mesh, &job->error);
+  const vlPlyOptions options = {.task = import->scene->task, .broken = import->permissive};
+  job->result = vl_ply_read(import->context, import->mesh_files.items[work->first + index].path,
+                            &options, &job->mesh, &job->error);
 }
 
 /* Permissive: repairs the mesh; the first one is reported with the mesh file's name. */

@@ -111,6 +111,9 @@ bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, si
 
 /* Reports every parameter that was not read as an error. Returns false after an error. */
 bool vl_dict_done(vlDict *dict);
+/* Reports that a parameter, type and name, is missing, unless another one is misspelt or there
+ * is an error. Returns false. */
+bool vl_dict_missing(vlDict *dict, const char *what);
 /* Marks all parameters of a skipped directive as read. */
 void vl_dict_skip(vlDict *dict);
 

@@ -272,6 +272,10 @@ bool vl_dict_done(vlDict *dict) {
   return true;
 }
 
+bool vl_dict_missing(vlDict *dict, const char *what) {
+  return vl_dict_done(dict) && vl_dict_fail(dict, "%s is missing", what);
+}
+
 void vl_dict_skip(vlDict *dict) {
   for (size_t i = 0; i < dict->own->list.count; i++)
     dict->own->list.items[i]->used = true;

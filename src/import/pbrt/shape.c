@@ -86,9 +86,7 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
     vl_dict_find(dict, "faceIndices", VL_BIT_INTEGER);
     if (per == 3)
       vl_dict_find(dict, "S", VL_BIT_VECTOR3);
-    if (!vl_dict_done(dict))
-      return false; /* a misspelt parameter is reported first */
-    return vl_dict_fail(dict, "\"point3 P\" is missing");
+    return vl_dict_missing(dict, "\"point3 P\"");
   }
   size_t count = p->floats.count;
   if (count % 3)
@@ -203,6 +201,14 @@ bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def,
   return fine;
 }
 
+/* Keeps the name of a texture, which is resolved at the end, and where the file gives it. */
+static bool keep_texture(vlImport *import, const vlParam *p, const char **name,
+                         vlSource *source) {
+  *name = vl_import_keep(import, p->strings.items[0]);
+  *source = p->source;
+  return *name && vl_scene_copy_source(import->scene, source);
+}
+
 static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, "displacement", VL_BIT_TEXTURE);
@@ -215,9 +221,7 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
     return vl_import_fine(import);
   if (vl_param_count(p) != 1)
     return vl_dict_fail_at(dict, p->source, "\"displacement\" takes one texture");
-  link->displacement = vl_import_keep(import, p->strings.items[0]);
-  link->displacement_source = p->source;
-  return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_source);
+  return keep_texture(import, p, &link->displacement, &link->displacement_source);
 }
 
 /* Records the mesh file. All mesh files are read at the end (meshes.c). */
@@ -234,7 +238,7 @@ static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   return vl_import_note_mesh(import, path, file->source, def, link);
 }
 
-/* Alpha: a number, or a float texture that is resolved at the end. */
+/* Alpha: a number or a float texture. */
 static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find_counted(dict, "alpha", VL_BIT_FLOAT | VL_BIT_TEXTURE, 1);
@@ -244,9 +248,7 @@ static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
     def->alpha.value = p->floats.items[0];
     return true;
   }
-  link->alpha = vl_import_keep(import, p->strings.items[0]);
-  link->alpha_source = p->source;
-  return link->alpha && vl_scene_copy_source(import->scene, &link->alpha_source);
+  return keep_texture(import, p, &link->alpha, &link->alpha_source);
 }
 
 /* Records the media of the shapes from index first on. */

@@ -8,19 +8,20 @@
 #include "base/cancel.h"
 #include "import/mesh.h"
 
-/* Colours are converted from the file's sRGB. Errors: MISSING, IO, MEMORY, SCENE (with the line
- * number in text files and headers). vl_ply_read_given reads a file that the caller names
- * (base/file.h), with its colours; without faces it is a cloud of points. task: of the load,
- * which stops with CANCELLED; null: none. broken: normals and uvs that are not finite are no
- * error (import/repair.h). */
-vlResult vl_ply_read_given(vlContext *context, vlTask *task, const char *path, bool broken,
-                           vlMesh *mesh, vlError *error);
-/* Reads a file that a scene names, without colours. */
-vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool broken,
+typedef struct vlPlyOptions {
+  vlTask *task; /* of the load, which stops with CANCELLED; null: none */
+  bool given;   /* the caller names the file (base/file.h), which is a whole scene: faces keep
+                   their colours, and without faces it is a cloud of points */
+  bool broken;  /* normals and uvs that are not finite are no error (import/repair.h) */
+} vlPlyOptions;
+
+/* Colours are converted from the file's sRGB; those of a file that a scene names are left out.
+ * Errors: MISSING, IO, MEMORY, SCENE (with the line number in text files and headers). */
+vlResult vl_ply_read(vlContext *context, const char *path, const vlPlyOptions *options,
                      vlMesh *mesh, vlError *error);
-/* Reads from memory. name is used in errors. data[size] must be a zero byte; data is not
- * changed. */
+/* Reads from memory, with colours. name is used in errors. data[size] must be a zero byte; data
+ * is not changed. */
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size,
-                      vlMesh *mesh, vlError *error);
+                      const vlPlyOptions *options, vlMesh *mesh, vlError *error);
 
 #endif

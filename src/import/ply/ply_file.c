@@ -170,26 +170,24 @@ static bool check(vlPlyReader *r) {
   r->line = 0;
   if (!r->has_vertices || m->vertices == 0)
     return vl_ply_fail(r, "the mesh has no vertices");
-  if (m->triangles == 0 && m->quads == 0 && !r->alone)
+  if (m->triangles == 0 && m->quads == 0 && !r->options->given)
     return vl_ply_fail(r, "the mesh has no faces");
   return check_indices(r, m->indices, 3 * m->triangles) &&
          check_indices(r, m->quad_indices, 4 * m->quads);
 }
 
-static vlResult parse(vlContext *context, vlTask *task, const char *name, const char *data,
-                      size_t size, bool alone, bool broken, vlMesh *mesh, vlError *error) {
+vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size,
+                      const vlPlyOptions *options, vlMesh *mesh, vlError *error) {
   vlError local;
   if (!error)
     error = &local;
   vl_error_clear(error);
   *mesh = (vlMesh){0};
   vlPlyReader r = {.context = context,
-                   .task = task,
+                   .options = options,
                    .name = name,
                    .at = data,
                    .end = data + size,
-                   .alone = alone,
-                   .broken = broken,
                    .mesh = mesh,
                    .error = error};
   r.elements = vl_alloc_array(context, VL_PLY_MAX_ELEMENTS, sizeof *r.elements);
@@ -203,33 +201,19 @@ static vlResult parse(vlContext *context, vlTask *task, const char *name, const 
   return fine ? VL_OK : error->code;
 }
 
-vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size,
-                      vlMesh *mesh, vlError *error) {
-  return parse(context, NULL, name, data, size, false, false, mesh, error);
-}
-
-static vlResult read_file(vlContext *context, vlTask *task, const char *path, bool given,
-                          bool broken, vlMesh *mesh, vlError *error) {
+vlResult vl_ply_read(vlContext *context, const char *path, const vlPlyOptions *options,
+                     vlMesh *mesh, vlError *error) {
   char *data;
   size_t size;
   *mesh = (vlMesh){0};
-  vlResult result = given ? vl_file_read_given(context, path, true, &data, &size, error)
-                          : vl_file_read(context, path, true, &data, &size, error);
+  vlResult result = options->given
+                        ? vl_file_read_given(context, path, true, &data, &size, error)
+                        : vl_file_read(context, path, true, &data, &size, error);
   if (result != VL_OK)
     return result;
-  result = parse(context, task, path, data, size, given, broken, mesh, error);
+  result = vl_ply_parse(context, path, data, size, options, mesh, error);
   vl_free(context, data);
-  return result;
-}
-
-vlResult vl_ply_read_given(vlContext *context, vlTask *task, const char *path, bool broken,
-                           vlMesh *mesh, vlError *error) {
-  return read_file(context, task, path, true, broken, mesh, error);
-}
-
-vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool broken,
-                     vlMesh *mesh, vlError *error) {
-  vlResult result = read_file(context, task, path, false, broken, mesh, error);
-  vl_mesh_drop(context, mesh, VL_MESH_COLORS);
+  if (!options->given)
+    vl_mesh_drop(context, mesh, VL_MESH_COLORS);
   return result;
 }

@@ -18,7 +18,7 @@ bool vl_ply_fail_memory(vlPlyReader *r) {
 }
 
 bool vl_ply_goes_on(vlPlyReader *r, uint64_t row) {
-  if (row % 16384 != 0 || !vl_task_stopped(r->task, NULL, 0))
+  if (row % 16384 != 0 || !vl_task_stopped(r->options->task, NULL, 0))
     return true;
   vl_fail(r->error, VL_CANCELLED, "stopped");
   return false;
@@ -146,7 +146,7 @@ static bool read_property(vlPlyReader *r, const Words *w) {
   const char *name = w->word[list ? 4 : 2];
   if (e->kind == VL_PLY_VERTEX && !list)
     p->role = vertex_role(name);
-  if (e->kind == VL_PLY_FACE && !list && r->alone && vertex_role(name) >= VL_PLY_RED)
+  if (e->kind == VL_PLY_FACE && !list && r->options->given && vertex_role(name) >= VL_PLY_RED)
     p->role = vertex_role(name);
   if ((e->kind == VL_PLY_FACE || e->kind == VL_PLY_STRIPS) && list &&
       (vl_text_is(name, "vertex_indices") || vl_text_is(name, "vertex_index"))) {

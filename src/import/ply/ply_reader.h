@@ -69,7 +69,7 @@ typedef struct vlPlyElement {
 
 typedef struct vlPlyReader {
   vlContext *context;
-  vlTask *task; /* of the load; null: none */
+  const vlPlyOptions *options;
   const char *name;
   const char *at, *end;
   uint32_t line; /* line number in a text file or header; 0 in binary data */
@@ -78,8 +78,6 @@ typedef struct vlPlyReader {
   uint32_t element_count;
   vlMesh *mesh;
   bool has_vertices, face_colors; /* face_colors: faces have colours */
-  bool broken;                    /* normals and uvs may be not finite */
-  bool alone; /* the file is a scene: colours of faces are read, and it may have points alone */
   VL_ARRAY(uint32_t) face;
   vlError *error;
 } vlPlyReader;

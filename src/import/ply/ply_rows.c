@@ -31,13 +31,6 @@ static float color_value(vlPlyType type, bool alpha, double value) {
   return (float)(alpha ? x : vl_srgb_to_linear(x));
 }
 
-static bool is_little_endian(void) {
-  const uint16_t one = 1;
-  uint8_t low;
-  memcpy(&low, &one, 1);
-  return low == 1;
-}
-
 static bool all_finite(const float *v, size_t count) {
   uint32_t wrong = 0;
   for (size_t i = 0; v && i < count; i++) {
@@ -48,12 +41,13 @@ static bool all_finite(const float *v, size_t count) {
   return !wrong;
 }
 
-/* Fast path: rows without lists whose coordinates are floats in native byte order. False when
+/* Fast path: rows without lists whose coordinates are little-endian floats, which
+ * is the byte order of all processors that velo is built for (film/file.h). False when
  * the layout is another or a value is not finite: the general path then reports it. */
 static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
   vlMesh *m = r->mesh;
   size_t offsets[8] = {0}, at = 0, row = (size_t)e->row_size;
-  if (r->format != VL_PLY_LITTLE || !is_little_endian() || e->has_list || m->colors)
+  if (r->format != VL_PLY_LITTLE || e->has_list || m->colors)
     return false;
   for (uint32_t j = 0; j < e->property_count; j++) {
     const vlPlyProperty *p = &e->properties[j];
@@ -76,7 +70,7 @@ static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
   size_t n = m->vertices;
   if (!all_finite(m->positions, 3 * n))
     return false;
-  if (!r->broken && (!all_finite(m->normals, 3 * n) || !all_finite(m->uvs[0], 2 * n)))
+  if (!r->options->broken && (!all_finite(m->normals, 3 * n) || !all_finite(m->uvs[0], 2 * n)))
     return false;
   r->at = from;
   return true;
@@ -121,7 +115,7 @@ static bool read_vertex_rows(vlPlyReader *r, const vlPlyElement *e) {
         value -= m->origin[p->role - VL_PLY_X];
       *to = p->role >= VL_PLY_RED ? color_value(p->type, p->role == VL_PLY_ALPHA, value)
                                   : (float)value;
-      bool may_break = r->broken && p->role >= VL_PLY_NX && p->role <= VL_PLY_V;
+      bool may_break = r->options->broken && p->role >= VL_PLY_NX && p->role <= VL_PLY_V;
       if (!isfinite(*to) && !may_break)
         return vl_ply_fail_number(r, i, p->role, value);
     }
@@ -153,7 +147,7 @@ bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
   const uint32_t line = r->line;
   if (!read_vertex_rows(r, e))
     return false;
-  if (!r->alone || !has_finer_rows(r, e) ||
+  if (!r->options->given || !has_finer_rows(r, e) ||
       !vl_far_vertices(m->positions, m->vertices, m->origin))
     return true;
   r->at = start; /* once more, about the origin */
@@ -222,8 +216,8 @@ static bool read_face_row(vlPlyReader *r, const vlPlyElement *e, const vlPlyProp
 static uint64_t copy_triangles(vlPlyReader *r, const vlPlyElement *e) {
   vlMesh *m = r->mesh;
   const vlPlyProperty *p = &e->properties[0];
-  bool plain = r->format == VL_PLY_LITTLE && is_little_endian() && e->property_count == 1 &&
-               p->is_list && r->has_vertices && vl_ply_type_size(p->count_type) == 1 &&
+  bool plain = r->format == VL_PLY_LITTLE && e->property_count == 1 && p->is_list &&
+               r->has_vertices && vl_ply_type_size(p->count_type) == 1 &&
                (p->type == VL_PLY_I32 || p->type == VL_PLY_U32) && !m->triangles;
   uint64_t room = m->index_capacity / 3, left = (uint64_t)(r->end - r->at) / 13, i = 0;
   uint64_t most = e->count < room ? e->count : room;

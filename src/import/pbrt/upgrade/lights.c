@@ -144,66 +144,60 @@ static double blackbody_scale(const vlOldStatement *s, vlOldParam *p) {
 
 /* ---- images ------------------------------------------------------------------------------ */
 
-static bool name_image(vlOldStatement *s, vlOldParam *map, bool around,
-                       const double factor[3]) {
+/* Names the equal-area map that the image becomes. */
+static bool name_map(vlOldStatement *s, const vlOldParam *map, const double factor[3]) {
   char name[4096];
-  if (!map->strings)
-    return true;
-  if (!(around ? vl_old_environment(s, map->text[0], factor, name, sizeof name)
-               : vl_old_file_name(s, map->text[0], name, sizeof name)))
+  if (!vl_old_environment(s, map->text[0], factor, name, sizeof name))
     return false;
   if (vl_text_is(name, map->text[0]))
     return true;
-  vl_old_note(s, around ? "an equal-area map \"%s\"" : "filename is \"%s\"", name);
+  vl_old_note(s, "an equal-area map \"%s\"", name);
   return vl_old_edit(s, map->span[0], "\"%s\"", name);
 }
 
+static bool is_grey(const double rgb[3]) {
+  return rgb[0] == rgb[1] && rgb[1] == rgb[2];
+}
+
 /* Its colour stays beside the image, which has numbers. */
-static bool goniometric_light(vlOldStatement *s, vlOldParam *map) {
+static bool goniometric_light(vlOldStatement *s, const vlOldParam *map) {
   vlOldParam *color = vl_old_find(s, "I");
   const double one[3] = {1, 1, 1};
   double more = blackbody_scale(s, color), factor, tint[3];
   if (!luminance(s, color, &factor) || !fold_scale(s, color, more * factor, tint))
     return false;
-  if (tint[0] != tint[1] || tint[1] != tint[2])
+  if (!is_grey(tint))
     vl_old_lose(s, "goniometric: a colour \"scale\" has no counterpart: left out");
-  return name_image(s, map, true, one);
+  return name_map(s, map, one);
 }
 
-static bool image_light(vlOldStatement *s) {
-  vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
+/* color: null: none. */
+static bool image_light(vlOldStatement *s, const vlOldParam *map, vlOldParam *color) {
   bool around = !vl_text_is(s->name[0], "projection");
-  double more = 1, tint[3], rgb[3] = {1, 1, 1}, grey;
-  if (!map || !map->strings || !map->text[0][0])
-    return true;
+  double more = 1, tint[3], rgb[3] = {1, 1, 1};
   if (vl_text_is(s->name[0], "goniometric"))
     return goniometric_light(s, map);
-  if (!color)
-    color = vl_old_find(s, "I");
   if (color && !vl_old_is_color(color, rgb)) {
     vl_old_lose(s, "\"%s\" is a spectrum beside an image: left out", color->name);
-    color->dropped = true;
-  } else if (color && vl_old_is_grey(color, &grey)) {
-    more = grey;
+  } else if (color && vl_old_is_grey(color, &more)) {
     for (int i = 0; i < 3; i++)
       rgb[i] = 1;
-    color->dropped = true;
-    if (grey != 1)
+    if (more != 1)
       vl_old_note(s, "%s in scale", color->name);
   } else if (color && around) {
-    color->dropped = true;
     vl_old_note(s, "%s in the image", color->name);
   } else if (color) {
     vl_old_lose(s, "projection: a colour \"I\" has no counterpart: left out");
-    color->dropped = true;
   }
+  if (color)
+    color->dropped = true;
   if (!fold_scale(s, NULL, more, tint))
     return false;
   for (int i = 0; i < 3; i++)
     tint[i] *= rgb[i];
-  if (!around && (tint[0] != tint[1] || tint[1] != tint[2]))
+  if (!around && !is_grey(tint))
     vl_old_lose(s, "projection: a colour \"scale\" has no counterpart: left out");
-  return name_image(s, map, around, tint);
+  return around ? name_map(s, map, tint) : vl_old_write_file_name(s, map);
 }
 
 static bool plain_light(vlOldStatement *s) {
@@ -212,13 +206,13 @@ static bool plain_light(vlOldStatement *s) {
   if (!color)
     color = vl_old_find(s, "I");
   if (map && map->strings && map->text[0][0])
-    return image_light(s);
+    return image_light(s, map, color);
   if (map)
     map->dropped = true;
   more = blackbody_scale(s, color);
   if (!luminance(s, color, &factor) || !fold_scale(s, color, more * factor, tint))
     return false;
-  if (tint[0] == tint[1] && tint[1] == tint[2])
+  if (is_grey(tint))
     return true;
   if (!color) {
     char text[VL_OLD_VALUE];

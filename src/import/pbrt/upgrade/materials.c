@@ -152,13 +152,14 @@ static bool glass_rule(vlOldStatement *s) {
 
 /* pbrt-v3's path tracer renders subsurface scattering, pbrt-v4's does not. Reports it once, if
  * the integrator is written already and its name cannot be changed any more. */
-static void warn_of_path(const vlOldStatement *s) {
+static bool warn_of_path(vlOldStatement *s) {
   vlUpgrade *u = s->u;
   if (u->plain_path && !u->subsurface)
     vl_old_lose(s,
                 "pbrt-v4's \"path\" does not render subsurface scattering: name \"volpath\" as "
                 "integrator");
   u->plain_path = false;
+  return true;
 }
 
 /* The name of a measured substance replaces sigma_a and sigma_s. Without it pbrt-v4 wants both
@@ -179,11 +180,6 @@ static bool subsurface_rule(vlOldStatement *s) {
       a ? "\"rgb sigma_s\" [ 2.55 3.21 3.77 ]" : "\"rgb sigma_a\" [ .0011 .0024 .014 ]");
 }
 
-static bool kdsubsurface_rule(vlOldStatement *s) {
-  warn_of_path(s);
-  return true;
-}
-
 static bool none_rule(vlOldStatement *s) {
   for (size_t i = 0; i < s->params.count; i++)
     if (!vl_text_is(s->params.items[i].name, "type"))
@@ -202,7 +198,7 @@ static const vlOldKind kinds[] = {
     {"translucent", "diffusetransmission", translucent, vl_old_translucent},
     {"mix", "mix", mix, vl_old_mix},
     {"hair", "hair", hair},
-    {"kdsubsurface", "subsurface", kdsubsurface, kdsubsurface_rule},
+    {"kdsubsurface", "subsurface", kdsubsurface, warn_of_path},
     {"subsurface", "subsurface", subsurface, subsurface_rule},
     {"disney", "principled", disney, vl_old_disney,
      "disney has no counterpart in pbrt-v4: velo's own principled is written"},

@@ -93,8 +93,7 @@ bool vl_old_film(vlOldStatement *s) {
   vlUpgrade *u = s->u;
   if (scale && scale->count == 1)
     u->iso = 100 * scale->number[0];
-  if (scale)
-    vl_old_drop(s, scale);
+  vl_old_drop(s, scale);
   u->film_file = s->file;
   u->film_end = s->whole.end;
   return rewrite(s, films, "rgb");

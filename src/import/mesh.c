@@ -11,6 +11,16 @@ static const uint32_t widths[VL_MESH_ATTRIBUTES] = {3, 3, 4, 4, 3, 3, 2, 2, 2, 2
 
 enum { MAX_TRIANGLES = 0x7fffffff };
 
+bool vl_all_finite(const float *v, size_t count) {
+  uint32_t wrong = 0; /* a loop that vectorises */
+  for (size_t i = 0; v && i < count; i++) {
+    uint32_t bits;
+    memcpy(&bits, &v[i], sizeof bits);
+    wrong |= (bits & 0x7f800000u) == 0x7f800000u;
+  }
+  return !wrong;
+}
+
 void vl_mesh_drop(vlContext *context, vlMesh *m, uint32_t attributes) {
   for (uint32_t k = 0; k < VL_MESH_ATTRIBUTES; k++) {
     if (!(attributes & 1u << k))

@@ -41,6 +41,9 @@ typedef struct vlMesh {
   size_t index_capacity, quad_capacity, color_capacity; /* in numbers */
 } vlMesh;
 
+/* Whether all numbers of an array, which may be null, are finite. */
+bool vl_all_finite(const float *v, size_t count);
+
 void vl_mesh_free(vlContext *context, vlMesh *mesh);
 /* Frees the attributes of a set. */
 void vl_mesh_drop(vlContext *context, vlMesh *mesh, uint32_t attributes);

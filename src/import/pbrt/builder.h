@@ -207,11 +207,9 @@ void vl_import_remark(vlImport *import, vlSource source, const char *format, ...
  * warning; it then returns true. */
 bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not
- * support. */
+/* Reports a kind that is not among `known` in the same way. */
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
-                       const char *const *known, size_t known_count, const char *const *later,
-                       size_t later_count);
+                       const char *const *known, size_t count);
 /* The name of a kind for messages. Names that velo does not know are shortened. */
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name);
 /* Like vl_import_unknown; the known names are the kinds of the family. */
@@ -358,7 +356,6 @@ void vl_import_free_runs(vlImport *import);
 /* Whether meshes and spheres are gathered yet, and such ones. */
 bool vl_import_may_gather(const vlImport *import, const vlShapeDef *def,
                           const vlShapeLink *link);
-bool vl_import_all_finite(const float *v, size_t count);
 /* Copy a small mesh or a whole sphere into a run. *taken is false when it must become a shape
  * of its own. */
 typedef bool vlImportGather(vlImport *import, const vlShapeDef *def, const vlShapeLink *link,

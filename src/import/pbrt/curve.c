@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "import/mesh.h"
 #include "import/pbrt/builder.h"
 #include "velo/shape_kinds.h"
 
@@ -71,7 +72,7 @@ static bool append(vlImport *import, vlShapeRun *run, const Curve *c) {
 }
 
 static bool finite(const vlParam *p) {
-  return vl_import_all_finite(p->floats.items, p->floats.count);
+  return vl_all_finite(p->floats.items, p->floats.count);
 }
 
 static bool read_points(vlDict *dict, Curve *c) {

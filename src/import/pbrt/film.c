@@ -71,7 +71,7 @@ static bool read_sensor_name(vlDict *dict, double *white) {
       vl_scene_defs(import->scene)->film.sensor = names[i];
       return true;
     }
-  return vl_import_unknown(import, p->source, "sensor", name, names, count, NULL, 0);
+  return vl_import_unknown(import, p->source, "sensor", name, names, count);
 }
 
 /* Reads the sensor, its white balance and its largest component value. */
@@ -237,6 +237,5 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   for (size_t i = 0; i < VL_LENGTH(known); i++)
     if (vl_text_is(name, known[i]))
       return true; /* it does not change the image */
-  return vl_import_unknown(import, s->source, "option", s->names[0], known, VL_LENGTH(known),
-                           NULL, 0);
+  return vl_import_unknown(import, s->source, "option", s->names[0], known, VL_LENGTH(known));
 }

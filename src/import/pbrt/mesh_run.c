@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "import/mesh.h"
 #include "import/pbrt/builder.h"
 #include "velo/shape_kinds.h"
 
@@ -12,8 +13,8 @@ enum { MAX_FACES = 256 };
 static bool is_small(const vlShapeDef *def, vlMat4 m) {
   const size_t n = def->vertices;
   return def->faces > 0 && n > 0 && def->faces <= MAX_FACES && n <= 3 * MAX_FACES &&
-         !def->tangents && vl_import_all_finite(def->positions, 3 * n) &&
-         vl_import_all_finite(def->normals, 3 * n) && vl_import_all_finite(def->uvs, 2 * n) &&
+         !def->tangents && vl_all_finite(def->positions, 3 * n) &&
+         vl_all_finite(def->normals, 3 * n) && vl_all_finite(def->uvs, 2 * n) &&
          vl_mat4_is_finite(m);
 }
 

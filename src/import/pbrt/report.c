@@ -91,15 +91,8 @@ bool vl_import_unsupported(vlImport *import, vlSource source, const char *format
 }
 
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
-                       const char *const *known, size_t known_count, const char *const *later,
-                       size_t later_count) {
-  for (size_t i = 0; i < later_count; i++)
-    if (vl_text_is(name, later[i]))
-      return vl_import_unsupported(import, source, "%s \"%s\" is not understood yet", thing,
-                                   vl_short_text(name).text);
-  const char *near = vl_nearest_name(name, known, known_count);
-  if (!near)
-    near = vl_nearest_name(name, later, later_count);
+                       const char *const *known, size_t count) {
+  const char *near = vl_nearest_name(name, known, count);
   return vl_import_unsupported(import, source, "unknown %s \"%s\"%s", thing,
                                vl_short_text(name).text, vl_hint(near).text);
 }
@@ -115,7 +108,7 @@ bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamil
                             const char *name) {
   const char *names[64];
   size_t count = vl_kind_names(family, names, VL_LENGTH(names));
-  return vl_import_unknown(import, source, family->thing, name, names, count, NULL, 0);
+  return vl_import_unknown(import, source, family->thing, name, names, count);
 }
 
 const char *vl_import_keep(vlImport *import, const char *text) {

@@ -41,13 +41,6 @@ bool vl_import_may_gather(const vlImport *import, const vlShapeDef *def,
          !def->emission.index && !link->displacement;
 }
 
-bool vl_import_all_finite(const float *v, size_t count) {
-  float zero = 0;
-  for (size_t i = 0; v && i < count; i++)
-    zero += v[i] - v[i];
-  return zero == 0.0f;
-}
-
 /* The numbers of an array, which leave the run; null if there are none. */
 static float *take(vlImport *import, vlRunFloats *from) {
   float *items = from->items;

@@ -163,11 +163,11 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   vl_dict_set_kind(&dict, &vl_tracer_family,
                    vl_kind_find(&vl_tracer_family, stand_in(choice->kind)));
   if (!dict.row) { /* permissive: a path tracer of the same depth replaces it */
-    static const char *const later[] = {"function"};
-    const char *names[32];
-    size_t count = vl_kind_names(&vl_tracer_family, names, VL_LENGTH(names));
-    if (!vl_import_unknown(import, choice->source, "integrator", choice->kind, names, count,
-                           later, 1))
+    const bool later = vl_text_is(choice->kind, "function");
+    if (!(later ? vl_import_unsupported(import, choice->source,
+                                        "integrator \"function\" is not understood yet")
+                : vl_import_unknown_kind(import, choice->source, &vl_tracer_family,
+                                         choice->kind)))
       return false;
     read_depth(&dict, s);
     return vl_import_fine(import);
@@ -192,8 +192,7 @@ static bool check_accelerator(vlImport *import) {
   if (!choice->given || vl_text_is(choice->kind, names[0]) ||
       vl_text_is(choice->kind, names[1]))
     return true;
-  return vl_import_unknown(import, choice->source, "accelerator", choice->kind, names, 2, NULL,
-                           0);
+  return vl_import_unknown(import, choice->source, "accelerator", choice->kind, names, 2);
 }
 
 bool vl_import_sampling(vlImport *import) {

@@ -357,7 +357,7 @@ static bool unknown_shape(vlImport *import, const vlStatement *s) {
   for (size_t i = 0; i < MESHES; i++)
     names[count++] = meshes[i].name;
   /* permissive: skipped */
-  return vl_import_unknown(import, s->source, "shape", s->names[0], names, count, NULL, 0);
+  return vl_import_unknown(import, s->source, "shape", s->names[0], names, count);
 }
 
 /* Removes the emission of shapes that cannot emit light, with a warning. */

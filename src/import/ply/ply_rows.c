@@ -31,16 +31,6 @@ static float color_value(vlPlyType type, bool alpha, double value) {
   return (float)(alpha ? x : vl_srgb_to_linear(x));
 }
 
-static bool all_finite(const float *v, size_t count) {
-  uint32_t wrong = 0;
-  for (size_t i = 0; v && i < count; i++) {
-    uint32_t bits;
-    memcpy(&bits, &v[i], sizeof bits);
-    wrong |= (bits & 0x7f800000u) == 0x7f800000u;
-  }
-  return !wrong;
-}
-
 /* Fast path: rows without lists whose coordinates are little-endian floats, which
  * is the byte order of all processors that velo is built for (film/file.h). False when
  * the layout is another or a value is not finite: the general path then reports it. */
@@ -68,9 +58,10 @@ static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
       memcpy(&m->uvs[0][2 * i + (size_t)k], from + offsets[6 + k], 4);
   }
   size_t n = m->vertices;
-  if (!all_finite(m->positions, 3 * n))
+  if (!vl_all_finite(m->positions, 3 * n))
     return false;
-  if (!r->options->broken && (!all_finite(m->normals, 3 * n) || !all_finite(m->uvs[0], 2 * n)))
+  if (!r->options->broken &&
+      (!vl_all_finite(m->normals, 3 * n) || !vl_all_finite(m->uvs[0], 2 * n)))
     return false;
   r->at = from;
   return true;

@@ -6,6 +6,7 @@
 #include "camera/draw.h"
 #include "cli/macros.h"
 #include "cli/vector.h"
+#include "image/image.h"
 #include "render/denoised.h"
 #include "render/exposure.h"
 #include "velo/channels.h"
@@ -187,8 +188,7 @@ static void put_on_paper(vlImage *image, double ev, double pale) {
   double scale = exp2(ev);
   float *p = vl_image_pixels(image);
   uint32_t channels = vl_image_channels(image);
-  for (size_t i = 0; i < (size_t)vl_image_width(image) * vl_image_height(image);
-       i++, p += channels) {
+  for (size_t i = 0; i < image_pixel_count(image); i++, p += channels) {
     double alpha = channels > 3 ? fmin(1.0, fmax(0.0, (double)p[3])) : 1.0;
     for (int k = 0; k < 3; k++) {
       double v = fmin(1.0, fmax(0.0, scale * (double)p[k]));
@@ -316,11 +316,10 @@ vlResult draw_render(vlContext *context, const vlWorld *world, const vlSceneDefs
     TRY_RESULT(cut(world, def, drawing, outside, error));
     return render_images(context, world, defs, def, of, outside, error);
   }
-  vlImageDef sheet = vl_default_image_def(def->width, def->height, 3);
-  vlResult result = vl_image_create(context, &sheet, &outside->image);
-  for (size_t i = 0; result == VL_OK && i < 3 * pixels; i++)
+  TRY_RESULT(image_make(context, def->width, def->height, 3, NULL, &outside->image));
+  for (size_t i = 0; i < 3 * pixels; i++)
     ((float *)vl_image_pixels(outside->image))[i] = 1.0F;
-  return result;
+  return VL_OK;
 }
 
 void draw_close(Outside *outside) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "camera/paths.h"
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "velo/channels.h"
 
@@ -38,22 +39,20 @@ static uint32_t *make_order(const vlPixelPaths *paths, bool by_sample) {
 }
 
 static vlResult see(const PathsRequest *r, TracedPaths *traced, vlError *error) {
-  const uint32_t *p = r->pixel, one[4] = {p[0], p[1], p[0] + 1, p[1] + 1};
   vlChannelsDef def = vl_default_channels_def(r->film->width, r->film->height);
   def.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_N |
                  VL_CHANNEL_NG | VL_CHANNEL_UV | VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_OBJECT |
                  VL_CHANNEL_ID_MATERIAL | VL_CHANNEL_ID_INSTANCE | VL_CHANNEL_ID_PRIMITIVE;
   def.cancel = r->render->cancel;
   def.priority = r->render->priority;
-  memcpy(def.crop, one, sizeof one);
+  crop_set_pixel(def.crop, r->pixel[0], r->pixel[1]);
   return vl_render_channels(r->world, r->camera, &def, &traced->channels, &traced->ids, error);
 }
 
 vlResult paths_trace(const PathsRequest *r, TracedPaths *traced, vlError *error) {
   *traced = (TracedPaths){.paths = NULL};
   vlFilmDef film = *r->film;
-  const uint32_t whole[4] = {0, 0, film.width, film.height};
-  memcpy(film.crop, whole, sizeof whole);
+  crop_set(film.crop, 0, 0, film.width, film.height);
   TRY_RESULT(vl_trace_paths(r->world, r->camera, &film, r->render, r->pixel[0], r->pixel[1],
                             r->first, r->count, &traced->paths, error));
   TRY_RESULT(see(r, traced, error));

@@ -6,8 +6,10 @@
 #include <string.h>
 
 #include "camera/verify.h"
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "image/image.h"
 #include "render/output_names.h"
 #include "velo/filter_kinds.h"
 #include "velo/render.h"
@@ -273,9 +275,8 @@ static vlResult keep_image(vlContext *context, const char *folder, uint32_t inde
                            const Image *rendered, vlError *error) {
   char path[4096];
   vlImage *image = NULL;
-  vlImageDef def =
-      vl_default_image_def((uint32_t)rendered->width, (uint32_t)rendered->height, 1);
-  vlResult result = vl_image_create(context, &def, &image);
+  vlResult result = image_make(context, (uint32_t)rendered->width, (uint32_t)rendered->height,
+                               1, NULL, &image);
   text_set(path, "%s/pose_%03u.png", folder, index);
   if (result == VL_OK) {
     memcpy(vl_image_pixels(image), rendered->pixels,
@@ -293,8 +294,7 @@ static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *
   vlImage *image = NULL;
   vlError error = {0};
   vlResult result = render(pose, context, &image, &error);
-  int width = (int)(pose->crop[2] - pose->crop[0]),
-      height = (int)(pose->crop[3] - pose->crop[1]);
+  int width = (int)crop_width(pose->crop), height = (int)crop_height(pose->crop);
   float *red = result == VL_OK ? malloc((size_t)width * (size_t)height * sizeof *red) : NULL;
   if (result == VL_OK && !red)
     result = VL_ERROR_MEMORY;

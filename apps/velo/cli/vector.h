@@ -12,6 +12,11 @@ static inline int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* Whether two numbers are the same but for rounding. */
+static inline bool is_near(double a, double b) {
+  return a == b || fabs(a - b) <= 1e-9 * fmax(fabs(a), fabs(b));
+}
+
 static inline double vector_dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

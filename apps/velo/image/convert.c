@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "image/image.h"
@@ -46,16 +47,14 @@ static void channel_names(const vlImage *image, const char *names[MAX_CHANNELS])
 /* Copies the attributes. After a crop, those that place the pixels in a larger image are left
  * out. */
 static vlResult copy_attributes(const vlImage *from, vlImage *to, bool cropped) {
-  vlResult result = VL_OK;
-  for (uint32_t i = 0; i < vl_image_attribute_count(from) && result == VL_OK; i++) {
+  for (uint32_t i = 0; i < vl_image_attribute_count(from); i++) {
     vlAttribute a;
-    result = vl_image_attribute(from, i, &a);
-    if (result != VL_OK || (cropped && (strcmp(a.name, "dataWindow") == 0 ||
-                                        strcmp(a.name, "displayWindow") == 0)))
+    TRY_RESULT(vl_image_attribute(from, i, &a));
+    if (cropped && (strcmp(a.name, "dataWindow") == 0 || strcmp(a.name, "displayWindow") == 0))
       continue;
-    result = vl_image_set_attribute(to, &a);
+    TRY_RESULT(vl_image_set_attribute(to, &a));
   }
-  return result;
+  return VL_OK;
 }
 
 /* Copies the window's pixels as linear floats. */
@@ -71,7 +70,7 @@ static void copy_floats(const vlImage *from, const uint32_t window[4], vlImage *
 /* Copies the window's pixels as they are; `to` has the size of the window and the same type. */
 static void copy_rows(const vlImage *from, const uint32_t window[4], vlImage *to) {
   const size_t pixel = pixel_bytes(from);
-  const size_t row = (window[2] - window[0]) * pixel;
+  const size_t row = crop_width(window) * pixel;
   const char *source = vl_image_const_pixels(from);
   char *target = vl_image_pixels(to);
   for (uint32_t y = window[1]; y < window[3]; y++) {
@@ -84,8 +83,8 @@ static void copy_rows(const vlImage *from, const uint32_t window[4], vlImage *to
  * floats; otherwise values are unchanged. */
 static vlResult copy_window(vlContext *context, const vlImage *from, const uint32_t window[4],
                             bool to_float, vlImage **result) {
-  const uint32_t width = window[2] - window[0];
-  const uint32_t height = window[3] - window[1];
+  const uint32_t width = crop_width(window);
+  const uint32_t height = crop_height(window);
   const uint32_t channels = vl_image_channels(from);
   const char *names[MAX_CHANNELS];
   channel_names(from, names);
@@ -93,9 +92,7 @@ static vlResult copy_window(vlContext *context, const vlImage *from, const uint3
   def.names = names;
   def.type = to_float ? VL_PIXEL_F32 : vl_image_type(from);
   def.encoding = to_float ? VL_ENCODING_LINEAR : vl_image_encoding(from);
-  vlResult status = vl_image_create(context, &def, result);
-  if (status != VL_OK)
-    return status;
+  TRY_RESULT(vl_image_create(context, &def, result));
   if (to_float)
     copy_floats(from, window, *result);
   else
@@ -133,33 +130,29 @@ static vlResult scale_channel(vlContext *context, const vlImage *from, uint32_t 
                               double scale, vlImage **result, uint64_t *too_large) {
   vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), 1);
   def.type = VL_PIXEL_U16;
-  vlResult status = vl_image_create(context, &def, result);
-  uint16_t *pixel = status == VL_OK ? vl_image_pixels(*result) : NULL;
+  TRY_RESULT(vl_image_create(context, &def, result));
+  uint16_t *pixel = vl_image_pixels(*result);
   *too_large = 0;
-  for (uint32_t y = 0; y < def.height && pixel; y++)
+  for (uint32_t y = 0; y < def.height; y++)
     for (uint32_t x = 0; x < def.width; x++) {
       const double value = floor(vl_image_get(from, x, y, channel) * scale + 0.5);
       const bool large = value > UINT16_MAX && isfinite(value);
       *too_large += large;
       *pixel++ = value >= 0 && value <= UINT16_MAX ? (uint16_t)value : 0;
     }
-  return status;
+  return VL_OK;
 }
 
 /* One channel with its name and the image's attributes. */
 static vlResult copy_channel(vlContext *context, const vlImage *from, uint32_t channel,
                              vlImage **result) {
   const char *name = vl_image_channel_name(from, channel);
-  vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), 1);
-  def.names = &name;
-  vlResult status = vl_image_create(context, &def, result);
-  if (status != VL_OK)
-    return status;
+  TRY_RESULT(image_make_like(context, from, 1, &name, result));
   float *pixel = vl_image_pixels(*result);
-  for (uint32_t y = 0; y < def.height; y++)
-    for (uint32_t x = 0; x < def.width; x++)
+  for (uint32_t y = 0; y < vl_image_height(from); y++)
+    for (uint32_t x = 0; x < vl_image_width(from); x++)
       *pixel++ = vl_image_get(from, x, y, channel);
-  return copy_attributes(from, *result, false);
+  return vl_image_add_attributes(*result, from);
 }
 
 /* Reports that the image has no channel of this name. Returns the exit code. */

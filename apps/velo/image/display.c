@@ -83,13 +83,10 @@ static bool rec709_matrix(const vlImage *image, double m[9]) {
 
 static vlResult to_rec709(vlContext *context, const vlImage *image, const int rgb[3],
                           const double m[9], vlImage **result) {
-  vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), 3);
-  vlResult status = vl_image_create(context, &def, result);
-  if (status != VL_OK)
-    return status;
+  TRY_RESULT(image_make_like(context, image, 3, NULL, result));
   float *pixel = vl_image_pixels(*result);
-  for (uint32_t y = 0; y < def.height; y++)
-    for (uint32_t x = 0; x < def.width; x++, pixel += 3) {
+  for (uint32_t y = 0; y < vl_image_height(image); y++)
+    for (uint32_t x = 0; x < vl_image_width(image); x++, pixel += 3) {
       double v[3];
       for (int c = 0; c < 3; c++)
         v[c] = vl_image_get(image, x, y, (uint32_t)rgb[c]);
@@ -136,21 +133,18 @@ static vlResult display_colors(vlContext *context, const vlImage *image, vlView 
 
 /* R G B divided by alpha: the colour of what covers the pixel. */
 static vlResult divide_by_alpha(vlContext *context, const vlImage *image, vlImage **result) {
-  vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), 3);
   vlAttribute attribute;
-  vlResult status = vl_image_create(context, &def, result);
-  if (status != VL_OK)
-    return status;
+  TRY_RESULT(image_make_like(context, image, 3, NULL, result));
   if (vl_image_find_attribute(image, "chromaticities", &attribute) == VL_OK)
-    status = vl_image_set_attribute(*result, &attribute);
+    TRY_RESULT(vl_image_set_attribute(*result, &attribute));
   float *pixel = vl_image_pixels(*result);
-  for (uint32_t y = 0; y < def.height; y++)
-    for (uint32_t x = 0; x < def.width; x++, pixel += 3) {
+  for (uint32_t y = 0; y < vl_image_height(image); y++)
+    for (uint32_t x = 0; x < vl_image_width(image); x++, pixel += 3) {
       float a = vl_image_get(image, x, y, 3);
       for (uint32_t c = 0; c < 3; c++)
         pixel[c] = a > 0 ? vl_image_get(image, x, y, c) / a : 0;
     }
-  return status;
+  return VL_OK;
 }
 
 static vlResult add_alpha(vlContext *context, const vlImage *image, vlImage **display) {
@@ -158,9 +152,7 @@ static vlResult add_alpha(vlContext *context, const vlImage *image, vlImage **di
   def.type = VL_PIXEL_U8;
   def.encoding = VL_ENCODING_SRGB;
   vlImage *result = NULL;
-  vlResult status = vl_image_create(context, &def, &result);
-  if (status != VL_OK)
-    return status;
+  TRY_RESULT(vl_image_create(context, &def, &result));
   const uint8_t *from = vl_image_pixels(*display);
   uint8_t *to = vl_image_pixels(result);
   for (uint32_t y = 0; y < def.height; y++)

@@ -6,6 +6,14 @@
 
 /* Reads an image. Returns -1, or the exit code after reporting the error. */
 int image_load(vlContext *context, const char *path, vlImage **image);
+/* Makes an image of floats. names: of its channels; null: the usual ones. */
+vlResult image_make(vlContext *context, uint32_t width, uint32_t height, uint32_t channels,
+                    const char *const *names, vlImage **image);
+/* The same, as large as another image. */
+vlResult image_make_like(vlContext *context, const vlImage *like, uint32_t channels,
+                         const char *const *names, vlImage **image);
+/* width * height. */
+size_t image_pixel_count(const vlImage *image);
 /* Finds the channels "R", "G", "B" behind a prefix such as "albedo."; -1: it is not there.
  * Returns whether all are. */
 bool image_find_rgb(const vlImage *image, const char *prefix, int rgb[3]);

@@ -15,6 +15,23 @@ int image_load(vlContext *context, const char *path, vlImage **image) {
   return report_error(&error, vl_image_read(context, path, image, &error), path);
 }
 
+vlResult image_make(vlContext *context, uint32_t width, uint32_t height, uint32_t channels,
+                    const char *const *names, vlImage **image) {
+  vlImageDef def = vl_default_image_def(width, height, channels);
+  def.names = names;
+  return vl_image_create(context, &def, image);
+}
+
+vlResult image_make_like(vlContext *context, const vlImage *like, uint32_t channels,
+                         const char *const *names, vlImage **image) {
+  return image_make(context, vl_image_width(like), vl_image_height(like), channels, names,
+                    image);
+}
+
+size_t image_pixel_count(const vlImage *image) {
+  return (size_t)vl_image_width(image) * vl_image_height(image);
+}
+
 bool image_find_rgb(const vlImage *image, const char *prefix, int rgb[3]) {
   char name[32];
   for (int c = 0; c < 3; c++) {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "cli/macros.h"
+#include "image/image.h"
 #include "render/receipt.h"
 #include "velo/header.h"
 
@@ -53,9 +54,7 @@ vlResult attributes_add_layer(vlImage *image, const vlImage *layer) {
 }
 
 vlResult attributes_make(const Job *job, const char *eye, vlImage **image) {
-  vlImageDef def = vl_default_image_def(1, 1, 1);
-  vlResult result = vl_image_create(job->context, &def, image);
-  if (result == VL_OK)
-    result = attributes_set(*image, job, job->defs->render.spp);
-  return result == VL_OK && eye ? attributes_set_text(*image, "view", eye) : result;
+  TRY_RESULT(image_make(job->context, 1, 1, 1, NULL, image));
+  TRY_RESULT(attributes_set(*image, job, job->defs->render.spp));
+  return eye ? attributes_set_text(*image, "view", eye) : VL_OK;
 }

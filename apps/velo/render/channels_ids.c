@@ -7,6 +7,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "image/image.h"
 #include "render/channels.h"
 #include "render/outputs.h"
 #include "velo/header.h"
@@ -15,8 +16,7 @@ static void mark_ids(const vlImage *ids, const char *name, bool *seen, uint32_t 
   int channel = vl_image_find_channel(ids, name);
   if (channel < 0)
     return;
-  size_t pixels = (size_t)vl_image_width(ids) * vl_image_height(ids),
-         step = vl_image_channels(ids);
+  size_t pixels = image_pixel_count(ids), step = vl_image_channels(ids);
   const uint32_t *whole = vl_image_const_pixels(ids);
   const float *floats = vl_image_const_pixels(ids); /* floats since channels_make_visible */
   for (size_t i = 0, at = (size_t)channel; i < pixels; i++, at += step) {

@@ -8,6 +8,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "image/denoise.h"
+#include "image/image.h"
 #include "render/attributes.h"
 #include "render/pattern.h"
 
@@ -56,10 +57,9 @@ bool denoised_is_copy(const Denoised *d) {
 int denoised_check(const Denoised *d, vlContext *context) {
   if (!d->outputs.count || d->def.denoiser == VL_DENOISER_VELO)
     return -1;
-  vlImageDef def = vl_default_image_def(1, 1, 3);
   vlImage *pixel = NULL, *clean = NULL;
   vlError error = {0};
-  vlResult result = vl_image_create(context, &def, &pixel);
+  vlResult result = image_make(context, 1, 1, 3, NULL, &pixel);
   if (result == VL_OK)
     result = vl_denoise(pixel, &d->def, &clean, NULL, &error);
   vl_image_destroy(pixel);
@@ -87,12 +87,9 @@ vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,
   for (int k = 0; k < n; k++)
     for (uint32_t c = 0; c < vl_image_channels(parts[k]) && count < MAX_CHANNELS; c++)
       names[count++] = vl_image_channel_name(parts[k], c);
-  vlImageDef def =
-      vl_default_image_def(vl_image_width(parts[0]), vl_image_height(parts[0]), count);
-  def.names = names;
-  TRY_RESULT(vl_image_create(context, &def, joined));
+  TRY_RESULT(image_make_like(context, parts[0], count, names, joined));
   float *to = vl_image_pixels(*joined);
-  for (size_t i = 0; i < (size_t)def.width * def.height; i++)
+  for (size_t i = 0; i < image_pixel_count(parts[0]); i++)
     for (int k = 0; k < n; k++) {
       uint32_t channels = vl_image_channels(parts[k]);
       memcpy(to, (const float *)vl_image_const_pixels(parts[k]) + i * channels,
@@ -108,15 +105,14 @@ static vlResult clean_frame(Denoised *d, const Job *job, const vlImage *image, v
                             vlDenoiseStats *stats, vlError *error) {
   vlDenoiseDef def = d->def;
   def.errors = d->steady != NULL;
-  vlResult result = vl_denoise(image, &def, clean, stats, error);
-  if (result != VL_OK || !d->steady)
-    return result;
+  TRY_RESULT(vl_denoise(image, &def, clean, stats, error));
+  if (!d->steady)
+    return VL_OK;
   int signals = signals_count();
-  result = steady_keep(d->steady, job, image, *clean, &signals, error);
+  vlImage *kept = *clean;
   *clean = NULL;
-  if (result == VL_OK && !d->steady->only_kept)
-    result = steady_blend(d->steady, job, &signals, clean, error);
-  return result;
+  TRY_RESULT(steady_keep(d->steady, job, image, kept, &signals, error));
+  return d->steady->only_kept ? VL_OK : steady_blend(d->steady, job, &signals, clean, error);
 }
 
 /* Makes the image with its standard errors and the denoiser's features. The errors are those of

@@ -9,6 +9,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "cli/vector.h"
+#include "image/image.h"
 #include "velo/channels.h"
 
 static const char *const names[] = {"Albedo.R",
@@ -173,12 +174,8 @@ int gbuffer_render(const Job *job, const vlFilm *film, vlImage **image) {
     result = vl_film_develop(film, &develop, &rendered);
   if (result == VL_OK)
     result = vl_film_errors(film, &develop, &errors);
-  if (result == VL_OK) {
-    vlImageDef def =
-        vl_default_image_def(vl_image_width(geometry), vl_image_height(geometry), COUNT);
-    def.names = names;
-    result = vl_image_create(job->context, &def, image);
-  }
+  if (result == VL_OK)
+    result = image_make_like(job->context, geometry, COUNT, names, image);
   if (result == VL_OK) {
     double spp = vl_film_spp(film);
     Source s = {

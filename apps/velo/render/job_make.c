@@ -1,5 +1,6 @@
 /* render/job_make.c: see job.h. Makes the defs and the camera of a render from the scene's defs
  * and the command line. */
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "render/job.h"
 
@@ -51,10 +52,9 @@ const Choice isa_choices[] = {
 
 /* Sets the size of the film, which is rendered whole. */
 static void set_size(vlFilmDef *film, uint32_t width, uint32_t height) {
-  const uint32_t whole[4] = {0, 0, width, height};
   film->width = width;
   film->height = height;
-  memcpy(film->crop, whole, sizeof whole);
+  crop_set(film->crop, 0, 0, width, height);
 }
 
 /* The camera is that of a file, without a line. */
@@ -131,16 +131,15 @@ static int override_crop(vlSceneDefs *defs, const Arguments *arguments) {
   if (crop->given && window->given)
     return report_usage("--crop and --cropwindow exclude each other");
   if (crop->given) {
-    const uint32_t whole[4] = {0, 0, width, height};
-    memcpy(defs->film.crop, whole, sizeof whole);
+    crop_set(defs->film.crop, 0, 0, width, height);
     return option_crop(crop, defs->film.crop);
   }
   if (window->given) {
-    defs->film.crop[0] = crop_pixel(width, window->numbers[0]);
-    defs->film.crop[2] = crop_pixel(width, window->numbers[1]);
-    defs->film.crop[1] = crop_pixel(height, window->numbers[2]);
-    defs->film.crop[3] = crop_pixel(height, window->numbers[3]);
-    if (defs->film.crop[0] >= defs->film.crop[2] || defs->film.crop[1] >= defs->film.crop[3])
+    const double *n = window->numbers;
+    uint32_t *c = defs->film.crop;
+    crop_set(c, crop_pixel(width, n[0]), crop_pixel(height, n[2]), crop_pixel(width, n[1]),
+             crop_pixel(height, n[3]));
+    if (c[0] >= c[2] || c[1] >= c[3])
       return report_usage("--cropwindow \"%s\": holds no pixel of %u x %u", window->text, width,
                           height);
   }

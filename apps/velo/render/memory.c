@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "cli/crop.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/progress.h"
@@ -67,7 +68,7 @@ static uint64_t illuminance_bytes(const Job *job) {
   memcpy(own.crop, film->crop, sizeof own.crop);
   vlRenderDef render = job->defs->render;
   render.tracer = VL_TRACER_VOLPATH;
-  uint64_t pixels = (uint64_t)(own.crop[2] - own.crop[0]) * (own.crop[3] - own.crop[1]);
+  uint64_t pixels = crop_pixels(own.crop);
   return vl_film_memory(&own) + vl_render_memory(job->world, &own, &render) +
          pixels * 5 * sizeof(float);
 }
@@ -79,15 +80,15 @@ void memory_plan(MemoryPlan *plan, const Job *job, const Outputs *outputs,
   }; /* images of a trajectory that are rendered, queued or written at the same time */
   memset(plan, 0, sizeof *plan);
   const uint32_t *crop = job->defs->film.crop;
-  uint64_t width = crop[2] - crop[0], height = crop[3] - crop[1], pixels = width * height,
+  uint64_t width = crop_width(crop), height = crop_height(crop), pixels = width * height,
            copies = 1;
   for (uint32_t i = 0; frames && i < frames->camera_count; i++) {
     const uint32_t *c = frames->cameras[i].job.defs->film.crop;
-    uint64_t other = (uint64_t)(c[2] - c[0]) * (c[3] - c[1]);
+    uint64_t other = crop_pixels(c);
     if (other > pixels) {
       pixels = other;
-      width = c[2] - c[0];
-      height = c[3] - c[1];
+      width = crop_width(c);
+      height = crop_height(c);
     }
   }
   if (frames)

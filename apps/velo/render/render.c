@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/confine.h"
 #include "cli/context.h"
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
@@ -241,7 +242,7 @@ static int check_outputs(const Render *render) {
 /* Checks before the render for outputs that could not be written after it. */
 static int check_sizes(const Render *render) {
   const vlFilmDef *film = &render->job.defs->film;
-  uint32_t width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
+  uint32_t width = crop_width(film->crop), height = crop_height(film->crop);
   for (int i = 0; i < render->outputs.count; i++) {
     uint32_t most = output_largest_side(render->outputs.paths[i]);
     if (width > most || height > most)

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "cli/options.h"
 #include "cli/report.h"
@@ -115,7 +116,7 @@ static void name_parts(Render *render, const vlProgress *now) {
 
 uint64_t run_pixels(const Render *render) {
   const uint32_t *crop = render->job.defs->film.crop;
-  return (uint64_t)(crop[2] - crop[0]) * (crop[3] - crop[1]);
+  return crop_pixels(crop);
 }
 
 /* Returns the smallest number of samples per pixel that suffices for every output. A denoiser

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 
+#include "cli/crop.h"
 #include "cli/report.h"
 #include "velo/tracer.h"
 
@@ -56,7 +57,7 @@ int shard_check(const Arguments *arguments) {
  * `index`, counted from 0. */
 static void cut(uint32_t blocks[4], uint32_t index, uint32_t count) {
   while (count > 1) {
-    uint32_t width = blocks[2] - blocks[0], height = blocks[3] - blocks[1], low = count / 2;
+    uint32_t width = crop_width(blocks), height = crop_height(blocks), low = count / 2;
     int axis = width >= height ? 0 : 1;
     uint32_t size = axis ? height : width, other = axis ? width : height;
     uint32_t at = (uint32_t)(((uint64_t)size * low + count / 2) / count);
@@ -79,7 +80,7 @@ static int tiles_of(const uint32_t crop[4], uint32_t index, uint32_t count, uint
   uint32_t blocks[4];
   for (int i = 0; i < 4; i++)
     blocks[i] = (crop[i] + (i < 2 ? 0 : FILM_BLOCK - 1)) / FILM_BLOCK;
-  uint64_t most = (uint64_t)(blocks[2] - blocks[0]) * (blocks[3] - blocks[1]);
+  uint64_t most = crop_pixels(blocks);
   if (count > most)
     return report_usage("--shard %u/%u: the film has %llu tiles of %d pixels", index + 1, count,
                         (unsigned long long)most, FILM_BLOCK);

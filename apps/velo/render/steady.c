@@ -6,6 +6,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "image/image.h"
 
 /* Features: albedo, normal, disparity. */
 enum { TAPS = 4, NORMAL = 3, DISPARITY = 6, FEATURES = 7 };
@@ -65,20 +66,16 @@ static bool needed(const Steady *s, const SteadyFrame *frame) {
 }
 
 static vlResult copy_features(vlContext *context, const vlImage *from, vlImage **to) {
-  const vlImageDef def =
-      vl_default_image_def(vl_image_width(from), vl_image_height(from), FEATURES);
   static const char *const names[FEATURES] = {
       "feature.albedo.R", "feature.albedo.G", "feature.albedo.B",   "feature.N.X",
       "feature.N.Y",      "feature.N.Z",      "feature.disparity.Y"};
-  vlImageDef named = def;
-  named.names = names;
-  TRY_RESULT(vl_image_create(context, &named, to));
+  TRY_RESULT(image_make_like(context, from, FEATURES, names, to));
   const size_t stride = vl_image_channels(from);
   for (int k = 0; k < FEATURES; k++) {
     const float *value =
         (const float *)vl_image_const_pixels(from) + vl_image_find_channel(from, names[k]);
     float *copy = (float *)vl_image_pixels(*to) + k;
-    for (size_t i = 0; i < (size_t)def.width * def.height; i++)
+    for (size_t i = 0; i < image_pixel_count(from); i++)
       copy[i * FEATURES] = value[i * stride];
   }
   return VL_OK;
@@ -293,8 +290,7 @@ static vlResult add_frame(const Steady *s, const SteadyFrame *now, const SteadyF
   vlImage *floats = NULL, *ids = NULL, *warped = NULL;
   TRY_RESULT(find_flow(s, before, job, signals, &floats, &ids, error));
   const uint32_t size[2] = {vl_image_width(floats), vl_image_height(floats)};
-  const vlImageDef def = vl_default_image_def(size[0], size[1], 4);
-  vlResult result = vl_image_create(job->context, &def, &warped);
+  vlResult result = image_make_like(job->context, floats, 4, NULL, &warped);
   if (result == VL_OK) {
     warp_frame(now, before, floats, ids, vl_image_pixels(warped));
     add_warped(vl_image_const_pixels(warped), size, sums);
@@ -310,17 +306,15 @@ static vlResult add_frame(const Steady *s, const SteadyFrame *now, const SteadyF
 vlResult steady_blend(const Steady *s, const Job *job, int *signals, vlImage **result,
                       vlError *error) {
   const SteadyFrame *now = find_frame(s, s->number);
-  const uint32_t width = vl_image_width(now->clean), height = vl_image_height(now->clean);
-  const size_t stride = vl_image_channels(now->clean), pixels = (size_t)width * height;
+  const size_t stride = vl_image_channels(now->clean);
   const float *own = vl_image_const_pixels(now->clean);
-  const vlImageDef sums_def = vl_default_image_def(width, height, 4);
   const int alpha = vl_image_find_channel(now->clean, "A");
-  const vlImageDef def = vl_default_image_def(width, height, alpha >= 0 ? 4 : 3);
+  const uint32_t channels = alpha >= 0 ? 4 : 3;
   vlImage *sums = NULL;
   *result = NULL;
-  vlResult code = vl_image_create(job->context, &sums_def, &sums);
+  vlResult code = image_make_like(job->context, now->clean, 4, NULL, &sums);
   if (code == VL_OK)
-    code = vl_image_create(job->context, &def, result);
+    code = image_make_like(job->context, now->clean, channels, NULL, result);
   for (uint32_t k = 0; k < s->count && code == VL_OK; k++)
     code = add_frame(s, now, find_frame(s, s->before[k]), job, signals, vl_image_pixels(sums),
                      error);
@@ -328,10 +322,9 @@ vlResult steady_blend(const Steady *s, const Job *job, int *signals, vlImage **r
     code = vl_image_add_attributes(*result, now->clean);
   const float *sum = code == VL_OK ? vl_image_const_pixels(sums) : NULL;
   float *to = code == VL_OK ? vl_image_pixels(*result) : NULL;
-  for (size_t i = 0; i < pixels && to; i++) {
-    for (int c = 0; c < 3; c++)
-      to[i * def.channels + (size_t)c] =
-          (own[i * stride + (size_t)c] + sum[4 * i + (size_t)c]) / (1 + sum[4 * i + 3]);
+  for (size_t i = 0; to && i < image_pixel_count(now->clean); i++) {
+    for (size_t c = 0; c < 3; c++)
+      to[i * channels + c] = (own[i * stride + c] + sum[4 * i + c]) / (1 + sum[4 * i + 3]);
     if (alpha >= 0)
       to[i * 4 + 3] = own[i * stride + (size_t)alpha];
   }

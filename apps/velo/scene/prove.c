@@ -7,6 +7,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "image/image.h"
 #include "scene/scene.h"
 #include "velo/channels.h"
 
@@ -77,7 +78,7 @@ static void add_up(const Shot *before, const Shot *after, Sums *sums, uint32_t c
   const uint32_t *ids = vl_image_const_pixels(before->ids);
   const float *a = vl_image_const_pixels(before->image);
   const float *b = vl_image_const_pixels(after->image);
-  const size_t pixels = (size_t)vl_image_width(before->image) * vl_image_height(before->image);
+  const size_t pixels = image_pixel_count(before->image);
   const size_t step = vl_image_channels(before->image);
   const size_t id_step = vl_image_channels(before->ids);
   for (size_t i = 0; i < pixels; i++) {

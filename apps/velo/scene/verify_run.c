@@ -7,6 +7,7 @@
 #include "cli/macros.h"
 #include "cli/signals.h"
 #include "cli/vector.h"
+#include "image/image.h"
 #include "scene/verify.h"
 #include "velo/channels.h"
 #include "velo/edit.h"
@@ -194,8 +195,7 @@ static vlResult make_cells(Verify *v, const vlWorld *world, const vlImage *ids) 
 /* The mean point that the camera sees, and the mean distance to it. */
 static void find_centre(const vlImage *floats, const vlCamera *camera, double centre[3],
                         double *distance) {
-  const size_t pixels = (size_t)vl_image_width(floats) * vl_image_height(floats),
-               step = vl_image_channels(floats);
+  const size_t pixels = image_pixel_count(floats), step = vl_image_channels(floats);
   const float *value = vl_image_const_pixels(floats);
   double seen = 0, sum[4] = {0, 0, 0, 0};
   for (size_t i = 0; i < pixels; i++) {
@@ -220,8 +220,7 @@ static void find_centre(const vlImage *floats, const vlCamera *camera, double ce
  * 1/(n p_i): that of n P^2 / sum 1/p_i independent paths. */
 static double share_of_light_paths(const vlImage *floats, const vlCamera *camera,
                                    const vlWorld *world) {
-  const size_t pixels = (size_t)vl_image_width(floats) * vl_image_height(floats),
-               step = vl_image_channels(floats);
+  const size_t pixels = image_pixel_count(floats), step = vl_image_channels(floats);
   const float *value = vl_image_const_pixels(floats);
   double seen = 0, sum = 0, square = 0;
   vlWorldInfo info;

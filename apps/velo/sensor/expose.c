@@ -197,7 +197,7 @@ static void tell_filter(const vlImage *image) {
 
 /* What a reader of the frame should know. */
 static void tell(const Expose *e, uint32_t frame, const vlSensorOutput *out) {
-  double pixels = (double)vl_image_width(e->image) * vl_image_height(e->image);
+  double pixels = (double)image_pixel_count(e->image);
   if (frame == 0) {
     tell_few_samples(e->image);
     tell_filter(e->image);
@@ -277,10 +277,8 @@ static int make_frames(Expose *e) {
   def.type = VL_PIXEL_U16;
   vlResult result = vl_image_create(e->context, &def, &e->numbers);
   static const char *const name[1] = {"electrons"};
-  def = vl_default_image_def(width, height, 1);
-  def.names = name;
   if (result == VL_OK)
-    result = vl_image_create(e->context, &def, &e->electrons);
+    result = image_make(e->context, width, height, 1, name, &e->electrons);
   e->means = malloc(sizeof *e->means * width * height);
   if (result == VL_OK && !e->means)
     result = VL_ERROR_MEMORY;

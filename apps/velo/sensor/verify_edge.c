@@ -3,7 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
+#include "image/image.h"
 #include "sensor/verify.h"
 
 #define PI 3.14159265358979323846
@@ -54,14 +56,12 @@ static double expected(const vlSensorDef *def, const Edge *e, double frequency) 
 /* An image of the edge: two equal buckets, 1 beyond it and a quarter on this side. */
 static vlResult edge_image(vlContext *context, const Edge *e, double side, vlImage **image) {
   static const char *const names[2] = {"S0.500nm", "S0.600nm"};
-  vlImageDef def = vl_default_image_def(EDGE_SIDE, EDGE_SIDE, 2);
-  def.names = names;
-  vlResult result = vl_image_create(context, &def, image);
-  float *pixel = result == VL_OK ? vl_image_pixels(*image) : NULL;
-  for (int y = 0; y < EDGE_SIDE && pixel; y++)
+  TRY_RESULT(image_make(context, EDGE_SIDE, EDGE_SIDE, 2, names, image));
+  float *pixel = vl_image_pixels(*image);
+  for (int y = 0; y < EDGE_SIDE; y++)
     for (int x = 0; x < EDGE_SIDE; x++, pixel += 2)
       pixel[0] = pixel[1] = (float)(0.25 + 0.75 * coverage(e, side, x, y));
-  return result;
+  return VL_OK;
 }
 
 /* The sensor without its mosaic and its angles, since the edge is grey, and without fixed

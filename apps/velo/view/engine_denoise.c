@@ -6,6 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/crop.h"
+#include "cli/macros.h"
+#include "image/image.h"
 #include "velo/channels.h"
 #include "velo/denoise.h"
 #include "velo/tracer.h"
@@ -98,7 +101,7 @@ static vlResult make_features(PartOfFilm *part, uint32_t first, uint32_t end,
                               vlImage **features) {
   Engine *e = part->engine;
   const uint32_t *crop = part->crop, spp = vl_film_spp(part->film);
-  bool whole = part->scale == 1 && first == 0 && end == crop[3] - crop[1];
+  bool whole = part->scale == 1 && first == 0 && end == crop_height(crop);
   if (whole && e->preview.features && spp < 4 * e->preview.feature_spp) {
     *features = e->preview.features;
     return VL_OK;
@@ -125,13 +128,12 @@ static vlResult make_features(PartOfFilm *part, uint32_t first, uint32_t end,
 static vlResult gather(PartOfFilm *part, uint32_t first, uint32_t end, vlImage **image) {
   Engine *e = part->engine;
   vlDevelopDef develop = e->model.job.defs->develop;
-  const uint32_t width = part->crop[2] - part->crop[0];
+  const uint32_t width = crop_width(part->crop);
   const size_t skip = (size_t)first * width, pixels = (size_t)(end - first) * width;
-  vlImageDef def = vl_default_image_def(width, end - first, CHANNELS);
   vlImage *colours = NULL, *errors = NULL, *features = NULL;
-  def.names = channel_names;
   develop.independent = true;
-  vlResult result = vl_image_create(e->def.context, &def, image);
+  vlResult result =
+      image_make(e->def.context, width, end - first, CHANNELS, channel_names, image);
   if (result == VL_OK)
     result = vl_film_develop(part->film, &develop, &colours);
   if (result == VL_OK && part->scale == 1 && vl_film_spp(part->film) > 1)
@@ -166,17 +168,16 @@ void engine_free_part(PartOfFilm *part) {
 
 /* The preview, whose rows are not denoised yet. */
 static vlResult make_clean(PartOfFilm *part) {
-  const uint32_t width = part->crop[2] - part->crop[0], height = part->crop[3] - part->crop[1];
-  vlImageDef def = vl_default_image_def(width, height, 4);
-  vlResult result = vl_image_create(part->engine->def.context, &def, &part->clean);
-  if (result == VL_OK && part->engine->coarse.last)
+  const uint32_t width = crop_width(part->crop), height = crop_height(part->crop);
+  TRY_RESULT(image_make(part->engine->def.context, width, height, 4, NULL, &part->clean));
+  if (part->engine->coarse.last)
     engine_fill_rows(part->engine, part->clean, part->scale, 0);
-  return result;
+  return VL_OK;
 }
 
 static void publish(PartOfFilm *part, uint32_t rows) {
   Engine *e = part->engine;
-  bool whole = rows == part->crop[3] - part->crop[1];
+  bool whole = rows == crop_height(part->crop);
   const FrameKind kind = {.format = FRAME_HALF,
                           .channels = 3,
                           .scale = part->scale,
@@ -193,7 +194,7 @@ static void publish(PartOfFilm *part, uint32_t rows) {
 bool engine_denoise(PartOfFilm *part, uint32_t rows) {
   Engine *e = part->engine;
   DenoisedPreview *p = &e->preview;
-  const uint32_t width = part->crop[2] - part->crop[0],
+  const uint32_t width = crop_width(part->crop),
                  first = part->rows > OVERLAP ? part->rows - OVERLAP : 0;
   const double start = engine_program_seconds();
   vlImage *image = NULL, *clean = NULL;

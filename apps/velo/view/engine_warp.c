@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/crop.h"
+#include "image/image.h"
 #include "velo/channels.h"
 #include "view/engine_parts.h"
 
@@ -27,23 +29,21 @@ void engine_warp_forget(Engine *e) {
 /* The whole image, of a camera at rest: it is projected as at one time. */
 static bool is_whole(const Wanted *w) {
   const vlCamera *c = &w->camera.made;
-  return !c->moves && !w->crop[0] && !w->crop[1] && w->crop[2] == c->width &&
-         w->crop[3] == c->height;
+  return !c->moves && crop_is_whole(w->crop, c->width, c->height);
 }
 
 /* Means of scale x scale pixels, R G B A. Null: no memory. */
 static vlImage *shrink(vlContext *context, const vlImage *from, uint32_t scale) {
   const uint32_t width = vl_image_width(from), height = vl_image_height(from),
                  channels = vl_image_channels(from);
-  const vlImageDef def =
-      vl_default_image_def((width + scale - 1) / scale, (height + scale - 1) / scale, 4);
+  const uint32_t columns = (width + scale - 1) / scale, rows = (height + scale - 1) / scale;
   vlImage *image = NULL;
-  if (vl_image_create(context, &def, &image) != VL_OK)
+  if (image_make(context, columns, rows, 4, NULL, &image) != VL_OK)
     return NULL;
   const float *pixels = vl_image_const_pixels(from);
   float *to = vl_image_pixels(image);
-  for (uint32_t y = 0; y < def.height; y++)
-    for (uint32_t x = 0; x < def.width; x++, to += 4) {
+  for (uint32_t y = 0; y < rows; y++)
+    for (uint32_t x = 0; x < columns; x++, to += 4) {
       const uint32_t x1 = (x + 1) * scale < width ? (x + 1) * scale : width,
                      y1 = (y + 1) * scale < height ? (y + 1) * scale : height;
       float sum[3] = {0};
@@ -197,7 +197,7 @@ bool engine_warp_suits(const Engine *e, uint32_t scale) {
 }
 
 bool engine_warp_stays(const Engine *e) {
-  const uint32_t spp = e->film ? vl_film_spp(e->film) : 0;
+  const uint32_t spp = engine_spp(e);
   return e->warp.image && e->warp.shown == e->now.generation &&
          e->warp.generation != e->now.generation && spp < GRAINY_SPP && spp < e->now.spp;
 }
@@ -209,13 +209,12 @@ bool engine_warp_publish(Engine *e) {
     return false;
   const double used = engine_thread_seconds();
   const size_t pixels = (size_t)to.width * to.height;
-  const vlImageDef def = vl_default_image_def(to.width, to.height, 4);
   vlImage *image = NULL;
   Cover cover = {.from = calloc(pixels, sizeof *cover.from),
                  .depth = calloc(pixels, sizeof *cover.depth)};
   bool done = cover.from && cover.depth && find_cover(e, &to, &cover) &&
               (double)cover.count >= least_cover * (double)pixels &&
-              vl_image_create(e->def.context, &def, &image) == VL_OK;
+              image_make(e->def.context, to.width, to.height, 4, NULL, &image) == VL_OK;
   if (done) {
     engine_fill_rows(e, image, w->scale, 0);
     put_colours(w->image, &cover, &to, vl_image_pixels(image));

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/crop.h"
+
 /* Rounds to the nearest half float, ties to even. Values above the largest half become the
  * largest; NaN becomes 0. */
 static uint16_t to_half(float value) {
@@ -127,20 +129,20 @@ static bool tile_differs(const ViewFrame *a, const ViewFrame *b, const uint32_t 
   size_t size = pixel_size(a);
   for (uint32_t y = tile[1]; y < tile[3]; y++) {
     size_t at = ((size_t)y * a->columns + tile[0]) * size;
-    if (memcmp(a->pixels + at, b->pixels + at, (tile[2] - tile[0]) * size) != 0)
+    if (memcmp(a->pixels + at, b->pixels + at, crop_width(tile) * size) != 0)
       return true;
   }
   return false;
 }
 
 static size_t tile_bytes(const ViewFrame *frame, const uint32_t tile[4]) {
-  size_t bytes = (size_t)(tile[2] - tile[0]) * (tile[3] - tile[1]) * pixel_size(frame);
+  size_t bytes = crop_pixels(tile) * pixel_size(frame);
   return 8 + (bytes + 3) / 4 * 4;
 }
 
 static uint8_t *put_tile(const ViewFrame *frame, const uint32_t tile[4], uint8_t *to) {
   const uint16_t rectangle[4] = {(uint16_t)tile[0], (uint16_t)tile[1],
-                                 (uint16_t)(tile[2] - tile[0]), (uint16_t)(tile[3] - tile[1])};
+                                 (uint16_t)crop_width(tile), (uint16_t)crop_height(tile)};
   size_t row = rectangle[2] * pixel_size(frame), used = 0;
   memcpy(to, rectangle, sizeof rectangle);
   to += sizeof rectangle;

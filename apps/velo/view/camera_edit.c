@@ -236,20 +236,6 @@ static void before_focus(const ViewCamera *now, vlCameraDef *def) {
   for (int i = 0; i < 2; i++)
     def->lens.focus_pixel[i] = VL_UNSET;
 }
-static bool set_blades(Edit *e, const MessageField *f) {
-  if (f->count != 1)
-    return false;
-  e->def->lens.blades = (uint32_t)f->numbers[0];
-  return true;
-}
-static bool set_near(Edit *e, const MessageField *f) {
-  e->def->near_plane = f->null ? 0 : f->numbers[0];
-  return f->null || f->count == 1;
-}
-static bool set_far(Edit *e, const MessageField *f) {
-  e->def->far_plane = f->null ? (double)INFINITY : f->numbers[0];
-  return f->null || f->count == 1;
-}
 /* With another shutter, the poses of a moving camera keep their times, and the image its
  * brightness. */
 static void keep_motion(const ViewCamera *now, vlCameraDef *def) {
@@ -293,15 +279,15 @@ static const struct {
                {"lens_radius", "lens_radius", .before = before_radius, .needed = true},
                {"f_number", "f_number", .before = before_f_number},
                {"focus_distance", "focus_distance", .before = before_focus},
-               {"blades", "blades", .set = set_blades},
+               {"blades", "blades", .needed = true},
                {"rotation", "rotation", .needed = true},
                {"ratio", "ratio", .needed = true},
                {"tilt_x", "tilt_x", .needed = true},
                {"tilt_y", "tilt_y", .needed = true},
                {"lens_tilt_x", "lens_tilt_x", .needed = true},
                {"lens_tilt_y", "lens_tilt_y", .needed = true},
-               {"near", "near_plane", .set = set_near},
-               {"far", "far_plane", .set = set_far},
+               {"near", .setting = "near_plane"},
+               {"far", .setting = "far_plane"},
                {"shutter_open", "shutter_open", .before = keep_motion, .needed = true},
                {"shutter_close", "shutter_close", .before = keep_motion, .needed = true},
                {"exposure_time", "exposure_time", .needed = true}};
@@ -321,11 +307,6 @@ static vlParameter row_of(const char *setting, const char *names[PROJECTIONS + 1
   return row;
 }
 
-static vlResult refuse(vlError *error, const char *message) {
-  snprintf(error->message, sizeof error->message, "%s", message);
-  return error->code = VL_ERROR_ARGUMENT;
-}
-
 /* Checks the values of a field by its row, and finds its choice. */
 static vlResult check_field(MessageField *field, const char *setting, vlError *error) {
   char name[80];
@@ -334,7 +315,7 @@ static vlResult check_field(MessageField *field, const char *setting, vlError *e
     return VL_OK;
   const char *names[PROJECTIONS + 1];
   const vlParameter row = row_of(setting, names);
-  snprintf(name, sizeof name, "camera: %s", field->name);
+  text_set(name, "camera: %s", field->name);
   vlGiven given = {.kind = VL_GIVEN_TEXT, .text = field->text, .factor = row.factor};
   uint32_t count = field->count ? field->count : 1;
   for (uint32_t i = 0; i < count; i++) {
@@ -343,16 +324,10 @@ static vlResult check_field(MessageField *field, const char *setting, vlError *e
       given =
           (vlGiven){.kind = VL_GIVEN_NUMBER, .number = field->numbers[i], .factor = row.factor};
     if (!vl_given_check(&row, name, &given, &number, message))
-      return refuse(error, message);
+      return message_refuse(error, "%s", message);
     field->choice = row.type == VL_PARAMETER_CHOICE ? (int)number : 0;
   }
   return VL_OK;
-}
-
-static vlResult refuse_count(vlError *error, const MessageField *field) {
-  snprintf(error->message, sizeof error->message,
-           "camera: %s has %u numbers, which is not their number", field->name, field->count);
-  return error->code = VL_ERROR_ARGUMENT;
 }
 
 static vlResult refuse_name(vlError *error, const char *name) {
@@ -361,7 +336,7 @@ static vlResult refuse_name(vlError *error, const char *name) {
   for (int i = 0; i < SETTERS; i++)
     names[i] = setters[i].name;
   vl_unknown_name("field of the camera", "", name, names, SETTERS, message);
-  return refuse(error, message);
+  return message_refuse(error, "%s", message);
 }
 
 /* Applies a field by its setter. False: its value is not of the right form. */
@@ -371,28 +346,28 @@ static bool set_field(Edit *edit, const MessageField *field, int s) {
   if (setters[s].set)
     return setters[s].set(edit, field);
   const vlParameter *row = vl_setting(VL_SETTING_CAMERA, setters[s].setting);
-  const double factor = row->factor != 0 ? row->factor : 1;
-  const double value = field->null ? VL_UNSET : field->numbers[0] * factor;
-  memcpy((char *)edit->def + row->offset, &value, sizeof value);
-  return field->count == 1 || (field->null && !setters[s].needed);
+  const vlCameraDef standard = vl_default_camera_def(1, 1);
+  if (field->null && !setters[s].needed) {
+    memcpy((char *)edit->def + row->offset, (const char *)&standard + row->offset,
+           sizeof(double));
+    return true;
+  }
+  vl_given_put(row, field->numbers[0] * (row->factor != 0 ? row->factor : 1), edit->def);
+  return field->count == 1;
 }
 
 static vlResult apply_fields(Edit *edit, vlError *error) {
   const ViewMessage *message = edit->message;
-  uint32_t known = 0;
   for (int s = 0; s < SETTERS; s++)
     for (uint32_t i = 0; i < message->field_count; i++) {
       MessageField field = message->fields[i];
       if (strcmp(field.name, setters[s].name) != 0)
         continue;
-      known++;
-      if (check_field(&field, setters[s].setting, error) != VL_OK)
-        return VL_ERROR_ARGUMENT;
+      TRY_RESULT(check_field(&field, setters[s].setting, error));
       if (!set_field(edit, &field, s))
-        return refuse_count(error, &field);
+        return message_refuse(error, "camera: %s has %u numbers, which is not their number",
+                              field.name, field.count);
     }
-  if (known == message->field_count)
-    return VL_OK;
   for (uint32_t i = 0; i < message->field_count; i++) {
     int s = 0;
     while (s < SETTERS && strcmp(setters[s].name, message->fields[i].name) != 0)
@@ -411,14 +386,11 @@ static void tidy_sensor(const CameraUnits *units, vlCameraDef *def) {
   def->sensor_width_mm = needed ? units->sensor_mm : VL_UNSET;
 }
 
-static bool near(double a, double b) {
-  return fabs(a - b) <= 1e-9 * fmax(fabs(a), fabs(b));
-}
-
 /* Whether two compiled cameras are the same but for rounding. */
 static bool same_camera(const vlCamera *a, const vlCamera *b) {
-  return near(a->fx, b->fx) && near(a->fy, b->fy) && near(a->cx, b->cx) && near(a->cy, b->cy) &&
-         near(a->skew, b->skew) && near(a->lens_radius, b->lens_radius);
+  return is_near(a->fx, b->fx) && is_near(a->fy, b->fy) && is_near(a->cx, b->cx) &&
+         is_near(a->cy, b->cy) && is_near(a->skew, b->skew) &&
+         is_near(a->lens_radius, b->lens_radius);
 }
 
 /* Scales the spelling of the focal length to the image's size. */
@@ -486,24 +458,22 @@ vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCame
   ViewCamera next = *now;
   Edit edit = {
       .now = now, .def = &next.def, .message = message, .pose = {.pose = camera_pose(now)}};
-  vlResult status = apply_fields(&edit, error);
-  if (status == VL_OK && edit.pose.given)
+  TRY_RESULT(apply_fields(&edit, error));
+  if (edit.pose.given)
     camera_place(now, &edit.pose.pose, &next.def);
   note_units(&next.def, &next.units);
   const double arm = camera_arm(&edit.pose.pose);
   if (arm > 0)
     next.units.lookat = arm;
   tidy_sensor(&next.units, &next.def);
-  if (status == VL_OK)
-    status = vl_camera_make(&next.def, &next.made, warning, error);
-  if (status == VL_OK)
-    *result = next;
-  return status;
+  TRY_RESULT(vl_camera_make(&next.def, &next.made, warning, error));
+  *result = next;
+  return VL_OK;
 }
 
 static MessageField number_field(const char *name, double value) {
   MessageField field = {.count = 1, .numbers = {value}};
-  snprintf(field.name, sizeof field.name, "%s", name);
+  text_set(field.name, "%s", name);
   return field;
 }
 

@@ -2,6 +2,7 @@
 #ifndef APP_VIEW_ENGINE_ANSWERS_H
 #define APP_VIEW_ENGINE_ANSWERS_H
 
+#include "velo/camera_file.h"
 #include "view/engine_parts.h"
 
 /* Adds a task to a list that has room, or refuses it; the caller holds the lock. */
@@ -26,6 +27,9 @@ void engine_refuse(Engine *engine, const ViewMessage *message, const char *why);
 void engine_pick(Engine *engine, const ViewMessage *message);
 /* Focuses the camera on what a pixel sees. */
 void engine_focus(Engine *engine, const ViewMessage *message);
+/* Writes the present camera. Errors: those of vl_camera_write. */
+vlResult engine_write_camera(const Engine *engine, const char *path, vlCameraDialect dialect,
+                             vlError *error);
 /* Writes a camera or an image; posts its name. */
 void engine_save(Engine *engine, const ViewMessage *message);
 /* Writes the camera and posts the command that renders the present image. */

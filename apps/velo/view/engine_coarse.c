@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/crop.h"
+#include "image/image.h"
 #include "velo/channels.h"
 #include "velo/tracer.h"
 #include "view/engine_sensor.h"
@@ -26,7 +28,7 @@ void engine_note_speed(double *sample_seconds, uint64_t samples, double seconds)
 
 double engine_pixels(const Engine *e) {
   const uint32_t *c = e->now.crop;
-  return (double)(c[2] - c[0]) * (c[3] - c[1]);
+  return (double)crop_pixels(c);
 }
 
 /* The scale of the first image after a change, from the seconds that one pixel takes; 0: not
@@ -86,7 +88,7 @@ static bool render_colours(Engine *e, uint32_t scale) {
     engine_note_speed(&e->coarse.pixel_seconds, stats.camera_rays, monotonic_seconds() - start);
     if (warps)
       publish_moved(e, film, scale);
-    else if (!part.denoise || !engine_denoise(&part, def.crop[3] - def.crop[1]))
+    else if (!part.denoise || !engine_denoise(&part, crop_height(def.crop)))
       engine_publish_film(e, film, scale, UINT32_MAX);
   }
   engine_free_part(&part);
@@ -100,16 +102,13 @@ static bool render_colours(Engine *e, uint32_t scale) {
  * per pixel. Null: no memory. */
 static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage *hidden,
                           uint32_t scale) {
-  const uint32_t width = vl_image_width(flow), height = vl_image_height(flow);
-  vlImageDef def = vl_default_image_def(width, height, 3);
   vlImage *image = NULL;
-  def.type = VL_PIXEL_F32;
-  if (vl_image_create(context, &def, &image) != VL_OK)
+  if (image_make_like(context, flow, 3, NULL, &image) != VL_OK)
     return NULL;
   float *to = vl_image_pixels(image);
   const float *from = vl_image_const_pixels(flow);
   const uint32_t *ids = vl_image_const_pixels(hidden);
-  for (size_t i = 0; i < (size_t)width * height; i++) {
+  for (size_t i = 0; i < image_pixel_count(flow); i++) {
     to[3 * i] = (float)scale * from[2 * i];
     to[3 * i + 1] = (float)scale * from[2 * i + 1];
     to[3 * i + 2] = (float)ids[i];
@@ -163,8 +162,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
   const vlImage *image = flow ? flow : floats ? floats : ids;
   if (result == VL_OK && image) {
     if (e->now.channel != CHANNEL_ERROR && !light)
-      engine_note_speed(&e->coarse.channel_seconds,
-                        (uint64_t)vl_image_width(image) * vl_image_height(image),
+      engine_note_speed(&e->coarse.channel_seconds, image_pixel_count(image),
                         monotonic_seconds() - start);
     const FrameKind kind = {
         .format = FRAME_FLOAT,
@@ -172,8 +170,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
         .scale = scale,
         .spp = scale > 1 ? 0
                : light   ? e->coarse.light_spp
-               : e->film ? vl_film_spp(e->film)
-                         : 0};
+                         : engine_spp(e)};
     engine_publish(e, image, &kind);
   }
   if (result != VL_OK && result != VL_CANCELLED)
@@ -186,7 +183,7 @@ static bool render_channel(Engine *e, uint32_t scale) {
 }
 
 bool engine_render_error(Engine *e) {
-  return !e->film || vl_film_spp(e->film) < 2 || render_channel(e, 1);
+  return engine_spp(e) < 2 || render_channel(e, 1);
 }
 
 /* ---- which one is next ------------------------------------------------------------------- */

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "render/attributes.h"
@@ -45,19 +46,16 @@ static int take_camera(const Engine *e, FilmCommand *c) {
                                  RENDER_F_NUMBER,    RENDER_RESOLUTION,     RENDER_ISO,
                                  RENDER_SECONDS};
   const vlCamera *made = &e->now.camera.made;
-  const vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
-  vlCameraFileDef def = vl_default_camera_file_def();
+  const vlCameraDef *own = &e->now.camera.def;
   vlError error = {0};
-  def.dialect = VL_CAMERA_DIALECT_VELO;
   engine_film_camera(e->def.film_path, c->camera, sizeof c->camera);
-  vlResult result = vl_camera_write(e->def.context, c->camera, &def, &record, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, c->camera);
+  TRY(report_error(&error, engine_write_camera(e, c->camera, VL_CAMERA_DIALECT_VELO, &error),
+                   c->camera));
   for (size_t i = 0; i < LENGTH(replaced); i++)
     set_option(c, replaced[i], NULL);
   set_option(c, RENDER_CAMERA, c->camera);
-  snprintf(c->resolution, sizeof c->resolution, "%ux%u", made->width, made->height);
-  if (record.camera.width != made->width || record.camera.height != made->height)
+  text_set(c->resolution, "%ux%u", made->width, made->height);
+  if (own->width != made->width || own->height != made->height)
     set_option(c, RENDER_RESOLUTION, c->resolution);
   return -1;
 }
@@ -78,19 +76,16 @@ static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt,
     return -1;
   }
   c->arguments = *e->def.arguments;
-  int status = -1;
-  snprintf(c->crop, sizeof c->crop, "%u,%u,%u,%u", crop[0], crop[1], crop[2], crop[3]);
+  text_set(c->crop, "%u,%u,%u,%u", crop[0], crop[1], crop[2], crop[3]);
   if (is_scenes_own(e)) {
     defs.camera = job.defs->camera;
     if (memcmp(crop, job.defs->film.crop, sizeof job.defs->film.crop) != 0)
       set_option(c, RENDER_CROP, c->crop);
   } else {
-    const uint32_t whole[4] = {0, 0, defs.film.width, defs.film.height};
-    set_option(c, RENDER_CROP, memcmp(crop, whole, sizeof whole) == 0 ? NULL : c->crop);
-    status = take_camera(e, c);
+    const bool whole = crop_is_whole(crop, defs.film.width, defs.film.height);
+    set_option(c, RENDER_CROP, whole ? NULL : c->crop);
+    TRY(take_camera(e, c));
   }
-  if (status >= 0)
-    return status;
   set_option(c, RENDER_TRAJECTORY, NULL);
   set_option(c, RENDER_CHANNELS, "error"); /* the film has their sums */
   defs.film.errors = true;
@@ -119,7 +114,7 @@ int engine_write_film(Engine *e) {
                           "%s is not written: the last image was a sensor's; --film has images "
                           "that are shown without one",
                           path);
-  if (!e->film || !vl_film_spp(e->film))
+  if (!engine_spp(e))
     return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet",
                           path);
   int status = make_receipt(e, &command, &receipt, &attributes);
@@ -130,7 +125,5 @@ int engine_write_film(Engine *e) {
   vlResult result = status < 0 ? vl_film_write(e->film, &def, path, &error) : VL_OK;
   vl_receipt_destroy(receipt);
   vl_image_destroy(attributes);
-  if (status < 0)
-    status = result == VL_OK ? STATUS_OK : report_error(&error, result, path);
-  return status;
+  return status < 0 ? report_finish(&error, result, path) : status;
 }

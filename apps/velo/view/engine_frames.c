@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "cli/crop.h"
+#include "cli/macros.h"
 #include "view/engine_sensor.h"
 
 /* Seconds of a part of an image that is shown while it grows. */
@@ -109,7 +111,7 @@ static void publish_luminance(Engine *e, const vlFilm *film, uint32_t scale) {
     engine_publish(e, image, &kind);
   } else {
     vlError error = {0};
-    snprintf(error.message, sizeof error.message, "the luminance cannot be shown: %s",
+    text_set(error.message, "the luminance cannot be shown: %s",
              result == VL_ERROR_MEMORY ? "out of memory" : LUMINANCE_NEEDS);
     status_error(e, &error, result);
   }
@@ -148,7 +150,7 @@ void engine_publish_film(Engine *e, const vlFilm *film, uint32_t scale, uint32_t
 static bool publish_rows(void *user, const vlProgress *progress) {
   PartOfFilm *part = user;
   const uint32_t rows = progress->rows;
-  if (!progress->pass_done || rows >= part->crop[3] - part->crop[1])
+  if (!progress->pass_done || rows >= crop_height(part->crop))
     return true;
   if (!part->denoise || !engine_denoise(part, rows))
     engine_publish_film(part->engine, part->film, part->scale, rows);
@@ -156,8 +158,8 @@ static bool publish_rows(void *user, const vlProgress *progress) {
 }
 
 void engine_render_in_parts(PartOfFilm *part, vlRenderDef *render, double pixel_seconds) {
-  const uint32_t height = part->crop[3] - part->crop[1];
-  const double whole = pixel_seconds * (part->crop[2] - part->crop[0]) * height;
+  const uint32_t height = crop_height(part->crop);
+  const double whole = pixel_seconds * crop_width(part->crop) * height;
   if (!part->engine->coarse.last || whole < 2 * PART_SECONDS || engine_warp_stays(part->engine))
     return;
   render->pass_rows = (uint32_t)ceil(height * PART_SECONDS / whole);

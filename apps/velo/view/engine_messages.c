@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "velo/channels.h"
 #include "view/engine_status.h"
@@ -13,7 +14,7 @@ static bool has_camera_mode(const Engine *e) {
   return !e->def.lecture && !e->def.stepwise;
 }
 
-static char *engine_state(const Engine *e) {
+void engine_post_state(Engine *e, uint32_t client) {
   const Wanted *w = &e->wanted;
   const ViewState state = {.scene = e->def.path,
                            .change = w->change,
@@ -31,22 +32,12 @@ static char *engine_state(const Engine *e) {
                            .poses = e->model.camera_count,
                            .camera = &w->camera,
                            .sensor = has_camera_mode(e) ? &w->sensor : NULL};
-  return state_text(&state);
-}
-
-void engine_post_state(Engine *e, uint32_t client) {
-  char *text = engine_state(e);
-  if (text)
-    server_post(e->server, client, text);
-  free(text);
+  json_text_post(state_begin(&state), e->server, client);
 }
 
 void engine_greet(void *user, uint32_t client) {
   Engine *e = user;
-  char *lists = state_lists(has_camera_mode(e) ? &e->sensors : NULL);
-  if (lists)
-    server_post(e->server, client, lists);
-  free(lists);
+  json_text_post(state_begin_lists(has_camera_mode(e) ? &e->sensors : NULL), e->server, client);
   engine_lock(e);
   engine_post_state(e, client);
   if (e->last.status)
@@ -176,14 +167,13 @@ static const char *channel_refusal(const Engine *e, const char *name) {
 
 static bool set_crop(Engine *e, const uint32_t crop[4]) {
   const vlCamera *c = &e->wanted.camera.made;
-  const uint32_t whole[4] = {0, 0, c->width, c->height};
   if (!crop[2]) {
-    memcpy(e->wanted.crop, whole, sizeof whole);
+    crop_set(e->wanted.crop, 0, 0, c->width, c->height);
     return true;
   }
   if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > c->width || crop[3] > c->height)
     return false;
-  memcpy(e->wanted.crop, crop, sizeof whole);
+  memcpy(e->wanted.crop, crop, sizeof e->wanted.crop);
   return true;
 }
 

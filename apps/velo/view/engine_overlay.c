@@ -47,10 +47,7 @@ static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
       continue;
     json_begin(json, NULL, '{');
     json_put(json, "id %u, name %s", i + 1, info.name ? info.name : "");
-    json_begin(json, "box", '[');
-    for (int k = 0; k < 4; k++)
-      json_integer(json, NULL, boxes[i].seen_box[k]);
-    json_end(json, ']');
+    json_integers(json, "box", boxes[i].seen_box, 4);
     json_end(json, '}');
     put++;
   }

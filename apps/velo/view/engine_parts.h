@@ -112,8 +112,10 @@ typedef struct AskedTime {
 } AskedTime;
 /* The thread that watches the files. */
 void *engine_watch(void *engine);
-/* Sends errors and warnings of a load to the pages: for report_listen. */
-void engine_report(void *engine, const char *kind, const vlError *what);
+/* Loads a scene, and sends the errors and warnings of that to the pages. The parameters are
+ * those of model_load. Null: it cannot be loaded. */
+Model *engine_load(Engine *engine, const char *path, const ModelTime *time,
+                   const vlWorld *previous, FileList *files);
 /* Gives the render thread a model to go on with, in place of one that it has not taken. path:
  * of another scene; null: the same, which has changed. The engine then owns the model. */
 void engine_offer(Engine *engine, Model *model, const char *path, uint32_t change);
@@ -157,6 +159,8 @@ vlRenderDef engine_render_def(const Engine *engine, uint32_t spp);
 void engine_interrupt(Engine *engine);
 /* The number of pixels of the present image. */
 double engine_pixels(const Engine *engine);
+/* The samples per pixel of its film; 0: there is no film, or it has none. */
+uint32_t engine_spp(const Engine *engine);
 /* A film for the present image; null after reporting why not. */
 vlFilm *engine_make_film(Engine *engine);
 /* Sets the tracer and the number of light paths of a render. */

@@ -5,6 +5,7 @@
 
 #include "camera/paths.h"
 #include "cli/kinds.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "velo/tracer.h"
 #include "view/engine_status.h"
@@ -54,8 +55,8 @@ static void answer(Engine *e, const ViewMessage *m, const ViewCamera *camera) {
     return;
   if (render.tracer != VL_TRACER_PATH && render.tracer != VL_TRACER_VOLPATH) {
     char why[200];
-    snprintf(
-        why, sizeof why,
+    text_set(
+        why,
         "paths of the tracer %s are not recorded; start velo view with --tracer path or volpath",
         kind_name("tracers", (int)render.tracer));
     engine_refuse(e, m, why);

@@ -8,6 +8,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/vector.h"
 #include "view/camera_edit.h"
 #include "view/camera_pose.h"
 #include "view/engine_status.h"
@@ -45,10 +46,6 @@ static void copy_focal(const vlCameraDef *from, vlCameraDef *to) {
     memcpy((char *)to + focal[i], (const char *)from + focal[i], sizeof(double));
 }
 
-static bool near(double a, double b) {
-  return a == b || fabs(a - b) <= 1e-9 * fmax(fabs(a), fabs(b));
-}
-
 static bool same_size(const ViewCamera *a, const ViewCamera *b) {
   return a->made.width == b->made.width && a->made.height == b->made.height;
 }
@@ -56,14 +53,15 @@ static bool same_size(const ViewCamera *a, const ViewCamera *b) {
 /* Whether two cameras have the same field of view, in the sense of --resolution. */
 static bool same_field(const vlCamera *a, const vlCamera *b) {
   vlCamera c;
-  return vl_camera_resize(a, b->width, b->height, &c) == VL_OK && near(c.fx, b->fx) &&
-         near(c.fy, b->fy) && near(c.cx, b->cx) && near(c.cy, b->cy) && near(c.skew, b->skew);
+  return vl_camera_resize(a, b->width, b->height, &c) == VL_OK && is_near(c.fx, b->fx) &&
+         is_near(c.fy, b->fy) && is_near(c.cx, b->cx) && is_near(c.cy, b->cy) &&
+         is_near(c.skew, b->skew);
 }
 
 /* Whether all that does not depend on the size is the same. */
 static bool same_rest(const vlCamera *a, const vlCamera *b) {
   return a->projection == b->projection && a->lens_radius == b->lens_radius &&
-         near(a->focus_distance, b->focus_distance) && a->near_plane == b->near_plane &&
+         is_near(a->focus_distance, b->focus_distance) && a->near_plane == b->near_plane &&
          a->far_plane == b->far_plane && a->exposure_time == b->exposure_time &&
          a->shutter_open == b->shutter_open && a->shutter_close == b->shutter_close &&
          memcmp(a->shape, b->shape, sizeof a->shape) == 0 &&
@@ -112,17 +110,13 @@ static bool keep_camera(const ViewCamera *before, const ViewCamera *now, ViewCam
 static bool follow_camera(const ViewCamera *before, const ViewCamera *now, bool added,
                           ViewCamera *camera) {
   vlError error;
-  ViewCamera next;
   if (!added && same_size(before, camera) && same_rest(&before->made, &camera->made) &&
       same_field(&before->made, &camera->made)) {
     *camera = *now;
     return true;
   }
-  if (camera_set_shutter(camera, now->def.shutter_open, now->def.shutter_close, &next,
-                         &error) != VL_OK)
-    return false;
-  *camera = next;
-  return true;
+  return camera_set_shutter(camera, now->def.shutter_open, now->def.shutter_close, camera,
+                            &error) == VL_OK;
 }
 
 /* False: the camera cannot go on, or it has parts of the old scene. */
@@ -133,16 +127,23 @@ static bool carry_camera(bool timed, bool added, const ViewCamera *before,
   return timed ? follow_camera(before, now, added, camera) : keep_camera(before, now, camera);
 }
 
-void engine_report(void *user, const char *kind, const vlError *what) {
-  Engine *e = user;
-  if (kind && strcmp(kind, "warning") != 0)
-    return;
-  Json *json = json_text_begin(kind ? "warning" : "error");
-  if (!json)
-    return;
-  json_location(json, what->file[0] ? what->file : NULL, what->line, what->column);
-  json_text(json, "message", what->message);
-  json_text_post(json, e->server, 0);
+/* A ReportFn. */
+static void post_report(void *engine, const char *kind, const vlError *what) {
+  if (!kind || strcmp(kind, "warning") == 0)
+    status_problem(engine, kind ? kind : "error", what, what->message);
+}
+
+Model *engine_load(Engine *e, const char *path, const ModelTime *time, const vlWorld *previous,
+                   FileList *files) {
+  Model *model = calloc(1, sizeof *model);
+  report_listen(post_report, e);
+  const bool loaded = model && model_load(e->def.context, path, e->def.arguments, time,
+                                          previous, e->end, model, files) < 0;
+  report_listen(NULL, NULL);
+  if (loaded)
+    return model;
+  free(model);
+  return NULL;
 }
 
 void engine_offer(Engine *e, Model *model, const char *path, uint32_t change) {
@@ -157,9 +158,7 @@ void engine_offer(Engine *e, Model *model, const char *path, uint32_t change) {
     engine_drop_traces(e, 0, "the scene changed");
   pthread_cond_broadcast(&e->wake);
   engine_unlock(e);
-  if (unused)
-    model_free(unused);
-  free(unused);
+  model_destroy(unused);
 }
 
 /* ---- the lecture's scenes ---------------------------------------------------------------- */
@@ -172,19 +171,11 @@ bool engine_load_choice(Engine *e) {
   engine_unlock(e);
   if (!path)
     return false;
-  Model *model = calloc(1, sizeof *model);
   FileList files = {.count = 0};
-  report_listen(engine_report, e);
-  int status = model ? model_load(e->def.context, path, e->def.arguments, NULL, NULL, e->end,
-                                  model, &files)
-                     : STATUS_OTHER;
-  report_listen(NULL, NULL);
+  Model *model = engine_load(e, path, NULL, NULL, &files);
   file_list_free(&files);
-  if (status >= 0) {
-    free(model);
-    return true;
-  }
-  engine_offer(e, model, path, change);
+  if (model)
+    engine_offer(e, model, path, change);
   return true;
 }
 

@@ -1,5 +1,7 @@
 /* view/engine_run.c: what is rendered when; see engine.h. After a change come coarse images
  * (engine_coarse.c), then the film of the whole image, whose samples add up. */
+#include "cli/crop.h"
+#include "cli/macros.h"
 #include "view/engine.h"
 
 #include <math.h>
@@ -41,6 +43,10 @@ void engine_lock(Engine *engine) {
 
 void engine_unlock(Engine *engine) {
   pthread_mutex_unlock(&engine->lock);
+}
+
+uint32_t engine_spp(const Engine *e) {
+  return e->film ? vl_film_spp(e->film) : 0;
 }
 
 static bool must_stop(const Engine *e) {
@@ -140,7 +146,7 @@ static PartOfFilm whole_film(Engine *e, const vlFilm *film) {
 }
 
 static bool denoise_due(const Engine *e) {
-  return e->film && !e->race.successor && engine_denoise_due(e, vl_film_spp(e->film));
+  return !e->race.successor && engine_denoise_due(e, engine_spp(e));
 }
 
 /* Sends the film's image, if it is not about to be denoised. A denoised one stays until the
@@ -154,7 +160,7 @@ static void show_film(Engine *e) {
 /* False: interrupted. */
 static bool denoise_film(Engine *e) {
   PartOfFilm part = whole_film(e, e->film);
-  bool done = engine_denoise(&part, part.crop[3] - part.crop[1]);
+  bool done = engine_denoise(&part, crop_height(part.crop));
   engine_free_part(&part);
   if (!done && e->preview.failed)
     publish_if_due(e);
@@ -187,15 +193,11 @@ static bool is_unfinished(const Engine *e, uint32_t spp) {
 /* Adds samples to the film, or to its successor. False: interrupted, or it failed. */
 static bool render_pass(Engine *e) {
   vlFilm *film = e->race.successor ? e->race.successor : e->film;
-  vlRenderDef render = e->model.job.defs->render;
+  const uint32_t more = pass_samples(e, film, e->race.successor ? e->race.enough : e->now.spp);
+  vlRenderDef render = engine_render_def(e, vl_film_spp(film) + more);
   vlError error = {0};
   vlRenderStats stats = {0};
   engine_set_tracer(&render, e->race.best);
-  render.cancel = e->interrupt.cancel;
-  render.first_sample = 0;
-  render.time_limit = 0;
-  render.spp = vl_film_spp(film) +
-               pass_samples(e, film, e->race.successor ? e->race.enough : e->now.spp);
   PartOfFilm part = whole_film(e, film);
   const bool first = vl_film_spp(film) == 0;
   part.denoise = first && !e->interrupt.first_runs && engine_denoise_due(e, 1);
@@ -208,7 +210,7 @@ static bool render_pass(Engine *e) {
       vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);
   double seconds = monotonic_seconds() - start;
   if (part.clean && result == VL_OK) /* parts of it are shown */
-    engine_denoise(&part, part.crop[3] - part.crop[1]);
+    engine_denoise(&part, crop_height(part.crop));
   engine_free_part(&part);
   if (result == VL_CANCELLED) {
     if (first)
@@ -387,8 +389,7 @@ int engine_take_model(Engine *e) {
   vlError error = {0};
   vlResult result =
       camera_take(&defs->camera, &e->model.job.camera, e->model.lookat, &w->camera, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, e->def.path);
+  TRY(report_error(&error, result, e->def.path));
   e->scene_camera = w->camera;
   w->mark = w->camera.made;
   memcpy(w->crop, defs->film.crop, sizeof w->crop);
@@ -412,14 +413,13 @@ static int check_options(const Engine *e) {
                        .opening = &e->model.opening,
                        .job = &e->model.job,
                        .edited = true};
-  const int status = needs_check_scene(&needs);
-  return status >= 0 || needs.job->race == RACE_TRACERS
-             ? status
-             : needs_check_tracer(&needs, e->model.world);
+  TRY(needs_check_scene(&needs));
+  return needs.job->race == RACE_TRACERS ? -1 : needs_check_tracer(&needs, e->model.world);
 }
 
 int engine_create(const EngineDef *def, Engine **result) {
   Engine *engine = calloc(1, sizeof *engine);
+  *result = engine;
   if (!engine)
     return report_failure(STATUS_OTHER, "out of memory");
   engine->def = *def;
@@ -429,21 +429,16 @@ int engine_create(const EngineDef *def, Engine **result) {
   bool made = vl_cancel_create(def->context, &engine->interrupt.cancel) == VL_OK &&
               vl_cancel_create(def->context, &engine->end) == VL_OK &&
               vl_cancel_create(def->context, &engine->traces.stop) == VL_OK;
-  int status = made ? -1 : report_failure(STATUS_OTHER, "out of memory");
-  if (status < 0)
-    status = model_load(def->context, def->path, def->arguments, NULL, NULL, NULL,
-                        &engine->model, &engine->reload.files);
-  if (status < 0)
-    status = check_options(engine);
-  if (status < 0)
-    status = engine_take_model(engine);
+  if (!made)
+    return report_failure(STATUS_OTHER, "out of memory");
+  TRY(model_load(def->context, def->path, def->arguments, NULL, NULL, NULL, &engine->model,
+                 &engine->reload.files));
+  TRY(check_options(engine));
+  TRY(engine_take_model(engine));
   engine->wanted.sensor = sensor_default();
-  if (status < 0)
-    status = engine_sensor_begin(engine);
   engine->wanted.paused = def->lecture; /* until a page chooses a scene */
   engine->wanted.denoise = !def->lecture && !def->stepwise;
-  *result = engine;
-  return status;
+  return engine_sensor_begin(engine);
 }
 
 ServerCalls engine_calls(Engine *engine) {
@@ -468,9 +463,7 @@ void engine_destroy(Engine *engine) {
   engine_sensor_forget(engine);
   vl_image_destroy(engine->preview.features);
   model_free(&engine->model);
-  if (engine->reload.model)
-    model_free(engine->reload.model);
-  free(engine->reload.model);
+  model_destroy(engine->reload.model);
   file_list_free(&engine->reload.files);
   free(engine->last.status);
   free(engine->last.exposure);

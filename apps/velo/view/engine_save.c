@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "camera/camera.h"
+#include "cli/crop.h"
 #include "cli/kinds.h"
 #include "cli/macros.h"
 #include "cli/report.h"
@@ -69,14 +70,19 @@ static int choice_value(const Choice *choices, const char *name, int otherwise) 
 
 /* ---- files ------------------------------------------------------------------------------- */
 
+vlResult engine_write_camera(const Engine *e, const char *path, vlCameraDialect dialect,
+                             vlError *error) {
+  vlCameraFileDef def = vl_default_camera_file_def();
+  const vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
+  def.dialect = dialect;
+  return vl_camera_write(e->def.context, path, &def, &record, error);
+}
+
 /* False after posting why not. */
 static bool write_camera(Engine *e, const ViewMessage *m, const char *path,
                          vlCameraDialect dialect) {
   vlError error = {0};
-  vlCameraFileDef def = vl_default_camera_file_def();
-  const vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
-  def.dialect = dialect;
-  vlResult result = vl_camera_write(e->def.context, path, &def, &record, &error);
+  vlResult result = engine_write_camera(e, path, dialect, &error);
   if (result != VL_OK)
     engine_refuse(e, m, error_text(&error, result));
   return result == VL_OK;
@@ -117,8 +123,8 @@ static Job present_job(const Engine *e, vlSceneDefs *defs) {
 static vlResult present_image(Engine *e, vlImage **image) {
   vlSceneDefs defs;
   const Job job = present_job(e, &defs);
-  vlResult result = vl_film_develop(e->film, &defs.develop, image);
-  return result == VL_OK ? attributes_set(*image, &job, defs.render.spp) : result;
+  TRY_RESULT(vl_film_develop(e->film, &defs.develop, image));
+  return attributes_set(*image, &job, defs.render.spp);
 }
 
 /* The raw image of the mode "camera", or what is developed of it. */
@@ -149,7 +155,7 @@ static void save_exposure(Engine *e, const ViewMessage *m, const char *wanted) {
 
 static void save_image(Engine *e, const ViewMessage *m, const char *wanted) {
   char name[NAME_SIZE];
-  if (!e->film || !vl_film_spp(e->film))
+  if (!engine_spp(e))
     return engine_refuse(e, m, "the image has no samples yet");
   if (e->now.channel == CHANNEL_CAMERA || text_ends_with(wanted, ".dng"))
     return save_exposure(e, m, wanted);
@@ -164,8 +170,7 @@ static void save_image(Engine *e, const ViewMessage *m, const char *wanted) {
   vlImage *image = NULL;
   int status = STATUS_OTHER;
   if (present_image(e, &image) == VL_OK)
-    status =
-        outputs_write(e->def.context, &outputs, image, vl_film_spp(e->film), OUTPUT_FINISHED);
+    status = outputs_write(e->def.context, &outputs, image, engine_spp(e), OUTPUT_FINISHED);
   vl_image_destroy(image);
   if (status == STATUS_OK)
     post_saved(e, m, name);
@@ -186,13 +191,8 @@ void engine_save(Engine *e, const ViewMessage *m) {
 /* ---- the command ------------------------------------------------------------------------- */
 
 /* Writes a word of the command with its zero. */
-static void put_word(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void put_word(FILE *out, const char *format, ...) {
-  va_list list;
-  va_start(list, format);
-  vfprintf(out, format, list);
-  va_end(list);
-  fputc(0, out);
+static void put_word(FILE *out, const char *word) {
+  fwrite(word, 1, strlen(word) + 1, out);
 }
 
 /* Writes an option and its value. */
@@ -200,7 +200,7 @@ static void put_option(FILE *out, const char *option, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static void put_option(FILE *out, const char *option, const char *format, ...) {
   va_list list;
-  put_word(out, "%s", option);
+  put_word(out, option);
   va_start(list, format);
   vfprintf(out, format, list);
   va_end(list);
@@ -234,16 +234,14 @@ static void put_options(FILE *out, const Engine *e) {
     const bool replaced = added_replaces(o->id) || option_is_replaced(o->id) || of_sensor;
     if (!added_has(&added, o->id, &text) && (!value->given || replaced))
       continue;
-    if (o->kind == OPTION_FOLDERS) {
-      for (int i = 0; i < arguments->folder_count; i++) {
-        put_word(out, "--%s", o->name);
-        put_word(out, "%s", arguments->folders[i]);
-      }
-      continue;
+    const bool folders = o->kind == OPTION_FOLDERS;
+    const int times = folders ? arguments->folder_count : 1;
+    for (int i = 0; i < times; i++) {
+      fputs("--", out);
+      put_word(out, o->name);
+      if (o->kind != OPTION_FLAG)
+        put_word(out, folders ? arguments->folders[i] : text);
     }
-    put_word(out, "--%s", o->name);
-    if (o->kind != OPTION_FLAG)
-      put_word(out, "%s", text);
   }
 }
 
@@ -256,24 +254,18 @@ static bool free_pair(const char *stem, char camera[NAME_SIZE], char image[NAME_
     snprintf(image, NAME_SIZE, "%s%s.png", stem, number);
     if (access(camera, F_OK) != 0 && access(image, F_OK) != 0)
       return true;
-    snprintf(number, sizeof number, "-%d", i);
+    text_set(number, "-%d", i);
   }
   return false;
 }
 
 /* The time at which the model is shown, and how long the shutter is open. */
 static void put_time(FILE *out, const vlLoadDef *load) {
-  char open[40], close[40];
+  char at[MODEL_TIME_TEXT];
   if (isnan(load->time))
     return;
-  format_number(open, sizeof open, load->time);
-  put_word(out, "--at");
-  if (isnan(load->time_close)) {
-    put_word(out, "%s", open);
-    return;
-  }
-  format_number(close, sizeof close, load->time_close);
-  put_word(out, "%s:%s", open, close);
+  model_time_text(load->time, load->time_close, at);
+  put_option(out, "--at", "%s", at);
 }
 
 /* The part of the command that makes the samples. */
@@ -283,40 +275,41 @@ static void put_render(FILE *out, const Engine *e, const char *camera, uint32_t 
   const uint32_t *c = e->now.crop;
   put_word(out, "velo");
   put_word(out, "render");
-  put_word(out, "%s", e->def.path);
+  put_word(out, e->def.path);
   put_option(out, "--camera", "%s", camera);
-  if (e->now.camera.def.width != made->width || e->now.camera.def.height != made->height) {
+  if (e->now.camera.def.width != made->width || e->now.camera.def.height != made->height)
     put_option(out, "--resolution", "%ux%u", made->width, made->height);
-  }
-  if (c[0] || c[1] || c[2] < made->width || c[3] < made->height) {
+  if (!crop_is_whole(c, made->width, made->height))
     put_option(out, "--crop", "%u,%u,%u,%u", c[0], c[1], c[2], c[3]);
-  }
   put_options(out, e);
   put_time(out, &e->model.opening.load);
   /* the tracer of the image, so that there is no race */
   put_option(out, "--tracer", "%s", kind_name("tracers", (int)e->shown.tracer));
-  if (e->shown.light_paths != VL_AS_MANY_AS_PIXELS) {
+  if (e->shown.light_paths != VL_AS_MANY_AS_PIXELS)
     put_option(out, "--light-paths", "%u", e->shown.light_paths);
-  }
   put_option(out, "--spp", "%u", spp);
   put_option(out, "--sequence", "%u", render->sequence ? render->sequence : 65536);
 }
 
-static void put_command(FILE *out, const Engine *e, const Copied *copied, const char *camera) {
+static void put_number(FILE *out, const char *option, double value) {
   char number[40];
+  format_number(number, sizeof number, value);
+  put_option(out, option, "%s", number);
+}
+
+static void put_command(FILE *out, const Engine *e, const Copied *copied, const char *camera) {
   put_render(out, e, camera, copied->spp);
-  format_number(number, sizeof number, copied->exposure);
   put_option(out, "--view", "%s", choice_name(view_choices, (int)copied->view));
-  put_option(out, "--exposure", "%s", number);
-  put_option(out, "--no-receipt", "-o");
-  put_word(out, "%s", copied->file);
+  put_number(out, "--exposure", copied->exposure);
+  put_word(out, "--no-receipt");
+  put_option(out, "-o", "%s", copied->file);
 }
 
 /* Null after posting why not. */
 static Copied *make_command(Engine *e, const ViewMessage *m, char camera[NAME_SIZE]) {
   char stem[NAME_SIZE - 40], whole[NAME_SIZE];
   scene_stem(e, whole);
-  snprintf(stem, sizeof stem, "%.200s-view", whole);
+  text_set(stem, "%.200s-view", whole);
   Copied *copied = calloc(1, sizeof *copied);
   FILE *out = copied ? open_memstream(&copied->words, &copied->size) : NULL;
   if (!out) {
@@ -326,7 +319,7 @@ static Copied *make_command(Engine *e, const ViewMessage *m, char camera[NAME_SI
   }
   copied->exposure = m->exposure;
   copied->view = (vlView)choice_value(view_choices, m->view, VL_VIEW_STANDARD);
-  copied->spp = vl_film_spp(e->film);
+  copied->spp = engine_spp(e);
   bool ok = free_pair(stem, camera, copied->file);
   if (!ok)
     engine_refuse(e, m, too_many);
@@ -392,22 +385,15 @@ static void post_command(Engine *e, const ViewMessage *m, char *command, const c
 
 /* ---- the commands of an exposure --------------------------------------------------------- */
 
-static void put_number(FILE *out, const char *option, double value) {
-  char number[40];
-  format_number(number, sizeof number, value);
-  put_option(out, option, "%s", number);
-}
-
 /* The film of the mode "camera". */
 static void put_light(FILE *out, const Engine *e, const char *camera, const char *image) {
   put_render(out, e, camera, e->shot.spp);
-  if (e->model.job.defs->film.buckets != e->shot.buckets) {
+  if (e->model.job.defs->film.buckets != e->shot.buckets)
     put_option(out, "--spectrum", "%u", e->shot.buckets);
-  }
   put_option(out, "--filter", "box");
   put_option(out, "--channels", "error");
-  put_option(out, "--no-receipt", "-o");
-  put_word(out, "%s", image);
+  put_word(out, "--no-receipt");
+  put_option(out, "-o", "%s", image);
 }
 
 static void put_sensor(FILE *out, const Engine *e, const char *image, const char *raw) {
@@ -416,7 +402,7 @@ static void put_sensor(FILE *out, const Engine *e, const char *image, const char
   put_word(out, "velo");
   put_word(out, "sensor");
   put_word(out, "expose");
-  put_word(out, "%s", image);
+  put_word(out, image);
   put_option(out, "--sensor", "%s",
              own ? e->def.arguments->values[VIEW_EXPOSE].text : e->shot.preset);
   put_number(out, "--exposure-time", exposure->time);
@@ -426,9 +412,8 @@ static void put_sensor(FILE *out, const Engine *e, const char *image, const char
   put_number(out, "--temperature", exposure->temperature);
   put_number(out, "--seed", exposure->seed);
   put_number(out, "--frame", exposure->frame);
-  if (e->now.sensor.white == VIEW_WHITE_A) {
+  if (e->now.sensor.white == VIEW_WHITE_A)
     put_option(out, "--white", "stdillum-A");
-  }
   put_option(out, "-o", "%s", raw);
 }
 
@@ -467,10 +452,10 @@ static void exposure_command(Engine *e, const ViewMessage *m) {
   if (e->now.sensor.white == VIEW_WHITE_AUTO)
     return engine_refuse(e, m, "the white auto is this image's; a command has D65 or A");
   scene_stem(e, whole);
-  snprintf(stem, sizeof stem, "%.190s-sensor", whole);
+  text_set(stem, "%.190s-sensor", whole);
   if (!free_pair(stem, camera, image))
     return engine_refuse(e, m, too_many);
-  snprintf(raw, sizeof raw, "%.*s.dng", (int)strlen(image) - 4, image);
+  text_set(raw, "%.*s.dng", (int)strlen(image) - 4, image);
   strcpy(image + strlen(image) - 4, ".exr");
   if (!write_camera(e, m, camera, VL_CAMERA_DIALECT_VELO))
     return;
@@ -480,7 +465,7 @@ static void exposure_command(Engine *e, const ViewMessage *m) {
 
 void engine_command(Engine *e, const ViewMessage *m) {
   char camera[NAME_SIZE];
-  if (!e->film || !vl_film_spp(e->film))
+  if (!engine_spp(e))
     return engine_refuse(e, m, "the image has no samples yet");
   if (e->now.channel == CHANNEL_CAMERA)
     return exposure_command(e, m);

@@ -8,8 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "image/image.h"
 #include "render/denoised.h"
 #include "sensor/sensor.h"
 #include "velo/filter_kinds.h"
@@ -60,8 +62,7 @@ static int take_number(const OptionValue *value, const char *option, const char 
 static void take_file(ViewSensors *sensors, const char *path, const vlSensor *sensor) {
   const char *name = text_file_name(path);
   sensors->file = *vl_sensor_def(sensor);
-  snprintf(sensors->own, sizeof sensors->own, "%s",
-           strlen(name) < sizeof sensors->own ? name : "the sensor file");
+  text_set(sensors->own, "%s", strlen(name) < sizeof sensors->own ? name : "the sensor file");
 }
 
 int engine_sensor_begin(Engine *e) {
@@ -73,18 +74,13 @@ int engine_sensor_begin(Engine *e) {
     return -1;
   if (e->model.job.defs->build.color == VL_COLOR_RGB)
     return report_usage("--expose: --color rgb has no spectrum, which a sensor needs");
-  int status = sensor_open(e->def.context, "--expose", name, &sensor);
-  if (status < 0)
-    status = take_number(&v[RENDER_ISO], "--iso", "iso", &wanted->exposure);
-  if (status < 0)
-    status = take_number(&v[RENDER_SECONDS], "--seconds", "exposure_time", &wanted->exposure);
-  if (status < 0 && sensor_is_file(name))
+  TRY(sensor_open(e->def.context, "--expose", name, &sensor));
+  if (sensor_is_file(name))
     take_file(&e->sensors, name, sensor);
   vl_sensor_destroy(sensor);
-  if (status >= 0)
-    return status;
-  snprintf(wanted->preset, sizeof wanted->preset, "%s",
-           e->sensors.own[0] ? e->sensors.own : name);
+  TRY(take_number(&v[RENDER_ISO], "--iso", "iso", &wanted->exposure));
+  TRY(take_number(&v[RENDER_SECONDS], "--seconds", "exposure_time", &wanted->exposure));
+  text_set(wanted->preset, "%s", e->sensors.own[0] ? e->sensors.own : name);
   wanted->metered = !v[RENDER_SECONDS].given;
   e->wanted.channel = CHANNEL_CAMERA;
   return -1;
@@ -107,17 +103,17 @@ static vlResult take_sensor(Engine *e, vlError *error) {
   vl_sensor_destroy(s->sensor);
   s->sensor = NULL;
   s->is_collected = false;
-  snprintf(s->preset, sizeof s->preset, "%s", preset);
-  vlResult result = sensor_find(&e->sensors, preset, &def, error);
-  return result == VL_OK ? vl_sensor_create(e->def.context, &def, &s->sensor, error) : result;
+  text_set(s->preset, "%s", preset);
+  TRY_RESULT(sensor_find(&e->sensors, preset, &def, error));
+  return vl_sensor_create(e->def.context, &def, &s->sensor, error);
 }
 
 /* The channels of two images of the same size in one image, with the first one's attributes:
  * they say which part of the whole it is. */
 static vlResult join(Engine *e, vlImage *const parts[2], vlImage **joined) {
   const vlImage *const both[2] = {parts[0], parts[1]};
-  vlResult result = denoised_join(e->def.context, both, 2, joined);
-  return result == VL_OK ? vl_image_add_attributes(*joined, parts[0]) : result;
+  TRY_RESULT(denoised_join(e->def.context, both, 2, joined));
+  return vl_image_add_attributes(*joined, parts[0]);
 }
 
 /* The film's colours and their standard errors, by which the render's own noise is compared
@@ -176,7 +172,7 @@ static double mean_luminance(const vlFilm *film) {
   double sum = 0;
   if (vl_film_luminance(film, &image) != VL_OK)
     return NAN;
-  const size_t pixels = (size_t)vl_image_width(image) * vl_image_height(image);
+  const size_t pixels = image_pixel_count(image);
   const float *values = vl_image_const_pixels(image);
   for (size_t i = 0; i < pixels; i++)
     sum += isfinite(values[i]) ? (double)values[i] : 0;
@@ -203,10 +199,8 @@ static vlResult take_light(Engine *e, const vlFilm *film, uint32_t scale) {
   s->light = NULL;
   s->means = NULL;
   s->is_collected = false;
-  vlResult result = read_light(e, film, scale);
-  if (result != VL_OK)
-    return result;
-  const size_t pixels = (size_t)vl_image_width(s->light) * vl_image_height(s->light);
+  TRY_RESULT(read_light(e, film, scale));
+  const size_t pixels = image_pixel_count(s->light);
   s->film = film;
   s->generation = e->now.generation;
   s->scale = scale;
@@ -230,7 +224,7 @@ static vlExposureDef present_exposure(const Engine *e) {
 
 /* The mean of the photoelectrons. */
 static double mean_electrons(const Shot *s) {
-  const size_t pixels = (size_t)vl_image_width(s->light) * vl_image_height(s->light);
+  const size_t pixels = image_pixel_count(s->light);
   double sum = 0;
   for (size_t i = 0; i < pixels; i++)
     sum += s->means[i];
@@ -265,7 +259,7 @@ static vlResult meter(Shot *s, vlExposureDef *exposure, vlError *error) {
 /* The mean spectrum of the image as a light, for each nm. */
 static void mean_light(const Shot *s, float values[VL_SPECTRUM_VALUES]) {
   const uint32_t channels = vl_image_channels(s->light);
-  const size_t pixels = (size_t)vl_image_width(s->light) * vl_image_height(s->light);
+  const size_t pixels = image_pixel_count(s->light);
   const float *from = vl_image_const_pixels(s->light);
   double sums[MAX_BUCKETS] = {0};
   for (size_t i = 0; i < pixels; i++)
@@ -303,11 +297,9 @@ static vlResult expose(Engine *e, vlError *error) {
   s->exposure = exposure;
   vl_raw_destroy(s->raw);
   s->raw = NULL;
-  if (result == VL_OK)
-    result = vl_sensor_raw(s->sensor, &exposure, find_white(e, white) ? white : NULL, width,
-                           height, &s->raw, error);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(result);
+  TRY_RESULT(vl_sensor_raw(s->sensor, &exposure, find_white(e, white) ? white : NULL, width,
+                           height, &s->raw, error));
   s->out.numbers = vl_raw_numbers(s->raw);
   result = vl_sensor_read_out(s->sensor, width, height, s->means, &exposure, &s->out, error);
   s->out.numbers = NULL;
@@ -318,15 +310,11 @@ static vlResult expose(Engine *e, vlError *error) {
 
 /* R G B of a grey image. */
 static vlResult make_grey(vlContext *context, vlImage **image) {
-  const uint32_t width = vl_image_width(*image), height = vl_image_height(*image);
-  const vlImageDef def = vl_default_image_def(width, height, 3);
   vlImage *colours = NULL;
-  vlResult result = vl_image_create(context, &def, &colours);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(image_make_like(context, *image, 3, NULL, &colours));
   const float *from = vl_image_const_pixels(*image);
   float *to = vl_image_pixels(colours);
-  for (size_t i = 0; i < (size_t)width * height; i++)
+  for (size_t i = 0; i < image_pixel_count(*image); i++)
     to[3 * i] = to[3 * i + 1] = to[3 * i + 2] = from[i];
   vl_image_destroy(*image);
   *image = colours;
@@ -337,10 +325,8 @@ static vlResult make_grey(vlContext *context, vlImage **image) {
 static vlResult develop(Engine *e, vlImage **image, vlError *error) {
   vlRawDevelopDef def = vl_default_raw_develop_def();
   def.stop_at = VL_RAW_STEP_COLOR;
-  vlResult result = vl_raw_develop(e->shot.raw, &def, image, error);
-  if (result == VL_OK && vl_image_channels(*image) == 1)
-    result = make_grey(e->def.context, image);
-  return result;
+  TRY_RESULT(vl_raw_develop(e->shot.raw, &def, image, error));
+  return vl_image_channels(*image) == 1 ? make_grey(e->def.context, image) : VL_OK;
 }
 
 void engine_publish_camera(Engine *e, const vlFilm *film, uint32_t scale) {

@@ -9,13 +9,6 @@
 #include "cli/report.h"
 #include "view/engine_parts.h"
 
-void json_text_post(Json *json, Server *server, uint32_t client) {
-  char *text = json_text_end(json);
-  if (text)
-    server_post(server, client, text);
-  free(text);
-}
-
 void engine_post(Engine *e, uint32_t client, const char *type, const char *members, ...) {
   va_list values;
   Json *json = json_text_begin(type);
@@ -68,7 +61,7 @@ static double display_noise(const vlImage *image, const vlImage *errors, double 
 static void estimate_noise(Engine *e) {
   vlImage *image = NULL, *errors = NULL;
   const vlDevelopDef *develop = &e->model.job.defs->develop;
-  if (!e->film || vl_film_spp(e->film) < 2)
+  if (engine_spp(e) < 2)
     return;
   if (vl_film_develop(e->film, develop, &image) == VL_OK &&
       vl_film_errors(e->film, develop, &errors) == VL_OK)
@@ -79,7 +72,7 @@ static void estimate_noise(Engine *e) {
 
 void status_tell(Engine *e, bool estimate) {
   double now = monotonic_seconds(), cost = now - e->status.estimated;
-  uint32_t spp = e->film ? vl_film_spp(e->film) : 0;
+  uint32_t spp = engine_spp(e);
   const bool stale = isnan(e->status.noise) || e->status.noise_spp != spp;
   if (stale && (estimate || cost > 2 + 0.25 * e->samples.seconds)) {
     estimate_noise(e);
@@ -111,14 +104,17 @@ void status_tell(Engine *e, bool estimate) {
   json_text_keep(json, e, &e->last.status);
 }
 
-void status_error(Engine *e, const vlError *error, vlResult result) {
-  Json *json = json_text_begin("error");
+void status_problem(Engine *e, const char *type, const vlError *what, const char *message) {
+  Json *json = json_text_begin(type);
   if (!json)
     return;
-  if (error->file[0])
-    json_location(json, error->file, error->line, error->line ? error->column : 0);
-  json_text(json, "message", error_text(error, result));
+  json_location(json, what->file[0] ? what->file : NULL, what->line, what->column);
+  json_text(json, "message", message);
   json_text_post(json, e->server, 0);
+}
+
+void status_error(Engine *e, const vlError *error, vlResult result) {
+  status_problem(e, "error", error, error_text(error, result));
 }
 
 /* ---- the timeline of the page ------------------------------------------------------------ */

@@ -9,9 +9,9 @@
 void status_tell(Engine *engine, bool estimate);
 /* An error, with its location if there is one. */
 void status_error(Engine *engine, const vlError *error, vlResult result);
+/* An error, a warning or what else `type` says; a message with its location if there is one. */
+void status_problem(Engine *engine, const char *type, const vlError *what, const char *message);
 /* Ends the text, posts it to all pages, and keeps it in *last for new ones. */
 void json_text_keep(Json *json, Engine *engine, char **last);
-/* Ends the text, posts it to a page or to all (0), and frees it. */
-void json_text_post(Json *json, Server *server, uint32_t client);
 
 #endif

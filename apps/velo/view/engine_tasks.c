@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/crop.h"
 #include "velo/channels.h"
 #include "velo/focus.h"
 #include "view/engine_status.h"
@@ -75,8 +76,7 @@ void engine_pick(Engine *e, const ViewMessage *m) {
     return;
   vlChannelsDef def = vl_default_channels_def(c->width, c->height);
   uint32_t x = (uint32_t)m->x, y = (uint32_t)m->y;
-  const uint32_t crop[4] = {x, y, x + 1, y + 1};
-  memcpy(def.crop, crop, sizeof crop);
+  crop_set_pixel(def.crop, x, y);
   def.priority = 2;
   def.cancel = e->end;
   def.channels = VL_CHANNEL_ALL & ~(uint32_t)(VL_CHANNEL_SAMPLES | VL_CHANNEL_FILM);

@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/sha256.h"
 #include "render/child.h"
@@ -34,23 +35,23 @@ typedef struct Verification {
 } Verification;
 
 static bool fail(Verification *v, const char *what, const char *why) {
-  snprintf(v->message, sizeof v->message, "%s%s%s", what, why ? ": " : "", why ? why : "");
+  text_set(v->message, "%s%s%s", what, why ? ": " : "", why ? why : "");
   return false;
 }
 
 /* ---- files ------------------------------------------------------------------------------- */
 
 static bool make_folder(Verification *v) {
-  snprintf(v->folder, sizeof v->folder, "/tmp/velo-view-XXXXXX");
+  text_set(v->folder, "/tmp/velo-view-XXXXXX");
   if (!mkdtemp(v->folder)) {
     v->folder[0] = 0;
     return fail(v, "no folder for the command's image can be made in /tmp", strerror(errno));
   }
   for (int k = 0; k < KINDS; k++) {
-    snprintf(v->shown[k], sizeof v->shown[k], "%s/shown.%s", v->folder, kinds[k]);
-    snprintf(v->made[k], sizeof v->made[k], "%s/made.%s", v->folder, kinds[k]);
+    text_set(v->shown[k], "%s/shown.%s", v->folder, kinds[k]);
+    text_set(v->made[k], "%s/made.%s", v->folder, kinds[k]);
   }
-  snprintf(v->report, sizeof v->report, "%s/report.txt", v->folder);
+  text_set(v->report, "%s/report.txt", v->folder);
   return true;
 }
 
@@ -185,8 +186,8 @@ static void describe_difference(Verification *v) {
     }
   vl_image_destroy(made);
   if (count)
-    snprintf(v->message, sizeof v->message, "%llu of %llu pixels differ, by up to %.3g",
-             (unsigned long long)count, (unsigned long long)width * height, most);
+    text_set(v->message, "%llu of %llu pixels differ, by up to %.3g", (unsigned long long)count,
+             (unsigned long long)width * height, most);
   else
     fail(v, "the pixels are the same, the headers differ", NULL);
 }

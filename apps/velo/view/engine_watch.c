@@ -112,17 +112,12 @@ static bool watch_wait(Watch *watch, double seconds, bool any) {
 }
 
 static void post(Engine *e, const char *type) {
-  Json *json = json_text_begin(type);
-  if (json)
-    json_text_post(json, e->server, 0);
+  json_text_post(json_text_begin(type), e->server, 0);
 }
 
 /* Loads the scene again, because a file changed or, `timed`, because a page asks for another
  * time of the animation. Returns whether it could be loaded. */
 static bool load_again(Engine *e, Watch *watch, bool timed) {
-  Model *model = calloc(1, sizeof *model);
-  if (!model)
-    return false;
   if (!timed)
     post(e, "loading");
   engine_lock(e);
@@ -132,17 +127,13 @@ static bool load_again(Engine *e, Watch *watch, bool timed) {
   const uint32_t change = e->time.change;
   e->time.due = false;
   engine_unlock(e);
-  report_listen(engine_report, e);
   pthread_rwlock_rdlock(&e->model_lock); /* the previous world stays */
-  int status = model_load(e->def.context, e->def.path, e->def.arguments, at ? &time : NULL,
-                          e->model.world, e->end, model, &e->reload.files);
+  Model *model =
+      engine_load(e, e->def.path, at ? &time : NULL, e->model.world, &e->reload.files);
   pthread_rwlock_unlock(&e->model_lock);
-  report_listen(NULL, NULL);
   watch_files(watch, &e->reload.files);
-  if (status >= 0) {
-    free(model);
+  if (!model)
     return false;
-  }
   model->load = load;
   model->timed = timed;
   if (!timed)

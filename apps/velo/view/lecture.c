@@ -14,7 +14,7 @@ enum { DEEPEST_INCLUDE = 4, MAX_PATH = 200 };
 const char lecture_first_scene[] = "scenes/lecture/pinhole.pbrt";
 static const char folder[] = "scenes/lecture/";
 
-static const WebFile *find(const char *name) {
+const WebFile *web_file_find(const char *name) {
   for (const WebFile *file = web_files; file->name; file++)
     if (strcmp(file->name, name) == 0)
       return file;
@@ -24,7 +24,7 @@ static const WebFile *find(const char *name) {
 const char *lecture_scene(const char *name) {
   size_t n = sizeof folder - 1;
   const WebFile *file =
-      strncmp(name, folder, n) == 0 && !strchr(name + n, '/') ? find(name) : NULL;
+      strncmp(name, folder, n) == 0 && !strchr(name + n, '/') ? web_file_find(name) : NULL;
   return file ? file->name : NULL;
 }
 
@@ -46,7 +46,7 @@ static const char *find_include(const char *text, const char *end, const WebFile
         !size)
       continue;
     memcpy(path, folder, sizeof folder - 1);
-    *file = find(path);
+    *file = web_file_find(path);
     *rest = s + sizeof word - 1 + size;
     if (*file)
       return s;
@@ -69,7 +69,7 @@ static void write_text(const WebFile *file, int depth, FILE *out) {
 char *lecture_text(const char *scene) {
   char *text = NULL;
   size_t size;
-  const WebFile *file = find(scene);
+  const WebFile *file = web_file_find(scene);
   FILE *out = file ? open_memstream(&text, &size) : NULL;
   if (!out)
     return NULL;

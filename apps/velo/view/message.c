@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/macros.h"
+
 /* The following functions return false for a value of a wrong type or out of range, and say
  * why. */
 
@@ -78,6 +80,14 @@ static const Member members[] = {
 static bool refuse(const Reader *r, const char *format, const char *key) {
   snprintf(r->why, VL_GIVEN_MESSAGE, format, key);
   return false;
+}
+
+vlResult message_refuse(vlError *error, const char *format, ...) {
+  va_list values;
+  va_start(values, format);
+  vsnprintf(error->message, sizeof error->message, format, values);
+  va_end(values);
+  return error->code = VL_ERROR_ARGUMENT;
 }
 
 static vlGiven given_of(const json_t *item) {

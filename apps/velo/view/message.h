@@ -102,5 +102,8 @@ typedef struct ViewMessage {
  * the reason. */
 bool message_parse(const MessageType *types, const char *text, size_t size,
                    ViewMessage *message, char why[VL_GIVEN_MESSAGE]);
+/* Puts the reason why a message is refused into the error. Returns its code, ARGUMENT. */
+vlResult message_refuse(vlError *error, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 #endif

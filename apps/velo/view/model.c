@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "camera/poses.h"
+#include "cli/crop.h"
 #include "cli/json.h"
 #include "cli/report.h"
 #include "render/exposure.h"
@@ -31,8 +32,7 @@ static int choose_exposure(vlContext *context, const Arguments *arguments, Model
 static double find_lookat(const Model *model) {
   const vlCamera *c = &model->job.camera;
   vlChannelsDef def = vl_default_channels_def(c->width, c->height);
-  const uint32_t x = c->width / 2, y = c->height / 2, crop[4] = {x, y, x + 1, y + 1};
-  memcpy(def.crop, crop, sizeof crop);
+  crop_set_pixel(def.crop, c->width / 2, c->height / 2);
   def.channels = VL_CHANNEL_DISTANCE;
   vlImage *image = NULL;
   double distance = INFINITY, middle = 0;
@@ -62,12 +62,16 @@ static int load_poses(vlContext *context, const Arguments *arguments, Model *mod
   return report_error(&error, result, value->text);
 }
 
+void model_time_text(double open, double close, char text[MODEL_TIME_TEXT]) {
+  char from[32], to[32];
+  format_number(from, sizeof from, open);
+  format_number(to, sizeof to, close);
+  snprintf(text, MODEL_TIME_TEXT, isnan(close) ? "%s" : "%s:%s", from, to);
+}
+
 /* Gives the arguments the time. text: of --at; it must live as long as the arguments. */
-static void set_time(Arguments *arguments, const ModelTime *time, char *text, size_t size) {
-  char open[32], close[32];
-  format_number(open, sizeof open, time->at);
-  format_number(close, sizeof close, time->at + time->shutter);
-  snprintf(text, size, time->shutter > 0 ? "%s:%s" : "%s", open, close);
+static void set_time(Arguments *arguments, const ModelTime *time, char text[MODEL_TIME_TEXT]) {
+  model_time_text(time->at, time->shutter > 0 ? time->at + time->shutter : NAN, text);
   arguments->values[RENDER_AT] = (OptionValue){.given = true, .text = text};
   arguments->values[RENDER_SHUTTER].given = false;
 }
@@ -92,10 +96,10 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
                const ModelTime *time, const vlWorld *previous, const vlCancel *cancel,
                Model *model, FileList *files) {
   Arguments timed;
-  char at[80];
+  char at[MODEL_TIME_TEXT];
   if (time) {
     timed = *arguments;
-    set_time(&timed, time, at, sizeof at);
+    set_time(&timed, time, at);
     arguments = &timed;
   }
   memset(model, 0, sizeof *model);
@@ -145,6 +149,12 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
   model->seconds = find_seconds(model);
   model->timed = time != NULL;
   return status;
+}
+
+void model_destroy(Model *model) {
+  if (model)
+    model_free(model);
+  free(model);
 }
 
 void model_free(Model *model) {

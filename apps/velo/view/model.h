@@ -44,5 +44,12 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
                Model *model, FileList *files);
 /* Frees what the model has and empties it. */
 void model_free(Model *model);
+/* Frees the model, too. Null is allowed. */
+void model_destroy(Model *model);
+
+enum { MODEL_TIME_TEXT = 80 };
+/* The value of --at for a shutter that is open from `open` to `close`, in seconds. close: NaN:
+ * there is no motion blur. */
+void model_time_text(double open, double close, char text[MODEL_TIME_TEXT]);
 
 #endif

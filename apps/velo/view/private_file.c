@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cli/macros.h"
+
 /* Whether it belongs to this user, and nobody else may do anything with it. */
 static bool is_private(const struct stat *about) {
   return about->st_uid == geteuid() && (about->st_mode & (S_IRWXG | S_IRWXO)) == 0;
@@ -54,7 +56,7 @@ void private_file_token(int port, char token[TOKEN_SIZE]) {
   char folder[PRIVATE_PATH], path[PRIVATE_PATH], kept[TOKEN_SIZE] = "";
   struct stat about;
   if (!find_folder(folder) ||
-      snprintf(path, sizeof path, "%s/velo-view-%d.token", folder, port) >= PRIVATE_PATH)
+      text_set(path, "%s/velo-view-%d.token", folder, port) >= PRIVATE_PATH)
     return;
   int fd = open(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (fd < 0)

@@ -20,11 +20,6 @@ ViewSensor sensor_default(void) {
   return sensor;
 }
 
-static vlResult refuse(vlError *error, const char *text) {
-  snprintf(error->message, sizeof error->message, "%s", text);
-  return VL_ERROR_ARGUMENT;
-}
-
 vlResult sensor_find(const ViewSensors *sensors, const char *name, vlSensorDef *def,
                      vlError *error) {
   if (!sensors->own[0] || strcmp(name, sensors->own) != 0)
@@ -37,24 +32,23 @@ static vlResult set_preset(const MessageField *field, const ViewSensors *sensors
                            ViewSensor *sensor, vlError *error) {
   vlSensorDef def;
   if (field->null || field->count)
-    return refuse(error, "preset must be the name of a sensor");
-  const vlResult result = sensor_find(sensors, field->text, &def, error);
-  if (result == VL_OK)
-    snprintf(sensor->preset, sizeof sensor->preset, "%s", field->text);
-  return result;
+    return message_refuse(error, "preset must be the name of a sensor");
+  TRY_RESULT(sensor_find(sensors, field->text, &def, error));
+  text_set(sensor->preset, "%s", field->text);
+  return VL_OK;
 }
 
 static vlResult set_white(const MessageField *field, ViewSensor *sensor, vlError *error) {
   char why[VL_GIVEN_MESSAGE];
   if (field->null || field->count)
-    return refuse(error, "white must be D65, A or auto");
+    return message_refuse(error, "white must be D65, A or auto");
   for (int i = 0; i < WHITES; i++)
     if (strcmp(field->text, whites[i]) == 0) {
       sensor->white = (ViewWhite)i;
       return VL_OK;
     }
   vl_unknown_name("white", "", field->text, whites, WHITES, why);
-  return refuse(error, why);
+  return message_refuse(error, "%s", why);
 }
 
 /* A number of the exposure, by its row. */
@@ -75,7 +69,7 @@ static vlResult set_number(const MessageField *field, ViewSensor *sensor, vlErro
   else if (!field->count)
     given = (vlGiven){.kind = VL_GIVEN_TEXT, .text = field->text};
   if (!vl_given_check(row, field->name, &given, &number, why))
-    return refuse(error, why);
+    return message_refuse(error, "%s", why);
   vl_given_put(row, number, &sensor->exposure);
   sensor->metered = sensor->metered && !is_time;
   return VL_OK;
@@ -94,17 +88,14 @@ static vlResult set_field(const MessageField *field, const ViewSensors *sensors,
       return set_number(field, sensor, error);
   memcpy(names + 2, rows, sizeof rows);
   vl_unknown_name("field of the sensor", "", field->name, names, ROWS + 2, why);
-  return refuse(error, why);
+  return message_refuse(error, "%s", why);
 }
 
 vlResult sensor_edit(const ViewSensor *now, const ViewSensors *sensors,
                      const ViewMessage *message, ViewSensor *result, vlError *error) {
   ViewSensor next = *now;
-  for (uint32_t i = 0; i < message->field_count; i++) {
-    const vlResult set = set_field(&message->fields[i], sensors, &next, error);
-    if (set != VL_OK)
-      return set;
-  }
+  for (uint32_t i = 0; i < message->field_count; i++)
+    TRY_RESULT(set_field(&message->fields[i], sensors, &next, error));
   *result = next;
   return VL_OK;
 }

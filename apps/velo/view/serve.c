@@ -25,12 +25,6 @@ struct Serve {
   double shown, cost;
 };
 
-static void post_and_free(Server *server, uint32_t client, char *text) {
-  if (text)
-    server_post(server, client, text);
-  free(text);
-}
-
 static void greet(void *user, uint32_t client) {
   Serve *s = user;
   const ViewState state = {.scene = s->job->path,
@@ -40,8 +34,8 @@ static void greet(void *user, uint32_t client) {
                            .view = (int)s->view,
                            .info = &s->info,
                            .camera = &s->camera};
-  post_and_free(s->server, client, state_lists(NULL));
-  post_and_free(s->server, client, state_text(&state));
+  json_text_post(state_begin_lists(NULL), s->server, client);
+  json_text_post(state_begin(&state), s->server, client);
   s->fresh = true;
 }
 
@@ -53,7 +47,7 @@ static void refuse(void *user, bool steers, const ViewMessage *message) {
     return;
   json_put(json, "id %u, change %u, message %s", message->id, message->change,
            "this page looks on: velo render --serve");
-  post_and_free(s->server, message->client, json_text_end(json));
+  json_text_post(json, s->server, message->client);
 }
 
 static void count(void *user, uint32_t clients) {
@@ -89,7 +83,7 @@ static void post_status(Serve *s, const vlFilm *film, const vlProgress *p) {
   json_put(json, "spp %u, target %u, paths_per_second %g, seconds %g, error %g, paused %i",
            vl_film_spp(film), p->spp_total,
            p->elapsed > 0 ? (double)p->paths / p->elapsed : NAN, p->elapsed, NAN, false);
-  post_and_free(s->server, 0, json_text_end(json));
+  json_text_post(json, s->server, 0);
 }
 
 void serve_film(Serve *s, const vlFilm *film, const vlProgress *progress) {

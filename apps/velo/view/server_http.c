@@ -13,15 +13,6 @@ typedef struct Download {
 
 const size_t server_http_bytes = sizeof(Download);
 
-static const WebFile *find_file(const Server *server, const char *name) {
-  if (!*name)
-    name = server->def.home;
-  for (const WebFile *file = web_files; file->name; file++)
-    if (strcmp(file->name, name) == 0)
-      return file;
-  return NULL;
-}
-
 /* Headers of all answers: the page loads nothing from elsewhere, is in no frame, and tells
  * nobody its address. */
 static bool add_headers(struct lws *wsi, unsigned char **p, unsigned char *end) {
@@ -60,7 +51,7 @@ static int answer(struct lws *wsi, Download *download, const char *path) {
   const char *name = access_path(path, server->token);
   if (!name)
     return refuse(wsi, HTTP_STATUS_FORBIDDEN);
-  const WebFile *file = find_file(server, name);
+  const WebFile *file = web_file_find(*name ? name : server->def.home);
   if (!file)
     return refuse(wsi, HTTP_STATUS_NOT_FOUND);
   if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, file->type, file->size, &p, end) ||

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "cli/macros.h"
 #include "view/server_parts.h"
 
 /* A connection. */
@@ -44,7 +45,7 @@ static void post_roles(Server *server) {
   for (unsigned i = 0; i < server->client_count; i++) {
     const Client *client = server->clients[i];
     char text[160];
-    snprintf(text, sizeof text,
+    text_set(text,
              "{\"type\":\"role\",\"client\":%u,\"steers\":%s,\"steering\":%s,\"pages\":%u}",
              client->id, client->steers ? "true" : "false",
              server->def.steering ? "true" : "false", server->client_count);

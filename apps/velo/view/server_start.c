@@ -1,4 +1,5 @@
 /* view/server_start.c: starts and ends the server, and takes what is sent; see server.h. */
+#include "cli/macros.h"
 #include "view/server.h"
 
 #include <stdlib.h>
@@ -73,7 +74,7 @@ int server_open(const ServerDef *def, Server **result) {
     return report_failure(STATUS_OTHER, "out of memory");
   server->def = *def;
   if (def->address)
-    snprintf(server->listen, sizeof server->listen, "%s", def->address);
+    text_set(server->listen, "%s", def->address);
   pthread_mutex_init(&server->lock, NULL);
   int status = access_make_token(server->token)
                    ? -1
@@ -86,8 +87,8 @@ int server_open(const ServerDef *def, Server **result) {
     bool all = strcmp(server->listen, "0.0.0.0") == 0 || strcmp(server->listen, "::") == 0;
     const char *name = server->listen[0] && !all ? server->listen : "127.0.0.1";
     bool six = strchr(name, ':') != NULL;
-    snprintf(server->address, sizeof server->address, "http://%s%s%s:%d/%s/%s", six ? "[" : "",
-             name, six ? "]" : "", server->port, server->token, def->query);
+    text_set(server->address, "http://%s%s%s:%d/%s/%s", six ? "[" : "", name, six ? "]" : "",
+             server->port, server->token, def->query);
     *result = server;
     return -1;
   }

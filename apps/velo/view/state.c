@@ -46,6 +46,13 @@ char *json_text_end(Json *json) {
   return written;
 }
 
+void json_text_post(Json *json, Server *server, uint32_t client) {
+  char *text = json ? json_text_end(json) : NULL;
+  if (text)
+    server_post(server, client, text);
+  free(text);
+}
+
 static void put_sensor(Json *json, const ViewSensor *sensor) {
   const vlExposureDef *exposure = &sensor->exposure;
   json_put(json, "preset %s, white %s, exposure_time %g, f_number %g, iso %g", sensor->preset,
@@ -69,7 +76,7 @@ static void put_sensor_lists(Json *json, const ViewSensors *sensors) {
   json_end(json, ']');
 }
 
-char *state_text(const ViewState *s) {
+Json *state_begin(const ViewState *s) {
   Json *json = json_text_begin("state");
   if (!json)
     return NULL;
@@ -97,10 +104,10 @@ char *state_text(const ViewState *s) {
     put_sensor(json, s->sensor);
     json_end(json, '}');
   }
-  return json_text_end(json);
+  return json;
 }
 
-char *state_lists(const ViewSensors *sensors) {
+Json *state_begin_lists(const ViewSensors *sensors) {
   Json *json = json_text_begin("lists");
   if (!json)
     return NULL;
@@ -119,5 +126,5 @@ char *state_lists(const ViewSensors *sensors) {
   json_end(json, ']');
   if (sensors)
     put_sensor_lists(json, sensors);
-  return json_text_end(json);
+  return json;
 }

@@ -6,6 +6,7 @@
 #include "velo/world.h"
 #include "view/camera_edit.h"
 #include "view/sensor_edit.h"
+#include "view/server.h"
 
 /* The timeline, in seconds. */
 typedef struct ViewTime {
@@ -32,13 +33,15 @@ typedef struct ViewState {
  * returns the text for the caller to free; null: no memory. */
 Json *json_text_begin(const char *type);
 char *json_text_end(Json *json);
+/* Ends the object, posts it to a page or to all (0), and frees it. Null: posts nothing. */
+void json_text_post(Json *json, Server *server, uint32_t client);
 
 /* Whether pages show this channel of ground truth; index: its bit in vlChannel. */
 bool state_shows_channel(uint32_t index);
-/* Both texts are for the caller to free; null: no memory. */
-char *state_text(const ViewState *state);
-/* Dialects, projections, sensors, channels by their bits: "" for those that pages do not show.
- * sensors: those of the mode "camera"; null: pages have no such mode. */
-char *state_lists(const ViewSensors *sensors);
+/* The whole object, as json_text_begin. */
+Json *state_begin(const ViewState *state);
+/* The same of dialects, projections, sensors, channels by their bits: "" for those that pages
+ * do not show. sensors: those of the mode "camera"; null: pages have no such mode. */
+Json *state_begin_lists(const ViewSensors *sensors);
 
 #endif

@@ -20,9 +20,7 @@ static bool goes_with_lecture(int option) {
 /* Returns -1, or the exit code after reporting the error. */
 static int check_usage(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  int status = race_check_options(arguments);
-  if (status >= 0)
-    return status;
+  TRY(race_check_options(arguments));
   if (!v[VIEW_LECTURE].given) {
     if (v[VIEW_LANGUAGE].given)
       return report_usage("--language goes with --lecture");
@@ -40,9 +38,7 @@ static int check_usage(const Arguments *arguments) {
 
 static int run_view(const Arguments *arguments, vlContext *unused) {
   (void)unused;
-  int status = check_usage(arguments);
-  if (status >= 0)
-    return status;
+  TRY(check_usage(arguments));
 #if defined VELO_HAS_VIEW || defined __EMSCRIPTEN__
   return view_run(arguments);
 #else

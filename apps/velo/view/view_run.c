@@ -119,10 +119,8 @@ static void wait_and_open(int from) {
 static void browser_prepare(Browser *browser) {
   int ends[2];
   *browser = (Browser){0};
-  if ((!getenv("DISPLAY") && !getenv("WAYLAND_DISPLAY")) || pipe(ends) != 0)
+  if ((!getenv("DISPLAY") && !getenv("WAYLAND_DISPLAY")) || pipe2(ends, O_CLOEXEC) != 0)
     return;
-  fcntl(ends[0], F_SETFD, FD_CLOEXEC);
-  fcntl(ends[1], F_SETFD, FD_CLOEXEC);
   const pid_t child = fork();
   if (child == 0) {
     close(ends[1]);
@@ -178,10 +176,9 @@ static void tell_tunnel(const Server *server) {
 
 static int open_context(const Arguments *arguments, vlContext **context) {
   vlContextDef def = scene_context_def(arguments);
-  int status = context_open(&def, context);
-  if (status < 0)
-    report_memory_of(*context, def.max_memory);
-  return status;
+  TRY(context_open(&def, context));
+  report_memory_of(*context, def.max_memory);
+  return -1;
 }
 
 static void wait_for_end(Browser *browser) {
@@ -213,13 +210,11 @@ static void confine(const Arguments *arguments) {
   if (arguments->operand_count)
     confine_read_folder(&c, arguments->operands[0]);
   for (size_t i = 0; i < LENGTH(inputs); i++)
-    if (v[inputs[i]].given)
-      confine_read_folder(&c, v[inputs[i]].text);
+    confine_read_folder(&c, v[inputs[i]].text);
   if (v[VIEW_EXPOSE].given && sensor_is_file(v[VIEW_EXPOSE].text))
     confine_read_folder(&c, v[VIEW_EXPOSE].text);
   confine_write(&c, "saved.exr");
-  if (v[RENDER_FILM].given)
-    confine_write(&c, v[RENDER_FILM].text);
+  confine_write(&c, v[RENDER_FILM].text);
   confine_apply(&c, arguments);
 }
 
@@ -228,12 +223,12 @@ static int claim_film(FilmClaim *claim, vlContext *context, const Arguments *arg
   const char *path = arguments->values[RENDER_FILM].text;
   const bool overwrite = arguments->values[RENDER_OVERWRITE].given;
   char camera[4200];
-  int status = film_claim_check(overwrite, path, NULL);
-  if (status >= 0 || !path)
-    return status;
-  status = film_claim(claim, context, path, "", overwrite);
-  if (status >= 0 || overwrite)
-    return status;
+  TRY(film_claim_check(overwrite, path, NULL));
+  if (!path)
+    return -1;
+  TRY(film_claim(claim, context, path, "", overwrite));
+  if (overwrite)
+    return -1;
   engine_film_camera(path, camera, sizeof camera);
   if (claim->earlier)
     return film_claim_refuse("%s is a film already", path);
@@ -254,34 +249,30 @@ static int check_film(vlContext *context, const char *path) {
 
 int view_run(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  vlContext *context = NULL;
   Engine *engine = NULL;
   Server *server = NULL;
   Browser browser = {0};
   FilmClaim claim = {.lock = NULL};
   report_setup(false, v[RENDER_QUIET].given ? REPORT_QUIET : REPORT_NORMAL);
   bool lecture = v[VIEW_LECTURE].given;
-  const EngineDef def = {.path = lecture ? lecture_first_scene : arguments->operands[0],
-                         .lecture = lecture,
-                         .arguments = arguments,
-                         .film_path = v[RENDER_FILM].text};
+  EngineDef def = {.path = lecture ? lecture_first_scene : arguments->operands[0],
+                   .lecture = lecture,
+                   .arguments = arguments,
+                   .film_path = v[RENDER_FILM].text};
   if (!v[VIEW_NO_OPEN].given)
     browser_prepare(&browser);
   int status = open_server(arguments, &server);
   if (status < 0)
     confine(arguments);
   if (status < 0)
-    status = open_context(arguments, &context);
+    status = open_context(arguments, &def.context);
   if (status < 0)
-    status = claim_film(&claim, context, arguments);
-  if (status < 0) {
-    EngineDef complete = def;
-    complete.context = context;
-    complete.film_lock = claim.lock;
-    status = engine_create(&complete, &engine);
-  }
+    status = claim_film(&claim, def.context, arguments);
+  def.film_lock = claim.lock;
+  if (status < 0)
+    status = engine_create(&def, &engine);
   if (status < 0 && def.film_path)
-    status = check_film(context, def.film_path);
+    status = check_film(def.context, def.film_path);
   if (status < 0) {
     const ServerCalls calls = engine_calls(engine);
     signals_remember();
@@ -309,6 +300,6 @@ int view_run(const Arguments *arguments) {
   engine_destroy(engine);
   film_claim_release(&claim);
   report_memory_of(NULL, 0);
-  context_close(context);
+  context_close(def.context);
   return status == STATUS_OK ? stopped : status;
 }

@@ -13,5 +13,7 @@ typedef struct WebFile {
 
 /* The last has no name. */
 extern const WebFile web_files[];
+/* The file of this name; null: there is none. */
+const WebFile *web_file_find(const char *name);
 
 #endif

@@ -46,7 +46,7 @@ static const Command help_command = {
         "velo help image diff\n"
         "velo help --man render | man -l -",
     .options = help_options,
-    .max_operands = MAX_OPERANDS,
+    .optional_operands = MAX_OPERANDS,
     .run = help,
 };
 

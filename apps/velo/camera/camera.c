@@ -13,6 +13,7 @@
 #include "image/header.h"
 #include "image/image.h"
 #include "render/output_names.h"
+#include "render/scene_options.h"
 #include "velo/load.h"
 #include "velo/render.h"
 
@@ -26,9 +27,7 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
   vlScene *scene = NULL;
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
-  vlResult result = vl_scene_create(context, &scene);
-  if (result == VL_OK)
-    result = vl_scene_load(scene, path, &load, &error);
+  vlResult result = scene_read(context, path, &load, &scene, &error);
   if (result == VL_OK) {
     const vlSceneDefs *from = vl_scene_defs(scene);
     *record = (vlCameraRecord){
@@ -136,31 +135,24 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   const char *in = arguments->operands[0], *out = arguments->operands[1];
   vlCameraRecord record;
-  int status = camera_load(context, in, (int)v[CONVERT_FROM].integer, v[CONVERT_FRAME].text,
-                           &v[CONVERT_SIZE], NULL, &record);
+  TRY(camera_load(context, in, (int)v[CONVERT_FROM].integer, v[CONVERT_FRAME].text,
+                  &v[CONVERT_SIZE], NULL, &record));
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = (vlCameraDialect)option_count(&v[CONVERT_TO], VL_CAMERA_DIALECT_AUTO);
   /* each file of a folder is checked when it is written */
-  if (status < 0 && !vl_camera_writes_folder(out, def.dialect))
-    status = output_check(context, out, VL_OUTPUT_PLAIN);
-  if (status < 0) {
-    def.drop = arguments->texts;
-    def.drop_count = (uint32_t)arguments->text_count;
-    vlError error = {0};
-    vlResult result = vl_camera_write(context, out, &def, &record, &error);
-    if (result == VL_OK)
-      status = STATUS_OK;
-    else if (result == VL_ERROR_ARGUMENT && strncmp(error.message, "camera: ", 8) == 0)
-      status = report_failure(STATUS_SCENE, "%s: %s", in, error.message);
-    else if (result == VL_ERROR_ARGUMENT && def.dialect == VL_CAMERA_DIALECT_AUTO &&
-             !strstr(error.message, ": drop: "))
-      status = report_usage("%s; give --to DIALECT", error.message);
-    else if (result == VL_ERROR_ARGUMENT)
-      status = report_usage("%s", error.message);
-    else
-      status = report_error(&error, result, out);
-  }
-  return status;
+  if (!vl_camera_writes_folder(out, def.dialect))
+    TRY(output_check(context, out, VL_OUTPUT_PLAIN));
+  def.drop = arguments->texts;
+  def.drop_count = (uint32_t)arguments->text_count;
+  vlError error = {0};
+  vlResult result = vl_camera_write(context, out, &def, &record, &error);
+  if (result != VL_ERROR_ARGUMENT)
+    return report_finish(&error, result, out);
+  if (strncmp(error.message, "camera: ", 8) == 0)
+    return report_failure(STATUS_SCENE, "%s: %s", in, error.message);
+  const bool guessed =
+      def.dialect == VL_CAMERA_DIALECT_AUTO && !strstr(error.message, ": drop: ");
+  return report_usage("%s%s", error.message, guessed ? "; give --to DIALECT" : "");
 }
 
 static Option convert_options[] = {
@@ -190,8 +182,7 @@ const Command camera_convert_command = {
         "velo camera convert camera.yaml camera.json\n"
         "velo camera convert room.pbrt camera.yaml",
     .options = convert_options,
-    .min_operands = 2,
-    .max_operands = 2,
+    .operands = 2,
     .context = CONTEXT_ONE,
     .run = run_convert,
 };

@@ -122,12 +122,11 @@ static int load(State *s, vlContext *context, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlError error = {0};
   TRY(scene_world_open(&s->in, context, arguments));
-  if (v[RENDER_TRAJECTORY].given) {
+  if (v[RENDER_TRAJECTORY].given)
     return report_error(&error,
                         poses_load(s->in.context, v[RENDER_TRAJECTORY].text, &s->in.job.camera,
                                    &s->cameras, &s->count, &error),
                         v[RENDER_TRAJECTORY].text);
-  }
   if (v[DRAW_NEAR].given)
     s->in.job.camera.near_plane = v[DRAW_NEAR].number;
   if (v[DRAW_FAR].given)
@@ -202,8 +201,7 @@ static int draw(State *s, const OptionValue *v) {
   if (result == VL_OK)
     result = draw_render(s->in.context, s->in.world, s->in.job.defs, &s->view, &s->cameras[0],
                          s->drawing, &s->outside, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, s->in.job.path);
+  TRY(report_error(&error, result, s->in.job.path));
   Overlay overlay = {0};
   result = VL_ERROR_MEMORY;
   if (overlay_begin(&overlay, s->outside.image)) {
@@ -303,8 +301,7 @@ const Command camera_draw_command = {
         "velo camera draw room.pbrt --near 1 --far 6 --from 90,10 -o frustum.png",
     .options = draw_options,
     .sections = draw_sections,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ALL,
     .run = run_draw,
 };

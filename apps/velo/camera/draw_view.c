@@ -159,9 +159,7 @@ vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Se
     memcpy(camera.lookat, middle, sizeof middle);
     memcpy(camera.up, up, sizeof up);
     vector_along(middle, distance, d, camera.eye);
-    vlResult result = vl_camera_make(&camera, &outside->camera, NULL, error);
-    if (result != VL_OK)
-      return result;
+    TRY_RESULT(vl_camera_make(&camera, &outside->camera, NULL, error));
     const vlCamera *c = &outside->camera;
     Bounds b = bounds_of(c, drawing, seen);
     double share =
@@ -211,7 +209,7 @@ static vlResult clean_image(vlContext *context, const vlWorld *world, const vlCa
   if (result == VL_OK)
     result = vl_render_channels(world, camera, &channels, &floats, NULL, error);
   if (result == VL_OK)
-    result = denoised_join(context, (const vlImage *const[]){color, floats}, 2, &joined);
+    result = denoised_join(context, (const vlImage *const[]){color, floats}, 2, NULL, &joined);
   if (result == VL_OK)
     result = vl_denoise(joined, NULL, image, NULL, error);
   vl_image_destroy(color);

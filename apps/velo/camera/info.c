@@ -4,6 +4,7 @@
 
 #include "camera/camera.h"
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 
 enum { INFO_JSON, INFO_FRAME, INFO_SIZE };
@@ -108,17 +109,11 @@ static int run_info(const Arguments *arguments, vlContext *context) {
   vlCameraRecord record;
   vlCamera camera;
   const char *path = arguments->operands[0];
-  int status =
-      camera_load_made(context, path, arguments, INFO_FRAME, INFO_SIZE, &record, &camera);
-  if (status < 0) {
-    Info info = measure(&camera);
-    if (arguments->values[INFO_JSON].given)
-      print_json(path, &record, &camera, &info);
-    else
-      print_text(path, &record, &camera, &info);
-    status = STATUS_OK;
-  }
-  return status;
+  TRY(camera_load_made(context, path, arguments, INFO_FRAME, INFO_SIZE, &record, &camera));
+  const Info info = measure(&camera);
+  const bool json = arguments->values[INFO_JSON].given;
+  (json ? print_json : print_text)(path, &record, &camera, &info);
+  return STATUS_OK;
 }
 
 static Option info_options[] = {JSON_OPTION(INFO_JSON),
@@ -136,8 +131,7 @@ const Command camera_info_command = {
         "a width of 36 mm is assumed.",
     .examples = "velo camera info camera.yaml\nvelo camera info --json room.pbrt",
     .options = info_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ONE,
     .run = run_info,
 };

@@ -158,8 +158,7 @@ const Command camera_paths_command = {
         "velo camera paths room.pbrt --pixel 320,200 --samples 4096 --show 1 --json",
     .options = paths_options,
     .sections = paths_sections,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ALL,
     .run = run_paths,
 };

@@ -190,8 +190,7 @@ const Command camera_project_command = {
         "velo camera project --camera camera.yaml points.csv\n"
         "velo camera project --camera room.pbrt points.csv",
     .options = points_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ONE,
     .run = run_project,
 };
@@ -208,8 +207,7 @@ const Command camera_unproject_command = {
         "velo camera unproject --camera camera.yaml pixels.csv\n"
         "velo camera unproject --camera room.pbrt pixels.csv",
     .options = points_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ONE,
     .run = run_unproject,
 };

@@ -1,5 +1,6 @@
 /* camera/poses.c: see poses.h. */
 #include "camera/poses.h"
+#include "cli/macros.h"
 #include "velo/trajectory.h"
 
 #include <math.h>
@@ -10,14 +11,11 @@ vlResult poses_load(vlContext *context, const char *path, const vlCamera *base,
   vlTrajectory *trajectory = NULL;
   *cameras = NULL;
   *count = 0;
-  vlResult result = vl_trajectory_load(context, path, NULL, &trajectory, error);
-  if (result != VL_OK)
-    return result;
+  TRY_RESULT(vl_trajectory_load(context, path, NULL, &trajectory, error));
   uint32_t frames = vl_trajectory_frames(trajectory),
            every = (frames + MAX_CAMERAS - 1) / MAX_CAMERAS;
   *cameras = calloc((frames + every - 1) / every, sizeof **cameras);
-  if (!*cameras)
-    result = VL_ERROR_MEMORY;
+  vlResult result = *cameras ? VL_OK : VL_ERROR_MEMORY;
   for (uint32_t i = 0; result == VL_OK && i < frames; i += every) {
     vlTrajectoryFrame frame;
     vlCamera camera = *base;

@@ -337,21 +337,18 @@ static int run_vanishing(const Arguments *arguments, vlContext *context) {
   vlCameraRecord record;
   vlCamera camera;
   const char *path = arguments->operands[0];
-  int status = camera_load_made(context, path, arguments, V_FRAME, V_SIZE, &record, &camera);
-  if (status < 0 && v[V_OVERLAY].given) {
+  TRY(camera_load_made(context, path, arguments, V_FRAME, V_SIZE, &record, &camera));
+  if (v[V_OVERLAY].given) {
     Drawing drawing = {up, (int)option_count(&v[V_LINES], 24), grid[0], grid[1]};
-    status = draw_overlay(context, arguments, &camera, &drawing);
+    TRY(draw_overlay(context, arguments, &camera, &drawing));
   }
-  if (status < 0) {
-    vlVanishingPoints points;
-    vl_camera_vanishing_points(&camera, up, &points);
-    if (v[V_JSON].given)
-      say_json(path, &camera, &points);
-    else
-      say_text(&camera, &points);
-    status = STATUS_OK;
-  }
-  return status;
+  vlVanishingPoints points;
+  vl_camera_vanishing_points(&camera, up, &points);
+  if (v[V_JSON].given)
+    say_json(path, &camera, &points);
+  else
+    say_text(&camera, &points);
+  return STATUS_OK;
 }
 
 static Option vanishing_options[] = {
@@ -404,7 +401,7 @@ const Command camera_vanishing_command = {
         "velo camera vanishing room.pbrt\n"
         "velo camera vanishing --from 10,200 900,210 --size 640x480",
     .options = vanishing_options,
-    .max_operands = 2,
+    .optional_operands = 2,
     .context = CONTEXT_ONE,
     .run = run_vanishing,
 };

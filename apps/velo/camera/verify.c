@@ -213,23 +213,17 @@ static int run_verify(const Arguments *arguments, vlContext *context) {
   v.spp = option_count(&o[VERIFY_SPP], DEFAULT_SPP);
   v.seed = option_count(&o[VERIFY_SEED], 1);
   v.keep = o[VERIFY_KEEP].text;
-  int status =
-      camera_load_made(context, path, arguments, VERIFY_FRAME, VERIFY_SIZE, &record, &v.camera);
-  if (status < 0)
-    make_pinhole(&v.camera);
-  if (status < 0)
-    status = load_model(context, arguments, &record, &v);
-  if (status < 0 && v.keep && mkdir(v.keep, 0777) != 0 && errno != EEXIST)
-    status = report_failure(STATUS_IO, "%s: %s", v.keep, strerror(errno));
-  if (status < 0)
-    status = verify_run(&v, context);
-  if (status < 0) {
-    char text[200];
-    const char *failure = verdict(&v, threshold, text, sizeof text);
-    (o[VERIFY_JSON].given ? print_json : print_text)(&v, path, against, threshold, failure);
-    status = failure ? STATUS_OTHER : STATUS_OK;
-  }
-  return status;
+  TRY(camera_load_made(context, path, arguments, VERIFY_FRAME, VERIFY_SIZE, &record,
+                       &v.camera));
+  make_pinhole(&v.camera);
+  TRY(load_model(context, arguments, &record, &v));
+  if (v.keep && mkdir(v.keep, 0777) != 0 && errno != EEXIST)
+    return report_failure(STATUS_IO, "%s: %s", v.keep, strerror(errno));
+  TRY(verify_run(&v, context));
+  char text[200];
+  const char *failure = verdict(&v, threshold, text, sizeof text);
+  (o[VERIFY_JSON].given ? print_json : print_text)(&v, path, against, threshold, failure);
+  return failure ? STATUS_OTHER : STATUS_OK;
 }
 
 static Option verify_options[] = {
@@ -276,7 +270,6 @@ const Command camera_verify_command = {
     .examples =
         "velo camera verify --camera camera.yaml\nvelo camera verify --camera room.pbrt",
     .options = verify_options,
-    .max_operands = 0,
     .context = CONTEXT_ALL,
     .run = run_verify,
 };

@@ -169,6 +169,20 @@ static const char bash_tail[] =
     "}\n"
     "complete -F _velo velo\n";
 
+/* Prints the second words of each group: before GROUP between WORDS after. */
+static void put_groups(const Command *const *commands, const char *before, const char *between,
+                       const char *after) {
+  for (const Command *const *c = commands; *c; c++) {
+    if (!command_leads_group(commands, *c))
+      continue;
+    fputs(before, stdout);
+    put_first_word(*c);
+    fputs(between, stdout);
+    put_second_words(commands, *c);
+    fputs(after, stdout);
+  }
+}
+
 static void bash_option(const Option *o) {
   static const char *const words[] = {[VALUES_UNKNOWN] = "value",
                                       [VALUES_NAMES] = "names names='",
@@ -204,15 +218,7 @@ static void bash_command(const Command *const *commands, const Command *command)
         "        help) names='");
     put_first_words(commands);
     printf("' ;;\n");
-    for (const Command *const *c = commands; *c; c++) {
-      if (!command_leads_group(commands, *c))
-        continue;
-      printf("        ");
-      put_first_word(*c);
-      printf(") names='");
-      put_second_words(commands, *c);
-      printf("' ;;\n");
-    }
+    put_groups(commands, "        ", ") names='", "' ;;\n");
     printf("      esac\n");
   }
   if (command->options->name) {
@@ -226,15 +232,8 @@ static void bash_command(const Command *const *commands, const Command *command)
 
 static void print_bash(const Command *const *commands) {
   fputs(bash_head, stdout);
-  for (const Command *const *c = commands; *c; c++) {
-    if (!command_leads_group(commands, *c))
-      continue;
-    printf("    ");
-    put_first_word(*c);
-    printf(")\n      command+=\" ${COMP_WORDS[2]}\" at=3 names='");
-    put_second_words(commands, *c);
-    printf("'\n      ;;\n");
-  }
+  put_groups(commands, "    ", ")\n      command+=\" ${COMP_WORDS[2]}\" at=3 names='",
+             "'\n      ;;\n");
   printf("  esac\n  if ((COMP_CWORD == 1)); then\n    names='");
   put_first_words(commands);
   printf(

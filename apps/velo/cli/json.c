@@ -99,6 +99,18 @@ void format_number(char *text, size_t size, double number) {
   }
 }
 
+double shortest_float(float number) {
+  double back = (double)number;
+  for (int digits = 6; digits <= 9; digits++) {
+    char text[40];
+    text_set(text, "%.*g", digits, (double)number);
+    back = strtod(text, NULL);
+    if ((float)back == number)
+      break;
+  }
+  return back;
+}
+
 void json_number(Json *json, const char *key, double number) {
   put_key(json, key);
   char text[40];

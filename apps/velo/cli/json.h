@@ -39,5 +39,7 @@ void json_bool(Json *json, const char *key, bool value);
 
 /* The shortest decimal that reads back as the same number. */
 void format_number(char *text, size_t size, double number);
+/* The number of that decimal, where a number of single precision is all that is known. */
+double shortest_float(float number);
 
 #endif

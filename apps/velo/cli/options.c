@@ -525,10 +525,8 @@ int options_parse(const Command *command, int argc, char **argv, Arguments *argu
       only_operands = true;
     } else if (!only_operands && (*rest)[0] == '-' && (*rest)[1] &&
                !strchr(".0123456789", (*rest)[1])) { /* a negative number is not an option */
-      int status = parse_option(command, &rest, end, arguments);
-      if (status >= 0)
-        return status;
-    } else if (arguments->operand_count == command->max_operands) {
+      TRY(parse_option(command, &rest, end, arguments));
+    } else if (arguments->operand_count == command->operands + command->optional_operands) {
       return report_usage("%s: one argument too many: \"%s\"", command->name, *rest);
     } else {
       if (arguments->operand_count < MAX_OPERANDS)
@@ -537,7 +535,5 @@ int options_parse(const Command *command, int argc, char **argv, Arguments *argu
     }
   }
   arguments->all_operands = (const char *const *)argv;
-  if (arguments->operand_count < command->min_operands)
-    return options_too_few(command);
-  return -1;
+  return arguments->operand_count < command->operands ? options_too_few(command) : -1;
 }

@@ -98,7 +98,7 @@ typedef struct Command {
   const char *brief; /* for long pages: what `velo help` prints without --all between usage and
                         hint, lines of at most 80 columns with examples and the most used
                         options; null: the page is printed whole */
-  int min_operands, max_operands;
+  int operands, optional_operands; /* how many are needed, and how many more may follow */
   ContextUse context;
   /* Returns the exit code. What it prints to stdout is flushed and checked afterwards. */
   int (*run)(const Arguments *arguments, vlContext *context);

@@ -249,6 +249,10 @@ int report_error(const vlError *error, vlResult result, const char *file) {
   return status;
 }
 
+int report_no_memory(void) {
+  return report_error(NULL, VL_ERROR_MEMORY, NULL);
+}
+
 int report_finish(const vlError *error, vlResult result, const char *file) {
   return result == VL_OK ? STATUS_OK : report_error(error, result, file);
 }

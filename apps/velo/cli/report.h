@@ -45,6 +45,8 @@ const char *error_text(const vlError *error, vlResult result);
 int report_error(const vlError *error, vlResult result, const char *file);
 /* The same at the end of a command: VL_OK is STATUS_OK. */
 int report_finish(const vlError *error, vlResult result, const char *file);
+/* Reports that the memory is exhausted. Returns the exit code. */
+int report_no_memory(void);
 /* Flushes stdout at the end of a command that prints text. Returns `status`, or STATUS_IO after
  * reporting that it cannot be written. A reader that has seen enough (velo help render | head)
  * is no error. */

@@ -100,6 +100,10 @@ int signals_pending(void) {
   return pending;
 }
 
+int signals_status(void) {
+  return 128 + pending;
+}
+
 int signals_count(void) {
   return count;
 }

@@ -19,6 +19,8 @@ void signals_forget(vlContext *context);
 void signals_remember(void);
 /* The first recorded signal; 0: none. */
 int signals_pending(void);
+/* The exit code after the pending signal: 128 + its number. */
+int signals_status(void);
 /* The number of recorded signals. */
 int signals_count(void);
 

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "image/image.h"
 #include "render/attributes.h"
 #include "render/exposure.h"
 #include "render/job.h"
@@ -28,8 +29,8 @@ typedef struct Develop {
 static vlResult take_attributes(Develop *d, vlError *error) {
   vlAttribute window;
   bool is_part = vl_image_find_attribute(d->image, "dataWindow", &window) == VL_OK;
-  vlResult result = vl_film_file_attributes(d->file, d->image, error);
-  return result == VL_OK && is_part ? vl_image_set_attribute(d->image, &window) : result;
+  TRY_RESULT(vl_film_file_attributes(d->file, d->image, error));
+  return is_part ? vl_image_set_attribute(d->image, &window) : VL_OK;
 }
 
 static vlResult set_header(Develop *d, const vlReceipt *receipt, vlError *error) {
@@ -47,7 +48,7 @@ static vlResult set_header(Develop *d, const vlReceipt *receipt, vlError *error)
   vlReceipt *own = NULL;
   vlResult result = vl_receipt_of_image(receipt, spp, &own, NULL);
   if (result == VL_OK)
-    result = attributes_set_text(d->image, RECEIPT_ATTRIBUTE, vl_receipt_text(own));
+    result = image_set_text(d->image, RECEIPT_ATTRIBUTE, vl_receipt_text(own));
   vl_receipt_destroy(own);
   return result;
 }
@@ -72,18 +73,14 @@ static vlResult compare_blocks(Develop *d, vlError *error) {
 static int develop(Develop *d, const char *path) {
   vlError error = {0};
   vlDevelopDef def = vl_default_develop_def();
-  vlResult result = vl_film_file_open(d->context, path, &d->file, &error);
-  if (result == VL_OK)
-    result = compare_blocks(d, &error);
-  if (result == VL_OK)
-    result = vl_film_read(d->context, path, true, &d->film, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, NULL);
+  TRY(report_error(&error, vl_film_file_open(d->context, path, &d->file, &error), NULL));
+  TRY(report_error(&error, compare_blocks(d, &error), NULL));
+  TRY(report_error(&error, vl_film_read(d->context, path, true, &d->film, &error), NULL));
   const vlReceipt *receipt = vl_film_file_receipt(d->file);
   const vlFilmDef *film = vl_film_file_def(d->file);
   if (receipt)
     def.exposure = vl_receipt_exposure(receipt);
-  result = vl_film_develop(d->film, &def, &d->image);
+  vlResult result = vl_film_develop(d->film, &def, &d->image);
   if (result == VL_OK && film->errors)
     result = vl_film_errors(d->film, &def, &d->errors);
   if (result == VL_OK && film->buckets)
@@ -154,8 +151,7 @@ const Command film_develop_command = {
         "velo film develop room.film -o room.exr\n"
         "velo film develop room.film -o room.png --view agx",
     .options = develop_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ONE,
     .run = run_develop,
 };

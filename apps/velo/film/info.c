@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/crop.h"
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
@@ -34,10 +35,6 @@ typedef struct Grid {
   uint32_t *ids; /* by block: index of its list + 1; 0: none */
   uint32_t across, down;
 } Grid;
-
-static int out_of_memory(void) {
-  return report_error(NULL, VL_ERROR_MEMORY, NULL);
-}
 
 /* Finds the parts of [0, planned) that are not in the ranges. `gaps` has room for count + 1
  * ranges. */
@@ -92,7 +89,7 @@ static int read_blocks(vlFilmFile *file, bool check, uint32_t planned, FilmParts
     if (planned) {
       vlSampleRange *more = realloc(gaps, (count + 1) * sizeof *gaps);
       if (!more) {
-        status = out_of_memory();
+        status = report_no_memory();
         break;
       }
       gaps = more;
@@ -101,7 +98,7 @@ static int read_blocks(vlFilmFile *file, bool check, uint32_t planned, FilmParts
     }
     grid->ids[i] = count ? find_list(parts, ranges, count) : 0;
     if (count && !grid->ids[i])
-      status = out_of_memory();
+      status = report_no_memory();
   }
   free(gaps);
   return status;
@@ -127,12 +124,9 @@ static void take_part(Grid *grid, uint32_t x, uint32_t y, const uint32_t crop[4]
   for (uint32_t k = 0; k < height; k++)
     memset(grid->ids + (size_t)(y + k) * grid->across + x, 0, width * sizeof *grid->ids);
   FilmPart *part = &parts->parts[parts->count++];
-  const uint32_t blocks[4] = {x, y, x + width, y + height};
-  for (int i = 0; i < 4; i++) {
-    uint32_t pixel = (crop[i & 1] / FILM_BLOCK + blocks[i]) * FILM_BLOCK;
-    part->window[i] =
-        i < 2 ? (pixel > crop[i] ? pixel : crop[i]) : (pixel < crop[i] ? pixel : crop[i]);
-  }
+  const uint32_t left = crop[0] / FILM_BLOCK + x, top = crop[1] / FILM_BLOCK + y;
+  const uint32_t blocks[4] = {left, top, left + width, top + height};
+  shard_block_window(blocks, crop, part->window);
   part->samples = parts->lists[id - 1];
 }
 
@@ -147,12 +141,12 @@ static int film_parts_read(vlFilmFile *file, bool check, uint32_t planned, FilmP
   memset(parts, 0, sizeof *parts);
   size_t blocks = (size_t)grid.across * grid.down;
   grid.ids = calloc(blocks, sizeof *grid.ids);
-  int status = grid.ids ? read_blocks(file, check, planned, parts, &grid) : out_of_memory();
+  int status = grid.ids ? read_blocks(file, check, planned, parts, &grid) : report_no_memory();
   uint32_t used = 0;
   for (size_t i = 0; i < blocks && status < 0; i++)
     used += grid.ids[i] != 0;
   if (status < 0 && !(parts->parts = calloc(used ? used : 1, sizeof *parts->parts)))
-    status = out_of_memory();
+    status = report_no_memory();
   for (uint32_t y = 0; y < grid.down && status < 0; y++)
     for (uint32_t x = 0; x < grid.across; x++)
       if (grid.ids[(size_t)y * grid.across + x])
@@ -198,10 +192,10 @@ static void print_command(const vlReceipt *receipt) {
 static void print_contents(const char *path, const vlFilmFile *file, const FilmParts *parts) {
   const vlFilmDef *def = vl_film_file_def(file);
   const vlReceipt *receipt = vl_film_file_receipt(file);
-  const uint32_t *c = def->crop, whole[4] = {0, 0, def->width, def->height};
+  const uint32_t *c = def->crop;
   uint32_t planned = planned_of(file);
   printf("%s\n  size      %u x %u pixels", path, def->width, def->height);
-  if (!same_rectangle(c, whole))
+  if (!crop_is_whole(c, def->width, def->height))
     printf(", crop %u,%u,%u,%u", c[0], c[1], c[2], c[3]);
   printf("\n  sums      colour%s", def->errors ? ", errors" : "");
   if (def->buckets)
@@ -327,8 +321,7 @@ const Command film_info_command = {
     .text = "Prints the size of a film, its samples, and the command and scene that made it.",
     .examples = "velo film info room.film\nvelo film info --missing room.film | sh",
     .options = info_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ONE,
     .run = run_info,
 };

@@ -46,8 +46,8 @@ const Command film_merge_command = {
         "velo film merge part-*.film -o room.film\n"
         "velo film merge room.film late.film -o room.film",
     .options = merge_options,
-    .min_operands = 1,
-    .max_operands = INT_MAX,
+    .operands = 1,
+    .optional_operands = INT_MAX - 1,
     .context = CONTEXT_ONE,
     .run = run_merge,
 };

@@ -361,8 +361,7 @@ const Command image_check_command = {
         "Exit code 1 if an error is above the threshold.",
     .examples = "velo image check channels.exr\nvelo image check --json channels.exr",
     .options = check_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ONE,
     .run = run_check,
 };

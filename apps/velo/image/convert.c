@@ -239,7 +239,7 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
     const vlImage *one = image;
     vlResult result =
         output_write_layers(&one, 1, outputs.paths[0], vl_default_write_def(), &error);
-    status = result == VL_OK ? STATUS_OK : report_error(&error, result, outputs.paths[0]);
+    status = report_finish(&error, result, outputs.paths[0]);
   }
   if (status < 0)
     status = outputs_write(context, &outputs, image, 0, OUTPUT_FINISHED);
@@ -272,8 +272,7 @@ const Command image_convert_command = {
         "velo image convert room.exr room.png --view agx --exposure 1\n"
         "velo image convert room.exr depth.png --channel Z --scale 1000",
     .options = convert_options,
-    .min_operands = 2,
-    .max_operands = 2,
+    .operands = 2,
     .context = CONTEXT_ONE,
     .run = run_convert,
 };

@@ -72,8 +72,7 @@ void denoise_report(const vlDenoiseStats *stats) {
 }
 
 vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {
-  return attributes_set_text(clean, "velo.denoiser",
-                             choice_name(denoiser_choices, (int)denoiser));
+  return image_set_text(clean, "velo.denoiser", choice_name(denoiser_choices, (int)denoiser));
 }
 
 static Option denoise_options[] = {
@@ -108,8 +107,7 @@ const Command image_denoise_command = {
         "velo render room.pbrt --spp 16 --channels error,features -o room.exr\n"
         "velo image denoise room.exr -o clean.png",
     .options = denoise_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ALL,
     .run = run_denoise,
 };

@@ -179,8 +179,7 @@ const Command image_diff_command = {
         "velo image diff reference.exr room.exr\n"
         "velo image diff reference.png room.png --threshold flip=0.01 -o heat.png",
     .options = diff_options,
-    .min_operands = 2,
-    .max_operands = 2,
+    .operands = 2,
     .context = CONTEXT_ONE,
     .run = run_diff,
 };

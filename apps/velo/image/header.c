@@ -46,6 +46,21 @@ static bool text(const vlImage *image, const char *name, const char **value) {
 #define COUNT_ONE(kind, name, row) +1
 enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(COUNT_ONE) };
 
+/* Reads a list of numbers. Returns how many there are; -1: one is no number, or there is no
+ * room for it. */
+static int read_numbers(const char *text, double *numbers, int room) {
+  int count = 0;
+  while (*text) {
+    char *end;
+    const double value = strtod(text, &end);
+    if (end == text || count == room)
+      return -1;
+    numbers[count++] = value;
+    text = end;
+  }
+  return count;
+}
+
 /* Reads projection and lens. Returns false for an unknown name or coefficient. */
 static bool read_model(const vlImage *image, const char *projection, vlCameraDef *def) {
   int kind = 0;
@@ -64,17 +79,10 @@ static bool read_model(const vlImage *image, const char *projection, vlCameraDef
       def->distortion = (vlDistortion)i;
   if (def->distortion == VL_DISTORTION_NONE || !text(image, "velo.distortionCoefficients", &at))
     return false;
-  while (*at) {
-    char *end;
-    if (def->distortion_count == LENGTH(def->distortion_coefficients))
-      return false;
-    def->distortion_coefficients[def->distortion_count] = strtod(at, &end);
-    if (end == at)
-      return false;
-    def->distortion_count++;
-    at = end;
-  }
-  return true;
+  const int count =
+      read_numbers(at, def->distortion_coefficients, LENGTH(def->distortion_coefficients));
+  def->distortion_count = count > 0 ? (uint32_t)count : 0;
+  return count >= 0;
 }
 
 /* Reads the size of the whole image and the file's window in it. */
@@ -121,6 +129,7 @@ static int read_optics(vlContext *context, const vlImage *image, const char *pat
                        vlCameraDef *def, vlOptics **optics) {
   vlOpticsDef lens = vl_default_optics_def();
   enum { MAX_SURFACES = 64 };
+  double numbers[4 * MAX_SURFACES];
   vlLensSurface surfaces[MAX_SURFACES];
   const char *at;
   lens.focus_distance = INFINITY;
@@ -129,23 +138,13 @@ static int read_optics(vlContext *context, const vlImage *image, const char *pat
   number(image, "velo.opticsFocus", &lens.focus_distance);
   number(image, "velo.opticsDiagonal", &lens.film_diagonal);
   number(image, "velo.opticsUnit", &lens.unit_mm);
-  uint32_t count = 0;
-  bool good = text(image, "velo.optics", &at);
-  while (good && *at) {
-    char *end;
-    double value = strtod(at, &end);
-    vlLensSurface *s = &surfaces[count / 4];
-    good = end != at && count < 4 * MAX_SURFACES;
-    if (good) {
-      double *const members[4] = {&s->radius, &s->thickness, &s->ior, &s->aperture};
-      *members[count % 4] = value;
-    }
-    count++;
-    at = end;
-  }
-  if (!good || count % 4)
+  const int count =
+      text(image, "velo.optics", &at) ? read_numbers(at, numbers, 4 * MAX_SURFACES) : -1;
+  if (count < 0 || count % 4)
     return report_failure(STATUS_SCENE, "%s: the lens in its header is not understood", path);
-  lens.count = count / 4;
+  for (const double *n = numbers; n < numbers + count; n += 4)
+    surfaces[lens.count++] =
+        (vlLensSurface){.radius = n[0], .thickness = n[1], .ior = n[2], .aperture = n[3]};
   vlError error = {0};
   vlResult result = vl_optics_create(context, &lens, optics, &error);
   if (result == VL_ERROR_MEMORY)
@@ -162,14 +161,11 @@ int header_camera(vlContext *context, const vlImage *image, const char *path, vl
                   vlOptics **optics, uint32_t *x0, uint32_t *y0) {
   double whole[4], data[4], limit;
   vlCameraDef def;
-  int status = windows(image, path, whole, data);
   *optics = NULL;
-  if (status < 0)
-    status = read_def(image, path, whole, &def);
-  if (status < 0 && def.projection == VL_PROJECTION_OPTICS)
-    status = read_optics(context, image, path, &def, optics);
-  if (status >= 0)
-    return status;
+  TRY(windows(image, path, whole, data));
+  TRY(read_def(image, path, whole, &def));
+  if (def.projection == VL_PROJECTION_OPTICS)
+    TRY(read_optics(context, image, path, &def, optics));
   vlError error = {0};
   vlResult result = vl_camera_make(&def, camera, NULL, &error);
   if (result != VL_OK)

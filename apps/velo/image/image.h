@@ -12,6 +12,8 @@ vlResult image_make(vlContext *context, uint32_t width, uint32_t height, uint32_
 /* The same, as large as another image. */
 vlResult image_make_like(vlContext *context, const vlImage *like, uint32_t channels,
                          const char *const *names, vlImage **image);
+/* Sets an attribute that is a text. */
+vlResult image_set_text(vlImage *image, const char *name, const char *text);
 /* width * height. */
 size_t image_pixel_count(const vlImage *image);
 /* Finds the channels "R", "G", "B" behind a prefix such as "albedo."; -1: it is not there.

@@ -28,6 +28,11 @@ vlResult image_make_like(vlContext *context, const vlImage *like, uint32_t chann
                     image);
 }
 
+vlResult image_set_text(vlImage *image, const char *name, const char *text) {
+  const vlAttribute attribute = {.name = name, .type = VL_ATTRIBUTE_STRING, .string = text};
+  return vl_image_set_attribute(image, &attribute);
+}
+
 size_t image_pixel_count(const vlImage *image) {
   return (size_t)vl_image_width(image) * vl_image_height(image);
 }
@@ -119,20 +124,12 @@ static int number_count(vlAttributeType type) {
   return 0;
 }
 
-/* Prints numbers that the file holds in single precision with as few digits as read back to the
- * same float. */
+/* Numbers that the file holds in single precision have as few digits as read back to the same
+ * float. */
 static double shown(const vlAttribute *a, int i) {
-  if (a->type == VL_ATTRIBUTE_DOUBLE || a->type == VL_ATTRIBUTE_M44D ||
-      a->type == VL_ATTRIBUTE_INT)
-    return a->numbers[i];
-  char text[40];
-  for (int digits = 6; digits <= 9; digits++) {
-    double back;
-    text_set(text, "%.*g", digits, a->numbers[i]);
-    if (sscanf(text, "%lf", &back) == 1 && (float)back == (float)a->numbers[i])
-      return back;
-  }
-  return a->numbers[i];
+  const bool exact = a->type == VL_ATTRIBUTE_DOUBLE || a->type == VL_ATTRIBUTE_M44D ||
+                     a->type == VL_ATTRIBUTE_INT;
+  return exact ? a->numbers[i] : shortest_float((float)a->numbers[i]);
 }
 
 /* Prints what made the image. receipt may be null. */
@@ -288,8 +285,7 @@ const Command image_info_command = {
         "OpenEXR's order (row vectors).",
     .examples = "velo image info room.exr\nvelo image info --json room.exr",
     .options = info_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ONE,
     .run = run_info,
 };

@@ -105,14 +105,13 @@ static int polar_write(vlContext *context, const char *path, const vlLamp *lamp,
   if (!out)
     return report_reason(VL_ERROR_MEMORY, path, "polar diagram");
   write_svg(out, lamp, info, title);
-  if (fclose(out) != 0) {
-    free(text);
-    return report_reason(VL_ERROR_MEMORY, path, "polar diagram");
-  }
+  const bool made = fclose(out) == 0;
   vlError error = {0};
-  vlResult r = vl_write_file(context, path, text, size, &error);
+  vlResult r = made ? vl_write_file(context, path, text, size, &error) : VL_OK;
   free(text);
-  return r == VL_OK ? STATUS_OK : report_error(&error, r, path);
+  if (!made)
+    return report_reason(VL_ERROR_MEMORY, path, "polar diagram");
+  return report_finish(&error, r, path);
 }
 
 enum { INFO_OUT, INFO_JSON };
@@ -238,8 +237,7 @@ const Command light_info_command = {
         "the greatest intensity.",
     .examples = "velo light info lamp.ies\nvelo light info lamp.ldt -o lamp.svg",
     .options = info_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ONE,
     .run = run_info,
 };

@@ -51,9 +51,10 @@ static int run_develop(const Arguments *arguments, vlContext *context) {
     status = outputs_check_inputs(context, &outputs);
   if (status < 0) {
     vlResult result = vl_raw_develop(raw, &def, &image, &error);
-    status = result == VL_OK ? write_outputs(image, arguments)
-                             : report_error(&error, result, arguments->operands[0]);
+    status = report_error(&error, result, arguments->operands[0]);
   }
+  if (status < 0)
+    status = write_outputs(image, arguments);
   vl_image_destroy(image);
   vl_raw_destroy(raw);
   return status;
@@ -85,8 +86,7 @@ const Command raw_develop_command = {
         "velo raw develop room.dng -o room.png\n"
         "velo raw develop room.dng -o mosaic.exr --stop-at black",
     .options = develop_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ALL,
     .run = run_develop,
 };

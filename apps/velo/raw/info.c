@@ -103,18 +103,6 @@ static void print_text(const char *path, const vlRaw *raw) {
   }
 }
 
-/* The decimal of the least digits that reads back as the same float. */
-static double shown(float value) {
-  double back = (double)value;
-  for (int digits = 6; digits <= 9; digits++) {
-    char text[40];
-    text_set(text, "%.*g", digits, (double)value);
-    if (sscanf(text, "%lf", &back) == 1 && (float)back == value)
-      break;
-  }
-  return back;
-}
-
 static void print_json(const char *path, const vlRaw *raw) {
   const vlRawDef *def = vl_raw_def(raw);
   const Range range = range_of(raw);
@@ -135,7 +123,7 @@ static void print_json(const char *path, const vlRaw *raw) {
   for (const Fact *f = facts; f < facts + FACTS; f++) {
     double values[3 * VL_RAW_MAX_COLORS];
     for (uint32_t i = 0; i < f->count; i++)
-      values[i] = shown(f->values[i]);
+      values[i] = shortest_float(f->values[i]);
     if (!is_known(f->values, f->count))
       continue;
     if (f->values == def->neutral || f->count > 1)
@@ -173,8 +161,7 @@ const Command raw_info_command = {
         "What is not known is left out. Matrices: for each colour the factors of X, Y and Z.",
     .examples = "velo raw info room.dng\nvelo raw info --json room.dng",
     .options = info_options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ALL,
     .run = run_info,
 };

@@ -24,17 +24,13 @@ static int take_options(Again *again, const Arguments *given) {
   return -1;
 }
 
-/* Takes the given scene, or else the scene that the receipt names. */
 static int take_scene(Again *again, const Arguments *given) {
-  const char *path =
-      given->operand_count ? given->operands[0] : vl_receipt_scene(again->receipt);
-  if (!path)
+  const char *path = vl_receipt_scene(again->receipt);
+  if (!path && !given->operand_count)
     return report_failure(STATUS_SCENE, "%s: its receipt names no scene; give the scene's file",
                           again->path);
-  again->arguments.operands[0] = path;
-  return given->operand_count
-             ? -1
-             : receipt_check_scene(path, "the receipt of", again->path, "--again");
+  return receipt_take_scene(&again->arguments, given, path, "the receipt of", again->path,
+                            "--again");
 }
 
 /* If the image's camera came from a file of its own, takes it from the receipt, so the file is
@@ -51,8 +47,7 @@ static int take_camera(Again *again) {
       vl_receipt_camera(again->receipt, &camera->def, camera->size, camera->crop, &error);
   if (result == VL_ERROR_UNSUPPORTED)
     return -1;
-  if (result != VL_OK)
-    return report_error(&error, result, again->path);
+  TRY(report_error(&error, result, again->path));
   camera->given = true;
   /* the receipt's film and camera include these settings */
   v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given = false;
@@ -105,10 +100,9 @@ int again_open(Again *again, const Arguments **arguments) {
   vlError error = {0};
   again->path = given->values[RENDER_AGAIN].text;
   TRY(context_open_one(&again->context));
-  vlResult result = vl_image_read_header(again->context, again->path, &image, &error);
-  int status = result == VL_OK
-                   ? receipt_of_image(again->context, image, again->path, &again->receipt)
-                   : report_error(&error, result, again->path);
+  TRY(report_error(&error, vl_image_read_header(again->context, again->path, &image, &error),
+                   again->path));
+  const int status = receipt_of_image(again->context, image, again->path, &again->receipt);
   vl_image_destroy(image);
   TRY(status);
   TRY(check_own(again));

@@ -118,7 +118,7 @@ static int render_frame(Animator *x, uint32_t frame) {
   char(*paths)[PATH_SIZE] = malloc((MAX_TEXTS + 1) * sizeof *paths), moment[40];
   Arguments one = *x->arguments;
   const PatternValues values = {.number = frame};
-  int status = paths ? -1 : report_error(NULL, VL_ERROR_MEMORY, NULL);
+  int status = paths ? -1 : report_no_memory();
   for (int i = 0; i <= one.text_count && status < 0; i++) {
     const char **name = i < one.text_count ? &one.texts[i] : &one.values[RENDER_DENOISE].text;
     if (i == one.text_count && !one.values[RENDER_DENOISE].given)
@@ -132,8 +132,7 @@ static int render_frame(Animator *x, uint32_t frame) {
   text_set(moment, "%.10g", a->turns ? angle : at);
   *set = (OptionValue){.given = true, .text = moment, .number = a->turns ? angle : at};
   one.values[RENDER_ANIMATE].given = one.values[RENDER_TURNTABLE].given =
-      one.values[RENDER_FPS].given = false;
-  one.values[RENDER_FRAMES].given = false;
+      one.values[RENDER_FPS].given = one.values[RENDER_FRAMES].given = false;
   const bool skip = one.values[RENDER_SKIP_EXISTING].given;
   one.values[RENDER_SKIP_EXISTING].given = false;
   if (status < 0 && skip && !shared->preparing && !shared->steady.only_kept && all_exist(&one))

@@ -44,11 +44,6 @@ vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name,
   return VL_OK;
 }
 
-vlResult attributes_set_text(vlImage *image, const char *name, const char *text) {
-  const vlAttribute attribute = {.name = name, .type = VL_ATTRIBUTE_STRING, .string = text};
-  return vl_image_set_attribute(image, &attribute);
-}
-
 vlResult attributes_add_layer(vlImage *image, const vlImage *layer) {
   return layer ? vl_image_add_attributes(image, layer) : VL_OK;
 }
@@ -56,5 +51,5 @@ vlResult attributes_add_layer(vlImage *image, const vlImage *layer) {
 vlResult attributes_make(const Job *job, const char *eye, vlImage **image) {
   TRY_RESULT(image_make(job->context, 1, 1, 1, NULL, image));
   TRY_RESULT(attributes_set(*image, job, job->defs->render.spp));
-  return eye ? attributes_set_text(*image, "view", eye) : VL_OK;
+  return eye ? image_set_text(*image, "view", eye) : VL_OK;
 }

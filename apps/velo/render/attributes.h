@@ -13,8 +13,6 @@ vlResult attributes_set_view(vlImage *image, const Job *job, const char *view);
 /* Adds the number, name and time of a trajectory's frame. name may be empty, time may be
  * VL_UNSET. */
 vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name, double time);
-/* Adds a text, such as OpenEXR's "view" to the image of one eye. */
-vlResult attributes_set_text(vlImage *image, const char *name, const char *text);
 /* Makes an image that has only attributes, those that a film keeps: of the image of the whole
  * render, or of an eye. *image is destroyed by the caller, also after an error. */
 vlResult attributes_make(const Job *job, const char *eye, vlImage **image);

@@ -83,8 +83,7 @@ static int check_output(const Blend *blend, const char *path) {
   if (!blend->frames.many)
     return output_check(blend->context, path, VL_OUTPUT_PLAIN);
   TRY(pattern_check(path));
-  if (!pattern_has(path, 'd') || pattern_has(path, 'n') || pattern_has(path, 'c') ||
-      pattern_has(path, 'v'))
+  if (!pattern_is_numbered(path))
     return report_usage(
         "output \"%s\": the names of several frames have their numbers alone, "
         "such as frame_%%04d.png",

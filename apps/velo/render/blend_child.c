@@ -124,7 +124,7 @@ static int report_end(Blender *b) {
   const int status = child_finish(&b->child, true, CHILD_LAST_LINE, line, sizeof line);
   b->runs = false;
   if (signals_pending())
-    return 128 + signals_pending();
+    return signals_status();
   child_end_text(status, ended, sizeof ended);
   return report_failure(STATUS_IO, "%s: Blender did not render it: %s%s%s", b->scene, ended,
                         line[0] ? "; " : "", line);
@@ -139,7 +139,7 @@ static int wait_for(Blender *b, BlenderEvent wanted) {
     if (event == wanted)
       return -1;
     if (signals_pending())
-      return 128 + signals_pending();
+      return signals_status();
     struct pollfd ready = {.fd = b->events, .events = POLLIN};
     if (poll(&ready, 1, CHILD_WAIT) <= 0)
       continue;
@@ -216,10 +216,8 @@ static void add_outputs(Words *words, const Arguments *arguments) {
 
 static int start(Blender *b, const Words *words) {
   int ends[2];
-  if (pipe(ends) != 0)
+  if (pipe2(ends, O_CLOEXEC) != 0)
     return report_failure(STATUS_IO, "%s: %s", b->program, strerror(errno));
-  fcntl(ends[0], F_SETFD, FD_CLOEXEC);
-  fcntl(ends[1], F_SETFD, FD_CLOEXEC);
   const int output = report_is_verbose() ? STDERR_FILENO : -1;
   const int code = child_start(&b->child, b->program, words->list, output, ends[1]);
   close(ends[1]);

@@ -11,6 +11,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "cli/text.h"
+#include "image/image.h"
 #include "render/attributes.h"
 #include "render/gbuffer.h"
 
@@ -28,8 +29,7 @@ static int read_one(const char *name, uint32_t *channels) {
     uint32_t bits;
   } groups[] = {
       {"all", VL_CHANNEL_ALL},
-      {"crypto",
-       VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE},
+      {"crypto", CHANNELS_CRYPTO},
   };
   const char *names[VL_CHANNEL_COUNT + 2];
   int count = 0;
@@ -115,20 +115,13 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
   return -1;
 }
 
-static int fail_pass(const vlError *error, vlResult result, const Job *job) {
-  if (result == VL_OK)
-    return STATUS_OK;
-  return result == VL_CANCELLED ? 128 + signals_pending()
-                                : report_error(error, result, job->path);
-}
-
 static int find_boxes(Channels *c, const Job *job) {
   static const vlIdKind kinds[2] = {VL_ID_OBJECT, VL_ID_INSTANCE};
   for (int k = 0; k < 2; k++) {
     c->box_list[k] =
         calloc((size_t)vl_world_id_count(job->world, kinds[k]) + 1, sizeof(vlIdBox));
     if (!c->box_list[k])
-      return report_error(NULL, VL_ERROR_MEMORY, NULL);
+      return report_no_memory();
   }
   vlBoxesDef def = vl_default_boxes_def(job->camera.width, job->camera.height);
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
@@ -138,7 +131,7 @@ static int find_boxes(Channels *c, const Job *job) {
   vlError error = {0};
   vlResult result =
       vl_world_boxes(job->world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
-  return fail_pass(&error, result, job);
+  return job_end_pass(job, result, &error);
 }
 
 /* The camera whose rows are exposed for an instant each, that of `share` of their exposure. */
@@ -205,10 +198,8 @@ double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, doubl
   /* measured: cost of a camera ray relative to a sample, and of writing a channel relative to
    * its uncompressed size */
   const double ray = 0.3, compressed = 0.5;
-  const uint32_t mattes =
-      VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
   uint32_t rays = c->bits || c->gbuffer ? 1 : 0;
-  if (c->bits & mattes || c->mode != VL_CHANNEL_MODE_CENTRE)
+  if (c->bits & CHANNELS_CRYPTO || c->mode != VL_CHANNEL_MODE_CENTRE)
     rays += spp;
   if (c->bits & VL_CHANNEL_FEATURES)
     rays += spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
@@ -219,8 +210,7 @@ double channels_seconds(const Channels *c, uint32_t buckets, uint32_t spp, doubl
 
 int channels_render(Channels *c, const Job *job, const vlFilm *film) {
   vlResult spectrum = c->spectrum ? vl_film_spectrum(film, &c->layers[2]) : VL_OK;
-  if (spectrum != VL_OK)
-    return report_reason(spectrum, job->path, "the image's spectrum cannot be made");
+  TRY(report_reason(spectrum, job->path, "the image's spectrum cannot be made"));
   if (c->gbuffer)
     return gbuffer_render(job, film, &c->layers[3]);
   if (!c->bits)
@@ -241,9 +231,7 @@ int channels_render(Channels *c, const Job *job, const vlFilm *film) {
       vl_render_channels(job->world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
   if (result == VL_OK)
     result = channels_make_visible(&c->layers[1]);
-  if (result != VL_OK)
-    return fail_pass(&error, result, job);
-  return c->boxes ? find_boxes(c, job) : STATUS_OK;
+  return result == VL_OK && c->boxes ? find_boxes(c, job) : job_end_pass(job, result, &error);
 }
 
 vlResult channels_describe(const Channels *c, vlImage *image) {
@@ -256,8 +244,8 @@ vlResult channels_describe(const Channels *c, vlImage *image) {
 vlResult channels_describe_mode(const Channels *c, vlImage *image) {
   if (!c->bits)
     return VL_OK;
-  return attributes_set_text(image, "velo.channels",
-                             choice_name(channel_mode_choices, (int)c->mode));
+  return image_set_text(image, "velo.channels",
+                        choice_name(channel_mode_choices, (int)c->mode));
 }
 
 void channels_free(Channels *c) {

@@ -6,7 +6,11 @@
 #include "render/job.h"
 #include "velo/boxes.h"
 
-enum { CHANNEL_LAYERS = 4 };
+enum {
+  CHANNEL_LAYERS = 4,
+  CHANNELS_CRYPTO =
+      VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE
+};
 
 typedef struct Channels {
   uint32_t bits; /* bit mask of vlChannel; 0: none */

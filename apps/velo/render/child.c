@@ -63,10 +63,8 @@ int child_start(Child *child, const char *program, const char *const *words, int
                 int further) {
   posix_spawn_file_actions_t actions;
   int ends[2];
-  if (pipe(ends) != 0)
+  if (pipe2(ends, O_CLOEXEC) != 0)
     return errno;
-  fcntl(ends[0], F_SETFD, FD_CLOEXEC);
-  fcntl(ends[1], F_SETFD, FD_CLOEXEC);
   fcntl(ends[1], F_SETFL, O_NONBLOCK);
   child->messages = tmpfile();
   posix_spawn_file_actions_init(&actions);

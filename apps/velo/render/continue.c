@@ -33,13 +33,6 @@ static void take_options(Continue *c, const Arguments *given, const vlReceipt *r
   }
 }
 
-static int take_scene(Continue *c, const Arguments *given) {
-  const char *path = given->operand_count ? given->operands[0] : c->arguments.operands[0];
-  c->arguments.operands[0] = path;
-  return given->operand_count ? -1
-                              : receipt_check_scene(path, "the film", c->path, "--continue");
-}
-
 int continue_open(Continue *c, const Arguments **arguments) {
   const Arguments *given = *arguments;
   if (!given->values[RENDER_CONTINUE].given)
@@ -64,7 +57,8 @@ int continue_open(Continue *c, const Arguments **arguments) {
   take_options(c, given, receipt);
   if (eyes && !given->values[RENDER_EYE].given)
     c->arguments.values[RENDER_EYE].given = false;
-  TRY(take_scene(c, given));
+  TRY(receipt_take_scene(&c->arguments, given, c->arguments.operands[0], "the film", c->path,
+                         "--continue"));
   *arguments = &c->arguments;
   return -1;
 }

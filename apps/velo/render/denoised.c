@@ -81,13 +81,13 @@ double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double wri
 }
 
 vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,
-                       vlImage **joined) {
-  const char *names[MAX_CHANNELS];
+                       const char *const *names, vlImage **joined) {
+  const char *own[MAX_CHANNELS];
   uint32_t count = 0;
   for (int k = 0; k < n; k++)
     for (uint32_t c = 0; c < vl_image_channels(parts[k]) && count < MAX_CHANNELS; c++)
-      names[count++] = vl_image_channel_name(parts[k], c);
-  TRY_RESULT(image_make_like(context, parts[0], count, names, joined));
+      own[count++] = vl_image_channel_name(parts[k], c);
+  TRY_RESULT(image_make_like(context, parts[0], count, names ? names : own, joined));
   float *to = vl_image_pixels(*joined);
   for (size_t i = 0; i < image_pixel_count(parts[0]); i++)
     for (int k = 0; k < n; k++) {
@@ -132,7 +132,7 @@ static vlResult gather(const Job *job, const vlFilm *film, vlImage **joined, vlE
     result = vl_render_channels(job->world, &job->camera, &def, &features, NULL, error);
   if (result == VL_OK)
     result = denoised_join(job->context, (const vlImage *const[]){color, errors, features}, 3,
-                           joined);
+                           NULL, joined);
   if (result == VL_OK)
     result = attributes_set(*joined, job, vl_film_spp(film));
   vl_image_destroy(color);
@@ -173,7 +173,7 @@ int denoised_make(Denoised *d, const Job *job, const vlFilm *film, vlImage **cle
   if (result != VL_CANCELLED)
     return report_error(&error, result, d->outputs.paths[0]);
   report_note("interrupted before %s was done", d->outputs.paths[0]);
-  return 128 + signals_pending();
+  return signals_status();
 }
 
 int denoised_write(Denoised *d, const Job *job, const vlFilm *film, OutputStage stage) {

@@ -46,8 +46,9 @@ int denoised_make(Denoised *d, const Job *job, const vlFilm *film, vlImage **cle
  * whether it is there. Returns STATUS_OK, or the exit code after reporting the error. */
 int denoised_write(Denoised *d, const Job *job, const vlFilm *film, OutputStage stage);
 
-/* Makes one image with the channels of n float images, which have the same size. */
+/* Makes one image with the channels of n float images, which have the same size. names: of all
+ * its channels; null: those of the parts. */
 vlResult denoised_join(vlContext *context, const vlImage *const parts[], int n,
-                       vlImage **joined);
+                       const char *const *names, vlImage **joined);
 
 #endif

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "cli/context.h"
+#include "cli/crop.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
 #include "render/job.h"
@@ -99,7 +100,7 @@ void job_describe(const Job *job, const vlScene *scene, bool denoised,
   printf(", eye (%g, %g, %g), looking along (%.4g, %.4g, %.4g)\n", f.eye[0], f.eye[1], f.eye[2],
          f.forward[0], f.forward[1], f.forward[2]);
   printf("image     %u x %u pixels", c->width, c->height);
-  if (crop[0] || crop[1] || crop[2] != c->width || crop[3] != c->height)
+  if (!crop_is_whole(crop, c->width, c->height))
     printf(", of these x %u to %u, y %u to %u", crop[0], crop[2], crop[1], crop[3]);
   printf(", filter %s%s, colour %s\n", f.filter, render->share_samples ? "" : " of own samples",
          f.color);

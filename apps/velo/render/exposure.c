@@ -194,7 +194,6 @@ static void tell_rays(const char *what, const vlCamera *camera, const vlRenderSt
                 camera->height, (unsigned long long)rays);
 }
 
-/* what: what it is for. */
 static vlResult render_small(vlContext *context, const vlWorld *world, const vlCamera *camera,
                              const vlSceneDefs *defs, const char *what, SmallRender *small,
                              vlError *error) {
@@ -235,12 +234,13 @@ static uint32_t small_side(const SmallDef *def, uint32_t width, uint32_t height)
   return (uint32_t)(side < def->least ? def->least : side > def->most ? def->most : side);
 }
 
-/* side: the longer side of the small render, at most METER_SIDE. lamps: the light is not that
- * of the studio alone: a model of glass, too, is metered. */
+/* def: of the small render of an image of this size. lamps: the light is not that of the studio
+ * alone: a model of glass, too, is metered. */
 static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld *world,
-                        const vlCamera *camera, const vlSceneDefs *defs, const char *what,
-                        uint32_t side, bool lamps, Metered *metered, vlError *error) {
-  double k = side / (double)(camera->width > camera->height ? camera->width : camera->height);
+                        const vlCamera *camera, const vlSceneDefs *defs, const SmallDef *def,
+                        const uint32_t size[2], bool lamps, Metered *metered, vlError *error) {
+  double k = small_side(def, size[0], size[1]) /
+             (double)(camera->width > camera->height ? camera->width : camera->height);
   uint32_t width = (uint32_t)(camera->width * k + 0.5),
            height = (uint32_t)(camera->height * k + 0.5);
   vlCamera camera_small = *camera;
@@ -249,7 +249,7 @@ static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld 
   if (k < 1 &&
       vl_camera_resize(camera, width ? width : 1, height ? height : 1, &camera_small) != VL_OK)
     return VL_OK;
-  vlResult result = render_small(context, world, &camera_small, defs, what, &small, error);
+  vlResult result = render_small(context, world, &camera_small, defs, def->what, &small, error);
   ModelLight *light = result == VL_OK ? calloc(1, sizeof *light) : NULL;
   if (result == VL_OK && !light)
     result = VL_ERROR_MEMORY;
@@ -290,10 +290,10 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
   Metered m;
   vlError error = {0};
   *ev = 0;
+  const uint32_t size[2] = {camera->width, camera->height};
   TRY(report_error(
       &error,
-      measure(context, scene, world, camera, defs, meter_small.what,
-              small_side(&meter_small, camera->width, camera->height), leave <= 0, &m, &error),
+      measure(context, scene, world, camera, defs, &meter_small, size, leave <= 0, &m, &error),
       "metering"));
   double stops = m.white > 0 ? log2(WHITE / m.white) : 0;
   stops = stops > 0 && stops > m.most_stops ? m.most_stops : stops;
@@ -317,10 +317,10 @@ int exposure_find_unlit(vlContext *context, const vlScene *scene, const vlWorld 
   Metered m;
   vlError error = {0};
   *unlit = false;
-  TRY(report_error(&error,
-                   measure(context, scene, world, camera, defs, unlit_small.what,
-                           small_side(&unlit_small, size[0], size[1]), false, &m, &error),
-                   "metering"));
+  TRY(report_error(
+      &error,
+      measure(context, scene, world, camera, defs, &unlit_small, size, false, &m, &error),
+      "metering"));
   *unlit = m.pixels > 0 && (m.white < WHITE / 1024 || (m.white < WHITE / 32 && m.unlit > 0.5));
   return -1;
 }

@@ -9,6 +9,7 @@
 #include "cli/kinds.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "render/outputs.h"
 #include "velo/tracer.h"
 
 int film_claim_refuse(const char *format, ...) {
@@ -16,20 +17,12 @@ int film_claim_refuse(const char *format, ...) {
   return report_usage("--film: %s; --overwrite replaces it", text);
 }
 
-static bool same_file(const char *a, const char *b) {
-  struct stat one, two;
-  if (strcmp(a, b) == 0)
-    return true;
-  return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_ino == two.st_ino &&
-         one.st_dev == two.st_dev;
-}
-
 int film_claim_check(bool overwrite, const char *film, const char *from) {
   if (!overwrite)
     return -1;
   if (!film)
     return report_usage("--overwrite goes with --film FILE");
-  return from && same_file(film, from)
+  return from && output_is_same(film, from)
              ? report_usage("--overwrite: %s is the film that --continue continues", film)
              : -1;
 }
@@ -60,7 +53,7 @@ int film_claim(FilmClaim *claim, vlContext *context, const char *path, const cha
     return -1;
   if (!is_film(path))
     return report_usage("--film: %s is not a film file, and is not replaced", path);
-  if (overwrite || (*from && same_file(path, from)))
+  if (overwrite || (*from && output_is_same(path, from)))
     return -1;
   vlResult result = vl_film_file_open(context, path, &claim->earlier, &error);
   if (result == VL_ERROR_SCENE || result == VL_ERROR_UNSUPPORTED)

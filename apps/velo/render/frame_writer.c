@@ -12,6 +12,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "image/display.h"
+#include "image/image.h"
 #include "render/attributes.h"
 #include "render/exposure.h"
 #include "render/pattern.h"
@@ -72,25 +73,15 @@ static vlResult join(vlContext *context, vlImage *const images[2], const char *v
     names[c] = plain[c];
     names[4 + c] = right[c];
   }
-  vlImageDef def =
-      vl_default_image_def(vl_image_width(images[0]), vl_image_height(images[0]), 8);
-  def.names = names;
-  vlResult result = vl_image_create(context, &def, both);
-  if (result != VL_OK)
-    return result;
-  float *to = vl_image_pixels(*both);
-  const float *from[2] = {vl_image_const_pixels(images[0]), vl_image_const_pixels(images[1])};
-  size_t pixels = (size_t)def.width * def.height;
-  for (size_t i = 0; i < pixels; i++)
-    for (int v = 0; v < 2; v++)
-      memcpy(to + 8 * i + 4 * v, from[v] + 4 * i, 4 * sizeof *to);
-  for (uint32_t i = 0; i < vl_image_attribute_count(images[0]) && result == VL_OK; i++) {
+  TRY_RESULT(
+      denoised_join(context, (const vlImage *const[]){images[0], images[1]}, 2, names, both));
+  for (uint32_t i = 0; i < vl_image_attribute_count(images[0]); i++) {
     vlAttribute attribute;
     vl_image_attribute(images[0], i, &attribute);
     if (strcmp(attribute.name, "view") != 0)
-      result = vl_image_set_attribute(*both, &attribute);
+      TRY_RESULT(vl_image_set_attribute(*both, &attribute));
   }
-  return result;
+  return VL_OK;
 }
 
 /* eye: the file holds this eye alone; null: both. */
@@ -101,8 +92,14 @@ static ReceiptImage receipt_image(const FrameWriter *w, const FrameImage *p, con
                         .samples = p->spp};
 }
 
-static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path,
-                           const vlWriteDef *def, vlError *error) {
+static vlWriteDef write_def(const Outputs *outputs) {
+  vlWriteDef def = vl_default_write_def();
+  def.half = outputs->half;
+  def.alone = true;
+  return def;
+}
+
+static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, vlError *error) {
   vlImage *both = NULL;
   const vlImage *layers[1 + 2 * CHANNEL_LAYERS];
   uint32_t count = 1;
@@ -131,7 +128,7 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path,
   layers[0] = both;
   p->renamed = true;
   if (result == VL_OK)
-    result = output_write_layers(layers, count, path, *def, error);
+    result = output_write_layers(layers, count, path, write_def(w->outputs), error);
   vl_image_destroy(both);
   return result;
 }
@@ -148,39 +145,31 @@ static float exposure_of(FrameWriter *w, const vlImage *image) {
   return w->exposure;
 }
 
-/* Writes an image as display values. exposure: stops. */
-static vlResult write_display(const FrameWriter *w, const Outputs *outputs,
-                              const vlImage *image, float exposure, const char *path,
-                              const vlWriteDef *def, vlError *error) {
-  vlImage *display = NULL;
-  vlResult result = display_image(w->context, image, outputs->view, exposure,
-                                  outputs->transparent && output_holds_alpha(path), &display);
-  const vlImage *layer = display;
-  if (result == VL_OK)
-    result = output_write_layers(&layer, 1, path, *def, error);
-  vl_image_destroy(display);
-  return result;
-}
-
-static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *path,
-                          const vlWriteDef *def, vlError *error) {
-  const vlImage *layers[1 + CHANNEL_LAYERS] = {p->images[view]};
+/* Writes the image of a view, as display values or with its layers. clean: the denoised copy,
+ * with the exposure of the image itself. */
+static vlResult write_one(FrameWriter *w, FrameImage *p, int view, bool clean, const char *path,
+                          vlError *error) {
+  const Outputs *outputs = clean ? w->denoised : w->outputs;
+  const vlImage *layers[1 + CHANNEL_LAYERS] = {clean ? p->clean : p->images[view]};
   uint32_t count = 1;
-  if (output_is_display(path))
-    return write_display(w, w->outputs, p->images[view], exposure_of(w, p->images[view]), path,
-                         def, error);
-  for (int k = 0; k < CHANNEL_LAYERS && output_holds_layers(path); k++)
+  vlImage *display = NULL;
+  if (output_is_display(path)) {
+    const bool alpha = outputs->transparent && output_holds_alpha(path);
+    TRY_RESULT(display_image(w->context, layers[0], outputs->view,
+                             exposure_of(w, p->images[view]), alpha, &display));
+    layers[0] = display;
+  }
+  for (int k = 0; k < CHANNEL_LAYERS && !clean && output_holds_layers(path); k++)
     if (p->channels[view].layers[k])
       layers[count++] = p->channels[view].layers[k];
-  return output_write_layers(layers, count, path, *def, error);
+  const vlResult result = output_write_layers(layers, count, path, write_def(outputs), error);
+  vl_image_destroy(display);
+  return result;
 }
 
 /* Writes both eyes' files of one pattern, or one file with both. Joined files come last, since
  * layers are renamed for them. */
 static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, bool by_view) {
-  vlWriteDef def = vl_default_write_def();
-  def.half = w->outputs->half;
-  def.alone = true;
   bool join_views = w->frames->views == 2 && !by_view;
   int status = STATUS_OK;
   for (int view = 0; view < (by_view ? w->frames->views : 1); view++) {
@@ -193,8 +182,8 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
     if (output_holds_layers(path))
       code = channels_write_ids(&p->channels[view], join_views ? &p->channels[1] : NULL,
                                 &p->jobs[view], path);
-    vlResult result = join_views ? write_both(w, p, path, &def, &error)
-                                 : write_one(w, p, view, path, &def, &error);
+    vlResult result = join_views ? write_both(w, p, path, &error)
+                                 : write_one(w, p, view, false, path, &error);
     if (result != VL_OK)
       code = report_error(&error, result, path);
     if (code == STATUS_OK && p->stopped)
@@ -207,24 +196,14 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
   return status;
 }
 
-/* Writes the denoised copy, with the exposure of the image itself. */
 static int write_clean(FrameWriter *w, FrameImage *p) {
   const vlTrajectoryFrame *pose = &p->frame.pose;
-  const Outputs *outputs = w->denoised;
-  const char *pattern = outputs->paths[0];
   char path[4096];
-  vlWriteDef def = vl_default_write_def();
-  def.half = outputs->half;
-  def.alone = true;
   vlError error = {0};
-  const vlImage *layer = p->clean;
   vlResult result = attributes_set_frame(p->clean, p->frame.number, pose->name, pose->time);
-  frames_path(w->frames, &p->frame, pattern, 0, path, sizeof path);
-  if (result == VL_OK && output_is_display(path))
-    result =
-        write_display(w, outputs, p->clean, exposure_of(w, p->images[0]), path, &def, &error);
-  else if (result == VL_OK)
-    result = output_write_layers(&layer, 1, path, def, &error);
+  frames_path(w->frames, &p->frame, w->denoised->paths[0], 0, path, sizeof path);
+  if (result == VL_OK)
+    result = write_one(w, p, 0, true, path, &error);
   return report_finish(&error, result, path);
 }
 
@@ -236,7 +215,7 @@ static int write_image(FrameWriter *w, FrameImage *p) {
     if (result == VL_OK && w->frames->trajectory)
       result = attributes_set_frame(p->images[v], p->frame.number, pose->name, pose->time);
     if (result == VL_OK && *w->frames->view_names[v])
-      result = attributes_set_text(p->images[v], "view", w->frames->view_names[v]);
+      result = image_set_text(p->images[v], "view", w->frames->view_names[v]);
     if (result == VL_OK)
       result = channels_describe(&p->channels[v], p->images[v]);
     const char *eye = w->frames->view_names[v];

@@ -64,16 +64,16 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
 /* ---- cameras ----------------------------------------------------------------------------- */
 
 /* Shares the film of an earlier camera with the same film def, or makes one. */
-static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
+static int make_film(Frames *frames, FrameCamera *camera) {
   for (FrameCamera *other = frames->cameras; other < camera; other++)
     if (memcmp(&other->job.defs->film, &camera->job.defs->film,
                sizeof camera->job.defs->film) == 0) {
       camera->film = other->film;
       return -1;
     }
-  vlResult result = vl_film_create(context, &camera->job.defs->film, &camera->film);
-  camera->owns_film = result == VL_OK;
-  return result == VL_OK ? -1 : job_no_film(&camera->job, result);
+  TRY(job_make_film(&camera->job, &camera->film));
+  camera->owns_film = true;
+  return -1;
 }
 
 /* Adds a camera. If record is null, adds the job's own camera. */
@@ -103,7 +103,7 @@ static int add_camera(Frames *frames, const Job *job, const Arguments *arguments
     result = vl_camera_eye(&base, &camera->job.defs->camera.stereo, frames->eyes[i],
                            &camera->eyes[i], &error);
   if (result == VL_OK)
-    return make_film(frames, job->context, camera);
+    return make_film(frames, camera);
   vlError location = camera->job.camera_location;
   text_set(location.message, "%s", error.message);
   return report_error(&location, result, path);
@@ -184,7 +184,7 @@ int frames_load(Frames *frames, const Job *job, const Arguments *arguments) {
                                : vl_trajectory_cameras(frames->trajectory);
   frames->cameras = calloc(count ? count : 1, sizeof *frames->cameras);
   if (!frames->cameras)
-    return report_error(NULL, VL_ERROR_MEMORY, NULL);
+    return report_no_memory();
   if (frames->rig)
     return add_rig(frames, job, arguments, rig);
   if (count == 0)
@@ -275,12 +275,12 @@ static vlResult put_camera(const Frames *frames, const Frame *frame, const vlCam
   if (frames->rig)
     matrix_multiply(pose, frame->camera->mount, pose);
   matrix_multiply(pose, from->world_from_camera, pose);
-  vlResult result = vl_camera_move(from, pose, camera, error);
-  if (result == VL_OK && !isnan(frame->pose.time)) {
+  TRY_RESULT(vl_camera_move(from, pose, camera, error));
+  if (!isnan(frame->pose.time)) {
     camera->shutter_open += frame->pose.time;
     camera->shutter_close += frame->pose.time;
   }
-  return result;
+  return VL_OK;
 }
 
 vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera,
@@ -304,13 +304,13 @@ static int compare_paths(const void *a, const void *b) {
 static int check_twice(const Frames *frames, const char *pattern) {
   uint32_t count = frames_count(frames);
   char **paths = calloc(count, sizeof *paths), path[4096];
-  int status = paths ? -1 : report_error(NULL, VL_ERROR_MEMORY, NULL);
+  int status = paths ? -1 : report_no_memory();
   for (uint32_t i = 0; i < count && status < 0; i++) {
     Frame frame = frames_at(frames, i);
     if (!frames_path(frames, &frame, pattern, 0, path, sizeof path))
       status = report_failure(STATUS_IO, "frame %u: the file's name is too long", frame.number);
     else if (!(paths[i] = strdup(path)))
-      status = report_error(NULL, VL_ERROR_MEMORY, NULL);
+      status = report_no_memory();
   }
   if (status < 0)
     qsort(paths, count, sizeof *paths, compare_paths);

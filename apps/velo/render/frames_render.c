@@ -61,11 +61,10 @@ static void add_stats(vlRenderStats *total, const vlRenderStats *more) {
   total->not_finite += more->not_finite;
 }
 
+/* Returns -1, or the exit code after reporting the error. */
 static int develop(const Job *job, const vlFilm *film, vlImage **image) {
-  vlResult result = vl_film_develop(film, &job->defs->develop, image);
-  return result == VL_OK
-             ? STATUS_OK
-             : report_reason(result, job->path, "the image cannot be made of the film");
+  return report_reason(vl_film_develop(film, &job->defs->develop, image), job->path,
+                       "the image cannot be made of the film");
 }
 
 /* Gets the film of a view. It is the camera's film, cleared, or the film to continue, which the
@@ -98,12 +97,12 @@ static int render_film(Run *run, const char *name, int view, Job *job, FrameImag
     return report_failure(STATUS_OTHER, "%s: %s", name, error.message);
   image->spp = vl_film_spp(run->film);
   int status = image->spp ? film_keeper_finish(&run->keeper, run->film) : STATUS_OK;
-  if (status == STATUS_OK && image->spp)
-    status = develop(job, run->film, &image->images[view]);
   if (status != STATUS_OK)
     return status;
+  if (image->spp)
+    TRY(develop(job, run->film, &image->images[view]));
   if (result == VL_CANCELLED)
-    return 128 + signals_pending();
+    return signals_status();
   if (run->denoised->outputs.count)
     status = denoised_make(run->denoised, job, run->film, &image->clean);
   image->channels[view] = *run->channels;
@@ -168,7 +167,7 @@ static bool keep_stopped(Run *run, FrameImage *image) {
     vlFilm *film = image->frame.camera->film;
     image->jobs[v] = image->jobs[0];
     vl_film_clear(film);
-    if (develop(&image->jobs[v], film, &image->images[v]) != STATUS_OK)
+    if (develop(&image->jobs[v], film, &image->images[v]) >= 0)
       return false;
   }
   return image->stopped = true;
@@ -252,18 +251,16 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
              .denoised = denoised,
              .layers = outputs_any(outputs, output_holds_layers),
              .shown = progress_frames(frames_count(frames))};
-  int checked = check_films(&run);
-  if (checked >= 0)
-    return checked;
+  TRY(check_films(&run));
   FrameWriter *writer = frame_writer_start(context, frames, outputs, &denoised->outputs);
   if (!writer)
-    return report_error(NULL, VL_ERROR_MEMORY, NULL);
+    return report_no_memory();
   signals_remember();
   int status = STATUS_OK;
   const uint32_t all = run.shown.count;
   for (uint32_t i = 0; i < all && status < 128; i++) {
     if (signals_pending())
-      status = 128 + signals_pending();
+      status = signals_status();
     if (status >= 128)
       break;
     FrameImage image;

@@ -204,7 +204,5 @@ int gbuffer_render(const Job *job, const vlFilm *film, vlImage **image) {
   vl_image_destroy(geometry);
   vl_image_destroy(rendered);
   vl_image_destroy(errors);
-  if (result == VL_CANCELLED)
-    return 128 + signals_pending();
-  return report_finish(&error, result, job->path);
+  return job_end_pass(job, result, &error);
 }

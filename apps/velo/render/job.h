@@ -173,8 +173,10 @@ vlChannelsDef job_channels_def(const Job *job, const vlFilm *film, int *signals)
 int job_take_camera(Job *job, vlSceneDefs *defs, const vlCameraDef *def, const char *path,
                     const Arguments *arguments);
 
-/* Reports why vl_film_create failed. Returns the exit code. */
-int job_no_film(const Job *job, vlResult result);
+/* Makes a film for the job's image. Returns -1, or the exit code after reporting the error. */
+int job_make_film(const Job *job, vlFilm **film);
+/* The exit code at the end of a pass over the job's image; reports the error. */
+int job_end_pass(const Job *job, vlResult result, const vlError *error);
 
 /* Prints what would be rendered to stdout (or as a JSON line). denoised: the outputs hold the
  * denoised image alone. */

@@ -101,13 +101,11 @@ static int take_camera(Job *job, vlContext *context, vlScene *scene, const char 
     return take_camera_file(job, context, vl_scene_defs(scene), path, arguments);
   vlScene *other = NULL;
   vlError error = {0};
-  vlResult result = vl_scene_create(context, &other);
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[RENDER_PERMISSIVE].given;
   load.strict = arguments->values[RENDER_STRICT].given;
   load.search_path = arguments->values[RENDER_SEARCH].text;
-  if (result == VL_OK)
-    result = vl_scene_load(other, path, &load, &error);
+  vlResult result = scene_read(context, path, &load, &other, &error);
   if (result == VL_OK) {
     job->camera_location = camera_location(vl_scene_defs(other), path);
     result = vl_scene_take_camera(scene, other, &error);
@@ -256,19 +254,22 @@ static int make_camera(Job *job, vlCameraDef def, uint32_t width, uint32_t heigh
     job->camera = camera;
     return -1;
   }
-  result = vl_camera_resize(&camera, width, height, &job->camera);
-  if (result == VL_OK)
+  if (vl_camera_resize(&camera, width, height, &job->camera) == VL_OK)
     return -1;
   return report_failure(STATUS_SCENE, "%s: the camera of %u x %u pixels cannot have %u x %u",
                         job->path, camera.width, camera.height, width, height);
 }
 
-int job_no_film(const Job *job, vlResult result) {
-  const vlFilmDef *film = &job->defs->film;
+int job_make_film(const Job *job, vlFilm **film) {
+  const vlFilmDef *def = &job->defs->film;
   char what[200];
-  text_set(what, "no film of %u x %u pixels with these settings is possible", film->width,
-           film->height);
-  return report_reason(result, job->path, what);
+  text_set(what, "no film of %u x %u pixels with these settings is possible", def->width,
+           def->height);
+  return report_reason(vl_film_create(job->context, def, film), job->path, what);
+}
+
+int job_end_pass(const Job *job, vlResult result, const vlError *error) {
+  return result == VL_CANCELLED ? signals_status() : report_finish(error, result, job->path);
 }
 
 /* Applies the options of stereo. The def describes the camera midway between the eyes; frames.c
@@ -380,8 +381,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path,
     else
       status = take_camera(job, context, scene, v[RENDER_CAMERA].text, arguments);
     vl_context_record_files(context, job->records_files);
-    if (status >= 0)
-      return status;
+    TRY(status);
   }
   TRY(read_channels_time(job, arguments));
   TRY(override_stereo(defs, arguments));

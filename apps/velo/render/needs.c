@@ -131,8 +131,6 @@ static void look_at_outputs(const Needs *n, bool has[NEED_COUNT]) {
   const OptionValue *v = n->values;
   const Render *r = n->render;
   const Channels *channels = r ? &r->channels : NULL;
-  const uint32_t crypto =
-      VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
   const bool exr = has_output(r, output_holds_layers);
   has[NEED_FILM] = !r || r->film_plan.path;
   has[NEED_DISPLAY] =
@@ -141,7 +139,7 @@ static void look_at_outputs(const Needs *n, bool has[NEED_COUNT]) {
   has[NEED_LAYERS] = exr;
   has[NEED_ALPHA] = has_output(r, output_holds_alpha);
   has[NEED_CHANNELS] = exr && (!channels || channels->bits || channels->gbuffer);
-  has[NEED_CRYPTO] = exr && (!channels || channels->bits & crypto);
+  has[NEED_CRYPTO] = exr && (!channels || channels->bits & CHANNELS_CRYPTO);
   has[NEED_OTHER_DENOISER] = !r || r->denoised.def.denoiser != VL_DENOISER_VELO;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "render/shard.h"
 
 enum { MAX_SAMPLES = 65536 };
 
@@ -28,9 +29,8 @@ int noise_check(const Arguments *arguments) {
     return report_usage(
         "--noise \"%s\": must be a part of white from 0.001%% to 50%%, such as 1%%",
         v[RENDER_NOISE].text);
-  bool by_tiles = v[RENDER_SHARD_BY].given && v[RENDER_SHARD_BY].integer == 1;
   if (v[RENDER_SAMPLES].given ||
-      (v[RENDER_SHARD].given && !by_tiles && !v[RENDER_TRAJECTORY].given))
+      (v[RENDER_SHARD].given && !shard_is_by_tiles(arguments) && !v[RENDER_TRAJECTORY].given))
     return report_usage(
         "--noise: the samples that a block needs follow from all those before; split the "
         "image with --shard-by tiles");

@@ -69,7 +69,7 @@ static bool is_later(const OutputNames *names, const OutputName *name, vlContext
 }
 
 int output_names_check(OutputNames *names, vlContext *context) {
-  int status = names->failed ? report_error(NULL, VL_ERROR_MEMORY, NULL) : -1;
+  int status = names->failed ? report_no_memory() : -1;
   for (size_t i = 0; i < names->count && status < 0; i++)
     if (!is_later(names, &names->items[i], context))
       status = output_check(context, names->items[i].path, names->items[i].kind);

@@ -14,6 +14,7 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/display.h"
+#include "image/image.h"
 #include "render/exposure.h"
 
 static const char stdout_path[] = "/dev/stdout";
@@ -29,6 +30,12 @@ static const struct Suffix {
 
 bool output_is_stdout(const char *path) {
   return path[0] == '-' && (!path[1] || path[1] == '.') && !strchr(path, '/');
+}
+
+bool output_is_same(const char *a, const char *b) {
+  vlFileId one, two;
+  return strcmp(a, b) == 0 ||
+         (vl_file_id(a, &one) && vl_file_id(b, &two) && memcmp(&one, &two, sizeof one) == 0);
 }
 
 const char *output_opened(const char *path) {
@@ -243,11 +250,6 @@ static vlResult write_one(const Outputs *outputs, const vlImage *image, bool lay
   return output_write_layers(images, count, path, write, error);
 }
 
-static vlResult set_comment(vlImage *image, const char *text) {
-  const vlAttribute comment = {.name = "comments", .type = VL_ATTRIBUTE_STRING, .string = text};
-  return vl_image_set_attribute(image, &comment);
-}
-
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp,
                   OutputStage stage) {
   float exposure = outputs->exposure, *shared = outputs->shared;
@@ -272,7 +274,7 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
     if (eight_bit && !displays[alpha]) {
       result = display_image(context, image, outputs->view, exposure, alpha, &displays[alpha]);
       if (result == VL_OK && outputs->comment)
-        result = set_comment(displays[alpha], outputs->comment);
+        result = image_set_text(displays[alpha], "comments", outputs->comment);
       if (!known && stage != OUTPUT_PROGRESS)
         exposure_tell(exposure);
     }

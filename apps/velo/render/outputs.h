@@ -57,6 +57,8 @@ typedef struct Outputs {
 bool output_is_stdout(const char *path);
 /* The path that is opened for this output. */
 const char *output_opened(const char *path);
+/* Whether two paths are of the same file, which need not be there. */
+bool output_is_same(const char *a, const char *b);
 /* Whether the output is written as a stream: once, when it is complete. */
 bool output_is_stream(const char *path);
 /* Whether the file's format holds more than colours. */

@@ -48,6 +48,11 @@ bool pattern_has(const char *pattern, char kind) {
   return false;
 }
 
+bool pattern_is_numbered(const char *pattern) {
+  return pattern_has(pattern, 'd') && !pattern_has(pattern, 'n') &&
+         !pattern_has(pattern, 'c') && !pattern_has(pattern, 'v');
+}
+
 /* The last component of a path, without its suffix. Characters that some systems do not allow
  * in file names become "_". */
 static void clean(const char *name, char *result, size_t size) {

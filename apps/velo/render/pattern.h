@@ -21,6 +21,8 @@ typedef struct PatternValues {
 int pattern_check(const char *pattern);
 /* Whether the pattern has a field of that kind: 'd', 'n', 'c', 'v'. */
 bool pattern_has(const char *pattern, char kind);
+/* Whether it has %d, and no other sign but %%. */
+bool pattern_is_numbered(const char *pattern);
 /* False: too long. */
 bool pattern_expand(const char *pattern, const PatternValues *values, char *path, size_t size);
 

@@ -8,11 +8,18 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/signals.h"
 
 double monotonic_seconds(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+bool progress_until_signal(void *user, const vlProgress *now) {
+  (void)user;
+  (void)now;
+  return !signals_pending();
 }
 
 NumberText format_count(double count) {

@@ -35,5 +35,7 @@ NumberText format_count(double count);
 NumberText format_seconds(double seconds);
 /* Seconds of a clock that is never set back; its zero is arbitrary. */
 double monotonic_seconds(void);
+/* A progress function of renders that show none: a signal stops them. */
+bool progress_until_signal(void *user, const vlProgress *now);
 
 #endif

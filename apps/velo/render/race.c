@@ -4,9 +4,11 @@
 #include "render/race.h"
 
 #include "cli/kinds.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/animate.h"
+#include "render/progress.h"
 #include "render/race_rules.h"
 #include "render/shard.h"
 
@@ -44,24 +46,20 @@ void race_plan(Render *render, const Arguments *arguments) {
 
 /* ---- the race ---------------------------------------------------------------------------- */
 
-static bool on_progress(void *user, const vlProgress *now) {
-  (void)user;
-  (void)now;
-  return !signals_pending();
+static void put_tracer(Json *json, vlTracer tracer, uint32_t light_paths) {
+  json_text(json, "tracer", kind_name("tracers", (int)tracer));
+  if (light_paths != VL_AS_MANY_AS_PIXELS)
+    json_integer(json, "light_paths", light_paths);
 }
 
 static void report_json(const vlTracerChoice *choice) {
   Json *json = report_json_begin("tracer");
-  json_text(json, "tracer", kind_name("tracers", (int)choice->tracer));
-  if (choice->light_paths != VL_AS_MANY_AS_PIXELS)
-    json_integer(json, "light_paths", choice->light_paths);
+  put_tracer(json, choice->tracer, choice->light_paths);
   json_begin(json, "trials", '[');
   for (uint32_t i = 0; i < choice->count; i++) {
     const vlTracerTrial *trial = &choice->trials[i];
     json_begin(json, NULL, '{');
-    json_text(json, "tracer", kind_name("tracers", (int)trial->tracer));
-    if (trial->light_paths != VL_AS_MANY_AS_PIXELS)
-      json_integer(json, "light_paths", trial->light_paths);
+    put_tracer(json, trial->tracer, trial->light_paths);
     json_put(json, "error %g, tail %g, missing %g, cost %g, work %g", trial->error, trial->tail,
              trial->missing, trial->cost, trial->work);
     json_end(json, '}');
@@ -134,18 +132,16 @@ int race_run(Render *render, const Arguments *arguments) {
   const vlFilmDef *film;
   vlError error = {0};
   def.spp = race_samples(whole);
-  def.progress = on_progress;
-  def.progress_user = NULL;
+  def.progress = progress_until_signal;
   signals_remember();
   vlResult result = find_image(render, &camera, &film, &error);
   if (result == VL_OK)
     result = vl_choose_tracer(render->world, &camera, film, &def, job->race == RACE_TRACERS,
                               &choice, &error);
   if (result == VL_CANCELLED)
-    return report_failure(128 + signals_pending(),
+    return report_failure(signals_status(),
                           "interrupted before the first pass was done; nothing is written");
-  if (result != VL_OK)
-    return report_error(&error, result, job->path);
+  TRY(report_error(&error, result, job->path));
   if (choice.count || race_is_asked(arguments))
     report(job, &choice);
   if (!choice.count && job->race == RACE_LIGHT_PATHS)

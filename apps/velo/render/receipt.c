@@ -9,6 +9,7 @@
 #include "cli/kinds.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "image/image.h"
 #include "render/added.h"
 #include "render/lens_options.h"
 
@@ -30,10 +31,7 @@ bool receipt_option_counts(const Arguments *arguments, int option) {
     return bits->given && bits->integer == VL_BITS_FAST;
   if (option == RENDER_VIEW || option == RENDER_EXPOSURE)
     return arguments->values[RENDER_NOISE].given;
-  for (size_t i = 0; i < LENGTH(others); i++)
-    if (option == others[i])
-      return false;
-  return true;
+  return !option_is_in(option, others, LENGTH(others));
 }
 
 /* ---- the command ------------------------------------------------------------------------- */
@@ -161,12 +159,8 @@ vlResult receipt_set(const Job *job, const ReceiptImage *which, vlImage *image) 
   bool same =
       receipt && plan->again_is_ours && vl_receipt_samples(receipt, &planned) == which->samples;
   vlResult result = same ? VL_OK : receipt_make(plan, job, which, &made);
-  if (result == VL_OK) {
-    const vlAttribute attribute = {.name = RECEIPT_ATTRIBUTE,
-                                   .type = VL_ATTRIBUTE_STRING,
-                                   .string = vl_receipt_text(same ? receipt : made)};
-    result = vl_image_set_attribute(image, &attribute);
-  }
+  if (result == VL_OK)
+    result = image_set_text(image, RECEIPT_ATTRIBUTE, vl_receipt_text(same ? receipt : made));
   vl_receipt_destroy(made);
   return result;
 }
@@ -187,9 +181,12 @@ int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
   return report_error(&error, result, path);
 }
 
-int receipt_check_scene(const char *path, const char *what, const char *owner,
-                        const char *option) {
+int receipt_take_scene(Arguments *arguments, const Arguments *given, const char *path,
+                       const char *what, const char *owner, const char *option) {
   struct stat info;
+  arguments->operands[0] = given->operand_count ? given->operands[0] : path;
+  if (given->operand_count)
+    return -1;
   if (strlen(path) >= RECEIPT_MAX_WORD)
     return report_failure(STATUS_SCENE, "%s: the path of the scene in its receipt is too long",
                           owner);

@@ -40,10 +40,10 @@ vlResult receipt_set(const Job *job, const ReceiptImage *which, vlImage *image);
  * none or that it is wrong. */
 int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
                      vlReceipt **receipt);
-/* Checks the scene's path that a receipt holds: it must be that of a file. what, owner: the
- * file that holds the receipt, for messages; option: that by which it was given. Returns -1 or
- * the exit code. */
-int receipt_check_scene(const char *path, const char *what, const char *owner,
-                        const char *option);
+/* Takes the given scene, or else that of a receipt, whose path must be that of a file. what,
+ * owner: the file that holds the receipt, for messages; option: that by which it was given.
+ * Returns -1 or the exit code. */
+int receipt_take_scene(Arguments *arguments, const Arguments *given, const char *path,
+                       const char *what, const char *owner, const char *option);
 
 #endif

@@ -251,11 +251,9 @@ static int check_sizes(const Render *render) {
           render->outputs.paths[i], width, height, most);
   }
   vlFilm *film_made = NULL; /* memory is allocated by the first pass */
-  vlResult result = vl_film_create(render->context, film, &film_made);
+  const int status = job_make_film(&render->job, &film_made);
   vl_film_destroy(film_made);
-  if (result == VL_OK)
-    return -1;
-  return job_no_film(&render->job, result);
+  return status;
 }
 
 /* A trajectory is metered by its first frame, so a part without that frame cannot be
@@ -289,8 +287,7 @@ static int meter_model(Render *render, const Arguments *arguments) {
   vlError error = {0};
   if (render->many) {
     const Frame frame = frames_at(&render->frames, 0);
-    vlResult result = frames_camera(&render->frames, &frame, 0, &first, &error);
-    if (result != VL_OK)
+    if (frames_camera(&render->frames, &frame, 0, &first, &error) != VL_OK)
       return -1; /* the render reports it */
     camera = &first;
   }
@@ -347,8 +344,7 @@ static int build_world(Render *render, const char *path) {
   vlResult result = vl_world_build_last(render->scene, build, &render->world, &error);
   build->previous = NULL;
   scene_opening_close(&render->opening);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
+  TRY(report_error(&error, result, path));
   render->job.world = render->world;
   if (shared) {
     vl_world_destroy(shared->world);
@@ -632,7 +628,6 @@ const Command render_command = {
         "\n"
         "Options override the settings in the file. Ctrl-C ends the render and keeps\n"
         "the image so far.",
-    .min_operands = 0, /* --again and --continue need none */
-    .max_operands = 1,
+    .optional_operands = 1, /* --again and --continue need none */
     .run = run_render,
 };

@@ -33,13 +33,9 @@ static bool plain_command(const Arguments *arguments, char *text, size_t size) {
   if (!out)
     return false;
   fputs("velo render", out);
-  if (path[0] == '-') {
-    char file[4200];
-    text_set(file, "./%s", path);
-    text_shell_word(out, file);
-  } else {
-    text_shell_word(out, path);
-  }
+  char file[4200];
+  text_set(file, "%s%s", path[0] == '-' ? "./" : "", path);
+  text_shell_word(out, file);
   for (const Option *option = render_options; option->name; option++) {
     const OptionValue *value = &arguments->values[option->id];
     if (!value->given)
@@ -115,8 +111,7 @@ static void name_parts(Render *render, const vlProgress *now) {
 }
 
 uint64_t run_pixels(const Render *render) {
-  const uint32_t *crop = render->job.defs->film.crop;
-  return crop_pixels(crop);
+  return crop_pixels(render->job.defs->film.crop);
 }
 
 /* Returns the smallest number of samples per pixel that suffices for every output. A denoiser
@@ -343,10 +338,7 @@ static int open_film(Render *render) {
   if (status < 0)
     status = continue_film(claim, render->receipt.arguments, render->keeper.receipt,
                            render->context, render->job.defs, &render->film);
-  if (status >= 0 || render->film)
-    return status;
-  vlResult result = vl_film_create(render->context, &render->job.defs->film, &render->film);
-  return result == VL_OK ? -1 : job_no_film(&render->job, result);
+  return status >= 0 || render->film ? status : job_make_film(&render->job, &render->film);
 }
 
 /* The receipt of a render that ended at its time limit states the samples that it reached. */
@@ -363,11 +355,9 @@ static int finish_image(Render *render, vlResult result, const vlRenderStats *st
   int reached;
   uint32_t spp = vl_film_spp(render->film);
   OutputStage stage = result == VL_OK ? OUTPUT_FINISHED : OUTPUT_STOPPED;
-  if (!spp) {
-    report_failure(128 + signals_pending(),
-                   "interrupted before the first pass was done; nothing is written");
-    return 128 + signals_pending();
-  }
+  if (!spp)
+    return report_failure(signals_status(),
+                          "interrupted before the first pass was done; nothing is written");
   if (stage == OUTPUT_STOPPED)
     report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
   if (stage == OUTPUT_FINISHED &&
@@ -382,7 +372,7 @@ static int finish_image(Render *render, vlResult result, const vlRenderStats *st
     int done = stage == OUTPUT_FINISHED
                    ? denoised_write(&render->denoised, job, render->film, stage)
                    : STATUS_OK;
-    return done == STATUS_OK && signals_pending() ? 128 + signals_pending() : done;
+    return done == STATUS_OK && signals_pending() ? signals_status() : done;
   }
   int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
   if (kept != STATUS_OK && (status == STATUS_OK || status > 128))
@@ -390,7 +380,7 @@ static int finish_image(Render *render, vlResult result, const vlRenderStats *st
   if (status == STATUS_OK)
     report_late(render, spp);
   if (signals_pending() && status == STATUS_OK)
-    status = 128 + signals_pending();
+    status = signals_status();
   if (status == STATUS_OK || status > 128)
     report_result(render, stats, stage, status);
   return status;
@@ -400,13 +390,9 @@ int run_image(Render *render) {
   Job *job = &render->job;
   vlError error = {0};
   vlRenderStats stats = {0};
-  int opened = open_film(render);
-  if (opened >= 0)
-    return opened;
+  TRY(open_film(render));
   if (render->receipt.arguments->values[RENDER_SERVE].given)
-    opened = serve_start(job, render->outputs.view, render->outputs.exposure, &render->serve);
-  if (opened >= 0)
-    return opened;
+    TRY(serve_start(job, render->outputs.view, render->outputs.exposure, &render->serve));
   render->time_limit = job->defs->render.time_limit;
   render->begun_spp = vl_film_spp(render->film);
   if (render->film_plan.claims[0].earlier)

@@ -287,20 +287,30 @@ static int choose_load(const char *path, const Arguments *arguments,
   return -1;
 }
 
+vlResult scene_read(vlContext *context, const char *path, const vlLoadDef *load,
+                    vlScene **scene, vlError *error) {
+  TRY_RESULT(vl_scene_create(context, scene));
+  return vl_scene_load(*scene, path, load, error);
+}
+
+/* The same of a text. */
+static vlResult read_text(vlContext *context, const char *path, const SceneOpening *opening,
+                          vlScene **scene, vlError *error) {
+  TRY_RESULT(vl_scene_create(context, scene));
+  return vl_scene_load_memory(*scene, path, opening->text, strlen(opening->text),
+                              &opening->load, error);
+}
+
 /* Loads the scene and adds what it lacks. lit_inside: with lamps. */
 static int load_and_complete(vlContext *context, const char *path, const Arguments *arguments,
                              bool lit_inside, vlScene **scene, SceneOpening *opening) {
   const OptionValue *v = arguments->values;
   const vlLoadDef *load = &opening->load;
   vlError error = {0};
-  vlResult result = vl_scene_create(context, scene);
-  if (result == VL_OK)
-    result = opening->text ? vl_scene_load_memory(*scene, path, opening->text,
-                                                  strlen(opening->text), load, &error)
-                           : vl_scene_load(*scene, path, load, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
-
+  TRY(report_error(&error,
+                   opening->text ? read_text(context, path, opening, scene, &error)
+                                 : scene_read(context, path, load, scene, &error),
+                   path));
   vlCompleteDef complete = vl_default_complete_def();
   vlSceneDefs *defs = vl_scene_defs(*scene);
   const bool camera = defs->camera_missing && (!v[RENDER_CAMERA].given || load->camera);

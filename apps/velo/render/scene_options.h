@@ -13,6 +13,10 @@ enum { WALLS_HIDE, WALLS_KEEP, WALLS_BOTH_SIDES };
 /* The def of a render's context: that of context_def, with the instruction set and limits of
  * the options. */
 vlContextDef scene_context_def(const Arguments *arguments);
+/* Makes a scene of a file. Errors: those of vl_scene_create and vl_scene_load; *scene may be
+ * there then, too. */
+vlResult scene_read(vlContext *context, const char *path, const vlLoadDef *load,
+                    vlScene **scene, vlError *error);
 /* Loads the scene, completes it and turns its camera. Returns -1, or the exit code after
  * reporting the error. */
 int scene_open(vlContext *context, const char *path, const Arguments *arguments,

@@ -17,6 +17,10 @@ bool shard_read(const Arguments *arguments, uint32_t *index, uint32_t *count) {
   return *index >= 1 && *index <= *count;
 }
 
+bool shard_is_by_tiles(const Arguments *arguments) {
+  return option_count(&arguments->values[RENDER_SHARD_BY], 0) == 1;
+}
+
 static bool read_samples(const char *text, uint32_t *first, uint32_t *end) {
   int used = 0;
   if (text[0] < '0' || text[0] > '9')
@@ -76,6 +80,13 @@ static void cut(uint32_t blocks[4], uint32_t index, uint32_t count) {
   }
 }
 
+void shard_block_window(const uint32_t blocks[4], const uint32_t crop[4], uint32_t window[4]) {
+  for (int i = 0; i < 4; i++) {
+    uint32_t pixel = blocks[i] * FILM_BLOCK;
+    window[i] = (pixel > crop[i]) == (i < 2) ? pixel : crop[i];
+  }
+}
+
 static int tiles_of(const uint32_t crop[4], uint32_t index, uint32_t count, uint32_t tiles[4]) {
   uint32_t blocks[4];
   for (int i = 0; i < 4; i++)
@@ -85,11 +96,7 @@ static int tiles_of(const uint32_t crop[4], uint32_t index, uint32_t count, uint
     return report_usage("--shard %u/%u: the film has %llu tiles of %d pixels", index + 1, count,
                         (unsigned long long)most, FILM_BLOCK);
   cut(blocks, index, count);
-  for (int i = 0; i < 4; i++) {
-    uint32_t pixel = blocks[i] * FILM_BLOCK;
-    tiles[i] =
-        i < 2 ? (pixel > crop[i] ? pixel : crop[i]) : (pixel < crop[i] ? pixel : crop[i]);
-  }
+  shard_block_window(blocks, crop, tiles);
   return -1;
 }
 
@@ -115,9 +122,8 @@ bool tracer_has_light_paths(vlTracer tracer) {
 }
 
 void shard_warn(const Arguments *arguments, vlTracer tracer) {
-  const OptionValue *v = arguments->values;
-  bool by_tiles = v[RENDER_SHARD_BY].given && v[RENDER_SHARD_BY].integer == 1;
-  if ((by_tiles || v[RENDER_TILES].given) && tracer_has_light_paths(tracer))
+  const bool tiles = arguments->values[RENDER_TILES].given || shard_is_by_tiles(arguments);
+  if (tiles && tracer_has_light_paths(tracer))
     report_warning(
         "this tracer follows light from the lamps for the whole image: each part by tiles "
         "repeats it; parts by samples do not");
@@ -126,7 +132,7 @@ void shard_warn(const Arguments *arguments, vlTracer tracer) {
 int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render) {
   const OptionValue *v = arguments->values;
   uint32_t first = 0, end = render->spp, index, count;
-  bool by_tiles = v[RENDER_SHARD_BY].given && v[RENDER_SHARD_BY].integer == 1;
+  const bool by_tiles = shard_is_by_tiles(arguments);
   int status = -1;
   if (v[RENDER_SHARD].given && !v[RENDER_TRAJECTORY].given) {
     shard_read(arguments, &index, &count);

@@ -12,6 +12,10 @@ enum { FILM_BLOCK = 32 }; /* side of a film block in pixels (docs/film-files.md)
 int shard_check(const Arguments *arguments);
 /* Parses I/N, where I counts from 1. Returns false if the text has another form. */
 bool shard_read(const Arguments *arguments, uint32_t *index, uint32_t *count);
+/* Whether --shard I/N divides the image by tiles. */
+bool shard_is_by_tiles(const Arguments *arguments);
+/* The pixels of a rectangle of the film's blocks, x0, y0, x1, y1, that are in the crop. */
+void shard_block_window(const uint32_t blocks[4], const uint32_t crop[4], uint32_t window[4]);
 /* Restricts the defs of film and render to the part. Returns -1 or the exit code. */
 int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render);
 /* Whether the tracer follows paths from the lights. */

@@ -63,7 +63,6 @@ static int check_options(const Videos *videos, const Arguments *arguments) {
 static int check_video(const Videos *videos, int i) {
   enum { MAX_GIF = 50 }; /* viewers show shorter times than .02 s as .1 s */
   const char *path = videos->paths[i];
-  vlFileId own, other;
   if (strchr(path, '%'))
     return report_usage("output \"%s\": a video is one file, its name has no %%", path);
   if (output_is_stdout(path))
@@ -76,17 +75,15 @@ static int check_video(const Videos *videos, int i) {
                         MAX_GIF);
   TRY(output_check(NULL, path, VL_OUTPUT_PLAIN));
   vl_remove_leftovers(path);
-  vl_file_id(path, &own);
   for (int k = 0; k < i; k++)
-    if (vl_file_id(videos->paths[k], &other) && memcmp(&own, &other, sizeof own) == 0)
+    if (output_is_same(videos->paths[k], path))
       return report_usage("the outputs %s and %s are the same file", videos->paths[k], path);
   return -1;
 }
 
 /* Whether frames of these names can be found by their numbers. */
 static bool is_frames(const char *path) {
-  return output_has_suffix(path, ".png") && pattern_has(path, 'd') && !pattern_has(path, 'n') &&
-         !pattern_has(path, 'c') && !pattern_has(path, 'v');
+  return output_has_suffix(path, ".png") && pattern_is_numbered(path);
 }
 
 /* NAME_%04d.png, with .part if velo removes the frames. */
@@ -192,7 +189,7 @@ static int make_one(Videos *videos, vlContext *context, const char *program, con
   else if (made)
     report_made(videos, path, width, height);
   else
-    status = 128 + signals_pending();
+    status = signals_status();
   return status;
 }
 
@@ -220,7 +217,7 @@ int videos_finish(Videos *videos, const Arguments *arguments, int status) {
   vlContext *context = NULL;
   signals_remember(); /* where all frames were there, nothing was rendered */
   if (status == STATUS_OK && signals_pending())
-    status = 128 + signals_pending();
+    status = signals_status();
   const bool rendered = status == STATUS_OK;
   if (rendered && (!child_find(videos->programs, "ffmpeg", program, sizeof program) ||
                    context_open_one(&context) >= 0))

@@ -235,7 +235,6 @@ const Command scene_check_command = {
         "velo render",
     .examples = "velo scene check room.pbrt\nvelo scene check --json --no-images model.glb",
     .options = options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .run = run,
 };

@@ -5,6 +5,7 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/output_names.h"
+#include "render/scene_options.h"
 #include "scene/scene.h"
 #include "velo/export.h"
 #include "velo/render.h"
@@ -68,9 +69,7 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
   vlSaveDef save = vl_default_save_def();
   save.strict = v[CONVERT_STRICT].given;
   save.lost = tell;
-  vlResult result = vl_scene_create(context, &scene);
-  if (result == VL_OK)
-    result = vl_scene_load(scene, from, &load, &error);
+  vlResult result = scene_read(context, from, &load, &scene, &error);
   const vlSceneDefs *defs = scene ? vl_scene_defs(scene) : NULL;
   if (result == VL_OK && (pbrt || v[CONVERT_COMPLETE].given) &&
       (defs->camera_missing || defs->light_missing)) {
@@ -84,7 +83,7 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
     status = output_check(context, to, VL_OUTPUT_PLAIN);
   if (status < 0) {
     result = vl_scene_save(scene, to, &save, &error);
-    status = result == VL_OK ? STATUS_OK : report_error(&error, result, to);
+    status = report_finish(&error, result, to);
   }
   vl_scene_destroy(scene);
   if (status == STATUS_OK && v[CONVERT_PROVE].given)
@@ -104,8 +103,7 @@ const Command scene_convert_command = {
     .examples =
         "velo scene convert room.pbrt room.glb\nvelo scene convert model.gltf model.pbrt",
     .options = convert_options,
-    .min_operands = 2,
-    .max_operands = 2,
+    .operands = 2,
     .context = CONTEXT_ALL,
     .run = run_convert,
 };

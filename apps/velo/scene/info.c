@@ -5,11 +5,13 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
+#include "cli/crop.h"
 #include "cli/kinds.h"
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/progress.h"
+#include "render/scene_options.h"
 #include "scene/scene.h"
 #include "velo/check.h"
 
@@ -159,6 +161,7 @@ static void print_chosen(const vlSceneDefs *defs) {
 
 static void print_text(const Facts *f) {
   const vlSceneDefs *defs = vl_scene_defs(f->scene);
+  const uint32_t *c = defs->film.crop;
   double eye[3];
   printf("file        %s\n", f->path);
   count_kinds(f, "shapes", f->info.shapes);
@@ -181,10 +184,8 @@ static void print_text(const Facts *f) {
     printf("camera      %s at (%.5g, %.5g, %.5g)\n",
            vl_projection_name(defs->camera.projection), eye[0], eye[1], eye[2]);
   printf("film        %u x %u", defs->film.width, defs->film.height);
-  if (defs->film.crop[0] || defs->film.crop[1] || defs->film.crop[2] != defs->film.width ||
-      defs->film.crop[3] != defs->film.height)
-    printf(", of it %u,%u to %u,%u", defs->film.crop[0], defs->film.crop[1], defs->film.crop[2],
-           defs->film.crop[3]);
+  if (!crop_is_whole(c, defs->film.width, defs->film.height))
+    printf(", of it %u,%u to %u,%u", c[0], c[1], c[2], c[3]);
   putchar('\n');
   print_chosen(defs);
   info_print_choices(f->scene);
@@ -338,9 +339,7 @@ static int run(const Arguments *arguments, vlContext *context) {
   vlLoadDef load = vl_default_load_def();
   options_put(arguments->command->options, arguments->values, VL_SETTING_LOAD, &load);
   const double start = monotonic_seconds();
-  vlResult r = vl_scene_create(context, &f.scene);
-  if (r == VL_OK)
-    r = vl_scene_load(f.scene, f.path, &load, &error);
+  vlResult r = scene_read(context, f.path, &load, &f.scene, &error);
   f.seconds = monotonic_seconds() - start;
   if (r == VL_OK) {
     f.bytes = vl_context_memory(context, NULL);
@@ -383,8 +382,7 @@ const Command scene_info_command = {
         "part that enters a sphere around the scene.",
     .examples = "velo scene info room.pbrt\nvelo scene info --json model.glb",
     .options = options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ALL,
     .run = run,
 };

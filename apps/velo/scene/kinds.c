@@ -234,6 +234,6 @@ const Command scene_kinds_command = {
         "table of parameters for each kind of that family.",
     .examples = "velo scene kinds\nvelo scene kinds lights",
     .options = options,
-    .max_operands = 1,
+    .optional_operands = 1,
     .run = run,
 };

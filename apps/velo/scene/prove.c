@@ -8,6 +8,7 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/image.h"
+#include "render/scene_options.h"
 #include "scene/scene.h"
 #include "velo/channels.h"
 
@@ -127,13 +128,9 @@ int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, c
   Sums *sums = NULL;
   vlLoadDef plain = vl_default_load_def();
   plain.permissive = load->permissive;
-  vlResult r = vl_scene_create(context, &before.scene);
+  vlResult r = scene_read(context, from, load, &before.scene, &error);
   if (r == VL_OK)
-    r = vl_scene_create(context, &after.scene);
-  if (r == VL_OK)
-    r = vl_scene_load(before.scene, from, load, &error);
-  if (r == VL_OK)
-    r = vl_scene_load(after.scene, to, &plain, &error);
+    r = scene_read(context, to, &plain, &after.scene, &error);
   const bool alone = r == VL_OK && !vl_scene_defs(before.scene)->light_missing;
   if (r == VL_OK)
     r = take(context, &before, true, alone, &error);

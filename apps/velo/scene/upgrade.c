@@ -124,8 +124,7 @@ const Command scene_upgrade_command = {
         "velo scene upgrade old/room.pbrt room.pbrt\n"
         "velo scene upgrade --strict scene.pbrt scene-v4.pbrt",
     .options = options,
-    .min_operands = 2,
-    .max_operands = 2,
+    .operands = 2,
     .context = CONTEXT_ALL,
     .run = run,
 };

@@ -41,8 +41,7 @@ static int open_scene(Verify *v, const Arguments *arguments) {
   def.log_user = v;
   Confine confine = {.read_count = 0};
   confine_read(&confine, v->path);
-  if (o[RENDER_CAMERA].given)
-    confine_read_folder(&confine, o[RENDER_CAMERA].text);
+  confine_read_folder(&confine, o[RENDER_CAMERA].text);
   confine_apply(&confine, arguments);
   TRY(context_open(&def, &v->context));
   TRY(scene_open(v->context, v->path, arguments, &v->scene, &v->opening));
@@ -56,9 +55,8 @@ static int open_scene(Verify *v, const Arguments *arguments) {
   TRY(needs_check_scene(&needs));
   vlBuildDef build = v->job.defs->build;
   build.previous = v->opening.metered;
-  vlResult result = vl_world_build(v->scene, &build, &world, &error);
-  int status = result == VL_OK ? lens_autofocus(&v->job, v->scene, world)
-                               : report_error(&error, result, v->path);
+  TRY(report_error(&error, vl_world_build(v->scene, &build, &world, &error), v->path));
+  const int status = lens_autofocus(&v->job, v->scene, world);
   vl_world_destroy(world);
   return status;
 }
@@ -89,28 +87,26 @@ static vlResult list_lights(Verify *v) {
   return VL_OK;
 }
 
+static vlResult do_verify(Verify *v, const Arguments *arguments, vlError *error) {
+  TRY_RESULT(make_camera(v, arguments));
+  TRY_RESULT(list_lights(v));
+  TRY_RESULT(verify_prepare(v, error));
+  verify_plan(v);
+  TRY_RESULT(verify_measure(v, error));
+  TRY_RESULT(verify_render(v, 0, error));
+  TRY_RESULT(verify_first(v));
+  if (v->mark_count)
+    TRY_RESULT(verify_render(v, 1, error));
+  verify_second(v);
+  return VL_OK;
+}
+
 static int verify(Verify *v, const Arguments *arguments) {
   vlError error = {0};
   signals_remember();
-  vlResult result = make_camera(v, arguments);
-  if (result == VL_OK)
-    result = list_lights(v);
-  if (result == VL_OK)
-    result = verify_prepare(v, &error);
-  if (result == VL_OK)
-    verify_plan(v);
-  if (result == VL_OK)
-    result = verify_measure(v, &error);
-  if (result == VL_OK)
-    result = verify_render(v, 0, &error);
-  if (result == VL_OK)
-    result = verify_first(v);
-  if (result == VL_OK && v->mark_count)
-    result = verify_render(v, 1, &error);
-  if (result == VL_OK)
-    verify_second(v);
+  const vlResult result = do_verify(v, arguments, &error);
   if (result == VL_CANCELLED && signals_pending())
-    return report_failure(128 + signals_pending(), "interrupted");
+    return report_failure(signals_status(), "interrupted");
   return report_error(&error, result, v->path);
 }
 
@@ -205,7 +201,6 @@ const Command scene_verify_command = {
     .examples = "velo scene verify room.pbrt\nvelo scene verify room.pbrt --rays 5 --json",
     .options = options,
     .sections = sections,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .run = run_verify,
 };

@@ -9,14 +9,17 @@
 #define LEAST 1e-3
 #define DARK 0.05
 
+/* Whether a run has a part of the lights. */
+static bool is_part(const VerifyRun *run) {
+  return run->lights != VERIFY_ALL && run->lights != VERIFY_NOT_SMALL;
+}
+
 bool verify_uses_cell(const Verify *v, const VerifyRun *run, uint32_t cell) {
-  const bool part = run->lights != VERIFY_ALL && run->lights != VERIFY_NOT_SMALL;
-  return cell == 0 || (!part && cell < v->cell_count);
+  return cell == 0 || (!is_part(run) && cell < v->cell_count);
 }
 
 VerifyFamily verify_family(const VerifyRun *run, const VerifyCell *cell) {
-  const bool part = run->lights != VERIFY_ALL && run->lights != VERIFY_NOT_SMALL;
-  return part ? VERIFY_LIGHT : cell->family;
+  return is_part(run) ? VERIFY_LIGHT : cell->family;
 }
 
 /* The variance of a difference, per pixel, in a replicate: its mean over the blocks of the

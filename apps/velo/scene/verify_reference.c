@@ -184,10 +184,8 @@ static vlResult finish(Look *l, uint32_t replicate, int status) {
     l->refused = true;
     return VL_OK;
   }
-  if (WIFSIGNALED(status))
-    text_set(line, "it was ended by signal %d", WTERMSIG(status));
-  if (!line[0])
-    text_set(line, "it ended with exit code %d", WEXITSTATUS(status));
+  if (WIFSIGNALED(status) || !line[0])
+    child_end_text(status, line, sizeof line);
   return fail(l, line);
 }
 

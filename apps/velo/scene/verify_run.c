@@ -8,6 +8,7 @@
 #include "cli/signals.h"
 #include "cli/vector.h"
 #include "image/image.h"
+#include "render/progress.h"
 #include "scene/verify.h"
 #include "velo/channels.h"
 #include "velo/edit.h"
@@ -265,12 +266,6 @@ vlResult verify_prepare(Verify *v, vlError *error) {
 
 /* ---- renders ----------------------------------------------------------------------------- */
 
-static bool on_progress(void *user, const vlProgress *now) {
-  (void)user;
-  (void)now;
-  return !signals_pending();
-}
-
 /* A box filter and pixels with samples of their own: so that each sample counts in one pixel
  * with the weight 1, and a replicate's mean is unbiased for any number of samples. */
 static vlFilmDef film_of(const Verify *v) {
@@ -292,7 +287,7 @@ static vlRenderDef render_of(const Verify *v, const VerifyRun *run, uint32_t spp
   def.max_depth = v->job.defs->render.max_depth;
   def.share_samples = false;
   def.sharp_textures = run->sharp;
-  def.progress = on_progress;
+  def.progress = progress_until_signal;
   return def;
 }
 
@@ -319,13 +314,13 @@ static vlResult shoot(const Verify *v, const VerifyRun *run, const Set *set, vlF
   const vlRenderDef def = render_of(v, run, spp, seed);
   vlImage *image = NULL;
   vl_film_clear(film);
-  vlResult result = vl_render(set->world, &set->camera, film, &def, stats, error);
-  if (result == VL_OK && row)
-    result = vl_film_develop(film, NULL, &image);
-  if (result == VL_OK && row)
-    verify_take_means(v, image, row);
+  TRY_RESULT(vl_render(set->world, &set->camera, film, &def, stats, error));
+  if (!row)
+    return VL_OK;
+  TRY_RESULT(vl_film_develop(film, NULL, &image));
+  verify_take_means(v, image, row);
   vl_image_destroy(image);
-  return result;
+  return VL_OK;
 }
 
 uint32_t verify_seed(const Verify *v, int look, uint32_t replicate) {
@@ -335,15 +330,13 @@ uint32_t verify_seed(const Verify *v, int look, uint32_t replicate) {
 static vlResult render_run(Verify *v, VerifyRun *run, const Set *set, vlFilm *film, int look,
                            vlError *error) {
   const size_t row = (size_t)v->cell_count * VERIFY_CHANNELS;
-  vlResult result = VL_OK;
-  for (uint32_t r = 0; r < VERIFY_REPLICATES && result == VL_OK; r++) {
+  for (uint32_t r = 0; r < VERIFY_REPLICATES; r++) {
     vlRenderStats stats;
-    result = shoot(v, run, set, film, run->spp[look], verify_seed(v, look, r),
-                   run->values[look] + r * row, &stats, error);
-    if (result == VL_OK)
-      run->dropped += stats.not_finite;
+    TRY_RESULT(shoot(v, run, set, film, run->spp[look], verify_seed(v, look, r),
+                     run->values[look] + r * row, &stats, error));
+    run->dropped += stats.not_finite;
   }
-  return result;
+  return VL_OK;
 }
 
 /* Counts the rays of one sample per pixel. */

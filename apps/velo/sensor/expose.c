@@ -124,7 +124,7 @@ static vlResult add_number(vlImage *image, const char *name, double value) {
 static vlResult describe(const Expose *e, const vlExposureDef *exposure) {
   const vlSensorDef *def = vl_sensor_def(e->sensor);
   char text[2 * VL_SENSOR_CELLS + 1];
-  TRY_RESULT(attributes_set_text(e->electrons, "sensorPattern", vl_sensor_pattern(def, text)));
+  TRY_RESULT(image_set_text(e->electrons, "sensorPattern", vl_sensor_pattern(def, text)));
   TRY_RESULT(vl_exposure_write_window(exposure, e->electrons));
   TRY_RESULT(add_number(e->electrons, "exposureTime", exposure->time));
   TRY_RESULT(add_number(e->electrons, "exposureStops", exposure->stops));
@@ -154,17 +154,15 @@ static int read_white(Expose *e, const OptionValue *value) {
 
 static int write_frame(Expose *e, uint32_t frame, const vlExposureDef *exposure) {
   char path[4096];
-  vlResult result = describe(e, exposure);
-  if (result != VL_OK)
-    return report_reason(result, e->paths[0], "the frame cannot be described");
+  TRY(report_reason(describe(e, exposure), e->paths[0], "the frame cannot be described"));
   for (int i = 0; i < e->count; i++) {
     vlError error = {0};
     path_of(e->paths[i], frame, path);
     const vlImage *image = holds_electrons(path) ? e->electrons : e->numbers;
-    result = is_raw_file(path) ? write_raw(e, path, exposure, &error)
-                               : vl_image_write(image, path, NULL, &error);
-    if (result != VL_OK)
-      return report_error(&error, result, path);
+    TRY(report_error(&error,
+                     is_raw_file(path) ? write_raw(e, path, exposure, &error)
+                                       : vl_image_write(image, path, NULL, &error),
+                     path));
   }
   return -1;
 }
@@ -262,8 +260,7 @@ static int expose(Expose *e) {
       result = vl_sensor_read_out(e->sensor, width, height, e->means, &exposure, &out, &error);
     if (result == VL_ERROR_ARGUMENT)
       return report_failure(STATUS_SCENE, "%s: %s", e->path, error.message);
-    if (result != VL_OK)
-      return report_error(&error, result, NULL);
+    TRY(report_error(&error, result, NULL));
     tell(e, f, &out);
     TRY(write_frame(e, f, &exposure));
   }
@@ -369,8 +366,7 @@ const Command sensor_expose_command = {
         "velo sensor expose room.exr --sensor generic_rggb --iso 400 -o raw.dng\n"
         "velo sensor expose room.exr --sensor my.yaml --bracket -4,-2,0 -o raw_%d.png",
     .options = options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ALL,
     .run = run,
 };

@@ -159,8 +159,7 @@ const Command sensor_verify_command = {
         "velo sensor verify generic_mono --plot transfer.svg\n"
         "velo sensor verify my.yaml --frames emva",
     .options = options,
-    .min_operands = 1,
-    .max_operands = 1,
+    .operands = 1,
     .context = CONTEXT_ALL,
     .run = run,
 };

@@ -45,11 +45,11 @@ static void measure_pair(const Verify *v, double *mean, double *variance) {
 
 static int make_pair(Verify *v, char kind, double electrons, double time, double *mean,
                      double *variance) {
-  int status = verify_folder_series(v, kind, time, electrons);
-  for (int i = 0; i < 2 && status < 0; i++)
-    status = expose_all(v, electrons, time, i);
+  TRY(verify_folder_series(v, kind, time, electrons));
+  for (int i = 0; i < 2; i++)
+    TRY(expose_all(v, electrons, time, i));
   measure_pair(v, mean, variance);
-  return status;
+  return -1;
 }
 
 /* A stack of frames: per pixel the sum and the sum of squares, as whole numbers. */
@@ -88,21 +88,18 @@ static int make_stack(Verify *v, char kind, double electrons, double time, Verif
 }
 
 int verify_frames(Verify *v) {
-  int status = verify_folder_open(v);
-  for (int i = 0; i < VERIFY_STEPS && status < 0; i++) {
+  TRY(verify_folder_open(v));
+  for (int i = 0; i < VERIFY_STEPS; i++) {
     VerifyStep *step = &v->steps[i];
     double part = (i + 1.0) / VERIFY_STEPS;
     step->time = v->full_time * part;
     step->electrons = v->full_electrons * part;
-    status = make_pair(v, 'b', step->electrons, step->time, &step->mean, &step->variance);
-    if (status < 0)
-      status = make_pair(v, 'd', 0.0, step->time, &step->dark_mean, &step->dark_variance);
+    TRY(make_pair(v, 'b', step->electrons, step->time, &step->mean, &step->variance));
+    TRY(make_pair(v, 'd', 0.0, step->time, &step->dark_mean, &step->dark_variance));
   }
   double half = 0.5 * v->saturation / v->full_electrons;
   double time = v->full_time * half;
-  if (status < 0)
-    status = make_stack(v, 'b', v->full_electrons * half, time, &v->bright);
-  if (status < 0)
-    status = make_stack(v, 'd', 0.0, time, &v->dark);
-  return status < 0 ? verify_folder_close(v) : status;
+  TRY(make_stack(v, 'b', v->full_electrons * half, time, &v->bright));
+  TRY(make_stack(v, 'd', 0.0, time, &v->dark));
+  return verify_folder_close(v);
 }

@@ -5,6 +5,7 @@
 
 #include "camera/scene_world.h"
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/lens_options.h"
@@ -87,8 +88,7 @@ static int cast(State *s, const char *path) {
       s->results.occluded
           ? vl_world_cast_occluded(s->in.world, &rays, &def, s->memory, &stats, &error)
           : vl_world_cast(s->in.world, &rays, &def, &s->results.rows, &stats, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, path);
+  TRY(report_error(&error, result, path));
   report_stats(path, &stats);
   return -1;
 }
@@ -107,9 +107,8 @@ static void put(const State *s, FILE *out) {
 static int write_file(const State *s) {
   vlPendingFile *pending;
   vlError error = {0};
-  vlResult result = vl_pending_file_create(s->in.context, s->output, &pending, &error);
-  if (result != VL_OK)
-    return report_error(&error, result, s->output);
+  TRY(report_error(&error, vl_pending_file_create(s->in.context, s->output, &pending, &error),
+                   s->output));
   FILE *out = fopen(vl_pending_file_path(pending), "wb");
   bool written = out != NULL;
   if (out) {
@@ -117,13 +116,9 @@ static int write_file(const State *s) {
     written = !ferror(out);
     written = fclose(out) == 0 && written;
   }
-  int status =
-      written ? STATUS_OK : report_failure(STATUS_IO, "%s: %s", s->output, strerror(errno));
-  if (written) {
-    result = vl_pending_file_commit(pending, &error);
-    if (result != VL_OK)
-      status = report_error(&error, result, s->output);
-  }
+  const int status =
+      written ? report_finish(&error, vl_pending_file_commit(pending, &error), s->output)
+              : report_failure(STATUS_IO, "%s: %s", s->output, strerror(errno));
   vl_pending_file_destroy(pending);
   return status;
 }
@@ -196,8 +191,7 @@ const Command trace_command = {
         "velo camera unproject --camera room.pbrt pixels.csv | velo trace room.pbrt - --hits 4\n"
         "velo trace room.pbrt rays.npy --occluded -o blocked.npy",
     .options = trace_options,
-    .min_operands = 2,
-    .max_operands = 2,
+    .operands = 2,
     .context = CONTEXT_ALL,
     .run = run_trace,
 };

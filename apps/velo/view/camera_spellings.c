@@ -18,8 +18,10 @@ static void put_pose(Json *json, const ViewCamera *camera) {
   json_numbers(json, "camera_from_world", camera->made.camera_from_world, 16);
 }
 
-static double angle(const vlCamera *c, double x0, double y0, double x1, double y1) {
-  return degrees * camera_angle(c, x0, y0, x1, y1);
+/* Degrees between two opposite edges of the image, by way of the principal point. */
+static double field(const vlCamera *c, double x0, double y0, double x1, double y1) {
+  return degrees * camera_angle(c, x0, y0, c->cx, c->cy) +
+         degrees * camera_angle(c, c->cx, c->cy, x1, y1);
 }
 
 /* The name of the spelling that the camera was given in. */
@@ -43,9 +45,9 @@ static void put_focal(Json *json, const ViewCamera *camera) {
   double horizontal = NAN, vertical = NAN, diagonal = NAN, fov = NAN;
   double view_distance = NAN, focal_mm = NAN, pixel_size = u.pixel_size;
   if (!orthographic) {
-    horizontal = angle(c, 0, c->cy, c->cx, c->cy) + angle(c, c->cx, c->cy, w, c->cy);
-    vertical = angle(c, c->cx, 0, c->cx, c->cy) + angle(c, c->cx, c->cy, c->cx, h);
-    diagonal = angle(c, 0, 0, c->cx, c->cy) + angle(c, c->cx, c->cy, w, h);
+    horizontal = field(c, 0, c->cy, w, c->cy);
+    vertical = field(c, c->cx, 0, c->cx, h);
+    diagonal = field(c, 0, 0, w, h);
     const double fields[] = {vertical, horizontal, diagonal, w < h ? horizontal : vertical,
                              w < h ? vertical : horizontal};
     fov = isnan(def->fov) ? fields[def->fov_axis] : def->fov * degrees;

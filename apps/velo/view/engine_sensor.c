@@ -112,7 +112,7 @@ static vlResult take_sensor(Engine *e, vlError *error) {
  * they say which part of the whole it is. */
 static vlResult join(Engine *e, vlImage *const parts[2], vlImage **joined) {
   const vlImage *const both[2] = {parts[0], parts[1]};
-  TRY_RESULT(denoised_join(e->def.context, both, 2, joined));
+  TRY_RESULT(denoised_join(e->def.context, both, 2, NULL, joined));
   return vl_image_add_attributes(*joined, parts[0]);
 }
 

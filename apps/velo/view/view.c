@@ -197,7 +197,6 @@ const Command view_command = {
         "velo view --lecture --language it",
     .options = view_options,
     .sections = view_sections,
-    .min_operands = 0,
-    .max_operands = 1,
+    .optional_operands = 1,
     .run = run_view,
 };

@@ -42,7 +42,9 @@ void vl_extent_visit_box(const vlMat4 *m, const vlExtent *box, vlPointVisit *vis
 
 static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, size_t most,
                         vlPointVisit *visit, void *user) {
-  vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
+  vlMat4 m = vl_mat4_load(d->group_from_shape);
+  if (world_from_group)
+    m = vl_mat4_multiply(*world_from_group, m);
   for (size_t i = 0; d->centers && i < d->faces; i += d->faces / most + 1) {
     const vlExtent box = vl_extent_of_sphere(d, i);
     vl_extent_visit_box(&m, &box, visit, user);
@@ -64,9 +66,9 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
   }
 }
 
-void vl_extent_visit_shape(const vlShapeDef *shape, vlPointVisit *visit, void *user) {
-  const vlMat4 identity = vl_mat4_identity();
-  visit_shape(shape, &identity, SIZE_MAX, visit, user);
+void vl_extent_visit_shape(const vlShapeDef *shape, const vlMat4 *world_from_group,
+                           vlPointVisit *visit, void *user) {
+  visit_shape(shape, world_from_group, SIZE_MAX, visit, user);
 }
 
 /* Hands on the points within limits. */
@@ -85,7 +87,6 @@ static void visit_within(void *user, const double p[3]) {
 
 void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without,
                      vlPointVisit *visit, void *user) {
-  vlMat4 identity = vl_mat4_identity();
   Within within = {&boxes[scene->groups.count], visit, user};
   for (size_t i = 0; i + 2 < scene->frame_points.count; i += 3)
     visit(user, scene->frame_points.items + i);
@@ -93,7 +94,7 @@ void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *wi
     return;
   for (size_t i = 0; i < scene->shapes.count; i++)
     if (!scene->shapes.items[i].group.index && !(without && without[i]))
-      visit_shape(&scene->shapes.items[i], &identity, 20000, visit_within, &within);
+      visit_shape(&scene->shapes.items[i], NULL, 20000, visit_within, &within);
   for (size_t i = 0; i < scene->instances.count; i++) {
     const vlSceneInstance *instance = &scene->instances.items[i];
     const vlExtent *b = &boxes[instance->group.index - 1];
@@ -109,14 +110,13 @@ bool vl_extent_groups(vlScene *scene, vlExtent **boxes) {
     return vl_scene_fail_memory(scene);
   const vlExtent everything = {{-INFINITY, -INFINITY, -INFINITY},
                                {INFINITY, INFINITY, INFINITY}};
-  vlMat4 identity = vl_mat4_identity();
   for (size_t i = 0; i < scene->groups.count; i++)
     (*boxes)[i] = vl_extent_nothing;
   (*boxes)[scene->groups.count] = everything;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *d = &scene->shapes.items[i];
     if (d->group.index)
-      visit_shape(d, &identity, SIZE_MAX, vl_extent_grow, &(*boxes)[d->group.index - 1]);
+      vl_extent_visit_shape(d, NULL, vl_extent_grow, &(*boxes)[d->group.index - 1]);
   }
   return true;
 }

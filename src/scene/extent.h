@@ -16,8 +16,10 @@ void vl_mesh_face(const vlShapeDef *shape, const vlMat4 *m, size_t face, double 
                   double n[3]);
 /* Calls `visit` with the eight corners of a box, transformed. */
 void vl_extent_visit_box(const vlMat4 *m, const vlExtent *box, vlPointVisit *visit, void *user);
-/* Calls `visit` with all points of a shape, or the corners of its box, in group space. */
-void vl_extent_visit_shape(const vlShapeDef *shape, vlPointVisit *visit, void *user);
+/* Calls `visit` with all points of a shape, or the corners of its box, in the world. null: in
+ * group space. */
+void vl_extent_visit_shape(const vlShapeDef *shape, const vlMat4 *world_from_group,
+                           vlPointVisit *visit, void *user);
 /* The bounding boxes of the groups, in group space, and after them, at index groups.count, the
  * limits of what vl_extent_visit visits, in world space: everything; the caller frees the
  * array. False: the scene holds the error. */

@@ -123,11 +123,7 @@ static bool take_emitter(const vlScene *scene, const vlShapeDef *d, Emitter *emi
     return false;
   const vlMat4 m = vl_mat4_load(d->group_from_shape);
   vlExtent box = vl_extent_nothing;
-  for (size_t i = 0; i < d->vertices; i++) {
-    double p[3];
-    vl_mat4_vertex(&m, d->positions + 3 * i, p);
-    vl_extent_grow(&box, p);
-  }
+  vl_extent_visit_shape(d, NULL, vl_extent_grow, &box);
   vl_extent_middle(&box, emitter->middle);
   emitter->area = area_of(d, &m);
   emitter->candela = radiance * emitter->area;

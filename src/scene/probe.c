@@ -162,11 +162,7 @@ static bool survey_mesh(vlContext *context, vlProbe *s, const vlShapeDef *d, siz
   p->fixed = fixed;
   p->flip = d->reverse_orientation; /* mirroring keeps the side: rays are met in shape space */
   p->box = vl_extent_nothing;
-  for (size_t i = 0; i < d->vertices; i++) {
-    double q[3];
-    vl_mat4_vertex(&m, d->positions + 3 * i, q);
-    vl_extent_grow(&p->box, q);
-  }
+  vl_extent_visit_shape(d, world_from_group, vl_extent_grow, &p->box);
   return ++s->count < MAX_PLACED;
 }
 

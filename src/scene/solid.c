@@ -33,7 +33,7 @@ vlExtent vl_shape_box(const vlShapeDef *d) {
     vl_extent_join(&box, &own);
   }
   if (!d->centers)
-    vl_extent_visit_shape(d, vl_extent_grow, &box);
+    vl_extent_visit_shape(d, NULL, vl_extent_grow, &box);
   return box;
 }
 

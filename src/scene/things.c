@@ -78,7 +78,7 @@ void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *
       visit_spheres(shape, visit, user);
       continue;
     }
-    vl_extent_visit_shape(shape, vl_extent_grow, &box);
+    vl_extent_visit_shape(shape, NULL, vl_extent_grow, &box);
     if (!vl_extent_is_empty(&box))
       visit_box(&box, visit, user);
   }

@@ -309,10 +309,8 @@ static void put_coated_conductor(vlExport *x, json_t *material, const vlMaterial
 
 static void put_leaf(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
                      double coverage) {
-  (void)inside;
   vl_export_lose(x, "diffusetransmission: reflected and passed light share one colour");
-  put_base(x, material, &m->reflectance, coverage, 0, 1);
-  set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
+  put_diffuse(x, material, m, inside, coverage);
   set_number(extension(x, material, "KHR_materials_diffuse_transmission"),
              "diffuseTransmissionFactor", 0.5);
   put_color(x, extension(x, material, "KHR_materials_diffuse_transmission"),

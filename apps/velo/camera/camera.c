@@ -2,7 +2,6 @@
 #include "camera/camera.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"

@@ -1,7 +1,6 @@
 /* camera/paths_trace.c: traces the paths of a pixel and puts them in order; see paths.h. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "camera/paths.h"
 #include "cli/crop.h"

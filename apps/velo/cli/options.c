@@ -510,6 +510,20 @@ static int parse_option(const Command *command, char ***rest, char **end,
   return read_value(option, value, arguments);
 }
 
+static const char *name_of(const Arguments *arguments, int id) {
+  const Option *option = arguments->command->options;
+  while (option->id != id)
+    option++;
+  return option->name;
+}
+
+int options_exclude(const Arguments *arguments, int one, int other) {
+  if (!arguments->values[one].given || !arguments->values[other].given)
+    return -1;
+  return report_usage("--%s and --%s exclude each other", name_of(arguments, one),
+                      name_of(arguments, other));
+}
+
 int options_too_few(const Command *command) {
   return report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name,
                       command->usage);

@@ -114,6 +114,8 @@ void options_share(Option *options, const Option *from);
 /* Parses argv without the names of program and command. Returns -1 to continue, otherwise the
  * exit code after reporting (0 after --help). */
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);
+/* Reports that both options are given, if they are. Returns -1 or the exit code. */
+int options_exclude(const Arguments *arguments, int one, int other);
 /* Reports that the command needs more operands. Returns the exit code. */
 int options_too_few(const Command *command);
 /* all: the whole page, also of a command that has a brief one. */

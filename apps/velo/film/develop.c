@@ -7,7 +7,6 @@
 #include "image/image.h"
 #include "render/attributes.h"
 #include "render/exposure.h"
-#include "render/job.h"
 #include "render/output_names.h"
 #include "render/outputs.h"
 #include "render/receipt.h"

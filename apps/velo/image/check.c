@@ -240,8 +240,7 @@ static int load_other(Check *c, vlContext *context, const Arguments *arguments,
                       vlImage **image) {
   static const int options[2] = {CHECK_FLOW, CHECK_FLOW_BEFORE};
   const OptionValue *v = arguments->values;
-  if (v[CHECK_FLOW].given && v[CHECK_FLOW_BEFORE].given)
-    return report_usage("--flow and --flow-before exclude each other");
+  TRY(options_exclude(arguments, CHECK_FLOW, CHECK_FLOW_BEFORE));
   for (int i = 0; i < 2; i++) {
     const char *path = v[options[i]].text;
     if (!v[options[i]].given)

@@ -1,6 +1,5 @@
 /* image/check_matte.c: checks that a file's Cryptomattes agree with their header. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

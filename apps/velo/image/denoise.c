@@ -5,7 +5,6 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "image/image.h"
-#include "render/attributes.h"
 #include "render/job.h"
 #include "render/output_names.h"
 #include "render/progress.h"

@@ -2,7 +2,6 @@
 #include "render/animate.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -62,12 +61,9 @@ static int check(const Arguments *arguments) {
                 {RENDER_STEREO, "--stereo"}};
   const OptionValue *v = arguments->values;
   const char *own = v[RENDER_ANIMATE].given ? "--animate" : "--turntable";
-  if (v[RENDER_ANIMATE].given && v[RENDER_TURNTABLE].given)
-    return report_usage("--animate and --turntable exclude each other");
-  if (v[RENDER_ANIMATE].given && v[RENDER_AT].given)
-    return report_usage("--animate and --at exclude each other");
-  if (v[RENDER_TURNTABLE].given && v[RENDER_TURN].given)
-    return report_usage("--turntable and --turn exclude each other");
+  TRY(options_exclude(arguments, RENDER_ANIMATE, RENDER_TURNTABLE));
+  TRY(options_exclude(arguments, RENDER_ANIMATE, RENDER_AT));
+  TRY(options_exclude(arguments, RENDER_TURNTABLE, RENDER_TURN));
   for (size_t i = 0; i < LENGTH(others); i++)
     if (v[others[i].id].given)
       return report_usage("%s does not go with %s", own, others[i].name);

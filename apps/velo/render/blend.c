@@ -60,8 +60,7 @@ static int check_options(const Arguments *arguments) {
     if (v[option->id].given && !option_is_in(option->id, followed, LENGTH(followed)))
       return report_usage("%s: Blender renders it, and --%s cannot be passed on", scene,
                           option->name);
-  if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given)
-    return report_usage("--quiet and --verbose exclude each other");
+  TRY(options_exclude(arguments, RENDER_QUIET, RENDER_VERBOSE));
   if (v[RENDER_FRAME].given && !v[RENDER_CAMERA].given)
     return report_usage(
         "--frame NAME says which camera of --camera FILE; a frame of Blender's "

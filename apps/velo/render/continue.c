@@ -37,8 +37,7 @@ int continue_open(Continue *c, const Arguments **arguments) {
   const Arguments *given = *arguments;
   if (!given->values[RENDER_CONTINUE].given)
     return -1;
-  if (given->values[RENDER_AGAIN].given)
-    return report_usage("--continue and --again exclude each other");
+  TRY(options_exclude(given, RENDER_CONTINUE, RENDER_AGAIN));
   vlError error = {0};
   c->path = given->values[RENDER_CONTINUE].text;
   char first[4096];

@@ -3,7 +3,6 @@
  * continues. */
 #include "render/film_keeper.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/macros.h"

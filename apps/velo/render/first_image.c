@@ -1,8 +1,6 @@
 /* render/first_image.c: see first_image.h. */
 #include "render/first_image.h"
 
-#include <stdio.h>
-
 #include "cli/macros.h"
 #include "render/added.h"
 #include "render/frames.h"

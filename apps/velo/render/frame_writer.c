@@ -5,7 +5,6 @@
 #include "render/frame_writer.h"
 
 #include <pthread.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

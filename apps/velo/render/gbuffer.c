@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "cli/macros.h"
-#include "cli/report.h"
 #include "cli/signals.h"
 #include "cli/vector.h"
 #include "image/image.h"

@@ -126,8 +126,7 @@ static int override_crop(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *crop = &arguments->values[RENDER_CROP],
                     *window = &arguments->values[RENDER_CROPWINDOW];
   uint32_t width = defs->film.width, height = defs->film.height;
-  if (crop->given && window->given)
-    return report_usage("--crop and --cropwindow exclude each other");
+  TRY(options_exclude(arguments, RENDER_CROP, RENDER_CROPWINDOW));
   if (crop->given) {
     crop_set(defs->film.crop, 0, 0, width, height);
     return option_crop(crop, defs->film.crop);

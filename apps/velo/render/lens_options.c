@@ -2,7 +2,6 @@
 #include "render/lens_options.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/macros.h"
@@ -33,8 +32,7 @@ int lens_override(vlScene *scene, vlSceneDefs *defs, const Arguments *arguments)
   const OptionValue *v = arguments->values;
   vlCameraDef *def = &defs->camera;
   double point[2];
-  if (v[RENDER_FOCUS_PIXEL].given && v[RENDER_FOCUS_DISTANCE].given)
-    return report_usage("--focus-pixel and --focus-distance exclude each other");
+  TRY(options_exclude(arguments, RENDER_FOCUS_PIXEL, RENDER_FOCUS_DISTANCE));
   if (v[RENDER_FOCUS_PIXEL].given && !read_point(v[RENDER_FOCUS_PIXEL].text, point))
     return report_usage("--focus-pixel \"%s\": not two numbers X,Y",
                         v[RENDER_FOCUS_PIXEL].text);

@@ -1,7 +1,6 @@
 /* render/pattern.c: see pattern.h. */
 #include "render/pattern.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -166,8 +166,7 @@ static int make_context(Render *render, const Arguments *arguments) {
 
 static int prepare(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given)
-    return report_usage("--quiet and --verbose exclude each other");
+  TRY(options_exclude(arguments, RENDER_QUIET, RENDER_VERBOSE));
   Outputs *outputs = &render->outputs;
   outputs_take_names(outputs, arguments);
   render->film_plan =

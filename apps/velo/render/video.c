@@ -1,7 +1,6 @@
 /* render/video.c: see video.h. */
 #include "render/video.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

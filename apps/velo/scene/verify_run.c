@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cli/macros.h"
-#include "cli/signals.h"
 #include "cli/vector.h"
 #include "image/image.h"
 #include "render/progress.h"

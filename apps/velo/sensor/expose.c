@@ -9,7 +9,6 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/image.h"
-#include "render/attributes.h"
 #include "render/output_names.h"
 #include "render/pattern.h"
 #include "sensor/sensor.h"

@@ -1,7 +1,6 @@
 /* sensor/sensor.c: see sensor.h. */
 #include "sensor/sensor.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/macros.h"

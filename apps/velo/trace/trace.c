@@ -143,8 +143,7 @@ static int run_trace(const Arguments *arguments, vlContext *context) {
   s.results.hits = option_count(&v[TRACE_HITS], 1);
   if (s.output && !ends_with(&s, ".npy") && !ends_with(&s, ".npz") && !ends_with(&s, ".csv"))
     return report_usage("-o %s: hits are written as .csv, .npy or .npz", s.output);
-  if (v[TRACE_HITS].given && v[TRACE_OCCLUDED].given)
-    return report_usage("--hits and --occluded exclude each other");
+  TRY(options_exclude(arguments, TRACE_HITS, TRACE_OCCLUDED));
   int status = rays_file_read(path, &s.rays);
   if (status < 0)
     status = scene_world_open(&s.in, context, arguments);

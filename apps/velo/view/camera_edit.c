@@ -8,7 +8,6 @@
 #include "velo/projection.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const double degree = 3.14159265358979323846 / 180.0;

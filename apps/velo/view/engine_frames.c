@@ -2,7 +2,6 @@
  * kind. While the film of a slow scene gets its first samples row by row, the rows without are
  * those of the coarser image before it. */
 #include <math.h>
-#include <stdio.h>
 
 #include "cli/crop.h"
 #include "cli/macros.h"

@@ -1,6 +1,5 @@
 /* view/engine_messages.c: the engine's side of the server: greets pages and applies their
  * messages. All of it runs on the server's thread; nothing here renders. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/crop.h"

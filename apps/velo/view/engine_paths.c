@@ -1,7 +1,6 @@
 /* view/engine_paths.c: the paths of a pixel, traced again for a page, on a thread beside the
  * render. A page has one request at a time: a newer one, another camera or another scene ends
  * it. */
-#include <string.h>
 
 #include "camera/paths.h"
 #include "cli/kinds.h"

@@ -4,7 +4,6 @@
  * new samples: of a film that has no new ones the light is kept, and of settings that do not
  * change the light the photoelectrons. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -149,20 +149,6 @@ static bool ends(Engine *e) {
   return quit;
 }
 
-static double model_seconds(Engine *e) {
-  engine_lock(e);
-  double seconds = e->model.seconds;
-  engine_unlock(e);
-  return seconds;
-}
-
-static bool time_is_due(Engine *e) {
-  engine_lock(e);
-  bool due = e->time.due;
-  engine_unlock(e);
-  return due;
-}
-
 void *engine_watch(void *user) {
   Engine *e = user;
   Watch *watch = watch_create();
@@ -173,9 +159,13 @@ void *engine_watch(void *user) {
   }
   watch_files(watch, &e->reload.files);
   while (!ends(e)) {
-    if (time_is_due(e))
+    engine_lock(e);
+    const bool due = e->time.due;
+    const double longest = e->model.seconds > 0 ? 0.01 : 0.1;
+    engine_unlock(e);
+    if (due)
       good = load_again(e, watch, true);
-    else if (watch_wait(watch, model_seconds(e) > 0 ? 0.01 : 0.1, !good) && !ends(e))
+    else if (watch_wait(watch, longest, !good) && !ends(e))
       good = load_again(e, watch, false);
   }
   watch_destroy(watch);

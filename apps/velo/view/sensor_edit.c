@@ -1,7 +1,6 @@
 /* view/sensor_edit.c: see sensor_edit.h. */
 #include "view/sensor_edit.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/macros.h"

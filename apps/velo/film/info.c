@@ -168,6 +168,10 @@ static bool same_rectangle(const uint32_t a[4], const uint32_t b[4]) {
   return memcmp(a, b, 4 * sizeof *a) == 0;
 }
 
+static void print_rectangle(const char *before, const uint32_t r[4]) {
+  printf("%s%u,%u,%u,%u", before, r[0], r[1], r[2], r[3]);
+}
+
 static void print_ranges(const RangeList *list) {
   for (uint32_t i = 0; i < list->count; i++)
     printf("%s%u:%u", i ? " " : "", list->ranges[i].first, list->ranges[i].end);
@@ -196,7 +200,7 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
   uint32_t planned = planned_of(file);
   printf("%s\n  size      %u x %u pixels", path, def->width, def->height);
   if (!crop_is_whole(c, def->width, def->height))
-    printf(", crop %u,%u,%u,%u", c[0], c[1], c[2], c[3]);
+    print_rectangle(", crop ", c);
   printf("\n  sums      colour%s", def->errors ? ", errors" : "");
   if (def->buckets)
     printf(", spectrum of %u buckets, %g to %g nm", def->buckets, def->lambda_min,
@@ -209,7 +213,7 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
     if (planned)
       printf(" of %u", planned);
     if (!same_rectangle(p->window, c))
-      printf(", pixels %u,%u,%u,%u", p->window[0], p->window[1], p->window[2], p->window[3]);
+      print_rectangle(", pixels ", p->window);
     putchar('\n');
   }
   if (!parts->count)
@@ -245,7 +249,7 @@ static void print_render(const vlFilmFile *file, const FilmPart *part,
   if (range->first || range->end != planned_of(file))
     printf(" --samples %u:%u", range->first, range->end);
   if (!same_rectangle(w, crop))
-    printf(" --tiles %u,%u,%u,%u", w[0], w[1], w[2], w[3]);
+    print_rectangle(" --tiles ", w);
   printf(" --film");
   text_shell_word(stdout, name);
   putchar('\n');

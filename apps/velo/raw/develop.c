@@ -25,12 +25,9 @@ static int write_outputs(const vlImage *image, const Arguments *arguments) {
 static int check_names(const Arguments *arguments, Outputs *outputs) {
   if (!arguments->text_count)
     return report_usage("raw develop: give the name of the image with -o");
-  for (int i = 0; i < arguments->text_count; i++) {
-    if (output_is_stdout(arguments->texts[i]))
-      return report_usage("raw develop: the image is written to files only");
-    outputs->paths[i] = arguments->texts[i];
-  }
-  outputs->count = arguments->text_count;
+  outputs_take_names(outputs, arguments);
+  if (outputs_any(outputs, output_is_stdout))
+    return report_usage("raw develop: the image is written to files only");
   TRY(outputs_check_names(outputs));
   return outputs_check_folders(outputs);
 }

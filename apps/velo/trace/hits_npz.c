@@ -3,6 +3,7 @@
  * date. */
 #include <inttypes.h>
 #include <string.h>
+#include <zlib.h>
 
 #include "cli/macros.h"
 #include "cli/text.h"
@@ -23,27 +24,8 @@ typedef struct Member {
 
 typedef struct Archive {
   FILE *out;
-  uint32_t table[256]; /* of the CRC */
-  uint32_t length;     /* bytes written */
+  uint32_t length; /* bytes written */
 } Archive;
-
-/* CRC-32 with the polynomial of ISO 3309, byte by byte by a table (RFC 1952, section 8). */
-static void make_table(uint32_t table[256]) {
-  for (uint32_t i = 0; i < 256; i++) {
-    uint32_t c = i;
-    for (int bit = 0; bit < 8; bit++)
-      c = c & 1 ? 0xedb88320u ^ c >> 1 : c >> 1;
-    table[i] = c;
-  }
-}
-
-static uint32_t crc_of(const uint32_t table[256], uint32_t crc, const void *data, size_t size) {
-  const unsigned char *bytes = data;
-  crc = ~crc;
-  for (size_t i = 0; i < size; i++)
-    crc = table[(crc ^ bytes[i]) & 255] ^ crc >> 8;
-  return ~crc;
-}
 
 static void put(Archive *a, const void *data, size_t size) {
   fwrite(data, 1, size, a->out);
@@ -75,8 +57,8 @@ static void put_common(Archive *a, const Member *m) {
 
 static void put_member(Archive *a, Member *m, const void *rows, size_t bytes) {
   m->offset = a->length;
-  m->crc = crc_of(a->table, 0, m->start, m->start_length);
-  m->crc = crc_of(a->table, m->crc, rows, bytes);
+  const uLong start = crc32(0, (const Bytef *)m->start, (uInt)m->start_length);
+  m->crc = (uint32_t)crc32(start, rows, (uInt)bytes);
   m->bytes = (uint32_t)(m->start_length + bytes);
   put_number(a, MEMBER_MARK, 4);
   put_common(a, m);
@@ -121,7 +103,6 @@ void hits_write_npz(const HitsFile *h, FILE *out) {
   Member members[HITS_FIELDS];
   const uint32_t count = h->occluded ? 1 : HITS_FIELDS;
   const bool several = h->hits > 1 && !h->occluded;
-  make_table(a.table);
   for (uint32_t i = 0; i < count && !ferror(out); i++) {
     const HitsField *f = h->occluded ? &occluded : &hits_fields[i];
     const void *rows = h->occluded ? (const void *)h->occluded : hits_field_rows(&h->rows, f);

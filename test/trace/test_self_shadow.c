@@ -11,6 +11,7 @@
 #include "unit.h"
 
 #include "shape/surface_point.h"
+#include "trace/surface/points.h"
 #include "trace/two_way/stages.h"
 #include "velo/light.h"
 #include "velo/shape_kinds.h"
@@ -470,6 +471,95 @@ static void interfaces_are_passed_once(void **state) {
   check_all(passing, 500000);
 }
 
+/* ---- three ways to one point ------------------------------------------------------------- */
+
+/* The bound that the instance gives for the corners of its triangle (world.h), along g. */
+static float bound_of_corners(const vlWorld *world, const Hit *h, vlVec3 g) {
+  const vlWorldShape *s = &world->shapes.items[h->shape];
+  if (!s->triangles || h->instance == VL_NONE || world->moves)
+    return 0;
+  const float *error = world->instances.items[h->instance].error;
+  float most = 0;
+  for (int k = 0; k < 3; k++) {
+    const float *x = s->positions + 3 * (size_t)s->indices[3 * (size_t)h->prim + (size_t)k];
+    most = fmaxf(most, error[0] * fabsf(x[0]) + error[1] * fabsf(x[1]) +
+                           error[2] * fabsf(x[2]) + error[3]);
+  }
+  return most * (fabsf(g.x) + fabsf(g.y) + fabsf(g.z));
+}
+
+/* The points of a batch, those that media ask for, and single points have the same distances,
+ * normals and bounds, and the bounds are twice those of the corners at least. Returns how many
+ * differ. */
+static uint32_t differing(const Scene *s, vlTraceScratch *t, statRng *rng, uint32_t *tried) {
+  const vlWorld *world = s->world;
+  uint32_t n = 0, wrong = 0;
+  uint32_t lanes[VL_CROSSINGS];
+  float times[VL_CROSSINGS];
+  static vlCrossings x;
+  vlPaths *p = &t->at.paths;
+  vlHits *hits = &t->at.hits;
+  const vlSurface *f = &t->at.surface;
+  for (int i = 0; i < 2 * VL_CROSSINGS && n < VL_CROSSINGS; i++) {
+    vlVec3 o, d;
+    aim(s, 0.5f, rng, &o, &d);
+    times[n] = 0.5f;
+    Hit h = trace(world, o, d, times[n]);
+    if (h.shape == VL_NONE)
+      continue;
+    vl_set_lane3(p->ox, p->oy, p->oz, n, o);
+    vl_set_lane3(p->dx, p->dy, p->dz, n, d);
+    p->lane[n] = lanes[n] = n;
+    hits->shape[n] = h.shape;
+    hits->prim[n] = h.prim;
+    hits->instance[n] = h.instance;
+    hits->t[n++] = h.t;
+  }
+  p->time = world->moves ? times : NULL;
+  vl_stage_surface(world, n, p, hits, &t->corners, &t->at.surface);
+  x.shape = hits->shape;
+  x.prim = hits->prim;
+  x.instance = hits->instance;
+  x.hit = hits->t;
+  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, NULL, NULL, p->time, NULL};
+  vl_stage_crossings(world, n, &rays, lanes, n, &x);
+  for (uint32_t i = 0; i < n; i++) {
+    Hit h = {hits->shape[i], hits->prim[i], hits->instance[i], hits->t[i]};
+    vlPoint at =
+        vl_point_at_time(world, world->moves ? times[i] : 0, vl_lane3(p->ox, p->oy, p->oz, i),
+                         vl_lane3(p->dx, p->dy, p->dz, i), h.shape, h.prim, h.instance, h.t);
+    bool same = f->offset[i] == at.offset && f->t[i] == at.t && f->gx[i] == at.g.x &&
+                x.offset[i] == at.offset && x.t[i] == at.t && x.gx[i] == at.g.x;
+    wrong += !same || at.offset < 1.999f * bound_of_corners(world, &h, at.g);
+  }
+  p->time = NULL;
+  *tried += n;
+  return wrong;
+}
+
+static void three_ways_agree(void **state) {
+  (void)state;
+  vlTraceScratch *t = aligned_alloc(64, sizeof *t);
+  memset(t, 0, sizeof *t);
+  uint32_t wrong = 0;
+  for (int k = 0; k < KINDS; k++)
+    for (Place place = 0; place < PLACES; place++)
+      for (Map map = 0; map < MAPS; map++) {
+        statRng rng = stat_rng(30000 + 1000 * (uint64_t)k + 100 * place + 10 * map);
+        Scene s = make(&kinds[k], place, map, false, false, false, &rng);
+        uint32_t tried = 0, differ = differing(&s, t, &rng, &tried);
+        if (tried < 4)
+          print_error("%s: only %u rays\n", describe(&s, place, map, false, false), tried);
+        if (differ)
+          print_error("%s: %u of %u points differ\n", describe(&s, place, map, false, false),
+                      differ, tried);
+        wrong += differ;
+        destroy(&s);
+      }
+  free(t);
+  assert_int_equal(wrong, 0);
+}
+
 /* ---- rays that arrive at lights ---------------------------------------------------------- */
 
 /* Shadow rays to light samples, from points at all distances outside. media: as tracers of
@@ -584,9 +674,8 @@ static void light_paths_leave(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rays_leave),
-      cmocka_unit_test(interfaces_are_passed_once),
-      cmocka_unit_test(lights_are_seen),
+      cmocka_unit_test(rays_leave),        cmocka_unit_test(interfaces_are_passed_once),
+      cmocka_unit_test(three_ways_agree),  cmocka_unit_test(lights_are_seen),
       cmocka_unit_test(light_paths_leave),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -149,6 +149,11 @@ static void refused(void **state) {
   expect(file, size, "damaged");
   put(file + 16 + 176, "smoke\0\0", 7);
   expect(file, size, "no grid \"density\"");
+  put_u32(file + 16 + 136, (uint32_t)size - 16 - 176 + 1); /* a name up to behind the end */
+  expect(file, size, "damaged");
+  put_u32(file + 16 + 136, 0); /* without a name, and nothing follows */
+  put_u64(file + 24, 0);
+  expect(file, 16 + 176, "no grid \"density\"");
   free(file);
   free(grid);
 }

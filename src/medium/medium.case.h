@@ -48,7 +48,8 @@ typedef struct MediumCase {
   "[1 "                                                                                        \
   "1 1]"
 #define EIGHT "[1 .5 .2 1 .7 .1 .4 .9]"
-#define EIGHT_COLORS "[1 .5 .2 1 .7 .1 .4 .9 .6 .1 .8 .3 1 .5 .2 1 .7 .1 .4 .9 .6 .1 .8 .3]"
+/* the largest component of one is more than twice the others, of each */
+#define EIGHT_COLORS "[1 .5 .2 1 .7 .1 .2 .9 .4 .1 .3 .8 1 .4 .2 1 .7 .1 .4 .9 .6 .1 .3 .8]"
 #define OTHER_COLORS "[.2 .5 1 .1 .7 1 .4 .3 .6 .9 .8 .3 .1 .5 .6 1 .2 .1 .4 .9 .1 .1 .8 .3]"
 
 /* Declares the case of each kind, which is in the file of the kind: medium/NAME.case.c. */

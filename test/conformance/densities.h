@@ -143,6 +143,54 @@ static void check_heat_in_rgb(const char *kind, const MediumCase *c) {
   vl_world_destroy(spectral);
 }
 
+/* The colour of the extinction at a point, seen under the white of sRGB. */
+static void color_at(const vlWorldMedium *m, const double p[3], double rgb[3]) {
+  const vlVec3 at = vl_vec3((float)p[0], (float)p[1], (float)p[2]);
+  const float *const observer[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()};
+  const float *white = vl_space_illuminant(VL_SPACE_SRGB);
+  float matrix[9];
+  double xyz[3] = {0};
+  double whole = 0;
+  vl_rgb_from_xyz(VL_SPACE_SRGB, matrix);
+  for (int i = 0; i + 3 < VL_LAMBDA_COUNT; i += 4) {
+    const int k = VL_LAMBDA_MIN + i;
+    const float lambda[4] = {(float)k, (float)(k + 1), (float)(k + 2), (float)(k + 3)};
+    const vlMediumLight all = vl_medium_coefficients(m, lambda);
+    const vlMediumLight here = vl_medium_at(m, &all, lambda, at, false);
+    for (int c = 0; c < 4; c++) {
+      whole += (double)(observer[1][i + c] * white[i + c]);
+      for (int j = 0; j < 3; j++)
+        xyz[j] += (double)(observer[j][i + c] * white[i + c] * (here.a[c] + here.s[c]));
+    }
+  }
+  for (int c = 0; c < 3; c++)
+    rgb[c] = ((double)matrix[3 * c] * xyz[0] + (double)matrix[3 * c + 1] * xyz[1] +
+              (double)matrix[3 * c + 2] * xyz[2]) /
+             whole;
+}
+
+/* The extinction in wavelengths has the colour that it has in RGB. */
+static void check_color_in_wavelengths(const char *kind, const char *parameters) {
+  enum { POINTS = 40 };
+  vlWorld *rgb = world_of_medium(kind, parameters, VL_COLOR_RGB);
+  vlWorld *spectral = world_of_medium(kind, parameters, VL_COLOR_SPECTRAL);
+  double worst = 0;
+  for (uint32_t i = 0; i < POINTS; i++) {
+    double p[3];
+    double found[3];
+    point_in_box(i, p);
+    const vlMediumLight known = medium_at(&rgb->media.items[0], p);
+    color_at(&spectral->media.items[0], p, found);
+    for (int c = 0; c < 3; c++)
+      worst = fmax(worst, fabs(found[c] - (double)(known.a[c] + known.s[c])));
+  }
+  if (!(worst < 0.01))
+    broken("media", kind, "%s: in wavelengths the colour of its extinction is %.4f off",
+           parameters, worst);
+  vl_world_destroy(rgb);
+  vl_world_destroy(spectral);
+}
+
 /* Of the medium that a scene describes; density: null: not known. */
 static void check_densities(const char *kind, const char *parameters,
                             double (*density)(const double p[3], PlainNoise *noise)) {
@@ -184,6 +232,8 @@ static void laws_of_densities(void **state) {
         continue;
       snprintf(all, sizeof all, "%s%s", forms[i] == c->layers ? "" : c->shape, forms[i]);
       check_densities(family->rows[k]->name, all, i == 0 ? c->density : NULL);
+      if (forms[i] == c->scatters)
+        check_color_in_wavelengths(family->rows[k]->name, all);
     }
     if (c->hot[0])
       check_emission_of_heat(family->rows[k]->name, c);

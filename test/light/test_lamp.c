@@ -328,7 +328,11 @@ static void factors(void **state) {
     assert_close("lamps", info.lamps_flux, 3000, 0);
     assert_close("watts", info.watts, 40, 0);
   }
-  vlLampInfo info = info_of("TILT=INCLUDE\n1 3\n0 45 90\n1 .9 .8\n" FACTORS);
+  char file[400];
+  snprintf(file, sizeof file, "[LUMINAIRE] %0200d\nTILT=NONE\n" FACTORS, 7);
+  vlLampInfo info = info_of(file);
+  assert_int_equal(strlen(info.name), sizeof info.name - 1); /* what fits of a long name */
+  info = info_of("TILT=INCLUDE\n1 3\n0 45 90\n1 .9 .8\n" FACTORS);
   assert_close("tilt", info.flux, 4 * PI * 50 * 1.44, 1e-6);
 }
 

@@ -85,6 +85,9 @@ static void (*change_light)(vlLightDef *def);
 /* The same of the texture "t" of its second directive. */
 static void (*change_texture)(vlTextureDef *def);
 
+/* The same of its first emission; it may add textures to the scene. */
+static void (*change_emission)(vlScene *scene, vlEmissionDef *def);
+
 static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
   vlScene *scene = NULL;
   assert_int_equal(vl_scene_create(in, &scene), VL_OK);
@@ -105,6 +108,12 @@ static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
     vlTextureDef texture = *vl_scene_texture(scene, second);
     change_texture(&texture);
     assert_int_equal(vl_scene_set_texture(scene, second, &texture, error), VL_OK);
+  }
+  if (change_emission) {
+    const vlEmissionId first = {1};
+    vlEmissionDef emission = *vl_scene_emission(scene, first);
+    change_emission(scene, &emission);
+    assert_int_equal(vl_scene_set_emission(scene, first, &emission, error), VL_OK);
   }
   return scene;
 }

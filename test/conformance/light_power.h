@@ -246,6 +246,14 @@ static void chosen_powers(void **state) {
                shapes[k]);
       check_scaled_power("emission", "diffuse", form, emissions[i]);
     }
+  change_emission = emit_texture;
+  for (size_t k = 0; k < 2; k++) { /* meshes */
+    static char text[TEXT];
+    snprintf(form, sizeof form, HEAD "WorldBegin AreaLightSource %%s Shape %s", shapes[k]);
+    scene_text(text, form, "diffuse", "");
+    check_chosen_power("emission", "diffuse", TEXTURE_OF_FILENAME, text);
+  }
+  change_emission = NULL;
   expect_no_failures();
 }
 

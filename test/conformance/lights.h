@@ -244,6 +244,17 @@ static const char *const emissions[] = {
     "\"string filename\" \"quarters.pfm\"",
 };
 
+/* Emission may be an image texture, too, though not in these files. */
+#define TEXTURE_OF_FILENAME "by a texture with a filename"
+static void emit_texture(vlScene *scene, vlEmissionDef *def) {
+  char path[80];
+  vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  snprintf(path, sizeof path, "%s/quarters.pfm", folder);
+  image.path = path;
+  def->texture = vl_scene_add_texture(scene, &image);
+  def->scale = 0.4;
+}
+
 /* Shapes that emit in these ways. The normals of the second's corners lie on both sides of its
  * faces: the side of the light changes within them. */
 static const char *const emitting_shapes[][2] = {
@@ -403,6 +414,11 @@ static void colors_of_lights(void **state) {
     emitting_text(text, emitting_shapes[0][0], emitting_shapes[0][1], emissions[i]);
     check_colors_of_light("emission", "diffuse", emissions[i], text);
   }
+  static char text[TEXT];
+  change_emission = emit_texture;
+  emitting_text(text, emitting_shapes[1][0], emitting_shapes[1][1], "");
+  check_colors_of_light("emission", "diffuse", TEXTURE_OF_FILENAME, text);
+  change_emission = NULL;
   expect_no_failures();
 }
 

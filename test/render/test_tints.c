@@ -40,6 +40,29 @@ static vlSpectrumInput rgb(const float c[3]) {
   return vl_spectrum_input(vl_spectrum_rgb(c[0], c[1], c[2]));
 }
 
+/* A colour as such, or that of a texture: an image, or a product. */
+typedef enum Coloring { PLAIN, IMAGE_OF_ONE_TEXEL, SCALED } Coloring;
+static vlSpectrumInput colored(Stage *s, const float c[3], Coloring by) {
+  vlSpectrumInput plain = rgb(c), input = plain;
+  if (by == PLAIN)
+    return plain;
+  vlTextureDef def =
+      vl_default_texture_def(by == SCALED ? VL_TEXTURE_SCALE : VL_TEXTURE_IMAGE, true);
+  vlImage *image = NULL;
+  if (by == SCALED) {
+    def.spectrum_a = plain;
+    def.amount = vl_float_input(1);
+  } else {
+    vlImageDef size = vl_default_image_def(1, 1, 3);
+    assert_int_equal(vl_image_create(s->context, &size, &image), VL_OK);
+    memcpy(vl_image_pixels(image), c, 3 * sizeof *c);
+    def.image = image;
+  }
+  input.texture = vl_scene_add_texture(s->scene, &def);
+  vl_image_destroy(image);
+  return input;
+}
+
 static void add_sheet(Stage *s, float z, vlMaterialId material) {
   Quad q = quad_at(0, 0, z, 900, 0, 0, 0, 900, 0);
   q.material = material;
@@ -86,13 +109,13 @@ static void assert_image(const char *what, vlColorMode mode, Image *p,
 /* ---- sheets and solids ------------------------------------------------------------------- */
 
 /* n sheets, or n / 2 solids, of two colours in turns. */
-static void stack_of(int n, bool sheets, const float *const colors[2], vlColorMode mode,
-                     vlTracer tracer) {
+static void stack_of(int n, bool sheets, const float *const colors[2], Coloring by,
+                     vlColorMode mode, vlTracer tracer) {
   Stage s = open_stage(mode, tracer, n > 10 ? 64 : 512);
   add_sky(&s, 1);
   vlMaterialId material[2];
   for (int k = 0; k < 2; k++) {
-    vlMaterialDef def = glass(rgb(colors[k]), sheets);
+    vlMaterialDef def = glass(colored(&s, colors[k], by), sheets);
     material[k] = vl_scene_add_material(s.scene, &def);
   }
   double expected[3] = {1, 1, 1};
@@ -118,12 +141,14 @@ static void stacks(void **state) {
   const int counts[5] = {1, 3, 10, 30, 100};
   for (int mode = 0; mode < 2; mode++) {
     for (int k = 0; k < 5; k++)
-      stack_of(counts[k], true, one, (vlColorMode)mode, VL_TRACER_VOLPATH);
+      stack_of(counts[k], true, one, PLAIN, (vlColorMode)mode, VL_TRACER_VOLPATH);
     for (int k = 1; k < 3; k++)
-      stack_of(counts[k], true, two, (vlColorMode)mode, VL_TRACER_VOLPATH);
+      stack_of(counts[k], true, two, PLAIN, (vlColorMode)mode, VL_TRACER_VOLPATH);
     for (int n = 2; n < 7; n += 4)
-      stack_of(n, false, two, (vlColorMode)mode, VL_TRACER_VOLPATH);
+      stack_of(n, false, two, PLAIN, (vlColorMode)mode, VL_TRACER_VOLPATH);
   }
+  stack_of(6, true, two, IMAGE_OF_ONE_TEXEL, VL_COLOR_SPECTRAL, VL_TRACER_VOLPATH);
+  stack_of(6, true, two, SCALED, VL_COLOR_SPECTRAL, VL_TRACER_VOLPATH);
 }
 
 static void stacks_of_all_tracers(void **state) {
@@ -132,8 +157,8 @@ static void stacks_of_all_tracers(void **state) {
   const vlTracer tracers[4] = {VL_TRACER_PATH, VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING,
                                VL_TRACER_SPPM};
   for (int k = 0; k < 4; k++) {
-    stack_of(6, true, two, VL_COLOR_SPECTRAL, tracers[k]);
-    stack_of(6, false, two, VL_COLOR_SPECTRAL, tracers[k]);
+    stack_of(6, true, two, PLAIN, VL_COLOR_SPECTRAL, tracers[k]);
+    stack_of(6, false, two, PLAIN, VL_COLOR_SPECTRAL, tracers[k]);
   }
 }
 

@@ -105,6 +105,38 @@ static double blur_of_point(const vlCamera *camera, const double point[3]) {
   return worst;
 }
 
+/* The rays of one film point start all over a round opening of this radius: their origins
+ * scatter by a quarter of its square along both axes of its plane. */
+static void check_opening(const char *kind, const vlCamera *camera, const double point[3],
+                          double radius) {
+  static CameraRays r;
+  double film[2];
+  double mean[3] = {0};
+  double scatter[3][3] = {{0}};
+  double sum = 0;
+  double squares = 0;
+  if (!vl_camera_project(camera, point, film, NULL))
+    return;
+  rays_of_film(camera, film, &r);
+  for (int k = 0; k < 3; k++)
+    for (uint32_t i = 0; i < WAYS; i++)
+      mean[k] += (double)r.o[k][i] / WAYS;
+  for (uint32_t i = 0; i < WAYS; i++)
+    for (int k = 0; k < 3; k++)
+      for (int j = 0; j < 3; j++)
+        scatter[k][j] += ((double)r.o[k][i] - mean[k]) * ((double)r.o[j][i] - mean[j]) / WAYS;
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 3; j++) {
+      sum += k == j ? scatter[k][j] : 0;
+      squares += scatter[k][j] * scatter[k][j];
+    }
+  const double along_axis = radius * radius / 4;
+  if (!(fabs(sum / (2 * along_axis) - 1) < 0.15) ||
+      !(fabs(squares / (2 * along_axis * along_axis) - 1) < 0.3))
+    broken("projections", kind, "its rays fill %.2f of a round opening, unevenly by %.2f",
+           sum / (2 * along_axis), squares / (2 * along_axis * along_axis));
+}
+
 /* The point on which a camera is focused is sharp, beside the axis and with a lens or a plane
  * of focus that is tilted, too. */
 static void check_focus_point(const char *kind, const vlCameraDef *def) {
@@ -128,6 +160,8 @@ static void check_focus_point(const char *kind, const vlCameraDef *def) {
         broken("projections", kind, "focused on a point: %s", error.message);
       continue;
     }
+    if (i == 0)
+      check_opening(kind, &camera, point, focused.lens_radius);
     const double blur = blur_of_point(&camera, point);
     if (!(blur < 1e-4))
       broken("projections", kind, "tilt %d: the point in focus is blurred by %.5f", i, blur);

@@ -118,6 +118,19 @@ static void test_exact(void **state) {
   }
 }
 
+/* A product is rounded to the nearest unit of the sum, however small it is. */
+static void test_small_products(void **state) {
+  (void)state;
+  const int64_t weights[3] = {1, (INT64_C(1) << VL_WEIGHT_BITS) / 3, INT64_C(1) << 28};
+  for (int exponent = -149; exponent < 40; exponent++)
+    for (int k = 0; k < 3; k++) {
+      float value = (float)ldexp(k & 1 ? -1.3 : 1.7, exponent);
+      double units = ldexp((double)value * (double)weights[k], VL_COLOR_BITS - VL_WEIGHT_BITS);
+      double product = (double)vl_film_product(value, weights[k]);
+      assert_true(fabs(product - units) <= 0.5 + 1e-15 * fabs(units));
+    }
+}
+
 static void test_constant(void **state) {
   (void)state;
   static const float VALUES[] = {0.18f, 1.0f, 1.0f / 3.0f, 1234.567f,
@@ -463,6 +476,7 @@ static void test_moments_are_not_cleared(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_exact),
+      cmocka_unit_test(test_small_products),
       cmocka_unit_test(test_constant),
       cmocka_unit_test(test_passes),
       cmocka_unit_test(test_pass_numbers_wrap),

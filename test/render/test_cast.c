@@ -98,6 +98,9 @@ static void the_same_hits(void **state) {
     assert_int_equal(blocked[0][i], t[0][2 * i] < (double)INFINITY);
     assert_true(t[0][2 * i] <= t[0][2 * i + 1]);
     assert_int_equal(object[0][2 * i] != 0, blocked[0][i]);
+    const float *n = &normal[0][6 * i];
+    if (blocked[0][i])
+      assert_true(fabsf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-5f);
   }
   vl_context_destroy(context);
 }

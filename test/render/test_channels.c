@@ -4,6 +4,7 @@
 #include "render/ground_truths.h"
 #include "velo/channels.h"
 #include "velo/shape_kinds.h"
+#include "velo/texture.h"
 
 /* Builds the world of the stage and computes all channels. */
 static GroundTruth ground_truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {
@@ -177,6 +178,45 @@ static void test_exact_distance_and_ids(void **state) {
   stage_close(&s);
 }
 
+/* So is the distance to the far side of a sphere whose near half is a hole: it is rounded once.
+ */
+static void test_exact_distance_through_hole(void **state) {
+  (void)state;
+  Stage s = stage_open(64, 64);
+  vlImage *image = NULL;
+  vlImageDef size = vl_default_image_def(1, 2, 1);
+  assert_int_equal(vl_image_create(s.context, &size, &image), VL_OK);
+  float *pixels = vl_image_pixels(image);
+  pixels[0] = 0; /* the top: v above a half, towards +z */
+  pixels[1] = 1;
+  vlTextureDef halves = vl_default_texture_def(VL_TEXTURE_IMAGE, false);
+  halves.image = image;
+  halves.filter = VL_FILTER_POINT;
+  vlShapeDef sphere = vl_default_shape_def(VL_SHAPE_SPHERE);
+  sphere.radius = 1;
+  sphere.z_min = -1;
+  sphere.z_max = 1;
+  sphere.alpha.texture = vl_scene_add_texture(s.scene, &halves);
+  vl_image_destroy(image);
+  set_matrix(sphere.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -4);
+  vl_scene_add_shape(s.scene, &sphere);
+  GroundTruth t = ground_truth_take(&s, NULL, VL_CHANNEL_ALL);
+  uint32_t compared = 0;
+  for (uint32_t y = 0; y < 64; y++)
+    for (uint32_t x = 0; x < 64; x++) {
+      double o[3], d[3];
+      vl_camera_unproject(&t.camera, x + 0.5, y + 0.5, o, d);
+      double b = -4 * d[2], root = b * b - 15, far = b + sqrt(fmax(root, 0));
+      if (root < 1e-3 || far * d[2] + 4 > -0.05)
+        continue; /* it passes, or leaves through the hole */
+      compared++;
+      assert_near("distance", number(&t, x, y, "distance.Y"), far, 0x1.01p-24 * far);
+    }
+  assert_true(compared > 100);
+  ground_truth_free(&t);
+  stage_close(&s);
+}
+
 /* A plane parallel to the view plane has one depth for every position of the camera, even if
  * its triangles are instances. */
 static void test_plane_has_one_depth(void **state) {
@@ -328,10 +368,15 @@ static void test_out_of_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_consistent),      cmocka_unit_test(test_exact_distance_and_ids),
-      cmocka_unit_test(test_planes_cut),      cmocka_unit_test(test_plane_has_one_depth),
-      cmocka_unit_test(test_albedo),          cmocka_unit_test(test_same_bits),
-      cmocka_unit_test(test_wrong_arguments), cmocka_unit_test(test_out_of_memory),
+      cmocka_unit_test(test_consistent),
+      cmocka_unit_test(test_exact_distance_and_ids),
+      cmocka_unit_test(test_exact_distance_through_hole),
+      cmocka_unit_test(test_planes_cut),
+      cmocka_unit_test(test_plane_has_one_depth),
+      cmocka_unit_test(test_albedo),
+      cmocka_unit_test(test_same_bits),
+      cmocka_unit_test(test_wrong_arguments),
+      cmocka_unit_test(test_out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

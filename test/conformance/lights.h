@@ -255,6 +255,31 @@ static void emit_texture(vlScene *scene, vlEmissionDef *def) {
   def->scale = 0.4;
 }
 
+/* The same by the second set of texture coordinates, which only the square has that this adds:
+ * it stands on the floor's middle. */
+static void emit_by_second_set(vlScene *scene, vlEmissionDef *def) {
+  static const float corners[12] = {-1, .2f, 0, 1, .2f, 0, 1, 2, 0, -1, 2, 0};
+  static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+  static const float turned[8] = {1, 0, 1, 1, 0, 1, 0, 0};
+  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+  char path[80];
+  vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  snprintf(path, sizeof path, "%s/quarters.pfm", folder);
+  image.path = path;
+  image.uv_set = 1;
+  def->texture = vl_scene_add_texture(scene, &image);
+  def->two_sided = true;
+  square.vertices = 4;
+  square.faces = 2;
+  square.positions = corners;
+  square.uvs = uvs;
+  square.more_uvs[0] = turned;
+  square.indices = indices;
+  square.emission = (vlEmissionId){1};
+  vl_scene_add_shape(scene, &square);
+}
+
 /* Shapes that emit in these ways. The normals of the second's corners lie on both sides of its
  * faces: the side of the light changes within them. */
 static const char *const emitting_shapes[][2] = {
@@ -371,6 +396,11 @@ static void laws_of_emission(void **state) {
     for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++)
       check_emitting_shape("emission", family->rows[k]->name, emitting_shapes[i == 0][0],
                            emitting_shapes[i == 0][1], emissions[i]);
+  static char text[TEXT];
+  change_emission = emit_by_second_set;
+  emitting_text(text, "disk", "\"float radius\" .01", "");
+  check_hit_light("emission", "diffuse", TEXTURE_OF_FILENAME, text, false);
+  change_emission = NULL;
   check_covered_lamps();
   check_sides_of_lamps();
   check_stretched_spheres();

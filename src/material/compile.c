@@ -422,8 +422,7 @@ vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *e
   for (size_t i = 0; i < world->materials.count; i++) {
     world->has_interfaces =
         world->has_interfaces || world->materials.items[i].kind == VL_MATERIAL_INTERFACE;
-    world->has_mixtures =
-        world->has_mixtures || world->materials.items[i].kind == VL_MATERIAL_MIX;
+    world->has_mixtures = world->has_mixtures || world->materials.items[i].mixed;
   }
   return r;
 }

@@ -53,19 +53,6 @@ static bool name_difference(void *user, const char *text) {
   return false;
 }
 
-static bool same_film(const vlFilmShape *a, const vlFilmShape *b) {
-  const vlFilmDef *p = &a->def, *q = &b->def;
-  const vlPixelFilter *f = &p->filter, *g = &q->filter;
-  return a->sequence == b->sequence && p->width == q->width && p->height == q->height &&
-         memcmp(p->crop, q->crop, sizeof p->crop) == 0 && f->kind == g->kind &&
-         f->radius_x == g->radius_x && f->radius_y == g->radius_y && f->sigma == g->sigma &&
-         f->b == g->b && f->c == g->c && f->tau == g->tau && p->space == q->space &&
-         p->white_balance == q->white_balance && p->sensor == q->sensor &&
-         p->max_component == q->max_component && p->errors == q->errors &&
-         p->buckets == q->buckets && p->lambda_min == q->lambda_min &&
-         p->lambda_max == q->lambda_max;
-}
-
 static vlResult check_pair(const Merge *m, const vlFilmReader *r) {
   const vlFilmReader *first = &m->parts[0].reader;
   vlReceipt *then = NULL, *now = NULL;
@@ -94,7 +81,7 @@ static vlResult check_pair(const Merge *m, const vlFilmReader *r) {
                      r->path, first->path, vl_own_words[kind], vl_short_text(now_name).text,
                      vl_short_text(then_name).text);
   }
-  if (result == VL_OK && !same_film(&r->shape, &first->shape))
+  if (result == VL_OK && !vl_film_same_shape(&r->shape, &first->shape))
     result = vl_fail(m->error, VL_ERROR_SCENE,
                      "%s and %s are of different renders: their films differ (size, crop, "
                      "sequence or filter)",

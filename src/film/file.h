@@ -64,6 +64,8 @@ typedef struct vlFilmTexts {
   char *receipt, *attributes;
 } vlFilmTexts;
 
+/* Whether films are of one render, but for their receipts and own kinds. */
+bool vl_film_same_shape(const vlFilmShape *a, const vlFilmShape *b);
 /* The text of a header. Null: out of memory. */
 char *vl_film_header_make(vlContext *context, const vlFilmShape *shape,
                           const vlFilmTexts *texts);

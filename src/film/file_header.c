@@ -7,34 +7,66 @@
 #include "base/json.h"
 #include "base/text.h"
 #include "film/file.h"
+#include "schema/member.h"
 #include "velo/filter_kinds.h"
 #include "velo/schema.h"
 
-typedef enum Type { COUNT, FLOAT, DOUBLE, BOOL } Type;
+/* A number of the film's def. */
 typedef struct Field {
-  const char *name;
-  Type type;
+  char name[48];
+  vlParameterType type; /* COUNT, FLOAT, DOUBLE or BOOL */
   size_t offset;
+  bool optional; /* a parameter of another filter than the film's */
 } Field;
 #define FIELD(name, type, member) \
-  { name, type, offsetof(vlFilmDef, member) }
-static const Field fields[] = {FIELD("width", COUNT, width),
-                               FIELD("height", COUNT, height),
-                               FIELD("filter_radius_x", FLOAT, filter.radius_x),
-                               FIELD("filter_radius_y", FLOAT, filter.radius_y),
-                               FIELD("filter_sigma", FLOAT, filter.sigma),
-                               FIELD("filter_b", FLOAT, filter.b),
-                               FIELD("filter_c", FLOAT, filter.c),
-                               FIELD("filter_tau", FLOAT, filter.tau),
-                               FIELD("white_balance", DOUBLE, white_balance),
-                               FIELD("max_component", FLOAT, max_component),
-                               FIELD("errors", BOOL, errors),
-                               FIELD("buckets", COUNT, buckets),
-                               FIELD("lambda_min", DOUBLE, lambda_min),
-                               FIELD("lambda_max", DOUBLE, lambda_max)};
-enum { FIELDS = VL_LENGTH(fields) };
+  { name, VL_PARAMETER_##type, offsetof(vlFilmDef, member), false }
+static const Field size_fields[] = {FIELD("width", COUNT, width),
+                                    FIELD("height", COUNT, height)};
+static const Field film_fields[] = {FIELD("white_balance", DOUBLE, white_balance),
+                                    FIELD("max_component", FLOAT, max_component),
+                                    FIELD("errors", BOOL, errors),
+                                    FIELD("buckets", COUNT, buckets),
+                                    FIELD("lambda_min", DOUBLE, lambda_min),
+                                    FIELD("lambda_max", DOUBLE, lambda_max)};
+typedef struct FieldList {
+  Field items[32];
+  size_t count;
+} FieldList;
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 enum { SPACES = VL_LENGTH(spaces) };
+
+static void add_field(FieldList *list, const Field *field) {
+  for (size_t i = 0; i < list->count; i++) {
+    Field *known = &list->items[i];
+    if (known->offset != field->offset)
+      continue;
+    known->optional = known->optional && field->optional; /* a parameter of several filters */
+    return;
+  }
+  if (list->count < VL_LENGTH(list->items))
+    list->items[list->count++] = *field;
+}
+
+/* All numbers of a film's def that are in its header, in their order there. Those of filters
+ * are the parameters of their rows. */
+static FieldList list_fields(const vlFilmDef *def) {
+  FieldList list = {.count = 0};
+  const vlKindFamily *filters = vl_kind_family_find("filters");
+  for (size_t i = 0; i < VL_LENGTH(size_fields); i++)
+    add_field(&list, &size_fields[i]);
+  for (uint32_t kind = 0; kind < filters->kind_count; kind++)
+    for (uint32_t i = 0; i < filters->rows[kind]->parameter_count; i++) {
+      const vlParameter *parameter = &filters->rows[kind]->parameters[i];
+      Field field = {.type = parameter->type,
+                     .offset = offsetof(vlFilmDef, filter) + parameter->offset,
+                     .optional = kind != (uint32_t)def->filter.kind};
+      snprintf(field.name, sizeof field.name, "filter_%s", parameter->member);
+      add_field(&list, &field);
+    }
+  for (size_t i = 0; i < VL_LENGTH(film_fields); i++)
+    add_field(&list, &film_fields[i]);
+  return list;
+}
 
 static bool put(json_t *object, const char *key, json_t *value) {
   return value && json_object_set_new(object, key, value) == 0;
@@ -46,19 +78,15 @@ static json_t *number(double value) {
   return isinf(value) ? json_string("infinity") : json_real(value);
 }
 
+static double field_number(const vlFilmDef *def, const Field *field) {
+  return vl_member_number(&vl_member_types[field->type], (const char *)def + field->offset, 0);
+}
+
 static json_t *field_value(const vlFilmDef *def, const Field *field) {
-  const char *at = (const char *)def + field->offset;
-  switch (field->type) {
-    case COUNT:
-      return json_integer(*(const uint32_t *)(const void *)at);
-    case FLOAT:
-      return number((double)*(const float *)(const void *)at);
-    case DOUBLE:
-      return number(*(const double *)(const void *)at);
-    case BOOL:
-      return json_boolean(*(const bool *)(const void *)at);
-  }
-  return NULL;
+  double value = field_number(def, field);
+  if (field->type == VL_PARAMETER_BOOL)
+    return json_boolean(value != 0);
+  return field->type == VL_PARAMETER_COUNT ? json_integer((json_int_t)value) : number(value);
 }
 
 /* {"camera": name, ...}: of the kinds that have names; none: nothing is put. */
@@ -79,8 +107,9 @@ static json_t *film_tree(const vlFilmShape *shape) {
   const vlFilmDef *def = &shape->def;
   json_t *film = json_object();
   bool good = film != NULL;
-  for (size_t i = 0; i < FIELDS && good; i++)
-    good = put(film, fields[i].name, field_value(def, &fields[i]));
+  const FieldList list = list_fields(def);
+  for (size_t i = 0; i < list.count && good; i++)
+    good = put(film, list.items[i].name, field_value(def, &list.items[i]));
   const uint32_t *c = def->crop;
   good = good &&
          put(film, "crop",
@@ -102,6 +131,17 @@ static bool put_text(json_t *tree, const char *key, const char *text) {
   json_error_t location;
   return !text ||
          put(tree, key, vl_json_parse(text, strlen(text), JSON_REJECT_DUPLICATES, &location));
+}
+
+bool vl_film_same_shape(const vlFilmShape *a, const vlFilmShape *b) {
+  const vlFilmDef *p = &a->def, *q = &b->def;
+  const FieldList list = list_fields(p);
+  bool same = a->sequence == b->sequence && memcmp(p->crop, q->crop, sizeof p->crop) == 0 &&
+              p->filter.kind == q->filter.kind && p->space == q->space &&
+              p->sensor == q->sensor;
+  for (size_t i = 0; i < list.count && same; i++)
+    same = field_number(p, &list.items[i]) == field_number(q, &list.items[i]);
+  return same;
 }
 
 char *vl_film_header_make(vlContext *context, const vlFilmShape *shape,
@@ -141,26 +181,16 @@ static bool number_of(const json_t *value, double *result) {
 }
 
 static bool take_field(const json_t *film, const Field *field, vlFilmDef *def) {
-  char *at = (char *)def + field->offset;
   const json_t *value = json_object_get(film, field->name);
-  double number = 0;
-  switch (field->type) {
-    case COUNT:
-      return count_of(value, (uint32_t *)(void *)at);
-    case BOOL:
-      *(bool *)(void *)at = json_is_true(value);
-      return json_is_boolean(value);
-    case FLOAT:
-    case DOUBLE:
-      break;
-  }
-  if (!number_of(value, &number))
-    return false;
-  if (field->type == DOUBLE)
-    *(double *)(void *)at = number;
-  else
-    *(float *)(void *)at = (float)number;
-  return true;
+  uint32_t count = 0;
+  double number = json_is_true(value);
+  bool good = field->type == VL_PARAMETER_BOOL    ? json_is_boolean(value)
+              : field->type == VL_PARAMETER_COUNT ? count_of(value, &count)
+                                                  : number_of(value, &number);
+  if (good)
+    vl_member_types[field->type].put((char *)def + field->offset, 0,
+                                     field->type == VL_PARAMETER_COUNT ? count : number);
+  return good || (!value && field->optional);
 }
 
 static bool take_names(const json_t *film, vlFilmDef *def) {
@@ -204,15 +234,16 @@ static vlResult take_film(const char *path, const json_t *film, vlFilmShape *sha
                           vlError *error) {
   vlFilmDef *def = &shape->def;
   *def = vl_default_film_def(1, 1);
-  for (size_t i = 0; i < FIELDS; i++)
-    if (!take_field(film, &fields[i], def))
-      return wrong(path, fields[i].name, error);
+  if (!take_names(film, def))
+    return wrong(path, "filter, space or sensor", error);
+  const FieldList list = list_fields(def);
+  for (size_t i = 0; i < list.count; i++)
+    if (!take_field(film, &list.items[i], def))
+      return wrong(path, list.items[i].name, error);
   const json_t *crop = json_object_get(film, "crop");
   for (size_t i = 0; i < 4; i++)
     if (!count_of(json_array_get(crop, i), &def->crop[i]))
       return wrong(path, "crop", error);
-  if (!take_names(film, def))
-    return wrong(path, "filter, space or sensor", error);
   if (!count_of(json_object_get(film, "sequence"), &shape->sequence) || !shape->sequence)
     return wrong(path, "sequence", error);
   if (!take_own(json_object_get(film, "own"), &shape->own))

@@ -1,4 +1,4 @@
-/* schema/member.h: how a def stores the values of its parameters; private to the room. */
+/* schema/member.h: how a def stores the values of its parameters. */
 #ifndef SCHEMA_MEMBER_H
 #define SCHEMA_MEMBER_H
 

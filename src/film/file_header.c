@@ -19,15 +19,15 @@ typedef struct Field {
   bool optional; /* a parameter of another filter than the film's */
 } Field;
 #define FIELD(name, type, member) \
-  { name, VL_PARAMETER_##type, offsetof(vlFilmDef, member), false }
-static const Field size_fields[] = {FIELD("width", COUNT, width),
-                                    FIELD("height", COUNT, height)};
-static const Field film_fields[] = {FIELD("white_balance", DOUBLE, white_balance),
-                                    FIELD("max_component", FLOAT, max_component),
-                                    FIELD("errors", BOOL, errors),
-                                    FIELD("buckets", COUNT, buckets),
-                                    FIELD("lambda_min", DOUBLE, lambda_min),
-                                    FIELD("lambda_max", DOUBLE, lambda_max)};
+  { name, type, offsetof(vlFilmDef, member), false }
+static const Field size_fields[] = {FIELD("width", VL_PARAMETER_COUNT, width),
+                                    FIELD("height", VL_PARAMETER_COUNT, height)};
+static const Field film_fields[] = {FIELD("white_balance", VL_PARAMETER_DOUBLE, white_balance),
+                                    FIELD("max_component", VL_PARAMETER_FLOAT, max_component),
+                                    FIELD("errors", VL_PARAMETER_BOOL, errors),
+                                    FIELD("buckets", VL_PARAMETER_COUNT, buckets),
+                                    FIELD("lambda_min", VL_PARAMETER_DOUBLE, lambda_min),
+                                    FIELD("lambda_max", VL_PARAMETER_DOUBLE, lambda_max)};
 typedef struct FieldList {
   Field items[32];
   size_t count;

@@ -31,18 +31,24 @@ static double unit(double v) {
   return fmin(fmax(v, 0), 1);
 }
 
+/* Whether a texture is a factor times a channel of an image. */
+static bool is_channel(const vlTextureDef *t, int channel) {
+  return t && t->channel == channel && t->bias == 0 && isnan(t->cutoff) && !t->invert;
+}
+
+static double factor_of(const vlTextureDef *t, int channel) {
+  return (double)t->scale * (double)t->tint[channel];
+}
+
 /* Writes a factor times a channel of an image. */
 static void put_channel(vlExport *x, json_t *to, const char *factor_key,
                         const char *texture_key, int channel, const vlFloatInput *input) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
-  json_t *info = t && t->channel == channel && t->bias == 0 && isnan(t->cutoff) && !t->invert
-                     ? vl_gltf_texture_info(x, t, channel != 3)
-                     : NULL;
+  json_t *info = is_channel(t, channel) ? vl_gltf_texture_info(x, t, channel != 3) : NULL;
   if (input->texture.index && !info)
     vl_export_lose(x, "textured %s: a number stands in", factor_key);
   set_number(to, factor_key,
-             unit(info ? (double)t->scale * (double)t->tint[channel]
-                       : (double)vl_export_number(x, input)));
+             unit(info ? factor_of(t, channel) : (double)vl_export_number(x, input)));
   if (info)
     json_object_set_new(to, texture_key, info);
 }
@@ -59,7 +65,7 @@ static void put_color(vlExport *x, json_t *to, const char *factor_key, const cha
   vl_export_rgb(x, input, rgb);
   json_t *factor = json_array();
   for (int i = 0; i < 3; i++) {
-    double v = info ? (double)t->tint[i] * (double)t->scale : (double)rgb[i];
+    double v = info ? factor_of(t, i) : (double)rgb[i];
     if (bounded && v > 1 + 1e-6)
       vl_export_lose(x, "%s above 1: cut off", factor_key);
     json_array_append_new(factor, json_real(bounded ? unit(v) : v > 0 ? v : 0));
@@ -74,8 +80,12 @@ static void put_color(vlExport *x, json_t *to, const char *factor_key, const cha
 static void put_normal(vlExport *x, json_t *to, const char *key, vlTextureId id, float scale) {
   const vlTextureDef *t = vl_export_texture(x, id);
   json_t *info = t ? vl_gltf_texture_info(x, t, true) : NULL;
+  if (id.index && !t)
+    vl_export_lose(x, "normal maps that are not images: left out");
   if (!info)
     return;
+  if (t->invert || t->scale != 1 || t->tint[0] != 1 || t->tint[1] != 1 || t->tint[2] != 1)
+    vl_export_lose(x, "factors on the texels of normal maps: 1 stands in");
   if (scale != 1.0f)
     set_number(info, "scale", scale);
   json_object_set_new(to, key, info);
@@ -107,23 +117,30 @@ static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color
   json_object_set_new(material, "pbrMetallicRoughness", base);
 }
 
-static bool same_image(const vlTextureDef *a, const vlTextureDef *b) {
+/* Whether two textures read the same texels at each point. */
+static bool same_texels(const vlTextureDef *a, const vlTextureDef *b) {
+  double p[6], q[6];
+  vl_export_st_from_uv(a, p);
+  vl_export_st_from_uv(b, q);
   return a->data == b->data && a->image == b->image && a->uv_set == b->uv_set &&
-         (a->path == b->path || (a->path && b->path && vl_text_is(a->path, b->path)));
+         (a->path == b->path || (a->path && b->path && vl_text_is(a->path, b->path))) &&
+         a->mapping == b->mapping && memcmp(p, q, sizeof p) == 0 && a->filter == b->filter &&
+         a->wrap == b->wrap &&
+         (a->wrap_t_given ? a->wrap_t : a->wrap) == (b->wrap_t_given ? b->wrap_t : b->wrap) &&
+         a->encoding_given == b->encoding_given && a->encoding == b->encoding;
 }
 
 static void put_metal(vlExport *x, json_t *base, const vlPrincipledDef *p) {
   const vlTextureDef *m = vl_export_texture(x, p->metallic.texture);
   const vlTextureDef *r = vl_export_texture(x, p->roughness.texture);
-  bool good = m && r && same_image(m, r) && m->channel == 2 && r->channel == 1 &&
-              m->bias == 0 && r->bias == 0;
+  bool good = is_channel(m, 2) && is_channel(r, 1) && same_texels(m, r);
   json_t *info = good ? vl_gltf_texture_info(x, m, true) : NULL;
   if ((p->metallic.texture.index || p->roughness.texture.index) && !info)
     vl_export_lose(x, "textured metallic or roughness, not of one image: numbers stand in");
   set_number(base, "metallicFactor",
-             unit(info ? (double)m->tint[2] : (double)vl_export_number(x, &p->metallic)));
+             unit(info ? factor_of(m, 2) : (double)vl_export_number(x, &p->metallic)));
   set_number(base, "roughnessFactor",
-             unit(info ? (double)r->tint[1] : (double)vl_export_number(x, &p->roughness)));
+             unit(info ? factor_of(r, 1) : (double)vl_export_number(x, &p->roughness)));
   if (info)
     json_object_set_new(base, "metallicRoughnessTexture", info);
 }
@@ -183,25 +200,41 @@ static void put_sheen_coat(vlExport *x, json_t *material, const vlPrincipledDef 
   put_normal(x, e, "clearcoatNormalTexture", p->clearcoat_normal, p->clearcoat_normal_scale);
 }
 
+/* An image has strengths and directions. Those of glTF files have become two textures of one
+ * name. */
+static void put_anisotropy(vlExport *x, json_t *to, const vlPrincipledDef *p) {
+  const vlTextureDef *strength = vl_export_texture(x, p->anisotropy.texture);
+  const vlTextureDef *angle = vl_export_texture(x, p->anisotropy_rotation.texture);
+  vlFloatInput input = p->anisotropy;
+  bool pair = strength && angle && angle->image && angle->name && strength->name &&
+              vl_text_is(angle->name, strength->name);
+  if (!pair && (input.texture.index || p->anisotropy_rotation.texture.index))
+    vl_export_lose(x, "textured anisotropy that is not from a glTF file: numbers stand in");
+  if (!pair)
+    input = vl_float_input(vl_export_number(x, &p->anisotropy));
+  put_channel(x, to, "anisotropyStrength", "anisotropyTexture", 2, &input);
+  set_number(to, "anisotropyRotation", p->anisotropy_rotation.value);
+}
+
 static void put_film(vlExport *x, json_t *material, const vlPrincipledDef *p) {
   if (vl_export_is_on(&p->iridescence)) {
     json_t *e = extension(x, material, "KHR_materials_iridescence");
     put_channel(x, e, "iridescenceFactor", "iridescenceTexture", 0, &p->iridescence);
     set_number(e, "iridescenceIor", p->iridescence_ior);
     const vlTextureDef *t = vl_export_texture(x, p->iridescence_thickness.texture);
-    json_t *info = t && t->channel == 1 ? vl_gltf_texture_info(x, t, true) : NULL;
-    double most = info ? (double)t->bias + (double)t->tint[1]
+    bool good = t && t->channel == 1 && isnan(t->cutoff) && !t->invert;
+    json_t *info = good ? vl_gltf_texture_info(x, t, true) : NULL;
+    double most = info ? (double)t->bias + factor_of(t, 1)
                        : (double)vl_export_number(x, &p->iridescence_thickness);
+    if (p->iridescence_thickness.texture.index && !info)
+      vl_export_lose(x, "textured iridescence thickness: a number stands in");
     set_number(e, "iridescenceThicknessMinimum", info ? (double)t->bias : fmin(100, most));
     set_number(e, "iridescenceThicknessMaximum", most);
     if (info)
       json_object_set_new(e, "iridescenceThicknessTexture", info);
   }
-  if (!vl_export_is_on(&p->anisotropy))
-    return;
-  json_t *e = extension(x, material, "KHR_materials_anisotropy");
-  put_channel(x, e, "anisotropyStrength", "anisotropyTexture", 2, &p->anisotropy);
-  set_number(e, "anisotropyRotation", p->anisotropy_rotation.value);
+  if (vl_export_is_on(&p->anisotropy))
+    put_anisotropy(x, extension(x, material, "KHR_materials_anisotropy"), p);
 }
 
 static void put_passing(vlExport *x, json_t *material, const vlPrincipledDef *p,

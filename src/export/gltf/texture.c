@@ -90,13 +90,18 @@ static void put_transform(vlExport *x, json_t *info, const vlTextureDef *t) {
   vl_gltf_use(x, "KHR_texture_transform");
 }
 
+/* Alpha has no curve. */
+static bool is_alpha(const vlTextureDef *t) {
+  return !t->spectrum && t->channel == 3;
+}
+
 json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear) {
   if (t->mapping != VL_MAPPING_UV) {
     vl_export_lose(x, "textures mapped other than by uv: left out");
     return NULL;
   }
-  bool is_linear = t->encoding_given && t->encoding == VL_ENCODING_LINEAR;
-  if (is_linear != linear && t->spectrum)
+  const vlEncoding curve = t->encoding_given ? t->encoding : VL_ENCODING_SRGB;
+  if (curve != (linear ? VL_ENCODING_LINEAR : VL_ENCODING_SRGB) && !is_alpha(t))
     vl_export_lose(x, "images whose curve is not the one that glTF expects");
   json_int_t image = put_image(x, t);
   if (image < 0) {

@@ -93,18 +93,37 @@ static void put_normal(vlExport *x, json_t *to, const char *key, vlTextureId id,
 
 /* ---- the base ---------------------------------------------------------------------------- */
 
+/* Whether two textures read the same texels at each point; their curves may differ. */
+static bool same_texels(const vlTextureDef *a, const vlTextureDef *b) {
+  double p[6], q[6];
+  vl_export_st_from_uv(a, p);
+  vl_export_st_from_uv(b, q);
+  return a->data == b->data && a->image == b->image && a->uv_set == b->uv_set &&
+         (a->path == b->path || (a->path && b->path && vl_text_is(a->path, b->path))) &&
+         a->mapping == b->mapping && memcmp(p, q, sizeof p) == 0 && a->filter == b->filter &&
+         a->wrap == b->wrap &&
+         (a->wrap_t_given ? a->wrap_t : a->wrap) == (b->wrap_t_given ? b->wrap_t : b->wrap);
+}
+
+/* In glTF the coverage is the base colour's alpha. colors: the mesh has vertex colours. */
 static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alpha,
-                         double *factor) {
+                         const vlMaterialDef *m, bool colors, double *factor) {
   const vlTextureDef *t = vl_scene_texture(x->scene, alpha->texture);
-  *factor = t ? (double)t->tint[3] : (double)alpha->value;
+  const vlTextureDef *base = m ? vl_export_texture(x, m->reflectance.texture) : NULL;
+  bool plain = t && t->bias == 0 && !t->invert;
+  bool of_vertices = plain && t->kind == VL_TEXTURE_VERTEX_COLOR && colors;
+  bool of_base =
+      plain && t->kind == VL_TEXTURE_IMAGE && t->channel == 3 && base && same_texels(t, base);
+  *factor = of_base       ? factor_of(t, 3)
+            : of_vertices ? (double)t->tint[3]
+                          : (double)vl_export_number(x, alpha);
   if (!t && alpha->value >= 1)
     return;
-  bool mask = t && !isnan(t->cutoff);
+  bool mask = (of_base || of_vertices) && !isnan(t->cutoff);
   json_object_set_new(material, "alphaMode", json_string(mask ? "MASK" : "BLEND"));
   if (mask)
     set_number(material, "alphaCutoff", t->cutoff);
-  if (t && t->kind != VL_TEXTURE_VERTEX_COLOR &&
-      (t->kind != VL_TEXTURE_IMAGE || t->channel != 3))
+  if (t && !of_base && !of_vertices)
     vl_export_lose(x, "coverage that is not the fourth channel of the base colour's image");
 }
 
@@ -117,23 +136,11 @@ static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color
   json_object_set_new(material, "pbrMetallicRoughness", base);
 }
 
-/* Whether two textures read the same texels at each point. */
-static bool same_texels(const vlTextureDef *a, const vlTextureDef *b) {
-  double p[6], q[6];
-  vl_export_st_from_uv(a, p);
-  vl_export_st_from_uv(b, q);
-  return a->data == b->data && a->image == b->image && a->uv_set == b->uv_set &&
-         (a->path == b->path || (a->path && b->path && vl_text_is(a->path, b->path))) &&
-         a->mapping == b->mapping && memcmp(p, q, sizeof p) == 0 && a->filter == b->filter &&
-         a->wrap == b->wrap &&
-         (a->wrap_t_given ? a->wrap_t : a->wrap) == (b->wrap_t_given ? b->wrap_t : b->wrap) &&
-         a->encoding_given == b->encoding_given && a->encoding == b->encoding;
-}
-
 static void put_metal(vlExport *x, json_t *base, const vlPrincipledDef *p) {
   const vlTextureDef *m = vl_export_texture(x, p->metallic.texture);
   const vlTextureDef *r = vl_export_texture(x, p->roughness.texture);
-  bool good = is_channel(m, 2) && is_channel(r, 1) && same_texels(m, r);
+  bool good = is_channel(m, 2) && is_channel(r, 1) && same_texels(m, r) &&
+              m->encoding_given == r->encoding_given && m->encoding == r->encoding;
   json_t *info = good ? vl_gltf_texture_info(x, m, true) : NULL;
   if ((p->metallic.texture.index || p->roughness.texture.index) && !info)
     vl_export_lose(x, "textured metallic or roughness, not of one image: numbers stand in");
@@ -396,10 +403,14 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e,
   float rgb[3];
   vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   const vlTextureDef *t = vl_export_texture(x, e->texture);
+  if (t && t->invert) {
+    vl_export_lose(x, "inverted images of area lights: their radiance stands in");
+    t = NULL;
+  }
   vl_export_light_rgb(&e->radiance, rgb);
   if (t)
     for (int i = 0; i < 3; i++)
-      rgb[i] = t->tint[i] * t->scale;
+      rgb[i] = (float)factor_of(t, i);
   if (e->image) {
     image.path = e->image;
     rgb[0] = rgb[1] = rgb[2] = 1;
@@ -465,7 +476,7 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors,
     vl_gltf_name(json, m->name);
   if (own && own->kind == VL_MATERIAL_MIX)
     vl_export_lose(x, "material mix: its first alone");
-  put_coverage(x, json, &d->alpha, &coverage);
+  put_coverage(x, json, &d->alpha, m, *colors, &coverage);
   vlMaterialDef plain = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   if (!m)
     m = &plain;

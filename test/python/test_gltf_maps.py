@@ -1,0 +1,121 @@
+#!/usr/bin/python3
+"""Textures of materials through glTF: whatever an image texture of an input has (factor, inversion, channel, threshold, map,
+curve and so on), the scene that is read from the written file gives the same image, or the writer says what it loses."""
+import cases
+from cases import case, work
+
+numpy = cases.need("numpy")
+import velo
+
+CORNERS = numpy.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=numpy.float32)
+FACES = numpy.array([[0, 1, 2], [0, 2, 3]])
+UVS = (CORNERS[:, :2] + 1) / 2
+CAMERA = {"eye": (0.3, -0.4, 3), "lookat": (0, 0, 0), "fov": 0.6}
+
+# What differs from a texture that glTF has. A map is seen by its own texels alone where it is wrapped.
+CHANGES = {"nothing": {}, "scale": {"scale": 0.5}, "invert": {"invert": True}, "tint": {"tint": (0.3, 0.5, 0.7, 0.9)}, "bias": {"bias": 0.1},
+           **{f"channel {i}": {"channel": i} for i in range(4)}, "cutoff": {"cutoff": 0.5}, "su": {"su": 2.0}, "dv": {"dv": 0.3},
+           "clamp": {"wrap": "clamp", "su": 2.0}, "black": {"wrap": "black", "su": 2.0}, "wrap_t": {"wrap_t_given": True, "wrap_t": "clamp", "sv": 2.0},
+           "point": {"filter": "point"}, "linear": {"encoding_given": True, "encoding": "linear"},
+           "gamma": {"encoding_given": True, "encoding": "gamma", "gamma": 1.5}, "spherical": {"mapping": "spherical"}, "planar": {"mapping": "planar"}}
+BASE = {"metallic": 0.2, "roughness": 0.4, "specular": 0.7, "clearcoat": 0.5, "clearcoat_roughness": 0.3}
+# Of each input: its channel in glTF (None: a colour) and what else shows it.
+INPUTS = {"reflectance": (None, {"metallic": 0.0}), "sheen_color": (None, {"sheen_roughness": 0.5}), "transmission": (0, {}), "specular": (3, {}),
+          "clearcoat_roughness": (1, {"clearcoat": 1.0}), "iridescence_thickness": (1, {"iridescence": 1.0, "metallic": 1.0}),
+          "anisotropy": (2, {"metallic": 1.0})}
+
+
+def write_images():
+    numbers = numpy.random.default_rng(3)
+    for name in ("a.png", "b.png"):
+        texels = numbers.uniform(0.15, 0.85, (8, 8, 4))
+        texels[..., 3] = numbers.choice([0.2, 0.6, 1.0], (8, 8))
+        velo.Image((texels * 255).astype(numpy.uint8)).write(work(name))
+
+
+def image(scene, number=None, name="a.png", **change):
+    """number: the channel of a float texture; None: a colour."""
+    words = {"path": work(name), "spectrum": number is None}
+    if number is not None:
+        words.update(channel=number, encoding_given=True, encoding="linear")
+    return scene.add_texture("image", **{**words, **change})
+
+
+def render(scene):
+    return numpy.asarray(scene.render(camera=velo.Camera(16, 16, **CAMERA), spp=16, color="rgb", tracer="path", max_depth=3))
+
+
+def compare(name, words_of):
+    """words_of: from a scene, the keywords of a square. Returns whether the writer lost something."""
+    scene = velo.Scene()
+    scene.add_light("infinite")
+    scene.add_light("point", position=(1, 1, 3), scale=20.0)
+    scene.add_mesh(CORNERS, FACES, uvs=UVS, **words_of(scene))
+    lost = scene.save(work("a.gltf"))
+    before, after = render(scene), render(velo.load(work("a.gltf")))
+    difference = abs(before - after).mean() / before.mean()
+    assert lost or difference < 0.02, f"{name}: {difference:.3f} of the light differs, and nothing is said to be lost"
+    return bool(lost)
+
+
+@case
+def inputs():
+    kept = 0
+    for word, (channel, more) in INPUTS.items():
+        for name, change in CHANGES.items():
+            def words_of(scene):
+                values = {**BASE, **more, word: image(scene, channel, **change)}
+                return {"material": scene.add_material("principled", **values)}
+            kept += not compare(f"{word}, {name}", words_of)
+    assert kept > 60, kept
+
+
+@case
+def metallic_and_roughness_of_one_image():
+    for changed in ("metallic", "roughness", "both"):
+        for name, change in CHANGES.items():
+            def words_of(scene):
+                values = {word: image(scene, channel, **(change if changed in (word, "both") else {}))
+                          for word, channel in (("metallic", 2), ("roughness", 1))}
+                return {"material": scene.add_material("principled", **{**BASE, **values})}
+            lost = compare(f"metallic and roughness, {name} of {changed}", words_of)
+            assert not lost or name not in ("nothing", "scale", "tint"), (changed, name)
+
+
+@case
+def normal_maps():
+    for word in ("normal", "clearcoat_normal"):
+        for name, change in CHANGES.items():
+            def words_of(scene):
+                texture = image(scene, **{"encoding_given": True, "encoding": "linear", **change})
+                return {"material": scene.add_material("principled", **{**BASE, "roughness": 0.3, word: texture})}
+            compare(f"{word}, {name}", words_of)
+
+
+@case
+def coverage():
+    """It is the base colour's alpha in glTF."""
+    for name, change in CHANGES.items():
+        for base in ("a.png", "b.png", None):
+            def words_of(scene):
+                values = {"metallic": 0.0, "roughness": 0.5}
+                if base:
+                    values["reflectance"] = image(scene, name=base)
+                return {"material": scene.add_material("principled", **values), "alpha": image(scene, 3, **change)}
+            lost = compare(f"coverage, {name}, base {base}", words_of)
+            assert lost or base == "a.png", name
+            assert not lost or base != "a.png" or name not in ("nothing", "scale", "tint", "cutoff"), name
+
+
+@case
+def emission():
+    for name, change in CHANGES.items():
+        def words_of(scene):
+            light = scene.add_emission(texture=image(scene, **change), two_sided=True)
+            return {"material": scene.add_material("diffuse"), "emission": light}
+        compare(f"emission, {name}", words_of)
+
+
+if __name__ == "__main__":
+    write_images()
+    cases.main()

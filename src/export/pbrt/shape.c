@@ -139,20 +139,12 @@ static bool put_emission(vlExport *x, const vlEmissionDef *e) {
   const vlTextureDef *t = vl_export_texture(x, e->texture);
   vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   char name[300] = "";
-  double scale = (double)e->scale;
   image.path = e->image;
-  if (t) {
-    scale *= (double)fmaxf(t->tint[0], fmaxf(t->tint[1], t->tint[2]));
-    if (t->tint[0] != t->tint[1] || t->tint[1] != t->tint[2])
-      vl_export_lose(x, "tints of images that emit light: left out");
-  }
-  if ((t || e->image) && !vl_pbrt_image(x, t ? t : &image, VL_PBRT_COLORS, name))
+  if ((t || e->image) && !vl_pbrt_emitted_image(x, t ? t : &image, name))
     return false;
-  vlEmissionDef scaled = *e;
   const vlKindRow *row = vl_kind_row(&vl_emission_family, 0);
-  scaled.scale = (float)scale;
   PUT("  AreaLightSource \"%s\"", row->name);
-  vl_pbrt_row(x, row, &scaled, false, name[0] ? "L" : NULL);
+  vl_pbrt_row(x, row, e, false, name[0] ? "L" : NULL);
   if (name[0])
     PUT(" \"string filename\" \"%s\"", name);
   PUT("\n");

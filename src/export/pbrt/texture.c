@@ -48,12 +48,22 @@ static bool fits_pbrt(const vlImage *image, vlPbrtFile kind, const char *name) {
   return image->channels == 1 || (have && drops_alpha);
 }
 
+/* The pixels of a texture's image as vl_export_pixels, with the curve that the texture says. */
+static const vlImage *pixels_of(vlExport *x, const vlTextureDef *t, vlImage **own) {
+  const vlImage *image = vl_export_pixels(x, t, own);
+  if (*own && t->encoding_given) {
+    (*own)->encoding = t->encoding;
+    (*own)->gamma = t->gamma;
+  }
+  return image;
+}
+
 /* Encodes an image that pbrt would refuse as an EXR of linear R, G and B. *bytes stays null
  * when it would not. */
 static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const char *name,
                    char **bytes, size_t *size) {
   vlImage *decoded, *rgb = NULL;
-  const vlImage *image = vl_export_pixels(x, t, &decoded);
+  const vlImage *image = pixels_of(x, t, &decoded);
   bool fine = image != NULL;
   if (fine && !fits_pbrt(image, kind, name)) {
     /* else the first channel, whatever it is */
@@ -61,8 +71,6 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
     vlImageDef def = vl_default_image_def(image->width, image->height, 3);
     if (have < 3)
       channel[1] = channel[2] = channel[0];
-    if (decoded && t->encoding_given)
-      decoded->encoding = t->encoding;
     fine = vl_image_create(x->context, &def, &rgb) == VL_OK || vl_export_no_memory(x);
     for (uint32_t y = 0; fine && y < image->height; y++)
       vl_image_row_to_float(image, y, channel, 3, vl_image_row(rgb, y));
@@ -156,19 +164,37 @@ static bool changes_color(Change c) {
   return c.turned_back != 0 || c.raised != 0 || c.metal;
 }
 
-/* Changes an image: one channel as the tracer reads it, or three tinted channels. */
+static float scaled(const vlTextureDef *t, float texel) {
+  const float value = t->scale * texel;
+  return fmaxf(0, t->invert ? 1 - value : value);
+}
+
+/* Changes an image: one channel as the tracer reads it, or three channels. The new image has
+ * the texture's factors. */
 static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
   uint32_t variant = 16 + (change.squared ? 1u : 0u);
-  const float key[12] = {t->tint[0],        t->tint[1],       t->tint[2],
-                         t->tint[3],        t->bias,          t->scale,
-                         (float)t->channel, (float)t->cutoff, change.turned_back,
-                         change.raised,     change.lost,      change.metal ? 1 : 0};
+  const float key[16] = {t->tint[0],
+                         t->tint[1],
+                         t->tint[2],
+                         t->tint[3],
+                         t->bias,
+                         t->scale,
+                         (float)t->channel,
+                         (float)t->cutoff,
+                         change.turned_back,
+                         change.raised,
+                         change.lost,
+                         change.metal ? 1 : 0,
+                         t->invert,
+                         t->encoding_given ? 1 + (float)t->encoding : 0,
+                         t->encoding_given ? t->gamma : 0,
+                         t->spectrum};
   for (size_t i = 0; i < sizeof key; i++)
     variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 16u;
   if (is_written(x, t, variant, name))
     return true;
   vlImage *image, *made = NULL;
-  const vlImage *from = vl_export_pixels(x, t, &image);
+  const vlImage *from = pixels_of(x, t, &image);
   if (!from)
     return false;
   uint32_t channel[4], have = vl_image_color(from, channel), per = t->spectrum ? 3 : 1;
@@ -178,8 +204,6 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
   bool fine = row && vl_image_create(x->context, &def, &made) == VL_OK;
   if (!fine)
     vl_export_no_memory(x);
-  if (fine && t->encoding_given && image)
-    image->encoding = t->encoding;
   for (uint32_t y = 0; fine && y < from->height; y++) {
     float *to = vl_image_row(made, y);
     vl_image_row_to_float(from, y, channel, have, row);
@@ -187,15 +211,18 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
       const float *v = row + (size_t)i * have;
       /* of one or two channels: grey, and coverage */
       const bool colored = have > 2, covered = have == 2 || have == 4;
-      const float rgba[4] = {v[0], v[colored ? 1 : 0], v[colored ? 2 : 0],
-                             covered ? v[have - 1] : 1.0f};
+      const float texels[4] = {v[0], v[colored ? 1 : 0], v[colored ? 2 : 0],
+                               covered ? v[have - 1] : 1.0f};
+      float rgba[4];
+      for (int k = 0; k < 4; k++)
+        rgba[k] = t->tint[k] * (k < 3 || covered ? scaled(t, texels[k]) : 1);
       if (per == 3) {
         for (int k = 0; k < 3; k++)
-          to[3 * i + (uint32_t)k] = change_color(rgba[k] * t->tint[k], change);
+          to[3 * i + (uint32_t)k] = change_color(rgba[k], change);
         continue;
       }
-      float value = t->bias + (t->channel < 0 ? (rgba[0] + rgba[1] + rgba[2]) / 3
-                                              : rgba[t->channel] * t->tint[t->channel]);
+      const float mean = have == 4 ? rgba[3] : (rgba[0] + rgba[1] + rgba[2]) / 3;
+      float value = t->bias + (t->channel < 0 ? mean : rgba[t->channel]);
       if (!isnan(t->cutoff))
         value = value >= (float)t->cutoff ? 1.0f : 0.0f;
       to[i] = change.squared ? value * value : value;
@@ -210,6 +237,20 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
   vl_image_destroy(made);
   vl_image_destroy(image);
   return fine;
+}
+
+bool vl_pbrt_emitted_image(vlExport *x, const vlTextureDef *t, char name[300]) {
+  bool white = t->tint[0] == 1 && t->tint[1] == 1 && t->tint[2] == 1;
+  double m[6];
+  vl_export_st_from_uv(t, m);
+  if (t->mapping != VL_MAPPING_UV || t->uv_set || m[0] != 1 || m[1] != 0 || m[2] != 0 ||
+      m[3] != 0 || m[4] != 1 || m[5] != 0)
+    vl_export_lose(x, "maps of images that emit light: left out");
+  if (t->filter == VL_FILTER_POINT)
+    vl_export_lose(x, "filters of images that emit light: pbrt's own");
+  return white && t->scale == 1 && !t->invert && !t->encoding_given
+             ? vl_pbrt_image(x, t, VL_PBRT_COLORS, name)
+             : work(x, t, as_is, name);
 }
 
 static void put_mapping(vlExport *x, const vlTextureDef *t) {
@@ -238,9 +279,10 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
   static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralsphere", "repeat"},
                            *const filters[] = {"point", "bilinear", "trilinear", "ewa"};
   bool even = t->tint[0] == t->tint[1] && t->tint[1] == t->tint[2];
-  bool plain = t->spectrum
-                   ? even
-                   : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !change.squared;
+  bool white = even && t->tint[0] == 1;
+  bool plain = t->spectrum ? white || (even && !t->invert)
+                           : white && t->tint[3] == 1 && t->channel < 0 && t->bias == 0 &&
+                                 isnan(t->cutoff) && !change.squared;
   plain = plain && !changes_color(change);
   char name[300];
   if (!(plain ? vl_pbrt_image(x, t, VL_PBRT_VALUES, name) : work(x, t, change, name)))
@@ -253,12 +295,14 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
     vl_export_lose(x, "colours of vertices: left out");
   if (t->spectrum && t->space != x->scene->defs.film.space)
     vl_export_lose(x, "colour spaces of images: the scene's");
-  double scale = (double)t->scale * (plain && t->spectrum ? (double)t->tint[0] : 1);
+  if (!t->spectrum && !isnan(t->cutoff))
+    vl_export_lose(x, "thresholds of textures: of each texel, before these are interpolated");
+  double scale = (double)t->scale * (t->spectrum ? (double)t->tint[0] : 1);
   PUT(" \"string filename\" \"%s\" \"string wrap\" \"%s\" \"string filter\" \"%s\"", name,
       wraps[t->wrap], filters[t->filter]);
-  if (scale != 1)
-    PUT(" \"float scale\" [%.9g]", change.squared ? scale * scale : scale);
-  if (t->invert)
+  if (plain && scale != 1)
+    PUT(" \"float scale\" [%.9g]", scale);
+  if (plain && t->invert)
     PUT(" \"bool invert\" true");
   if (plain && t->encoding_given) {
     if (t->encoding == VL_ENCODING_GAMMA)

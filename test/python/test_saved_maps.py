@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Textures of materials through glTF: whatever an image texture of an input has (factor, inversion, channel, threshold, map,
-curve and so on), the scene that is read from the written file gives the same image, or the writer says what it loses."""
+"""Textures through written scenes, glTF and pbrt: whatever an image texture of a material, of coverage or of a lamp has (factor,
+inversion, channel, threshold, map, curve and so on), the scene that is read from the written file gives the same image, or the
+writer says what it loses."""
 import cases
 from cases import case, work
 
@@ -45,14 +46,14 @@ def render(scene):
     return numpy.asarray(scene.render(camera=velo.Camera(16, 16, **CAMERA), spp=16, color="rgb", tracer="path", max_depth=3))
 
 
-def compare(name, words_of):
+def compare(name, words_of, file="a.gltf"):
     """words_of: from a scene, the keywords of a square. Returns whether the writer lost something."""
     scene = velo.Scene()
     scene.add_light("infinite")
     scene.add_light("point", position=(1, 1, 3), scale=20.0)
     scene.add_mesh(CORNERS, FACES, uvs=UVS, **words_of(scene))
-    lost = scene.save(work("a.gltf"))
-    before, after = render(scene), render(velo.load(work("a.gltf")))
+    lost = scene.save(work(file))
+    before, after = render(scene), render(velo.load(work(file)))
     difference = abs(before - after).mean() / before.mean()
     assert lost or difference < 0.02, f"{name}: {difference:.3f} of the light differs, and nothing is said to be lost"
     return bool(lost)
@@ -114,6 +115,26 @@ def emission():
             light = scene.add_emission(texture=image(scene, **change), two_sided=True)
             return {"material": scene.add_material("diffuse"), "emission": light}
         compare(f"emission, {name}", words_of)
+
+
+@case
+def pbrt():
+    materials = [("diffuse", "reflectance", None), ("conductor", "reflectance", None), ("diffuse_transmission", "transmittance", None),
+                 ("coated_diffuse", "thickness", 1), ("dielectric", "u_roughness", 1), ("diffuse", "displacement", 1)]
+    kept = 0
+    for name, change in CHANGES.items():
+        def lamp_of(scene):
+            light = scene.add_emission(texture=image(scene, **change), two_sided=True)
+            return {"material": scene.add_material("diffuse"), "emission": light}
+        def covered(scene):
+            return {"material": scene.add_material("diffuse"), "alpha": image(scene, -1, **change)}
+        kept += not compare(f"lamp, {name}", lamp_of, "a.pbrt")
+        kept += not compare(f"coverage, {name}", covered, "a.pbrt")
+        for kind, word, number in materials:
+            def words_of(scene):
+                return {"material": scene.add_material(kind, **{word: image(scene, number, **change)})}
+            kept += not compare(f"{kind}, {word}, {name}", words_of, "a.pbrt")
+    assert kept > 120, kept
 
 
 if __name__ == "__main__":

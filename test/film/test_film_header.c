@@ -1,7 +1,7 @@
 /* The header of a film file has every parameter of every pixel filter: what is written is read,
  * and films that differ in one parameter are not of one render. Each parameter is a setting,
  * too. */
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "film/file.h"

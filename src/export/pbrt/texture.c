@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "export/pbrt/pbrt.h"
 #include "image/image.h"
+#include "math/approx.h"
 #include "math/fresnel.h"
 #include "velo/texture.h"
 
@@ -82,8 +83,10 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
 }
 
 bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]) {
+  const bool gamma = t->encoding_given && t->encoding == VL_ENCODING_GAMMA;
   const uint32_t variant =
-      (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0);
+      (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0) +
+      (gamma ? 16 * vl_float_bits(t->gamma) : 0);
   if (is_written(x, t, variant, name))
     return true;
   char *bytes = NULL;

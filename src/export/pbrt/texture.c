@@ -84,9 +84,9 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
 
 bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]) {
   const bool gamma = t->encoding_given && t->encoding == VL_ENCODING_GAMMA;
-  const uint32_t variant =
-      (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0) +
-      (gamma ? 16 * vl_float_bits(t->gamma) : 0);
+  const uint32_t variant = (uint32_t)kind +
+                           3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0) +
+                           (gamma ? 16 * vl_float_bits(t->gamma) : 0);
   if (is_written(x, t, variant, name))
     return true;
   char *bytes = NULL;

@@ -11,6 +11,7 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "velo/export.h"
+#include "velo/texture.h"
 
 enum { VL_EXPORT_LOSSES = 64 };
 
@@ -128,6 +129,8 @@ bool vl_export_is_white(vlExport *x, const vlSpectrumInput *input);
 bool vl_export_is_on(const vlFloatInput *input);
 /* The texture of an input if it is an image texture; otherwise null. */
 const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id);
+/* How the image goes on outside along t; t->wrap is that along s. */
+vlWrap vl_export_wrap_t(const vlTextureDef *t);
 /* The uv transform: (s, t) = 2x3 matrix times (u, v, 1). */
 void vl_export_st_from_uv(const vlTextureDef *t, double m[6]);
 /* A metal's reflectance at normal incidence. */

@@ -113,6 +113,10 @@ float vl_export_mean_square(vlExport *x, const vlFloatInput *input) {
   return (float)mean;
 }
 
+vlWrap vl_export_wrap_t(const vlTextureDef *t) {
+  return t->wrap_t_given ? t->wrap_t : t->wrap;
+}
+
 void vl_export_st_from_uv(const vlTextureDef *t, double m[6]) {
   const double plain[6] = {t->su, 0, t->du, 0, t->sv, t->dv};
   for (int i = 0; i < 6; i++)

@@ -1,6 +1,6 @@
 /* film/add.c: adds samples to the exact sums, with integers only. The product of the float's
  * mantissa and the weight's is exact; one multiplication shifts it to its bits of the 128-bit
- * sum. There are no branches on the values. */
+ * sum. There are no branches on the colours. */
 #include "film/sums.h"
 
 /* Copies a pixel's sums from the front when it is new in the pass. */

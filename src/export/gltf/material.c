@@ -31,9 +31,14 @@ static double unit(double v) {
   return fmin(fmax(v, 0), 1);
 }
 
-/* Whether a texture is a factor times a channel of an image. */
+/* Whether a texture is a number plus a factor times a channel of an image. */
+static bool reads_channel(const vlTextureDef *t, int channel) {
+  return t && t->channel == channel && isnan(t->cutoff) && !t->invert;
+}
+
+/* Whether that number is 0. */
 static bool is_channel(const vlTextureDef *t, int channel) {
-  return t && t->channel == channel && t->bias == 0 && isnan(t->cutoff) && !t->invert;
+  return reads_channel(t, channel) && t->bias == 0;
 }
 
 static double factor_of(const vlTextureDef *t, int channel) {
@@ -101,8 +106,7 @@ static bool same_texels(const vlTextureDef *a, const vlTextureDef *b) {
   return a->data == b->data && a->image == b->image && a->uv_set == b->uv_set &&
          (a->path == b->path || (a->path && b->path && vl_text_is(a->path, b->path))) &&
          a->mapping == b->mapping && memcmp(p, q, sizeof p) == 0 && a->filter == b->filter &&
-         a->wrap == b->wrap &&
-         (a->wrap_t_given ? a->wrap_t : a->wrap) == (b->wrap_t_given ? b->wrap_t : b->wrap);
+         a->wrap == b->wrap && vl_export_wrap_t(a) == vl_export_wrap_t(b);
 }
 
 /* In glTF the coverage is the base colour's alpha. colors: the mesh has vertex colours. */
@@ -229,8 +233,7 @@ static void put_film(vlExport *x, json_t *material, const vlPrincipledDef *p) {
     put_channel(x, e, "iridescenceFactor", "iridescenceTexture", 0, &p->iridescence);
     set_number(e, "iridescenceIor", p->iridescence_ior);
     const vlTextureDef *t = vl_export_texture(x, p->iridescence_thickness.texture);
-    bool good = t && t->channel == 1 && isnan(t->cutoff) && !t->invert;
-    json_t *info = good ? vl_gltf_texture_info(x, t, true) : NULL;
+    json_t *info = reads_channel(t, 1) ? vl_gltf_texture_info(x, t, true) : NULL;
     double most = info ? (double)t->bias + factor_of(t, 1)
                        : (double)vl_export_number(x, &p->iridescence_thickness);
     if (p->iridescence_thickness.texture.index && !info)

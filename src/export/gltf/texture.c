@@ -114,7 +114,7 @@ json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear) {
   json_t *sampler =
       json_pack("{s:i,s:i,s:i,s:i}", "magFilter", nearest ? 9728 : 9729, "minFilter",
                 nearest ? 9728 : 9987, "wrapS", wrap_code(x, t->wrap), "wrapT",
-                wrap_code(x, t->wrap_t_given ? t->wrap_t : t->wrap));
+                wrap_code(x, vl_export_wrap_t(t)));
   json_int_t s = put_once(x, "samplers", sampler);
   json_int_t index =
       put_once(x, "textures", json_pack("{s:I,s:I}", "source", image, "sampler", s));

@@ -117,9 +117,8 @@ static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
   bool can = high[0] - by[0] <= 1 && high[1] - by[1] <= 1;
   for (size_t i = 0; can && i < x->scene->textures.count; i++) {
     const vlTextureDef *t = &x->scene->textures.items[i];
-    bool plain = t->wrap == VL_WRAP_REPEAT &&
-                 (!t->wrap_t_given || t->wrap_t == VL_WRAP_REPEAT) && !t->st_from_uv_given &&
-                 t->su == 1 && t->sv == 1;
+    bool plain = t->wrap == VL_WRAP_REPEAT && vl_export_wrap_t(t) == VL_WRAP_REPEAT &&
+                 !t->st_from_uv_given && t->su == 1 && t->sv == 1;
     can = t->kind != VL_TEXTURE_IMAGE || plain;
   }
   if (!can) {

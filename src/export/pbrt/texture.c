@@ -292,7 +292,7 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
     return false;
   if (t->wrap == VL_WRAP_MIRROR)
     vl_export_lose(x, "images that repeat in a mirror: repeated plainly");
-  if (t->wrap_t_given && t->wrap_t != t->wrap)
+  if (vl_export_wrap_t(t) != t->wrap)
     vl_export_lose(x, "wrap modes of their own for each axis: that of s");
   if (t->colors)
     vl_export_lose(x, "colours of vertices: left out");

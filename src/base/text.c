@@ -37,6 +37,13 @@ uint32_t vl_edit_distance(const char *a, const char *b) {
   return last[m];
 }
 
+size_t vl_name_index(const char *word, const char *const *names, size_t count) {
+  size_t index = 0;
+  while (index < count && !vl_text_is(word, names[index]))
+    index++;
+  return index;
+}
+
 const char *vl_nearest_name(const char *name, const char *const *names, size_t count) {
   const char *best = NULL;
   uint32_t best_distance = MAX_NAME;

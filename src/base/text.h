@@ -24,6 +24,11 @@
 /* The accepted name nearest to `name` by edit distance (case ignored), or null if none is near
  * (more than a third of the letters differ). */
 const char *vl_nearest_name(const char *name, const char *const *names, size_t count);
+/* The index of the name that is this word; count: none is, or the word is null. */
+size_t vl_name_index(const char *word, const char *const *names, size_t count);
+/* Whether a word is one of the array `names`. */
+#define VL_IS_AMONG(word, names) \
+  (vl_name_index(word, names, VL_LENGTH(names)) < VL_LENGTH(names))
 /* Edit distance with transpositions; case ignored. */
 uint32_t vl_edit_distance(const char *a, const char *b);
 /* Writes the end of an error message: `; the nearest is "NAME"`, or, if none is near, `; known

@@ -251,9 +251,7 @@ vlResult vl_aperture_create_named(vlContext *context, const char *name, vlApertu
   if (!context || !name || !aperture)
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context, name or aperture is null");
   *aperture = NULL;
-  int kind = 0;
-  while (kind < NAMES && !vl_text_is(name, names[kind]))
-    kind++;
+  const int kind = (int)vl_name_index(name, names, NAMES);
   if (kind == NAMES) {
     const char *near = vl_nearest_name(name, names, NAMES);
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s",

@@ -7,6 +7,7 @@
 #include "camera/optics_chunk.h"
 #include "camera/points.h"
 #include "camera/pose.h"
+#include "math/double3.h"
 
 bool vl_optics_chief_at(const vlOptics *o, double radius, vlChief *chief) {
   double position = radius / o->chief_step;
@@ -100,16 +101,14 @@ void vl_optics_unproject_chunk(const vlCameraCompiled *c, uint32_t count,
 
 void vl_optics_project_chunk(const vlCameraCompiled *c, uint32_t count,
                              const vlCameraPoints *in, vlCameraPixels *out) {
-  const double *m = c->camera_from_world;
   for (uint32_t i = 0; i < count; i++) {
-    double wx = in->x[i], wy = in->y[i], wz = in->z[i];
-    double x = m[0] * wx + m[1] * wy + m[2] * wz + m[3],
-           y = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
-    double z = m[8] * wx + m[9] * wy + m[10] * wz + m[11];
-    vlPlanePoint p = vl_camera_film_point(c, x, y, z);
+    const double world[3] = {in->x[i], in->y[i], in->z[i]};
+    double point[3];
+    vl_map_point(c->camera_from_world, world, point);
+    vlPlanePoint p = vl_camera_film_point(c, point[0], point[1], point[2]);
     out->x[i] = p.x;
     out->y[i] = p.y;
     out->valid[i] = p.valid;
-    out->z[i] = p.valid > 0.0 ? z : 0.0;
+    out->z[i] = p.valid > 0.0 ? point[2] : 0.0;
   }
 }

@@ -134,7 +134,7 @@ void vl_camera_set_rigid(vlCameraDef *def, const double world_from_camera[9],
 void vl_camera_set_centre(vlCameraDef *def, const double r[9], const double centre[3]) {
   double t[3];
   for (int i = 0; i < 3; i++)
-    t[i] = 0.0 - (r[3 * i] * centre[0] + r[3 * i + 1] * centre[1] + r[3 * i + 2] * centre[2]);
+    t[i] = 0.0 - vl_dot3(r + 3 * i, centre);
   vl_camera_set_pose(def, r, t);
 }
 

@@ -21,10 +21,7 @@ static const char *const refusable[] = {
 static const char all_fields[] = "all";
 
 static bool is_refusable(const char *field) {
-  for (size_t i = 0; i < VL_LENGTH(refusable); i++)
-    if (vl_text_is(field, refusable[i]))
-      return true;
-  return false;
+  return VL_IS_AMONG(field, refusable);
 }
 
 vlResult vl_camera_check_drop(const vlCameraFileDef *def, vlError *error) {

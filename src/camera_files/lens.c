@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "camera_files/files.h"
+#include "math/double3.h"
 #include "math/transform.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
@@ -114,7 +115,7 @@ vlResult vl_camera_check_rotation(const vlCameraFile *file, const vlCameraRecord
     return VL_OK; /* vl_camera_make refuses what is not finite */
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
-      dot[i][j] = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+      dot[i][j] = vl_dot_columns(m, i, j);
       unit = unit && (i != j || fabs(dot[i][i] - 1.0) <= most);
       right = right && (i == j || fabs(dot[i][j]) <= most);
     }

@@ -244,14 +244,14 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
   if (!(fov > 0.0 && fov < 180.0))
     return vl_camera_wrong_element(scene->file, sensor,
                                    "fov is %g degrees; it must lie between 0 and 180", fov);
-  for (int i = 0; i < 5; i++)
-    if (vl_text_is(axis, names[i])) {
-      *f = 0.5 * sides[i] / vl_precise_tan(0.5 * fov * VL_DEGREE);
-      return VL_OK;
-    }
-  return vl_camera_wrong_element(
-      scene->file, sensor, "unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
-      vl_short_text(axis).text);
+  const size_t side = vl_name_index(axis, names, 5);
+  if (side == 5)
+    return vl_camera_wrong_element(
+        scene->file, sensor,
+        "unknown fov_axis \"%s\"; there are x, y, diagonal, smaller, larger",
+        vl_short_text(axis).text);
+  *f = 0.5 * sides[side] / vl_precise_tan(0.5 * fov * VL_DEGREE);
+  return VL_OK;
 }
 
 /* The numbers of a sensor, each optional. */
@@ -266,7 +266,7 @@ static vlResult read_numbers(const Scene *scene, const json_t *sensor,
 static void set_orthographic(double width, vlMat4 *m, vlCameraDef *d) {
   double length[3];
   for (int k = 0; k < 3; k++) {
-    length[k] = sqrt(m->m[k] * m->m[k] + m->m[4 + k] * m->m[4 + k] + m->m[8 + k] * m->m[8 + k]);
+    length[k] = sqrt(vl_dot_columns(m->m, k, k));
     for (int i = 0; i < 12; i += 4)
       m->m[i + k] /= length[k];
   }
@@ -294,7 +294,7 @@ static vlResult check_parameters(const Scene *scene, const json_t *element, cons
 
 /* The parameters of the sensor and of its film that velo does not know: those that Mitsuba
  * has for this type, in both spellings, are read or have no effect on the camera. */
-static vlResult check_sensor(const Scene *scene, const json_t *sensor, int kind,
+static vlResult check_sensor(const Scene *scene, const json_t *sensor, size_t kind,
                              vlCameraRecord *record) {
   static const char common[] =
       "to_world toWorld near_clip nearClip far_clip farClip focus_distance focusDistance "
@@ -328,9 +328,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraRe
   vlCameraDef *d = &record->camera;
   const char *type = NULL;
   VL_TRY(attribute(scene, sensor, "type", &type));
-  int kind = 0;
-  while (kind < 3 && !vl_text_is(type, types[kind]))
-    kind++;
+  const size_t kind = vl_name_index(type, types, 3);
   if (kind == 3) {
     char known[300];
     vl_tell_names(known, sizeof known, type ? type : "", types, 3);

@@ -20,12 +20,9 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree,
     return vl_camera_wrong_in(file, tree, "distortion_model",
                               "%s: \"distortion_model\" must be a word", file->dialect);
   bool fisheye = json_number_value(json_object_get(tree, "fisheye_model")) != 0.0;
-  size_t found = 0, count = VL_LENGTH(names);
-  while (model && model[0] && found < count && !vl_text_is(model, names[found]))
-    found++;
-  if (found == count) {
+  if (model && model[0] && !VL_IS_AMONG(model, names)) {
     char known[300];
-    vl_tell_names(known, sizeof known, model, names, count);
+    vl_tell_names(known, sizeof known, model, names, VL_LENGTH(names));
     return vl_camera_wrong_in(file, tree, "distortion_model",
                               "%s: unknown distortion_model \"%s\"%s", file->dialect,
                               vl_short_text(model).text, known);
@@ -178,14 +175,6 @@ static const char *const *stereo_of(const json_t *tree) {
   return NULL;
 }
 
-static bool among(const char *name, const char *const *names, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (vl_text_is(name, names[i]))
-      return true;
-  return false;
-}
-#define AMONG(name, names) among(name, names, VL_LENGTH(names))
-
 /* Whether it is the name of a matrix (of: 0) or a distortion (1) of either camera of a pair. */
 static bool is_stereo_name(const char *name, int of) {
   for (int i = 0; i < STEREO_NAMES; i++)
@@ -195,12 +184,13 @@ static bool is_stereo_name(const char *name, int of) {
 }
 
 bool vl_opencv_is_lens(const char *name) {
-  return AMONG(name, lens_names) || is_stereo_name(name, 1);
+  return VL_IS_AMONG(name, lens_names) || is_stereo_name(name, 1);
 }
 
 bool vl_opencv_is_field(const char *name) {
-  return AMONG(name, matrix_names) || is_stereo_name(name, 0) || vl_opencv_is_lens(name) ||
-         AMONG(name, width_names) || AMONG(name, height_names) || AMONG(name, size_names) ||
+  return VL_IS_AMONG(name, matrix_names) || is_stereo_name(name, 0) ||
+         vl_opencv_is_lens(name) || VL_IS_AMONG(name, width_names) ||
+         VL_IS_AMONG(name, height_names) || VL_IS_AMONG(name, size_names) ||
          vl_has_word("R T rvec tvec xi", name);
 }
 

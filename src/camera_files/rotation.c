@@ -78,8 +78,7 @@ double vl_rotation_error(const double m[12]) {
   double worst = 0.0;
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
-      const double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
-      worst = fmax(worst, fabs(dot - (i == j ? 1.0 : 0.0)));
+      worst = fmax(worst, fabs(vl_dot_columns(m, i, j) - (i == j ? 1.0 : 0.0)));
     }
   return worst;
 }

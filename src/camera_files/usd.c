@@ -159,9 +159,7 @@ static vlResult conform(const Search *s, double image, double *across, double *d
                                          "adjustPixelAspectRatio"};
   enum { EXPAND, CROP, WIDTH, HEIGHT, PIXELS, POLICIES };
   const char *word = vl_camera_text(s->resolution, "aspectRatioConformPolicy");
-  int policy = EXPAND;
-  while (word && policy < POLICIES && !vl_text_is(word, policies[policy]))
-    policy++;
+  const size_t policy = word ? vl_name_index(word, policies, POLICIES) : EXPAND;
   if (policy == POLICIES) {
     char known[300];
     vl_tell_names(known, sizeof known, word, policies, POLICIES);

@@ -178,10 +178,7 @@ static vlResult check_names(const vlCameraFile *file, const json_t *tree,
   for (size_t i = 0; i < OTHERS; i++)
     known[count++] = others[i];
   json_object_foreach((json_t *)tree, key, unused) {
-    bool found = false;
-    for (size_t i = 0; i < count; i++)
-      found |= vl_text_is(key, known[i]);
-    if (found)
+    if (vl_name_index(key, known, count) < count)
       continue;
     char message[VL_GIVEN_MESSAGE];
     vl_unknown_name("field", "", vl_short_text(key).text, known, count, message);
@@ -198,11 +195,11 @@ static vlResult word(const vlCameraFile *file, const json_t *object, const char 
   const char *text = vl_camera_text(object, key);
   if (!text)
     return vl_camera_wrong(file, "velo: \"%s\" must be a word", key);
-  for (uint32_t i = 0; i < count; i++)
-    if (vl_text_is(text, names[i])) {
-      *index = i;
-      return VL_OK;
-    }
+  const size_t found = vl_name_index(text, names, count);
+  if (found < count) {
+    *index = (uint32_t)found;
+    return VL_OK;
+  }
   char known[300];
   vl_tell_names(known, sizeof known, text, names, count);
   return vl_camera_wrong(file, "velo: unknown %s \"%s\"%s", key, vl_short_text(text).text,

@@ -20,6 +20,10 @@ static inline void vl_map_normal(const double inverse[12], const double n[3], do
 static inline double vl_dot3(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+/* Of columns i and j of the 3x3 part. */
+static inline double vl_dot_columns(const double m[12], int i, int j) {
+  return m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+}
 static inline void vl_cross3(const double a[3], const double b[3], double r[3]) {
   r[0] = a[1] * b[2] - a[2] * b[1];
   r[1] = a[2] * b[0] - a[0] * b[2];

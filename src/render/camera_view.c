@@ -16,10 +16,9 @@
 static double axes_length(const double m[16]) {
   double length2[3];
   for (int i = 0; i < 3; i++)
-    length2[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
+    length2[i] = vl_dot_columns(m, i, i);
   for (int i = 0; i < 3; i++) {
-    int j = (i + 1) % 3;
-    double dot = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+    double dot = vl_dot_columns(m, i, (i + 1) % 3);
     if (fabs(dot) > 1e-5 * length2[0] || fabs(length2[i] - length2[0]) > 1e-5 * length2[0])
       return 0;
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/unset.h"
+#include "math/double3.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
@@ -28,7 +29,7 @@ static bool take_apart(const double m[16], Similarity *s) {
   s->matrix = vl_mat4_load(m);
   if (!vl_mat4_is_finite(s->matrix) || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
     return false;
-  s->scale = sqrt(m[0] * m[0] + m[4] * m[4] + m[8] * m[8]);
+  s->scale = sqrt(vl_dot_columns(m, 0, 0));
   if (!(vl_mat4_determinant3(s->matrix) > 0) || !vl_mat4_inverse(s->matrix, &s->inverse))
     return false;
   s->turn = vl_mat4_identity();

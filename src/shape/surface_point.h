@@ -3,6 +3,7 @@
 #ifndef SHAPE_SURFACE_POINT_H
 #define SHAPE_SURFACE_POINT_H
 
+#include "math/double3.h"
 #include "shape/shape_kind.h"
 #include "velo/shape.h"
 
@@ -32,13 +33,12 @@ void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *
 static inline bool vl_is_similarity(const double m[12], double *scale) {
   double l[3];
   for (int i = 0; i < 3; i++)
-    l[i] = m[i] * m[i] + m[4 + i] * m[4 + i] + m[8 + i] * m[8 + i];
+    l[i] = vl_dot_columns(m, i, i);
   if (l[1] > l[0] * 1.0001 || l[1] < l[0] * 0.9999 || l[2] > l[0] * 1.0001 ||
       l[2] < l[0] * 0.9999)
     return false;
   for (int i = 0; i < 3; i++) { /* no shear: the axes stay perpendicular */
-    int j = (i + 1) % 3;
-    double skew = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
+    double skew = vl_dot_columns(m, i, (i + 1) % 3);
     if (skew > l[0] * 0.0001 || skew < -l[0] * 0.0001)
       return false;
   }
@@ -54,9 +54,7 @@ static inline double vl_similarity_error(const double m[12], double scale) {
   for (int i = 0; i < 3; i++) {
     double sum = 0;
     for (int j = 0; j < 3; j++)
-      sum += __builtin_fabs((m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j]) /
-                                (scale * scale) -
-                            (i == j));
+      sum += __builtin_fabs(vl_dot_columns(m, i, j) / (scale * scale) - (i == j));
     most = sum > most ? sum : most;
   }
   return most;

@@ -73,9 +73,9 @@ static void check_point(Check *c, const double origin[3], const double direction
   double pixel[2], z;
   bool seen = vl_camera_project(&c->camera, p, pixel, &z);
   if (c->z >= 0) {
-    const double *m = c->camera.camera_from_world;
-    double scale = vector_length((double[3]){m[8], m[9], m[10]});
-    z = m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11];
+    const double *row = c->camera.camera_from_world + 8;
+    double scale = vector_length(row);
+    z = vector_dot(row, p) + row[3];
     check_note(c, RULE_DEPTH, fabs(c->pixel[c->z] - z) / (scale * size));
   }
   if (c->rows == ROWS_UNKNOWN)

@@ -7,6 +7,7 @@
 
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/vector.h"
 #include "image/image.h"
 
 /* CIE xy of red, green, blue and white of ITU-R BT.709. */
@@ -49,8 +50,7 @@ static bool xyz_from_rgb(const double xy[8], double m[9]) {
   if (!invert(m, inverse))
     return false;
   for (int i = 0; i < 3; i++) {
-    double scale = inverse[3 * i] * white[0] + inverse[3 * i + 1] * white[1] +
-                   inverse[3 * i + 2] * white[2];
+    double scale = vector_dot(inverse + 3 * i, white);
     for (int row = 0; row < 3; row++)
       m[3 * row + i] *= scale;
   }
@@ -91,7 +91,7 @@ static vlResult to_rec709(vlContext *context, const vlImage *image, const int rg
       for (int c = 0; c < 3; c++)
         v[c] = vl_image_get(image, x, y, (uint32_t)rgb[c]);
       for (int c = 0; c < 3; c++)
-        pixel[c] = (float)(m[3 * c] * v[0] + m[3 * c + 1] * v[1] + m[3 * c + 2] * v[2]);
+        pixel[c] = (float)vector_dot(m + 3 * c, v);
     }
   return VL_OK;
 }

@@ -67,8 +67,7 @@ static const float *at(const Source *s, uint32_t x, uint32_t y, int channel) {
  * camera space (x right, y up, z forward), or world space if s->world. */
 static void turn(const Source *s, const double v[3], double w, double out[3]) {
   for (int i = 0; i < 3; i++) {
-    double sum = s->m[4 * i] * v[0] + s->m[4 * i + 1] * v[1] + s->m[4 * i + 2] * v[2] +
-                 s->m[4 * i + 3] * w;
+    double sum = vector_dot(s->m + 4 * i, v) + s->m[4 * i + 3] * w;
     out[i] = s->world ? v[i] : i == 1 ? -sum : sum;
   }
 }

@@ -70,9 +70,7 @@ static void segment(Json *json, const vlCamera *camera, const char *name, const 
 static const char *const axis_names[3] = {"x", "y", "z"};
 
 static void put_axes(Json *json, const vlCamera *camera, const CameraPose *pose) {
-  double arm = 0;
-  for (int i = 0; i < 3; i++)
-    arm = hypot(arm, pose->lookat[i] - pose->eye[i]);
+  const double arm = camera_arm(pose);
   for (int i = 0; i < 3; i++) {
     double end[3];
     memcpy(end, pose->lookat, sizeof end);
@@ -185,9 +183,8 @@ static void put_field(Json *json, const vlCamera *c) {
                           (double)c->height * (i / (FIELD + 1)) / rows};
     if (!vl_camera_unproject(c, to[0], to[1], o, d))
       continue;
-    const double *m = c->camera_from_world;
     for (int k = 0; k < 3; k++)
-      at[k] = m[4 * k] * d[0] + m[4 * k + 1] * d[1] + m[4 * k + 2] * d[2];
+      at[k] = vector_dot(c->camera_from_world + 4 * k, d);
     if (!(at[2] > 0.02))
       continue;
     const double from[2] = {c->cx + (c->fx * at[0] + c->skew * at[1]) / at[2],

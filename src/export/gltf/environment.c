@@ -72,10 +72,10 @@ static void radiance(const Cube *cube, vlVec3 d, float sum[3]) {
         sum[c] += s->rgb[c];
       continue;
     }
-    const float *k = s->to_srgb;
     look_octahedral(s->map, vl_normalize(vl_turn(s->light_from_world, d)), own);
+    vl_store3(own, vl_turn(s->to_srgb, vl_load3(own)));
     for (int c = 0; c < 3; c++) {
-      float v = s->scale * (k[3 * c] * own[0] + k[3 * c + 1] * own[1] + k[3 * c + 2] * own[2]);
+      float v = s->scale * own[c];
       sum[c] += v > 0 ? v : 0.0f;
     }
   }

@@ -337,13 +337,10 @@ static bool is_placed(const vlTextureDef *t, const vlKindRow *row, vlMat4 *world
 
 /* The parameters of the mapping are left to put_mapping. */
 static vlPbrtWished wish(const void *def, const vlParameter *p) {
-  static const char *const of_mapping[] = {"mapping", "uscale", "vscale", "udelta",
-                                           "vdelta",  "v1",     "v2"};
   (void)def;
-  for (size_t i = 0; i < VL_LENGTH(of_mapping); i++)
-    if (vl_text_is(p->name, of_mapping[i]))
-      return VL_PBRT_NEVER;
-  return VL_PBRT_UNLESS_DEFAULT;
+  return vl_has_word("mapping uscale vscale udelta vdelta v1 v2", p->name)
+             ? VL_PBRT_NEVER
+             : VL_PBRT_UNLESS_DEFAULT;
 }
 
 /* Writes the texture again for each use; names are numbered in file order. name is empty when

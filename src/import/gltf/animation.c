@@ -146,7 +146,8 @@ static bool read_pointer(vlGltf *g, const vlGltfLocation *up, size_t *node, cons
 
 static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *animation,
                           size_t i) {
-  static const char *const paths[] = {"translation", "rotation", "scale", "weights"};
+  enum { TRANSLATION, ROTATION, SCALE, WEIGHTS, PATHS };
+  static const char *const paths[PATHS] = {"translation", "rotation", "scale", "weights"};
   const vlGltfLocation *at = VL_GLTF_ITEM(up, "channels", i),
                        *at_target = VL_GLTF_KEY(at, "target");
   const json_t *channel = json_array_get(json_object_get(animation, "channels"), i), *target;
@@ -164,14 +165,11 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
     return vl_gltf_fail(at, "\"sampler\" is missing");
   if (vl_text_is(path, "pointer") && !read_pointer(g, at_target, &node, &path))
     return false;
-  int what = -1;
-  for (int k = 0; k < 4; k++)
-    if (vl_text_is(path, paths[k]))
-      what = k;
-  if (what < 0 && *path)
+  const size_t what = vl_name_index(path, paths, PATHS);
+  if (what == PATHS && *path)
     vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"),
                  "unknown name \"%s\" is ignored", vl_short_text(path).text);
-  if (node == VL_GLTF_NONE || what < 0)
+  if (node == VL_GLTF_NONE || what == PATHS)
     return true; /* the specification allows to ignore these channels */
   const json_t *json = json_array_get(samplers, sampler);
   const vlGltfLocation *at_sampler = VL_GLTF_ITEM(up, "samplers", sampler);
@@ -181,16 +179,16 @@ static bool apply_channel(vlGltf *g, const vlGltfLocation *up, const json_t *ani
   Track track = {0};
   vlGltfNode *n = &g->nodes[node];
   bool ok = read_track(g, at_sampler, components[what], &track);
-  if (ok && what == 3) {
+  if (ok && what == WEIGHTS) {
     ok = apply_weights(g, n, &track);
   } else if (ok && track.width != components[what]) {
     ok = vl_gltf_fail(at_sampler, "its output holds more values than keys");
   } else if (ok) {
     double v[4];
-    evaluate(&track, g->time, what == 1, v);
-    memcpy(what == 0   ? n->translation
-           : what == 1 ? n->rotation
-                       : n->scale,
+    evaluate(&track, g->time, what == ROTATION, v);
+    memcpy(what == TRANSLATION ? n->translation
+           : what == ROTATION  ? n->rotation
+                               : n->scale,
            v, components[what] * sizeof *v);
     n->has_matrix = false;
   }

@@ -178,20 +178,15 @@ static bool add_influences(vlGltf *g, const vlGltfLocation *up, const char *join
 /* Transforms directions: tangents by the matrix, normals by its cofactors (the inverse
  * transpose up to a factor). */
 static void turn(const double *m, bool normal, float *v) {
-  double x = v[0], y = v[1], z = v[2], r[3];
-  double c[9] = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
-  if (normal) {
-    double k[9] = {
-        c[4] * c[8] - c[5] * c[7], c[5] * c[6] - c[3] * c[8], c[3] * c[7] - c[4] * c[6],
-        c[2] * c[7] - c[1] * c[8], c[0] * c[8] - c[2] * c[6], c[1] * c[6] - c[0] * c[7],
-        c[1] * c[5] - c[2] * c[4], c[2] * c[3] - c[0] * c[5], c[0] * c[4] - c[1] * c[3]};
-    memcpy(c, k, sizeof c);
-  }
+  const double from[3] = {v[0], v[1], v[2]};
+  double map[9], cofactors[9], shift[3], to[3];
+  vl_split_map(m, map, shift);
   for (int i = 0; i < 3; i++)
-    r[i] = c[3 * i] * x + c[3 * i + 1] * y + c[3 * i + 2] * z;
-  double l = vl_norm3(r);
-  for (int i = 0; i < 3; i++)
-    v[i] = l > 0 ? (float)(r[i] / l) : v[i];
+    vl_cross3(map + 3 * ((i + 1) % 3), map + 3 * ((i + 2) % 3), cofactors + 3 * i);
+  vl_mat3_vector(normal ? cofactors : map, from, to);
+  const double length = vl_normalize3(to);
+  for (int i = 0; i < 3 && length > 0; i++)
+    v[i] = (float)to[i];
 }
 
 bool vl_gltf_skin(vlGltf *g, const vlGltfLocation *at, const vlGltfNode *node, vlMesh *p) {

@@ -39,10 +39,7 @@ static const char silent[] =
     "KHR_xmp KHR_xmp_json_ld KHR_node_hoverability KHR_node_selectability";
 
 bool vl_gltf_reads_extension(const char *name) {
-  for (size_t i = 0; i < VL_LENGTH(known); i++)
-    if (vl_text_is(name, known[i]))
-      return true;
-  return false;
+  return VL_IS_AMONG(name, known);
 }
 
 bool vl_gltf_passes_extension(const char *name) {

@@ -297,27 +297,39 @@ static bool read_buffer(vlGltf *g, size_t i) {
   return true;
 }
 
+bool vl_gltf_range(const vlGltfLocation *at, vlGltfRange *range) {
+  *range = (vlGltfRange){.stride = 0};
+  return vl_gltf_need_index(at, "buffer", vl_gltf_of(at)->buffer_count, &range->buffer) &&
+         vl_gltf_size(at, "byteOffset", &range->offset) &&
+         vl_gltf_size(at, "byteLength", &range->length) &&
+         vl_gltf_size(at, "byteStride", &range->stride);
+}
+
+bool vl_gltf_check_range(const vlGltfLocation *at, const vlGltfRange *range) {
+  const vlGltfBuffer *b = &vl_gltf_of(at)->buffers[range->buffer];
+  if (b->data && range->offset <= b->size && range->length <= b->size - range->offset)
+    return true;
+  return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%zu] has only %zu", range->offset,
+                      range->offset + range->length, range->buffer, b->data ? b->size : 0);
+}
+
 static bool read_view(vlGltf *g, size_t i) {
   const vlGltfLocation *at = VL_GLTF_ROOT(g, "bufferViews", i);
   const json_t *json = vl_gltf_item(g, "bufferViews", i);
   const json_t *packed = vl_gltf_extension(json, "EXT_meshopt_compression");
-  size_t buffer;
-  size_t offset = 0, length = 0, stride = 0;
+  vlGltfRange r;
   if (packed)
     return vl_gltf_unpack_view(g, at, &g->views[i]);
-  if (!vl_gltf_need_index(at, "buffer", g->buffer_count, &buffer) ||
-      !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "byteLength", &length) ||
-      !vl_gltf_size(at, "byteStride", &stride))
+  if (!vl_gltf_range(at, &r))
     return false;
-  const vlGltfBuffer *b = &g->buffers[buffer];
-  if (!b->data)
+  const uint8_t *data = g->buffers[r.buffer].data;
+  if (!data)
     return true; /* what reads the view reports it */
-  if (offset > b->size || length > b->size - offset)
-    return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%zu] has only %zu", offset,
-                        offset + length, buffer, b->size);
-  if (stride && (stride < 4 || stride > 252))
-    return vl_gltf_fail_key(at, "byteStride", "%zu is not from 4 to 252", stride);
-  g->views[i] = (vlGltfView){b->data + offset, length, stride};
+  if (!vl_gltf_check_range(at, &r))
+    return false;
+  if (r.stride && (r.stride < 4 || r.stride > 252))
+    return vl_gltf_fail_key(at, "byteStride", "%zu is not from 4 to 252", r.stride);
+  g->views[i] = (vlGltfView){data + r.offset, r.length, r.stride};
   return true;
 }
 

@@ -237,6 +237,15 @@ bool vl_gltf_open(vlGltf *g);
 void *vl_gltf_make(vlGltf *g, size_t count, size_t size);
 bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
+/* Bytes of a buffer, as a buffer view or a compressed one names them. */
+typedef struct vlGltfRange {
+  size_t buffer; /* index */
+  size_t offset, length, stride;
+} vlGltfRange;
+/* Reads a range. Its bytes may be more than the buffer has. */
+bool vl_gltf_range(const vlGltfLocation *at, vlGltfRange *range);
+/* Whether the buffer has the bytes; otherwise that is reported. */
+bool vl_gltf_check_range(const vlGltfLocation *at, const vlGltfRange *range);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
 bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *at, vlGltfView *view);
 /* Decodes a compressed primitive (KHR_draco_mesh_compression) into its accessors; true if it is

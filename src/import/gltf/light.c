@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
+#include "math/double3.h"
 #include "velo/light.h"
 
 #define PUNCTUAL "extensions.KHR_lights_punctual"
@@ -53,7 +54,7 @@ static bool add_light(vlGltf *g, size_t node, size_t index) {
   def.color = vl_spectrum_rgb((float)color[0], (float)color[1], (float)color[2]);
   def.scale = (float)intensity;
   const double *m = g->nodes[node].world.m;
-  double l = sqrt(m[2] * m[2] + m[6] * m[6] + m[10] * m[10]);
+  double l = sqrt(vl_dot_columns(m, 2, 2));
   /* the light points along its node's -z; the node's scale has no effect */
   for (int i = 0; i < 3; i++) {
     def.from[i] = is_distant ? 0.0f : (float)m[4 * i + 3];

@@ -40,19 +40,16 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) 
   static const char *const modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
   static const char *const filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
   const vlGltfLocation *at = VL_GLTF_KEY(up, "extensions.EXT_meshopt_compression");
-  size_t buffer;
-  size_t offset = 0, length = 0, stride = 0, count = 0;
+  vlGltfRange r;
+  size_t count = 0;
   int mode = ATTRIBUTES, filter = NONE;
-  if (!vl_gltf_need_index(at, "buffer", g->buffer_count, &buffer) ||
-      !vl_gltf_size(at, "byteOffset", &offset) || !vl_gltf_size(at, "byteLength", &length) ||
-      !vl_gltf_size(at, "byteStride", &stride) || !vl_gltf_size(at, "count", &count) ||
+  if (!vl_gltf_range(at, &r) || !vl_gltf_size(at, "count", &count) ||
       !vl_gltf_choice(at, "mode", modes, 3, &mode) ||
       !vl_gltf_choice(at, "filter", filters, 4, &filter))
     return false;
-  const vlGltfBuffer *b = &g->buffers[buffer];
-  if (!b->data || offset > b->size || length > b->size - offset)
-    return vl_gltf_fail(at, "bytes %zu to %zu, but buffers[%zu] has only %zu", offset,
-                        offset + length, buffer, b->data ? b->size : 0);
+  if (!vl_gltf_check_range(at, &r))
+    return false;
+  const size_t length = r.length, stride = r.stride;
   if (!sizes_fit((Mode)mode, (Filter)filter, count, stride))
     return vl_gltf_fail(at, "%zu elements of %zu bytes: mode %s with filter %s has no such",
                         count, stride, modes[mode], filters[filter]);
@@ -62,7 +59,8 @@ bool vl_gltf_unpack_view(vlGltf *g, const vlGltfLocation *up, vlGltfView *view) 
   uint8_t *out = vl_gltf_make(g, count + 1, stride);
   if (!out)
     return false;
-  if (count && decode((Mode)mode, out, count, stride, b->data + offset, length) != 0)
+  if (count &&
+      decode((Mode)mode, out, count, stride, g->buffers[r.buffer].data + r.offset, length) != 0)
     return vl_gltf_fail(at, "its bytes are no meshopt %s", modes[mode]);
   if (count && filter == OCTAHEDRAL)
     meshopt_decodeFilterOct(out, count, stride);

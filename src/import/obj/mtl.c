@@ -8,6 +8,7 @@
 #include "import/find.h"
 #include "import/obj/obj.h"
 #include "import/pbrt/token.h"
+#include "math/double3.h"
 
 vlMtl vl_mtl_default(void) {
   vlMtl m = {
@@ -206,9 +207,7 @@ static bool read_color(vlObj *obj, const char *name, float color[3]) {
                                          -0.9692660, 1.8760108,  0.0415560,
                                          0.0556434,  -0.2040259, 1.0572252};
   for (int i = 0; i < 3; i++) {
-    double x = xyz ? rgb_from_xyz[3 * i] * v[0] + rgb_from_xyz[3 * i + 1] * v[1] +
-                         rgb_from_xyz[3 * i + 2] * v[2]
-                   : v[i];
+    double x = xyz ? vl_dot3(rgb_from_xyz + 3 * i, v) : v[i];
     color[i] = x > 0 ? (float)x : 0.0f;
   }
   return true;

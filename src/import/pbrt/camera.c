@@ -63,10 +63,7 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
     return false;
   vlError error = {0};
   vlResult result = VL_OK;
-  bool named = false;
-  for (int i = 0; i < 4; i++)
-    named = named || vl_text_is(name, names[i]);
-  if (named) {
+  if (VL_IS_AMONG(name, names)) {
     result = vl_aperture_create_named(import->context, name, slot, &error);
   } else {
     char path[4096];

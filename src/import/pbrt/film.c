@@ -66,12 +66,11 @@ static bool read_sensor_name(vlDict *dict, double *white) {
   if (!vl_dict_string(dict, "sensor", &name) || vl_text_is(name, plain))
     return true;
   *white = 6500.0;
-  for (uint32_t i = 1; i < count; i++)
-    if (vl_text_is(name, names[i])) {
-      vl_scene_defs(import->scene)->film.sensor = names[i];
-      return true;
-    }
-  return vl_import_unknown(import, p->source, "sensor", name, names, count);
+  const size_t found = vl_name_index(name, names, count);
+  if (found == count)
+    return vl_import_unknown(import, p->source, "sensor", name, names, count);
+  vl_scene_defs(import->scene)->film.sensor = names[found];
+  return true;
 }
 
 /* Reads the sensor, its white balance and its largest component value. */
@@ -234,8 +233,7 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
                                       "pixelstats",
                                       "wavefront",
                                       "rendercoordsys"};
-  for (size_t i = 0; i < VL_LENGTH(known); i++)
-    if (vl_text_is(name, known[i]))
-      return true; /* it does not change the image */
+  if (VL_IS_AMONG(name, known))
+    return true; /* it does not change the image */
   return vl_import_unknown(import, s->source, "option", s->names[0], known, VL_LENGTH(known));
 }

@@ -238,11 +238,10 @@ bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, si
   if (!p)
     return false;
   const char *text = p->strings.items[0];
-  for (size_t i = 0; i < count; i++) {
-    if (vl_text_is(text, names[i])) {
-      *value = (int)i;
-      return true;
-    }
+  const size_t found = vl_name_index(text, names, count);
+  if (found < count) {
+    *value = (int)found;
+    return true;
   }
   const char *near = vl_nearest_name(text, names, count);
   if (near)

@@ -86,11 +86,15 @@ bool vl_old_write_file_name(vlOldStatement *s, const vlOldParam *p) {
   char name[4096];
   if (!p || !p->strings)
     return true;
-  if (!vl_old_file_name(s, p->text[0], name, sizeof name))
-    return false;
+  return vl_old_file_name(s, p->text[0], name, sizeof name) &&
+         vl_old_put_name(s, p, name, "filename is");
+}
+
+bool vl_old_put_name(vlOldStatement *s, const vlOldParam *p, const char *name,
+                     const char *note) {
   if (vl_text_is(name, p->text[0]))
     return true;
-  vl_old_note(s, "filename is \"%s\"", name);
+  vl_old_note(s, "%s \"%s\"", note, name);
   return vl_old_edit(s, p->span[0], "\"%s\"", name);
 }
 

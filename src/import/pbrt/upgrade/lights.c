@@ -147,12 +147,8 @@ static double blackbody_scale(const vlOldStatement *s, vlOldParam *p) {
 /* Names the equal-area map that the image becomes. */
 static bool name_map(vlOldStatement *s, const vlOldParam *map, const double factor[3]) {
   char name[4096];
-  if (!vl_old_environment(s, map->text[0], factor, name, sizeof name))
-    return false;
-  if (vl_text_is(name, map->text[0]))
-    return true;
-  vl_old_note(s, "an equal-area map \"%s\"", name);
-  return vl_old_edit(s, map->span[0], "\"%s\"", name);
+  return vl_old_environment(s, map->text[0], factor, name, sizeof name) &&
+         vl_old_put_name(s, map, name, "an equal-area map");
 }
 
 static bool is_grey(const double rgb[3]) {

@@ -285,6 +285,9 @@ vlFound vl_old_find_file(const vlOldStatement *s, const char *name, const char *
 bool vl_old_file_name(const vlOldStatement *s, const char *name, char *result, size_t size);
 /* The same for the file that a parameter names (null: none), and says so. */
 bool vl_old_write_file_name(vlOldStatement *s, const vlOldParam *p);
+/* Replaces a file's name by another one, and notes that: `note`, then the name. */
+bool vl_old_put_name(vlOldStatement *s, const vlOldParam *p, const char *name,
+                     const char *note);
 /* Includes: upgrades the file and names the new one. */
 vlOldRule vl_old_include;
 /* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */

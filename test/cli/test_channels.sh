@@ -15,6 +15,10 @@ check render_crop_half "$VELO" render scene.pbrt -o crop.exr --channels all --qu
 check crop_agrees "$VELO" image check crop.exr
 check render_few "$VELO" render scene.pbrt -o few.exr --channels Z,P --quiet
 check few_agree "$VELO" image check few.exr
+# An attribute of a known name but of another type is no text.
+sed 's/velo\.filter\x00string/velo.filter\x00double/' all.exr >typed.exr
+check typed_differs bash -c '! cmp -s all.exr typed.exr'
+check typed_agrees "$VELO" image check typed.exr
 check few_have_no_ids test ! -e few.exr.ids.json
 check render_again "$VELO" render scene.pbrt -o again.exr --channels all --quiet -t 3
 same same_bytes all.exr again.exr

@@ -210,8 +210,9 @@ static int fit_camera(const vlImage *image, const char *path, vlCamera *camera) 
                           "%s: the image has %u x %u pixels, the camera %u x %u: another shape",
                           path, w, h, camera->width, camera->height);
   vlCamera resized;
-  if (vl_camera_resize(camera, w, h, &resized) != VL_OK)
-    return STATUS_OTHER;
+  const vlResult result = vl_camera_resize(camera, w, h, &resized);
+  if (result != VL_OK)
+    return report_reason(result, path, "the camera cannot have the size of the image");
   *camera = resized;
   return -1;
 }

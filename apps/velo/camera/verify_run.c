@@ -151,7 +151,6 @@ static bool choose_pose(Pose *pose, uint32_t *sequence, Random *random) {
 static vlResult render(const Pose *pose, vlContext *context, vlImage **image, vlError *error) {
   const Verification *v = pose->v;
   vlWorld *world = NULL;
-  vlFilm *film = NULL;
   vlFilmDef film_def = vl_default_film_def(v->camera.width, v->camera.height);
   memcpy(film_def.crop, pose->crop, sizeof film_def.crop);
   film_def.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
@@ -162,12 +161,7 @@ static vlResult render(const Pose *pose, vlContext *context, vlImage **image, vl
   def.sampler = VL_SAMPLER_MULTI_JITTERED;
   vlResult result = target_build(context, &v->target, &pose->placement, &world, error);
   if (result == VL_OK)
-    result = vl_film_create(context, &film_def, &film);
-  if (result == VL_OK)
-    result = vl_render(world, &v->camera, film, &def, NULL, error);
-  if (result == VL_OK)
-    result = vl_film_develop(film, NULL, image);
-  vl_film_destroy(film);
+    result = image_render(context, world, &v->camera, &film_def, &def, NULL, image, error);
   vl_world_destroy(world);
   return result;
 }

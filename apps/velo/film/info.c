@@ -221,11 +221,19 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
   if (!receipt)
     return;
   const char *commit, *version = vl_receipt_version(receipt, &commit), *output;
-  printf("  velo      %s%s%s\n  command   ", version, *commit ? ", commit " : "", commit);
+  printf("  velo      ");
+  text_print_plain(version);
+  if (*commit)
+    printf(", commit ");
+  text_print_plain(commit);
+  printf("\n  command   ");
   print_command(receipt);
   putchar('\n');
-  for (uint32_t i = 0; (output = vl_receipt_output(receipt, i)); i++)
-    printf("  output    %s\n", output);
+  for (uint32_t i = 0; (output = vl_receipt_output(receipt, i)); i++) {
+    printf("  output    ");
+    text_print_plain(output);
+    putchar('\n');
+  }
 }
 
 static void print_merge(const char *path, const char *stem, uint32_t count) {

@@ -120,8 +120,9 @@ static bool has_any(const Check *c) {
 /* Reads the camera and the settings from the header. */
 static void read_header(Check *c) {
   vlAttribute a;
-  bool centre = vl_image_find_attribute(c->image, "velo.channels", &a) != VL_OK ||
-                strcmp(a.string, "centre") == 0;
+  const char *channels = header_text(c->image, "velo.channels"),
+             *filter = header_text(c->image, "velo.filter");
+  bool centre = !channels || strcmp(channels, "centre") == 0;
   if (!centre && vl_image_find_attribute(c->image, "velo.filterRadius", &a) == VL_OK)
     for (int k = 0; k < 2; k++)
       c->reach[k] = a.numbers[k] * (1 + 1e-6);
@@ -131,11 +132,11 @@ static void read_header(Check *c) {
   static const char *const positive[] = {"box", "triangle", "gaussian", "blackmanharris"};
   bool pinhole =
       vl_image_find_attribute(c->image, "velo.lensRadius", &a) == VL_OK && a.numbers[0] == 0;
-  if (vl_image_find_attribute(c->image, "velo.filter", &a) != VL_OK || !pinhole ||
-      c->alpha < 0 || vl_image_stored_type(c->image, (uint32_t)c->alpha) != VL_PIXEL_F32)
+  if (!filter || !pinhole || c->alpha < 0 ||
+      vl_image_stored_type(c->image, (uint32_t)c->alpha) != VL_PIXEL_F32)
     return;
   for (size_t i = 0; i < LENGTH(positive); i++)
-    c->matte_is_alpha = c->matte_is_alpha || strcmp(a.string, positive[i]) == 0;
+    c->matte_is_alpha = c->matte_is_alpha || strcmp(filter, positive[i]) == 0;
 }
 
 /* Integers are stored as 32-bit floats below 2^24, otherwise as integers. */

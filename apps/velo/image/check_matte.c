@@ -6,6 +6,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "image/check.h"
+#include "image/header.h"
 #include "velo/channels.h"
 
 static const char *const types[3] = {"CryptoObject", "CryptoMaterial", "CryptoInstance"};
@@ -76,19 +77,17 @@ static bool read_header(Check *c, Matte *m, const char *type) {
   static const struct {
     const char *name, *value;
   } fixed[] = {{"hash", "MurmurHash3_32"}, {"conversion", "uint32_to_float32"}, {"name", NULL}};
-  vlAttribute attribute;
   char name[64];
   unsigned key = vl_cryptomatte_hash(type) >> 4;
   for (size_t i = 0; i < LENGTH(fixed); i++) {
     text_set(name, "cryptomatte/%07x/%s", key, fixed[i].name);
-    if (vl_image_find_attribute(c->image, name, &attribute) != VL_OK ||
-        attribute.type != VL_ATTRIBUTE_STRING ||
-        strcmp(attribute.string, fixed[i].value ? fixed[i].value : type) != 0)
+    const char *value = header_text(c->image, name);
+    if (!value || strcmp(value, fixed[i].value ? fixed[i].value : type) != 0)
       return false;
   }
   text_set(name, "cryptomatte/%07x/manifest", key);
-  return vl_image_find_attribute(c->image, name, &attribute) == VL_OK &&
-         attribute.type == VL_ATTRIBUTE_STRING && read_manifest(m, attribute.string);
+  const char *manifest = header_text(c->image, name);
+  return manifest && read_manifest(m, manifest);
 }
 
 int check_find_mattes(Check *c) {

@@ -35,12 +35,19 @@ static bool window(const vlImage *image, const char *name, double box[4]) {
   return take(image, name, VL_ATTRIBUTE_BOX2I, box, 4) && box[2] >= box[0] && box[3] >= box[1];
 }
 
-static bool text(const vlImage *image, const char *name, const char **value) {
+/* Reads a matrix. OpenEXR's act on row vectors. */
+static bool matrix(const vlImage *image, const char *name, double m[16]) {
   vlAttribute a;
-  if (!find(image, name, VL_ATTRIBUTE_STRING, &a))
+  if (!find(image, name, VL_ATTRIBUTE_M44D, &a))
     return false;
-  *value = a.string;
+  for (int i = 0; i < 16; i++)
+    m[i] = a.numbers[i % 4 * 4 + i / 4];
   return true;
+}
+
+const char *header_text(const vlImage *image, const char *name) {
+  vlAttribute a;
+  return find(image, name, VL_ATTRIBUTE_STRING, &a) ? a.string : NULL;
 }
 
 #define COUNT_ONE(kind, name, row) +1
@@ -71,13 +78,14 @@ static bool read_model(const vlImage *image, const char *projection, vlCameraDef
   def->projection = (vlProjection)kind;
   number(image, "velo.shape0", &def->shape[0]);
   number(image, "velo.shape1", &def->shape[1]);
-  const char *distortion, *at;
-  if (!text(image, "velo.distortion", &distortion))
+  const char *distortion = header_text(image, "velo.distortion"),
+             *at = header_text(image, "velo.distortionCoefficients");
+  if (!distortion)
     return true;
   for (int i = 0; i < VL_DISTORTION_KIND_COUNT; i++)
     if (strcmp(vl_distortion_name((vlDistortion)i), distortion) == 0)
       def->distortion = (vlDistortion)i;
-  if (def->distortion == VL_DISTORTION_NONE || !text(image, "velo.distortionCoefficients", &at))
+  if (def->distortion == VL_DISTORTION_NONE || !at)
     return false;
   const int count =
       read_numbers(at, def->distortion_coefficients, LENGTH(def->distortion_coefficients));
@@ -104,22 +112,17 @@ static int windows(const vlImage *image, const char *path, double whole[4], doub
 static int read_def(const vlImage *image, const char *path, const double whole[4],
                     vlCameraDef *def) {
   *def = vl_default_camera_def((uint32_t)whole[2] + 1, (uint32_t)whole[3] + 1);
-  vlAttribute matrix;
-  const char *projection;
+  const char *projection = header_text(image, "velo.projection");
   bool found = number(image, "velo.fx", &def->fx) && number(image, "velo.fy", &def->fy) &&
                number(image, "velo.skew", &def->skew) && number(image, "velo.cx", &def->cx) &&
                number(image, "velo.cy", &def->cy) &&
-               find(image, "velo.worldFromCamera", VL_ATTRIBUTE_M44D, &matrix) &&
-               text(image, "velo.projection", &projection);
+               matrix(image, "velo.worldFromCamera", def->world_from_camera) && projection;
   if (!found)
     return report_failure(STATUS_SCENE, "%s: has no camera in its header", path);
   if (!read_model(image, projection, def))
     return report_failure(STATUS_SCENE,
                           "%s: the camera in its header is of a kind that is not known", path);
-  def->has_matrix = true; /* OpenEXR's matrices act on row vectors */
-  for (int row = 0; row < 4; row++)
-    for (int column = 0; column < 4; column++)
-      def->world_from_camera[4 * row + column] = matrix.numbers[4 * column + row];
+  def->has_matrix = true;
   return -1;
 }
 
@@ -131,15 +134,14 @@ static int read_optics(vlContext *context, const vlImage *image, const char *pat
   enum { MAX_SURFACES = 64 };
   double numbers[4 * MAX_SURFACES];
   vlLensSurface surfaces[MAX_SURFACES];
-  const char *at;
+  const char *at = header_text(image, "velo.optics");
   lens.focus_distance = INFINITY;
   lens.surfaces = surfaces;
   number(image, "velo.opticsAperture", &lens.aperture_diameter);
   number(image, "velo.opticsFocus", &lens.focus_distance);
   number(image, "velo.opticsDiagonal", &lens.film_diagonal);
   number(image, "velo.opticsUnit", &lens.unit_mm);
-  const int count =
-      text(image, "velo.optics", &at) ? read_numbers(at, numbers, 4 * MAX_SURFACES) : -1;
+  const int count = at ? read_numbers(at, numbers, 4 * MAX_SURFACES) : -1;
   if (count < 0 || count % 4)
     return report_failure(STATUS_SCENE, "%s: the lens in its header is not understood", path);
   for (const double *n = numbers; n < numbers + count; n += 4)
@@ -181,15 +183,9 @@ int header_camera(vlContext *context, const vlImage *image, const char *path, vl
 
 /* Reads the poses at both ends, and their times. */
 static bool read_motion(const vlImage *image, double poses[2][16], double times[2]) {
-  static const char *const names[2] = {"velo.worldFromCameraOpen", "velo.worldFromCameraClose"};
-  vlAttribute a;
-  for (int k = 0; k < 2; k++) {
-    if (!find(image, names[k], VL_ATTRIBUTE_M44D, &a))
-      return false;
-    for (int i = 0; i < 16; i++)
-      poses[k][i] = a.numbers[i % 4 * 4 + i / 4];
-  }
-  if (!take(image, "velo.poseTimes", VL_ATTRIBUTE_V2F, times, 2))
+  if (!matrix(image, "velo.worldFromCameraOpen", poses[0]) ||
+      !matrix(image, "velo.worldFromCameraClose", poses[1]) ||
+      !take(image, "velo.poseTimes", VL_ATTRIBUTE_V2F, times, 2))
     return false;
   number(image, "velo.poseOpen", &times[0]);
   number(image, "velo.poseClose", &times[1]);
@@ -200,9 +196,10 @@ HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *r
   static const char *const directions[] = {"down", "up", "right", "left"};
   double readout = 0.0, first, shutter[2]; /* seconds */
   double poses[2][16], times[2];
-  const char *direction, *given = NULL;
-  if (!number(image, "velo.readout", &readout) || !(readout > 0.0) ||
-      !text(image, "velo.readoutDirection", &direction) || !read_motion(image, poses, times) ||
+  const char *direction = header_text(image, "velo.readoutDirection"),
+             *given = header_text(image, "velo.channelsTime");
+  if (!number(image, "velo.readout", &readout) || !(readout > 0.0) || !direction ||
+      !read_motion(image, poses, times) ||
       vl_camera_travel(camera, poses[0], poses[1], times, rolling, NULL) != VL_OK)
     return ROWS_NONE;
   rolling->readout = readout;
@@ -213,7 +210,7 @@ HeaderRows header_rows(const vlImage *image, const vlCamera *camera, vlCamera *r
     rolling->shutter_open = rolling->shutter_close = 0.5 * (shutter[0] + shutter[1]);
   if (number(image, "velo.firstRowTime", &first))
     rolling->shutter_open = rolling->shutter_close = first;
-  if (!text(image, "velo.channelsTime", &given))
+  if (!given)
     return ROWS_UNKNOWN;
   return strcmp(given, "row") == 0 ? ROWS_EACH : ROWS_ONE;
 }

@@ -1,4 +1,5 @@
-/* image/header.h: reads the camera that render/attributes.c wrote into an image's header. */
+/* image/header.h: reads texts of an image's header, and the camera that render/attributes.c
+ * wrote into it. */
 #ifndef APP_IMAGE_HEADER_H
 #define APP_IMAGE_HEADER_H
 
@@ -7,6 +8,9 @@
 
 /* When the rows of a rolling shutter's image were seen as ground truth. */
 typedef enum HeaderRows { ROWS_NONE, ROWS_EACH, ROWS_ONE, ROWS_UNKNOWN } HeaderRows;
+
+/* The text of an attribute. Null: there is none of this name, or it is no text. */
+const char *header_text(const vlImage *image, const char *name);
 
 /* Makes the camera. x0, y0: position of the image's first pixel in the uncropped image. optics:
  * the camera's lens of many elements, or null; the caller destroys it after the camera. Returns

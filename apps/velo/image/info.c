@@ -7,6 +7,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "image/header.h"
 #include "image/image.h"
 #include "render/receipt.h"
 
@@ -26,6 +27,18 @@ vlResult image_make_like(vlContext *context, const vlImage *like, uint32_t chann
                          const char *const *names, vlImage **image) {
   return image_make(context, vl_image_width(like), vl_image_height(like), channels, names,
                     image);
+}
+
+vlResult image_render(vlContext *context, const vlWorld *world, const vlCamera *camera,
+                      const vlFilmDef *film, const vlRenderDef *render,
+                      const vlDevelopDef *develop, vlImage **image, vlError *error) {
+  vlFilm *made = NULL;
+  TRY_RESULT(vl_film_create(context, film, &made));
+  vlResult result = vl_render(world, camera, made, render, NULL, error);
+  if (result == VL_OK)
+    result = vl_film_develop(made, develop, image);
+  vl_film_destroy(made);
+  return result;
 }
 
 vlResult image_set_text(vlImage *image, const char *name, const char *text) {
@@ -260,10 +273,9 @@ static int run_info(const Arguments *arguments, vlContext *context) {
                    vl_image_read_header(context, arguments->operands[0], &image, &error),
                    arguments->operands[0]));
   vlReceipt *receipt = NULL;
-  vlAttribute attribute;
-  if (vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) == VL_OK &&
-      attribute.string)
-    vl_receipt_parse(context, attribute.string, strlen(attribute.string), &receipt,
+  const char *text = header_text(image, RECEIPT_ATTRIBUTE);
+  if (text)
+    vl_receipt_parse(context, text, strlen(text), &receipt,
                      NULL); /* without a valid receipt the attribute is printed unchanged */
   if (arguments->values[INFO_JSON].given)
     print_json(arguments->operands[0], image);

@@ -9,6 +9,7 @@
 #include "cli/kinds.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "image/header.h"
 #include "image/image.h"
 #include "render/added.h"
 #include "render/lens_options.h"
@@ -167,14 +168,12 @@ vlResult receipt_set(const Job *job, const ReceiptImage *which, vlImage *image) 
 
 int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
                      vlReceipt **receipt) {
-  vlAttribute attribute;
+  const char *text = header_text(image, RECEIPT_ATTRIBUTE);
   vlError error = {0};
-  if (vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) != VL_OK ||
-      attribute.type != VL_ATTRIBUTE_STRING || !attribute.string)
+  if (!text)
     return report_failure(STATUS_SCENE,
                           "%s: there is no receipt in its header (docs/receipts.md)", path);
-  vlResult result =
-      vl_receipt_parse(context, attribute.string, strlen(attribute.string), receipt, &error);
+  vlResult result = vl_receipt_parse(context, text, strlen(text), receipt, &error);
   if (result == VL_OK)
     return -1;
   text_set(error.file, "%s", path);

@@ -42,7 +42,6 @@ static void close_shot(Shot *shot) {
  * of each pixel. alone: no light is added. */
 static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlError *error) {
   vlSceneDefs *defs = vl_scene_defs(shot->scene);
-  vlFilm *film = NULL;
   vlCamera whole, camera;
   vlCompleteDef complete = vl_default_complete_def();
   if (alone)
@@ -61,16 +60,12 @@ static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlErr
   if (r == VL_OK)
     r = vl_camera_resize(&whole, film_def.width, film_def.height, &camera);
   if (r == VL_OK)
-    r = vl_film_create(context, &film_def, &film);
-  if (r == VL_OK)
-    r = vl_render(shot->world, &camera, film, &render, NULL, error);
-  if (r == VL_OK)
-    r = vl_film_develop(film, &develop, &shot->image);
+    r = image_render(context, shot->world, &camera, &film_def, &render, &develop, &shot->image,
+                     error);
   vlChannelsDef channels = vl_default_channels_def(film_def.width, film_def.height);
   channels.channels = VL_CHANNEL_ID_MATERIAL;
   if (r == VL_OK && ids)
     r = vl_render_channels(shot->world, &camera, &channels, NULL, &shot->ids, error);
-  vl_film_destroy(film);
   return r;
 }
 

@@ -33,57 +33,44 @@ static void logged(void *user, vlLogLevel level, const vlError *where, const cha
 }
 
 static int open_scene(Verify *v, const Arguments *arguments) {
-  const OptionValue *o = arguments->values;
   vlContextDef def = context_def(arguments);
-  vlError error = {0};
-  vlWorld *world = NULL;
   def.log = logged;
   def.log_user = v;
   Confine confine = {.read_count = 0};
   confine_read(&confine, v->path);
-  confine_read_folder(&confine, o[RENDER_CAMERA].text);
+  confine_read_folder(&confine, arguments->values[RENDER_CAMERA].text);
   confine_apply(&confine, arguments);
   TRY(context_open(&def, &v->context));
-  TRY(scene_open(v->context, v->path, arguments, &v->scene, &v->opening));
-  TRY(job_make(&v->job, v->context, v->scene, v->path, arguments));
-  const Needs needs = {.options = arguments->command->options,
-                       .values = o,
-                       .arguments = arguments,
-                       .scene = v->scene,
-                       .opening = &v->opening,
-                       .job = &v->job};
-  TRY(needs_check_scene(&needs));
-  vlBuildDef build = v->job.defs->build;
-  build.previous = v->opening.metered;
-  TRY(report_error(&error, vl_world_build(v->scene, &build, &world, &error), v->path));
-  const int status = lens_autofocus(&v->job, v->scene, world);
-  vl_world_destroy(world);
+  TRY(scene_world_build(&v->in, v->context, arguments));
+  const int status = lens_autofocus(&v->in.job, v->in.scene, v->in.world);
+  vl_world_destroy(v->in.world);
+  v->in.world = NULL;
   return status;
 }
 
 /* The camera at a small size, unless --resolution gives one. */
 static vlResult make_camera(Verify *v, const Arguments *arguments) {
-  const vlFilmDef *film = &v->job.defs->film;
+  const vlFilmDef *film = &v->in.job.defs->film;
   const double longer = fmax(film->width, film->height);
   const double k = arguments->values[RENDER_RESOLUTION].given || longer < LONGER_SIDE
                        ? 1
                        : LONGER_SIDE / longer;
   v->width = (uint32_t)fmax(1, k * film->width + 0.5);
   v->height = (uint32_t)fmax(1, k * film->height + 0.5);
-  return vl_camera_resize(&v->job.camera, v->width, v->height, &v->camera);
+  return vl_camera_resize(&v->in.job.camera, v->width, v->height, &v->camera);
 }
 
 /* Remembers which shapes emit light. */
 static vlResult list_lights(Verify *v) {
-  while (vl_scene_shape(v->scene, (vlShapeId){v->shapes + 1}))
+  while (vl_scene_shape(v->in.scene, (vlShapeId){v->shapes + 1}))
     v->shapes++;
-  while (vl_scene_light(v->scene, (vlLightId){v->light_count + 1}))
+  while (vl_scene_light(v->in.scene, (vlLightId){v->light_count + 1}))
     v->light_count++;
   v->emissions = calloc((size_t)v->shapes + 1, sizeof *v->emissions);
   if (!v->emissions)
     return VL_ERROR_MEMORY;
   for (uint32_t i = 0; i < v->shapes; i++)
-    v->emissions[i] = vl_scene_shape(v->scene, (vlShapeId){i + 1})->emission;
+    v->emissions[i] = vl_scene_shape(v->in.scene, (vlShapeId){i + 1})->emission;
   return VL_OK;
 }
 
@@ -119,8 +106,7 @@ static void close_all(Verify *v) {
   free(v->block_of);
   free(v->material_of);
   free(v->marks);
-  scene_opening_close(&v->opening);
-  vl_scene_destroy(v->scene);
+  scene_world_close(&v->in);
   context_close(v->context);
 }
 

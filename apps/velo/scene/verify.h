@@ -4,8 +4,7 @@
 #ifndef APP_SCENE_VERIFY_H
 #define APP_SCENE_VERIFY_H
 
-#include "render/job.h"
-#include "render/scene_options.h"
+#include "camera/scene_world.h"
 #include "scene/verify_statistics.h"
 #include "velo/light.h"
 #include "velo/tracer.h"
@@ -84,9 +83,7 @@ typedef struct VerifyMark {
 typedef struct Verify {
   const char *path;
   vlContext *context;
-  vlScene *scene;
-  SceneOpening opening;
-  Job job;
+  SceneWorld in;   /* its world is built for the focus only */
   vlCamera camera; /* at the size of the renders */
   uint32_t width, height, columns, rows;
   double budget; /* rays of the first look */

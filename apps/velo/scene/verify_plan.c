@@ -82,15 +82,15 @@ static Features find_features(Verify *v) {
   Features f = {.narrow = false};
   const vlMaterialDef *material;
   const vlLightDef *light;
-  for (uint32_t i = 1; (material = vl_scene_material(v->scene, (vlMaterialId){i})); i++) {
+  for (uint32_t i = 1; (material = vl_scene_material(v->in.scene, (vlMaterialId){i})); i++) {
     f.smooth = f.smooth || may_be_smooth(material);
     f.narrow = f.narrow || material->kind == VL_MATERIAL_HAIR ||
                material->kind == VL_MATERIAL_DIELECTRIC;
     f.media = f.media || material->kind == VL_MATERIAL_SUBSURFACE;
   }
-  f.media = f.media || vl_scene_medium(v->scene, (vlMediumId){1});
-  f.textures = vl_scene_texture(v->scene, (vlTextureId){1});
-  for (uint32_t i = 1; (light = vl_scene_light(v->scene, (vlLightId){i})); i++) {
+  f.media = f.media || vl_scene_medium(v->in.scene, (vlMediumId){1});
+  f.textures = vl_scene_texture(v->in.scene, (vlTextureId){1});
+  for (uint32_t i = 1; (light = vl_scene_light(v->in.scene, (vlLightId){i})); i++) {
     const bool sky = light->kind == VL_LIGHT_INFINITE;
     f.sky = f.sky || sky;
     v->far_light = v->far_light || sky || light->kind == VL_LIGHT_DISTANT;
@@ -98,7 +98,7 @@ static Features find_features(Verify *v) {
   }
   f.lamps = v->light_count;
   for (uint32_t i = 0; i < v->shapes; i++) {
-    const uint32_t faces = vl_scene_shape(v->scene, (vlShapeId){i + 1})->faces;
+    const uint32_t faces = vl_scene_shape(v->in.scene, (vlShapeId){i + 1})->faces;
     if (!v->emissions[i].index)
       continue;
     f.surfaces = true;

@@ -109,9 +109,9 @@ static vlResult start(Look *l) {
   name_file(l, l->next, "txt", text);
   text_set(spp, "%u", l->spp);
   text_set(seed, "%u", verify_seed(v, l->look, l->next));
-  text_set(depth, "%u", v->job.defs->render.max_depth);
+  text_set(depth, "%u", v->in.job.defs->render.max_depth);
   text_set(size, "%ux%u", v->width, v->height);
-  const char *color = v->job.defs->build.color == VL_COLOR_RGB ? "rgb" : "spectral";
+  const char *color = v->in.job.defs->build.color == VL_COLOR_RGB ? "rgb" : "spectral";
   const char *const words[] = {
       v->reference, v->path,    "-o",           image,      "--spp", spp,           "--seed",
       seed,         "--tracer", "volpath",      "--filter", "box",   "--max-depth", depth,
@@ -159,7 +159,7 @@ static vlResult take_image(Look *l, uint32_t replicate) {
     double *row = l->rows + (size_t)replicate * values;
     verify_take_means(v, image, row);
     for (uint32_t i = 0; i < values; i++)
-      row[i] /= (double)v->job.defs->develop.exposure;
+      row[i] /= (double)v->in.job.defs->develop.exposure;
     for (uint32_t i = 0; i < values && result == VL_OK; i++)
       if (!isfinite(row[i]))
         result = fail(l, "its image has values that are not finite");

@@ -70,7 +70,7 @@ static vlResult move_scene(Verify *v, VerifyPose pose, vlError *error) {
   invert_similarity(v->matrix[v->pose], back);
   matrix_multiply(v->matrix[pose], back, change);
   v->pose = pose;
-  return vl_scene_transform(v->scene, change, error);
+  return vl_scene_transform(v->in.scene, change, error);
 }
 
 static vlResult move_camera(const Verify *v, VerifyPose pose, vlCamera *camera,
@@ -94,15 +94,15 @@ static vlResult choose_lights(Verify *v, VerifyLights lights, vlError *error) {
     return VL_OK;
   v->lights = lights;
   for (uint32_t i = 1; result == VL_OK && i <= v->light_count; i++) {
-    const vlLightDef *light = vl_scene_light(v->scene, (vlLightId){i});
-    result = vl_scene_show_light(v->scene, (vlLightId){i},
+    const vlLightDef *light = vl_scene_light(v->in.scene, (vlLightId){i});
+    result = vl_scene_show_light(v->in.scene, (vlLightId){i},
                                  verify_has_light(lights, light->kind), error);
   }
   for (uint32_t i = 0; result == VL_OK && i < v->shapes; i++) {
     const vlEmissionId own = v->emissions[i], none = {0};
     if (!own.index)
       continue;
-    result = vl_scene_set_shape_emission(v->scene, (vlShapeId){i + 1},
+    result = vl_scene_set_shape_emission(v->in.scene, (vlShapeId){i + 1},
                                          verify_has_surfaces(lights) ? own : none, error);
   }
   return result;
@@ -124,7 +124,7 @@ static vlResult build_set(Verify *v, const VerifyRun *run, Set *set, vlError *er
       run->pose == set->pose && run->lights == set->lights && run->evenly == set->evenly;
   if (set->world && same)
     return VL_OK;
-  vlBuildDef build = v->job.defs->build;
+  vlBuildDef build = v->in.job.defs->build;
   if (run->evenly)
     build.light_sampler = VL_LIGHT_SAMPLER_UNIFORM;
   build.regularize = false; /* it changes the materials, and not all tracers know it */
@@ -133,7 +133,7 @@ static vlResult build_set(Verify *v, const VerifyRun *run, Set *set, vlError *er
   TRY_RESULT(move_scene(v, run->pose, error));
   TRY_RESULT(choose_lights(v, run->lights, error));
   TRY_RESULT(move_camera(v, run->pose, &set->camera, error));
-  return vl_world_build(v->scene, &build, &set->world, error);
+  return vl_world_build(v->in.scene, &build, &set->world, error);
 }
 
 /* ---- cells ------------------------------------------------------------------------------- */
@@ -189,7 +189,7 @@ static vlResult make_cells(Verify *v, const vlWorld *world, const vlImage *ids) 
     make_materials(v, ids, pixels_of, materials);
   }
   free(pixels_of);
-  return v->cells && v->material_of && v->block_of ? VL_OK : VL_ERROR_MEMORY;
+  return v->cell_count ? VL_OK : VL_ERROR_MEMORY;
 }
 
 /* The mean point that the camera sees, and the mean distance to it. */
@@ -247,7 +247,7 @@ vlResult verify_prepare(Verify *v, vlError *error) {
   v->rows += v->rows == 0;
   vlChannelsDef def = vl_default_channels_def(v->width, v->height);
   def.channels = VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_ID_MATERIAL;
-  vlResult result = vl_world_build(v->scene, &v->job.defs->build, &world, error);
+  vlResult result = vl_world_build(v->in.scene, &v->in.job.defs->build, &world, error);
   if (result == VL_OK)
     result = vl_render_channels(world, &v->camera, &def, &floats, &ids, error);
   if (result == VL_OK)
@@ -268,7 +268,7 @@ vlResult verify_prepare(Verify *v, vlError *error) {
 /* A box filter and pixels with samples of their own: so that each sample counts in one pixel
  * with the weight 1, and a replicate's mean is unbiased for any number of samples. */
 static vlFilmDef film_of(const Verify *v) {
-  const vlFilmDef *own = &v->job.defs->film;
+  const vlFilmDef *own = &v->in.job.defs->film;
   vlFilmDef film = vl_default_film_def(v->width, v->height);
   film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   film.space = own->space;
@@ -283,7 +283,7 @@ static vlRenderDef render_of(const Verify *v, const VerifyRun *run, uint32_t spp
   def.tracer = run->tracer;
   def.spp = spp;
   def.seed = seed;
-  def.max_depth = v->job.defs->render.max_depth;
+  def.max_depth = v->in.job.defs->render.max_depth;
   def.share_samples = false;
   def.sharp_textures = run->sharp;
   def.progress = progress_until_signal;

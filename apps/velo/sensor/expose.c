@@ -8,6 +8,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "image/header.h"
 #include "image/image.h"
 #include "render/output_names.h"
 #include "render/pattern.h"
@@ -183,13 +184,12 @@ static void tell_few_samples(const vlImage *image) {
 
 /* Pixels of a sensor collect the light of their own area. */
 static void tell_filter(const vlImage *image) {
-  vlAttribute filter;
-  if (vl_image_find_attribute(image, "velo.filter", &filter) == VL_OK &&
-      filter.type == VL_ATTRIBUTE_STRING && strcmp(filter.string, "box") != 0)
+  const char *filter = header_text(image, "velo.filter");
+  if (filter && strcmp(filter, "box") != 0)
     report_warning(
         "the image has the filter \"%s\", which takes light of the neighbours; a pixel of a "
         "sensor has its own area: render it with --filter box",
-        filter.string);
+        filter);
 }
 
 /* What a reader of the frame should know. */

@@ -272,6 +272,8 @@ static void verify_command(Engine *e, const ViewMessage *m) {
     engine_refuse(e, m, "no command was copied");
   } else {
     e->verify.asked = *m;
+    e->verify.next = e->verify.copied; /* another one may be copied before the thread wakes */
+    e->verify.copied = NULL;
     e->verify.end = false;
     e->verify.runs = true;
   }

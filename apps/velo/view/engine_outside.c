@@ -6,6 +6,7 @@
 
 #include "camera/poses.h"
 #include "image/display.h"
+#include "image/image.h"
 #include "velo/drawing.h"
 #include "view/engine_status.h"
 
@@ -146,20 +147,14 @@ static vlResult render_outside(const Engine *e, const vlCamera *camera, vlImage 
                                vlError *error) {
   vlRenderDef render = engine_render_def(e, OUTSIDE_SPP);
   vlFilmDef def = vl_default_film_def(camera->width, camera->height);
-  vlFilm *film = NULL;
   def.max_component = 10;
   render.sequence = 0;
   if (render.max_depth > 3)
     render.max_depth = 3;
   render.cancel = e->end;
   render.priority = 1;
-  vlResult result = vl_film_create(e->def.context, &def, &film);
-  if (result == VL_OK)
-    result = vl_render(e->model.world, camera, film, &render, NULL, error);
-  if (result == VL_OK)
-    result = vl_film_develop(film, &e->model.job.defs->develop, image);
-  vl_film_destroy(film);
-  return result;
+  return image_render(e->def.context, e->model.world, camera, &def, &render,
+                      &e->model.job.defs->develop, image, error);
 }
 
 void engine_outside(Engine *e, const ViewMessage *m) {

@@ -82,6 +82,7 @@ typedef struct Traces {
 
 typedef struct Verify {
   struct Copied *copied; /* what a page has copied last; null: none, or it is being verified */
+  struct Copied *next;   /* what the thread is to verify, until it takes it */
   ViewMessage asked;     /* the message that asks for a verification */
   bool runs, end;        /* one is wanted or goes on; it shall end */
 } Verify;

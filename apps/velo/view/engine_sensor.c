@@ -185,11 +185,11 @@ static vlResult take_light(Engine *e, const vlFilm *film, uint32_t scale) {
   Shot *s = &e->shot;
   const uint32_t spp = vl_film_spp(film);
   const bool is_enough = s->keeps_light || s->spp == spp;
+  const bool same = s->film == film && s->generation == e->now.generation && s->scale == scale;
   s->keeps_light = false;
-  if (s->light && s->film == film && s->generation == e->now.generation && s->scale == scale &&
-      is_enough)
+  if (s->light && same && is_enough)
     return VL_OK;
-  if (s->film != film || s->generation != e->now.generation || s->scale != scale) {
+  if (!same) {
     vl_image_destroy(s->errors);
     s->errors = NULL;
   }

@@ -221,8 +221,8 @@ void *engine_verify_commands(void *user) {
     while (!e->quit && !e->verify.runs)
       pthread_cond_wait(&e->wake, &e->lock);
     const bool quit = e->quit;
-    Copied *copied = e->verify.copied;
-    e->verify.copied = NULL;
+    Copied *copied = e->verify.next;
+    e->verify.next = NULL;
     asked = e->verify.asked;
     engine_unlock(e);
     Verification v = {.engine = e, .copied = copied};

@@ -3,14 +3,10 @@
 
 #include <string.h>
 
-bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count,
-                   size_t size, size_t more) {
-  if (more == 0)
+bool vl_array_reserve(vlContext *context, void **items, size_t *capacity, size_t count,
+                      size_t size, size_t more) {
+  if (more <= *capacity - count)
     return true;
-  if (more <= *capacity - count) {
-    memset((char *)*items + count * size, 0, more * size);
-    return true;
-  }
   if (more > SIZE_MAX / 4 / size - count)
     return false;
   size_t wanted = count + more;
@@ -20,9 +16,17 @@ bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t co
   void *fresh = vl_realloc_array(context, *items, grown, size);
   if (!fresh)
     return false;
-  memset((char *)fresh + count * size, 0, more * size);
   *items = fresh;
   *capacity = grown;
+  return true;
+}
+
+bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count,
+                   size_t size, size_t more) {
+  if (!vl_array_reserve(context, items, capacity, count, size, more))
+    return false;
+  if (more)
+    memset((char *)*items + count * size, 0, more * size);
   return true;
 }
 

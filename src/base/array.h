@@ -18,24 +18,28 @@
 
 /* Pointer to a new zeroed element at the end, or null if memory is exhausted (the array is then
  * unchanged). */
-#define VL_PUSH(context, array)                                                            \
-  ((vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, \
-                  sizeof *(array)->items, 1))                                              \
-       ? &(array)->items[(array)->count++]                                                 \
-       : NULL)
+#define VL_PUSH(context, array) \
+  (VL_RESERVE_ZERO((context), array, 1) ? &(array)->items[(array)->count++] : NULL)
 /* Pointer to a new element at an index, not zeroed; the elements from there on move up. */
 #define VL_INSERT(context, array, at)                                                \
   (VL_PUSH((context), (array))                                                       \
        ? vl_array_open((array)->items, (array)->count, sizeof *(array)->items, (at)) \
        : NULL)
-/* Reserves capacity for n more elements. False if memory is exhausted. */
-#define VL_RESERVE(context, array, n)                                                    \
+/* Reserves capacity for n more elements, which are not zeroed. False if memory is exhausted. */
+#define VL_RESERVE(context, array, n)                                                       \
+  vl_array_reserve((context), (void **)&(array)->items, &(array)->capacity, (array)->count, \
+                   sizeof *(array)->items, (n))
+/* The same, zeroed. */
+#define VL_RESERVE_ZERO(context, array, n)                                               \
   vl_array_grow((context), (void **)&(array)->items, &(array)->capacity, (array)->count, \
                 sizeof *(array)->items, (n))
 #define VL_ARRAY_FREE(context, array)                         \
   (vl_free((context), (array)->items), (array)->items = NULL, \
    (array)->count = (array)->capacity = 0)
 
+/* Reserves capacity for `more` elements after `count`. vl_array_grow zeroes them. */
+bool vl_array_reserve(vlContext *context, void **items, size_t *capacity, size_t count,
+                      size_t size, size_t more);
 bool vl_array_grow(vlContext *context, void **items, size_t *capacity, size_t count,
                    size_t size, size_t more);
 /* Moves the elements from `at` to the last but one up by one. Returns the address of `at`. */

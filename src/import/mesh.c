@@ -40,7 +40,7 @@ bool vl_mesh_add_attributes(vlContext *context, vlMesh *m, uint32_t attributes) 
   for (uint32_t k = 0; k < VL_MESH_ATTRIBUTES; k++) {
     if (!(attributes & 1u << k))
       continue;
-    m->rows[k] = vl_alloc_zero(context, m->vertices, widths[k] * sizeof(float));
+    m->rows[k] = vl_alloc_array(context, m->vertices, widths[k] * sizeof(float));
     if (!m->rows[k])
       return false;
   }
@@ -71,8 +71,8 @@ bool vl_mesh_reorder(vlContext *context, vlMesh *m, const uint32_t *order, size_
 
 bool vl_mesh_add_triangle(vlContext *context, vlMesh *m, uint32_t a, uint32_t b, uint32_t c) {
   const uint32_t corners[3] = {a, b, c};
-  if (!vl_array_grow(context, (void **)&m->indices, &m->index_capacity, 3 * m->triangles,
-                     sizeof *m->indices, 3))
+  if (!vl_array_reserve(context, (void **)&m->indices, &m->index_capacity, 3 * m->triangles,
+                        sizeof *m->indices, 3))
     return false;
   memcpy(m->indices + 3 * m->triangles++, corners, sizeof corners);
   return true;
@@ -80,8 +80,8 @@ bool vl_mesh_add_triangle(vlContext *context, vlMesh *m, uint32_t a, uint32_t b,
 
 bool vl_mesh_add_quad(vlContext *context, vlMesh *m, const uint32_t v[4]) {
   const uint32_t corners[4] = {v[0], v[1], v[3], v[2]};
-  if (!vl_array_grow(context, (void **)&m->quad_indices, &m->quad_capacity, 4 * m->quads,
-                     sizeof *m->quad_indices, 4))
+  if (!vl_array_reserve(context, (void **)&m->quad_indices, &m->quad_capacity, 4 * m->quads,
+                        sizeof *m->quad_indices, 4))
     return false;
   memcpy(m->quad_indices + 4 * m->quads++, corners, sizeof corners);
   return true;
@@ -89,8 +89,8 @@ bool vl_mesh_add_quad(vlContext *context, vlMesh *m, const uint32_t v[4]) {
 
 bool vl_mesh_color_triangles(vlContext *context, vlMesh *m, size_t first,
                              const float color[3]) {
-  if (!vl_array_grow(context, (void **)&m->face_colors, &m->color_capacity, 3 * first,
-                     sizeof *m->face_colors, 3 * (m->triangles - first)))
+  if (!vl_array_reserve(context, (void **)&m->face_colors, &m->color_capacity, 3 * first,
+                        sizeof *m->face_colors, 3 * (m->triangles - first)))
     return false;
   for (size_t i = first; i < m->triangles; i++)
     memcpy(m->face_colors + 3 * i, color, 3 * sizeof *color);

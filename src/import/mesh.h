@@ -50,7 +50,7 @@ void vl_mesh_drop(vlContext *context, vlMesh *mesh, uint32_t attributes);
 
 /* The functions below return false when memory is exhausted. */
 
-/* Makes the attributes of a set, all zero, for mesh->vertices. */
+/* Makes the attributes of a set for mesh->vertices. Their numbers are not set. */
 bool vl_mesh_add_attributes(vlContext *context, vlMesh *mesh, uint32_t attributes);
 /* Vertex i becomes a copy of vertex order[i]; the faces' indices are left to the caller. After
  * a failure the mesh is as before. */

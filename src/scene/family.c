@@ -227,8 +227,8 @@ uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def) {
   const vlSceneRow *row = &vl_scene_rows[family];
   size_t *count = vl_scene_count_of(scene, family);
   if (*count >= MAX_OBJECTS ||
-      !vl_array_grow(scene->context, member(scene, row->items), member(scene, row->capacity),
-                     *count, row->size, 1)) {
+      !vl_array_reserve(scene->context, member(scene, row->items), member(scene, row->capacity),
+                        *count, row->size, 1)) {
     vl_scene_fail_memory(scene);
     return 0;
   }

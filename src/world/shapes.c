@@ -363,8 +363,8 @@ static bool is_in_group(const vlScene *scene, size_t index) {
 vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *error) {
   size_t group_count = scene->groups.count + 1;
   vl_world_find_times(world, scene);
-  if (!VL_RESERVE(world->context, &world->shapes, scene->shapes.count) ||
-      !VL_RESERVE(world->context, &world->groups, group_count))
+  if (!VL_RESERVE_ZERO(world->context, &world->shapes, scene->shapes.count) ||
+      !VL_RESERVE_ZERO(world->context, &world->groups, group_count))
     return vl_fail_memory(error);
   world->shape_parts = vl_world_block(world, scene->shapes.count, sizeof(vlPart *));
   world->shape_from = vl_world_block(world, scene->shapes.count, sizeof(uint32_t));

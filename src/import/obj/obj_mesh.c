@@ -190,8 +190,8 @@ static bool fill_mesh(vlObj *obj, const vlObjPart *part, const vlObjCorner *corn
     if (m->normals)
       memcpy(m->normals + 3 * i, obj->normals.items + 3 * (size_t)(c.vn - 1),
              3 * sizeof(float));
-    if (m->uvs[0] && c.vt)
-      memcpy(m->uvs[0] + 2 * i, obj->uvs.items + 2 * (size_t)(c.vt - 1), 2 * sizeof(float));
+    for (size_t k = 0; m->uvs[0] && k < 2; k++)
+      m->uvs[0][2 * i + k] = c.vt ? obj->uvs.items[2 * (size_t)(c.vt - 1) + k] : 0;
     for (size_t k = 0; m->colors && k < 4; k++) {
       size_t at = 3 * (size_t)(c.v - 1) + k;
       m->colors[4 * i + k] = k < 3 && at < obj->colors.count ? obj->colors.items[at] : 1.0f;

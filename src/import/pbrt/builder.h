@@ -249,9 +249,9 @@ bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[
                             vlSource source);
 
 /* VL_PUSH, which reports that memory is exhausted. */
-#define VL_IMPORT_PUSH(import, array)                                       \
-  (VL_RESERVE((import)->context, array, 1) || vl_import_fail_memory(import) \
-       ? &(array)->items[(array)->count++]                                  \
+#define VL_IMPORT_PUSH(import, array)                                            \
+  (VL_RESERVE_ZERO((import)->context, array, 1) || vl_import_fail_memory(import) \
+       ? &(array)->items[(array)->count++]                                       \
        : NULL)
 /* Adds a name to a table. False: memory is exhausted. */
 bool vl_import_add_name(vlImport *import, vlNameTable *table, const char *name, size_t index);

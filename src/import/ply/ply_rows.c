@@ -239,8 +239,8 @@ bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e) {
   if (likely > e->count)
     likely = e->count;
   vlMesh *m = r->mesh;
-  if (!vl_array_grow(r->context, (void **)&m->indices, &m->index_capacity, 3 * m->triangles,
-                     sizeof *m->indices, 3 * likely))
+  if (!vl_array_reserve(r->context, (void **)&m->indices, &m->index_capacity, 3 * m->triangles,
+                        sizeof *m->indices, 3 * likely))
     return vl_ply_fail_memory(r);
   r->face_colors = has_roles(e, VL_PLY_RED, 3);
   if (r->face_colors && m->triangles)

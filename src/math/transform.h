@@ -24,9 +24,19 @@ double vl_mat4_determinant3(vlMat4 a); /* of the upper left 3x3 */
 bool vl_mat4_is_finite(vlMat4 a);
 bool vl_mat4_is_identity(const double m[16]);
 /* divides by w if it is not 1 */
-void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]);
+static inline void vl_mat4_point(const vlMat4 *a, const double p[3], double result[3]) {
+  const double *m = a->m;
+  double r[4];
+  for (int i = 0; i < 4; i++)
+    r[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+  double s = r[3] == 1 ? 1 : 1 / r[3];
+  for (int i = 0; i < 3; i++)
+    result[i] = r[i] * s;
+}
 /* The same of a point in single precision. */
-void vl_mat4_vertex(const vlMat4 *a, const float p[3], double result[3]);
+static inline void vl_mat4_vertex(const vlMat4 *a, const float p[3], double result[3]) {
+  vl_mat4_point(a, (const double[3]){p[0], p[1], p[2]}, result);
+}
 void vl_mat4_vector(const vlMat4 *a, const double v[3], double result[3]);
 /* Transforms a normal by the transpose of the inverse matrix, which the caller passes. The
  * result is not normalised. */

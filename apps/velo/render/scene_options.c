@@ -321,7 +321,8 @@ static int load_and_complete(vlContext *context, const char *path, const Argumen
   choose_completion(path, arguments, opening->model, &complete);
   if (lit_inside)
     complete.environment = VL_ENVIRONMENT_LAMPS;
-  vl_scene_bounds(*scene, opening->low, opening->high);
+  if (opening->model || v[RENDER_TURN].given)
+    vl_scene_bounds(*scene, opening->low, opening->high);
   if (v[RENDER_CAMERA].given && !load->camera)
     leave_camera(v, &complete);
   TRY(report_error(&error, vl_scene_complete(*scene, &complete, &error), path));

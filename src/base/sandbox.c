@@ -158,9 +158,9 @@ static bool step(vlSandbox *sandbox, Walk *walk) {
 }
 
 bool vl_sandbox_allows(vlSandbox *sandbox, const char *path) {
-  Walk walk = {.links = 0};
   if (!sandbox->count)
     return true;
+  Walk walk = {.links = 0};
   if (strlen(path) >= sizeof walk.rest)
     return false;
   set(walk.rest, path);

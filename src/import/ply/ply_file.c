@@ -146,6 +146,8 @@ static bool read_body(vlPlyReader *r) {
       return vl_ply_fail(r,
                          "the header promises %llu of element %s, but only %llu bytes follow",
                          (unsigned long long)e->count, e->name, (unsigned long long)left);
+    if (e->kind == VL_PLY_FACE || e->kind == VL_PLY_STRIPS)
+      r->faces_first = r->faces_first || !r->has_vertices;
     bool fine = e->kind == VL_PLY_VERTEX   ? vl_ply_read_vertices(r, e)
                 : e->kind == VL_PLY_FACE   ? vl_ply_read_faces(r, e)
                 : e->kind == VL_PLY_STRIPS ? vl_ply_read_strips(r, e)
@@ -172,8 +174,8 @@ static bool check(vlPlyReader *r) {
     return vl_ply_fail(r, "the mesh has no vertices");
   if (m->triangles == 0 && m->quads == 0 && !r->options->given)
     return vl_ply_fail(r, "the mesh has no faces");
-  return check_indices(r, m->indices, 3 * m->triangles) &&
-         check_indices(r, m->quad_indices, 4 * m->quads);
+  return !r->faces_first || (check_indices(r, m->indices, 3 * m->triangles) &&
+                             check_indices(r, m->quad_indices, 4 * m->quads));
 }
 
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size,

@@ -78,6 +78,8 @@ typedef struct vlPlyReader {
   uint32_t element_count;
   vlMesh *mesh;
   bool has_vertices, face_colors; /* face_colors: faces have colours */
+  bool faces_first;               /* faces came before the vertices: their indices are not
+                                     checked yet */
   VL_ARRAY(uint32_t) face;
   vlError *error;
 } vlPlyReader;

@@ -219,6 +219,29 @@ static bool scan_hex(const char **text, const char *p, const char *end, bool neg
   return p > start && isfinite(v);
 }
 
+/* Digits that were read: mantissa 10^exponent, if it is exact. */
+typedef struct Digits {
+  uint64_t mantissa;
+  int count, exponent; /* count: without leading zeros, at most 18 */
+  bool exact;
+} Digits;
+
+/* Reads digits before the decimal point, or of the fraction after it. Returns their end. */
+static inline const char *scan_digits(const char *p, const char *end, bool fraction,
+                                      Digits *d) {
+  for (; p < end && is_digit(*p); p++) {
+    if (d->count < 18) {
+      d->mantissa = d->mantissa * 10 + (uint64_t)(*p - '0');
+      d->count += d->mantissa != 0;
+      d->exponent -= fraction && d->exponent > -100000;
+    } else {
+      d->exact = d->exact && *p == '0';
+      d->exponent += !fraction && d->exponent < 100000;
+    }
+  }
+  return p;
+}
+
 bool vl_number_scan(const char **text, const char *end, double *value) {
   const char *start = *text, *p = start;
   bool negative = p < end && *p == '-';
@@ -227,27 +250,13 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
   if (end - p > 2 && p[0] == '0' && (p[1] == 'x' || p[1] == 'X'))
     return scan_hex(text, p + 2, end, negative, value);
   const char *digits_start = p;
-  uint64_t mantissa = 0;
-  /* 10^exponent times the mantissa; the exponent that is written */
-  int digits = 0, exponent = 0, written = 0;
-  bool exact = true, any = false;
-  bool fraction = false;
-  for (; p < end && (is_digit(*p) || (*p == '.' && !fraction)); p++) {
-    if (*p == '.') {
-      fraction = true;
-      continue;
-    }
-    any = true;
-    if (digits < 18) {
-      mantissa = mantissa * 10 + (uint64_t)(*p - '0');
-      digits += mantissa != 0;
-      exponent -= fraction && exponent > -100000;
-    } else {
-      exact = exact && *p == '0';
-      exponent += !fraction && exponent < 100000;
-    }
-  }
-  if (!any)
+  Digits digits = {.exact = true};
+  int written = 0; /* the exponent */
+  p = scan_digits(p, end, false, &digits);
+  const char *point = p;
+  if (p < end && *p == '.')
+    p = scan_digits(p + 1, end, true, &digits);
+  if (point == digits_start && p - point < 2) /* nothing, or the point only */
     return false;
   const char *digits_end = p;
   if (p < end && (*p == 'e' || *p == 'E')) {
@@ -265,8 +274,8 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
     }
   }
   *text = p;
-  double v = exact ? nearest(mantissa, exponent + written)
-                   : nearest_of_digits(digits_start, digits_end, written);
+  double v = digits.exact ? nearest(digits.mantissa, digits.exponent + written)
+                          : nearest_of_digits(digits_start, digits_end, written);
   *value = negative ? -v : v;
   return isfinite(v);
 }

@@ -25,7 +25,7 @@ static bool ends_word(char c) {
   return is_space(c) || c == '"' || c == '[' || c == ']' || c == '#';
 }
 
-static void skip_blank(vlTokenizer *t) {
+static inline void skip_blank(vlTokenizer *t) {
   while (t->at < t->end) {
     char c = *t->at;
     if (c == '\n') {

@@ -652,6 +652,7 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
   LastShape last = {.known = false};
   if (world->def.bits == VL_BITS_PORTABLE)
     query.q.nearest = &nearest;
+  const bool sound = vl_rays_are_sound(rays, n);
   for (uint32_t i = 0; i < n; i++) {
     query.q.first = i;
     nearest.t = INFINITY;
@@ -659,7 +660,7 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
     fill_ray(&q.ray, rays, i);
     q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    if (vl_ray_is_sound(rays, i))
+    if (sound || vl_ray_is_sound(rays, i))
       INTERSECT1(world->accel.scene, &q);
     t[i] = query.q.nearest ? nearest.t : q.ray.tfar;
     store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &last, &shape[i], &prim[i],
@@ -685,12 +686,13 @@ void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays,
                         vlOccluders *occluders, uint8_t *occluded) {
   BEGIN_QUERY(query, rays, false);
   query.q.occluders = occluders;
+  const bool sound = vl_rays_are_sound(rays, n);
   for (uint32_t i = 0; i < n; i++) {
     if (occluded[i])
       continue;
     struct RTCRay q;
     fill_ray(&q, rays, i);
-    if (vl_ray_is_sound(rays, i))
+    if (sound || vl_ray_is_sound(rays, i))
       OCCLUDED1(world->accel.scene, &q);
     occluded[i] = q.tfar < 0;
   }

@@ -1,8 +1,6 @@
 /* world/accel/local_ray.c: see local_ray.h. */
 #include "world/accel/local_ray.h"
 
-#include <string.h>
-
 #include "math/hash.h"
 #include "world/accel/crossed.h"
 #include "world/moving.h"
@@ -109,11 +107,9 @@ bool vl_triangle_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i,
   return shape->alpha >= 0 && alpha_passes(world, rays, i, shadow, shape, &r, prim, 0, &at);
 }
 
-/* Whether the shape's texture lets ray i pass at a hit. */
-static __attribute__((noinline)) bool texture_passes(const vlWorld *world, const vlRays *rays,
-                                                     uint32_t i, uint32_t instance,
-                                                     const vlWorldShape *shape, uint32_t prim,
-                                                     bool shadow, const vlShapeHit *hit) {
+bool vl_shape_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
+                        const vlWorldShape *shape, uint32_t prim, bool shadow,
+                        const vlShapeHit *hit) {
   vlLocalRay r = vl_local_ray(world, rays, i, instance);
   vlSurfacePoint point;
   vl_shape_point(shape, prim, hit, &point);
@@ -121,30 +117,4 @@ static __attribute__((noinline)) bool texture_passes(const vlWorld *world, const
                        vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
                        vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
   return alpha_passes(world, rays, i, shadow, shape, &r, prim, (float)hit->t, &at);
-}
-
-bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
-                        const vlWorldShape *shape, uint32_t prim, bool shadow, double t_min,
-                        double t_max, double *t) {
-  if (shadow && shape->pass_shadow)
-    return false;
-  double o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]},
-         d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
-  if (instance != VL_NONE) {
-    vlLocalRay r = vl_local_ray(world, rays, i, instance);
-    memcpy(o, r.o, sizeof o);
-    memcpy(d, r.d, sizeof d);
-  }
-  vlShapeHit hit;
-  while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
-    if (shape->alpha >= 0 &&
-        texture_passes(world, rays, i, instance, shape, prim, shadow, &hit)) {
-      /* past this hit, by several thousand rounding errors of a double */
-      t_min = hit.t * (1 + 1e-12);
-      continue;
-    }
-    *t = hit.t;
-    return true;
-  }
-  return false;
 }

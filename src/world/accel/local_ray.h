@@ -4,6 +4,8 @@
 #ifndef WORLD_ACCEL_LOCAL_RAY_H
 #define WORLD_ACCEL_LOCAL_RAY_H
 
+#include <string.h>
+
 #include "shape/surface_point.h"
 #include "world/accel/accel.h"
 #include "world/world.h"
@@ -31,10 +33,38 @@ bool vl_triangle_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i,
                            uint32_t instance, const vlWorldShape *shape, uint32_t prim,
                            bool shadow);
 
-/* Whether ray i meets primitive prim of a shape of another kind between t_min and t_max, at a
- * point that does not let it pass, and at which distance. */
-bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
-                        const vlWorldShape *shape, uint32_t prim, bool shadow, double t_min,
-                        double t_max, double *t);
+/* Whether the alpha of a shape of another kind lets ray i pass at a hit. */
+bool vl_shape_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
+                        const vlWorldShape *shape, uint32_t prim, bool shadow,
+                        const vlShapeHit *hit);
+
+/* Whether ray i meets primitive prim of such a shape between t_min and t_max, at a point that
+ * does not let it pass, and at which distance. */
+static inline bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i,
+                                      uint32_t instance, const vlWorldShape *shape,
+                                      uint32_t prim, bool shadow, double t_min, double t_max,
+                                      double *t) {
+  if (shadow && shape->pass_shadow)
+    return false;
+  double o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]},
+         d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
+  if (instance != VL_NONE) {
+    vlLocalRay r = vl_local_ray(world, rays, i, instance);
+    memcpy(o, r.o, sizeof o);
+    memcpy(d, r.d, sizeof d);
+  }
+  vlShapeHit hit;
+  while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
+    if (shape->alpha >= 0 &&
+        vl_shape_lets_pass(world, rays, i, instance, shape, prim, shadow, &hit)) {
+      /* past this hit, by several thousand rounding errors of a double */
+      t_min = hit.t * (1 + 1e-12);
+      continue;
+    }
+    *t = hit.t;
+    return true;
+  }
+  return false;
+}
 
 #endif

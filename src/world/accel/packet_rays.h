@@ -47,6 +47,20 @@ static inline bool vl_ray_is_sound(const vlRays *r, uint32_t i) {
   return near && turned && from && to;
 }
 
+/* Whether all of n rays are sound: loops that vectorise. */
+static inline bool vl_rays_are_sound(const vlRays *r, uint32_t n) {
+  const float far = VL_RAY_FAR, *const rows[6] = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz};
+  int unsound = 0;
+  for (int j = 0; j < 6; j++)
+    for (uint32_t i = 0; i < n; i++)
+      unsound |= !(fabsf(rows[j][i]) < far);
+  for (uint32_t i = 0; r->t_min && i < n; i++)
+    unsound |= !(r->t_min[i] >= 0.0f);
+  for (uint32_t i = 0; r->t_max && i < n; i++)
+    unsound |= r->t_max[i] != r->t_max[i];
+  return !unsound;
+}
+
 /* Whether all rays of a packet are sound. The bits of positive numbers are in their order, and
  * those of NaN behind all others. */
 static inline bool vl_packet_is_sound(void *q) {

@@ -132,9 +132,28 @@ typedef struct vlShadowStart {
   uint32_t medium;
 } vlShadowStart;
 /* Adds the light sample of vertex i as shadow ray number `count`. */
-void vl_volume_push_shadow(const vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                           const vlLightSamples *light, uint32_t i, const vlShadowStart *start,
-                           uint32_t count, vlShadowRays *q, vlShadowFlights *f);
+static inline void vl_volume_push_shadow(const vlTracing *t, const vlPaths *p,
+                                         const vlVolumeRows *rows, const vlLightSamples *l,
+                                         uint32_t i, const vlShadowStart *start, uint32_t count,
+                                         vlShadowRays *q, vlShadowFlights *f) {
+  vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
+  float length = VL_INFINITY;
+  if (!l->distant[i]) { /* unit length: distances to interfaces are needed */
+    vlVec3 to = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), start->o);
+    length = vl_length(to);
+    w = vl_normalize(to);
+  }
+  vl_shadow_way(p, i, start->o, w, length * VL_SHADOW_END, count, q);
+  for (int c = 0; c < 4; c++) {
+    q->radiance[c][count] = p->beta[c][i] * start->value[c] * l->radiance[c][i] * l->pdf[i];
+    f->density[c][count] = rows->u[c][i];
+  }
+  f->light_pdf[count] = l->pdf[i];
+  f->pdf[count] = l->delta[i] ? 0.0f : start->pdf;
+  f->medium[count] = start->medium;
+  f->from[count] = i;
+  vl_shadow_from_medium(t, p->lane[i], count, f);
+}
 /* Traces `count` shadow rays of light samples and adds the radiance that arrives. */
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlLightSamples *light,
                        uint32_t count, uint32_t depth, vlShadowRays *q, vlShadowFlights *f);

@@ -231,10 +231,15 @@ static inline void vl_path_copy_constants(const vlPaths *a, uint32_t i, vlPaths 
 }
 /* Copies what each bounce changes. */
 static inline void vl_path_copy_ray(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
-  vl_set_lane3(b->ox, b->oy, b->oz, k, vl_lane3(a->ox, a->oy, a->oz, i));
-  vl_set_lane3(b->dx, b->dy, b->dz, k, vl_lane3(a->dx, a->dy, a->dz, i));
-  vl_set_lane3(b->from_nx, b->from_ny, b->from_nz, k,
-               vl_lane3(a->from_nx, a->from_ny, a->from_nz, i));
+  b->ox[k] = a->ox[i];
+  b->oy[k] = a->oy[i];
+  b->oz[k] = a->oz[i];
+  b->dx[k] = a->dx[i];
+  b->dy[k] = a->dy[i];
+  b->dz[k] = a->dz[i];
+  b->from_nx[k] = a->from_nx[i];
+  b->from_ny[k] = a->from_ny[i];
+  b->from_nz[k] = a->from_nz[i];
   for (int c = 0; c < 4; c++)
     b->beta[c][k] = a->beta[c][i];
   b->pdf[k] = a->pdf[i];

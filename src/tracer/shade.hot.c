@@ -7,7 +7,12 @@
 
 /* ---- sorting ----------------------------------------------------------------------------- */
 
-enum { BLOCK = 8, PATH_ROWS = offsetof(vlPaths, time) / sizeof(float[VL_ROW_SIZE]) };
+enum {
+  BLOCK = 8,
+  PATH_ROWS = offsetof(vlPaths, time) / sizeof(float[VL_ROW_SIZE]),
+  LAMBDA_ROW = offsetof(vlPaths, lambda) / sizeof(float[VL_ROW_SIZE]), /* 4 rows */
+  PIXEL_ROW = offsetof(vlPaths, px) / sizeof(float[VL_ROW_SIZE])       /* px, py, index, lane */
+};
 _Static_assert(PATH_ROWS * sizeof(float[VL_ROW_SIZE]) == offsetof(vlPaths, time),
                "rows of 4 bytes without gaps");
 
@@ -20,16 +25,21 @@ static inline bool neighbours(const uint32_t *order) {
   return !different;
 }
 
+/* Copies `rows` rows of a block of neighbours, from row `first` on. */
+static inline void copy_block(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k,
+                              size_t first, size_t rows) {
+  for (size_t row = first; row < first + rows; row++)
+    memcpy((char *)b + row * sizeof b->ox + k * sizeof(float),
+           (const char *)a + row * sizeof a->ox + i * sizeof(float), BLOCK * sizeof(float));
+}
+
 /* Copies blocks of neighbours row by row. Copies others path by path, because a gather
  * instruction per row takes longer than single moves. */
 void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
   uint32_t k = 0;
   while (k < n) {
     if (n - k >= BLOCK && neighbours(order + k)) {
-      for (size_t row = 0; row < PATH_ROWS; row++)
-        memcpy((char *)b + row * sizeof b->ox + k * sizeof(float),
-               (const char *)a + row * sizeof a->ox + order[k] * sizeof(float),
-               BLOCK * sizeof(float));
+      copy_block(a, order[k], b, k, 0, PATH_ROWS);
       k += BLOCK;
     } else {
       for (uint32_t last = n - k < BLOCK ? n : k + BLOCK; k < last; k++)
@@ -43,10 +53,19 @@ static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint
 }
 
 void vl_gather_rays(const vlPaths *p, const uint32_t *order, uint32_t n, vlPaths *to) {
-  for (uint32_t k = 0; k < n; k++) {
+  for (uint32_t k = 0; k < n; k++)
     if (order[k] != k)
       vl_path_copy_ray(to, order[k], to, k);
-    vl_path_copy_constants(p, order[k], to, k);
+  uint32_t k = 0;
+  while (k < n) {
+    if (n - k >= BLOCK && neighbours(order + k)) {
+      copy_block(p, order[k], to, k, LAMBDA_ROW, 4);
+      copy_block(p, order[k], to, k, PIXEL_ROW, 4);
+      k += BLOCK;
+    } else {
+      for (uint32_t last = n - k < BLOCK ? n : k + BLOCK; k < last; k++)
+        vl_path_copy_constants(p, order[k], to, k);
+    }
   }
 }
 

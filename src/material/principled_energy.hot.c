@@ -305,12 +305,14 @@ static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const fl
 
 void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, vlPrincipledLanes *l) {
   float a[VL_PRINCIPLED_CHUNK], b[VL_PRINCIPLED_CHUNK], coat_cos[VL_PRINCIPLED_CHUNK];
+  const float *thin = s->row[VL_P_THIN];
   uint32_t count = VL_WHOLE(s->count);
+  VL_SIMD
   for (uint32_t i = 0; i < count; i++) {
-    float z = wo.z[i];
+    float z = wo.z[i], solid = 1.0f - thin[i];
     l->z[i] = vl_abs(z);
     l->side[i] = z < 0.0f ? -1.0f : 1.0f;
-    l->inside[i] = z < 0.0f ? 1.0f - s->row[VL_P_THIN][i] : 0.0f;
+    l->inside[i] = z < 0.0f ? solid : 0.0f;
     l->coat_o[i] = l->coat_mean[i] = l->sheen_o[i] = l->sheen_mean[i] = l->sheen_raw[i] =
         coat_cos[i] = 0.0f;
     l->loss_mean[0][i] = l->again_up[i] = l->again_down[i] = l->again_pass[i] = 0.0f;

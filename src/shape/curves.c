@@ -147,11 +147,18 @@ static double seen_width(const vlWorldShape *s, uint32_t segment, double u, cons
   return width * fabs(vl_dot3(n, d));
 }
 
+/* fmin and fmax are calls, which take longer than the comparisons. */
+static inline double smaller(double a, double b) {
+  return a < b ? a : b;
+}
+static inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
 static inline double range_low(const double c[4]) {
-  return fmin(fmin(c[0], c[1]), fmin(c[2], c[3]));
+  return smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
 }
 static inline double range_high(const double c[4]) {
-  return fmax(fmax(c[0], c[1]), fmax(c[2], c[3]));
+  return larger(larger(c[0], c[1]), larger(c[2], c[3]));
 }
 
 static inline double bezier(const double c[4], double w) {
@@ -236,7 +243,7 @@ static void split(const double c[4], double a[4], double b[4]) {
 
 static void search(Search *q, const Cubic *c, double u0, double u1, int depth) {
   double half =
-      0.5 * fmax(width_at(q->shape, q->segment, u0), width_at(q->shape, q->segment, u1));
+      0.5 * larger(width_at(q->shape, q->segment, u0), width_at(q->shape, q->segment, u1));
   if (misses(q, c, half))
     return;
   if (depth == 0) {
@@ -299,7 +306,7 @@ static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double g
   cut(whole.z, u0, u1, c.z);
   q.z_min = t_min * length;
   q.z_max = t_max * length;
-  double width = fmax(width_at(s, q.segment, u0), width_at(s, q.segment, u1));
+  double width = larger(width_at(s, q.segment, u0), width_at(s, q.segment, u1));
   if (misses(&q, &c, 0.5 * width))
     return false;
   int depth = depth_for(&c, width, &q.flat);

@@ -223,6 +223,17 @@ static vlResult utf16_to_utf8(vlContext *context, char **data, size_t *size, vlE
   return VL_OK;
 }
 
+/* Notes an open file as an input of the context. False: out of memory, and the file is
+ * closed. */
+static bool note_input(vlContext *context, const char *path, int fd, struct stat *info) {
+  if (fstat(fd, info) != 0)
+    info->st_size = 0;
+  const bool noted = vl_file_input(context, path, info, VL_OUTPUT_PLAIN);
+  if (!noted)
+    close(fd);
+  return noted;
+}
+
 static vlResult read_file(vlContext *context, const char *path, bool given, bool gunzip,
                           char **data, size_t *size, vlError *error) {
   *data = NULL;
@@ -235,12 +246,8 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
     return opening.code;
   }
   struct stat info = {0};
-  if (fstat(fd, &info) != 0)
-    info.st_size = 0;
-  if (!vl_file_input(context, path, &info, VL_OUTPUT_PLAIN)) {
-    close(fd);
+  if (!note_input(context, path, fd, &info))
     return vl_fail_memory(error);
-  }
   size_t capacity = info.st_size > 0 ? (size_t)info.st_size : 65536, used = 0;
   char *block = vl_alloc(context, capacity + 1);
   vlResult result = block ? VL_OK : vl_fail_memory(error);
@@ -324,6 +331,16 @@ static char *read_pages(int fd, size_t length) {
   return block;
 }
 
+vlResult vl_file_check(vlContext *context, const char *path, vlError *error) {
+  if (vl_context_allows(context, path) && access(path, R_OK) == 0)
+    return VL_OK;
+  char *data = NULL;
+  size_t size;
+  const vlResult result = vl_file_read(context, path, false, &data, &size, error);
+  vl_free(context, data);
+  return result;
+}
+
 vlResult vl_file_map(vlContext *context, const char *path, const char **data, size_t *size,
                      vlError *error) {
   *data = NULL;
@@ -335,12 +352,8 @@ vlResult vl_file_map(vlContext *context, const char *path, const char **data, si
   int fd = open(path, O_RDONLY | O_CLOEXEC);
   if (fd < 0)
     return fail_open(path, errno, error);
-  if (fstat(fd, &info) != 0)
-    info.st_size = 0;
-  if (!vl_file_input(context, path, &info, VL_OUTPUT_PLAIN)) {
-    close(fd);
+  if (!note_input(context, path, fd, &info))
     return vl_fail_memory(error);
-  }
   size_t length = (size_t)info.st_size;
   /* Maps zero pages first, then the file over them: a zero byte follows even if the file fills
    * its last page. */

@@ -18,6 +18,8 @@ vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **
  * apply. */
 vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, char **data,
                             size_t *size, vlError *error);
+/* Whether a file can be read as vl_file_read does: OK, or its error. */
+vlResult vl_file_check(vlContext *context, const char *path, vlError *error);
 /* Maps a file into memory: pages are read on access; a zero byte follows. Regular files only:
  * for others *data is null and the result is OK. Released with vl_file_unmap. */
 vlResult vl_file_map(vlContext *context, const char *path, const char **data, size_t *size,

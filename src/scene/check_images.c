@@ -3,7 +3,6 @@
  * the larger bound of its inputs, for a product the product of the bounds, for an image its
  * brightest texel. */
 #include <math.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -19,14 +18,8 @@
 /* ---- files ------------------------------------------------------------------------------- */
 
 static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
-  if (vl_context_allows(c->context, path) && access(path, R_OK) == 0)
-    return true;
-  char *data = NULL;
-  size_t size;
   vlError error = {0};
-  /* called for its error message */
-  vlResult r = vl_file_read(c->context, path, false, &data, &size, &error);
-  vl_free(c->context, data);
+  const vlResult r = vl_file_check(c->context, path, &error);
   if (r != VL_OK)
     vl_check_add(c, r == VL_ERROR_MISSING ? VL_FINDING_MISSING_FILE : VL_FINDING_BROKEN_FILE,
                  VL_SEVERITY_ERROR, source, "%s", error.message);

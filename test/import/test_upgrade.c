@@ -86,6 +86,10 @@ static const struct {
     {"Material \"matte\" \"color Kd\" [ .5 .25 1e-2 ] # kept\n",
      "Material \"diffuse\" \"rgb reflectance\" [ .5 .25 1e-2 ] # kept\n", 0},
     {"Material \"matte\" \"float sigma\" 0\n", "Material \"diffuse\"\n", 0},
+    {"LightSource \"point\" \"spectrum I\" [ 400 1 # 12 34\n 500 2 700 3 ]\n",
+     "LightSource \"point\" \"spectrum I\" [ 400 1 # 12 34\n 500 2 700 3 ] "
+     "\"float scale\" 2.292336\n",
+     0},
     {"Material \"matte\" \"float sigma\" 20\n", "Material \"diffuse\"\n", 1},
     {"Material \"plastic\"\n"
      "  \"rgb Kd\" [ .1 .2 .3 ]\n"

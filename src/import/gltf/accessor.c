@@ -153,6 +153,11 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, size_t index) {
 
 /* ---- reading ----------------------------------------------------------------------------- */
 
+/* most: of the signed type. */
+static float from_signed(float value, float most, bool normalized) {
+  return normalized ? fmaxf(value / most, -1.0f) : value;
+}
+
 static float read_float(const uint8_t *p, uint32_t type, bool normalized) {
   int8_t b;
   int16_t s;
@@ -160,12 +165,10 @@ static float read_float(const uint8_t *p, uint32_t type, bool normalized) {
   switch (type) {
     case VL_GLTF_BYTE:
       memcpy(&b, p, 1);
-      f = normalized ? (float)b / 127.0f : (float)b;
-      return normalized && f < -1.0f ? -1.0f : f;
+      return from_signed(b, 127.0f, normalized);
     case VL_GLTF_SHORT:
       memcpy(&s, p, 2);
-      f = normalized ? (float)s / 32767.0f : (float)s;
-      return normalized && f < -1.0f ? -1.0f : f;
+      return from_signed(s, 32767.0f, normalized);
     case VL_GLTF_FLOAT:
       memcpy(&f, p, 4);
       return f;

@@ -1,6 +1,5 @@
 /* import/pbrt/report.c: errors and warnings with their sources (file, line, column), kept
  * strings, paths. */
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -154,17 +153,9 @@ bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t s
   if (vl_import_find(import, param->source, param->strings.items[0], path, size) ==
       VL_FOUND_TOO_LONG)
     return vl_import_wrong(import, param->source, "\"%s\": file name too long", param->name);
-  if (vl_context_allows(import->context, path) && access(path, R_OK) == 0)
-    return true;
-  char *data;
-  size_t count;
   vlError error = {0};
-  /* opened for its error message */
-  vlResult result = vl_file_read(import->context, path, false, &data, &count, &error);
-  vl_free(import->context, data);
-  if (result != VL_OK)
-    return vl_import_fail(import, result, param->source, "%s", error.message);
-  return vl_import_fail(import, VL_ERROR_IO, param->source, "cannot read %s", path);
+  const vlResult result = vl_file_check(import->context, path, &error);
+  return result == VL_OK || vl_import_fail(import, result, param->source, "%s", error.message);
 }
 
 bool vl_import_image_path(vlImport *import, const vlParam *param, char *path, size_t size) {

@@ -5,7 +5,6 @@
 #include "base/free.h"
 #include "base/text.h"
 #include "color/color.h"
-#include "import/pbrt/decimal.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 #define POSE \
@@ -41,21 +40,17 @@ static const vlOldRow area[] = {{"L twosided"}, SAMPLES, COMMON, {0}};
 static bool read_pairs(const vlOldStatement *s, const vlOldParam *p, float **wavelengths,
                        float **values) {
   vlContext *context = s->u->context;
-  const char *at = s->file->text + p->value.start, *end = s->file->text + p->value.end;
-  *wavelengths = vl_alloc_array(context, p->count, sizeof **wavelengths);
-  *values = vl_alloc_array(context, p->count, sizeof **values);
-  if (!*wavelengths || !*values)
-    return vl_old_fail_memory(s->u);
-  for (size_t n = 0; at < end && n < p->count;) {
-    double number;
-    if (!vl_number_scan(&at, end, &number)) {
-      at++;
-      continue;
-    }
-    (n % 2 ? *values : *wavelengths)[n / 2] = (float)number;
-    n++;
-  }
-  return true;
+  size_t found;
+  double *numbers = vl_old_all_numbers(s, p, &found);
+  if (!numbers)
+    return false;
+  *wavelengths = vl_alloc_zero(context, p->count, sizeof **wavelengths);
+  *values = vl_alloc_zero(context, p->count, sizeof **values);
+  const bool fine = *wavelengths && *values;
+  for (size_t i = 0; fine && i < found; i++)
+    (i % 2 ? *values : *wavelengths)[i / 2] = (float)numbers[i];
+  vl_free(context, numbers);
+  return fine || vl_old_fail_memory(s->u);
 }
 
 /* pbrt-v4 divides a light's spectrum by its luminance, pbrt-v3 does not. 1 for colours. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/text.h"
+#include "import/pbrt/decimal.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 vlOldParam *vl_old_find(vlOldStatement *s, const char *name) {
@@ -60,6 +61,23 @@ bool vl_old_is_black(vlOldStatement *s, const char *name) {
 double vl_old_number(vlOldStatement *s, const char *name, double otherwise) {
   const vlOldParam *p = vl_old_find(s, name);
   return p && p->count && !p->strings ? p->number[0] : otherwise;
+}
+
+double *vl_old_all_numbers(const vlOldStatement *s, const vlOldParam *p, size_t *found) {
+  const char *at = s->file->text + p->value.start, *end = s->file->text + p->value.end;
+  double *numbers = vl_alloc_array(s->u->context, p->count, sizeof *numbers);
+  if (!numbers)
+    vl_old_fail_memory(s->u);
+  *found = 0;
+  while (numbers && at < end && *found < p->count) {
+    if (*at == '#')
+      at += strcspn(at, "\n");
+    if (at < end && !vl_number_scan(&at, end, &numbers[*found]))
+      at++;
+    else
+      ++*found;
+  }
+  return numbers;
 }
 
 const char *vl_old_text(double value, char text[32]) {

@@ -4,7 +4,6 @@
 
 #include "base/context.h"
 #include "base/text.h"
-#include "import/pbrt/decimal.h"
 #include "import/pbrt/upgrade/upgrade.h"
 #include "math/elementary.h"
 
@@ -86,20 +85,11 @@ static bool read_heights(vlOldStatement *s, Grid *g) {
     return vl_old_wrong(s, "heightfield: \"Pz\" must hold nu * nv numbers");
   g->nu = (uint32_t)nu;
   g->nv = (uint32_t)nv;
-  g->z_values = vl_alloc_array(s->u->context, p->count, sizeof *g->z_values);
+  size_t found;
+  g->z_values = vl_old_all_numbers(s, p, &found);
   if (!g->z_values)
-    return vl_old_fail_memory(s->u);
-  const char *at = s->file->text + p->value.start, *end = s->file->text + p->value.end;
-  size_t n = 0;
-  while (at < end && n < p->count) {
-    if (*at == '#')
-      at += strcspn(at, "\n");
-    if (at < end && !vl_number_scan(&at, end, &g->z_values[n]))
-      at++;
-    else
-      n++;
-  }
-  return n == p->count || vl_old_wrong(s, "heightfield: \"Pz\" holds no number");
+    return false;
+  return found == p->count || vl_old_wrong(s, "heightfield: \"Pz\" holds no number");
 }
 
 static void read_point(vlOldStatement *s, const char *name, double p[3]) {

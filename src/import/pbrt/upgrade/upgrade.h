@@ -214,6 +214,9 @@ bool vl_old_is_black(vlOldStatement *s, const char *name);
 bool vl_old_is_texture(const vlOldParam *p);
 /* The number of a parameter, or `otherwise`. */
 double vl_old_number(vlOldStatement *s, const char *name, double otherwise);
+/* All numbers of a parameter in a new block, which the caller frees. *found: how many there
+ * are, at most p->count. Null: out of memory (reported). */
+double *vl_old_all_numbers(const vlOldStatement *s, const vlOldParam *p, size_t *found);
 /* The number as text: the shortest that gives the same float. */
 const char *vl_old_text(double value, char text[32]);
 /* The colour as text: [ r g b ]. */

@@ -110,10 +110,10 @@ vlResult vl_trajectory_read_opencv(vlTrajectory *t, const vlCameraFile *from,
   if (!json_is_array(data) || (!nested && values % 6 != 0))
     return vl_camera_wrong(
         file, "opencv: \"extrinsic_parameters\" must be 6 numbers for each view: rvec, tvec");
+  const uint32_t line = line_of_key(text, "extrinsic_parameters", 0);
   for (size_t i = 0; i < count; i++) {
     double v[6] = {0}, r[9];
-    vlFrameLocation location = {.frame = (uint32_t)i,
-                                .line = line_of_key(text, "extrinsic_parameters", 0)};
+    vlFrameLocation location = {.frame = (uint32_t)i, .line = line};
     const json_t *row = nested ? json_array_get(data, i) : NULL;
     bool good = !nested || json_array_size(row) == 6;
     for (size_t k = 0; k < 6 && good; k++) {

@@ -27,6 +27,8 @@ done
 $render scene.pbrt $small --stereo parallel --spp 6 -o a.exr
 $render scene.pbrt $small --stereo parallel --spp 2 --film eye_%v.film
 identical "continued: two eyes" $render --continue eye_%v.film --spp 6 -o b.exr
+expect_code 4 "a name that ends with a percent sign" $render --continue eye% part%v.film
+expect_text "the name is that of the option alone" "cannot read eye%:"
 $render scene.pbrt $small --spp 5 -o a.exr --channels Z,N,id.object
 $render scene.pbrt $small --spp 5 --film f.film --overwrite
 identical "channels of a complete film" $render --continue f.film -o b.exr --channels Z,N,id.object

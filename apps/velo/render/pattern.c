@@ -15,8 +15,8 @@ static char sign_at(const char *at, size_t *length, int *width) {
   *width = 0;
   for (size_t i = 0; i < digits && i < 3; i++)
     *width = 10 * *width + (at[i] - '0');
-  *length = digits + 1;
   char kind = at[digits];
+  *length = digits + (kind != 0);
   if (kind == 'd')
     return digits <= 2 ? 'd' : 0;
   return digits == 0 && kind && strchr("ncv%", kind) ? kind : 0;

@@ -48,8 +48,12 @@ static void scene_stem(const Engine *e, char stem[NAME_SIZE]) {
            name);
 }
 
-static void post_saved(Engine *e, const ViewMessage *m, const char *name) {
-  engine_post(e, m->client, "saved", "id %u, file %s", m->id, name);
+/* Answers that a file is written, or why not: null: it is. */
+static void answer(Engine *e, const ViewMessage *m, const char *name, const char *why_not) {
+  if (why_not)
+    engine_refuse(e, m, why_not);
+  else
+    engine_post(e, m->client, "saved", "id %u, file %s", m->id, name);
 }
 
 /* As free_name; where no name is free, that is posted. */
@@ -97,7 +101,7 @@ static void save_camera(Engine *e, const ViewMessage *m, const char *wanted,
   if (!take_name(e, m, wanted, name))
     return;
   if (write_camera(e, m, name, (vlCameraDialect)found))
-    post_saved(e, m, name);
+    answer(e, m, name, NULL);
 }
 
 vlSceneDefs engine_present_defs(const Engine *e) {
@@ -147,10 +151,7 @@ static void save_exposure(Engine *e, const ViewMessage *m, const char *wanted) {
   if (result == VL_OK && !raw)
     result = vl_image_write(image, name, NULL, &error);
   vl_image_destroy(image);
-  if (result == VL_OK)
-    post_saved(e, m, name);
-  else
-    engine_refuse(e, m, error_text(&error, result));
+  answer(e, m, name, result == VL_OK ? NULL : error_text(&error, result));
 }
 
 static void save_image(Engine *e, const ViewMessage *m, const char *wanted) {
@@ -172,10 +173,9 @@ static void save_image(Engine *e, const ViewMessage *m, const char *wanted) {
   if (present_image(e, &image) == VL_OK)
     status = outputs_write(e->def.context, &outputs, image, engine_spp(e), OUTPUT_FINISHED);
   vl_image_destroy(image);
-  if (status == STATUS_OK)
-    post_saved(e, m, name);
-  else
-    engine_refuse(e, m, "the image could not be written; the terminal has the reason");
+  answer(e, m, name,
+         status == STATUS_OK ? NULL
+                             : "the image could not be written; the terminal has the reason");
 }
 
 void engine_save(Engine *e, const ViewMessage *m) {

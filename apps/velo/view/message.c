@@ -1,8 +1,6 @@
 /* view/message.c: see message.h. */
 #include "view/message.h"
 
-#include "cli/macros.h"
-
 #include <jansson.h>
 #include <math.h>
 #include <stddef.h>

@@ -110,7 +110,8 @@ static void evaluate(const Track *t, double time, bool rotation, double *out) {
 static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
   double *values = vl_alloc_array(g->context, t->width + 1, sizeof *values);
   float *weights = vl_alloc_array(g->context, t->width + 1, sizeof *weights);
-  if (values && weights) {
+  const bool ok = values && weights;
+  if (ok) {
     evaluate(t, g->time, false, values);
     for (size_t i = 0; i < t->width; i++)
       weights[i] = (float)values[i];
@@ -119,7 +120,6 @@ static bool apply_weights(vlGltf *g, vlGltfNode *node, const Track *t) {
     node->weight_count = (uint32_t)t->width;
     weights = NULL;
   }
-  bool ok = values && node->weights;
   VL_FREE(g->context, weights, values);
   return ok || vl_gltf_fail_memory(g);
 }

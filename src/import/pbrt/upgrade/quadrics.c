@@ -22,17 +22,20 @@ static bool put(vlContext *context, Text *text, const char *format, double a, do
   return true;
 }
 
+/* In the order of their names in vl_old_mesh_of_shape. */
+typedef enum Kind { CONE, PARABOLOID, HYPERBOLOID, HEIGHTFIELD } Kind;
+
 /* A grid of points: u around or along x, v from 0 to 1. */
 typedef struct Grid {
   uint32_t nu, nv;
   double radius, z[2], phi, p1[3], p2[3];
-  int kind; /* 0 cone, 1 paraboloid, 2 hyperboloid, 3 heightfield */
+  Kind kind;
   double *z_values;
 } Grid;
 
 static void point(const Grid *g, uint32_t i, uint32_t j, double p[3]) {
   double u = (double)i / (g->nu - 1), v = (double)j / (g->nv - 1), angle = u * g->phi;
-  if (g->kind == 3) {
+  if (g->kind == HEIGHTFIELD) {
     p[0] = u;
     p[1] = v;
     p[2] = g->z_values[(size_t)j * g->nu + i];
@@ -40,11 +43,11 @@ static void point(const Grid *g, uint32_t i, uint32_t j, double p[3]) {
   }
   double c = vl_precise_cos(angle), s = vl_precise_sin(angle), x = 0, y = 0;
   p[2] = g->z[0] + v * (g->z[1] - g->z[0]);
-  if (g->kind == 0)
+  if (g->kind == CONE)
     x = g->radius * (1 - v);
-  if (g->kind == 1)
+  if (g->kind == PARABOLOID)
     x = g->radius * sqrt(p[2] / g->z[1]);
-  if (g->kind == 2) {
+  if (g->kind == HYPERBOLOID) {
     x = g->p1[0] + v * (g->p2[0] - g->p1[0]);
     y = g->p1[1] + v * (g->p2[1] - g->p1[1]);
     p[2] = g->p1[2] + v * (g->p2[2] - g->p1[2]);
@@ -105,21 +108,20 @@ bool vl_old_mesh_of_shape(vlOldStatement *s) {
             .nv = ALONG + 1,
             .radius = vl_old_number(s, "radius", 1),
             .p2 = {1, 1, 1}};
-  while (!vl_text_is(names[g.kind], s->name[0]))
-    g.kind++;
+  g.kind = (Kind)vl_name_index(s->name[0], names, VL_LENGTH(names));
   g.phi = vl_old_number(s, "phimax", 360) * 3.141592653589793 / 180;
-  g.z[0] = g.kind == 1 ? vl_old_number(s, "zmin", 0) : 0;
-  g.z[1] = g.kind == 1 ? vl_old_number(s, "zmax", 1) : vl_old_number(s, "height", 1);
+  g.z[0] = g.kind == PARABOLOID ? vl_old_number(s, "zmin", 0) : 0;
+  g.z[1] = g.kind == PARABOLOID ? vl_old_number(s, "zmax", 1) : vl_old_number(s, "height", 1);
   read_point(s, "p1", g.p1);
   read_point(s, "p2", g.p2);
-  if (g.kind == 3 && !read_heights(s, &g)) {
+  if (g.kind == HEIGHTFIELD && !read_heights(s, &g)) {
     vl_free(context, g.z_values);
     return false;
   }
   Text text = {0};
   bool fine = write_grid(context, &g, &text) || vl_old_fail_memory(s->u);
   vl_free(context, g.z_values);
-  if (fine && g.kind < 3)
+  if (fine && g.kind != HEIGHTFIELD)
     vl_old_lose(s, "shape \"%s\" has no counterpart: %u triangles are written", s->name[0],
                 2 * (g.nu - 1) * (g.nv - 1));
   for (size_t i = 0; i < s->params.count; i++) {

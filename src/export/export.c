@@ -1,6 +1,6 @@
 /* export/export.c: the interface of this room: chooses the format, counts losses, writes
  * files. */
-#include "export/export.h"
+#include "export/image.h"
 
 #include <stdarg.h>
 
@@ -10,7 +10,6 @@
 #include "image/image.h"
 #include "velo/material.h"
 #include "velo/shape.h"
-#include "velo/texture.h"
 
 vlSaveDef vl_default_save_def(void) {
   return (vlSaveDef){.cookie = VL_COOKIE_SAVE};

@@ -11,7 +11,6 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "velo/export.h"
-#include "velo/texture.h"
 
 enum { VL_EXPORT_LOSSES = 64 };
 
@@ -100,18 +99,6 @@ bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size);
  * the camera at all. Returns false after an error. The caller frees text->text. */
 bool vl_export_camera(vlExport *x, vlCameraDialect dialect, const vlCameraRecord *record,
                       const char *lost, vlCameraText *text);
-/* The image of a texture that was written already with these changes; null: none. */
-vlExportImage *vl_export_find_image(vlExport *x, const vlTextureDef *t, uint32_t variant);
-/* Notes that it is written now. Null: the export has failed. */
-vlExportImage *vl_export_add_image(vlExport *x, const vlTextureDef *t, uint32_t variant);
-/* The image of a texture: the scene's, or decoded into *own, which the caller destroys. Null
- * after an error. */
-const vlImage *vl_export_pixels(vlExport *x, const vlTextureDef *t, vlImage **own);
-/* The texture's image as bytes of an image file: the original bytes of a PNG or JPEG, otherwise
- * the image encoded as PNG. *suffix receives the format. The bytes are a block of the
- * context. */
-bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size,
-                     const char **suffix);
 /* Encodes an image in the format that the suffix names. */
 bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data,
                     size_t *size);
@@ -127,12 +114,6 @@ float vl_export_number(vlExport *x, const vlFloatInput *input);
 /* Whether the input is white everywhere; whether it is not 0 everywhere. */
 bool vl_export_is_white(vlExport *x, const vlSpectrumInput *input);
 bool vl_export_is_on(const vlFloatInput *input);
-/* The texture of an input if it is an image texture; otherwise null. */
-const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id);
-/* How the image goes on outside along t; t->wrap is that along s. */
-vlWrap vl_export_wrap_t(const vlTextureDef *t);
-/* The uv transform: (s, t) = 2x3 matrix times (u, v, 1). */
-void vl_export_st_from_uv(const vlTextureDef *t, double m[6]);
 /* A metal's reflectance at normal incidence. */
 void vl_export_metal_rgb(vlExport *x, const vlMaterialDef *m, float rgb[3]);
 /* Index of refraction at 589 nm. */

@@ -3,10 +3,9 @@
 #include <math.h>
 
 #include "color/color.h"
-#include "export/export.h"
+#include "export/image.h"
 #include "image/image.h"
 #include "velo/material.h"
-#include "velo/texture.h"
 
 static void to_rgb(const vlSpectrum *s, vlSpectrumRole role, float rgb[3]) {
   if (s->kind == VL_SPECTRUM_RGB && s->space == VL_SPACE_SRGB) {

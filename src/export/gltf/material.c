@@ -3,7 +3,7 @@
  * approximated. */
 #include <math.h>
 
-#include "export/export.h"
+#include "export/image.h"
 #include "schema/schema.h"
 
 #include "base/text.h"
@@ -12,7 +12,6 @@
 #include "velo/material.h"
 #include "velo/medium.h"
 #include "velo/shape.h"
-#include "velo/texture.h"
 
 /* ---- inputs ------------------------------------------------------------------------------ */
 

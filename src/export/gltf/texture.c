@@ -2,11 +2,10 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "export/export.h"
+#include "export/image.h"
 
 #include "base/text.h"
 #include "math/elementary.h"
-#include "velo/texture.h"
 
 json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const char *suffix) {
   char name[300];

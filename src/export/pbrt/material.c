@@ -2,9 +2,9 @@
  * principled material is approximated. */
 #include <stdio.h>
 
+#include "export/image.h"
 #include "export/pbrt/pbrt.h"
 #include "velo/material.h"
-#include "velo/texture.h"
 
 /* ---- principled -------------------------------------------------------------------------- */
 

@@ -2,11 +2,11 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "export/image.h"
 #include "export/pbrt/pbrt.h"
 #include "scene/solid.h"
 #include "velo/light.h"
 #include "velo/shape_kinds.h"
-#include "velo/texture.h"
 
 enum { INLINE_FACES = 64 };
 

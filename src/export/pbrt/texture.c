@@ -4,11 +4,11 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "export/image.h"
 #include "export/pbrt/pbrt.h"
 #include "image/image.h"
 #include "math/approx.h"
 #include "math/fresnel.h"
-#include "velo/texture.h"
 
 static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, const char *bytes,
                         size_t size, const char *suffix, char name[300]) {

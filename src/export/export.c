@@ -1,6 +1,6 @@
 /* export/export.c: the interface of this room: chooses the format, counts losses, writes
  * files. */
-#include "export/image.h"
+#include "export/export.h"
 
 #include <stdarg.h>
 
@@ -163,46 +163,6 @@ bool vl_export_camera(vlExport *x, vlCameraDialect dialect, const vlCameraRecord
   return r != VL_ERROR_MEMORY || vl_export_fail(x, r, "out of memory");
 }
 
-static const void *data_of(const vlTextureDef *t) {
-  return t->data ? t->data : (const void *)t->image;
-}
-
-vlExportImage *vl_export_find_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
-  const void *data = data_of(t);
-  for (size_t i = 0; i < x->images.count; i++) {
-    vlExportImage *p = &x->images.items[i];
-    if (p->variant == variant && p->data == data &&
-        (data || (p->path && t->path && vl_text_is(p->path, t->path))))
-      return p;
-  }
-  return NULL;
-}
-
-vlExportImage *vl_export_add_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
-  const void *data = data_of(t);
-  vlExportImage *slot = VL_PUSH(x->context, &x->images);
-  if (slot)
-    *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .variant = variant};
-  else
-    vl_export_no_memory(x);
-  return slot;
-}
-
-const vlImage *vl_export_pixels(vlExport *x, const vlTextureDef *t, vlImage **own) {
-  *own = NULL;
-  if (t->image)
-    return t->image;
-  vlError error = {0};
-  vlResult r = t->data ? vl_image_read_memory(x->context, t->name ? t->name : "image", t->data,
-                                              t->data_size, own, &error)
-                       : vl_image_read_named(x->context, NULL, t->path, own, &error);
-  /* the scene's image is at fault, not the file that is written: the error is at the image */
-  if (r != VL_OK && x->result == VL_OK)
-    x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s",
-                           error.message);
-  return *own;
-}
-
 bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data,
                     size_t *size) {
   void *bytes = NULL;
@@ -211,41 +171,6 @@ bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char 
   vlResult r = vl_image_write_memory(image, suffix, NULL, &bytes, size, &error);
   *data = bytes;
   return r == VL_OK || vl_export_fail(x, r, "%s", error.message);
-}
-
-/* The suffix of an image that both formats can hold as it is; null: another kind. */
-static const char *suffix_of(const char *data, size_t size) {
-  if (size > 8 && memcmp(data, "\x89PNG\r\n\x1a\n", 8) == 0)
-    return ".png";
-  if (size > 3 && memcmp(data, "\xff\xd8\xff", 3) == 0)
-    return ".jpg";
-  return NULL;
-}
-
-bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size,
-                     const char **suffix) {
-  *data = NULL;
-  if (t->data) {
-    *data = vl_export_alloc(x, t->data_size + 1, 1);
-    if (!*data)
-      return false;
-    memcpy(*data, t->data, t->data_size);
-    *size = t->data_size;
-  } else if (t->path && !vl_export_read(x, t->path, data, size)) {
-    return false;
-  }
-  *suffix = *data ? suffix_of(*data, *size) : NULL;
-  if (*suffix)
-    return true;
-  vl_free(x->context, *data);
-  *data = NULL;
-  *suffix = ".png";
-  vl_export_lose(x, "image of a kind other than PNG and JPEG: packed as PNG, 0 to 1 only");
-  vlImage *own;
-  const vlImage *image = vl_export_pixels(x, t, &own);
-  bool fine = image && vl_export_pack(x, image, ".png", data, size);
-  vl_image_destroy(own);
-  return fine;
 }
 
 /* ---- saving ------------------------------------------------------------------------------ */

@@ -1,4 +1,4 @@
-/* export/image.h: images of textures, as the exporters write them (export.c, values.c). */
+/* export/image.h: images of textures, as the exporters write them. */
 #ifndef EXPORT_IMAGE_H
 #define EXPORT_IMAGE_H
 

@@ -27,11 +27,6 @@ void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]) {
   to_rgb(s, VL_ROLE_ILLUMINANT, rgb);
 }
 
-const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id) {
-  const vlTextureDef *t = vl_scene_texture(x->scene, id);
-  return t && t->kind == VL_TEXTURE_IMAGE ? t : NULL;
-}
-
 /* The approximate mean of a texture that is not an image. depth limits the nesting of
  * textures. */
 static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth, float rgb[3]) {
@@ -110,16 +105,6 @@ float vl_export_mean_square(vlExport *x, const vlFloatInput *input) {
   vl_free(x->context, row);
   vl_image_destroy(own);
   return (float)mean;
-}
-
-vlWrap vl_export_wrap_t(const vlTextureDef *t) {
-  return t->wrap_t_given ? t->wrap_t : t->wrap;
-}
-
-void vl_export_st_from_uv(const vlTextureDef *t, double m[6]) {
-  const double plain[6] = {t->su, 0, t->du, 0, t->sv, t->dv};
-  for (int i = 0; i < 6; i++)
-    m[i] = t->st_from_uv_given ? t->st_from_uv[i] : plain[i];
 }
 
 float vl_export_eta(const vlSpectrum *eta) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "math/double3.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
 #include "texture/images.h"
@@ -221,6 +222,15 @@ static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
       !tinted && !node->colors && def->channel < 0 && def->bias == 0 && isnan(def->cutoff);
 }
 
+/* A direction's length has no effect. Unit vectors keep their bits; so does zero. */
+static void make_unit(float direction[3]) {
+  double d[3] = {direction[0], direction[1], direction[2]};
+  const double length = vl_normalize3(d);
+  if (length > 0 && fabs(length - 1) > 1e-6)
+    for (int i = 0; i < 3; i++)
+      direction[i] = (float)d[i];
+}
+
 /* The def's numbers, for the functions of the kinds; what belongs to the scene is left out.
  * Null: no memory. */
 static const vlTextureDef *keep_numbers(vlWorld *world, const vlTextureDef *def) {
@@ -233,6 +243,7 @@ static const vlTextureDef *keep_numbers(vlWorld *world, const vlTextureDef *def)
   kept->data = NULL;
   kept->spectrum_a = kept->spectrum_b = kept->spectrum_c = kept->spectrum_d =
       (vlSpectrumInput){0};
+  make_unit(kept->direction);
   return kept;
 }
 

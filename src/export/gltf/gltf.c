@@ -234,6 +234,10 @@ static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
     vl_export_lose(x, "displacement of meshes: left out");
   if (d->positions_close)
     vl_export_lose(x, "meshes that change in time: as they are at first");
+  if (d->hidden_from_camera)
+    vl_export_lose(x, "shapes that are hidden from the camera: seen");
+  if (d->outside.index)
+    vl_export_lose(x, "media outside of surfaces: left out");
   if (!vl_export_mesh(x, d, &mesh))
     return x->result == VL_OK;
   if (!mesh.faces || !mesh.vertices) {

@@ -59,6 +59,8 @@ static bool camera_tree(vlExport *x, const vlCameraRecord *record, json_t **tree
 
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   const vlSceneDefs *defs = &x->scene->defs;
+  if (defs->camera_medium.index)
+    vl_export_lose(x, "the medium that the camera is in: left out");
   if (defs->camera_missing)
     return true;
   vlCameraRecord record = {.camera = defs->camera, .name = "Camera"};
@@ -261,6 +263,10 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
     if (d->kind == VL_LIGHT_SPOT) {
       if (vl_stretch(d->world_from_light).is_skewed)
         vl_export_lose(x, "spots in frames that are skewed or scaled unevenly: a round cone");
+      if (d->cone_delta > 0 && !d->cone_squared)
+        vl_export_lose(x, "edges of spots' cones that are pbrt's: glTF's, which are darker");
+      if (d->cone_angle > 1.57079632679)
+        vl_export_lose(x, "spots wider than a half space: the half space");
       double inner = d->cone_angle - d->cone_delta, outer = fmin(d->cone_angle, 1.57079632679);
       json_object_set_new(
           light, "spot",

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Textures through written scenes, glTF and pbrt: whatever an image texture of a material, of coverage or of a lamp has (factor,
-inversion, channel, threshold, map, curve and so on), the scene that is read from the written file gives the same image, or the
-writer says what it loses."""
+"""Written scenes, glTF and pbrt: whatever an image texture of a material, of coverage or of a lamp has (factor, inversion, channel,
+threshold, map, curve and so on), and what else one of the formats lacks, the scene that is read from the written file gives the
+same image, or the writer says what it loses."""
 import cases
 from cases import case, work
 
@@ -135,6 +135,43 @@ def pbrt():
                 return {"material": scene.add_material(kind, **{word: image(scene, number, **change)})}
             kept += not compare(f"{kind}, {word}, {name}", words_of, "a.pbrt")
     assert kept > 120, kept
+
+
+@case
+def what_gltf_has_not():
+    plain = {"position": (0.5, 0.5, 2), "to": (0, 0, 0), "cone_angle": 0.4, "scale": 9.0}
+
+    def diffuse(scene, **words):
+        return {"material": scene.add_material("diffuse"), **words}
+
+    def fog(scene):
+        return scene.add_medium("homogeneous", sigma_a=(0.1, 0.5, 1.0), sigma_s=(0, 0, 0))
+
+    def in_fog(scene):
+        scene.camera_medium = fog(scene)
+        return diffuse(scene)
+
+    def lit(scene, **words):
+        scene.add_light("spot", **plain, **words)
+        return diffuse(scene)
+    assert not compare("a spot without an edge", lambda scene: lit(scene, cone_delta=0.0))
+    assert not compare("a spot with glTF's edge", lambda scene: lit(scene, cone_delta=0.3, cone_squared=True))
+    assert compare("a spot with pbrt's edge", lambda scene: lit(scene, cone_delta=0.3))
+    assert compare("hidden", lambda scene: diffuse(scene, hidden_from_camera=True))
+    assert compare("a medium around the camera", in_fog)
+    assert compare("a medium outside", lambda scene: diffuse(scene, outside=fog(scene)))
+    for change in (lit, in_fog):
+        assert not compare(change.__name__, change, "a.pbrt"), change
+
+
+@case
+def length_of_a_direction():
+    """It has no effect, and files hold it without."""
+    for length in (1e-3, 1.0, 40.0):
+        def words_of(scene):
+            texture = scene.add_texture("direction_mix", spectrum_a=0.9, spectrum_b=0.1, direction=(0, 0.6 * length, 0.8 * length))
+            return {"material": scene.add_material("diffuse", reflectance=texture)}
+        assert not compare(f"length {length}", words_of, "a.pbrt")
 
 
 if __name__ == "__main__":

@@ -5,14 +5,18 @@
  * base of albedo rho. Between them is a layer of optical thickness tau that absorbs and does
  * not scatter (pbrt's coateddiffuse with albedo 0). A Lambertian base does not depend on the
  * incident direction, so the random walk between coat and base (pbrt book 14.3) has a closed
- * form: f(wo, wi) = f_coat(wo, wi) + T(wo) T(wi) rho / (pi eta^2) * sum_{k < K} (rho R)^k T(w)
- * = int f_t(w, w') |cos w'| exp(-tau/|cos w'|) dw' T(w) is the share of a beam from w that
- * reaches the base; f_t is the BTDF of the interface without the factor 1/eta^2 of radiance. R
- * is the share of the diffuse light from the base that the coat reflects back to the base; the
- * layer attenuates it twice. K is the number of reflections at the base. pbrt's walk of
- * max_depth steps alternates between base and coat and begins at the base, so K =
- * ceil(max_depth / 2). For a rough coat, f_t and the BRDF are those of a rough dielectric with
- * single scattering, as in pbrt: the energy of multiple scattering between microfacets is lost.
+ * form:
+ *
+ *   f(wo, wi) = f_coat(wo, wi) + T(wo) T(wi) rho / (pi eta^2) sum_{k < K} (rho R)^k
+ *   T(w) = int f_t(w, w') |cos w'| exp(-tau / |cos w'|) dw'
+ *
+ * T(w) is the share of a beam from w that reaches the base; f_t is the BTDF of the interface
+ * without the factor 1/eta^2 of radiance. R is the share of the diffuse light from the base
+ * that the coat reflects back to the base; the layer attenuates it twice. K is the number of
+ * reflections at the base. pbrt's walk of max_depth steps alternates between base and coat and
+ * begins at the base, so K = ceil(max_depth / 2). For a rough coat, f_t and the BRDF are those
+ * of a rough dielectric with single scattering, as in pbrt: the energy of multiple scattering
+ * between microfacets is lost.
  */
 #ifndef MATERIAL_COAT_H
 #define MATERIAL_COAT_H

@@ -202,7 +202,7 @@ bool vl_has_word_of(const char *words, const char *word, size_t length) {
 }
 
 bool vl_has_word(const char *words, const char *word) {
-  return vl_has_word_of(words, word, strlen(word));
+  return word && vl_has_word_of(words, word, strlen(word));
 }
 
 size_t vl_folder_length(const char *path) {

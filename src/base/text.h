@@ -62,7 +62,7 @@ size_t vl_json_problem_length(const char *message);
 static inline bool vl_text_is(const char *text, const char *word) {
   return text && strcmp(text, word) == 0;
 }
-/* Whether the word is one of `words`, which blanks separate. */
+/* Whether the word is one of `words`, which blanks separate. Null is none. */
 bool vl_has_word(const char *words, const char *word);
 /* The same for a word of `length` bytes. */
 bool vl_has_word_of(const char *words, const char *word, size_t length);

@@ -139,8 +139,12 @@ static void store(const Block *b, uint32_t count, vlLightSamples *out) {
       continue;
     float total = b->pdf[k] * out->pmf[i], inv = 1.0f / total;
     out->pdf[i] = total;
-    vl_set_lane3(out->wx, out->wy, out->wz, i, vl_lane3(b->wx, b->wy, b->wz, k));
-    vl_set_lane3(out->tx, out->ty, out->tz, i, vl_lane3(b->tx, b->ty, b->tz, k));
+    out->wx[i] = b->wx[k];
+    out->wy[i] = b->wy[k];
+    out->wz[i] = b->wz[k];
+    out->tx[i] = b->tx[k];
+    out->ty[i] = b->ty[k];
+    out->tz[i] = b->tz[k];
     for (int c = 0; c < 4; c++)
       out->radiance[c][i] = b->radiance[c][k] * inv;
   }

@@ -167,16 +167,24 @@ typedef struct vlShadowRays {
 /* Sets the way of shadow ray k, of path i. */
 static inline void vl_shadow_way(const vlPaths *p, uint32_t i, vlVec3 o, vlVec3 d, float t_max,
                                  uint32_t k, vlShadowRays *q) {
-  vl_set_lane3(q->ox, q->oy, q->oz, k, o);
-  vl_set_lane3(q->dx, q->dy, q->dz, k, d);
+  q->ox[k] = o.x;
+  q->oy[k] = o.y;
+  q->oz[k] = o.z;
+  q->dx[k] = d.x;
+  q->dy[k] = d.y;
+  q->dz[k] = d.z;
   q->t_max[k] = t_max;
   q->time[k] = vl_path_time(p, i);
   q->lane[k] = p->lane[i];
 }
 /* Moves the way and the radiance of shadow ray i to index k. */
 static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
-  vl_set_lane3(q->ox, q->oy, q->oz, k, vl_lane3(q->ox, q->oy, q->oz, i));
-  vl_set_lane3(q->dx, q->dy, q->dz, k, vl_lane3(q->dx, q->dy, q->dz, i));
+  q->ox[k] = q->ox[i];
+  q->oy[k] = q->oy[i];
+  q->oz[k] = q->oz[i];
+  q->dx[k] = q->dx[i];
+  q->dy[k] = q->dy[i];
+  q->dz[k] = q->dz[i];
   q->t_max[k] = q->t_max[i];
   for (int c = 0; c < 4; c++)
     q->radiance[c][k] = q->radiance[c][i];

@@ -200,10 +200,11 @@ static bool next_row(Row *row) {
 static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[COLUMNS],
                          vlCameraRecord *record) {
   double v[COLUMNS] = {0.0};
+  const char *last = row->fields[row->count - 1], *end_of_row = last + strlen(last);
   for (int k = X; k < COLUMNS; k++) {
     if (of[k] < 0)
       continue;
-    const char *field = of[k] < row->count ? row->fields[of[k]] : "";
+    const char *field = of[k] < row->count ? row->fields[of[k]] : end_of_row;
     char *end;
     v[k] = vl_camera_parse(field, &end);
     if (end == field || end[strspn(end, " ")] || !isfinite(v[k]))

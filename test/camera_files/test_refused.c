@@ -187,6 +187,8 @@ static const Row rows[] = {
     {"realitycapture.xmp", "AspectRatio=\"1\"", "AspectRatio=\"2\"", 3, 5,
      "xcr:AspectRatio must be 1 and xcr:Skew 0"},
     {"realitycapture.csv", "heading", "head", 2, 1, "the column \"heading\" is missing"},
+    {"realitycapture.csv", "90,90,0,28.125,0,0,0,0,0,0,0,0", "90,90,0", 3, 23,
+     "realitycapture: \"f\" is \"\"; it must be a finite number"},
     {"svo_atan.yaml", "ATAN", "TAN", 1, 12,
      "unknown cam_model \"TAN\"; there are Pinhole, ATAN"},
     {"svo.yaml", "equidistant", "radial", 16, 13,

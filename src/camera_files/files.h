@@ -233,6 +233,8 @@ typedef struct vlFittedCamera {
   double k[14];
   uint32_t count;
 } vlFittedCamera;
+/* Whether the image is equirectangular or equal-area, and shows the whole sphere. */
+bool vl_camera_is_whole_sphere(const vlCamera *camera);
 /* Makes it from the record. Returns an error for what the dialect's row does not include. */
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
                        const struct vlCameraFormat *format, vlFittedCamera *fit);
@@ -341,10 +343,11 @@ typedef struct vlCameraFormat {
   /* What the dialect can hold (vl_camera_fit). holds: VL_HOLDS_POSE, ... lenses: a bit for each
    * family (1 << VL_LENS_FOV); 0: the writer checks the lens. most: how many coefficients there
    * may be. plain, in place of lenses: perspective and orthographic cameras without distortion.
-   * terms: only so many of OpenCV's may differ from 0; 0: any. centred, square: the principal
-   * point must be the image's centre; fx must be fy. */
+   * spheres: also equirectangular and equal-area images of the whole sphere. terms: only so
+   * many of OpenCV's may differ from 0; 0: any. centred, square: the principal point must be
+   * the image's centre; fx must be fy. */
   uint32_t holds, lenses, most, terms;
-  bool plain, centred, square;
+  bool plain, spheres, centred, square;
   /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
    * the lens, and $lens, its word. */
   const char *form;

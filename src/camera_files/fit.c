@@ -8,6 +8,7 @@
 #include "math/double3.h"
 #include "math/transform.h"
 #include "velo/distortion.h"
+#include "velo/projection.h"
 
 /* What a dialect may be unable to hold, by the names of the messages. */
 static const char *const refusable[] = {
@@ -169,6 +170,23 @@ vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *c
   return vl_camera_refuse(file, "cy", camera->cy != 0.5 * camera->height);
 }
 
+bool vl_camera_is_whole_sphere(const vlCamera *camera) {
+  if (camera->projection != VL_PROJECTION_EQUIRECTANGULAR &&
+      camera->projection != VL_PROJECTION_EQUAL_AREA)
+    return false;
+  vlCameraDef def = vl_default_camera_def(camera->width, camera->height);
+  def.projection = camera->projection;
+  vlCamera whole;
+  if (vl_camera_make(&def, &whole, NULL, NULL) != VL_OK)
+    return false;
+  const double off[] = {camera->fx - whole.fx, camera->fy - whole.fy, camera->cx - whole.cx,
+                        camera->cy - whole.cy, camera->skew};
+  bool same = true;
+  for (size_t i = 0; i < VL_LENGTH(off); i++)
+    same = same && fabs(off[i]) < 1e-9 * camera->width;
+  return same;
+}
+
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
                        const vlCameraFormat *format, vlFittedCamera *fit) {
   const vlCameraDef *d = &record->camera;
@@ -187,7 +205,8 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
                     vl_camera_all_zero(fit->k + format->terms, 14 - format->terms);
   if (!format->plain && format->lenses && !(known && fits))
     return vl_camera_no_model(file, d);
-  if (format->plain)
+  const bool sphere = format->spheres && vl_camera_is_whole_sphere(c);
+  if (format->plain && !sphere)
     VL_TRY(vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC));
   if (format->plain)
     VL_TRY(vl_camera_refuse(file, "distortion", c->distortion.steps != 0));

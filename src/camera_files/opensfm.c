@@ -131,23 +131,12 @@ static bool is_opensfm(const json_t *tree) {
   return shots || (first && vl_camera_has(json_object_iter_value(first), "projection_type"));
 }
 
-/* Whether the image is the whole sphere, as "spherical" means. */
-static bool is_sphere(const vlCamera *c) {
-  const double pi = 3.14159265358979323846;
-  const double wrong[] = {c->fx - c->width / (2.0 * pi), c->fy - c->height / pi,
-                          c->cx - 0.5 * c->width, c->cy - 0.5 * c->height, c->skew};
-  bool sphere = true;
-  for (size_t i = 0; i < VL_LENGTH(wrong); i++)
-    sphere = sphere && fabs(wrong[i]) < 1e-9 * c->width;
-  return sphere;
-}
-
 static vlResult write_opensfm(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   const bool bent = fit->family == VL_LENS_FISHEYE;
   const bool opencv = fit->family == VL_LENS_PINHOLE || fit->family == VL_LENS_OPENCV;
   const bool whole = fit->record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
-  if (whole && !is_sphere(c))
+  if (whole && !vl_camera_is_whole_sphere(c))
     return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
                       "opensfm holds the equirectangular image of the whole sphere only");
   if (!whole && (!(opencv || bent) || fit->count > 5))

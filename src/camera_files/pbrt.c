@@ -3,21 +3,33 @@
 #include <math.h>
 
 #include "camera_files/files.h"
+#include "math/transform.h"
+#include "velo/projection.h"
 
-static vlResult write_pbrt(const vlFittedCamera *fit, vlCameraText *text) {
-  const vlCameraDef *d = &fit->record->camera;
-  const vlCamera *c = &fit->camera;
-  bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC;
-  vl_camera_put(text,
-                "# pixels count from the image's upper left corner; camera axes x right, y up, "
-                "z forward\n");
+/* The axes of velo's maps of the sphere in pbrt's camera, as the reader of scenes has them
+ * (import/pbrt/camera.c): rows are pbrt's axes x, down and z. */
+static const double equal_area_axes[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0};
+static const double equirectangular_axes[9] = {0, 0, -1, 0, 1, 0, -1, 0, 0};
+
+static void put_transform(vlCameraText *text, const vlCamera *c, const double *axes) {
+  vlMat4 m = vl_mat4_load(c->camera_from_world);
+  if (axes) {
+    vlMat4 turn = vl_mat4_identity();
+    for (int i = 0; i < 9; i++)
+      turn.m[4 * (i / 3) + i % 3] = axes[i];
+    m = vl_mat4_multiply(turn, m);
+  }
   vl_camera_put(text, "Transform [");
   for (int column = 0; column < 4; column++)
     for (int row = 0; row < 4; row++) {
-      double v = c->camera_from_world[4 * row + column];
+      double v = m.m[4 * row + column];
       vl_camera_put(text, "%s%.17g", row + column ? " " : "", (row == 1 ? 0.0 - v : v) + 0.0);
     }
-  vl_camera_put(text, "]\nCamera \"%s\"", flat ? "orthographic" : "perspective");
+  vl_camera_put(text, "]\n");
+}
+
+static void put_plain(vlCameraText *text, const vlCamera *c, bool flat) {
+  vl_camera_put(text, "Camera \"%s\"", flat ? "orthographic" : "perspective");
   /* the screen window is on the plane at distance 1: fov 90 degrees does not scale it */
   if (!flat)
     vl_camera_put(text, " \"float fov\" [90]");
@@ -27,6 +39,23 @@ static vlResult write_pbrt(const vlFittedCamera *fit, vlCameraText *text) {
     vl_camera_put(text, "\n  \"float lensradius\" [%.17g]", c->lens_radius);
   if (!isinf(c->focus_distance))
     vl_camera_put(text, " \"float focaldistance\" [%.17g]", c->focus_distance);
+}
+
+static vlResult write_pbrt(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCamera *c = &fit->camera;
+  const bool round = c->projection == VL_PROJECTION_EQUIRECTANGULAR;
+  const bool sphere = vl_camera_is_whole_sphere(c);
+  if (sphere) /* pbrt's has no lens */
+    VL_TRY(vl_camera_refuse(fit->file, "lens_radius", c->lens_radius > 0.0));
+  vl_camera_put(text,
+                "# pixels count from the image's upper left corner; camera axes x right, y up, "
+                "z forward\n");
+  put_transform(text, c, !sphere ? NULL : round ? equirectangular_axes : equal_area_axes);
+  if (sphere)
+    vl_camera_put(text, "Camera \"spherical\" \"string mapping\" \"%s\"",
+                  round ? "equirectangular" : "equalarea");
+  else
+    put_plain(text, c, c->projection == VL_PROJECTION_ORTHOGRAPHIC);
   if (c->shutter_open != 0.0 || c->shutter_close != 1.0)
     vl_camera_put(text, "\n  \"float shutteropen\" [%.17g] \"float shutterclose\" [%.17g]",
                   c->shutter_open, c->shutter_close);
@@ -44,6 +73,7 @@ const vlCameraFormat vl_format_pbrt = {
     .name = "pbrt",
     .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_TIME,
     .plain = true,
+    .spheres = true,
     .write = write_pbrt};
 const vlCameraFormat vl_format_exr = {
     .name = "exr", .not_written = "an image's header is written with its image"};

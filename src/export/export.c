@@ -152,7 +152,7 @@ bool vl_export_camera(vlExport *x, vlCameraDialect dialect, const vlCameraRecord
     if (lost)
       vl_export_lose(x, "%s", lost);
     else
-      vl_export_lose(x, "the camera: %.120s", error.message);
+      vl_export_lose(x, "the camera: %.*s", (int)strcspn(error.message, ";"), error.message);
     VL_ARRAY_FREE(x->context, &text->text);
     def.drop = all;
     def.drop_count = 1;

@@ -293,19 +293,38 @@ static void test_kalibr_chain(void **state) {
 }
 
 /* A scene that is written is read back as the same camera. */
-static void test_pbrt(void **state) {
-  (void)state;
-  vlCameraRecord r = some_camera();
+static void there_and_back_by_scene(const vlCameraRecord *record) {
   vlError error;
-  if (vl_camera_write(context, path_of("s.pbrt"), NULL, &r, &error) != VL_OK)
+  if (vl_camera_write(context, path_of("s.pbrt"), NULL, record, &error) != VL_OK)
     fail_msg("%s", error.message);
   vlScene *scene;
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   if (vl_scene_load(scene, path_of("s.pbrt"), NULL, &error) != VL_OK)
     fail_msg("%s", error.message);
   /* pbrt's parameters are single precision */
-  compare(&r.camera, &vl_scene_defs(scene)->camera, 1e-3);
+  compare(&record->camera, &vl_scene_defs(scene)->camera, 1e-3);
   vl_scene_destroy(scene);
+}
+
+static void test_pbrt(void **state) {
+  (void)state;
+  static const vlProjection spheres[] = {VL_PROJECTION_EQUIRECTANGULAR,
+                                         VL_PROJECTION_EQUAL_AREA};
+  vlCameraRecord r = some_camera();
+  vlError error;
+  there_and_back_by_scene(&r);
+  for (int i = 0; i < 2; i++) {
+    r = some_camera();
+    r.camera.projection = spheres[i];
+    assert_int_equal(vl_camera_write(context, path_of("s.pbrt"), NULL, &r, &error),
+                     VL_ERROR_UNSUPPORTED); /* not the whole sphere */
+    r.camera.fx = r.camera.fy = r.camera.cx = r.camera.cy = VL_UNSET;
+    there_and_back_by_scene(&r);
+    r.camera.lens_radius = 0.1;
+    r.camera.focus_distance = 2;
+    assert_int_equal(vl_camera_write(context, path_of("s.pbrt"), NULL, &r, &error),
+                     VL_ERROR_UNSUPPORTED);
+  }
 }
 
 static void test_wrong_files(void **state) {

@@ -54,6 +54,32 @@ static void pbrt_spherical(void **state) {
     }
 }
 
+/* A moving one arrives where one stands that does not move. */
+static void pbrt_spherical_in_motion(void **state) {
+  (void)state;
+  static const char *const mappings[] = {"equalarea", "equirectangular"};
+  for (int i = 0; i < 2; i++) {
+    char moving[400];
+    char still[400];
+    snprintf(moving, sizeof moving,
+             FILM
+             "ActiveTransform EndTime Rotate 40 1 2 3 Translate 1 2 3 ActiveTransform All "
+             "Camera \"spherical\" \"string mapping\" \"%s\"\n" W,
+             mappings[i]);
+    snprintf(still, sizeof still,
+             FILM
+             "Rotate 40 1 2 3 Translate 1 2 3 "
+             "Camera \"spherical\" \"string mapping\" \"%s\"\n" W,
+             mappings[i]);
+    Loaded l;
+    vlCamera moved = camera_of(&l, moving);
+    vlCamera stands = camera_of(&l, still);
+    assert_true(moved.moves);
+    for (int k = 0; k < 12; k++)
+      assert_float_equal(moved.world_from_camera_close[k], stands.world_from_camera[k], 1e-12);
+  }
+}
+
 static void kinds(void **state) {
   (void)state;
   const struct {
@@ -166,6 +192,7 @@ static void warnings_and_errors(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pbrt_spherical),
+      cmocka_unit_test(pbrt_spherical_in_motion),
       cmocka_unit_test(kinds),
       cmocka_unit_test(stereo_and_the_cross),
       cmocka_unit_test(warnings_and_errors),

@@ -174,6 +174,21 @@ def length_of_a_direction():
         assert not compare(f"length {length}", words_of, "a.pbrt")
 
 
+@case
+def spherical_cameras():
+    """The whole sphere in a pbrt file is pbrt's spherical camera; a part of it is lost."""
+    for projection, size in (("equirectangular", (16, 8)), ("equal_area", (12, 12))):
+        for words, lost in (({}, False), ({"cx": 3.0}, True)):
+            scene = velo.Scene()
+            scene.add_light("point", position=(1, 1, 3), scale=20.0)
+            scene.add_mesh(CORNERS, FACES, material=scene.add_material("diffuse"))
+            scene.camera = velo.Camera(*size, projection=projection, eye=(0.2, 0.1, 0.5), lookat=(1, 2, 0), up=(0, 1, 1), **words)
+            assert bool(scene.save(work("a.pbrt"))) == lost, (projection, words)
+            if not lost:
+                before, after = (numpy.asarray(one.render(spp=16)) for one in (scene, velo.load(work("a.pbrt"))))
+                assert abs(before - after).mean() < 0.02 * before.mean(), projection
+
+
 if __name__ == "__main__":
     write_images()
     cases.main()

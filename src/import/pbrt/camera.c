@@ -191,6 +191,15 @@ static bool read_pbrt(vlDict *dict, vlCameraDef *def, bool flat) {
   return check_shutter(dict, def) && vl_dict_done(dict) && pose_from_ctm(import, def);
 }
 
+static void turn_axes(double pose[16], const double axes[9]) {
+  for (int row = 0; row < 3; row++) {
+    double old[3] = {pose[4 * row], pose[4 * row + 1], pose[4 * row + 2]};
+    for (int column = 0; column < 3; column++)
+      pose[4 * row + column] =
+          old[0] * axes[column] + old[1] * axes[3 + column] + old[2] * axes[6 + column];
+  }
+}
+
 /* pbrt's spherical camera shows the whole sphere, whatever the aspect ratio. Its
  * equirectangular image has the poles up and down; its columns start at the right and turn left
  * in pbrt's left-handed camera space. Its equal-area image has the zenith at the centre. The
@@ -210,14 +219,9 @@ static bool read_spherical(vlDict *dict, vlCameraDef *def) {
   def->projection = mapping ? VL_PROJECTION_EQUIRECTANGULAR : VL_PROJECTION_EQUAL_AREA;
   if (!check_shutter(dict, def) || !vl_dict_done(dict) || !pose_from_ctm(dict->import, def))
     return false;
-  double *m = def->world_from_camera;
-  for (int row = 0; row < 3; row++) {
-    double old[3] = {m[4 * row], m[4 * row + 1], m[4 * row + 2]};
-    for (int column = 0; column < 3; column++)
-      m[4 * row + column] = old[0] * axes[mapping][column] +
-                            old[1] * axes[mapping][3 + column] +
-                            old[2] * axes[mapping][6 + column];
-  }
+  turn_axes(def->world_from_camera, axes[mapping]);
+  if (def->has_matrix_close)
+    turn_axes(def->world_from_camera_close, axes[mapping]);
   return true;
 }
 

@@ -32,6 +32,7 @@ def write_images():
         texels = numbers.uniform(0.15, 0.85, (8, 8, 4))
         texels[..., 3] = numbers.choice([0.2, 0.6, 1.0], (8, 8))
         velo.Image((texels * 255).astype(numpy.uint8)).write(work(name))
+    velo.Image((texels[..., :3] * 255).astype(numpy.uint8)).write(work("c.png"))
 
 
 def image(scene, number=None, name="a.png", **change):
@@ -160,6 +161,10 @@ def what_gltf_has_not():
     assert compare("hidden", lambda scene: diffuse(scene, hidden_from_camera=True))
     assert compare("a medium around the camera", in_fog)
     assert compare("a medium outside", lambda scene: diffuse(scene, outside=fog(scene)))
+    for name, alpha in (("a.png", True), ("c.png", False)):
+        lost = compare(f"coverage .4 over {name}", lambda scene: {"material": scene.add_material("principled", reflectance=image(scene, name=name)),
+                                                                 "alpha": 0.4})
+        assert lost == alpha, name
     for change in (lit, in_fog):
         assert not compare(change.__name__, change, "a.pbrt"), change
 

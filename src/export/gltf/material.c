@@ -7,6 +7,7 @@
 #include "schema/schema.h"
 
 #include "base/text.h"
+#include "image/image.h"
 #include "math/elementary.h"
 #include "velo/light.h"
 #include "velo/material.h"
@@ -108,9 +109,31 @@ static bool same_texels(const vlTextureDef *a, const vlTextureDef *b) {
          a->wrap == b->wrap && vl_export_wrap_t(a) == vl_export_wrap_t(b);
 }
 
-/* In glTF the coverage is the base colour's alpha. colors: the mesh has vertex colours. */
-static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alpha,
+/* An image that cannot be read has none; it is left out, which is counted when it is put. */
+static bool image_has_alpha(vlExport *x, const vlTextureDef *t) {
+  uint32_t channel[4];
+  vlImage *own = NULL;
+  const vlResult before = x->result;
+  const vlImage *image = t ? vl_export_pixels(x, t, &own) : NULL;
+  const uint32_t have = image ? vl_image_color(image, channel) : 0;
+  vl_image_destroy(own);
+  if (x->result != VL_ERROR_MEMORY)
+    x->result = before;
+  return have == 2 || have == 4;
+}
+
+static bool vertices_have_alpha(const vlShapeDef *d) {
+  bool all = true;
+  for (size_t i = 0; d->colors && i < d->vertices; i++)
+    all = all && d->colors[4 * i + 3] == 1;
+  return !all;
+}
+
+/* In glTF the coverage is the base colour's alpha: the product of the factor, of the image's
+ * and of the vertices'. colors: the mesh has vertex colours. */
+static void put_coverage(vlExport *x, json_t *material, const vlShapeDef *d,
                          const vlMaterialDef *m, bool colors, double *factor) {
+  const vlFloatInput *alpha = &d->alpha;
   const vlTextureDef *t = vl_scene_texture(x->scene, alpha->texture);
   const vlTextureDef *base = m ? vl_export_texture(x, m->reflectance.texture) : NULL;
   bool plain = t && t->bias == 0 && !t->invert;
@@ -128,6 +151,9 @@ static void put_coverage(vlExport *x, json_t *material, const vlFloatInput *alph
     set_number(material, "alphaCutoff", t->cutoff);
   if (t && !of_base && !of_vertices)
     vl_export_lose(x, "coverage that is not the fourth channel of the base colour's image");
+  const bool tinted = of_vertices || (of_base && t->colors);
+  if ((!of_base && image_has_alpha(x, base)) || (colors && !tinted && vertices_have_alpha(d)))
+    vl_export_lose(x, "coverage besides that of the base colour: times that, as in glTF");
 }
 
 static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color,
@@ -478,7 +504,7 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors,
     vl_gltf_name(json, m->name);
   if (own && own->kind == VL_MATERIAL_MIX)
     vl_export_lose(x, "material mix: its first alone");
-  put_coverage(x, json, &d->alpha, m, *colors, &coverage);
+  put_coverage(x, json, d, m, *colors, &coverage);
   vlMaterialDef plain = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   if (!m)
     m = &plain;

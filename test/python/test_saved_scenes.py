@@ -165,6 +165,12 @@ def what_gltf_has_not():
         lost = compare(f"coverage .4 over {name}", lambda scene: {"material": scene.add_material("principled", reflectance=image(scene, name=name)),
                                                                  "alpha": 0.4})
         assert lost == alpha, name
+    colors = [[1, 1, 1, 1], [1, 1, 1, 1], [1, 1, 1, 0.2], [1, 1, 1, 0.2]]
+    for used in (False, True):
+        def tinted(scene):
+            base = {"reflectance": image(scene, colors=used), "metallic": 0.0}
+            return {"material": scene.add_material("principled", **base), "alpha": image(scene, 3, colors=True), "colors": colors}
+        assert compare(f"coverage of vertices, their colours used: {used}", tinted) != used
     for change in (lit, in_fog):
         assert not compare(change.__name__, change, "a.pbrt"), change
 

@@ -151,6 +151,8 @@ static void put_coverage(vlExport *x, json_t *material, const vlShapeDef *d,
     set_number(material, "alphaCutoff", t->cutoff);
   if (t && !of_base && !of_vertices)
     vl_export_lose(x, "coverage that is not the fourth channel of the base colour's image");
+  if (of_base && t->colors && !colors)
+    vl_export_lose(x, "coverage of vertices whose colours are not used: left out");
   const bool tinted = of_vertices || (of_base && t->colors);
   if ((!of_base && image_has_alpha(x, base)) || (colors && !tinted && vertices_have_alpha(d)))
     vl_export_lose(x, "coverage besides that of the base colour: times that, as in glTF");

@@ -171,6 +171,11 @@ def what_gltf_has_not():
             base = {"reflectance": image(scene, colors=used), "metallic": 0.0}
             return {"material": scene.add_material("principled", **base), "alpha": image(scene, 3, colors=True), "colors": colors}
         assert compare(f"coverage of vertices, their colours used: {used}", tinted) != used
+    for both in (False, True):
+        def lamp(scene):
+            emission = scene.add_emission(radiance=(2, 0.5, 0.1), two_sided=both)
+            return diffuse(scene, emission=emission, one_sided=True)
+        assert compare(f"one-sided lamp, emits to both sides: {both}", lamp) == both
     for change in (lit, in_fog):
         assert not compare(change.__name__, change, "a.pbrt"), change
 

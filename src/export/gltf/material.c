@@ -453,6 +453,8 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e,
     vl_export_lose(x, "area lights given by their power: radiance 1 is written");
   if (!e->two_sided && !one_sided)
     vl_export_lose(x, "backs of area lights that emit to one side: not seen, as in glTF");
+  if (e->two_sided && one_sided)
+    vl_export_lose(x, "backs of one-sided area lights that emit to both sides: dark");
   if (e->spread < 3.1415f)
     vl_export_lose(x, "spreads of area lights: the same radiance in all directions");
   json_t *factor = json_array(), *info = t ? vl_gltf_texture_info(x, t, false) : NULL;

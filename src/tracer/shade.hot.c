@@ -15,6 +15,9 @@ enum {
 };
 _Static_assert(PATH_ROWS * sizeof(float[VL_ROW_SIZE]) == offsetof(vlPaths, time),
                "rows of 4 bytes without gaps");
+_Static_assert(PIXEL_ROW + 4 == PATH_ROWS && offsetof(vlPaths, lane) - offsetof(vlPaths, px) ==
+                                                 3 * sizeof(float[VL_ROW_SIZE]),
+               "px, py, index and lane are the last rows");
 
 /* Whether a block of the order is a block of neighbours, as most blocks of the first bounces
  * are. */

@@ -232,9 +232,8 @@ typedef struct vlFittedCamera {
   vlLensFamily family; /* of the lens; k: its coefficients (vl_camera_lens_family) */
   double k[14];
   uint32_t count;
+  bool sphere; /* the image is equirectangular or equal-area, and shows the whole sphere */
 } vlFittedCamera;
-/* Whether the image is equirectangular or equal-area, and shows the whole sphere. */
-bool vl_camera_is_whole_sphere(const vlCamera *camera);
 /* Makes it from the record. Returns an error for what the dialect's row does not include. */
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
                        const struct vlCameraFormat *format, vlFittedCamera *fit);

@@ -170,7 +170,7 @@ vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *c
   return vl_camera_refuse(file, "cy", camera->cy != 0.5 * camera->height);
 }
 
-bool vl_camera_is_whole_sphere(const vlCamera *camera) {
+static bool is_whole_sphere(const vlCamera *camera) {
   if (camera->projection != VL_PROJECTION_EQUIRECTANGULAR &&
       camera->projection != VL_PROJECTION_EQUAL_AREA)
     return false;
@@ -205,8 +205,8 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
                     vl_camera_all_zero(fit->k + format->terms, 14 - format->terms);
   if (!format->plain && format->lenses && !(known && fits))
     return vl_camera_no_model(file, d);
-  const bool sphere = format->spheres && vl_camera_is_whole_sphere(c);
-  if (format->plain && !sphere)
+  fit->sphere = is_whole_sphere(c);
+  if (format->plain && !(format->spheres && fit->sphere))
     VL_TRY(vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC));
   if (format->plain)
     VL_TRY(vl_camera_refuse(file, "distortion", c->distortion.steps != 0));

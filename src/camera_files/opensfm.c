@@ -136,7 +136,7 @@ static vlResult write_opensfm(const vlFittedCamera *fit, vlCameraText *text) {
   const bool bent = fit->family == VL_LENS_FISHEYE;
   const bool opencv = fit->family == VL_LENS_PINHOLE || fit->family == VL_LENS_OPENCV;
   const bool whole = fit->record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
-  if (whole && !vl_camera_is_whole_sphere(c))
+  if (whole && !fit->sphere)
     return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
                       "opensfm holds the equirectangular image of the whole sphere only");
   if (!whole && (!(opencv || bent) || fit->count > 5))

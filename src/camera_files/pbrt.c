@@ -44,14 +44,13 @@ static void put_plain(vlCameraText *text, const vlCamera *c, bool flat) {
 static vlResult write_pbrt(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   const bool round = c->projection == VL_PROJECTION_EQUIRECTANGULAR;
-  const bool sphere = vl_camera_is_whole_sphere(c);
-  if (sphere) /* pbrt's has no lens */
+  if (fit->sphere) /* pbrt's has no lens */
     VL_TRY(vl_camera_refuse(fit->file, "lens_radius", c->lens_radius > 0.0));
   vl_camera_put(text,
                 "# pixels count from the image's upper left corner; camera axes x right, y up, "
                 "z forward\n");
-  put_transform(text, c, !sphere ? NULL : round ? equirectangular_axes : equal_area_axes);
-  if (sphere)
+  put_transform(text, c, !fit->sphere ? NULL : round ? equirectangular_axes : equal_area_axes);
+  if (fit->sphere)
     vl_camera_put(text, "Camera \"spherical\" \"string mapping\" \"%s\"",
                   round ? "equirectangular" : "equalarea");
   else

@@ -153,9 +153,11 @@ def what_gltf_has_not():
         return diffuse(scene)
 
     def lit(scene, **words):
-        scene.add_light("spot", **plain, **words)
+        scene.add_light("spot", **{**plain, **words})
         return diffuse(scene)
     assert not compare("a spot without an edge", lambda scene: lit(scene, cone_delta=0.0))
+    for angle, lost in ((numpy.pi / 2, False), (2.0, True)):
+        assert compare(f"a spot of {angle}", lambda scene: lit(scene, cone_angle=angle, cone_delta=0.0)) == lost
     assert not compare("a spot with glTF's edge", lambda scene: lit(scene, cone_delta=0.3, cone_squared=True))
     assert compare("a spot with pbrt's edge", lambda scene: lit(scene, cone_delta=0.3))
     assert compare("hidden", lambda scene: diffuse(scene, hidden_from_camera=True))

@@ -265,9 +265,9 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
         vl_export_lose(x, "spots in frames that are skewed or scaled unevenly: a round cone");
       if (d->cone_delta > 0 && !d->cone_squared)
         vl_export_lose(x, "edges of spots' cones that are pbrt's: glTF's, which are darker");
-      if (d->cone_angle > 1.57079632679)
-        vl_export_lose(x, "spots wider than a half space: the half space");
       double inner = d->cone_angle - d->cone_delta, outer = fmin(d->cone_angle, 1.57079632679);
+      if (outer < d->cone_angle - 1e-6) /* a float may be a little above pi / 2 */
+        vl_export_lose(x, "spots wider than a half space: the half space");
       json_object_set_new(
           light, "spot",
           json_pack("{s:f,s:f}", "innerConeAngle", fmax(0, fmin(inner, outer - 1e-6)),

@@ -1,7 +1,8 @@
 /* conformance/texels.h: the values of images at points of their own: each way in which an image
  * goes on outside of itself, one texel or an interpolation between four, and what the numbers
  * of the texture (scale, inversion, tint, channel, bias, cutoff) make of them, for images of
- * one to four channels, as colours and as numbers. */
+ * one to four channels, of floats and of bytes, as colours and as numbers. Rays wider than many
+ * images side by side see the mean of one. */
 #ifndef TEST_CONFORMANCE_TEXELS_H
 #define TEST_CONFORMANCE_TEXELS_H
 
@@ -12,7 +13,9 @@
 #include "velo/texture.h"
 #include "world/world.h"
 
-enum { TEXELS_WIDE = 5, TEXELS_HIGH = 3, TEXEL_WORLDS = 112, FOLDED_WORLDS = 16 };
+enum { TEXELS_WIDE = 5, TEXELS_HIGH = 3 };
+/* Of each number format; the last ones fold. */
+enum { TEXEL_WORLDS = 112, FOLDED_WORLDS = 16 };
 /* The square's texture coordinates go from -TEXELS_OUT to 1 + TEXELS_OUT. */
 #define TEXELS_OUT 2.3
 
@@ -21,6 +24,7 @@ typedef struct TexelCase {
   vlTextureDef def;
   uint32_t channels;
   bool number; /* a float texture */
+  bool bytes;  /* an image of bytes */
   float texels[TEXELS_HIGH][TEXELS_WIDE][4];
   vlTraceRays *rays;
   vlTraceHits *hits;
@@ -150,12 +154,21 @@ static void ask_texels(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
     broken("textures", "imagemap", "texels, world %u: %u points compared", t->index, compared);
   if (!(worst < 2e-3))
     broken("textures", "imagemap",
-           "texels, world %u (%u channels, wrap %d, filter %d, %s): off by %.4f", t->index,
-           t->channels, (int)t->def.wrap, (int)t->def.filter,
-           t->number ? "a number" : "a colour", worst);
+           "texels, world %u (%u channels of %s, wrap %d, filter %d, %s): off by %.4f",
+           t->index, t->channels, t->bytes ? "bytes" : "floats", (int)t->def.wrap,
+           (int)t->def.filter, t->number ? "a number" : "a colour", worst);
 }
 
 /* ---- worlds ------------------------------------------------------------------------------ */
+
+/* Multiples of 1/255, which bytes hold. */
+static void set_texels(TexelCase *t) {
+  for (int y = 0; y < TEXELS_HIGH; y++)
+    for (int x = 0; x < TEXELS_WIDE; x++)
+      for (int c = 0; c < 4; c++)
+        t->texels[y][x][c] =
+            (float)(26 + 13 * ((7 * x + 11 * y + 5 * c + x * y * 3) % 16)) / 255;
+}
 
 /* The image of world `index`, and what its texture makes of it: all ways to go on outside, both
  * filters, all numbers of channels, with each change of the values. */
@@ -185,11 +198,7 @@ static void choose_texture(TexelCase *t, uint32_t index) {
   }
   if (change == 4)
     t->def.cutoff = 0.45;
-  for (int y = 0; y < TEXELS_HIGH; y++)
-    for (int x = 0; x < TEXELS_WIDE; x++)
-      for (int c = 0; c < 4; c++)
-        t->texels[y][x][c] =
-            0.1f + 0.8f * (float)((7 * x + 11 * y + 5 * c + x * y * 3) % 16) / 16;
+  set_texels(t);
 }
 
 /* Adds the square with the texture as its reflectance to a scene. */
@@ -208,20 +217,71 @@ static void add_textured_square(vlScene *scene, const TexelCase *t, const vlImag
   add_square(scene, &material);
 }
 
-static void check_texels(TexelCase *t) {
+static vlImage *image_of_texels(const TexelCase *t) {
   vlImage *image;
   vlImageDef def = vl_default_image_def(TEXELS_WIDE, TEXELS_HIGH, t->channels);
+  def.encoding = VL_ENCODING_LINEAR;
+  if (t->bytes)
+    def.type = VL_PIXEL_U8;
   assert_int_equal(vl_image_create(context, &def, &image), VL_OK);
-  float *pixels = vl_image_pixels(image);
+  float *floats = vl_image_pixels(image);
+  uint8_t *bytes = vl_image_pixels(image);
   for (uint32_t y = 0; y < TEXELS_HIGH; y++)
     for (uint32_t x = 0; x < TEXELS_WIDE; x++)
-      for (uint32_t c = 0; c < t->channels; c++)
-        pixels[(y * TEXELS_WIDE + x) * t->channels + c] = t->texels[y][x][c];
+      for (uint32_t c = 0; c < t->channels; c++) {
+        const size_t at = (y * TEXELS_WIDE + x) * t->channels + c;
+        if (t->bytes)
+          bytes[at] = (uint8_t)lrintf(255 * t->texels[y][x][c]);
+        else
+          floats[at] = t->texels[y][x][c];
+      }
+  return image;
+}
+
+static void ask_square(TexelCase *t, void (*ask)(Probe *, vlTrace *, const vlOwnPaths *)) {
+  vlImage *image = image_of_texels(t);
   vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
   add_textured_square(scene, t, image);
   vl_image_destroy(image);
-  Probe probe = {.ask = ask_texels, .user = t};
+  Probe probe = {.ask = ask, .user = t};
   probe_scene(scene, "texels", &probe, 1);
+}
+
+/* ---- the widest rays --------------------------------------------------------------------- */
+
+/* The mean of the image, but for the rounding of its coarser levels to bytes. */
+static void ask_widest(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)paths;
+  TexelCase *t = probe->user;
+  static const double widths[] = {32, 1e3, 1e9, 1e18};
+  double mean[3] = {0};
+  for (int y = 0; y < TEXELS_HIGH; y++)
+    for (int x = 0; x < TEXELS_WIDE; x++)
+      for (int c = 0; c < 3; c++)
+        mean[c] += (double)t->texels[y][x][c] / (TEXELS_WIDE * TEXELS_HIGH);
+  for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+    double worst = 0;
+    set_rays_down(t->rays);
+    for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+      t->rays->width[i] = (float)widths[w];
+    vl_world_trace(trace, t->rays, t->hits);
+    for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+      for (int c = 0; c < 3; c++)
+        worst = fmax(worst, fabs((double)t->hits->reflectance[c][i] - mean[c]));
+    if (!(worst < (t->bytes ? 3.0 / 255 : 1e-5)))
+      broken("textures", "imagemap", "rays of width %g: off the mean of %s by %.5f", widths[w],
+             t->bytes ? "bytes" : "floats", worst);
+  }
+}
+
+static void check_widest(TexelCase *t, bool bytes) {
+  t->channels = 3;
+  t->number = false;
+  t->bytes = bytes;
+  t->def = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  t->def.filter = VL_FILTER_TRILINEAR;
+  set_texels(t);
+  ask_square(t, ask_widest);
 }
 
 /* ---- at single points -------------------------------------------------------------------- */
@@ -288,10 +348,13 @@ static void laws_of_texels(void **state) {
   assert_non_null(t);
   t->rays = new_rays();
   t->hits = calloc(1, sizeof *t->hits);
-  for (uint32_t i = 0; i < TEXEL_WORLDS; i++) {
-    choose_texture(t, i);
-    check_texels(t);
+  for (uint32_t i = 0; i < 2 * TEXEL_WORLDS; i++) {
+    choose_texture(t, i % TEXEL_WORLDS);
+    t->bytes = i >= TEXEL_WORLDS;
+    ask_square(t, ask_texels);
   }
+  check_widest(t, false);
+  check_widest(t, true);
   free(t->rays);
   free(t->hits);
   free(t);

@@ -89,6 +89,79 @@ static void ask_bumps(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
     compare_bumps(b, i, step);
 }
 
+/* ---- vertex normals ---------------------------------------------------------------------- */
+
+/* A triangle whose texture coordinates are its barycentric ones. Its normals differ so much
+ * that their means are far from unit length. */
+static const double normal_corners[3][3] = {{0.1, -0.2, 0}, {1, 0.1, 0}, {-0.3, 0.9, 0}};
+static const double corner_normals[3][3] = {
+    {-0.48, -0.36, 0.8}, {0.8, -0.36, 0.48}, {-0.36, 0.8, 0.48}};
+#define NORMAL_TRIANGLE                                                              \
+  "Shape \"trianglemesh\" \"point3 P\" [.1 -.2 0 1 .1 0 -.3 .9 0] "                  \
+  "\"normal N\" [-.48 -.36 .8 .8 -.36 .48 -.36 .8 .48] \"point2 uv\" [0 0 1 0 0 1] " \
+  "\"integer indices\" [0 1 2]"
+
+static void normal_between(double u, double v, double n[3]) {
+  for (int k = 0; k < 3; k++)
+    n[k] = (1 - u - v) * corner_normals[0][k] + u * corner_normals[1][k] +
+           v * corner_normals[2][k];
+  vl_normalize3(n);
+}
+
+/* The derivative of p + h n along u or v. */
+static void bumped_slope(double u, double v, bool along_v, double slope[3]) {
+  const double step = 1e-5;
+  double n[3];
+  double there[3];
+  double edge[3];
+  normal_between(u, v, n);
+  normal_between(u + !along_v * step, v + along_v * step, there);
+  vl_sub3(normal_corners[1 + along_v], normal_corners[0], edge);
+  const double height = bump_height(u, v);
+  const double height_there = bump_height(u + !along_v * step, v + along_v * step);
+  for (int k = 0; k < 3; k++)
+    slope[k] = edge[k] + (height_there * there[k] - height * n[k]) / step;
+}
+
+static void ask_bumped_triangle(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)paths;
+  Bumps *b = probe->user;
+  set_rays_down(b->rays);
+  vl_world_trace(trace, b->rays, b->hits);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    double x[3];
+    double y[3];
+    double n[3];
+    double shading[3];
+    if (!isfinite(b->hits->t[i]))
+      continue;
+    bumped_slope((double)b->hits->uv[0][i], (double)b->hits->uv[1][i], false, x);
+    bumped_slope((double)b->hits->uv[0][i], (double)b->hits->uv[1][i], true, y);
+    vl_cross3(x, y, n);
+    for (int k = 0; k < 3; k++)
+      shading[k] = (double)b->hits->shading[k][i];
+    b->compared++;
+    b->wrong += !(vl_dot3(n, shading) > 0.9999 * vl_norm3(n));
+  }
+}
+
+static void check_bumped_triangle(void) {
+  Bumps b = {.rays = new_rays(), .hits = calloc(1, sizeof *b.hits)};
+  assert_non_null(b.hits);
+  Probe probe = {.ask = ask_bumped_triangle, .user = &b};
+  probe_world(HEAD "WorldBegin LightSource \"infinite\" " BUMP_HEIGHTS
+                   "Material \"diffuse\" \"texture displacement\" \"h\" " NORMAL_TRIANGLE,
+              &probe, 1);
+  if (b.compared < 50 || b.wrong > 0)
+    broken("shapes", "trianglemesh",
+           "bumps between vertex normals: %u of %u are not those of moved points", b.wrong,
+           b.compared);
+  free(b.rays);
+  free(b.hits);
+}
+
+/* ---- each kind --------------------------------------------------------------------------- */
+
 static void check_bumps(const vlKindRow *row, const ShapeVariant *v, bool solid) {
   static char text[TEXT];
   char form[600];
@@ -115,6 +188,7 @@ static void laws_of_bumps(void **state) {
   for (uint32_t k = 0; k < family->kind_count; k++)
     for (int solid = 0; solid < 2 && !shape_cases[k]->variants[0].faces_rays; solid++)
       check_bumps(family->rows[k], &shape_cases[k]->variants[0], solid);
+  check_bumped_triangle();
   expect_no_failures();
 }
 

@@ -24,7 +24,7 @@ typedef struct MaterialVariant {
       walks; /* the BSDF is estimated by random walks: its means are compared, not its values */
 } MaterialVariant;
 
-enum { MATERIAL_VARIANTS = 5 };
+enum { MATERIAL_VARIANTS = 6 };
 typedef struct MaterialCase {
   MaterialVariant variants[MATERIAL_VARIANTS];
 } MaterialCase;

@@ -210,6 +210,37 @@ static void test_pass_numbers_wrap(void **state) {
   vl_film_destroy(film);
 }
 
+/* The bytes that a film holds after passes, and what vl_film_memory tells. */
+static double held_memory(const vlFilmDef *def, double *told) {
+  const uint64_t before = vl_context_memory(context_, NULL);
+  vlFilm *film;
+  assert_int_equal(vl_film_create(context_, def, &film), VL_OK);
+  for (int pass = 0; pass < 2; pass++)
+    whole_pass(film, 0, COUNT);
+  const double held = (double)(vl_context_memory(context_, NULL) - before);
+  *told = (double)vl_film_memory(def);
+  vl_film_destroy(film);
+  return held;
+}
+
+/* They grow alike with the number of pixels. */
+static void test_told_memory(void **state) {
+  (void)state;
+  random_samples(5);
+  for (int i = 0; i < 6; i++) {
+    vlFilmDef def = vl_default_film_def(200, 100);
+    def.errors = i % 2;
+    def.buckets = (uint32_t)(i / 2 * 4); /* 0, 4, 8 */
+    double told[2];
+    const double whole = held_memory(&def, &told[0]);
+    def.crop[2] = 150;
+    def.crop[3] = 60;
+    const double held = whole - held_memory(&def, &told[1]);
+    if (!(fabs(held / (told[0] - told[1]) - 1) < 0.02))
+      fail_msg("film %d: %.0f bytes more, not %.0f", i, held, told[0] - told[1]);
+  }
+}
+
 /* A coarse film covers the crop of the fine one, and begins where it begins. */
 static void test_coarse_def(void **state) {
   (void)state;
@@ -480,6 +511,7 @@ int main(void) {
       cmocka_unit_test(test_constant),
       cmocka_unit_test(test_passes),
       cmocka_unit_test(test_pass_numbers_wrap),
+      cmocka_unit_test(test_told_memory),
       cmocka_unit_test(test_coarse_def),
       cmocka_unit_test(test_wrong_samples),
       cmocka_unit_test(test_crop_and_develop),

@@ -29,10 +29,13 @@ typedef struct Kind {
   uint32_t vertices, faces;
   bool flat, light; /* flat: rays leave on both sides; light: can emit */
   vlCurveKind curve;
+  const float *normals; /* of the vertices of a triangle, or null */
 } Kind;
 
 #define TURN 6.2831853f
 static const float triangle[9] = {-1, -0.7f, 0, 1.2f, -0.6f, 0, 0.1f, 1.1f, 0};
+/* Their interpolation changes sides within the triangle. */
+static const float normals[9] = {0.6f, 0, 0.8f, -0.48f, 0.6f, -0.64f, 0.36f, -0.48f, 0.8f};
 static const float thin[9] = {-1, -0.01f, 0, 1, 0.01f, 0, 0.9f, 0.03f, 0};
 static const float blunt[9] = {-1, 0, 0, 1, 0, 0, 0.1f, 0.01f, 0};
 static const float square[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
@@ -40,36 +43,42 @@ static const float patch[12] = {-1, -1, 0, 1, -0.8f, 0, -0.7f, 1, 0, 1, 1.1f, 0}
 static const float straight[12] = {-1, 0, 0, -0.3f, 0, 0, 0.3f, 0, 0, 1, 0, 0};
 
 static const Kind kinds[] = {
-    {"sphere", VL_SHAPE_SPHERE, 1, 0, -1, 1, 0, TURN, NULL, 0, 0, false, true, VL_CURVE_FLAT},
+    {"sphere", VL_SHAPE_SPHERE, 1, 0, -1, 1, 0, TURN, NULL, 0, 0, false, true, VL_CURVE_FLAT,
+     NULL},
     {"zone of a sphere", VL_SHAPE_SPHERE, 1.5f, 0, -0.4f, 1.1f, 0, 4, NULL, 0, 0, false, true,
-     VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
     {"cylinder", VL_SHAPE_CYLINDER, 0.7f, 0, -1, 2, 0, TURN, NULL, 0, 0, false, true,
-     VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
     {"slice of a cylinder", VL_SHAPE_CYLINDER, 0.7f, 0, -1, 2, 0, 2.5f, NULL, 0, 0, false, true,
-     VL_CURVE_FLAT},
-    {"disk", VL_SHAPE_DISK, 1, 0, 0, 0, 0.3f, TURN, NULL, 0, 0, true, true, VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
+    {"disk", VL_SHAPE_DISK, 1, 0, 0, 0, 0.3f, TURN, NULL, 0, 0, true, true, VL_CURVE_FLAT,
+     NULL},
     {"slice of a ring", VL_SHAPE_DISK, 2, 0.8f, 0, 0, 0, 5, NULL, 0, 0, true, true,
-     VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
     {"triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, triangle, 3, 1, true, true,
-     VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
     {"thin triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, thin, 3, 1, true, true,
-     VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
     {"blunt triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, blunt, 3, 1, true, true,
-     VL_CURVE_FLAT},
-    {"square", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, square, 4, 2, true, true, VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
+    {"square", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, square, 4, 2, true, true, VL_CURVE_FLAT,
+     NULL},
     {"bilinear patch", VL_SHAPE_BILINEAR, 0, 0, 0, 0, 0, 0, patch, 4, 1, true, true,
-     VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
     {"flat curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false,
-     VL_CURVE_FLAT},
+     VL_CURVE_FLAT, NULL},
     {"cylindrical curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false,
-     VL_CURVE_CYLINDER},
-    {"ribbon", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false, VL_CURVE_RIBBON},
+     VL_CURVE_CYLINDER, NULL},
+    {"ribbon", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false, VL_CURVE_RIBBON,
+     NULL},
+    {"triangle with normals", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, triangle, 3, 1, true, false,
+     VL_CURVE_FLAT, normals},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static vlShapeDef shape_of(const Kind *k) {
   static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3}, patch_corners[4] = {0, 1, 2, 3};
-  static const float widths[2] = {0.02f, 0.02f}, normals[6] = {0, 0, 1, 0, 0, 1};
+  static const float widths[2] = {0.02f, 0.02f}, ribbon[6] = {0, 0, 1, 0, 0, 1};
   vlShapeDef def = vl_default_shape_def(k->kind);
   def.radius = k->radius;
   def.inner_radius = k->inner;
@@ -81,10 +90,11 @@ static vlShapeDef shape_of(const Kind *k) {
   def.vertices = k->vertices;
   def.faces = k->faces;
   def.indices = k->kind == VL_SHAPE_BILINEAR ? patch_corners : corners;
+  def.normals = k->normals;
   if (k->kind == VL_SHAPE_CURVES) {
     def.widths = widths;
     def.curve = k->curve;
-    def.normals = normals;
+    def.normals = ribbon;
   }
   return def;
 }
@@ -537,6 +547,45 @@ static uint32_t differing(const Scene *s, vlTraceScratch *t, statRng *rng, uint3
   return wrong;
 }
 
+/* A great ball that touches the origin, along each axis: its points are less certain than their
+ * own small coordinates. In an object that is not moved they are no more certain. */
+static void objects_keep_uncertainty(void **state) {
+  (void)state;
+  static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const float radius = 1e6f;
+  Kind ball = kinds[0];
+  ball.radius = radius;
+  ball.z_min = -radius;
+  ball.z_max = radius;
+  double poses[32];
+  memcpy(poses, identity, sizeof identity);
+  memcpy(poses + 16, identity, sizeof identity);
+  for (int axis = 0; axis < 3; axis++) {
+    float offset[2];
+    for (Place place = PLACED; place <= INSTANCED; place++) {
+      vlContext *context;
+      assert_int_equal(vl_context_create(NULL, &context), VL_OK);
+      double shape[16];
+      memcpy(shape, identity, sizeof identity);
+      shape[4 * axis + 3] = -(double)radius;
+      vlWorld *world = build(context, &ball, place, false, shape, poses);
+      float o[3] = {0, 0, 0}, d[3] = {0, 0, 0};
+      o[axis] = 1;
+      d[axis] = -1;
+      Hit h = trace(world, vl_load3(o), vl_load3(d), 0);
+      assert_int_equal(h.shape, 0);
+      offset[place] =
+          vl_point_at_time(world, 0, vl_load3(o), vl_load3(d), h.shape, h.prim, h.instance, h.t)
+              .offset;
+      vl_world_destroy(world);
+      vl_context_destroy(context);
+    }
+    if (!(offset[INSTANCED] >= 0.99f * offset[PLACED]))
+      fail_msg("axis %d: rays start %g off, in an object %g", axis, (double)offset[PLACED],
+               (double)offset[INSTANCED]);
+  }
+}
+
 static void three_ways_agree(void **state) {
   (void)state;
   vlTraceScratch *t = aligned_alloc(64, sizeof *t);
@@ -674,8 +723,11 @@ static void light_paths_leave(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rays_leave),        cmocka_unit_test(interfaces_are_passed_once),
-      cmocka_unit_test(three_ways_agree),  cmocka_unit_test(lights_are_seen),
+      cmocka_unit_test(rays_leave),
+      cmocka_unit_test(interfaces_are_passed_once),
+      cmocka_unit_test(objects_keep_uncertainty),
+      cmocka_unit_test(three_ways_agree),
+      cmocka_unit_test(lights_are_seen),
       cmocka_unit_test(light_paths_leave),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "api/small_world.h"
+#include "camera/rays.h"
 #include "render/own_pinhole.h"
 #include "velo/camera_file.h"
 #include "velo/channels.h"
@@ -265,6 +266,32 @@ static void what_it_gets(void **state) {
     assert_true(seen.time_low >= 3 - 0.2 && seen.time_low < 3.1);
     assert_true(seen.time_high > (lens ? 5.8 : 4.9) && seen.time_high < (lens ? 6.3 : 5));
     image_free(&p);
+  }
+}
+
+/* Batches of any size: the function gets each point once, and no other rays are written. */
+static void any_number_of_points(void **state) {
+  (void)state;
+  enum { MAX_POINTS = 3 * VL_OWN_BATCH };
+  static float rows[16][MAX_POINTS];
+  static int32_t pixels[2][MAX_POINTS];
+  vlCameraDef def = small_def(&pinhole);
+  vlCamera camera;
+  vlCameraCompiled c;
+  vlError error = {0};
+  assert_int_equal(vl_camera_make(&def, &camera, NULL, &error), VL_OK);
+  vl_camera_compile(&camera, &c);
+  const vlCameraSamples samples = {rows[10], rows[11], pixels[0], pixels[1],
+                                   rows[12], rows[13], rows[14]};
+  const vlCameraRays rays = {rows[0], rows[1], rows[2], rows[3], rows[4], rows[5],
+                             rows[6], rows[7], rows[8], rows[9], NULL};
+  for (uint32_t n = 16; n <= 2 * VL_OWN_BATCH; n += 240) {
+    for (uint32_t i = 0; i < MAX_POINTS; i++)
+      rows[5][i] = 7; /* of no direction */
+    vl_camera_kernels(VL_ISA_BASE)->rays(&c, n, &samples, &rays);
+    for (uint32_t i = 0; i < MAX_POINTS; i++)
+      if ((rows[5][i] == 7) != (i >= n))
+        fail_msg("%u points: number %u", n, i);
   }
 }
 
@@ -743,15 +770,15 @@ static void names_in_receipts(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_velo),         cmocka_unit_test(same_in_motion),
-      cmocka_unit_test(same_on_all_machines), cmocka_unit_test(other_sizes),
-      cmocka_unit_test(ground_truth),         cmocka_unit_test(no_rays),
-      cmocka_unit_test(what_it_gets),         cmocka_unit_test(wrong_cameras),
-      cmocka_unit_test(sampler_mean),         cmocka_unit_test(sampler_bits),
-      cmocka_unit_test(wrong_samplers),       cmocka_unit_test(tracer_means),
-      cmocka_unit_test(tracer_bits),          cmocka_unit_test(what_the_world_answers),
-      cmocka_unit_test(wrong_tracers),        cmocka_unit_test(names_in_films),
-      cmocka_unit_test(names_in_receipts),
+      cmocka_unit_test(same_as_velo),           cmocka_unit_test(same_in_motion),
+      cmocka_unit_test(same_on_all_machines),   cmocka_unit_test(other_sizes),
+      cmocka_unit_test(ground_truth),           cmocka_unit_test(no_rays),
+      cmocka_unit_test(what_it_gets),           cmocka_unit_test(any_number_of_points),
+      cmocka_unit_test(wrong_cameras),          cmocka_unit_test(sampler_mean),
+      cmocka_unit_test(sampler_bits),           cmocka_unit_test(wrong_samplers),
+      cmocka_unit_test(tracer_means),           cmocka_unit_test(tracer_bits),
+      cmocka_unit_test(what_the_world_answers), cmocka_unit_test(wrong_tracers),
+      cmocka_unit_test(names_in_films),         cmocka_unit_test(names_in_receipts),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

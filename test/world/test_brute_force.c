@@ -315,8 +315,24 @@ static bool is_few(int boxes, int balls, bool instance, float opacity) {
   return few;
 }
 
+/* A ball: within the sizes for which no product of the kernels overflows or vanishes? */
+static bool is_usual(float radius, double x) {
+  Made m = {0};
+  open_scene(&m);
+  add_ball(&m, radius, x, 0, 0);
+  build(&m);
+  bool few = m.world->accel.brute_force != NULL;
+  close_scene(&m);
+  return few;
+}
+
 static void which_worlds(void **state) {
   (void)state;
+  assert_true(is_usual(1, 0));
+  assert_true(is_usual(1e-3f, 1e5));
+  assert_false(is_usual(1e-8f, 0));
+  assert_false(is_usual(1, 1e8));
+  assert_false(is_usual(1e10f, 0));
   assert_true(is_few(0, 0, false, 1));
   assert_true(is_few(7, 0, false, 1));  /* 42 faces and a sphere */
   assert_false(is_few(8, 0, false, 1)); /* 48 faces and a sphere */

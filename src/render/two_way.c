@@ -498,14 +498,10 @@ static bool find_extents(vlTwoWayRun *run) {
   return good;
 }
 
-vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film,
-                           const vlRenderDef *def, const vlTraceDef *trace,
-                           const vlFilmRays *rays, vlTwoWayRun **made, vlError *error) {
+static vlResult make_run(vlTwoWayRun *run, const vlWorld *world, const vlCamera *camera,
+                         vlFilm *film, const vlRenderDef *def, const vlTraceDef *trace,
+                         const vlFilmRays *rays, vlError *error) {
   vlContext *context = world->context;
-  vlTwoWayRun *run = vl_alloc_zero(context, 1, sizeof *run);
-  *made = run;
-  if (!run)
-    return vl_fail_memory(error);
   const vlFilmDef *f = vl_film_def(film);
   run->context = context;
   run->world = world;
@@ -563,6 +559,21 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   set_radius(run, 0);
   if (result == VL_OK && run->starts && def->tracer == VL_TRACER_BIDIRECTIONAL)
     result = make_inner(run, error);
+  return result;
+}
+
+vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film,
+                           const vlRenderDef *def, const vlTraceDef *trace,
+                           const vlFilmRays *rays, vlTwoWayRun **made, vlError *error) {
+  *made = NULL;
+  vlTwoWayRun *run = vl_alloc_zero(world->context, 1, sizeof *run);
+  if (!run)
+    return vl_fail_memory(error);
+  const vlResult result = make_run(run, world, camera, film, def, trace, rays, error);
+  if (result == VL_OK)
+    *made = run;
+  else
+    vl_two_way_destroy(run);
   return result;
 }
 

@@ -44,6 +44,39 @@ if library=$work/interpose.so && cc -shared -fPIC -O1 -o "$library" "$VELO_SOURC
     [ "$code" = 0 ] || grep -q '^velo: ' err.txt || problem="allocation $k: no line"
   done
   if [ -z "$problem" ]; then pass every_allocation_of_convert; else fail "every_allocation_of_convert ($problem)"; fi
+
+  # The exit code is that of the first file that failed, also if those after it are written.
+  problem=
+  for k in 1 2 3 4; do
+    code=0
+    VELO_FAULT=rename:$k:5 LD_PRELOAD=$library "$VELO" render s.pbrt --spp 1 --channels id.object -o a.exr -o b.exr --quiet 2>err.txt || code=$?
+    [ "$code" = 5 ] || problem="rename $k: exit code $code"
+  done
+  if [ -z "$problem" ]; then pass every_failed_file_is_an_error; else fail "every_failed_file_is_an_error ($problem)"; fi
+
+  # What was rendered is in a file, whatever fails after it: ground truth, header, denoised copy, film, one of the outputs.
+  # Only where the image itself cannot be made there is none: a few allocations.
+  kept() { # NAME CALL ERRNO STEP OPTION...
+    local name=$1 call=$2 number=$3 step=$4 k lost=0 late=0 problem= code
+    shift 4
+    VELO_FAULT=$call:0:$number VELO_FAULT_COUNT=$work/count LD_PRELOAD=$library "$VELO" render s.pbrt -t 1 --quiet "$@" 2>/dev/null
+    for ((k = 1; k <= $(cat count); k += step)); do
+      rm -f out_* c.exr f_*.film
+      code=0
+      VELO_FAULT=$call:$k:$number LD_PRELOAD=$library timeout 20 "$VELO" render s.pbrt -t 1 --log-json "$@" 2>err.txt || code=$?
+      case "$code" in 0 | 1 | 5) ;; *) problem="$call $k: exit code $code" ;; esac
+      if [ "$code" != 0 ] && grep -q '"event": "progress"' err.txt; then
+        late=$((late + 1))
+        [ -n "$(find . -name 'out_*.exr' -size +0)" ] || lost=$((lost + 1))
+      fi
+    done
+    if [ -z "$problem" ] && [ "$late" -gt 3 ] && [ "$lost" -le 2 ]; then pass "kept_$name"; else fail "kept_$name ($problem; $lost of $late images are lost)"; fi
+  }
+  kept truth memory 12 9 --spp 1 --channels all -o out_a.exr -o out_b.exr
+  kept denoised memory 12 17 --spp 2 --denoise c.exr -o out_a.exr -o out_b.exr
+  kept eyes memory 12 17 --spp 1 --stereo parallel --channels id.object -o out_%v.exr
+  kept films write 28 1 --spp 1 --stereo parallel --film f_%v.film -o out_a%v.exr
+  kept light_paths memory 12 17 --spp 4 --tracer bidirectional -o out_a.exr -o out_b.exr
 else
   skip every_allocation_of_convert "no compiler"
 fi

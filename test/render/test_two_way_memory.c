@@ -40,6 +40,7 @@ static vlResult render(vlContext *context, void *user) {
   vlFilm *film = NULL;
   vlBuildDef build = vl_default_build_def();
   build.color = VL_COLOR_RGB;
+  vlRenderStats stats;
   vlCamera camera;
   vlCameraDef camera_def = vl_default_camera_def(8, 8);
   camera_def.lookat[2] = -1;
@@ -58,7 +59,7 @@ static vlResult render(vlContext *context, void *user) {
   if (r == VL_OK)
     r = vl_film_create(context, &film_def, &film);
   if (r == VL_OK)
-    r = vl_render(world, &camera, film, &def, NULL, NULL);
+    r = vl_render(world, &camera, film, &def, &stats, NULL);
   vl_film_destroy(film);
   vl_world_destroy(world);
   vl_scene_destroy(scene);
@@ -67,8 +68,10 @@ static vlResult render(vlContext *context, void *user) {
 
 static void out_of_memory(void **state) {
   (void)state;
-  vlTracer merging = VL_TRACER_MERGING;
-  fail_everywhere(render, &merging, 30);
+  vlTracer tracers[] = {VL_TRACER_MERGING, VL_TRACER_BIDIRECTIONAL, VL_TRACER_VOLPATH};
+  fail_everywhere(render, &tracers[0], 30);
+  fail_everywhere(render, &tracers[1], 30);
+  fail_everywhere(render, &tracers[2], 10);
 }
 
 int main(void) {

@@ -19,6 +19,11 @@ enum {
   STATUS_IO = 5       /* reading or writing failed: directory, permission, disk full */
 };
 
+/* The first of two exit codes that is no success. */
+static inline int first_failure(int first, int second) {
+  return first != STATUS_OK ? first : second;
+}
+
 typedef enum Verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 } Verbosity;
 
 void report_setup(bool json, Verbosity verbosity);

@@ -189,8 +189,7 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
       report_note("the image under way is in %s", path);
     if (code == STATUS_OK && !p->stopped)
       output_remove_part(name);
-    if (status == STATUS_OK)
-      status = code;
+    status = first_failure(status, code);
   }
   return status;
 }
@@ -206,37 +205,39 @@ static int write_clean(FrameWriter *w, FrameImage *p) {
   return report_finish(&error, result, path);
 }
 
+static vlResult set_header(const FrameWriter *w, const FrameImage *p, int view) {
+  vlImage *image = p->images[view];
+  const vlTrajectoryFrame *pose = &p->frame.pose;
+  const char *eye = w->frames->view_names[view];
+  TRY_RESULT(attributes_set(image, &p->jobs[view], p->spp));
+  if (w->frames->trajectory)
+    TRY_RESULT(attributes_set_frame(image, p->frame.number, pose->name, pose->time));
+  if (*eye)
+    TRY_RESULT(image_set_text(image, "view", eye));
+  TRY_RESULT(channels_describe(&p->channels[view], image));
+  const ReceiptImage which = receipt_image(w, p, *eye ? eye : NULL);
+  return receipt_set(&p->jobs[view], &which, image);
+}
+
+/* An image without its whole header is kept as a stopped one. */
 static int write_image(FrameWriter *w, FrameImage *p) {
   int status = STATUS_OK;
   for (int v = 0; v < w->frames->views && status == STATUS_OK; v++) {
-    vlResult result = attributes_set(p->images[v], &p->jobs[v], p->spp);
-    const vlTrajectoryFrame *pose = &p->frame.pose;
-    if (result == VL_OK && w->frames->trajectory)
-      result = attributes_set_frame(p->images[v], p->frame.number, pose->name, pose->time);
-    if (result == VL_OK && *w->frames->view_names[v])
-      result = image_set_text(p->images[v], "view", w->frames->view_names[v]);
+    const vlResult result = set_header(w, p, v);
     if (result == VL_OK)
-      result = channels_describe(&p->channels[v], p->images[v]);
-    const char *eye = w->frames->view_names[v];
-    const ReceiptImage which = receipt_image(w, p, *eye ? eye : NULL);
-    if (result == VL_OK)
-      result = receipt_set(&p->jobs[v], &which, p->images[v]);
-    if (result != VL_OK)
-      status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");
+      continue;
+    status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");
+    p->stopped = true;
   }
   for (int joined = 0; joined < 2; joined++) /* joined files come last */
-    for (int i = 0; i < w->outputs->count && status != STATUS_OTHER; i++) {
+    for (int i = 0; i < w->outputs->count; i++) {
       bool by_view = pattern_has(w->outputs->paths[i], 'v');
       bool joins = w->frames->views == 2 && !by_view;
       if (joins != joined)
         continue;
-      int code = write_pattern(w, p, w->outputs->paths[i], by_view);
-      if (status == STATUS_OK)
-        status = code;
+      status = first_failure(status, write_pattern(w, p, w->outputs->paths[i], by_view));
     }
-  if (status == STATUS_OK && p->clean)
-    status = write_clean(w, p);
-  return status;
+  return p->clean ? first_failure(status, write_clean(w, p)) : status;
 }
 
 /* ---- the thread -------------------------------------------------------------------------- */
@@ -256,10 +257,8 @@ static void *work(void *user) {
     bool stopped = image->stopped;
     frame_image_free(image);
     pthread_mutex_lock(&w->mutex);
-    if (status == STATUS_OK)
-      w->written += !stopped;
-    else if (w->status == STATUS_OK)
-      w->status = status;
+    w->written += status == STATUS_OK && !stopped;
+    w->status = first_failure(w->status, status);
     w->first = (w->first + 1) % QUEUE;
     w->count--;
     pthread_cond_signal(&w->changed);

@@ -25,6 +25,7 @@ typedef struct Run {
   uint32_t number;          /* of the frame that is rendered */
   vlFilm *film;             /* of the view that is rendered */
   FilmKeeper keeper;
+  int kept; /* exit code of the first film that could not be written */
   vlRenderStats total;
 } Run;
 
@@ -86,29 +87,27 @@ static int open_film(Run *run, const Frame *frame, int view, Job *job, vlFilm **
   return status;
 }
 
-/* Renders the film of a view and develops it. */
+/* Renders the film of a view and develops it, also that of a render that stopped early. */
 static int render_film(Run *run, const char *name, int view, Job *job, FrameImage *image) {
   vlError error = {0};
   vlRenderStats stats = {0};
   vlResult result =
       vl_render(run->world, &job->camera, run->film, &job->defs->render, &stats, &error);
   add_stats(&run->total, &stats);
-  if (result != VL_OK && result != VL_CANCELLED)
-    return report_failure(STATUS_OTHER, "%s: %s", name, error.message);
+  int status = result == VL_CANCELLED ? signals_status() : report_finish(&error, result, name);
   image->spp = vl_film_spp(run->film);
-  int status = image->spp ? film_keeper_finish(&run->keeper, run->film) : STATUS_OK;
+  if (!image->spp)
+    return status;
+  run->kept = first_failure(run->kept, film_keeper_finish(&run->keeper, run->film));
+  TRY(develop(job, run->film, &image->images[view]));
+  if (status == STATUS_OK && run->denoised->outputs.count)
+    status = denoised_make(run->denoised, job, run->film, &image->clean);
   if (status != STATUS_OK)
     return status;
-  if (image->spp)
-    TRY(develop(job, run->film, &image->images[view]));
-  if (result == VL_CANCELLED)
-    return signals_status();
-  if (run->denoised->outputs.count)
-    status = denoised_make(run->denoised, job, run->film, &image->clean);
   image->channels[view] = *run->channels;
-  return status == STATUS_OK && run->layers && !run->frames->steady.only_kept
+  return run->layers && !run->frames->steady.only_kept
              ? channels_render(&image->channels[view], job, run->film)
-             : status;
+             : STATUS_OK;
 }
 
 /* Makes the job of a view, with its camera. */
@@ -157,7 +156,8 @@ static int render_view(Run *run, const Frame *frame, int view, FrameImage *image
   return status;
 }
 
-/* Keeps an interrupted frame for NAME.part.EXT. An eye that was not begun is black. */
+/* Keeps a frame that was interrupted, or whose ground truth or denoised copy cannot be made,
+ * for NAME.part.EXT. An eye that was not begun is black. */
 static bool keep_stopped(Run *run, FrameImage *image) {
   if (!image->images[0])
     return false;
@@ -274,7 +274,7 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
     if (run.shown.count > 1)
       progress_show_frames(&run.shown, run.number, 0);
     int code = render_frame(&run, &image);
-    if (code == STATUS_OK || (code >= 128 && keep_stopped(&run, &image)))
+    if (code == STATUS_OK || keep_stopped(&run, &image))
       frame_writer_put(writer, &image);
     else
       frame_image_free(&image);
@@ -287,6 +287,7 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world,
   report_status_line(NULL);
   if (status < 128 && code != STATUS_OK)
     status = code;
+  status = first_failure(status, run.kept);
   if (run.shown.count < all)
     report_note("%u frames exist and were left out", all - run.shown.count);
   if (status >= 128)

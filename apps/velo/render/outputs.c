@@ -284,11 +284,8 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
                          output_holds_layers(path), to, &error);
     if (stage == OUTPUT_PROGRESS)
       report_progress_failure(outputs, i, result, &error);
-    if (stage != OUTPUT_PROGRESS && result != VL_OK) {
-      int code = report_error(&error, result, to);
-      if (status == STATUS_OK)
-        status = code;
-    }
+    if (stage != OUTPUT_PROGRESS && result != VL_OK)
+      status = first_failure(status, report_error(&error, result, to));
     if (has_part)
       keep_part(outputs, i, part, stage, result == VL_OK, spp);
   }

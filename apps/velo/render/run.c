@@ -60,25 +60,31 @@ enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
 
 /* ---- files ------------------------------------------------------------------------------- */
 
+static vlResult set_header(const Render *render, uint32_t spp, vlImage *image) {
+  const ReceiptImage which = {.samples = spp};
+  TRY_RESULT(attributes_set(image, &render->job, spp));
+  TRY_RESULT(channels_describe(&render->channels, image));
+  return receipt_set(&render->job, &which, image);
+}
+
+/* An image without its whole header is kept as one of a stopped render. */
 static int write_image(Render *render, OutputStage stage) {
   vlImage *image = NULL;
   uint32_t spp = vl_film_spp(render->film);
   vlResult result = vl_film_develop(render->film, &render->job.defs->develop, &image);
   if (result == VL_OK)
-    result = attributes_set(image, &render->job, spp);
-  if (result == VL_OK)
-    result = channels_describe(&render->channels, image);
-  const ReceiptImage which = {.samples = spp};
-  if (result == VL_OK)
-    result = receipt_set(&render->job, &which, image);
+    result = set_header(render, spp, image);
   int status = STATUS_OK;
-  if (result == VL_OK)
-    status = outputs_write(render->context, &render->outputs, image, spp, stage);
-  else if (stage == OUTPUT_PROGRESS)
+  if (result != VL_OK && stage == OUTPUT_PROGRESS)
     report_warning("progress image: %s", vl_result_name(result));
-  else
+  else if (result != VL_OK)
     status = report_reason(result, render->outputs.paths[0],
                            "the image and its header cannot be made");
+  if (result != VL_OK)
+    stage = OUTPUT_STOPPED;
+  if (image)
+    status = first_failure(status,
+                           outputs_write(render->context, &render->outputs, image, spp, stage));
   vl_image_destroy(image);
   return status;
 }
@@ -300,35 +306,45 @@ static int write_first_image(Render *render, OutputStage *stage) {
   return code != STATUS_OK ? code : status;
 }
 
+/* The files of ids beside the images. Returns the first failure, or STATUS_OK. */
+static int write_ids(const Render *render, OutputStage stage) {
+  int status = STATUS_OK;
+  for (int i = 0; i < render->outputs.count && render->channels.bits; i++) {
+    char part[5000];
+    if (!output_holds_layers(render->outputs.paths[i]))
+      continue;
+    const char *path = output_written(&render->outputs, i, stage, part, sizeof part);
+    status =
+        first_failure(status, channels_write_ids(&render->channels, NULL, &render->job, path));
+  }
+  return status;
+}
+
 /* Writes the final image with its ground truth. A stopped render is written before its ground
- * truth is rendered, which another signal may interrupt. *stage: the stage of the last
- * write. */
+ * truth is rendered, which another signal may interrupt. Whatever fails, the rest is written.
+ * *stage: the stage of the last write. */
 static int write_last(Render *render, OutputStage *stage) {
   int written = STATUS_OK;
   if (*stage == OUTPUT_STOPPED && run_has_layers(render))
     written = write_image(render, *stage);
   int status = render_channels(render);
-  if (status > 128) {
+  if (status != STATUS_OK) {
     *stage = OUTPUT_STOPPED;
     memset(render->outputs.layers, 0, sizeof render->outputs.layers);
-    report_note("interrupted before the ground truth was done: the image has none");
-  } else if (status != STATUS_OK) {
-    return status;
-  }
-  for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++) {
-    char part[5000];
-    if (render->channels.bits && output_holds_layers(render->outputs.paths[i]))
-      written =
-          channels_write_ids(&render->channels, NULL, &render->job,
-                             output_written(&render->outputs, i, *stage, part, sizeof part));
+    report_note(status > 128
+                    ? "interrupted before the ground truth was done: the image has none"
+                    : "the ground truth cannot be made: the image has none");
+  } else {
+    written = first_failure(written, write_ids(render, *stage));
   }
   if (render->denoised.replaces)
     return write_first_image(render, stage);
   denoised_share_exposure(&render->denoised, &render->outputs);
-  int code = write_image(render, *stage);
-  if (code == STATUS_OK && status == STATUS_OK)
-    code = denoised_write(&render->denoised, &render->job, render->film, *stage);
-  return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
+  written = first_failure(written, write_image(render, *stage));
+  if (status == STATUS_OK)
+    written = first_failure(
+        written, denoised_write(&render->denoised, &render->job, render->film, *stage));
+  return first_failure(written, status);
 }
 
 /* Makes the film, or reads the film to continue. */
@@ -349,17 +365,22 @@ static int plan_reached(Render *render, uint32_t end) {
   return film_keeper_describe(&render->keeper, &render->film_plan, &render->job, NULL);
 }
 
-/* Writes what was rendered. Returns the exit code. */
-static int finish_image(Render *render, vlResult result, const vlRenderStats *stats) {
+/* Writes what was rendered. failed: the exit code of a render that went wrong, or STATUS_OK.
+ * Returns the exit code. */
+static int finish_image(Render *render, vlResult result, int failed,
+                        const vlRenderStats *stats) {
   Job *job = &render->job;
   int reached;
   uint32_t spp = vl_film_spp(render->film);
   OutputStage stage = result == VL_OK ? OUTPUT_FINISHED : OUTPUT_STOPPED;
+  if (!spp && failed != STATUS_OK)
+    return failed;
   if (!spp)
     return report_failure(signals_status(),
                           "interrupted before the first pass was done; nothing is written");
   if (stage == OUTPUT_STOPPED)
-    report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
+    report_note("%s after %u of %u spp", failed == STATUS_OK ? "interrupted" : "stopped", spp,
+                job->defs->render.spp);
   if (stage == OUTPUT_FINISHED &&
       (reached = plan_reached(render, job->defs->render.first_sample + spp)) >= 0)
     return reached;
@@ -377,6 +398,7 @@ static int finish_image(Render *render, vlResult result, const vlRenderStats *st
   int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
   if (kept != STATUS_OK && (status == STATUS_OK || status > 128))
     status = kept;
+  status = first_failure(failed, status);
   if (status == STATUS_OK)
     report_late(render, spp);
   if (signals_pending() && status == STATUS_OK)
@@ -409,7 +431,8 @@ int run_image(Render *render) {
   report_status_line(NULL);
   report_not_finite(&stats);
   noise_report(&job->defs->render, &stats);
-  if (result != VL_OK && result != VL_CANCELLED)
-    return report_error(&error, result, job->path);
-  return finish_image(render, result, &stats);
+  const int failed = result == VL_OK || result == VL_CANCELLED
+                         ? STATUS_OK
+                         : report_error(&error, result, job->path);
+  return finish_image(render, result, failed, &stats);
 }

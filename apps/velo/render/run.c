@@ -290,6 +290,11 @@ static void report_late(const Render *render, uint32_t spp) {
                  format_seconds(elapsed).text, format_seconds(render->time_limit).text);
 }
 
+static int write_stopped(Render *render) {
+  render->outputs.comment = NULL;
+  return write_image(render, OUTPUT_STOPPED);
+}
+
 /* The image of a stopped render is not denoised, nor is one whose denoiser is stopped. */
 static int write_first_image(Render *render, OutputStage *stage) {
   Denoised *d = &render->denoised;
@@ -301,9 +306,7 @@ static int write_first_image(Render *render, OutputStage *stage) {
   if (*stage == OUTPUT_FINISHED && status <= 128)
     return status;
   *stage = OUTPUT_STOPPED;
-  render->outputs.comment = NULL;
-  int code = write_image(render, *stage);
-  return code != STATUS_OK ? code : status;
+  return first_failure(write_stopped(render), status);
 }
 
 /* The files of ids beside the images. Returns the first failure, or STATUS_OK. */
@@ -395,7 +398,9 @@ static int finish_image(Render *render, vlResult result, int failed,
                    : STATUS_OK;
     return done == STATUS_OK && signals_pending() ? signals_status() : done;
   }
-  int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
+  int status = STATUS_OK;
+  if (render->outputs.count)
+    status = failed == STATUS_OK ? write_last(render, &stage) : write_stopped(render);
   if (kept != STATUS_OK && (status == STATUS_OK || status > 128))
     status = kept;
   status = first_failure(failed, status);

@@ -8,6 +8,8 @@
 
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "shapes.h"
+#include "trace/trace.h"
 #include "unit.h"
 #include "velo/edit.h"
 #include "velo/export.h"
@@ -404,6 +406,49 @@ static void laws_of_emission(void **state) {
   check_covered_lamps();
   check_sides_of_lamps();
   check_stretched_spheres();
+  expect_no_failures();
+}
+
+/* ---- media around lamps ------------------------------------------------------------------ */
+
+/* A lamp in a ball of fog is found to be in it, wherever the ball is, and one beside it is not.
+ */
+static void check_medium_of_lamp(const char *shape, const char *parameters, bool in_fog) {
+  static char text[TEXT];
+  enum { MAX_LIGHTS = 16 };
+  const float eye[3] = {0, 20, 0};
+  uint32_t medium[MAX_LIGHTS];
+  vlError error = {0};
+  vlWorld *world;
+  snprintf(text, sizeof text,
+           HEAD
+           "WorldBegin MakeNamedMedium \"m\" \"string type\" \"homogeneous\" "
+           "AttributeBegin MediumInterface \"m\" \"\" Material \"interface\" "
+           "Translate 6 -4 5 Shape \"sphere\" \"float radius\" 3 AttributeEnd "
+           "Translate 6 -4 %s AreaLightSource \"diffuse\" Shape \"%s\" %s",
+           in_fog ? "5" : "9.5", shape, parameters);
+  vlScene *scene = need_scene(text);
+  assert_int_equal(vl_world_build(scene, NULL, &world, &error), VL_OK);
+  assert_in_range(world->lights.count, 1, MAX_LIGHTS);
+  vl_trace_kernels(VL_ISA_BASE)->light_media(world, eye, medium);
+  for (size_t i = 0; i < world->lights.count; i++)
+    if ((medium[i] != VL_NONE) != in_fog)
+      broken("shapes", shape, "%s: lamp %zu is%s in the fog", parameters, i,
+             in_fog ? " not" : "");
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+}
+
+static void media_of_lamps(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("shapes");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const char *parameters = shape_cases[k]->variants[0].parameters;
+    if (strcmp(family->rows[k]->name, "curve") == 0)
+      continue; /* emits no light */
+    check_medium_of_lamp(family->rows[k]->name, parameters, true);
+    check_medium_of_lamp(family->rows[k]->name, parameters, false);
+  }
   expect_no_failures();
 }
 

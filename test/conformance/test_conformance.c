@@ -64,6 +64,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(illuminances),
       cmocka_unit_test(light_paths),
       cmocka_unit_test(laws_of_emission),
+      cmocka_unit_test(media_of_lamps),
       cmocka_unit_test(colors_of_lights),
       cmocka_unit_test(laws_of_shapes),
       cmocka_unit_test(laws_of_surfaces),

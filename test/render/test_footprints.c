@@ -276,10 +276,67 @@ static void fine_stripes_are_grey_and_wide_ones_sharp(void **state) {
   }
 }
 
+/* ---- curved mirrors ---------------------------------------------------------------------- */
+
+/* The side of a mirror ball, from above, shows a wall with stripes. A cone of rays that meets
+ * it at a slant spreads less across the plane of incidence than in it (Coddington's equations:
+ * by 2 k cos and by 2 k / cos, k the curvature): stripes along that plane, 5 times as wide as a
+ * pixel's image across it, are still seen. */
+static void a_ball_mirrors_stripes(void **state) {
+  (void)state;
+  const uint32_t stripe = 10; /* texels */
+  Stage s = stage_open(VIEW, VIEW);
+  s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC; /* sees 2 x 2 */
+  s.build.color = VL_COLOR_RGB;
+  s.render.spp = 1;
+  vlMaterialDef mirror = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
+  vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
+  ball.radius = 50;
+  ball.z_min = -50;
+  ball.z_max = 50;
+  ball.material = vl_scene_add_material(s.scene, &mirror);
+  /* the ray in the middle meets it at a cosine of 0.312, and then the wall after 850 */
+  ball.group_from_shape[3] = -47.5;
+  ball.group_from_shape[11] = -100;
+  assert_int_not_equal(vl_scene_add_shape(s.scene, &ball).index, 0);
+  float *texels = malloc(TEXELS * TEXELS * 3 * sizeof *texels);
+  for (uint32_t i = 0; i < TEXELS * TEXELS * 3; i++)
+    texels[i] = i / 3 / TEXELS / stripe & 1 ? 0.8f : 0.2f;
+  vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+  vlImage *image = make_image(&s, TEXELS, TEXELS, texels);
+  free(texels);
+  def.image = image;
+  def.filter = VL_FILTER_TRILINEAR;
+  def.su = 50; /* across the stripes the image is as wide as they are long */
+  vlTextureId id = vl_scene_add_texture(s.scene, &def);
+  vl_image_destroy(image);
+  Quad wall = quad_at(504, 0, -850, 0, 0, 500, 0, 50, 0);
+  wall.material = add_textured(&s, id);
+  add_quad(&s, &wall);
+  vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
+  sun.from[0] = -1;
+  sun.from[1] = sun.from[2] = sun.to[0] = sun.to[1] = sun.to[2] = 0;
+  assert_int_not_equal(vl_scene_add_light(s.scene, &sun).index, 0);
+  Image p = stage_finish(&s);
+  double sum = 0, square = 0;
+  for (uint32_t y = 0; y < VIEW; y++)
+    for (uint32_t x = 0; x < VIEW; x++) {
+      const double value = image_at(&p, x, y, 1);
+      sum += value;
+      square += value * value;
+    }
+  const double n = VIEW * VIEW, mean = sum / n;
+  const double deviation = sqrt(square / n - mean * mean) / mean;
+  image_free(&p);
+  if (!(deviation > 0.5))
+    fail_msg("stripes vary by %.3f of their mean; 0.6 is unfiltered", deviation);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bumps_are_displacements),
       cmocka_unit_test(fine_stripes_are_grey_and_wide_ones_sharp),
+      cmocka_unit_test(a_ball_mirrors_stripes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

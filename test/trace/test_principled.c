@@ -318,6 +318,57 @@ static void mixtures_keep_what_is_told(void **state) {
   }
 }
 
+/* ---- light between the microfacets of a metal -----------------------------------------------
+ */
+
+/* Smith's length of the slopes that hide a direction, for a roughness of 1. */
+static double slopes(double cosine) {
+  return 0.5 * (1 / cosine - 1);
+}
+
+/* What microfacets of a roughness of 1, whose reflectance is `base` plus the rest by Schlick,
+ * send back at once of light at a cosine: the integral of D G F / (4 cos), with D = 1 / pi. */
+static double sent_at_once(double base, double cosine, int parts) {
+  const double o[3] = {sqrt(1 - cosine * cosine), 0, cosine};
+  double sum = 0;
+  for (int j = 0; j < parts; j++)
+    for (int k = 0; k < parts; k++) {
+      const double z = (j + 0.5) / parts, r = sqrt(1 - z * z),
+                   phi = 2 * M_PI * (k + 0.5) / parts;
+      const double h[3] = {o[0] + r * cos(phi), r * sin(phi), o[2] + z};
+      const double oh = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]) / 2;
+      const double fresnel = base + (1 - base) * pow(1 - oh, 5);
+      sum += fresnel / (1 + slopes(cosine) + slopes(z)) / (4 * M_PI * cosine);
+    }
+  return sum * 2 * M_PI / (parts * parts);
+}
+
+/* Kulla and Conty 2017: light that is not sent at once, and is reflected by the mean of
+ * Schlick's reflectance, base + (1 - base) / 21, at each further microfacet. */
+static void metals_reflect_again(void **state) {
+  State *s = *state;
+  const double cosine = 0.7;
+  double mean_sent = 0;
+  for (int k = 0; k < 40; k++) {
+    const double c = (k + 0.5) / 40;
+    mean_sent += 2 * c * sent_at_once(1, c, 60) / 40;
+  }
+  for (int k = 1; k < 5; k++) {
+    const double base = 0.2 * k, mean = base + (1 - base) / 21;
+    const double again = mean * mean * mean_sent / (1 - mean * (1 - mean_sent));
+    const double known =
+        sent_at_once(base, cosine, 300) + (1 - sent_at_once(1, cosine, 300)) * again;
+    const Look metal = {.metallic = 1, .roughness = 1, .base = (float)base};
+    float rows[VL_BSDF_ROWS];
+    Surface surface = surface_of(&metal, rows);
+    statRng rng = stat_rng(7100 + (uint64_t)k);
+    Kept kept = kept_by(s, &surface, cosine, 100, &rng);
+    if (!(fabs(kept.mean - known) < 0.005 + 4 * kept.error))
+      fail_msg("a metal of %.1f sends back %.4f +- %.4f, not %.4f", base, kept.mean, kept.error,
+               known);
+  }
+}
+
 /* f(o, i) / eta_i^2 is the same both ways; eta is the index on the side of the direction. */
 static void reciprocity(void **state) {
   State *s = *state;
@@ -531,6 +582,7 @@ static void off_is_off(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(furnace),
+                                     cmocka_unit_test(metals_reflect_again),
                                      cmocka_unit_test(mixtures_keep_what_is_told),
                                      cmocka_unit_test(reciprocity),
                                      cmocka_unit_test(chi_square),

@@ -75,6 +75,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_means),
       cmocka_unit_test(laws_of_mappings),
       cmocka_unit_test(laws_of_texels),
+      cmocka_unit_test(faces_that_emit),
       cmocka_unit_test(laws_of_projections),
       cmocka_unit_test(laws_of_distortions),
       cmocka_unit_test(settings_of_cameras),

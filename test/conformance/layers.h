@@ -186,6 +186,21 @@ static void check_textured_coat(void) {
            "a textured roughness sends %.4f of the light, not %.4f", textured, plain);
 }
 
+/* A mirror that reflects green alone, below a medium of thickness d that absorbs: e^(-2 d /
+ * cos) is left. No other colour tells that there is a mirror. */
+static void check_green_mirror(void) {
+  Sent *s = light_sent(
+      "Material \"coatedconductor\" \"rgb reflectance\" [0 1 0] "
+      "\"float conductor.roughness\" 0 \"float interface.roughness\" 0 "
+      "\"float interface.eta\" 1 \"float thickness\" .1 "
+      "\"rgb albedo\" [.001 .001 .001]",
+      16);
+  for (int side = 0; side < 4; side++)
+    check_mean("materials", "coatedconductor", "a green mirror: light that is sent",
+               &s->light[side], exp(-0.2 / cos(0.9)), (Sight){.slack = 4e-3, .least = 0.05});
+  free_sent(s);
+}
+
 /* ---- by wavelengths ---------------------------------------------------------------------- */
 
 typedef struct Wavelengths {
@@ -362,6 +377,7 @@ static void laws_of_layers(void **state) {
   check_holes("\"holes\" \"grey\"", 0.4, 0.4);
   check_coats();
   check_textured_coat();
+  check_green_mirror();
   check_film();
   check_dispersion(1, BASE_INDEX);
   check_dispersion(2, 1.9);

@@ -5,6 +5,7 @@
 #include "conformance.h"
 #include "densities.h"
 #include "descriptions.h"
+#include "emitting_faces.h"
 #include "files.h"
 #include "footprints.h"
 #include "furnaces.h"

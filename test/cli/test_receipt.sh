@@ -117,6 +117,15 @@ else
   fail frames
 fi
 
+# A frame's matrix has the roll of the pose: the receipt holds none beside it.
+echo '{"velo_camera": 1, "width": 50, "height": 40, "fov": 0.9, "eye": [0, 0, -5], "lookat": [0, 0, 0], "roll": 0.5}' >rolled.json
+render scene.pbrt --spp 1 --camera rolled.json --trajectory poses.txt --frames 0-0 -o 'rolled_%d.exr' 2>/dev/null
+if grep -aq '"world_from_camera"' rolled_0.exr && ! grep -aq '"roll"' rolled_0.exr; then
+  pass matrix_without_roll
+else
+  fail matrix_without_roll
+fi
+
 cp "$VELO_SOURCE_DIR/test/fuzz/corpus/camera_file/kalibr.yaml" chain.yaml
 cp "$VELO_SOURCE_DIR/test/fuzz/corpus/camera_file/nerf.json" transforms.json
 render scene.pbrt --spp 1 --trajectory transforms.json --frames 0-0 -o 'own_%d.exr' 2>/dev/null

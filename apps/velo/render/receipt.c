@@ -112,6 +112,8 @@ static vlSceneDefs defs_of(const Job *job, const ReceiptImage *which) {
   camera->has_matrix = true;
   memcpy(camera->world_from_camera, job->camera.world_from_camera,
          sizeof camera->world_from_camera);
+  camera->roll = 0.0; /* the matrix has it */
+  camera->roll_close = VL_UNSET;
   camera->has_matrix_close = false;
   for (int i = 0; i < 3; i++)
     camera->eye_close[i] = camera->lookat_close[i] = camera->up_close[i] = VL_UNSET;

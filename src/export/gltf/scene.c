@@ -71,6 +71,7 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
       x->result = r;
       return false;
     }
+    record.camera.roll = 0; /* the matrix has it */
     record.camera.has_matrix = true;
     memcpy(record.camera.world_from_camera, camera.world_from_camera,
            sizeof camera.world_from_camera);

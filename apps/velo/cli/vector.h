@@ -1,4 +1,4 @@
-/* cli/vector.h: vectors of three doubles, and 4x4 matrices, row-major. */
+/* cli/vector.h: vectors of three doubles, and 4x4 and 3x3 matrices, row-major. */
 #ifndef APP_CLI_VECTOR_H
 #define APP_CLI_VECTOR_H
 
@@ -71,6 +71,27 @@ static inline void matrix_multiply(const double a[16], const double b[16], doubl
       product[4 * i + j] = sum;
     }
   memcpy(result, product, sizeof product);
+}
+
+/* ---- 3x3 matrices, row-major; the result is none of the arguments ------------------------ */
+
+static inline void matrix3_multiply(const double a[9], const double b[9], double result[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      result[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+/* False: the matrix has no inverse. */
+static inline bool matrix3_invert(const double m[9], double result[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+      result[3 * i + j] = m[3 * a + c] * m[3 * b + d] - m[3 * a + d] * m[3 * b + c];
+    }
+  double determinant = m[0] * result[0] + m[1] * result[3] + m[2] * result[6];
+  for (int i = 0; i < 9; i++)
+    result[i] /= determinant;
+  return fabs(determinant) > 1e-9 && isfinite(determinant);
 }
 
 #endif

@@ -13,24 +13,6 @@
 /* CIE xy of red, green, blue and white of ITU-R BT.709. */
 static const double rec709[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
 
-static void multiply(const double a[9], const double b[9], double result[9]) {
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      result[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
-}
-
-static bool invert(const double m[9], double result[9]) {
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
-      result[3 * i + j] = m[3 * a + c] * m[3 * b + d] - m[3 * a + d] * m[3 * b + c];
-    }
-  double determinant = m[0] * result[0] + m[1] * result[3] + m[2] * result[6];
-  for (int i = 0; i < 9; i++)
-    result[i] /= determinant;
-  return fabs(determinant) > 1e-9 && isfinite(determinant);
-}
-
 static void white_xyz(const double xy[8], double xyz[3]) {
   xyz[0] = xy[6] / xy[7];
   xyz[1] = 1;
@@ -47,7 +29,7 @@ static bool xyz_from_rgb(const double xy[8], double m[9]) {
     m[6 + i] = 1 - xy[2 * i] - xy[2 * i + 1];
   }
   white_xyz(xy, white);
-  if (!invert(m, inverse))
+  if (!matrix3_invert(m, inverse))
     return false;
   for (int i = 0; i < 3; i++) {
     double scale = vector_dot(inverse + 3 * i, white);
@@ -72,9 +54,9 @@ static bool rec709_matrix(const vlImage *image, double m[9]) {
   if (!(away > 1e-3) || !(xy[7] > 0) || !xyz_from_rgb(xy, to_xyz) ||
       !xyz_from_rgb(rec709, from_rec709))
     return false;
-  if (!invert(from_rec709, from_xyz))
+  if (!matrix3_invert(from_rec709, from_xyz))
     return false;
-  multiply(from_xyz, to_xyz, m);
+  matrix3_multiply(from_xyz, to_xyz, m);
   for (int i = 0; i < 9; i++)
     if (!isfinite(m[i]))
       return false;

@@ -13,8 +13,9 @@
 void engine_publish(Engine *e, const vlImage *image, const FrameKind *kind) {
   double start = monotonic_seconds();
   const uint32_t scale = kind->scale;
+  float to_rec709[9];
   const float *matrix = kind->format == FRAME_HALF && !kind->developed
-                            ? frame_to_rec709(e->model.job.defs->film.space)
+                            ? frame_to_rec709(e->model.job.defs->film.space, to_rec709)
                             : NULL;
   ViewFrame *frame = frame_make(image, kind->format, kind->channels, matrix);
   if (!frame)

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "cli/crop.h"
+#include "cli/vector.h"
+#include "velo/color.h"
 
 /* Rounds to the nearest half float, ties to even. Values above the largest half become the
  * largest; NaN becomes 0. */
@@ -16,18 +18,14 @@ static uint16_t to_half(float value) {
     return 0;
   if (rest >= 0x477fe000u)
     return (uint16_t)(sign | 0x7bffu);
-  if (rest < 0x33000001u)
-    return (uint16_t)sign;
-  if (rest < 0x38800000u) { /* a subnormal half */
-    uint32_t shift = 126u - (rest >> 23), mantissa = (rest & 0x7fffffu) | 0x800000u;
-    uint32_t half = mantissa >> shift, left = mantissa & ((1u << shift) - 1u),
-             middle = 1u << (shift - 1u);
-    half += left > middle || (left == middle && (half & 1u));
-    return (uint16_t)(sign | half);
+  if (rest < 0x38800000u) { /* a multiple of 2^-24: adding 0.5 makes the addition round */
+    memcpy(&value, &rest, sizeof rest);
+    value += 0.5f;
+    memcpy(&rest, &value, sizeof rest);
+    return (uint16_t)(sign | (rest - 0x3f000000u));
   }
-  uint32_t half = (rest - 0x38000000u) >> 13, left = rest & 0x1fffu;
-  half += left > 0x1000u || (left == 0x1000u && (half & 1u));
-  return (uint16_t)(sign | half);
+  rest += 0xfffu + (rest >> 13 & 1u);
+  return (uint16_t)(sign | (rest - 0x38000000u) >> 13);
 }
 
 static size_t pixel_size(const ViewFrame *frame) {
@@ -81,26 +79,16 @@ ViewFrame *frame_make(const vlImage *image, FrameFormat format, uint32_t channel
   return frame;
 }
 
-const float *frame_to_rec709(vlColorSpace space) {
-  /* The primaries of the spaces; the white of ACES is not adapted, as in image/display.c. */
-  static const float p3[9] = {1.2249402f, -0.2249404f, 0,           -0.0420569f, 1.0420571f,
-                              0,          -0.0196376f, -0.0786361f, 1.0982735f};
-  static const float rec2020[9] = {1.6604910f,  -0.5876411f, -0.0728499f,
-                                   -0.1245505f, 1.1328999f,  -0.0083494f,
-                                   -0.0181508f, -0.1005789f, 1.1187297f};
-  static const float aces[9] = {2.5589994f,  -1.1194568f, -0.3959560f, -0.2769877f, 1.3706185f,
-                                -0.0936305f, -0.0171289f, -0.1485457f, 1.0813307f};
-  switch (space) {
-    case VL_SPACE_SRGB:
-      return NULL;
-    case VL_SPACE_DCI_P3:
-      return p3;
-    case VL_SPACE_REC2020:
-      return rec2020;
-    case VL_SPACE_ACES2065_1:
-      return aces;
-  }
-  return NULL;
+const float *frame_to_rec709(vlColorSpace space, float matrix[9]) {
+  double from_xyz[9], to_xyz[9], rec709[9], product[9];
+  if (space == VL_SPACE_SRGB || vl_color_space_matrix(space, from_xyz) != VL_OK ||
+      vl_color_space_matrix(VL_SPACE_SRGB, rec709) != VL_OK ||
+      !matrix3_invert(from_xyz, to_xyz))
+    return NULL;
+  matrix3_multiply(rec709, to_xyz, product);
+  for (int i = 0; i < 9; i++)
+    matrix[i] = (float)product[i];
+  return matrix;
 }
 
 ViewFrame *frame_keep(ViewFrame *frame) {

@@ -34,9 +34,9 @@ enum { FRAME_HEADER = 64, FRAME_TILE = 64 };
  * 3x3 for three channels, row-major, applied to each pixel; null: none. */
 ViewFrame *frame_make(const vlImage *image, FrameFormat format, uint32_t channels,
                       const float *matrix);
-/* The matrix from a film's space to linear Rec. 709, which pages show; null: it is that
- * space. */
-const float *frame_to_rec709(vlColorSpace space);
+/* Fills the matrix from a film's space to linear Rec. 709, which pages show, and returns it;
+ * white is not adapted, as in image/display.c. Null: the film is in that space. */
+const float *frame_to_rec709(vlColorSpace space, float matrix[9]);
 ViewFrame *frame_keep(ViewFrame *frame);
 /* Null is allowed. */
 void frame_drop(ViewFrame *frame);

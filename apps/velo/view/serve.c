@@ -96,7 +96,8 @@ void serve_film(Serve *s, const vlFilm *film, const vlProgress *progress) {
   const vlFilmDef *def = &s->job->defs->film;
   if (vl_film_develop(film, &s->job->defs->develop, &image) != VL_OK)
     return;
-  ViewFrame *frame = frame_make(image, FRAME_HALF, 3, frame_to_rec709(def->space));
+  float to_rec709[9];
+  ViewFrame *frame = frame_make(image, FRAME_HALF, 3, frame_to_rec709(def->space, to_rec709));
   vl_image_destroy(image);
   if (!frame)
     return;

@@ -121,6 +121,12 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, vlAddLight *pass_light
  * media. */
 void vl_add_hit_light(vlTracing *t, const vlPaths *rays, const vlVolumeRows *rows,
                       const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky);
+/* Adds radiance that arrives along ray i, times the path's throughput and a weight. */
+static inline void vl_add_radiance(vlTracing *t, const vlPaths *rays, uint32_t i,
+                                   const float radiance[4], float weight) {
+  for (int c = 0; c < 4; c++)
+    t->batch->radiance[c][rays->lane[i]] += rays->beta[c][i] * radiance[c] * weight;
+}
 /* Finds the closest hits of n rays, and writes only ids. camera: the rays have the batch's
  * t_min and t_max, and pass what is hidden from the camera. */
 void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *rays,

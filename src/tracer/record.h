@@ -47,8 +47,13 @@ void vl_record_surface(vlTracing *t, const vlPaths *rays, const vlHits *hits, ui
                        vlPathVertex *v);
 /* Adds a contribution to the path of a lane of the batch. The vertex is its last. */
 void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *light);
-/* What a light is: fills type, object, distant and light. */
-void vl_record_name_light(const vlWorld *world, uint32_t light, vlPathContribution *to);
+/* Adds what a light that ray i has hit gives: its radiance times the path's throughput and the
+ * factor. weight: against light sampling. sky: the ray left the scene. */
+void vl_record_hit_light(vlTracing *t, const vlPaths *rays, uint32_t i, const vlHitLight *met,
+                         bool sky, float weight, float factor);
+/* Says which light sample i has and where it lies: type, object, distant, light, target. */
+void vl_record_sampled(const vlWorld *world, const vlLightSamples *samples, uint32_t i,
+                       vlPathContribution *to);
 /* The n paths of p scatter in media: densities are normalised. */
 void vl_record_scattering(vlTracing *t, const vlPaths *p, uint32_t n);
 /* The same paths after the phase function was sampled; kept lists the `count` paths that go on.

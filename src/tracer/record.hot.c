@@ -85,7 +85,8 @@ void vl_record_depth(const vlTracing *t, uint32_t n, const vlPaths *rays) {
 
 /* ---- light ------------------------------------------------------------------------------- */
 
-void vl_record_name_light(const vlWorld *world, uint32_t light, vlPathContribution *to) {
+/* Says which light it is: type, object, distant, light. */
+static void name_light(const vlWorld *world, uint32_t light, vlPathContribution *to) {
   const vlWorldLight *l = &world->lights.items[light];
   to->light = light + 1;
   to->type = l->shape == VL_NONE ? vl_kind_row(&vl_light_family, (int)l->kind)->name : "area";
@@ -106,24 +107,37 @@ void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *ligh
   to->vertex = path->vertex_count - 1;
 }
 
+void vl_record_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met,
+                         bool sky, float weight, float factor) {
+  vlPathContribution c = {.event = sky ? VL_PATH_LIGHT_SKY : VL_PATH_LIGHT_HIT,
+                          .light_pdf = met->pdf,
+                          .bsdf_pdf = p->pdf[i],
+                          .weight = weight};
+  name_light(t->world, met->light, &c);
+  vl_store3(c.target, sky ? vl_lane3(p->dx, p->dy, p->dz, i) : met->at.p);
+  for (int k = 0; k < 4; k++)
+    c.radiance[k] = p->beta[k][i] * met->radiance[k] * factor;
+  vl_record_light(t, p->lane[i], &c);
+}
+
 static void record_hit(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
                        const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
   (void)rows;
   (void)ends;
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
-  vlPathContribution c = {.event = sky ? VL_PATH_LIGHT_SKY : VL_PATH_LIGHT_HIT,
-                          .light_pdf = met->pdf,
-                          .bsdf_pdf = p->pdf[i],
-                          .weight = weight};
-  vl_record_name_light(t->world, met->light, &c);
-  vl_store3(c.target, sky ? vl_lane3(p->dx, p->dy, p->dz, i) : met->at.p);
-  for (int k = 0; k < 4; k++)
-    c.radiance[k] = p->beta[k][i] * met->radiance[k] * weight;
-  vl_record_light(t, p->lane[i], &c);
+  vl_record_hit_light(t, p, i, met, sky, weight, weight);
 }
 
 void vl_record_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits) {
   vl_stage_lights_hit(t, n, rays, hits, NULL, NULL, record_hit);
+}
+
+void vl_record_sampled(const vlWorld *world, const vlLightSamples *l, uint32_t i,
+                       vlPathContribution *to) {
+  name_light(world, l->light[i], to);
+  to->distant = l->distant[i];
+  vl_store3(to->target,
+            to->distant ? vl_lane3(l->wx, l->wy, l->wz, i) : vl_lane3(l->tx, l->ty, l->tz, i));
 }
 
 void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVertices *at,
@@ -140,10 +154,7 @@ void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVe
         .light_pdf = l->pdf[i],
         .bsdf_pdf = l->delta[i] ? 0.0f : values->pdf[i],
         .weight = l->delta[i] ? 1.0f : vl_power_heuristic(l->pdf[i], values->pdf[i])};
-    vl_record_name_light(t->world, l->light[i], &c);
-    c.distant = l->distant[i];
-    vl_store3(c.target,
-              c.distant ? vl_lane3(l->wx, l->wy, l->wz, i) : vl_lane3(l->tx, l->ty, l->tz, i));
+    vl_record_sampled(t->world, l, i, &c);
     for (int m = 0; m < 4; m++)
       c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k];
     vl_record_light(t, q->lane[k], &c);

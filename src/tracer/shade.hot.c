@@ -37,18 +37,32 @@ static inline void copy_block(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t
 }
 
 /* Copies blocks of neighbours row by row. Copies others path by path, because a gather
- * instruction per row takes longer than single moves. */
-void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
+ * instruction per row takes longer than single moves. constants: only what stays the same along
+ * a path. */
+static inline void copy_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n,
+                              bool constants) {
   uint32_t k = 0;
   while (k < n) {
     if (n - k >= BLOCK && neighbours(order + k)) {
-      copy_block(a, order[k], b, k, 0, PATH_ROWS);
+      if (constants) {
+        copy_block(a, order[k], b, k, LAMBDA_ROW, 4);
+        copy_block(a, order[k], b, k, PIXEL_ROW, 4);
+      } else {
+        copy_block(a, order[k], b, k, 0, PATH_ROWS);
+      }
       k += BLOCK;
-    } else {
-      for (uint32_t last = n - k < BLOCK ? n : k + BLOCK; k < last; k++)
-        vl_path_copy(a, order[k], b, k);
+      continue;
+    }
+    for (uint32_t last = n - k < BLOCK ? n : k + BLOCK; k < last; k++) {
+      vl_path_copy_constants(a, order[k], b, k);
+      if (!constants)
+        vl_path_copy_ray(a, order[k], b, k);
     }
   }
+}
+
+void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
+  copy_paths(a, b, order, n, false);
 }
 static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint32_t n) {
   for (uint32_t k = 0; k < n; k++)
@@ -59,17 +73,7 @@ void vl_gather_rays(const vlPaths *p, const uint32_t *order, uint32_t n, vlPaths
   for (uint32_t k = 0; k < n; k++)
     if (order[k] != k)
       vl_path_copy_ray(to, order[k], to, k);
-  uint32_t k = 0;
-  while (k < n) {
-    if (n - k >= BLOCK && neighbours(order + k)) {
-      copy_block(p, order[k], to, k, LAMBDA_ROW, 4);
-      copy_block(p, order[k], to, k, PIXEL_ROW, 4);
-      k += BLOCK;
-    } else {
-      for (uint32_t last = n - k < BLOCK ? n : k + BLOCK; k < last; k++)
-        vl_path_copy_constants(p, order[k], to, k);
-    }
-  }
+  copy_paths(p, to, order, n, true);
 }
 
 /* A counting sort by the material's rank (materials of one kind are adjacent) that keeps the

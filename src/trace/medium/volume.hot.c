@@ -72,9 +72,7 @@ static void add_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
                       const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
   (void)ends;
   (void)sky;
-  float inv = vl_volume_inverse_density(t, rows, i, met->pdf);
-  for (int c = 0; c < 4; c++)
-    t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * inv;
+  vl_add_radiance(t, p, i, met->radiance, vl_volume_inverse_density(t, rows, i, met->pdf));
 }
 
 /* ---- scattering in media ----------------------------------------------------------------- */

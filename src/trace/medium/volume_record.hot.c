@@ -7,18 +7,8 @@ static void record_met(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
                        const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
   (void)ends;
   float inv = vl_volume_inverse_density(t, rows, i, met->pdf);
-  vlPathContribution c = {.event = sky ? VL_PATH_LIGHT_SKY : VL_PATH_LIGHT_HIT,
-                          .light_pdf = met->pdf,
-                          .bsdf_pdf = p->pdf[i],
-                          .weight = inv / vl_volume_inverse_density(t, rows, i, 0.0f),
-                          .target = {p->dx[i], p->dy[i], p->dz[i]}};
-  if (!sky) {
-    vl_store3(c.target, met->at.p);
-  }
-  vl_record_name_light(t->world, met->light, &c);
-  for (int k = 0; k < 4; k++)
-    c.radiance[k] = p->beta[k][i] * met->radiance[k] * inv;
-  vl_record_light(t, p->lane[i], &c);
+  float weight = inv / vl_volume_inverse_density(t, rows, i, 0.0f);
+  vl_record_hit_light(t, p, i, met, sky, weight, inv);
 }
 
 static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth, const vlPaths *p,
@@ -68,15 +58,8 @@ void vl_volume_record_shadows(vlTracing *t, uint32_t count, const vlLightSamples
     vlPathContribution c = {.event = VL_PATH_LIGHT_SAMPLED,
                             .occluded = q->occluded[k],
                             .light_pdf = f->light_pdf[k],
-                            .bsdf_pdf = f->pdf[k],
-                            .target = {l->tx[i], l->ty[i], l->tz[i]}};
-    vl_record_name_light(t->world, l->light[i], &c);
-    c.distant = l->distant[i];
-    if (c.distant) {
-      c.target[0] = l->wx[i];
-      c.target[1] = l->wy[i];
-      c.target[2] = l->wz[i];
-    }
+                            .bsdf_pdf = f->pdf[k]};
+    vl_record_sampled(t->world, l, i, &c);
     float inv = 1.0f / vl_volume_shadow_density(t, f, k, f->pdf[k]);
     c.weight = vl_volume_shadow_density(t, f, k, 0.0f) * inv;
     for (int m = 0; m < 4; m++)

@@ -15,8 +15,7 @@ void vl_add_hit_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
   (void)ends;
   (void)sky;
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
-  for (int c = 0; c < 4; c++)
-    t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
+  vl_add_radiance(t, p, i, met->radiance, weight);
 }
 
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {

@@ -22,8 +22,7 @@ static void add_radiance(vlTracing *t, const vlPaths *p, const vlVolumeRows *row
       u[c] = rows->u[c][i];
     weight /= vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
   }
-  for (int c = 0; c < 4; c++)
-    t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * weight;
+  vl_add_radiance(t, p, i, radiance, weight);
 }
 
 /* Weight of a light that the camera sees directly, against light paths that start there

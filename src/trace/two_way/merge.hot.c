@@ -186,8 +186,7 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVert
       t->batch->merge_work += LISTED_WORK;
     }
     t->batch->merge_work += near.seen;
-    for (int c = 0; c < 4; c++)
-      t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * sum[c];
+    vl_add_radiance(t, p, i, sum, 1.0f);
   }
   if (listed)
     add_listed(t, n, v, list, there, back);
@@ -213,7 +212,6 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoW
         sum[c] += power[c] * weight;
     }
     t->batch->merge_work += near.seen;
-    for (int c = 0; c < 4; c++)
-      t->batch->radiance[c][lane] += p->beta[c][i] * sum[c];
+    vl_add_radiance(t, p, i, sum, 1.0f);
   }
 }

@@ -34,7 +34,7 @@ static bool name_lock(const char *path, char *name, size_t size) {
   uint8_t digest[16];
   if (!vl_follow_links(path, target, sizeof target))
     return false;
-  const char *slash = strrchr(target, '/'), *own = slash ? slash + 1 : target;
+  const char *own = vl_file_name(target);
   vl_digest(own, strlen(own), digest);
   vl_digest_text(digest, text);
   snprintf(name, size, "%.*s" PREFIX "%.*s" SUFFIX, (int)(own - target), target, DIGITS, text);

@@ -78,7 +78,7 @@ vlResult vl_file_set_name(vlFileSet *set, char *name, size_t size, const void *d
   char wanted[4096], path[4096];
   struct stat info;
   snprintf(wanted, sizeof wanted, "%s", name);
-  const char *last = wanted + vl_folder_length(wanted), *dot = strrchr(last, '.');
+  const char *last = vl_file_name(wanted), *dot = strrchr(last, '.');
   if (!dot)
     dot = last + strlen(last);
   for (int i = 1; i < MAX_NAMES; i++) {
@@ -147,7 +147,7 @@ static size_t gather(const vlFileSet *set, size_t from, const char *text, size_t
 /* Removes the passed files that the replaced main file mentions, or one of its files of the
  * same format, which goes, too. */
 static void remove_passed(const vlFileSet *set) {
-  const char *suffix = strrchr(set->main + vl_folder_length(set->main), '.');
+  const char *suffix = strrchr(vl_file_name(set->main), '.');
   char input[4096];
   size_t count = gather(set, 0, set->earlier, set->earlier_size);
   for (size_t i = 0; i < count && suffix; i++) {

@@ -210,6 +210,11 @@ size_t vl_folder_length(const char *path) {
   return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
+const char *vl_last_part(const char *name) {
+  const char *dot = strrchr(name, '.');
+  return dot ? dot + 1 : name;
+}
+
 bool vl_folder_of(const char *path, char *folder, size_t size) {
   const size_t length = vl_folder_length(path);
   const int n = snprintf(folder, size, "%.*s", length ? (int)length : 1, length ? path : ".");

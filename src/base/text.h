@@ -54,6 +54,10 @@ void vl_shorten_quoted(vlError *error, const char *text);
  * shortening it, so names of files stay complete. Removes an incomplete UTF-8 sequence at the
  * end. */
 void vl_make_printable(char *message);
+/* Whether a character is white space in C's own locale, whatever the program's is. */
+static inline bool vl_is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
 bool vl_is_utf8(const char *text);
 /* Length of one of jansson's messages without its end (" near '...'"), which quotes the
  * file. */
@@ -69,6 +73,12 @@ bool vl_has_word_of(const char *words, const char *word, size_t length);
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */
 /* Length of the folder's part of a path, including its slash; 0: the current folder. */
 size_t vl_folder_length(const char *path);
+/* The part of a path behind its folder. */
+static inline const char *vl_file_name(const char *path) {
+  return path + vl_folder_length(path);
+}
+/* What stands behind the last dot of a name; all of it where there is none. */
+const char *vl_last_part(const char *name);
 /* The folder's part of a path, or ".". False: it is too long. */
 bool vl_folder_of(const char *path, char *folder, size_t size);
 /* Whether a path names a lamp file, by its end: .ies or .ldt. Null: it does not. */

@@ -15,10 +15,6 @@ typedef struct {
   uint32_t line;
 } Reader;
 
-static bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
-}
-
 static void skip(Reader *r) {
   for (;; r->at++) {
     if (*r->at == '#')
@@ -27,7 +23,7 @@ static void skip(Reader *r) {
       r->line++;
       r->line_start = r->at + 1;
     }
-    if (!is_blank(*r->at))
+    if (!vl_is_blank(*r->at))
       return;
   }
 }
@@ -81,14 +77,12 @@ vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef 
     return vl_fail(error, VL_ERROR_ARGUMENT, "lens: context, path, def or optics is null");
   char *data = NULL;
   size_t size;
-  vlResult result = vl_file_read(context, path, false, &data, &size, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_file_read(context, path, false, &data, &size, error));
   vlLensSurface surfaces[VL_MAX_SURFACES];
   vlOpticsDef filled = *def;
   Reader r = {path, data, data, 1};
   void *locale = vl_machine_set_numerals();
-  result = read(&r, surfaces, &filled.count, error);
+  vlResult result = read(&r, surfaces, &filled.count, error);
   vl_machine_restore_numerals(locale);
   if (result == VL_OK && strlen(data) != size)
     result =

@@ -83,8 +83,7 @@ vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *imag
 
 vlResult vl_camera_size_of_image(const vlCameraFile *file, vlCameraRecord *record) {
   char image[300];
-  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path;
-  const char *dot = strrchr(name, '.');
+  const char *name = vl_file_name(file->path), *dot = strrchr(name, '.');
   snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
   return vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
 }

@@ -142,8 +142,7 @@ static vlResult find_size(const vlCameraFile *file, vlCameraRecord *record) {
                                         "../color/0%.0s", "color/0%.0s", "../color/000000%.0s"};
   enum { COUNT = VL_LENGTH(formats) };
   char images[COUNT][300];
-  const char *list[COUNT + 1], *slash = strrchr(file->path, '/'),
-                               *name = slash ? slash + 1 : file->path;
+  const char *list[COUNT + 1], *name = vl_file_name(file->path);
   size_t length = strcspn(name, ".");
   for (int i = 0; i < COUNT; i++) {
     bool plain = strstr(formats[i], "%.0s") != NULL;

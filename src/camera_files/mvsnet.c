@@ -24,8 +24,7 @@ static vlResult read_size(const vlCameraFile *file, vlCameraRecord *record) {
   static const char *const folders[] = {"../images", "../blended_images"};
   static const char *const suffixes[] = {"jpg", "png"};
   char images[4][MAX_NAME + 40];
-  const char *slash = strrchr(file->path, '/');
-  const char *name = slash ? slash + 1 : file->path;
+  const char *name = vl_file_name(file->path);
   const char *end = strstr(name, "_cam.txt");
   if (!end || end - name > MAX_NAME)
     return vl_camera_size_beside(file, (const char *const[]){NULL}, record);

@@ -136,11 +136,6 @@ static void add_parameter(Fields *fields, const vlParameter *p) {
     fields->items[fields->count++] = (Field){.member = p->member, .row = p};
 }
 
-static const char *last_word(const char *member) {
-  const char *dot = strrchr(member, '.');
-  return dot ? dot + 1 : member;
-}
-
 /* The known fields, then those of the rows, from the last row on: the first rows are pbrt's
  * cameras, in which some parameters have other defaults. */
 static void list_fields(Fields *fields) {
@@ -153,7 +148,7 @@ static void list_fields(Fields *fields) {
   for (size_t i = 0; i < fields->count; i++) {
     Field *field = &fields->items[i];
     if (!field->name)
-      field->name = last_word(field->member);
+      field->name = vl_last_part(field->member);
     field->form = NUMBERS;
     if (!field->row)
       continue;

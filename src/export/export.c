@@ -178,8 +178,7 @@ bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char 
 static void start(vlExport *x, bool dry) {
   x->dry = dry;
   x->loss_count = 0;
-  const char *slash = strrchr(x->path, '/'), *name = slash ? slash + 1 : x->path,
-             *dot = strrchr(name, '.');
+  const char *name = vl_file_name(x->path), *dot = strrchr(name, '.');
   snprintf(x->stem, sizeof x->stem, "%.*s",
            dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
 }

@@ -108,13 +108,8 @@ typedef struct Rule {
   bool any_case;
 } Rule;
 
-static const char *suffix_of(const char *name) {
-  const char *dot = strrchr(name, '.');
-  return dot ? dot + 1 : name;
-}
-
 static bool rule_matches(const Rule *rule, const vlDwaChannel *channel) {
-  const char *a = suffix_of(channel->name), *b = rule->suffix;
+  const char *a = vl_last_part(channel->name), *b = rule->suffix;
   if (rule->type != channel->type)
     return false;
   for (; *a && *b; a++, b++) {
@@ -316,7 +311,7 @@ static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
 /* Compares layers: the part of the name before the last dot. Channels without a layer come
  * first. */
 static int compare_layers(const char *a, const char *b) {
-  size_t n = (size_t)(suffix_of(a) - a), m = (size_t)(suffix_of(b) - b);
+  size_t n = (size_t)(vl_last_part(a) - a), m = (size_t)(vl_last_part(b) - b);
   n -= n > 0;
   m -= m > 0;
   int order = memcmp(a, b, n < m ? n : m);

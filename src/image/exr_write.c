@@ -81,7 +81,7 @@ static vlResult fail(Writer *w, exr_result_t code, vlError *error) {
 }
 
 static bool is_color(const char *name) {
-  const char *dot = strrchr(name, '.'), *last = dot ? dot + 1 : name;
+  const char *last = vl_last_part(name);
   return last[0] && strchr("RGBAY", last[0]) && !last[1];
 }
 

@@ -40,7 +40,7 @@ bool vl_label_make_unique(vlScene *scene, vlNameTable *table, const char *name, 
 }
 
 void vl_label_of_file(const char *path, char name[VL_LABEL_SIZE]) {
-  const char *start = path + vl_folder_length(path), *dot = strrchr(start, '.');
+  const char *start = vl_file_name(path), *dot = strrchr(start, '.');
   if (dot && dot > start && vl_text_is(dot, ".gz"))
     while (dot > start && *--dot != '.') {
     }

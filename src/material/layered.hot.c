@@ -18,9 +18,6 @@ static inline float next(uint32_t *state) {
   *state += 0x9e3779b9u;
   return vl_unit_float(vl_hash(*state));
 }
-static inline float largest(const float x[4]) {
-  return vl_largest4(x[0], x[1], x[2], x[3]);
-}
 static inline float power(float a, float b) {
   float a2 = a * a, b2 = b * b;
   return a2 < VL_INFINITY ? a2 / (a2 + b2) : 1.0f;
@@ -120,7 +117,7 @@ static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[
     beta[c] = from.weight[c] * radiance_scale;
   vlVec3 w = from.w;
   for (uint32_t depth = 0; depth < l->depth; depth++) {
-    float most = largest(beta);
+    float most = vl_largest_of4(beta);
     if (depth > 3 && most < 0.25f) {
       if (!(next(state) < most))
         return;
@@ -185,7 +182,8 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
     lobes.mirror[c] += sum;
   }
   below *= (1.0f - f) * pass * pass;
-  float haze = l->scatters ? (1.0f - f) * (1.0f - pass * pass) * largest(l->albedo) : 0.0f;
+  float haze =
+      l->scatters ? (1.0f - f) * (1.0f - pass * pass) * vl_largest_of4(l->albedo) : 0.0f;
   bool all_mirror = l->smooth && l->mirror;
   lobes.base = l->metal && !all_mirror && inside > 0.0f ? 0.8f * below : 0.0f;
   lobes.wide = all_mirror ? haze : haze + below - lobes.base;

@@ -87,6 +87,10 @@ static inline float vl_max(float a, float b) {
 static inline float vl_largest4(float a, float b, float c, float d) {
   return vl_max(vl_max(a, b), vl_max(c, d));
 }
+/* The largest of an array. */
+static inline float vl_largest_of4(const float v[4]) {
+  return vl_largest4(v[0], v[1], v[2], v[3]);
+}
 static inline float vl_clamp(float x, float low, float high) {
   return x < low ? low : x > high ? high : x;
 }

@@ -30,6 +30,11 @@ enum {
   VL_ROW_RED = VL_ROW_RADIANCE + 5
 };
 
+/* A size rounded up to whole cache lines, bytes. */
+static inline size_t vl_whole_lines(size_t size) {
+  return (size + 63) & ~(size_t)63;
+}
+
 typedef struct vlRenderWorker {
   vlTraceScratch *scratch;
   float *rows; /* VL_RENDER_ROWS arrays of VL_ROW_SIZE */

@@ -38,10 +38,6 @@ typedef struct Call {
 
 /* ---- memory ------------------------------------------------------------------------------ */
 
-static size_t round_up(size_t size) {
-  return (size + 63) & ~(size_t)63;
-}
-
 static vlResult make_memory(Call *c, vlError *error) {
   uint32_t depth = c->run.def->max_depth + 1;
   uint32_t skies = (uint32_t)c->run.world->infinite_lights.count;
@@ -56,7 +52,7 @@ static vlResult make_memory(Call *c, vlError *error) {
   r->contributions = vl_alloc_array(c->context, (size_t)c->lanes * r->most_contributions,
                                     sizeof *r->contributions);
   c->worker.scratch =
-      vl_alloc_zero(c->context, 1, round_up(vl_trace_scratch_size(c->run.world)));
+      vl_alloc_zero(c->context, 1, vl_whole_lines(vl_trace_scratch_size(c->run.world)));
   c->worker.rows =
       vl_alloc_zero(c->context, (size_t)VL_RENDER_ROWS * VL_ROW_SIZE, sizeof(float));
   c->worker.recorder = r;
@@ -273,8 +269,8 @@ typedef struct Block {
 
 static vlResult pack(const Call *c, uint32_t samples, vlPixelPaths **result, vlError *error) {
   uint32_t count = (uint32_t)c->path_count;
-  size_t head = round_up(sizeof(Block)), paths = round_up(count * sizeof(vlPath));
-  size_t vertices = round_up(c->vertex_count * sizeof(vlPathVertex));
+  size_t head = vl_whole_lines(sizeof(Block)), paths = vl_whole_lines(count * sizeof(vlPath));
+  size_t vertices = vl_whole_lines(c->vertex_count * sizeof(vlPathVertex));
   size_t bytes = head + paths + vertices + c->contribution_count * sizeof(vlPathContribution);
   char *memory = vl_alloc(c->context, bytes);
   if (!memory)
@@ -362,9 +358,7 @@ vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFi
   own.noise = 0;
   own.time_limit = 0;
   own.progress = NULL;
-  vlResult result = check(film, &own, x, y, count, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(film, &own, x, y, count, error));
   Call c;
   memset(&c, 0, sizeof c);
   c.context = world->context;
@@ -373,7 +367,7 @@ vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFi
   c.run.world = world;
   c.run.def = &own;
   vlCamera focused = *camera;
-  result = make_films(&c, film, error);
+  vlResult result = make_films(&c, film, error);
   if (result == VL_OK)
     result = vl_render_check(world, camera, c.film, &own, error);
   if (result == VL_OK)

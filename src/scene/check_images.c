@@ -123,10 +123,6 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
   return (t->invert ? 1.0f - t->scale * range[0] : t->scale * range[1]) * tint;
 }
 
-static float larger(float a, float b) {
-  return a > b ? a : b;
-}
-
 /* The largest of the inputs that the kind has, for kinds that choose between or interpolate
  * them; 0 for kinds without inputs: the colours of noise textures are fixed. */
 static float largest_input(const vlTextureDef *t, const float in[4]) {
@@ -138,7 +134,7 @@ static float largest_input(const vlTextureDef *t, const float in[4]) {
     for (int k = 0; k < 4; k++)
       if (row->parameters[i].type == VL_PARAMETER_EITHER_INPUT &&
           row->parameters[i].offset == offsets[k])
-        largest = larger(largest, in[k]);
+        largest = vl_max(largest, in[k]);
   return largest;
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "schema/schema.h"
 #include "velo/channels.h"
 #include "velo/filter_kinds.h"
@@ -298,10 +299,7 @@ const vlKindRow *vl_settings(vlSettingGroup group) {
 }
 
 const char *vl_setting_keyword(const vlParameter *row) {
-  const char *dot = strrchr(row->member, '.');
-  if (row->keyword)
-    return row->keyword;
-  return dot ? dot + 1 : row->member;
+  return row->keyword ? row->keyword : vl_last_part(row->member);
 }
 
 /* Whether the words are the same, with '_', '-' and '.' as one character. */

@@ -85,6 +85,20 @@ static inline void cut(const double c[4], double u0, double u1, double r[4]) {
   r[3] = blossom(c, u1, u1, u1);
 }
 
+/* fmin and fmax are calls, which take longer than the comparisons. */
+static inline double smaller(double a, double b) {
+  return a < b ? a : b;
+}
+static inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
+static inline double range_low(const double c[4]) {
+  return smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
+}
+static inline double range_high(const double c[4]) {
+  return larger(larger(c[0], c[1]), larger(c[2], c[3]));
+}
+
 static void curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], double high[3]) {
   uint32_t segment = prim >> s->split;
   const float *p = s->positions + 12 * (size_t)segment;
@@ -101,8 +115,8 @@ static void curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], do
     const double *m = s->from_shape + 4 * i;
     double reach = radius * vl_norm3(m); /* extent of a transformed ball */
     cut(c[i], u0, u1, q[i]);
-    low[i] = fmin(fmin(q[i][0], q[i][1]), fmin(q[i][2], q[i][3])) - reach;
-    high[i] = fmax(fmax(q[i][0], q[i][1]), fmax(q[i][2], q[i][3])) + reach;
+    low[i] = range_low(q[i]) - reach;
+    high[i] = range_high(q[i]) + reach;
   }
 }
 
@@ -145,20 +159,6 @@ static double seen_width(const vlWorldShape *s, uint32_t segment, double u, cons
   double n[3];
   ribbon_normal(s, segment, u, n);
   return width * fabs(vl_dot3(n, d));
-}
-
-/* fmin and fmax are calls, which take longer than the comparisons. */
-static inline double smaller(double a, double b) {
-  return a < b ? a : b;
-}
-static inline double larger(double a, double b) {
-  return a > b ? a : b;
-}
-static inline double range_low(const double c[4]) {
-  return smaller(smaller(c[0], c[1]), smaller(c[2], c[3]));
-}
-static inline double range_high(const double c[4]) {
-  return larger(larger(c[0], c[1]), larger(c[2], c[3]));
 }
 
 static inline double bezier(const double c[4], double w) {

@@ -42,7 +42,7 @@ bool vl_obj_fail_memory(vlObj *obj) {
 /* ---- statements -------------------------------------------------------------------------- */
 
 static bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+  return c != '\n' && vl_is_blank(c);
 }
 
 bool vl_obj_statement(vlObj *obj, char **from, char *end) {

@@ -17,12 +17,8 @@ void vl_tokenizer_start(vlTokenizer *t, char *data, size_t size) {
   *t = (vlTokenizer){.at = data, .end = data + size, .line_start = data, .line = 1};
 }
 
-static bool is_space(char c) {
-  return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-}
-
 static bool ends_word(char c) {
-  return is_space(c) || c == '"' || c == '[' || c == ']' || c == '#';
+  return vl_is_blank(c) || c == '"' || c == '[' || c == ']' || c == '#';
 }
 
 static inline void skip_blank(vlTokenizer *t) {
@@ -32,7 +28,7 @@ static inline void skip_blank(vlTokenizer *t) {
       t->at++;
       t->line++;
       t->line_start = t->at;
-    } else if (is_space(c)) {
+    } else if (vl_is_blank(c)) {
       t->at++;
     } else if (c == '#') {
       char *newline = memchr(t->at, '\n', (size_t)(t->end - t->at));

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/free.h"
 #include "base/text.h"
@@ -208,12 +209,9 @@ vlResult vl_ply_read(vlContext *context, const char *path, const vlPlyOptions *o
   char *data;
   size_t size;
   *mesh = (vlMesh){0};
-  vlResult result = options->given
-                        ? vl_file_read_given(context, path, true, &data, &size, error)
-                        : vl_file_read(context, path, true, &data, &size, error);
-  if (result != VL_OK)
-    return result;
-  result = vl_ply_parse(context, path, data, size, options, mesh, error);
+  VL_TRY(options->given ? vl_file_read_given(context, path, true, &data, &size, error)
+                        : vl_file_read(context, path, true, &data, &size, error));
+  vlResult result = vl_ply_parse(context, path, data, size, options, mesh, error);
   vl_free(context, data);
   if (!options->given)
     vl_mesh_drop(context, mesh, VL_MESH_COLORS);

@@ -53,16 +53,12 @@ static bool read_binary(Stl *s, uint64_t count) {
 
 /* ---- text -------------------------------------------------------------------------------- */
 
-static bool is_space(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
-}
-
 /* The next word; its length is 0 at the end. */
 static const char *next_word(Stl *s, size_t *length) {
-  while (s->at < s->end && is_space(*s->at))
+  while (s->at < s->end && vl_is_blank(*s->at))
     s->line += *s->at++ == '\n';
   const char *start = s->at;
-  while (s->at < s->end && !is_space(*s->at))
+  while (s->at < s->end && !vl_is_blank(*s->at))
     s->at++;
   *length = (size_t)(s->at - start);
   return start;
@@ -133,7 +129,7 @@ static bool read(Stl *s) {
   if (size >= HEADER && size == HEADER + FACET * count)
     return read_binary(s, count);
   const char *p = s->at;
-  while (p < s->end && is_space(*p))
+  while (p < s->end && vl_is_blank(*p))
     p++;
   if (s->end - p >= 5 && is(p, 5, "solid"))
     return read_near_text(s);

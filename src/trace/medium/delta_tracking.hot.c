@@ -23,10 +23,6 @@ static inline void shift(const float sigma[4], int hero, float length, float fac
     factor[c] = vl_exp(-(sigma[c] - sigma[hero]) * length);
 }
 
-static inline float largest(const float v[4]) {
-  return vl_largest4(v[0], v[1], v[2], v[3]);
-}
-
 /* The state of tracking along the majorants. Distances are in the unit of the ray. */
 typedef struct Tracking {
   vlMajorantWalk walk;
@@ -123,7 +119,7 @@ vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float
         f->u[c] *= k.majorant[c] / k.majorant[h];
         f->l[c] *= k.majorant[c] / k.majorant[h];
       }
-      float carried = largest(f->beta) / vl_flight_mean(f->u, f->channels);
+      float carried = vl_largest_of4(f->beta) / vl_flight_mean(f->u, f->channels);
       if (!(carried > 0.0f))
         return VL_FLIGHT_ENDED;
       if (carried < roulette_below) {
@@ -142,7 +138,7 @@ vlFlightEnd vl_track(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float
         f->u[c] *= (at.a[c] + at.s[c]) / real;
       }
       *t = k.t;
-      return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
+      return vl_largest_of4(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
     }
     if (!(none[h] > 0.0f))
       return VL_FLIGHT_ENDED; /* happens only by rounding */
@@ -177,7 +173,7 @@ void vl_track_through(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, floa
       f->l[c] *= any;
       both[c] = f->u[c] + f->l[c];
     }
-    float carried = largest(f->beta) / vl_flight_mean(both, f->channels);
+    float carried = vl_largest_of4(f->beta) / vl_flight_mean(both, f->channels);
     if (carried < roulette_below) {
       bool ends = !(carried > 0.0f) || k.collisions > MAX_COLLISIONS ||
                   vl_flight_random(f) < roulette_ends;

@@ -98,7 +98,7 @@ bool vl_two_way_arrives(const vlTracing *t, uint32_t k, float passes[4], float *
     }
     odds = f->odds[k];
     mean = vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
-    if (!(vl_largest4(passes[0], passes[1], passes[2], passes[3]) > 0.0f))
+    if (!(vl_largest_of4(passes) > 0.0f))
       return false;
   }
   r->others[k] *= odds;

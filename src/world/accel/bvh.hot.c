@@ -40,19 +40,12 @@ typedef struct StackEntry {
   float near;
 } StackEntry;
 
-static inline float larger(float a, float b) {
-  return a > b ? a : b;
-}
-static inline float smaller(float a, float b) {
-  return a < b ? a : b;
-}
-
 /* A triangle that the ray meets by its arithmetic may be beside its box by rounding errors,
  * which grow with the distance from the ray's origin. So boxes are wider by several such
  * errors. */
 static Ray ray_of(const vlBvh *tree, const float o[3], const float d[3]) {
   Ray r;
-  float far = larger(larger(fabsf(o[0]), fabsf(o[1])), fabsf(o[2]));
+  float far = vl_max(vl_max(fabsf(o[0]), fabsf(o[1])), fabsf(o[2]));
   for (int i = 0; i < 3; i++) {
     float slope = fabsf(d[i]) < 1e-18f ? 1e-18f : d[i], wide = 0x1p-21f * (far + tree->reach);
     r.o[i] = o[i];
@@ -93,9 +86,9 @@ static inline uint32_t meet(const vlBvhBoxes *boxes, const Ray *r, float low, fl
   /* must vectorise (32 bytes) */
   VL_SIMD for (uint32_t k = 0; k < W; k++) {
     float from =
-        larger((x0[k] - nx) * x, larger((y0[k] - ny) * y, larger((z0[k] - nz) * z, low)));
+        vl_max((x0[k] - nx) * x, vl_max((y0[k] - ny) * y, vl_max((z0[k] - nz) * z, low)));
     float to =
-        smaller((x1[k] - fx) * x, smaller((y1[k] - fy) * y, smaller((z1[k] - fz) * z, high)));
+        vl_min((x1[k] - fx) * x, vl_min((y1[k] - fy) * y, vl_min((z1[k] - fz) * z, high)));
     begin[k] = from;
     met |= from <= to ? bits[k] : 0;
   }
@@ -145,7 +138,7 @@ static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low
     float v = side(ax, ay, az, bx, by, bz, dx, dy, dz);
     float w = side(bx, by, bz, cx, cy, cz, dx, dy, dz);
     float wide = 0x1p-23f * fabsf(u + v + w);
-    float least = smaller(smaller(u, v), w), most = larger(larger(u, v), w);
+    float least = vl_min(vl_min(u, v), w), most = vl_max(vl_max(u, v), w);
     float nx = normal(cy - ay, cz - az, ay - by, az - bz, by - cy, bz - cz);
     float ny = normal(cz - az, cx - ax, az - bz, ax - bx, bz - cz, bx - cx);
     float nz = normal(cx - ax, cy - ay, ax - bx, ay - by, bx - cx, by - cy);

@@ -92,8 +92,7 @@ static bool make_map(vlUpgrade *u, vlOldMap *map, const char *old, char *name, s
   vl_image_destroy(from);
   if (!fine)
     return false;
-  const char *slash = strrchr(old, '/'), *base = slash ? slash + 1 : old,
-             *dot = strrchr(base, '.');
+  const char *base = vl_file_name(old), *dot = strrchr(base, '.');
   int stem = dot ? (int)(dot - base) : (int)strlen(base);
   snprintf(name, size, "%.*s-equiarea.exr", stem, base);
   u->result = vl_file_set_name(&u->files, name, size, map->data, map->size, &u->error);

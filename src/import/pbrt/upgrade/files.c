@@ -36,7 +36,7 @@ static bool relative(const char *folder, const char *file, char *result, size_t 
 static bool is_metal(const char *name, char *result, size_t size) {
   static const char *const metals[] = {"Ag", "Al", "Au", "Cu", "CuZn", "MgO", "TiO2"};
   static const char *const parts[] = {"eta", "k"};
-  const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name;
+  const char *base = vl_file_name(name);
   char known[32];
   for (size_t i = 0; i < VL_LENGTH(metals); i++)
     for (int k = 0; k < 2; k++) {

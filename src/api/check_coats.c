@@ -2,6 +2,7 @@
  * the tables that a world would have. */
 #include <math.h>
 
+#include "base/error.h"
 #include "color/color.h"
 #include "material/coat.h"
 #include "math/ggx.h"
@@ -42,11 +43,9 @@ static bool index_of(const vlMaterialDef *m, float *eta) {
 static vlResult measure(vlContext *context, Coat *coat) {
   vlCoatTable *table;
   double kept = 0, whole = 0;
-  vlResult r = vl_coat_build_anisotropic(context, coat->eta, coat->tau, ALL_BOUNCES, coat->u,
-                                         coat->v, &table);
-  if (r != VL_OK)
-    return r;
-  r = vl_coat_white_albedo(context, table, &kept);
+  VL_TRY(vl_coat_build_anisotropic(context, coat->eta, coat->tau, ALL_BOUNCES, coat->u, coat->v,
+                                   &table));
+  vlResult r = vl_coat_white_albedo(context, table, &kept);
   if (r == VL_OK)
     r = vl_coat_conserve(context, table);
   if (r == VL_OK)

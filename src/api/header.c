@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/error.h"
 #include "base/machine.h"
 #include "image/image.h"
 #include "math/transform.h"
@@ -339,9 +340,7 @@ vlResult vl_image_show_ids(const vlImage *ids, vlImage **shown) {
     exact = exact && from[i] < MAX_EXACT;
   def.names = names;
   def.type = exact ? VL_PIXEL_F32 : VL_PIXEL_U32;
-  vlResult result = vl_image_create(ids->context, &def, shown);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_image_create(ids->context, &def, shown));
   if (exact) {
     float *to = vl_image_pixels(*shown);
     for (size_t i = 0; i < values; i++)
@@ -349,7 +348,7 @@ vlResult vl_image_show_ids(const vlImage *ids, vlImage **shown) {
   } else {
     memcpy(vl_image_pixels(*shown), from, values * sizeof *from);
   }
-  result = vl_image_add_attributes(*shown, ids);
+  vlResult result = vl_image_add_attributes(*shown, ids);
   if (result != VL_OK) {
     vl_image_destroy(*shown);
     *shown = NULL;

@@ -90,9 +90,7 @@ static void start_task(vlScene *scene, vlTask *task, const vlLoadDef *def) {
 
 vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data, size_t size,
                               const vlLoadDef *def, vlError *error) {
-  vlResult result = check_load(scene, name, def, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check_load(scene, name, def, error));
   if (!data && size)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: data is null");
   vlTask task;
@@ -100,7 +98,7 @@ vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data
   const Before before = before_load(scene);
   unsigned floats = vl_machine_set_floats();
   void *locale = vl_machine_set_numerals();
-  result = vl_import_pbrt_memory(scene, data ? data : "", size, name, def, error);
+  vlResult result = vl_import_pbrt_memory(scene, data ? data : "", size, name, def, error);
   vl_machine_restore_numerals(locale);
   vl_machine_restore_floats(floats);
   state_unit(scene, &before, def);
@@ -109,9 +107,7 @@ vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data
 }
 
 vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
-  vlResult checked = check_load(scene, path, def, error);
-  if (checked != VL_OK)
-    return checked;
+  VL_TRY(check_load(scene, path, def, error));
   struct stat info;
   bool readable = stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
   Import *import = readable ? NULL : vl_import_pbrt; /* a file that cannot be read goes to an

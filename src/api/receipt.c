@@ -402,9 +402,7 @@ vlResult vl_receipt_camera(const vlReceipt *receipt, vlCameraDef *camera, uint32
                        .def = &def,
                        .error = error};
   vlCameraRecord record = {.camera = vl_default_camera_def(1, 1), .frames = 1};
-  vlResult result = vl_camera_read_velo(&file, tree, &record);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_read_velo(&file, tree, &record));
   *camera = record.camera;
   if (size)
     memcpy(size, whole, sizeof whole);

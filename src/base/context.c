@@ -244,9 +244,7 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
       d.threads == 0 || d.threads > 4096)
     return VL_ERROR_ARGUMENT;
   vlIsa isa = VL_ISA_BASE;
-  vlResult r = vl_isa_choose(d.isa, &isa);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_isa_choose(d.isa, &isa));
   vlContext *context = d.allocator.allocate(d.allocator.user, sizeof *context);
   if (!context)
     return VL_ERROR_MEMORY;
@@ -257,7 +255,7 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   pthread_mutex_init(&context->log_mutex, NULL);
   pthread_mutex_init(&context->files.mutex, NULL);
   pthread_mutex_init(&context->inputs.mutex, NULL);
-  r = vl_sandbox_make(&context->sandbox, &d.allocator, d.sandbox, d.sandbox_count);
+  vlResult r = vl_sandbox_make(&context->sandbox, &d.allocator, d.sandbox, d.sandbox_count);
   if (r == VL_OK && !d.parallel_for)
     r = vl_pool_start(&context->pool, d.threads);
   if (r != VL_OK) {

@@ -180,9 +180,7 @@ vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char
 vlResult vl_file_open_named(vlFileWriter *writer, vlContext *context, const char *path,
                             vlError *error) {
   vl_file_open_memory(writer, context, path);
-  vlResult result = vl_check_output(context, path, VL_OUTPUT_PLAIN, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_check_output(context, path, VL_OUTPUT_PLAIN, error));
   if (vl_path_is_stream(path))
     return vl_fail(error, VL_ERROR_IO, "cannot write %s: it is no regular file", path);
   return open_file(writer, path, true, error);
@@ -350,9 +348,7 @@ vlResult vl_write_file(vlContext *context, const char *path, const void *data, s
   vlFileWriter writer;
   if (!context || !path || (!data && size))
     return vl_fail(error, VL_ERROR_ARGUMENT, "file: context, path or data is null");
-  vlResult result = vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error));
   vl_file_write(&writer, data, size);
   return vl_file_commit(&writer, error);
 }

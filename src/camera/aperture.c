@@ -153,9 +153,7 @@ vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
   if (!context || !aperture)
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context or aperture is null");
   *aperture = NULL;
-  vlResult result = check(width, height, values, &sum, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(width, height, values, &sum, error));
   size_t cells = (size_t)width * height;
   vlAperture *a = vl_alloc_zero(context, 1, sizeof *a);
   double *sums = vl_alloc_array(context, width > height ? width : height, sizeof *sums);

@@ -179,9 +179,7 @@ vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlOptics *
                    "lens: context, def, optics or def.surfaces is null");
   if (def->cookie != VL_COOKIE_OPTICS)
     return vl_fail(error, VL_ERROR_ARGUMENT, "lens: " VL_BAD_COOKIE);
-  vlResult result = check(def, def->surfaces, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(def, def->surfaces, error));
   vlOptics *o = vl_alloc_zero(context, 1, sizeof *o);
   if (!o)
     return vl_fail_memory(error);
@@ -191,7 +189,7 @@ vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlOptics *
   o->def = *def;
   o->def.surfaces = NULL;
   arrange(o);
-  result = focus(o, error);
+  vlResult result = focus(o, error);
   if (result == VL_OK) {
     vl_optics_find_chiefs(o);
     vl_optics_find_pupils(o);

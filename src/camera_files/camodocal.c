@@ -5,6 +5,7 @@
  * that of the body. */
 #include <stdio.h>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "camera_files/fields.h"
@@ -76,14 +77,12 @@ static vlResult read_named(const vlCameraFile *file, const json_t *tree, const c
   const char *name = vl_camera_text(tree, key);
   if (!name || !vl_path_join(file->path, name, path, sizeof path))
     return vl_camera_wrong_in(file, tree, key, "camodocal: \"%s\" must be a file's name", key);
-  vlResult result = vl_file_read_given(file->context, path, false, &text, &size, file->error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_file_read_given(file->context, path, false, &text, &size, file->error));
   vlCameraLocations locations = {.root = NULL};
   vlCameraFile other = *file;
   other.path = path;
   other.locations = &locations;
-  result = vl_camera_tree(&other, text, size, &inner);
+  vlResult result = vl_camera_tree(&other, text, size, &inner);
   if (result == VL_OK)
     result = read_camera(&other, inner, record);
   json_decref(inner);

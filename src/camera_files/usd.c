@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/error.h"
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "math/elementary.h"
@@ -287,12 +288,10 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
 static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size,
                          vlCameraRecord *record) {
   json_t *tree;
-  vlResult result = vl_camera_usda(file, text, size, &tree);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_camera_usda(file, text, size, &tree));
   Search search = {.file = file, .pose = vl_mat4_identity(), .record = record};
   record->frames = 0;
-  result = walk(&search, tree);
+  vlResult result = walk(&search, tree);
   if (result == VL_OK && !record->frames)
     result = vl_camera_wrong(
         file, "usd: the file holds no Camera (references and payloads are not followed)");

@@ -117,9 +117,7 @@ static void from_rgb(const vlSpectrum *s, vlSpectrumRole role, float *dense) {
 
 vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, float *dense,
                            vlError *error) {
-  vlResult result = check(spectrum, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(spectrum, error));
   switch (spectrum->kind) {
     case VL_SPECTRUM_CONSTANT:
       for (int i = 0; i < VL_LAMBDA_COUNT; i++)
@@ -247,9 +245,7 @@ static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double
 vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space,
                             float rgb[3], vlError *error) {
   float dense[VL_LAMBDA_COUNT], constant;
-  vlResult result = vl_spectrum_dense(spectrum, role, dense, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_spectrum_dense(spectrum, role, dense, error));
   if ((unsigned)space > VL_SPACE_ACES2065_1)
     return vl_fail(error, VL_ERROR_ARGUMENT, "unknown colour space %d", (int)space);
   double out[3];

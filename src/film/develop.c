@@ -1,5 +1,6 @@
 /* film/develop.c: converts sums to an image, and to an image of the luminance. */
 #include "base/cookie.h"
+#include "base/error.h"
 #include "base/text.h"
 #include "color/color.h"
 #include "film/sums.h"
@@ -19,10 +20,8 @@ vlResult vl_film_set_window(const vlFilm *film, vlImage *image) {
   const uint32_t *c = film->def.crop;
   double data[4] = {c[0], c[1], c[2] - 1.0, c[3] - 1.0},
          display[4] = {0, 0, film->def.width - 1.0, film->def.height - 1.0};
-  vlResult result = set_numbers(image, "dataWindow", VL_ATTRIBUTE_BOX2I, data, 4);
-  if (result == VL_OK)
-    result = set_numbers(image, "displayWindow", VL_ATTRIBUTE_BOX2I, display, 4);
-  return result;
+  VL_TRY(set_numbers(image, "dataWindow", VL_ATTRIBUTE_BOX2I, data, 4));
+  return set_numbers(image, "displayWindow", VL_ATTRIBUTE_BOX2I, display, 4);
 }
 
 /* Writes OpenEXR's attributes: the colour space's primaries, and a crop's window. */
@@ -50,10 +49,8 @@ vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **
   image_def.type = VL_PIXEL_F32;
   image_def.encoding = VL_ENCODING_LINEAR;
   vlImage *made;
-  vlResult result = vl_image_create(film->context, &image_def, &made);
-  if (result != VL_OK)
-    return result;
-  result = set_attributes(film, made);
+  VL_TRY(vl_image_create(film->context, &image_def, &made));
+  vlResult result = set_attributes(film, made);
   if (result != VL_OK) {
     vl_image_destroy(made);
     return result;
@@ -95,15 +92,13 @@ vlResult vl_film_luminance(const vlFilm *film, vlImage **image) {
   if (!film || !is_colorimetric(vl_film_def(film)))
     return VL_ERROR_ARGUMENT;
   vlImage *colors;
-  vlResult r = vl_film_develop(film, NULL, &colors);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_film_develop(film, NULL, &colors));
   static const char *const names[1] = {"luminance.Y"};
   vlImageDef def = vl_default_image_def(vl_image_width(colors), vl_image_height(colors), 1);
   def.names = names;
   def.type = VL_PIXEL_F32;
   def.encoding = VL_ENCODING_LINEAR;
-  r = vl_image_create(film->context, &def, image);
+  vlResult r = vl_image_create(film->context, &def, image);
   if (r == VL_OK) {
     float m[9];
     vl_xyz_from_rgb(vl_film_def(film)->space, m);

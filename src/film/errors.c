@@ -23,6 +23,7 @@
 #include <math.h>
 
 #include "base/cookie.h"
+#include "base/error.h"
 #include "film/sums.h"
 
 enum { CELL = 8, LEAST_SAMPLES = 8 };
@@ -156,9 +157,7 @@ vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **i
   vlImageDef image_def = vl_default_image_def(film->width, film->height, 3);
   image_def.names = names;
   image_def.type = VL_PIXEL_F32;
-  vlResult result = vl_image_create(film->context, &image_def, image);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_image_create(film->context, &image_def, image));
   vl_film_window_errors(film, film->def.crop, def, vl_image_pixels(*image), 3);
   return VL_OK;
 }

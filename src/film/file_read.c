@@ -43,9 +43,7 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
   *e = (Extent){.any = false};
   while (r->next <= r->blocks) {
     bool last = r->next == r->blocks;
-    vlResult result = vl_film_reader_next(r, error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_film_reader_next(r, error));
     if (!last)
       add_block(e, r);
   }
@@ -142,10 +140,8 @@ vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm
     return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or film is null");
   vlFilmReader reader;
   Extent extent;
-  vlResult result = vl_film_reader_open(&reader, context, path, error);
-  if (result != VL_OK)
-    return result;
-  result = find_extent(&reader, partial, &extent, error);
+  VL_TRY(vl_film_reader_open(&reader, context, path, error));
+  vlResult result = find_extent(&reader, partial, &extent, error);
   vlFilm *made = NULL;
   if (result == VL_OK) {
     vlFilmDef def = reader.shape.def;

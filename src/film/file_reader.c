@@ -44,9 +44,7 @@ static vlResult get(vlFilmReader *r, void *data, size_t size, uint64_t at, vlErr
     r->buffer_at = at;
     r->buffered = 0;
     size_t count = rest < sizeof r->buffer ? (size_t)rest : sizeof r->buffer;
-    vlResult result = get_bytes(r, r->buffer, count, at, error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(get_bytes(r, r->buffer, count, at, error));
     r->buffered = count;
   }
   memcpy(data, r->buffer + (at - r->buffer_at), size);
@@ -57,9 +55,7 @@ static vlResult read_header(vlFilmReader *r, vlError *error) {
   vlFilmPreamble p;
   if (r->size < sizeof p)
     return vl_fail(error, VL_ERROR_SCENE, "%s: not a film file", r->path);
-  vlResult result = get(r, &p, sizeof p, 0, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(get(r, &p, sizeof p, 0, error));
   if (memcmp(p.magic, vl_film_magic, sizeof p.magic) != 0)
     return vl_fail(error, VL_ERROR_SCENE, "%s: not a film file", r->path);
   if (vl_film_crc(0, &p, offsetof(vlFilmPreamble, crc)) != p.crc)
@@ -73,7 +69,7 @@ static vlResult read_header(vlFilmReader *r, vlError *error) {
   char *text = vl_alloc(r->context, (size_t)p.header_size + 1);
   if (!text)
     return vl_fail_memory(error);
-  result = get(r, text, p.header_size, sizeof p, error);
+  vlResult result = get(r, text, p.header_size, sizeof p, error);
   if (result == VL_OK && vl_film_crc(0, text, p.header_size) != p.header_crc)
     result = damaged(r, "its header", error);
   if (result == VL_OK)

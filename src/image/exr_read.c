@@ -7,6 +7,7 @@
  * float. */
 
 #include "base/bytes.h"
+#include "base/error.h"
 #include "base/free.h"
 #include "base/text.h"
 #include "image/exr.h"
@@ -307,9 +308,7 @@ static void convert_value(int from, const uint8_t *p, int to, void *result) {
 static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char *origin) {
   const vlImageFile *file = r->base.file;
   if (!r->dwa_channels) {
-    vlResult result = start_dwa(r);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(start_dwa(r));
   }
   uint32_t count = (uint32_t)r->list->num_channels;
   size_t line = 0;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "material/compile.h"
 #include "math/ggx.h"
 #include "schema/schema.h"
@@ -141,10 +142,8 @@ static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMat
     return VL_OK;
   }
   vlMeasured *made = NULL;
-  vlResult r = vl_measured_read(world->context, def->measured, world->def.color == VL_COLOR_RGB,
-                                &made, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_measured_read(world->context, def->measured, world->def.color == VL_COLOR_RGB,
+                          &made, error));
   vlPart *part = vl_part_add(world);
   if (!part)
     vl_measured_free(world->context, made);
@@ -212,9 +211,7 @@ static vlResult compile_index(const vlMaterialBuild *b, const vlSpectrumInput *e
   /* A dispersive index given as a single number stands for a glass: it is the index at the
    * sodium line, as in catalogues. */
   float dense[VL_LAMBDA_COUNT];
-  vlResult r = vl_spectrum_dense(&eta->value, VL_ROLE_UNBOUNDED, dense, b->error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_spectrum_dense(&eta->value, VL_ROLE_UNBOUNDED, dense, b->error));
   m->eta_s = vl_dense_at(dense, 589.3f);
   if (!(m->eta_s > 0))
     return material_fail(b, "the index of refraction must be positive");

@@ -313,10 +313,8 @@ vlResult vl_measured_read(vlContext *context, const char *path, bool rgb, vlMeas
                           vlError *error) {
   *result = NULL;
   Source s = {.path = path};
-  vlResult r = vl_tensor_read(context, path, &s.tensor, error);
-  if (r != VL_OK)
-    return r;
-  r = check(&s, error);
+  VL_TRY(vl_tensor_read(context, path, &s.tensor, error));
+  vlResult r = check(&s, error);
   vlMeasured *m = r == VL_OK ? vl_alloc_zero(context, 1, sizeof *m) : NULL;
   if (r == VL_OK)
     r = m && (m->path = vl_strdup(context, path)) ? build(context, &s, rgb, m, error)

@@ -92,9 +92,7 @@ static vlResult list_upper(Tree *t, const int32_t at[3], uint64_t address) {
     } else {
       value = float_at(t, pnanovdb_upper_get_table_address(type, t->buffer, upper, n));
     }
-    vlResult r = add_block(t, block, child, value);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(add_block(t, block, child, value));
   }
   return VL_OK;
 }
@@ -228,9 +226,7 @@ static vlResult build_table(Tree *t, vlSparseGrid *g) {
     size_t x = (size_t)(b->at[0] - low[0]), y = (size_t)(b->at[1] - low[1]),
            z = (size_t)(b->at[2] - low[2]);
     uint32_t *entry = table + (z * g->size[1] + y) * g->size[0] + x;
-    vlResult r = b->node ? add_lower(t, b->node, entry) : add_tile(t, b->value, entry);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(b->node ? add_lower(t, b->node, entry) : add_tile(t, b->value, entry));
   }
   return VL_OK;
 }

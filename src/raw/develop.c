@@ -100,9 +100,7 @@ static vlResult make_image(const Develop *d, uint32_t channels, const char *cons
  * replaces it. */
 static vlResult run_step(Develop *d, vlParallelFn *row, uint32_t channels, vlPixelType type,
                          vlImage **image, vlError *error) {
-  vlResult result = make_image(d, channels, NULL, type, &d->to, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(make_image(d, channels, NULL, type, &d->to, error));
   d->from = *image ? vl_image_const_pixels(*image) : NULL;
   vl_parallel_for(d->raw->context, d->raw->def.height, row, d);
   vl_image_destroy(*image);
@@ -120,9 +118,7 @@ static vlResult demosaic(Develop *d, vlImage **image, vlError *error) {
     letters[k][1] = 0;
     names[k] = letters[k];
   }
-  vlResult result = make_image(d, count, names, VL_PIXEL_F32, &d->to, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(make_image(d, count, names, VL_PIXEL_F32, &d->to, error));
   vl_raw_demosaic(d->raw->context, &d->raw->def, vl_image_const_pixels(*image),
                   vl_image_pixels(d->to));
   vl_image_destroy(*image);

@@ -99,10 +99,8 @@ vlResult vl_raw_read(vlContext *context, const char *path, vlRaw **raw, vlError 
 #ifdef VELO_TIFF
   char *data;
   size_t size;
-  vlResult result = vl_file_read_given(context, path, false, &data, &size, error);
-  if (result != VL_OK)
-    return result;
-  result = vl_raw_read_dng(context, path, data, size, raw, error);
+  VL_TRY(vl_file_read_given(context, path, false, &data, &size, error));
+  vlResult result = vl_raw_read_dng(context, path, data, size, raw, error);
   vl_free(context, data);
   return result;
 #else

@@ -143,9 +143,7 @@ vlResult vl_raw_create(vlContext *context, const vlRawDef *def, vlRaw **raw, vlE
   if (!context || !raw)
     return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: context or result is null");
   *raw = NULL;
-  vlResult result = vl_raw_check(def, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_raw_check(def, error));
   vlRaw *r = vl_alloc_zero(context, 1, sizeof *r);
   if (!r)
     return vl_fail_memory(error);

@@ -81,9 +81,7 @@ vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, do
                    "camera: focus on pixel %g, %g: outside the image of %u x %u", x, y,
                    camera->width, camera->height);
   double point[3], f;
-  vlResult result = look(world, camera, x, y, point, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(look(world, camera, x, y, point, error));
   if (!vl_camera_focus_at(camera, point, &f))
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
@@ -102,9 +100,7 @@ vlResult vl_camera_autofocus(const vlWorld *world, vlCamera *camera, vlError *er
   double distance = 0;
   if (vl_is_unset(pixel[0]) || vl_is_unset(pixel[1]))
     return VL_OK;
-  vlResult result = vl_autofocus(world, camera, pixel[0], pixel[1], &distance, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_autofocus(world, camera, pixel[0], pixel[1], &distance, error));
   camera->focus_distance = distance;
   pixel[0] = pixel[1] = VL_UNSET;
   return VL_OK;

@@ -345,9 +345,7 @@ static vlResult run(Cast *c, vlCastStats *stats, vlError *error) {
 
 vlResult vl_world_cast(const vlWorld *world, const vlCastRays *rays, const vlCastDef *def,
                        const vlCastHits *hits, vlCastStats *stats, vlError *error) {
-  vlResult r = check(world, rays, def, hits != NULL, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(check(world, rays, def, hits != NULL, error));
   Cast c = {.world = world, .rays = rays, .def = def, .hits = hits, .wanted = wanted_by(hits)};
   return run(&c, stats, error);
 }
@@ -356,9 +354,7 @@ vlResult vl_world_cast_occluded(const vlWorld *world, const vlCastRays *rays,
                                 const vlCastDef *def, uint8_t *occluded, vlCastStats *stats,
                                 vlError *error) {
   bool output = occluded || (rays && rays->count == 0);
-  vlResult r = check(world, rays, def, output, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(check(world, rays, def, output, error));
   Cast c = {.world = world, .rays = rays, .def = def, .occluded = occluded};
   return run(&c, stats, error);
 }

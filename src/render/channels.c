@@ -370,9 +370,7 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
     *floats = NULL;
   if (ids)
     *ids = NULL;
-  vlResult result = check(world, camera, def, floats, ids, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(check(world, camera, def, floats, ids, error));
   vlChannelPass pass, *p = &pass;
   memset(p, 0, sizeof *p);
   vlStop stop;
@@ -381,7 +379,7 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
   p->def = def;
   p->stop = &stop;
   vl_channel_prepare(p, camera);
-  result = make_images(p, error);
+  vlResult result = make_images(p, error);
   if (result == VL_OK)
     result = vl_channel_make_workers(p, error);
   if (result == VL_OK)

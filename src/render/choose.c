@@ -394,9 +394,7 @@ static vlResult run_all(Race *race, const vlFilmDef *film, vlTracerChoice *choic
     *trial = (vlTracerTrial){.tracer = rows[i].tracer,
                              .light_paths = light_paths_of(&rows[i], film)};
     for (uint32_t half = 0; half < 2; half++) {
-      vlResult result = run_once(race, i, half, trial, error);
-      if (result != VL_OK)
-        return result;
+      VL_TRY(run_once(race, i, half, trial, error));
     }
   }
   choice->count = race->count;

@@ -137,17 +137,13 @@ vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *f
   return VL_OK;
 }
 
-static size_t round_up(size_t size) {
-  return (size + 63) & ~(size_t)63;
-}
-
 static size_t grids_size(void) {
-  return round_up(VL_SHARED_SAMPLES * sizeof(vlSharedGrid));
+  return vl_whole_lines(VL_SHARED_SAMPLES * sizeof(vlSharedGrid));
 }
 
 uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
-  size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
-  uint64_t each = round_up(vl_trace_scratch_size(world)) + rows +
+  size_t rows = vl_whole_lines((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
+  uint64_t each = vl_whole_lines(vl_trace_scratch_size(world)) + rows +
                   (vl_shares_samples(film, def) ? grids_size() : 0);
   uint64_t bytes = vl_context_threads(world->context) * each;
   return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
@@ -157,9 +153,9 @@ uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlR
  * renders in a row need no new memory. */
 static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error) {
   uint32_t threads = vl_context_threads(context);
-  size_t head = round_up(threads * sizeof *r->workers),
-         scratch = round_up(vl_trace_scratch_size(r->world));
-  size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
+  size_t head = vl_whole_lines(threads * sizeof *r->workers),
+         scratch = vl_whole_lines(vl_trace_scratch_size(r->world));
+  size_t rows = vl_whole_lines((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
   size_t grids = r->shares ? grids_size() : 0;
   char *block = vl_film_scratch(r->film, head + threads * (scratch + rows + grids));
   if (!block)
@@ -214,10 +210,8 @@ static vlTracer tracer_of(vlRenderRun *r, const vlCamera *camera) {
 static vlResult prepare_two_way(vlRenderRun *r, const vlCamera *camera, vlError *error) {
   if (!vl_two_way_tracer(r->trace.tracer))
     return VL_OK;
-  vlResult result = vl_two_way_create(r->world, camera, r->film, r->def, &r->trace,
-                                      &r->film_rays, &r->two_way, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_two_way_create(r->world, camera, r->film, r->def, &r->trace, &r->film_rays,
+                           &r->two_way, error));
   r->trace.two_way = vl_two_way_of(r->two_way);
   for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++)
     vl_two_way_use(r->two_way, i, r->workers[i].scratch);

@@ -392,9 +392,7 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
     }
     if (left > run->vertex_capacity) {
       vl_splats_clear(&run->splats); /* the pass is repeated with more memory */
-      vlResult result = grow_vertices(run, left, error);
-      if (result != VL_OK)
-        return result;
+      VL_TRY(grow_vertices(run, left, error));
       continue;
     }
     if (way->inner.paths)
@@ -409,9 +407,7 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
     vl_splats_clear(&run->splats); /* the pass is repeated with more memory or fewer paths */
     if (stored > MAX_PHOTONS)
       run->paths = run->paths / 2 > 1 ? run->paths / 2 : 1;
-    vlResult result = grow(run, stored < MAX_PHOTONS ? stored : MAX_PHOTONS, error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(grow(run, stored < MAX_PHOTONS ? stored : MAX_PHOTONS, error));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "base/text.h"
 #include "scene/family.h"
 #include "velo/light.h"
@@ -144,9 +145,7 @@ static vlResult empty_group(vlScene *scene, uint32_t index, vlError *error) {
   for (uint32_t i = 1; i <= scene->shapes.count; i++) {
     if (scene->shapes.items[i - 1].group.index != index)
       continue;
-    vlResult result = vl_scene_remove_shape(scene, (vlShapeId){i}, error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_scene_remove_shape(scene, (vlShapeId){i}, error));
   }
   return VL_OK;
 }

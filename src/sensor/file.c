@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/machine.h"
 #include "base/text.h"
@@ -274,9 +275,7 @@ vlResult vl_sensor_read(vlContext *context, const char *path, vlSensorDef *def,
     return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
   char *text = NULL;
   size_t size = 0;
-  vlResult result = vl_file_read_given(context, path, true, &text, &size, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_file_read_given(context, path, true, &text, &size, error));
   vlCameraFileDef unused = vl_default_camera_file_def();
   vlCameraLocations locations = {0};
   vlCameraFile file = {.context = context,
@@ -288,7 +287,7 @@ vlResult vl_sensor_read(vlContext *context, const char *path, vlSensorDef *def,
   vlSensorDef read = vl_default_sensor_def();
   json_t *tree = NULL;
   void *locale = vl_machine_set_numerals();
-  result = vl_camera_yaml(&file, text, size, &tree);
+  vlResult result = vl_camera_yaml(&file, text, size, &tree);
   locations.root = tree;
   if (result == VL_OK)
     result = read_tree(&file, tree, &read);

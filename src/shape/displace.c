@@ -249,10 +249,8 @@ vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDe
               .m = m,
               .longest2 = (double)def->edge_length * def->edge_length};
   int32_t node = -1;
-  vlResult r = vl_world_float_node(world, scene, def->displacement, &node, error);
-  if (r != VL_OK)
-    return r;
-  r = start(&c, def) ? VL_OK : VL_ERROR_MEMORY;
+  VL_TRY(vl_world_float_node(world, scene, def->displacement, &node, error));
+  vlResult r = start(&c, def) ? VL_OK : VL_ERROR_MEMORY;
   if (r == VL_OK && !(least_triangles(&c, def) <= MAX_TRIANGLES))
     r = VL_ERROR_SCENE;
   for (uint32_t f = 0; r == VL_OK && f < def->faces; f++) {

@@ -97,6 +97,21 @@ static const vlWorld *usable(const vlWorld *previous, const vlBuildDef *d) {
              : NULL;
 }
 
+/* Does the work of a build. giving: as in build. */
+static vlResult fill(vlWorld *world, const vlScene *scene, vlScene *giving, vlError *error) {
+  VL_TRY(vl_world_step(world, "images", 0, error));
+  VL_TRY(vl_world_preload_images(world, scene, error));
+  VL_TRY(vl_world_add_materials(world, scene, error));
+  VL_TRY(vl_world_add_shapes(world, scene, error));
+  VL_TRY(vl_world_add_media(world, scene, error));
+  VL_TRY(vl_world_add_origins(world, scene, error));
+  VL_TRY(vl_world_add_lights(world, scene, error));
+  if (giving)
+    vl_scene_drop_meshes(giving); /* frees memory before the accelerator allocates */
+  VL_TRY(vl_accel_build(world, error));
+  return vl_world_step(world, "accelerator", 1, error);
+}
+
 /* giving: the same scene if its meshes may be freed during the build, else null. */
 static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def,
                       vlWorld **result, vlError *error) {
@@ -112,9 +127,7 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   char wrong[VL_GIVEN_MESSAGE];
   if (!vl_choices_check(VL_SETTING_RENDER, offsetof(vlSceneDefs, build), sizeof d, &d, wrong))
     return vl_fail(error, VL_ERROR_ARGUMENT, "world build: %s", wrong);
-  vlResult r = vl_scene_result(scene, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_scene_result(scene, error));
   if (scene->meshes_dropped)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "world build: the scene gave its meshes to an earlier world");
@@ -139,25 +152,7 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   world->task = &task;
   vlError local;
   vl_error_clear(&local);
-  r = vl_world_step(world, "images", 0, &local);
-  if (r == VL_OK)
-    r = vl_world_preload_images(world, scene, &local);
-  if (r == VL_OK)
-    r = vl_world_add_materials(world, scene, &local);
-  if (r == VL_OK)
-    r = vl_world_add_shapes(world, scene, &local);
-  if (r == VL_OK)
-    r = vl_world_add_media(world, scene, &local);
-  if (r == VL_OK)
-    r = vl_world_add_origins(world, scene, &local);
-  if (r == VL_OK)
-    r = vl_world_add_lights(world, scene, &local);
-  if (r == VL_OK && giving)
-    vl_scene_drop_meshes(giving); /* frees memory before the accelerator allocates */
-  if (r == VL_OK)
-    r = vl_accel_build(world, &local);
-  if (r == VL_OK)
-    r = vl_world_step(world, "accelerator", 1, &local);
+  vlResult r = fill(world, scene, giving, &local);
   world->texture_memo = NULL;
   world->task = NULL;
   world->previous = NULL;

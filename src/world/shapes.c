@@ -151,13 +151,9 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
     return VL_OK;
   }
   if (def->alpha.texture.index || def->alpha.value < 1) {
-    vlResult r = vl_world_float_node(world, scene, def->alpha, &s->alpha, error);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(vl_world_float_node(world, scene, def->alpha, &s->alpha, error));
   }
-  vlResult cut = cut_interface(world, scene, def, s, error);
-  if (cut != VL_OK)
-    return cut;
+  VL_TRY(cut_interface(world, scene, def, s, error));
   s->pass_shadow = world->materials.items[s->material].traits & VL_MATERIAL_ABSENT;
   world->has_subsurface =
       world->has_subsurface || world->materials.items[s->material].has_subsurface;
@@ -307,10 +303,8 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
     const vlWorldInstance *instance = &world->instances.items[k++];
     float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
     instance_bounds(world, instance, a, b);
-    vlResult r = add_bounds(
-        &bounds, a, b, group_triangles(world, &world->groups.items[instance->group]), source);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(add_bounds(&bounds, a, b,
+                      group_triangles(world, &world->groups.items[instance->group]), source));
   }
   for (int i = 0; i < 3; i++) {
     if (low[i] > high[i])
@@ -346,9 +340,7 @@ static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *err
     if (source->keys == 0)
       continue;
     const vlWorldGroup *group = &world->groups.items[source->group.index];
-    vlResult r = vl_world_add_motion(world, source, group->low, group->high, instance, error);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(vl_world_add_motion(world, source, group->low, group->high, instance, error));
   }
   return VL_OK;
 }

@@ -386,13 +386,9 @@ static vlResult open_device(vlWorld *world, RTCDevice *device, vlError *error) {
     rtcRetainDevice(*device);
     return VL_OK;
   }
-  vlResult startable = vl_try_threads(world->context, error);
-  if (startable != VL_OK)
-    return startable;
+  VL_TRY(vl_try_threads(world->context, error));
   const char *set;
-  vlResult chosen = vl_embree_choose_set(world->def.bits, &set, error);
-  if (chosen != VL_OK)
-    return chosen;
+  VL_TRY(vl_embree_choose_set(world->def.bits, &set, error));
   snprintf(config, sizeof config, "threads=%u,hugepages=1%s%s",
            vl_context_threads(world->context), set ? ",isa=" : "", set ? set : "");
   *device = rtcNewDevice(config);

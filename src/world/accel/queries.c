@@ -62,18 +62,14 @@ static bool prepare(vlWorld *world) {
 
 vlResult vl_accel_build(vlWorld *world, vlError *error) {
   vlAccel *a = &world->accel;
-  vlResult r = vl_accel_choose(&world->def, &a->kind, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_accel_choose(&world->def, &a->kind, error));
   if (world->previous && world->previous->accel.kind != a->kind)
     world->previous = NULL; /* it has nothing to share */
   if (!prepare(world))
     return vl_fail_memory(error);
-  r = HAS_EMBREE && a->kind == VL_ACCELERATOR_EMBREE ? vl_embree_build(world, error)
-                                                     : vl_bvh_build(world, error);
-  if (r != VL_OK)
-    return r;
-  r = vl_brute_force_make(world, &a->brute_force);
+  VL_TRY(HAS_EMBREE && a->kind == VL_ACCELERATOR_EMBREE ? vl_embree_build(world, error)
+                                                        : vl_bvh_build(world, error));
+  vlResult r = vl_brute_force_make(world, &a->brute_force);
   a->brute_force_kernels = vl_brute_force_kernels(vl_context_isa(world->context));
   a->occluder_kernels = vl_occluder_kernels(vl_context_isa(world->context));
   a->bvh_kernels = vl_bvh_kernels(vl_context_isa(world->context));

@@ -75,16 +75,14 @@ static int write_image(Render *render, OutputStage stage) {
   if (result == VL_OK)
     result = set_header(render, spp, image);
   int status = STATUS_OK;
-  if (result != VL_OK && stage == OUTPUT_PROGRESS)
-    report_warning("progress image: %s", vl_result_name(result));
-  else if (result != VL_OK)
+  if (result != VL_OK && stage != OUTPUT_PROGRESS)
     status = report_reason(result, render->outputs.paths[0],
                            "the image and its header cannot be made");
-  if (result != VL_OK)
-    stage = OUTPUT_STOPPED;
-  if (image)
-    status = first_failure(status,
-                           outputs_write(render->context, &render->outputs, image, spp, stage));
+  if (result == VL_OK || (image && stage != OUTPUT_PROGRESS))
+    status = first_failure(status, outputs_write(render->context, &render->outputs, image, spp,
+                                                 result == VL_OK ? stage : OUTPUT_STOPPED));
+  else if (stage == OUTPUT_PROGRESS)
+    report_warning("progress image: %s", vl_result_name(result));
   vl_image_destroy(image);
   return status;
 }

@@ -75,6 +75,7 @@ if library=$work/interpose.so && cc -shared -fPIC -O1 -o "$library" "$VELO_SOURC
   kept truth memory 12 9 --spp 1 --channels all -o out_a.exr -o out_b.exr
   kept denoised memory 12 17 --spp 2 --denoise c.exr -o out_a.exr -o out_b.exr
   kept eyes memory 12 17 --spp 1 --stereo parallel --channels id.object -o out_%v.exr
+  kept eyes_in_one_file memory 12 13 --spp 1 --stereo parallel --channels id.object -o out_1.exr -o out_2.exr
   kept films write 28 1 --spp 1 --stereo parallel --film f_%v.film -o out_a%v.exr
   kept light_paths memory 12 17 --spp 4 --tracer bidirectional -o out_a.exr -o out_b.exr
 else

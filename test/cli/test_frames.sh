@@ -79,6 +79,9 @@ check rig_files test "$(ls rig_*_*.exr | tr '\n' ' ')" = 'rig_0_cam0.exr rig_0_c
 
 # ---- stereo ----------------------------------------------------------------------------------------------------------
 check stereo "$VELO" render scene.pbrt --stereo off-axis --interocular 0.2 --convergence 4 -o both.exr -o 'eye_%v.exr' -o '%v.png' --channels Z,N --quiet
+check two_stereo_files "$VELO" render scene.pbrt --stereo parallel -o two.exr -o three.exr --channels id.object --quiet
+same two_stereo_files_same_bytes two.exr three.exr
+check both_have_ids test -s two.exr.ids.json -a -s three.exr.ids.json
 check stereo_half "$VELO" render scene.pbrt --stereo parallel -o half.exr --half --quiet
 check stereo_trajectory "$VELO" render scene.pbrt --trajectory poses.csv --stereo toe-in --convergence 4 -o 'stereo_%d.exr' --quiet
 check one_eye "$VELO" render scene.pbrt --stereo off-axis --interocular 0.2 --convergence 4 --eye right -o right.exr --channels Z,N --quiet

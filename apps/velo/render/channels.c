@@ -252,4 +252,6 @@ void channels_free(Channels *c) {
     vl_image_destroy(c->layers[k]);
   for (int k = 0; k < 2; k++)
     free(c->box_list[k]);
+  memset(c->layers, 0, sizeof c->layers);
+  memset(c->box_list, 0, sizeof c->box_list);
 }

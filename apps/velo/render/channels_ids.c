@@ -141,6 +141,8 @@ int channels_write_ids(const Channels *c, const Channels *right, const Job *job,
              vl_image_find_channel(ids, "id.instance.Y") >= 0;
   if (!any || output_is_stdout(path))
     return STATUS_OK;
+  if (right && !right->layers[1])
+    right = NULL; /* the render stopped before its ground truth */
   if (!output_ids_path(path, target, sizeof target))
     return report_failure(STATUS_IO, "cannot write %s.ids.json: %s", path,
                           strerror(ENAMETOOLONG));

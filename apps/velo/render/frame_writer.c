@@ -98,6 +98,23 @@ static vlWriteDef write_def(const Outputs *outputs) {
   return def;
 }
 
+/* Names the layers of both eyes for a file that holds both. Where that fails they are left out.
+ */
+static int name_views(const FrameWriter *w, FrameImage *p) {
+  vlResult result = VL_OK;
+  for (int v = 0; v < 2; v++)
+    for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++)
+      if (p->channels[v].layers[k])
+        result = add_view(p->channels[v].layers[k], w->frames->view_names[v], v == 0);
+  if (result == VL_OK)
+    return STATUS_OK;
+  for (int v = 0; v < 2; v++)
+    channels_free(&p->channels[v]);
+  p->stopped = true;
+  return report_reason(result, w->outputs->paths[0], "the layers cannot be named");
+}
+
+/* Writes a file with both eyes, whose layers are named. */
 static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, vlError *error) {
   vlImage *both = NULL;
   const vlImage *layers[1 + 2 * CHANNEL_LAYERS];
@@ -116,16 +133,12 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, vlEr
   if (result == VL_OK)
     result = receipt_set(&p->jobs[0], &which, both);
   for (int v = 0; v < 2; v++)
-    for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) {
-      vlImage *layer = p->channels[v].layers[k];
-      if (!layer)
-        continue;
-      if (!p->renamed)
-        result = add_view(layer, names[v], v == 0);
-      layers[count++] = layer;
+    for (int k = 0; k < CHANNEL_LAYERS; k++) {
+      const vlImage *layer = p->channels[v].layers[k];
+      if (layer)
+        layers[count++] = layer;
     }
   layers[0] = both;
-  p->renamed = true;
   if (result == VL_OK)
     result = output_write_layers(layers, count, path, write_def(w->outputs), error);
   vl_image_destroy(both);
@@ -166,30 +179,60 @@ static vlResult write_one(FrameWriter *w, FrameImage *p, int view, bool clean, c
   return result;
 }
 
-/* Writes both eyes' files of one pattern, or one file with both. Joined files come last, since
- * layers are renamed for them. */
-static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, bool by_view) {
-  bool join_views = w->frames->views == 2 && !by_view;
+/* Whether one file of the pattern holds both eyes. */
+static bool joins_views(const FrameWriter *w, const char *pattern) {
+  return w->frames->views == 2 && !pattern_has(pattern, 'v');
+}
+
+/* Number of files of the pattern. */
+static int file_count(const FrameWriter *w, const char *pattern) {
+  return joins_views(w, pattern) ? 1 : w->frames->views;
+}
+
+/* A file of a frame. */
+typedef struct FrameFile {
+  char name[4096], part[4200];
+  const char *path; /* one of the two: a stopped image is written to NAME.part.EXT */
+} FrameFile;
+
+static void find_file(const FrameWriter *w, const FrameImage *p, const char *pattern, int view,
+                      FrameFile *file) {
+  frames_path(w->frames, &p->frame, pattern, view, file->name, sizeof file->name);
+  const bool part = p->stopped && output_part_path(file->name, file->part, sizeof file->part);
+  file->path = part ? file->part : file->name;
+}
+
+/* Writes the names of the ids beside all files that hold layers. */
+static int write_ids(const FrameWriter *w, const FrameImage *p) {
   int status = STATUS_OK;
-  for (int view = 0; view < (by_view ? w->frames->views : 1); view++) {
-    char name[4096], part[4200], *path = name;
+  for (int i = 0; i < w->outputs->count; i++) {
+    const char *pattern = w->outputs->paths[i];
+    const Channels *right = joins_views(w, pattern) ? &p->channels[1] : NULL;
+    for (int view = 0; output_holds_layers(pattern) && view < file_count(w, pattern); view++) {
+      FrameFile file;
+      find_file(w, p, pattern, view, &file);
+      status = first_failure(
+          status, channels_write_ids(&p->channels[view], right, &p->jobs[view], file.path));
+    }
+  }
+  return status;
+}
+
+/* Writes both eyes' files of one pattern, or one file with both. */
+static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern) {
+  int status = STATUS_OK;
+  for (int view = 0; view < file_count(w, pattern); view++) {
+    FrameFile file;
     vlError error = {0};
-    frames_path(w->frames, &p->frame, pattern, view, name, sizeof name);
-    if (p->stopped && output_part_path(name, part, sizeof part))
-      path = part;
-    int code = STATUS_OK;
-    if (output_holds_layers(path))
-      code = channels_write_ids(&p->channels[view], join_views ? &p->channels[1] : NULL,
-                                &p->jobs[view], path);
-    vlResult result = join_views ? write_both(w, p, path, &error)
-                                 : write_one(w, p, view, false, path, &error);
-    if (result != VL_OK)
-      code = report_error(&error, result, path);
-    if (code == STATUS_OK && p->stopped)
-      report_note("the image under way is in %s", path);
-    if (code == STATUS_OK && !p->stopped)
-      output_remove_part(name);
-    status = first_failure(status, code);
+    find_file(w, p, pattern, view, &file);
+    const vlResult result = joins_views(w, pattern)
+                                ? write_both(w, p, file.path, &error)
+                                : write_one(w, p, view, false, file.path, &error);
+    status = first_failure(status, report_finish(&error, result, file.path));
+    if (result == VL_OK && p->stopped)
+      report_note("the image under way is in %s", file.path);
+    if (result == VL_OK && !p->stopped)
+      output_remove_part(file.name);
   }
   return status;
 }
@@ -229,14 +272,19 @@ static int write_image(FrameWriter *w, FrameImage *p) {
     status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");
     p->stopped = true;
   }
-  for (int joined = 0; joined < 2; joined++) /* joined files come last */
-    for (int i = 0; i < w->outputs->count; i++) {
-      bool by_view = pattern_has(w->outputs->paths[i], 'v');
-      bool joins = w->frames->views == 2 && !by_view;
-      if (joins != joined)
-        continue;
-      status = first_failure(status, write_pattern(w, p, w->outputs->paths[i], by_view));
-    }
+  status = first_failure(status, write_ids(w, p));
+  const Outputs *outputs = w->outputs;
+  bool joined = false;
+  for (int i = 0; i < outputs->count; i++)
+    if (joins_views(w, outputs->paths[i]))
+      joined = true;
+    else
+      status = first_failure(status, write_pattern(w, p, outputs->paths[i]));
+  if (joined) /* these come last, since the layers' names change */
+    status = first_failure(status, name_views(w, p));
+  for (int i = 0; i < outputs->count && joined; i++)
+    if (joins_views(w, outputs->paths[i]))
+      status = first_failure(status, write_pattern(w, p, outputs->paths[i]));
   return p->clean ? first_failure(status, write_clean(w, p)) : status;
 }
 

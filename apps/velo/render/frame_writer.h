@@ -13,7 +13,6 @@ typedef struct FrameImage {
   vlImage *clean; /* the denoised copy of the first; null: none */
   uint32_t spp;
   bool stopped; /* interrupted: written to NAME.part.EXT */
-  bool renamed; /* the layers' names contain their view */
 } FrameImage;
 
 typedef struct FrameWriter FrameWriter;

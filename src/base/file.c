@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/file_input.h"
 #include "base/file_record.h"
+#include "base/free.h"
 #include "base/sandbox.h"
 #include "base/text.h"
 
@@ -380,5 +381,5 @@ vlResult vl_file_map(vlContext *context, const char *path, const char **data, si
 
 void vl_file_unmap(const char *data, size_t size) {
   if (data)
-    munmap((void *)(uintptr_t)data, size + 1);
+    munmap(vl_owned(data), size + 1);
 }

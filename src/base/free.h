@@ -4,6 +4,10 @@
 
 #include "base/context.h"
 
+/* A block that is const for its readers, for its owner, who frees it. */
+static inline void *vl_owned(const void *block) {
+  return (void *)(uintptr_t)block;
+}
 /* Frees the blocks, of which any may be null. */
 static inline void vl_free_all(vlContext *context, void *const *blocks, size_t count) {
   for (size_t i = 0; i < count; i++)

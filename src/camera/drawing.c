@@ -421,8 +421,8 @@ void vl_drawing_destroy(vlDrawing *drawing) {
   if (!drawing)
     return;
   Block *block = (Block *)(void *)((char *)drawing - offsetof(Block, head));
-  VL_FREE(block->context, (void *)(uintptr_t)drawing->lines, (void *)(uintptr_t)drawing->faces,
-          (void *)(uintptr_t)drawing->labels, block);
+  VL_FREE(block->context, vl_owned(drawing->lines), vl_owned(drawing->faces),
+          vl_owned(drawing->labels), block);
 }
 
 vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t count,

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/free.h"
 #include "color/color.h"
 #include "image/pixel.h"
 
@@ -29,10 +30,8 @@ size_t vl_mipmap_bytes(const vlMipmap *map) {
 void vl_mipmap_destroy(vlMipmap *map) {
   if (!map)
     return;
-  for (uint32_t i = 0; i < map->level_count; i++) {
-    vl_free(map->context, (void *)(uintptr_t)map->levels[i].bytes);
-    vl_free(map->context, (void *)(uintptr_t)map->levels[i].floats);
-  }
+  for (uint32_t i = 0; i < map->level_count; i++)
+    VL_FREE(map->context, vl_owned(map->levels[i].bytes), vl_owned(map->levels[i].floats));
   vl_free(map->context, map);
 }
 

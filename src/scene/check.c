@@ -104,12 +104,8 @@ void vl_check_destroy(vlCheck *check) {
   if (!check)
     return;
   vlContext *c = check->context;
-  for (size_t i = 0; i < check->findings.count; i++) {
-    void *block;
-    /* const for readers; the check owns it */
-    memcpy(&block, &check->findings.items[i].message, sizeof block);
-    vl_free(c, block);
-  }
+  for (size_t i = 0; i < check->findings.count; i++)
+    vl_free(c, vl_owned(check->findings.items[i].message));
   VL_ARRAY_FREE(c, &check->findings);
   for (int k = 0; k < VL_SCENE_FAMILIES; k++)
     vl_free(c, check->used[k]);

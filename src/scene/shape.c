@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "math/double3.h"
 #include "math/motion.h"
@@ -288,9 +289,7 @@ vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   const void *blocks[VL_SHAPE_ARRAYS];
   vl_shape_arrays(&d, blocks);
   for (int i = 0; i < VL_SHAPE_ARRAYS; i++) {
-    void *block;
-    /* the scene owns the array; const is for readers */
-    memcpy(&block, &blocks[i], sizeof block);
+    void *block = vl_owned(blocks[i]);
     if (fine)
       fine = vl_scene_own(scene, block);
     else
@@ -338,7 +337,6 @@ static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const dou
   }
   *slot = (vlSceneInstance){.group = group, .source = source};
   memcpy(slot->world_from_group, pose, sizeof slot->world_from_group);
-  scene->groups.items[group.index - 1].instance_count++;
   return slot;
 }
 

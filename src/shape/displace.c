@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "math/double3.h"
 #include "velo/shape.h"
 
@@ -285,10 +286,6 @@ vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDe
 }
 
 void vl_world_displace_free(vlWorld *world, const vlShapeDef *fine) {
-  const void *blocks[4] = {fine->positions, fine->normals, fine->uvs, fine->indices};
-  for (int i = 0; i < 4; i++) {
-    void *block;
-    memcpy(&block, &blocks[i], sizeof block);
-    vl_free(world->context, block);
-  }
+  VL_FREE(world->context, vl_owned(fine->positions), vl_owned(fine->normals),
+          vl_owned(fine->uvs), vl_owned(fine->indices));
 }

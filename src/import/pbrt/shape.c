@@ -2,6 +2,7 @@
  * copy. */
 #include <stdio.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/loop.h"
@@ -112,12 +113,8 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
 }
 
 static void free_arrays(vlImport *import, const vlShapeDef *def) {
-  const void *blocks[5] = {def->positions, def->normals, def->tangents, def->uvs, def->indices};
-  for (int i = 0; i < 5; i++) {
-    void *block;
-    memcpy(&block, &blocks[i], sizeof block);
-    vl_free(import->context, block);
-  }
+  VL_FREE(import->context, vl_owned(def->positions), vl_owned(def->normals),
+          vl_owned(def->tangents), vl_owned(def->uvs), vl_owned(def->indices));
 }
 
 /* Loop subdivision of a control mesh to its limit surface. */

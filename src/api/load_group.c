@@ -80,7 +80,6 @@ static bool gather(vlScene *scene, const Before *before, vlGroupId group,
   for (size_t i = before->instances; i < scene->instances.count; i++) {
     const vlSceneInstance instance = scene->instances.items[i];
     fine = fine && dissolve(scene, before->shapes, all, count, group, &instance);
-    scene->groups.items[instance.group.index - 1].instance_count--;
   }
   vl_free(scene->context, all);
   scene->instances.count = before->instances;

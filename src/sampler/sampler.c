@@ -34,8 +34,6 @@ void vl_sampler_init(vlSampler *sampler, uint32_t kind, uint32_t seed, uint32_t 
       .kind = kind,
       .seed = seed,
       .spp = count,
-      .width = width,
-      .height = height,
       .set = set,
       .log2_spp = count <= 0x80000000u ? bits_for(count) : 31,
       .morton_bits = 2 * bits_for(width > height ? width : height),

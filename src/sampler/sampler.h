@@ -36,8 +36,7 @@ enum { VL_SAMPLE_SEQUENCE = 2 };
 typedef struct vlSampler {
   uint32_t kind; /* vlSamplerKind */
   uint32_t seed;
-  uint32_t spp;           /* length of the sequence, samples per pixel */
-  uint32_t width, height; /* size of the whole image, pixels */
+  uint32_t spp; /* length of the sequence, samples per pixel */
   uint32_t set; /* number of samples in a set of the kinds with cells: spp, at most 2^20 */
   uint32_t
       log2_spp; /* log2(spp), rounded up; zsobol: number of index bits below the Morton code */

@@ -30,21 +30,14 @@ void vl_scene_checkpoint_destroy(vlSceneCheckpoint *checkpoint) {
     vl_free(checkpoint->scene.context, checkpoint);
 }
 
-/* What the remaining shapes and instances add up to in their groups. */
+/* Counts the remaining shapes of the groups. */
 static void count_groups(vlScene *scene) {
-  for (size_t i = 0; i < scene->groups.count; i++) {
+  for (size_t i = 0; i < scene->groups.count; i++)
     scene->groups.items[i].shape_count = 0;
-    scene->groups.items[i].instance_count = 0;
-  }
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const uint32_t group = scene->shapes.items[i].group.index;
     if (group)
       scene->groups.items[group - 1].shape_count++;
-  }
-  for (size_t i = 0; i < scene->instances.count; i++) {
-    const vlSceneInstance *instance = &scene->instances.items[i];
-    if (!instance->removed)
-      scene->groups.items[instance->group.index - 1].instance_count++;
   }
 }
 

@@ -395,7 +395,6 @@ vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *erro
   instance->keys = 0;
   instance->label = (vlLabel){0};
   instance->removed = instance->hidden = true;
-  scene->groups.items[instance->group.index - 1].instance_count--;
   return VL_OK;
 }
 

@@ -17,8 +17,7 @@
 
 typedef struct vlSceneGroup {
   uint32_t shape_count; /* number of shapes in the group */
-  uint32_t instance_count;
-  const char *name; /* never null, may be empty */
+  const char *name;     /* never null, may be empty */
 } vlSceneGroup;
 
 typedef struct vlSceneInstance {

@@ -40,7 +40,7 @@ bool corner_refine(const Image *image, double reach, Corner *corner);
 
 /* ---- verify_target.c: the board and where it stands -------------------------------------- */
 
-enum { MAX_TARGET_SIDE = 9, MARKER_BITS = 16 };
+enum { MAX_TARGET_SIDE = 9 };
 
 typedef struct Target {
   bool charuco;

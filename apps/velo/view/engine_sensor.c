@@ -19,7 +19,7 @@
 #include "view/view.h"
 
 /* Buckets of the film: 48 bytes per pixel each. */
-enum { BUCKETS = 24, MAX_BUCKETS = 1000, MAX_CHANNELS = MAX_BUCKETS + 10 };
+enum { BUCKETS = 24, MAX_BUCKETS = 1000 };
 
 /* Of the meter, seconds. */
 static const double shortest_time = 1e-6, longest_time = 1e5;

@@ -181,17 +181,20 @@ static void filter_nearest(const struct RTCFilterFunctionNArguments *args) {
     args->valid[0] = 0;
 }
 
-static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
+static inline void drop_rejected(const struct RTCFilterFunctionNArguments *args,
+                                 bool occluded) {
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && filter_rejects(args, i, false))
+    if (args->valid[i] == -1 && filter_rejects(args, i, occluded))
       args->valid[i] = 0;
+}
+
+static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
+  drop_rejected(args, false);
   filter_nearest(args);
 }
 
 static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
-  for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && filter_rejects(args, i, true))
-      args->valid[i] = 0;
+  drop_rejected(args, true);
 }
 
 /* For shadow rays and opaque triangles that stay in place. */

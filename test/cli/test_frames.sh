@@ -77,6 +77,37 @@ printf '0 0 1 4 1 0 0 0\n1 0.2 1 4 1 0 0 0\n' >tum.txt # y and z turned over: lo
 check rig "$VELO" render scene.pbrt --trajectory tum.txt --rig rig.yaml -o 'rig_%d_%c.exr' --quiet
 check rig_files test "$(ls rig_*_*.exr | tr '\n' ' ')" = 'rig_0_cam0.exr rig_0_cam1.exr rig_1_cam0.exr rig_1_cam1.exr '
 
+# ---- parts of a model's trajectory: all are exposed by its first frame -----------------------------------------------
+# A lamp before a wall, and behind it a wall that is far away and dark.
+python3 - <<'END'
+import base64, json, struct
+def quad(z, side):
+    p = [(-2, -2, z), (2, -2, z), (2, 2, z), (-2, 2, z)]
+    return p if side > 0 else [p[1], p[0], p[3], p[2]]
+points = quad(-5, 1) + quad(8, -1)
+data = b"".join(struct.pack("<3f", *p) for p in points) + struct.pack("<6H", 0, 1, 2, 0, 2, 3) * 2
+def mesh(k):
+    return {"primitives": [{"attributes": {"POSITION": k}, "indices": 2}]}
+json.dump({
+    "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}], "extensionsUsed": ["KHR_lights_punctual"],
+    "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 5000}]}},
+    "nodes": [{"mesh": 0}, {"mesh": 1}, {"translation": [0, 0, -3], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+    "meshes": [mesh(0), mesh(1)],
+    "accessors": [{"bufferView": 0, "byteOffset": 48 * k, "componentType": 5126, "count": 4, "type": "VEC3",
+                   "min": [-2, -2, (-5, 8)[k]], "max": [2, 2, (-5, 8)[k]]} for k in range(2)] +
+                 [{"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 24}],
+    "buffers": [{"byteLength": 120, "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]}, open("two.gltf", "w"))
+json.dump({"camera_model": "OPENCV", "w": 32, "h": 24, "fl_x": 30, "fl_y": 30, "cx": 16, "cy": 12, "frames": [
+    {"file_path": "a", "transform_matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]},
+    {"file_path": "b", "transform_matrix": [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]}]}, open("turn.json", "w"))
+END
+check model_frames "$VELO" render two.gltf --trajectory turn.json -o 'model_%d.png' --spp 4 --quiet
+check model_part "$VELO" render two.gltf --trajectory turn.json -o 'part_%d.png' --spp 4 --frames 1 --quiet
+same model_part_is_the_same model_1.png part_1.png
+check model_shard "$VELO" render two.gltf --trajectory turn.json -o 'shard_%d.png' --spp 4 --shard 2/2 --quiet
+same model_shard_is_the_same model_1.png shard_1.png
+
 # ---- stereo ----------------------------------------------------------------------------------------------------------
 check stereo "$VELO" render scene.pbrt --stereo off-axis --interocular 0.2 --convergence 4 -o both.exr -o 'eye_%v.exr' -o '%v.png' --channels Z,N --quiet
 check two_stereo_files "$VELO" render scene.pbrt --stereo parallel -o two.exr -o three.exr --channels id.object --quiet

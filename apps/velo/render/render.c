@@ -272,7 +272,7 @@ static int check_metering(const Outputs *outputs, const Arguments *arguments) {
 }
 
 /* Meters a model before the render, so that neither noise nor the crop nor a part of the work
- * changes its exposure. */
+ * changes its exposure. A trajectory is metered by its first frame, rendered here or not. */
 static int meter_model(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   Outputs *outputs = &render->outputs;
@@ -285,7 +285,7 @@ static int meter_model(Render *render, const Arguments *arguments) {
   vlCamera first;
   vlError error = {0};
   if (render->many) {
-    const Frame frame = frames_at(&render->frames, 0);
+    const Frame frame = frames_first(&render->frames);
     if (frames_camera(&render->frames, &frame, 0, &first, &error) != VL_OK)
       return -1; /* the render reports it */
     camera = &first;

@@ -1,5 +1,6 @@
 /* more/bump.c: bump maps and normal maps. The surface p + h n has other normals than p. Shapes are maps of two
- * coordinates (a, b); so the displaced surface is one, too, and its slopes are differences. */
+ * coordinates (a, b); so the displaced surface is one, too, and its slopes are differences. Where a mesh has vertex
+ * normals, p is the smooth surface that they stand for: its tangents are those of the face, turned as its normal is. */
 #include "more.h"
 
 /* The point at (a, b), with `share` of its displacement. */
@@ -10,15 +11,24 @@ static vector displaced(const world *w, const vlMaterialDef *m, const shade_reco
   return add(near.point, scale(share * number_at(w, m->displacement, &near), near.shading_normal));
 }
 
+/* A vector, turned by the rotation from g to n (Rodrigues). */
+static vector turned(vector v, vector g, vector n) {
+  vector axis = cross(g, n), along = scale(dot(axis, v) / (1 + dot(g, n)), axis);
+  return add(along, add(scale(dot(g, n), v), cross(axis, v)));
+}
+
 static void follow_bumps(const world *w, const vlMaterialDef *m, shade_record *at) {
   const double d = 1e-5;
   vector along_a = subtract(displaced(w, m, at, at->a + d, at->b, 1), displaced(w, m, at, at->a - d, at->b, 1));
   vector along_b = subtract(displaced(w, m, at, at->a, at->b + d, 1), displaced(w, m, at, at->a, at->b - d, 1));
+  vector pa = subtract(displaced(w, m, at, at->a + d, at->b, 0), displaced(w, m, at, at->a - d, at->b, 0));
+  vector pb = subtract(displaced(w, m, at, at->a, at->b + d, 0), displaced(w, m, at, at->a, at->b - d, 0));
+  vector g = face_forward(normalize(cross(pa, pb)), at->shading_normal);
+  along_a = add(along_a, subtract(turned(pa, g, at->shading_normal), pa));
+  along_b = add(along_b, subtract(turned(pb, g, at->shading_normal), pb));
   vector n = cross(along_a, along_b);
   if (length(n) == 0) return;
   /* the tangent is a mixture of the slopes, and becomes the same mixture of the new ones */
-  vector pa = subtract(displaced(w, m, at, at->a + d, at->b, 0), displaced(w, m, at, at->a - d, at->b, 0));
-  vector pb = subtract(displaced(w, m, at, at->a, at->b + d, 0), displaced(w, m, at, at->a, at->b - d, 0));
   double aa = dot(pa, pa), ab = dot(pa, pb), bb = dot(pb, pb), area2 = aa * bb - ab * ab;
   double ta = dot(at->tangent, pa), tb = dot(at->tangent, pb);
   if (area2 > 0) {

@@ -48,6 +48,13 @@ static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i)
   vl_set_lane3(f->dn[3], f->dn[4], f->dn[5], i, dv);
 }
 
+/* A tangent of a flat face, turned as its normal g is turned to n: a tangent of the smooth
+ * surface that the vertex normals stand for. Without it, a bump map would show the faces. */
+static vlVec3 turned(vlVec3 tangent, vlVec3 g, vlVec3 n) {
+  float share = vl_dot(n, tangent) / (1.0f + vl_dot(g, n));
+  return vl_sub(tangent, vl_mul(vl_add(g, n), share));
+}
+
 /* Bump mapping: the surface p + h n has the derivatives dpdu + h' n + h dndu, and likewise in
  * v; h' by finite differences (pbrt book 10.5.3). */
 static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
@@ -87,8 +94,11 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
     if (r->world->shapes.items[r->at->hits.shape[i]].triangles)
       triangle_normal_slopes(&r->s->corners, f, i);
     vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i);
-    vlVec3 du = vl_add(vl_lane3(f->ux, f->uy, f->uz, i), vl_mul(n, (hu[i] - h[i]) / step[i]));
-    vlVec3 dv = vl_add(vl_lane3(f->vx, f->vy, f->vz, i), vl_mul(n, (hv[i] - h[i]) / step[i]));
+    vlVec3 g = facing(vl_lane3(f->gx, f->gy, f->gz, i), n);
+    vlVec3 du = turned(vl_lane3(f->ux, f->uy, f->uz, i), g, n);
+    vlVec3 dv = turned(vl_lane3(f->vx, f->vy, f->vz, i), g, n);
+    du = vl_add(du, vl_mul(n, (hu[i] - h[i]) / step[i]));
+    dv = vl_add(dv, vl_mul(n, (hv[i] - h[i]) / step[i]));
     du = vl_add(du, vl_mul(vl_lane3(f->dn[0], f->dn[1], f->dn[2], i), h[i]));
     dv = vl_add(dv, vl_mul(vl_lane3(f->dn[3], f->dn[4], f->dn[5], i), h[i]));
     vlVec3 m = vl_cross(du, dv);

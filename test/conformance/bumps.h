@@ -108,7 +108,23 @@ static void normal_between(double u, double v, double n[3]) {
   vl_normalize3(n);
 }
 
-/* The derivative of p + h n along u or v. */
+/* Turns a tangent of the triangle about the axis that turns its normal to n (Rodrigues). */
+static void turn_to_normal(const double n[3], double tangent[3]) {
+  const double g[3] = {0, 0, 1};
+  double axis[3];
+  double across_axis[3];
+  vl_cross3(g, n, axis);
+  const double cosine = n[2];
+  const double sine = vl_norm3(axis);
+  for (int k = 0; k < 3; k++)
+    axis[k] /= sine;
+  vl_cross3(axis, tangent, across_axis);
+  const double along = vl_dot3(axis, tangent);
+  for (int k = 0; k < 3; k++)
+    tangent[k] = cosine * tangent[k] + sine * across_axis[k] + (1 - cosine) * along * axis[k];
+}
+
+/* The derivative of p + h n along u or v. p is on the smooth surface whose normal is n. */
 static void bumped_slope(double u, double v, bool along_v, double slope[3]) {
   const double step = 1e-5;
   double n[3];
@@ -117,6 +133,7 @@ static void bumped_slope(double u, double v, bool along_v, double slope[3]) {
   normal_between(u, v, n);
   normal_between(u + !along_v * step, v + along_v * step, there);
   vl_sub3(normal_corners[1 + along_v], normal_corners[0], edge);
+  turn_to_normal(n, edge);
   const double height = bump_height(u, v);
   const double height_there = bump_height(u + !along_v * step, v + along_v * step);
   for (int k = 0; k < 3; k++)

@@ -8,7 +8,6 @@
 
 #include "velo/medium.h"
 #include "velo/shape_kinds.h"
-#include "velo/texture.h"
 
 bool vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...) {
   if (scene->error.code != VL_OK)

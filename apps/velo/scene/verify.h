@@ -6,7 +6,6 @@
 
 #include "camera/scene_world.h"
 #include "scene/verify_statistics.h"
-#include "velo/light.h"
 #include "velo/tracer.h"
 
 /* Replicates of each run: images with different seeds. Samples per pixel of the second look,
@@ -119,7 +118,7 @@ typedef struct Verify {
 void verify_plan(Verify *v);
 void verify_note(Verify *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Whether a light is in the group. */
-bool verify_has_light(VerifyLights lights, vlLightKind kind);
+bool verify_has_light(VerifyLights lights, const vlLightDef *light);
 /* Whether emissive surfaces are in the group. */
 bool verify_has_surfaces(VerifyLights lights);
 

@@ -5,6 +5,7 @@
 
 #include "scene/verify.h"
 #include "velo/edit.h"
+#include "velo/light.h"
 #include "velo/material.h"
 #include "velo/schema.h"
 #include "velo/shape.h"
@@ -19,8 +20,8 @@ void verify_note(Verify *v, const char *format, ...) {
   va_end(arguments);
 }
 
-bool verify_has_light(VerifyLights lights, vlLightKind kind) {
-  const bool small = kind != VL_LIGHT_INFINITE;
+bool verify_has_light(VerifyLights lights, const vlLightDef *light) {
+  const bool small = light->kind != VL_LIGHT_INFINITE;
   switch (lights) {
     case VERIFY_ALL:
       return true;

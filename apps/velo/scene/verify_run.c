@@ -95,8 +95,8 @@ static vlResult choose_lights(Verify *v, VerifyLights lights, vlError *error) {
   v->lights = lights;
   for (uint32_t i = 1; result == VL_OK && i <= v->light_count; i++) {
     const vlLightDef *light = vl_scene_light(v->in.scene, (vlLightId){i});
-    result = vl_scene_show_light(v->in.scene, (vlLightId){i},
-                                 verify_has_light(lights, light->kind), error);
+    result = vl_scene_show_light(v->in.scene, (vlLightId){i}, verify_has_light(lights, light),
+                                 error);
   }
   for (uint32_t i = 0; result == VL_OK && i < v->shapes; i++) {
     const vlEmissionId own = v->emissions[i], none = {0};

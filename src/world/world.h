@@ -346,7 +346,7 @@ struct vlWorld {
   bool has_alpha;                    /* a shape has an alpha */
   bool has_hidden;                   /* camera rays pass through a shape */
   bool by_channel;                   /* a medium (vlWorldMedium.by_channel) or a material
-                                        (vlWorldPrincipled.by_channel) attenuates light                   per
+                                        (vlWorldPrincipled.by_channel) attenuates light per
                                         channel of linear sRGB */
   uint32_t camera_medium;            /* index into media, VL_NONE: vacuum */
   bool moves;                        /* something moves; if false, rays need no time */

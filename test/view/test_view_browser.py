@@ -243,6 +243,7 @@ def test_outside(b):
     b.wait("velo.outside.drawing && velo.outside.drawing.lines.length > 10 && velo.outside.image !== undefined", 60)
     handle = lambda name: b.run(f"(() => {{ const o = velo.outside, r = o.canvas.getBoundingClientRect(), p = o.project(o.handles.{name});"
                                 " return [r.x + p[0], r.y + p[1]]; })()")
+    settle(b)
     eye, d = camera(b, "eye"), camera(b, "d")
     x, y = handle("eye")
     b.drag(x, y, x + 25, y - 15)

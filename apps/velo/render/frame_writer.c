@@ -14,7 +14,6 @@
 #include "image/image.h"
 #include "render/attributes.h"
 #include "render/exposure.h"
-#include "render/pattern.h"
 #include "render/receipt.h"
 
 enum { QUEUE = 4 }; /* images that wait to be written, and the one that is being written */
@@ -98,8 +97,7 @@ static vlWriteDef write_def(const Outputs *outputs) {
   return def;
 }
 
-/* Names the layers of both eyes for a file that holds both. Where that fails they are left out.
- */
+/* Names the layers of both eyes for a file that holds both. If that fails they are left out. */
 static int name_views(const FrameWriter *w, FrameImage *p) {
   vlResult result = VL_OK;
   for (int v = 0; v < 2; v++)
@@ -179,16 +177,6 @@ static vlResult write_one(FrameWriter *w, FrameImage *p, int view, bool clean, c
   return result;
 }
 
-/* Whether one file of the pattern holds both eyes. */
-static bool joins_views(const FrameWriter *w, const char *pattern) {
-  return w->frames->views == 2 && !pattern_has(pattern, 'v');
-}
-
-/* Number of files of the pattern. */
-static int file_count(const FrameWriter *w, const char *pattern) {
-  return joins_views(w, pattern) ? 1 : w->frames->views;
-}
-
 /* A file of a frame. */
 typedef struct FrameFile {
   char name[4096], part[4200];
@@ -207,8 +195,9 @@ static int write_ids(const FrameWriter *w, const FrameImage *p) {
   int status = STATUS_OK;
   for (int i = 0; i < w->outputs->count; i++) {
     const char *pattern = w->outputs->paths[i];
-    const Channels *right = joins_views(w, pattern) ? &p->channels[1] : NULL;
-    for (int view = 0; output_holds_layers(pattern) && view < file_count(w, pattern); view++) {
+    const Channels *right = frames_join(w->frames, pattern) ? &p->channels[1] : NULL;
+    for (int view = 0; output_holds_layers(pattern) && view < frames_files(w->frames, pattern);
+         view++) {
       FrameFile file;
       find_file(w, p, pattern, view, &file);
       status = first_failure(
@@ -221,11 +210,11 @@ static int write_ids(const FrameWriter *w, const FrameImage *p) {
 /* Writes both eyes' files of one pattern, or one file with both. */
 static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern) {
   int status = STATUS_OK;
-  for (int view = 0; view < file_count(w, pattern); view++) {
+  for (int view = 0; view < frames_files(w->frames, pattern); view++) {
     FrameFile file;
     vlError error = {0};
     find_file(w, p, pattern, view, &file);
-    const vlResult result = joins_views(w, pattern)
+    const vlResult result = frames_join(w->frames, pattern)
                                 ? write_both(w, p, file.path, &error)
                                 : write_one(w, p, view, false, file.path, &error);
     status = first_failure(status, report_finish(&error, result, file.path));
@@ -276,14 +265,14 @@ static int write_image(FrameWriter *w, FrameImage *p) {
   const Outputs *outputs = w->outputs;
   bool joined = false;
   for (int i = 0; i < outputs->count; i++)
-    if (joins_views(w, outputs->paths[i]))
+    if (frames_join(w->frames, outputs->paths[i]))
       joined = true;
     else
       status = first_failure(status, write_pattern(w, p, outputs->paths[i]));
   if (joined) /* these come last, since the layers' names change */
     status = first_failure(status, name_views(w, p));
   for (int i = 0; i < outputs->count && joined; i++)
-    if (joins_views(w, outputs->paths[i]))
+    if (frames_join(w->frames, outputs->paths[i]))
       status = first_failure(status, write_pattern(w, p, outputs->paths[i]));
   return p->clean ? first_failure(status, write_clean(w, p)) : status;
 }

@@ -252,11 +252,18 @@ bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, 
   return pattern_expand(pattern, &values, path, size);
 }
 
+bool frames_join(const Frames *frames, const char *pattern) {
+  return frames->views == 2 && !pattern_has(pattern, 'v');
+}
+
+int frames_files(const Frames *frames, const char *pattern) {
+  return frames_join(frames, pattern) ? 1 : frames->views;
+}
+
 bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outputs) {
   char path[4096];
   for (int i = 0; i < outputs->count; i++) {
-    int views = pattern_has(outputs->paths[i], 'v') ? frames->views : 1;
-    for (int view = 0; view < views; view++)
+    for (int view = 0; view < frames_files(frames, outputs->paths[i]); view++)
       if (!frames_path(frames, frame, outputs->paths[i], view, path, sizeof path) ||
           access(path, F_OK) != 0)
         return false;
@@ -348,10 +355,9 @@ int frames_check_names(const Frames *frames, const Outputs *outputs) {
         frames->films->path);
   for (int i = 0; i < outputs->count; i++) {
     const char *pattern = outputs->paths[i];
-    bool by_view = pattern_has(pattern, 'v');
     if (frames->views == 2 && pattern_check(pattern) >= 0)
       return STATUS_USAGE;
-    if (frames->views == 2 && !by_view && !output_holds_layers(pattern))
+    if (frames_join(frames, pattern) && !output_holds_layers(pattern))
       return report_usage(
           "output \"%s\": only .exr holds both eyes in one file; put %%v (left, right) into "
           "the name",
@@ -360,7 +366,7 @@ int frames_check_names(const Frames *frames, const Outputs *outputs) {
       TRY(check_twice(frames, pattern));
     bool folders = memchr(pattern, '%', (size_t)(text_file_name(pattern) - pattern));
     for (uint32_t k = 0; k < frames_count(frames) && folders; k++)
-      for (int view = 0; view < (by_view ? frames->views : 1); view++) {
+      for (int view = 0; view < frames_files(frames, pattern); view++) {
         Frame frame = frames_at(frames, k);
         if (!frames_path(frames, &frame, pattern, view, path, sizeof path))
           continue;

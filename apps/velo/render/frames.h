@@ -68,6 +68,10 @@ uint32_t frames_before(const Frames *frames, const Frame *frame, Frame before[ST
 /* The path of an image. view: 0 or 1, for %v. False: too long. */
 bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view,
                  char *path, size_t size);
+/* Whether one file of the pattern holds both eyes. */
+bool frames_join(const Frames *frames, const char *pattern);
+/* Number of files of the pattern that a frame has: one, or one per eye. */
+int frames_files(const Frames *frames, const char *pattern);
 /* Returns whether all these files of the frame exist. Files are written atomically, so their
  * content is not checked. */
 bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outputs);

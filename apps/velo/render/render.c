@@ -22,7 +22,6 @@
 #include "render/needs.h"
 #include "render/noise.h"
 #include "render/output_names.h"
-#include "render/pattern.h"
 #include "render/race.h"
 #include "render/run.h"
 #include "render/shard.h"
@@ -209,7 +208,7 @@ static void add_frames(const Render *render, OutputNames *names) {
     const Frame frame = frames_at(frames, k);
     for (int i = 0; i < render->outputs.count; i++) {
       const char *pattern = render->outputs.paths[i];
-      for (int view = 0; view < (pattern_has(pattern, 'v') ? frames->views : 1); view++)
+      for (int view = 0; view < frames_files(frames, pattern); view++)
         if (frames_path(frames, &frame, pattern, view, path, sizeof path))
           output_names_add_image(names, path, true, render->channels.bits);
     }

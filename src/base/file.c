@@ -235,6 +235,50 @@ static bool note_input(vlContext *context, const char *path, int fd, struct stat
   return noted;
 }
 
+/* Reads a descriptor to its end. size: of the file; 0: not known. *block ends with a zero,
+ * which *used does not count; it is set on errors, too. */
+static vlResult read_to_end(vlContext *context, const char *path, int fd, size_t size,
+                            char **block, size_t *used, vlError *error) {
+  enum { FIRST_SIZE = 65536 };
+  size_t capacity = (size ? size : FIRST_SIZE) + 1;
+  *used = 0;
+  *block = vl_alloc(context, capacity);
+  if (!*block)
+    return vl_fail_memory(error);
+  for (;;) {
+    const ssize_t got = read(fd, *block + *used, capacity - *used);
+    if (got == 0)
+      break;
+    if (got < 0 && errno != EINTR)
+      return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(errno));
+    *used += got > 0 ? (size_t)got : 0;
+    if (*used < capacity)
+      continue;
+    /* a pipe has no size, and a file may have grown */
+    char *grown = vl_realloc_array(context, *block, 2 * capacity, 1);
+    if (!grown)
+      return vl_fail_memory(error);
+    *block = grown;
+    capacity *= 2;
+  }
+  (*block)[*used] = 0;
+  return VL_OK;
+}
+
+/* Records the bytes of a file, and turns them into text. gunzip: as for vl_file_read. */
+static vlResult take_bytes(vlContext *context, const char *path, bool gunzip, char **block,
+                           size_t *used, vlError *error) {
+  if (!vl_file_record(context, path, *block, *used))
+    return vl_fail_memory(error);
+  const bool gzipped =
+      *used >= 2 && (unsigned char)(*block)[0] == 0x1f && (unsigned char)(*block)[1] == 0x8b;
+  if (gunzip && gzipped)
+    VL_TRY(gunzip_all(context, path, block, used, error));
+  if (gunzip)
+    VL_TRY(utf16_to_utf8(context, block, used, error));
+  return is_lfs_pointer(*block, *used) ? fail_lfs_pointer(path, error) : VL_OK;
+}
+
 static vlResult read_file(vlContext *context, const char *path, bool given, bool gunzip,
                           char **data, size_t *size, vlError *error) {
   *data = NULL;
@@ -249,46 +293,13 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
   struct stat info = {0};
   if (!note_input(context, path, fd, &info))
     return vl_fail_memory(error);
-  size_t capacity = info.st_size > 0 ? (size_t)info.st_size : 65536, used = 0;
-  char *block = vl_alloc(context, capacity + 1);
-  vlResult result = block ? VL_OK : vl_fail_memory(error);
-  while (result == VL_OK) {
-    ssize_t got = read(fd, block + used, capacity - used);
-    if (got < 0 && errno == EINTR)
-      continue;
-    if (got < 0) {
-      result = vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(errno));
-    } else if (got == 0) {
-      break;
-    } else if ((used += (size_t)got) == capacity) {
-      /* pipes have no size; after a full block there may be more */
-      char probe;
-      ssize_t more = read(fd, &probe, 1);
-      if (more <= 0)
-        break;
-      char *grown = vl_realloc_array(context, block, capacity * 2 + 1, 1);
-      if (!grown) {
-        result = vl_fail_memory(error);
-      } else {
-        block = grown;
-        capacity *= 2;
-        block[used++] = probe;
-      }
-    }
-  }
+  char *block;
+  size_t used;
+  vlResult result = read_to_end(context, path, fd, info.st_size > 0 ? (size_t)info.st_size : 0,
+                                &block, &used, error);
   close(fd);
-  if (result == VL_OK) {
-    block[used] = 0;
-    if (!vl_file_record(context, path, block, used))
-      result = vl_fail_memory(error);
-    if (result == VL_OK && gunzip && used >= 2 && (unsigned char)block[0] == 0x1f &&
-        (unsigned char)block[1] == 0x8b)
-      result = gunzip_all(context, path, &block, &used, error);
-    if (result == VL_OK && gunzip)
-      result = utf16_to_utf8(context, &block, &used, error);
-    if (result == VL_OK && is_lfs_pointer(block, used))
-      result = fail_lfs_pointer(path, error);
-  }
+  if (result == VL_OK)
+    result = take_bytes(context, path, gunzip, &block, &used, error);
   if (result != VL_OK) {
     vl_free(context, block);
     return result;

@@ -1,6 +1,8 @@
 /* test/base/test_base.c: the base room: counted memory, arrays, names, errors, files that are
  * written whole or not at all, instruction sets. */
 #include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -219,6 +221,61 @@ static void files_are_read_whole(void **state) {
   assert_true(size > 100);
   vl_free(context, data);
   assert_int_equal(vl_context_memory(context, NULL), empty);
+  vl_context_destroy(context);
+}
+
+enum { PIPE_HALF = 65536 };
+
+static void ignore_signal(int number) {
+  (void)number;
+}
+
+/* Writes to a pipe, interrupts its reader while it waits for the rest, and writes the rest. */
+typedef struct SlowWriter {
+  const char *path;
+  pthread_t reader;
+} SlowWriter;
+
+static void *write_slowly(void *user) {
+  const SlowWriter *writer = user;
+  char *half = calloc(1, PIPE_HALF);
+  FILE *pipe = fopen(writer->path, "wb");
+  if (half && pipe) {
+    fwrite(half, 1, PIPE_HALF, pipe);
+    fflush(pipe);
+    for (int i = 0; i < 50; i++) {
+      usleep(2000);
+      pthread_kill(writer->reader, SIGUSR1);
+    }
+    fwrite(half, 1, PIPE_HALF, pipe);
+  }
+  if (pipe)
+    fclose(pipe);
+  free(half);
+  return NULL;
+}
+
+/* A signal while a pipe is read does not cut off what it holds. */
+static void interrupted_reads_go_on(void **state) {
+  (void)state;
+  vlContext *context = make_context(NULL);
+  struct sigaction action = {.sa_handler = ignore_signal}, before;
+  char path[512];
+  snprintf(path, sizeof path, "%s", in_folder("pipe"));
+  assert_int_equal(mkfifo(path, 0600), 0);
+  assert_int_equal(sigaction(SIGUSR1, &action, &before), 0);
+  SlowWriter writer = {path, pthread_self()};
+  pthread_t thread;
+  assert_int_equal(pthread_create(&thread, NULL, write_slowly, &writer), 0);
+  char *data = NULL;
+  size_t size = 0;
+  vlError error;
+  assert_int_equal(vl_file_read_given(context, path, false, &data, &size, &error), VL_OK);
+  assert_int_equal(size, 2 * PIPE_HALF);
+  pthread_join(thread, NULL);
+  sigaction(SIGUSR1, &before, NULL);
+  vl_free(context, data);
+  unlink(path);
   vl_context_destroy(context);
 }
 
@@ -484,6 +541,7 @@ int main(void) {
       cmocka_unit_test(names_of_files_are_short),
       cmocka_unit_test(errors_are_cut_not_overrun),
       cmocka_unit_test(files_are_read_whole),
+      cmocka_unit_test(interrupted_reads_go_on),
       cmocka_unit_test(gzip_is_unpacked),
       cmocka_unit_test(files_are_written_whole_or_not_at_all),
       cmocka_unit_test(pending_files_replace_by_their_commit),

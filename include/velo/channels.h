@@ -18,43 +18,48 @@ extern "C" {
 /** Ground truth channels, as bits of a set. Values are in world space and scene units unless
  * stated otherwise. "nothing: v" gives the value v of a pixel whose ray meets no surface. */
 typedef enum vlChannel {
-  VL_CHANNEL_Z = 1 << 0, /**< Z: depth along the view axis, camera space; nothing: +infinity */
-  VL_CHANNEL_DISTANCE =
-      1
-      << 1, /**< distance.Y: distance from the ray's origin along the ray; nothing: +infinity */
-  VL_CHANNEL_P = 1 << 2, /**< P.X P.Y P.Z: position, origin + distance * ray; nothing: 0 0 0, as
-                            for N, Ng, uv and albedo */
-  VL_CHANNEL_N = 1 << 3, /**< N.X N.Y N.Z: unit shading normal, with bump and normal maps */
-  VL_CHANNEL_NG = 1 << 4,     /**< Ng.X Ng.Y Ng.Z: unit geometric normal */
-  VL_CHANNEL_UV = 1 << 5,     /**< uv.U uv.V: texture coordinates */
-  VL_CHANNEL_ALBEDO = 1 << 6, /**< albedo.R albedo.G albedo.B: reflectance under the colour
-                                 space's white, linear */
-  VL_CHANNEL_RAY =
-      1 << 7, /**< ray.X ray.Y ray.Z: unit direction of the ray, also if it meets nothing */
-  VL_CHANNEL_ID_OBJECT =
-      1
-      << 8, /**< id.object: number of the shape in the order of the file, from 1; nothing: 0 */
-  VL_CHANNEL_ID_MATERIAL = 1 << 9,  /**< id.material: 1 is the default material; the others
-                                       follow in the order of the file */
-  VL_CHANNEL_ID_INSTANCE = 1 << 10, /**< id.instance: number of the instance, from 1; 0 for
-                                       nothing and for objects in no instance */
-  VL_CHANNEL_ID_PRIMITIVE =
-      1 << 11, /**< id.primitive: number of the face in its shape, from 1 */
-  VL_CHANNEL_SAMPLES =
-      1 << 12, /**< samples: samples per pixel of the image, vlChannelsDef.samples */
-  VL_CHANNEL_FILM =
-      1 << 13, /**< film.X film.Y: the film point, pixels from the pixel's top left corner */
+  /** Z: depth along the view axis, camera space; nothing: +infinity */
+  VL_CHANNEL_Z = 1 << 0,
+  /** distance.Y: distance from the ray's origin along the ray; nothing: +infinity */
+  VL_CHANNEL_DISTANCE = 1 << 1,
+  /** P.X P.Y P.Z: position, origin + distance * ray; nothing: 0 0 0, as for N, Ng, uv and
+   * albedo */
+  VL_CHANNEL_P = 1 << 2,
+  /** N.X N.Y N.Z: unit shading normal, with bump and normal maps */
+  VL_CHANNEL_N = 1 << 3,
+  /** Ng.X Ng.Y Ng.Z: unit geometric normal */
+  VL_CHANNEL_NG = 1 << 4,
+  /** uv.U uv.V: texture coordinates */
+  VL_CHANNEL_UV = 1 << 5,
+  /** albedo.R albedo.G albedo.B: reflectance under the colour space's white, linear */
+  VL_CHANNEL_ALBEDO = 1 << 6,
+  /** ray.X ray.Y ray.Z: unit direction of the ray, also if it meets nothing */
+  VL_CHANNEL_RAY = 1 << 7,
+  /** id.object: number of the shape in the order of the file, from 1; nothing: 0 */
+  VL_CHANNEL_ID_OBJECT = 1 << 8,
+  /** id.material: 1 is the default material; the others follow in the order of the file */
+  VL_CHANNEL_ID_MATERIAL = 1 << 9,
+  /** id.instance: number of the instance, from 1; 0 for nothing and for objects in no
+   * instance */
+  VL_CHANNEL_ID_INSTANCE = 1 << 10,
+  /** id.primitive: number of the face in its shape, from 1 */
+  VL_CHANNEL_ID_PRIMITIVE = 1 << 11,
+  /** samples: samples per pixel of the image, vlChannelsDef.samples */
+  VL_CHANNEL_SAMPLES = 1 << 12,
+  /** film.X film.Y: the film point, pixels from the pixel's top left corner */
+  VL_CHANNEL_FILM = 1 << 13,
   /* The following channels cost more and are not part of VL_CHANNEL_ALL. */
-  VL_CHANNEL_ERROR = 1 << 14, /**< error.R error.G error.B: standard error of the image; needs a
-                               * film with vlFilmDef.errors; infinity below 2 samples */
-  VL_CHANNEL_FORWARD =
-      1 << 15, /**< forward.U forward.V: flow in pixels to the image of the camera
-                  vlChannelsDef.forward, for the same point of the same surface (or
-                  direction of the sky); forward.hidden: a vlHidden, as uint */
-  VL_CHANNEL_BACKWARD = 1 << 16, /**< backward.U backward.V backward.hidden: the same for the
-                                    camera vlChannelsDef.backward */
-  VL_CHANNEL_CRYPTO_OBJECT =
-      1 << 17, /**< CryptoObject00.R ...: Cryptomatte, `ranks` pairs of id and coverage */
+  /** error.R error.G error.B: standard error of the image; needs a film with vlFilmDef.errors;
+   * infinity below 2 samples */
+  VL_CHANNEL_ERROR = 1 << 14,
+  /** forward.U forward.V: flow in pixels to the image of the camera vlChannelsDef.forward, for
+   * the same point of the same surface (or direction of the sky); forward.hidden: a vlHidden,
+   * as uint */
+  VL_CHANNEL_FORWARD = 1 << 15,
+  /** backward.U backward.V backward.hidden: the same for the camera vlChannelsDef.backward */
+  VL_CHANNEL_BACKWARD = 1 << 16,
+  /** CryptoObject00.R ...: Cryptomatte, `ranks` pairs of id and coverage */
+  VL_CHANNEL_CRYPTO_OBJECT = 1 << 17,
   VL_CHANNEL_CRYPTO_MATERIAL = 1 << 18, /**< CryptoMaterial00.R ... */
   VL_CHANNEL_CRYPTO_INSTANCE = 1 << 19, /**< CryptoInstance00.R ... */
   /** feature.albedo.R .G .B, feature.N.X .Y .Z, feature.disparity.Y: features for denoisers
@@ -126,8 +131,7 @@ typedef struct vlChannelsDef {
   const vlFilm *film;
   const vlRenderDef *render; /**< see film */
   float exposure; /**< for ERROR: exposure of the developed image (vlDevelopDef.exposure);
-                   * default 1
-                   */
+                     default 1 */
   const vlCamera *forward, *backward; /**< for FORWARD and BACKWARD: the other cameras */
   double time;     /**< the time at which the scene is shown, seconds; unset: the middle of the
                       exposure, of a rolling shutter that of each row (or column) */

@@ -10,7 +10,7 @@
  * What counts as a hit is what counts for camera rays and ground truth:
  *   - surfaces whose material is an interface are passed, here and by vl_world_cast_occluded;
  *   - where an opacity (alpha) is between 0 and 1, a hash of ray and surface decides whether
- * the ray passes: the same ray always gets the same answer, and of many different rays the
+ *     the ray passes: the same ray always gets the same answer, and of many different rays the
  *     share `alpha` is stopped. The same holds for mixtures with an interface;
  *   - surfaces that are one-sided are passed from behind;
  *   - media (fog, clouds) neither stop a ray nor bend it, and rays never refract;

@@ -50,7 +50,8 @@ vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, floa
 bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value);
 /* Integral of Y times the spectrum, as pbrt's SpectrumToPhotometric. For RGB illuminants it is
  * the integral of Y times the colour space's illuminant alone. Lights are divided by it, so
- * that an RGB light of (1,1,1) has luminance 1. */
+ * that an RGB light of (1,1,1) has luminance 1. 0: the spectrum has no light, or an error,
+ * which is that of vl_spectrum_dense. */
 double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error);
 /* The factor from a light's radiometric number to its photometric one, as that is before the
  * light's spectrum is divided by vl_spectrum_photometric: from W to lm, from W/m^2 to lx, from

@@ -3,14 +3,13 @@
  * The tables are constant data that tools/color_tables makes when velo is built. Three
  * differences from the paper make a small table exact to 1e-3:
  * - Light colours use the complement, sigmoid(-x) = 1 - sigmoid(x), so that one table of dark
- *   colours serves both. Its
- * resolution increases towards black, where the coefficients vary most.
+ *   colours serves both. Its resolution increases towards black, where the coefficients vary
+ *   most.
  * - The table stores c sqrt(m (1 - m)), where m is the mean of r, g, b. Near black c grows as
- *   m^-1/2, while this
- * product stays smooth. Along the greys it is linear, so that greys become constant spectra.
+ *   m^-1/2, while this product stays smooth. Along the greys it is linear, so that greys become
+ *   constant spectra.
  * - The nodes of the axes are denser towards both ends (2 u^2). Interpolation weights are
- *   linear in the colour
- * itself. */
+ *   linear in the colour itself. */
 #ifndef COLOR_RGB_TABLE_H
 #define COLOR_RGB_TABLE_H
 

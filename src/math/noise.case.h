@@ -8,11 +8,12 @@
 
 typedef double PlainNoise(double x, double y, double z);
 
-/* What a ray of a width in the space of the noise sees of octaves: -1 - log2 of the width are
- * whole, and of the next as much as a smooth step from .3 to .7 gives of the rest. */
+/* How many octaves a ray of a width sees; width: of the ray, in the space of the noise. It sees
+ * n = -1 - log2(width) octaves: floor(n) whole ones, and of the next the share that a smooth
+ * step from 0.3 to 0.7 gives for n - floor(n). */
 typedef struct PlainOctaves {
   int whole;
-  double part;
+  double part; /* of the octave after these, 0 to 1 */
 } PlainOctaves;
 static inline PlainOctaves plain_resolved(double width, int octaves) {
   const double seen = fmin(fmax(-1 - log2(width), 0), octaves);

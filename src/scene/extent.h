@@ -27,8 +27,7 @@ bool vl_extent_groups(vlScene *scene, vlExtent **boxes);
 /* Calls `visit` with points of the scene: several thousand vertices of each mesh, and the
  * corners of the boxes of other shapes and of instances. A file that moves gives points of all
  * its times instead. boxes: those of the groups, and the limits within which points are
- * visited. without[i]: shape i is left out; null: none
- * is. */
+ * visited. without[i]: shape i is left out; null: none is. */
 void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without,
                      vlPointVisit *visit, void *user);
 

@@ -20,14 +20,16 @@ void vl_facing_mean_normal(const vlScene *scene, bool one_sided, double n[3]);
  * models of few triangles. */
 bool vl_facing_is_behind(const vlScene *scene, const vlExtent *box, const double front[3]);
 
-/* How a model consists of blocks that stand on a plane: of the surface, the shares whose normal
- * is along an axis, and at right angles to it; of the former, that in the lower half of the
- * box; and in how many of 64 layers along the axis at least a thousandth of the surface lies
- * flat; and the shares that lie flat in the first and the last layer. */
+/* How far a model consists of blocks that stand on a plane. Shares of the area of the model's
+ * surface; flat: with a normal along the axis, up to 5 degrees. */
 typedef struct vlBlocks {
-  double flat, walls, lower, ends[2];
-  int levels;
+  double flat;
+  double walls;   /* with a normal at right angles to the axis, up to 5 degrees */
+  double lower;   /* flat, in the lower half of the box */
+  double ends[2]; /* flat, in the first and the last of 64 layers along the axis */
+  int levels;     /* number of these layers of which more than a thousandth is flat */
 } vlBlocks;
+/* box: of the whole scene; axis: 0 to 2. */
 vlBlocks vl_facing_blocks(const vlScene *scene, const vlExtent *box, int axis);
 
 /* Whether the model has raised parts on the side away from `front`, and a plane on its side:

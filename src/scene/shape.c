@@ -17,8 +17,9 @@ static bool bad(vlScene *scene, const vlShapeDef *d, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);
 }
 
-/* Index of the first element that is not finite, or count. x - x is 0 for finite x and NaN
- * otherwise. A block of elements is checked by the sum of x - x, a loop that vectorises. */
+/* Index of the first element that is not finite, or count. A block of elements is checked as a
+ * whole by the bits of the exponents, all of which are 1 only in an infinity or NaN: a loop
+ * that vectorises. */
 static size_t first_not_finite(const float *v, size_t count) {
   enum { BLOCK = 1024 };
   for (size_t start = 0; start < count; start += BLOCK) {

@@ -5,14 +5,16 @@
 
 #include "scene/plain.h"
 
-/* Of y and z, one is `up` already. Takes the other, with its front (of z: -y, as modellers have
- * it), if the model stands on its lowest part only so: a bust on its plinth, a figure on its
- * feet, a vase on its foot, a chair on its legs; or if only so it has a ground: a plain
- * (scene/plain.h), or the plane of a city; or if its surface is spread so: the same on both
- * sides along `up`, but above and below only along the other axis; terrain; a storey; a survey
- * in points; a chart that would look down. Otherwise up and front stay as they are, as of
- * models that lie either way. boxes: those of the groups. *plains: gets the searches for
- * plains. Returns whether they changed. */
+/* Chooses between y and z, one of which is `up`, and changes `up` and `front` if the other axis
+ * fits the model better (the front of z is -y, as modellers have it). The other axis is taken
+ * if one of these holds along it, and along `up` there is no ground and no terrain:
+ * - the model stands on its lowest part: a bust on its plinth, a figure on its feet, a chair;
+ * - it has a ground: a plain (scene/plain.h), or the plane of a city;
+ * - it is terrain, a storey, a survey in points, or consists of parts that stand side by side;
+ * - top and bottom resemble each other along `up`, and differ along the other axis;
+ * - it is a flat chart that looks down along `up`.
+ * Otherwise, as for models that lie either way, both stay as they are. boxes: those of the
+ * groups. *plains: gets the searches for plains. Returns whether they changed. */
 bool vl_upright_find(const vlScene *scene, const vlExtent *boxes, vlPlains *plains,
                      double up[3], double front[3]);
 

@@ -1,6 +1,7 @@
 /* schema/schema.h: the rows of all families of kinds, and functions that access a def through
- * its row. A row describes one kind and its parameters. The rows of each family are in a file
- * of this folder with the family's name. */
+ * its row. A row describes one kind and its parameters. The row of a kind is in the folder of
+ * its family (src/material/diffuse.row.c), those of films, cameras and settings are in this
+ * folder. */
 #ifndef SCHEMA_SCHEMA_H
 #define SCHEMA_SCHEMA_H
 

@@ -71,8 +71,7 @@ static vlWorld *new_world(vlContext *context, vlAccelerator accelerator, bool in
 }
 
 /* Those of a camera above, none through an edge: there the accelerators themselves may differ.
- * apart: in an order in which
- * neighbours are far from each other. */
+ * apart: in an order in which neighbours are far from each other. */
 static void fill(double rows[COUNT][6], bool apart) {
   for (uint32_t i = 0; i < COUNT; i++) {
     uint32_t k = apart ? i * 1025u % COUNT : i;

@@ -24,8 +24,8 @@ typedef struct Child {
  * left out. False: it is not there. */
 bool child_find(const char *folders, const char *name, char *program, size_t size);
 /* Starts a program; words: its arguments, the first its name, a null last; at most
- * CHILD_MAX_WORDS. output, further: its
- * descriptors 1 and 3; -1: none. Returns 0, or the number of the system's error. */
+ * CHILD_MAX_WORDS. output, further: its descriptors 1 and 3; -1: none. Returns 0, or the number
+ * of the system's error. */
 int child_start(Child *child, const char *program, const char *const *words, int output,
                 int further);
 /* Writes to its standard input. False: it does not read any more, or a signal to velo came. */

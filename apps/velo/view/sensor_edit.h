@@ -34,8 +34,8 @@ typedef struct ViewSensor {
 ViewSensor sensor_default(void);
 /* Applies the fields of a message: preset, white, and exposure_time, f_number, iso, gain,
  * temperature, seed, frame, which are rows of vlExposureDef. exposure_time null: the meter's.
- * ARGUMENT: a field or value is
- * refused, and the error says which and why in one line; *result is unchanged then. */
+ * ARGUMENT: a field or value is refused, and the error says which and why in one line; *result
+ * is unchanged then. */
 vlResult sensor_edit(const ViewSensor *now, const ViewSensors *sensors,
                      const ViewMessage *message, ViewSensor *result, vlError *error);
 /* "D65", "A", "auto": the name of a ViewWhite; null past the end. */

@@ -6,8 +6,8 @@
 
 enum {
   TIMES = 33,
-  MAX_VERTICES = 4000000
-}; /* vertices of deforming meshes that are posed at all times together */
+  MAX_VERTICES = 4000000 /* of deforming meshes, counted once for each time they are posed at */
+};
 
 /* Adds the corners of the box in world space. */
 static bool add_corners(vlGltf *g, const vlExtent *b, const vlMat4 *world) {
@@ -70,7 +70,7 @@ static bool frame_node(vlGltf *g, size_t node, vlExtent *boxes, bool first) {
 }
 
 bool vl_gltf_frame_animation(vlGltf *g) {
-  if (!(g->def->time == g->def->time) || g->animation_count == 0)
+  if (isnan(g->def->time) || g->animation_count == 0)
     return true;
   g->time = 0;
   if (!vl_gltf_each_animation(g, longest))

@@ -1,10 +1,9 @@
 /* import/gltf/gltf.h: types and functions shared by the files of the glTF 2.0 importer.
- * Data flow: file.c (JSON, chunks, buffers) -> accessor.c (arrays) -> node.c (poses,
- * animation.c)
- * -> mesh.c (deform.c, topology.c, tangent.c) with material.c, texture.c -> scene. Every index,
- * offset and size of the file is checked before it is used. An error names its location in the
- * JSON, for example meshes[3].primitives[0].attributes.POSITION. Source: the glTF 2.0
- * specification (Khronos) and the specifications of its extensions. */
+ * Data flow: file.c (JSON, chunks, buffers) -> accessor.c (arrays) -> node.c (poses, with
+ * animation.c) -> mesh.c (with deform.c, topology.c, tangent.c, material.c, texture.c) ->
+ * scene. Every index, offset and size of the file is checked before it is used. An error names
+ * its location in the JSON, for example meshes[3].primitives[0].attributes.POSITION. Source:
+ * the glTF 2.0 specification (Khronos) and the specifications of its extensions. */
 #ifndef IMPORT_GLTF_GLTF_H
 #define IMPORT_GLTF_GLTF_H
 
@@ -100,9 +99,8 @@ typedef struct vlGltfImage {
   const char *path;
 } vlGltfImage;
 
-enum {
-  VL_GLTF_KEYS = 9
-}; /* number of poses from shutter open to shutter close, evenly spaced */
+/* Number of poses from shutter open to shutter close, evenly spaced. */
+enum { VL_GLTF_KEYS = 9 };
 
 typedef struct vlGltfMesh {
   uint32_t uses; /* number of nodes and instances that place the mesh undeformed */
@@ -158,16 +156,18 @@ typedef struct vlGltf {
 enum {
   VL_GLTF_REPORTED_RANGE = 1,
   VL_GLTF_REPORTED_POINTS = 2,
-  VL_GLTF_REPORTED_SETS = 8,
-  VL_GLTF_REPORTED_FLAT = 16,
-  VL_GLTF_REPORTED_SKIN = 32,
-  VL_GLTF_REPORTED_MOTION = 64
+  VL_GLTF_REPORTED_SETS = 4,
+  VL_GLTF_REPORTED_FLAT = 8,
+  VL_GLTF_REPORTED_SKIN = 16,
+  VL_GLTF_REPORTED_MOTION = 32
 };
 
-/* ---- errors and JSON (json.c): a function that returns bool has reported the error when it
- * returns false --------- */
+/* ---- errors and JSON (json.c) ------------------------------------------------------------ */
 
-/* Report the error "path: location: message". Always return false. */
+/* A function of the importer that returns bool has reported the error when it returns false,
+ * unless its comment says otherwise. */
+
+/* Reports the error "path: location: message". Always returns false. */
 bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* The same of a member of the object at the location. */
@@ -274,9 +274,9 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, size_t index);
 /* The bytes of a view; null after an error. */
 const vlGltfView *vl_gltf_view(vlGltf *g, const vlGltfLocation *at, size_t index);
 void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uint32_t *out);
-/* A new block of count * components floats from an accessor. The accessor must have one of the
- * given numbers of components and count elements (0: any; *read receives the count). Null after
- * an error. */
+/* A new block of floats from an accessor of `count` elements (0: of any number), `components`
+ * for each; of those that the accessor lacks, the fourth is 1 and the others are 0. *read
+ * receives the number of elements; read may be null. Null after an error. */
 float *vl_gltf_load_floats(const vlGltfLocation *at, size_t index, uint32_t components,
                            size_t count, size_t *read);
 /* Adds to the bytes of geometry made so far. Reports an error when the sum is out of proportion
@@ -296,10 +296,10 @@ bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all nodes */
 bool vl_gltf_pose_at(vlGltf *g, double time);
 /* Poses all nodes at def->time and, for motion blur, at the key times up to def->time_close. */
 bool vl_gltf_pose(vlGltf *g);
-/* Whether the node's world matrix changes between shutter open and shutter close. */
 /* frame.c: gives the scene the points of the whole animation, if there is one, for an automatic
  * camera. The nodes have other poses afterwards. */
 bool vl_gltf_frame_animation(vlGltf *g);
+/* Whether the node's world matrix changes between shutter open and shutter close. */
 bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
 /* Adds the chosen scene's meshes, lights and camera. */
 bool vl_gltf_draw(vlGltf *g);
@@ -378,19 +378,19 @@ bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlMesh *p);
 /* The material `index` (VL_GLTF_NONE: the default material) for a primitive with or without
  * vertex colours. Null after an error. */
 const vlGltfMaterial *vl_gltf_material(vlGltf *g, size_t index, bool colors);
-/* Adds the texture of a textureInfo object. tint: factors of its channels. channel -1 makes a
- * colour texture. Without a textureInfo *id is 0. */
+/* How a material uses a texture. */
 typedef struct vlGltfTextureUse {
   bool spectrum;
-  int channel; /* 0 to 3 for a float texture; -1: a colour */
-  bool srgb;   /* the image's colour channels are sRGB */
-  float tint[4];
+  int channel;   /* 0 to 3 for a float texture; -1: a colour */
+  bool srgb;     /* the image's colour channels are sRGB */
+  float tint[4]; /* factors of the channels */
   bool colors;   /* multiplied by the vertex colour */
   float bias;    /* float textures only: value = bias + tint * channel */
   double cutoff; /* unless unset: the value becomes 1 from the cutoff on and 0 below it */
 } vlGltfTextureUse;
 vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);
+/* Adds the texture of the textureInfo object `key`. Without one id->index is 0. */
 bool vl_gltf_texture(const vlGltfLocation *at, const char *key, const vlGltfTextureUse *use,
                      vlTextureId *id);
 /* Decodes an image of bytes in memory or of a file. False after an error, at the location. */

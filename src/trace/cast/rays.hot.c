@@ -133,8 +133,7 @@ static void round_rays(vlCastBatch *b, vlPaths *p, uint32_t first, uint32_t last
 }
 
 /* Whether most neighbours start close to each other, as the world is large, in directions
- * within 8 degrees. 64 pairs or
- * more are looked at, if there are so many. */
+ * within 8 degrees. 64 pairs or more are looked at, if there are so many. */
 static bool are_coherent(const vlWorld *world, uint32_t n, const vlPaths *p) {
   const float close = 0.02f * world->radius, least_cosine = 0.99f;
   uint32_t similar = 0, pairs = 0, step = n < 64 ? 1 : n / 64;

@@ -32,7 +32,7 @@ static vlResult check(const vlOpticsDef *d, const vlLensSurface *s, vlError *err
   if (!(d->focus_distance > 0.0))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "lens: focus distance is %g; it must be above zero", d->focus_distance);
-  if (d->aperture_diameter == d->aperture_diameter && !positive(d->aperture_diameter))
+  if (!isnan(d->aperture_diameter) && !positive(d->aperture_diameter))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "lens: aperture diameter is %g; it must be above zero",
                    d->aperture_diameter);

@@ -29,6 +29,13 @@ static vlResult bad_pixel(const vlLightDef *def, uint32_t x, uint32_t y, vlError
                  def->path ? def->path : "the image", x, y);
 }
 
+/* The factor on the intensity. flux: of the light without it; a given power replaces it. */
+static double scale_of(const vlLightDef *def, double flux) {
+  if (isnan(def->power))
+    return def->scale;
+  return flux > 0 ? def->scale * (def->power / flux) : 0;
+}
+
 /* ---- goniometric lights with an image ---------------------------------------------------- */
 
 /* Directions for the mean over all: at least so many along each side of the octahedral square,
@@ -79,11 +86,9 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
         return bad_pixel(def, x, y, error);
       sum += value > 0 ? value * texel_stretch(&stretch, n, x, y) : 0;
     }
-  double mean = sum / ((double)n * n), factor = def->scale;
-  if (def->power == def->power)
-    factor *= mean > 0 ? def->power / (4 * M_PI * mean) : 0;
-  vlResult r = vl_light_color(world, &def->color, (float)factor, e, error);
-  light->power = (float)(4 * M_PI * mean) * vl_light_luminance(&e->spectrum);
+  const double flux = 4 * M_PI * (sum / ((double)n * n));
+  vlResult r = vl_light_color(world, &def->color, (float)scale_of(def, flux), e, error);
+  light->power = (float)flux * vl_light_luminance(&e->spectrum);
   return r;
 }
 
@@ -139,9 +144,8 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
         return bad_pixel(def, x, y, error);
       sum += value > 0 ? value / image_area(&stretch, a, b) : 0;
     }
-  double flux = sum / ((double)w * h) * 4 * light->own[0] * light->own[1], factor = def->scale;
-  if (def->power == def->power)
-    factor *= flux > 0 ? def->power / flux : 0;
+  const double flux = sum / ((double)w * h) * 4 * light->own[0] * light->own[1];
+  const double factor = scale_of(def, flux);
   e->image = (int32_t)light->image;
   vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), (float)factor,
                        e);
@@ -233,13 +237,11 @@ static vlResult compile_lamp(vlWorld *world, const vlLightDef *def, vlWorldLight
                              vlEmitted *e, vlError *error) {
   const vlLamp *lamp = add_lamp(world, def, light, error);
   if (!lamp)
-    return error && error->code ? error->code : VL_ERROR_SCENE;
+    return error->code;
   if (!set_lamp_frame(def, lamp, light))
     return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");
-  double flux = lamp_flux(lamp, def), factor = def->scale;
-  if (def->power == def->power)
-    factor *= flux > 0 ? def->power / flux : 0;
-  vlResult r = vl_light_color(world, &def->color, (float)factor, e, error);
+  const double flux = lamp_flux(lamp, def);
+  vlResult r = vl_light_color(world, &def->color, (float)scale_of(def, flux), e, error);
   light->power = (float)flux * vl_light_luminance(&e->spectrum);
   return r;
 }
@@ -250,7 +252,7 @@ vlResult vl_compile_light_goniometric(vlWorld *world, const vlLightDef *def,
     return compile_lamp(world, def, light, e, error);
   const vlMipmap *mip = add_image(world, def, light, error);
   if (!mip)
-    return error && error->code ? error->code : VL_ERROR_SCENE;
+    return error->code;
   return add_goniometric(world, def, mip, light, e, error);
 }
 
@@ -258,7 +260,7 @@ vlResult vl_compile_light_projection(vlWorld *world, const vlLightDef *def, vlWo
                                      vlEmitted *e, vlError *error) {
   const vlMipmap *mip = add_image(world, def, light, error);
   if (!mip)
-    return error && error->code ? error->code : VL_ERROR_SCENE;
+    return error->code;
   light->has_cone = true;
   return add_projection(world, def, mip, light, e, error);
 }

@@ -52,7 +52,7 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
   float area = VL_PI * world->radius * world->radius;
   if (!def->path && !def->image) {
     float factor = def->scale;
-    if (def->illuminance == def->illuminance)
+    if (!isnan(def->illuminance))
       factor *= (float)(def->illuminance / M_PI);
     vlResult r = vl_light_color(world, &def->color, factor, e, error);
     light->power = 4 * VL_PI * area * vl_light_luminance(&e->spectrum);
@@ -60,7 +60,7 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
   }
   e->image = vl_world_add_image(world, def->path, def->image, NULL, false, error);
   if (e->image < 0)
-    return error && error->code ? error->code : VL_ERROR_SCENE;
+    return error->code;
   vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), def->scale, e);
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   if (mip->levels[0].width != mip->levels[0].height)
@@ -82,7 +82,7 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
     }
   double mean = 0, illuminance = 0;
   vlResult r = distribution_of(world, env, &mean, &illuminance, error);
-  if (def->illuminance == def->illuminance && illuminance > 0)
+  if (!isnan(def->illuminance) && illuminance > 0)
     e->image_scale *= (float)(def->illuminance / illuminance);
   light->environment = (uint32_t)world->environments.count - 1;
   light->power = (float)(4 * M_PI * area * mean * e->image_scale);

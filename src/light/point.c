@@ -10,7 +10,7 @@ vlCompileLight vl_compile_light_point;
 vlResult vl_compile_light_point(vlWorld *world, const vlLightDef *def, vlWorldLight *light,
                                 vlEmitted *e, vlError *error) {
   float factor = def->scale;
-  if (def->power == def->power)
+  if (!isnan(def->power))
     factor *= (float)(def->power / (4 * M_PI));
   vlResult r = vl_light_color(world, &def->color, factor, e, error);
   light->power = 4 * VL_PI * vl_light_luminance(&e->spectrum);

@@ -41,9 +41,7 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
     vlSpectrumInput input = vl_spectrum_input(vl_spectrum_constant(0.0f));
     input.texture = def->texture;
     int32_t node;
-    vlResult r = vl_world_spectrum_node(world, scene, input, VL_ROLE_ILLUMINANT, &node, error);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(vl_world_spectrum_node(world, scene, input, VL_ROLE_ILLUMINANT, &node, error));
     e->node = node + 1;
     e->image = world->nodes.items[node].image;
     vl_light_image_color(world, world->nodes.items[node].space, def->scale, e);
@@ -53,7 +51,7 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
     return vl_light_color(world, &def->radiance, def->scale, e, error);
   e->image = vl_world_add_image(world, def->image, NULL, NULL, true, error);
   if (e->image < 0)
-    return error && error->code ? error->code : VL_ERROR_SCENE;
+    return error->code;
   vl_light_image_color(world, vl_light_image_space(world, e->image, VL_SPACE_SRGB), def->scale,
                        e);
   const vlMipmap *mip = world->images.items[e->image].mipmap;
@@ -172,95 +170,113 @@ static vlResult choose_faces(vlWorld *world, vlWorldShape *shape, const vlEmitte
   return r;
 }
 
+/* Scales the emission so that a face of this area sends the power, as in pbrt. */
+static void scale_to_power(const vlWorld *world, float power, float area, vlEmitted *e) {
+  float sent = (e->two_sided ? 2 : 1) * area * VL_PI;
+  if (e->image >= 0)
+    sent *= mean_image_luminance(world->images.items[e->image].mipmap);
+  e->spectrum.scale *= sent > 0 ? power / sent : 0;
+}
+
+/* Mean luminance of the emission's image over a face, as a factor on that of its spectrum. */
+static float image_factor(const vlWorld *world, const vlWorldShape *shape, uint32_t prim,
+                          const vlEmitted *e) {
+  if (e->node && shape->triangles)
+    return face_luminance(world, shape, prim, e);
+  return e->image >= 0
+             ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap)
+             : 1.0f;
+}
+
+/* Sets the light of a face. luminance: of the emission's spectrum. */
+static void set_face_light(const vlWorld *world, uint32_t shape_index, uint32_t prim,
+                           uint32_t emitted, float luminance, vlWorldLight *light) {
+  const vlWorldShape *shape = &world->shapes.items[shape_index];
+  const vlEmitted *e = &world->emitted.items[emitted];
+  vlVec3 center;
+  float radius;
+  const bool sphere = vl_whole_sphere(shape, &center, &radius);
+  const bool plain = shape->alpha < 0 && e->image < 0 && !vl_has_spread(e);
+  memset(light, 0, sizeof *light);
+  light->kind = VL_LIGHT_AREA;
+  light->emitted = emitted;
+  light->shape = shape_index;
+  light->prim = prim;
+  light->environment = VL_NONE;
+  light->area = vl_world_prim_area(shape, prim);
+  light->power = VL_PI * light->area * (image_factor(world, shape, prim, e) * luminance) *
+                 (e->two_sided ? 2 : 1);
+  light->invisible = shape->alpha >= 0 &&
+                     world->nodes.items[shape->alpha].kind == VL_TEXTURE_CONSTANT &&
+                     world->nodes.items[shape->alpha].value == 0;
+  light->outer_side = light->invisible && sphere;
+  light->far_side_seen = sphere && shape->pass_shadow && (e->two_sided || shape->flip);
+  light->plain_sphere = plain && sphere && !light->far_side_seen;
+  if (shape->triangles) {
+    triangle_light(shape, prim, light);
+    light->plain_triangle = plain && light->one_sided_normals;
+  }
+  if (sphere)
+    sphere_light(shape, center, radius, light);
+  if (shape->kind == VL_SHAPE_DISK) {
+    vlSurfacePoint point;
+    double pdf;
+    vl_shape_sample(shape, 0, 0.5f, 0.5f, &point, &pdf);
+    for (int j = 0; j < 3; j++)
+      light->direction[j] = (float)point.n[j];
+  }
+}
+
+/* Tells that an emissive shape gives no light where it moves or is part of an object. */
+static void warn_of_dark(const vlWorld *world, const vlShapeDef *def) {
+  vlError where;
+  vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+             " ");
+  vl_log(world->context, VL_LOG_WARNING, &where,
+         def->group.index
+             ? "an emissive shape inside an object that is instanced or moves does not emit"
+             : "an emissive shape that moves does not emit");
+}
+
 vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t shape_index,
                                    uint32_t *compiled, vlError *error) {
   const vlShapeDef *def = &scene->shapes.items[shape_index];
   vlWorldShape *shape = &world->shapes.items[shape_index];
   const vlEmissionDef *emission = &scene->emissions.items[def->emission.index - 1];
   if (def->group.index || shape->steps > 1) {
-    vlError where;
-    vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-               " ");
-    vl_log(world->context, VL_LOG_WARNING, &where,
-           def->group.index
-               ? "an emissive shape inside an object that is instanced or moves does not emit"
-               : "an emissive shape that moves does not emit");
+    warn_of_dark(world, def);
     return VL_OK;
   }
   bool meshed = shape->triangles || shape->kind == VL_SHAPE_BILINEAR;
   uint32_t faces = meshed ? shape->faces : 1;
-  bool has_power = emission->power == emission->power && emission->power > 0;
+  bool has_power = emission->power > 0; /* per primitive, as in pbrt; not NaN */
   uint32_t own_emission = VL_NONE,
            *shared = has_power ? &own_emission : &compiled[def->emission.index - 1];
-  vlResult r = add_shape_emission(world, scene, emission, shared, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(add_shape_emission(world, scene, emission, shared, error));
   const vlEmitted *first = &world->emitted.items[*shared];
   uint32_t set = first->node ? world->nodes.items[first->node - 1].uv_set : 0;
   if (set)
     shape->emission_uvs = shape->more_uvs[set - 1];
-  if (meshed && (r = choose_faces(world, shape, first, &faces, error)) != VL_OK)
-    return r;
+  if (meshed)
+    VL_TRY(choose_faces(world, shape, first, &faces, error));
   if (!VL_RESERVE(world->context, &world->lights, faces))
     return vl_fail_memory(error);
   shape->first_light = faces ? (uint32_t)world->lights.count : VL_NONE;
-  float own = 0; /* luminance of the spectrum of the emission */
+  float luminance = 0; /* of the spectrum of the emission */
   for (uint32_t i = 0, k = 0; k < faces; i++) {
     if (vl_shape_light(shape, i) == VL_NONE)
       continue;
-    float area = vl_world_prim_area(shape, i);
-    if (has_power) { /* the given power is per primitive, as in pbrt */
+    if (has_power) {
       if (k > 0)
         *shared = VL_NONE;
-      if ((r = add_shape_emission(world, scene, emission, shared, error)) != VL_OK)
-        return r;
-      vlEmitted *e = &world->emitted.items[*shared];
-      float sent = (e->two_sided ? 2 : 1) * area * VL_PI;
-      if (e->image >= 0)
-        sent *= mean_image_luminance(world->images.items[e->image].mipmap);
-      e->spectrum.scale *= sent > 0 ? (float)emission->power / sent : 0;
+      VL_TRY(add_shape_emission(world, scene, emission, shared, error));
+      scale_to_power(world, (float)emission->power, vl_world_prim_area(shape, i),
+                     &world->emitted.items[*shared]);
     }
-    const vlEmitted *e = &world->emitted.items[*shared];
     if (k++ == 0 || has_power)
-      own = vl_light_luminance(&e->spectrum);
-    vlWorldLight *light = &world->lights.items[world->lights.count++];
-    memset(light, 0, sizeof *light);
-    light->kind = VL_LIGHT_AREA;
-    light->emitted = *shared;
-    light->shape = shape_index;
-    light->prim = i;
-    light->area = area;
-    light->invisible = shape->alpha >= 0 &&
-                       world->nodes.items[shape->alpha].kind == VL_TEXTURE_CONSTANT &&
-                       world->nodes.items[shape->alpha].value == 0;
-    vlVec3 center;
-    float radius;
-    bool sphere = vl_whole_sphere(shape, &center, &radius),
-         plain = shape->alpha < 0 && e->image < 0 && !vl_has_spread(e);
-    light->outer_side = light->invisible && sphere;
-    light->environment = VL_NONE;
-    float l =
-        e->image >= 0
-            ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap) * own
-            : own;
-    if (e->node && shape->triangles)
-      l = face_luminance(world, shape, i, e) * own;
-    light->power = VL_PI * area * l * (e->two_sided ? 2 : 1);
-    if (shape->triangles) {
-      triangle_light(shape, i, light);
-      light->plain_triangle = plain && light->one_sided_normals;
-    }
-    light->far_side_seen = sphere && shape->pass_shadow && (e->two_sided || shape->flip);
-    light->plain_sphere = plain && sphere && !light->far_side_seen;
-    if (sphere)
-      sphere_light(shape, center, radius, light);
-    if (shape->kind == VL_SHAPE_DISK) {
-      vlSurfacePoint point;
-      double pdf;
-      vl_shape_sample(shape, 0, 0.5f, 0.5f, &point, &pdf);
-      for (int j = 0; j < 3; j++)
-        light->direction[j] = (float)point.n[j];
-    }
+      luminance = vl_light_luminance(&world->emitted.items[*shared].spectrum);
+    set_face_light(world, shape_index, i, *shared, luminance,
+                   &world->lights.items[world->lights.count++]);
   }
   return VL_OK;
 }

@@ -1,5 +1,7 @@
 /* light/spot.c: spot lights (pbrt book 12.2.1), set by scale or by power over the cone. As in
  * pbrt the cone is round in the light's frame. */
+#include <math.h>
+
 #include "base/error.h"
 #include "light/compile.h"
 #include "light/light.row.h"
@@ -42,7 +44,7 @@ vlResult vl_compile_light_spot(vlWorld *world, const vlLightDef *def, vlWorldLig
     VL_TRY(set_skewed_frame(def, light, error));
   float solid = light->has_cone ? solid_angle(light) : (float)vl_light_power_spot(def, 1, 0);
   float factor = def->scale;
-  if (def->power == def->power)
+  if (!isnan(def->power))
     factor *= (float)(def->power / solid);
   vlResult r = vl_light_color(world, &def->color, factor, e, error);
   light->power = (light->has_cone ? 4 * VL_PI : solid) * vl_light_luminance(&e->spectrum);

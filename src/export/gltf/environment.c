@@ -128,7 +128,7 @@ static bool read_map(vlExport *x, const vlLightDef *d, Sky *sky) {
       sky->to_srgb[i] = i % 4 == 0;
   sky->scale = d->scale;
   const double lux = illuminance_of(sky->map);
-  if (d->illuminance == d->illuminance && lux > 0)
+  if (!isnan(d->illuminance) && lux > 0)
     sky->scale *= (float)(d->illuminance / lux);
   return true;
 }
@@ -150,7 +150,7 @@ static bool add_sky(Cube *cube, const vlLightDef *d) {
           (float)inverse.m[4 * (i / 3) + i % 3] * (cube->mirror && i % 3 == 2 ? -1.0f : 1.0f);
   } else {
     vl_export_light_rgb(&d->color, sky.rgb);
-    const double lux = d->illuminance == d->illuminance ? d->illuminance / 3.14159265358979 : 1;
+    const double lux = isnan(d->illuminance) ? 1 : d->illuminance / 3.14159265358979;
     for (int c = 0; c < 3; c++)
       sky.rgb[c] *= d->scale * (float)lux;
   }

@@ -16,7 +16,7 @@ bool vl_gltf_pose_at(vlGltf *g, double time) {
 bool vl_gltf_pose(vlGltf *g) {
   g->open = g->def->time;
   g->close = g->def->time_close;
-  bool both = g->open == g->open && g->close == g->close;
+  bool both = !isnan(g->open) && !isnan(g->close);
   if (both && g->close < g->open)
     return vl_gltf_fail(&g->top, "the shutter cannot close (%g s) before it opens (%g s)",
                         g->close, g->open);

@@ -18,6 +18,9 @@ enum {
   TYPE_FLOAT = 5126
 };
 
+/* Words of a .glb file (glTF 2.0, 4.4). */
+enum { GLB_MAGIC = 0x46546C67, GLB_VERSION = 2, GLB_JSON = 0x4E4F534A, GLB_BIN = 0x004E4942 };
+
 json_t *vl_gltf_array_of(const float *values, size_t count) {
   json_t *array = json_array();
   for (size_t i = 0; i < count; i++)
@@ -104,13 +107,14 @@ static json_int_t put_indices(vlExport *x, const vlExportMesh *m, bool turned) {
   uint32_t *wide = vl_export_alloc(x, count, sizeof *wide);
   if (!wide)
     return -1;
-  uint16_t *narrow = (uint16_t *)wide;
+  uint16_t *narrow = (uint16_t *)wide; /* the same block */
   for (size_t i = 0; i < count; i++) {
-    size_t from = turned && i % 3 ? i + (i % 3 == 1 ? 1 : (size_t)-1) : i;
+    static const uint8_t straight[3] = {0, 1, 2}, reversed[3] = {0, 2, 1};
+    const uint32_t index = m->indices[i - i % 3 + (turned ? reversed : straight)[i % 3]];
     if (small)
-      narrow[i] = (uint16_t)m->indices[from]; /* in place: writing never overtakes reading */
+      narrow[i] = (uint16_t)index;
     else
-      wide[i] = m->indices[from];
+      wide[i] = index;
   }
   json_int_t view = vl_gltf_put_view(x, wide, count * (small ? 2 : 4), ELEMENTS);
   vl_free(x->context, wide);
@@ -129,7 +133,8 @@ static void make_unit(const float *v, float sign, float *to) {
     to[i] = l > 1e-20f ? v[i] * k : (i == 2 ? 1.0f : 0.0f);
 }
 
-static float *vectors(vlExport *x, const vlExportMesh *m, bool tangents, bool turned) {
+/* A new block of unit normals, reversed if `turned`, or of unit tangents with their signs. */
+static float *unit_vectors(vlExport *x, const vlExportMesh *m, bool tangents, bool turned) {
   size_t per = tangents ? 4 : 3;
   float *to = vl_export_alloc(x, m->vertices, per * sizeof *to);
   if (!to)
@@ -152,19 +157,24 @@ static void put_attribute(vlExport *x, json_t *attributes, const char *name,
                                               vl_text_is(name, "POSITION"))));
 }
 
+static bool put_vectors(vlExport *x, const vlExportMesh *m, json_t *attributes, bool turned,
+                        bool tangents) {
+  float *v = unit_vectors(x, m, tangents, turned);
+  if (!v)
+    return false;
+  put_attribute(x, attributes, tangents ? "TANGENT" : "NORMAL", v, m, tangents ? 4 : 3);
+  vl_free(x->context, v);
+  return true;
+}
+
 static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attributes, bool turned,
                            bool colors, bool tangents) {
   static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
   put_attribute(x, attributes, "POSITION", m->positions, m, 3);
-  for (int k = 0; k < 2; k++) {
-    if (!(k ? m->tangents && m->normals && tangents : m->normals != NULL))
-      continue;
-    float *v = vectors(x, m, k, turned);
-    if (!v)
-      return false;
-    put_attribute(x, attributes, k ? "TANGENT" : "NORMAL", v, m, k ? 4 : 3);
-    vl_free(x->context, v);
-  }
+  if (m->normals && !put_vectors(x, m, attributes, turned, false))
+    return false;
+  if (m->normals && m->tangents && tangents && !put_vectors(x, m, attributes, turned, true))
+    return false;
   for (int k = 0; k < 4; k++) {
     if (!m->uvs[k])
       break;
@@ -402,10 +412,34 @@ static void put_little(vlExport *x, vlBytes *bytes, uint32_t v) {
   vl_bytes_put(x->context, bytes, four, 4);
 }
 
+/* Writes the .glb file: the JSON and the buffer as chunks, whose sizes are multiples of 4. */
+static bool write_binary(vlExport *x, const char *json, size_t length) {
+  const size_t size = x->buffer.data.count, padding = (4 - length % 4) % 4;
+  if ((uint64_t)length + size > 0xffffff00u)
+    return vl_export_fail(x, VL_ERROR_UNSUPPORTED, "more than 4 GB do not go into a .glb");
+  vlBytes file = {0};
+  put_little(x, &file, GLB_MAGIC);
+  put_little(x, &file, GLB_VERSION);
+  put_little(x, &file, (uint32_t)(12 + 8 + length + padding + (size ? 8 + size : 0)));
+  put_little(x, &file, (uint32_t)(length + padding));
+  put_little(x, &file, GLB_JSON);
+  vl_bytes_put(x->context, &file, json, length);
+  vl_bytes_put(x->context, &file, "   ", padding);
+  if (size) {
+    put_little(x, &file, (uint32_t)size);
+    put_little(x, &file, GLB_BIN);
+    vl_bytes_put(x->context, &file, x->buffer.data.items, size);
+  }
+  const bool fine =
+      file.full ? vl_export_no_memory(x) : vl_export_main(x, file.data.items, file.data.count);
+  VL_ARRAY_FREE(x->context, &file.data);
+  return fine;
+}
+
 static bool write_files(vlExport *x) {
   char name[300];
   vl_bytes_put(x->context, &x->buffer, "\0\0\0", (4 - x->buffer.data.count % 4) % 4);
-  size_t size = x->buffer.data.count;
+  const size_t size = x->buffer.data.count;
   snprintf(name, sizeof name, "%.200s.bin", x->stem);
   if (size && !x->binary && !vl_export_data(x, name, x->buffer.data.items, size))
     return false;
@@ -415,39 +449,14 @@ static bool write_files(vlExport *x) {
       json_object_set_new(buffer, "uri", json_string(name));
     vl_gltf_put(x, "buffers", buffer);
   }
-  size_t flags = x->binary ? JSON_COMPACT : JSON_INDENT(1) | JSON_PRESERVE_ORDER;
-  size_t length = json_dumpb(x->root, NULL, 0, flags), padding = (4 - length % 4) % 4;
+  const size_t flags = x->binary ? JSON_COMPACT : JSON_INDENT(1) | JSON_PRESERVE_ORDER;
+  const size_t length = json_dumpb(x->root, NULL, 0, flags);
   char *text = length ? vl_alloc_array(x->context, length, 1) : NULL;
-  if (!text || x->buffer.full || json_dumpb(x->root, text, length, flags) != length) {
-    vl_free(x->context, text);
-    return vl_export_no_memory(x);
-  }
   bool fine;
-  if (x->binary && (uint64_t)length + size > 0xffffff00u) {
-    vl_free(x->context, text);
-    return vl_export_fail(x, VL_ERROR_UNSUPPORTED, "more than 4 GB do not go into a .glb");
-  }
-  if (x->binary) {
-    vlBytes file = {0};
-    uint32_t whole = (uint32_t)(12 + 8 + length + padding + (size ? 8 + size : 0));
-    put_little(x, &file, 0x46546C67);
-    put_little(x, &file, 2);
-    put_little(x, &file, whole);
-    put_little(x, &file, (uint32_t)(length + padding));
-    put_little(x, &file, 0x4E4F534A);
-    vl_bytes_put(x->context, &file, text, length);
-    vl_bytes_put(x->context, &file, "   ", padding);
-    if (size) {
-      put_little(x, &file, (uint32_t)size);
-      put_little(x, &file, 0x004E4942);
-      vl_bytes_put(x->context, &file, x->buffer.data.items, size);
-    }
-    fine = file.full ? vl_export_no_memory(x)
-                     : vl_export_main(x, file.data.items, file.data.count);
-    VL_ARRAY_FREE(x->context, &file.data);
-  } else {
-    fine = vl_export_main(x, text, length);
-  }
+  if (!text || x->buffer.full || json_dumpb(x->root, text, length, flags) != length)
+    fine = vl_export_no_memory(x);
+  else
+    fine = x->binary ? write_binary(x, text, length) : vl_export_main(x, text, length);
   vl_free(x->context, text);
   return fine;
 }

@@ -11,6 +11,9 @@
 
 enum { MAX_ITEMS = 1 << 24 };
 
+/* Types of the chunks of a .glb file: "JSON", "BIN". */
+enum { GLB_JSON = 0x4E4F534A, GLB_BIN = 0x004E4942 };
+
 /* The .glb container: a header of 12 bytes, then chunks. A chunk consists of its length, its
  * type and its data. */
 static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
@@ -30,13 +33,13 @@ static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
       return vl_gltf_fail(&g->top,
                           "broken .glb: chunk %d of %zu bytes at byte %zu goes past the end", k,
                           size, at);
-    if (k == 0 && kind != 0x4E4F534A)
+    if (k == 0 && kind != GLB_JSON)
       return vl_gltf_fail(&g->top, "broken .glb: its first chunk is not JSON");
     if (k == 0) {
       *json = (const char *)g->file + at + 8;
       *json_size = size;
     }
-    if (kind == 0x004E4942 && !g->chunk) {
+    if (kind == GLB_BIN && !g->chunk) {
       g->chunk = g->file + at + 8;
       g->chunk_size = size;
     }

@@ -425,6 +425,29 @@ void vl_drawing_destroy(vlDrawing *drawing) {
           vl_owned(drawing->labels), block);
 }
 
+/* Draws one camera as a whole, or several as small ones that a path joins. */
+static void draw_cameras(Pen *p, const vlCamera *cameras, uint32_t count) {
+  double eye[3], before[3];
+  for (uint32_t i = 0; i < count; i++) {
+    vlCamera still = cameras[i];
+    still.moves = false; /* drawn when it opens */
+    p->camera = &still;
+    p->index = i;
+    p->flat = still.projection == VL_PROJECTION_PERSPECTIVE ||
+              still.projection == VL_PROJECTION_ORTHOGRAPHIC;
+    axis_of(&still, 2, p->forward);
+    if (count == 1) {
+      draw_whole(p);
+      return;
+    }
+    draw_small(p);
+    eye_of(&still, eye);
+    if (i)
+      line(p, VL_DRAWING_PATH, before, eye);
+    memcpy(before, eye, sizeof before);
+  }
+}
+
 vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t count,
                            const vlDrawingDef *def, vlDrawing **drawing, vlError *error) {
   vl_error_clear(error);
@@ -437,31 +460,8 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
       !good(def))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "outline: no camera, or a number of the def that is not possible");
-  Pen p;
-  vlCamera still;
-  memset(&p, 0, sizeof p);
-  p.context = context;
-  p.camera = &still;
-  p.def = def;
-  for (uint32_t i = 0; i < count; i++) {
-    still = cameras[i];
-    still.moves = false; /* drawn when it opens */
-    p.index = i;
-    p.flat = cameras[i].projection == VL_PROJECTION_PERSPECTIVE ||
-             cameras[i].projection == VL_PROJECTION_ORTHOGRAPHIC;
-    axis_of(p.camera, 2, p.forward);
-    if (count == 1) {
-      draw_whole(&p);
-      continue;
-    }
-    draw_small(&p);
-    double eye[3], before[3];
-    eye_of(p.camera, eye);
-    if (i) {
-      eye_of(&cameras[i - 1], before);
-      line(&p, VL_DRAWING_PATH, before, eye);
-    }
-  }
+  Pen p = {.context = context, .def = def};
+  draw_cameras(&p, cameras, count);
   Block *block = vl_alloc_zero(context, 1, sizeof *block);
   if (!block || p.failed) {
     VL_ARRAY_FREE(context, &p.lines);
@@ -471,17 +471,15 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
     return vl_fail_memory(error);
   }
   block->context = context;
+  block->head = (vlDrawing){.lines = p.lines.items,
+                            .faces = p.faces.items,
+                            .labels = p.labels.items,
+                            .line_count = (uint32_t)p.lines.count,
+                            .face_count = (uint32_t)p.faces.count,
+                            .label_count = (uint32_t)p.labels.count,
+                            .low = {INFINITY, INFINITY, INFINITY},
+                            .high = {-INFINITY, -INFINITY, -INFINITY}};
   vlDrawing *d = &block->head;
-  d->lines = p.lines.items;
-  d->faces = p.faces.items;
-  d->labels = p.labels.items;
-  d->line_count = (uint32_t)p.lines.count;
-  d->face_count = (uint32_t)p.faces.count;
-  d->label_count = (uint32_t)p.labels.count;
-  for (int i = 0; i < 3; i++) {
-    d->low[i] = INFINITY;
-    d->high[i] = -INFINITY;
-  }
   for (uint32_t i = 0; i < d->line_count; i++) {
     extend(d, d->lines[i].from);
     extend(d, d->lines[i].to);

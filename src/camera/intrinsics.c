@@ -94,21 +94,14 @@ typedef struct {
   Quantity fx, fy, cx, cy;
 } Gathered;
 
-#define TRY(call)                 \
-  do {                            \
-    vlResult try_result = (call); \
-    if (try_result != VL_OK)      \
-      return try_result;          \
-  } while (0)
-
 /* The screen window (pbrt's): extent of the film, y up, on a plane at distance 1, scaled by
  * tan(fov / 2). */
 static vlResult take_screen(const vlCameraDef *d, double tangent, const char *from, Gathered *g,
                             vlError *error) {
   double across = d->screen_max_x - d->screen_min_x, down = d->screen_max_y - d->screen_min_y;
-  TRY(take(&g->fx, d->width / across / tangent, from, error));
-  TRY(take(&g->fy, d->height / down / tangent, from, error));
-  TRY(take(&g->cx, -d->screen_min_x / across * d->width, "the screen window", error));
+  VL_TRY(take(&g->fx, d->width / across / tangent, from, error));
+  VL_TRY(take(&g->fy, d->height / down / tangent, from, error));
+  VL_TRY(take(&g->cx, -d->screen_min_x / across * d->width, "the screen window", error));
   return take(&g->cy, d->screen_max_y / down * d->height, "the screen window", error);
 }
 
@@ -137,48 +130,81 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
   return VL_OK;
 }
 
+/* The focal lengths that a screen window gives, with the field of view of a perspective
+ * camera. */
+static vlResult gather_screen(const vlCameraDef *d, Gathered *g, vlError *error) {
+  char from[160];
+  bool has_fov = !vl_is_unset(d->fov);
+  if (d->projection == VL_PROJECTION_PERSPECTIVE) {
+    double fov = has_fov ? d->fov : 0.5 * pi;
+    snprintf(from, sizeof from, "the screen window with fov %.9g degrees%s", fov * 180.0 / pi,
+             has_fov ? "" : " (the default)");
+    return take_screen(d, vl_precise_tan(0.5 * fov), from, g, error);
+  }
+  if (has_fov)
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "camera: fov and a screen window are given; for the %s projection the window "
+        "alone says it",
+        vl_projection_name(d->projection));
+  return take_screen(d, 1.0, "the screen window", g, error);
+}
+
+/* The focal lengths that a field of view gives. */
+static vlResult gather_fov(const vlCameraDef *d, const vlCamera *camera, Gathered *g,
+                           vlError *error) {
+  static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller side",
+                                     "larger side"};
+  char from[160];
+  bool horizontal, vertical;
+  double window = half_window(d, &horizontal, &vertical), half;
+  VL_TRY(plane_half(d, camera, !horizontal, &half, error));
+  double f = window / half;
+  snprintf(from, sizeof from, "fov %.9g degrees (%s)", d->fov * 180.0 / pi, axes[d->fov_axis]);
+  if (horizontal)
+    VL_TRY(take(&g->fx, f, from, error));
+  if (vertical)
+    VL_TRY(take(&g->fy, f, from, error));
+  return VL_OK;
+}
+
+/* The focal length that focal_mm and sensor_width_mm give. */
+static vlResult gather_millimetres(const vlCameraDef *d, Gathered *g, vlError *error) {
+  char from[160];
+  bool has_mm = !vl_is_unset(d->focal_mm), has_width = !vl_is_unset(d->sensor_width_mm);
+  /* with an f-number or a tilted lens, one of them may describe the lens alone if the focal
+   * length in pixels is known */
+  bool known = !vl_is_unset(g->fx.value) || !vl_is_unset(g->fy.value);
+  bool lens = !vl_is_unset(d->lens.f_number) || d->lens.lens_tilt_x != 0.0 ||
+              d->lens.lens_tilt_y != 0.0;
+  if (has_mm != has_width && !(lens && known))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is given without %s",
+                   has_mm ? "focal_mm" : "sensor_width_mm",
+                   has_mm ? "sensor_width_mm" : "focal_mm");
+  if (!has_mm || !has_width)
+    return VL_OK;
+  snprintf(from, sizeof from, "focal_mm %.9g on sensor_width_mm %.9g", d->focal_mm,
+           d->sensor_width_mm);
+  return take(&g->fx, d->focal_mm / d->sensor_width_mm * d->width, from, error);
+}
+
 /* Collects the focal lengths of perspective cameras, and of all others whose plane scales with
  * a focal length. */
 static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool screen,
                              Gathered *g, vlError *error) {
   char from[160];
-  bool has_fov = !vl_is_unset(d->fov), has_d = !vl_is_unset(d->view_distance),
-       has_mm = !vl_is_unset(d->focal_mm);
   double zoom = vl_is_unset(d->zoom) ? 1.0 : d->zoom,
          size = vl_is_unset(d->pixel_size) ? 1.0 : d->pixel_size;
-  if (screen && d->projection != VL_PROJECTION_PERSPECTIVE) {
-    if (has_fov)
-      return vl_fail(
-          error, VL_ERROR_ARGUMENT,
-          "camera: fov and a screen window are given; for the %s projection the window "
-          "alone says it",
-          vl_projection_name(d->projection));
-    TRY(take_screen(d, 1.0, "the screen window", g, error));
-  } else if (screen) {
-    double fov = has_fov ? d->fov : 0.5 * pi;
-    snprintf(from, sizeof from, "the screen window with fov %.9g degrees%s", fov * 180.0 / pi,
-             has_fov ? "" : " (the default)");
-    TRY(take_screen(d, vl_precise_tan(0.5 * fov), from, g, error));
-  } else if (has_fov) {
-    static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller side",
-                                       "larger side"};
-    bool horizontal, vertical;
-    double window = half_window(d, &horizontal, &vertical), half;
-    TRY(plane_half(d, camera, !horizontal, &half, error));
-    double f = window / half;
-    snprintf(from, sizeof from, "fov %.9g degrees (%s)", d->fov * 180.0 / pi,
-             axes[d->fov_axis]);
-    if (horizontal)
-      TRY(take(&g->fx, f, from, error));
-    if (vertical)
-      TRY(take(&g->fy, f, from, error));
-  }
-  if (has_d) {
+  if (screen)
+    VL_TRY(gather_screen(d, g, error));
+  else if (!vl_is_unset(d->fov))
+    VL_TRY(gather_fov(d, camera, g, error));
+  if (!vl_is_unset(d->view_distance)) {
     double f = zoom * d->view_distance / size;
     snprintf(from, sizeof from, "d %.9g with zoom %.9g and pixel size %.9g", d->view_distance,
              zoom, size);
-    TRY(take(&g->fx, f, from, error));
-    TRY(take(&g->fy, f, from, error));
+    VL_TRY(take(&g->fx, f, from, error));
+    VL_TRY(take(&g->fy, f, from, error));
   } else if (zoom != 1.0) {
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: zoom %g is given without the view distance d that it acts on",
@@ -188,22 +214,7 @@ static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool 
                    "camera: pixel size %g is given without the view distance d that it divides",
                    size);
   }
-  /* with an f-number, one of them may describe the lens alone if the focal length in pixels is
-   * known */
-  bool both = has_mm && !vl_is_unset(d->sensor_width_mm),
-       known = !vl_is_unset(g->fx.value) || !vl_is_unset(g->fy.value);
-  bool lens = !vl_is_unset(d->lens.f_number) || d->lens.lens_tilt_x != 0.0 ||
-              d->lens.lens_tilt_y != 0.0;
-  if (has_mm != !vl_is_unset(d->sensor_width_mm) && !(lens && known))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is given without %s",
-                   has_mm ? "focal_mm" : "sensor_width_mm",
-                   has_mm ? "sensor_width_mm" : "focal_mm");
-  if (both) {
-    snprintf(from, sizeof from, "focal_mm %.9g on sensor_width_mm %.9g", d->focal_mm,
-             d->sensor_width_mm);
-    TRY(take(&g->fx, d->focal_mm / d->sensor_width_mm * d->width, from, error));
-  }
-  return VL_OK;
+  return gather_millimetres(d, g, error);
 }
 
 static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered *g,
@@ -222,12 +233,12 @@ static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered 
                      "camera: %s %g has no meaning for an orthographic camera", foreign[i].name,
                      foreign[i].value);
   if (screen)
-    TRY(take_screen(d, 1.0, "the screen window", g, error));
+    VL_TRY(take_screen(d, 1.0, "the screen window", g, error));
   if (!vl_is_unset(d->pixel_size)) {
     double zoom = vl_is_unset(d->zoom) ? 1.0 : d->zoom;
     snprintf(from, sizeof from, "pixel size %.9g with zoom %.9g", d->pixel_size, zoom);
-    TRY(take(&g->fx, zoom / d->pixel_size, from, error));
-    TRY(take(&g->fy, zoom / d->pixel_size, from, error));
+    VL_TRY(take(&g->fx, zoom / d->pixel_size, from, error));
+    VL_TRY(take(&g->fy, zoom / d->pixel_size, from, error));
   } else if (!vl_is_unset(d->zoom) && d->zoom != 1.0) {
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: zoom %g is given without the pixel size that it divides", d->zoom);
@@ -260,18 +271,18 @@ vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *e
                 {"principal point cx", VL_UNSET, ""},
                 {"principal point cy", VL_UNSET, ""}};
   bool orthographic = d->projection == VL_PROJECTION_ORTHOGRAPHIC, screen;
-  TRY(check_fov(d, error));
-  TRY(screen_given(d, &screen, error));
+  VL_TRY(check_fov(d, error));
+  VL_TRY(screen_given(d, &screen, error));
   if (!vl_is_unset(d->fx))
-    TRY(take(&g.fx, d->fx, "fx", error));
+    VL_TRY(take(&g.fx, d->fx, "fx", error));
   if (!vl_is_unset(d->fy))
-    TRY(take(&g.fy, d->fy, "fy", error));
+    VL_TRY(take(&g.fy, d->fy, "fy", error));
   if (!vl_is_unset(d->cx))
-    TRY(take(&g.cx, d->cx, "cx", error));
+    VL_TRY(take(&g.cx, d->cx, "cx", error));
   if (!vl_is_unset(d->cy))
-    TRY(take(&g.cy, d->cy, "cy", error));
-  TRY(orthographic ? gather_orthographic(d, screen, &g, error)
-                   : gather_focal(d, camera, screen, &g, error));
+    VL_TRY(take(&g.cy, d->cy, "cy", error));
+  VL_TRY(orthographic ? gather_orthographic(d, screen, &g, error)
+                      : gather_focal(d, camera, screen, &g, error));
 
   /* a single focal length: square pixels */
   if (vl_is_unset(g.fx.value) && vl_is_unset(g.fy.value))

@@ -154,22 +154,13 @@ static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error
   return VL_OK;
 }
 
-vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef *camera,
-                                         vlError *error) {
-  vl_error_clear(error);
-  if (!def || !camera)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
-  double p[2] = {0.5 * def->width, 0.5 * def->height}, f2 = 0.0;
-  VL_TRY(check(def, error));
-  if (def->count == 3)
-    VL_TRY(orthocentre(def, p, error));
-  uint32_t pairs = def->count == 3 ? 3 : 1;
-  if (def->count == 2 && !vl_is_unset(def->cx)) {
-    p[0] = def->cx;
-    p[1] = def->cy;
-  }
-  double least = INFINITY; /* of the three equal values, the one with the smallest terms has the
-                              least rounding error */
+/* The focal length in pixels: seen from the principal point p, the points are at right angles
+ * to each other. */
+static vlResult focal_length(const vlVanishingDef *def, const double p[2], double *f,
+                             vlError *error) {
+  const uint32_t pairs = def->count == 3 ? 3 : 1;
+  double f2 = 0.0, least = INFINITY; /* of the three equal values, the one with the smallest
+                                        terms has the least rounding error */
   for (uint32_t i = 0; i < pairs; i++) {
     const double *a = def->points[i], *b = def->points[(i + 1) % def->count];
     double x = (a[0] - p[0]) * (b[0] - p[0]), y = (a[1] - p[1]) * (b[1] - p[1]);
@@ -184,19 +175,16 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
     least = fabs(x) + fabs(y);
     f2 = -(x + y);
   }
-  double f = sqrt(f2);
-  if (!(f > 1e-30 && f < 1e30))
+  *f = sqrt(f2);
+  if (!(*f > 1e-30 && *f < 1e30))
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vanishing points: a focal length of %g pixels is out of range", f);
-  if (def->count == 3 && !vl_is_unset(def->cx) &&
-      vl_length2(def->cx - p[0], def->cy - p[1]) > agreement * f)
-    return vl_fail(
-        error, VL_ERROR_ARGUMENT,
-        "vanishing points: the three have their principal point at (%.9g, %.9g), but "
-        "(%.9g, %.9g) is given",
-        p[0], p[1], def->cx, def->cy);
-  /* columns of camera from world: directions of the world's axes in camera space */
-  double axes[3][3];
+                   "vanishing points: a focal length of %g pixels is out of range", *f);
+  return VL_OK;
+}
+
+/* The directions of the world's axes in camera space: the columns of camera from world. */
+static void find_axes(const vlVanishingDef *def, const double p[2], double f,
+                      double axes[3][3]) {
   for (int i = 0; i < 2; i++) {
     double *v = axes[def->axes[i]], sign = def->away[i] ? 1.0 : -1.0;
     v[0] = sign * (def->points[i][0] - p[0]);
@@ -213,6 +201,30 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   /* orthogonal to the last bit, despite rounding */
   vl_cross3(axes[(second + 1) % 3], axes[(second + 2) % 3], axes[second]);
   vl_normalize3(axes[second]);
+}
+
+vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef *camera,
+                                         vlError *error) {
+  vl_error_clear(error);
+  if (!def || !camera)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
+  double p[2] = {0.5 * def->width, 0.5 * def->height}, f, axes[3][3];
+  const bool has_centre = !vl_is_unset(def->cx);
+  VL_TRY(check(def, error));
+  if (def->count == 3)
+    VL_TRY(orthocentre(def, p, error));
+  if (def->count == 2 && has_centre) {
+    p[0] = def->cx;
+    p[1] = def->cy;
+  }
+  VL_TRY(focal_length(def, p, &f, error));
+  if (has_centre && vl_length2(def->cx - p[0], def->cy - p[1]) > agreement * f)
+    return vl_fail(
+        error, VL_ERROR_ARGUMENT,
+        "vanishing points: the three have their principal point at (%.9g, %.9g), but "
+        "(%.9g, %.9g) is given",
+        p[0], p[1], def->cx, def->cy);
+  find_axes(def, p, f, axes);
   *camera = vl_default_camera_def(def->width, def->height);
   camera->fx = camera->fy = f;
   camera->cx = p[0];

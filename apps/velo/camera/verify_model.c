@@ -118,20 +118,18 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2], bool
       return cos(longitude) > -a && (a <= 1.0 || cos(longitude) >= -1.0 / a);
     }
     case VL_PROJECTION_FOV:
+      if (!(z > 0.0))
+        return false;
       r = atan(2.0 * across / z * tan(0.5 * a)) / a;
-      k = across > 0.0 ? r / across : 0.0;
-      plane[0] = k * x;
-      plane[1] = k * y;
-      return z > 0.0;
+      k = across > 0.0 ? r / across : 1.0 / z;
+      break;
     case VL_PROJECTION_DIVISION: {
       /* with R = across: the solution r of r z = R (1 + a r^2) that is 0 at R = 0 */
       double root = z * z - 4.0 * a * across * across;
-      if (root < 0.0)
+      if (root < 0.0 || !(z > 0.0 || a < 0.0))
         return false;
       k = 2.0 / (z + sqrt(root));
-      plane[0] = k * x;
-      plane[1] = k * y;
-      return k > 0.0 && isfinite(k) && (z > 0.0 || a < 0.0);
+      break;
     }
     case VL_PROJECTION_UNIFIED:
       k = 1.0 / (z + a * length);

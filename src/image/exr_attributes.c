@@ -16,14 +16,14 @@ void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char 
 
 /* Attributes that describe the file's layout. The reader skips them and the writer makes new
  * ones. */
-static const char *const LAYOUT[] = {
+static const char *const layout[] = {
     "channels",          "compression", "lineOrder", "tiles",   "type",
     "version",           "chunkCount",  "name",      "preview", "dwaCompressionLevel",
     "maxSamplesPerPixel"};
 
 static bool is_layout(const char *name) {
-  for (size_t i = 0; i < VL_LENGTH(LAYOUT); i++)
-    if (vl_text_is(name, LAYOUT[i]))
+  for (size_t i = 0; i < VL_LENGTH(layout); i++)
+    if (vl_text_is(name, layout[i]))
       return true;
   return false;
 }
@@ -140,8 +140,9 @@ vlResult vl_exr_attributes_in(exr_const_context_t exr, vlImage *image) {
     if (!from->name || !from->name[0] || is_layout(from->name) ||
         !convert(from, &to, text, sizeof text))
       continue;
-    if (vl_text_is(to.name, "dataWindow") || vl_text_is(to.name, "displayWindow")) {
-      windows[to.name[1] == 'a' ? 0 : 1] = to;
+    const bool data = vl_text_is(to.name, "dataWindow");
+    if (data || vl_text_is(to.name, "displayWindow")) {
+      windows[data ? 0 : 1] = to;
       plain += is_default(&to, image);
       continue;
     }
@@ -257,7 +258,7 @@ vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError 
   static const struct {
     const char *name;
     vlAttributeType type;
-  } FIXED[] = {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT},
+  } fixed[] = {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT},
                {"screenWindowWidth", VL_ATTRIBUTE_FLOAT},
                {"screenWindowCenter", VL_ATTRIBUTE_V2F},
                {"displayWindow", VL_ATTRIBUTE_BOX2I},
@@ -267,8 +268,8 @@ vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError 
     if (is_layout(a->name))
       continue;
     bool ok = true;
-    for (size_t k = 0; k < VL_LENGTH(FIXED); k++)
-      if (vl_text_is(a->name, FIXED[k].name) && a->type != FIXED[k].type)
+    for (size_t k = 0; k < VL_LENGTH(fixed); k++)
+      if (vl_text_is(a->name, fixed[k].name) && a->type != fixed[k].type)
         ok = false;
     if (a->type == VL_ATTRIBUTE_BOX2I)
       ok = ok && fits_int(a->numbers, 4);

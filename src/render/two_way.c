@@ -494,23 +494,11 @@ static bool find_extents(vlTwoWayRun *run) {
   return good;
 }
 
-static vlResult make_run(vlTwoWayRun *run, const vlWorld *world, const vlCamera *camera,
-                         vlFilm *film, const vlRenderDef *def, const vlTraceDef *trace,
-                         const vlFilmRays *rays, vlError *error) {
-  vlContext *context = world->context;
-  const vlFilmDef *f = vl_film_def(film);
-  run->context = context;
-  run->world = world;
-  run->film = film;
-  run->film_def = f;
-  run->trace = *trace;
-  run->trace.two_way = &run->way;
-  run->kernels = vl_trace_kernels(trace->isa);
-  run->rays = rays;
-  run->loop = vl_loop_def(def->priority, def->cancel);
-  run->exposure = (float)camera->exposure_time;
-  uint64_t pixels = (uint64_t)f->width * f->height;
-  run->pass_seed = rays->sampler.seed;
+/* The numbers of light paths and their sampler. */
+static void set_light_paths(vlTwoWayRun *run, const vlRenderDef *def,
+                            const vlSampler *sampler) {
+  const vlFilmDef *f = run->film_def;
+  const uint64_t pixels = (uint64_t)f->width * f->height;
   run->pixels = pixels < UINT32_MAX ? (uint32_t)pixels : UINT32_MAX;
   run->most_paths = def->light_paths;
   if (def->light_paths == VL_AS_MANY_AS_PIXELS)
@@ -518,44 +506,59 @@ static vlResult make_run(vlTwoWayRun *run, const vlWorld *world, const vlCamera 
   run->paths = run->most_paths;
   run->rounds =
       run->most_paths > run->pixels ? (run->most_paths + run->pixels - 1) / run->pixels : 1;
-  uint64_t samples = (uint64_t)rays->sampler.spp * run->rounds;
-  vlTwoWay *way = &run->way;
-  vl_sampler_init(&way->sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width,
+  const uint64_t samples = (uint64_t)sampler->spp * run->rounds;
+  vl_sampler_init(&run->way.sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width,
                   f->height, samples < UINT32_MAX ? (uint32_t)samples : UINT32_MAX);
+}
+
+static vlResult make_run(vlTwoWayRun *run, const vlWorld *world, const vlCamera *camera,
+                         vlFilm *film, const vlRenderDef *def, const vlTraceDef *trace,
+                         const vlFilmRays *rays, vlError *error) {
+  vlContext *context = world->context;
+  vlTwoWay *way = &run->way;
+  run->context = context;
+  run->world = world;
+  run->film = film;
+  run->film_def = vl_film_def(film);
+  run->trace = *trace;
+  run->trace.two_way = way;
+  run->kernels = vl_trace_kernels(trace->isa);
+  run->rays = rays;
+  run->loop = vl_loop_def(def->priority, def->cancel);
+  run->exposure = (float)camera->exposure_time;
+  run->pass_seed = rays->sampler.seed;
+  set_light_paths(run, def, &rays->sampler);
   way->light_only = def->tracer == VL_TRACER_LIGHT_PATH;
   way->apart = def->tracer == VL_TRACER_SPPM;
   way->merge = def->tracer == VL_TRACER_MERGING || way->apart;
   way->shared = -1.0f;
   way->pixel = 1.0f;
   run->choice = vl_alloc_zero(context, world->lights.count + 1, sizeof *run->choice);
-  bool good =
-      run->choice && find_extents(run) && vl_splats_make(context, film, &run->splats) == VL_OK;
   way->choice = run->choice;
-  vlResult result = good ? make_workers(run, error) : vl_fail_memory(error);
-  if (result == VL_OK)
-    result = find_media(run, camera, error);
-  if (result != VL_OK)
-    return result;
+  if (!run->choice || !find_extents(run) ||
+      vl_splats_make(context, film, &run->splats) != VL_OK)
+    return vl_fail_memory(error);
+  VL_TRY(make_workers(run, error));
+  VL_TRY(find_media(run, camera, error));
   run->starts = vl_two_way_choice(world, run->choice) && run->most_paths > 0;
   if (run->most_paths == 0)
     memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
   if (run->starts)
-    vl_camera_view(camera, f, &way->eye);
+    vl_camera_view(camera, run->film_def, &way->eye);
   way->eye.camera = &rays->camera;
-  if (result == VL_OK && way->eye.sees && rays->camera.when.moves)
-    result = make_eyes(run, error);
-  /* clamped, so that its cube is finite */
-  if (result == VL_OK && way->merge && def->merge_radius > 0)
+  if (way->eye.sees && rays->camera.when.moves)
+    VL_TRY(make_eyes(run, error));
+  if (way->merge && def->merge_radius > 0) /* clamped, so that its cube is finite */
     run->first_radius = (float)fmin(fmax(def->merge_radius, 1e-12), 1e9);
-  else if (result == VL_OK && way->merge)
-    result = vl_first_radius(world, camera, trace, &run->first_radius, error);
+  else if (way->merge)
+    VL_TRY(vl_first_radius(world, camera, trace, &run->first_radius, error));
   way->merge = way->merge && run->starts && run->first_radius > 0.0f;
-  if (result == VL_OK && way->merge)
-    result = grow(run, FIRST_PHOTONS, error);
+  if (way->merge)
+    VL_TRY(grow(run, FIRST_PHOTONS, error));
   set_radius(run, 0);
-  if (result == VL_OK && run->starts && def->tracer == VL_TRACER_BIDIRECTIONAL)
-    result = make_inner(run, error);
-  return result;
+  if (run->starts && def->tracer == VL_TRACER_BIDIRECTIONAL)
+    VL_TRY(make_inner(run, error));
+  return VL_OK;
 }
 
 vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film,

@@ -83,13 +83,12 @@ static bool check_medium(vlScene *scene, const vlMediumDef *d, const vlKindRow *
 
 /* Copies the members that give values per cell, for kinds with grids. */
 static void copy_cells(const vlMediumDef *from, vlMediumDef *to) {
-  bool own = to->kind == VL_MEDIUM_RGB_GRID;
   if (to->kind == VL_MEDIUM_GRID) {
     to->density = from->density;
     to->emission_scales = from->emission_scales;
     to->temperature = from->temperature;
   }
-  if (own) {
+  if (to->kind == VL_MEDIUM_RGB_GRID) {
     to->rgb_a = from->rgb_a;
     to->rgb_s = from->rgb_s;
     to->rgb_emission = from->rgb_emission;

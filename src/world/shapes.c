@@ -40,7 +40,8 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
                               vlWorldShape *s, vlError *error) {
   const vlWorldMaterial *m = &world->materials.items[s->material];
   int32_t presence = m->presence, whole = s->alpha, none;
-  for (; m->mixed; m = &world->materials.items[s->material]) { /* a part that is all there is */
+  /* of a mix with the interface, the other part is all there is */
+  for (; m->mixed; m = &world->materials.items[s->material]) {
     const vlWorldMaterial *first = &world->materials.items[m->mix[0]];
     const vlWorldMaterial *second = &world->materials.items[m->mix[1]];
     if (!first->nothing && !second->nothing)
@@ -64,11 +65,15 @@ static void grow_bounds(float low[3], float high[3], const float p[3]) {
   }
 }
 
-static void compute_bounds(const vlWorldShape *s, float low[3], float high[3]) {
+static void empty_bounds(float low[3], float high[3]) {
   for (int i = 0; i < 3; i++) {
     low[i] = INFINITY;
     high[i] = -INFINITY;
   }
+}
+
+static void compute_bounds(const vlWorldShape *s, float low[3], float high[3]) {
+  empty_bounds(low, high);
   if (vl_shape_is_mesh(s->kind)) { /* the box covers all time steps */
     for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++)
       grow_bounds(low, high, s->positions + 3 * i);
@@ -191,10 +196,7 @@ static void shape_bounds(const vlWorld *world, size_t index, float low[3], float
 }
 
 static void set_group_bounds(const vlWorld *world, vlWorldGroup *group) {
-  for (int i = 0; i < 3; i++) {
-    group->low[i] = INFINITY;
-    group->high[i] = -INFINITY;
-  }
+  empty_bounds(group->low, group->high);
   for (uint32_t i = 0; i < group->count; i++)
     shape_bounds(world, group->shapes[i], group->low, group->high);
 }
@@ -279,21 +281,16 @@ static vlResult add_bounds(Bounds *all, const float a[3], const float b[3], uint
 }
 
 static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *error) {
-  Bounds bounds = {.world = world,
-                   .low = {INFINITY, INFINITY, INFINITY},
-                   .high = {-INFINITY, -INFINITY, -INFINITY},
-                   .error = error};
-  float *low = bounds.low, *high = bounds.high;
+  Bounds bounds = {.world = world, .error = error};
+  float *low = bounds.low, *high = bounds.high, a[3], b[3];
+  empty_bounds(low, high);
   const vlWorldGroup *root = &world->groups.items[0];
   for (uint32_t i = 0; i < root->count; i++) {
     const vlWorldShape *s = &world->shapes.items[root->shapes[i]];
     const vlSource *source = &scene->shapes.items[root->shapes[i]].source;
-    float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
+    empty_bounds(a, b);
     shape_bounds(world, root->shapes[i], a, b);
-    vlResult r =
-        add_bounds(&bounds, a, b, s->kind == VL_SHAPE_TRIANGLES ? s->faces : 0, source);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(add_bounds(&bounds, a, b, s->kind == VL_SHAPE_TRIANGLES ? s->faces : 0, source));
   }
   for (size_t i = 0, k = 0; k < world->instances.count; i++) {
     if (scene->instances.items[i].hidden ||
@@ -301,7 +298,7 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
       continue;
     const vlSource *source = &scene->instances.items[i].source;
     const vlWorldInstance *instance = &world->instances.items[k++];
-    float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
+    empty_bounds(a, b);
     instance_bounds(world, instance, a, b);
     VL_TRY(add_bounds(&bounds, a, b,
                       group_triangles(world, &world->groups.items[instance->group]), source));

@@ -179,13 +179,12 @@ void channels_take(Channels *c, Job *job) {
 uint64_t channels_values(const Channels *c, uint32_t buckets) {
   static const uint8_t values[VL_CHANNEL_COUNT] = {1, 1, 3, 3, 3, 2, 3, 3,        1, 1,
                                                    1, 1, 1, 2, 3, 3, 3, [20] = 7, 1, 1};
-  enum {
-    GBUFFER = 48
-  }; /* the gbuffer's channels and the ground truth that they are computed from */
+  /* the gbuffer's channels and the ground truth that they are computed from */
+  enum { GBUFFER = 48 };
   uint64_t sum = c->gbuffer ? GBUFFER : 0;
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     if (c->bits & 1u << i)
-      sum += i >= 17 && i < 20 ? 2 * c->ranks : values[i];
+      sum += CHANNELS_CRYPTO & 1u << i ? 2 * c->ranks : values[i];
   const uint32_t both = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
   if ((c->bits & both) == both)
     sum += 3; /* feature.error */

@@ -108,7 +108,7 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char nam
   return fine;
 }
 
-/* ---- worked images ----------------------------------------------------------------------- */
+/* ---- changed images ---------------------------------------------------------------------- */
 
 /* How the values of an image are changed. */
 typedef struct Change {
@@ -172,9 +172,8 @@ static float scaled(const vlTextureDef *t, float texel) {
   return fmaxf(0, t->invert ? 1 - value : value);
 }
 
-/* Changes an image: one channel as the tracer reads it, or three channels. The new image has
- * the texture's factors. */
-static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
+/* A number that tells the image of a texture and a change from others (FNV-1a). */
+static uint32_t variant_of(const vlTextureDef *t, Change change) {
   uint32_t variant = 16 + (change.squared ? 1u : 0u);
   const float key[16] = {t->tint[0],
                          t->tint[1],
@@ -194,13 +193,43 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
                          t->spectrum};
   for (size_t i = 0; i < sizeof key; i++)
     variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 16u;
+  return variant;
+}
+
+/* Changes a pixel of `have` channels: to one channel as the tracer reads it, or to three for a
+ * spectrum texture. */
+static void change_pixel(const vlTextureDef *t, Change change, const float *v, uint32_t have,
+                         float *to) {
+  /* of one or two channels: grey, and coverage */
+  const bool colored = have > 2, covered = have == 2 || have == 4;
+  const float texels[4] = {v[0], v[colored ? 1 : 0], v[colored ? 2 : 0],
+                           covered ? v[have - 1] : 1.0f};
+  float rgba[4];
+  for (int k = 0; k < 4; k++)
+    rgba[k] = t->tint[k] * (k < 3 || covered ? scaled(t, texels[k]) : 1);
+  if (t->spectrum) {
+    for (int k = 0; k < 3; k++)
+      to[k] = change_color(rgba[k], change);
+    return;
+  }
+  const float mean = have == 4 ? rgba[3] : (rgba[0] + rgba[1] + rgba[2]) / 3;
+  float value = t->bias + (t->channel < 0 ? mean : rgba[t->channel]);
+  if (!isnan(t->cutoff))
+    value = value >= (float)t->cutoff ? 1.0f : 0.0f;
+  *to = change.squared ? value * value : value;
+}
+
+/* Writes the changed image of a texture, unless it is written; it has the texture's factors. */
+static bool put_changed_image(vlExport *x, const vlTextureDef *t, Change change,
+                              char name[300]) {
+  const uint32_t variant = variant_of(t, change), per = t->spectrum ? 3 : 1;
   if (is_written(x, t, variant, name))
     return true;
   vlImage *image, *made = NULL;
   const vlImage *from = pixels_of(x, t, &image);
   if (!from)
     return false;
-  uint32_t channel[4], have = vl_image_color(from, channel), per = t->spectrum ? 3 : 1;
+  uint32_t channel[4], have = vl_image_color(from, channel);
   float *row = vl_alloc_array(x->context, from->width, 4 * sizeof *row);
   vlImageDef def = vl_default_image_def(from->width, from->height, per);
   def.type = VL_PIXEL_F32;
@@ -210,26 +239,8 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
   for (uint32_t y = 0; fine && y < from->height; y++) {
     float *to = vl_image_row(made, y);
     vl_image_row_to_float(from, y, channel, have, row);
-    for (uint32_t i = 0; i < from->width; i++) {
-      const float *v = row + (size_t)i * have;
-      /* of one or two channels: grey, and coverage */
-      const bool colored = have > 2, covered = have == 2 || have == 4;
-      const float texels[4] = {v[0], v[colored ? 1 : 0], v[colored ? 2 : 0],
-                               covered ? v[have - 1] : 1.0f};
-      float rgba[4];
-      for (int k = 0; k < 4; k++)
-        rgba[k] = t->tint[k] * (k < 3 || covered ? scaled(t, texels[k]) : 1);
-      if (per == 3) {
-        for (int k = 0; k < 3; k++)
-          to[3 * i + (uint32_t)k] = change_color(rgba[k], change);
-        continue;
-      }
-      const float mean = have == 4 ? rgba[3] : (rgba[0] + rgba[1] + rgba[2]) / 3;
-      float value = t->bias + (t->channel < 0 ? mean : rgba[t->channel]);
-      if (!isnan(t->cutoff))
-        value = value >= (float)t->cutoff ? 1.0f : 0.0f;
-      to[i] = change.squared ? value * value : value;
-    }
+    for (size_t i = 0; i < from->width; i++)
+      change_pixel(t, change, row + i * have, have, to + i * per);
   }
   char *bytes = NULL;
   size_t size;
@@ -253,7 +264,7 @@ bool vl_pbrt_emitted_image(vlExport *x, const vlTextureDef *t, char name[300]) {
     vl_export_lose(x, "filters of images that emit light: pbrt's own");
   return white && t->scale == 1 && !t->invert && !t->encoding_given
              ? vl_pbrt_image(x, t, VL_PBRT_COLORS, name)
-             : work(x, t, as_is, name);
+             : put_changed_image(x, t, as_is, name);
 }
 
 static void put_mapping(vlExport *x, const vlTextureDef *t) {
@@ -288,7 +299,8 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
                                  isnan(t->cutoff) && !change.squared;
   plain = plain && !changes_color(change);
   char name[300];
-  if (!(plain ? vl_pbrt_image(x, t, VL_PBRT_VALUES, name) : work(x, t, change, name)))
+  if (!(plain ? vl_pbrt_image(x, t, VL_PBRT_VALUES, name)
+              : put_changed_image(x, t, change, name)))
     return false;
   if (t->wrap == VL_WRAP_MIRROR)
     vl_export_lose(x, "images that repeat in a mirror: repeated plainly");

@@ -119,19 +119,18 @@ static void glass(const vlMtl *m, vlMaterialDef *def, float base[3]) {
 
 static void surface(const vlMtl *m, vlMaterialDef *def, float base[3]) {
   vlPrincipledDef *p = &def->principled;
-  bool has_specular = !(m->illum == 0 || m->illum == 1), spoken = !isnan(m->ks[0]);
-  float ns = given(m->ns, spoken ? 10.0f : 30.0f), ni = given(m->ni, 1.5f),
+  bool has_specular = !(m->illum == 0 || m->illum == 1), has_ks = !isnan(m->ks[0]);
+  float ns = given(m->ns, has_ks ? 10.0f : 30.0f), ni = given(m->ni, 1.5f),
         metal = given(m->pm, 0.0f);
   bool mirrors = m->illum == 3 || m->illum == 5 || isnan(m->pm);
-  if (isnan(m->pm) && mirrors && spoken && has_specular && !m->maps[VL_MTL_KD].path &&
+  if (isnan(m->pm) && mirrors && has_ks && has_specular && !m->maps[VL_MTL_KD].path &&
       brightest(base) == 0 && brightest(m->ks) > 0 && m->illum != 6 && m->illum != 7) {
     metal = 1; /* specular reflection only: a metal of that colour */
     for (int i = 0; i < 3; i++)
       base[i] = clamp01(m->ks[i]);
-  } else if (spoken && isnan(m->pr) && isnan(m->pm)) {
-    p->specular_color.value =
-        /* Ks 0.5 stands for the reflectance that Ni gives */ vl_spectrum_rgb(
-            2 * m->ks[0], 2 * m->ks[1], 2 * m->ks[2]);
+  } else if (has_ks && isnan(m->pr) && isnan(m->pm)) {
+    /* Ks 0.5 stands for the reflectance that Ni gives */
+    p->specular_color.value = vl_spectrum_rgb(2 * m->ks[0], 2 * m->ks[1], 2 * m->ks[2]);
     has_specular = has_specular && brightest(m->ks) > 0;
   }
   p->metallic = vl_float_input(clamp01(metal));
@@ -193,11 +192,11 @@ bool vl_obj_make_material(vlObj *obj, vlObjMaterial *material) {
       (m->maps[VL_MTL_PR].path &&
        !number(obj, &m->maps[VL_MTL_PR], given(m->pr, 1), &p->roughness)))
     return false;
-  if (m->ps > 0)
-    p->sheen_color =
-        vl_spectrum_input(vl_spectrum_rgb(clamp01(m->ps), clamp01(m->ps), clamp01(m->ps)));
-  if (m->ps > 0)
+  if (m->ps > 0) {
+    const float sheen = clamp01(m->ps);
+    p->sheen_color = vl_spectrum_input(vl_spectrum_rgb(sheen, sheen, sheen));
     p->sheen_roughness = vl_float_input(0.5f);
+  }
   p->clearcoat = vl_float_input(clamp01(given(m->pc, 0)));
   p->clearcoat_roughness = vl_float_input(clamp01(given(m->pcr, 0)));
   p->anisotropy = vl_float_input(clamp01(given(m->aniso, 0)));

@@ -8,8 +8,8 @@
 /* The largest number of collisions of a flight; a bound for media whose majorants are far too
  * large. */
 enum { MAX_COLLISIONS = 1 << 16 };
-/* Russian roulette of flights that what they meet weakens and does not end: one that carries
- * less than this ends with three of four chances, or carries four times as much. */
+/* Russian roulette, for flights whose collisions only weaken them: below this weight a flight
+ * ends with the probability roulette_ends; otherwise its weight grows by the factor. */
 static const float roulette_below = 0.05f, roulette_ends = 0.75f, roulette_factor = 4.0f;
 
 /* An exponentially distributed number of mean 1. u: uniform in [0, 1). */
@@ -17,8 +17,9 @@ static inline float exponential(float u) {
   return -vl_ln(1.0f - u);
 }
 
-/* exp(-(sigma_c - sigma_hero) length): transmittance relative to the hero. */
-static inline void shift(const float sigma[4], int hero, float length, float factor[4]) {
+/* exp(-(sigma_c - sigma_hero) length): transmittance relative to the hero's channel. */
+static inline void relative_transmittance(const float sigma[4], int hero, float length,
+                                          float factor[4]) {
   for (int c = 0; c < 4; c++)
     factor[c] = vl_exp(-(sigma[c] - sigma[hero]) * length);
 }
@@ -39,7 +40,7 @@ static void pass(const vlWorldMedium *m, const float majorant[4], float length, 
   if (m->grey)
     return;
   float factor[4];
-  shift(majorant, f->hero, length, factor);
+  relative_transmittance(majorant, f->hero, length, factor);
   for (int c = 0; c < 4; c++) {
     f->beta[c] *= factor[c];
     f->u[c] *= factor[c];

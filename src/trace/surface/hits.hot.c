@@ -7,6 +7,9 @@
 #include "velo/shape.h"
 #include "world/accel/local_ray.h"
 
+/* The largest number of surfaces that a ray passes; no scene has so many along a ray. */
+enum { MAX_PASSED = 1024 };
+
 /* ---- lights that rays hit ---------------------------------------------------------------- */
 
 void vl_add_hit_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
@@ -30,8 +33,8 @@ void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHi
 
 /* ---- hits -------------------------------------------------------------------------------- */
 
-/* Vertex attributes (uv sets, colours) at the hit of a path's ray; not used for other shapes
- * than triangles. */
+/* The triangle that a path's ray hits, and the weights of its corners there, for vertex
+ * attributes (uv sets, colours). Other shapes have none: their weights are not used. */
 static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const vlHits *h,
                                   uint32_t i) {
   vlTextureCorner corner = {&world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
@@ -58,8 +61,8 @@ static float presence_of(const vlWorld *world, uint32_t material, const vlTextur
  * sampler dimension. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
-  while (world->materials.items[material].mixed) { /* the materials of a mix have smaller
-                               indices than the mix, so the loop ends */
+  /* the materials of a mix have smaller indices than the mix, so the loop ends */
+  while (world->materials.items[material].mixed) {
     const vlWorldMaterial *m = &world->materials.items[material];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
@@ -82,7 +85,6 @@ uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h
 
 void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t *shape,
                     uint32_t *prim, uint32_t *instance, float *hit) {
-  const uint32_t most = 1024; /* a bound; no ray meets so many hidden surfaces */
   const vlWorld *world = t->world;
   for (uint32_t i = 0; i < n; i++) {
     vlVec3 o = vl_lane3(rays->ox, rays->oy, rays->oz, i),
@@ -97,7 +99,7 @@ void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t
       t_min = vl_past_surface(&at, d, t_min);
       vl_accel_closest(world, 1, &ray, false, shape + i, prim + i, instance + i, hit + i);
       t->batch->bounce_rays++;
-      if (step == most)
+      if (step == MAX_PASSED)
         shape[i] = VL_NONE;
     }
   }
@@ -146,10 +148,10 @@ static void pass_interfaces(vlTracing *t, vlAddLight *pass_light, const vlPaths 
     if (!(world->materials.items[world->shapes.items[h->shape[i]].material].traits &
           VL_MATERIAL_ABSENT))
       return;
-    if (step == 1024)
-      h->shape[i] = VL_NONE; /* a bound; no ray crosses so many interfaces */
-    if (h->shape[i] == VL_NONE)
+    if (step == MAX_PASSED) {
+      h->shape[i] = VL_NONE;
       return;
+    }
     vlHitLight met;
     if (pass_light && world->shapes.items[h->shape[i]].first_light != VL_NONE &&
         vl_hit_emission(world, p, h, i, &met))

@@ -345,8 +345,10 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   vl_set_lane3(out->vx, out->vy, out->vz, i, v);
 }
 
-void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
-                      const vlHits *hits, vlCorners *c, vlSurface *out) {
+/* Gathers the corners of the triangles that are hit. Returns whether other shapes are hit, too,
+ * or meshes with tangents. */
+static bool gather_corners(const vlWorld *world, uint32_t n, const vlPaths *paths,
+                           const vlHits *hits, vlCorners *c) {
   bool others = false;
   for (uint32_t i = 0; i < n; i++) {
     if (i + 2 * AHEAD < n)
@@ -361,6 +363,27 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
       gather_moving(world, hits, vl_path_time(paths, i), i, c);
     others = others || !s->triangles || s->tangents;
   }
+  return others;
+}
+
+/* Points of lanes that hit shapes other than triangles. */
+static void set_other_points(const vlWorld *world, uint32_t n, const vlPaths *paths,
+                             const vlHits *hits, vlSurface *out) {
+  for (uint32_t i = 0; i < n; i++) {
+    if (world->shapes.items[hits->shape[i]].triangles)
+      continue;
+    vlVec3 o = vl_lane3(paths->ox, paths->oy, paths->oz, i),
+           d = vl_lane3(paths->dx, paths->dy, paths->dz, i);
+    float t = hits->t[i];
+    vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i],
+                                   hits->prim[i], hits->instance[i], &t);
+    store_point(out, i, &q, t);
+  }
+}
+
+void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
+                      const vlHits *hits, vlCorners *c, vlSurface *out) {
+  const bool others = gather_corners(world, n, paths, hits, c);
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD
@@ -398,17 +421,8 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
     out->uv_scale[i] = r.uv_scale;
     out->curvature[i] = r.curvature;
   }
-  for (uint32_t i = 0; others && i < n; i++) {
-    const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-    vlVec3 o = vl_lane3(paths->ox, paths->oy, paths->oz, i),
-           d = vl_lane3(paths->dx, paths->dy, paths->dz, i);
-    if (!s->triangles) {
-      float t = hits->t[i];
-      vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i],
-                                     hits->prim[i], hits->instance[i], &t);
-      store_point(out, i, &q, t);
-    }
-  }
+  if (others)
+    set_other_points(world, n, paths, hits, out);
   for (uint32_t i = 0; i < padded; i++) {
     out->width[i] = vl_abs(paths->cone[i] + paths->spread[i] * out->t[i]);
     out->no_cosine[i] = 0.0f;

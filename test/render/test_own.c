@@ -384,19 +384,26 @@ static void sampler_bits(void **state) {
   image_free(&p);
 }
 
+/* Gives numbers that are none: the first ones of each sample, or the second ones. */
+typedef struct Broken {
+  float value;
+  bool second;
+} Broken;
+
 static void broken(void *user, const vlOwnSamples *s) {
-  const float *value = user;
+  const Broken *b = user;
   for (uint32_t i = 0; i < s->count; i++)
-    s->u[i] = *value;
+    s->u[i] = b->second ? 0.25f : b->value;
   for (uint32_t i = 0; s->v && i < s->count; i++)
-    s->v[i] = 0.25f;
+    s->v[i] = b->second ? b->value : 0.25f;
 }
 
 static void wrong_samplers(void **state) {
   (void)state;
-  float values[4] = {-1, 1, INFINITY, NAN};
-  for (int i = 0; i < 4; i++) {
-    const vlOwnSampler own = {.name = "broken", .numbers = broken, .user = &values[i]};
+  static const float values[4] = {-1, 1, INFINITY, NAN};
+  for (int i = 0; i < 8; i++) {
+    Broken wrong = {values[i % 4], i >= 4};
+    const vlOwnSampler own = {.name = "broken", .numbers = broken, .user = &wrong};
     Image p = image_in(render_sampled, &own, 2, VL_ISA_AUTO);
     assert_true(p.stats.own_numbers > 2 * SMALL_WIDTH * SMALL_HEIGHT);
     for (uint32_t k = 0; k < 4 * p.width * p.height; k++)

@@ -88,22 +88,36 @@ static double end_of_view(const vlCamera *camera, double azimuth) {
   return low;
 }
 
+/* Directions on the film: around the centre, then along the axes and the diagonals, where
+ * numbers are equal or opposite. */
+enum { OUTWARDS = AZIMUTHS + 8 };
+static void outwards(int i, double way[2]) {
+  static const double straight[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
+                                        {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+  const double azimuth = 2 * PI * (i + 0.3) / AZIMUTHS;
+  way[0] = i < AZIMUTHS ? cos(azimuth) : straight[i - AZIMUTHS][0];
+  way[1] = i < AZIMUTHS ? sin(azimuth) : straight[i - AZIMUTHS][1];
+}
+
 /* The direction of each film point has a film point, as far out as the film may reach: this
  * one, or of panoramas another one of the same direction. */
 static void check_far_film(const char *family, const char *kind, const vlCamera *camera) {
   enum { RADII = 60 };
+  /* faces of a cube meet on the diagonals, others than in space */
+  const int ways = camera->projection == VL_PROJECTION_CUBE ? AZIMUTHS : OUTWARDS;
   uint32_t seen = 0;
   uint32_t lost = 0;
   double first = 0;
-  for (int i = 0; i < RADII * AZIMUTHS; i++) {
+  for (int i = 0; i < RADII * ways; i++) {
     double o[3];
     double d[3];
     double again[3];
     double film[2];
-    const double azimuth = 2 * PI * (i % AZIMUTHS + 0.3) / AZIMUTHS;
-    const double radius = camera->fx * pow(10, -1 + 3.0 * (i / AZIMUTHS) / RADII);
-    const double x = camera->cx + radius * cos(azimuth);
-    const double y = camera->cy + radius * sin(azimuth);
+    double way[2];
+    const double radius = camera->fx * pow(10, -1 + 3.0 * (i / ways) / RADII);
+    outwards(i % ways, way);
+    const double x = camera->cx + radius * way[0];
+    const double y = camera->cy + radius * way[1];
     if (!vl_camera_unproject(camera, x, y, o, d))
       continue;
     const bool found = vl_camera_project(camera, d, film, NULL) &&

@@ -454,6 +454,31 @@ static void check_other_shape(const char *name, vlProjection kind) {
   check_file("projections", name, &def, &camera);
 }
 
+/* Pixels of another form, and then columns of pixels that lean: panoramas would go on around
+ * there. */
+static void check_other_pixels(const char *name, const vlCameraDef *def, const vlCamera *camera,
+                               const ProjectionCase *c) {
+  const vlProjectionRow *row = vl_projection_row(def->projection);
+  vlCameraDef other = *def;
+  vlCamera tall;
+  other.fov = VL_UNSET;
+  other.fx = camera->fx;
+  other.fy = 1.3 * camera->fy;
+  if (!make_camera("projections", name, &other, &tall))
+    return;
+  check_round_trip("projections", name, &tall, 1e-8);
+  check_known(name, &tall, c, row->traits & VL_PROJECTION_RADIAL);
+  check_derivatives_in_film("projections", name, &tall);
+  check_moving(name, &other);
+  check_scene_file("projections", name, &other, "pbrt");
+  check_scene_file("projections", name, &other, "gltf");
+  other.skew = 0.2 * camera->fx;
+  if (!(row->traits & VL_PROJECTION_RADIAL) || !make_camera("projections", name, &other, &tall))
+    return;
+  check_round_trip("projections", name, &tall, 1e-8);
+  check_file("projections", name, &other, &tall);
+}
+
 static void laws_of_projections(void **state) {
   (void)state;
   vlOptics *optics = NULL;
@@ -489,6 +514,8 @@ static void laws_of_projections(void **state) {
     if (!c->optics)
       check_scene_file("projections", name, &def, "pbrt");
     check_scene_file("projections", name, &def, "gltf");
+    if (!c->optics)
+      check_other_pixels(name, &def, &camera, c);
     if (c->has_other)
       check_other_shape(name, (vlProjection)p);
   }

@@ -349,6 +349,31 @@ static void check_covered_lamps(void) {
     }
 }
 
+/* Lamps whose coverage grows along u alone, or along v alone. They are long, and lie aside, so
+ * that it matters which part of them shines: samples find the light of rays. */
+static void check_patterned_lamps(void) {
+  static const char *const grows[] = {"\"float v10\" 1 \"float v11\" 1",
+                                      "\"float v01\" 1 \"float v11\" 1"};
+  static const char *const lies[] = {"[0 1 .2 3 1 .2 0 1 -.2 3 1 -.2]",
+                                     "[-.2 1 3 .2 1 3 -.2 1 0 .2 1 0]"};
+  static const char *const shapes[] = {
+      "\"bilinearmesh\" \"integer indices\" [1 0 3 2]",
+      "\"trianglemesh\" \"integer indices\" [1 0 3 0 2 3] \"point2 uv\" [0 0 1 0 0 1 1 1]"};
+  static char text[TEXT];
+  for (int i = 0; i < 8; i++) {
+    snprintf(text, sizeof text,
+             HEAD "WorldBegin " FLOOR
+                  "Texture \"grows\" \"float\" \"bilerp\" "
+                  "\"float v00\" 0 %s AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Shape %s "
+                  "\"point3 P\" %s \"texture alpha\" \"grows\"",
+             grows[i / 4], shapes[i % 2], lies[i / 2 % 2]);
+    const LightLaws l = ask_floor(text, 0.1, 0.1, 32);
+    const double whole = mean_of(&l.integral[1]);
+    check_same_mean("emission", "diffuse", strstr(text, "\"float v00\""), &l.sampled[1],
+                    &l.integral[1], (Sight){0.01 * whole, 0.25 * whole});
+  }
+}
+
 /* Vertex normals tell which side shines, whatever the order of the corners. */
 static void check_sides_of_lamps(void) {
   static const char *const shapes[] = {
@@ -372,13 +397,17 @@ static void check_sides_of_lamps(void) {
   }
 }
 
-/* A sphere that is stretched along one axis is none any more, whichever axis it is: there is
- * light beyond the cone of the sphere. */
+/* A sphere that is stretched along one axis, or whose axes lean towards each other, is none any
+ * more, whichever axes these are: there is light beyond the cone of the sphere. */
 static void check_stretched_spheres(void) {
-  static const char *const maps[] = {"Scale 1.8 1 1", "Rotate 90 0 0 1 Scale 1 1.8 1",
-                                     "Scale 1 1 1.8"};
+  static const char *const maps[] = {"Scale 1.8 1 1",
+                                     "Rotate 90 0 0 1 Scale 1 1.8 1",
+                                     "Scale 1 1 1.8",
+                                     "ConcatTransform [1 0 0 0 .8 .6 0 0 0 0 1 0 0 0 0 1]",
+                                     "ConcatTransform [1 0 0 0 0 1 0 0 0 .8 .6 0 0 0 0 1]",
+                                     "ConcatTransform [1 0 0 0 0 1 0 0 .8 0 .6 0 0 0 0 1]"};
   static char text[TEXT];
-  for (int i = 0; i < 3; i++) {
+  for (size_t i = 0; i < sizeof maps / sizeof *maps; i++) {
     snprintf(text, sizeof text,
              HEAD "WorldBegin " FLOOR
                   "Translate .3 1.1 .2 %s AreaLightSource \"diffuse\" "
@@ -404,6 +433,7 @@ static void laws_of_emission(void **state) {
   check_hit_light("emission", "diffuse", TEXTURE_OF_FILENAME, text, false);
   change_emission = NULL;
   check_covered_lamps();
+  check_patterned_lamps();
   check_sides_of_lamps();
   check_stretched_spheres();
   expect_no_failures();

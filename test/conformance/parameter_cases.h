@@ -26,7 +26,7 @@ static const ParameterCase parameter_cases[] = {
     /* materials */
     {.family = "materials",
      .parameter = "normalmap",
-     .value = "\"string normalmap\" \"normals.pfm\""},
+     .value = "\"string normalmap\" \"normals.img\""},
     {.family = "materials",
      .parameter = "displacement",
      .value = "\"texture displacement\" \"bumps\""},

@@ -306,34 +306,54 @@ static int quarters_blurred;
  * with many samples. Null: glTF loses a part of it, or failed. */
 enum { GLTF_SPP = 192 };
 
-/* The number that a scene's last material or light of a kind has as a parameter. NaN: there is
- * no such kind, or the parameter is not a number. */
+/* The last def of a family in a scene, if it is of this kind, else null. */
+static const void *last_def(const vlScene *scene, const char *family, uint32_t kind) {
+  const void *def = NULL;
+  for (uint32_t i = 1;; i++) {
+    const void *next = NULL;
+    uint32_t k = kind;
+    const vlMaterialDef *material = vl_scene_material(scene, (vlMaterialId){i});
+    const vlTextureDef *texture = vl_scene_texture(scene, (vlTextureId){i});
+    const vlLightDef *light = vl_scene_light(scene, (vlLightId){i});
+    const vlMediumDef *medium = vl_scene_medium(scene, (vlMediumId){i});
+    const vlShapeDef *shape = vl_scene_shape(scene, (vlShapeId){i});
+    if (strcmp(family, "materials") == 0 && (next = material))
+      k = (uint32_t)material->kind;
+    else if (strcmp(family, "textures") == 0 && (next = texture))
+      k = (uint32_t)texture->kind;
+    else if (strcmp(family, "lights") == 0 && (next = light))
+      k = (uint32_t)light->kind;
+    else if (strcmp(family, "media") == 0 && (next = medium))
+      k = (uint32_t)medium->kind;
+    else if (strcmp(family, "shapes") == 0 && (next = shape))
+      k = (uint32_t)shape->kind;
+    else if (strcmp(family, "emission") == 0)
+      next = vl_scene_emission(scene, (vlEmissionId){i});
+    if (!next)
+      return def;
+    def = k == kind ? next : def;
+  }
+}
+
+/* The number that the last of a kind in a scene has as a parameter. NaN: there is no such kind,
+ * or the parameter is not a number. */
 static double number_in(const vlScene *scene, const char *family, const char *kind,
                         const char *name) {
   const vlKindFamily *all = vl_kind_family_find(family);
-  int k = -1;
-  for (uint32_t i = 0; i < all->kind_count; i++)
-    if (same_name(all->rows[i]->name, kind))
-      k = (int)i;
+  uint32_t k = 0;
+  while (k < all->kind_count && !same_name(all->rows[k]->name, kind))
+    k++;
   const vlParameter *p = NULL;
-  for (size_t i = 0; k >= 0 && i < all->rows[k]->parameter_count; i++)
+  for (size_t i = 0; k < all->kind_count && i < all->rows[k]->parameter_count; i++)
     if (same_name(all->rows[k]->parameters[i].name, name))
       p = &all->rows[k]->parameters[i];
-  const char *def = NULL;
-  if (p && strcmp(family, "materials") == 0) {
-    const vlMaterialDef *m;
-    for (uint32_t i = 1; (m = vl_scene_material(scene, (vlMaterialId){i})); i++)
-      def = (int)m->kind == k ? (const char *)m : def;
-  }
-  if (p && strcmp(family, "lights") == 0) {
-    const vlLightDef *l;
-    for (uint32_t i = 1; (l = vl_scene_light(scene, (vlLightId){i})); i++)
-      def = (int)l->kind == k ? (const char *)l : def;
-  }
+  const char *def = p ? last_def(scene, family, k) : NULL;
   if (!def)
     return NAN;
   if (p->type == VL_PARAMETER_FLOAT)
     return (double)*(const float *)(def + p->offset);
+  if (p->type == VL_PARAMETER_DOUBLE)
+    return *(const double *)(const void *)(def + p->offset);
   if (p->type != VL_PARAMETER_FLOAT_INPUT)
     return NAN;
   const vlFloatInput *input = (const vlFloatInput *)(def + p->offset);
@@ -457,11 +477,39 @@ static void check_text(const char *family, const char *kind, const char *name, c
     check_gltf(family, kind, name, text);
 }
 
+/* ---- numbers of files -------------------------------------------------------------------- */
+
+/* A unit of files other than that of the defs, and its factor. */
+static const struct {
+  const char *unit;
+  double factor;
+} file_units[] = {{"degrees", PI / 180}, {"mm", 1e-3}, {"um", 1e-6}};
+
+/* The number of a file is that of the def, in the def's unit. number: as the file has it; NaN:
+ * another value. */
+static void check_arrives(const char *family, const char *kind, const vlParameter *p,
+                          const char *text, double number) {
+  vlError error = {0};
+  double factor = 1;
+  if (p->flags & VL_PARAMETER_RULE)
+    return; /* no member of the def */
+  for (size_t i = 0; p->factor != 0 && i < sizeof file_units / sizeof *file_units; i++)
+    if (strcmp(p->unit, file_units[i].unit) == 0)
+      factor = file_units[i].factor;
+  vlScene *scene = load_text(context, text, &error);
+  assert_non_null(scene);
+  const double found = number_in(scene, family, kind, p->name);
+  vl_scene_destroy(scene);
+  if (fabs(found - number * factor) > 1e-6 * fabs(number * factor))
+    broken(family, kind, "\"%s\": %g in the file is %g", p->name, number, found);
+}
+
 /* ---- the effect of a parameter ----------------------------------------------------------- */
 
 /* Whether the image changes with the parameter. */
 static bool has_effect(const char *family, const char *form, const char *kind, const char *base,
-                       const char *value, const char *name) {
+                       const char *value, const vlParameter *p) {
+  const char *name = p->name;
   static float plain[PIXELS];
   static float changed[PIXELS];
   static char parameters[TEXT];
@@ -487,6 +535,10 @@ static bool has_effect(const char *family, const char *form, const char *kind, c
   bool effect = memcmp(plain, changed, sizeof plain) != 0;
   if (effect)
     check_text(family, kind, name, text, changed);
+  const char *number = strstr(value, "\"float ");
+  number = number ? strchr(number + 1, '"') : NULL;
+  if (effect && number)
+    check_arrives(family, kind, p, text, strtod(number + 1, NULL));
   return effect;
 }
 
@@ -505,7 +557,7 @@ static void check_parameter(const Family *family, const vlKindRow *row, const vl
       return;
     }
     effect = has_effect(family->name, form, c && c->directive ? c->directive : row->name, base,
-                        value, p->name);
+                        value, p);
   }
   bool ignored = strncmp(p->description, "ignored", 7) == 0;
   bool expected = !ignored && !(c && c->no_effect);

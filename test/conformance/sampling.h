@@ -191,6 +191,53 @@ static void laws_of_samplers(void **state) {
   expect_no_failures();
 }
 
+/* ---- numbers of own tracers -------------------------------------------------------------- */
+
+/* How often two numbers are equal that tracers of one's own get for neighbouring purposes. */
+typedef struct Purposes {
+  uint32_t pairs, equal;
+} Purposes;
+
+static void ask_purposes(void *user, vlTrace *trace, const vlOwnPaths *paths) {
+  enum { ASKED = 3 };
+  static float u[ASKED][VL_OWN_BATCH];
+  static float v[ASKED][VL_OWN_BATCH];
+  Purposes *p = user;
+  for (uint32_t k = 0; k < ASKED; k++)
+    vl_trace_numbers(trace, k, u[k], v[k]);
+  for (int k = 0; k + 1 < ASKED; k++)
+    for (uint32_t i = 0; i < paths->count; i++) {
+      p->pairs++;
+      p->equal += u[k][i] == u[k + 1][i] || u[k][i] == v[k + 1][i] || v[k][i] == u[k + 1][i] ||
+                  v[k][i] == v[k + 1][i];
+    }
+}
+
+/* Numbers of different purposes are independent. Those that are centres of cells are equal by
+ * chance. */
+static void purposes_of_samplers(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("samplers");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    if (sampler_cases[k]->centre)
+      continue;
+    static const char text[] = HEAD "WorldBegin LightSource \"infinite\"";
+    Purposes p = {0};
+    const vlOwnTracer tracer = {.name = "purposes", .radiance = ask_purposes, .user = &p};
+    vlScene *scene = need_scene(text);
+    vlSceneDefs *defs = vl_scene_defs(scene);
+    defs->render.sampler = (vlSamplerKind)k;
+    defs->render.spp = 64;
+    defs->render.own_tracer = &tracer;
+    vl_image_destroy(need_image(scene, text));
+    assert_true(p.pairs > 64 * WIDTH * WIDTH);
+    if (p.equal > p.pairs / 50)
+      broken("samplers", family->rows[k]->name, "%u of %u numbers are those of another purpose",
+             p.equal, p.pairs);
+  }
+  expect_no_failures();
+}
+
 /* ---- samplers with any number of samples ------------------------------------------------- */
 
 /* Numbers in floats may lie below the edge of an interval by this part of it. */

@@ -81,6 +81,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_distortions),
       cmocka_unit_test(settings_of_cameras),
       cmocka_unit_test(laws_of_samplers),
+      cmocka_unit_test(purposes_of_samplers),
       cmocka_unit_test(samplers_of_any_count),
       cmocka_unit_test(samplers_of_later_sequences),
       cmocka_unit_test(samplers_of_neighbours),

@@ -270,15 +270,18 @@ static void laws_of_media(void **state) {
  * (0, -.866, .5). The eye is 100 away (a perspective camera, which light paths find) and sees a
  * square of 2.4 around the origin, which is nearly the whole plate. */
 #define PLATE PLATE_OF("\"diffuse\" \"rgb reflectance\" [.5 .5 .5]")
-#define PLATE_OF(material)                                                           \
+#define PLATE_OF(material) PLATE_FACING("", material)
+#define PLATE_FACING(side, material)                                                 \
   "LookAt 0 0 100 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 1.375033\n" VIEW( \
-      "12") "WorldBegin Material " material                                          \
-            " AttributeBegin Rotate 60 1 0 0\n"                                      \
+      "12") "WorldBegin Material " material " AttributeBegin " side                  \
+            " Rotate 60 1 0 0\n"                                                     \
             "Shape \"bilinearmesh\" \"point3 P\" [-1.25 -2.5 0 1.25 -2.5 0 -1.25 2.5 0 1.25 2.5 0] AttributeEnd\n"
 
 static const char *const below_sky = PLATE "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
-/* A ball of radius .5, two away along the normal, and radiance 4. */
-static const char *const below_lamp = PLATE
+/* A ball of radius .5, two away along the normal, and radiance 4. The plate's outside is on its
+ * other side, which changes nothing. */
+static const char *const below_lamp = PLATE_FACING("ReverseOrientation",
+                                                   "\"diffuse\" \"rgb reflectance\" [.5 .5 .5]")
     "Translate 0 -1.7320508 1 AreaLightSource \"diffuse\" \"rgb L\" [4 4 4] "
     "Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"sphere\" \"float radius\" .5\n";
 

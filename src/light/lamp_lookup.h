@@ -56,20 +56,11 @@ static inline float vl_lamp_density(const vlLampTable *t, vlVec3 d) {
   return p.inside ? t->density[(size_t)p.azimuth * (t->polars - 1) + p.polar] : 0.0f;
 }
 
-/* The interval of a cumulative distribution of `count` numbers from 0 to 1 that u is in; u
- * becomes the position in it, from 0 to 1. */
-static inline uint32_t vl_lamp_choose(const float *below, uint32_t count, float *u) {
-  uint32_t i = vl_find_interval(below, count - 1, *u);
-  float width = below[i + 1] - below[i];
-  *u = width > 0.0f ? vl_clamp((*u - below[i]) / width, 0.0f, 1.0f) : 0.5f;
-  return i;
-}
-
 /* A direction (unit, in the table's frame) with a density proportional to the flux of the
  * cells, even within a cell. u, v: random numbers in [0, 1). The table's flux is above 0. */
 static inline vlVec3 vl_lamp_sample(const vlLampTable *t, float u, float v, float *density) {
-  uint32_t i = vl_lamp_choose(t->columns, t->azimuths, &u);
-  uint32_t j = vl_lamp_choose(t->below + (size_t)i * t->polars, t->polars, &v);
+  uint32_t i = vl_find_cell(t->columns, t->azimuths - 1, u, &u);
+  uint32_t j = vl_find_cell(t->below + (size_t)i * t->polars, t->polars - 1, v, &v);
   float azimuth = t->azimuth[i] + (t->azimuth[i + 1] - t->azimuth[i]) * u;
   vlSinCos low = vl_sincos(0.5f * t->polar[j]), high = vl_sincos(0.5f * t->polar[j + 1]);
   /* even in the cosine, which is 1 - 2 s2; s2, the squared sine of half the angle, keeps its

@@ -10,6 +10,7 @@
 #include "image/mipmap.h"
 #include "image/pixel.h"
 #include "math/cube_map.h"
+#include "math/lowdiscrepancy.h"
 #include "math/octahedral.h"
 #include "velo/light.h"
 
@@ -194,15 +195,6 @@ static void look_row(void *user, uint32_t row, uint32_t worker) {
   }
 }
 
-static float radical_inverse(uint32_t i) {
-  i = (i << 16) | (i >> 16);
-  i = ((i & 0x00ff00ffu) << 8) | ((i & 0xff00ff00u) >> 8);
-  i = ((i & 0x0f0f0f0fu) << 4) | ((i & 0xf0f0f0f0u) >> 4);
-  i = ((i & 0x33333333u) << 2) | ((i & 0xccccccccu) >> 2);
-  i = ((i & 0x55555555u) << 1) | ((i & 0xaaaaaaaau) >> 1);
-  return (float)(i >> 8) * 0x1p-24f;
-}
-
 /* A row of a level that is filtered by GGX's lobe for the viewer along the normal (Karis 2013).
  * A sample looks into the level whose texels have the sample's share of the sphere (Colbert and
  * Krivanek 2007). */
@@ -222,7 +214,7 @@ static void filter_row(void *user, uint32_t row, uint32_t worker) {
     for (uint32_t k = 0; k < LOBE_SAMPLES; k++) {
       float u = ((float)k + 0.5f) / LOBE_SAMPLES, c2 = (1 - u) / (1 + (a2 - 1) * u),
             c = __builtin_sqrtf(c2);
-      vlSinCos turn = vl_sincos_turn(radical_inverse(k));
+      vlSinCos turn = vl_sincos_turn(vl_fraction_float(vl_reverse_bits(k)));
       float r = 2 * c * __builtin_sqrtf(vl_max(0.0f, 1 - c2)), z = 2 * c2 - 1,
             inner = c2 * (a2 - 1) + 1;
       if (!(z > 0))

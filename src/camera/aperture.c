@@ -12,7 +12,6 @@
 #include "math/elementary.h"
 #include "math/warp.h"
 
-static const double pi = 3.14159265358979323846;
 enum { MAX_SIDE = 4096, NAMED = 256 };
 
 /* ---- blades ------------------------------------------------------------------------------ */
@@ -21,7 +20,7 @@ void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
   memset(blades, 0, sizeof *blades);
   blades->count = count < VL_MAX_BLADES ? count : VL_MAX_BLADES;
   for (uint32_t i = 0; i < blades->count; i++) {
-    double angle = rotation - 0.5 * pi + 2.0 * pi * i / blades->count;
+    double angle = rotation - 0.5 * M_PI + 2.0 * M_PI * i / blades->count;
     blades->x[i] = (float)vl_precise_cos(angle);
     blades->y[i] = (float)vl_precise_sin(angle);
   }
@@ -53,8 +52,8 @@ struct vlAperture {
   double reach2; /* vl_aperture_reach2 of the shape */
   float *values; /* scaled so that their mean is pi / 4 */
   float *rows;   /* height + 1: share of the total light above each row's upper edge */
-  float
-      *columns; /* height x (width + 1): share of the row's light to the left of each column */
+  /* height x (width + 1): share of the row's light to the left of each column */
+  float *columns;
 };
 
 void vl_aperture_points(const vlAperture *a, uint32_t n, const float *u, const float *v,
@@ -179,7 +178,7 @@ vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
       sums[row] += (double)values[(size_t)row * width + i];
   }
   accumulate(sums, height, a->rows);
-  double scale = 0.25 * pi * (double)cells / sum;
+  double scale = 0.25 * M_PI * (double)cells / sum;
   for (size_t i = 0; i < cells; i++)
     a->values[i] = (float)(scale * (double)values[i]);
   a->reach2 = find_reach2(a);
@@ -220,12 +219,12 @@ static bool is_inside(const Polygon *polygon, double x, double y) {
  * outer pentagon's diagonals; one of them is on the right. */
 static Polygon named_polygon(int name) {
   Polygon polygon = {.count = name == PENTAGON ? 5 : 10};
-  const double inner = vl_precise_cos(0.4 * pi) / vl_precise_cos(0.2 * pi);
+  const double inner = vl_precise_cos(0.4 * M_PI) / vl_precise_cos(0.2 * M_PI);
   for (int i = 0; i < polygon.count; i++) {
-    double angle = 0.2 * pi * i;
+    double angle = 0.2 * M_PI * i;
     double radius = i & 1 ? 1.0 : inner;
     if (name == PENTAGON) {
-      angle = 0.5 * pi + 0.4 * pi * i;
+      angle = 0.5 * M_PI + 0.4 * M_PI * i;
       radius = 0.8;
     }
     polygon.corners[i][0] = radius * vl_precise_cos(angle);

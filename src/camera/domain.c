@@ -14,7 +14,6 @@
 #include "projection/properties.row.h"
 
 enum { RADIAL_TERMS = 6, DEGREE = 10, MAX_STEPS = 48, DIRECTIONS = 64, RINGS = 40, GRID = 48 };
-static const double pi = 3.14159265358979323846;
 
 /* ---- where a radial distortion folds: the first root of a polynomial --------------------- */
 
@@ -122,7 +121,7 @@ static double fold_radius(const vlDistortionMap *m, double most) {
     radius = most;
   most = radius;
   for (int i = 0; i < DIRECTIONS; i++) {
-    double angle = 2.0 * pi * i / DIRECTIONS;
+    double angle = 2.0 * M_PI * i / DIRECTIONS;
     radius = fmin(radius, fold_along(m, vl_precise_cos(angle), vl_precise_sin(angle), radius));
   }
   return radius < most ? 0.998 * radius : radius; /* margin for folds between the directions */
@@ -158,8 +157,8 @@ static double needed_radius(const vlCamera *c) {
   }
   double cosine[8], sine[8];
   for (int i = 0; i < 8; i++) {
-    cosine[i] = vl_precise_cos(0.25 * pi * i);
-    sine[i] = vl_precise_sin(0.25 * pi * i);
+    cosine[i] = vl_precise_cos(0.25 * M_PI * i);
+    sine[i] = vl_precise_sin(0.25 * M_PI * i);
   }
   for (double r = 1e-3; r < m->radius && r < 1e6; r *= 1.05) {
     double least = INFINITY;
@@ -184,7 +183,7 @@ static uint32_t steps_everywhere(const vlCamera *c) {
     radius[k] = most * share;
   }
   for (int i = 0; i < 24; i++) {
-    double angle = 2.0 * pi * (i + 0.3) / 24;
+    double angle = 2.0 * M_PI * (i + 0.3) / 24;
     double cosine = vl_precise_cos(angle), sine = vl_precise_sin(angle);
     for (int k = 0; k < RINGS; k++) {
       uint32_t here = steps_for(m, radius[k] * cosine, radius[k] * sine);
@@ -273,19 +272,19 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
   if (vl_is_unset(angle) && fisheye && !vl_is_unset(def->fov))
     angle = 0.5 * def->fov;
   if (vl_is_unset(angle) && fisheye && !given)
-    angle = 0.5 * pi;
+    angle = 0.5 * M_PI;
   double radius;
   if (!vl_is_unset(angle)) {
     /* the direction straight back is singular; a nearby one replaces it */
-    bool seen =
-        vl_camera_plane_radius(camera, angle < pi ? angle : pi * (1.0 - 1e-9), false, &radius);
+    bool seen = vl_camera_plane_radius(camera, angle < M_PI ? angle : M_PI * (1.0 - 1e-9),
+                                       false, &radius);
     if (seen)
       /* a margin for rounding, so that the angle itself is inside */
       limit = fmin(limit, radius * (1.0 + 1e-12));
     else if (!vl_is_unset(def->max_angle) && kind != VL_PROJECTION_PERSPECTIVE)
       return vl_fail(error, VL_ERROR_ARGUMENT,
                      "camera: the %s projection does not see as far as max_angle, %g degrees",
-                     vl_projection_name(kind), angle * 180.0 / pi);
+                     vl_projection_name(kind), angle * 180.0 / M_PI);
   }
   camera->limit = limit;
   vlDistortionMap *m = &camera->distortion;

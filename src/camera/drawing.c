@@ -134,7 +134,7 @@ static void curve(Pen *p, vlDrawingPart part, double x0, double y0, double x1, d
 static bool on_circle(const vlCamera *c, double share, double xy[2]) {
   if (!(c->limit < 1e6))
     return false;
-  double t = 2.0 * 3.14159265358979323846 * share, r = c->limit * (1.0 - 1e-6);
+  double t = 2.0 * M_PI * share, r = c->limit * (1.0 - 1e-6);
   xy[0] = c->cx + c->fx * r * vl_precise_cos(t) + c->skew * r * vl_precise_sin(t);
   xy[1] = c->cy + c->fy * r * vl_precise_sin(t);
   return xy[0] >= 0 && xy[1] >= 0 && xy[0] <= c->width && xy[1] <= c->height;
@@ -249,7 +249,7 @@ static void draw_eye(Pen *p) {
   line(p, VL_DRAWING_EYE, eye, eye);
   label(p, VL_DRAWING_EYE, eye, "e");
   for (int i = 0; c->lens_radius > 0 && i <= STEPS; i++) {
-    double t = 2 * 3.14159265358979323846 * i / STEPS;
+    double t = 2 * M_PI * i / STEPS;
     vl_along3(eye, c->lens_radius * vl_precise_cos(t), right, next);
     vl_along3(next, c->lens_radius * vl_precise_sin(t), down, next);
     if (i)

@@ -10,7 +10,6 @@
 #include "projection/properties.row.h"
 #include "velo/projection.h"
 
-static const double pi = 3.14159265358979323846;
 static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
 /* factor that moves a singular angle inwards by about 9 rounding errors */
 static const double just_inside = 1.0 - 1e-15;
@@ -45,16 +44,16 @@ static vlResult check_fov(const vlCameraDef *d, vlError *error) {
   if (d->fov <= 0.0)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: fov is %g radians (%g degrees); it must be above zero", d->fov,
-                   d->fov * 180.0 / pi);
-  if (d->fov > 2.0 * pi)
+                   d->fov * 180.0 / M_PI);
+  if (d->fov > 2.0 * M_PI)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: fov is %g radians (%g degrees); all round is 360 degrees", d->fov,
-                   d->fov * 180.0 / pi);
-  if (d->fov >= pi && d->projection <= VL_PROJECTION_ORTHOGRAPHIC)
+                   d->fov * 180.0 / M_PI);
+  if (d->fov >= M_PI && d->projection <= VL_PROJECTION_ORTHOGRAPHIC)
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "camera: fov is %g radians (%g degrees); a flat view plane needs less than 180 degrees",
-        d->fov, d->fov * 180.0 / pi);
+        d->fov, d->fov * 180.0 / M_PI);
   return VL_OK;
 }
 
@@ -122,11 +121,11 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: a diagonal fov has no meaning for the %s projection", name);
   /* 360 degrees: the direction straight back is singular; approach it from the image's side */
-  double angle = 0.5 * d->fov < pi ? 0.5 * d->fov : pi * just_inside;
+  double angle = 0.5 * d->fov < M_PI ? 0.5 * d->fov : M_PI * just_inside;
   if (!vl_camera_plane_radius(camera, angle, vertical, half))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: the %s projection cannot show a fov of %g degrees", name,
-                   d->fov * 180.0 / pi);
+                   d->fov * 180.0 / M_PI);
   return VL_OK;
 }
 
@@ -136,8 +135,8 @@ static vlResult gather_screen(const vlCameraDef *d, Gathered *g, vlError *error)
   char from[160];
   bool has_fov = !vl_is_unset(d->fov);
   if (d->projection == VL_PROJECTION_PERSPECTIVE) {
-    double fov = has_fov ? d->fov : 0.5 * pi;
-    snprintf(from, sizeof from, "the screen window with fov %.9g degrees%s", fov * 180.0 / pi,
+    double fov = has_fov ? d->fov : 0.5 * M_PI;
+    snprintf(from, sizeof from, "the screen window with fov %.9g degrees%s", fov * 180.0 / M_PI,
              has_fov ? "" : " (the default)");
     return take_screen(d, vl_precise_tan(0.5 * fov), from, g, error);
   }
@@ -160,7 +159,8 @@ static vlResult gather_fov(const vlCameraDef *d, const vlCamera *camera, Gathere
   double window = half_window(d, &horizontal, &vertical), half;
   VL_TRY(plane_half(d, camera, !horizontal, &half, error));
   double f = window / half;
-  snprintf(from, sizeof from, "fov %.9g degrees (%s)", d->fov * 180.0 / pi, axes[d->fov_axis]);
+  snprintf(from, sizeof from, "fov %.9g degrees (%s)", d->fov * 180.0 / M_PI,
+           axes[d->fov_axis]);
   if (horizontal)
     VL_TRY(take(&g->fx, f, from, error));
   if (vertical)
@@ -259,7 +259,7 @@ static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathere
   /* along the smaller side: 180 degrees for fisheyes, 90 for others if the model covers that
    * angle */
   bool fisheye = row->traits & VL_PROJECTION_FISHEYE;
-  if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * just_inside : 0.25 * pi,
+  if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * M_PI * just_inside : 0.25 * M_PI,
                               d->width >= d->height, &radius))
     radius = 1.0;
   g->fx.value = g->fy.value = half / radius;

@@ -186,9 +186,8 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
   def->distortion_count = 0;
   if (found->projection == VL_PROJECTION_EQUIRECTANGULAR) {
     /* width, height: x = w (theta / 2 pi + 1/2), y = h (1/2 - phi / pi) */
-    const double pi = 3.14159265358979323846;
-    def->fx = parameters[0] / (2.0 * pi);
-    def->fy = parameters[1] / pi;
+    def->fx = parameters[0] / (2.0 * M_PI);
+    def->fy = parameters[1] / M_PI;
     def->cx = 0.5 * parameters[0];
     def->cy = 0.5 * parameters[1];
     return VL_OK;

@@ -211,7 +211,7 @@ static vlResult optics(const vlCameraDef *def, vlCamera *camera, vlError *error)
   double width = def->width, height = def->height;
   camera->fx = camera->fy = d->optics->info.rear_principal / (2.0 * d->optics->half) *
                             sqrt(width * width + height * height);
-  camera->lens_radius = sqrt(d->optics->pupils[0].area / 3.14159265358979323846);
+  camera->lens_radius = sqrt(d->optics->pupils[0].area / M_PI);
   camera->focus_distance = d->optics->info.focus_distance;
   return VL_OK;
 }

@@ -250,7 +250,7 @@ static vlResult pose_of(const Csv *csv, const vlFrameLocation *location,
     if (csv->has[UP_X])
       memcpy(def.up, v + UP_X, sizeof def.up);
     if (csv->has[ROLL])
-      def.roll = v[ROLL] * 3.14159265358979323846 / 180.0;
+      def.roll = v[ROLL] * M_PI / 180.0;
     if (vl_camera_make(&def, &camera, NULL, &error) != VL_OK) {
       const char *text =
           strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;

@@ -9,7 +9,7 @@
 #include "light/lamp_text.h"
 #include "math/approx_double.h"
 
-#define RADIANS(degrees) ((degrees) * (3.14159265358979323846 / 180))
+#define RADIANS(degrees) ((degrees) * (M_PI / 180))
 
 bool vl_lamp_data_allocate(vlContext *context, vlLampData *data, uint32_t planes,
                            uint32_t angles) {

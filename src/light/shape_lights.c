@@ -22,7 +22,7 @@ static float mean_image_luminance(const vlMipmap *mip) {
 
 /* The numbers of light/spread.h. From 180 degrees on there is no spread. */
 static void set_spread(float spread, vlEmitted *e) {
-  const double half = 0.5 * (double)spread, widest = 0.5 * 3.14159265358979323846 - 1e-4;
+  const double half = 0.5 * (double)spread, widest = 0.5 * M_PI - 1e-4;
   e->spread_cot = 0;
   e->spread_scale = e->spread_sin2 = 1;
   if (half >= widest)

@@ -8,8 +8,6 @@
 #include "math/approx_double.h"
 #include "math/elementary.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* Fresnel moments: int Fr(c) c dc and int Fr(c) c^2 dc over cosines c from 0 to 1. eta: index
  * on the incident side over index on the other side, so 1.5 for light inside a solid of index
  * 1.5. */
@@ -43,7 +41,7 @@ static double reflected_inside(double cosine, double eta) {
 
 static double phase(double cosine, double g) {
   double d = 1 + g * g + 2 * g * cosine;
-  return (1 - g * g) / (4 * pi * d * sqrt(d));
+  return (1 - g * g) / (4 * M_PI * d * sqrt(d));
 }
 
 /* Optical depths of sample points along the beam, distributed by its attenuation. */
@@ -75,10 +73,10 @@ static double multiple(double albedo, double g, double eta, double r, const Beam
     double z = beam->depth[i] / sigma_t, mirrored = 2 * extrapolated - z;
     double d = sqrt(r * r + z * z), m = sqrt(r * r + mirrored * mirrored),
            ed = vl_exp_double(-tr * d), em = vl_exp_double(-tr * m);
-    double fluence = (ed / d - em / m) / (4 * pi * diffusion);
+    double fluence = (ed / d - em / m) / (4 * M_PI * diffusion);
     double flux =
         (z * (1 + tr * d) * ed / (d * d * d) - mirrored * (1 + tr * m) * em / (m * m * m)) /
-        (4 * pi);
+        (4 * M_PI);
     /* Habel's empirical correction close to the beam */
     double near = 1 - vl_exp_double(-2 * sigma_t * (d + z));
     sum += near * reduced * reduced * (fluence * by_fluence + flux * by_flux);
@@ -105,8 +103,8 @@ static void fill_row(void *user, uint32_t row, uint32_t worker) {
   for (uint32_t k = 0; k < VL_BSSRDF_RADII; k++) {
     double r = (double)t->radius[k], ring = 0;
     if (r > 0)
-      ring =
-          2 * pi * r * (single(albedo, g, eta, r, &beam) + multiple(albedo, g, eta, r, &beam));
+      ring = 2 * M_PI * r *
+             (single(albedo, g, eta, r, &beam) + multiple(albedo, g, eta, r, &beam));
     t->profile[row][k] = ring > 0 && ring < 1e30 ? (float)ring : 0.0f;
   }
   double sum = 0;

@@ -163,7 +163,7 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
          z = extent_along(box, v->front), n[3];
   if (def->framing == VL_FRAMING_CORNER || !(x + y + z > 0))
     return "from the front, a little from the right and above";
-  const double flat = 0.2, chart = 0.4, against = -0.05, half_turn = 3.14159265358979323846;
+  const double flat = 0.2, chart = 0.4, against = -0.05, half_turn = M_PI;
   vl_facing_mean_normal(scene, y <= flat * fmin(x, z), n);
   if (y <= flat * fmin(x, z)) {
     const bool below = vl_dot3(n, v->up) < against;
@@ -454,8 +454,7 @@ static const double LIT_BY_SURFACES = 0.2;
 /* The studio is the fill light of the scene's own lamps: 0.3 times their light. A file with a
  * camera is a scene, not a model alone, and gets none where its surfaces light it. */
 static void fit_studio(const vlScene *scene, const vlExtent *boxes, vlCompleteDef *done) {
-  double lux = vl_lamp_illuminance(scene, boxes), pi = 3.14159265358979323846,
-         own = vl_surface_illuminance(scene, boxes);
+  double lux = vl_lamp_illuminance(scene, boxes), own = vl_surface_illuminance(scene, boxes);
   if (own > 0)
     vl_log(scene->context, VL_LOG_DEBUG, NULL,
            "light: surfaces of the file that emit light give %.3g lux", own);
@@ -464,7 +463,7 @@ static void fit_studio(const vlScene *scene, const vlExtent *boxes, vlCompleteDe
     return;
   }
   if (lux > 0)
-    done->strength *= (float)(0.3 * lux / pi);
+    done->strength *= (float)(0.3 * lux / M_PI);
   if (lux > 0)
     vl_log(scene->context, VL_LOG_DEBUG, NULL,
            "light: the file's lamps give %.3g lux; the studio adds 0.3 times that", lux);

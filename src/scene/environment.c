@@ -87,11 +87,7 @@ static void from_latitudes(const vlImage *from, const float *pixels, uint32_t ch
             vl_octahedral_decode(((float)x + (k & 1 ? 0.75f : 0.25f)) / (float)to->width,
                                  ((float)y + (k & 2 ? 0.75f : 0.25f)) / (float)to->height);
         double u = (vl_atan2_double(d.x, d.y) / 6.283185307179586 + 0.5) * w - 0.5;
-        double v = vl_acos_double(d.z > 1    ? 1
-                                  : d.z < -1 ? -1
-                                             : (double)d.z) /
-                       3.141592653589793 * h -
-                   0.5;
+        double v = vl_acos_double(d.z > 1 ? 1 : d.z < -1 ? -1 : (double)d.z) / M_PI * h - 0.5;
         vl_map_add_at(pixels, from->width, from->height, channels, u, v, sum);
       }
       for (int n = 0; n < 3; n++)

@@ -13,8 +13,6 @@
 #include "velo/light.h"
 #include "velo/shape_kinds.h"
 
-static const double pi = 3.14159265358979323846;
-
 void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
   const size_t n = s->groups.count + 1;
   vlExtent *boxes = vl_alloc_array(s->context, n, sizeof *boxes);
@@ -94,7 +92,7 @@ static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
   info.image = e->image || e->texture.index;
   info.power = given(e->power) ? e->power * (double)info.faces
                : info.image    ? NAN
-                               : pi * shape_area(d) * vl_light_def_luminance(&e->radiance) *
+                               : M_PI * shape_area(d) * vl_light_def_luminance(&e->radiance) *
                                   (double)e->scale * (e->two_sided ? 2 : 1);
   return info;
 }

@@ -135,7 +135,7 @@ static void meter_emitters(void *user, const double p[3]) {
   double sum = 0;
   for (size_t i = 0; i < m->count; i++) {
     const Emitter *g = &m->emitters[i];
-    double d2 = g->area / 3.14159265358979323846; /* no more than beside a plane of it */
+    double d2 = g->area / M_PI; /* no more than beside a plane of it */
     for (int k = 0; k < 3; k++)
       d2 += (p[k] - g->middle[k]) * (p[k] - g->middle[k]);
     sum += d2 > 0 ? g->candela / d2 : 0;

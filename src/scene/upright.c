@@ -60,8 +60,7 @@ static void visit(void *user, const double p[3]) {
 
 /* The area of the polygon whose edges have the directions' distances from the origin. */
 static double area(const Hull *hull) {
-  const double turn = 2 * 3.14159265358979323846 / DIRECTIONS, c = vl_precise_cos(turn),
-               s = vl_precise_sin(turn);
+  const double turn = 2 * M_PI / DIRECTIONS, c = vl_precise_cos(turn), s = vl_precise_sin(turn);
   double sum = 0;
   for (int k = 0; k < DIRECTIONS; k++) {
     const double h = hull->most[k], before = hull->most[(k + DIRECTIONS - 1) % DIRECTIONS],
@@ -83,7 +82,7 @@ static bool measure(const vlScene *scene, const vlExtent *boxes, Ends *e) {
     if (!(e->box.high[i] > e->box.low[i]))
       return false;
   for (int k = 0; k < DIRECTIONS; k++) {
-    const double turn = 2 * 3.14159265358979323846 * k / DIRECTIONS;
+    const double turn = 2 * M_PI * k / DIRECTIONS;
     e->cosine[k] = vl_precise_cos(turn);
     e->sine[k] = vl_precise_sin(turn);
     for (int axis = 0; axis < 3; axis++)

@@ -9,7 +9,6 @@
 #include "sensor/sensor.h"
 
 #define RADIANS 0.017453292519943295
-#define PI 3.14159265358979323846
 
 typedef struct Collect {
   const vlSensor *sensor;
@@ -173,7 +172,7 @@ static void set_scales(Collect *c, const vlExposureDef *exposure) {
   const vlSensorDef *def = &c->sensor->def;
   double metres = def->pixel * 1e-6;
   double n = exposure->f_number;
-  double irradiance = PI * def->transmittance / (4.0 * n * n);
+  double irradiance = M_PI * def->transmittance / (4.0 * n * n);
   double area = metres * metres * def->fill_factor;
   c->scale = irradiance * area * vl_exposure_seconds(exposure) * exposure->radiance;
   double width = c->window[2];

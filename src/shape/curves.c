@@ -33,9 +33,8 @@ typedef struct Cubic {
 
 static bool copy_curves(vlWorld *world, const vlShapeDef *def, vlWorldShape *s) {
   size_t n = def->faces;
-  enum {
-    MAX_PIECES = 1 << 23
-  }; /* pieces per shape, since Embree's box of a piece takes more memory than the curve */
+  /* Pieces per shape, since Embree's box of a piece takes more memory than the curve. */
+  enum { MAX_PIECES = 1 << 23 };
   s->curve = def->curve;
   s->split = def->split_depth < 6 ? def->split_depth : 6;
   while (s->split && (n << s->split) > MAX_PIECES)
@@ -359,7 +358,7 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
     double axis[3] = {along[0], along[1], along[2]}, up[3];
     scale_to(axis, 1);
     vl_cross3(axis, across, up);
-    vlSinCos turn = vl_sincos((float)((0.5 - v) * 3.14159265358979323846));
+    vlSinCos turn = vl_sincos((float)((0.5 - v) * M_PI));
     for (int i = 0; i < 3; i++)
       across[i] = across[i] * turn.cos + up[i] * turn.sin;
   }

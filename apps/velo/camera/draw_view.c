@@ -11,7 +11,7 @@
 #include "render/exposure.h"
 #include "velo/channels.h"
 
-static const double degree = 3.14159265358979323846 / 180.0;
+static const double degree = M_PI / 180.0;
 
 /* ---- what the camera sees ---------------------------------------------------------------- */
 

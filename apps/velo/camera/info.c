@@ -9,7 +9,7 @@
 
 enum { INFO_JSON, INFO_FRAME, INFO_SIZE };
 
-static const double degrees = 180.0 / 3.14159265358979323846;
+static const double degrees = 180.0 / M_PI;
 
 /* Angle between two opposite edges of the image. It is the sum of the angles between each edge
  * and the principal point, so it can exceed 180 degrees. NaN: an edge has no ray. */

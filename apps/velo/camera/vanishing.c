@@ -31,7 +31,6 @@ enum {
   V_TO
 };
 
-static const double pi = 3.14159265358979323846;
 static const char *const axis_names[3] = {"x", "y", "z"};
 
 /* ---- output ------------------------------------------------------------------------------ */
@@ -112,10 +111,10 @@ static void draw_family(Overlay *o, const vlCamera *c, const double d[3], int co
   double a[3], b[3], n[3];
   basis_of(d, a, b);
   for (int i = 0; i < 2 * count; i++) {
-    double t = pi * i / count;
+    double t = M_PI * i / count;
     for (int k = 0; k < 3; k++)
       n[k] = cos(t) * a[k] + sin(t) * b[k];
-    overlay_arc(o, c, d, n, -0.5 * pi, 0.5 * pi, width);
+    overlay_arc(o, c, d, n, -0.5 * M_PI, 0.5 * M_PI, width);
   }
 }
 
@@ -196,7 +195,7 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
   if (flat)
     return;
   basis_of(drawing->up, a, b);
-  overlay_arc(o, c, b, a, 0.0, 2.0 * pi, 1.5 * width);
+  overlay_arc(o, c, b, a, 0.0, 2.0 * M_PI, 1.5 * width);
   overlay_paint(o, yellow, 0.9);
 }
 

@@ -169,7 +169,7 @@ bool option_is_in(int id, const int *ids, size_t count) {
 }
 
 double option_radians(double degrees) {
-  return degrees * 3.14159265358979323846 / 180.0;
+  return degrees * M_PI / 180.0;
 }
 
 /* Reads degrees, or radians with the unit: 0.5rad. */

@@ -117,8 +117,7 @@ void overlay_line(Overlay *o, double x0, double y0, double x1, double y1, double
 void overlay_ring(Overlay *o, double x, double y, double radius, double width) {
   enum { SIDES = 48 };
   for (int i = 0; i < SIDES; i++) {
-    double t0 = 2.0 * 3.14159265358979323846 * i / SIDES,
-           t1 = 2.0 * 3.14159265358979323846 * (i + 1) / SIDES;
+    double t0 = 2.0 * M_PI * i / SIDES, t1 = 2.0 * M_PI * (i + 1) / SIDES;
     overlay_line(o, x + radius * cos(t0), y + radius * sin(t0), x + radius * cos(t1),
                  y + radius * sin(t1), width);
   }
@@ -163,8 +162,8 @@ void overlay_quad(Overlay *o, const double q[4][2], OverlaySeen *seen, void *use
       if (!count || (seen && !seen(user, (double)x + 0.5, (double)y + 0.5)))
         continue;
       float *cover = &o->coverage[(size_t)y * o->width + (size_t)x];
-      *cover =
-          fminf(1.0F, *cover + (float)count / (SIDE * SIDE)); /* neighbours share an edge */
+      /* neighbours share an edge */
+      *cover = fminf(1.0F, *cover + (float)count / (SIDE * SIDE));
     }
 }
 

@@ -8,8 +8,6 @@
 #include "cli/report.h"
 #include "velo/lamp.h"
 
-#define PI 3.14159265358979323846
-
 enum { SIDE = 480, RADIUS = 200, RINGS = 4 };
 
 /* Intensity in candela in the plane of C (radians, and of C + 180 degrees), at an angle from
@@ -35,15 +33,15 @@ static void write_rings(FILE *out, double step) {
   for (int i = 1; i <= RINGS; i++)
     fprintf(out, "<circle r=\"%d\"/>\n", RADIUS * i / RINGS);
   for (int degrees = 0; degrees < 360; degrees += 30)
-    fprintf(out, "<line x2=\"%.2f\" y2=\"%.2f\"/>\n", RADIUS * sin(degrees * PI / 180),
-            RADIUS * cos(degrees * PI / 180));
+    fprintf(out, "<line x2=\"%.2f\" y2=\"%.2f\"/>\n", RADIUS * sin(degrees * M_PI / 180),
+            RADIUS * cos(degrees * M_PI / 180));
   fprintf(out, "</g>\n<g font-size=\"11\" font-family=\"sans-serif\" fill=\"#444\">\n");
   for (int i = 1; i <= RINGS; i++)
     fprintf(out, "<text x=\"3\" y=\"%d\">%g</text>\n", RADIUS * i / RINGS - 3, i * step);
   for (int degrees = -150; degrees <= 180; degrees += 30)
     fprintf(out, "<text x=\"%.2f\" y=\"%.2f\" text-anchor=\"middle\">%d\u00b0</text>\n",
-            (RADIUS + 16) * sin(degrees * PI / 180),
-            (RADIUS + 16) * cos(degrees * PI / 180) + 4, degrees < 0 ? -degrees : degrees);
+            (RADIUS + 16) * sin(degrees * M_PI / 180),
+            (RADIUS + 16) * cos(degrees * M_PI / 180) + 4, degrees < 0 ? -degrees : degrees);
   fprintf(out, "</g>\n");
 }
 
@@ -51,7 +49,7 @@ static void write_curve(FILE *out, const vlLamp *lamp, double c, double most,
                         const char *style) {
   fprintf(out, "<path fill=\"none\" stroke-width=\"2\" %s d=\"", style);
   for (int k = -360; k <= 360; k++) {
-    double angle = k * PI / 360;
+    double angle = k * M_PI / 360;
     double r = RADIUS * polar_intensity(lamp, c, angle) / most;
     fprintf(out, "%s%.2f %.2f", k == -360 ? "M" : "L", r * sin(angle), r * cos(angle));
   }
@@ -85,7 +83,7 @@ static void write_svg(FILE *out, const vlLamp *lamp, const vlLampInfo *info,
   write_text(out, title);
   fprintf(out, "</title>\n<g fill=\"none\" stroke=\"#bbb\" stroke-width=\".7\">\n");
   write_rings(out, step);
-  write_curve(out, lamp, PI / 2, RINGS * step, "stroke=\"#06c\" stroke-dasharray=\"6 4\"");
+  write_curve(out, lamp, M_PI / 2, RINGS * step, "stroke=\"#06c\" stroke-dasharray=\"6 4\"");
   write_curve(out, lamp, 0, RINGS * step, "stroke=\"#c30\"");
   fprintf(out,
           "<g font-size=\"13\" font-family=\"sans-serif\"><text x=\"%d\" y=\"%d\" "
@@ -118,7 +116,7 @@ enum { INFO_OUT, INFO_JSON };
 enum { TABLE_PLANES = 4, TABLE_STEP = 10 };
 
 static double in_degrees(double radians) {
-  return radians * (180 / PI);
+  return radians * (180 / M_PI);
 }
 
 static bool is_given(double number) {
@@ -132,7 +130,7 @@ static void print_table(const vlLamp *lamp, double least) {
   for (int gamma = 0; gamma <= 180; gamma += TABLE_STEP) {
     printf("  %9d", gamma);
     for (int k = 0; k < TABLE_PLANES; k++) {
-      double intensity = polar_intensity(lamp, k * PI / 2, gamma * PI / 180);
+      double intensity = polar_intensity(lamp, k * M_PI / 2, gamma * M_PI / 180);
       printf(" %9.4g", intensity < least ? 0 : intensity);
     }
     putchar('\n');

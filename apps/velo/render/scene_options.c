@@ -20,7 +20,7 @@
 /* Sine and cosine of an angle in degrees by their series: the same bits on all machines. */
 static void sine_cosine(double degrees, double *sine, double *cosine) {
   const double turn = fmod(degrees, 360), quarters = floor(turn / 90 + 0.5);
-  const double x = (turn - 90 * quarters) * (3.14159265358979323846 / 180), xx = x * x;
+  const double x = (turn - 90 * quarters) * (M_PI / 180), xx = x * x;
   double s = 0, c = 0;
   for (int k = 9; k >= 0; k--) {
     s = 1 - s * xx / ((2 * k + 2) * (2 * k + 3));
@@ -66,7 +66,7 @@ static void turn(const double axis[3], double degrees, const double *middle, dou
 static void stand_back(vlCameraDef *camera, const double low[3], const double high[3],
                        const double middle[3]) {
   double radius = 0, length = 0, sine, cosine;
-  sine_cosine(0.5 * camera->fov * (180 / 3.14159265358979323846), &sine, &cosine);
+  sine_cosine(0.5 * camera->fov * (180 / M_PI), &sine, &cosine);
   for (int i = 0; i < 3; i++) {
     radius += 0.25 * (high[i] - low[i]) * (high[i] - low[i]);
     length += (camera->eye[i] - camera->lookat[i]) * (camera->eye[i] - camera->lookat[i]);

@@ -8,8 +8,6 @@
 #include "image/image.h"
 #include "sensor/verify.h"
 
-#define PI 3.14159265358979323846
-
 enum {
   EDGE_SIDE = 256,  /* pixels */
   EDGE_FRAMES = 16, /* which are averaged */
@@ -44,12 +42,12 @@ static double expected(const vlSensorDef *def, const Edge *e, double frequency) 
   double real = 0.0;
   double imaginary = 0.0;
   for (int j = 0; j < 9; j++) {
-    double phase = 2.0 * PI * frequency * (e->nx * (j % 3 - 1) + e->ny * (j / 3 - 1));
+    double phase = 2.0 * M_PI * frequency * (e->nx * (j % 3 - 1) + e->ny * (j / 3 - 1));
     real += def->crosstalk[j] * cos(phase);
     imaginary += def->crosstalk[j] * sin(phase);
   }
-  double x = PI * frequency * side * e->nx;
-  double y = PI * frequency * side * e->ny;
+  double x = M_PI * frequency * side * e->nx;
+  double y = M_PI * frequency * side * e->ny;
   return hypot(real, imaginary) * fabs(sin(x) / x * sin(y) / y);
 }
 
@@ -118,7 +116,7 @@ static Edge find_edge(const double *sums, double guess) {
   for (int y = 0; y < EDGE_SIDE; y++) {
     double weights = 0.0;
     double moment = 0.0;
-    double middle = guess - (y - 0.5 * EDGE_SIDE) * tan(5.0 * PI / 180.0);
+    double middle = guess - (y - 0.5 * EDGE_SIDE) * tan(5.0 * M_PI / 180.0);
     for (int i = -WINDOW; i < WINDOW; i++) {
       int x = (int)floor(middle) + i;
       double step = sums[y * EDGE_SIDE + x + 1] - sums[y * EDGE_SIDE + x];
@@ -161,18 +159,18 @@ static double modulation(const double values[BINS], double frequency) {
   double real = 0.0;
   double imaginary = 0.0;
   for (int i = 0; i + 1 < BINS; i++) {
-    double phase = 2.0 * PI * frequency * i / BINS_PER_PIXEL;
+    double phase = 2.0 * M_PI * frequency * i / BINS_PER_PIXEL;
     real += (values[i + 1] - values[i]) * cos(phase);
     imaginary += (values[i + 1] - values[i]) * sin(phase);
   }
-  double x = PI * frequency / BINS_PER_PIXEL;
+  double x = M_PI * frequency / BINS_PER_PIXEL;
   double lost = sin(x) / x;
   return hypot(real, imaginary) / (values[BINS - 1] - values[0]) / (lost * lost);
 }
 
 int verify_edge(Verify *v) {
   const vlSensorDef *def = vl_sensor_def(v->sensor);
-  double angle = 5.0 * PI / 180.0;
+  double angle = 5.0 * M_PI / 180.0;
   double middle = 0.5 * EDGE_SIDE + 0.3;
   Edge real = {cos(angle), sin(angle), 0.0};
   real.d = real.nx * middle + real.ny * 0.5 * EDGE_SIDE;

@@ -44,7 +44,7 @@ static void clip(double *mean, double *variance, double limit) {
   }
   double z = (limit - *mean) / deviation;
   double below = 0.5 * erfc(-z / sqrt(2.0));
-  double density = exp(-0.5 * z * z) / sqrt(2.0 * 3.14159265358979323846);
+  double density = exp(-0.5 * z * z) / sqrt(2.0 * M_PI);
   double first = z * (1.0 - below) - density; /* of standard numbers */
   double second = below - z * density + z * z * (1.0 - below);
   *variance *= fmax(second - first * first, 0.0);

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double degree = 3.14159265358979323846 / 180.0;
+static const double degree = M_PI / 180.0;
 
 /* Takes the units that the def names. */
 static void note_units(const vlCameraDef *def, CameraUnits *units) {

@@ -6,7 +6,7 @@
 #include "velo/projection.h"
 #include "view/camera_edit.h"
 
-static const double degrees = 180.0 / 3.14159265358979323846;
+static const double degrees = 180.0 / M_PI;
 
 static void put_pose(Json *json, const ViewCamera *camera) {
   const CameraPose pose = camera_pose(camera);

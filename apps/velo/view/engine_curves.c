@@ -133,7 +133,7 @@ static void put_horizon(Json *json, const vlCamera *camera, const CameraPose *po
     return;
   across(pose->up, a, b);
   for (int i = 0; i <= HORIZON_STEPS; i++) {
-    double t = 2 * 3.14159265358979323846 * i / HORIZON_STEPS;
+    double t = 2 * M_PI * i / HORIZON_STEPS;
     for (int k = 0; k < 3; k++)
       d[k] = cos(t) * a[k] + sin(t) * b[k];
     far_point(pose->eye, d, p);
@@ -155,9 +155,8 @@ static void put_vanishing_lines(Json *json, const vlCamera *camera, const Camera
       if (!vl_camera_unproject(camera, positions[n][0] * camera->width,
                                positions[n][1] * camera->height, o, d))
         continue;
-      double sign = camera->world_from_camera[4 * axis + 2] < 0
-                        ? -1
-                        : 1; /* the end that the camera sees */
+      /* the end that the camera sees */
+      double sign = camera->world_from_camera[4 * axis + 2] < 0 ? -1 : 1;
       Curve curve = {.json = json, .camera = camera, .name = axis_names[axis]};
       for (int i = 0; i <= AXIS_STEPS; i++) {
         double t = (double)i / AXIS_STEPS;

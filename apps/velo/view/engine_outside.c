@@ -13,7 +13,7 @@
 enum { MAX_SIDE = 800, OUTSIDE_SPP = 2 };
 
 /* vertical; web/outside.js has the same */
-static const double outside_fov = 40 * 3.14159265358979323846 / 180;
+static const double outside_fov = 40 * M_PI / 180;
 
 static const MessageField *find_field(const ViewMessage *m, const char *name, uint32_t count) {
   for (uint32_t i = 0; i < m->field_count; i++)

@@ -37,7 +37,7 @@ static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
     ef += e * f;
   }
   double x = ef / sqrt(ee * ff);
-  return x < 1 ? x > -1 ? vl_acos_double(x) : 3.14159265358979323846 : 0;
+  return x < 1 ? x > -1 ? vl_acos_double(x) : M_PI : 0;
 }
 
 static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {

@@ -24,7 +24,6 @@ typedef struct Work {
 static void fill_row(void *user, uint32_t y, uint32_t worker) {
   (void)worker;
   const Work *w = user;
-  const double pi = 3.141592653589793;
   float *row = vl_image_row(w->to, y);
   double side = w->to->width;
   for (uint32_t x = 0; x < w->to->width; x++) {
@@ -36,9 +35,9 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
                                                                      : d.z < -1 ? -1
                                                                                 : (double)d.z);
       if (phi < 0)
-        phi += 2 * pi;
-      vl_map_add_at(w->pixels, w->width, w->height, 3, phi / (2 * pi) * w->width - 0.5,
-                    theta / pi * w->height - 0.5, sum);
+        phi += 2 * M_PI;
+      vl_map_add_at(w->pixels, w->width, w->height, 3, phi / (2 * M_PI) * w->width - 0.5,
+                    theta / M_PI * w->height - 0.5, sum);
     }
     for (uint32_t n = 0; n < 3; n++)
       row[3 * x + n] = (float)(sum[n] * w->factor[n] / (LOOKS * LOOKS));

@@ -109,7 +109,7 @@ bool vl_old_mesh_of_shape(vlOldStatement *s) {
             .radius = vl_old_number(s, "radius", 1),
             .p2 = {1, 1, 1}};
   g.kind = (Kind)vl_name_index(s->name[0], names, VL_LENGTH(names));
-  g.phi = vl_old_number(s, "phimax", 360) * 3.141592653589793 / 180;
+  g.phi = vl_old_number(s, "phimax", 360) * M_PI / 180;
   g.z[0] = g.kind == PARABOLOID ? vl_old_number(s, "zmin", 0) : 0;
   g.z[1] = g.kind == PARABOLOID ? vl_old_number(s, "zmax", 1) : vl_old_number(s, "height", 1);
   read_point(s, "p1", g.p1);

@@ -182,8 +182,8 @@ typedef struct vlContextDef {
   uint32_t threads;      /**< number of workers; default: the machine's processors */
   vlIsa isa; /**< default VL_ISA_AUTO; the environment variable VELO_ISA=base|v2|v3|v4 overrides
                 AUTO */
-  vlParallelForFn
-      *parallel_for;       /**< runs the parallel loops; null: the built-in pool of threads */
+  /** runs the parallel loops; null: the built-in pool of threads */
+  vlParallelForFn *parallel_for;
   void *parallel_for_user; /**< passed to parallel_for */
   size_t max_memory; /**< limit of the bytes held, including Embree's; calls that need more
                         return VL_ERROR_MEMORY. 0: no limit */

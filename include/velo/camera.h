@@ -234,9 +234,9 @@ typedef struct vlCamera {
                    model); may be infinity */
   vlDistortionMap distortion; /**< compiled distortion */
   double outside; /**< share of the image, 0 to 1, that is outside the camera's domain */
-  double
-      eye_circle; /**< omnidirectional stereo: radius of the circle of eyes, scene units;
-                     positive for the right eye, negative for the left; 0: a single eye point */
+  /** omnidirectional stereo: radius of the circle of eyes, scene units; positive for the right
+   * eye, negative for the left; 0: a single eye point */
+  double eye_circle;
   const struct vlOwnCamera *own; /**< the projection OWN: its functions; else null */
   double own_size[2];  /**< OWN: width and height of the image whose pixels its functions count.
                           (x_cam, y_cam) is a film point in these pixels: fx, fy are 1 and cx,

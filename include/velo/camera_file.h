@@ -111,8 +111,8 @@ typedef struct vlCameraRecord {
   uint32_t unread; /**< number of fields that velo does not understand; they have no effect.
                       docs/camera-files.md names the dialects in which they are counted */
   uint32_t unread_line; /**< the line of the first one; 0: unknown */
-  char
-      unread_names[128]; /**< the first VL_UNREAD_NAMES, as messages show them: "a", "b", "c" */
+  /** the first VL_UNREAD_NAMES, as messages show them: "a", "b", "c" */
+  char unread_names[128];
 } vlCameraRecord;
 
 /** Reads one camera. def may be null: the default. The result is a description; vl_camera_make

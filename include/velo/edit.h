@@ -39,11 +39,11 @@ VL_API const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id);
 /** An instance of a scene. */
 typedef struct vlInstanceInfo {
   vlGroupId group; /**< what it places */
-  double
-      world_from_group[16]; /**< its pose; of a moving instance: the pose at its first time */
-  bool moves;               /**< it has several poses */
-  uint32_t keys;            /**< number of poses of a moving instance; 0: it is at rest */
-  const double *times;      /**< their times in seconds, ascending; null: it is at rest */
+  /** its pose; of a moving instance: the pose at its first time */
+  double world_from_group[16];
+  bool moves;          /**< it has several poses */
+  uint32_t keys;       /**< number of poses of a moving instance; 0: it is at rest */
+  const double *times; /**< their times in seconds, ascending; null: it is at rest */
   /** 16 numbers of each pose, world_from_group; null: it is at rest. Between the times it moves
    * as vl_scene_add_moving_instance says. */
   const double *poses;

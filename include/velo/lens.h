@@ -83,8 +83,8 @@ typedef struct vlOpticsInfo {
                             field angles are measured */
   double focus_distance; /**< from the film to the plane in focus */
   double film_diagonal;  /**< diagonal of the film */
-  double
-      f_number; /**< focal length / diameter of the entrance pupil; 0 with an aperture image */
+  /** focal length / diameter of the entrance pupil; 0 with an aperture image */
+  double f_number;
 } vlOpticsInfo;
 /** Fills *def with the def that a lens was made from, and `surfaces`, an array of 64, with its
  * surfaces. */

@@ -24,10 +24,10 @@ typedef struct vlLoadDef {
   double time; /**< glTF: time of the animations, seconds; unset: the scene without animation */
   double time_close; /**< glTF: time when the shutter closes, seconds, later than `time`; for
                         motion blur; unset: no motion */
-  const char
-      *scene; /**< glTF: name of the scene, or its number from 0; null: the file's default */
-  const char
-      *animation; /**< glTF: name of the animation, or its number from 0; null: the first */
+  /** glTF: name of the scene, or its number from 0; null: the file's default */
+  const char *scene;
+  /** glTF: name of the animation, or its number from 0; null: the first */
+  const char *animation;
   const char *variant; /**< glTF: name of a material variant; null: the file's default */
   const char *camera;  /**< glTF: name of the camera, or its number from 0; null: the first */
   double unit; /**< length of the file's unit, metres, 1e-9 to 1e9: candela and lumens of its
@@ -86,9 +86,9 @@ typedef struct vlCompleteDef {
   uint32_t width, height; /**< image size in pixels, for framing and for files without a size;
                              0: the film's */
   vlEnvironmentKind environment; /**< default AUTO */
-  const char
-      *path; /**< FILE: path of an image, either twice as wide as high (longitude and latitude;
-                its centre is in the direction -front) or square (equal-area octahedral) */
+  /** FILE: path of an image, either twice as wide as high (longitude and latitude; its centre
+   * is in the direction -front) or square (equal-area octahedral) */
+  const char *path;
   double rotation; /**< rotation of the environment about `up`, radians, counter-clockwise as
                       seen from above; unset: a studio's main light is on the left of the
                       added or the file's camera, all others are not rotated */

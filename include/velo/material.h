@@ -50,14 +50,14 @@ typedef enum vlMaterialKind {
 typedef struct vlPrincipledDef {
   vlFloatInput metallic;  /**< 0 to 1; default 1 */
   vlFloatInput roughness; /**< 0 to 1, alpha = roughness^2; default 1 */
-  vlFloatInput
-      anisotropy; /**< strength, 0 to 1: alpha along the tangent is mix(alpha, 1, strength^2) */
+  /** strength, 0 to 1: alpha along the tangent is mix(alpha, 1, strength^2) */
+  vlFloatInput anisotropy;
   vlFloatInput anisotropy_rotation; /**< radians from the tangent towards the bitangent */
   vlFloatInput specular;            /**< factor on the dielectric's reflection; default 1 */
   vlSpectrumInput specular_color;   /**< factor on the dielectric's reflection at normal
                                        incidence; default 1 */
-  vlFloatInput
-      transmission; /**< share of the base that transmits light instead of scattering it */
+  /** share of the base that transmits light instead of scattering it */
+  vlFloatInput transmission;
   bool thin_walled; /**< a thin sheet, which does not refract; default true (as in glTF without
                        thickness) */
   float dispersion; /**< 20 / Abbe number; ignored if thin_walled */
@@ -85,8 +85,8 @@ typedef enum vlHairColor {
 } vlHairColor;
 /** Hair (pbrt book 9.9). For curves, whose parameter v runs across the hair. */
 typedef struct vlHairDef {
-  vlHairColor
-      color; /**< how the colour is given; default VL_HAIR_MELANIN, with eumelanin 1.3 */
+  /** how the colour is given; default VL_HAIR_MELANIN, with eumelanin 1.3 */
+  vlHairColor color;
   vlSpectrumInput sigma_a;             /**< VL_HAIR_SIGMA_A: absorption coefficient */
   vlFloatInput eumelanin, pheomelanin; /**< VL_HAIR_MELANIN: concentrations */
   vlFloatInput eta;                    /**< index of refraction; default 1.55 */
@@ -140,8 +140,8 @@ struct vlMaterialDef {
                   see vlSubsurfaceDef */
   /** coated conductor: roughness of the coat */
   vlFloatInput coat_u_roughness, coat_v_roughness;
-  vlSpectrumInput
-      coat_eta;         /**< coated conductor: index of refraction of the coat; untextured */
+  /** coated conductor: index of refraction of the coat; untextured */
+  vlSpectrumInput coat_eta;
   vlHairDef hair;       /**< parameters of hair */
   const char *measured; /**< measured: path of a spectral file of the RGL material database
                            (Dupuy and Jakob 2018) */

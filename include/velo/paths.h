@@ -65,8 +65,8 @@ typedef struct vlPathVertex {
   const char *texture, *image;
   uint32_t lobe;      /**< bits of the sampled lobe */
   float direction[3]; /**< ON: unit direction in which the path goes on */
-  float
-      pdf; /**< density of that direction per solid angle; of a specular lobe its probability */
+  /** density of that direction per solid angle; of a specular lobe its probability */
+  float pdf;
   float factor[4]; /**< BSDF times cosine over pdf: the step's factor on the throughput */
   float survival;  /**< probability with which Russian roulette keeps the path; 1: it was not
                     * applied
@@ -88,8 +88,8 @@ typedef struct vlPathContribution {
   vlPathLightEvent event; /**< how the light was found */
   uint32_t vertex;        /**< index of the vertex in vlPath.vertices */
   uint32_t light;         /**< number of the light in the world, from 1; MEDIUM: 0 */
-  const char
-      *type;       /**< "area", "point", "infinite", ...: a constant string; MEDIUM: "medium" */
+  /** "area", "point", "infinite", ...: a constant string; MEDIUM: "medium" */
+  const char *type;
   uint32_t object; /**< id of the emissive object; 0: a light without a shape */
   bool distant;    /**< the light is infinitely far */
   bool occluded;   /**< SAMPLED: something hides the light; the contribution is 0 */

@@ -25,10 +25,10 @@ typedef struct vlReceiptDef {
   const char *commit; /**< git commit of the program's source */
   const char *scene;  /**< path of the scene's file; paths of recorded files below its folder
                          become relative to it */
-  const char *const
-      *command;           /**< words of the command line that makes the image, without options
-                           * that do not affect the pixels (outputs, threads, ...) */
-  uint32_t command_count; /**< length of command */
+  /** words of the command line that makes the image, without options that do not affect the
+   * pixels (outputs, threads, ...) */
+  const char *const *command;
+  uint32_t command_count;     /**< length of command */
   const char *const *outputs; /**< paths of the images that a complete film is written to; for
                                  receipts of films */
   uint32_t output_count;      /**< length of outputs */

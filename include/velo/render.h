@@ -227,8 +227,8 @@ typedef struct vlRenderStats {
   double mean_spp; /**< mean over its blocks of 32 x 32 pixels */
   uint32_t blocks, noisy_blocks; /**< number of blocks; of those not below vlRenderDef.noise */
   uint64_t paths, camera_rays, bounce_rays, shadow_rays; /**< counts */
-  uint64_t
-      not_finite; /**< number of samples discarded because they were not finite or above 2^40 */
+  /** number of samples discarded because they were not finite or above 2^40 */
+  uint64_t not_finite;
   uint64_t own_numbers; /**< numbers of vlRenderDef.own_sampler that were not in [0, 1), and
                            were replaced */
   double seconds;       /**< duration of the call */

@@ -91,8 +91,8 @@ typedef struct vlParameter {
   const char *text; /**< default of strings; name of a spectrum (vl_spectrum_name); of a BLOCK:
                        its type in files */
   double low, high; /**< range, in the def's unit; no limits where both are 0 */
-  const char *const
-      *choices; /**< names in files, ending with null; index = value of the enum */
+  /** names in files, ending with null; index = value of the enum */
+  const char *const *choices;
 } vlParameter;
 
 /** A kind of a family. */

@@ -83,8 +83,8 @@ struct vlShapeDef {
    * along a segment, v from one side to the other. Ribbons: `normals` has the normals at both
    * ends of each segment (6 numbers per segment). Curves cannot emit light. */
   vlCurveKind curve;
-  const float
-      *widths; /**< curves: widths at both ends of each segment, 2 per segment, shape space */
+  /** curves: widths at both ends of each segment, 2 per segment, shape space */
+  const float *widths;
   /** Curves: each segment is cut into 2^split_depth pieces for faster intersection, into fewer
    * if there are millions of segments; default 3. The image does not depend on it. */
   uint32_t split_depth;

@@ -71,8 +71,8 @@ struct vlTextureDef {
   float omega;         /**< noise: amplitude of each octave relative to the previous one (pbrt's
                           "roughness"); default 0.5 */
   float variation;     /**< marble: strength of the variation; default 0.2 */
-  const char
-      *path; /**< image: path of a file, read when the world is built (once per path); or */
+  /** image: path of a file, read when the world is built (once per path); or */
+  const char *path;
   const vlImage *image;   /**< image: an image in memory, copied; or */
   const void *data;       /**< image: an image file in memory, copied */
   size_t data_size;       /**< length of data, bytes */

@@ -22,8 +22,8 @@ enum { VL_NO_CAMERA = -1 };
 typedef struct vlTrajectoryFrame {
   const char *name; /**< name of the image, as the file writes it; may be empty; lives as long
                        as the trajectory */
-  int32_t
-      camera; /**< index for vl_trajectory_camera; VL_NO_CAMERA: the file gives a pose only */
+  /** index for vl_trajectory_camera; VL_NO_CAMERA: the file gives a pose only */
+  int32_t camera;
   uint32_t line;                /**< line in the file, from 1; 0: not known */
   double world_from_camera[16]; /**< a rotation (checked to 1e-3) and a translation; velo's
                                    axes, scene units */

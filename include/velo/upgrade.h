@@ -24,8 +24,8 @@ typedef void vlUpgradeReport(void *user, vlUpgradeNote note, const vlError *loca
 /** How to upgrade a scene. */
 typedef struct vlUpgradeDef {
   uint32_t cookie;
-  bool
-      strict; /**< what has no counterpart is an error, and nothing is written; default false */
+  /** what has no counterpart is an error, and nothing is written; default false */
+  bool strict;
   const char *search_path; /**< further folders, separated by ':', in which files are looked
                               for; default null */
   vlUpgradeReport *report; /**< receives the notes; default null */

@@ -65,9 +65,8 @@ typedef struct vlVanishingDef {
   uint32_t count; /**< number of points: 2 if the principal point is known; 3 also determine the
                      principal point */
   double points[3][2]; /**< pixels, finite */
-  uint32_t
-      axes[3];   /**< the world axis of each point: 0 x, 1 y, 2 z, all different; default x, z,
-                    y */
+  /** the world axis of each point: 0 x, 1 y, 2 z, all different; default x, z, y */
+  uint32_t axes[3];
   bool away[3];  /**< whether the positive end of the axis is in front of the camera; not read
                     for a third axis, where it follows from the right-handed world; default
                     true */

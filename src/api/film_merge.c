@@ -13,9 +13,8 @@
 #include "film/file.h"
 #include "velo/film.h"
 
-enum {
-  MAX_FILES = 200
-}; /* files that are open at the same time; more files are merged in several rounds */
+/* Files that are open at the same time; more files are merged in several rounds. */
+enum { MAX_FILES = 200 };
 
 typedef struct Part {
   vlFilmReader reader;
@@ -30,8 +29,8 @@ typedef struct Merge {
   uint32_t *order;               /* indices of parts, sorted by samples, most first */
   vlSampleSpan *ranges, *joined; /* samples of the result's block; working memory of join */
   uint32_t range_count;
-  vlComparedNoise
-      compared;         /* of the result's block: that of its only part, 0 if it has several */
+  /* of the result's block: that of its only part, 0 if it has several */
+  vlComparedNoise compared;
   char *sum, *data;     /* the result's block; one part's block */
   vlFilmReader earlier; /* the file that the result replaces; only what the result has, too;
                            descriptor -1: none */
@@ -131,9 +130,8 @@ static const vlFilmTexts *choose_texts(const Merge *m) {
   for (uint32_t i = 1; i < m->count; i++) {
     const vlFilmTexts *texts = &m->parts[i].reader.texts;
     int order = least->receipt ? strcmp(texts->receipt, least->receipt) : 0;
-    if (order == 0 && texts->attributes)
-      order = least->attributes ? strcmp(texts->attributes, least->attributes)
-                                : -1; /* films of earlier versions have none */
+    if (order == 0 && texts->attributes) /* films of earlier versions have none */
+      order = least->attributes ? strcmp(texts->attributes, least->attributes) : -1;
     if (order < 0)
       least = texts;
   }

@@ -24,11 +24,8 @@
 
 /* ---- Landlock (linux/landlock.h; Documentation/userspace-api/landlock.rst of Linux) ------ */
 
-enum {
-  CREATE_RULESET = 444,
-  ADD_RULE = 445,
-  RESTRICT_SELF = 446
-}; /* the same on all processors */
+/* Numbers of system calls, the same on all processors. */
+enum { CREATE_RULESET = 444, ADD_RULE = 445, RESTRICT_SELF = 446 };
 enum { VERSION_FLAG = 1, RULE_PATH_BENEATH = 1 };
 enum {
   FS_EXECUTE = 1 << 0,
@@ -163,9 +160,9 @@ static uint32_t confine_files(const char *const *read, uint32_t read_count,
 #define REFUSE RETURN(SECCOMP_RET_ERRNO | EPERM)
 #define REFUSE_CALL(number) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1), REFUSE
 enum {
-  X32 = 0x40000000,
-  IO_URING_SETUP = 425
-}; /* calls of x86's x32 variant; io_uring opens sockets, too */
+  X32 = 0x40000000,    /* the bit of calls of x86's x32 variant */
+  IO_URING_SETUP = 425 /* io_uring opens sockets, too */
+};
 
 static bool install(struct sock_filter *program, size_t count) {
   const struct sock_fprog filter = {(unsigned short)count, program};

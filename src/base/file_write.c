@@ -100,8 +100,8 @@ static bool open_temporary(vlFileWriter *writer, bool named) {
       return false;
     }
     atomic_store(&writer->unfinished->descriptor, writer->descriptor);
-    struct stat
-        info; /* another process may have removed it as abandoned before it was locked */
+    /* another process may have removed it as abandoned before it was locked */
+    struct stat info;
     bool locked = flock(writer->descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     if (locked && fstat(writer->descriptor, &info) == 0 && info.st_nlink > 0)
       return true;

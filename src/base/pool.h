@@ -10,8 +10,8 @@
 /* How a loop shares the workers with other loops that run at the same time. */
 typedef struct vlLoopDef {
   int priority; /* while a loop of a higher priority runs, this one does one task each 50 ms */
-  const atomic_bool
-      *cancelled; /* once it is true, the loop no longer waits for others; may be null */
+  /* once it is true, the loop no longer waits for others; may be null */
+  const atomic_bool *cancelled;
 } vlLoopDef;
 
 typedef struct vlPool {

@@ -27,8 +27,8 @@ typedef struct vlCameraFile {
   const vlCameraFileDef *def;
   vlError *error;
   vlCameraLocations *locations; /* may be null; then errors have no line */
-  const uint32_t
-      *ordinal; /* number of the camera to read, which overrides the def; may be null */
+  /* number of the camera to read, which overrides the def; may be null */
+  const uint32_t *ordinal;
   bool *looked; /* becomes true when the def's frame is looked for; may be null */
 } vlCameraFile;
 

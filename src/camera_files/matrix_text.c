@@ -72,9 +72,8 @@ static bool decompose(const double p[12], double k[9], double r[9], double t[3])
     a[i / 3][i % 3] = p[4 * (i / 3) + i % 3];
   for (int i = 0; i < 9; i++)
     k[i] = 0.0;
-  double sign = vl_triple3(a[0], a[1], a[2]) < 0.0
-                    ? -1.0
-                    : 1.0; /* P is defined up to its scale; R must be a rotation */
+  /* P is defined up to its scale; R must be a rotation */
+  double sign = vl_triple3(a[0], a[1], a[2]) < 0.0 ? -1.0 : 1.0;
   for (int i = 2; i >= 0; i--) {
     double rest[3];
     for (int c = 0; c < 3; c++)

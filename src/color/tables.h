@@ -16,8 +16,8 @@ extern const vlNamedTable vl_table_named[]; /* ascending by name */
 typedef struct vlSpaceTable {
   double xy[8]; /* red, green, blue, white */
   double xyz_from_rgb[9], rgb_from_xyz[9];
-  uint32_t
-      illuminant; /* index into vl_table_named; its y equals that of the constant spectrum 1 */
+  /* index into vl_table_named; its y equals that of the constant spectrum 1 */
+  uint32_t illuminant;
 } vlSpaceTable;
 extern const vlSpaceTable vl_table_spaces[4];
 

@@ -12,8 +12,8 @@ typedef struct DistortionVariant {
 
 enum { DISTORTION_VARIANTS = 5 };
 typedef struct DistortionCase {
-  DistortionVariant
-      variants[DISTORTION_VARIANTS]; /* but the first, without coefficients: unused */
+  /* but the first, without coefficients: unused */
+  DistortionVariant variants[DISTORTION_VARIANTS];
   /* The distorted point of a point of the plane z = 1. */
   void (*plain)(const DistortionVariant *variant, double x, double y, double at[2]);
 } DistortionCase;

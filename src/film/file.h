@@ -43,9 +43,8 @@ typedef struct vlFilmShape {
   vlFilmOwn own;
 } vlFilmShape;
 
-enum {
-  VL_FILM_OLD_MEAN = 16
-}; /* bytes of a pixel's mean, which blocks of format 2 with a comparison have */
+/* Bytes of a pixel's mean, which blocks of format 2 with a comparison have. */
+enum { VL_FILM_OLD_MEAN = 16 };
 /* Bytes of a pixel's sums in a file. */
 static inline size_t vl_film_pixel_size(const vlFilmDef *def) {
   return sizeof(vlFilmPixel) + (def->errors ? sizeof(vlFilmMoments) : 0) +

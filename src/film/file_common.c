@@ -8,8 +8,8 @@
 const char vl_film_magic[8] = {'V', 'E', 'L', 'O', 'F', 'I', 'L', 'M'};
 
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size) {
-  return size ? (uint32_t)crc32_z(crc, data, size)
-              : crc; /* crc32_z with null data would restart the CRC */
+  /* crc32_z with null data would restart the CRC */
+  return size ? (uint32_t)crc32_z(crc, data, size) : crc;
 }
 
 uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count) {

@@ -38,9 +38,8 @@ typedef struct Block {
 /* Numbers of standard errors that are added to the mean of e^2, and to the ratio of D^2 to
  * e^2. */
 static const double ERRORS_OF_MEAN = 3, ERRORS_OF_RATIO = 2;
-enum {
-  LEAST_FOR_RATIO = 12
-}; /* samples; the mean of fewer than 8 says little about the distribution of more */
+/* Samples; the mean of fewer than 8 says little about the distribution of more. */
+enum { LEAST_FOR_RATIO = 12 };
 
 typedef struct Display {
   vlView view;

@@ -17,8 +17,8 @@ typedef struct vlImageFile {
   const uint8_t *data; /* the file's bytes, followed by a zero byte */
   size_t size;
   vlError *error;
-  const char *const
-      *wanted; /* names of the channels to read; null: all. Used by OpenEXR only */
+  /* names of the channels to read; null: all. Used by OpenEXR only */
+  const char *const *wanted;
   uint32_t wanted_count;
   uint64_t most_pixels; /* limit of the image's size; 0: none */
   vlTask *task;         /* of the load or the build that reads the file; null: none */
@@ -37,8 +37,8 @@ typedef vlResult vlCodecWrite(const vlImage *image, const vlWriteDef *def, vlFil
 
 typedef struct vlCodec {
   const char *name; /* for messages: "PNG" */
-  const char
-      *suffixes[4]; /* file name suffixes with the dot, for writing; the list ends with null */
+  /* file name suffixes with the dot, for writing; the list ends with null */
+  const char *suffixes[4];
   vlCodecProbe *probe;
   vlCodecRead *read;
   vlCodecWrite *write; /* null: the format is read only */

@@ -424,9 +424,8 @@ static vlResult unpack(Dwa *d, const uint8_t *packed, size_t size) {
   if (head[0] < 2) {
     legacy_rules(d);
   } else {
-    size_t rules = size - at >= 2
-                       ? vl_little16(packed + at)
-                       : 0; /* size of the rules, including the two bytes of the size itself */
+    /* size of the rules, including the two bytes of the size itself */
+    size_t rules = size - at >= 2 ? vl_little16(packed + at) : 0;
     if (rules < 2 || rules > size - at || !read_rules(d, packed + at + 2, rules - 2))
       return VL_ERROR_SCENE;
     at += rules;

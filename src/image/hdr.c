@@ -178,8 +178,8 @@ vlResult vl_hdr_read(const vlImageFile *file, vlImage **image) {
 static void to_rgbe(const float rgb[3], uint8_t out[4]) {
   float v[3], peak = 0.0f;
   for (int c = 0; c < 3; c++) {
-    v[c] = rgb[c] > 0.0f ? rgb[c] < 1.0e38f ? rgb[c] : 1.0e38f
-                         : 0.0f; /* NaN and negative values become 0 */
+    /* NaN and negative values become 0 */
+    v[c] = rgb[c] > 0.0f ? fminf(rgb[c], 1.0e38f) : 0.0f;
     if (v[c] > peak)
       peak = v[c];
   }

@@ -29,10 +29,10 @@ typedef struct Jpeg {
   uint8_t buffer[16384];
 } Jpeg;
 
-enum { MAX_COMMENT = 65533 }; /* bytes of a marker's text */
 enum {
-  MAX_SCANS = 200
-}; /* limit of scans: each scan of a progressive file is a pass over the whole image */
+  MAX_COMMENT = 65533, /* bytes of a marker's text */
+  MAX_SCANS = 200      /* of a progressive file; each is a pass over the whole image */
+};
 
 bool vl_jpeg_probe(const uint8_t *data, size_t size) {
   return size >= 3 && data[0] == 0xff && data[1] == 0xd8 && data[2] == 0xff;
@@ -56,14 +56,13 @@ static void on_output(j_common_ptr info) {
   (void)info;
 }
 static void on_progress(j_common_ptr info) {
-  Jpeg *jpeg = (Jpeg *)(void *)info->err;
-  if (jpeg->file && vl_codec_step(jpeg->file) != VL_OK) {
-    jpeg->stopped = true;
-    longjmp(jpeg->jump, 1);
+  Jpeg *j = (Jpeg *)(void *)info->err;
+  if (j->file && vl_codec_step(j->file) != VL_OK) {
+    j->stopped = true;
+    longjmp(j->jump, 1);
   }
   if (info->is_decompressor && ((j_decompress_ptr)info)->input_scan_number > MAX_SCANS) {
     info->err->msg_code = JERR_BAD_PROGRESSION;
-    Jpeg *j = (Jpeg *)(void *)info->err;
     snprintf(j->message, sizeof j->message, "too many scans");
     longjmp(j->jump, 1);
   }

@@ -63,10 +63,10 @@ static bool row_emits(const vlEmissiveFaces *s, int32_t row, int32_t from, int32
     return false;
   const uint64_t *bits = s->bits + (size_t)row * s->words;
   int32_t n = (int32_t)s->width;
-  if (to - from >= 2 * n) {
+  if (to - from >= 2 * n) { /* all columns in any wrap mode */
     from = 0;
     to = n - 1;
-  } /* covers all columns in any wrap mode */
+  }
   if (from < 0 || to >= n) {
     bool emits = false;
     for (int32_t x = from; x <= to && !emits; x++) {
@@ -103,10 +103,10 @@ static void band(const double x[3], const double y[3], double low, double high, 
       if ((y[k] < level) != (y[j] < level))
         at[1 + edge] = x[k] + (x[j] - x[k]) * ((level - y[k]) / d);
     }
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) { /* fmin and fmax ignore NaN */
       *first = fmin(*first, at[i]);
       *last = fmax(*last, at[i]);
-    } /* fmin and fmax ignore NaN */
+    }
   }
 }
 

@@ -48,6 +48,7 @@ void vl_light_sample_infinite(const vlLightQuery *q, vlLightSample *out) {
     out->pdf = 0.25f * VL_INV_PI;
     vl_emitted_at(world, q->emitted, q->lambda, 0, 0, true, out->radiance);
   } else if (world->environments.items[light->environment].portal) {
+    /* without a portal, environment.hot.c samples the map */
     const vlPortal *portal = world->environments.items[light->environment].portal;
     vlPortalWindow window;
     if (!vl_portal_window(portal, q->p, &window))
@@ -55,7 +56,7 @@ void vl_light_sample_infinite(const vlLightQuery *q, vlLightSample *out) {
     out->w = vl_portal_sample(portal, &window, q->u, q->v);
     out->pdf = vl_infinite_pdf(world, light, q->p, out->w);
     vl_infinite_at(world, light, q->p, out->w, q->lambda, out->radiance);
-  } /* environment.hot.c samples an environment map without portal */
+  }
   out->target = out->w;
 }
 

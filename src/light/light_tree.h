@@ -71,8 +71,8 @@ static inline vlLightCluster vl_light_cluster(const float *nodes, uint32_t at) {
 typedef struct vlReceiver {
   vlVec3 p;
   vlVec3 n; /* normal; zero vector: none, light from all directions counts equally */
-  float
-      side; /* 1 or -1: only light on the side of n or -n counts; 0: on both (vlSurface.side) */
+  /* 1 or -1: only light on the side of n or -n counts; 0: on both (vlSurface.side) */
+  float side;
 } vlReceiver;
 
 /* Importance of a node for a receiver. Free of branches, so that loops over batches

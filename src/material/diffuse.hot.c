@@ -29,9 +29,8 @@ void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     out.wi.x[i] = d.x;
     out.wi.y[i] = d.y;
     out.wi.z[i] = zo < 0.0f ? -d.z : d.z;
-    float on =
-        valid ? 1.0f
-              : 0.0f; /* a product, because gcc turns a select between loads into a branch */
+    /* a product, because gcc turns a select between loads into a branch */
+    float on = valid ? 1.0f : 0.0f;
     for (int c = 0; c < 4; c++)
       out.weight[c][i] = params->reflectance[c][i] * on;
     out.pdf[i] = d.z * VL_INV_PI * on;

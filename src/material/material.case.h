@@ -20,8 +20,8 @@ typedef struct MaterialVariant {
                        reciprocity */
   bool both_sides;  /* light from below is scattered, too: reciprocity over the whole sphere */
   bool one_way;     /* not reciprocal */
-  bool
-      walks; /* the BSDF is estimated by random walks: its means are compared, not its values */
+  /* the BSDF is estimated by random walks: its means are compared, not its values */
+  bool walks;
 } MaterialVariant;
 
 enum { MATERIAL_VARIANTS = 6 };

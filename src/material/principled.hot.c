@@ -100,8 +100,8 @@ static inline Facet coat_facet(vlVec3 o, vlVec3 w, vlVec3 n, float alpha) {
 
 /* The values of a pair of directions that all four channels share. */
 typedef struct Pair {
-  float
-      facet[VL_PRINCIPLED_CHUNK]; /* value of the base's microfacets without the Fresnel term */
+  /* value of the base's microfacets without the Fresnel term */
+  float facet[VL_PRINCIPLED_CHUNK];
   float weight[VL_PRINCIPLED_CHUNK]; /* Schlick's weight */
   float opaque[VL_PRINCIPLED_CHUNK]; /* Schlick's weight for light from outside */
   float total[VL_PRINCIPLED_CHUNK];  /* 1: total reflection */

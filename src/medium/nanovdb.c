@@ -105,15 +105,12 @@ vlResult vl_compile_medium_nanovdb(vlWorld *world, const vlMediumDef *def, vlWor
                                    vlError *error) {
   const char *name = def->grid ? def->grid : "density", *heat = def->temperature_grid;
   m->emits = false;
-  vlResult r = vl_nanovdb_read(world, def->path, name, &m->sparse, error);
-  if (r == VL_OK && !m->sparse)
+  VL_TRY(vl_nanovdb_read(world, def->path, name, &m->sparse, error));
+  if (!m->sparse)
     return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%s\"", def->path,
                    vl_short_text(name).text);
-  if (r == VL_OK)
-    r = vl_nanovdb_read(world, def->path, heat ? heat : "temperature", &m->sparse_temperature,
-                        error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_nanovdb_read(world, def->path, heat ? heat : "temperature", &m->sparse_temperature,
+                         error));
   if (heat && !m->sparse_temperature)
     return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%s\"", def->path,
                    vl_short_text(heat).text);

@@ -28,8 +28,8 @@ typedef struct vlShapeNumber {
 } vlShapeNumber;
 
 typedef struct vlProjectionRow {
-  vlKindRow
-      in_files; /* name and parameters in scene files; without a name another camera has it */
+  /* name and parameters in scene files; without a name another camera has it */
+  vlKindRow in_files;
   const char *name; /* name in messages */
   const char *key;  /* key in velo's JSON; null if a file cannot contain the number */
   uint32_t traits;

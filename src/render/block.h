@@ -44,8 +44,8 @@ typedef struct vlRenderWorker {
   uint64_t merge_work; /* as vlTraceBatch.merge_work */
   uint64_t not_finite;
   int32_t bad_x, bad_y;
-  struct vlPathRecorder
-      *recorder; /* records the paths; the film then gets no samples. Null: none */
+  /* records the paths; the film then gets no samples. Null: none */
+  struct vlPathRecorder *recorder;
 } vlRenderWorker;
 
 typedef struct vlRenderRun {

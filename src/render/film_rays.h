@@ -21,8 +21,8 @@ typedef struct vlFilmRays {
                    has its own */
   uint32_t groups; /* at least 1: the rays have the times of so many groups of light paths
                       (trace/two_way/two_way.h); 0: each ray has its own */
-  float
-      turn; /* with groups: random number in [0, 1) of the pass, for the times of all groups */
+  /* with groups: random number in [0, 1) of the pass, for the times of all groups */
+  float turn;
   float spread; /* film samples are drawn from this part of the pixel's filter around its
                    centre; 1: from all of it */
   bool uniform; /* film points are uniform in the pixel (reconstruct.h), not drawn from its

@@ -38,17 +38,17 @@ typedef struct vlSampler {
   uint32_t seed;
   uint32_t spp; /* length of the sequence, samples per pixel */
   uint32_t set; /* number of samples in a set of the kinds with cells: spp, at most 2^20 */
-  uint32_t
-      log2_spp; /* log2(spp), rounded up; zsobol: number of index bits below the Morton code */
+  /* log2(spp), rounded up; zsobol: number of index bits below the Morton code */
+  uint32_t log2_spp;
   uint32_t morton_bits;    /* number of bits of the image's Morton codes */
   uint32_t grid_x, grid_y; /* number of columns and rows; the last grid_y - wide rows have
                               grid_x - 1 cells, so there are `set` cells in all */
   uint32_t wide;           /* number of rows with grid_x cells */
-  const vlOwnSampler
-      *own; /* gives the numbers in place of kind; null: none. vl_sampler_init makes it null */
+  /* gives the numbers in place of kind; null: none. vl_sampler_init makes it null */
+  const vlOwnSampler *own;
   _Atomic uint64_t *own_bad; /* counts its numbers outside [0, 1); may be null */
-  uint32_t
-      jitter_bits; /* number of random bits below a cell's number; a float holds both exactly */
+  /* number of random bits below a cell's number; a float holds both exactly */
+  uint32_t jitter_bits;
 } vlSampler;
 
 /* Initialises a sampler. spp: the length of the sequence; every kind accepts any spp >= 1, and

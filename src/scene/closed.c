@@ -28,7 +28,7 @@ static bool is_opaque(const vlScene *scene, const vlShapeDef *d) {
 static bool is_convex(const vlShapeDef *d) {
   size_t step = d->faces / CONVEX + 1, vertex_step = d->vertices / CONVEX + 1;
   for (size_t face = 0; face < d->faces; face += step) {
-    double c[3][3], n[3], low = 0, high = 0, length = 0;
+    double c[3][3], n[3], low = 0, high = 0;
     vl_mesh_face(d, NULL, face, c, n);
     for (size_t i = 0; i < d->vertices; i += vertex_step) {
       double q[3] = {(double)d->positions[3 * i] - c[0][0],
@@ -37,9 +37,8 @@ static bool is_convex(const vlShapeDef *d) {
       double away = vl_dot3(n, q);
       low = away < low ? away : low;
       high = away > high ? away : high;
-      length = high - low;
     }
-    if (fmin(-low, high) > 0.02 * length)
+    if (fmin(-low, high) > 0.02 * (high - low))
       return false;
   }
   return true;
@@ -213,10 +212,12 @@ static void classify(const vlScene *scene, const vlExtent *box, const vlExtent *
     closed->emits =
         closed->emits || (closed->shell[i] && scene->shapes.items[i].emission.index);
   }
-  double share = vl_extent_diagonal(&inner) / vl_extent_diagonal(box);
-  if (share > 0 && is_round(scene, closed->shell))
-    share = fmin(share, 0.12); /* the sky around a landscape */
-  closed->kind = share > 0.12 ? VL_CLOSED_ROOM : share > 0 ? VL_CLOSED_DOME : VL_CLOSED_EMPTY;
+  const double room = 0.12; /* the contents of a room have more than this share of its size */
+  const double share = vl_extent_diagonal(&inner) / vl_extent_diagonal(box);
+  closed->kind = VL_CLOSED_EMPTY;
+  if (share > 0) /* a round shell is the sky around a landscape */
+    closed->kind =
+        share > room && !is_round(scene, closed->shell) ? VL_CLOSED_ROOM : VL_CLOSED_DOME;
   /* A room in one mesh: its furniture is a part of the shell. Panoramas have few corners or are
    * convex. */
   for (size_t i = 0; i < scene->shapes.count && closed->kind == VL_CLOSED_EMPTY; i++)
@@ -326,10 +327,10 @@ static bool open_shape(vlScene *scene, vlShapeDef *d, const vlClosed *closed,
     vl_free(scene->context, kept);
     return true;
   }
-  if (n == 0) {
+  if (n == 0) { /* a shape has a face; this one has no area */
     kept[0] = kept[1] = kept[2] = d->indices[0];
     n = 1;
-  } /* without area: a shape has a face */
+  }
   d->faces = n;
   d->indices = kept;
   return vl_scene_own(scene, kept);

@@ -16,8 +16,8 @@ typedef enum vlClosedKind {
 /* What surrounds a model. */
 typedef struct vlClosed {
   vlClosedKind kind;
-  bool
-      *shell; /* for each shape: it is a part of the shell; null for NOT; the caller frees it */
+  /* for each shape: it is a part of the shell; null for NOT; the caller frees it */
+  bool *shell;
   bool inward; /* the shell's faces look inwards */
   bool emits;  /* the shell emits light */
   bool walls;  /* a room whose walls have an outside of their own: `thick` is set */

@@ -161,10 +161,10 @@ static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu
     uv[1] = (float)((theta - low) / (high - low));
     double radial = sqrt(p[0] * p[0] + p[1] * p[1]);
     double cos_phi = radial > 0 ? p[0] / radial : 1, sin_phi = radial > 0 ? p[1] / radial : 0;
-    if (!(radial > 0)) {
+    if (!(radial > 0)) { /* at the poles any direction of a length near 0 is valid */
       dpdu[0] = 0;
       dpdu[1] = s->phi_max * 1e-12;
-    } /* at the poles any direction of a length near 0 is valid */
+    }
     dpdv[0] = (high - low) * p[2] * cos_phi;
     dpdv[1] = (high - low) * p[2] * sin_phi;
     dpdv[2] = -(high - low) * radial;

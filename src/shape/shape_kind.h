@@ -28,8 +28,8 @@ typedef struct vlSurfacePoint {
   double dndu[3], dndv[3]; /* derivatives of ns; 0 for curves, which are thin */
   double error[3]; /* bound of the distance between p and the surface that a ray meets, along
                       each axis */
-  double
-      off; /* of curves: a ray that leaves starts this far off p, along n; 0 for other kinds */
+  /* of curves: a ray that leaves starts this far off p, along n; 0 for other kinds */
+  double off;
   float uv[2];
 } vlSurfacePoint;
 /* Derivative of the unit normal n = m / |m|. On entry d is the derivative of m, on return that

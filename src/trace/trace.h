@@ -108,8 +108,8 @@ typedef struct vlTraceBatch {
   const uint32_t *index;
   const float *time; /* the world's time, 0 to 1 (world/moving.h); null if nothing in the
                         world moves */
-  float
-      *radiance[4];  /* output; spectral mode: one value per wavelength; RGB mode: r, g, b, 0 */
+  /* output; spectral mode: one value per wavelength; RGB mode: r, g, b, 0 */
+  float *radiance[4];
   float *lambda[4];  /* output in spectral mode: wavelengths, nm; null in RGB mode */
   float *inv_pdf[4]; /* output in spectral mode: 1 / PDF of each wavelength, nm */
   float *alpha;      /* output: 1 where the ray hits a surface, else 0 */
@@ -120,8 +120,8 @@ typedef struct vlTraceBatch {
                                    like vlTraceScratch */
   const struct vlCameraView *eyes; /* if two_way is set and the camera moves: the camera's view
                                       for each lane; else null */
-  struct vlPathRecorder
-      *recorder; /* records the paths of the tracers path and volpath; null: none */
+  /* records the paths of the tracers path and volpath; null: none */
+  struct vlPathRecorder *recorder;
 } vlTraceBatch;
 
 typedef struct vlTraceScratch vlTraceScratch;

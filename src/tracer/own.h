@@ -22,7 +22,7 @@ struct vlTrace {
   vlTracing t;        /* its batch is the one below */
   vlTraceBatch batch; /* the render's; only the outputs differ */
   uint32_t hits;      /* how many of the last rays hit something: elements of s->at.paths,
-                         s->at.surface,      s->at.shade */
+                         s->at.surface, s->at.shade */
   uint32_t lanes;     /* of the last rays */
   bool begun;
   VL_ROW float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];

@@ -205,8 +205,8 @@ static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, fl
   spread = spread * sign;
   float side = wo_z < 0.0f ? -1.0f : 1.0f, k = bend * side, in = wo_z * side,
         out = vl_abs(wi_z);
-  float ratio = eta_scale > 0.0f ? 1.0f / __builtin_sqrtf(eta_scale)
-                                 : 1.0f; /* ratio of the indices, incident over transmitted */
+  /* ratio of the indices, incident over transmitted */
+  float ratio = eta_scale > 0.0f ? 1.0f / __builtin_sqrtf(eta_scale) : 1.0f;
   float reflected = spread + 2.0f * k * in * width;
   float refracted = ratio * spread - k * (out - ratio * in) * width;
   float smooth = wi_z * side > 0.0f ? reflected : refracted;

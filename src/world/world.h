@@ -197,8 +197,8 @@ typedef struct vlWorldMaterial {
   int32_t displacement;    /* float node, -1: none */
   int32_t normal_map;      /* image index, -1: none */
   const vlCoatTable *coat; /* may be shared with other materials; the world frees it */
-  const vlCoatTable
-      *widened; /* the same for the roughness that vlBuildDef.regularize gives; else null */
+  /* the same for the roughness that vlBuildDef.regularize gives; else null */
+  const vlCoatTable *widened;
   const vlWorldPrincipled *principled; /* null for other kinds */
   int32_t transmittance; /* for diffuse transmission: spectrum node; scale multiplies
                             reflectance and transmittance */
@@ -307,8 +307,8 @@ struct vlWorld {
   vlContext *context;
   vlBuildDef def; /* without its pointers, which are valid during the build only */
   vlTask *task;   /* of the build; null afterwards */
-  const struct vlWorld
-      *previous;         /* during the build: the world whose parts may be shared; null: none */
+  /* during the build: the world whose parts may be shared; null: none */
+  const struct vlWorld *previous;
   uint64_t scene_number; /* vlScene.number */
   uint64_t number; /* of the world in its context; changes of the scene have higher ones */
   VL_ARRAY(vlPart *) parts; /* all parts of which the world is a user */
@@ -325,8 +325,8 @@ struct vlWorld {
   VL_ARRAY(vlWorldImage) images;
   VL_ARRAY(vlEmitted) emitted;
   VL_ARRAY(vlWorldLight) lights;
-  VL_ARRAY(uint32_t)
-  infinite_lights; /* indices of the lights that a ray hits if it misses all surfaces */
+  /* indices of the lights that a ray hits if it misses all surfaces */
+  VL_ARRAY(uint32_t) infinite_lights;
   VL_ARRAY(vlEnvironment) environments;
   VL_ARRAY(const vlLamp *) lamps; /* luminaires of goniometric lights, owned by parts */
   VL_ARRAY(vlWorldEnvironmentPart) environment_parts; /* one per environment */
@@ -336,8 +336,8 @@ struct vlWorld {
   VL_ARRAY(vlWorldMedium) media;          /* media in use */
   VL_ARRAY(vlWorldFilePart) medium_parts; /* one per medium */
   VL_ARRAY(void *) blocks; /* memory blocks owned by the world, such as dense spectra */
-  int32_t
-      *texture_memo; /* used during the build only: maps scene texture and role to the node */
+  /* used during the build only: maps scene texture and role to the node */
+  int32_t *texture_memo;
   uint32_t *rank; /* per material: its position in an order in which materials of one kind are
                      adjacent */
   bool has_interfaces, has_mixtures; /* a material is an interface; a material is mixed */

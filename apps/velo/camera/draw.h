@@ -10,8 +10,8 @@
 /* Points of the scene that a camera sees. */
 typedef struct Seen {
   double *points; /* 3 each, world space; freed by the caller */
-  double
-      *depths; /* along the view direction, or from the eye of a camera that sees backwards */
+  /* along the view direction, or from the eye of a camera that sees backwards */
+  double *depths;
   double *pixels; /* 2 each, as fractions of the image */
   uint32_t count;
   double near, middle, far; /* of the depths: 5th, 50th and 90th percentile */

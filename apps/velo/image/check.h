@@ -65,8 +65,8 @@ typedef struct Check {
   double point[2]; /* film point of the pixel's ray */
   double reach[2]; /* largest offset of the film point from the pixel's centre, in pixels; 0:
                       none */
-  double
-      spp; /* samples per pixel from the header, of adaptive renders the most; 0: not given */
+  /* samples per pixel from the header, of adaptive renders the most; 0: not given */
+  double spp;
   bool adaptive;       /* the header names a noise threshold */
   bool matte_is_alpha; /* the sum of coverages equals the image's alpha */
   Matte mattes[3];

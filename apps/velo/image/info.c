@@ -274,9 +274,8 @@ static int run_info(const Arguments *arguments, vlContext *context) {
                    arguments->operands[0]));
   vlReceipt *receipt = NULL;
   const char *text = header_text(image, RECEIPT_ATTRIBUTE);
-  if (text)
-    vl_receipt_parse(context, text, strlen(text), &receipt,
-                     NULL); /* without a valid receipt the attribute is printed unchanged */
+  if (text) /* without a valid receipt the attribute is printed unchanged */
+    vl_receipt_parse(context, text, strlen(text), &receipt, NULL);
   if (arguments->values[INFO_JSON].given)
     print_json(arguments->operands[0], image);
   else

@@ -11,8 +11,8 @@ typedef struct FilmClaim {
   char path[4096]; /* of the film file; empty: none */
   char from[4096]; /* of the film of --continue; empty: none */
   vlFilmLock *lock;
-  vlFilmFile
-      *earlier; /* the film in `path`, unless it is `from`, or is overwritten; null: none */
+  /* the film in `path`, unless it is `from`, or is overwritten; null: none */
+  vlFilmFile *earlier;
 } FilmClaim;
 
 /* Locks the file and opens the film that is there. from: of --continue; "": none. Returns -1,

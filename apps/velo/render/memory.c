@@ -75,9 +75,8 @@ static uint64_t illuminance_bytes(const Job *job) {
 
 void memory_plan(MemoryPlan *plan, const Job *job, const Outputs *outputs,
                  const Channels *channels, const Frames *frames) {
-  enum {
-    WAITING = 6
-  }; /* images of a trajectory that are rendered, queued or written at the same time */
+  /* Images of a trajectory that are rendered, queued or written at the same time. */
+  enum { WAITING = 6 };
   memset(plan, 0, sizeof *plan);
   const uint32_t *crop = job->defs->film.crop;
   uint64_t width = crop_width(crop), height = crop_height(crop), pixels = width * height,

@@ -67,8 +67,8 @@ typedef struct VerifyRun {
 typedef struct VerifyCell {
   VerifyFamily family;
   uint32_t pixels;
-  uint32_t
-      index; /* blocks: column + columns * row; materials: id.material, 0: nothing is seen */
+  /* blocks: column + columns * row; materials: id.material, 0: nothing is seen */
+  uint32_t index;
 } VerifyCell;
 
 /* A value that was significant in the first look. */

@@ -101,6 +101,6 @@ double verify_first_p(uint32_t of_family, uint32_t families) {
 }
 
 double verify_second_p(uint32_t marked) {
-  return 2 * VERIFY_SECOND_LEVEL /
-         marked; /* only one direction counts: half of the two-sided probability */
+  /* only one direction counts: half of the two-sided probability */
+  return 2 * VERIFY_SECOND_LEVEL / marked;
 }

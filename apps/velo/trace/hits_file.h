@@ -17,8 +17,8 @@ typedef struct HitsFile {
 /* The arrays of vlCastHits, in the order of velo.RayHits. */
 typedef struct HitsField {
   const char *name, *type; /* in Python; the type's last digit: bytes of a number */
-  uint32_t
-      columns; /* numbers of a row; 0: the row is one number, without a dimension of its own */
+  /* numbers of a row; 0: the row is one number, without a dimension of its own */
+  uint32_t columns;
   size_t offset; /* in vlCastHits */
 } HitsField;
 enum {

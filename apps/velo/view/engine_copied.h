@@ -5,8 +5,8 @@
 #include "view/engine_parts.h"
 
 typedef struct Copied {
-  char
-      *words; /* of the command, each with its zero; the last two are -o and the image's name */
+  /* of the command, each with its zero; the last two are -o and the image's name */
+  char *words;
   size_t size;    /* bytes of all words */
   vlImage *image; /* as it was saved then, with its header */
   vlView view;

@@ -160,9 +160,8 @@ bool engine_race(Engine *e) {
   e->race.runs = false;
   if (result == VL_CANCELLED)
     return false;
-  e->race.planned_for = result != VL_OK || choice.count
-                            ? UINT32_MAX
-                            : def.spp; /* more samples may allow a race */
+  /* more samples may allow a race */
+  e->race.planned_for = result != VL_OK || choice.count ? UINT32_MAX : def.spp;
   if (result != VL_OK) {
     report_warning("no race of the tracers: %s", error_text(&error, result));
     return true;

@@ -23,12 +23,11 @@ _Static_assert((int)VL_DENOISE_TILE_X % (int)N == 0, "tiles are divided into run
 _Static_assert((int)VL_DENOISE_BORDER >= (int)R + (int)N,
                "windows, rounded up to N pixels, end in the border");
 
-static const float PIXEL_SHARE =
-    0.02f;            /* factor on the distance between the two single pixels */
+/* factor on the distance between the two single pixels */
+static const float PIXEL_SHARE = 0.02f;
 #define FARTHEST 8.0f /* distance from which on the weight is 0 */
-static const float
-    RIDGE_FEATURE = 1e-3f,
-    RIDGE_PLACE = 3e-2f; /* ridge terms lambda of features and positions, per unit of weight */
+/* ridge terms lambda of features and positions, per unit of weight */
+static const float RIDGE_FEATURE = 1e-3f, RIDGE_PLACE = 3e-2f;
 /* Features that differ by less in all pixels that a run may use are left out. Their slope would
  * be driven to 0 by the ridge. */
 static const float SAME = 1e-2f;

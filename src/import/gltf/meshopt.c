@@ -5,9 +5,8 @@
 
 #include "import/gltf/gltf.h"
 
-enum {
-  MAX_TIMES = 256
-}; /* largest ratio of decoded to encoded bytes; the formats reach about 64 */
+/* Largest ratio of decoded to encoded bytes; the formats reach about 64. */
+enum { MAX_TIMES = 256 };
 
 typedef enum { ATTRIBUTES, TRIANGLES, INDICES } Mode;
 typedef enum { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL } Filter;

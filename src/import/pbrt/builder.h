@@ -25,8 +25,8 @@ typedef enum vlAttributeTarget {
 
 typedef struct vlGraphicsState {
   vlMat4 ctm[2]; /* current transforms at the start and at the end time */
-  uint32_t
-      active; /* bit mask of the transforms that directives change: bit 0 start, bit 1 end */
+  /* bit mask of the transforms that directives change: bit 0 start, bit 1 end */
+  uint32_t active;
   bool reverse_orientation;
   vlColorSpace space;
   uint32_t material; /* 1 + index in import->materials; 0: material_name, or the default */

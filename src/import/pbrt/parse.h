@@ -80,9 +80,8 @@ typedef struct vlParseTarget {
   const char *search_path;
   /* Called for a file that is found in the current folder only. May be null. */
   void (*found_elsewhere)(void *user, vlSource source, const char *path);
-  /* Called before each directive; fraction: the share of the first file that is read, 0
-   * inside included files. False: the parser stops; the
-   * callee has reported why. May be null. */
+  /* Called before each directive; fraction: the share of the first file that is read, 0 inside
+   * included files. False: the parser stops; the callee has reported why. May be null. */
   bool (*go_on)(void *user, double fraction);
   /* Included files that are not read from the disk: pairs of the name in Include, and the text.
    * May be null. */

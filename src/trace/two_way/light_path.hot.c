@@ -288,8 +288,8 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   vlTraceDef own = *def;
   own.sampler = &def->two_way->sampler;
   own.pixel_spread = own.pixel_width = 0.0f; /* textures at full resolution */
-  vlTraceBatch
-      rest; /* only for the stages: receives their counts, and radiance that is not used */
+  /* only for the stages: receives their counts, and radiance that is not used */
+  vlTraceBatch rest;
   __builtin_memset(&rest, 0, sizeof rest);
   rest.n = batch->n;
   rest.eyes = batch->eyes;

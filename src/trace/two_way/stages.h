@@ -68,15 +68,14 @@ typedef struct vlConnection {
   uint32_t medium; /* the medium in which the ray starts */
 } vlConnection;
 
-/* Chooses a light path's vertex, or VL_NONE, for each of n vertices. factor: 1 / (its
- * probability
- * * light paths). */
+/* Chooses a light path's vertex, or VL_NONE, for each of n vertices. factor: 1 over the
+ * product of its probability and the number of light paths. */
 void vl_choose_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
                         const vlTwoWayVertices *x, uint32_t *chosen, float *factor);
 enum {
   VL_CANDIDATES = 8,
-  VL_CONNECTION_KEY = 1 << 20
-}; /* the key: its random numbers differ from light samples' */
+  VL_CONNECTION_KEY = 1 << 20 /* its random numbers differ from those of light samples */
+};
 /* Sets the candidates' vertices. near: 1, or 0 where the path would be too long. */
 static inline void vl_gather(const vlTwoWay *way, const vlEnd *e,
                              const uint32_t at[VL_CANDIDATES], float p[3][VL_CANDIDATES],

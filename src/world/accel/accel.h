@@ -18,9 +18,9 @@ typedef struct vlRays {
   const float *ox, *oy, *oz, *dx, *dy, *dz;
   const float *t_min, *t_max; /* interval of hits along the ray; null: 0 and infinity */
   const float *time;          /* in the world's time, 0 to 1 (world/moving.h); null: 0 */
-  uint32_t
-      *crossed; /* vl_accel_occluded adds what unoccluded rays have crossed (crossed.h); null:
-                   chance decides at surfaces with an alpha, as it does for closest hits */
+  /* vl_accel_occluded adds what unoccluded rays have crossed (crossed.h); null: chance decides
+   * at surfaces with an alpha, as it does for closest hits */
+  uint32_t *crossed;
 } vlRays;
 
 /* Copies rays first to first + n - 1 into rows: ox, oy, oz, dx, dy, dz, t_min, t_max. Copies of
@@ -65,8 +65,8 @@ typedef struct vlAccel {
   bool packets;
   vlAccelBundle *bundles; /* one per group */
   uint32_t *members;      /* memory of the members of all bundles */
-  struct vlBruteForce
-      *brute_force; /* of a world of few primitives, where it answers all queries; else null */
+  /* of a world of few primitives, where it answers all queries; else null */
+  struct vlBruteForce *brute_force;
   const struct vlBruteForceKernels *brute_force_kernels;
   const struct vlOccluderKernels *occluder_kernels;
   const struct vlBvhKernels *bvh_kernels;

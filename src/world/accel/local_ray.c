@@ -87,8 +87,8 @@ bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r
     p[i] = b0 * corner[0][i] + b1 * corner[1][i] + b2 * corner[2][i];
   at->p = vl_load3(p);
   at->n = vl_cross(vl_sub(c[1], c[0]), vl_sub(c[2], c[0]));
-  return s->flip ? sum < 0
-                 : sum > 0; /* sum is the direction times the normal of the face order */
+  /* sum is the direction times the normal of the face order */
+  return s->flip ? sum < 0 : sum > 0;
 }
 
 bool vl_triangle_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i,

@@ -45,8 +45,8 @@ typedef struct vlOldStatement {
   vlOldSpan names[3];
   const char *name[3];
   VL_ARRAY(vlOldParam) params;
-  vlOldSpan
-      numbers[2];    /* opening and closing bracket of a list of numbers; start == end: none */
+  /* opening and closing bracket of a list of numbers; start == end: none */
+  vlOldSpan numbers[2];
   char changes[400]; /* what the report says of the statement */
   uint32_t renamed;  /* bits of the names that vl_old_finish writes */
   bool finished;     /* vl_old_finish has run */

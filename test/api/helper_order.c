@@ -1,5 +1,5 @@
-/* Renders a scene with the library while its parallel loops run in another order: from last to
- * first, or shuffled by a seed.
+/* test/api/helper_order.c: renders a scene with the library while its parallel loops run in
+ * another order: from last to first, or shuffled by a seed.
  *
  * Usage: helper_order SCENE WIDTH HEIGHT SPP TRACER SEED ORDER OUT.pfm
  *

@@ -1,6 +1,6 @@
-/* vl_camera_outline: the lines of a pinhole camera are where its numbers say; projectors go
- * through the eye and meet the view plane in their image; of curved projections all points are
- * on rays of the camera; rigs; wrong defs. */
+/* test/camera/test_drawing.c: vl_camera_outline: the lines of a pinhole camera are where its
+ * numbers say; projectors go through the eye and meet the view plane in their image; of curved
+ * projections all points are on rays of the camera; rigs; wrong defs. */
 #include <math.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
-/* Cameras of glTF, Mitsuba, USD, OpenGL, Vulkan, Direct3D: round trips of random cameras,
- * published examples with numbers computed by hand, matrices as those APIs use them, rejected
- * content by name. */
+/* test/camera_files/test_dialects.c: cameras of glTF, Mitsuba, USD, OpenGL, Vulkan, Direct3D:
+ * round trips of random cameras, published examples with numbers computed by hand, matrices as
+ * those APIs use them, rejected content by name. */
 #include "camera_files/files.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"

@@ -1,5 +1,5 @@
-/* Camera files: round trips through every dialect, the half-pixel table in exact numbers,
- * rejected content by name, memory. */
+/* test/camera_files/test_files.c: camera files: round trips through every dialect, the
+ * half-pixel table in exact numbers, rejected content by name, memory. */
 #include "camera_files/files.h"
 
 #include <locale.h>

@@ -1,7 +1,7 @@
-/* One place of a good camera file is changed (the files are those of
- * test/fuzz/corpus/camera_file): the error says what is wrong there, with line and column where
- * the format has them. Cameras that a file does not hold, files that are cut off, memory that
- * runs out. */
+/* test/camera_files/test_refused.c: one place of a good camera file is changed (the files are
+ * those of test/fuzz/corpus/camera_file): the error says what is wrong there, with line and
+ * column where the format has them. Cameras that a file does not hold, files that are cut off,
+ * memory that runs out. */
 #include "camera_files/files.h"
 #include "velo/projection.h"
 

@@ -1,5 +1,6 @@
-/* Files of many frames: the frames of each dialect, agreement of a frame with the camera that
- * vl_camera_read gives for it, invalid lines reported with their place. */
+/* test/camera_files/test_trajectory.c: files of many frames: the frames of each dialect,
+ * agreement of a frame with the camera that vl_camera_read gives for it, invalid lines reported
+ * with their place. */
 #include <sys/stat.h>
 #include <unistd.h>
 

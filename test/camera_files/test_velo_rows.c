@@ -1,5 +1,5 @@
-/* velo's JSON holds every parameter of the cameras' rows: a value other than the default is
- * written and read again. */
+/* test/camera_files/test_velo_rows.c: velo's JSON holds every parameter of the cameras' rows: a
+ * value other than the default is written and read again. */
 #include "camera_files/files.h"
 
 #include "base/array.h"

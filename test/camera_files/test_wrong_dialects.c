@@ -1,5 +1,5 @@
-/* Invalid glTF, Mitsuba, USD and matrix files: one clear line each, with the line number where
- * the format has lines; bounded memory and time. */
+/* test/camera_files/test_wrong_dialects.c: invalid glTF, Mitsuba, USD and matrix files: one
+ * clear line each, with the line number where the format has lines; bounded memory and time. */
 #include "camera_files/files.h"
 
 static void test_gltf(void **state) {

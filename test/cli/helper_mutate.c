@@ -1,6 +1,6 @@
-/* Changes one channel of an OpenEXR file slightly and leaves all others and the header
- * unchanged: `velo image check` must notice it. Usage: helper_mutate IN OUT CHANNEL FACTOR.
- * Floats are multiplied by FACTOR, integers increased by 1. */
+/* test/cli/helper_mutate.c: changes one channel of an OpenEXR file slightly and leaves all
+ * others and the header unchanged: `velo image check` must notice it. Usage: helper_mutate IN
+ * OUT CHANNEL FACTOR. Floats are multiplied by FACTOR, integers increased by 1. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

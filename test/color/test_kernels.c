@@ -1,5 +1,6 @@
-/* Colour kernels: the same bits on every instruction set and as the inline functions;
- * wavelengths follow their density; an image of a constant spectrum has the exact colour. */
+/* test/color/test_kernels.c: colour kernels: the same bits on every instruction set and as the
+ * inline functions; wavelengths follow their density; an image of a constant spectrum has the
+ * exact colour. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* RGB to spectrum: round trips in every space, exact greys and ends, spectra within [0, 1], no
- * discontinuities. */
+/* test/color/test_rgb_table.c: RGB to spectrum: round trips in every space, exact greys and
+ * ends, spectra within [0, 1], no discontinuities. */
 #include <math.h>
 
 #include "color/rgb_table.h"

@@ -1,5 +1,5 @@
-/* Spectra and colour spaces: standard values of the CIE, measured materials, the meaning of a
- * vlSpectrum, its errors. */
+/* test/color/test_spectra.c: spectra and colour spaces: standard values of the CIE, measured
+ * materials, the meaning of a vlSpectrum, its errors. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

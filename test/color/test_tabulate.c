@@ -1,5 +1,5 @@
-/* The public numbers behind a spectrum (velo/color.h): the tables agree with the spectra that
- * velo renders with. */
+/* test/color/test_tabulate.c: the public numbers behind a spectrum (velo/color.h): the tables
+ * agree with the spectra that velo renders with. */
 #include <math.h>
 
 #include <velo/color.h>

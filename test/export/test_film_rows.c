@@ -1,5 +1,5 @@
-/* The pbrt exporter writes every parameter of the films' rows: a value other than the default
- * stands in the file. */
+/* test/export/test_film_rows.c: the pbrt exporter writes every parameter of the films' rows: a
+ * value other than the default stands in the file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,6 @@
-/* Tests the conversion of radiance to the film's colours against the definitions of colour
- * spaces, and the merging of films with error sums against one film with all samples. */
+/* test/film/test_expose.c: tests the conversion of radiance to the film's colours against the
+ * definitions of colour spaces, and the merging of films with error sums against one film with
+ * all samples. */
 #include <string.h>
 
 #include "base/isa.h"

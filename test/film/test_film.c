@@ -1,5 +1,6 @@
-/* The film: exact sums for any order and grouping, constant images, passes without effect on
- * the bits, merging, invalid samples, invalid defs, failing allocations, memory with junk. */
+/* test/film/test_film.c: the film: exact sums for any order and grouping, constant images,
+ * passes without effect on the bits, merging, invalid samples, invalid defs, failing
+ * allocations, memory with junk. */
 #include "film/film.h"
 #include "film/sums.h"
 #include "statistics.h"

@@ -1,5 +1,5 @@
-/* Film files: a film is read as it was written, parts merge to the whole in any order, and all
- * damage is detected. */
+/* test/film/test_film_files.c: film files: a film is read as it was written, parts merge to the
+ * whole in any order, and all damage is detected. */
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>

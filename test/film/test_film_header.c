@@ -1,6 +1,6 @@
-/* The header of a film file has every parameter of every pixel filter: what is written is read,
- * and films that differ in one parameter are not of one render. Each parameter is a setting,
- * too. */
+/* test/film/test_film_header.c: the header of a film file has every parameter of every pixel
+ * filter: what is written is read, and films that differ in one parameter are not of one
+ * render. Each parameter is a setting, too. */
 #include <stdio.h>
 #include <string.h>
 

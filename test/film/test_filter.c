@@ -1,5 +1,5 @@
-/* Pixel filters: samples follow the filter's shape, weights have mean 1, monotone, the same
- * bits on every instruction set. */
+/* test/film/test_filter.c: pixel filters: samples follow the filter's shape, weights have mean
+ * 1, monotone, the same bits on every instruction set. */
 #include "base/context.h"
 #include "filter/filter.h"
 #include "statistics.h"

@@ -1,6 +1,6 @@
-/* The noise of a film's blocks: against the known standard error of normal samples, for each
- * view; how often it is below the true error; against the true error of rare bright samples;
- * blocks at the edges of a crop. */
+/* test/film/test_noise.c: the noise of a film's blocks: against the known standard error of
+ * normal samples, for each view; how often it is below the true error; against the true error
+ * of rare bright samples; blocks at the edges of a crop. */
 #include "film/film.h"
 #include "statistics.h"
 #include "unit.h"

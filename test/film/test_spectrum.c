@@ -1,5 +1,5 @@
-/* Spectra in the film: exact sums of each bucket for any order, grouping and passes; merging;
- * names; invalid defs and samples; failing allocations. */
+/* test/film/test_spectrum.c: spectra in the film: exact sums of each bucket for any order,
+ * grouping and passes; merging; names; invalid defs and samples; failing allocations. */
 #include "failing_allocator.h"
 #include "film/film.h"
 #include "statistics.h"

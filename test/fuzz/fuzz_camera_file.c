@@ -1,6 +1,6 @@
-/* Camera files of every dialect, chosen by content, and COLMAP's lists, binary cameras and
- * binary images. A camera that is read is made, written in some dialect and read again; then
- * all cameras of the file are read as a trajectory. */
+/* test/fuzz/fuzz_camera_file.c: camera files of every dialect, chosen by content, and COLMAP's
+ * lists, binary cameras and binary images. A camera that is read is made, written in some
+ * dialect and read again; then all cameras of the file are read as a trajectory. */
 #include "fuzz.h"
 #include "velo/trajectory.h"
 

@@ -1,5 +1,6 @@
-/* Fuzzes film files: header, blocks, develop, merge. Each input is used twice: unchanged, and
- * with repaired CRCs, so that the code after the CRC checks is reached. */
+/* test/fuzz/fuzz_film.c: fuzzes film files: header, blocks, develop, merge. Each input is used
+ * twice: unchanged, and with repaired CRCs, so that the code after the CRC checks is reached.
+ * */
 #include "fuzz.h"
 
 #include <stdint.h>

@@ -1,4 +1,5 @@
-/* glTF, as .gltf or .glb by its first bytes: read at a time of its animation, and completed. */
+/* test/fuzz/fuzz_gltf.c: glTF, as .gltf or .glb by its first bytes: read at a time of its
+ * animation, and completed. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

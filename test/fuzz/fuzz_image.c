@@ -1,5 +1,5 @@
-/* Images: every codec, chosen by content: the header with its attributes, the last channel
- * alone, the whole image. */
+/* test/fuzz/fuzz_image.c: images: every codec, chosen by content: the header with its
+ * attributes, the last channel alone, the whole image. */
 #include "fuzz.h"
 
 static void read_channel(vlContext *context, const char *path, const vlImage *header) {

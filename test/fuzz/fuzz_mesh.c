@@ -1,5 +1,5 @@
-/* Meshes as scenes of their own: PLY with clouds and colours, STL, OFF. The first byte
- * chooses. */
+/* test/fuzz/fuzz_mesh.c: meshes as scenes of their own: PLY with clouds and colours, STL, OFF.
+ * The first byte chooses. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -1,4 +1,4 @@
-/* OBJ and MTL: the input is both the OBJ file and its library. */
+/* test/fuzz/fuzz_obj.c: OBJ and MTL: the input is both the OBJ file and its library. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -1,4 +1,4 @@
-/* PLY files, ASCII and binary, read through a scene that names one. */
+/* test/fuzz/fuzz_ply.c: PLY files, ASCII and binary, read through a scene that names one. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

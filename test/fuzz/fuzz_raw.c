@@ -1,4 +1,5 @@
-/* Raw files: read, developed to every step, and written again where they can be. */
+/* test/fuzz/fuzz_raw.c: raw files: read, developed to every step, and written again where they
+ * can be. */
 #include "fuzz.h"
 
 static void develop(const vlRaw *raw) {

@@ -1,5 +1,5 @@
-/* Fuzzes receipts: reads one, queries all its contents, compares it with itself and with
- * another one, and makes the camera that it holds. */
+/* test/fuzz/fuzz_receipt.c: fuzzes receipts: reads one, queries all its contents, compares it
+ * with itself and with another one, and makes the camera that it holds. */
 #include "fuzz.h"
 
 static bool keep_length(void *user, const char *difference) {

@@ -1,5 +1,5 @@
-/* Fuzzes the whole pipeline: builds a world from a scene file and renders a few pixels. No
- * input may cause a crash, a hang or excessive memory. */
+/* test/fuzz/fuzz_render.c: fuzzes the whole pipeline: builds a world from a scene file and
+ * renders a few pixels. No input may cause a crash, a hang or excessive memory. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

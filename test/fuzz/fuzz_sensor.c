@@ -1,4 +1,4 @@
-/* Sensor files. A sensor that is read reads out a small frame. */
+/* test/fuzz/fuzz_sensor.c: sensor files. A sensor that is read reads out a small frame. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

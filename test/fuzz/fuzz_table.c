@@ -1,6 +1,6 @@
-/* Files that scenes name besides meshes and images, chosen by their first bytes: measured
- * materials and NanoVDB grids; any other input is read as a spectrum, a lens, a list of poses
- * and a lamp file. */
+/* test/fuzz/fuzz_table.c: files that scenes name besides meshes and images, chosen by their
+ * first bytes: measured materials and NanoVDB grids; any other input is read as a spectrum, a
+ * lens, a list of poses and a lamp file. */
 #include "fuzz.h"
 #include "velo/lamp.h"
 #include "velo/trajectory.h"

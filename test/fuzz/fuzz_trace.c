@@ -1,5 +1,6 @@
-/* Ray files of `velo trace`, .csv and .npy (which begin with its magic byte). Rays that are
- * read meet a small world: what they hit has finite numbers, and each ray is counted once. */
+/* test/fuzz/fuzz_trace.c: ray files of `velo trace`, .csv and .npy (which begin with its magic
+ * byte). Rays that are read meet a small world: what they hit has finite numbers, and each ray
+ * is counted once. */
 #include "fuzz.h"
 
 #include <math.h>

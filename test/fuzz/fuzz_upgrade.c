@@ -1,6 +1,6 @@
-/* Scenes of pbrt-v3: read and rewritten as pbrt-v4; what is written must be read. Statements
- * that the upgrade leaves alone may be wrong in both versions, so errors of the second reading
- * are no finding. */
+/* test/fuzz/fuzz_upgrade.c: scenes of pbrt-v3: read and rewritten as pbrt-v4; what is written
+ * must be read. Statements that the upgrade leaves alone may be wrong in both versions, so
+ * errors of the second reading are no finding. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

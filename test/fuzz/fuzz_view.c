@@ -1,6 +1,6 @@
-/* Fuzzes the messages that a page of `velo view` sends: parses one and applies its fields to a
- * camera or to a sensor. What is accepted has numbers within the limits that
- * apps/velo/view/message.h states. */
+/* test/fuzz/fuzz_view.c: fuzzes the messages that a page of `velo view` sends: parses one and
+ * applies its fields to a camera or to a sensor. What is accepted has numbers within the limits
+ * that apps/velo/view/message.h states. */
 #include "fuzz.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
-/* Damaged image files: cut off at every byte, with changed bytes, with sizes larger than their
- * data. Each is rejected clearly (or gives an image, when the damage cannot be detected), in
- * little time and memory. */
+/* test/image/test_broken.c: damaged image files: cut off at every byte, with changed bytes,
+ * with sizes larger than their data. Each is rejected clearly (or gives an image, when the
+ * damage cannot be detected), in little time and memory. */
 #include "sample_images.h"
 
 #include <dirent.h>

@@ -1,6 +1,6 @@
-/* Comparison of images: checks the sums against a plain computation, and FLIP against a direct
- * evaluation of its paper's formulas (two-dimensional kernels, double precision, libm). Also
- * checks properties of FLIP. */
+/* test/image/test_compare.c: comparison of images: checks the sums against a plain computation,
+ * and FLIP against a direct evaluation of its paper's formulas (two-dimensional kernels, double
+ * precision, libm). Also checks properties of FLIP. */
 #include "sample_images.h"
 
 #include "image/flip.h"

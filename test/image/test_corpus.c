@@ -1,7 +1,7 @@
-/* The fuzz corpus as a test: every image is read and holds its pattern. The files were made by
- * other programs or byte by byte. Patterns: 8-bit files are (5 x + 3 y + 40 c) mod 256 on 13x9
- * pixels; palettes have its 16 entries at (3 i, i), indexed by (x + 2 y) mod 16; OpenEXR files
- * are ((x (c + 1) + 3 y) mod 64) / 32 on 37x21. */
+/* test/image/test_corpus.c: the fuzz corpus as a test: every image is read and holds its
+ * pattern. The files were made by other programs or byte by byte. Patterns: 8-bit files are (5
+ * x + 3 y + 40 c) mod 256 on 13x9 pixels; palettes have its 16 entries at (3 i, i), indexed by
+ * (x + 2 y) mod 16; OpenEXR files are ((x (c + 1) + 3 y) mod 64) / 32 on 37x21. */
 #include "sample_images.h"
 
 #include <dirent.h>

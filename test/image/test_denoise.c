@@ -1,6 +1,7 @@
-/* Tests the denoiser on images with a known ground truth. Pixels without noise do not change,
- * noise is removed, edges that features show are kept, and values that are not finite are
- * replaced. The bits depend neither on the number of threads nor on the instruction set. */
+/* test/image/test_denoise.c: tests the denoiser on images with a known ground truth. Pixels
+ * without noise do not change, noise is removed, edges that features show are kept, and values
+ * that are not finite are replaced. The bits depend neither on the number of threads nor on the
+ * instruction set. */
 #include "sample_images.h"
 
 #include "velo/denoise.h"

@@ -1,5 +1,6 @@
-/* Round trips through every written format, attributes, determinism, suffixes, write errors, a
- * failure of every allocation, and oiiotool as an independent reader where it is installed. */
+/* test/image/test_files.c: round trips through every written format, attributes, determinism,
+ * suffixes, write errors, a failure of every allocation, and oiiotool as an independent reader
+ * where it is installed. */
 #include "sample_images.h"
 
 #include "image/pixel.h"

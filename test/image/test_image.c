@@ -1,4 +1,5 @@
-/* Images in memory: creation, values as linear light, attributes, curves, halves. */
+/* test/image/test_image.c: images in memory: creation, values as linear light, attributes,
+ * curves, halves. */
 #include "sample_images.h"
 
 #include "base/cookie.h"

@@ -1,5 +1,5 @@
-/* Several images in one OpenEXR file, each with its own type, and single channels read from
- * it. */
+/* test/image/test_layers.c: several images in one OpenEXR file, each with its own type, and
+ * single channels read from it. */
 
 #include <stdio.h>
 #include <string.h>

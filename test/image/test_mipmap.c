@@ -1,4 +1,4 @@
-/* Mipmaps: sizes, means, 8-bit storage, encodings, memory. */
+/* test/image/test_mipmap.c: mipmaps: sizes, means, 8-bit storage, encodings, memory. */
 #include "sample_images.h"
 
 #include "image/mipmap.h"

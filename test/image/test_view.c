@@ -1,5 +1,5 @@
-/* Views: from linear light to display values, against the published formulas computed with
- * libm. */
+/* test/image/test_view.c: views: from linear light to display values, against the published
+ * formulas computed with libm. */
 #include "sample_images.h"
 
 static double srgb(double v) {

@@ -1,5 +1,5 @@
-/* Writes small glTF 2.0 files for tests. Arrays go into one buffer, as base64 or as a binary
- * chunk. The test gives the rest of the JSON as text. */
+/* test/import/gltf_writer.h: writes small glTF 2.0 files for tests. Arrays go into one buffer,
+ * as base64 or as a binary chunk. The test gives the rest of the JSON as text. */
 #ifndef TEST_IMPORT_GLTF_WRITER_H
 #define TEST_IMPORT_GLTF_WRITER_H
 

@@ -1,6 +1,6 @@
-/* Shapes that are combined (curves, small meshes, spheres) have the media of the Shapes from
- * which they are made. These are the media of the state at each Shape, not those of the state
- * when the run of shapes ends. */
+/* test/import/test_run_media.c: shapes that are combined (curves, small meshes, spheres) have
+ * the media of the Shapes from which they are made. These are the media of the state at each
+ * Shape, not those of the state when the run of shapes ends. */
 #include "import/load.h"
 #include "velo/shape_kinds.h"
 

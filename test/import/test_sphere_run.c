@@ -1,6 +1,6 @@
-/* The importer joins consecutive spheres into one shape of many spheres (a run). A world with
- * runs has the same spheres as one without, rays hit a sphere of many where they hit it alone,
- * and a failed allocation leaks no memory. */
+/* test/import/test_sphere_run.c: the importer joins consecutive spheres into one shape of many
+ * spheres (a run). A world with runs has the same spheres as one without, rays hit a sphere of
+ * many where they hit it alone, and a failed allocation leaks no memory. */
 #include "import/load_failing.h"
 
 #include "scene/solid.h"

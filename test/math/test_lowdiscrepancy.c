@@ -1,4 +1,5 @@
-/* The low-discrepancy building blocks of the samplers, each against its definition. */
+/* test/math/test_lowdiscrepancy.c: the low-discrepancy building blocks of the samplers, each
+ * against its definition. */
 #include "math/lowdiscrepancy.h"
 #include "statistics.h"
 #include "unit.h"

@@ -1,5 +1,6 @@
-/* Interpolation of two poses: the ends are exact, rotations stay rotations with constant speed,
- * mirroring and stretching are interpolated, poses that no rotation connects are rejected. */
+/* test/math/test_motion.c: interpolation of two poses: the ends are exact, rotations stay
+ * rotations with constant speed, mirroring and stretching are interpolated, poses that no
+ * rotation connects are rejected. */
 #include <math.h>
 #include <string.h>
 

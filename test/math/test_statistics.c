@@ -1,5 +1,5 @@
-/* The statistical tests themselves: known values of the chi-square distribution; correct
- * samplers pass, slightly wrong ones fail. */
+/* test/math/test_statistics.c: the statistical tests themselves: known values of the chi-square
+ * distribution; correct samplers pass, slightly wrong ones fail. */
 #include "statistics.h"
 #include "unit.h"
 

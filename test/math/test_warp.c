@@ -1,4 +1,5 @@
-/* Warps: densities by chi-square, integrals of 1, inverses, small cones and triangles. */
+/* test/math/test_warp.c: warps: densities by chi-square, integrals of 1, inverses, small cones
+ * and triangles. */
 #include "math/octahedral.h"
 #include "math/warp.h"
 #include "statistics.h"

@@ -1,6 +1,6 @@
-/* Development against calculations of its own: levels, white balance, bilinear interpolation
- * with its borders, colours of a sensor that meets Luther's condition under A and D65, tone;
- * the colour matrices; values out of range. */
+/* test/raw/test_raw_develop.c: development against calculations of its own: levels, white
+ * balance, bilinear interpolation with its borders, colours of a sensor that meets Luther's
+ * condition under A and D65, tone; the colour matrices; values out of range. */
 #include "sample_raw.h"
 
 static vlImage *develop(const vlRaw *raw, vlRawStep step) {

@@ -1,5 +1,6 @@
-/* Raw files: DNG read back, with every metadata and pattern; the same bytes each time; the
- * other formats; files that are damaged; a failure of every allocation. */
+/* test/raw/test_raw_files.c: raw files: DNG read back, with every metadata and pattern; the
+ * same bytes each time; the other formats; files that are damaged; a failure of every
+ * allocation. */
 #include "sample_raw.h"
 
 /* Whatever the numbers are, they come back to the last bit; the focal length nearly so. */

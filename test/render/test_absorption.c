@@ -1,6 +1,6 @@
-/* Absorption by RGB channel (vlMediumDef.rgb_absorption): each channel of white light is
- * multiplied by exp(-sigma_a x), in both colour modes, for every tracer, for any depth and any
- * number of segments. */
+/* test/render/test_absorption.c: absorption by RGB channel (vlMediumDef.rgb_absorption): each
+ * channel of white light is multiplied by exp(-sigma_a x), in both colour modes, for every
+ * tracer, for any depth and any number of segments. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>

@@ -1,6 +1,7 @@
-/* Adaptive sampling: for every tracer, a film whose blocks have different numbers of samples is
- * filled up to the film of a plain render; so is one whose passes go over a part of the rows; a
- * threshold that every block is below stops all at the first comparison; wrong defs. */
+/* test/render/test_adaptive.c: adaptive sampling: for every tracer, a film whose blocks have
+ * different numbers of samples is filled up to the film of a plain render; so is one whose
+ * passes go over a part of the rows; a threshold that every block is below stops all at the
+ * first comparison; wrong defs. */
 #include "loaded.h"
 #include "velo/render.h"
 #include "velo/tracer.h"

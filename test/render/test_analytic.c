@@ -1,6 +1,6 @@
-/* Images of known value: closed spheres with light inside (pbrt's analytic integrator tests),
- * white furnaces, solid angles. Means over the whole image are compared with the exact
- * number. */
+/* test/render/test_analytic.c: images of known value: closed spheres with light inside (pbrt's
+ * analytic integrator tests), white furnaces, solid angles. Means over the whole image are
+ * compared with the exact number. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-/* The same bits on every instruction set and for any number of threads, in difficult cases:
- * coverage and quadrics inside rotated instances (Embree's own arithmetic differs there),
- * mixes, interfaces, dispersion, bump maps, a lens. */
+/* test/render/test_bits.c: the same bits on every instruction set and for any number of
+ * threads, in difficult cases: coverage and quadrics inside rotated instances (Embree's own
+ * arithmetic differs there), mixes, interfaces, dispersion, bump maps, a lens. */
 #include "render/shots.h"
 #include "velo/shape_kinds.h"
 #include "velo/texture.h"

@@ -1,6 +1,6 @@
-/* Rays of the caller (velo/rays.h) in C: arrays of any step and type, Embree and velo's own
- * tree alike, wrong arguments, statistics, and calls that end early. test/python/test_rays.py
- * compares the hits with formulas. */
+/* test/render/test_cast.c: rays of the caller (velo/rays.h) in C: arrays of any step and type,
+ * Embree and velo's own tree alike, wrong arguments, statistics, and calls that end early.
+ * test/python/test_rays.py compares the hits with formulas. */
 #include "render/shots.h"
 
 #include "api/small_world.h"

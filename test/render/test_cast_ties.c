@@ -1,6 +1,6 @@
-/* Rays of the caller where several surfaces lie at the same distance: what they meet does not
- * depend on whether they are traced as packets (similar neighbours), one by one, or in velo's
- * own tree. */
+/* test/render/test_cast_ties.c: rays of the caller where several surfaces lie at the same
+ * distance: what they meet does not depend on whether they are traced as packets (similar
+ * neighbours), one by one, or in velo's own tree. */
 #include "render/shots.h"
 
 #include "api/small_world.h"

@@ -1,6 +1,6 @@
-/* Ground truth: the channels agree with each other and with the camera, ids are those of a ray
- * cast by the test, planes have the exact depth, and the bits do not depend on threads,
- * instruction set or crop. */
+/* test/render/test_channels.c: ground truth: the channels agree with each other and with the
+ * camera, ids are those of a ray cast by the test, planes have the exact depth, and the bits do
+ * not depend on threads, instruction set or crop. */
 #include "render/ground_truths.h"
 #include "velo/channels.h"
 #include "velo/shape_kinds.h"

@@ -1,6 +1,6 @@
-/* The choice of a tracer: by given numbers; the same for any number of threads, crop and seed;
- * no race where it would be too long; the mean of the chosen tracer is that of the path
- * tracer. */
+/* test/render/test_choose.c: the choice of a tracer: by given numbers; the same for any number
+ * of threads, crop and seed; no race where it would be too long; the mean of the chosen tracer
+ * is that of the path tracer. */
 #include "render/agreement.h"
 #include "render/choose.h"
 #include "velo/choose.h"

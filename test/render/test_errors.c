@@ -1,6 +1,6 @@
-/* Standard errors against true ones: of images of 20 seeds, the root of the mean of stated
- * variances over that of the true ones, for each sampler, for own and shared samples, filters,
- * colours, numbers of samples. */
+/* test/render/test_errors.c: standard errors against true ones: of images of 20 seeds, the root
+ * of the mean of stated variances over that of the true ones, for each sampler, for own and
+ * shared samples, filters, colours, numbers of samples. */
 #include "render/shots.h"
 #include "velo/filter_kinds.h"
 #include "velo/sampler.h"

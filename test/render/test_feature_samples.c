@@ -1,6 +1,7 @@
-/* Features of denoisers are means over few samples where all agree, over more where they vary;
- * what passes late in the exposure is seen; the values depend neither on the number of threads,
- * which decides on the regions that workers take, nor on the instruction set. */
+/* test/render/test_feature_samples.c: features of denoisers are means over few samples where
+ * all agree, over more where they vary; what passes late in the exposure is seen; the values
+ * depend neither on the number of threads, which decides on the regions that workers take, nor
+ * on the instruction set. */
 #include "render/ground_truths.h"
 #include "velo/own.h"
 

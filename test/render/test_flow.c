@@ -1,4 +1,5 @@
-/* Optical flow between two cameras against known geometry; boxes against counted pixels. */
+/* test/render/test_flow.c: optical flow between two cameras against known geometry; boxes
+ * against counted pixels. */
 #include "render/ground_truths.h"
 #include "velo/boxes.h"
 #include "velo/shape_kinds.h"

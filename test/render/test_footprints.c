@@ -1,6 +1,6 @@
-/* Surface derivatives, seen in images: bump maps against normals of surfaces displaced by a
- * formula; image textures at grazing angles: detail finer than a pixel becomes grey, coarser
- * detail keeps its contrast. */
+/* test/render/test_footprints.c: surface derivatives, seen in images: bump maps against normals
+ * of surfaces displaced by a formula; image textures at grazing angles: detail finer than a
+ * pixel becomes grey, coarser detail keeps its contrast. */
 #include "render/shots.h"
 #include "velo/channels.h"
 #include "velo/shape_kinds.h"

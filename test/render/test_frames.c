@@ -1,4 +1,5 @@
-/* One film for many images: after clearing, it gives the same image as a new film. */
+/* test/render/test_frames.c: one film for many images: after clearing, it gives the same image
+ * as a new film. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,6 @@
-/* Lights against formulas of the book: inverse square and cosine laws, cones, photometric
- * scales, images on lights and in the sky, and the three light samplers. */
+/* test/render/test_lights.c: lights against formulas of the book: inverse square and cosine
+ * laws, cones, photometric scales, images on lights and in the sky, and the three light
+ * samplers. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/shape_kinds.h"

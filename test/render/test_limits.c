@@ -1,6 +1,6 @@
-/* Limits of bounces of one kind (vlRenderDef.max_diffuse_depth and the like). In a closed room
- * that shines and reflects by rho, a limit of n leaves the sum of rho^k up to k = n. Where all
- * bounces are of one kind, its limit is max_depth. */
+/* test/render/test_limits.c: limits of bounces of one kind (vlRenderDef.max_diffuse_depth and
+ * the like). In a closed room that shines and reflects by rho, a limit of n leaves the sum of
+ * rho^k up to k = n. Where all bounces are of one kind, its limit is max_depth. */
 #include "fog.h"
 #include "velo/paths.h"
 #include "velo/tracer.h"

@@ -1,4 +1,5 @@
-/* Materials in images: mixes, bump and normal maps, interfaces, dispersive glass. */
+/* test/render/test_materials.c: materials in images: mixes, bump and normal maps, interfaces,
+ * dispersive glass. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/shape_kinds.h"

@@ -1,6 +1,6 @@
-/* Cryptomatte, the modes that choose among a pixel's samples, standard errors: they agree with
- * the image, with each other and with simple scenes of known result, and their bits depend on
- * nothing else. */
+/* test/render/test_mattes.c: Cryptomatte, the modes that choose among a pixel's samples,
+ * standard errors: they agree with the image, with each other and with simple scenes of known
+ * result, and their bits depend on nothing else. */
 #include "render/ground_truths.h"
 #include "velo/boxes.h"
 #include "velo/filter_kinds.h"

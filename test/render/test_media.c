@@ -1,6 +1,6 @@
-/* Participating media of known radiance: Beer's law, fully scattering media under a white sky,
- * single scattering by quadrature, emissive fog, every kind and both colour modes. Also changes
- * that must not affect the image. */
+/* test/render/test_media.c: participating media of known radiance: Beer's law, fully scattering
+ * media under a white sky, single scattering by quadrature, emissive fog, every kind and both
+ * colour modes. Also changes that must not affect the image. */
 #include "fog.h"
 #include "velo/medium.h"
 #include "velo/sampler.h"

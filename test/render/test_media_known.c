@@ -1,7 +1,7 @@
-/* More media of known radiance: equilibrium (an emissive, scattering medium under a sky of its
- * own radiance is invisible), nested media with the camera in the innermost, rotated and
- * stretched grids, colours of RGB grids, emission with scattering, NanoVDB voxels as solid
- * cubes. */
+/* test/render/test_media_known.c: more media of known radiance: equilibrium (an emissive,
+ * scattering medium under a sky of its own radiance is invisible), nested media with the camera
+ * in the innermost, rotated and stretched grids, colours of RGB grids, emission with
+ * scattering, NanoVDB voxels as solid cubes. */
 #include <unistd.h>
 
 #include "fog.h"

@@ -1,6 +1,6 @@
-/* Images of moving objects: the mean of many images at fixed times (z-test), the same bits on
- * every instruction set, no self-intersection, moving vertices against equally moving
- * instances, the slope of an edge with a rolling shutter. */
+/* test/render/test_motion.c: images of moving objects: the mean of many images at fixed times
+ * (z-test), the same bits on every instruction set, no self-intersection, moving vertices
+ * against equally moving instances, the slope of an edge with a rolling shutter. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/shape_kinds.h"

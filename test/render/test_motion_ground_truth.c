@@ -1,5 +1,6 @@
-/* Ground truth of moving objects: the same as in a static world with the same poses; flow leads
- * to the point's new position; the channels of a pixel agree with each other. */
+/* test/render/test_motion_ground_truth.c: ground truth of moving objects: the same as in a
+ * static world with the same poses; flow leads to the point's new position; the channels of a
+ * pixel agree with each other. */
 #include "render/shots.h"
 #include "velo/channels.h"
 #include "velo/shape_kinds.h"

@@ -1,6 +1,6 @@
-/* A sample depends on the length of the sequence, not on the planned number of samples. So a
- * film that is continued, rendered in parts, or rendered for a given time equals the film of a
- * single render. */
+/* test/render/test_one_sequence.c: a sample depends on the length of the sequence, not on the
+ * planned number of samples. So a film that is continued, rendered in parts, or rendered for a
+ * given time equals the film of a single render. */
 #include "loaded.h"
 #include "velo/render.h"
 #include "velo/sampler.h"

@@ -1,5 +1,6 @@
-/* Cameras, samplers and tracers of one's own (velo/own.h): the same bits as velo's own where
- * they compute the same, wrong values are counted, names are kept in films and receipts. */
+/* test/render/test_own.c: cameras, samplers and tracers of one's own (velo/own.h): the same
+ * bits as velo's own where they compute the same, wrong values are counted, names are kept in
+ * films and receipts. */
 #include "render/shots.h"
 
 #include <pthread.h>

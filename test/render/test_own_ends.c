@@ -1,5 +1,5 @@
-/* How renders with code of one's own (velo/own.h) end early: without memory, and cancelled by
- * that code itself. */
+/* test/render/test_own_ends.c: how renders with code of one's own (velo/own.h) end early:
+ * without memory, and cancelled by that code itself. */
 #include "render/shots.h"
 
 #include <stdatomic.h>

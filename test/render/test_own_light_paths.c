@@ -1,6 +1,6 @@
-/* Light paths and cameras of one's own (render/own_view.h): an own pinhole has the splats of
- * velo's; other cameras get by two-way tracers the image that paths from the camera alone
- * give. */
+/* test/render/test_own_light_paths.c: light paths and cameras of one's own (render/own_view.h):
+ * an own pinhole has the splats of velo's; other cameras get by two-way tracers the image that
+ * paths from the camera alone give. */
 #include "render/shots.h"
 
 #include "api/small_world.h"

@@ -1,6 +1,6 @@
-/* The recorded paths of a pixel: their contributions sum to the samples that a film adds, for
- * surfaces, media, subsurface materials, lenses, and in RGB; densities and weights of a known
- * lamp; chains of vertices; wrong calls; cancelling. */
+/* test/render/test_paths.c: the recorded paths of a pixel: their contributions sum to the
+ * samples that a film adds, for surfaces, media, subsurface materials, lenses, and in RGB;
+ * densities and weights of a known lamp; chains of vertices; wrong calls; cancelling. */
 #include <pthread.h>
 
 #include "loaded.h"

@@ -1,5 +1,6 @@
-/* Portals: a portal over a room's only window gives the same image as without it, with every
- * tracer, with less noise. Behind a portal and beside it there is no light. */
+/* test/render/test_portal.c: portals: a portal over a room's only window gives the same image
+ * as without it, with every tracer, with less noise. Behind a portal and beside it there is no
+ * light. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/tracer.h"

@@ -1,7 +1,7 @@
-/* Lights that only next-event estimation finds: for each transmissive material, point lights
- * behind, in front and beside it give the same mean with the light tree as with sampling by
- * power. A bound of zero where light arrives would appear as darkness, a bound far too small as
- * noise. */
+/* test/render/test_reach.c: lights that only next-event estimation finds: for each transmissive
+ * material, point lights behind, in front and beside it give the same mean with the light tree
+ * as with sampling by power. A bound of zero where light arrives would appear as darkness, a
+ * bound far too small as noise. */
 #include "render/shots.h"
 
 #include "import/import.h"

@@ -1,5 +1,6 @@
-/* Pixels that share samples: weights follow the filter and sum to 1 over the pixels; the sums
- * of a block are those of a direct double loop; which films share. */
+/* test/render/test_reconstruct.c: pixels that share samples: weights follow the filter and sum
+ * to 1 over the pixels; the sums of a block are those of a direct double loop; which films
+ * share. */
 #include <math.h>
 #include <stdlib.h>
 

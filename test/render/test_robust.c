@@ -1,4 +1,5 @@
-/* Degenerate scenes: no crash, no hang, no NaN pixel. Best run under the sanitizers. */
+/* test/render/test_robust.c: degenerate scenes: no crash, no hang, no NaN pixel. Best run under
+ * the sanitizers. */
 #include <time.h>
 
 #include "render/shots.h"

@@ -1,5 +1,5 @@
-/* Ground truth of rolling shutters: each row is that of its own time, for random cameras and
- * objects in motion. */
+/* test/render/test_rows.c: ground truth of rolling shutters: each row is that of its own time,
+ * for random cameras and objects in motion. */
 #include "render/ground_truths.h"
 #include "statistics.h"
 #include "velo/boxes.h"

@@ -1,6 +1,6 @@
-/* Images by a measured camera (vlFilmDef.sensor): the colour of a lit wall against sums over
- * wavelengths; the exposure; the limit of a sample, which applies to the sensor's values; RGB
- * worlds. */
+/* test/render/test_sensor.c: images by a measured camera (vlFilmDef.sensor): the colour of a
+ * lit wall against sums over wavelengths; the exposure; the limit of a sample, which applies to
+ * the sensor's values; RGB worlds. */
 #include "color/sensor.h"
 #include "math/transform.h"
 #include "shots.h"

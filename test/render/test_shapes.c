@@ -1,5 +1,6 @@
-/* Equivalent descriptions give the same image: instances and transformed geometry, patches and
- * triangles, spheres and their meshes, holes by alpha and holes by geometry. */
+/* test/render/test_shapes.c: equivalent descriptions give the same image: instances and
+ * transformed geometry, patches and triangles, spheres and their meshes, holes by alpha and
+ * holes by geometry. */
 #include "render/shots.h"
 #include "velo/shape_kinds.h"
 #include "velo/texture.h"

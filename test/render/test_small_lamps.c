@@ -1,5 +1,6 @@
-/* Lamps that are smaller than a pixel, seen by the camera itself, against closed forms:
- * radiance times solid angle. By camera rays alone they are a firefly in one image of many. */
+/* test/render/test_small_lamps.c: lamps that are smaller than a pixel, seen by the camera
+ * itself, against closed forms: radiance times solid angle. By camera rays alone they are a
+ * firefly in one image of many. */
 #include "fog.h"
 #include "velo/medium.h"
 #include "velo/tracer.h"

@@ -1,6 +1,6 @@
-/* Colour spaces of images: an EXR file's chromaticities define its values in textures, skies,
- * area lights and projection lights; without them the def's space counts. A film of the same
- * space gives back the values. */
+/* test/render/test_spaces.c: colour spaces of images: an EXR file's chromaticities define its
+ * values in textures, skies, area lights and projection lights; without them the def's space
+ * counts. A film of the same space gives back the values. */
 #include "render/shots.h"
 #include "velo/texture.h"
 

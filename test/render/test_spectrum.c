@@ -1,6 +1,7 @@
-/* Spectra of known light: a bucket's mean is that of the spectrum over its wavelengths, also
- * after reflection; glass without dispersion loses nothing; the colours beside the buckets are
- * those of the same light; any number of threads and any crop give the same bytes. */
+/* test/render/test_spectrum.c: spectra of known light: a bucket's mean is that of the spectrum
+ * over its wavelengths, also after reflection; glass without dispersion loses nothing; the
+ * colours beside the buckets are those of the same light; any number of threads and any crop
+ * give the same bytes. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/shape_kinds.h"

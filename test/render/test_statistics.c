@@ -1,7 +1,7 @@
-/* All samplers, seeds and sample orders estimate the same image: z-tests per pixel and over the
- * whole image, on a scene with soft shadow, gloss, glass and depth of field. Standard
- * deviations come from repeated renders with other seeds, which is valid for correlated
- * samples, too. */
+/* test/render/test_statistics.c: all samplers, seeds and sample orders estimate the same image:
+ * z-tests per pixel and over the whole image, on a scene with soft shadow, gloss, glass and
+ * depth of field. Standard deviations come from repeated renders with other seeds, which is
+ * valid for correlated samples, too. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/shape_kinds.h"

@@ -1,6 +1,6 @@
-/* The subsurface material: thick solids under a white sky have the given reflectance; light
- * that enters around a block's edge, against an integral over the lit side; white solids; and
- * changes that must not affect the image. */
+/* test/render/test_subsurface.c: the subsurface material: thick solids under a white sky have
+ * the given reflectance; light that enters around a block's edge, against an integral over the
+ * lit side; white solids; and changes that must not affect the image. */
 #include "material/bssrdf.h"
 #include "shots.h"
 #include "velo/medium.h"

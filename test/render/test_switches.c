@@ -1,6 +1,6 @@
-/* Switches for comparisons (pbrt's disablepixeljitter, disablewavelengthjitter,
- * disabletexturefiltering): samples at the pixel's centre, the same wavelengths for all
- * samples, textures without a footprint. */
+/* test/render/test_switches.c: switches for comparisons (pbrt's disablepixeljitter,
+ * disablewavelengthjitter, disabletexturefiltering): samples at the pixel's centre, the same
+ * wavelengths for all samples, textures without a footprint. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/texture.h"

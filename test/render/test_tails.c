@@ -1,6 +1,6 @@
-/* Rare bright samples of camera paths (render/tails.h): the formula; its error against that of
- * volpath's images; and the race, which does not choose volpath for a room that is quiet but
- * for a glint that volpath meets once in a million samples. */
+/* test/render/test_tails.c: rare bright samples of camera paths (render/tails.h): the formula;
+ * its error against that of volpath's images; and the race, which does not choose volpath for a
+ * room that is quiet but for a glint that volpath meets once in a million samples. */
 #include "render/choose.h"
 #include "render/lamp_room.h"
 #include "render/tails.h"

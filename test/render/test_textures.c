@@ -1,5 +1,6 @@
-/* Textures read from images: a square seen by an orthographic camera and the raycast tracer
- * shows its reflectance. Column x of 32 is u = (x + 1/2)/32, row y is v = 1 - (y + 1/2)/32. */
+/* test/render/test_textures.c: textures read from images: a square seen by an orthographic
+ * camera and the raycast tracer shows its reflectance. Column x of 32 is u = (x + 1/2)/32, row
+ * y is v = 1 - (y + 1/2)/32. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/texture.h"

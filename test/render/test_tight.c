@@ -1,6 +1,6 @@
-/* No self-intersection and no leaks between faces, at any size, far from the origin and inside
- * distant instances. A closed emissive room shows both: a leak darkens it (outside is black),
- * self-intersection brightens or darkens it. */
+/* test/render/test_tight.c: no self-intersection and no leaks between faces, at any size, far
+ * from the origin and inside distant instances. A closed emissive room shows both: a leak
+ * darkens it (outside is black), self-intersection brightens or darkens it. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/shape_kinds.h"

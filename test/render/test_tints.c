@@ -1,6 +1,6 @@
-/* The tint of principled materials that transmit (glTF's base colour, MTL's Tf): white light
- * that crosses surfaces of colours c_k leaves them as the product of c_k per channel of linear
- * sRGB, in both colour modes, for every tracer. */
+/* test/render/test_tints.c: the tint of principled materials that transmit (glTF's base colour,
+ * MTL's Tf): white light that crosses surfaces of colours c_k leaves them as the product of c_k
+ * per channel of linear sRGB, in both colour modes, for every tracer. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
-/* The tracers with light paths against the path tracer: the same mean within both standard
- * errors, for every kind of light and surface; the same bits for any threads; failing
- * allocations. */
+/* test/render/test_two_way.c: the tracers with light paths against the path tracer: the same
+ * mean within both standard errors, for every kind of light and surface; the same bits for any
+ * threads; failing allocations. */
 #include "render/agreement.h"
 #include "velo/filter_kinds.h"
 #include "velo/shape_kinds.h"

@@ -1,6 +1,6 @@
-/* Connections of inner vertices (bidirectional): exact radiance in a white furnace; the mean of
- * the path tracer in rooms whose lamps stand in shades, for each greatest number of bounces;
- * less noise than the path tracer there. */
+/* test/render/test_two_way_inner.c: connections of inner vertices (bidirectional): exact
+ * radiance in a white furnace; the mean of the path tracer in rooms whose lamps stand in
+ * shades, for each greatest number of bounces; less noise than the path tracer there. */
 #include "render/agreement.h"
 #include "render/lamp_room.h"
 #include "velo/tracer.h"

@@ -1,7 +1,7 @@
-/* Connections of inner vertices in media (bidirectional): the mean of volpath in rooms full of
- * fog whose lamps stand in shades; attenuation by channel in both colour modes; less noise than
- * volpath there; exact radiance in a white furnace full of fog; the same bits for any
- * threads. */
+/* test/render/test_two_way_inner_media.c: connections of inner vertices in media
+ * (bidirectional): the mean of volpath in rooms full of fog whose lamps stand in shades;
+ * attenuation by channel in both colour modes; less noise than volpath there; exact radiance in
+ * a white furnace full of fog; the same bits for any threads. */
 #include "render/agreement.h"
 #include "render/fog.h"
 #include "render/lamp_room.h"

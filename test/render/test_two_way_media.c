@@ -1,6 +1,6 @@
-/* The tracers with light paths against the path tracer, in media: the same mean within both
- * standard errors, for every kind of medium, for lights inside and outside; a white furnace;
- * the same bits for any threads. */
+/* test/render/test_two_way_media.c: the tracers with light paths against the path tracer, in
+ * media: the same mean within both standard errors, for every kind of medium, for lights inside
+ * and outside; a white furnace; the same bits for any threads. */
 #include "render/agreement.h"
 #include "velo/medium.h"
 #include "velo/shape_kinds.h"

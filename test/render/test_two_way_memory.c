@@ -1,5 +1,5 @@
-/* The tracers with light paths when memory runs out: each failing allocation gives an error and
- * leaks nothing. */
+/* test/render/test_two_way_memory.c: the tracers with light paths when memory runs out: each
+ * failing allocation gives an error and leaks nothing. */
 #include "render/shots.h"
 
 #include "failing_allocator.h"

@@ -1,6 +1,7 @@
-/* The tracers with light paths against the path tracer, with moving objects and cameras: the
- * same mean within both standard errors; connections of inner vertices in a room whose lamp
- * stands in a shade, with less noise; the same bits for any threads. */
+/* test/render/test_two_way_motion.c: the tracers with light paths against the path tracer, with
+ * moving objects and cameras: the same mean within both standard errors; connections of inner
+ * vertices in a room whose lamp stands in a shade, with less noise; the same bits for any
+ * threads. */
 #include "render/lamp_room.h"
 #include "velo/medium.h"
 #include "velo/shape_kinds.h"

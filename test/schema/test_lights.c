@@ -1,6 +1,6 @@
-/* Rows of lights, shapes and media: each parameter's default is in its range and agrees with
- * vl_parameter_is_default; a number out of range is rejected with a message that names it;
- * members that a kind does not use are not kept. */
+/* test/schema/test_lights.c: rows of lights, shapes and media: each parameter's default is in
+ * its range and agrees with vl_parameter_is_default; a number out of range is rejected with a
+ * message that names it; members that a kind does not use are not kept. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,6 @@
-/* Random numbers of sensors: the normal distribution's inverse, log k!, and Poisson numbers by
- * chi-square over means from 0.01 to 1e5, where both methods (inversion, rejection) are. */
+/* test/sensor/test_random.c: random numbers of sensors: the normal distribution's inverse, log
+ * k!, and Poisson numbers by chi-square over means from 0.01 to 1e5, where both methods
+ * (inversion, rejection) are. */
 #include "math/approx_double.h"
 #include "sensor/random.h"
 #include "statistics.h"

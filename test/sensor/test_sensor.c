@@ -1,5 +1,6 @@
-/* Sensors: means, variances and fixed patterns against closed formulas; mosaics, crosstalk,
- * angles; the same numbers with any number of threads; bad values by name, value and unit. */
+/* test/sensor/test_sensor.c: sensors: means, variances and fixed patterns against closed
+ * formulas; mosaics, crosstalk, angles; the same numbers with any number of threads; bad values
+ * by name, value and unit. */
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* Sensor files: a file with every field; errors with line, column, field, value and unit; the
- * nearest name. */
+/* test/sensor/test_sensor_file.c: sensor files: a file with every field; errors with line,
+ * column, field, value and unit; the nearest name. */
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* Emission of light paths: the mean weight is the light's power (formulas of the book, 12),
- * directions and positions have the right distribution (chi-square against exact solid angles
- * and areas), and the density of a sampled path equals the one used by multiple importance
- * sampling. */
+/* test/trace/test_emission.c: emission of light paths: the mean weight is the light's power
+ * (formulas of the book, 12), directions and positions have the right distribution (chi-square
+ * against exact solid angles and areas), and the density of a sampled path equals the one used
+ * by multiple importance sampling. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,8 @@
-/* Light sampling against its densities: directions of vl_stage_lights, counted over the sphere,
- * against the density for multiple importance sampling of the light that a ray in that
- * direction hits (chi-square); the light tree's choice against its probabilities; the Monte
- * Carlo estimate of incident radiance against the same integral with uniform directions. */
+/* test/trace/test_light.c: light sampling against its densities: directions of vl_stage_lights,
+ * counted over the sphere, against the density for multiple importance sampling of the light
+ * that a ray in that direction hits (chi-square); the light tree's choice against its
+ * probabilities; the Monte Carlo estimate of incident radiance against the same integral with
+ * uniform directions. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* Samplers: exact stratification, uniform projections, independent dimensions, the same bits on
- * every instruction set and in every grouping, any spp. */
+/* test/trace/test_sampler.c: samplers: exact stratification, uniform projections, independent
+ * dimensions, the same bits on every instruction set and in every grouping, any spp. */
 #include "sampler/sobol.hot.h"
 #include "statistics.h"
 #include "unit.h"

@@ -1,6 +1,7 @@
-/* Samplers: numbers that should have nothing to do with each other, in pairs: of one call, of
- * two dimensions, of two pixels. Two laws hold for each pair: it falls evenly into the cells of
- * a grid, and its numbers are equal, to the last bit, as rarely as by chance.
+/* test/trace/test_sampler_scrambles.c: samplers: numbers that should have nothing to do with
+ * each other, in pairs: of one call, of two dimensions, of two pixels. Two laws hold for each
+ * pair: it falls evenly into the cells of a grid, and its numbers are equal, to the last bit,
+ * as rarely as by chance.
  *
  * The second law finds Sobol' points whose two numbers have the same scramble, which stay even
  * in each projection: the generator matrix of the second number, Pascal's triangle modulo 2,

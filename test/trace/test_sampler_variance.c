@@ -1,5 +1,6 @@
-/* The benefit of samplers: the error of pixel integrals relative to independent random numbers,
- * its rate of convergence, and its distribution over the image with zsobol. */
+/* test/trace/test_sampler_variance.c: the benefit of samplers: the error of pixel integrals
+ * relative to independent random numbers, its rate of convergence, and its distribution over
+ * the image with zsobol. */
 #include "sampler/sampler.h"
 #include "statistics.h"
 #include "unit.h"

@@ -1,5 +1,5 @@
-/* A worker's memory by what the world has: at most 0.95 MB without media and subsurface
- * materials, and more only with them. */
+/* test/trace/test_scratch.c: a worker's memory by what the world has: at most 0.95 MB without
+ * media and subsurface materials, and more only with them. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,7 @@
-/* Writes a file in the format of the RGL material database for metal with GGX microfacets
- * (test/trace/measured_file.h). Usage: helper_measured OUT ALPHA_X ALPHA_Y ETA K COLOR. eta and
- * k are given at 400 nm and grow by the factor 1 + COLOR to 700 nm. */
+/* test/world/helper_measured.c: writes a file in the format of the RGL material database for
+ * metal with GGX microfacets (test/trace/measured_file.h). Usage: helper_measured OUT ALPHA_X
+ * ALPHA_Y ETA K COLOR. eta and k are given at 400 nm and grow by the factor 1 + COLOR to 700
+ * nm. */
 #include "../trace/measured_file.h"
 
 int main(int count, char **words) {

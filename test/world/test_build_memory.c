@@ -1,5 +1,6 @@
-/* The n-th allocation fails while a world is built or an image rendered, for every n: the error
- * is always VL_ERROR_MEMORY and nothing leaks. (Embree has its own memory.) */
+/* test/world/test_build_memory.c: the n-th allocation fails while a world is built or an image
+ * rendered, for every n: the error is always VL_ERROR_MEMORY and nothing leaks. (Embree has its
+ * own memory.) */
 #include <stdlib.h>
 
 #include "render/shots.h"

@@ -1,6 +1,6 @@
-/* Partial spheres, disks and cylinders under transforms that are not similarities: sampled
- * points lie on the part, rays hit them there with the same uv and normal, densities are per
- * area, which a grid over the parameters gives. */
+/* test/world/test_quadric.c: partial spheres, disks and cylinders under transforms that are not
+ * similarities: sampled points lie on the part, rays hit them there with the same uv and
+ * normal, densities are per area, which a grid over the parameters gives. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

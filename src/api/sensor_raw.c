@@ -78,17 +78,12 @@ vlResult vl_sensor_raw(const vlSensor *sensor, const vlExposureDef *exposure,
     return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: sensor or result is null");
   *raw = NULL;
   exposure = exposure ? exposure : &usual;
-  vlResult result = vl_exposure_check(exposure, error);
   uint32_t window[4];
-  if (result == VL_OK)
-    result = vl_exposure_window(exposure, width, height, window, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_exposure_check(exposure, error));
+  VL_TRY(vl_exposure_window(exposure, width, height, window, error));
   const vlSensorDef part = in_window(&sensor->def, window);
   vlRawDef def = vl_default_raw_def(width, height);
-  result = vl_raw_set_pattern(&def, vl_sensor_pattern(&part, pattern), error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_raw_set_pattern(&def, vl_sensor_pattern(&part, pattern), error));
   set_levels(&sensor->def, exposure, &def);
   set_exposure(&sensor->def, exposure, &def);
   set_color(&sensor->def, light, &def);

@@ -85,16 +85,14 @@ vlResult vl_file_set_name(vlFileSet *set, char *name, size_t size, const void *d
     if (i > 1 &&
         snprintf(name, size, "%.*s-%d%s", (int)(dot - wanted), wanted, i, dot) >= (int)size)
       return vl_fail(error, VL_ERROR_IO, "the file's name is too long");
-    vlResult result = join(set, name, path, error);
-    if (result != VL_OK || has_bytes(path, data, bytes))
-      return result;
+    VL_TRY(join(set, name, path, error));
+    if (has_bytes(path, data, bytes))
+      return VL_OK;
     if (is_made(set, path))
       continue;
     if (lstat(path, &info) != 0)
       return keep(set, &set->made, path, error);
-    result = keep(set, &set->passed, path, error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(keep(set, &set->passed, path, error));
   }
   return vl_fail(error, VL_ERROR_IO, "too many files are called like %.200s", wanted);
 }

@@ -34,8 +34,8 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
       taken = true;
       vl_camera_name(record, name);
       vl_camera_set_opencv(&record->camera, (double[]){v[1], v[2], 0, 0}, 4);
-      for (int k = 6; k < 15; k++)
-        v[k] = (k >= 12 ? k > 12 : 1) ? -v[k] : v[k]; /* y and z of rows R1, R2 and of t */
+      for (int k = 6; k < 15; k++) /* the rows y and z of R and of t */
+        v[k] = k == 12 ? v[k] : -v[k];
       vl_camera_set_pose(&record->camera, v + 3, v + 12);
       record->camera.fx = record->camera.fy = v[0];
     }

@@ -32,13 +32,11 @@ static vlResult numbers(const vlCameraFile *file, const json_t *object, const ch
                             key, count, count == 1 ? "" : "s");
 }
 
-/* Whether the version is before 1.minor.revision. */
-static bool is_before(const double version[3], double minor, double revision) {
+/* Whether the version is before 1.2.revision. */
+static bool is_before(const double version[3], double revision) {
   if (version[0] != 1.0)
     return version[0] < 1.0;
-  if (version[1] != minor)
-    return version[1] < minor;
-  return version[2] < revision;
+  return version[1] != 2.0 ? version[1] < 2.0 : version[2] < revision;
 }
 
 static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic,
@@ -60,7 +58,7 @@ static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic,
                               "meshroom: the sensor's sides must be above zero");
   /* before 1.2.5 pixelRatio is fx / fy, then the pixel's width / height */
   d->fx = mm / sensor * d->width;
-  d->fy = is_before(version, 2, 5) ? d->fx / ratio : d->fx * ratio;
+  d->fy = is_before(version, 5) ? d->fx / ratio : d->fx * ratio;
   return VL_OK;
 }
 
@@ -146,7 +144,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree,
     return vl_camera_wrong_in(file, intrinsic, vl_camera_is_side(size[0]) ? "height" : "width",
                               "meshroom: the image is %g x %g; it must be whole pixels",
                               size[0], size[1]);
-  double middle = is_before(version, 2, 1) ? 0.0 : 0.5;
+  double middle = is_before(version, 1) ? 0.0 : 0.5;
   d->cx = c[0] + middle * d->width;
   d->cy = c[1] + middle * d->height;
   VL_TRY(read_focal(file, intrinsic, version, d));

@@ -233,14 +233,13 @@ const void *vl_image_const_row(const vlImage *image, uint32_t y) {
   return (const char *)image->pixels + vl_image_row_size(image) * y;
 }
 
-/* Alpha is always linear. */
-static bool is_alpha(const char *name) {
+bool vl_is_alpha(const char *name) {
   size_t n = strlen(name);
   return name[n - 1] == 'A' && (n == 1 || name[n - 2] == '.');
 }
 
 static vlEncoding channel_encoding(const vlImage *image, uint32_t channel) {
-  return image->encoding != VL_ENCODING_LINEAR && is_alpha(image->names[channel])
+  return image->encoding != VL_ENCODING_LINEAR && vl_is_alpha(image->names[channel])
              ? VL_ENCODING_LINEAR
              : image->encoding;
 }

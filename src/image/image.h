@@ -44,8 +44,10 @@ const void *vl_image_const_row(const vlImage *image, uint32_t y);
  * an image counts as Y, whatever its name is. */
 uint32_t vl_image_color(const vlImage *image, uint32_t channel[4]);
 
+/* Whether a channel is alpha, which is always linear: it is named A or ends in .A. */
+bool vl_is_alpha(const char *name);
 /* Converts row y of the chosen channels to interleaved linear floats: width*count values.
- * Channels named A or ending in .A are already linear. */
+ * Alpha is linear already. */
 void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *channel,
                            uint32_t count, float *result);
 /* Converts the whole image like vl_image_row_to_float: width*height*count floats, which the

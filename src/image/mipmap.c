@@ -43,19 +43,12 @@ static uint8_t nearest_code(const Builder *b, uint32_t channel, float v) {
   return (uint8_t)code;
 }
 
-/* Whether the channel is encoded light (not alpha). */
-static bool is_light(const vlImage *image, uint32_t channel) {
-  const char *name = image->names[channel];
-  size_t n = strlen(name);
-  return !(name[n - 1] == 'A' && (n == 1 || name[n - 2] == '.'));
-}
-
 static void make_tables(Builder *b, const vlImage *image, const vlMipmapDef *def) {
   vlMipmap *map = b->map;
   for (uint32_t c = 0; c < map->channels; c++) {
     vlEncoding encoding = def->own_encoding ? def->encoding : image->encoding;
     float gamma = def->own_encoding ? def->gamma : image->gamma;
-    if (!is_light(image, def->channel[c]))
+    if (vl_is_alpha(image->names[def->channel[c]]))
       encoding = VL_ENCODING_LINEAR;
     vl_decode_table(encoding, gamma, map->decode[c]);
     for (int i = 1; i < 256; i++)
@@ -77,7 +70,8 @@ static void make_tables(Builder *b, const vlImage *image, const vlMipmapDef *def
 static void row_16bit(const vlImage *image, const vlMipmapDef *def, uint32_t y, float *out) {
   const uint16_t *row = vl_image_const_row(image, y);
   for (uint32_t c = 0; c < def->count; c++) {
-    vlEncoding encoding = is_light(image, def->channel[c]) ? def->encoding : VL_ENCODING_LINEAR;
+    vlEncoding encoding =
+        vl_is_alpha(image->names[def->channel[c]]) ? VL_ENCODING_LINEAR : def->encoding;
     for (uint32_t x = 0; x < image->width; x++)
       out[(size_t)x * def->count + c] = (float)vl_decode(
           encoding, def->gamma, row[(size_t)x * image->channels + def->channel[c]] / 65535.0);

@@ -18,9 +18,7 @@
 
 vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e,
                         vlError *error) {
-  vlResult r = vl_spectral_compile(world, color, VL_ROLE_ILLUMINANT, &e->spectrum, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_spectral_compile(world, color, VL_ROLE_ILLUMINANT, &e->spectrum, error));
   e->spectrum.scale *= factor;
   e->image = -1;
   e->image_scale = 1;

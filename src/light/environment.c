@@ -117,9 +117,7 @@ vlResult vl_world_build_environment(vlWorld *world, vlEnvironment *env, double *
   if (!env->cells || !env->below || !env->rows || !env->row_guide || !env->cell_guide)
     return vl_fail_memory(error);
   double total = 0, upper = 0;
-  vlResult r = cell_luminances(mip, env, step, &total, &upper, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(cell_luminances(mip, env, step, &total, &upper, error));
   double mean = total / ((double)size * size);
   *mean_luminance = mean;
   /* pbrt-v4 takes the upper half for a hemisphere that fills the square: half of the true

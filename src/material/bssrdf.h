@@ -24,10 +24,10 @@ typedef struct vlBssrdfTable {
   /* 2 pi r R(r). R(r) is the light that leaves per unit of area at distance r from the beam,
    * per unit of light that entered. */
   float profile[VL_BSSRDF_ALBEDOS][VL_BSSRDF_RADII];
-  float cdf[VL_BSSRDF_ALBEDOS]
-           [VL_BSSRDF_RADII];         /* integral of profile from 0 to the node's radius */
-  float effective[VL_BSSRDF_ALBEDOS]; /* integral of profile over all radii: share of the light
-                                         that leaves again */
+  /* integral of profile from 0 to the node's radius */
+  float cdf[VL_BSSRDF_ALBEDOS][VL_BSSRDF_RADII];
+  /* integral of profile over all radii: share of the light that leaves again */
+  float effective[VL_BSSRDF_ALBEDOS];
 } vlBssrdfTable;
 
 /* Fills a table, on all workers. eta > 0: index inside over index outside. -1 < g < 1: mean

@@ -68,14 +68,13 @@ static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t 
 
 /* Whether the outside of a face is opposite to the side that its winding gives. Vertex normals,
  * if present, decide, as in rendering. */
-static bool is_turned(const vlShapeDef *d, const uint32_t *f, int k1, int k2, bool mirrored) {
+static bool is_turned(const vlShapeDef *d, const uint32_t *f, bool mirrored) {
   if (!d->normals)
     return d->reverse_orientation != mirrored;
-  const int corner[3] = {0, k1, k2};
   const float *p[3];
   double n[3] = {0, 0, 0}, g[3];
   for (int j = 0; j < 3; j++) {
-    size_t vertex = 3 * (size_t)f[corner[j]];
+    size_t vertex = 3 * (size_t)f[j];
     p[j] = d->positions + vertex;
     for (int k = 0; k < 3; k++)
       n[k] += (double)d->normals[vertex + (size_t)k];
@@ -101,9 +100,9 @@ static void add_faces(const vlShapeDef *d, vlMeshSolid *b, const uint32_t *welde
   for (uint32_t i = 0; i < d->faces; i++) {
     const uint32_t *f = d->indices + (d->kind == VL_SHAPE_TRIANGLES ? 3 : 4) * (size_t)i;
     if (d->kind == VL_SHAPE_TRIANGLES) {
-      add_face(b, welded[f[0]], welded[f[1]], welded[f[2]], is_turned(d, f, 1, 2, mirrored));
+      add_face(b, welded[f[0]], welded[f[1]], welded[f[2]], is_turned(d, f, mirrored));
     } else { /* the corners are p00 p10 p01 p11, whose cyclic order is 0 1 3 2 */
-      bool turned = is_turned(d, f, 1, 2, mirrored);
+      bool turned = is_turned(d, f, mirrored);
       add_face(b, welded[f[0]], welded[f[1]], welded[f[3]], turned);
       add_face(b, welded[f[0]], welded[f[3]], welded[f[2]], turned);
     }

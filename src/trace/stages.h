@@ -43,8 +43,8 @@ struct vlTraceScratch {
   VL_ROW uint32_t order[VL_ROW_SIZE]; /* by vertex or next ray: where it comes from */
   /* Within a stage. */
   vlCorners corners; /* while vertices are shaded */
-  VL_ROW float textures[VL_TEXTURE_ROWS]
-                       [VL_MATERIAL_LANES]; /* stack of rows for nested textures */
+  /* stack of rows for nested textures */
+  VL_ROW float textures[VL_TEXTURE_ROWS][VL_MATERIAL_LANES];
   /* From batch to batch. */
   vlOccluders occluders; /* of the shadow rays so far */
   /* As long as a path, by lane of the batch; see vlTracing. */

@@ -7,8 +7,8 @@
 
 struct vlGroundTruthScratch {
   vlTraceScratch trace;
-  VL_ROW float light[4]
-                    [VL_ROW_SIZE]; /* radiance output of the stages; its values are not used */
+  /* radiance output of the stages; its values are not used */
+  VL_ROW float light[4][VL_ROW_SIZE];
   VL_ROW float time[VL_ROW_SIZE];
   VL_ROW float albedo[3][VL_ROW_SIZE]; /* by path */
   VL_ROW float kept[6][VL_ROW_SIZE]; /* shading normal and dpdu without bump and normal maps */

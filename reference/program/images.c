@@ -22,6 +22,7 @@ static image_map decode_otherwise(vlContext *context, const vlImage *image, cons
   def.gamma = texture->gamma;
   vlImage *copy = NULL;
   vl_image_create(context, &def, &copy);
+  free(names);
   memcpy(vl_image_pixels(copy), vl_image_const_pixels(image),
          (size_t)def.width * def.height * def.channels * size[def.type]);
   return make_image_map(copy);
@@ -33,7 +34,10 @@ static bool read_image_map(vlContext *context, const vlTextureDef *def, image_ma
   if (def->data && vl_image_read_memory(context, "image", def->data, def->data_size, &image, error) != VL_OK)
     return false;
   *map = make_image_map(image ? image : def->image);
-  if (def->encoding_given) *map = decode_otherwise(context, map->image, def);
+  if (def->encoding_given) {
+    *map = decode_otherwise(context, map->image, def);
+    vl_image_destroy(image);
+  }
   return true;
 }
 

@@ -1,8 +1,27 @@
 /* program/check.c: the one list of what the core and more/ have; all else is refused by its name in files. */
+#include <stdio.h>
 #include <string.h>
 
 #include "program.h"
-#include "refuse.h"
+
+/* Always false. what: "a texture with vertex colours"; it "is not part of the reference renderer". */
+static bool refuse(vlError *error, vlSource source, const char *what) {
+  error->code = VL_ERROR_UNSUPPORTED;
+  snprintf(error->file, sizeof error->file, "%s", source.file ? source.file : "");
+  error->line = source.line;
+  error->column = source.column;
+  snprintf(error->message, sizeof error->message, "%s is not part of the reference renderer", what);
+  return false;
+}
+
+/* The same for a kind of a family ("textures"), named as in files. */
+static bool refuse_kind(vlError *error, vlSource source, const char *family, uint32_t kind) {
+  const vlKindFamily *rows = vl_kind_family_find(family);
+  const char *name = rows && kind < rows->kind_count ? rows->rows[kind]->name : NULL;
+  char what[200];
+  snprintf(what, sizeof what, "%s \"%s\"", rows ? rows->thing : family, name ? name : "of this kind");
+  return refuse(error, source, what);
+}
 
 static bool check_shape(const vlScene *scene, const vlShapeDef *def, vlError *error) {
   if (def->centers) return refuse(error, def->source, "many spheres as one shape");

@@ -110,8 +110,8 @@ typedef struct vlCameraDef {
 
   double fov;         /**< field of view, radians */
   vlFovAxis fov_axis; /**< what fov spans */
-  double view_distance, zoom,
-      pixel_size;                   /**< d, zoom (unset: 1), s (unset: 1) of the lecture */
+  /** d, zoom (unset: 1), s (unset: 1) of the lecture */
+  double view_distance, zoom, pixel_size;
   double focal_mm, sensor_width_mm; /**< focal length and sensor width, millimetres */
   /** calibration matrix, pixels: K = [fx skew cx; 0 fy cy; 0 0 1] */
   double fx, fy, skew, cx, cy;
@@ -215,12 +215,12 @@ typedef struct vlCamera {
   vlProjection projection;     /**< the map from directions to the plane */
   uint32_t width, height;      /**< pixels */
   double fx, fy, skew, cx, cy; /**< pixels */
-  double world_from_camera[16],
-      camera_from_world[16];          /**< the pose (at pose_times[0]) and its inverse */
+  /** the pose (at pose_times[0]) and its inverse */
+  double world_from_camera[16], camera_from_world[16];
   double lens_radius, focus_distance; /**< scene units */
   vlLens lens;                        /**< compiled lens */
-  double shutter_open, shutter_close, exposure_time, near_plane,
-      far_plane;           /**< seconds; factor; scene units */
+  /** seconds; factor; scene units */
+  double shutter_open, shutter_close, exposure_time, near_plane, far_plane;
   uint32_t shutter_points; /**< number of points of the shutter curve */
   /** points of the shutter curve */
   double shutter_at[VL_SHUTTER_POINTS], shutter_value[VL_SHUTTER_POINTS];

@@ -65,9 +65,9 @@ struct vlMediumDef {
   const float *rgb_a, *rgb_s, *rgb_emission; /**< RGB grid: 3 numbers per cell, in `space`;
                                                 rgb_a and rgb_s: null means 1 */
   vlColorSpace space;                        /**< colour space of the RGB grid */
-  float cloud_density, wispiness,
-      frequency;    /**< cloud: density, strength and frequency of the noise */
-  const char *path; /**< path of the NanoVDB file */
+  /** cloud: density, strength and frequency of the noise */
+  float cloud_density, wispiness, frequency;
+  const char *path;                    /**< path of the NanoVDB file */
   const char *grid, *temperature_grid; /**< names of the file's grids; null: "density" and
                                           "temperature", which may be absent */
 };

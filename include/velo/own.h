@@ -34,9 +34,9 @@ typedef struct vlOwnFilmPoints {
   const double *x, *y;    /**< film points, pixels from the top left corner; the first pixel's
                              centre is (0.5, 0.5). By the reconstruction filter, points may be
                              up to 16 pixels outside the image */
-  const double *lens_u,
-      *lens_v;        /**< a pair of numbers in [0, 1) for a point of the lens; 0.5 without
-                         vlOwnCamera.lens, and where rays pass the centre of the lens */
+  /** a pair of numbers in [0, 1) for a point of the lens; 0.5 without vlOwnCamera.lens, and
+   * where rays pass the centre of the lens */
+  const double *lens_u, *lens_v;
   const double *time; /**< seconds, by shutter and readout of the camera */
 } vlOwnFilmPoints;
 /** Rays in camera space (x right, y down, z forward; scene units); the camera's pose is applied

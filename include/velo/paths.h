@@ -40,9 +40,8 @@ typedef struct vlPathVertex {
   vlPathEvent event; /**< what the path met */
   vlPathFate fate;   /**< how it goes on */
   uint32_t bounce;   /**< number of bounces before this vertex: 0 for what the camera ray met */
-  uint32_t object, material, instance,
-      primitive;     /**< ids as in velo/channels.h, from 1; 0: none.
-                        The material is the chosen one of a mix */
+  /** ids as in velo/channels.h, from 1; 0: none. The material is the chosen one of a mix */
+  uint32_t object, material, instance, primitive;
   uint32_t medium;   /**< MEDIUM: number of the medium in the world, from 1; else 0 */
   float position[3]; /**< NOTHING: 0 */
   float distance; /**< from the previous vertex, or from the origin of the camera ray; NOTHING:

@@ -59,8 +59,8 @@ typedef struct vlCastHits {
   double *t;        /**< in lengths of the direction */
   double *distance; /**< along the ray, scene units */
   double *position; /**< 3: origin + t * direction, world space */
-  uint32_t *object, *instance, *primitive,
-      *material;         /**< ids as in ground truth (velo/channels.h), from 1; 0: none */
+  /** ids as in ground truth (velo/channels.h), from 1; 0: none */
+  uint32_t *object, *instance, *primitive, *material;
   float *normal;         /**< 3: geometric, unit, world space, on the surface's outside */
   float *shading_normal; /**< 3: interpolated, with bump and normal maps; unit */
   float *uv;             /**< 2: texture coordinates */

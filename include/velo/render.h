@@ -113,8 +113,8 @@ VL_API vlResult vl_film_luminance(const vlFilm *film, vlImage **image);
 typedef struct vlProgress {
   uint32_t spp_done, spp_total; /**< samples per pixel of the film: those of finished passes,
                                    and the requested number */
-  double elapsed,
-      remaining;   /**< seconds; remaining is an estimate, infinity before there is one */
+  /** seconds; remaining is an estimate, infinity before there is one */
+  double elapsed, remaining;
   double fraction; /**< share of the work that is done, 0 to 1; also advances inside a pass */
   uint64_t paths, rays; /**< numbers of paths and rays traced so far */
   bool pass_done; /**< true: a pass is finished, and the film may be read; false: a pass is

@@ -39,8 +39,8 @@ typedef struct vlSpectrum {
   vlColorSpace space;  /**< RGB: the colour space */
   float kelvin;        /**< BLACKBODY: temperature */
   uint32_t count;      /**< SAMPLED: number of pairs */
-  const float *wavelengths,
-      *values;      /**< SAMPLED: wavelengths in nm, ascending, and the values at them */
+  /** SAMPLED: wavelengths in nm, ascending, and the values at them */
+  const float *wavelengths, *values;
   const char *name; /**< NAMED */
 } vlSpectrum;
 /** The same value at every wavelength. */

@@ -61,8 +61,8 @@ struct vlTextureDef {
   /** Inputs of a float texture. Constant: a is the value. Scale reads a. Mix, checkerboard and
    * dots read a and b. Bilerp reads a to d as v00, v01, v10, v11. */
   vlFloatInput float_a, float_b, float_c, float_d;
-  vlSpectrumInput spectrum_a, spectrum_b, spectrum_c,
-      spectrum_d;      /**< the same inputs of a colour texture */
+  /** the same inputs of a colour texture */
+  vlSpectrumInput spectrum_a, spectrum_b, spectrum_c, spectrum_d;
   vlFloatInput amount; /**< scale: the factor; mix: share of b */
   float direction[3];  /**< direction mix: its direction */
   uint32_t dimension;  /**< checkerboard: 2 (s and t of the mapping) or 3 (unit cubes in texture

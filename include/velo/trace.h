@@ -50,9 +50,9 @@ typedef struct vlTraceHits {
   uint32_t object[VL_OWN_BATCH], material[VL_OWN_BATCH];
   float reflectance[4][VL_OWN_BATCH]; /**< the material's reflectance there; 1 for materials
                                          that have none */
-  float emission[4]
-                [VL_OWN_BATCH]; /**< radiance that a light sends along the ray: the surface that
-                                   was hit, or the infinite lights where nothing was hit */
+  /** radiance that a light sends along the ray: the surface that was hit, or the infinite
+   * lights where nothing was hit */
+  float emission[4][VL_OWN_BATCH];
 } vlTraceHits;
 
 /** Samples of the direct light at the hits: one each. */

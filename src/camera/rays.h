@@ -57,8 +57,8 @@ typedef struct vlCameraCompiled {
   bool inclined; /* perspective: lens and near/far planes use depth along z, not distance */
   double fx, fy, skew; /* pixels */
   double shape[2];     /* shape numbers of the projection; for FOV: w and 2 tan(w/2) */
-  double over_x,
-      over_y;    /* how far a plane that wraps around extends beyond its edges, for filters */
+  /* how far a plane that wraps around extends beyond its edges, for filters */
+  double over_x, over_y;
   double limit2; /* squared radius of the plane's valid disc */
   vlDistortionMap distortion;
   double camera_from_world[12];

@@ -36,8 +36,8 @@ typedef struct vlMeasuredTable {
 typedef struct vlMeasured {
   vlMeasuredTable ndf, sigma, vndf, luminance, spectra;
   uint32_t phis, thetas, lambdas; /* sizes of phi, theta and lambda; lambdas is 3 in RGB mode */
-  const float *phi, *theta,
-      *lambda;    /* ascending, in radians and nm; lambda is null in RGB mode */
+  /* ascending, in radians and nm; lambda is null in RGB mode */
+  const float *phi, *theta, *lambda;
   bool isotropic; /* azimuths are relative to the azimuth of o */
   bool scaled;    /* spectra are as described above; if false, they hold f cos w */
   /* For symmetric surfaces only a half or a quarter of the azimuths is measured. Lookups rotate

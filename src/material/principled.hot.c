@@ -105,12 +105,12 @@ typedef struct Pair {
   float weight[VL_PRINCIPLED_CHUNK]; /* Schlick's weight */
   float opaque[VL_PRINCIPLED_CHUNK]; /* Schlick's weight for light from outside */
   float total[VL_PRINCIPLED_CHUNK];  /* 1: total reflection */
-  float hide_mirror[VL_PRINCIPLED_CHUNK],
-      hide_matt[VL_PRINCIPLED_CHUNK];      /* factors of the layers above the base, */
-  float hide_through[VL_PRINCIPLED_CHUNK]; /* for each lobe */
-  float coat[VL_PRINCIPLED_CHUNK];         /* value of the clear coat */
-  float cosine[VL_PRINCIPLED_CHUNK];       /* |wi.z| / pi */
-  float again[VL_PRINCIPLED_CHUNK]; /* multiple scattering between microfacets, f cos_i */
+  /* factors of the layers above the base, for each lobe */
+  float hide_mirror[VL_PRINCIPLED_CHUNK], hide_matt[VL_PRINCIPLED_CHUNK];
+  float hide_through[VL_PRINCIPLED_CHUNK];
+  float coat[VL_PRINCIPLED_CHUNK];   /* value of the clear coat */
+  float cosine[VL_PRINCIPLED_CHUNK]; /* |wi.z| / pi */
+  float again[VL_PRINCIPLED_CHUNK];  /* multiple scattering between microfacets, f cos_i */
   /* 1: wi is on the side of wo; 1: on the other side */
   float upper[VL_PRINCIPLED_CHUNK], lower[VL_PRINCIPLED_CHUNK];
 } Pair;
@@ -139,8 +139,8 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
                               vl_vec3(s->row[VL_P_COAT_X][i] * side,
                                       s->row[VL_P_COAT_Y][i] * side, s->row[VL_P_COAT_Z][i]),
                               vl_ggx_alpha(s->row[VL_P_COAT_ALPHA][i]));
-      coat_value = on > 0.0f ? coat.value * on
-                             : 0.0f; /* rows of materials without a coat may be stale */
+      /* rows of materials without a coat may be stale */
+      coat_value = on > 0.0f ? coat.value * on : 0.0f;
       coat_pdf = on > 0.0f ? coat.pdf : 0.0f;
     }
     float co = l->coat_o[i], ci = l->coat_i[i], so = l->sheen_o[i], si = l->sheen_i[i];

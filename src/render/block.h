@@ -38,8 +38,8 @@ static inline size_t vl_whole_lines(size_t size) {
 typedef struct vlRenderWorker {
   vlTraceScratch *scratch;
   float *rows; /* VL_RENDER_ROWS arrays of VL_ROW_SIZE */
-  _Atomic uint64_t paths, bounce_rays,
-      shadow_rays;     /* written by the worker; the progress report reads them */
+  /* written by the worker; the progress report reads them */
+  _Atomic uint64_t paths, bounce_rays, shadow_rays;
   vlSharedGrid *grids; /* VL_SHARED_SAMPLES of them; null: pixels share no samples */
   uint64_t merge_work; /* as vlTraceBatch.merge_work */
   uint64_t not_finite;

@@ -69,8 +69,8 @@ typedef struct vlChannelWorker {
   vlSampleHit *hits;         /* VL_SHARED_HITS; null where no samples are shared */
   vlFeatureGrid *features;   /* null without features */
   uint32_t x[VL_BATCH], y[VL_BATCH];
-  float film_x[VL_TILE_PIXELS],
-      film_y[VL_TILE_PIXELS];               /* film point of each pixel of the tile */
+  /* film point of each pixel of the tile */
+  float film_x[VL_TILE_PIXELS], film_y[VL_TILE_PIXELS];
   float lane_x[VL_BATCH], lane_y[VL_BATCH]; /* film point of each lane */
   double depth[VL_CHANNEL_TILE][4]; /* with rows: of each of the tile's rows or columns, depth
                                        of a world point in its camera */
@@ -105,9 +105,9 @@ typedef struct vlChannelPass {
   uint32_t step[2];                    /* values per pixel */
   vlChannelWorker *workers;
   vlStop *stop;
-  vlFilmRays choice,
-      image;    /* rays of the image's samples: through the middle of the lens, and unchanged */
-  uint32_t spp; /* samples per pixel of the film; 0: they are not needed */
+  /* rays of the image's samples: through the middle of the lens, and unchanged */
+  vlFilmRays choice, image;
+  uint32_t spp;          /* samples per pixel of the film; 0: they are not needed */
   bool adaptive;         /* the film's blocks have different numbers of samples */
   uint32_t first_sample; /* index of the first */
   bool shares;           /* pixels of the image share samples */

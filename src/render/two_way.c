@@ -268,9 +268,8 @@ const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, 
     return NULL;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     double when = c->shutter_open + c->shutter_time * vl_shutter_share(t, (double)u[i]);
-    if (time)
-      time[i] = when > 0 ? (when < 1 ? (float)when : 1.0f)
-                         : 0.0f; /* the world is at rest outside [0, 1] */
+    if (time) /* the world is at rest outside [0, 1] */
+      time[i] = when > 0 ? (when < 1 ? (float)when : 1.0f) : 0.0f;
     if (!eyes)
       continue;
     double f = (when - t->pose_open) * t->pose_rate;

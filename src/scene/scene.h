@@ -46,8 +46,8 @@ typedef struct vlSceneMark {
   bool hidden;
   bool removed; /* its def is the default: of a shape, that of a mesh without vertices */
 } vlSceneMark;
-typedef VL_ARRAY(vlSceneMark)
-    vlSceneMarks; /* element i: object of id i + 1; may be shorter than the objects */
+/* Element i: object of id i + 1. May be shorter than the objects. */
+typedef VL_ARRAY(vlSceneMark) vlSceneMarks;
 
 typedef struct vlSceneChoice {
   vlChoiceKind kind;

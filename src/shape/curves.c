@@ -125,8 +125,8 @@ typedef struct Search {
   const vlWorldShape *shape;
   uint32_t segment;
   double d[3]; /* unit */
-  double z_min,
-      z_max;   /* range of z along the ray in which hits count; every hit lowers z_max */
+  /* range of z along the ray in which hits count; every hit lowers z_max */
+  double z_min, z_max;
   double flat; /* largest deviation of a leaf of the bisection from a straight line */
   double u, v;
   bool found;

@@ -113,6 +113,7 @@ typedef struct Lookups {
   vlTexelSquare memory[VL_LANES * VL_LOOKUP_SQUARES];
 } Lookups;
 
+/* Two calls of an inline function, so that each is compiled for its own case. */
 static vlTexel value_of(const vlTextureNode *node, const vlMipmap *mip, const Lookups *l,
                         uint32_t k) {
   return l->squares[k] ? vl_image_value(node, mip, &l->at[k], l->squares[k])

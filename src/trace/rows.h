@@ -144,8 +144,8 @@ typedef struct vlLightSamples {
   VL_ROW uint32_t light[VL_ROW_SIZE]; /* index of the chosen light; VL_INNER: not chosen yet */
   VL_ROW float pmf[VL_ROW_SIZE];
   VL_ROW float wx[VL_ROW_SIZE], wy[VL_ROW_SIZE], wz[VL_ROW_SIZE]; /* towards the light, unit */
-  VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE],
-      tz[VL_ROW_SIZE];                   /* point that must be visible */
+  /* point that must be visible */
+  VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE];
   VL_ROW float radiance[4][VL_ROW_SIZE]; /* already divided by the pdf */
   VL_ROW float pdf[VL_ROW_SIZE];      /* per solid angle, times the probability of choosing the
                                          light; 0: no sample */

@@ -1,5 +1,5 @@
-/* conformance/instances.h: the law of places: a shape in an object that is placed by a map is
- * the shape under that map itself, whether the map stretches, mirrors or moves. */
+/* conformance/instances.h: the law of instances: a shape in an object whose instance has a map
+ * is the same as the shape itself under this map, which may stretch, mirror or move it. */
 #ifndef TEST_CONFORMANCE_INSTANCES_H
 #define TEST_CONFORMANCE_INSTANCES_H
 

@@ -72,8 +72,8 @@ static uint8_t *new_file(size_t *size) {
   gltf_floats(g, square, 4, "VEC3", 3); /* 0 */
   gltf_shorts(g, faces, 6);             /* 1 */
   gltf_floats(g, uvs, 4, "VEC2", 2);    /* 2 */
-  gltf_accessor(g, gltf_view(g, colors, 16, 0), 5121, 4, "VEC4",
-                ",\"normalized\":true");                                /* 3 */
+  /* 3 */
+  gltf_accessor(g, gltf_view(g, colors, 16, 0), 5121, 4, "VEC4", ",\"normalized\":true");
   gltf_floats(g, up, 4, "VEC3", 3);                                     /* 4 */
   gltf_floats(g, places, 2, "VEC3", 3);                                 /* 5 */
   gltf_accessor(g, gltf_view(g, joints, 16, 0), 5121, 4, "VEC4", NULL); /* 6 */

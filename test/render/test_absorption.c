@@ -95,8 +95,8 @@ static void see_wall(bool merged, bool absorbs, double mean[3]) {
     s.render.light_paths = 512;
   }
   vlMediumDef none = fog(0, 0, 0);
-  vlMediumId medium = absorbs ? glass_of(&s, 2 * 5, attenuation, 0)
-                              : add_medium(&s, &none); /* 5 units a length of 1 */
+  /* 5 units a length of 1 */
+  vlMediumId medium = absorbs ? glass_of(&s, 2 * 5, attenuation, 0) : add_medium(&s, &none);
   vl_scene_defs(s.scene)->camera_medium = medium;
   add_ball(&s, -102, 100, add_diffuse(&s, 0.5f, 0.5f, 0.5f), (vlMediumId){0}, medium);
   vlLightDef lamp = vl_default_light_def(VL_LIGHT_POINT);

@@ -38,8 +38,9 @@ static const double RAW = 106.856895;
 
 /* ---- equilibrium ------------------------------------------------------------------------- */
 
-/* Kirchhoff: what absorbs and gives out by one temperature, before a sky of it, adds what it
- * takes; scattering changes nothing. Whatever the density, in glass or not. */
+/* Kirchhoff: under a sky of radiance 2, a medium that emits with the source radiance 2 adds as
+ * much light as it absorbs, and scattering changes nothing. This holds for any density, in
+ * glass or not. */
 static void equilibrium(void **state) {
   (void)state;
   static const float eights[64] = {1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1,
@@ -77,8 +78,6 @@ static void equilibrium(void **state) {
         if (kind == 2) {
           def.kind = VL_MEDIUM_RGB_GRID;
           def.nx = def.ny = def.nz = 6;
-        }
-        if (kind == 2) {
           def.rgb_a = a;
           def.rgb_s = b;
           def.rgb_emission = emission;
@@ -102,8 +101,8 @@ static void equilibrium(void **state) {
 
 /* ---- media within media ------------------------------------------------------------------ */
 
-/* The camera in the innermost of three shells: the sky through all of them; each kind in each
- * place. */
+/* The camera is in the innermost of three shells and sees the sky through all of them: at
+ * first all are homogeneous media, then two of them are grids. */
 static void nested(void **state) {
   (void)state;
   const double sigma[3] = {0.4, 0.2, 0.1};

@@ -137,8 +137,8 @@ static void blur_is_the_mean_of_held_images(void **state) {
       double mean[2], variance = 0;
       for (int k = 0; k < 2; k++) {
         mean[k] = sum[k][i] / HELD;
-        variance += (square[k][i] / HELD - mean[k] * mean[k]) /
-                    HELD; /* of held ones: too much, if anything */
+        /* of held ones: too much, if anything */
+        variance += (square[k][i] / HELD - mean[k] * mean[k]) / HELD;
       }
       double z = (mean[0] - mean[1]) / sqrt(variance + 1e-12);
       chi2 += z * z;

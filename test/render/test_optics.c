@@ -169,8 +169,8 @@ static void many_elements(void **state) {
     if (k == 0) {
       vlOpticsInfo info;
       vl_optics_info(optics, &info);
-      double n = info.f_number * info.rear_principal /
-                 info.focal_length; /* focused near: the working f-number */
+      /* focused near: the working f-number */
+      double n = info.f_number * info.rear_principal / info.focal_length;
       assert_ratio("middle", image_at(&p, 36, 24, 1), 3.14159265 / (4 * n * n), 0.05);
       assert_true(image_at(&p, 0, 0, 1) < 0.9 * image_at(&p, 36, 24, 1));
       for (uint32_t i = 0; i < 72 * 48; i++)

@@ -98,8 +98,8 @@ static void instances_are_baked_geometry(void **state) {
   set_matrix(identity, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
   set_matrix(inner, 0.9, 0.2, 0, 0.1, -0.2, 0.9, 0.1, 0, 0, -0.1, 0.9, 0.2);
   set_matrix(outer[0], 1, 0, 0, 0.2, 0, 1, 0, -0.1, 0, 0, 1, -4);
-  set_matrix(outer[1], 0.6, -0.5, 0, 0, 0.5, 0.6, 0.3, 0.2, 0, -0.3, 1.4,
-             -4);                                                      /* turned, stretched */
+  /* turned, stretched */
+  set_matrix(outer[1], 0.6, -0.5, 0, 0, 0.5, 0.6, 0.3, 0.2, 0, -0.3, 1.4, -4);
   set_matrix(outer[2], -1, 0, 0, 0, 0, 0.8, 0.4, 0, 0, -0.4, 0.8, -4); /* mirrored */
   /* mirrored, sheared */
   set_matrix(outer[3], 0.7, 0.1, 0.3, 0, 0.2, -1.2, 0, 0, 0.1, 0.3, 0.9, -5);

@@ -315,7 +315,8 @@ static bool is_few(int boxes, int balls, bool instance, float opacity) {
   return few;
 }
 
-/* A ball: within the sizes for which no product of the kernels overflows or vanishes? */
+/* Whether brute force is used for a ball of this size and place: no product of the kernels may
+ * overflow or underflow. */
 static bool is_usual(float radius, double x) {
   Made m = {0};
   open_scene(&m);

@@ -89,7 +89,7 @@ static bool put_tube(Solids *s, uint32_t from, uint32_t to, float radius) {
   uint32_t ring[2][TUBE_SIDES];
   for (int side = 0; side < 2; side++)
     for (int k = 0; k < TUBE_SIDES; k++) {
-      double angle = 6.283185307179586 * k / TUBE_SIDES;
+      double angle = 2 * M_PI * k / TUBE_SIDES;
       float q[3];
       for (int i = 0; i < 3; i++)
         q[i] = (float)(ends[side][i] +

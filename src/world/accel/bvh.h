@@ -68,7 +68,7 @@ static inline void vl_bvh_put_corners(const vlWorldShape *s, uint32_t prim, floa
       four->corner[c][i][k] = at[i];
   }
 }
-/* Added to `geometry` of triangles of which a ray may pass: they have an alpha, one side, or an
+/* Added to `geometry` of triangles that may let a ray pass: they have an alpha, one side, or an
  * interface. */
 #define VL_BVH_ASKS 0x80000000u
 
@@ -96,7 +96,7 @@ vlResult vl_bvh_make(const struct vlWorld *world, uint32_t group, vlBvh **tree, 
 void vl_bvh_release(vlContext *context, vlBvh *tree); /* null is allowed */
 
 /* Group from world for an instance, and for a moving one at `time`, by the operations of
- * Embree: a ray is in the same slot of the group, bit for bit. */
+ * Embree: a ray has the same bits in the group's space. */
 void vl_bvh_map(const float from_group[12], float to_group[12]);
 
 /* As those of embree.h. */

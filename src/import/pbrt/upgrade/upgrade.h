@@ -104,16 +104,16 @@ typedef struct vlUpgrade {
   VL_ARRAY(vlOldName) names;
   VL_ARRAY(vlOldTexture) textures;
   VL_ARRAY(vlOldInclude) includes;
-  VL_ARRAY(char *)
-  outputs; /* pairs: name, relative to the new scene's folder, and text of the files to write */
+  /* pairs: name, relative to the new scene's folder, and text of the files to write */
+  VL_ARRAY(char *) outputs;
   vlFileSet files;  /* the new scene's */
   uint32_t missing; /* files that were not found */
   VL_ARRAY(vlOldMap) maps;
   uint32_t depth;
   bool is_old; /* the first file has statements that pbrt-v4 does not have */
   bool filter_given, has_world;
-  bool subsurface,
-      plain_path;  /* the first file has subsurface materials; the integrator is path */
+  /* the first file has subsurface materials; the integrator is path */
+  bool subsurface, plain_path;
   double exposure; /* factor on the film's iso: 1 / the shutter's time */
   double iso;      /* of the film: 100 * its scale */
   struct vlOldFile *film_file;

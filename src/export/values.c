@@ -27,6 +27,21 @@ void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]) {
   to_rgb(s, VL_ROLE_ILLUMINANT, rgb);
 }
 
+/* The same of numbers. Of images it is their factor. */
+static float mean_number(const vlExport *x, const vlFloatInput *input, int depth) {
+  const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
+  if (!t || depth > 8)
+    return input->value;
+  if (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_VERTEX_COLOR)
+    return t->bias + t->scale * t->tint[t->channel < 0 ? 0 : t->channel];
+  const float a = mean_number(x, &t->float_a, depth + 1);
+  if (t->kind == VL_TEXTURE_CONSTANT)
+    return a;
+  if (t->kind == VL_TEXTURE_SCALE)
+    return a * mean_number(x, &t->amount, depth + 1);
+  return 0.5f * (a + mean_number(x, &t->float_b, depth + 1));
+}
+
 /* The approximate mean of a texture that is not an image. depth limits the nesting of
  * textures. */
 static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth, float rgb[3]) {
@@ -35,12 +50,14 @@ static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth,
   if (!t || depth > 8) {
     to_rgb(&input->value, VL_ROLE_ALBEDO, rgb);
   } else if (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_VERTEX_COLOR) {
-    for (int i = 0; i < 3; i++)
-      rgb[i] = t->tint[i] * (t->kind == VL_TEXTURE_IMAGE ? t->scale : 1);
+    for (int i = 0; i < 3; i++) {
+      const float factor = t->tint[i] * (t->kind == VL_TEXTURE_IMAGE ? t->scale : 1);
+      rgb[i] = t->invert ? 1 - 0.5f * factor : factor; /* 1/2: a texel's, of those inverted */
+    }
   } else if (t->kind == VL_TEXTURE_CONSTANT || t->kind == VL_TEXTURE_SCALE) {
     mean_rgb(x, &t->spectrum_a, depth + 1, rgb);
     for (int i = 0; i < 3 && t->kind == VL_TEXTURE_SCALE; i++)
-      rgb[i] *= t->amount.value;
+      rgb[i] *= mean_number(x, &t->amount, depth + 1);
   } else {
     mean_rgb(x, &t->spectrum_a, depth + 1, a);
     mean_rgb(x, &t->spectrum_b, depth + 1, b);

@@ -319,9 +319,36 @@ static void check_wide_rays(const vlKindRow *row, const TextureVariant *variant)
   ask_textured(text, &t, ask_wide_rays);
 }
 
+/* What stands in for a computed texture in glTF lies between the texture's values. */
+static void check_stand_in(const vlKindRow *row, const TextureVariant *variant) {
+  static char text[TEXT];
+  char path[100];
+  vlError error = {0};
+  if (row->traits & VL_TEXTURE_FLOAT_ONLY)
+    return;
+  snprintf(path, sizeof path, "%s/stand_in.gltf", folder);
+  textured_text(text, row, variant, "", SQUARE_UP);
+  vlScene *scene = need_scene(text);
+  assert_int_equal(vl_scene_save(scene, path, NULL, &error), VL_OK);
+  vl_scene_destroy(scene);
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  assert_int_equal(vl_scene_load(scene, path, NULL, &error), VL_OK);
+  const vlMaterialDef *material = vl_scene_material(scene, (vlMaterialId){1});
+  const vlSpectrumInput *color = &material->reflectance;
+  assert_true(color->texture.index || color->value.kind == VL_SPECTRUM_RGB);
+  for (int c = 0; c < 3 && !color->texture.index; c++) {
+    const double value = (double)color->value.rgb[c] * (double)color->value.scale;
+    if (!(value >= variant->low - 1e-3 && value <= variant->high + 1e-3))
+      broken("textures", row->name, "%s: as gltf %.4f stands in, not between %.4f and %.4f",
+             variant->parameters, value, variant->low, variant->high);
+  }
+  vl_scene_destroy(scene);
+}
+
 static void laws_of_textures(void **state) {
   (void)state;
   each_texture(check_values);
+  each_texture(check_stand_in);
 }
 
 static void laws_of_footprints(void **state) {

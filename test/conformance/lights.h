@@ -511,9 +511,39 @@ static void check_colors(const vlKindRow *row, const LightVariant *v, const char
   check_colors_of_light("lights", row->name, v->parameters, text);
 }
 
+/* A portal makes an image of a plain sky, whose colour is that of the sky without it, in
+ * wavelengths also beyond the colours of sRGB. */
+static void check_color_through_portal(void) {
+  static const char *const portals[] = {"", "\"point3 portal\" [-1 1 -1 1 1 -1 1 1 1 -1 1 1]"};
+  static char text[TEXT];
+  double colors[2][3];
+  for (int i = 0; i < 2; i++) {
+    snprintf(text, sizeof text,
+             HEAD "WorldBegin " FLOOR
+                  "ColorSpace \"rec2020\" LightSource \"infinite\" "
+                  "\"rgb L\" [.1 1 .2] %s\n",
+             portals[i]);
+    vlImage *image =
+        image_of_floor_in(VL_COLOR_SPECTRAL, text, VL_TRACER_PATH, 64, 0.1, 0.2, 0.5);
+    for (uint32_t c = 0; c < 3; c++) {
+      const Mean mean = mean_of_channel(image, c);
+      colors[i][c] = mean_of(&mean);
+    }
+    vl_image_destroy(image);
+  }
+  for (int c = 0; c < 3; c++) {
+    const double open = colors[0][c] / colors[0][1];
+    const double through = colors[1][c] / colors[1][1];
+    if (!(fabs(open - through) < 0.02))
+      broken("lights", "infinite", "channel %d through a portal is %.4f of green, not %.4f", c,
+             through, open);
+  }
+}
+
 static void colors_of_lights(void **state) {
   (void)state;
   for_each_light(FLOOR, check_colors);
+  check_color_through_portal();
   for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++) {
     static char text[TEXT];
     emitting_text(text, emitting_shapes[0][0], emitting_shapes[0][1], emissions[i]);

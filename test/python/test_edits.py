@@ -117,6 +117,25 @@ def shapes_are_replaced():
 
 
 @case
+def another_kind_keeps_what_a_shape_is_part_of():
+    def begun():
+        scene = begin()
+        haze = [scene.add_medium("homogeneous", sigma_a=(a, a, a), sigma_s=(0, 0, 0)) for a in (0.5, 2)]
+        place = [[1, 0, 0, 0.3], [0, 1, 0, 0.5], [0, 0, 1, 0.2], [0, 0, 0, 1]]
+        return scene, {"transform": place, "inside": haze[0], "outside": haze[1], "emission": scene.handles("emission")[0],
+                       "material": scene.add_material("interface")}
+
+    scene, words = begun()
+    ball = scene.add_shape("disk", radius=0.4, **words)
+    scene.set(ball, "sphere", radius=0.4, z_min=-0.4, z_max=0.4)
+    for word in ("inside", "outside", "emission", "material"):
+        assert scene.get(ball, word).index == words[word].index, word
+    other, words = begun()
+    other.add_shape("sphere", radius=0.4, z_min=-0.4, z_max=0.4, **words)
+    assert bits(scene) == bits(other)
+
+
+@case
 def removed_shapes_are_gone():
     scene = build(0)
     sheets, ball, flag = (scene.find("shapes", name) for name in ("sheet", "ball", "flag"))

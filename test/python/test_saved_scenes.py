@@ -139,6 +139,29 @@ def pbrt():
 
 
 @case
+def roughness_of_one_number():
+    """pbrt's materials have less light between their microfacets, and their colours are raised by a mean roughness: an image of one
+    number, times a factor, is that number."""
+    def written(metallic, roughness_of):
+        scene = velo.Scene()
+        scene.add_light("infinite")
+        material = scene.add_material("principled", reflectance=(0.6, 0.5, 0.4), metallic=metallic, roughness=roughness_of(scene))
+        scene.add_mesh(CORNERS, FACES, uvs=UVS, material=material)
+        scene.save(work("one.pbrt"))
+        return numpy.asarray(render(velo.load(work("one.pbrt")))).mean(axis=(0, 1))
+
+    def image_of_one(scene, **factor):
+        texels = numpy.full((4, 4, 3), 0.8, dtype=numpy.float32)
+        return scene.add_texture("image", image=texels, spectrum=False, channel=1, **factor)
+
+    for metallic in (0.0, 1.0):
+        number = written(metallic, lambda scene: 0.48)
+        assert number.min() > 0.1
+        for factor in ({"tint": (0.1, 0.6, 0.3, 1)}, {"scale": 0.6}, {"scale": 0.5, "bias": 0.08}):
+            assert numpy.allclose(written(metallic, lambda scene: image_of_one(scene, **factor)), number, rtol=2e-3), (metallic, factor)
+
+
+@case
 def what_gltf_has_not():
     plain = {"position": (0.5, 0.5, 2), "to": (0, 0, 0), "cone_angle": 0.4, "scale": 9.0}
 

@@ -64,6 +64,16 @@ def planes_disks_and_cylinders_are_where_they_should_be():
     scene.add_cylinder((0, 0, 0), (0, 2, 0), 0.5)
     hits(scene, (3, 1.9, 0), (-1, 0, 0), 2.5, (1, 0, 0))
     assert seen(scene, (3, 2.1, 0), (-1, 0, 0)) is None and seen(scene, (3, -0.1, 0), (-1, 0, 0)) is None
+    for end in ((0, 0, 3), (0, -3, 0), (-2, 1, 2)):  # each of them three long
+        scene = velo.Scene()
+        scene.add_cylinder((0, 0, 0), end, 0.5)
+        along = numpy.array(end) / 3
+        out = numpy.cross(along, (1, 0.1, 0.2))
+        out /= numpy.linalg.norm(out)
+        for inside in (0.1, 2.9):
+            hits(scene, inside * along + 3 * out, -out, 2.5, out)
+        for beyond in (-0.1, 3.1):
+            assert seen(scene, beyond * along + 3 * out, -out) is None
 
 
 @case

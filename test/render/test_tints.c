@@ -394,12 +394,35 @@ static void slabs_of_mtl(void **state) {
   assert_int_equal(unlink(obj) | unlink(mtl) | rmdir(folder), 0);
 }
 
+/* The random walk counts what it passes, too: rough sheets before a white sky have the colour
+ * in wavelengths that they have in RGB. */
+static void random_walks(void **state) {
+  (void)state;
+  double seen[2][3];
+  for (int mode = 0; mode < 2; mode++) {
+    Stage s = open_stage((vlColorMode)mode, VL_TRACER_RANDOM_WALK, 2048);
+    s.render.max_depth = 5;
+    add_sky(&s, 1);
+    vlMaterialDef def = glass(rgb(blue), true);
+    def.principled.roughness = vl_float_input(0.9f);
+    for (int i = 0; i < 4; i++)
+      add_sheet(&s, -2 - 0.1f * (float)i, vl_scene_add_material(s.scene, &def));
+    Image p = stage_finish(&s);
+    for (int c = 0; c < 3; c++)
+      seen[mode][c] = image_mean(&p, c);
+    image_free(&p);
+  }
+  for (int c = 0; c < 3; c++)
+    assert_true(fabs(seen[0][c] - seen[1][c]) < 0.015 * seen[VL_COLOR_RGB][c]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stacks),           cmocka_unit_test(stacks_of_all_tracers),
       cmocka_unit_test(with_absorption),  cmocka_unit_test(textures),
       cmocka_unit_test(spectra_multiply), cmocka_unit_test(half),
-      cmocka_unit_test(rough_glass),      cmocka_unit_test(slabs_of_mtl),
+      cmocka_unit_test(rough_glass),      cmocka_unit_test(random_walks),
+      cmocka_unit_test(slabs_of_mtl),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,7 +208,7 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   vl_error_clear(error);
   if (!def || !camera)
     return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
-  double p[2] = {0.5 * def->width, 0.5 * def->height}, f, axes[3][3];
+  double p[2] = {0.5 * def->width, 0.5 * def->height}, f = 0.0, axes[3][3];
   const bool has_centre = !vl_is_unset(def->cx);
   VL_TRY(check(def, error));
   if (def->count == 3)

@@ -27,19 +27,32 @@ void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]) {
   to_rgb(s, VL_ROLE_ILLUMINANT, rgb);
 }
 
-/* The same of numbers. Of images it is their factor. */
+/* Whether a texture is computed, so that its mean stands in for it. */
+static bool is_computed(const vlTextureDef *t) {
+  return t && t->kind != VL_TEXTURE_IMAGE && t->kind != VL_TEXTURE_VERTEX_COLOR &&
+         t->kind != VL_TEXTURE_CONSTANT;
+}
+
+/* The number of an input whose texture is not computed; of images it is their factor. t: the
+ * texture; null: none. */
+static float plain_number(const vlTextureDef *t, const vlFloatInput *input) {
+  if (!t)
+    return input->value;
+  return t->kind == VL_TEXTURE_CONSTANT
+             ? t->float_a.value
+             : t->bias + t->scale * t->tint[t->channel < 0 ? 0 : t->channel];
+}
+
+/* The approximate mean of a number. depth limits the nesting of textures. */
 static float mean_number(const vlExport *x, const vlFloatInput *input, int depth) {
   const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
-  if (!t || depth > 8)
+  if (depth > 8)
     return input->value;
-  if (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_VERTEX_COLOR)
-    return t->bias + t->scale * t->tint[t->channel < 0 ? 0 : t->channel];
+  if (!is_computed(t))
+    return plain_number(t, input);
   const float a = mean_number(x, &t->float_a, depth + 1);
-  if (t->kind == VL_TEXTURE_CONSTANT)
-    return a;
-  if (t->kind == VL_TEXTURE_SCALE)
-    return a * mean_number(x, &t->amount, depth + 1);
-  return 0.5f * (a + mean_number(x, &t->float_b, depth + 1));
+  return t->kind == VL_TEXTURE_SCALE ? a * mean_number(x, &t->amount, depth + 1)
+                                     : 0.5f * (a + mean_number(x, &t->float_b, depth + 1));
 }
 
 /* The approximate mean of a texture that is not an image. depth limits the nesting of
@@ -68,8 +81,7 @@ static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth,
 
 void vl_export_rgb(vlExport *x, const vlSpectrumInput *input, float rgb[3]) {
   const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
-  if (t && t->kind != VL_TEXTURE_IMAGE && t->kind != VL_TEXTURE_VERTEX_COLOR &&
-      t->kind != VL_TEXTURE_CONSTANT)
+  if (is_computed(t))
     vl_export_lose(x, "computed texture (checkerboard, mix, noise, ...): its mean stands in");
   mean_rgb(x, input, 0, rgb);
 }
@@ -86,12 +98,8 @@ bool vl_export_is_on(const vlFloatInput *input) {
 
 float vl_export_number(vlExport *x, const vlFloatInput *input) {
   const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
-  if (!t)
-    return input->value;
-  if (t->kind == VL_TEXTURE_CONSTANT)
-    return t->float_a.value;
-  if (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_VERTEX_COLOR)
-    return t->bias + t->scale * t->tint[t->channel < 0 ? 0 : t->channel];
+  if (!is_computed(t))
+    return plain_number(t, input);
   vl_export_lose(x, "computed texture (checkerboard, mix, noise, ...): its mean stands in");
   return 0.5f;
 }

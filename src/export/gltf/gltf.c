@@ -108,9 +108,9 @@ static json_int_t put_indices(vlExport *x, const vlExportMesh *m, bool turned) {
   if (!wide)
     return -1;
   uint16_t *narrow = (uint16_t *)wide; /* the same block */
+  const size_t corner[3] = {0, turned ? 2 : 1, turned ? 1 : 2};
   for (size_t i = 0; i < count; i++) {
-    static const uint8_t straight[3] = {0, 1, 2}, reversed[3] = {0, 2, 1};
-    const uint32_t index = m->indices[i - i % 3 + (turned ? reversed : straight)[i % 3]];
+    const uint32_t index = m->indices[i - i % 3 + corner[i % 3]];
     if (small)
       narrow[i] = (uint16_t)index;
     else

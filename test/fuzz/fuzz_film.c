@@ -1,6 +1,5 @@
 /* test/fuzz/fuzz_film.c: fuzzes film files: header, blocks, develop, merge. Each input is used
- * twice: unchanged, and with repaired CRCs, so that the code after the CRC checks is reached.
- * */
+ * twice: unchanged, and with repaired CRCs, so that the code behind their checks is reached. */
 #include "fuzz.h"
 
 #include <stdint.h>

@@ -1,5 +1,4 @@
-/* test/fuzz/fuzz_scene.c: scene files: tokens, directives, parameters, and the scene's checks.
- * */
+/* test/fuzz/fuzz_scene.c: scene files: tokens, directives, parameters, the scene's checks. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -1,6 +1,5 @@
 /* test/render/test_camera.c: effects of the camera on the image: circle of confusion, near and
- * far plane, orthographic projection, exposure time, crop; also depths and tracers of a render.
- * */
+ * far plane, orthographic projection, exposure time, crop; depths and tracers of a render. */
 #include "render/shots.h"
 #include "velo/sampler.h"
 #include "velo/shape_kinds.h"

@@ -66,6 +66,20 @@ double vl_spectrum_per_watt(const vlSpectrum *spectrum, vlError *error);
  * vl_spectrum_photometric. */
 vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space,
                             float rgb[3], vlError *error);
+/* The same conversion of many RGB colours of one space to linear sRGB: those of images. */
+typedef struct vlSrgbMap {
+  bool needed; /* the colours are of another space */
+  float m[9];  /* row-major 3x3; set if needed */
+} vlSrgbMap;
+vlSrgbMap vl_srgb_map(vlColorSpace from, vlSpectrumRole role);
+/* Colours outside of sRGB lose their negative components, as in vl_spectrum_to_rgb. Colours of
+ * sRGB stay as they are. */
+static inline vlVec3 vl_to_srgb(const vlSrgbMap *map, vlVec3 rgb) {
+  if (!map->needed)
+    return rgb;
+  vlVec3 c = vl_turn(map->m, rgb);
+  return vl_vec3(vl_max(c.x, 0.0f), vl_max(c.y, 0.0f), vl_max(c.z, 0.0f));
+}
 
 /* Share of each channel of linear sRGB at each wavelength (Mallett and Yuksel 2019): three
  * spectra within [0, 1] with sum 1, whose colours under the space's illuminant are (1,0,0),

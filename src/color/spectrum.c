@@ -242,6 +242,18 @@ static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double
   vl_mat3_vector(b->rgb_from_xyz, xyz, out);
 }
 
+vlSrgbMap vl_srgb_map(vlColorSpace from, vlSpectrumRole role) {
+  vlSrgbMap map = {.needed = from != VL_SPACE_SRGB};
+  for (int column = 0; map.needed && column < 3; column++) {
+    double primary[3] = {0, 0, 0}, srgb[3];
+    primary[column] = 1;
+    convert(from, VL_SPACE_SRGB, role != VL_ROLE_ILLUMINANT, primary, srgb);
+    for (int row = 0; row < 3; row++)
+      map.m[3 * row + column] = (float)srgb[row];
+  }
+  return map;
+}
+
 vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space,
                             float rgb[3], vlError *error) {
   float dense[VL_LAMBDA_COUNT], constant;

@@ -38,6 +38,7 @@ void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmi
   e->image_scale = scale;
   e->spectrum.scale = 1;
   if (world->def.color == VL_COLOR_RGB) {
+    e->to_srgb = vl_srgb_map(space, VL_ROLE_ILLUMINANT);
     e->spectrum.kind = VL_SPECTRAL_RGB;
     for (int i = 0; i < 3; i++)
       e->spectrum.rgb[i] = 1;

@@ -84,9 +84,12 @@ static void radiance(const vlWorld *world, const vlEnvironment *env, const vlEmi
                      const vlPaths *paths, uint32_t padded, Block *b) {
   read_colors(env, world->images.items[e->image].mipmap, e->image_scale, padded, b);
   if (world->def.color == VL_COLOR_RGB) {
-    for (uint32_t k = 0; k < padded; k++)
-      for (int c = 0; c < 4; c++)
-        b->radiance[c][k] = c < 3 ? b->rgb[c][k] * e->spectrum.scale : 0.0f;
+    for (uint32_t k = 0; k < padded; k++) {
+      vlVec3 rgb = vl_to_srgb(&e->to_srgb, vl_lane3(b->rgb[0], b->rgb[1], b->rgb[2], k));
+      rgb = vl_mul(rgb, e->spectrum.scale);
+      vl_set_lane3(b->radiance[0], b->radiance[1], b->radiance[2], k, rgb);
+      b->radiance[3][k] = 0.0f;
+    }
     return;
   }
   for (int c = 0; c < 4; c++)

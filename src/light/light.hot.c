@@ -38,6 +38,7 @@ void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[
     rgb[k] = y > 0.0f ? y : 0.0f;
   }
   if (world->def.color == VL_COLOR_RGB) {
+    vl_store3(rgb, vl_to_srgb(&e->to_srgb, vl_load3(rgb)));
     for (int c = 0; c < 4; c++)
       out[c] = c < 3 ? rgb[c] * e->spectrum.scale : 0.0f;
     return;

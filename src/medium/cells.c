@@ -22,7 +22,7 @@ static bool copy_grid(vlWorld *world, const vlMediumDef *def, const float *from,
 }
 
 static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *from,
-                          vlDenseGrid *to) {
+                          vlSpectrumRole role, vlDenseGrid *to) {
   if (!from)
     return true;
   size_t cells = (size_t)def->nx * def->ny * def->nz;
@@ -30,12 +30,12 @@ static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *f
   if (!values)
     return false;
   const vlRgbTable *table = vl_rgb_table(def->space);
+  const vlSrgbMap to_srgb = vl_srgb_map(def->space, role);
   for (size_t i = 0; i < cells; i++) {
     const float *rgb = from + 3 * i;
     float *v = values + 4 * i, high = vl_max(rgb[0], vl_max(rgb[1], rgb[2]));
     if (world->def.color == VL_COLOR_RGB) {
-      for (int c = 0; c < 3; c++)
-        v[c] = rgb[c];
+      vl_store3(v, vl_to_srgb(&to_srgb, vl_load3(rgb)));
       v[3] = 0;
       continue;
     }
@@ -118,9 +118,9 @@ vlResult vl_medium_cells(vlWorld *world, const vlMediumDef *def, vlWorldMedium *
   if (!copy_grid(world, def, def->density, &m->density) ||
       !copy_grid(world, def, def->emission_scales, &m->emission_scales) ||
       !copy_grid(world, def, def->temperature, &m->temperature) ||
-      !copy_rgb_grid(world, def, def->rgb_a, &m->rgb_a) ||
-      !copy_rgb_grid(world, def, def->rgb_s, &m->rgb_s) ||
-      !copy_rgb_grid(world, def, def->rgb_emission, &m->rgb_emission))
+      !copy_rgb_grid(world, def, def->rgb_a, VL_ROLE_UNBOUNDED, &m->rgb_a) ||
+      !copy_rgb_grid(world, def, def->rgb_s, VL_ROLE_UNBOUNDED, &m->rgb_s) ||
+      !copy_rgb_grid(world, def, def->rgb_emission, VL_ROLE_ILLUMINANT, &m->rgb_emission))
     return vl_fail_memory(error);
   uint32_t cells[3] = {def->nx, def->ny, def->nz};
   for (int i = 0; i < 3; i++)

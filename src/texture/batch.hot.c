@@ -216,13 +216,15 @@ static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float 
 typedef struct Upsampling {
   bool rgb_mode, albedo;
   const vlRgbTable *table;
-  const float *illuminant; /* null: no factor */
+  const float *illuminant;  /* null: no factor */
+  const vlSrgbMap *to_srgb; /* in RGB mode */
 } Upsampling;
 
 static Upsampling upsampling_of(const vlTextureRun *r, const vlTextureNode *node) {
   return (Upsampling){r->rgb || r->world->def.color == VL_COLOR_RGB,
                       node->role == VL_ROLE_ALBEDO, vl_rgb_table(node->space),
-                      node->role == VL_ROLE_ILLUMINANT ? node->spectrum.dense : NULL};
+                      node->role == VL_ROLE_ILLUMINANT ? node->spectrum.dense : NULL,
+                      &node->to_srgb};
 }
 
 void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded,
@@ -251,6 +253,7 @@ static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, ui
                      float *const out[4]) {
   float c[3] = {rgb.x, rgb.y, rgb.z}, lambda[4], value[4];
   if (up->rgb_mode) {
+    vl_store3(c, vl_to_srgb(up->to_srgb, rgb));
     for (int k = 0; k < 4; k++)
       out[k][i] = k < 3 ? (up->albedo && c[k] > 1.0f ? 1.0f : c[k]) : 0.0f;
     return;

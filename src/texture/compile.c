@@ -167,6 +167,8 @@ static bool gives_rgb(const vlTextureNode *node) {
 
 static void image_spectrum(const vlWorld *world, vlTextureNode *node) {
   node->spectrum.scale = 1;
+  if (world->def.color == VL_COLOR_RGB)
+    node->to_srgb = vl_srgb_map(node->space, node->role);
   if (node->role != VL_ROLE_ILLUMINANT || world->def.color == VL_COLOR_RGB)
     return;
   node->spectrum.kind = VL_SPECTRAL_DENSE;

@@ -73,8 +73,9 @@ typedef struct vlTextureNode {
   uint8_t uv_set;
   float tint[4], bias, cutoff; /* cutoff is NaN if there is none */
   vlColorSpace space;
-  uint32_t mapping; /* vlMapping */
-  bool st_given;    /* the map st gives s and t, instead of su, sv, du, dv */
+  vlSrgbMap to_srgb; /* in RGB mode, of nodes that give colours of the space */
+  uint32_t mapping;  /* vlMapping */
+  bool st_given;     /* the map st gives s and t, instead of su, sv, du, dv */
   float su, sv, du, dv;
   float st[6]; /* map from uv to (s, t) */
   float v1[3], v2[3];

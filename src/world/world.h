@@ -223,7 +223,8 @@ typedef struct vlEmitted {
                           lights); spectrum, the illuminant, multiplies it; -1: none */
   int32_t node;        /* 1 + index of the texture node that reads image at uv; 0: none */
   float image_scale;
-  vlColorSpace space;
+  vlColorSpace space; /* of the image */
+  vlSrgbMap to_srgb;  /* in RGB mode, of the image's colours */
   bool two_sided;
   /* Of surfaces whose spread is below 180 degrees, with h half of it: 1 / tan h, the factor
    * 1 / (1 - h / tan h) and sin^2 h. Of all others 0, 1 and 1 (light/spread.h). */

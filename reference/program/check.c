@@ -55,35 +55,45 @@ static bool check_material(const vlMaterialDef *def, vlError *error) {
   return !missing || refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
 }
 
-static bool check_texture(const vlTextureDef *def, vlError *error) {
+/* An octahedral map of the sky is square. Files may name the colours that their numbers mean. */
+static bool check_image(vlContext *context, const char *path, const vlImage *given, bool square, vlSource source,
+                        vlError *error) {
+  vlImage *file = NULL;
+  vlAttribute primaries;
+  if (path && vl_image_read_header(context, path, &file, error) != VL_OK) return false;
+  const vlImage *image = file ? file : given;
+  bool fits = !square || !image || vl_image_width(image) == vl_image_height(image);
+  bool names = file && vl_image_find_attribute(file, "chromaticities", &primaries) == VL_OK;
+  vl_image_destroy(file);
+  if (!fits) return refuse(error, source, "an image of the sky that is not square");
+  bool srgb = !names || fabs(primaries.numbers[0] - 0.64) < 1e-3; /* x of red */
+  return srgb || refuse(error, source, "an image in another colour space than sRGB");
+}
+
+static bool check_texture(vlContext *context, const vlTextureDef *def, vlError *error) {
   if (def->uv_set) return refuse(error, def->source, "a texture over a second uv set");
   if (def->colors) return refuse(error, def->source, "a texture with vertex colours");
   if (def->wrap == VL_WRAP_OCTAHEDRAL) return refuse(error, def->source, "a texture that wraps as an octahedron");
-  return def->kind != VL_TEXTURE_VERTEX_COLOR || refuse_kind(error, def->source, "textures", (uint32_t)def->kind);
+  if (def->kind == VL_TEXTURE_VERTEX_COLOR) return refuse_kind(error, def->source, "textures", (uint32_t)def->kind);
+  return check_image(context, def->path, NULL, false, def->source, error);
 }
 
-/* An image of the sky is square; the octahedral map has one side. */
-static bool is_square(vlContext *context, const vlLightDef *def, vlError *error) {
-  vlImage *image = NULL;
-  if (def->path && vl_image_read_header(context, def->path, &image, error) != VL_OK) return false;
-  const vlImage *map = image ? image : def->image;
-  bool square = !map || vl_image_width(map) == vl_image_height(map);
-  vl_image_destroy(image);
-  return square || refuse(error, def->source, "an image of the sky that is not square");
-}
-
-static bool check_light(vlContext *context, const vlLightDef *def, vlError *error) {
+static bool check_light(vlContext *context, const vlLightDef *def, bool rgb, vlError *error) {
   bool lamp = def->lamp_data || (def->path && (strstr(def->path, ".ies") || strstr(def->path, ".ldt")));
   if (def->kind == VL_LIGHT_GONIOMETRIC && lamp) return refuse(error, def->source, "a lamp file");
-  return def->kind != VL_LIGHT_INFINITE || is_square(context, def, error);
+  if (rgb && def->image && def->space != VL_SPACE_SRGB) return refuse(error, def->source, "this colour space in RGB");
+  return check_image(context, def->path, def->image, def->kind == VL_LIGHT_INFINITE, def->source, error);
 }
 
-static bool check_emission(const vlEmissionDef *def, const vlShapeDef *shape, vlError *error) {
+static bool check_emission(vlContext *context, const vlEmissionDef *def, const vlShapeDef *shape, vlError *error) {
   bool by_power = def->power > 0 && (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index || def->image);
-  return !by_power || refuse(error, def->source, "this emission by power");
+  if (by_power) return refuse(error, def->source, "this emission by power");
+  return check_image(context, def->image, NULL, false, def->source, error);
 }
 
-static bool check_medium(const vlMediumDef *def, vlError *error) {
+static bool check_medium(const vlMediumDef *def, bool rgb, vlError *error) {
+  bool colored = def->kind == VL_MEDIUM_RGB_GRID;
+  if (rgb && colored && def->space != VL_SPACE_SRGB) return refuse(error, def->source, "this colour space in RGB");
   if (def->rgb_absorption) return refuse(error, def->source, "absorption by RGB channel");
   if (def->temperature || def->rgb_emission) return refuse(error, def->source, "this emission of a medium");
   return def->kind <= VL_MEDIUM_CLOUD || refuse_kind(error, def->source, "media", (uint32_t)def->kind);
@@ -120,27 +130,25 @@ static bool check_settings(const vlSceneDefs *defs, vlError *error) {
 
 bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlError *error) {
   const vlSceneDefs *defs = vl_scene_defs(scene);
+  bool rgb = defs->build.color == VL_COLOR_RGB;
   if (!check_settings(defs, error) || !check_camera(camera, defs->camera_source, error)) return false;
   const vlShapeDef *shape;
   for (uint32_t i = 1; (shape = vl_scene_shape(scene, (vlShapeId){i})); i++) {
     const vlEmissionDef *emission = vl_scene_emission(scene, shape->emission);
-    if (!check_shape(scene, shape, error) || (emission && !check_emission(emission, shape, error))) return false;
+    if (!check_shape(scene, shape, error) || (emission && !check_emission(context, emission, shape, error)))
+      return false;
   }
   const vlTextureDef *texture;
-  for (uint32_t i = 1; (texture = vl_scene_texture(scene, (vlTextureId){i})); i++) {
-    if (!check_texture(texture, error)) return false;
-  }
+  for (uint32_t i = 1; (texture = vl_scene_texture(scene, (vlTextureId){i})); i++)
+    if (!check_texture(context, texture, error)) return false;
   const vlMaterialDef *material;
-  for (uint32_t i = 1; (material = vl_scene_material(scene, (vlMaterialId){i})); i++) {
+  for (uint32_t i = 1; (material = vl_scene_material(scene, (vlMaterialId){i})); i++)
     if (!check_material(material, error)) return false;
-  }
   const vlLightDef *lamp;
-  for (uint32_t i = 1; (lamp = vl_scene_light(scene, (vlLightId){i})); i++) {
-    if (!check_light(context, lamp, error)) return false;
-  }
+  for (uint32_t i = 1; (lamp = vl_scene_light(scene, (vlLightId){i})); i++)
+    if (!check_light(context, lamp, rgb, error)) return false;
   const vlMediumDef *medium;
-  for (uint32_t i = 1; (medium = vl_scene_medium(scene, (vlMediumId){i})); i++) {
-    if (defs->render.tracer != VL_TRACER_PATH && !check_medium(medium, error)) return false;
-  }
+  for (uint32_t i = 1; (medium = vl_scene_medium(scene, (vlMediumId){i})); i++)
+    if (defs->render.tracer != VL_TRACER_PATH && !check_medium(medium, rgb, error)) return false;
   return true;
 }

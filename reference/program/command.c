@@ -35,9 +35,7 @@ static bool read_option(const char *name, const char *value, options *o) {
 static bool read_all(int count, char **arguments, options *o) {
   *o = (options){.samples = 64, .max_depth = -1};
   for (int i = 1; i < count; i++) {
-    bool option = arguments[i][0] == '-';
-    if (!option && o->scene) return false;
-    if (!option)
+    if (arguments[i][0] != '-' && !o->scene)
       o->scene = arguments[i];
     else if (i + 1 == count || !read_option(arguments[i], arguments[i + 1], o))
       return false;

@@ -84,8 +84,19 @@ float vl_light_luminance(const vlSpectral *s) {
   return (float)(sum * s->scale);
 }
 
-float vl_light_texel_luminance(vlTexel t, uint32_t channels) {
-  return channels < 3 ? t.c[0] : 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
+/* Of no colour less than a hundredth of its largest component: ACES2065-1 has colours of
+ * luminance 0 and below, which no light has, but which are emitted as the nearest that there
+ * are. Their texels must be chosen, too. */
+float vl_light_texel_luminance(vlTexel t, uint32_t channels, vlColorSpace space) {
+  if (channels < 3)
+    return t.c[0];
+  if (space == VL_SPACE_SRGB)
+    return 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
+  float xyz[9];
+  vl_xyz_from_rgb(space, xyz);
+  float y = xyz[3] * t.c[0] + xyz[4] * t.c[1] + xyz[5] * t.c[2];
+  float least = 0.01f * vl_max(t.c[0], vl_max(t.c[1], t.c[2]));
+  return y < least ? least : y;
 }
 
 /* ---- all lights ------------------------------------------------------------------------- */

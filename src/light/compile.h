@@ -22,7 +22,8 @@ vlResult vl_light_set_frame(const vlLightDef *def, const int order[3], const flo
                             vlWorldLight *light, vlError *error);
 /* Luminance of a constant emitted spectrum. */
 float vl_light_luminance(const vlSpectral *spectrum);
-float vl_light_texel_luminance(vlTexel t, uint32_t channels);
+/* Luminance of a texel of this colour space. */
+float vl_light_texel_luminance(vlTexel t, uint32_t channels, vlColorSpace space);
 
 /* Adds one light per emitting face of an emissive shape (shape_lights.c). compiled: one entry
  * per emission of the scene: its index in world->emitted, which its shapes share; VL_NONE: not

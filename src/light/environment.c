@@ -25,7 +25,7 @@ static vlResult cell_luminances(const vlMipmap *mip, vlEnvironment *env, uint32_
           vlTexel texel = vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP);
           for (int c = 0; c < 3; c++)
             cell->color[c] = texel.c[channels < 3 ? 0 : c];
-          float l = vl_light_texel_luminance(texel, channels);
+          float l = vl_light_texel_luminance(texel, channels, env->space);
           if (!isfinite(l))
             return vl_fail(error, VL_ERROR_SCENE,
                            "pixel (%u, %u) of the image of the sky is not finite", i, j);

@@ -12,6 +12,7 @@
 
 #include "math/octahedral.h"
 #include "math/warp.h"
+#include "velo/spectrum.h"
 
 /* VL_GUIDES is a power of two, so that u * VL_GUIDES is exact; at least VL_ENVIRONMENT_CELLS.
  * Images of more texels than cells have noise where the texels of a cell differ, such as at the
@@ -26,6 +27,7 @@ typedef struct vlEnvironmentCell {
 
 typedef struct vlEnvironment {
   int32_t image;
+  vlColorSpace space;    /* of the image */
   uint32_t size;         /* of the distribution: size x size cells */
   bool cells_are_texels; /* the image has as many texels, so that the cells hold its colours */
   vlEnvironmentCell *cells; /* size rows of size cells */

@@ -133,13 +133,14 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   light->own[0] = (float)(tangent * (aspect > 1 ? aspect : 1));
   light->own[1] = (float)(tangent * (aspect > 1 ? 1 : 1 / aspect));
   const vlStretch stretch = vl_stretch(def->world_from_light);
+  const vlColorSpace space = vl_light_image_space(world, (int32_t)light->image, def->space);
   double sum = 0;
   for (uint32_t y = 0; y < h; y++)
     for (uint32_t x = 0; x < w; x++) {
       double a = light->own[0] * (2 * (x + 0.5) / w - 1),
              b = light->own[1] * (2 * (y + 0.5) / h - 1);
       float value = vl_light_texel_luminance(
-          vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
+          vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels, space);
       if (!isfinite(value))
         return bad_pixel(def, x, y, error);
       sum += value > 0 ? value / image_area(&stretch, a, b) : 0;
@@ -147,8 +148,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   const double flux = sum / ((double)w * h) * 4 * light->own[0] * light->own[1];
   const double factor = scale_of(def, flux);
   e->image = (int32_t)light->image;
-  vl_light_image_color(world, vl_light_image_space(world, e->image, def->space), (float)factor,
-                       e);
+  vl_light_image_color(world, space, (float)factor, e);
   double axis[3];
   image_direction(&stretch, 0, 0, axis);
   double l = vl_norm3(axis);

@@ -19,7 +19,7 @@ static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean
   for (size_t i = 0; previous && i < previous->environments.count; i++) {
     const vlWorldEnvironmentPart *known = &previous->environment_parts.items[i];
     const vlEnvironment *from = &previous->environments.items[i];
-    if (known->image != image)
+    if (known->image != image || from->space != env->space)
       continue;
     if (!vl_part_share(world, known->part))
       return vl_fail_memory(error);
@@ -72,6 +72,7 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
   if (!env)
     return vl_fail_memory(error);
   env->image = e->image;
+  env->space = e->space;
   vlMat4 m = vl_mat4_load(def->world_from_light), inverse;
   if (!vl_mat4_inverse(m, &inverse))
     return vl_fail(error, VL_ERROR_SCENE, "the light's transform is singular");

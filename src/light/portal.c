@@ -41,7 +41,7 @@ static void set_frame(const vlLightDef *def, vlPortal *portal) {
 static float seen(const vlEnvironment *env, const vlMipmap *mip, vlVec3 d) {
   vlVec2 st = vl_environment_square(env, d);
   float y = vl_light_texel_luminance(vl_nearest(mip, 0, st.x, st.y, VL_WRAP_OCTAHEDRAL),
-                                     mip->channels);
+                                     mip->channels, env->space);
   return y > 0.0f ? y : 0.0f;
 }
 

@@ -15,9 +15,10 @@
 #include "velo/shape_kinds.h"
 #include "velo/texture.h"
 
-static float mean_image_luminance(const vlMipmap *mip) {
-  uint32_t last = mip->level_count - 1;
-  return vl_light_texel_luminance(vl_texel(mip, last, 0, 0, VL_WRAP_CLAMP), mip->channels);
+static float mean_image_luminance(const vlWorld *world, const vlEmitted *e) {
+  const vlMipmap *mip = world->images.items[e->image].mipmap;
+  vlTexel mean = vl_texel(mip, mip->level_count - 1, 0, 0, VL_WRAP_CLAMP);
+  return vl_light_texel_luminance(mean, mip->channels, e->space);
 }
 
 /* The numbers of light/spread.h. From 180 degrees on there is no spread. */
@@ -57,8 +58,9 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   for (uint32_t y = 0; y < mip->levels[0].height; y++)
     for (uint32_t x = 0; x < mip->levels[0].width; x++)
-      if (!isfinite(vl_light_texel_luminance(
-              vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels)))
+      if (!isfinite(
+              vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP),
+                                       mip->channels, e->space)))
         return vl_fail(error, VL_ERROR_SCENE,
                        "%s: pixel (%u, %u) is not finite, it cannot be emitted", def->image, x,
                        y);
@@ -87,7 +89,7 @@ static float face_luminance(const vlWorld *world, const vlWorldShape *s, uint32_
     at.u = uv.x;
     at.v = uv.y;
     vlTexel x = vl_texture_rgba(node, world->images.items[e->image].mipmap, at);
-    sum += 0.25f * vl_light_texel_luminance(x, 4);
+    sum += 0.25f * vl_light_texel_luminance(x, 4, e->space);
   }
   return e->image_scale * (isfinite(sum) ? sum : 0);
 }
@@ -174,7 +176,7 @@ static vlResult choose_faces(vlWorld *world, vlWorldShape *shape, const vlEmitte
 static void scale_to_power(const vlWorld *world, float power, float area, vlEmitted *e) {
   float sent = (e->two_sided ? 2 : 1) * area * VL_PI;
   if (e->image >= 0)
-    sent *= mean_image_luminance(world->images.items[e->image].mipmap);
+    sent *= mean_image_luminance(world, e);
   e->spectrum.scale *= sent > 0 ? power / sent : 0;
 }
 
@@ -183,9 +185,7 @@ static float image_factor(const vlWorld *world, const vlWorldShape *shape, uint3
                           const vlEmitted *e) {
   if (e->node && shape->triangles)
     return face_luminance(world, shape, prim, e);
-  return e->image >= 0
-             ? e->image_scale * mean_image_luminance(world->images.items[e->image].mipmap)
-             : 1.0f;
+  return e->image >= 0 ? e->image_scale * mean_image_luminance(world, e) : 1.0f;
 }
 
 /* Sets the light of a face. luminance: of the emission's spectrum. */

@@ -165,6 +165,7 @@ static bool gives_rgb(const vlTextureNode *node) {
          (row->traits & VL_TEXTURE_COLOR_ONLY);
 }
 
+/* What converts the node's colours: by wavelength, or in RGB. */
 static void image_spectrum(const vlWorld *world, vlTextureNode *node) {
   node->spectrum.scale = 1;
   if (world->def.color == VL_COLOR_RGB)

@@ -23,6 +23,7 @@
 #include "scrambles.h"
 #include "shading.h"
 #include "shapes.h"
+#include "spaces.h"
 #include "surfaces.h"
 #include "texels.h"
 #include "textures.h"
@@ -67,6 +68,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_emission),
       cmocka_unit_test(media_of_lamps),
       cmocka_unit_test(colors_of_lights),
+      cmocka_unit_test(colors_of_spaces),
       cmocka_unit_test(laws_of_shapes),
       cmocka_unit_test(laws_of_surfaces),
       cmocka_unit_test(laws_of_instances),

@@ -363,6 +363,21 @@ def what_it_does_not_have_is_refused_by_name():
         result = run(REFERENCE, path, "-o", os.path.join(WORK, "refused.exr"), "--spp", "1")
         assert result.returncode == 3 and words in result.stderr, (result.returncode, result.stderr)
         assert ":7:" in result.stderr or "refused.pbrt" in result.stderr, result.stderr
+    with open(os.path.join(WORK, "wide.pbrt"), "w", encoding="utf-8") as file:
+        file.write('ColorSpace "rec2020"\n' + HEAD + 'WorldBegin LightSource "infinite"\n')
+    image = os.path.join(WORK, "wide.exr")
+    assert run(VELO, "render", os.path.join(WORK, "wide.pbrt"), "-o", image, "--spp", "1", "--quiet").returncode == 0
+    named = '"string filename" "wide.exr"\n'
+    grid = ('ColorSpace "rec2020" MakeNamedMedium "m" "string type" "rgbgrid" "rgb sigma_a" [1 1 1] "rgb sigma_s" [1 1 1] '
+            '"integer nx" 1 "integer ny" 1 "integer nz" 1\n')
+    for text, words in (('LightSource "infinite" ' + named, "an image in another colour space than sRGB"),
+                        ('LightSource "projection" ' + named, "an image in another colour space than sRGB"),
+                        ('Texture "t" "spectrum" "imagemap" ' + named, "an image in another colour space than sRGB"),
+                        ('AreaLightSource "diffuse" %sShape "sphere"\n' % named, "an image in another colour space than sRGB"),
+                        (grid, "this colour space in RGB")):
+        result = run(REFERENCE, scene("refused.pbrt", "WorldBegin\n" + text), "-o", os.path.join(WORK, "refused.exr"), "--spp", "1",
+                     "--color", "rgb")
+        assert result.returncode == 3 and words in result.stderr, (text, result.returncode, result.stderr)
     assert run(REFERENCE, "no.pbrt", "-o", "x.exr").returncode == 4
     assert run(REFERENCE, CORE).returncode == 2
     assert run(REFERENCE, CORE, "-o", "x.exr", "--spp", "0").returncode == 2

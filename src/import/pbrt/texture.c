@@ -180,10 +180,7 @@ static bool finish(vlImport *import, vlPending *pending) {
       dict.row ? (vlTextureKind)dict.kind : VL_TEXTURE_CONSTANT, pending->spectrum);
   def.name = pending->name;
   def.source = pending->source;
-  def.space = def.kind == VL_TEXTURE_IMAGE
-                  ? VL_SPACE_SRGB
-                  : pending->space; /* images have their own colour space or are sRGB */
-  if (!dict.row) {                  /* permissive: a constant replaces it: middle grey, or 1 */
+  if (!dict.row) { /* permissive: a constant replaces it: middle grey, or 1 */
     if (vl_text_is(pending->kind, "ptex")) {
       if (!vl_import_unsupported(
               import, pending->source,

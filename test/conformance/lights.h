@@ -513,7 +513,7 @@ static void check_colors(const vlKindRow *row, const LightVariant *v, const char
 
 /* A portal makes an image of a plain sky, whose colour is that of the sky without it, in
  * wavelengths also beyond the colours of sRGB. */
-static void check_color_through_portal(void) {
+static void check_color_through_portal(vlColorMode mode) {
   static const char *const portals[] = {"", "\"point3 portal\" [-1 1 -1 1 1 -1 1 1 1 -1 1 1]"};
   static char text[TEXT];
   double colors[2][3];
@@ -523,8 +523,7 @@ static void check_color_through_portal(void) {
                   "ColorSpace \"rec2020\" LightSource \"infinite\" "
                   "\"rgb L\" [.1 1 .2] %s\n",
              portals[i]);
-    vlImage *image =
-        image_of_floor_in(VL_COLOR_SPECTRAL, text, VL_TRACER_PATH, 64, 0.1, 0.2, 0.5);
+    vlImage *image = image_of_floor_in(mode, text, VL_TRACER_PATH, 64, 0.1, 0.2, 0.5);
     for (uint32_t c = 0; c < 3; c++) {
       const Mean mean = mean_of_channel(image, c);
       colors[i][c] = mean_of(&mean);
@@ -543,7 +542,8 @@ static void check_color_through_portal(void) {
 static void colors_of_lights(void **state) {
   (void)state;
   for_each_light(FLOOR, check_colors);
-  check_color_through_portal();
+  check_color_through_portal(VL_COLOR_SPECTRAL);
+  check_color_through_portal(VL_COLOR_RGB);
   for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++) {
     static char text[TEXT];
     emitting_text(text, emitting_shapes[0][0], emitting_shapes[0][1], emissions[i]);

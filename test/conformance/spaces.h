@@ -1,8 +1,8 @@
 /* conformance/spaces.h: the law of colour spaces in RGB: what takes colours of a space of their
- * own (images as textures, as emission, as the sky and as projections; grids of media)
- * shows what the constant of the same space does. Colours that sRGB has not lose
- * their negative part in both. The given power or illuminance of an image's light is that of
- * its space's luminance. */
+ * own (images as textures, as emission, as the sky and as projections; grids of media) shows
+ * what the constant of the same space does. Colours that sRGB has not lose their negative part
+ * in both. The given power or illuminance of an image's light is that of its space's
+ * luminance. */
 #ifndef TEST_CONFORMANCE_SPACES_H
 #define TEST_CONFORMANCE_SPACES_H
 

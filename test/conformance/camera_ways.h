@@ -134,6 +134,30 @@ static void check_far_film(const char *family, const char *kind, const vlCamera 
            lost, seen, first);
 }
 
+static void report_ways(const char *family, const char *kind, const Ways *ways) {
+  if (ways->lost)
+    broken(family, kind, "%u of %u directions with a film point have no way back", ways->lost,
+           ways->seen);
+  if (ways->other)
+    broken(family, kind, "%u of %u directions have the film point of another one", ways->other,
+           ways->seen);
+  if (!(ways->worst < 1e-9))
+    broken(family, kind, "a direction comes back %g off", ways->worst);
+}
+
+/* Directions close to where the view ends. */
+static void go_to_end(const vlCamera *camera, Ways *ways) {
+  for (int a = 0; a < AZIMUTHS; a++) {
+    double azimuth = 2 * PI * (a + 0.3) / AZIMUTHS;
+    double end = end_of_view(camera, azimuth);
+    for (int k = 1; k < NEARNESSES; k++) {
+      double d[3];
+      direction_at(end * (1 - pow(10, -k)), azimuth, d);
+      go_and_return(camera, d, ways);
+    }
+  }
+}
+
 static void check_ways(const char *family, const char *kind, const vlCamera *camera) {
   Ways ways = {0};
   double d[3];
@@ -141,26 +165,29 @@ static void check_ways(const char *family, const char *kind, const vlCamera *cam
     even_direction(i, WAYS, 0.2, d);
     go_and_return(camera, d, &ways);
   }
-  for (int a = 0; a < AZIMUTHS; a++) {
-    double azimuth = 2 * PI * (a + 0.3) / AZIMUTHS;
-    double end = end_of_view(camera, azimuth);
-    for (int k = 1; k < NEARNESSES; k++) {
-      direction_at(end * (1 - pow(10, -k)), azimuth, d);
-      go_and_return(camera, d, &ways);
-    }
-  }
+  go_to_end(camera, &ways);
   check_far_film(family, kind, camera);
-  if (ways.lost)
-    broken(family, kind, "%u of %u directions with a film point have no way back", ways.lost,
-           ways.seen);
-  if (ways.other)
-    broken(family, kind, "%u of %u directions have the film point of another one", ways.other,
-           ways.seen);
-  if (!(ways.worst < 1e-9))
-    broken(family, kind, "a direction comes back %g off", ways.worst);
+  report_ways(family, kind, &ways);
 }
 
 /* ---- the end of the view ----------------------------------------------------------------- */
+
+/* An image of the whole sphere shows all directions, also those along axes and diagonals, where
+ * numbers are 0 or equal. */
+static void check_whole_sphere(const char *kind, const vlCamera *camera) {
+  enum { CORNERS = 27, MIDDLE = 13 };
+  Ways ways = {0};
+  for (int i = 0; i < CORNERS; i++) {
+    const double d[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+    if (i != MIDDLE)
+      go_and_return(camera, d, &ways);
+  }
+  if (ways.seen != CORNERS - 1)
+    broken("projections", kind, "%u of %d directions of the sphere are not seen",
+           CORNERS - 1 - ways.seen, CORNERS - 1);
+  if (camera->projection != VL_PROJECTION_CUBE) /* film points of diagonals are on two faces */
+    report_ways("projections", kind, &ways);
+}
 
 /* end: radians from the axis, towards +x; circles: a smaller view can be asked for. */
 static void check_end(const char *kind, const vlCameraDef *def, double end, bool circles) {
@@ -170,6 +197,9 @@ static void check_end(const char *kind, const vlCameraDef *def, double end, bool
   narrow.fx = narrow.fy = 20;
   assert_int_equal(vl_camera_make(&narrow, &camera, NULL, NULL), VL_OK);
   double seen = end_of_view(&camera, 0);
+  Ways ways = {0};
+  go_to_end(&camera, &ways);
+  report_ways("projections", kind, &ways);
   if (!(fabs(seen - end) < 1e-5))
     broken("projections", kind, "its view ends at %.6f radians, not %.6f", seen, end);
   if (!circles)

@@ -268,6 +268,8 @@ static const char *camera_difference(const vlCamera *a, const vlCamera *b) {
                  {"ratio", a->lens.ratio, b->lens.ratio},
                  {"tilt_x", a->lens.tilt[0], b->lens.tilt[0]},
                  {"tilt_y", a->lens.tilt[1], b->lens.tilt[1]},
+                 {"shutter_points", a->shutter_points, b->shutter_points},
+                 {"shutter_value", a->shutter_value[1], b->shutter_value[1]},
                  {"motion", a->moves, b->moves}};
   static double pixels[2 * FILM_POINTS];
   for (size_t i = 0; i < sizeof members / sizeof *members; i++)
@@ -499,6 +501,8 @@ static void laws_of_projections(void **state) {
     check_round_trip("projections", name, &camera, c->optics ? 1e-6 : 1e-8);
     if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
       check_solid_angle(name, &camera, c->solid_angle);
+    if (c->solid_angle > 3.99 * PI)
+      check_whole_sphere(name, &camera);
     const vlProjectionRow *row = vl_projection_row((vlProjection)p);
     check_known(name, &camera, c, row->traits & VL_PROJECTION_RADIAL);
     if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics) {
@@ -598,6 +602,38 @@ static bool put_other_setting(const vlParameter *p, vlCameraDef *def) {
   return true;
 }
 
+/* Shutter curves of the fewest and of the most points, in text and in files of scenes. */
+static void settings_of_arrays(void) {
+  static const uint32_t counts[2] = {2, VL_SHUTTER_POINTS};
+  for (int k = 0; k < 2; k++) {
+    char text[TEXT];
+    char curve[1000] = "";
+    vlCameraDef def = vl_default_camera_def(FILM_WIDTH, FILM_HEIGHT);
+    def.eye[2] = 3;
+    def.shutter_points = counts[k];
+    for (uint32_t i = 0; i < counts[k]; i++) {
+      def.shutter_at[i] = (double)i / counts[k];
+      def.shutter_value[i] = 1.0 + i % 3;
+      size_t used = strlen(curve);
+      snprintf(curve + used, sizeof curve - used, "%.17g %.17g ", def.shutter_at[i],
+               def.shutter_value[i]);
+    }
+    snprintf(text, sizeof text, "Camera \"pinhole\" \"float shutterpoints\" [%s] WorldBegin",
+             curve);
+    vlScene *scene = need_scene(text);
+    const vlCameraDef *read = &vl_scene_defs(scene)->camera;
+    bool same = read->shutter_points == def.shutter_points;
+    for (uint32_t i = 0; i < counts[k] && same; i++)
+      same = same_number(read->shutter_at[i], def.shutter_at[i]) &&
+             same_number(read->shutter_value[i], def.shutter_value[i]);
+    if (!same)
+      broken("cameras", "shutterpoints", "%u points are read as others", counts[k]);
+    vl_scene_destroy(scene);
+    check_scene_file("cameras", "shutter", &def, "pbrt");
+    check_scene_file("cameras", "shutter", &def, "gltf");
+  }
+}
+
 /* Every setting of cameras, in turn, is in files of scenes, or the writer says that it is
  * not. */
 static void settings_of_cameras(void **state) {
@@ -625,6 +661,7 @@ static void settings_of_cameras(void **state) {
         kept[k] += check_scene_file("cameras", p->member, &def, suffixes[k]);
     }
   }
+  settings_of_arrays();
   print_message("settings that files of scenes keep: pbrt %d, glTF %d\n", kept[0], kept[1]);
   assert_true(kept[0] > 20);
   expect_no_failures();

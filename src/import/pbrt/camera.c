@@ -249,7 +249,7 @@ static bool read_curve(vlDict *dict, vlCameraDef *def) {
                              (int)VL_SHUTTER_POINTS);
     def->shutter_points = (uint32_t)(n / 2);
     for (size_t i = 0; i < n; i++)
-      (i % 2 ? def->shutter_value : def->shutter_at)[i / 2] = points->exact[i];
+      (i % 2 ? def->shutter_value : def->shutter_at)[i / 2] = vl_param_number(points, i);
   } else if (curve) {
     const double at[4] = {0.0, curve == 1 ? 0.5 : rise, curve == 1 ? 1.0 : 1.0 - rise, 1.0};
     const double value[4] = {0.0, 1.0, curve == 1 ? 0.0 : 1.0, 0.0};

@@ -33,6 +33,7 @@ bool vl_param_type_find(const char *text, size_t length, vlParamType *type);
 /* The nearest type name for an error message, or null. */
 const char *vl_param_type_nearest(const char *text);
 
+enum { VL_PARAM_EXACT = 16 };
 typedef struct vlParam {
   vlParamType type;
   char *name;
@@ -41,7 +42,7 @@ typedef struct vlParam {
   VL_ARRAY(float) floats;
   VL_ARRAY(int32_t) integers;
   VL_ARRAY(char *) strings;
-  double exact[16]; /* the first 16 numbers in double precision */
+  double exact[VL_PARAM_EXACT]; /* the first numbers in double precision */
   vlColorSpace space;
   bool used;
   uint32_t shared; /* number of lists that have it, beside the first */
@@ -56,6 +57,10 @@ typedef struct vlParamList {
 void vl_param_free(vlContext *context, vlParam *param);
 void vl_param_list_free(vlContext *context, vlParamList *params);
 size_t vl_param_count(const vlParam *param); /* number of values of any type */
+/* One of the numbers of a type that fills floats, as exact as it was kept. */
+static inline double vl_param_number(const vlParam *param, size_t i) {
+  return i < VL_PARAM_EXACT ? param->exact[i] : (double)param->floats.items[i];
+}
 
 /* ---- questions --------------------------------------------------------------------------- */
 

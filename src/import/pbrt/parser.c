@@ -261,7 +261,7 @@ static bool add_number(vlParserFile *file, const vlToken *token, vlParam *param)
     return add_integer(file, param, (int32_t)value);
   }
   size_t n = param->floats.count;
-  if (n < 16)
+  if (n < VL_PARAM_EXACT)
     param->exact[n] = value;
   float *slot = VL_PUSH(file->parser->context, &param->floats);
   if (!slot)
@@ -321,7 +321,7 @@ static bool read_run(vlParserFile *file, vlParam *param) {
       if (!integers) {
         size_t n = param->floats.count++;
         param->floats.items[n] = (float)value;
-        if (n < 16)
+        if (n < VL_PARAM_EXACT)
           param->exact[n] = value;
       } else if (value >= -2147483648.0 && value <= 2147483647.0 &&
                  value == (double)(int32_t)value) {

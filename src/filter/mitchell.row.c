@@ -5,9 +5,10 @@ const vlKindRow vl_filter_row_mitchell = {
     .name = "mitchell",
     .traits = VL_TRAIT_PBRT_NAME,
     .description = "the cubic filter of Mitchell and Netravali",
-    VL_PARAMETERS(RADII(2),
-                  PARAMETER("B", b, "parameter B of Mitchell and Netravali",
-                            VL_DEFAULT(1.0 / 3.0), VL_RANGE(-10, 10)),
-                  PARAMETER("C", c, "parameter C of Mitchell and Netravali",
-                            VL_DEFAULT(1.0 / 3.0), VL_RANGE(-10, 10))),
+    VL_PARAMETERS(
+        RADII(2),
+        PARAMETER("B", b, "parameter B of Mitchell and Netravali", VL_DEFAULT(1.0 / 3.0),
+                  VL_RANGE(-10, 3), .flags = VL_PARAMETER_BELOW_HIGH),
+        PARAMETER("C", c, "parameter C of Mitchell and Netravali", VL_DEFAULT(1.0 / 3.0),
+                  VL_RANGE(-10, 10))),
 };

@@ -158,6 +158,31 @@ static void check_def(const vlKindFamily *family, int kind, const vlParameter *p
   }
 }
 
+/* A float near the end of a range that is within it. */
+static double within(const vlParameter *p, double end) {
+  const float middle = (float)(0.5 * (p->low + p->high));
+  const float single = (float)end;
+  const bool outside = (double)single < p->low || (double)single > p->high;
+  return (double)(outside ? nextafterf(single, middle) : single);
+}
+
+/* The ends of a range, which the row allows unless it says otherwise, are accepted. */
+static void check_ends(const vlKindFamily *family, int kind, const vlParameter *p) {
+  const double ends[2] = {within(p, p->low), within(p, p->high)};
+  AnyDef def;
+  vlError error;
+  for (int i = 0; i < 2 && (p->low != 0 || p->high != 0); i++) {
+    memset(&error, 0, sizeof error);
+    usual_def(family->name, kind, &def);
+    if (must_fail(p, ends[i]) || offer(family->name, &def, &error) != VL_OK ||
+        !put_number(p, (char *)&def, ends[i]))
+      continue;
+    if (offer(family->name, &def, &error) != VL_OK)
+      broken(family->name, family->words[kind], "%s = %g, which its row allows: %s", p->member,
+             ends[i], error.message);
+  }
+}
+
 /* Enough triangles for a tree (few are tried one by one). */
 #define STRIP                                                                                     \
   "Translate 0 .1 0 Shape \"trianglemesh\" \"point3 P\" [-1 0 0 0 0 0 1 0 0 -1 1 0 0 1 0 1 1 0] " \
@@ -212,8 +237,11 @@ static void hostile_defs(void **state) {
     for (uint32_t i = 0; i < family->kind_count; i++)
       for (uint32_t k = 0; k < family->rows[i]->parameter_count; k++) {
         const vlParameter *p = &family->rows[i]->parameters[k];
-        if (!(p->flags & VL_PARAMETER_SHORTHAND))
-          check_def(family, (int)i, p);
+        if (p->flags & VL_PARAMETER_SHORTHAND)
+          continue;
+        check_def(family, (int)i, p);
+        if (strcmp(family->name, "cameras") != 0) /* which need others, too */
+          check_ends(family, (int)i, p);
       }
   }
   const vlKindRow *camera = vl_settings(VL_SETTING_CAMERA);
@@ -252,6 +280,8 @@ static const char *type_in_files(const vlParameter *p) {
     case VL_PARAMETER_BLOCK:
       break;
   }
+  if (p->text && strstr(p->text, "normal"))
+    return "normal";
   return p->text && strstr(p->text, "point") ? "point3" : "float";
 }
 
@@ -325,7 +355,8 @@ static void hostile_files(void **state) {
           continue;
         bool number =
             strcmp(type_in_files(p), "bool") != 0 && strcmp(type_in_files(p), "string") != 0;
-        bool three = strcmp(type_in_files(p), "rgb") == 0 || strstr(type_in_files(p), "3");
+        bool three = strcmp(type_in_files(p), "rgb") == 0 || strstr(type_in_files(p), "3") ||
+                     strcmp(type_in_files(p), "normal") == 0;
         check_file_value(family, row, p,
                          number ? three ? "[nan nan nan]" : "[nan]" : "[\"nan\"]", number);
         check_file_value(family, row, p, number ? three ? "[1e999 0 0]" : "[1e999]" : "[\"\"]",

@@ -8,11 +8,13 @@ static double density(const double p[3], PlainNoise *noise) {
 }
 
 /* The voxels of the file are 1/128 wide, the first, (-256, -256, -256), at (-1, -1, -1). Eight
- * blocks of 128 voxels in each direction meet at the origin, each with a density of its own. */
+ * blocks of 128 voxels in each direction meet at the origin, each with a density of its own;
+ * the first one has eight parts. */
 static double density_of_blocks(const double p[3], PlainNoise *noise) {
   (void)noise;
   const int block = (p[0] > 0) + 2 * (p[1] > 0) + 4 * (p[2] > 0);
-  return 0.25 * (block + 1);
+  const int part = (p[0] > -0.25) + 2 * (p[1] > -0.25) + 4 * (p[2] > -0.25);
+  return 0.25 * (block ? block + 1 : part + 2);
 }
 
 const MediumCase nanovdb_medium = {

@@ -14,9 +14,12 @@ const ShapeCase bilinear_shape = {
              .area = 1.0790366,
              .known = {{{.25, .5, 1}, {0, 0, -1}, .875, .75, 1}},
              .known_count = 1},
-            {.parameters = "\"point3 P\" [-.5 -.5 .25 .5 -.5 -.25 -.5 .5 -.25 .5 .5 .25] "
-                           "\"point2 uv\" [0 .1 .7 0 .2 .9 .9 .8]",
-             .area = 1.0790366},
+            /* z = 2.4 x y, which many lines meet twice */
+            {
+                .parameters = "\"point3 P\" [-.5 -.5 .6 .5 -.5 -.6 -.5 .5 -.6 .5 .5 .6] "
+                              "\"point2 uv\" [0 .1 .7 0 .2 .9 .9 .8]",
+                .area = 1.3832461,
+            },
         },
     .parameters =
         {

@@ -92,10 +92,12 @@ static bool write_lamp(const char *name) {
   return write_bytes(name, file, sizeof file - 1);
 }
 
+/* Its tables are not square. */
 static bool write_measured(const char *name, double alpha) {
   char path[100];
   mfSurface metal = mf_surface(alpha, alpha);
   metal.nodes = metal.samples = 16;
+  metal.rows = 11;
   mfFile file = mf_measure(&metal);
   path_of(path, name);
   bool done = mf_write(path, &file);
@@ -123,7 +125,9 @@ static bool write_nanovdb(const char *name, float last) {
 
 /* A file of eight blocks of 128 voxels in each direction, of the densities 1 to 8: the number
  * grows along x, then y, then z. They are tiles of the upper node, whose table has x first; it
- * ends at the origin, so that all coordinates of its voxels are negative. */
+ * ends at the origin, so that all coordinates of its voxels are negative. The first block is a
+ * lower node, of tiles of eight voxels: by the same order eight parts of the densities 2 to 9,
+ * which meet three quarters through it. */
 static bool write_blocks(const char *name) {
   unsigned char *grid = make_grid();
   unsigned char *upper = grid + UPPER_AT;
@@ -133,10 +137,20 @@ static bool write_blocks(const char *name) {
   put_f(grid + ROOT_AT + ROOT + TILE + 20, 1);
   for (size_t i = 0; i < 2; i++)
     put_u64(upper + UPPER_TABLE + 8 * (i << 10), 0);
-  for (uint32_t i = 0; i < 8; i++) {
+  for (uint32_t i = 1; i < 8; i++) {
     const size_t at = (size_t)(30 + (i & 1)) << 10 | (30 + (i >> 1 & 1)) << 5 | (30 + (i >> 2));
     put_u64(upper + UPPER_TABLE + 8 * at, 0);
     put_f(upper + UPPER_TABLE + 8 * at, (float)(i + 1));
+  }
+  const uint32_t first = 30 << 10 | 30 << 5 | 30;
+  set_bit(upper + 32 + 4096, first);
+  put_u64(upper + UPPER_TABLE + 8 * (size_t)first, LOWER_AT - UPPER_AT);
+  unsigned char *lower = grid + LOWER_AT;
+  memset(lower + 32 + 512, 0, 512); /* none of its tiles is a leaf */
+  for (uint32_t n = 0; n < 4096; n++) {
+    const uint32_t part = (n >> 8 >= 12) + 2 * ((n >> 4 & 15) >= 12) + 4 * ((n & 15) >= 12);
+    put_u64(lower + LOWER_TABLE + 8 * (size_t)n, 0);
+    put_f(lower + LOWER_TABLE + 8 * (size_t)n, (float)(part + 2));
   }
   for (size_t i = 0; i < 3; i++) {
     put_d(grid + 296 + 88 + 8 * (4 * i), 1.0 / 128); /* the map, its inverse */

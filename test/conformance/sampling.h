@@ -6,6 +6,7 @@
 
 #include "conformance.h"
 #include "filter/filter.case.h"
+#include "filter/filter.h"
 #include "sampler/sampler.case.h"
 #include "unit.h"
 #include "velo/filter_kinds.h"
@@ -202,14 +203,20 @@ static void ask_purposes(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   enum { ASKED = 3 };
   static float u[ASKED][VL_OWN_BATCH];
   static float v[ASKED][VL_OWN_BATCH];
+  static float alone[ASKED][VL_OWN_BATCH];
   Purposes *p = user;
-  for (uint32_t k = 0; k < ASKED; k++)
+  for (uint32_t k = 0; k < ASKED; k++) {
     vl_trace_numbers(trace, k, u[k], v[k]);
+    vl_trace_numbers(trace, k, alone[k], NULL);
+  }
   for (int k = 0; k + 1 < ASKED; k++)
     for (uint32_t i = 0; i < paths->count; i++) {
+      const float other[3] = {u[k + 1][i], v[k + 1][i], alone[k + 1][i]};
+      bool equal = u[ASKED - 1][i] == alone[0][i] || alone[ASKED - 1][i] == u[0][i];
+      for (int j = 0; j < 3; j++)
+        equal |= u[k][i] == other[j] || v[k][i] == other[j] || alone[k][i] == other[j];
       p->pairs++;
-      p->equal += u[k][i] == u[k + 1][i] || u[k][i] == v[k + 1][i] || v[k][i] == u[k + 1][i] ||
-                  v[k][i] == v[k + 1][i];
+      p->equal += equal;
     }
 }
 
@@ -548,12 +555,46 @@ static void check_radii(const vlKindRow *row, vlPixelFilterKind kind) {
   }
 }
 
+/* The curve by which light paths weigh pixels, in batches and one at a time, is the formula. */
+static void check_curves(const vlPixelFilter *filter, const char *name) {
+  enum { STEPS = 4000, POINTS = 208 };
+  static vlFilterTable table;
+  assert_int_equal(vl_filter_compile(context, filter, &table), VL_OK);
+  for (int axis = 0; axis < 2; axis++) {
+    const double radius = (double)(axis ? filter->radius_y : filter->radius_x);
+    FilterShape *shape = filter_shapes[filter->kind];
+    float at[POINTS];
+    float together[POINTS];
+    double whole = 0;
+    double worst = 0;
+    uint32_t other = 0;
+    for (int i = 0; i < STEPS; i++)
+      whole += shape(filter, radius * (i + 0.5) / STEPS, radius) * 2 * radius / STEPS;
+    for (int i = 0; i < POINTS; i++)
+      at[i] = (float)(radius * (2 * (i + 0.37) / POINTS - 1));
+    vl_filter_kernels(vl_isa_best())->curve(&table.curve[axis], POINTS, at, 0, together);
+    for (int i = 0; i < POINTS; i++) {
+      const float found = vl_filter_curve_at(&table.curve[axis], at[i]);
+      other += found != together[i];
+      worst =
+          fmax(worst, fabs((double)found - shape(filter, fabs((double)at[i]), radius) / whole));
+    }
+    if (other || !(worst < 2e-5))
+      broken("filters", name, "its curve is off by %.6f, %u values are others in a batch",
+             worst, other);
+  }
+  vl_filter_free(context, &table);
+}
+
 static void laws_of_filters(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("filters");
   for (uint32_t k = 0; k < family->kind_count; k++) {
     check_sign(family->rows[k], (vlPixelFilterKind)k);
     check_radii(family->rows[k], (vlPixelFilterKind)k);
+    vlPixelFilter usual = vl_default_pixel_filter((vlPixelFilterKind)k);
+    usual.radius_y = 0.7f * usual.radius_x;
+    check_curves(&usual, family->rows[k]->name);
     for (int share = 0; share < 2; share++) {
       vlPixelFilter filter = vl_default_pixel_filter((vlPixelFilterKind)k);
       filter.radius_y = 0.75f * filter.radius_x;

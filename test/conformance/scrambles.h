@@ -1,8 +1,8 @@
-/* conformance/scrambles.h: a law of samplers: numbers that have an interval each stand in it by
- * chance of their own. The mean of n such numbers has the variance 1 / (12 n^3); it has n times
- * that if all stand in the same place of their intervals, as with digits that are scrambled
- * alike in all branches (Owen 1997, "Scrambled net variance for integrals of smooth
- * functions"). */
+/* conformance/scrambles.h: laws of samplers: a sample's numbers do not depend on the others of
+ * its batch; numbers that have an interval each stand in it by chance of their own. The mean of
+ * n such numbers has the variance 1 / (12 n^3); it has n times that if all stand in the same
+ * place of their intervals, as with digits that are scrambled alike in all branches (Owen 1997,
+ * "Scrambled net variance for integrals of smooth functions"). */
 #ifndef TEST_CONFORMANCE_SCRAMBLES_H
 #define TEST_CONFORMANCE_SCRAMBLES_H
 
@@ -10,6 +10,59 @@
 #include "sampler/sampler.h"
 #include "sampling.h"
 #include "unit.h"
+
+/* ---- lanes ------------------------------------------------------------------------------- */
+
+enum { LANES = 64, LANE_PIXELS = 7 };
+
+typedef struct LaneNumbers {
+  float alone[LANES], u[LANES], v[LANES];
+} LaneNumbers;
+
+/* Numbers of LANES samples, the first of them in the lane `from`. Only the first one is past
+ * the end of the sequence of `count` samples. */
+static void numbers_of_lanes(vlSamplerKind kind, uint32_t count, uint32_t from,
+                             LaneNumbers *numbers) {
+  int32_t px[LANES];
+  int32_t py[LANES];
+  uint32_t index[LANES];
+  vlSampler s;
+  vl_sampler_init(&s, kind, 5, 256, 256, count);
+  for (uint32_t i = 0; i < LANES; i++) {
+    const uint32_t lane = (from + i) % LANES;
+    px[lane] = (int32_t)(i % LANE_PIXELS);
+    py[lane] = (int32_t)(i / LANE_PIXELS);
+    index[lane] = i == 0 ? count + 1 : i % count;
+  }
+  const vlSamplerKernels *kernels = vl_sampler_kernels(vl_isa_best());
+  kernels->get_1d(&s, LANES, px, py, index, 5, numbers->alone);
+  kernels->get_2d(&s, LANES, px, py, index, 8, numbers->u, numbers->v);
+}
+
+static void lanes_of_samplers(void **state) {
+  (void)state;
+  enum { COUNT = 12 };
+  static LaneNumbers first;
+  static LaneNumbers turned;
+  const vlKindFamily *family = vl_kind_family_find("samplers");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    uint32_t other = 0;
+    numbers_of_lanes((vlSamplerKind)k, COUNT, 0, &first);
+    for (uint32_t from = 1; from < LANES; from++) {
+      numbers_of_lanes((vlSamplerKind)k, COUNT, from, &turned);
+      for (uint32_t i = 0; i < LANES; i++) {
+        const uint32_t lane = (from + i) % LANES;
+        other += first.alone[i] != turned.alone[lane] || first.u[i] != turned.u[lane] ||
+                 first.v[i] != turned.v[lane];
+      }
+    }
+    if (other)
+      broken("samplers", family->rows[k]->name, "%u numbers are others in another lane", other);
+  }
+  expect_no_failures();
+}
+
+/* ---- places in intervals ----------------------------------------------------------------- */
 
 /* Adds the mean of the numbers of one dimension in one pixel, with a seed of its own. False:
  * not each interval has one. */

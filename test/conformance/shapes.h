@@ -1,7 +1,7 @@
 /* conformance/shapes.h: the laws of shapes: random lines cross a surface as often as its area
  * says (Cauchy and Crofton: the mean number of crossings of a line through a sphere of radius R
- * is area / (2 pi R^2)); normals are those of the points that rays find; known hits; the laws
- * of light for shapes that emit. */
+ * is area / (2 pi R^2)); nothing lies before the nearest hit; normals are those of the points
+ * that rays find; known hits; the laws of light for shapes that emit. */
 #ifndef TEST_CONFORMANCE_SHAPES_H
 #define TEST_CONFORMANCE_SHAPES_H
 
@@ -12,7 +12,7 @@
 
 /* ---- asking ------------------------------------------------------------------------------ */
 
-enum { MAX_CROSSINGS = 8, LINE_BATCHES = 192, NORMAL_BATCHES = 24 };
+enum { MAX_CROSSINGS = 8, LINE_BATCHES = 192, NORMAL_BATCHES = 24, NEAREST_BATCHES = 8 };
 
 typedef struct ShapeLaws {
   const char *kind;
@@ -21,7 +21,7 @@ typedef struct ShapeLaws {
   vlTraceRays *rays;
   vlTraceHits *hits;
   Mean crossings;
-  uint32_t compared, leaning, backwards;
+  uint32_t compared, leaning, backwards, before;
 } ShapeLaws;
 
 /* A point of the unit disk, evenly for each batch. */
@@ -56,6 +56,19 @@ static void even_line(uint32_t i, uint32_t batch, double reach, double origin[3]
   even_disk(i, 0.618034 * batch, at);
   for (int k = 0; k < 3; k++)
     origin[k] = reach * (at[0] * a[k] + at[1] * b[k] - 2 * d[k]);
+}
+
+/* Nothing is hit before the nearest hit: the rays end just before their hits. */
+static void look_before_hits(ShapeLaws *s, vlTrace *trace) {
+  static float end[VL_OWN_BATCH];
+  memcpy(end, s->hits->t, sizeof end);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    s->rays->t_max[i] = end[i] - 1e-4f;
+  vl_world_trace(trace, s->rays, s->hits);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    s->before += isfinite(end[i]) && isfinite(s->hits->t[i]);
+    s->rays->t_max[i] = INFINITY;
+  }
 }
 
 static void count_crossings(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
@@ -170,6 +183,10 @@ static void ask_shape(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   count_crossings(s, trace, probe->batch);
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
     s->rays->t_min[i] = 0;
+  if (probe->batch < NEAREST_BATCHES) {
+    vl_world_trace(trace, s->rays, s->hits);
+    look_before_hits(s, trace);
+  }
   if (!s->variant->faces_rays && probe->batch < NORMAL_BATCHES)
     compare_normals(s, trace, probe->batch);
   if (probe->batch == 0)
@@ -195,6 +212,9 @@ static void check_shape(const vlKindRow *row, const char *directive, const Shape
            v->parameters, s.reach);
   check_mean("shapes", row->name, what, &area, v->area,
              (Sight){0.002 * v->area, 0.05 * v->area});
+  if (s.before > 0)
+    broken("shapes", row->name, "%s: %u rays have a hit before their nearest one",
+           v->parameters, s.before);
   if (s.backwards > 0)
     broken("shapes", row->name, "%s: %u normals look away from the ray", v->parameters,
            s.backwards);

@@ -87,6 +87,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(samplers_of_any_count),
       cmocka_unit_test(samplers_of_later_sequences),
       cmocka_unit_test(samplers_of_neighbours),
+      cmocka_unit_test(lanes_of_samplers),
       cmocka_unit_test(scrambles_of_samplers),
       cmocka_unit_test(laws_of_filters),
       cmocka_unit_test(filters_of_light_paths),

@@ -345,8 +345,64 @@ static void check_stand_in(const vlKindRow *row, const TextureVariant *variant) 
   vl_scene_destroy(scene);
 }
 
+/* Textures of a kind, each the input of the next by this parameter; the result of the build of
+ * a world that uses them. */
+static vlResult nest_textures(vlTextureKind kind, const vlParameter *p, bool spectrum,
+                              int deep) {
+  vlScene *scene = need_scene(HEAD "WorldBegin " LIGHTS);
+  vlTextureId inner = {0};
+  for (int i = 0; i < deep; i++) {
+    vlTextureDef def = vl_default_texture_def(kind, spectrum);
+    const bool colors = p->type == VL_PARAMETER_EITHER_INPUT && spectrum;
+    char *at = (char *)&def + (colors ? p->second : p->offset);
+    if (colors)
+      ((vlSpectrumInput *)(void *)at)->texture = inner;
+    else
+      ((vlFloatInput *)(void *)at)->texture = inner;
+    inner = vl_scene_add_texture(scene, &def);
+  }
+  vlMaterialDef material =
+      vl_default_material_def(spectrum ? VL_MATERIAL_DIFFUSE : VL_MATERIAL_CONDUCTOR);
+  if (spectrum)
+    material.reflectance.texture = inner;
+  else
+    material.u_roughness.texture = inner;
+  add_square(scene, &material);
+  vlWorld *world = NULL;
+  vlError error = {0};
+  vlResult result = vl_world_build(scene, NULL, &world, &error);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+  return result;
+}
+
+/* Textures can be inputs of others by each of a kind's parameters, but not without end. */
+static void check_nesting(const vlKindRow *row, vlTextureKind kind) {
+  enum { FEW_LEVELS = 3, TOO_MANY = 200 };
+  for (uint32_t i = 0; i < row->parameter_count; i++)
+    for (int spectrum = 0; spectrum < 2; spectrum++) {
+      const vlParameter *p = &row->parameters[i];
+      const bool either = p->type == VL_PARAMETER_EITHER_INPUT;
+      const bool no_colors = row->traits & VL_TEXTURE_FLOAT_ONLY;
+      const bool no_numbers = row->traits & VL_TEXTURE_COLOR_ONLY;
+      /* chains of numbers are chains of float textures */
+      if (!(either || (p->type == VL_PARAMETER_FLOAT_INPUT && !spectrum)) ||
+          (spectrum ? no_colors : no_numbers))
+        continue;
+      if (nest_textures(kind, p, spectrum, FEW_LEVELS) != VL_OK)
+        broken("textures", row->name, "\"%s\": %s of %d levels are refused", p->name,
+               spectrum ? "colours" : "numbers", FEW_LEVELS);
+      if (nest_textures(kind, p, spectrum, TOO_MANY) != VL_ERROR_SCENE)
+        broken("textures", row->name, "\"%s\": %s of %d levels are not refused", p->name,
+               spectrum ? "colours" : "numbers", TOO_MANY);
+    }
+}
+
 static void laws_of_textures(void **state) {
   (void)state;
+  const vlKindFamily *family = vl_kind_family_find("textures");
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    check_nesting(family->rows[k], (vlTextureKind)k);
   each_texture(check_values);
   each_texture(check_stand_in);
 }

@@ -44,8 +44,22 @@ static void rendered(vlContext *context, const vlWorld *world, const vlCamera *c
   vl_film_destroy(made);
 }
 
-/* What a path must fulfil whatever the scene. */
-static void check_path(const vlPath *p) {
+/* What a path carries after a vertex: what it brought, times the step's factor, more where
+ * Russian roulette could have ended it. Glass with dispersion leaves one wavelength, which then
+ * stands for all four. */
+static void check_throughput(const vlPathVertex *v, const vlPathVertex *next) {
+  const bool one_left = v->throughput[1] > 0 && next->throughput[1] == 0;
+  for (int k = 0; k < 4 && !one_left; k++) {
+    const double carried =
+        (double)v->throughput[k] * (double)v->factor[k] / (double)v->survival;
+    if (!(fabs((double)next->throughput[k] - carried) <= 1e-5 * carried))
+      fail_msg("bounce %u, %s: %g is carried on, not %g", v->bounce, v->bsdf ? v->bsdf : "none",
+               (double)next->throughput[k], carried);
+  }
+}
+
+/* What a path must fulfil whatever the scene. clear: nothing weakens light between surfaces. */
+static void check_path(const vlPath *p, bool clear) {
   float sum[4] = {0, 0, 0, 0};
   double rgb[3] = {0, 0, 0}, size = 0;
   for (uint32_t i = 0; i < p->contribution_count; i++) {
@@ -79,6 +93,8 @@ static void check_path(const vlPath *p) {
     assert_memory_equal(v->direction, next->arrival, sizeof v->direction);
     assert_int_equal(next->bounce, v->bounce + 1);
     assert_true(v->pdf > 0);
+    if (clear)
+      check_throughput(v, next);
   }
 }
 
@@ -158,7 +174,7 @@ static void check_sums(bool shared) {
           if (own)
             assert_int_equal(p->sample, next++);
           assert_true((own || shared) && p->sample + 1 == next && p->filter_weight > 0);
-          check_path(p);
+          check_path(p, cases[k].tracer == VL_TRACER_PATH);
           occurs |= occurring(p);
         }
         assert_int_equal(next, COUNT);

@@ -20,6 +20,7 @@ typedef struct mfSurface {
   uint32_t phis;  /* azimuths of the full circle without the repeated last one; 1: isotropic */
   uint32_t parts; /* 2, 4: only a half or a quarter of the circle is stored */
   uint32_t thetas, nodes, samples, lambdas;
+  uint32_t rows; /* of all tables; 0: as many as columns */
   double theta_max;
   bool plain;  /* spectra hold f cos directly */
   double turn; /* of the axis of alpha_x from x, radians */
@@ -123,9 +124,9 @@ static inline double mf_solve(double a, double b, double part) {
   }
   return 0.5 * (low + high);
 }
-/* Integrals of the rows of a bilinear function on n x n nodes. */
-static inline void mf_rows(const double *f, uint32_t n, double *rows) {
-  for (uint32_t j = 0; j < n; j++) {
+/* Integrals of the rows of a bilinear function on n x height nodes. */
+static inline void mf_rows(const double *f, uint32_t n, uint32_t height, double *rows) {
+  for (uint32_t j = 0; j < height; j++) {
     rows[j] = 0;
     for (uint32_t i = 0; i + 1 < n; i++)
       rows[j] += 0.5 * (f[j * n + i] + f[j * n + i + 1]);
@@ -133,16 +134,16 @@ static inline void mf_rows(const double *f, uint32_t n, double *rows) {
 }
 /* Samples that function as a density: (u, v) to (x, y); v selects the row, u the position in
  * it. */
-static inline void mf_sample(const double *f, const double *rows, uint32_t n, double u,
-                             double v, double *x, double *y) {
+static inline void mf_sample(const double *f, const double *rows, uint32_t n, uint32_t height,
+                             double u, double v, double *x, double *y) {
   double all = 0, sum = 0;
-  for (uint32_t j = 0; j + 1 < n; j++)
+  for (uint32_t j = 0; j + 1 < height; j++)
     all += 0.5 * (rows[j] + rows[j + 1]);
   uint32_t j = 0;
-  for (; j + 2 < n && sum + 0.5 * (rows[j] + rows[j + 1]) < v * all; j++)
+  for (; j + 2 < height && sum + 0.5 * (rows[j] + rows[j + 1]) < v * all; j++)
     sum += 0.5 * (rows[j] + rows[j + 1]);
   double t = mf_solve(rows[j], rows[j + 1], (v * all - sum) / (0.5 * (rows[j] + rows[j + 1])));
-  *y = (j + t) / (n - 1);
+  *y = (j + t) / (height - 1);
   const double *a = f + (size_t)j * n, *b = a + n;
   all = mf_between(rows[j], rows[j + 1], t);
   sum = 0;
@@ -194,27 +195,28 @@ static inline mfField mf_floats(const char *name, uint32_t rank, uint64_t a, uin
 /* The whole file; the caller frees its bytes. */
 static inline mfFile mf_measure(const mfSurface *s) {
   uint32_t n = s->nodes, q = s->samples, phis = s->phis == 1 ? 1 : s->phis / s->parts + 1;
+  uint32_t n_rows = s->rows ? s->rows : n, q_rows = s->rows ? s->rows : q;
   mfField phi = mf_floats("phi_i", 1, phis, 0, 0, 0, 0),
           theta = mf_floats("theta_i", 1, s->thetas, 0, 0, 0, 0);
-  mfField ndf = mf_floats("ndf", 2, n, n, 0, 0, 0),
-          sigma = mf_floats("sigma", 2, n, n, 0, 0, 0);
-  mfField vndf = mf_floats("vndf", 4, phis, s->thetas, n, n, 0);
-  mfField luminance = mf_floats("luminance", 4, phis, s->thetas, q, q, 0);
-  mfField spectra = mf_floats("spectra", 5, phis, s->thetas, s->lambdas, q, q);
+  mfField ndf = mf_floats("ndf", 2, n_rows, n, 0, 0, 0),
+          sigma = mf_floats("sigma", 2, n_rows, n, 0, 0, 0);
+  mfField vndf = mf_floats("vndf", 4, phis, s->thetas, n_rows, n, 0);
+  mfField luminance = mf_floats("luminance", 4, phis, s->thetas, q_rows, q, 0);
+  mfField spectra = mf_floats("spectra", 5, phis, s->thetas, s->lambdas, q_rows, q);
   mfField lambda = mf_floats("wavelengths", 1, s->lambdas, 0, 0, 0, 0);
   unsigned char scaled = !s->plain;
   char text[] = "metal of GGX microfacets";
   mfField jacobian = {"jacobian", 1, 1, {1}, &scaled, 1},
           description = {"description", 1, 1, {24}, text, 24};
-  double *density = calloc((size_t)n * (n + 1), sizeof *density),
-         *rows = density + (size_t)n * n;
+  double *density = calloc((size_t)n_rows * (n + 1), sizeof *density),
+         *rows = density + (size_t)n * n_rows;
   float *nm = lambda.values;
   for (uint32_t k = 0; k < s->lambdas; k++)
     nm[k] = 360.0f + (float)k * 470.0f / (float)(s->lambdas - 1);
-  for (uint32_t j = 0; j < n; j++)
+  for (uint32_t j = 0; j < n_rows; j++)
     for (uint32_t i = 0; i < n; i++) {
       double m[3];
-      mf_unwarp((double)i / (n - 1), (double)j / (n - 1), m);
+      mf_unwarp((double)i / (n - 1), (double)j / (n_rows - 1), m);
       ((float *)ndf.values)[j * n + i] = (float)mf_ndf(s, m);
       ((float *)sigma.values)[j * n + i] = (float)mf_sigma(s, m);
     }
@@ -227,20 +229,21 @@ static inline mfFile mf_measure(const mfSurface *s) {
       mf_direction(up, around, o);
       size_t slice = (size_t)a * s->thetas + b;
       /* azimuths of an isotropic surface's normals are relative to that of o */
-      for (uint32_t j = 0; j < n; j++)
+      for (uint32_t j = 0; j < n_rows; j++)
         for (uint32_t i = 0; i < n; i++) {
           double x = (double)i / (n - 1), m[3];
-          mf_unwarp(x, (double)j / (n - 1), m);
+          mf_unwarp(x, (double)j / (n_rows - 1), m);
           double oh = o[0] * m[0] + o[1] * m[1] + o[2] * m[2];
           double visible = mf_ndf(s, m) * fmax(0, oh) / mf_sigma(s, o);
           density[j * n + i] = visible * 2 * MF_PI * MF_PI * x * sin(x * x * MF_PI / 2);
-          ((float *)vndf.values)[slice * n * n + j * n + i] = (float)density[j * n + i];
+          ((float *)vndf.values)[(slice * n_rows + j) * n + i] = (float)density[j * n + i];
         }
-      mf_rows(density, n, rows);
-      for (uint32_t j = 0; j < q; j++)
+      mf_rows(density, n, n_rows, rows);
+      for (uint32_t j = 0; j < q_rows; j++)
         for (uint32_t i = 0; i < q; i++) {
           double x, y, m[3], w[3], sum = 0;
-          mf_sample(density, rows, n, (double)i / (q - 1), (double)j / (q - 1), &x, &y);
+          mf_sample(density, rows, n, n_rows, (double)i / (q - 1), (double)j / (q_rows - 1), &x,
+                    &y);
           mf_unwarp(x, y, m);
           double oh = o[0] * m[0] + o[1] * m[1] + o[2] * m[2];
           for (int d = 0; d < 3; d++)
@@ -249,11 +252,11 @@ static inline mfFile mf_measure(const mfSurface *s) {
             double share = mf_share(s, o, w, oh, (double)nm[k]);
             if (s->plain)
               share *= mf_ndf(s, m) / (4 * mf_sigma(s, o));
-            ((float *)spectra.values)[((slice * s->lambdas + k) * q + j) * q + i] =
+            ((float *)spectra.values)[((slice * s->lambdas + k) * q_rows + j) * q + i] =
                 (float)share;
             sum += mf_share(s, o, w, oh, (double)nm[k]);
           }
-          ((float *)luminance.values)[(slice * q + j) * q + i] = (float)(sum / s->lambdas);
+          ((float *)luminance.values)[(slice * q_rows + j) * q + i] = (float)(sum / s->lambdas);
         }
     }
   free(density);

@@ -1266,7 +1266,7 @@ MISTAKES = [
      "  def.space = import->state.space;\n", ""),
     ("what stands in for two colours is their sum", "textures:checkerboard textures:dots textures:mix textures:directionmix",
      r"textures checkerboard:.*stands in", "src/export/values.c",
-     "rgb[i] = 0.5f * (a[i] + b[i]);", "rgb[i] = a[i] + b[i];"),
+     "rgb[i] = (1 - share) * a[i] + share * b[i];", "rgb[i] = a[i] + b[i];"),
     ("gamma curves are read as sRGB", "textures:imagemap",
      r"textures imagemap:.*gamma 3", "src/import/pbrt/texture.c",
      "    def->encoding = VL_ENCODING_GAMMA;", "    def->encoding = VL_ENCODING_SRGB;"),

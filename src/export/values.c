@@ -5,6 +5,7 @@
 #include "color/color.h"
 #include "export/image.h"
 #include "image/image.h"
+#include "schema/schema.h"
 #include "velo/material.h"
 
 static void to_rgb(const vlSpectrum *s, vlSpectrumRole role, float rgb[3]) {
@@ -43,16 +44,28 @@ static float plain_number(const vlTextureDef *t, const vlFloatInput *input) {
              : t->bias + t->scale * t->tint[t->channel < 0 ? 0 : t->channel];
 }
 
-/* The approximate mean of a number. depth limits the nesting of textures. */
+static float mean_number(const vlExport *x, const vlFloatInput *input, int depth);
+
+/* The mean share of the second input of a texture that has two. */
+static float second_share(const vlExport *x, const vlTextureDef *t, int depth) {
+  return t->kind == VL_TEXTURE_MIX ? mean_number(x, &t->amount, depth + 1) : 0.5f;
+}
+
+/* The approximate mean of a number; of noise 1/2. depth limits the nesting of textures. */
 static float mean_number(const vlExport *x, const vlFloatInput *input, int depth) {
   const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
   if (depth > 8)
     return input->value;
   if (!is_computed(t))
     return plain_number(t, input);
+  if (vl_kind_row(&vl_texture_family, (int)t->kind)->traits & VL_TEXTURE_FLOAT_ONLY)
+    return 0.5f;
   const float a = mean_number(x, &t->float_a, depth + 1);
-  return t->kind == VL_TEXTURE_SCALE ? a * mean_number(x, &t->amount, depth + 1)
-                                     : 0.5f * (a + mean_number(x, &t->float_b, depth + 1));
+  if (t->kind == VL_TEXTURE_SCALE)
+    return a * mean_number(x, &t->amount, depth + 1);
+  const float b = mean_number(x, &t->float_b, depth + 1);
+  const float share = second_share(x, t, depth);
+  return (1 - share) * a + share * b;
 }
 
 /* The approximate mean of a texture that is not an image. depth limits the nesting of
@@ -74,8 +87,9 @@ static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth,
   } else {
     mean_rgb(x, &t->spectrum_a, depth + 1, a);
     mean_rgb(x, &t->spectrum_b, depth + 1, b);
+    const float share = second_share(x, t, depth);
     for (int i = 0; i < 3; i++)
-      rgb[i] = 0.5f * (a[i] + b[i]);
+      rgb[i] = (1 - share) * a[i] + share * b[i];
   }
 }
 
@@ -97,11 +111,9 @@ bool vl_export_is_on(const vlFloatInput *input) {
 }
 
 float vl_export_number(vlExport *x, const vlFloatInput *input) {
-  const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
-  if (!is_computed(t))
-    return plain_number(t, input);
-  vl_export_lose(x, "computed texture (checkerboard, mix, noise, ...): its mean stands in");
-  return 0.5f;
+  if (is_computed(vl_scene_texture(x->scene, input->texture)))
+    vl_export_lose(x, "computed texture (checkerboard, mix, noise, ...): its mean stands in");
+  return mean_number(x, input, 0);
 }
 
 float vl_export_mean_square(vlExport *x, const vlFloatInput *input) {

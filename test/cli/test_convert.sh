@@ -263,6 +263,28 @@ END
   check "computed_${roughness}_no_mean" test -z "$(grep 'its mean stands in' <<<"$out$err")"
   check "computed_${roughness}_kept" grep -q '"spectrum" "checkerboard"' computed2.pbrt
 done
+# What stands in for computed numbers is their mean.
+cat >numbers.pbrt <<'END'
+LookAt 0 1 6  0 1 0  0 1 0
+Camera "perspective"
+WorldBegin
+LightSource "infinite"
+Texture "checks" "float" "checkerboard" "float tex1" .2 "float tex2" .3
+Texture "scaled" "float" "scale" "texture tex" "checks" "float scale" .4
+Texture "mixed" "float" "mix" "float tex1" .1 "float tex2" .9 "float amount" .25
+Material "principled" "texture metallic" "checks" "texture roughness" "mixed" "texture clearcoat" "scaled"
+Shape "sphere"
+END
+check numbers "$VELO" scene convert numbers.pbrt numbers.gltf
+expect_text numbers_tell 'computed texture (checkerboard, mix, noise, ...): its mean stands in (3)'
+check numbers_means python3 - <<'END'
+import json
+material = json.load(open("numbers.gltf"))["materials"][0]
+surface = material["pbrMetallicRoughness"]
+coat = material["extensions"]["KHR_materials_clearcoat"]
+for value, mean in ((surface["metallicFactor"], 0.25), (surface["roughnessFactor"], 0.3), (coat["clearcoatFactor"], 0.1)):
+    assert abs(value - mean) < 1e-6, (value, mean)
+END
 # An animation has moments at and before 0.
 check at_zero "$VELO" scene convert lamp.glb zero.glb --at 0
 check at_negative "$VELO" scene convert lamp.glb zero.glb --at -0.5

@@ -250,14 +250,13 @@ static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
 static void measure_pixels(const vlCamera *camera, vlCameraCompiled *c) {
   /* a pixel's side at z = 1, or its width in camera units */
   const double size = 1.0 / sqrt(camera->fx * camera->fy);
-  const double scale = scale_of(camera->world_from_camera);
   if (camera->projection == VL_PROJECTION_PERSPECTIVE) {
     c->pixel_spread = (float)size;
   } else if (camera->projection == VL_PROJECTION_ORTHOGRAPHIC) {
-    c->pixel_width = (float)(size * scale);
+    c->pixel_width = (float)(size * scale_of(camera->world_from_camera));
   } else if (c->own) {
     c->pixel_spread = (float)(size * camera->own_pixel[0]);
-    c->pixel_width = (float)(size * camera->own_pixel[1] * scale);
+    c->pixel_width = (float)(size * camera->own_pixel[1] * scale_of(camera->world_from_camera));
   } else {
     c->pixel_spread = (float)central_spread(c);
   }

@@ -52,6 +52,18 @@ expect_text info_focal "f in pixels   500, 500"
 expect_text info_fov "65.2384"
 check info_json sh -c '"$0" camera info --json cam.yaml | python3 -m json.tool' "$VELO"
 expect_text info_json_size '"width": 640'
+# The solid angle of a rectangle, of spheres and of hemispheres: cam.yaml's edges lie 320 and 240 from the axis.
+check info_solid_angles python3 - "$VELO" "$VELO_SOURCE_DIR/scenes/cameras" <<'END'
+import json, math, subprocess, sys
+rectangle = 4 * math.atan(320 * 240 / (500 * math.sqrt(500**2 + 320**2 + 240**2)))
+for path, angle, error in [("cam.yaml", rectangle, 1e-5), ("equirectangular", 4 * math.pi, 1e-5), ("equal_area", 4 * math.pi, 1e-5),
+                           ("cube", 4 * math.pi, 1e-5), ("equidistant", 2 * math.pi, 1e-4), ("orthographic_fisheye", 2 * math.pi, 2e-3)]:
+    if "." not in path:
+        path = f"{sys.argv[2]}/{path}.pbrt"
+    done = subprocess.run([sys.argv[1], "camera", "info", "--json", path], capture_output=True, check=True)
+    got = json.loads(done.stdout)["solid_angle"]
+    assert abs(got / angle - 1) < error, (path, got, angle)
+END
 
 mkdir -p model
 check convert_colmap_folder "$VELO" camera convert cam.yaml model --to colmap

@@ -23,17 +23,13 @@ typedef struct Info {
 } Info;
 
 static Info measure(const vlCamera *c) {
-  enum { GRID = 256 };
-  double w = c->width, h = c->height, sum = 0.0;
+  double w = c->width, h = c->height;
   Info info = {.horizontal = field(c, 0, c->cy, w, c->cy),
                .vertical = field(c, c->cx, 0, c->cx, h),
-               .diagonal = camera_angle(c, 0, 0, w, h)};
+               .diagonal = camera_angle(c, 0, 0, w, h),
+               .solid_angle = camera_image_angle(c)};
   if (c->projection != VL_PROJECTION_PERSPECTIVE)
     info.diagonal = field(c, 0, 0, w, h);
-  for (int j = 0; j < GRID; j++)
-    for (int i = 0; i < GRID; i++)
-      sum += vl_camera_solid_angle(c, (i + 0.5) * w / GRID, (j + 0.5) * h / GRID);
-  info.solid_angle = sum * (w / GRID) * (h / GRID);
   info.footprint = sqrt(vl_camera_solid_angle(c, c->cx, c->cy));
   if (c->projection == VL_PROJECTION_ORTHOGRAPHIC)
     info.footprint = 1.0 / sqrt(c->fx * c->fy);

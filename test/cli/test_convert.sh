@@ -285,6 +285,21 @@ coat = material["extensions"]["KHR_materials_clearcoat"]
 for value, mean in ((surface["metallicFactor"], 0.25), (surface["roughnessFactor"], 0.3), (coat["clearcoatFactor"], 0.1)):
     assert abs(value - mean) < 1e-6, (value, mean)
 END
+# A sky of another colour space behind a portal is an image; its file names the space.
+cat >portal.pbrt <<'END'
+ColorSpace "rec2020"
+LookAt 0 2 4  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 16 "integer yresolution" 12
+WorldBegin
+LightSource "infinite" "rgb L" [.1 1 .2] "point3 portal" [-1 1 -1 1 1 -1 1 1 1 -1 1 1]
+Shape "trianglemesh" "point3 P" [ -2 0 -2  -2 0 2  2 0 2  2 0 -2 ] "integer indices" [ 0 1 2 0 2 3 ]
+END
+check portal "$VELO" scene convert portal.pbrt portal2.pbrt
+check portal_space_is_kept test -z "$(grep 'colour spaces' <<<"$out$err")"
+check portal_a "$VELO" render portal.pbrt -o a.pfm --color rgb --spp 4 --quiet
+check portal_b "$VELO" render portal2.pbrt -o b.pfm --color rgb --spp 4 --quiet
+check portal_same "$VELO" image diff a.pfm b.pfm --threshold maxabs=1e-4
 # An animation has moments at and before 0.
 check at_zero "$VELO" scene convert lamp.glb zero.glb --at 0
 check at_negative "$VELO" scene convert lamp.glb zero.glb --at -0.5

@@ -194,8 +194,8 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
     t.image = d->image;
     if (!vl_pbrt_image(x, &t, lamp ? VL_PBRT_ANY : VL_PBRT_COLORS, name))
       return false;
-    if (!lamp && d->space != x->scene->defs.film.space)
-      vl_export_lose(x, "colour spaces of images: the scene's");
+    if (!lamp)
+      vl_pbrt_lose_space(x, d->space, d->image);
   }
   if (d->kind == VL_LIGHT_SPOT && d->cone_squared)
     vl_export_lose(x, "edges of spots as glTF has them: pbrt's, which are steeper");

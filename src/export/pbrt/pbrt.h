@@ -41,7 +41,10 @@ typedef enum vlPbrtFile {
 /* Copies a texture's image beside the scene; name receives the file name. An image that pbrt
  * would refuse is written as an EXR with channels R, G and B. */
 bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]);
-/* The same for the image of an area light, with all factors of its texture. */
+/* Counts a loss where the image's colours are of a space that its file does not name: pbrt
+ * takes them for sRGB. image: of an image in memory. */
+void vl_pbrt_lose_space(vlExport *x, vlColorSpace space, const vlImage *image);
+/* The same as vl_pbrt_image for the image of an area light, with all factors of its texture. */
 bool vl_pbrt_emitted_image(vlExport *x, const vlTextureDef *t, char name[300]);
 /* An input as a parameter: a number or a texture. `prepare`, called between directives, writes
  * the texture and keeps its name. `put` writes the parameter. */

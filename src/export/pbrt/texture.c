@@ -108,6 +108,14 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char nam
   return fine;
 }
 
+void vl_pbrt_lose_space(vlExport *x, vlColorSpace space, const vlImage *image) {
+  vlAttribute named;
+  if (space == VL_SPACE_SRGB ||
+      (image && vl_image_find_attribute(image, "chromaticities", &named) == VL_OK))
+    return;
+  vl_export_lose(x, "colour spaces that images do not name themselves: sRGB");
+}
+
 /* ---- changed images ---------------------------------------------------------------------- */
 
 /* How the values of an image are changed. */
@@ -308,8 +316,8 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
     vl_export_lose(x, "wrap modes of their own for each axis: that of s");
   if (t->colors)
     vl_export_lose(x, "colours of vertices: left out");
-  if (t->spectrum && t->space != x->scene->defs.film.space)
-    vl_export_lose(x, "colour spaces of images: the scene's");
+  if (t->spectrum)
+    vl_pbrt_lose_space(x, t->space, t->image);
   if (!t->spectrum && !isnan(t->cutoff))
     vl_export_lose(x, "thresholds of textures: of each texel, before these are interpolated");
   double scale = (double)t->scale * (t->spectrum ? (double)t->tint[0] : 1);

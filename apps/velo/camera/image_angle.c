@@ -41,7 +41,7 @@ static bool angle_by_corners(const Cell *cell, double *angle) {
 static void last_ray(const vlCamera *c, double x, double y, double to_x, double to_y,
                      double ray[3]) {
   double seen = 0.0, unseen = 1.0, origin[3], found[3];
-  for (int step = 0; step < 30; step++) {
+  for (int step = 0; step < 12; step++) {
     double t = 0.5 * (seen + unseen);
     if (!vl_camera_unproject(c, x + t * (to_x - x), y + t * (to_y - y), origin, found)) {
       unseen = t;
@@ -54,7 +54,7 @@ static void last_ray(const vlCamera *c, double x, double y, double to_x, double 
 
 /* Solid angle of a small cell that is not all seen, or that has a seam. */
 static double edge_angle(const vlCamera *c, const Cell *cell) {
-  double moved[4][3], angle = 0.0;
+  double moved[4][3], angle;
   double x[2] = {cell->x0, cell->x1}, y[2] = {cell->y0, cell->y1};
   Cell inner = *cell;
   for (int k = 0; k < 4; k++)
@@ -66,7 +66,7 @@ static double edge_angle(const vlCamera *c, const Cell *cell) {
       last_ray(c, x[m % 2], y[m / 2], x[k % 2], y[k / 2], moved[k]);
       inner.rays[k] = moved[k];
     }
-  if (!inner.rays[0] || angle_by_corners(&inner, &angle))
+  if (angle_by_corners(&inner, &angle))
     return angle;
   return vl_camera_solid_angle(c, 0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1])) * (x[1] - x[0]) *
          (y[1] - y[0]);
@@ -78,17 +78,15 @@ static double cell_angle(const vlCamera *c, const Cell *cell, int cuts) {
   double angle, origin[3], rays[9][3];
   double x[3] = {cell->x0, 0.5 * (cell->x0 + cell->x1), cell->x1};
   double y[3] = {cell->y0, 0.5 * (cell->y0 + cell->y1), cell->y1};
-  bool seen[9], any = false;
+  bool seen[9];
+  if (!cell->rays[0] && !cell->rays[1] && !cell->rays[2] && !cell->rays[3])
+    return 0.0;
   if (angle_by_corners(cell, &angle))
     return angle;
   if (!cuts)
     return edge_angle(c, cell);
-  for (int i = 0; i < 9; i++) {
+  for (int i = 0; i < 9; i++)
     seen[i] = vl_camera_unproject(c, x[i % 3], y[i / 3], origin, rays[i]);
-    any = any || seen[i];
-  }
-  if (!any)
-    return 0.0;
   double sum = 0.0;
   for (int j = 0; j < 2; j++)
     for (int i = 0; i < 2; i++) {

@@ -64,6 +64,9 @@ static float mean_number(const vlExport *x, const vlFloatInput *input, int depth
   if (t->kind == VL_TEXTURE_SCALE)
     return a * mean_number(x, &t->amount, depth + 1);
   const float b = mean_number(x, &t->float_b, depth + 1);
+  if (t->kind == VL_TEXTURE_BILERP)
+    return 0.25f * (a + b + mean_number(x, &t->float_c, depth + 1) +
+                    mean_number(x, &t->float_d, depth + 1));
   const float share = second_share(x, t, depth);
   return (1 - share) * a + share * b;
 }
@@ -72,7 +75,7 @@ static float mean_number(const vlExport *x, const vlFloatInput *input, int depth
  * textures. */
 static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth, float rgb[3]) {
   const vlTextureDef *t = vl_scene_texture(x->scene, input->texture);
-  float a[3], b[3];
+  float a[3], b[3], c[3], d[3];
   if (!t || depth > 8) {
     to_rgb(&input->value, VL_ROLE_ALBEDO, rgb);
   } else if (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_VERTEX_COLOR) {
@@ -84,6 +87,13 @@ static void mean_rgb(const vlExport *x, const vlSpectrumInput *input, int depth,
     mean_rgb(x, &t->spectrum_a, depth + 1, rgb);
     for (int i = 0; i < 3 && t->kind == VL_TEXTURE_SCALE; i++)
       rgb[i] *= mean_number(x, &t->amount, depth + 1);
+  } else if (t->kind == VL_TEXTURE_BILERP) {
+    mean_rgb(x, &t->spectrum_a, depth + 1, a);
+    mean_rgb(x, &t->spectrum_b, depth + 1, b);
+    mean_rgb(x, &t->spectrum_c, depth + 1, c);
+    mean_rgb(x, &t->spectrum_d, depth + 1, d);
+    for (int i = 0; i < 3; i++)
+      rgb[i] = 0.25f * (a[i] + b[i] + c[i] + d[i]);
   } else {
     mean_rgb(x, &t->spectrum_a, depth + 1, a);
     mean_rgb(x, &t->spectrum_b, depth + 1, b);

@@ -272,17 +272,21 @@ LightSource "infinite"
 Texture "checks" "float" "checkerboard" "float tex1" .2 "float tex2" .3
 Texture "scaled" "float" "scale" "texture tex" "checks" "float scale" .4
 Texture "mixed" "float" "mix" "float tex1" .1 "float tex2" .9 "float amount" .25
-Material "principled" "texture metallic" "checks" "texture roughness" "mixed" "texture clearcoat" "scaled"
+Texture "corners" "spectrum" "bilerp" "rgb v00" [0 0 0] "rgb v01" [0 1 0] "rgb v10" [.4 0 0] "rgb v11" [.4 .2 .8]
+Texture "corner" "float" "bilerp" "float v00" 0 "float v01" 0 "float v10" .4 "float v11" .4
+Material "principled" "texture metallic" "checks" "texture roughness" "mixed" "texture clearcoat" "scaled" "texture basecolor" "corners"
+  "texture clearcoatroughness" "corner"
 Shape "sphere"
 END
 check numbers "$VELO" scene convert numbers.pbrt numbers.gltf
-expect_text numbers_tell 'computed texture (checkerboard, mix, noise, ...): its mean stands in (3)'
+expect_text numbers_tell 'computed texture (checkerboard, mix, noise, ...): its mean stands in (5)'
 check numbers_means python3 - <<'END'
 import json
 material = json.load(open("numbers.gltf"))["materials"][0]
 surface = material["pbrMetallicRoughness"]
 coat = material["extensions"]["KHR_materials_clearcoat"]
-for value, mean in ((surface["metallicFactor"], 0.25), (surface["roughnessFactor"], 0.3), (coat["clearcoatFactor"], 0.1)):
+for value, mean in ((surface["metallicFactor"], 0.25), (surface["roughnessFactor"], 0.3), (coat["clearcoatFactor"], 0.1),
+                    (coat["clearcoatRoughnessFactor"], 0.2), *zip(surface["baseColorFactor"], (0.2, 0.3, 0.2))):
     assert abs(value - mean) < 1e-6, (value, mean)
 END
 # A sky of another colour space behind a portal is an image; its file names the space.

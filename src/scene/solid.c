@@ -73,7 +73,8 @@ bool vl_solid_holds(const vlSolid *s, const double p[3]) {
 
 void vl_solid_sample(const vlSolid *s, uint32_t i, uint32_t n, double p[3]) {
   if (s->sphere) { /* points on a spiral over the sphere */
-    double z = 1 - (2.0 * i + 1) / n, r = sqrt(1 - z * z), a = 2.39996322972865332 * i;
+    const double golden_angle = 2.39996322972865332;
+    double z = 1 - (2.0 * i + 1) / n, r = sqrt(1 - z * z), a = golden_angle * i;
     double q[3] = {0.999 * (double)s->shape->radius * r * vl_precise_cos(a),
                    0.999 * (double)s->shape->radius * r * vl_precise_sin(a),
                    0.999 * (double)s->shape->radius * z};

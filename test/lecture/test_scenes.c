@@ -43,15 +43,11 @@ static const struct {
     {"property_5", {0, 0, 500}, {0, 0, 0}, 500},
     {"property_6", {300, 300, 300}, {0, 0, 0}, 120},
     {"wide_perspective", {0, 0, 0}, {0, 0, -1}, 111.91383796},
-    {"wide_panini",
-     {0, 0, 0},
-     {0, 0, -1},
-     188.36226925409883}, /* 240 / (2 tan 32.5 degrees), */
+    /* 240 / (2 tan 32.5 degrees) */
+    {"wide_panini", {0, 0, 0}, {0, 0, -1}, 188.36226925409883},
     {"wide_stereographic", {0, 0, 0}, {0, 0, -1}, 188.36226925409883},
-    {"wide_equirectangular",
-     {0, 0, 0},
-     {0, 0, -1},
-     211.55364743291935}, /* and 240 / 65 degrees */
+    /* 240 / 65 degrees, in radians */
+    {"wide_equirectangular", {0, 0, 0}, {0, 0, -1}, 211.55364743291935},
 };
 enum { COUNT = sizeof scenes / sizeof scenes[0] };
 

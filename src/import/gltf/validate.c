@@ -5,12 +5,12 @@
 
 #include "import/gltf/gltf.h"
 
-enum { MAX_MESSAGES = 200 }; /* messages */
+enum { MAX_MESSAGES = 200 };
 
 typedef struct Check {
   vlGltf *g;
   vlScene *kept;
-  uint32_t reported; /* messages */
+  uint32_t reported; /* number of messages */
   const uint8_t *used;
 } Check;
 

@@ -2,7 +2,10 @@
  * lies, its bytes. */
 #include "export/image.h"
 
+#include "base/text.h"
+#include "color/color.h"
 #include "image/image.h"
+#include "image/mipmap.h"
 
 const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id) {
   const vlTextureDef *t = vl_scene_texture(x->scene, id);
@@ -68,7 +71,49 @@ static const char *suffix_of(const char *data, size_t size) {
   return NULL;
 }
 
-bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size,
+/* A copy of an image with three or four channels whose colours are converted; null: no memory,
+ * which the export knows. */
+static vlImage *convert_colors(vlExport *x, const vlImage *image, const vlSrgbMap *map) {
+  uint32_t channel[4], count = vl_image_color(image, channel);
+  vlImageDef def = vl_default_image_def(image->width, image->height, count);
+  def.type = VL_PIXEL_F32;
+  vlImage *made = NULL;
+  if (vl_image_create(x->context, &def, &made) != VL_OK) {
+    vl_export_no_memory(x);
+    return NULL;
+  }
+  for (uint32_t y = 0; y < image->height; y++) {
+    float *row = vl_image_row(made, y);
+    vl_image_row_to_float(image, y, channel, count, row);
+    for (size_t i = 0; i < image->width; i++)
+      vl_store3(row + count * i, vl_to_srgb(map, vl_load3(row + count * i)));
+  }
+  return made;
+}
+
+/* Encodes the image of a texture as PNG. srgb: colours of other spaces are converted. */
+static bool pack_png(vlExport *x, const vlTextureDef *t, const vlImage *image, bool srgb,
+                     char **data, size_t *size) {
+  uint32_t channel[4];
+  vlColorSpace space = t->space;
+  vl_image_space(image, &space);
+  const vlSrgbMap map = vl_srgb_map(space, VL_ROLE_ALBEDO);
+  if (!srgb || !map.needed || vl_image_color(image, channel) < 3)
+    return vl_export_pack(x, image, ".png", data, size);
+  vlImage *made = convert_colors(x, image, &map);
+  const bool fine = made && vl_export_pack(x, made, ".png", data, size);
+  vl_image_destroy(made);
+  return fine;
+}
+
+bool vl_export_keeps_bytes(const vlTextureDef *t) {
+  if (t->data)
+    return suffix_of(t->data, t->data_size) != NULL;
+  return t->path && (vl_ends_with(t->path, ".png") || vl_ends_with(t->path, ".jpg") ||
+                     vl_ends_with(t->path, ".jpeg"));
+}
+
+bool vl_export_image(vlExport *x, const vlTextureDef *t, bool srgb, char **data, size_t *size,
                      const char **suffix) {
   *data = NULL;
   if (t->data) {
@@ -89,7 +134,7 @@ bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *si
   vl_export_lose(x, "image of a kind other than PNG and JPEG: packed as PNG, 0 to 1 only");
   vlImage *own;
   const vlImage *image = vl_export_pixels(x, t, &own);
-  bool fine = image && vl_export_pack(x, image, ".png", data, size);
+  bool fine = image && pack_png(x, t, image, srgb, data, size);
   vl_image_destroy(own);
   return fine;
 }

@@ -219,23 +219,23 @@ static vlResult add_level(Builder *b, float **kept) {
   return VL_OK;
 }
 
-/* Finds the colour space whose chromaticities agree with the image's to 0.001, as in pbrt. */
-static void find_space(const vlImage *image, vlMipmap *map) {
+bool vl_image_space(const vlImage *image, vlColorSpace *space) {
   vlAttribute a;
   if (vl_image_find_attribute(image, "chromaticities", &a) != VL_OK ||
       a.type != VL_ATTRIBUTE_CHROMATICITIES)
-    return;
+    return false;
   for (int k = 0; k < 4; k++) {
     float xy[8];
     bool same = true;
     vl_space_chromaticities((vlColorSpace)k, xy);
     for (int i = 0; i < 8; i++)
       same = same && a.numbers[i] - (double)xy[i] < 1e-3 && (double)xy[i] - a.numbers[i] < 1e-3;
-    if (same && !map->space_given) {
-      map->space_given = true;
-      map->space = (vlColorSpace)k;
+    if (same) {
+      *space = (vlColorSpace)k;
+      return true;
     }
   }
+  return false;
 }
 
 vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap **mipmap) {
@@ -258,7 +258,7 @@ vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap
     b->map = map;
     b->task = def->task;
     map->channels = def->count;
-    find_space(image, map);
+    map->space_given = vl_image_space(image, &map->space);
     map->is_bytes = image->type == VL_PIXEL_U8;
     if (map->is_bytes)
       make_tables(b, image, def);

@@ -304,6 +304,29 @@ check portal_space_is_kept test -z "$(grep 'colour spaces' <<<"$out$err")"
 check portal_a "$VELO" render portal.pbrt -o a.pfm --color rgb --spp 4 --quiet
 check portal_b "$VELO" render portal2.pbrt -o b.pfm --color rgb --spp 4 --quiet
 check portal_same "$VELO" image diff a.pfm b.pfm --threshold maxabs=1e-4
+# glTF has colours of sRGB alone: those of an image in another space are converted.
+cat >wide.pbrt <<'END'
+ColorSpace "rec2020"
+Camera "orthographic"
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+WorldBegin
+LightSource "infinite" "rgb L" [.2 .5 .1]
+END
+check wide "$VELO" render wide.pbrt -o wide.exr --quiet
+cat >painted.pbrt <<'END'
+Camera "perspective"
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Texture "paint" "spectrum" "imagemap" "string filename" "wide.exr"
+Material "diffuse" "texture reflectance" "paint"
+Translate 0 0 2
+Shape "trianglemesh" "point3 P" [-9 -9 0  9 -9 0  -9 9 0  9 9 0] "point2 uv" [0 0 1 0 0 1 1 1] "integer indices" [0 2 1 1 2 3]
+END
+check painted "$VELO" scene convert painted.pbrt painted.gltf
+check painted_a "$VELO" render painted.pbrt -o a.pfm --quiet --spp 64
+check painted_b "$VELO" render painted.gltf -o b.pfm --quiet --spp 64 --tracer path --resolution 8x8
+check painted_same "$VELO" image diff a.pfm b.pfm --threshold mse=1e-4
 # An animation has moments at and before 0.
 check at_zero "$VELO" scene convert lamp.glb zero.glb --at 0
 check at_negative "$VELO" scene convert lamp.glb zero.glb --at -0.5

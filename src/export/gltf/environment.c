@@ -19,7 +19,8 @@ enum { MIN_SIDE = 16, MAX_SIDE = 1024, LEVELS = 7, LOBE_SAMPLES = 128 };
 typedef struct Sky {
   vlMipmap *map; /* null: uniform */
   float rgb[3];  /* uniform: the radiance */
-  float to_srgb[9], light_from_world[9], scale;
+  vlSrgbMap to_srgb;
+  float light_from_world[9], scale;
 } Sky;
 
 typedef struct Level {
@@ -74,7 +75,7 @@ static void radiance(const Cube *cube, vlVec3 d, float sum[3]) {
       continue;
     }
     look_octahedral(s->map, vl_normalize(vl_turn(s->light_from_world, d)), own);
-    vl_store3(own, vl_turn(s->to_srgb, vl_load3(own)));
+    vl_store3(own, vl_to_srgb(&s->to_srgb, vl_load3(own)));
     for (int c = 0; c < 3; c++) {
       float v = s->scale * own[c];
       sum[c] += v > 0 ? v : 0.0f;
@@ -84,7 +85,8 @@ static void radiance(const Cube *cube, vlVec3 d, float sum[3]) {
 
 /* Illuminance of a surface across the map's z axis, from z > 0, without scale: the world's own
  * sum (pbrt 12.5.2). */
-static double illuminance_of(const vlMipmap *map) {
+static double illuminance_of(const Sky *sky) {
+  const vlMipmap *map = sky->map;
   const uint32_t n = map->levels[0].width;
   double sum = 0;
   for (uint32_t y = 0; y < n; y++)
@@ -96,6 +98,8 @@ static double illuminance_of(const vlMipmap *map) {
       float c[3];
       for (uint32_t k = 0; k < 3; k++)
         c[k] = vl_mip_texel(map, 0, x, y, map->channels < 3 ? 0 : k);
+      if (sky->to_srgb.needed)
+        vl_store3(c, vl_turn(sky->to_srgb.m, vl_load3(c)));
       sum +=
           (double)d.z * (0.2126 * (double)c[0] + 0.7152 * (double)c[1] + 0.0722 * (double)c[2]);
     }
@@ -117,18 +121,10 @@ static bool read_map(vlExport *x, const vlLightDef *d, Sky *sky) {
   vl_image_destroy(read);
   if (!fine)
     return false;
-  float xyz[9], rgb[9];
-  vl_xyz_from_rgb(sky->map->space_given ? sky->map->space : d->space, xyz);
-  vl_rgb_from_xyz(VL_SPACE_SRGB, rgb);
-  for (int i = 0; i < 9; i++) {
-    const float *row = rgb + 3 * (i / 3), *column = xyz + i % 3;
-    sky->to_srgb[i] = row[0] * column[0] + row[1] * column[3] + row[2] * column[6];
-  }
-  if ((sky->map->space_given ? sky->map->space : d->space) == VL_SPACE_SRGB)
-    for (int i = 0; i < 9; i++)
-      sky->to_srgb[i] = i % 4 == 0;
+  sky->to_srgb =
+      vl_srgb_map(sky->map->space_given ? sky->map->space : d->space, VL_ROLE_ILLUMINANT);
   sky->scale = d->scale;
-  const double lux = illuminance_of(sky->map);
+  const double lux = illuminance_of(sky);
   if (!isnan(d->illuminance) && lux > 0)
     sky->scale *= (float)(d->illuminance / lux);
   return true;

@@ -36,17 +36,21 @@ json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const c
 
 /* Index of the image in "images"; -1 after an error. */
 static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
-  vlExportImage *image = vl_export_find_image(x, t, 0);
+  const bool kept = vl_export_keeps_bytes(t), srgb = t->spectrum;
+  if (kept && srgb && t->space != VL_SPACE_SRGB)
+    vl_export_lose(x, "colour spaces that images do not name themselves: sRGB");
+  const uint32_t variant = !kept && srgb; /* an image may be read as numbers, too */
+  vlExportImage *image = vl_export_find_image(x, t, variant);
   if (image)
     return image->index;
   char *bytes;
   const char *suffix;
   size_t size;
-  if (!vl_export_image(x, t, &bytes, &size, &suffix))
+  if (!vl_export_image(x, t, srgb, &bytes, &size, &suffix))
     return -1;
   const json_int_t index = vl_gltf_put_file(x, bytes, size, suffix);
   vl_free(x->context, bytes);
-  image = index < 0 ? NULL : vl_export_add_image(x, t, 0);
+  image = index < 0 ? NULL : vl_export_add_image(x, t, variant);
   if (image)
     image->index = index;
   return image ? index : -1;

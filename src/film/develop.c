@@ -4,12 +4,12 @@
 #include "base/text.h"
 #include "color/color.h"
 #include "film/sums.h"
+#include "image/image.h"
 #include "velo/image.h"
 
-static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType type,
-                            const double *numbers, int count) {
-  vlAttribute a = {.name = name, .type = type};
-  for (int i = 0; i < count; i++)
+static vlResult set_box(vlImage *image, const char *name, const double numbers[4]) {
+  vlAttribute a = {.name = name, .type = VL_ATTRIBUTE_BOX2I};
+  for (int i = 0; i < 4; i++)
     a.numbers[i] = numbers[i];
   return vl_image_set_attribute(image, &a);
 }
@@ -20,20 +20,14 @@ vlResult vl_film_set_window(const vlFilm *film, vlImage *image) {
   const uint32_t *c = film->def.crop;
   double data[4] = {c[0], c[1], c[2] - 1.0, c[3] - 1.0},
          display[4] = {0, 0, film->def.width - 1.0, film->def.height - 1.0};
-  VL_TRY(set_numbers(image, "dataWindow", VL_ATTRIBUTE_BOX2I, data, 4));
-  return set_numbers(image, "displayWindow", VL_ATTRIBUTE_BOX2I, display, 4);
+  VL_TRY(set_box(image, "dataWindow", data));
+  return set_box(image, "displayWindow", display);
 }
 
 /* Writes OpenEXR's attributes: the colour space's primaries, and a crop's window. */
 static vlResult set_attributes(const vlFilm *film, vlImage *image) {
-  float xy[8];
-  double numbers[8];
-  vl_space_chromaticities(film->def.space, xy);
-  for (int i = 0; i < 8; i++)
-    numbers[i] = xy[i];
-  vlResult result =
-      set_numbers(image, "chromaticities", VL_ATTRIBUTE_CHROMATICITIES, numbers, 8);
-  return result == VL_OK ? vl_film_set_window(film, image) : result;
+  VL_TRY(vl_image_set_space(image, film->def.space));
+  return vl_film_set_window(film, image);
 }
 
 vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image) {

@@ -421,3 +421,33 @@ void vl_map_add_at(const float *pixels, uint32_t width, uint32_t height, uint32_
       sum[n] += weight * p[channels < 3 ? 0 : n];
   }
 }
+
+/* ---- colour spaces ----------------------------------------------------------------------- */
+
+vlResult vl_image_set_space(vlImage *image, vlColorSpace space) {
+  vlAttribute a = {.name = "chromaticities", .type = VL_ATTRIBUTE_CHROMATICITIES};
+  float xy[8];
+  vl_space_chromaticities(space, xy);
+  for (int i = 0; i < 8; i++)
+    a.numbers[i] = (double)xy[i];
+  return vl_image_set_attribute(image, &a);
+}
+
+bool vl_image_space(const vlImage *image, vlColorSpace *space) {
+  vlAttribute a;
+  if (vl_image_find_attribute(image, "chromaticities", &a) != VL_OK ||
+      a.type != VL_ATTRIBUTE_CHROMATICITIES)
+    return false;
+  for (int k = 0; k < 4; k++) {
+    float xy[8];
+    bool same = true;
+    vl_space_chromaticities((vlColorSpace)k, xy);
+    for (int i = 0; i < 8; i++)
+      same = same && a.numbers[i] - (double)xy[i] < 1e-3 && (double)xy[i] - a.numbers[i] < 1e-3;
+    if (same) {
+      *space = (vlColorSpace)k;
+      return true;
+    }
+  }
+  return false;
+}

@@ -7,6 +7,7 @@
 #include "base/cancel.h"
 #include "base/context.h"
 #include "velo/image.h"
+#include "velo/spectrum.h"
 
 typedef struct vlImageAttribute {
   char *name;
@@ -43,6 +44,12 @@ const void *vl_image_const_row(const vlImage *image, uint32_t y);
  * Y, 2 for Y A, 3 for R G B, 4 for R G B A, 0 for an image without colour. The only channel of
  * an image counts as Y, whatever its name is. */
 uint32_t vl_image_color(const vlImage *image, uint32_t channel[4]);
+
+/* Names the chromaticities of the image's colours, as files hold them. Error: memory. */
+vlResult vl_image_set_space(vlImage *image, vlColorSpace space);
+/* The colour space whose chromaticities the image names, to 0.001, as in pbrt. False: it names
+ * none, or an unknown one; *space stays. */
+bool vl_image_space(const vlImage *image, vlColorSpace *space);
 
 /* Whether a channel is alpha, which is always linear: it is named A or ends in .A. */
 bool vl_is_alpha(const char *name);

@@ -219,25 +219,6 @@ static vlResult add_level(Builder *b, float **kept) {
   return VL_OK;
 }
 
-bool vl_image_space(const vlImage *image, vlColorSpace *space) {
-  vlAttribute a;
-  if (vl_image_find_attribute(image, "chromaticities", &a) != VL_OK ||
-      a.type != VL_ATTRIBUTE_CHROMATICITIES)
-    return false;
-  for (int k = 0; k < 4; k++) {
-    float xy[8];
-    bool same = true;
-    vl_space_chromaticities((vlColorSpace)k, xy);
-    for (int i = 0; i < 8; i++)
-      same = same && a.numbers[i] - (double)xy[i] < 1e-3 && (double)xy[i] - a.numbers[i] < 1e-3;
-    if (same) {
-      *space = (vlColorSpace)k;
-      return true;
-    }
-  }
-  return false;
-}
-
 vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap **mipmap) {
   *mipmap = NULL;
   if (def->count < 1 || def->count > 4)

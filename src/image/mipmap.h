@@ -30,10 +30,6 @@ typedef struct vlMipmap {
   vlMipLevel levels[VL_MIP_LEVELS];
 } vlMipmap;
 
-/* The colour space whose chromaticities the image names, to 0.001, as in pbrt. False: it names
- * none, or an unknown one; *space stays. */
-bool vl_image_space(const vlImage *image, vlColorSpace *space);
-
 typedef struct vlMipmapDef {
   uint32_t channel[4]; /* indices of the image's channels */
   uint32_t count;      /* 1 to 4 */

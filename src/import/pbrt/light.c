@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "color/color.h"
+#include "image/image.h"
 #include "import/pbrt/builder.h"
 #include "velo/light.h"
 
@@ -59,19 +60,8 @@ static bool finish_light(vlDict *dict, vlLightDef *def) {
   return true;
 }
 
-/* The image names the colour space of its colours, so that files to which it is written do. */
-static bool tell_space(vlImport *import, const vlLightDef *def, vlImage *image) {
-  vlAttribute a = {.name = "chromaticities", .type = VL_ATTRIBUTE_CHROMATICITIES};
-  float xy[8];
-  vl_space_chromaticities(def->space, xy);
-  for (int i = 0; i < 8; i++)
-    a.numbers[i] = (double)xy[i];
-  vlResult r = vl_image_set_attribute(image, &a);
-  return r == VL_OK || vl_import_fail(import, r, def->source, "out of memory");
-}
-
 /* Makes an image of one pixel for a constant environment with a portal, since a portal needs an
- * image, as in pbrt. */
+ * image, as in pbrt. It names its colour space, so that files to which it is written do. */
 static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   vlImageDef image = vl_default_image_def(1, 1, 3);
   vlError error = {0};
@@ -82,11 +72,11 @@ static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   if (r != VL_OK)
     return vl_import_fail(import, r, def->source, "%s", error.message);
   memcpy(vl_image_pixels(*sky), rgb, sizeof rgb);
-  if (def->space == VL_SPACE_SRGB || tell_space(import, def, *sky))
+  if (def->space == VL_SPACE_SRGB || vl_image_set_space(*sky, def->space) == VL_OK)
     return true;
   vl_image_destroy(*sky);
   *sky = NULL;
-  return false;
+  return vl_import_fail(import, VL_ERROR_MEMORY, def->source, "out of memory");
 }
 
 bool vl_import_light(vlImport *import, const vlStatement *s) {

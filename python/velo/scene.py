@@ -12,7 +12,7 @@ from velo._texels import texels
 from velo.camera import Camera
 from velo.film import Film
 from velo.image import OTHER_NAMES, Image, Path, join
-from velo.own import OwnCamera, bare
+from velo.own import OwnCamera
 from velo.settings import Settings
 from velo.spectrum import Spectrum
 
@@ -425,7 +425,7 @@ class Scene(_velo.Scene):
         for name, value in keywords.items():
             if name in ("width", "height"):
                 raise UsageError(f"{name}: the size of the image is resolution=(width, height)")
-            settings.set(name, bare(value))
+            settings.set(name, value)
         return settings
 
     def world(self, *, previous: Optional[World] = None, progress: Optional[StepCallback] = None, **keywords: Unpack[_keywords.Settings]) -> World:

@@ -5,11 +5,16 @@ from typing import Any, Callable
 
 from velo import _velo
 from velo._errors import UsageError
+from velo.own import bare
 
 
 class Settings(_velo.Settings):
     """What a render is set to: Scene.settings makes it from the scene's file and from keywords. `get` and `set` read and change one
     keyword, `size` and `crop` are in pixels."""
+
+    def set(self, name: str, value: Any) -> None:
+        """Sets a keyword, as Scene.render has it."""
+        super().set(name, bare(value))
 
     def keywords(self) -> dict[str, Any]:
         """All of it as keywords: `scene.render(**settings.keywords())`. UsageError: a sampler or tracer of one's own."""

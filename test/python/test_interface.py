@@ -65,6 +65,28 @@ def settings_are_copied_and_pickled():
 
 
 @case
+def settings_forget_what_they_were():
+    """The last value of each keyword counts, also after a sampler, tracer or sensor of another kind."""
+    scene = small()
+    choices = {row.name: row.choices for row in cases.setting_rows() if row.choices}
+    mine = {"sampler": [velo.OwnSampler(lambda samples: None, name="mine")], "tracer": [velo.OwnTracer(lambda trace: None, name="mine")]}
+    settings, changes = scene.settings(), 0
+    start = settings.keywords()
+    for name in sorted(set(start) - {"resolution", "crop"}):
+        before = settings.get(name)
+        for value in [True, False, 2, 3, 0.25, *choices.get(name, []), *mine.get(name, [])]:
+            try:
+                settings.set(name, value)
+            except velo.Error:
+                continue
+            changes += name not in mine and settings.get(name) != before
+            settings.set(name, before)
+            now = settings.keywords()
+            assert now == start, (name, value, [key for key in now if now.get(key) != start.get(key)])
+    assert changes > 60, changes
+
+
+@case
 def trajectories_are_copied_and_pickled():
     small().camera.write(work("pose.json"))
     frames = velo.read_trajectory(work("pose.json"))

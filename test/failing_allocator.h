@@ -1,6 +1,7 @@
 /* test/failing_allocator.h: an allocator that counts the blocks held and whose n-th call fails.
  *     failAllocator state = {.fail_at = n};             n counts from 1; 0: no call fails
  *     def.allocator = fail_allocator(&state);
+ * Its memory is not empty: what must be zero or a number is not so by chance.
  * fail_everywhere runs a test for n = 1, 2, ... until no call fails. Each run with a failure
  * must return VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so the code
  * after it runs with partly built data. */
@@ -9,6 +10,7 @@
 
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "unit.h"
 #include "velo/base.h"
@@ -32,8 +34,10 @@ static inline void *fail_allocate(void *user, size_t size) {
   if (fail_now(state))
     return NULL;
   void *block = malloc(size);
-  if (block)
+  if (block) {
+    memset(block, 0xff, size); /* NaN, -1, no address */
     atomic_fetch_add(&state->blocks, 1);
+  }
   return block;
 }
 

@@ -199,7 +199,7 @@ static void find_normals(Cutter *c, const uint32_t *indices, size_t faces) {
 
 static bool start(Cutter *c, const vlShapeDef *def) {
   size_t n = def->vertices;
-  if (!VL_RESERVE(c->context, &c->p, 3 * n) || !VL_RESERVE_ZERO(c->context, &c->n, 3 * n) ||
+  if (!VL_RESERVE(c->context, &c->p, 3 * n) || !VL_RESERVE(c->context, &c->n, 3 * n) ||
       !VL_RESERVE(c->context, &c->uv, 2 * n))
     return false;
   c->p.count = c->n.count = 3 * n;

@@ -43,6 +43,15 @@ const TextureCase image_texture = {
              .known = {{.3125, .5625, {.82333, .42686, .10421}},
                        {.6875, .1875, {.65096, .28089, .80283}}},
              .known_count = 2},
+            /* writers of pbrt's files decode what has no name that says its format */
+            {.parameters =
+                 "\"string filename\" \"normals.img\" \"string encoding\" \"gamma 3\"",
+             .low = 0,
+             .high = 1},
+            {.parameters =
+                 "\"string filename\" \"normals.img\" \"string encoding\" \"gamma 2\"",
+             .low = 0,
+             .high = 1},
         },
     .parameters =
         {{.base = "\"string filename\" \"a.pfm\""},

@@ -37,7 +37,7 @@ typedef struct TextureVariant {
   uint32_t known_count;
 } TextureVariant;
 
-enum { TEXTURE_VARIANTS = 6 };
+enum { TEXTURE_VARIANTS = 8 };
 typedef struct TextureCase {
   TextureVariant variants[TEXTURE_VARIANTS];
   ParameterCase parameters[PARAMETER_CASES];

@@ -499,16 +499,16 @@ static void laws_of_projections(void **state) {
     if (!make_camera("projections", name, &def, &camera))
       continue;
     check_round_trip("projections", name, &camera, c->optics ? 1e-6 : 1e-8);
-    if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
+    if (p != VL_PROJECTION_ORTHOGRAPHIC)
       check_solid_angle(name, &camera, c->solid_angle);
     if (c->solid_angle > 3.99 * PI)
       check_whole_sphere(name, &camera);
     const vlProjectionRow *row = vl_projection_row((vlProjection)p);
     check_known(name, &camera, c, row->traits & VL_PROJECTION_RADIAL);
-    if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics) {
+    if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics)
       check_domain(name, &def, &camera, c->end);
+    if (p != VL_PROJECTION_ORTHOGRAPHIC)
       check_edges(name, &camera);
-    }
     check_derivatives_in_film("projections", name, &camera);
     check_moving(name, &def);
     if (!c->optics)

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "failing_allocator.h"
 #include "unit.h"
 #include "velo/edit.h"
 #include "velo/filter_kinds.h"
@@ -273,8 +274,9 @@ static void probe_world(const char *text, Probe *probe, uint32_t batches) {
   probe_scene(need_scene(text), text, probe, batches);
 }
 
-/* Adds the square from -1 to 1 with this material; its texture coordinates are 0 to 1, of
- * `mirrored` squares u is 1 to 0. Its second set of coordinates is the other one of these. */
+/* Adds the square from -1 to 1 with this material, or, if it is null, with none; its texture
+ * coordinates are 0 to 1, of `mirrored` squares u is 1 to 0. Its second set of coordinates is
+ * the other one of these. */
 static void add_square_of(vlScene *scene, const vlMaterialDef *material, bool mirrored) {
   static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   static const float upright[8] = {0, 0, 1, 0, 1, 1, 0, 1};
@@ -287,7 +289,8 @@ static void add_square_of(vlScene *scene, const vlMaterialDef *material, bool mi
   square.uvs = mirrored ? turned : upright;
   square.more_uvs[0] = mirrored ? upright : turned;
   square.indices = indices;
-  square.material = vl_scene_add_material(scene, material);
+  if (material)
+    square.material = vl_scene_add_material(scene, material);
   vl_scene_add_shape(scene, &square);
 }
 static void add_square(vlScene *scene, const vlMaterialDef *material) {

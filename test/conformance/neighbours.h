@@ -1,6 +1,7 @@
 /* conformance/neighbours.h: two materials of one kind, or two textures, beside each other in
  * one plane: each has the bits that it has beside itself; a medium those that it has alone. So
- * nothing of a kind is shared between two of its things. */
+ * nothing of a kind is shared between two of its things, nor of their images in files. Surfaces
+ * with the same medium on both sides are no borders. */
 #ifndef TEST_CONFORMANCE_NEIGHBOURS_H
 #define TEST_CONFORMANCE_NEIGHBOURS_H
 
@@ -32,6 +33,8 @@ static const char *const neighbour_form =
     "Material \"interface\" MediumInterface \"m\" \"\"\n" BOX_FROM("-.1", "1")
     "MediumInterface \"glow\" \"\"\n" BOX_FROM("-1", "-.11");
 
+enum { PLATE_SPP = 64 };
+
 static void check_neighbour(const char *name, const MediumCase *c, vlColorMode color) {
   static char text[TEXT];
   char all[2000];
@@ -51,12 +54,36 @@ static void check_neighbour(const char *name, const MediumCase *c, vlColorMode c
   vl_image_destroy(images[1]);
 }
 
+/* A plate in the middle of the box, with glow on both of its sides: no border of a medium, so
+ * rays go on through the medium that they are in. */
+#define PLATE_IN_MEDIUM                                                               \
+  "MakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [3 6 2] " \
+  "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [2 3 4] MediumInterface \"glow\" \"glow\"\n"    \
+  "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0]\n"
+
+static void check_plate_inside(const char *name, const MediumCase *c) {
+  static char text[TEXT];
+  char all[2000];
+  vlImage *images[2];
+  snprintf(all, sizeof all, "%s%s", c->shape, c->absorbs);
+  scene_text(text, medium_form, name, all);
+  images[0] = image_of(text, NULL, PLATE_SPP);
+  strcat(text, PLATE_IN_MEDIUM);
+  images[1] = image_of(text, NULL, PLATE_SPP);
+  const Mean off = mean_difference(images[0], images[1]);
+  check_mean("media", name, "light that passes a plate with one medium on both sides", &off, 0,
+             (Sight){.slack = 2e-3, .least = 0.1});
+  vl_image_destroy(images[0]);
+  vl_image_destroy(images[1]);
+}
+
 static void neighbouring_media(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("media");
   for (uint32_t k = 0; k < family->kind_count; k++) {
     check_neighbour(family->rows[k]->name, medium_cases[k], VL_COLOR_RGB);
     check_neighbour(family->rows[k]->name, medium_cases[k], VL_COLOR_SPECTRAL);
+    check_plate_inside(family->rows[k]->name, medium_cases[k]);
   }
   expect_no_failures();
 }
@@ -92,8 +119,28 @@ static void texture_part(char text[TEXT], const vlKindRow *row, const char *para
            number);
 }
 
+/* The scene that a file of it gives, seen as before. */
+static vlScene *through_file(vlScene *scene, const char *suffix) {
+  char path[100];
+  vlError error = {0};
+  vlScene *read;
+  snprintf(path, sizeof path, "%s/parts.%s", folder, suffix);
+  assert_int_equal(vl_scene_create(context, &read), VL_OK);
+  if (vl_scene_save(scene, path, NULL, &error) != VL_OK ||
+      vl_scene_load(read, path, NULL, &error) != VL_OK)
+    fail_msg("%s", error.message);
+  const vlSceneDefs *from = vl_scene_defs(scene);
+  vlSceneDefs *to = vl_scene_defs(read);
+  to->camera = from->camera;
+  to->film = from->film;
+  to->render = from->render;
+  to->build = from->build;
+  return read;
+}
+
+/* suffix: of the file that holds the scene; null: it is in no file. */
 static vlImage *image_of_parts(const vlKindRow *row, PartText *part, const char *left,
-                               const char *right) {
+                               const char *right, const char *suffix) {
   static char text[TEXT];
   static char parts[2][TEXT];
   part(parts[0], row, left, 0);
@@ -101,20 +148,29 @@ static vlImage *image_of_parts(const vlKindRow *row, PartText *part, const char 
   int length = snprintf(text, sizeof text, "%s%s" LEFT_PART "%s" RIGHT_PART, PARTS_SEEN,
                         parts[0], parts[1]);
   assert_true(length > 0 && length < TEXT);
-  return image_of(text, NULL, SAMPLES);
+  vlScene *scene = need_scene(text);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->build.color = VL_COLOR_RGB;
+  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->render.spp = SAMPLES;
+  if (!suffix)
+    return need_image(scene, text);
+  vlImage *image = need_image(through_file(scene, suffix), text);
+  vl_scene_destroy(scene);
+  return image;
 }
 
 static void check_parts(const char *family, const vlKindRow *row, PartText *part,
-                        const char *left, const char *right) {
-  vlImage *both = image_of_parts(row, part, left, right);
-  vlImage *lefts = image_of_parts(row, part, left, left);
-  vlImage *rights = image_of_parts(row, part, right, right);
+                        const char *left, const char *right, const char *suffix) {
+  vlImage *both = image_of_parts(row, part, left, right, suffix);
+  vlImage *lefts = image_of_parts(row, part, left, left, suffix);
+  vlImage *rights = image_of_parts(row, part, right, right, suffix);
   /* x grows to the left; the border is in the tenth column */
   uint32_t others =
       other_numbers(both, rights, 0, 9) + other_numbers(both, lefts, 10, vl_image_width(both));
   if (others)
-    broken(family, row->name, "%s beside %s: %u numbers are others than beside itself", left,
-           right, others);
+    broken(family, row->name, "%s beside %s%s%s: %u numbers are others than beside itself",
+           left, right, suffix ? ", as ." : "", suffix ? suffix : "", others);
   vl_image_destroy(both);
   vl_image_destroy(lefts);
   vl_image_destroy(rights);
@@ -131,10 +187,12 @@ static const char *texture_variant(uint32_t k, int i) {
 }
 
 static void check_neighbours(const char *name, PartText *part, VariantOf *variant) {
+  static const char *const suffixes[] = {NULL, "pbrt", "gltf"};
   const vlKindFamily *family = vl_kind_family_find(name);
   for (uint32_t k = 0; k < family->kind_count; k++)
     for (int i = 0; variant(k, i) && variant(k, i + 1); i++)
-      check_parts(name, family->rows[k], part, variant(k, i), variant(k, i + 1));
+      for (size_t s = 0; s < sizeof suffixes / sizeof *suffixes; s++)
+        check_parts(name, family->rows[k], part, variant(k, i), variant(k, i + 1), suffixes[s]);
   expect_no_failures();
 }
 

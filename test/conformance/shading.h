@@ -1,6 +1,7 @@
 /* conformance/shading.h: laws of what stands between a material's parameters and its BSDF:
  * normal maps turn the normal as their texels say; a factor on a map is a factor on its texels,
- * of each layer's own map; kinds that describe the same microfacets agree. */
+ * of each layer's own map; kinds that describe the same microfacets agree; what has no material
+ * is of the default one. */
 #ifndef TEST_CONFORMANCE_SHADING_H
 #define TEST_CONFORMANCE_SHADING_H
 
@@ -340,8 +341,30 @@ static void check_mirrored_coordinates(void) {
   free_scattering(mirrored);
 }
 
+/* ---- no material ------------------------------------------------------------------------- */
+
+/* What has no material is of the default one, beside other materials, too. */
+static void check_no_material(void) {
+  const vlMaterialDef grey = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  Scattering *s[2];
+  for (int i = 0; i < 2; i++) {
+    vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\" " NAMED);
+    s[i] = scattering_of_def(scene, i ? &grey : NULL);
+  }
+  if (memcmp(s[0]->value, s[1]->value, sizeof s[0]->value) != 0 ||
+      memcmp(s[0]->pdf, s[1]->pdf, sizeof s[0]->pdf) != 0)
+    broken("materials", "diffuse", "a shape without a material scatters in another way");
+  if (memcmp(s[0]->hits->reflectance, s[1]->hits->reflectance,
+             sizeof s[0]->hits->reflectance) != 0)
+    broken("materials", "diffuse", "a shape without a material reflects %.3f, not %.3f",
+           (double)s[0]->hits->reflectance[1][0], (double)s[1]->hits->reflectance[1][0]);
+  free_scattering(s[0]);
+  free_scattering(s[1]);
+}
+
 static void laws_of_shading(void **state) {
   (void)state;
+  check_no_material();
   check_mirrored_coordinates();
   for_each_mapped("tilted.pfm", check_tilted_map);
   for_each_mapped("normals.pfm", check_repeated_map);

@@ -287,6 +287,21 @@ static void old_formats_are_read(void **state) {
   vl_film_destroy(present);
 }
 
+/* The memory for a block's data is enough for each format, also of files that compared blocks
+ * without errors. */
+static void whole_blocks_fit(void **state) {
+  (void)state;
+  const size_t pixels = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK;
+  for (int kind = 0; kind < KINDS; kind++) {
+    const vlFilmDef def = film_def(kind);
+    const size_t most = vl_film_most_data(&def);
+    assert_true(most >= pixels * vl_film_pixel_size(&def));
+    for (uint32_t format = 1; format <= 2; format++)
+      for (int compared = 0; compared < 2; compared++)
+        assert_true(most >= vl_film_old_data_size(&def, format, pixels, compared));
+  }
+}
+
 /* Blocks keep their last comparison of adaptive sampling, unless samples of another part join
  * them. */
 static void compared_noise(void **state) {
@@ -739,6 +754,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read),
                                      cmocka_unit_test(compared_noise),
                                      cmocka_unit_test(old_formats_are_read),
+                                     cmocka_unit_test(whole_blocks_fit),
                                      cmocka_unit_test(parts_become_the_whole),
                                      cmocka_unit_test(what_does_not_belong_together_is_refused),
                                      cmocka_unit_test(a_receipt_that_is_not_json_is_refused),

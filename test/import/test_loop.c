@@ -154,9 +154,40 @@ static void refused(void **state) {
   free_mesh(&m);
 }
 
+/* The largest meshes are made, and refused with a level or a face more. Beyond 5 levels fewer
+ * faces are allowed. */
+static void limits(void **state) {
+  (void)state;
+  enum { MAX_FACES = 1 << 24 };
+  static const struct {
+    uint32_t vertices, faces, levels;
+  } too_many[] = {{6, 8, 9},
+                  {3, 1, 11},
+                  {6, 8, 40},
+                  {3, MAX_FACES + 1, 0},
+                  {MAX_FACES + 1, 1, 0},
+                  {6, MAX_FACES / 1024 + 1, 5}};
+  const uint32_t triangle[] = {0, 2, 4};
+  vlMesh m;
+  vlError error;
+  for (size_t i = 0; i < sizeof too_many / sizeof *too_many; i++) {
+    assert_int_equal(
+        vl_loop_subdivide(context, too_many[i].vertices, octahedron, too_many[i].faces,
+                          octahedron_faces, too_many[i].levels, &m, &error),
+        VL_ERROR_SCENE);
+    assert_non_null(strstr(error.message, "too many"));
+  }
+  subdivide(6, octahedron, 8, octahedron_faces, 6, &m);
+  assert_int_equal(m.triangles, 8 << 12);
+  free_mesh(&m);
+  subdivide(6, octahedron, 1, triangle, 10, &m);
+  assert_int_equal(m.triangles, 1 << 20);
+  free_mesh(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(closed), cmocka_unit_test(flat),
                                      cmocka_unit_test(regular_vertex),
-                                     cmocka_unit_test(refused)};
+                                     cmocka_unit_test(refused), cmocka_unit_test(limits)};
   return cmocka_run_group_tests(tests, open_context, close_context);
 }

@@ -6,6 +6,7 @@
 
 #include "../trace/measured_file.h"
 #include "material/measured_tables.h"
+#include "material/tensor.h"
 #include "render/shots.h"
 #include "trace/bsdf_batch.h"
 #include "velo/shape_kinds.h"
@@ -186,6 +187,43 @@ static void damages(void **state) {
   remove(path);
 }
 
+/* A file of as many fields as can be, each of as many dimensions and of one byte. */
+static void most_fields(void **state) {
+  (void)state;
+  enum { HEADS = VL_MAX_TENSOR_FIELDS * (2 + 2 + 2 + 1 + 8 + 8 * VL_MAX_TENSOR_RANK) };
+  static vlTensor tensor;
+  Purse purse = {.left = -1};
+  vlContext *context = open_context(&purse);
+  vlError error = {0};
+  mfFile f = {0};
+  mf_put(&f, "tensor_file", 12);
+  mf_put(&f, "\1", 2);
+  mf_put_number(&f, VL_MAX_TENSOR_FIELDS, 4);
+  const size_t values = f.size + HEADS;
+  for (uint64_t i = 0; i < VL_MAX_TENSOR_FIELDS; i++) {
+    mf_put_number(&f, 2, 2);
+    mf_put_number(&f, 'a' + i / 8 + ('a' + i % 8) * 256, 2); /* its name */
+    mf_put_number(&f, VL_MAX_TENSOR_RANK, 2);
+    mf_put_number(&f, VL_TENSOR_U8, 1);
+    mf_put_number(&f, values + i, 8);
+    for (int k = 0; k < VL_MAX_TENSOR_RANK; k++)
+      mf_put_number(&f, 1, 8);
+  }
+  for (uint64_t i = 0; i < VL_MAX_TENSOR_FIELDS; i++)
+    mf_put_number(&f, i, 1);
+  assert_true(mf_write(path, &f));
+  if (vl_tensor_read(context, path, &tensor, &error) != VL_OK)
+    fail_msg("%s", error.message);
+  const vlTensorField *last = vl_tensor_find(&tensor, "hh");
+  assert_true(last && last->rank == VL_MAX_TENSOR_RANK && last->count == 1);
+  assert_int_equal(*last->values, VL_MAX_TENSOR_FIELDS - 1);
+  vl_tensor_free(context, &tensor);
+  vl_context_destroy(context);
+  assert_int_equal(purse.alive, 0);
+  free(f.bytes);
+  remove(path);
+}
+
 /* ---- damages without --------------------------------------------------------------------- */
 
 /* A few hundred files with flipped bits, lost and repeated pieces, extreme numbers: each gives
@@ -356,7 +394,8 @@ static void image(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(damages), cmocka_unit_test(mutations),
-                                     cmocka_unit_test(no_memory), cmocka_unit_test(image)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(damages), cmocka_unit_test(most_fields),
+                                     cmocka_unit_test(mutations), cmocka_unit_test(no_memory),
+                                     cmocka_unit_test(image)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,14 +53,14 @@ static void filled(void **state) {
   int adaptive = 0;
   for (int tracer = 0; tracer < TRACERS; tracer++) {
     vlFilm *parts = make_film(true), *whole = make_film(true);
-    vlRenderDef def = render_def((vlTracer)tracer, 0.04, 40);
+    vlRenderDef def = render_def((vlTracer)tracer, 0.05, 20);
     vlRenderStats stats;
     assert_int_equal(vl_render(loaded.world, &loaded.camera, parts, &def, &stats, NULL), VL_OK);
     adaptive += stats.mean_spp < stats.spp;
     assert_int_equal(stats.blocks, 6);
     def.noise = 0;
     assert_int_equal(vl_render(loaded.world, &loaded.camera, parts, &def, &stats, NULL), VL_OK);
-    assert_true(stats.mean_spp == 40 && stats.noisy_blocks == 0);
+    assert_true(stats.mean_spp == 20 && stats.noisy_blocks == 0);
     assert_int_equal(vl_render(loaded.world, &loaded.camera, whole, &def, NULL, NULL), VL_OK);
     if (!same(parts, whole))
       fail_msg("tracer %d: the filled film differs", tracer);

@@ -11,9 +11,10 @@
  * |1/z - 1/focus| * fx pixels. */
 static void circle_of_confusion(void **state) {
   (void)state;
+  enum { SIDE = 32 };
   const double depths[3] = {1.5, 4, 9};
   for (int i = 0; i < 3; i++) {
-    Stage s = stage_open(64, 64);
+    Stage s = stage_open(SIDE, SIDE);
     s.build.color = VL_COLOR_RGB;
     s.render.spp = 4096;
     s.render.max_depth = 0;
@@ -27,8 +28,8 @@ static void circle_of_confusion(void **state) {
     add_quad(&s, &q);
     Image p = stage_finish(&s);
     double sum = 0, mx = 0, my = 0, second = 0;
-    for (uint32_t y = 0; y < 64; y++)
-      for (uint32_t x = 0; x < 64; x++) {
+    for (uint32_t y = 0; y < SIDE; y++)
+      for (uint32_t x = 0; x < SIDE; x++) {
         double v = image_at(&p, x, y, 1);
         sum += v;
         mx += v * (x + 0.5);
@@ -36,16 +37,16 @@ static void circle_of_confusion(void **state) {
       }
     mx /= sum;
     my /= sum;
-    for (uint32_t y = 0; y < 64; y++)
-      for (uint32_t x = 0; x < 64; x++) {
+    for (uint32_t y = 0; y < SIDE; y++)
+      for (uint32_t x = 0; x < SIDE; x++) {
         double dx = x + 0.5 - mx, dy = y + 0.5 - my;
         second += image_at(&p, x, y, 1) * (dx * dx + dy * dy);
       }
     /* x^2 + y^2 of a disk: R^2/2; of the square: 2 a^2/3; of a pixel: 1/6 */
     double a = side / z * 60, expected = radius * radius / 2 + 2 * a * a / 3 + 1.0 / 6;
     assert_ratio("second moment of the blur", second / sum, expected, 0.01);
-    assert_near("centre of the blur, x", mx, 32 + 60 * 0.1, 0.05);
-    assert_near("centre of the blur, y", my, 32 + 60 * 0.05, 0.05);
+    assert_near("centre of the blur, x", mx, SIDE / 2 + 60 * 0.1, 0.05);
+    assert_near("centre of the blur, y", my, SIDE / 2 + 60 * 0.05, 0.05);
     assert_ratio("light in the blur", sum, 100 * 4 * a * a, 0.01);
     image_free(&p);
   }

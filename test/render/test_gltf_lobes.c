@@ -70,7 +70,7 @@ static void metallic_roughness(void **state) {
       for (double share = 0; share <= 1; share += 0.5) {
         snprintf(name, sizeof name, "base %g, metallic %g, roughness %g", base, share,
                  roughs[i]);
-        Shot shot = {.material = pbr(base, share, roughs[i], ""), .spp = base == 1 ? 256 : 64};
+        Shot shot = {.material = pbr(base, share, roughs[i], ""), .spp = base == 1 ? 128 : 64};
         double e = share * metal + (1 - share) * (shine + base * (1 - shine));
         expect_shot(name, &shot, e, e, e, base == 1 ? 0.003 : 0.005);
       }

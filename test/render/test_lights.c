@@ -549,7 +549,7 @@ static void invisible_sphere(void **state) {
         if (around && tracers[t] == VL_TRACER_LIGHT_PATH)
           continue; /* its paths set out from the outside */
         Stage s = floor_stage(false);
-        s.render.spp = 256;
+        s.render.spp = 64;
         s.camera.projection = VL_PROJECTION_PERSPECTIVE; /* the same view; light's paths do not
                                                             find orthographic eyes */
         s.camera.eye[2] = 3;

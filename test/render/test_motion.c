@@ -95,7 +95,7 @@ static void fill(Stage *s, bool camera_moves, double held) {
  * blurred one have the same expectation. */
 static void blur_is_the_mean_of_held_images(void **state) {
   (void)state;
-  enum { HELD = 400, SPP = 4 };
+  enum { HELD = 200, SPP = 4 };
   for (int moves = 0; moves < 2; moves++) {
     static double sum[2][W * H], square[2][W * H];
     memset(sum, 0, sizeof sum);

@@ -9,10 +9,11 @@
  * triangle's corner than above. */
 static void blur_has_the_openings_shape(void **state) {
   (void)state;
+  enum { SIDE = 24 };
   for (int k = 0; k < 2; k++) {
-    Stage s = stage_open(64, 64);
+    Stage s = stage_open(SIDE, SIDE);
     s.build.color = VL_COLOR_RGB;
-    s.render.spp = 4096;
+    s.render.spp = 8192;
     s.render.max_depth = 0;
     s.camera.fx = s.camera.fy = 60;
     s.camera.lens_radius = 0.4;
@@ -24,9 +25,9 @@ static void blur_has_the_openings_shape(void **state) {
     Image p = stage_finish(&s);
     double sum = 0, third = 0, second[2] = {0, 0}, mean[2] = {0, 0};
     for (int pass = 0; pass < 2; pass++)
-      for (uint32_t y = 0; y < 64; y++)
-        for (uint32_t x = 0; x < 64; x++) {
-          double v = image_at(&p, x, y, 1), dx = x + 0.5 - 32, dy = y + 0.5 - 32;
+      for (uint32_t y = 0; y < SIDE; y++)
+        for (uint32_t x = 0; x < SIDE; x++) {
+          double v = image_at(&p, x, y, 1), dx = x + 0.5 - SIDE / 2, dy = y + 0.5 - SIDE / 2;
           if (!pass) {
             sum += v;
             mean[0] += v * dx;

@@ -65,7 +65,7 @@ static double mean_of(const Material *m, int where, vlLightSampler sampler, doub
     fail_msg("%s: %s", m->name, error.message);
   s.build.light_sampler = sampler;
   s.build.color = VL_COLOR_RGB;
-  s.render.spp = m->shape == quad ? 256 : 2048; /* hair concentrates light */
+  s.render.spp = m->shape == quad ? 256 : 512; /* hair concentrates light */
   s.render.max_depth = m->shape == slab ? 3 : 1;
   s.render.tracer = VL_TRACER_PATH;
   Image p = stage_finish(&s);

@@ -1344,6 +1344,18 @@ MISTAKES = [
     ("lenses: directions by pixels, not by lengths", "projections",
      r"projections optics:.*solid angle", "src/camera/points.c",
      "c->pitch * x, c->pitch * y, &r);", "x, y, &r);"),
+    ("leaves in glTF files lose the scale of what they reflect", "materials:diffusetransmission",
+     r"materials diffusetransmission: ", "src/export/gltf/material.c",
+     "share < 1 ? (double)m->scale / (1 - share) : 0", "share < 1 ? 1 / (1 - share) : 0"),
+    ("bump maps of principled materials are not in pbrt's files", "materials:principled",
+     r"materials principled: .displacement.: as .pbrt", "src/export/pbrt/material.c",
+     "if (height->texture[0])", "if (height->texture[0] && !m->principled.normal.index && m->normal_map)"),
+    ("two names of files are one", "materials:conductor",
+     r"materials conductor: .normalmap. .*is accepted", "src/import/pbrt/report.c",
+     "if (param->strings.count != 1)", "if (param->strings.count == 0)"),
+    ("displaced meshes in glTF files without a word", "shapes:trianglemesh",
+     r"shapes \w+: .displacement.: as .glb", "src/export/gltf/gltf.c",
+     "if (d->displacement.texture.index)", "if (d->displacement.value != 0)"),
     ]
 
 

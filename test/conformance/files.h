@@ -84,12 +84,15 @@ static bool write_tilted(const char *name) {
   return write_square(name, 2, pixels);
 }
 
-/* A lamp of 2 cd towards the half plane C 0, falling to 1 cd towards C 180, and none upwards.
- */
-static bool write_lamp(const char *name) {
-  static const char file[] =
-      "IESNA:LM-63-2002\nTILT=NONE\n1 -1 .5 2 2 1 2 0 0 0\n1 1 0\n0 90\n0 180\n4 4\n2 2\n";
-  return write_bytes(name, file, sizeof file - 1);
+/* A lamp of some candela towards the half plane C 0, changing linearly to those towards C 180,
+ * and none upwards. */
+static bool write_lamp(const char *name, int from, int to) {
+  char file[200];
+  const int size = snprintf(file, sizeof file,
+                            "IESNA:LM-63-2002\nTILT=NONE\n1 -1 .5 2 2 1 2 0 0 0\n1 1 0\n"
+                            "0 90\n0 180\n%d %d\n%d %d\n",
+                            2 * from, 2 * from, 2 * to, 2 * to);
+  return write_bytes(name, file, (size_t)size);
 }
 
 /* Its tables are not square. */
@@ -179,7 +182,8 @@ static bool write_files(void) {
               write_image("other.pfm", 3) && write_image("normals.pfm", 4) &&
               write_nameless("normals.img", 4) && write_image("a.tga", 5) &&
               write_quarters("quarters.pfm") && write_grain("grain.pfm") &&
-              write_tilted("tilted.pfm") && write_lamp("lamp.ies");
+              write_tilted("tilted.pfm") && write_lamp("lamp.ies", 2, 1) &&
+              write_lamp("other.ies", 3, 9);
   done = done && write_bytes("a.ply", ply, sizeof ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&
          write_nanovdb("a.nvdb", 0) && write_nanovdb("b.nvdb", 1) &&

@@ -341,6 +341,34 @@ static void check_file_value(const Family *family, const vlKindRow *row, const v
     broken(family->name, row->name, "\"%s\" %.40s: no message", p->name, value);
 }
 
+/* Two values, each of which is right alone, in place of one; an empty text: none is known. */
+static void twice(const Family *family, const vlKindRow *row, const vlParameter *p,
+                  char text[TEXT]) {
+  const char *type = type_in_files(p);
+  const ParameterCase *kind_case = find_case(family->name, row->name, NULL);
+  const ParameterCase *c = find_case(family->name, row->name, p->name);
+  const char *known[3] = {c ? c->value : NULL, c ? c->base : NULL,
+                          kind_case ? kind_case->base : NULL};
+  char name[80];
+  text[0] = 0;
+  snprintf(name, sizeof name, "%s %s\" ", type, p->name);
+  for (int i = 0; i < 3 && !text[0]; i++) {
+    const char *at = known[i] ? strstr(known[i], name) : NULL;
+    const char *value = at ? at + strlen(name) : NULL;
+    if (value && value[0] != '[')
+      snprintf(text, TEXT, "[%.*s %.*s]", (int)strcspn(value, "; "), value,
+               (int)strcspn(value, "; "), value);
+  }
+  if (text[0])
+    return;
+  if (p->type == VL_PARAMETER_CHOICE)
+    snprintf(text, TEXT, "[\"%s\" \"%s\"]", p->choices[0], p->choices[0]);
+  else if (p->type == VL_PARAMETER_BOOL)
+    snprintf(text, TEXT, "[true true]");
+  else if (strcmp(type, "float") == 0 || strcmp(type, "integer") == 0)
+    snprintf(text, TEXT, "[1 1]");
+}
+
 static void hostile_files(void **state) {
   (void)state;
   char *many = long_value();
@@ -366,6 +394,12 @@ static void hostile_files(void **state) {
         check_file_value(family, row, p,
                          number ? three ? "[4294967304 0 0]" : "[4294967304]" : "[7]", false);
         check_file_value(family, row, p, "[]", false);
+        char pair[TEXT];
+        twice(family, row, p, pair);
+        const ParameterCase *c = find_case(family->name, row->name, p->name);
+        const bool ignored = strncmp(p->description, "ignored", 7) == 0 || (c && c->no_effect);
+        if (pair[0] && !ignored)
+          check_file_value(family, row, p, pair, true);
         if (k % 5 == 0)
           check_file_value(family, row, p, many, false);
       }

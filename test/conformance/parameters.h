@@ -504,6 +504,85 @@ static void check_arrives(const char *family, const char *kind, const vlParamete
     broken(family, kind, "\"%s\": %g in the file is %g", p->name, number, found);
 }
 
+/* ---- losses ------------------------------------------------------------------------------ */
+
+/* A file that is written, and what its writer says that it cannot hold. */
+enum { WRITTEN_BYTES = 1 << 20, LOSSES = 2000 };
+typedef struct Written {
+  char bytes[WRITTEN_BYTES];
+  size_t size;
+  char losses[LOSSES];
+} Written;
+
+static void note_loss(void *user, const char *what, uint64_t count) {
+  char *losses = user;
+  const size_t length = strlen(losses);
+  snprintf(losses + length, LOSSES - length, "%s (%u); ", what, (unsigned)count);
+}
+
+static bool write_scene_of(const char *text, const char *suffix, Written *w) {
+  char path[100];
+  vlError error = {0};
+  vlScene *scene = load_text(context, text, &error);
+  assert_non_null(scene);
+  vlSaveDef save = vl_default_save_def();
+  w->losses[0] = 0;
+  save.lost = note_loss;
+  save.lost_user = w->losses;
+  snprintf(path, sizeof path, "%s/losses.%s", folder, suffix);
+  const bool done = vl_scene_save(scene, path, &save, &error) == VL_OK;
+  vl_scene_destroy(scene);
+  FILE *file = done ? fopen(path, "rb") : NULL;
+  w->size = file ? fread(w->bytes, 1, WRITTEN_BYTES, file) : 0;
+  return file && fclose(file) == 0 && w->size < WRITTEN_BYTES;
+}
+
+/* Words of losses that cover much of what a kind of the family has, or one parameter. */
+static const struct {
+  const char *family, *words, *parameter;
+} covering[] = {{"materials", "as a rough dielectric", NULL},
+                {"materials", "its first alone", NULL},
+                {"materials", "that glTF has not", NULL},
+                {"materials", "as a metal with a clear coat", NULL},
+                {"materials", "as diffuse of", NULL},
+                {"materials", ": left out", NULL},
+                {"textures", "its mean stands in", NULL},
+                {"textures", "mapped other than by uv", NULL},
+                {"textures", "its first alone", NULL},
+                {"lights", "that glTF has not", NULL},
+                {"media", "only part media", NULL},
+                {"shapes", "of the kind curve", NULL},
+                {"shapes", "displacement of meshes", "edgelength"},
+                {"shapes", "differs by direction", "S"}};
+
+static bool is_covered(const char *family, const char *parameter, const char *losses) {
+  bool covered = false;
+  for (size_t i = 0; i < sizeof covering / sizeof *covering; i++)
+    covered =
+        covered || (strcmp(covering[i].family, family) == 0 &&
+                    (!covering[i].parameter || same_name(covering[i].parameter, parameter)) &&
+                    strstr(losses, covering[i].words) != NULL);
+  return covered;
+}
+
+/* What changes the image changes the file, too, or the writer says that it is lost. */
+static void check_losses(const char *family, const char *kind, const char *name,
+                         const char *plain, const char *changed, const char *suffix) {
+  static Written written[2];
+  static char mesh_text[2][2 * TEXT];
+  with_meshes(plain, mesh_text[0]);
+  with_meshes(changed, mesh_text[1]);
+  for (int i = 0; i < 2; i++)
+    if (!write_scene_of(mesh_text[i], suffix, &written[i]))
+      return;
+  if (written[0].size == written[1].size &&
+      memcmp(written[0].bytes, written[1].bytes, written[0].size) == 0 &&
+      strcmp(written[0].losses, written[1].losses) == 0 &&
+      !is_covered(family, name, written[0].losses))
+    broken(family, kind, "\"%s\": as .%s it is lost without a word: %s", name, suffix,
+           written[0].losses);
+}
+
 /* ---- the effect of a parameter ----------------------------------------------------------- */
 
 /* Whether the image changes with the parameter. */
@@ -514,6 +593,7 @@ static bool has_effect(const char *family, const char *form, const char *kind, c
   static float changed[PIXELS];
   static char parameters[TEXT];
   static char text[TEXT];
+  static char plain_text[TEXT];
   vlError error = {0};
   parameters[0] = 0;
   append_base(parameters, base, name);
@@ -528,6 +608,7 @@ static bool has_effect(const char *family, const char *form, const char *kind, c
     parameters[0] = 0;
     append_base(parameters, base, name);
   }
+  strcpy(plain_text, text);
   strcat(parameters, value);
   scene_text(text, form, kind, parameters);
   if (!render_text(text, changed, &error))
@@ -535,6 +616,10 @@ static bool has_effect(const char *family, const char *form, const char *kind, c
   bool effect = memcmp(plain, changed, sizeof plain) != 0;
   if (effect)
     check_text(family, kind, name, text, changed);
+  if (effect && strcmp(family, "filters") != 0 && strcmp(family, "tracers") != 0) {
+    check_losses(family, kind, name, plain_text, text, "glb");
+    check_losses(family, kind, name, plain_text, text, "pbrt");
+  }
   const char *number = strstr(value, "\"float ");
   number = number ? strchr(number + 1, '"') : NULL;
   if (effect && number)

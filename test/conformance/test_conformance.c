@@ -20,6 +20,7 @@
 #include "parameters.h"
 #include "radiometry.h"
 #include "sampling.h"
+#include "saved_lights.h"
 #include "saved_spectra.h"
 #include "scrambles.h"
 #include "shading.h"
@@ -107,6 +108,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(limits_of_kinds),
       cmocka_unit_test(laws_of_furnaces),
       cmocka_unit_test(spectra_of_files),
+      cmocka_unit_test(lights_of_files),
       cmocka_unit_test(hostile_defs),
       cmocka_unit_test(hostile_cameras),
       cmocka_unit_test(hostile_files),

@@ -307,6 +307,10 @@ static void media(void **state) {
                 "Shape \"sphere\""); /* nothing lies in it */
   assert_string_equal(l.log, "");
   end_load(&l);
+  load_fine(&l,
+            "MakeNamedMedium \"sea\" \"string type\" \"homogeneous\" "
+            "\"string preset\" \"Pacific Ocean Surface Water\"\n" W); /* the last one */
+  end_load(&l);
   /* Every kind; named before they are made; who lies in them. */
   load_fine(
       &l, "MediumInterface \"\" \"air\"\nCamera \"perspective\"\n" W

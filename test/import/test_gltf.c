@@ -186,8 +186,9 @@ static void animation(void **state) {
   (void)state;
   Gltf *g = new_square();
   const float times[] = {1, 2, 4}, places[] = {0, 0, 0, 1, 0, 0, 3, 0, 0};
-  const float cubic[] = {0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0,
-                         0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0};
+  /* of each key the tangent before it, its value and the tangent behind it */
+  const float cubic[] = {9, 0, 0, 0, 0, 0, 2, 0, 0, -1, 0, 0, 1, 0,
+                         0, 4, 0, 0, 5, 0, 0, 3, 0, 0,  9, 0, 0};
   const float turns[] = {0, 0, 0, 1, 0, 0, 0.70710678f, 0.70710678f, 0, 0, -1, 0};
   gltf_floats(g, times, 3, "SCALAR", 1); /* 2 */
   gltf_floats(g, places, 3, "VEC3", 3);  /* 3 */
@@ -198,7 +199,7 @@ static void animation(void **state) {
   const double expected[3][6] = {/* at 0, 1, 1.5, 2, 3, 9 */
                                  {0, 0, 0, 1, 1, 3},
                                  {0, 0, 0.5, 1, 2, 3},
-                                 {0, 0, 0.75, 1, 2, 3}};
+                                 {0, 0, 0.875, 1, 1.75, 3}};
   const double moments[6] = {0, 1, 1.5, 2, 3, 9};
   for (int k = 0; k < 3; k++) {
     snprintf(

@@ -377,15 +377,37 @@ static void put_coated_conductor(vlExport *x, json_t *material, const vlMaterial
              unit(sqrt((double)vl_export_alpha(x, m, &m->coat_u_roughness))));
 }
 
+static double largest_factor(const json_t *color) {
+  double most = 0;
+  for (size_t i = 0; i < 3; i++)
+    most = fmax(most, json_number_value(json_array_get(color, i)));
+  return most;
+}
+
+static void scale_factor(json_t *color, double by) {
+  for (size_t i = 0; i < 3; i++)
+    json_array_set_new(color, i,
+                       json_real(unit(by * json_number_value(json_array_get(color, i)))));
+}
+
+/* glTF's leaves reflect a share of the light in one colour and pass the rest in another. The
+ * share is that of the larger numbers, so that both colours have as much room below 1. */
 static void put_leaf(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
                      double coverage) {
-  vl_export_lose(x, "diffusetransmission: reflected and passed light share one colour");
+  static const char key[] = "diffuseTransmissionColorFactor";
   put_diffuse(x, material, m, inside, coverage);
-  set_number(extension(x, material, "KHR_materials_diffuse_transmission"),
-             "diffuseTransmissionFactor", 0.5);
-  put_color(x, extension(x, material, "KHR_materials_diffuse_transmission"),
-            "diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture", true,
-            &m->transmittance, -1);
+  json_t *leaf = extension(x, material, "KHR_materials_diffuse_transmission");
+  put_color(x, leaf, key, "diffuseTransmissionColorTexture", true, &m->transmittance, -1);
+  json_t *reflected =
+      json_object_get(json_object_get(material, "pbrMetallicRoughness"), "baseColorFactor");
+  json_t *passed = json_object_get(leaf, key);
+  const double r = largest_factor(reflected), t = largest_factor(passed);
+  const double share = r + t > 0 ? t / (r + t) : 0.5;
+  if ((r + t) * (double)m->scale > 1 + 1e-6)
+    vl_export_lose(x, "diffusetransmission: of more than all light, all is written");
+  scale_factor(reflected, share < 1 ? (double)m->scale / (1 - share) : 0);
+  scale_factor(passed, share > 0 ? (double)m->scale / share : 0);
+  set_number(leaf, "diffuseTransmissionFactor", share);
 }
 
 static void put_subsurface(vlExport *x, json_t *material, const vlMaterialDef *m,

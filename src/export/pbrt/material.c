@@ -27,11 +27,20 @@ static void count_losses(vlExport *x, const vlMaterialDef *m) {
     vl_export_lose(x, "strength and colour of dielectrics' reflection: left out");
   if (p->clearcoat_normal.index || (p->normal.index && p->normal_scale != 1))
     vl_export_lose(x, "normal maps' scale, and those of coats: left out");
+  if (p->normal.index && m->normal_map)
+    vl_export_lose(x, "a second normal map: left out");
 }
 
-static bool put_normal(vlExport *x, const vlMaterialDef *m) {
+/* The material's bump map, and its normal map: a texture of the principled material, or a file.
+ * height: the bump map, prepared. */
+static bool put_bumps(vlExport *x, const vlMaterialDef *m, const vlPbrtInput *height) {
   const vlTextureDef *t = vl_export_texture(x, m->principled.normal);
+  vlTextureDef file = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   char name[300];
+  if (height->texture[0])
+    vl_pbrt_put_number(x, "displacement", height);
+  file.path = m->normal_map;
+  t = t || !m->normal_map ? t : &file;
   if (!t)
     return true;
   if (!vl_pbrt_image(x, t, VL_PBRT_COLORS, name))
@@ -101,7 +110,7 @@ static void put_coat(vlExport *x, float transmission, double eta, const vlPbrtIn
 /* The non-metallic part of the principled material. name: the material's. */
 static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name) {
   const vlPrincipledDef *p = &m->principled;
-  vlPbrtInput color, passed, alpha;
+  vlPbrtInput color, passed, alpha, height;
   const float transmission = vl_export_number(x, &p->transmission);
   double eta = (double)vl_export_eta(&m->eta.value);
   eta = eta > 1 ? eta : 1.5;
@@ -124,7 +133,8 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
                   ? vl_pbrt_prepare_under_coat(x, &m->reflectance, eta, &color)
                   : vl_pbrt_prepare_raised(x, &m->reflectance, white, &color);
   fine = fine && vl_pbrt_prepare_color(x, &p->diffuse_transmission_color, &passed) &&
-         vl_pbrt_prepare_number(x, &p->roughness, true, &alpha);
+         vl_pbrt_prepare_number(x, &p->roughness, true, &alpha) &&
+         vl_pbrt_prepare_number(x, &m->displacement, false, &height);
   if (!fine)
     return false;
   PUT("MakeNamedMaterial \"%s\" \"string type\" ", name);
@@ -145,23 +155,24 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
       put_coat(x, transmission, eta, &color, &alpha);
       break;
   }
-  fine = put_normal(x, m);
+  fine = put_bumps(x, m, &height);
   PUT("\n");
   return fine;
 }
 
 static bool put_metal_part(vlExport *x, const vlMaterialDef *m, const char *name) {
-  vlPbrtInput color, alpha;
+  vlPbrtInput color, alpha, height;
   if (!vl_pbrt_prepare_metal(x, &m->reflectance,
                              vl_export_mean_square(x, &m->principled.roughness), &color) ||
-      !vl_pbrt_prepare_number(x, &m->principled.roughness, true, &alpha))
+      !vl_pbrt_prepare_number(x, &m->principled.roughness, true, &alpha) ||
+      !vl_pbrt_prepare_number(x, &m->displacement, false, &height))
     return false;
   vl_export_lose(x, "principled metals: as conductors of that mean reflectance");
   PUT("MakeNamedMaterial \"%s\" \"string type\" \"conductor\"", name);
   vl_pbrt_put_color(x, "reflectance", &color);
   vl_pbrt_put_number(x, "roughness", &alpha);
   PUT(" \"bool remaproughness\" false");
-  bool fine = put_normal(x, m);
+  bool fine = put_bumps(x, m, &height);
   PUT("\n");
   return fine;
 }

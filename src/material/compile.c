@@ -238,7 +238,7 @@ static vlResult compile_layers(const vlMaterialBuild *b, bool metal) {
   if (!l)
     return vl_fail_memory(b->error);
   b->m->bsdf = VL_BSDF_LAYERED;
-  b->m->own = l;
+  b->m->layers = l;
   l->metal = metal;
   l->coat_u = l->coat_v = -1;
   /* Limits. No walk takes more steps, because Russian roulette ends it before. More walks per

@@ -15,7 +15,7 @@ static void seeds(vlTextureRun *r) {
 }
 
 void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
-  const vlWorldLayers *l = m->own;
+  const vlWorldLayers *l = m->layers;
   vlShade *shade = &r->at->shade;
   float(*rows)[VL_ROW_SIZE] = shade->own;
   vl_texture_albedo(r, l->albedo, 1.0f, rows + VL_L_ALBEDO);

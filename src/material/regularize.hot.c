@@ -2,7 +2,6 @@
  * lobes rougher for paths that have already been scattered, so that light samples can find
  * light that otherwise only a nearly specular lobe would reach. Kinds without alpha do not
  * change. */
-#include "material/kinds.row.h"
 #include "math/ggx.h"
 #include "trace/stages.h"
 #include "velo/schema.h"
@@ -21,11 +20,11 @@ void vl_stage_regularize(const vlTracing *t, uint32_t n, vlVertices *at) {
     sh->alpha_y[i] = vl_ggx_widened(sh->alpha_y[i]);
     if (m->widened)
       sh->coat[i] = m->widened;
-    if (m->bsdf == VL_BSDF_LAYERED && ((const vlWorldLayers *)m->own)->metal) {
+    if (m->layers && m->layers->metal) {
       sh->own[VL_L_BASE_X][i] = vl_ggx_widened(sh->own[VL_L_BASE_X][i]);
       sh->own[VL_L_BASE_Y][i] = vl_ggx_widened(sh->own[VL_L_BASE_Y][i]);
     }
-    if (m->bsdf == VL_BSDF_PRINCIPLED)
+    if (m->principled)
       sh->own[VL_P_COAT_ALPHA][i] = vl_ggx_widened(sh->own[VL_P_COAT_ALPHA][i]);
   }
 }

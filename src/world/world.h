@@ -177,7 +177,7 @@ typedef struct vlWorldMaterial {
   bool diffuse;  /* bsdf is VL_BSDF_DIFFUSE */
   vlSmooth smooth;
   uint32_t traits; /* bits of the kind, such as VL_MATERIAL_OPAQUE */
-  const void *own; /* data of this kind alone (vlWorldLayers, vlWorldHair, ...): a block owned
+  const void *own; /* data of this kind alone (vlWorldHair, ...): a block owned
                       by the world */
   bool no_cosine;  /* the path throughput is not multiplied by the cosine */
   bool one_sided;  /* light only leaves on the side on which it arrives: only lights on the
@@ -200,6 +200,7 @@ typedef struct vlWorldMaterial {
   /* the same for the roughness that vlBuildDef.regularize gives; else null */
   const vlCoatTable *widened;
   const vlWorldPrincipled *principled; /* null for other kinds */
+  const vlWorldLayers *layers;         /* null for other kinds */
   int32_t transmittance; /* for diffuse transmission: spectrum node; scale multiplies
                             reflectance and transmittance */
   float scale;

@@ -8,7 +8,6 @@
 
 #include "base/text.h"
 #include "import/import.h"
-#include "velo/material.h"
 #include "velo/shape.h"
 
 /* ---- parameters that outlive their directive --------------------------------------------- */
@@ -336,13 +335,7 @@ static bool give_up(vlImport *import) {
       import->textures.items[i].state = VL_DONE;
   for (size_t i = 0; i < import->materials.count; i++) {
     vlPending *p = &import->materials.items[i];
-    if (p->state != VL_IN_PROGRESS)
-      continue;
-    vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
-    def.name = p->name;
-    p->state = VL_DONE;
-    p->id = vl_scene_add_material(import->scene, &def).index;
-    if (!p->id)
+    if (p->state == VL_IN_PROGRESS && !vl_import_give_up_material(import, p))
       return false;
   }
   return true;

@@ -314,6 +314,8 @@ bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlS
 /* first resolves the textures that this one refers to */
 bool vl_import_finish_texture(vlImport *import, uint32_t index);
 bool vl_import_finish_material(vlImport *import, uint32_t index);
+/* Instead: the default material, by its name. */
+bool vl_import_give_up_material(vlImport *import, vlPending *pending);
 /* Finishes a texture or a material once. too_deep: the error where they refer to each other
  * more than VL_IMPORT_DEPTH deep. */
 bool vl_import_finish_once(vlImport *import, vlPending *pending,

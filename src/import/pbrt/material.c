@@ -61,6 +61,14 @@ bool vl_import_material_id(vlImport *import, const char *name, vlSource source,
   return true;
 }
 
+bool vl_import_give_up_material(vlImport *import, vlPending *pending) {
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  def.name = pending->name;
+  pending->state = VL_DONE;
+  pending->id = vl_scene_add_material(import->scene, &def).index;
+  return pending->id != 0;
+}
+
 /* ---- what a table cannot say ------------------------------------------------------------- */
 
 static bool finish_metal(vlDict *dict, vlMaterialDef *def, const char *eta, const char *k) {

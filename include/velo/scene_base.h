@@ -85,9 +85,9 @@ typedef struct vlLabel {
 /** The scene's defs, never null. The scene owns them and what their pointers point at. May be
  * changed until the scene is destroyed. */
 VL_API vlSceneDefs *vl_scene_defs(vlScene *scene);
-/** Copies camera, image size and crop from another scene of the same context. The objects of
- * the camera's lens are copied, too, so that `from` may be destroyed afterwards. ARGUMENT,
- * MEMORY. */
+/** Copies camera, image size and crop from another scene of the same context, and whether it
+ * has a camera (vlSceneDefs.camera_missing). The objects of the camera's lens are copied, too,
+ * so that `from` may be destroyed afterwards. ARGUMENT, MEMORY. */
 VL_API vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error);
 /** Focuses the scene's camera, which must have a lens of many elements, at a distance from its
  * film, in scene units. ARGUMENT, MEMORY. */

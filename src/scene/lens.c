@@ -27,6 +27,7 @@ vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
   vlSceneDefs *to = &scene->defs;
   const vlSceneDefs *s = &from->defs;
   to->camera = s->camera;
+  to->camera_missing = s->camera_missing;
   to->film.width = s->film.width;
   to->film.height = s->film.height;
   memcpy(to->film.crop, s->film.crop, sizeof to->film.crop);

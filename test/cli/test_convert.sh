@@ -10,6 +10,12 @@ check pbrt_pbrt "$VELO" scene convert scene.pbrt again.pbrt
 check pbrt_a "$VELO" render scene.pbrt -o a.exr --quiet
 check pbrt_b "$VELO" render again.pbrt -o b.exr --quiet
 check pbrt_same "$VELO" image diff a.exr b.exr --threshold differing=0
+# Options that choose among a glTF file's cameras, variants and animations.
+"$VELO" scene convert scene.pbrt again.pbrt --camera 1 --variant red --at 2 --animation walk 2>told
+check gltf_options_are_told test "$(grep -c -- '--[a-z]* has no effect: scene.pbrt is not a glTF file' told)" = 4
+"$VELO" scene convert scene.pbrt still.gltf 2>/dev/null
+"$VELO" scene convert still.gltf again.gltf --camera 0 --at 2 2>told
+check animations_are_told test "$(grep 'has no effect' told)" = "velo: --at has no effect: still.gltf has no animations"
 # Many spheres of one state are one shape within, and spheres again in files.
 { echo 'LookAt 0 0 -25  0 0 0  0 1 0 Film "rgb" "integer xresolution" 32 "integer yresolution" 24 Sampler "zsobol" "integer pixelsamples" 4 WorldBegin LightSource "infinite"'; for i in $(seq 4300); do echo "AttributeBegin Translate $((i % 20 - 10)) $((i / 20 % 20 - 10)) $((i / 400)) Shape \"sphere\" \"float radius\" 0.$((i % 4 + 1)) AttributeEnd"; done; } >many.pbrt
 check many_pbrt "$VELO" scene convert many.pbrt many2.pbrt

@@ -460,8 +460,26 @@ static void raised_parts(void **state) {
       }
 }
 
+/* A camera that is taken from another scene is not replaced by an added one. */
+static void a_taken_camera_stays(void **state) {
+  (void)state;
+  Model m = begin();
+  vlScene *other = NULL;
+  const float low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
+  add_box(&m, low, high, false, false);
+  assert_int_equal(vl_scene_create(m.context, &other), VL_OK);
+  vl_scene_defs(other)->camera.eye[0] = 77;
+  assert_int_equal(vl_scene_take_camera(m.scene, other, NULL), VL_OK);
+  vl_scene_destroy(other);
+  vlCompleteDef def = vl_default_complete_def();
+  complete(&m, &def);
+  assert_true(vl_scene_defs(m.scene)->camera.eye[0] == 77);
+  end(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_taken_camera_stays),
       cmocka_unit_test(stray_parts),
       cmocka_unit_test(all_of_it),
       cmocka_unit_test(on_a_plain),

@@ -7,6 +7,7 @@
 #include "render/output_names.h"
 #include "render/scene_options.h"
 #include "scene/scene.h"
+#include "velo/check.h"
 #include "velo/export.h"
 #include "velo/render.h"
 
@@ -52,6 +53,22 @@ static void tell(void *user, const char *what, uint64_t count) {
   report_note("not held: %s (%llu)", what, (unsigned long long)count);
 }
 
+/* Tells of options that the scene gives nothing to choose from, as velo render does. */
+static void tell_unused(const OptionValue *v, const char *from, const vlScene *scene) {
+  const bool gltf = scene_is_gltf(from);
+  const bool animated = vl_scene_choice_count(scene, VL_CHOICE_ANIMATION) > 0;
+  for (const Option *o = convert_options; o->name; o++) {
+    const bool plays = o->id == CONVERT_AT || o->id == CONVERT_ANIMATION;
+    const bool chooses = plays || o->id == CONVERT_CAMERA || o->id == CONVERT_VARIANT;
+    if (!chooses || !v[o->id].given)
+      continue;
+    if (!gltf)
+      report_note("--%s has no effect: %s is not a glTF file", o->name, from);
+    else if (plays && !animated)
+      report_note("--%s has no effect: %s has no animations", o->name, from);
+  }
+}
+
 static int run_convert(const Arguments *arguments, vlContext *context) {
   const OptionValue *v = arguments->values;
   const char *from = arguments->operands[0], *to = arguments->operands[1];
@@ -70,6 +87,8 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
   save.strict = v[CONVERT_STRICT].given;
   save.lost = tell;
   vlResult result = scene_read(context, from, &load, &scene, &error);
+  if (result == VL_OK)
+    tell_unused(v, from, scene);
   const vlSceneDefs *defs = scene ? vl_scene_defs(scene) : NULL;
   if (result == VL_OK && (pbrt || v[CONVERT_COMPLETE].given) &&
       (defs->camera_missing || defs->light_missing)) {

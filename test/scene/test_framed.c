@@ -465,7 +465,6 @@ static void a_taken_camera_stays(void **state) {
   (void)state;
   Model m = begin();
   vlScene *other = NULL;
-  const float low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
   add_box(&m, low, high, false, false);
   assert_int_equal(vl_scene_create(m.context, &other), VL_OK);
   vl_scene_defs(other)->camera.eye[0] = 77;

@@ -618,7 +618,8 @@ static bool has_effect(const char *family, const char *form, const char *kind, c
     check_text(family, kind, name, text, changed);
   if (effect && strcmp(family, "filters") != 0 && strcmp(family, "tracers") != 0) {
     check_losses(family, kind, name, plain_text, text, "glb");
-    check_losses(family, kind, name, plain_text, text, "pbrt");
+    if (strcmp(kind, "principled") == 0) /* pbrt has all others */
+      check_losses(family, kind, name, plain_text, text, "pbrt");
   }
   const char *number = strstr(value, "\"float ");
   number = number ? strchr(number + 1, '"') : NULL;

@@ -6,7 +6,7 @@
 /* The image has .2, .4, .6, .8 in its quarters: left top, right top, left bottom, right bottom.
  * Its map has y upwards: below the light, u goes with x and v with z. The distance is the root
  * of 1.5. The lamp file's intensity is linear in C, from 2 at C 0 to 1 at C 180; that of the
- * other one from 1 to 3. */
+ * other one from 3 to 9. */
 const LightCase goniometric_light =
     {
         .before = "Translate 0 1 0",

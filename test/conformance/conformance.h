@@ -16,6 +16,7 @@
 #include "failing_allocator.h"
 #include "unit.h"
 #include "velo/edit.h"
+#include "velo/export.h"
 #include "velo/filter_kinds.h"
 #include "velo/light.h"
 #include "velo/load.h"
@@ -147,13 +148,25 @@ static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
   return image;
 }
 
-/* The scene of a text, and the image of a scene made from it, which must be. */
+/* The scene of a text, and the image of a scene made from it, both of which must be. */
 static vlScene *need_scene(const char *text) {
   vlError error = {0};
   vlScene *scene = load_text(context, text, &error);
   if (!scene)
     fail_msg("%s\n%s", error.message, text);
   return scene;
+}
+/* What velo reads of the file to which it writes the scene. */
+static vlScene *read_again(vlScene *scene, const char *file) {
+  char path[100];
+  vlError error = {0};
+  vlScene *read;
+  snprintf(path, sizeof path, "%s/%s", folder, file);
+  assert_int_equal(vl_scene_create(context, &read), VL_OK);
+  if (vl_scene_save(scene, path, NULL, &error) != VL_OK ||
+      vl_scene_load(read, path, NULL, &error) != VL_OK)
+    fail_msg("%s", error.message);
+  return read;
 }
 static vlImage *need_image(vlScene *scene, const char *text) {
   vlError error = {0};

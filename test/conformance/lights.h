@@ -12,7 +12,6 @@
 #include "trace/trace.h"
 #include "unit.h"
 #include "velo/edit.h"
-#include "velo/export.h"
 #include "velo/filter_kinds.h"
 #include "velo/light.h"
 #include "velo/tracer.h"
@@ -174,19 +173,11 @@ static void check_delta_light(const char *kind, const LightVariant *v, const cha
 /* The edge of glTF's spots has another profile, and the writer says so; the angles between
  * which it lies are the same. */
 static void check_spot_as_gltf(void) {
-  char path[100];
-  vlError error = {0};
-  vlScene *scene = load_text(context,
-                             HEAD
-                             "WorldBegin LightSource \"spot\" \"float coneangle\" 40 "
-                             "\"float conedeltaangle\" 10 Shape \"sphere\"\n",
-                             &error);
-  assert_non_null(scene);
-  snprintf(path, sizeof path, "%s/spot.gltf", folder);
-  assert_int_equal(vl_scene_save(scene, path, NULL, &error), VL_OK);
-  vl_scene_destroy(scene);
-  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-  assert_int_equal(vl_scene_load(scene, path, NULL, &error), VL_OK);
+  vlScene *written = need_scene(HEAD
+                                "WorldBegin LightSource \"spot\" \"float coneangle\" 40 "
+                                "\"float conedeltaangle\" 10 Shape \"sphere\"\n");
+  vlScene *scene = read_again(written, "spot.gltf");
+  vl_scene_destroy(written);
   const vlLightDef *light = vl_scene_light(scene, (vlLightId){1});
   double end = light ? (double)light->cone_angle : 0;
   double begin = light ? end - (double)light->cone_delta : 0;

@@ -121,14 +121,9 @@ static void texture_part(char text[TEXT], const vlKindRow *row, const char *para
 
 /* The scene that a file of it gives, seen as before. */
 static vlScene *through_file(vlScene *scene, const char *suffix) {
-  char path[100];
-  vlError error = {0};
-  vlScene *read;
-  snprintf(path, sizeof path, "%s/parts.%s", folder, suffix);
-  assert_int_equal(vl_scene_create(context, &read), VL_OK);
-  if (vl_scene_save(scene, path, NULL, &error) != VL_OK ||
-      vl_scene_load(read, path, NULL, &error) != VL_OK)
-    fail_msg("%s", error.message);
+  char file[20];
+  snprintf(file, sizeof file, "parts.%s", suffix);
+  vlScene *read = read_again(scene, file);
   const vlSceneDefs *from = vl_scene_defs(scene);
   vlSceneDefs *to = vl_scene_defs(read);
   to->camera = from->camera;
@@ -148,11 +143,7 @@ static vlImage *image_of_parts(const vlKindRow *row, PartText *part, const char 
   int length = snprintf(text, sizeof text, "%s%s" LEFT_PART "%s" RIGHT_PART, PARTS_SEEN,
                         parts[0], parts[1]);
   assert_true(length > 0 && length < TEXT);
-  vlScene *scene = need_scene(text);
-  vlSceneDefs *defs = vl_scene_defs(scene);
-  defs->build.color = VL_COLOR_RGB;
-  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
-  defs->render.spp = SAMPLES;
+  vlScene *scene = scene_in(VL_COLOR_RGB, text, NULL, VL_PIXEL_FILTER_BOX, SAMPLES);
   if (!suffix)
     return need_image(scene, text);
   vlImage *image = need_image(through_file(scene, suffix), text);

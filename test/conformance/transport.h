@@ -13,9 +13,9 @@
 #include "velo/filter_kinds.h"
 #include "velo/tracer.h"
 
-/* The image of the scene by a tracer (null: the scene's own), in RGB or in wavelengths, and
- * with a pixel filter. */
-static vlImage *image_in(vlColorMode color, const char *text, const char *tracer,
+/* The scene, to be rendered by a tracer (null: its own), in RGB or in wavelengths, and with a
+ * pixel filter. */
+static vlScene *scene_in(vlColorMode color, const char *text, const char *tracer,
                          vlPixelFilterKind filter, uint32_t spp) {
   vlScene *scene = need_scene(text);
   vlSceneDefs *defs = vl_scene_defs(scene);
@@ -26,7 +26,12 @@ static vlImage *image_in(vlColorMode color, const char *text, const char *tracer
   for (uint32_t k = 0; tracer && k < family->kind_count; k++)
     if (strcmp(family->rows[k]->name, tracer) == 0)
       defs->render.tracer = (vlTracer)k;
-  return need_image(scene, text);
+  return scene;
+}
+
+static vlImage *image_in(vlColorMode color, const char *text, const char *tracer,
+                         vlPixelFilterKind filter, uint32_t spp) {
+  return need_image(scene_in(color, text, tracer, filter, spp), text);
 }
 
 static vlImage *filtered_image(const char *text, const char *tracer, vlPixelFilterKind filter,

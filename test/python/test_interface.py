@@ -70,7 +70,8 @@ def settings_forget_what_they_were():
     scene = small()
     choices = {row.name: row.choices for row in cases.setting_rows() if row.choices}
     mine = {"sampler": [velo.OwnSampler(lambda samples: None, name="mine")], "tracer": [velo.OwnTracer(lambda trace: None, name="mine")]}
-    settings, changes = scene.settings(), 0
+    settings = scene.settings()
+    changes = 0
     start = settings.keywords()
     for name in sorted(set(start) - {"resolution", "crop"}):
         before = settings.get(name)

@@ -5,7 +5,7 @@
 #include "velo/sampler.h"
 #include "velo/tracer.h"
 
-enum { SIZE = 16, SEEDS = 20, BLOCKS = 4, SKY = 32 };
+enum { SIZE = 16, SEEDS = 20, BLOCKS = 4, SKY = 32, PLAIN_SPP = 128, PORTAL_SPP = 32 };
 
 /* Walls at -1 and 1; a window in the ceiling (y = 1): |x - 0.2| < 0.4, |z| < 0.3. */
 static void add_room(Stage *s) {
@@ -114,20 +114,20 @@ static int ascending(const void *a, const void *b) {
 
 static void room_with_and_without(void **state) {
   (void)state;
-  Blocks plain = measure(VL_TRACER_PATH, false, 128),
-         portal = measure(VL_TRACER_PATH, true, 32);
+  Blocks plain = measure(VL_TRACER_PATH, false, PLAIN_SPP),
+         portal = measure(VL_TRACER_PATH, true, PORTAL_SPP);
   compare("path tracing", &plain, &portal);
   /* The variance of a sample, block by block: rare bright samples rule the sum over all. */
   double ratio[BLOCKS * BLOCKS];
   for (int k = 0; k < BLOCKS * BLOCKS; k++)
-    ratio[k] = 32 * portal.variance[k] / (128 * plain.variance[k]);
+    ratio[k] = PORTAL_SPP * portal.variance[k] / (PLAIN_SPP * plain.variance[k]);
   qsort(ratio, BLOCKS * BLOCKS, sizeof *ratio, ascending);
   double median = ratio[BLOCKS * BLOCKS / 2];
   if (!(median < 0.5))
     fail_msg("a portal must help: median ratio of the variances %g", median);
   const vlTracer tracers[] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL};
   for (int i = 0; i < 2; i++) {
-    Blocks other = measure(tracers[i], true, 32);
+    Blocks other = measure(tracers[i], true, PORTAL_SPP);
     compare(i ? "bidirectional" : "volpath", &plain, &other);
   }
 }

@@ -1,4 +1,5 @@
 /* program/images.c: images of textures. The library reads the files, and gives their values as linear numbers. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "world.h"

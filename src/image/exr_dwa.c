@@ -64,23 +64,22 @@ static void dct_make(float matrix[8][8]) {
       matrix[n][k] = basis(n, k);
 }
 
+/* Transforms the rows of `from`; in `to` they are columns. */
+static void dct_rows(const float from[64], const float matrix[8][8], float to[64]) {
+  for (int n = 0; n < 8; n++)
+    for (int y = 0; y < 8; y++) {
+      float sum = 0.0f;
+      for (int k = 0; k < 8; k++)
+        sum += matrix[n][k] * from[8 * y + k];
+      to[8 * n + y] = sum;
+    }
+}
+
 /* Transforms values stored by rows, in place. */
 static void dct_inverse(float block[64], const float matrix[8][8]) {
-  float rows[64];
-  for (int y = 0; y < 8; y++)
-    for (int n = 0; n < 8; n++) {
-      float sum = 0.0f;
-      for (int k = 0; k < 8; k++)
-        sum += matrix[n][k] * block[8 * y + k];
-      rows[8 * y + n] = sum;
-    }
-  for (int n = 0; n < 8; n++)
-    for (int x = 0; x < 8; x++) {
-      float sum = 0.0f;
-      for (int k = 0; k < 8; k++)
-        sum += matrix[n][k] * rows[8 * k + x];
-      block[8 * n + x] = sum;
-    }
+  float columns[64];
+  dct_rows(block, matrix, columns);
+  dct_rows(columns, matrix, block);
 }
 
 static size_t type_size(int type) {

@@ -35,14 +35,18 @@ static bool wanted(const Pen *p, vlDrawingPart part) {
   return p->def->parts >> part & 1;
 }
 
+/* An element that was added; null, without memory, makes the drawing fail. */
+static void *kept(Pen *p, void *added) {
+  p->failed |= !added;
+  return added;
+}
+
 static void line(Pen *p, vlDrawingPart part, const double a[3], const double b[3]) {
   if (!wanted(p, part))
     return;
-  vlDrawingLine *l = VL_PUSH(p->context, &p->lines);
-  if (!l) {
-    p->failed = true;
+  vlDrawingLine *l = kept(p, VL_PUSH(p->context, &p->lines));
+  if (!l)
     return;
-  }
   l->part = part;
   l->camera = p->index;
   memcpy(l->from, a, sizeof l->from);
@@ -53,11 +57,9 @@ static void face(Pen *p, vlDrawingPart part, const double a[3], const double b[3
                  const double c[3], const double d[3]) {
   if (!wanted(p, part))
     return;
-  vlDrawingFace *f = VL_PUSH(p->context, &p->faces);
-  if (!f) {
-    p->failed = true;
+  vlDrawingFace *f = kept(p, VL_PUSH(p->context, &p->faces));
+  if (!f)
     return;
-  }
   f->part = part;
   f->camera = p->index;
   const double *const corners[4] = {a, b, c, d};
@@ -68,11 +70,9 @@ static void face(Pen *p, vlDrawingPart part, const double a[3], const double b[3
 static void label(Pen *p, vlDrawingPart part, const double at[3], const char *text) {
   if (!wanted(p, part))
     return;
-  vlDrawingLabel *l = VL_PUSH(p->context, &p->labels);
-  if (!l) {
-    p->failed = true;
+  vlDrawingLabel *l = kept(p, VL_PUSH(p->context, &p->labels));
+  if (!l)
     return;
-  }
   l->part = part;
   l->camera = p->index;
   memcpy(l->at, at, sizeof l->at);

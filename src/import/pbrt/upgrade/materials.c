@@ -131,15 +131,9 @@ static bool metal_rule(vlOldStatement *s) {
 /* pbrt-v4's dielectric is not tinted: Kr and Kt go, and are lost unless they are 1. */
 static bool glass_rule(vlOldStatement *s) {
   static const char *const names[] = {"Kr", "Kt"};
-  for (int i = 0; i < 2; i++) {
-    vlOldParam *p = vl_old_find(s, names[i]);
-    double value;
-    if (!p)
-      continue;
-    if (!vl_old_is_grey(p, &value) || value != 1)
+  for (int i = 0; i < 2; i++)
+    if (vl_old_drop_loses(s, names[i], 1))
       vl_old_lose(s, "glass: \"%s\" has no counterpart: clear glass is written", names[i]);
-    vl_old_drop(s, p);
-  }
   vlOldParam *eta = vl_old_find(s, "eta");
   if (!eta)
     eta = vl_old_find(s, "index");

@@ -189,14 +189,8 @@ bool vl_old_disney(vlOldStatement *s) {
   rename_if(s, "spectrans", "transmission");
   rename_if(s, "thin", "thinwalled");
   rename_if(s, "anisotropic", "anisotropy");
-  for (size_t i = 0; i < VL_LENGTH(lost); i++) {
-    vlOldParam *p = vl_old_find(s, lost[i]);
-    double value;
-    if (!p)
-      continue;
-    if (!vl_old_is_grey(p, &value) || value != 0)
+  for (size_t i = 0; i < VL_LENGTH(lost); i++)
+    if (vl_old_drop_loses(s, lost[i], 0))
       vl_old_lose(s, "disney: \"%s\" has no counterpart", lost[i]);
-    p->dropped = true;
-  }
   return true;
 }

@@ -29,6 +29,13 @@ void vl_old_drop_all(vlOldStatement *s, const char *const *names, size_t count) 
     vl_old_drop(s, vl_old_find(s, names[i]));
 }
 
+bool vl_old_drop_loses(vlOldStatement *s, const char *name, double neutral) {
+  vlOldParam *p = vl_old_find(s, name);
+  double value;
+  vl_old_drop(s, p);
+  return p && !(vl_old_is_grey(p, &value) && value == neutral);
+}
+
 bool vl_old_is_texture(const vlOldParam *p) {
   return vl_text_is(p->type, "texture") && p->count > 0;
 }

@@ -203,6 +203,9 @@ vlOldParam *vl_old_find(vlOldStatement *s, const char *name);
 /* Leaves the parameter out. */
 void vl_old_drop(vlOldStatement *s, vlOldParam *p);
 void vl_old_drop_all(vlOldStatement *s, const char *const *names, size_t count);
+/* Leaves the parameter out. Whether that loses something: it was there, and not grey of the
+ * value that changes nothing. */
+bool vl_old_drop_loses(vlOldStatement *s, const char *name, double neutral);
 /* Converts type names and values to those of pbrt-v4. */
 bool vl_old_types(vlOldStatement *s);
 /* Whether the parameter is a number, or a colour of three equal numbers. */

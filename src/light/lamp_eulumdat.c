@@ -180,11 +180,7 @@ static bool read_intensities(vlLampText *t, double factor, vlLampData *data) {
       return false;
     }
   }
-  if (vl_lamp_done(t))
-    return true;
-  vl_lamp_fail(t, t->line, "lamp file: more lines than %u x %u intensities need", data->planes,
-               data->angles);
-  return false;
+  return vl_lamp_end(t, data->planes, data->angles);
 }
 
 vlResult vl_lamp_read_eulumdat(vlLamp *lamp, const char *name, const char *text, size_t size,

@@ -166,11 +166,7 @@ static bool read_candela(vlLampText *t, double factor, vlLampData *data) {
       return false;
     }
   }
-  if (vl_lamp_done(t))
-    return true;
-  vl_lamp_fail(t, t->line, "lamp file: more numbers than %u x %u angles need", data->planes,
-               data->angles);
-  return false;
+  return vl_lamp_end(t, data->planes, data->angles);
 }
 
 static bool read_table(vlLampText *t, double factor, vlLampData *data) {

@@ -109,8 +109,11 @@ static void pass_blanks(vlLampText *t) {
       t->at++;
 }
 
-bool vl_lamp_done(vlLampText *t) {
+bool vl_lamp_end(vlLampText *t, uint32_t planes, uint32_t angles) {
   pass_blanks(t);
+  if (t->at < t->end)
+    vl_lamp_fail(t, t->line, "lamp file: more numbers than %u x %u angles need", planes,
+                 angles);
   return t->at >= t->end;
 }
 

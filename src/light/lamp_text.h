@@ -24,8 +24,9 @@ bool vl_lamp_line(vlLampText *t, vlLampLine *line);
 bool vl_lamp_number(vlLampText *t, const char *what, double *value);
 /* The same for a whole number from low to high. */
 bool vl_lamp_whole(vlLampText *t, const char *what, double low, double high, uint32_t *value);
-/* Whether nothing but blanks is left. */
-bool vl_lamp_done(vlLampText *t);
+/* Whether nothing but blanks follows the last of planes x angles intensities; else the error is
+ * set. */
+bool vl_lamp_end(vlLampText *t, uint32_t planes, uint32_t angles);
 /* Converts a plain decimal number, the whole of text[0, length); comma: the decimal sign may be
  * a comma. False: it is none, or above 1e30. */
 bool vl_lamp_decimal(const char *text, size_t length, bool comma, double *value);

@@ -177,10 +177,15 @@ static vlObject *find_object(vlImport *import, const char *name, vlSource source
   return object;
 }
 
+static bool is_outside(vlImport *import, const vlStatement *s, const char *directive) {
+  return !import->in_object ||
+         vl_import_wrong(import, s->source, "%s inside of an object: objects do not nest",
+                         directive);
+}
+
 bool vl_import_object_begin(vlImport *import, const vlStatement *s) {
-  if (import->in_object)
-    return vl_import_wrong(import, s->source,
-                           "ObjectBegin inside of an object: objects do not nest");
+  if (!is_outside(import, s, "ObjectBegin"))
+    return false;
   vlObject *object = find_object(import, s->names[0], s->source);
   if (!object)
     return false;
@@ -202,9 +207,8 @@ bool vl_import_object_end(vlImport *import, const vlStatement *s) {
 }
 
 bool vl_import_object_instance(vlImport *import, const vlStatement *s) {
-  if (import->in_object)
-    return vl_import_wrong(import, s->source,
-                           "ObjectInstance inside of an object: objects do not nest");
+  if (!is_outside(import, s, "ObjectInstance"))
+    return false;
   const vlObject *object = find_object(import, s->names[0], s->source);
   return object && vl_import_add_instance(import, object->group, import->state.ctm, s->source);
 }

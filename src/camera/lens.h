@@ -30,18 +30,22 @@ static inline vlLensPoint vl_lens_disk(float u, float v) {
   return (vlLensPoint){wide ? along : across, wide ? across : along};
 }
 
+/* The ray through the point (lx, ly) of the lens, bent there. */
+static inline vlCameraLocal vl_lens_bend(vlCameraLocal r, double lx, double ly, double bend) {
+  r.ox += lx;
+  r.oy += ly;
+  r.dx -= lx * bend;
+  r.dy -= ly * bend;
+  return r;
+}
+
 /* With r = o + s d and the point of focus at z = F: the ray starts at o + l and aims at o + d
  * F/dz. depth = dz. Projections that see more than the half-space z > 0 focus on a sphere: for
  * them d has unit length and depth is 1. */
 static inline vlCameraLocal vl_lens_apply_at(const vlCameraCompiled *c, vlCameraLocal r,
                                              vlLensPoint disk, double depth) {
   double lx = c->lens_radius * (double)disk.x, ly = c->lens_radius * (double)disk.y;
-  double bend = depth * c->inv_focus;
-  r.ox += lx;
-  r.oy += ly;
-  r.dx -= lx * bend;
-  r.dy -= ly * bend;
-  return r;
+  return vl_lens_bend(r, lx, ly, depth * c->inv_focus);
 }
 static inline vlCameraLocal vl_lens_apply(const vlCameraCompiled *c, vlCameraLocal r,
                                           vlLensPoint disk) {
@@ -55,12 +59,7 @@ static inline vlCameraLocal vl_lens_refract(const vlCameraCompiled *c, vlCameraL
   double lx = c->lens_radius * (double)lens.x, ly = c->lens_radius * (double)lens.y;
   const double *a = c->focus;
   double plane = (a[0] * r.dx + a[1] * r.dy + a[2] * r.dz) / (1.0 - a[0] * r.ox - a[1] * r.oy);
-  double bend = c->ahead ? plane : c->inv_focus;
-  r.ox += lx;
-  r.oy += ly;
-  r.dx -= lx * bend;
-  r.dy -= ly * bend;
-  return r;
+  return vl_lens_bend(r, lx, ly, c->ahead ? plane : c->inv_focus);
 }
 
 /* Maps n pairs of random numbers to points of a shaped aperture. Defined in lens_points.c. */

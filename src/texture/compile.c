@@ -58,10 +58,12 @@ typedef struct Compile {
   vlError *error;
 } Compile;
 
-static int32_t push_node(vlWorld *world, const vlTextureNode *node) {
+static int32_t push_node(vlWorld *world, const vlTextureNode *node, vlError *error) {
   vlTextureNode *slot = VL_PUSH(world->context, &world->nodes);
-  if (!slot)
+  if (!slot) {
+    vl_fail_memory(error);
     return VL_TEXTURE_NO_MEMORY;
+  }
   *slot = *node;
   return (int32_t)world->nodes.count - 1;
 }
@@ -85,10 +87,7 @@ static int32_t compile_float(Compile *c, vlFloatInput input, int nesting) {
     return compile_texture(c, input.texture.index, ROLE_FLOAT, nesting + 1);
   vlTextureNode node = empty_node(VL_TEXTURE_CONSTANT);
   node.value = input.value;
-  int32_t n = push_node(c->world, &node);
-  if (n == VL_TEXTURE_NO_MEMORY)
-    vl_fail_memory(c->error);
-  return n;
+  return push_node(c->world, &node, c->error);
 }
 
 static int32_t compile_spectrum(Compile *c, vlSpectrumInput input, int role, int nesting) {
@@ -100,10 +99,7 @@ static int32_t compile_spectrum(Compile *c, vlSpectrumInput input, int role, int
   if (vl_spectral_compile(c->world, &input.value, (vlSpectrumRole)role, &node.spectrum,
                           c->error) != VL_OK)
     return -1;
-  int32_t n = push_node(c->world, &node);
-  if (n == VL_TEXTURE_NO_MEMORY)
-    vl_fail_memory(c->error);
-  return n;
+  return push_node(c->world, &node, c->error);
 }
 
 static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f,
@@ -329,10 +325,8 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
                "textures are nested too deep");
     return -1;
   }
-  int32_t n = push_node(c->world, &node);
-  if (n == VL_TEXTURE_NO_MEMORY)
-    vl_fail_memory(c->error);
-  else
+  int32_t n = push_node(c->world, &node, c->error);
+  if (n >= 0)
     *memo = n + 1;
   return n;
 }
@@ -387,6 +381,6 @@ vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount,
   mix.amount = amount;
   if (!weigh(world, &mix))
     return vl_fail(error, VL_ERROR_SCENE, "textures are nested too deep");
-  *node = push_node(world, &mix);
-  return *node == VL_TEXTURE_NO_MEMORY ? vl_fail_memory(error) : VL_OK;
+  *node = push_node(world, &mix, error);
+  return *node == VL_TEXTURE_NO_MEMORY ? VL_ERROR_MEMORY : VL_OK;
 }

@@ -289,6 +289,12 @@ static void make_user_geometry(RTCGeometry geometry, uint32_t count) {
   rtcSetGeometryOccludedFunction(geometry, user_occluded);
 }
 
+static void attach(RTCScene scene, RTCGeometry geometry, unsigned id) {
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
 /* Adds a shape or a bundle to a scene. count: number of shapes in the bundle. */
 static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, AccelGeometry *g,
                              uint32_t count, vlError *error) {
@@ -317,9 +323,7 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
   } else {
     make_user_geometry(geometry, g->members ? count : s->faces);
   }
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
-  rtcReleaseGeometry(geometry);
+  attach(scene, geometry, id);
   return VL_OK;
 }
 
@@ -335,9 +339,7 @@ static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene targe
   for (uint32_t k = 0; k < steps; k++)
     rtcSetGeometryTransform(geometry, k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
                             q->keys ? q->path + 12 * (size_t)k : q->from_group);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
-  rtcReleaseGeometry(geometry);
+  attach(scene, geometry, id);
   return VL_OK;
 }
 

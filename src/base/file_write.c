@@ -225,6 +225,15 @@ static void write_memory(vlFileWriter *writer, const void *data, size_t size, ui
     writer->memory_size = end;
 }
 
+/* How many bytes write or pwrite, which returned n, has taken. */
+static size_t taken(vlFileWriter *writer, ssize_t n) {
+  if (n >= 0)
+    return (size_t)n;
+  if (errno != EINTR)
+    writer->failed_errno = errno;
+  return 0;
+}
+
 void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
   const char *bytes = data;
   if (writer->in_memory) {
@@ -232,14 +241,9 @@ void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
     return;
   }
   while (size && !writer->failed_errno) {
-    ssize_t n = write(writer->descriptor, bytes, size);
-    if (n < 0) {
-      if (errno != EINTR)
-        writer->failed_errno = errno;
-    } else {
-      bytes += n;
-      size -= (size_t)n;
-    }
+    size_t n = taken(writer, write(writer->descriptor, bytes, size));
+    bytes += n;
+    size -= n;
   }
 }
 
@@ -250,15 +254,10 @@ void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint6
     return;
   }
   while (size && !writer->failed_errno) {
-    ssize_t n = pwrite(writer->descriptor, bytes, size, (off_t)offset);
-    if (n < 0) {
-      if (errno != EINTR)
-        writer->failed_errno = errno;
-    } else {
-      bytes += n;
-      offset += (uint64_t)n;
-      size -= (size_t)n;
-    }
+    size_t n = taken(writer, pwrite(writer->descriptor, bytes, size, (off_t)offset));
+    bytes += n;
+    offset += n;
+    size -= n;
   }
 }
 

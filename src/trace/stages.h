@@ -190,15 +190,20 @@ static inline void vl_passed_on(const vlTracing *t, const vlVertices *at, uint32
   for (int c = 0; c < 3; c++)
     passed[c] = t->passed[c][at->paths.lane[i]] * (crosses ? at->shade.tint->rgb[c][i] : 1.0f);
 }
-/* The path of vertex i goes on in a direction with this cosine to the normal. */
-static inline void vl_passed_go_on(const vlTracing *t, const vlVertices *at, uint32_t i,
-                                   float wi_z) {
+/* Stores it in entry k of the rows `to`; for all worlds. */
+static inline void vl_passed_store(const vlTracing *t, const vlVertices *at, uint32_t i,
+                                   float wi_z, uint32_t k, float (*to)[VL_ROW_SIZE]) {
   float passed[3];
   if (!t->world->by_channel)
     return;
   vl_passed_on(t, at, i, wi_z, passed);
   for (int c = 0; c < 3; c++)
-    t->passed[c][at->paths.lane[i]] = passed[c];
+    to[c][k] = passed[c];
+}
+/* The path of vertex i goes on in a direction with this cosine to the normal. */
+static inline void vl_passed_go_on(const vlTracing *t, const vlVertices *at, uint32_t i,
+                                   float wi_z) {
+  vl_passed_store(t, at, i, wi_z, at->paths.lane[i], t->passed);
 }
 /* The directions w (world space) of n vertices in their local frames. */
 void vl_stage_local(uint32_t n, const vlVertices *at, const float *wx, const float *wy,

@@ -24,12 +24,7 @@ static inline void vl_shadow_from_medium(const vlTracing *t, uint32_t lane, uint
 }
 static inline void vl_shadow_from_surface(const vlTracing *t, const vlVertices *at, uint32_t i,
                                           float wi_z, uint32_t k, vlShadowFlights *f) {
-  float passed[3];
-  if (!t->world->by_channel)
-    return;
-  vl_passed_on(t, at, i, wi_z, passed);
-  for (int c = 0; c < 3; c++)
-    f->passed[c][k] = passed[c];
+  vl_passed_store(t, at, i, wi_z, k, f->passed);
 }
 
 static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b,

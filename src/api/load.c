@@ -68,24 +68,30 @@ static vlResult check_load(const vlScene *scene, const char *path, const vlLoadD
   return vl_scene_result(scene, error);
 }
 
-/* The lights that the scene had before the file. */
-typedef struct Before {
-  size_t lights, emissions;
-} Before;
+/* What is set while a file is loaded. */
+typedef struct Loading {
+  size_t lights, emissions; /* that the scene had before */
+  vlTask task;
+  unsigned floats;
+  void *locale;
+} Loading;
 
-static Before before_load(const vlScene *scene) {
-  return (Before){scene->lights.count, scene->emissions.count};
-}
-
-static void state_unit(vlScene *scene, const Before *before, const vlLoadDef *def) {
-  if (def && !vl_is_unset(def->unit))
-    vl_scene_state_unit(scene, before->lights, before->emissions, def->unit);
-}
-
-static void start_task(vlScene *scene, vlTask *task, const vlLoadDef *def) {
+static void start_loading(vlScene *scene, const vlLoadDef *def, Loading *l) {
   vlLoadDef load = def ? *def : vl_default_load_def();
-  vl_task_start(task, load.cancel, load.progress, load.progress_user);
-  scene->task = task;
+  vl_task_start(&l->task, load.cancel, load.progress, load.progress_user);
+  scene->task = &l->task;
+  l->lights = scene->lights.count;
+  l->emissions = scene->emissions.count;
+  l->floats = vl_machine_set_floats();
+  l->locale = vl_machine_set_numerals();
+}
+
+static void end_loading(vlScene *scene, const vlLoadDef *def, const Loading *l) {
+  vl_machine_restore_numerals(l->locale);
+  vl_machine_restore_floats(l->floats);
+  if (def && !vl_is_unset(def->unit))
+    vl_scene_state_unit(scene, l->lights, l->emissions, def->unit);
+  scene->task = NULL;
 }
 
 vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data, size_t size,
@@ -93,16 +99,10 @@ vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data
   VL_TRY(check_load(scene, name, def, error));
   if (!data && size)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: data is null");
-  vlTask task;
-  start_task(scene, &task, def);
-  const Before before = before_load(scene);
-  unsigned floats = vl_machine_set_floats();
-  void *locale = vl_machine_set_numerals();
+  Loading loading;
+  start_loading(scene, def, &loading);
   vlResult result = vl_import_pbrt_memory(scene, data ? data : "", size, name, def, error);
-  vl_machine_restore_numerals(locale);
-  vl_machine_restore_floats(floats);
-  state_unit(scene, &before, def);
-  scene->task = NULL;
+  end_loading(scene, def, &loading);
   return result;
 }
 
@@ -120,17 +120,11 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
       import = formats[i].import;
   }
   if (import) {
-    vlTask task;
-    start_task(scene, &task, def);
-    const Before before = before_load(scene);
-    unsigned floats = vl_machine_set_floats();
-    void *locale = vl_machine_set_numerals();
+    Loading loading;
+    start_loading(scene, def, &loading);
     vlResult result = vl_scene_stopped(scene, 0) ? vl_scene_result(scene, error)
                                                  : import(scene, path, def, error);
-    vl_machine_restore_numerals(locale);
-    vl_machine_restore_floats(floats);
-    state_unit(scene, &before, def);
-    scene->task = NULL;
+    end_loading(scene, def, &loading);
     return result == VL_OK && scene->camera_in_full ? load_whole_camera(scene, path, def, error)
                                                     : result;
   }

@@ -69,15 +69,62 @@ static void cube(bool as_cross, const double p[3], double plane[2]) {
   }
 }
 
+/* The factor k of the projections that are symmetric about the axis: the image's point is
+ * k (x, y). False: outside of the domain, or another projection (*known is then false). */
+static bool axial(const vlCamera *c, const double p[3], double *k, bool *known) {
+  double z = p[2];
+  double across = sqrt(p[0] * p[0] + p[1] * p[1]); /* distance from the axis */
+  double length = sqrt(across * across + z * z);
+  double a = c->shape[0], b = c->shape[1]; /* the projection's parameters */
+  double r;                                /* k across */
+  switch (c->projection) {
+    case VL_PROJECTION_EQUIDISTANT:
+    case VL_PROJECTION_EQUISOLID:
+    case VL_PROJECTION_STEREOGRAPHIC:
+    case VL_PROJECTION_SINE:
+      if (!fisheye(c->projection, atan2(across, z), &r))
+        return false;
+      *k = across > 0.0 ? r / across : 1.0 / z;
+      break;
+    case VL_PROJECTION_FOV:
+      if (!(z > 0.0))
+        return false;
+      r = atan(2.0 * across / z * tan(0.5 * a)) / a;
+      *k = across > 0.0 ? r / across : 1.0 / z;
+      break;
+    case VL_PROJECTION_DIVISION: {
+      /* with R = across: the solution r of r z = R (1 + a r^2) that is 0 at R = 0 */
+      double root = z * z - 4.0 * a * across * across;
+      if (root < 0.0 || !(z > 0.0 || a < 0.0))
+        return false;
+      *k = 2.0 / (z + sqrt(root));
+      break;
+    }
+    case VL_PROJECTION_UNIFIED:
+      *k = 1.0 / (z + a * length);
+      break;
+    case VL_PROJECTION_EUCM:
+      *k = 1.0 / (a * sqrt(b * across * across + z * z) + (1.0 - a) * z);
+      break;
+    case VL_PROJECTION_DOUBLE_SPHERE: { /* shape: xi, alpha */
+      double second = a * length + z;
+      *k = 1.0 / (b * sqrt(across * across + second * second) + (1.0 - b) * second);
+      break;
+    }
+    default:
+      *known = false;
+      return false;
+  }
+  return *k > 0.0 && isfinite(*k);
+}
+
 /* Projects a point in camera space to the image plane before distortion, in focal lengths from
  * the principal point. False: outside of the projection's domain, or there is no formula here
  * for this projection (*known is then false). */
 static bool to_plane(const vlCamera *c, const double p[3], double plane[2], bool *known) {
   double x = p[0], y = p[1], z = p[2];
-  double across = sqrt(x * x + y * y); /* distance from the axis */
-  double length = sqrt(across * across + z * z);
-  double a = c->shape[0], b = c->shape[1]; /* the projection's parameters */
-  double k, r;                             /* plane = k (x, y); r = |plane| */
+  double a = c->shape[0];
+  double k;
   *known = true;
   switch (c->projection) {
     case VL_PROJECTION_PERSPECTIVE:
@@ -88,28 +135,20 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2], bool
       plane[0] = x;
       plane[1] = y;
       return z >= 0.0;
-    case VL_PROJECTION_EQUIDISTANT:
-    case VL_PROJECTION_EQUISOLID:
-    case VL_PROJECTION_STEREOGRAPHIC:
-    case VL_PROJECTION_SINE:
-      if (!fisheye(c->projection, atan2(across, z), &r))
-        return false;
-      k = across > 0.0 ? r / across : 1.0 / z;
-      break;
     case VL_PROJECTION_EQUIRECTANGULAR:
       plane[0] = atan2(x, z);
-      plane[1] = asin(y / length);
-      return length > 0.0;
+      plane[1] = asin(y / vector_length(p));
+      return vector_length(p) > 0.0;
     case VL_PROJECTION_EQUAL_AREA:
       equal_area(p, plane);
-      return length > 0.0;
+      return vector_length(p) > 0.0;
     case VL_PROJECTION_CYLINDRICAL:
       plane[0] = atan2(x, z);
       plane[1] = y / sqrt(x * x + z * z);
       return x * x + z * z > 0.0;
     case VL_PROJECTION_CUBE:
       cube(a > 0.0, p, plane);
-      return length > 0.0;
+      return vector_length(p) > 0.0;
     case VL_PROJECTION_PANINI: {
       double longitude = atan2(x, z), latitude = atan2(y, sqrt(x * x + z * z));
       double s = (a + 1.0) / (a + cos(longitude));
@@ -117,38 +156,13 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2], bool
       plane[1] = s * tan(latitude);
       return cos(longitude) > -a && (a <= 1.0 || cos(longitude) >= -1.0 / a);
     }
-    case VL_PROJECTION_FOV:
-      if (!(z > 0.0))
-        return false;
-      r = atan(2.0 * across / z * tan(0.5 * a)) / a;
-      k = across > 0.0 ? r / across : 1.0 / z;
-      break;
-    case VL_PROJECTION_DIVISION: {
-      /* with R = across: the solution r of r z = R (1 + a r^2) that is 0 at R = 0 */
-      double root = z * z - 4.0 * a * across * across;
-      if (root < 0.0 || !(z > 0.0 || a < 0.0))
-        return false;
-      k = 2.0 / (z + sqrt(root));
-      break;
-    }
-    case VL_PROJECTION_UNIFIED:
-      k = 1.0 / (z + a * length);
-      break;
-    case VL_PROJECTION_EUCM:
-      k = 1.0 / (a * sqrt(b * across * across + z * z) + (1.0 - a) * z);
-      break;
-    case VL_PROJECTION_DOUBLE_SPHERE: { /* shape: xi, alpha */
-      double second = a * length + z;
-      k = 1.0 / (b * sqrt(across * across + second * second) + (1.0 - b) * second);
-      break;
-    }
     default:
-      *known = false;
-      return false;
+      if (!axial(c, p, &k, known))
+        return false;
+      plane[0] = k * x;
+      plane[1] = k * y;
+      return true;
   }
-  plane[0] = k * x;
-  plane[1] = k * y;
-  return k > 0.0 && isfinite(k);
 }
 
 /* OpenCV, "Camera Calibration and 3D Reconstruction"; the 14 coefficients are k1 k2 p1 p2 k3 k4

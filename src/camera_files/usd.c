@@ -324,6 +324,40 @@ static void set_name(const char *name, char *result, size_t size) {
   }
 }
 
+static const char usd_form[] =
+    "#usda 1.0\n"
+    "(\n"
+    "    defaultPrim = \"$own\"\n"
+    "    doc = \"pixels count from the image's upper left corner; camera axes x right, y "
+    "up, z back; matrices act on row vectors\"\n"
+    "    metersPerUnit = 1\n"
+    "$rate"
+    "    upAxis = \"Y\"\n"
+    ")\n"
+    "\n"
+    "def Camera \"$own\"\n"
+    "{\n"
+    "    token projection = \"$kind\"\n"
+    "    float focalLength = $film@0\n"
+    "    float horizontalAperture = $film@1\n"
+    "    float verticalAperture = $film@2\n"
+    "    float horizontalApertureOffset = $film@3\n"
+    "    float verticalApertureOffset = $film@4\n"
+    "$range$stop$focus$exposure$shutter"
+    "    matrix4d xformOp:transform = ( $flippedcolumns:p )\n"
+    "    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n"
+    "}\n"
+    "\n"
+    "def Scope \"Render\"\n"
+    "{\n"
+    "    def RenderSettings \"Settings\"\n"
+    "    {\n"
+    "        rel camera = </$own>\n"
+    "        uniform int2 resolution = ($width, $height)\n"
+    "        uniform float pixelAspectRatio = $pixel\n"
+    "    }\n"
+    "}\n";
+
 static vlResult write_usd(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCameraDef *d = &fit->record->camera;
   const vlCamera *c = &fit->camera;
@@ -349,43 +383,10 @@ static vlResult write_usd(const vlFittedCamera *fit, vlCameraText *text) {
   char name[sizeof fit->record->name + 8];
   set_name(fit->record->name, name, sizeof name);
   return VL_PUT_FORM(
-      text, fit,
-      "#usda 1.0\n"
-      "(\n"
-      "    defaultPrim = \"$own\"\n"
-      "    doc = \"pixels count from the image's upper left corner; camera axes x right, y "
-      "up, z back; matrices act on row vectors\"\n"
-      "    metersPerUnit = 1\n"
-      "$rate"
-      "    upAxis = \"Y\"\n"
-      ")\n"
-      "\n"
-      "def Camera \"$own\"\n"
-      "{\n"
-      "    token projection = \"$kind\"\n"
-      "    float focalLength = $film@0\n"
-      "    float horizontalAperture = $film@1\n"
-      "    float verticalAperture = $film@2\n"
-      "    float horizontalApertureOffset = $film@3\n"
-      "    float verticalApertureOffset = $film@4\n"
-      "$range$stop$focus$exposure$shutter"
-      "    matrix4d xformOp:transform = ( $flippedcolumns:p )\n"
-      "    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n"
-      "}\n"
-      "\n"
-      "def Scope \"Render\"\n"
-      "{\n"
-      "    def RenderSettings \"Settings\"\n"
-      "    {\n"
-      "        rel camera = </$own>\n"
-      "        uniform int2 resolution = ($width, $height)\n"
-      "        uniform float pixelAspectRatio = $pixel\n"
-      "    }\n"
-      "}\n",
-      VL_WORD("own", name), VL_WORD("kind", flat ? "orthographic" : "perspective"),
-      VL_VALUES("film", film, 5), VL_VALUES("pixel", &pixel, 1), VL_VALUES("planes", planes, 2),
-      VL_VALUES("lens", lens, 3), VL_VALUES("open", shutter, 2),
-      VL_PART("rate", timed, "    timeCodesPerSecond = 1\n"),
+      text, fit, usd_form, VL_WORD("own", name),
+      VL_WORD("kind", flat ? "orthographic" : "perspective"), VL_VALUES("film", film, 5),
+      VL_VALUES("pixel", &pixel, 1), VL_VALUES("planes", planes, 2), VL_VALUES("lens", lens, 3),
+      VL_VALUES("open", shutter, 2), VL_PART("rate", timed, "    timeCodesPerSecond = 1\n"),
       VL_PART("range", c->near_plane > 0.0 || !isinf(c->far_plane),
               "    float2 clippingRange = ($planes)\n"),
       VL_PART("stop", c->lens_radius > 0.0 && !flat, "    float fStop = $lens@0\n"),

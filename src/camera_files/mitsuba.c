@@ -414,16 +414,22 @@ static void put_name(vlCameraText *text, const char *name) {
   }
 }
 
-static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
-  const vlCameraDef *d = &fit->record->camera;
+/* centred: the sensor has no principal point. */
+static vlResult refuse(const vlFittedCamera *fit, bool flat, bool lens, bool centred) {
   const vlCamera *c = &fit->camera;
-  bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC, lens = c->lens_radius > 0.0 && !flat;
-  bool centred = flat || lens; /* these have no principal point */
   VL_TRY(vl_camera_refuse(fit->file, "fy", !flat && fabs(c->fy - c->fx) > 1e-12 * c->fx));
   VL_TRY(vl_camera_refuse(fit->file, "cx", centred && c->cx != 0.5 * c->width));
   VL_TRY(vl_camera_refuse(fit->file, "cy", centred && c->cy != 0.5 * c->height));
   VL_TRY(vl_camera_refuse(fit->file, "lens_radius", flat && c->lens_radius > 0.0));
-  VL_TRY(vl_camera_refuse(fit->file, "focus_distance", lens && isinf(c->focus_distance)));
+  return vl_camera_refuse(fit->file, "focus_distance", lens && isinf(c->focus_distance));
+}
+
+static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
+  const vlCameraDef *d = &fit->record->camera;
+  const vlCamera *c = &fit->camera;
+  bool flat = d->projection == VL_PROJECTION_ORTHOGRAPHIC, lens = c->lens_radius > 0.0 && !flat;
+  bool centred = flat || lens;
+  VL_TRY(refuse(fit, flat, lens, centred));
   double m[16];
   vl_camera_flip_columns(c->world_from_camera, -1.0, -1.0, 1.0, m);
   for (int i = 0; i < 12 && flat; i += 4) {

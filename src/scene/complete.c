@@ -612,18 +612,21 @@ static bool choose_up(vlScene *scene, vlCompleteDef *done, bool camera, vlExtent
   return true;
 }
 
+static vlResult check_complete(vlScene *scene, const vlCompleteDef *def, vlError *error) {
+  if (!scene)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: scene is null");
+  if (def->cookie != VL_COOKIE_COMPLETE)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: " VL_BAD_COOKIE);
+  char wrong[VL_GIVEN_MESSAGE];
+  if (!vl_choices_check(VL_SETTING_COMPLETE, 0, sizeof *def, def, wrong))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: %s", wrong);
+  return vl_scene_result(scene, error);
+}
+
 vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *error) {
   vl_error_clear(error);
   const vlCompleteDef def = given ? *given : vl_default_complete_def();
-  if (!scene)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: scene is null");
-  if (def.cookie != VL_COOKIE_COMPLETE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: " VL_BAD_COOKIE);
-  char wrong[VL_GIVEN_MESSAGE];
-  if (!vl_choices_check(VL_SETTING_COMPLETE, 0, sizeof def, &def, wrong))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: %s", wrong);
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(check_complete(scene, &def, error));
   vlSceneDefs *s = &scene->defs;
   vlCompleteDef *done = &scene->completed;
   *done = def;

@@ -10,7 +10,6 @@ const LightCase projection_light = {
                        {-.5, .5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}},
                        {.5, -.5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
                        {1.2, 0, {0, 0, 0}}},
-             .known_count = 4,
              .rim = {{.97, .97}, {-.97, .97}, {.97, -.97}, {-.97, -.97}}},
             /* x goes along with y: the square becomes a parallelogram */
             {.parameters = "\"string filename\" \"quarters.pfm\" \"float fov\" 90",
@@ -19,7 +18,6 @@ const LightCase projection_light = {
                        {-.35, .5, {.2 / 1.3725, .2 / 1.3725, .2 / 1.3725}},
                        {.35, -.5, {.8 / 1.3725, .8 / 1.3725, .8 / 1.3725}},
                        {1.5, .5, {0, 0, 0}}},
-             .known_count = 4,
              .rim = {{1.261, .97}, {-.679, .97}, {.679, -.97}, {-1.261, -.97}}},
         },
     .parameters = {{.base = "\"string filename\" \"sky.pfm\""}},

@@ -7,13 +7,11 @@ const ShapeCase bilinear_shape = {
             {.parameters = "\"point3 P\" [-.5 -.5 0 .5 -.5 0 -.5 .5 0 .5 .5 0]",
              .area = 1,
              .known = {{{-.3, .1, 1}, {0, 0, -1}, 1, .2, .6},
-                       {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
-             .known_count = 2},
+                       {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}}},
             /* z = x y over the square: the area is the integral of sqrt(1 + x^2 + y^2) */
             {.parameters = "\"point3 P\" [-.5 -.5 .25 .5 -.5 -.25 -.5 .5 -.25 .5 .5 .25]",
              .area = 1.0790366,
-             .known = {{{.25, .5, 1}, {0, 0, -1}, .875, .75, 1}},
-             .known_count = 1},
+             .known = {{{.25, .5, 1}, {0, 0, -1}, .875, .75, 1}}},
             /* z = 2.4 x y, which many lines meet twice */
             {
                 .parameters = "\"point3 P\" [-.5 -.5 .6 .5 -.5 -.6 -.5 .5 -.6 .5 .5 .6] "

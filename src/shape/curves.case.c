@@ -22,14 +22,12 @@ const ShapeCase curves_shape = {
              .reach = 0.61,
              .faces_rays = true,
              .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, .1},
-                       {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
-             .known_count = 2},
+                       {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}}},
             {.parameters = STRAIGHT "\"string type\" \"ribbon\" \"normal N\" [0 0 1 0 0 1]",
              .area = 0.12 * 8 / (3 * HALF_TURN),
              .reach = 0.61,
              .faces_rays = true, /* its points lie across the ray, as in pbrt */
-             .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, .1}},
-             .known_count = 1},
+             .known = {{{.3, .04, 1}, {0, 0, -1}, 1, .75, .1}}},
             /* its normal turns evenly from z to y: by 67.5 degrees at u = .75, where it is seen
              * .114805 wide */
             {.parameters = TWISTED,
@@ -37,23 +35,20 @@ const ShapeCase curves_shape = {
              .reach = 0.63,
              .faces_rays = true,
              .known = {{{.3, .05, 1}, {0, 0, -1}, 1, .75, .0644789, .38268343},
-                       {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
-             .known_count = 2},
+                       {{.3, .06, 1}, {0, 0, -1}, INFINITY, NAN, NAN}}},
             {.parameters = STRAIGHT "\"string type\" \"cylinder\"",
              .area = 0.12 * HALF_TURN / 2,
              .reach = 0.61,
              .faces_rays = true,
              /* the normal turns by 90 degrees from the middle to an edge */
-             .known = {{{.3, .025, 1}, {0, 0, -1}, 1, .75, .25, .70710678}},
-             .known_count = 1},
+             .known = {{{.3, .025, 1}, {0, 0, -1}, 1, .75, .25, .70710678}}},
             /* it widens from .05 to .15, in one piece */
             {.parameters = TAPERED "\"string type\" \"flat\" \"integer splitdepth\" 0",
              .area = 0.12 * HALF_TURN / 2,
              .reach = 0.61,
              .faces_rays = true,
              .known = {{{.3, .06, 1}, {0, 0, -1}, 1, .75, .02},
-                       {{-.3, .04, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
-             .known_count = 2},
+                       {{-.3, .04, 1}, {0, 0, -1}, INFINITY, NAN, NAN}}},
         },
     .parameters =
         {

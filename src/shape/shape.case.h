@@ -22,10 +22,9 @@ typedef struct ShapeKnown {
 typedef struct ShapeVariant {
   const char *parameters; /* null ends the list */
   double area;
-  double reach;    /* the shape is in the ball of this radius around the origin; 0: 1.12 */
-  bool faces_rays; /* the surface turns to each ray: no normals of its own */
-  ShapeKnown known[3];
-  uint32_t known_count;
+  double reach;        /* the shape is in the ball of this radius around the origin; 0: 1.12 */
+  bool faces_rays;     /* the surface turns to each ray: no normals of its own */
+  ShapeKnown known[3]; /* a direction of 0 ends the list */
 } ShapeVariant;
 
 enum { SHAPE_VARIANTS = 5 };

@@ -9,13 +9,11 @@ const ShapeCase triangles_shape = {
              .area = 0.5,
              .reach = 1.01,
              .known = {{{.2, .3, 1}, {0, 0, -1}, 1, .2, .3},
-                       {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}},
-             .known_count = 2},
+                       {{.6, .6, 1}, {0, 0, -1}, INFINITY, NAN, NAN}}},
             {.parameters = "\"point3 P\" [-.5 -.5 0 .5 -.5 0 .5 .5 .4 -.5 .5 .4] "
                            "\"integer indices\" [0 1 2 0 2 3]",
              .area = 1.0770330,
-             .known = {{{.1, 0, 1}, {0, 0, -1}, .8, NAN, NAN}},
-             .known_count = 1},
+             .known = {{{.1, 0, 1}, {0, 0, -1}, .8, NAN, NAN}}},
         },
     .parameters =
         {

@@ -11,14 +11,12 @@ const TextureCase checkerboard_texture = {
              .known = {{.25, .25, {.8, .7, .6}},
                        {.75, .25, {.1, .2, .3}},
                        {.25, .75, {.1, .2, .3}},
-                       {.75, .75, {.8, .7, .6}}},
-             .known_count = 4},
+                       {.75, .75, {.8, .7, .6}}}},
             {.parameters = "\"float uscale\" 1 \"float udelta\" .5 \"rgb tex1\" [.8 .8 .8] "
                            "\"rgb tex2\" [.1 .1 .1]",
              .low = .1,
              .high = .8,
-             .known = {{.25, .25, {.8, .8, .8}}, {.75, .25, {.1, .1, .1}}},
-             .known_count = 2},
+             .known = {{.25, .25, {.8, .8, .8}}, {.75, .25, {.1, .1, .1}}}},
             /* the square lies at z = 0 from -1 to 1 */
             {.parameters =
                  "\"integer dimension\" 3 \"rgb tex1\" [.8 .8 .8] \"rgb tex2\" [.1 .1 .1]",
@@ -27,7 +25,6 @@ const TextureCase checkerboard_texture = {
              .known = {{.75, .75, {.8, .8, .8}},
                        {.25, .75, {.1, .1, .1}},
                        {.25, .25, {.8, .8, .8}}},
-             .known_count = 3,
              .of_space = true},
         },
     .parameters = {{.base = "\"float uscale\" 4;\"float vscale\" 3"},

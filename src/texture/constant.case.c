@@ -8,7 +8,6 @@ const TextureCase constant_texture = {
              .low = .2,
              .high = .7,
              .even = true,
-             .known = {{.3, .4, {.7, .4, .2}}},
-             .known_count = 1},
+             .known = {{.3, .4, {.7, .4, .2}}}},
         },
 };

@@ -10,14 +10,12 @@ const TextureCase direction_mix_texture = {
              .low = .1,
              .high = .8,
              .even = true,
-             .known = {{.3, .4, {.8, .4, .2}}},
-             .known_count = 1},
+             .known = {{.3, .4, {.8, .4, .2}}}},
             {.parameters =
                  "\"rgb tex1\" [.8 .4 .2] \"rgb tex2\" [.1 .2 .3] \"vector3 dir\" [0 .8 -.6]",
              .low = .1,
              .high = .8,
              .even = true,
-             .known = {{.3, .4, {.6 * .8 + .4 * .1, .6 * .4 + .4 * .2, .6 * .2 + .4 * .3}}},
-             .known_count = 1},
+             .known = {{.3, .4, {.6 * .8 + .4 * .1, .6 * .4 + .4 * .2, .6 * .2 + .4 * .3}}}},
         },
 };

@@ -14,7 +14,6 @@ const TextureCase fbm_texture = {
              .low = 0,
              .high = 1,
              .known = {{.5, .5, {0, 0, 0}}},
-             .known_count = 1,
              .formula = formula,
              .of_space = true},
         },

@@ -10,14 +10,12 @@ const TextureCase image_texture = {
              .known = {{.25, .25, {.6, .6, .6}},
                        {.75, .25, {.8, .8, .8}},
                        {.25, .75, {.2, .2, .2}},
-                       {.75, .75, {.4, .4, .4}}},
-             .known_count = 4},
+                       {.75, .75, {.4, .4, .4}}}},
             {.parameters = "\"string filename\" \"quarters.pfm\" \"bool invert\" true "
                            "\"float scale\" .5 \"string filter\" \"point\"",
              .low = .6,
              .high = .9,
-             .known = {{.25, .25, {.7, .7, .7}}, {.75, .75, {.8, .8, .8}}},
-             .known_count = 2},
+             .known = {{.25, .25, {.7, .7, .7}}, {.75, .75, {.8, .8, .8}}}},
             {.parameters = "\"string filename\" \"grain.pfm\" \"string filter\" \"trilinear\" "
                            "\"float uscale\" 2 \"float vscale\" .7",
              .low = 0,
@@ -35,14 +33,12 @@ const TextureCase image_texture = {
              .low = 0,
              .high = 1,
              .known = {{.3125, .5625, {.93725, .75294, .47059}},
-                       {.6875, .1875, {.86667, .65490, .92941}}},
-             .known_count = 2},
+                       {.6875, .1875, {.86667, .65490, .92941}}}},
             {.parameters = "\"string filename\" \"a.tga\" \"string encoding\" \"gamma 3\"",
              .low = 0,
              .high = 1,
              .known = {{.3125, .5625, {.82333, .42686, .10421}},
-                       {.6875, .1875, {.65096, .28089, .80283}}},
-             .known_count = 2},
+                       {.6875, .1875, {.65096, .28089, .80283}}}},
             /* writers of pbrt's files decode what has no name that says its format */
             {.parameters =
                  "\"string filename\" \"normals.img\" \"string encoding\" \"gamma 3\"",

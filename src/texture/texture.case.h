@@ -33,8 +33,7 @@ typedef struct TextureVariant {
   bool filtered;           /* what wide rays see is about the mean over their footprint */
   TextureFormula *formula; /* its value everywhere, but on 2 % of the points (edges); null: not
                               known */
-  TextureKnown known[5];
-  uint32_t known_count;
+  TextureKnown known[5];   /* u = 0 ends the list */
 } TextureVariant;
 
 enum { TEXTURE_VARIANTS = 8 };

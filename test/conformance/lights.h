@@ -155,9 +155,14 @@ static void check_samples_of_light(const char *family, const char *kind, const c
            l.compared);
 }
 
+static bool is_known(const LightVariant *v, uint32_t k) {
+  return k < sizeof v->known / sizeof *v->known &&
+         (v->known[k].rgb[1] != 0 || v->known[k].x != 0);
+}
+
 static void check_delta_light(const char *kind, const LightVariant *v, const char *text) {
-  assert_true(v->known_count > 0 || v->before); /* in another frame they may be unknown */
-  for (uint32_t k = 0; k < v->known_count; k++) {
+  assert_true(is_known(v, 0) || v->before); /* in another frame they may be unknown */
+  for (uint32_t k = 0; is_known(v, k); k++) {
     const LightKnown *known = &v->known[k];
     LightLaws l = ask_floor(text, known->x, known->z, 1);
     for (int c = 0; c < 3; c++)

@@ -7,6 +7,7 @@
 
 #include "conformance.h"
 #include "lights.h"
+#include "math/double3.h"
 #include "parameter_cases.h"
 #include "unit.h"
 
@@ -150,15 +151,22 @@ static void compare_normals(ShapeLaws *s, vlTrace *trace, uint32_t batch) {
     s->rays->t_max[i] = INFINITY;
 }
 
+static uint32_t known_hits(const ShapeVariant *v) {
+  uint32_t n = 0;
+  while (n < sizeof v->known / sizeof *v->known && vl_norm3(v->known[n].direction) > 0)
+    n++;
+  return n;
+}
+
 static void compare_known(ShapeLaws *s, vlTrace *trace) {
+  const uint32_t known = known_hits(s->variant);
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
-    const ShapeKnown *k =
-        &s->variant->known[i % (s->variant->known_count ? s->variant->known_count : 1)];
+    const ShapeKnown *k = &s->variant->known[i % (known ? known : 1)];
     const double down[3] = {0, 0, -1};
-    set_ray(s->rays, i, k->origin, s->variant->known_count ? k->direction : down);
+    set_ray(s->rays, i, k->origin, known ? k->direction : down);
   }
   vl_world_trace(trace, s->rays, s->hits);
-  for (uint32_t i = 0; i < s->variant->known_count; i++) {
+  for (uint32_t i = 0; i < known; i++) {
     const ShapeKnown *k = &s->variant->known[i];
     double t = (double)s->hits->t[i];
     double u = (double)s->hits->uv[0][i];

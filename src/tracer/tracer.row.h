@@ -15,7 +15,7 @@
 #define MAX_DEPTH_OF_KIND(name, member, kind)                                                  \
   PARAMETER(COUNT, name, render.member,                                                        \
             "largest number of " kind " of a path; 0: no other limit than maxdepth", .low = 0, \
-            .high = 4096)
+            .high = 4096, .flags = VL_PARAMETER_OWN)
 #define MAX_DEPTHS_OF_KINDS                                                                    \
   MAX_DEPTH_OF_KIND("maxdiffusedepth", max_diffuse_depth, "diffuse bounces"),                  \
       MAX_DEPTH_OF_KIND("maxglossydepth", max_glossy_depth, "glossy or specular reflections"), \

@@ -18,9 +18,11 @@
 #include "materials.h"
 #include "neighbours.h"
 #include "parameters.h"
+#include "pbrt_defaults.h"
 #include "radiometry.h"
 #include "sampling.h"
 #include "saved_lights.h"
+#include "saved_settings.h"
 #include "saved_spectra.h"
 #include "scrambles.h"
 #include "shading.h"
@@ -62,6 +64,7 @@ int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parameters_of_all_families),
       cmocka_unit_test(textures_of_parameters),
+      cmocka_unit_test(defaults_of_pbrt),
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(turned_materials),
       cmocka_unit_test(laws_of_shading),
@@ -90,6 +93,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_projections),
       cmocka_unit_test(laws_of_distortions),
       cmocka_unit_test(settings_of_cameras),
+      cmocka_unit_test(settings_of_scenes),
       cmocka_unit_test(laws_of_samplers),
       cmocka_unit_test(purposes_of_samplers),
       cmocka_unit_test(samplers_of_any_count),

@@ -2,6 +2,7 @@
 tools/run_tests counts."""
 import contextlib
 import functools
+import io
 import os
 import resource
 import signal
@@ -69,6 +70,30 @@ def raises(kind, *texts):
             assert text in str(error), "%r is not in %r" % (text, str(error))
         return
     raise AssertionError("nothing was raised, %s was expected" % kind.__name__)
+
+
+# ---- rules of written files ----
+
+@functools.lru_cache(None)
+def _tool(name):
+    """A program of tools/ as a module."""
+    import importlib.machinery
+    import importlib.util
+    sys.dont_write_bytecode = True  # no file beside the tool
+    loader = importlib.machinery.SourceFileLoader(name, os.path.join(SOURCE, "tools", name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
+
+
+def broken_rules(path):
+    """What the format of a written scene forbids: pbrt-v4's by tools/check_pbrt, glTF's by tools/check_gltf."""
+    if path.endswith(".pbrt"):
+        return _tool("check_pbrt").mistakes_of(path)
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        wrong = _tool("check_gltf").File(path).check()
+    return said.getvalue().splitlines() if wrong else []
 
 
 # ---- rows of settings ----

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 """Every parameter of every kind of material, texture, light, medium, emission and shape that Python can set arrives in the
 scene: its value is in the .pbrt file that is written, under the name that its row (velo/schema.h) gives it there, and the file
-that is read and written again is the same. Names and types are those of the rows, as the program prints them."""
+that is read and written again is the same. Names and types are those of the rows, as the program prints them. What is written
+keeps the rules of its format."""
 import json
 import re
 import subprocess
 
 import cases
-from cases import VELO, case, report, work
+from cases import VELO, broken_rules, case, report, work
 
 numpy = cases.need("numpy")
 import velo
@@ -120,20 +121,23 @@ def scene(family, kind, keywords):
     return made
 
 
+def file_of(kind):
+    """Principled materials are glTF's."""
+    return work("s.gltf" if kind == "principled" else "s.pbrt")
+
+
 def written(made, kind):
-    """The text of its file without names that the writer makes, and what is lost. Principled materials are glTF's."""
-    if kind == "principled":
-        lost = made.save(work("s.gltf"))
-        with open(work("s.gltf")) as file:
+    """The text of its file without names that the writer makes, and what is lost."""
+    lost = made.save(file_of(kind))
+    with open(file_of(kind)) as file:
+        if kind == "principled":
             return json.dumps(json.load(file)["materials"]), lost
-    lost = made.save(work("s.pbrt"))
-    with open(work("s.pbrt")) as file:
         return re.sub(r"(texture\d+)-\d+|.*screenwindow.*", r"\1", file.read()), lost  # the window: its last digits
 
 
 def again(kind):
     made = velo.Scene()
-    made.load(work("s.gltf" if kind == "principled" else "s.pbrt"))
+    made.load(file_of(kind))
     return written(made, kind)[0]
 
 
@@ -158,6 +162,7 @@ def arrive(family, kind, word, row, problems):
             text, lost = written(scene(family, kind, {**base, word: value}), kind)
         except velo.Error:
             continue
+        problems += ["%s = %r: %s" % (place, value, rule) for rule in broken_rules(file_of(kind))]
         if lost:
             return "lost"
         if text == plain[0]:

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Written scenes, glTF and pbrt: whatever an image texture of a material, of coverage or of a lamp has (factor, inversion, channel,
 threshold, map, curve and so on), and what else one of the formats lacks, the scene that is read from the written file gives the
-same image, or the writer says what it loses."""
+same image, or the writer says what it loses. The file keeps the rules of its format."""
 import cases
-from cases import case, work
+from cases import broken_rules, case, work
 
 numpy = cases.need("numpy")
 import velo
@@ -54,6 +54,7 @@ def compare(name, words_of, file="a.gltf"):
     scene.add_light("point", position=(1, 1, 3), scale=20.0)
     scene.add_mesh(CORNERS, FACES, uvs=UVS, **words_of(scene))
     lost = scene.save(work(file))
+    assert not broken_rules(work(file)), f"{name}: {broken_rules(work(file))}"
     before, after = render(scene), render(velo.load(work(file)))
     difference = abs(before - after).mean() / before.mean()
     assert lost or difference < 0.02, f"{name}: {difference:.3f} of the light differs, and nothing is said to be lost"

@@ -143,7 +143,7 @@ static void put_filter(vlExport *x) {
   const char *name =
       pbrt_name(x, &vl_pixel_filter_family, (int)filter.kind, "pixel filter", "gaussian");
   if (!name)
-    filter.kind = VL_PIXEL_FILTER_GAUSSIAN;
+    filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN);
   PUT("\nPixelFilter \"%s\"", name ? name : "gaussian");
   vl_pbrt_row(x, vl_kind_row(&vl_pixel_filter_family, (int)filter.kind), &filter, true, NULL);
 }

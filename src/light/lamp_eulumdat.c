@@ -23,8 +23,7 @@ typedef struct Header {
 static bool next_line(vlLampText *t, const char *what, vlLampLine *line) {
   if (vl_lamp_line(t, line))
     return true;
-  vl_lamp_fail(t, t->line, "lamp file: it ends before the %s", what);
-  return false;
+  return vl_lamp_fail(t, t->line, "lamp file: it ends before the %s", what);
 }
 
 static bool skip_lines(vlLampText *t, const char *what, uint32_t count) {
@@ -40,16 +39,13 @@ static bool number_line(vlLampText *t, const char *what, double low, double high
   vlLampLine line;
   if (!next_line(t, what, &line))
     return false;
-  if (!vl_lamp_decimal(line.text, line.length, true, value)) {
-    vl_lamp_fail(t, line.number, "lamp file: the %s: \"%s\" is not a number", what,
-                 vl_short_text_of(line.text, line.length).text);
-    return false;
-  }
+  if (!vl_lamp_decimal(line.text, line.length, true, value))
+    return vl_lamp_fail(t, line.number, "lamp file: the %s: \"%s\" is not a number", what,
+                        vl_short_text_of(line.text, line.length).text);
   if (*value >= low && *value <= high)
     return true;
-  vl_lamp_fail(t, line.number, "lamp file: the %s is %g; it must be from %g to %g", what,
-               *value, low, high);
-  return false;
+  return vl_lamp_fail(t, line.number, "lamp file: the %s is %g; it must be from %g to %g", what,
+                      *value, low, high);
 }
 
 static bool whole_line(vlLampText *t, const char *what, double low, double high,
@@ -61,8 +57,7 @@ static bool whole_line(vlLampText *t, const char *what, double low, double high,
   *value = (uint32_t)number;
   if (number == floor(number))
     return true;
-  vl_lamp_fail(t, line, "lamp file: the %s is %g, not a whole number", what, number);
-  return false;
+  return vl_lamp_fail(t, line, "lamp file: the %s is %g, not a whole number", what, number);
 }
 
 /* One set of lamps: number, type, flux of all of them, colour, rendering index, power. A
@@ -115,11 +110,10 @@ static bool stored_planes(const vlLampText *t, const Header *h, uint32_t *first,
                           uint32_t *count) {
   static const uint32_t divisors[] = {1, 1, 2, 4, 4};
   uint32_t n = h->planes;
-  if (h->symmetry != 1 && (n < 4 || n % divisors[h->symmetry] != 0)) {
-    vl_lamp_fail(t, 4, "lamp file: %u C planes; symmetry %u has 4 or more, a multiple of %u", n,
-                 h->symmetry, divisors[h->symmetry]);
-    return false;
-  }
+  if (h->symmetry != 1 && (n < 4 || n % divisors[h->symmetry] != 0))
+    return vl_lamp_fail(t, 4,
+                        "lamp file: %u C planes; symmetry %u has 4 or more, a multiple of %u",
+                        n, h->symmetry, divisors[h->symmetry]);
   *first = h->symmetry == 3 ? 3 * n / 4 : 0;
   *count = h->symmetry == 0   ? n
            : h->symmetry == 1 ? 1
@@ -137,12 +131,10 @@ static bool read_planes(vlLampText *t, const Header *h, uint32_t first, vlLampDa
     double angle;
     if (!number_line(t, "C angle", 0, 360, &angle))
       return false;
-    if (!(angle - previous >= VL_LAMP_STEP)) {
-      vl_lamp_fail(t, line,
-                   "lamp file: the C angle %g follows %g; the least step is %g degrees", angle,
-                   previous, VL_LAMP_STEP);
-      return false;
-    }
+    if (!(angle - previous >= VL_LAMP_STEP))
+      return vl_lamp_fail(t, line,
+                          "lamp file: the C angle %g follows %g; the least step is %g degrees",
+                          angle, previous, VL_LAMP_STEP);
     previous = angle;
     uint32_t at = (i + h->planes - first) % h->planes;
     if (at < data->planes)
@@ -157,12 +149,10 @@ static bool read_gammas(vlLampText *t, vlLampData *data) {
     uint32_t line = t->line;
     if (!number_line(t, "gamma angle", 0, 180, &data->vertical[i]))
       return false;
-    if (!(data->vertical[i] - previous >= VL_LAMP_STEP)) {
-      vl_lamp_fail(t, line,
-                   "lamp file: the gamma angle %g follows %g; the least step is %g degrees",
-                   data->vertical[i], previous, VL_LAMP_STEP);
-      return false;
-    }
+    if (!(data->vertical[i] - previous >= VL_LAMP_STEP))
+      return vl_lamp_fail(
+          t, line, "lamp file: the gamma angle %g follows %g; the least step is %g degrees",
+          data->vertical[i], previous, VL_LAMP_STEP);
     previous = data->vertical[i];
   }
   return true;
@@ -175,10 +165,9 @@ static bool read_intensities(vlLampText *t, double factor, vlLampData *data) {
     if (!number_line(t, "intensity", 0, 1e30, &number))
       return false;
     data->candela[i] = factor * number;
-    if (!(data->candela[i] <= VL_LAMP_BRIGHTEST)) {
-      vl_lamp_fail(t, line, "lamp file: the intensity is above %g candela", VL_LAMP_BRIGHTEST);
-      return false;
-    }
+    if (!(data->candela[i] <= VL_LAMP_BRIGHTEST))
+      return vl_lamp_fail(t, line, "lamp file: the intensity is above %g candela",
+                          VL_LAMP_BRIGHTEST);
   }
   return vl_lamp_end(t, data->planes, data->angles);
 }

@@ -76,8 +76,7 @@ static bool read_labels(vlLampText *t, vlLampInfo *info, const Edition **edition
       return true;
     }
   }
-  vl_lamp_fail(t, 0, "lamp file: an IES file has a line \"TILT=\", this has none");
-  return false;
+  return vl_lamp_fail(t, 0, "lamp file: an IES file has a line \"TILT=\", this has none");
 }
 
 enum { MAX_ANGLES = 10000 };
@@ -138,16 +137,13 @@ static bool read_angles(vlLampText *t, const char *what, uint32_t count, double 
   for (uint32_t i = 0; i < count; i++) {
     if (!vl_lamp_number(t, what, &angles[i]))
       return false;
-    if (!(angles[i] >= low && angles[i] <= high)) {
-      vl_lamp_fail(t, t->line, "lamp file: the %s %g is not between %g and %g degrees", what,
-                   angles[i], low, high);
-      return false;
-    }
-    if (i > 0 && !(angles[i] - angles[i - 1] >= VL_LAMP_STEP)) {
-      vl_lamp_fail(t, t->line, "lamp file: the %s %g follows %g; the least step is %g degrees",
-                   what, angles[i], angles[i - 1], VL_LAMP_STEP);
-      return false;
-    }
+    if (!(angles[i] >= low && angles[i] <= high))
+      return vl_lamp_fail(t, t->line, "lamp file: the %s %g is not between %g and %g degrees",
+                          what, angles[i], low, high);
+    if (i > 0 && !(angles[i] - angles[i - 1] >= VL_LAMP_STEP))
+      return vl_lamp_fail(t, t->line,
+                          "lamp file: the %s %g follows %g; the least step is %g degrees", what,
+                          angles[i], angles[i - 1], VL_LAMP_STEP);
   }
   return true;
 }
@@ -158,13 +154,12 @@ static bool read_candela(vlLampText *t, double factor, vlLampData *data) {
     if (!vl_lamp_number(t, "candela value", &number))
       return false;
     data->candela[i] = factor * number;
-    if (!(number >= 0 && data->candela[i] <= VL_LAMP_BRIGHTEST)) {
-      vl_lamp_fail(t, t->line,
-                   "lamp file: the candela value %g, times the factors %g, is not between 0 "
-                   "and %g",
-                   number, factor, VL_LAMP_BRIGHTEST);
-      return false;
-    }
+    if (!(number >= 0 && data->candela[i] <= VL_LAMP_BRIGHTEST))
+      return vl_lamp_fail(
+          t, t->line,
+          "lamp file: the candela value %g, times the factors %g, is not between 0 "
+          "and %g",
+          number, factor, VL_LAMP_BRIGHTEST);
   }
   return vl_lamp_end(t, data->planes, data->angles);
 }
@@ -193,9 +188,11 @@ vlResult vl_lamp_read_ies(vlLamp *lamp, const char *name, const char *text, size
   double factor = factor_of(&t, &h, edition);
   if (factor < 0)
     return VL_ERROR_SCENE;
-  if ((size_t)h.vertical * h.horizontal > size) /* each number takes two bytes */
-    return vl_lamp_fail(&t, t.line, "lamp file: it is too short for %u x %u angles",
-                        h.horizontal, h.vertical);
+  if ((size_t)h.vertical * h.horizontal > size) { /* each number takes two bytes */
+    vl_lamp_fail(&t, t.line, "lamp file: it is too short for %u x %u angles", h.horizontal,
+                 h.vertical);
+    return VL_ERROR_SCENE;
+  }
   info->lamps_flux = h.lumens >= 0 ? h.lamps * h.lumens : VL_UNSET;
   info->watts = h.watts > 0 ? h.watts : VL_UNSET;
   data->type = h.type == 1 ? 'C' : h.type == 2 ? 'B' : 'A';

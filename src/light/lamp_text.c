@@ -9,10 +9,11 @@
 #include "base/text.h"
 #include "math/elementary.h"
 
-vlResult vl_lamp_fail(const vlLampText *t, uint32_t line, const char *format, ...) {
+bool vl_lamp_fail(const vlLampText *t, uint32_t line, const char *format, ...) {
   char message[400];
   VL_FORMAT(message, format);
-  return vl_fail_at(t->error, VL_ERROR_SCENE, t->name, line, 0, "%s", message);
+  vl_fail_at(t->error, VL_ERROR_SCENE, t->name, line, 0, "%s", message);
+  return false;
 }
 
 static bool is_blank(char c) {
@@ -119,19 +120,16 @@ bool vl_lamp_end(vlLampText *t, uint32_t planes, uint32_t angles) {
 
 bool vl_lamp_number(vlLampText *t, const char *what, double *value) {
   pass_blanks(t);
-  if (t->at >= t->end) {
-    vl_lamp_fail(t, t->line, "lamp file: it ends before the %s", what);
-    return false;
-  }
+  if (t->at >= t->end)
+    return vl_lamp_fail(t, t->line, "lamp file: it ends before the %s", what);
   const char *first = t->at;
   while (t->at < t->end && !is_blank(*t->at) && !is_end(*t->at) && *t->at != ',')
     t->at++;
   size_t length = (size_t)(t->at - first);
   if (vl_lamp_decimal(first, length, false, value))
     return true;
-  vl_lamp_fail(t, t->line, "lamp file: the %s: \"%s\" is not a number", what,
-               vl_short_text_of(first, length).text);
-  return false;
+  return vl_lamp_fail(t, t->line, "lamp file: the %s: \"%s\" is not a number", what,
+                      vl_short_text_of(first, length).text);
 }
 
 bool vl_lamp_whole(vlLampText *t, const char *what, double low, double high, uint32_t *value) {
@@ -142,8 +140,7 @@ bool vl_lamp_whole(vlLampText *t, const char *what, double low, double high, uin
     *value = (uint32_t)number;
     return true;
   }
-  vl_lamp_fail(t, t->line,
-               "lamp file: the %s is %g; a whole number from %.0f to %.0f is needed", what,
-               number, low, high);
-  return false;
+  return vl_lamp_fail(t, t->line,
+                      "lamp file: the %s is %g; a whole number from %.0f to %.0f is needed",
+                      what, number, low, high);
 }

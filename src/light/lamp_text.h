@@ -30,8 +30,8 @@ bool vl_lamp_end(vlLampText *t, uint32_t planes, uint32_t angles);
 /* Converts a plain decimal number, the whole of text[0, length); comma: the decimal sign may be
  * a comma. False: it is none, or above 1e30. */
 bool vl_lamp_decimal(const char *text, size_t length, bool comma, double *value);
-/* Sets the error at a line. Returns VL_ERROR_SCENE. */
-vlResult vl_lamp_fail(const vlLampText *t, uint32_t line, const char *format, ...)
+/* Sets the error at a line. Returns false. */
+bool vl_lamp_fail(const vlLampText *t, uint32_t line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 #endif

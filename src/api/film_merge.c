@@ -95,11 +95,9 @@ static vlResult open_parts(Merge *m, const char *const *paths) {
   }
   for (uint32_t i = 0; i < m->count; i++) {
     vlFilmReader *r = &m->parts[i].reader;
-    vlResult result = vl_film_reader_open(r, m->context, paths[i], m->error);
-    if (result == VL_OK && i)
-      result = check_pair(m, r);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_film_reader_open(r, m->context, paths[i], m->error));
+    if (i)
+      VL_TRY(check_pair(m, r));
   }
   return VL_OK;
 }
@@ -211,11 +209,8 @@ static vlResult choose(Merge *m, uint32_t i, bool *counts) {
     if (p->samples != q->samples)
       continue;
     uint32_t mine, its;
-    vlResult result = vl_film_reader_crc(r, &mine, m->error);
-    if (result == VL_OK)
-      result = vl_film_reader_crc(other, &its, m->error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(vl_film_reader_crc(r, &mine, m->error));
+    VL_TRY(vl_film_reader_crc(other, &its, m->error));
     if (mine != its)
       return vl_fail(m->error, VL_ERROR_SCENE,
                      "%s and %s have the same samples of pixels %u,%u with different sums",

@@ -122,11 +122,9 @@ static vlResult merge(const vlCameraFile *file, Builder *b, const json_t *from,
   json_object_foreach((json_t *)from, key, child) {
     if (json_object_get(into, key))
       continue;
-    vlResult result = locate_copy(file, b, child, mark);
-    if (result == VL_OK && json_object_set_new(into, key, json_deep_copy(child)) != 0)
-      result = vl_fail_memory(file->error);
-    if (result != VL_OK)
-      return result;
+    VL_TRY(locate_copy(file, b, child, mark));
+    if (json_object_set_new(into, key, json_deep_copy(child)) != 0)
+      return vl_fail_memory(file->error);
   }
   vl_free(file->context, b->key[b->depth - 1]);
   b->key[b->depth - 1] = NULL;

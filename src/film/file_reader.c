@@ -231,11 +231,8 @@ vlResult vl_film_reader_data(vlFilmReader *r, void *data, vlError *error) {
   if (!h->data_size)
     return VL_OK;
   uint32_t crc;
-  vlResult result = get(r, data, h->data_size, r->data_at, error);
-  if (result == VL_OK)
-    result = vl_film_reader_crc(r, &crc, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(get(r, data, h->data_size, r->data_at, error));
+  VL_TRY(vl_film_reader_crc(r, &crc, error));
   if (vl_film_crc(r->crc, data, h->data_size) != crc)
     return damaged(r, "the CRC of a block", error);
   size_t pixels = (size_t)(h->x1 - h->x0) * (h->y1 - h->y0);

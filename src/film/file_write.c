@@ -259,6 +259,6 @@ vlResult vl_film_write_end(vlFilmWriter *writer, vlError *error) {
 vlResult vl_film_write(const vlFilm *film, const vlFilmWriteDef *def, const char *path,
                        vlError *error) {
   vlFilmWriter *writer;
-  vlResult result = vl_film_write_begin(film, def, path, &writer, error);
-  return result == VL_OK ? vl_film_write_end(writer, error) : result;
+  VL_TRY(vl_film_write_begin(film, def, path, &writer, error));
+  return vl_film_write_end(writer, error);
 }

@@ -189,8 +189,8 @@ static vlResult compile_metal(const vlMaterialBuild *b) {
   b->m->use_reflectance = b->def->use_reflectance;
   if (b->def->use_reflectance)
     return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
-  vlResult r = vl_material_spectrum(b, &b->def->eta, &b->m->eta);
-  return r == VL_OK ? vl_material_spectrum(b, &b->def->k, &b->m->k) : r;
+  VL_TRY(vl_material_spectrum(b, &b->def->eta, &b->m->eta));
+  return vl_material_spectrum(b, &b->def->k, &b->m->k);
 }
 
 static vlResult compile_index(const vlMaterialBuild *b, const vlSpectrumInput *eta,
@@ -249,19 +249,15 @@ static vlResult compile_layers(const vlMaterialBuild *b, bool metal) {
                                     {def->g, &l->g},
                                     {def->coat_u_roughness, &l->coat_u},
                                     {def->coat_v_roughness, &l->coat_v}};
-  vlResult r = vl_material_spectrum(b, &def->albedo, &l->albedo);
-  return r == VL_OK ? vl_material_floats(b, floats, metal ? 4 : 2) : r;
+  VL_TRY(vl_material_spectrum(b, &def->albedo, &l->albedo));
+  return vl_material_floats(b, floats, metal ? 4 : 2);
 }
 
 vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_COATED_DIFFUSE;
-  vlResult r = vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
-  if (r == VL_OK)
-    r = vl_material_roughness(b);
-  if (r == VL_OK)
-    r = compile_index(b, &b->def->eta, false);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance));
+  VL_TRY(vl_material_roughness(b));
+  VL_TRY(compile_index(b, &b->def->eta, false));
   return vl_coat_in_closed_form(b->def) ? coat_of(b->world, b->def, b->m, b->error)
                                         : compile_layers(b, false);
 }
@@ -269,24 +265,22 @@ vlResult vl_compile_coated_diffuse_material(const vlMaterialBuild *b) {
 vlResult vl_compile_conductor_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_CONDUCTOR;
   b->m->smooth = VL_SMOOTH_BY_ALPHA;
-  vlResult r = vl_material_roughness(b);
-  return r == VL_OK ? compile_metal(b) : r;
+  VL_TRY(vl_material_roughness(b));
+  return compile_metal(b);
 }
 
 vlResult vl_compile_coated_conductor_material(const vlMaterialBuild *b) {
-  vlResult r = vl_material_roughness(b);
-  if (r == VL_OK)
-    r = compile_metal(b);
-  if (r == VL_OK)
-    r = compile_index(b, &b->def->coat_eta, false);
-  return r == VL_OK ? compile_layers(b, true) : r;
+  VL_TRY(vl_material_roughness(b));
+  VL_TRY(compile_metal(b));
+  VL_TRY(compile_index(b, &b->def->coat_eta, false));
+  return compile_layers(b, true);
 }
 
 vlResult vl_compile_dielectric_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIELECTRIC;
   b->m->smooth = VL_SMOOTH_BY_ALPHA_OR_INDEX;
-  vlResult r = vl_material_roughness(b);
-  return r == VL_OK ? compile_index(b, &b->def->eta, true) : r;
+  VL_TRY(vl_material_roughness(b));
+  return compile_index(b, &b->def->eta, true);
 }
 
 vlResult vl_compile_thin_dielectric_material(const vlMaterialBuild *b) {
@@ -298,8 +292,8 @@ vlResult vl_compile_thin_dielectric_material(const vlMaterialBuild *b) {
 vlResult vl_compile_diffuse_transmission_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIFFUSE_TRANSMISSION;
   b->m->scale = b->def->scale;
-  vlResult r = vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
-  return r == VL_OK ? vl_material_spectrum(b, &b->def->transmittance, &b->m->transmittance) : r;
+  VL_TRY(vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance));
+  return vl_material_spectrum(b, &b->def->transmittance, &b->m->transmittance);
 }
 
 vlResult vl_compile_measured_material(const vlMaterialBuild *b) {
@@ -316,10 +310,7 @@ static vlResult make_presence(const vlMaterialBuild *b, const vlWorldMaterial *f
     nodes[i] = parts[i]->presence;
     if (nodes[i] >= 0)
       continue;
-    vlResult r =
-        vl_material_float(b, vl_float_input(parts[i]->nothing ? 0.0f : 1.0f), &nodes[i]);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(vl_material_float(b, vl_float_input(parts[i]->nothing ? 0.0f : 1.0f), &nodes[i]));
   }
   return vl_world_mix_node(b->world, nodes[0], nodes[1], b->m->amount, &b->m->presence,
                            b->error);

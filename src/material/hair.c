@@ -14,11 +14,10 @@ static vlResult compile_color(const vlMaterialBuild *b, vlWorldHair *h) {
     case VL_HAIR_REFLECTANCE:
       return vl_material_spectrum(b, &b->def->reflectance, &b->m->reflectance);
     case VL_HAIR_MELANIN: {
-      vlResult r = vl_world_spectrum_node(b->world, b->scene, eu, VL_ROLE_UNBOUNDED,
-                                          &h->eumelanin, b->error);
-      return r == VL_OK ? vl_world_spectrum_node(b->world, b->scene, pheo, VL_ROLE_UNBOUNDED,
-                                                 &h->pheomelanin, b->error)
-                        : r;
+      VL_TRY(vl_world_spectrum_node(b->world, b->scene, eu, VL_ROLE_UNBOUNDED, &h->eumelanin,
+                                    b->error));
+      return vl_world_spectrum_node(b->world, b->scene, pheo, VL_ROLE_UNBOUNDED,
+                                    &h->pheomelanin, b->error);
     }
   }
   return VL_ERROR_ARGUMENT;
@@ -39,6 +38,6 @@ vlResult vl_compile_hair_material(const vlMaterialBuild *b) {
                                     {d->beta_m, &h->beta_m},
                                     {d->beta_n, &h->beta_n},
                                     {d->alpha, &h->alpha}};
-  vlResult r = compile_color(b, h);
-  return r == VL_OK ? vl_material_floats(b, floats, VL_LENGTH(floats)) : r;
+  VL_TRY(compile_color(b, h));
+  return vl_material_floats(b, floats, VL_LENGTH(floats));
 }

@@ -64,10 +64,7 @@ static vlResult compile_absorption(vlWorld *world, const vlMediumDef *def, vlWor
 
 static vlResult compile_emission(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,
                                  vlError *error) {
-  vlResult r =
-      vl_spectral_compile(world, &def->emission, VL_ROLE_ILLUMINANT, &m->emission, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(vl_spectral_compile(world, &def->emission, VL_ROLE_ILLUMINANT, &m->emission, error));
   m->emission.scale *= def->emission_scale;
   if (world->def.color != VL_COLOR_RGB && !is_zero(&m->emission)) {
     double photometric = vl_spectrum_photometric(&def->emission, error);
@@ -91,10 +88,7 @@ vlResult vl_medium_temperature(vlWorld *world, const vlMediumDef *def, vlWorldMe
   for (int k = 0; k < VL_BLACKBODY_STEPS; k++) {
     vlSpectrum body =
         vl_spectrum_blackbody((float)(VL_BLACKBODY_LOW * vl_precise_exp2(k / 32.0)));
-    vlResult r =
-        vl_spectrum_to_rgb(&body, VL_ROLE_ILLUMINANT, VL_SPACE_SRGB, table + 3 * k, error);
-    if (r != VL_OK)
-      return r;
+    VL_TRY(vl_spectrum_to_rgb(&body, VL_ROLE_ILLUMINANT, VL_SPACE_SRGB, table + 3 * k, error));
     for (int c = 0; c < 3; c++)
       table[3 * k + c] *= (float)vl_spectrum_photometric(&body, error);
   }
@@ -138,13 +132,9 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
     return vl_fail(error, VL_ERROR_SCENE, "the medium's transform is singular");
   for (int i = 0; i < 12; i++)
     m->medium_from_world[i] = (float)inverse.m[i];
-  vlResult r = compile_absorption(world, def, m, error);
-  if (r == VL_OK)
-    r = compile_sigma(world, def, &def->sigma_s, &m->sigma_s, error);
-  if (r == VL_OK)
-    r = compile_emission(world, def, m, error);
-  if (r != VL_OK)
-    return r;
+  VL_TRY(compile_absorption(world, def, m, error));
+  VL_TRY(compile_sigma(world, def, &def->sigma_s, &m->sigma_s, error));
+  VL_TRY(compile_emission(world, def, m, error));
   m->scatters = !is_zero(&m->sigma_s);
   m->grey = is_grey(&m->sigma_a) && is_grey(&m->sigma_s);
   m->temperature_emission = 1;

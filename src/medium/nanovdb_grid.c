@@ -284,8 +284,8 @@ static vlResult take_apart(Tree *t, vlSparseGrid *g) {
   if (!first)
     return vl_fail_memory(t->error);
   *first = t->background;
-  vlResult r = list_root(t, root);
-  return r == VL_OK ? build_table(t, g) : r;
+  VL_TRY(list_root(t, root));
+  return build_table(t, g);
 }
 
 vlResult vl_nanovdb_read(vlWorld *world, const char *path, const char *name,

@@ -44,10 +44,7 @@ vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error) {
   if (!VL_RESERVE(scene->context, &scene->optics, 1))
     return vl_fail_memory(error);
   vlOptics *optics;
-  vlResult result =
-      vl_optics_refocus(scene->context, camera->lens.optics, distance, &optics, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_optics_refocus(scene->context, camera->lens.optics, distance, &optics, error));
   scene->optics.items[scene->optics.count++] = optics;
   camera->lens.optics = optics;
   return VL_OK;

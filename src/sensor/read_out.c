@@ -96,11 +96,8 @@ vlResult vl_sensor_read_out(const vlSensor *sensor, uint32_t width, uint32_t hei
     return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
   exposure = exposure ? exposure : &usual;
   uint32_t window[4];
-  vlResult result = vl_exposure_check(exposure, error);
-  if (result == VL_OK)
-    result = vl_exposure_window(exposure, width, height, window, error);
-  if (result != VL_OK)
-    return result;
+  VL_TRY(vl_exposure_check(exposure, error));
+  VL_TRY(vl_exposure_window(exposure, width, height, window, error));
   double *columns = vl_alloc_array(sensor->context, width, sizeof *columns);
   if (!columns)
     return vl_fail_memory(error);

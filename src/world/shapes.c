@@ -52,10 +52,10 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
     return VL_OK;
   if (def->inside.index != def->outside.index)
     return vl_fail_shape(def, error, "a mix with an interface cannot divide two media");
-  vlResult r = constant_node(world, scene, 0.0f, &none, error);
-  if (r == VL_OK && whole < 0)
-    r = constant_node(world, scene, 1.0f, &whole, error);
-  return r == VL_OK ? vl_world_mix_node(world, none, whole, presence, &s->alpha, error) : r;
+  VL_TRY(constant_node(world, scene, 0.0f, &none, error));
+  if (whole < 0)
+    VL_TRY(constant_node(world, scene, 1.0f, &whole, error));
+  return vl_world_mix_node(world, none, whole, presence, &s->alpha, error);
 }
 
 static void grow_bounds(float low[3], float high[3], const float p[3]) {

@@ -480,6 +480,6 @@ vlResult vl_bvh_make(const vlWorld *world, uint32_t group, vlBvh **tree, vlError
     return VL_OK;
   vl_bvh_release(c, made);
   *tree = NULL;
-  vlResult r = vl_world_step(world, NULL, 0, error);
-  return r == VL_OK ? vl_fail_memory(error) : r;
+  VL_TRY(vl_world_step(world, NULL, 0, error));
+  return vl_fail_memory(error);
 }

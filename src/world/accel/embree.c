@@ -421,8 +421,8 @@ static vlResult device_error(RTCDevice device, vlError *error) {
 static vlResult commit(const vlWorld *world, RTCScene scene, double done, vlError *error) {
   rtcCommitScene(scene);
   rtcSetSceneProgressMonitorFunction(scene, NULL, NULL);
-  vlResult r = vl_world_step(world, "accelerator", 0.5 + 0.5 * done, error);
-  return r == VL_OK ? device_error(world->accel.device, error) : r;
+  VL_TRY(vl_world_step(world, "accelerator", 0.5 + 0.5 * done, error));
+  return device_error(world->accel.device, error);
 }
 
 static vlResult attach_group(const Builder *b, RTCScene scene, uint32_t k, vlError *error) {
@@ -454,8 +454,8 @@ static vlResult make_group(const Builder *b, uint32_t k, vlError *error) {
   if (!scene)
     return vl_fail_memory(error);
   a->groups[k] = scene;
-  vlResult r = attach_group(b, scene, k, error);
-  return r == VL_OK ? commit(world, scene, 1.0 / (k + 1), error) : r;
+  VL_TRY(attach_group(b, scene, k, error));
+  return commit(world, scene, 1.0 / (k + 1), error);
 }
 
 /* The scene of the whole world, in one of three ways: that of group 0, if there are no

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "base/bytes.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "medium/nanovdb_file.h"
@@ -14,29 +15,13 @@ enum { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 };
 
 static const char magic[7] = {'N', 'a', 'n', 'o', 'V', 'D', 'B'}; /* a digit follows */
 
-static uint64_t read_u64(const char *p) {
-  uint64_t v;
-  memcpy(&v, p, sizeof v);
-  return v;
-}
-static uint32_t read_u32(const char *p) {
-  uint32_t v;
-  memcpy(&v, p, sizeof v);
-  return v;
-}
-static uint16_t read_u16(const char *p) {
-  uint16_t v;
-  memcpy(&v, p, sizeof v);
-  return v;
-}
-
 static vlResult damaged(const char *path, vlError *error) {
   return vl_fail(error, VL_ERROR_SCENE,
                  "%s: the NanoVDB file is damaged: it ends before what it announces", path);
 }
 
 /* Unpacks one grid. Packed bytes: [data, data + packed); size: bytes when unpacked. */
-static vlResult unpack(vlContext *context, const char *path, uint16_t codec, const char *data,
+static vlResult unpack(vlContext *context, const char *path, uint32_t codec, const char *data,
                        uint64_t packed, uint64_t size, vlNanoGrid *grid, vlError *error) {
   if (codec == CODEC_BLOSC)
     return vl_fail(error, VL_ERROR_SCENE,
@@ -56,7 +41,7 @@ static vlResult unpack(vlContext *context, const char *path, uint16_t codec, con
     memcpy(grid->words, data, size);
     return VL_OK;
   }
-  uint64_t length = packed >= 8 ? read_u64(data) : 0;
+  uint64_t length = packed >= 8 ? vl_little(data, 8) : 0;
   uLongf unpacked = size;
   if (packed >= 8 && length <= packed - 8 &&
       uncompress((Bytef *)grid->words, &unpacked, (const Bytef *)(data + 8), length) == Z_OK &&
@@ -78,17 +63,17 @@ static vlResult search_segment(vlContext *context, const char *path, const char 
   const char *head = data + at;
   if (memcmp(head, magic, sizeof magic) != 0)
     return vl_fail(error, VL_ERROR_SCENE, "%s: this is no NanoVDB file", path);
-  uint32_t version = read_u32(head + 8), count = read_u16(head + 12);
+  uint32_t version = vl_little32(head + 8), count = vl_little16(head + 12);
   if (version >> 21 != MAJOR)
     return vl_fail(error, VL_ERROR_SCENE,
                    "%s: NanoVDB version %u.%u is not understood (known: %d)", path,
                    version >> 21, version >> 10 & 0x7ff, MAJOR);
-  uint16_t codec = read_u16(head + 14);
+  uint32_t codec = vl_little16(head + 14);
   size_t description = at + HEADER, body = description;
   for (uint32_t i = 0; i < count; i++) { /* the data of the grids follow the last description */
     if (size - body < DESCRIPTION)
       return damaged(path, error);
-    uint32_t length = read_u32(data + body + 136);
+    uint32_t length = vl_little32(data + body + 136);
     if (size - body - DESCRIPTION < length)
       return damaged(path, error);
     body += DESCRIPTION + length;
@@ -96,8 +81,8 @@ static vlResult search_segment(vlContext *context, const char *path, const char 
   size_t wanted = strlen(name);
   for (uint32_t i = 0; i < count; i++) {
     const char *d = data + description;
-    uint64_t unpacked = read_u64(d), packed = read_u64(d + 8);
-    uint32_t length = read_u32(d + 136);
+    uint64_t unpacked = vl_little(d, 8), packed = vl_little(d + 8, 8);
+    uint32_t length = vl_little32(d + 136);
     if (packed > size - body)
       return damaged(path, error);
     bool found = length >= wanted && memcmp(d + DESCRIPTION, name, wanted) == 0 &&

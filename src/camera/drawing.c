@@ -86,13 +86,9 @@ static void eye_of(const vlCamera *c, double eye[3]) {
 
 /* Unit camera axis i (0 right, 1 down, 2 forward) in the world. */
 static void axis_of(const vlCamera *c, int i, double axis[3]) {
-  double length = 0;
-  for (int k = 0; k < 3; k++) {
-    axis[k] = c->world_from_camera[4 * k + i];
-    length += axis[k] * axis[k];
-  }
   for (int k = 0; k < 3; k++)
-    axis[k] /= sqrt(length);
+    axis[k] = c->world_from_camera[4 * k + i];
+  vl_normalize3(axis);
 }
 
 /* ---- the view surface -------------------------------------------------------------------- */

@@ -131,17 +131,13 @@ static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
   VL_TRY(numbers(scene, op, "target", 3, t, NULL));
   VL_TRY(numbers(scene, op, "up", 3, up, &found));
   vl_sub3(t, o, z);
-  double length = vl_norm3(z);
-  for (int i = 0; i < 3; i++)
-    z[i] /= length;
+  double length = vl_normalize3(z);
   vl_cross3(up, z, x); /* left */
-  double across = vl_norm3(x);
+  double across = vl_normalize3(x);
   if (!(length > 0.0 && across > 1e-9 * vl_norm3(up)))
     return vl_camera_wrong_element(scene->file, op,
                                    "origin, target and up of <%s> give no direction",
                                    vl_short_text(tag_of(op)).text);
-  for (int i = 0; i < 3; i++)
-    x[i] /= across;
   vl_cross3(z, x, y);
   *m = vl_mat4_axes(x, y, z, o);
   return VL_OK;

@@ -46,16 +46,10 @@ static bool derivatives(const vlOwnRay *before, const vlOwnRay *at, const vlOwnR
   return true;
 }
 
-static double triple(const double a[3], const double b[3], const double c[3]) {
-  double across[3];
-  vl_cross3(a, b, across);
-  return vl_dot3(across, c);
-}
-
 /* Connects the point p, in world space, with the camera. rays: RAYS of its film point. A pixel
- * sees at distance t the area |triple(ox + t dx, oy + t dy, d)|, where ox, dx and oy, dy are
- * the derivatives of the ray's origin and direction by the film's axes: a polynomial in t. The
- * point must lie on the ray of its film point, up to 1/16 of a pixel. */
+ * sees at distance t the area |vl_triple3(d, ox + t dx, oy + t dy)|, where ox, dx and oy, dy
+ * are the derivatives of the ray's origin and direction by the film's axes: a polynomial in t.
+ * The point must lie on the ray of its film point, up to 1/16 of a pixel. */
 static void connect(const vlCameraCompiled *c, const vlOwnRay *rays, const float p[3],
                     vlCameraSample *s) {
   const vlOwnRay *at = &rays[MIDDLE];
@@ -70,8 +64,9 @@ static void connect(const vlCameraCompiled *c, const vlOwnRay *rays, const float
     to[k] = (double)p[k] - at->o[k];
   double t = vl_dot3(to, at->d);
   double near = c->near_plane * at->stretch, far = c->far_plane * at->stretch;
-  double area[3] = {triple(ox, oy, at->d), triple(ox, dy, at->d) + triple(dx, oy, at->d),
-                    triple(dx, dy, at->d)};
+  double area[3] = {vl_triple3(at->d, ox, oy),
+                    vl_triple3(at->d, ox, dy) + vl_triple3(at->d, dx, oy),
+                    vl_triple3(at->d, dx, dy)};
   double pixel = fabs(area[0] + t * (area[1] + t * area[2]));
   for (int k = 0; k < 3; k++)
     off2 += square(to[k] - t * at->d[k]);

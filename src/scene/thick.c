@@ -4,11 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/double3.h"
+
 enum { SIDES = 6 };
 
 static void point_at(const vlProbe *s, int ray, double p[3]) {
-  for (int i = 0; i < 3; i++)
-    p[i] = s->o[ray][i] + s->seen[ray].t * s->d[ray][i];
+  vl_along3(s->o[ray], s->seen[ray].t, s->d[ray], p);
 }
 
 /* Whether the point is as good as on the surface of the box. */

@@ -4,17 +4,14 @@
 #include <string.h>
 
 #include "camera/camera.h"
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+#include "cli/vector.h"
 
 /* Signed solid angle of the triangle between three unit vectors (Van Oosterom and Strackee
  * 1983). */
 static double triangle(const double a[3], const double b[3], const double c[3]) {
   double volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
                   a[2] * (b[0] * c[1] - b[1] * c[0]);
-  return 2.0 * atan2(volume, 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+  return 2.0 * atan2(volume, 1.0 + vector_dot(a, b) + vector_dot(b, c) + vector_dot(c, a));
 }
 
 /* A rectangle of the film, and the rays through its corners: (x0, y0), (x1, y0), (x0, y1),
@@ -30,8 +27,8 @@ static bool angle_by_corners(const Cell *cell, double *angle) {
   const double *const *r = cell->rays;
   if (!r[0] || !r[1] || !r[2] || !r[3])
     return false;
-  if (dot(r[0], r[1]) < far_apart || dot(r[2], r[3]) < far_apart ||
-      dot(r[0], r[2]) < far_apart || dot(r[1], r[3]) < far_apart)
+  if (vector_dot(r[0], r[1]) < far_apart || vector_dot(r[2], r[3]) < far_apart ||
+      vector_dot(r[0], r[2]) < far_apart || vector_dot(r[1], r[3]) < far_apart)
     return false;
   *angle = fabs(triangle(r[0], r[1], r[2]) + triangle(r[1], r[3], r[2]));
   return true;

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "export/export.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "math/stretch.h"
 #include "velo/light.h"
@@ -13,29 +14,22 @@
 /* Makes axes exactly orthogonal if they are orthogonal except for rounding, since readers of
  * glTF decompose transforms. */
 static void square_up(double m[16]) {
-  double a[3][3], dot, l;
+  double a[3][3];
   for (int c = 0; c < 3; c++)
     for (int i = 0; i < 3; i++)
       a[c][i] = m[4 * i + c];
   const int order[3] = {2, 1, 0};
   for (int k = 0; k < 3; k++) {
     double *v = a[order[k]];
-    l = 0;
     for (int j = 0; j < k; j++) {
-      dot = 0;
-      for (int i = 0; i < 3; i++)
-        dot += v[i] * a[order[j]][i];
+      const double dot = vl_dot3(v, a[order[j]]);
       if (fabs(dot) > 1e-4)
         return;
-      for (int i = 0; i < 3; i++)
-        v[i] -= dot * a[order[j]][i];
+      vl_along3(v, -dot, a[order[j]], v);
     }
-    for (int i = 0; i < 3; i++)
-      l += v[i] * v[i];
-    if (!(fabs(l - 1) < 1e-4))
+    if (!(fabs(vl_dot3(v, v) - 1) < 1e-4))
       return;
-    for (int i = 0; i < 3; i++)
-      v[i] /= sqrt(l);
+    vl_normalize3(v);
   }
   for (int c = 0; c < 3; c++)
     for (int i = 0; i < 3; i++)
@@ -105,15 +99,12 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
 /* Orients the node so that its -z is the light's direction. */
 static json_t *light_node(const vlLightDef *d, json_int_t index) {
   vlMat4 m = vl_mat4_load(d->world_from_light);
-  double from[3], to[3], z[3], l = 0;
+  double from[3], to[3], z[3];
   vl_mat4_vertex(&m, d->from, from);
   vl_mat4_vertex(&m, d->to, to);
-  for (int i = 0; i < 3; i++) {
-    z[i] = from[i] - to[i];
-    l += z[i] * z[i];
-  }
-  for (int i = 0; i < 3; i++)
-    z[i] = l > 0 ? z[i] / sqrt(l) : i == 2;
+  vl_sub3(from, to, z);
+  if (!(vl_normalize3(z) > 0))
+    z[2] = 1;
   json_t *node =
       json_pack("{s:{s:{s:I}}}", "extensions", "KHR_lights_punctual", "light", index);
   if (d->kind != VL_LIGHT_DISTANT)

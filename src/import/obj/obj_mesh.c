@@ -48,11 +48,8 @@ static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {
 }
 
 static void unit(double n[3]) {
-  double l = vl_norm3(n);
-  if (l > 0 && isfinite(l)) {
-    for (int i = 0; i < 3; i++)
-      n[i] /= l;
-  } else {
+  double l = vl_normalize3(n);
+  if (!(l > 0 && isfinite(l))) {
     n[0] = n[1] = 0;
     n[2] = 1;
   }

@@ -9,6 +9,7 @@
 #include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "render/receipt.h"
 #include "render/shard.h"
 #include "velo/film.h"
 
@@ -220,12 +221,9 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
     printf("  samples   none\n");
   if (!receipt)
     return;
-  const char *commit, *version = vl_receipt_version(receipt, &commit), *output;
+  const char *output;
   printf("  velo      ");
-  text_print_plain(version);
-  if (*commit)
-    printf(", commit ");
-  text_print_plain(commit);
+  receipt_print_version(receipt);
   printf("\n  command   ");
   print_command(receipt);
   putchar('\n');

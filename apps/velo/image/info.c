@@ -149,14 +149,11 @@ static double shown(const vlAttribute *a, int i) {
 static void print_receipt(const vlReceipt *receipt) {
   if (!receipt)
     return;
-  const char *commit, *version = vl_receipt_version(receipt, &commit), *word;
+  const char *word;
   uint32_t planned, samples = vl_receipt_samples(receipt, &planned), files = 0;
   vlFileRecord record;
   printf("receipt\n  velo        ");
-  text_print_plain(version);
-  if (*commit)
-    printf(", commit ");
-  text_print_plain(commit);
+  receipt_print_version(receipt);
   printf("\n  command    ");
   for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++)
     text_shell_word(stdout, word);

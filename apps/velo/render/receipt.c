@@ -182,6 +182,14 @@ int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
   return report_error(&error, result, path);
 }
 
+void receipt_print_version(const vlReceipt *receipt) {
+  const char *commit, *version = vl_receipt_version(receipt, &commit);
+  text_print_plain(version);
+  if (*commit)
+    printf(", commit ");
+  text_print_plain(commit);
+}
+
 int receipt_take_scene(Arguments *arguments, const Arguments *given, const char *path,
                        const char *what, const char *owner, const char *option) {
   struct stat info;

@@ -40,6 +40,8 @@ vlResult receipt_set(const Job *job, const ReceiptImage *which, vlImage *image);
  * none or that it is wrong. */
 int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
                      vlReceipt **receipt);
+/* Prints the version and commit of velo. */
+void receipt_print_version(const vlReceipt *receipt);
 /* Takes the given scene, or else that of a receipt, whose path must be that of a file. what,
  * owner: the file that holds the receipt, for messages; option: that by which it was given.
  * Returns -1 or the exit code. */

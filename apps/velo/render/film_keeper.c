@@ -13,6 +13,13 @@
 enum { EVERY = 30 };
 static const double SHARE = 0.005, SHARE_WITH_ERRORS = 0.015;
 
+static void forget(FilmKeeper *k) {
+  vl_receipt_destroy(k->receipt);
+  vl_image_destroy(k->attributes);
+  k->receipt = NULL;
+  k->attributes = NULL;
+}
+
 int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, const Job *job, const char *eye) {
   if (!k->path[0])
     return -1;
@@ -23,10 +30,7 @@ int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, const Job *job, co
                               .samples = defs.render.spp,
                               .outputs = plan->outputs->paths,
                               .output_count = (uint32_t)plan->outputs->count};
-  vl_receipt_destroy(k->receipt);
-  vl_image_destroy(k->attributes);
-  k->receipt = NULL;
-  k->attributes = NULL;
+  forget(k);
   vlResult result = receipt_make(plan->receipt, &whole, &which, &k->receipt);
   if (result == VL_OK)
     result = attributes_make(&whole, eye, &k->attributes);
@@ -130,8 +134,5 @@ int film_keeper_finish(FilmKeeper *k, const vlFilm *film) {
 
 void film_keeper_free(FilmKeeper *k) {
   join(k);
-  vl_receipt_destroy(k->receipt);
-  vl_image_destroy(k->attributes);
-  k->receipt = NULL;
-  k->attributes = NULL;
+  forget(k);
 }

@@ -255,22 +255,24 @@ static Needs needs_of_render(const Render *render, const Arguments *arguments) {
                  .render = render};
 }
 
+/* Whether another frame of the animation has been checked. checked: null: there are none. */
+static bool is_checked(bool *checked) {
+  const bool before = checked && *checked;
+  if (checked)
+    *checked = true;
+  return before;
+}
+
 int needs_check_render_scene(Render *render, const Arguments *arguments) {
-  AnimateShared *shared = render->shared;
-  if (shared && shared->job_checked)
+  if (is_checked(render->shared ? &render->shared->job_checked : NULL))
     return -1;
-  if (shared)
-    shared->job_checked = true;
   const Needs needs = needs_of_render(render, arguments);
   return needs_check_scene(&needs);
 }
 
 int needs_check_render_tracer(Render *render, const Arguments *arguments) {
-  AnimateShared *shared = render->shared;
-  if (shared && shared->tracer_checked)
+  if (is_checked(render->shared ? &render->shared->tracer_checked : NULL))
     return -1;
-  if (shared)
-    shared->tracer_checked = true;
   if (render->job.race == RACE_TRACERS && arguments->values[RENDER_DRY_RUN].given)
     return -1; /* there was no race */
   const Needs needs = needs_of_render(render, arguments);

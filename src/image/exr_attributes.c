@@ -28,10 +28,30 @@ static bool is_layout(const char *name) {
   return false;
 }
 
-static void copy_floats(vlAttribute *to, vlAttributeType type, const float *from, int count) {
-  to->type = type;
-  for (int i = 0; i < count; i++)
-    to->numbers[i] = from[i];
+/* The types that are floats, `count` of them. */
+static const struct {
+  exr_attribute_type_t from;
+  vlAttributeType to;
+  int count;
+} floats[] = {{EXR_ATTR_V2F, VL_ATTRIBUTE_V2F, 2},
+              {EXR_ATTR_V3F, VL_ATTRIBUTE_V3F, 3},
+              {EXR_ATTR_M33F, VL_ATTRIBUTE_M33F, 9},
+              {EXR_ATTR_M44F, VL_ATTRIBUTE_M44F, 16},
+              {EXR_ATTR_CHROMATICITIES, VL_ATTRIBUTE_CHROMATICITIES, 8}};
+
+/* False: the attribute has another type. */
+static bool copy_floats(const exr_attribute_t *from, vlAttribute *to) {
+  for (size_t i = 0; i < VL_LENGTH(floats); i++) {
+    if (from->type != floats[i].from)
+      continue;
+    float numbers[16];
+    memcpy(numbers, from->rawptr, (size_t)floats[i].count * sizeof *numbers);
+    to->type = floats[i].to;
+    for (int k = 0; k < floats[i].count; k++)
+      to->numbers[k] = numbers[k];
+    return true;
+  }
+  return false;
 }
 
 static void copy_box(vlAttribute *to, const exr_attr_box2i_t *box) {
@@ -81,34 +101,15 @@ static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, si
       join_strings(from->stringvector, text, size);
       to->string = text;
       return true;
-    case EXR_ATTR_V2F:
-      copy_floats(to, VL_ATTRIBUTE_V2F, from->v2f->arr, 2);
-      return true;
-    case EXR_ATTR_V3F:
-      copy_floats(to, VL_ATTRIBUTE_V3F, from->v3f->arr, 3);
-      return true;
-    case EXR_ATTR_M33F:
-      copy_floats(to, VL_ATTRIBUTE_M33F, from->m33f->m, 9);
-      return true;
-    case EXR_ATTR_M44F:
-      copy_floats(to, VL_ATTRIBUTE_M44F, from->m44f->m, 16);
-      return true;
     case EXR_ATTR_M44D:
       to->type = VL_ATTRIBUTE_M44D;
       memcpy(to->numbers, from->m44d->m, sizeof to->numbers);
       return true;
-    case EXR_ATTR_CHROMATICITIES: {
-      const exr_attr_chromaticities_t *c = from->chromaticities;
-      const float xy[8] = {c->red_x,  c->red_y,  c->green_x, c->green_y,
-                           c->blue_x, c->blue_y, c->white_x, c->white_y};
-      copy_floats(to, VL_ATTRIBUTE_CHROMATICITIES, xy, 8);
-      return true;
-    }
     case EXR_ATTR_BOX2I:
       copy_box(to, from->box2i);
       return true;
     default:
-      return false;
+      return copy_floats(from, to);
   }
 }
 
@@ -197,6 +198,7 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
     exr_attr_v3f_t v3f;
     exr_attr_m33f_t m33f;
     exr_attr_m44f_t m44f;
+    exr_attr_chromaticities_t chromaticities;
   } v;
   for (int i = 0; i < 16; i++)
     f[i] = (float)n[i];
@@ -231,10 +233,8 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
       memcpy(m.m, n, sizeof m.m);
       return exr_attr_set_m44d(exr, 0, a->name, &m);
     }
-    case VL_ATTRIBUTE_CHROMATICITIES: {
-      const exr_attr_chromaticities_t c = {f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]};
-      return exr_attr_set_chromaticities(exr, 0, a->name, &c);
-    }
+    case VL_ATTRIBUTE_CHROMATICITIES:
+      return exr_attr_set_chromaticities(exr, 0, a->name, &v.chromaticities);
     case VL_ATTRIBUTE_BOX2I: {
       const exr_attr_box2i_t box = box_of(n);
       if (vl_text_is(a->name, "displayWindow"))

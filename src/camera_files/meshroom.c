@@ -119,11 +119,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlC
                               "meshroom: type \"%s\" is no model of velo",
                               vl_short_text(base).text);
   if (!model)
-    return vl_camera_wrong_in(
-        file, intrinsic, key,
-        "meshroom: unknown %s \"%s\"; there are none, radialk1, radialk3, radialk3pt, brown, "
-        "fisheye1, fisheye4",
-        key, vl_short_text(name).text);
+    return vl_camera_unknown(
+        file, intrinsic, key, name,
+        "there are none, radialk1, radialk3, radialk3pt, brown, fisheye1, fisheye4");
   const bool given = json_array_size(list) > 0 && model->count > 0;
   if (given)
     VL_TRY(numbers(file, intrinsic, "distortionParams", k, model->count));

@@ -49,11 +49,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
   fisheye = fisheye || json_is_true(json_object_get(tree, "is_fisheye"));
   if (model && !fisheye &&
       !vl_has_word("OPENCV PINHOLE SIMPLE_PINHOLE RADIAL SIMPLE_RADIAL", model))
-    return vl_camera_wrong_in(
-        file, holder(frame, tree, "camera_model"), "camera_model",
-        "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
-        "RADIAL, OPENCV, OPENCV_FISHEYE, FISHEYE624",
-        vl_short_text(model).text);
+    return vl_camera_unknown(file, holder(frame, tree, "camera_model"), "camera_model", model,
+                             "there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, RADIAL, "
+                             "OPENCV, OPENCV_FISHEYE, FISHEYE624");
   const bool tangential = !vl_camera_all_zero(k + 2, 2);
   if (fisheye && tangential)
     return vl_camera_wrong(file, "nerf: a fisheye has no \"p1\" and \"p2\"");

@@ -11,7 +11,6 @@ const TextureCase fbm_texture = {
     .variants =
         {
             {.parameters = "\"integer octaves\" 3 \"float roughness\" .4",
-             .low = 0,
              .high = 1,
              .known = {{.5, .5, {0, 0, 0}}},
              .formula = formula,

@@ -18,35 +18,29 @@ const TextureCase image_texture = {
              .known = {{.25, .25, {.7, .7, .7}}, {.75, .75, {.8, .8, .8}}}},
             {.parameters = "\"string filename\" \"grain.pfm\" \"string filter\" \"trilinear\" "
                            "\"float uscale\" 2 \"float vscale\" .7",
-             .low = 0,
              .high = 1,
              .filtered = true},
             /* many of its footprints lie across its edges */
             {.parameters = "\"string filename\" \"grain.pfm\" \"string filter\" \"trilinear\" "
                            "\"float uscale\" 20 \"float vscale\" 20 \"float udelta\" -9.5 "
                            "\"float vdelta\" -9.5 \"string wrap\" \"black\"",
-             .low = 0,
              .high = 1,
              .filtered = true},
             /* its bytes by two curves */
             {.parameters = "\"string filename\" \"a.tga\" \"string encoding\" \"linear\"",
-             .low = 0,
              .high = 1,
              .known = {{.3125, .5625, {.93725, .75294, .47059}},
                        {.6875, .1875, {.86667, .65490, .92941}}}},
             {.parameters = "\"string filename\" \"a.tga\" \"string encoding\" \"gamma 3\"",
-             .low = 0,
              .high = 1,
              .known = {{.3125, .5625, {.82333, .42686, .10421}},
                        {.6875, .1875, {.65096, .28089, .80283}}}},
             /* writers of pbrt's files decode what has no name that says its format */
             {.parameters =
                  "\"string filename\" \"normals.img\" \"string encoding\" \"gamma 3\"",
-             .low = 0,
              .high = 1},
             {.parameters =
                  "\"string filename\" \"normals.img\" \"string encoding\" \"gamma 2\"",
-             .low = 0,
              .high = 1},
         },
     .parameters =

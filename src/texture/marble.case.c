@@ -31,12 +31,10 @@ const TextureCase marble_texture = {
     .variants =
         {
             {.parameters = "\"float scale\" 3 \"float variation\" .4",
-             .low = 0,
              .high = 1,
              .formula = formula,
              .of_space = true},
             {.parameters = "\"float scale\" -3 \"float variation\" .4",
-             .low = 0,
              .high = 1,
              .formula = mirrored_formula,
              .of_space = true},

@@ -14,7 +14,6 @@ const TextureCase windy_texture = {
     .variants =
         {
             {.parameters = "",
-             .low = 0,
              .high = 1,
              .known = {{.5, .5, {0, 0, 0}}},
              .formula = formula,

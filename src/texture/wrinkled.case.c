@@ -10,7 +10,6 @@ const TextureCase wrinkled_texture = {
     .variants =
         {
             {.parameters = "\"integer octaves\" 3 \"float roughness\" .3",
-             .low = 0,
              .high = 1,
              .formula = formula,
              .of_space = true},

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/glb.h"
 #include "base/text.h"
 #include "export/export.h"
 #include "math/transform.h"
@@ -17,9 +18,6 @@ enum {
   TYPE_USHORT = 5123,
   TYPE_FLOAT = 5126
 };
-
-/* Words of a .glb file (glTF 2.0, 4.4). */
-enum { GLB_MAGIC = 0x46546C67, GLB_VERSION = 2, GLB_JSON = 0x4E4F534A, GLB_BIN = 0x004E4942 };
 
 json_t *vl_gltf_array_of(const float *values, size_t count) {
   json_t *array = json_array();
@@ -418,16 +416,16 @@ static bool write_binary(vlExport *x, const char *json, size_t length) {
   if ((uint64_t)length + size > 0xffffff00u)
     return vl_export_fail(x, VL_ERROR_UNSUPPORTED, "more than 4 GB do not go into a .glb");
   vlBytes file = {0};
-  put_little(x, &file, GLB_MAGIC);
-  put_little(x, &file, GLB_VERSION);
+  put_little(x, &file, VL_GLB_MAGIC);
+  put_little(x, &file, VL_GLB_VERSION);
   put_little(x, &file, (uint32_t)(12 + 8 + length + padding + (size ? 8 + size : 0)));
   put_little(x, &file, (uint32_t)(length + padding));
-  put_little(x, &file, GLB_JSON);
+  put_little(x, &file, VL_GLB_JSON);
   vl_bytes_put(x->context, &file, json, length);
   vl_bytes_put(x->context, &file, "   ", padding);
   if (size) {
     put_little(x, &file, (uint32_t)size);
-    put_little(x, &file, GLB_BIN);
+    put_little(x, &file, VL_GLB_BIN);
     vl_bytes_put(x->context, &file, x->buffer.data.items, size);
   }
   const bool fine =

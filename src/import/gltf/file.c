@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/bytes.h"
 #include "base/free.h"
+#include "base/glb.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "import/find.h"
@@ -11,16 +12,13 @@
 
 enum { MAX_ITEMS = 1 << 24 };
 
-/* Types of the chunks of a .glb file: "JSON", "BIN". */
-enum { GLB_JSON = 0x4E4F534A, GLB_BIN = 0x004E4942 };
-
 /* The .glb container: a header of 12 bytes, then chunks. A chunk consists of its length, its
  * type and its data. */
 static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
   if (g->file_size < 20)
     return vl_gltf_fail(&g->top, "broken .glb: only %zu bytes", g->file_size);
   uint32_t version = vl_little32(g->file + 4), length = vl_little32(g->file + 8);
-  if (version != 2)
+  if (version != VL_GLB_VERSION)
     return vl_gltf_fail(&g->top, ".glb of version %u; velo reads version 2", version);
   if (length > g->file_size)
     return vl_gltf_fail(&g->top, "broken .glb: says that it has %u bytes, the file has %zu",
@@ -33,13 +31,13 @@ static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
       return vl_gltf_fail(&g->top,
                           "broken .glb: chunk %d of %zu bytes at byte %zu goes past the end", k,
                           size, at);
-    if (k == 0 && kind != GLB_JSON)
+    if (k == 0 && kind != VL_GLB_JSON)
       return vl_gltf_fail(&g->top, "broken .glb: its first chunk is not JSON");
     if (k == 0) {
       *json = (const char *)g->file + at + 8;
       *json_size = size;
     }
-    if (kind == GLB_BIN && !g->chunk) {
+    if (kind == VL_GLB_BIN && !g->chunk) {
       g->chunk = g->file + at + 8;
       g->chunk_size = size;
     }

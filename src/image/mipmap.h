@@ -30,6 +30,11 @@ typedef struct vlMipmap {
   vlMipLevel levels[VL_MIP_LEVELS];
 } vlMipmap;
 
+/* The colour space that the image names, or else the other. map may be null. */
+static inline vlColorSpace vl_mipmap_space(const vlMipmap *map, vlColorSpace otherwise) {
+  return map && map->space_given ? map->space : otherwise;
+}
+
 typedef struct vlMipmapDef {
   uint32_t channel[4]; /* indices of the image's channels */
   uint32_t count;      /* 1 to 4 */

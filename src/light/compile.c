@@ -54,8 +54,7 @@ void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmi
 }
 
 vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSpace otherwise) {
-  const vlMipmap *mip = image >= 0 ? world->images.items[image].mipmap : NULL;
-  return mip && mip->space_given ? mip->space : otherwise;
+  return vl_mipmap_space(image >= 0 ? world->images.items[image].mipmap : NULL, otherwise);
 }
 
 vlResult vl_light_set_frame(const vlLightDef *def, const int order[3], const float sign[3],

@@ -314,9 +314,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   if (node.kind == VL_TEXTURE_IMAGE) {
     if ((node.image = vl_texture_image_index(c->world, c->scene, def, c->error)) < 0)
       return -1;
-    const vlMipmap *mip = c->world->images.items[node.image].mipmap;
-    if (mip->space_given)
-      node.space = mip->space;
+    node.space = vl_mipmap_space(c->world->images.items[node.image].mipmap, node.space);
   }
   if (def->spectrum && gives_rgb(&node))
     image_spectrum(c->world, &node);

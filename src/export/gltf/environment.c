@@ -121,8 +121,7 @@ static bool read_map(vlExport *x, const vlLightDef *d, Sky *sky) {
   vl_image_destroy(read);
   if (!fine)
     return false;
-  sky->to_srgb =
-      vl_srgb_map(sky->map->space_given ? sky->map->space : d->space, VL_ROLE_ILLUMINANT);
+  sky->to_srgb = vl_srgb_map(vl_mipmap_space(sky->map, d->space), VL_ROLE_ILLUMINANT);
   sky->scale = d->scale;
   const double lux = illuminance_of(sky);
   if (!isnan(d->illuminance) && lux > 0)

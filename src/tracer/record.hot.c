@@ -214,6 +214,21 @@ static float largest_throughput(const vlPathVertex *v) {
   return most;
 }
 
+/* The paths of the `count` vertices in `order` go on along the rays of the same indices. lane:
+ * of the vertices. */
+static void go_on(vlTracing *t, const uint32_t *lane, const uint32_t *order, uint32_t count,
+                  const vlPaths *rays) {
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = order[k];
+    vlPathVertex *v = last_vertex(t, lane[i]);
+    if (!v)
+      continue;
+    v->fate = VL_PATH_ON;
+    v->pdf = rays->pdf[i];
+    vl_store3(v->direction, vl_lane3(rays->dx, rays->dy, rays->dz, i));
+  }
+}
+
 void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t depth, const vlVertices *at,
                        const vlBsdfSamples *s, const vlPaths *next, const uint32_t *order,
                        uint32_t count) {
@@ -231,14 +246,7 @@ void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t depth, const vlVertice
     v->survival = vl_roulette_survival(most * next->eta_scale[i], depth);
     v->fate = none || !(most > 0.0f) ? VL_PATH_ABSORBED : VL_PATH_ROULETTE;
   }
-  for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = order[k];
-    vlPathVertex *v = last_vertex(t, p->lane[i]);
-    if (!v)
-      continue;
-    v->fate = VL_PATH_ON;
-    vl_store3(v->direction, vl_lane3(next->dx, next->dy, next->dz, i));
-  }
+  go_on(t, p->lane, order, count, next);
 }
 
 /* ---- media and subsurface materials ------------------------------------------------------ */
@@ -266,15 +274,7 @@ void vl_record_phase(vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *p,
     v->survival = vl_roulette_survival(most * p->eta_scale[i], depth);
     v->fate = most > 0.0f ? VL_PATH_ROULETTE : VL_PATH_ABSORBED;
   }
-  for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = kept[k];
-    vlPathVertex *v = last_vertex(t, p->lane[i]);
-    if (!v)
-      continue;
-    v->fate = VL_PATH_ON;
-    v->pdf = p->pdf[i];
-    vl_store3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
-  }
+  go_on(t, p->lane, kept, count, p);
 }
 
 void vl_record_probes(vlTracing *t, uint32_t n, const vlPaths *p, const uint32_t *found) {

@@ -79,7 +79,7 @@ const vlCameraFormat vl_format_bop = {
     .is_tree = is_bop,
     .read = read_bop,
     .holds = VL_HOLDS_POSE,
-    .lenses = 1 << VL_LENS_PINHOLE,
+    .lenses = {VL_LENSES_PINHOLE},
     .form =
         "{\n"
         "  \"0\": {\n"

@@ -45,9 +45,7 @@ const vlCameraFormat vl_format_euroc = {
         "distortion_model distortion_coefficients rate_hz",
     .read = read_euroc,
     .holds = VL_HOLDS_POSE,
-    .lenses = VL_LENSES_COMMON,
-    .least = 4,
-    .most = 5,
+    .lenses = {VL_LENSES_COMMON, 4, 5},
     .lens_words = {"radial-tangential", "radial-tangential", "equidistant"},
     .form =
         "sensor_type: camera\n"

@@ -305,7 +305,8 @@ const char *vl_camera_name_without(const vlFittedCamera *fit, const char *withou
 
 vlResult vl_camera_write_form(const vlCameraFormat *format, const vlFittedCamera *fit,
                               vlCameraText *text) {
-  const uint32_t count = fit->count > format->least ? fit->count : format->least;
+  const uint32_t least = format->lenses.least;
+  const uint32_t count = fit->count > least ? fit->count : least;
   return VL_PUT_FORM(text, fit, format->form, VL_VALUES("k", fit->k, count),
                      VL_WORD("lens", format->lens_words[fit->family]));
 }

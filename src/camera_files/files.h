@@ -220,8 +220,18 @@ typedef enum vlLensFamily {
   VL_LENS_DOUBLE_SPHERE,
   VL_LENS_OTHER
 } vlLensFamily;
-/* A bit for each of the lenses that most tools have. */
-enum { VL_LENSES_COMMON = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV | 1 << VL_LENS_FISHEYE };
+/* The lenses that a dialect can hold. */
+typedef struct vlLensSet {
+  uint32_t families; /* a bit for each (1 << VL_LENS_FOV) */
+  uint32_t least;    /* $k of a form has at least so many coefficients */
+  uint32_t most;     /* how many coefficients there may be */
+  uint32_t terms;    /* only so many of OpenCV's may differ from 0; 0: any */
+} vlLensSet;
+enum {
+  VL_LENSES_PINHOLE = 1 << VL_LENS_PINHOLE,
+  VL_LENSES_OPENCV = VL_LENSES_PINHOLE | 1 << VL_LENS_OPENCV,
+  VL_LENSES_COMMON = VL_LENSES_OPENCV | 1 << VL_LENS_FISHEYE /* those that most tools have */
+};
 struct vlCameraFormat;
 /* A camera that its dialect can hold. */
 typedef struct vlFittedCamera {
@@ -339,18 +349,17 @@ typedef struct vlCameraFormat {
                                       general ones (unread.c) do not say so: errors; may be null */
   bool (*knows)(const char *name); /* further names; may be null */
   char separator; /* of texts whose lines are NAME, this character, a value; 0: of no others */
-  /* What the dialect can hold (vl_camera_fit). holds: VL_HOLDS_POSE, ... lenses: a bit for each
-   * family (1 << VL_LENS_FOV); 0: the writer checks the lens. most: how many coefficients there
-   * may be. plain, in place of lenses: perspective and orthographic cameras without distortion.
-   * spheres: also equirectangular and equal-area images of the whole sphere. terms: only so
-   * many of OpenCV's may differ from 0; 0: any. centred, square: the principal point must be
-   * the image's centre; fx must be fy. */
-  uint32_t holds, lenses, most, terms;
+  /* What the dialect can hold (vl_camera_fit). holds: VL_HOLDS_POSE, ... lenses: of no
+   * families: the writer checks the lens. plain, in place of lenses: perspective and
+   * orthographic cameras without distortion. spheres: also equirectangular and equal-area
+   * images of the whole sphere. centred, square: the principal point must be the image's
+   * centre; fx must be fy. */
+  uint32_t holds;
+  vlLensSet lenses;
   bool plain, spheres, centred, square;
   /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of
    * the lens, and $lens, its word. */
   const char *form;
-  uint32_t least;                        /* $k has at least so many coefficients */
   const char *lens_words[VL_LENS_OTHER]; /* by family */
   const char *unnamed;                   /* $name of a record without a name; null: "camera" */
   bool rotates; /* poses are rotations and translations: vl_camera_check_rotation */

@@ -200,10 +200,11 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
     fit->k[0] = c->shape[0];
     fit->count = 1;
   }
-  const bool known = format->lenses >> fit->family & 1 && fit->count <= format->most;
-  const bool fits = fit->family == VL_LENS_FISHEYE || !format->terms ||
-                    vl_camera_all_zero(fit->k + format->terms, 14 - format->terms);
-  if (!format->plain && format->lenses && !(known && fits))
+  const vlLensSet *lenses = &format->lenses;
+  const bool known = lenses->families >> fit->family & 1 && fit->count <= lenses->most;
+  const bool fits = fit->family == VL_LENS_FISHEYE || !lenses->terms ||
+                    vl_camera_all_zero(fit->k + lenses->terms, 14 - lenses->terms);
+  if (!format->plain && lenses->families && !(known && fits))
     return vl_camera_no_model(file, d);
   fit->sphere = is_whole_sphere(c);
   if (format->plain && !(format->spheres && fit->sphere))

@@ -29,7 +29,7 @@ const vlCameraFormat vl_format_gaussians = {
     .read = read_gaussians,
     .holds = VL_HOLDS_POSE,
     .centred = true,
-    .lenses = 1 << VL_LENS_PINHOLE,
+    .lenses = {VL_LENSES_PINHOLE},
     .form =
         "[\n"
         "  {\"id\": 0, \"img_name\": $name, \"width\": $width, \"height\": $height,\n"

@@ -263,5 +263,5 @@ const vlCameraFormat vl_format_matrix = {.name = "matrix",
                                          .is_text = is_matrix,
                                          .read_text = read_matrix,
                                          .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
-                                         .lenses = 1 << VL_LENS_PINHOLE,
+                                         .lenses = {VL_LENSES_PINHOLE},
                                          .write = write_matrix};

@@ -270,6 +270,5 @@ const vlCameraFormat vl_format_meshroom = {
     .is_tree = is_meshroom,
     .read = read_meshroom,
     .holds = VL_HOLDS_POSE,
-    .lenses = VL_LENSES_COMMON | 1 << VL_LENS_FOV,
-    .most = 5,
+    .lenses = {VL_LENSES_COMMON | 1 << VL_LENS_FOV, 0, 5},
     .write = write_meshroom};

@@ -93,5 +93,5 @@ const vlCameraFormat vl_format_middlebury = {
     .separator = '=',
     .is_text = is_middlebury,
     .read_text = read_middlebury,
-    .lenses = 1 << VL_LENS_PINHOLE,
+    .lenses = {VL_LENSES_PINHOLE},
     .form = "cam0=[$fx 0 $cx0; 0 $fy $cy0; 0 0 1]\nwidth=$width\nheight=$height\n"};

@@ -72,5 +72,5 @@ const vlCameraFormat vl_format_mvsnet = {.name = "mvsnet",
                                          .is_text = is_mvsnet,
                                          .read_text = read_mvsnet,
                                          .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
-                                         .lenses = 1 << VL_LENS_PINHOLE,
+                                         .lenses = {VL_LENSES_PINHOLE},
                                          .write = write_mvsnet};

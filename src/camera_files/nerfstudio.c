@@ -60,7 +60,7 @@ const vlCameraFormat vl_format_nerfstudio = {
     .holds = VL_HOLDS_POSE,
     .centred = true,
     .square = true,
-    .lenses = 1 << VL_LENS_PINHOLE,
+    .lenses = {VL_LENSES_PINHOLE},
     .form =
         "{\n"
         "  \"camera_type\": \"perspective\",\n"

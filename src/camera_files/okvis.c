@@ -63,6 +63,5 @@ const vlCameraFormat vl_format_okvis = {
         "frontend* output_parameters",
     .read = read_okvis,
     .holds = VL_HOLDS_POSE,
-    .lenses = VL_LENSES_COMMON,
-    .most = 8,
+    .lenses = {VL_LENSES_COMMON, 0, 8},
     .write = write_okvis};

@@ -75,7 +75,7 @@ const vlCameraFormat vl_format_open3d = {
     .is_tree = is_open3d,
     .read = read_open3d,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
-    .lenses = 1 << VL_LENS_PINHOLE,
+    .lenses = {VL_LENSES_PINHOLE},
     .form =
         "{\n"
         "  \"class_name\": \"PinholeCameraParameters\",\n"

@@ -360,6 +360,5 @@ const vlCameraFormat vl_format_opencv = {
     .knows = vl_opencv_is_field,
     .read = vl_camera_read_opencv,
     .holds = VL_HOLDS_POSE,
-    .lenses = VL_LENSES_COMMON,
-    .most = 14,
+    .lenses = {VL_LENSES_COMMON, 0, 14},
     .write = write_opencv};

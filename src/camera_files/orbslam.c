@@ -103,6 +103,5 @@ const vlCameraFormat vl_format_orbslam = {
         "IMU.* ORBextractor.* Viewer.* System.* ThDepth DepthMapFactor RGBD.* Tbc loopClosing "
         "IMU loopClosing",
     .read = read_orbslam,
-    .lenses = VL_LENSES_COMMON,
-    .most = 5,
+    .lenses = {VL_LENSES_COMMON, 0, 5},
     .write = write_orbslam};

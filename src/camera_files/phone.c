@@ -84,7 +84,7 @@ const vlCameraFormat vl_format_polycam = {
     .marks = {"t_00", "t_23", "fx"},
     .read = read_polycam,
     .holds = VL_HOLDS_POSE,
-    .lenses = 1 << VL_LENS_PINHOLE,
+    .lenses = {VL_LENSES_PINHOLE},
     .form =
         "{\n"
         "  \"width\": $width, \"height\": $height,\n"

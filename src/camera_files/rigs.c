@@ -158,9 +158,7 @@ const vlCameraFormat vl_format_panoptic = {
     .marks_in = "cameras",
     .read = read_panoptic,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
-    .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,
-    .least = 5,
-    .most = 5,
+    .lenses = {VL_LENSES_OPENCV, 5, 5},
     .unnamed = "00_00",
     .form =
         "{\"cameras\": [\n"
@@ -204,9 +202,7 @@ const vlCameraFormat vl_format_nerfies = {
     .marks = {"orientation", "focal_length", "principal_point"},
     .read = read_nerfies,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
-    .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,
-    .least = 5,
-    .most = 5,
+    .lenses = {VL_LENSES_OPENCV, 5, 5},
     .form =
         "{\n"
         "  \"orientation\": [$R:3],\n"

@@ -226,6 +226,5 @@ const vlCameraFormat vl_format_ros = {
         "nsecs sec nanosec frame_id",
     .read = read_ros,
     .read_text = read_ini,
-    .lenses = VL_LENSES_COMMON,
-    .most = 14,
+    .lenses = {VL_LENSES_COMMON, 0, 14},
     .write = write_ros};

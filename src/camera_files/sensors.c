@@ -241,9 +241,7 @@ const vlCameraFormat vl_format_realsense = {
 
     .is_tree = is_realsense,
     .read = read_realsense,
-    .lenses = VL_LENSES_COMMON,
-    .least = 5,
-    .most = 5,
+    .lenses = {VL_LENSES_COMMON, 5, 5},
     .lens_words = {"brown_conrady", "brown_conrady", "kannala_brandt4"},
     .form =
         "{\n"

@@ -145,7 +145,6 @@ const vlCameraFormat vl_format_svo = {
         "serialno imu_params imu_initialization mask",
     .read = read_svo,
     .holds = VL_HOLDS_POSE,
-    .lenses = VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED,
-    .most = 4,
+    .lenses = {VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED, 0, 4},
     .unnamed = "cam0",
     .write = write_svo};

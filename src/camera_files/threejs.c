@@ -94,6 +94,6 @@ const vlCameraFormat vl_format_threejs = {
     .is_tree = is_threejs,
     .read = read_threejs,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES,
-    .lenses = 1 << VL_LENS_PINHOLE,
+    .lenses = {VL_LENSES_PINHOLE},
     .centred = true,
     .write = write_threejs};

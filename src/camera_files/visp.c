@@ -148,7 +148,5 @@ const vlCameraFormat vl_format_visp = {
         "full_height additional_information!",
     .is_tree = is_visp,
     .read = read_visp,
-    .lenses = VL_LENSES_COMMON,
-    .most = 14,
-    .terms = 1,
+    .lenses = {VL_LENSES_COMMON, 0, 14, 1},
     .write = write_visp};

@@ -112,5 +112,5 @@ const vlCameraFormat vl_format_visualsfm = {.name = "visualsfm",
                                             .is_text = is_visualsfm,
                                             .read_text = read_visualsfm,
                                             .holds = VL_HOLDS_POSE,
-                                            .lenses = 1 << VL_LENS_PINHOLE,
+                                            .lenses = {VL_LENSES_PINHOLE},
                                             .write = write_visualsfm};

@@ -6,9 +6,9 @@
 #include "velo/filter_kinds.h"
 
 VL_PIXEL_FILTER_FUNCTIONS(VL_DECLARE_ROW)
-static const vlKindRow *const rows[] = {VL_PIXEL_FILTER_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_pixel_filter_family =
-    VL_KIND_FAMILY(rows, VL_PIXEL_FILTER_KINDS, "filters", "pixel filter", "PixelFilter");
+    VL_KIND_FAMILY(VL_PIXEL_FILTER_FUNCTIONS(VL_LIST_ROW), VL_PIXEL_FILTER_KINDS, "filters",
+                   "pixel filter", "PixelFilter");
 
 vlPixelFilter vl_default_pixel_filter(vlPixelFilterKind kind) {
   vlPixelFilter filter = {.kind = kind};

@@ -34,10 +34,9 @@ static const vlKindRow diffuse_row = {
         "a surface that emits the same radiance in all directions, or less away from its normal",
     .traits = 0};
 
-static const vlKindRow *const rows[] = {&diffuse_row};
 #define EMISSION_KINDS(X) X(, diffuse)
 const vlKindFamily vl_emission_family =
-    VL_KIND_FAMILY(rows, EMISSION_KINDS, "emission", "area light", "AreaLightSource");
+    VL_KIND_FAMILY(&diffuse_row, EMISSION_KINDS, "emission", "area light", "AreaLightSource");
 
 vlEmissionDef vl_default_emission_def(void) {
   vlEmissionDef def = {.cookie = VL_COOKIE_EMISSION};

@@ -12,9 +12,8 @@
   vlLightPower power;
 VL_LIGHT_FUNCTIONS(DECLARE)
 
-static const vlKindRow *const rows[] = {VL_LIGHT_FUNCTIONS(VL_LIST_ROW)};
-const vlKindFamily vl_light_family =
-    VL_KIND_FAMILY(rows, VL_LIGHT_KINDS, "lights", "light", "LightSource");
+const vlKindFamily vl_light_family = VL_KIND_FAMILY(
+    VL_LIGHT_FUNCTIONS(VL_LIST_ROW), VL_LIGHT_KINDS, "lights", "light", "LightSource");
 
 vlLightDef vl_default_light_def(vlLightKind kind) {
   vlLightDef def = {.cookie = VL_COOKIE_LIGHT, .kind = kind};

@@ -7,9 +7,8 @@
 #define DECLARE(kind, name, row, compile) extern const vlKindRow row;
 VL_MATERIAL_KINDS(DECLARE)
 #define ROW(kind, name, row, compile) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_MATERIAL_KINDS(ROW)};
-const vlKindFamily vl_material_family =
-    VL_KIND_FAMILY(rows, VL_MATERIAL_KINDS, "materials", "material", "Material");
+const vlKindFamily vl_material_family = VL_KIND_FAMILY(
+    VL_MATERIAL_KINDS(ROW), VL_MATERIAL_KINDS, "materials", "material", "Material");
 
 vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
   vlMaterialDef def = {.cookie = VL_COOKIE_MATERIAL, .kind = kind};

@@ -6,9 +6,9 @@
 #include "medium/kinds.row.h"
 
 VL_MEDIUM_FUNCTIONS(VL_DECLARE_ROW)
-static const vlKindRow *const rows[] = {VL_MEDIUM_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_medium_family =
-    VL_KIND_FAMILY(rows, VL_MEDIUM_KINDS, "media", "medium type", "MakeNamedMedium");
+    VL_KIND_FAMILY(VL_MEDIUM_FUNCTIONS(VL_LIST_ROW), VL_MEDIUM_KINDS, "media", "medium type",
+                   "MakeNamedMedium");
 
 vlMediumDef vl_default_medium_def(vlMediumKind kind) {
   vlMediumDef def = {.cookie = VL_COOKIE_MEDIUM, .kind = kind};

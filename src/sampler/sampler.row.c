@@ -9,6 +9,5 @@ const char *const vl_sampler_randomizations[] = {"none", "permutedigits", "fasto
                                                  NULL};
 
 VL_SAMPLER_FUNCTIONS(VL_DECLARE_ROW)
-static const vlKindRow *const rows[] = {VL_SAMPLER_FUNCTIONS(VL_LIST_ROW)};
-const vlKindFamily vl_sampler_family =
-    VL_KIND_FAMILY(rows, VL_SAMPLER_KINDS, "samplers", "sampler", "Sampler");
+const vlKindFamily vl_sampler_family = VL_KIND_FAMILY(
+    VL_SAMPLER_FUNCTIONS(VL_LIST_ROW), VL_SAMPLER_KINDS, "samplers", "sampler", "Sampler");

@@ -199,8 +199,7 @@ const vlKindRow vl_camera_settings_row = {
   X(VL_CAMERA_COLMAP, colmap_row)
 _Static_assert(0 CAMERA_ROWS(VL_COUNT_KIND) == 0 VL_CAMERA_KINDS(VL_COUNT_KIND),
                "each camera has a row");
-static const vlKindRow *const rows[] = {CAMERA_ROWS(VL_LIST_ROW)
-                                            VL_PROJECTION_KINDS(ROW_OF_PROJECTION)};
 #define CAMERA_KINDS(X) VL_CAMERA_KINDS(X) VL_PROJECTION_KINDS(X)
 const vlKindFamily vl_camera_family =
-    VL_KIND_FAMILY(rows, CAMERA_KINDS, "cameras", "camera", "Camera");
+    VL_KIND_FAMILY(CAMERA_ROWS(VL_LIST_ROW) VL_PROJECTION_KINDS(ROW_OF_PROJECTION),
+                   CAMERA_KINDS, "cameras", "camera", "Camera");

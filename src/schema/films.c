@@ -88,6 +88,5 @@ static const vlKindRow spectral_row = {
   X(VL_FILM_SPECTRAL, spectral_row)
 _Static_assert(0 FILM_ROWS(VL_COUNT_KIND) == 0 VL_FILM_KINDS(VL_COUNT_KIND),
                "each film has a row");
-static const vlKindRow *const rows[] = {FILM_ROWS(VL_LIST_ROW)};
 const vlKindFamily vl_film_family =
-    VL_KIND_FAMILY(rows, VL_FILM_KINDS, "films", "film", "Film");
+    VL_KIND_FAMILY(FILM_ROWS(VL_LIST_ROW), VL_FILM_KINDS, "films", "film", "Film");

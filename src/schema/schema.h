@@ -58,12 +58,14 @@
 #define VL_DECLARE_ROW(kind, row, ...) extern const vlKindRow row;
 #define VL_LIST_ROW(kind, row, ...) [kind] = &row,
 
-/* Initialises a family with the array of its rows and the list of its kinds. */
-#define VL_KIND_FAMILY(array, KINDS, family_name, thing_name, directive_name) \
-  {                                                                           \
-    .name = family_name, .thing = thing_name, .directive = directive_name,    \
-    .kind_count = sizeof(array) / sizeof *(array),                            \
-    .words = (const char *const[]){KINDS(VL_KIND_WORD)}, .rows = (array)      \
+/* Initialises a family with its rows, each at its kind (VL_LIST_ROW), and the list of its
+ * kinds. */
+#define VL_ROW_ARRAY(...) ((const vlKindRow *const[]){__VA_ARGS__})
+#define VL_KIND_FAMILY(row_list, KINDS, family_name, thing_name, directive_name)        \
+  {                                                                                     \
+    .name = family_name, .thing = thing_name, .directive = directive_name,              \
+    .kind_count = sizeof VL_ROW_ARRAY(row_list) / sizeof(vlKindRow *),                  \
+    .words = (const char *const[]){KINDS(VL_KIND_WORD)}, .rows = VL_ROW_ARRAY(row_list) \
   }
 #define VL_KIND_WORD(kind, name, ...) #name,
 

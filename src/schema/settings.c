@@ -291,9 +291,8 @@ static const vlKindRow program_row = {VL_ROW_PARAMETERS(program_parameters), .na
   X(VL_SETTING_EXPOSURE, vl_exposure_settings_row)
 _Static_assert(0 GROUP_ROWS(VL_COUNT_KIND) == 0 VL_SETTING_GROUPS(VL_COUNT_KIND),
                "each group has a row");
-static const vlKindRow *const rows_of_group[] = {GROUP_ROWS(VL_LIST_ROW)};
 const vlKindFamily vl_setting_family =
-    VL_KIND_FAMILY(rows_of_group, VL_SETTING_GROUPS, "settings", "setting", NULL);
+    VL_KIND_FAMILY(GROUP_ROWS(VL_LIST_ROW), VL_SETTING_GROUPS, "settings", "setting", NULL);
 
 const vlKindRow *vl_settings(vlSettingGroup group) {
   return vl_kind_row(&vl_setting_family, (int)group);

@@ -19,9 +19,8 @@ enum { VL_SHAPE_FUNCTIONS(LISTED) };
 #define IS_LISTED(kind, name) _Static_assert((int)LISTED_##kind == (int)kind, #name);
 VL_SHAPE_KINDS(IS_LISTED)
 
-static const vlKindRow *const rows[] = {VL_SHAPE_FUNCTIONS(VL_LIST_ROW)};
 const vlKindFamily vl_shape_family =
-    VL_KIND_FAMILY(rows, VL_SHAPE_KINDS, "shapes", "shape", "Shape");
+    VL_KIND_FAMILY(VL_SHAPE_FUNCTIONS(VL_LIST_ROW), VL_SHAPE_KINDS, "shapes", "shape", "Shape");
 
 #define BOX(kind, row, box, functions) [kind] = box,
 static vlShapeBox *const box_of[] = {VL_SHAPE_FUNCTIONS(BOX)};

@@ -5,6 +5,5 @@
 const char *const vl_texture_mappings[] = {"uv", "spherical", "cylindrical", "planar", NULL};
 
 #define ROW(kind, name, row, ...) [kind] = &row,
-static const vlKindRow *const rows[] = {VL_TEXTURE_KINDS(ROW)};
 const vlKindFamily vl_texture_family =
-    VL_KIND_FAMILY(rows, VL_TEXTURE_KINDS, "textures", "texture", "Texture");
+    VL_KIND_FAMILY(VL_TEXTURE_KINDS(ROW), VL_TEXTURE_KINDS, "textures", "texture", "Texture");

@@ -8,6 +8,5 @@
 const char *const vl_tracer_light_samplers[] = {"bvh", "power", "uniform", "exhaustive", NULL};
 
 VL_TRACER_FUNCTIONS(VL_DECLARE_ROW)
-static const vlKindRow *const rows[] = {VL_TRACER_FUNCTIONS(VL_LIST_ROW)};
-const vlKindFamily vl_tracer_family =
-    VL_KIND_FAMILY(rows, VL_TRACER_KINDS, "tracers", "integrator", "Integrator");
+const vlKindFamily vl_tracer_family = VL_KIND_FAMILY(
+    VL_TRACER_FUNCTIONS(VL_LIST_ROW), VL_TRACER_KINDS, "tracers", "integrator", "Integrator");

@@ -78,23 +78,22 @@ void vl_list_name(char *list, size_t size, const char *name) {
   memcpy(list + used + 2, name, length + 1);
 }
 
-/* Number of bytes of the UTF-8 character at text; 0 if the bytes are not valid or incomplete.
- * *code: its code point. */
-static size_t utf8_length(const unsigned char *text, size_t length, uint32_t *code) {
+size_t vl_utf8_length(const char *text, size_t length, uint32_t *code) {
+  const unsigned char *bytes = (const unsigned char *)text;
   /* by the number of bytes: the smallest code point; the highest bits of the first byte */
   static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
   static const unsigned char lead[5] = {0, 0x00, 0xc0, 0xe0, 0xf0},
                              mask[5] = {0, 0x80, 0xe0, 0xf0, 0xf8};
   size_t n = 1;
-  while (n <= 4 && (text[0] & mask[n]) != lead[n])
+  while (n <= 4 && (bytes[0] & mask[n]) != lead[n])
     n++;
   if (n > 4 || n > length)
     return 0;
-  *code = text[0] & ~(uint32_t)mask[n];
+  *code = bytes[0] & ~(uint32_t)mask[n];
   for (size_t i = 1; i < n; i++) {
-    if (text[i] >> 6 != 2)
+    if (bytes[i] >> 6 != 2)
       return 0;
-    *code = *code << 6 | (text[i] & 0x3fu);
+    *code = *code << 6 | (bytes[i] & 0x3fu);
   }
   return *code >= least[n] && *code <= 0x10ffff && *code >> 11 != 0x1b ? n : 0;
 }
@@ -103,7 +102,7 @@ bool vl_is_utf8(const char *text) {
   size_t length = strlen(text), n = 1;
   uint32_t code;
   for (size_t at = 0; at < length && n; at += n)
-    n = utf8_length((const unsigned char *)text + at, length - at, &code);
+    n = vl_utf8_length(text + at, length - at, &code);
   return n > 0;
 }
 
@@ -119,11 +118,10 @@ static bool is_hidden(uint32_t c) {
  * bytes. */
 static void show(const char *text, size_t length, uint32_t most, char *result, size_t size) {
   const char *const more = "\u2026";
-  const unsigned char *bytes = (const unsigned char *)text;
   size_t used = 0, at = 0;
   for (uint32_t shown = 0; at < length && shown < most; shown++) {
     uint32_t code = 0;
-    size_t n = utf8_length(bytes + at, length - at, &code);
+    size_t n = vl_utf8_length(text + at, length - at, &code);
     if (used + (n ? n : 1) + strlen(more) >= size)
       break;
     if (n == 0 || is_hidden(code)) {
@@ -169,7 +167,7 @@ void vl_make_printable(char *message) {
   size_t length = strlen(message), used = 0;
   for (size_t at = 0; at < length;) {
     uint32_t code = 0;
-    size_t n = utf8_length((const unsigned char *)message + at, length - at, &code);
+    size_t n = vl_utf8_length(message + at, length - at, &code);
     bool cut = n == 0 && length - at < 4 && (unsigned char)message[at] >= 0xc0;
     for (size_t i = at + 1; i < length && cut; i++)
       cut = (unsigned char)message[i] >> 6 == 2;

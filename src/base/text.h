@@ -58,6 +58,9 @@ void vl_make_printable(char *message);
 static inline bool vl_is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
 }
+/* Number of bytes of the UTF-8 character at text[0, length), which is not empty; 0 if the bytes
+ * are not valid or incomplete. *code: its code point. */
+size_t vl_utf8_length(const char *text, size_t length, uint32_t *code);
 bool vl_is_utf8(const char *text);
 /* Length of one of jansson's messages without its end (" near '...'"), which quotes the
  * file. */

@@ -7,6 +7,7 @@
 
 #include "base/context.h"
 #include "base/free.h"
+#include "base/text.h"
 #include "world/world.h"
 
 /* ---- the hash ---------------------------------------------------------------------------- */
@@ -49,27 +50,13 @@ uint32_t vl_cryptomatte_hash(const char *name) {
 
 enum { NAME_PART = 200, NAME_SIZE = NAME_PART + 32 };
 
-/* Number of bytes of the UTF-8 character that begins here; 0: not valid UTF-8. */
-static size_t character(const char *at) {
-  const unsigned char *b = (const unsigned char *)at;
-  size_t n = b[0] < 0x80 ? 1 : b[0] >= 0xc2 && b[0] < 0xe0 ? 2 : (b[0] & 0xf0) == 0xe0 ? 3 : 0;
-  if (b[0] >= 0xf0 && b[0] < 0xf5)
-    n = 4;
-  for (size_t i = 1; i < n; i++)
-    if ((b[i] & 0xc0) != 0x80)
-      return 0;
-  if ((b[0] == 0xe0 && b[1] < 0xa0) || (b[0] == 0xed && b[1] > 0x9f) ||
-      (b[0] == 0xf0 && b[1] < 0x90) || (b[0] == 0xf4 && b[1] > 0x8f))
-    return 0;
-  return n;
-}
-
 /* Scene names are arbitrary bytes. In the manifest a name is UTF-8 without control characters,
  * of limited length. */
 static void clean(const char *from, char to[NAME_PART + 1]) {
   size_t n = 0;
   while (*from) {
-    size_t bytes = character(from);
+    uint32_t code;
+    size_t bytes = vl_utf8_length(from, strnlen(from, 4), &code);
     bool good = bytes > 0 && (unsigned char)from[0] >= 32 && from[0] != 127;
     if (n + (good ? bytes : 1) > NAME_PART)
       break;

@@ -182,13 +182,8 @@ static void find_normals(Cutter *c, const uint32_t *indices, size_t faces) {
     const uint32_t *v = indices + 3 * f;
     const float *p = c->p.items + 3 * (size_t)v[0], *q = c->p.items + 3 * (size_t)v[1],
                 *r = c->p.items + 3 * (size_t)v[2];
-    float a[3], b[3];
-    for (int i = 0; i < 3; i++) {
-      a[i] = q[i] - p[i];
-      b[i] = r[i] - p[i];
-    }
-    float n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                  a[0] * b[1] - a[1] * b[0]};
+    float n[3];
+    vl_store3(n, vl_cross(vl_sub(vl_load3(q), vl_load3(p)), vl_sub(vl_load3(r), vl_load3(p))));
     for (int k = 0; k < 3; k++)
       for (int i = 0; i < 3; i++)
         c->n.items[3 * (size_t)v[k] + i] += n[i];

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/free.h"
 #include "math/approx_double.h"
+#include "math/vec.h"
 
 static const uint32_t NONE = UINT32_MAX;
 /* Limits the output of a short file. Beyond 5 levels (1024 times as many faces) the smaller
@@ -347,13 +348,11 @@ static vlResult finish(vlContext *context, Level *l, vlMesh *mesh, vlError *erro
   vl_free(context, l->p);
   l->p = limit;
   for (uint32_t i = 0; i < l->vertices; i++) {
-    float s[3] = {0, 0, 0}, t[3] = {0, 0, 0}, *n = &normals[3 * (size_t)i];
+    float s[3] = {0, 0, 0}, t[3] = {0, 0, 0};
     if (l->start[i] == NONE)
       continue;
     tangents(l, i, s, t);
-    n[0] = s[1] * t[2] - s[2] * t[1];
-    n[1] = s[2] * t[0] - s[0] * t[2];
-    n[2] = s[0] * t[1] - s[1] * t[0];
+    vl_store3(&normals[3 * (size_t)i], vl_cross(vl_load3(s), vl_load3(t)));
   }
   *mesh = (vlMesh){.vertices = l->vertices, .triangles = l->faces, .indices = l->v};
   mesh->positions = l->p;

@@ -8,6 +8,15 @@
 
 #include "velo/material.h"
 
+/* Two directions away from the surface, in its frame: to the eye, and to where light comes
+ * from. */
+typedef struct MaterialAt {
+  double out[3], in[3];
+  double across; /* of hair: offset from its axis, -1 to 1 */
+} MaterialAt;
+/* The BSDF times the cosine of `in`, of R, G and B. */
+typedef void MaterialFormula(const MaterialAt *at, double value[3]);
+
 typedef struct MaterialVariant {
   const char *parameters; /* null ends the list */
   double albedo[3]; /* known mean weight, of R, G and B, if the eye is 0.2 radians from the
@@ -22,6 +31,7 @@ typedef struct MaterialVariant {
   bool one_way;     /* not reciprocal */
   /* the BSDF is estimated by random walks: its means are compared, not its values */
   bool walks;
+  MaterialFormula *formula; /* null: not known */
 } MaterialVariant;
 
 enum { MATERIAL_VARIANTS = 6 };

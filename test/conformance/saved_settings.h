@@ -104,6 +104,20 @@ static bool saved_setting(const vlParameter *p, double value, double *set, doubl
   return losses == 0;
 }
 
+/* The window of the image that is rendered. */
+static void saved_window(void) {
+  static const uint32_t window[4] = {2, 3, 9, 11};
+  vlScene *scene = need_scene(HEAD "WorldBegin Shape \"sphere\"");
+  memcpy(vl_scene_defs(scene)->film.crop, window, sizeof window);
+  vlScene *read = read_again(scene, "window.pbrt");
+  const uint32_t *crop = vl_scene_defs(read)->film.crop;
+  if (memcmp(crop, window, sizeof window) != 0)
+    broken("settings", "film.crop", "2 3 9 11 is read again as %u %u %u %u", crop[0], crop[1],
+           crop[2], crop[3]);
+  vl_scene_destroy(read);
+  vl_scene_destroy(scene);
+}
+
 static void settings_of_scenes(void **state) {
   (void)state;
   int kept = 0;
@@ -133,6 +147,7 @@ static void settings_of_scenes(void **state) {
                set, read);
     }
   }
+  saved_window();
   print_message("settings of renders that files of scenes keep: %d\n", kept);
   assert_true(kept > 20);
   expect_no_failures();

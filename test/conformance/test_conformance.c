@@ -3,12 +3,16 @@
 #include "bumps.h"
 #include "cameras.h"
 #include "conformance.h"
+#include "coverages.h"
 #include "densities.h"
 #include "descriptions.h"
+#include "dimensions.h"
 #include "emitting_faces.h"
 #include "files.h"
 #include "footprints.h"
+#include "formulas.h"
 #include "furnaces.h"
+#include "gltf_defaults.h"
 #include "hostile.h"
 #include "instances.h"
 #include "lamps.h"
@@ -20,9 +24,11 @@
 #include "parameters.h"
 #include "pbrt_defaults.h"
 #include "radiometry.h"
+#include "ray_derivatives.h"
 #include "sampling.h"
 #include "saved_lights.h"
 #include "saved_settings.h"
+#include "saved_skies.h"
 #include "saved_spectra.h"
 #include "scrambles.h"
 #include "shading.h"
@@ -65,10 +71,13 @@ int main(int argc, char **argv) {
       cmocka_unit_test(parameters_of_all_families),
       cmocka_unit_test(textures_of_parameters),
       cmocka_unit_test(defaults_of_pbrt),
+      cmocka_unit_test(defaults_of_gltf),
+      cmocka_unit_test(rough_stand_ins),
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(turned_materials),
       cmocka_unit_test(laws_of_shading),
       cmocka_unit_test(laws_of_descriptions),
+      cmocka_unit_test(formulas_of_materials),
       cmocka_unit_test(laws_of_layers),
       cmocka_unit_test(laws_of_lights),
       cmocka_unit_test(laws_of_lamps),
@@ -91,6 +100,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_texels),
       cmocka_unit_test(faces_that_emit),
       cmocka_unit_test(laws_of_projections),
+      cmocka_unit_test(derivatives_of_rays),
       cmocka_unit_test(laws_of_distortions),
       cmocka_unit_test(settings_of_cameras),
       cmocka_unit_test(settings_of_scenes),
@@ -103,16 +113,19 @@ int main(int argc, char **argv) {
       cmocka_unit_test(scrambles_of_samplers),
       cmocka_unit_test(laws_of_filters),
       cmocka_unit_test(filters_of_light_paths),
+      cmocka_unit_test(coverages_of_filters),
       cmocka_unit_test(laws_of_media),
       cmocka_unit_test(neighbouring_media),
       cmocka_unit_test(neighbouring_materials),
       cmocka_unit_test(neighbouring_textures),
       cmocka_unit_test(laws_of_densities),
       cmocka_unit_test(laws_of_tracers),
+      cmocka_unit_test(dimensions_of_tracers),
       cmocka_unit_test(limits_of_kinds),
       cmocka_unit_test(laws_of_furnaces),
       cmocka_unit_test(spectra_of_files),
       cmocka_unit_test(lights_of_files),
+      cmocka_unit_test(skies_of_files),
       cmocka_unit_test(hostile_defs),
       cmocka_unit_test(hostile_cameras),
       cmocka_unit_test(hostile_files),

@@ -1,6 +1,4 @@
 /* medium/grid.case.c: what tests know of media on grids. */
-#include <math.h>
-
 #include "medium/medium.case.h"
 
 /* The transmittances below are exp(-sigma_a * the integral of the density along z, from -1 to
@@ -8,11 +6,6 @@
  *   .transmittance: density 1 in two cells: exp(-.5 * 1.75)
  *   .passes: eight layers of thickness .25, one of density 3, the others .1; the two at the
  *     sides count 7/8: exp(-.5 * .25 * (3 + 5 * .1 + 2 * 7/8 * .1)) */
-static double density(const double p[3], PlainNoise *noise) {
-  (void)noise;
-  return 0.5 * fmin(1, 1.5 - fabs(p[2]));
-}
-
 const MediumCase grid_medium = {
     .shape = BLOCKS,
     .scatters =
@@ -34,7 +27,7 @@ const MediumCase grid_medium = {
     "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [" FOUR_THIN FOUR_THIN
     "3 3 3 3 " FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN "]",
     .passes = 0.631678,
-    .density = density,
+    .density = faded_density,
     /* (temperature - 300) 1.4 */
     .hot = {BLOCKS "\"float density\" " EIGHT
                    " \"float temperature\" [900 1500 2000 2500 900 1500 1200 3000] "
@@ -49,15 +42,7 @@ const MediumCase grid_medium = {
             {.parameter = "Lescale",
              .base = CELLS ";\"rgb Le\" [.3 .2 .1];\"float density\" " EIGHT},
             {.base = CELLS ";\"float density\" " EIGHT},
-            {.parameter = "nx",
-             .base = "\"integer nx\" 8;\"float density\" " EIGHT,
-             .value = "\"integer nx\" 4 \"integer ny\" 2"},
-            {.parameter = "ny",
-             .base = "\"integer ny\" 8;\"float density\" " EIGHT,
-             .value = "\"integer ny\" 4 \"integer nz\" 2"},
-            {.parameter = "nz",
-             .base = "\"integer nz\" 8;\"float density\" " EIGHT,
-             .value = "\"integer nz\" 4 \"integer nx\" 2"},
+            SIDE_CASES("\"float density\" " EIGHT),
             {.parameter = "temperature",
              .value = "\"float temperature\" [900 1500 2000 2500 900 1500 1200 3000]"},
             {.parameter = "temperatureoffset",

@@ -3,6 +3,8 @@
 #ifndef MEDIUM_MEDIUM_CASE_H
 #define MEDIUM_MEDIUM_CASE_H
 
+#include <math.h>
+
 #include "math/noise.case.h"
 #include "schema/parameter.case.h"
 #include "velo/medium.h"
@@ -51,6 +53,25 @@ typedef struct MediumCase {
 /* the largest component of one is more than twice the others, of each */
 #define EIGHT_COLORS "[1 .5 .2 1 .7 .1 .2 .9 .4 .1 .3 .8 1 .4 .2 1 .7 .1 .4 .9 .6 .1 .3 .8]"
 #define OTHER_COLORS "[.2 .5 1 .1 .7 1 .4 .3 .6 .9 .8 .3 .1 .5 .6 1 .2 .1 .4 .9 .1 .1 .8 .3]"
+
+/* Cases of the numbers of cells along the axes. cells: the parameter that has their values. */
+#define SIDE_CASES(cells)                                 \
+  {.parameter = "nx",                                     \
+   .base = "\"integer nx\" 8;" cells,                     \
+   .value = "\"integer nx\" 4 \"integer ny\" 2"},         \
+      {.parameter = "ny",                                 \
+       .base = "\"integer ny\" 8;" cells,                 \
+       .value = "\"integer ny\" 4 \"integer nz\" 2"},     \
+  {                                                       \
+    .parameter = "nz", .base = "\"integer nz\" 8;" cells, \
+    .value = "\"integer nz\" 4 \"integer nx\" 2"          \
+  }
+
+/* The extinction of grids of two cells along z with 1 in all: it fades at the box's sides. */
+static inline double faded_density(const double p[3], PlainNoise *noise) {
+  (void)noise;
+  return 0.5 * fmin(1, 1.5 - fabs(p[2]));
+}
 
 /* Declares the case of each kind, which is in the file of the kind: medium/NAME.case.c. */
 #define MEDIUM_CASE(kind, name) extern const MediumCase name##_medium;

@@ -1,16 +1,9 @@
 /* medium/rgb_grid.case.c: what tests know of media on grids of colours. */
-#include <math.h>
-
 #include "medium/medium.case.h"
 
 /* Le of these grids, as in pbrt, is in units of a constant spectrum's luminance, 106.857. It is
  * interpolated, too: both fade to half at the box's sides, w(z) = 1.5 - |z| from |z| = .5 on.
  * The numbers are integrals of that. */
-static double density(const double p[3], PlainNoise *noise) {
-  (void)noise;
-  return 0.5 * fmin(1, 1.5 - fabs(p[2]));
-}
-
 const MediumCase rgb_grid_medium = {
     .shape = BLOCKS,
     .scatters = "\"rgb sigma_a\" " NONE " \"rgb sigma_s\" " EIGHT_COLORS " \"float g\" .4",
@@ -26,7 +19,7 @@ const MediumCase rgb_grid_medium = {
     "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
     "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]",
     .passes = 0.631678,
-    .density = density,
+    .density = faded_density,
     /* what is not given is 1 */
     .tall = BLOCKS "\"rgb sigma_s\" " EIGHT_COLORS,
     .parameters =
@@ -35,15 +28,7 @@ const MediumCase rgb_grid_medium = {
              .base = CELLS ";\"rgb sigma_s\" " EIGHT_COLORS ";\"rgb sigma_a\" " EIGHT_COLORS
                            ";\"rgb Le\" " EIGHT_COLORS},
             {.base = CELLS ";\"rgb sigma_s\" " EIGHT_COLORS},
-            {.parameter = "nx",
-             .base = "\"integer nx\" 8;\"rgb sigma_s\" " EIGHT_COLORS,
-             .value = "\"integer nx\" 4 \"integer ny\" 2"},
-            {.parameter = "ny",
-             .base = "\"integer ny\" 8;\"rgb sigma_s\" " EIGHT_COLORS,
-             .value = "\"integer ny\" 4 \"integer nz\" 2"},
-            {.parameter = "nz",
-             .base = "\"integer nz\" 8;\"rgb sigma_s\" " EIGHT_COLORS,
-             .value = "\"integer nz\" 4 \"integer nx\" 2"},
+            SIDE_CASES("\"rgb sigma_s\" " EIGHT_COLORS),
             {.parameter = "Le",
              .value = "\"rgb Le\" " OTHER_COLORS,
              .base = CELLS ";\"rgb sigma_s\" " EIGHT_COLORS ";\"rgb sigma_a\" " EIGHT_COLORS},

@@ -103,8 +103,7 @@ vlResult vl_scene_load_group(vlScene *scene, const char *path, const vlLoadDef *
   if (!scene || !path || !loaded)
     return vl_fail(error, VL_ERROR_ARGUMENT, "load group: a pointer is null");
   memset(loaded, 0, sizeof *loaded);
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(vl_scene_result(scene, error));
   vlGroupId group = vl_scene_add_group(scene, name);
   if (!group.index)
     return vl_scene_result(scene, error);

@@ -201,8 +201,7 @@ static vlResult save_plainly(const vlScene *scene, const char *path, const vlSav
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: scene or path is null");
   if (def && def->cookie != VL_COOKIE_SAVE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: " VL_BAD_COOKIE);
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(vl_scene_result(scene, error));
   bool pbrt = vl_ends_with(path, ".pbrt"), binary = vl_ends_with(path, ".glb");
   if (!pbrt && !binary && !vl_ends_with(path, ".gltf"))
     return vl_fail(error, VL_ERROR_ARGUMENT,

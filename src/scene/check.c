@@ -76,8 +76,7 @@ vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart 
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: scene or result is null");
   if (def && def->cookie != VL_COOKIE_CHECK)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: " VL_BAD_COOKIE);
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(vl_scene_result(scene, error));
   if (scene->meshes_dropped)
     return vl_fail(error, VL_ERROR_ARGUMENT, "the scene gave its meshes to a world");
   vlCheck *check = vl_alloc_zero(scene->context, 1, sizeof *check);

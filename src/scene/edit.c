@@ -57,8 +57,7 @@ static vlResult check(const vlScene *scene, bool found, const char *what, vlErro
   vl_error_clear(error);
   if (!scene)
     return vl_fail(error, VL_ERROR_ARGUMENT, "%s: scene is null", what);
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(vl_scene_result(scene, error));
   return found ? VL_OK
                : vl_fail(error, VL_ERROR_ARGUMENT, "%s: there is no such %s", what, what);
 }

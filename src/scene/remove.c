@@ -155,8 +155,7 @@ static vlResult check_removal(const vlScene *scene, vlSceneFamily family, uint32
   vl_error_clear(error);
   if (!scene || (unsigned)family > VL_SCENE_INSTANCES)
     return vl_fail(error, VL_ERROR_ARGUMENT, "remove: scene is null, or unknown family");
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(vl_scene_result(scene, error));
   const char *thing = vl_scene_rows[family].thing;
   if (!vl_scene_has(scene, family, index))
     return vl_fail(error, VL_ERROR_ARGUMENT, "%s: there is no such %s", thing, thing);
@@ -247,8 +246,7 @@ vlResult vl_scene_set_group(vlScene *scene, vlGroupId id, const char *name, vlEr
   vl_error_clear(error);
   if (!scene)
     return vl_fail(error, VL_ERROR_ARGUMENT, "group: scene is null");
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(vl_scene_result(scene, error));
   if (id.index == 0 || id.index > scene->groups.count)
     return vl_fail(error, VL_ERROR_ARGUMENT, "group: there is no such group");
   vlSceneGroup *group = &scene->groups.items[id.index - 1];

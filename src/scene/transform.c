@@ -180,8 +180,7 @@ vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16], v
   vl_error_clear(error);
   if (!scene || !world_from_scene)
     return vl_fail(error, VL_ERROR_ARGUMENT, "transform: a null pointer");
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(vl_scene_result(scene, error));
   if (!take_apart(world_from_scene, &s))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "transform: not a rotation, a uniform scale and a shift");

@@ -423,8 +423,7 @@ static bool fail_old(vlImport *import, const char *path) {
 static vlResult run(vlScene *scene, const char *path, const char *data, size_t size,
                     const char *const *texts, size_t text_count, const vlLoadDef *def,
                     vlError *error) {
-  if (scene->error.code != VL_OK)
-    return vl_scene_result(scene, error);
+  VL_TRY(vl_scene_result(scene, error));
   vlImport *import = vl_alloc_zero(scene->context, 1, sizeof *import);
   if (!import)
     return vl_fail_memory(error);

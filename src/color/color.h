@@ -95,18 +95,13 @@ void vl_xyz_from_rgb(vlColorSpace space, float m[9]);
 /* xy chromaticities of red, green, blue and white: r_x r_y g_x g_y b_x b_y w_x w_y. */
 void vl_space_chromaticities(vlColorSpace space, float xy[8]);
 
-/* The index of the integer wavelength before x nm above 360 in a dense spectrum. (It is clamped
+/* Interpolates linearly in a dense spectrum; 0 outside of 360 to 830 nm. (The index is clamped
  * as an integer: if it were clamped as a float, gcc would not make a gather.) */
-static inline int vl_dense_index(float x) {
-  int i = (int)x;
-  i = i < VL_LAMBDA_COUNT - 2 ? i : VL_LAMBDA_COUNT - 2;
-  return i > 0 ? i : 0;
-}
-
-/* Interpolates linearly in a dense spectrum; 0 outside of 360 to 830 nm. */
 static inline float vl_dense_at(const float *dense, float lambda) {
   float x = lambda - 360.0f;
-  int i = vl_dense_index(x);
+  int i = (int)x;
+  i = i < VL_LAMBDA_COUNT - 2 ? i : VL_LAMBDA_COUNT - 2;
+  i = i > 0 ? i : 0;
   float a = dense[i], b = dense[i + 1];
   float value = a + (x - (float)i) * (b - a);
   value = x >= 0.0f ? value : 0.0f;
@@ -117,7 +112,9 @@ static inline float vl_dense_at(const float *dense, float lambda) {
  * (vl_channel_shares), interpolated linearly between integer nm. */
 static inline float vl_channels_at(const float t[3], float lambda) {
   float x = lambda - 360.0f;
-  int i = vl_dense_index(x);
+  int i = (int)x;
+  i = i < VL_LAMBDA_COUNT - 2 ? i : VL_LAMBDA_COUNT - 2;
+  i = i > 0 ? i : 0;
   const float *s = vl_channel_shares + 4 * i;
   float a = s[0] * t[0] + s[1] * t[1] + s[2] * t[2],
         b = s[4] * t[0] + s[5] * t[1] + s[6] * t[2];

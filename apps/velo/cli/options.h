@@ -108,6 +108,15 @@ typedef struct Command {
 #define JSON_OPTION(id) \
   { (id), "json", "print one JSON object to stdout" }
 
+/* result: what the command makes: "image". */
+#define THREADS_OPTION(id, result)                                               \
+  {                                                                              \
+    (id), "threads",                                                             \
+        "number of worker threads; default: one for each processor. The " result \
+        " does not depend on it",                                                \
+        OPTION_INTEGER, "N", .letter = 't'                                       \
+  }
+
 /* Gives each row without a name the members of the row of `from` with the same id, and its help
  * unless it has one of its own. For all commands, before anything else reads their rows. */
 void options_share(Option *options, const Option *from);

@@ -86,10 +86,7 @@ static Option denoise_options[] = {
     OUTPUT_VIEW_OPTION(DENOISE_VIEW),
     OUTPUT_EXPOSURE_OPTION(DENOISE_EXPOSURE),
     OUTPUT_HALF_OPTION(DENOISE_HALF),
-    {DENOISE_THREADS, "threads",
-     "number of worker threads; default: one for each processor. The image does not depend on "
-     "it",
-     OPTION_INTEGER, "N", .letter = 't'},
+    THREADS_OPTION(DENOISE_THREADS, "image"),
     {DENOISE_VERBOSE, "verbose", "print the time that denoising took", .letter = 'v'},
     {0}};
 

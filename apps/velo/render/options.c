@@ -304,10 +304,7 @@ Option render_options[] = {
     {RENDER_NO_RECEIPT, "no-receipt",
      "do not write a receipt into the .exr, that is command, paths and digests of files, "
      "camera and settings (docs/receipts.md)"},
-    {RENDER_THREADS, "threads",
-     "number of worker threads; default: one for each processor. The image does not depend on "
-     "it",
-     OPTION_INTEGER, "N", .letter = 't'},
+    THREADS_OPTION(RENDER_THREADS, "image"),
     {RENDER_ISA, "isa",
      "x86-64 instruction set that is used; default: the best that the processor has. The "
      "image does not depend on it:",

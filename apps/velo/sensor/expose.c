@@ -346,9 +346,7 @@ static Option options[] = {
      "what raw files (.dng) call the white of the scene's light: stdillum-A, stdillum-D50, "
      "...; default: stdillum-D65",
      OPTION_TEXT, "SPECTRUM"},
-    {EXPOSE_THREADS, "threads",
-     "number of worker threads; default: all processors. The result is the same",
-     OPTION_INTEGER, "N", .letter = 't'},
+    THREADS_OPTION(EXPOSE_THREADS, "result"),
     {0}};
 
 const Command sensor_expose_command = {

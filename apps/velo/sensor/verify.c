@@ -140,9 +140,7 @@ static Option options[] = {
      "program reads, to a new folder",
      OPTION_TEXT, "DIR"},
     {VERIFY_PLOT, "plot", "write the photon transfer curve", OPTION_TEXT, "FILE.svg"},
-    {VERIFY_THREADS, "threads",
-     "number of worker threads; default: all processors. The result is the same",
-     OPTION_INTEGER, "N", .letter = 't'},
+    THREADS_OPTION(VERIFY_THREADS, "result"),
     {0}};
 
 const Command sensor_verify_command = {

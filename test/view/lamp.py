@@ -2,7 +2,7 @@
 # A lamp in a tube that is open above: light from the lamps finds the room.
 SCENE = '''LookAt 0 1 3.5 0 0.8 0 0 1 0
 Camera "perspective" "float fov" [60]
-Film "rgb" "integer xresolution" [128] "integer yresolution" [96]
+Film "rgb" "integer xresolution" [112] "integer yresolution" [88]
 Sampler "zsobol" "integer pixelsamples" [64]
 %sWorldBegin
 Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]

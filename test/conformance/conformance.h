@@ -414,9 +414,9 @@ static double mean_of_green(const vlImage *image) {
   "\"float tex1\" .1\n"                                                                 \
   "MakeNamedMaterial \"grey\" \"string type\" \"diffuse\"\n"                            \
   "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [.8 .1 .1]\n"
-#define GROUND                                                \
-  "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" " \
-  "[-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3]\n"
+#define GROUND                                                                     \
+  "Material \"diffuse\" Shape \"trianglemesh\" \"integer indices\" [0 1 2 2 1 3] " \
+  "\"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3]\n"
 #define BALL "Rotate 70 1 .3 .2 Shape \"sphere\" \"float radius\" .8\n"
 
 #endif

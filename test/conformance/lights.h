@@ -172,8 +172,9 @@ static void check_delta_light(const char *kind, const LightVariant *v, const cha
   }
 }
 
-#define FLOOR \
-  "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9]\n"
+#define FLOOR                                                                      \
+  "Material \"diffuse\" Shape \"trianglemesh\" \"integer indices\" [0 1 2 2 1 3] " \
+  "\"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9]\n"
 
 /* The edge of glTF's spots has another profile, and the writer says so; the angles between
  * which it lies are the same. */

@@ -213,8 +213,9 @@ static void illuminances(void **state) {
 
 /* A square floor and nothing else around a light, seen from just above it: the image is the
  * floor. */
-#define SQUARE_FLOOR \
-  "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-1 0 1 1 0 1 -1 0 -1 1 0 -1]\n"
+#define SQUARE_FLOOR                                                               \
+  "Material \"diffuse\" Shape \"trianglemesh\" \"integer indices\" [0 1 2 2 1 3] " \
+  "\"point3 P\" [-1 0 1 1 0 1 -1 0 -1 1 0 -1]\n"
 
 enum { LIGHT_PATH_SPP = 2048, FLOOR_SPP = 256 };
 

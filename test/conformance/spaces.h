@@ -57,7 +57,8 @@ static void write_space_image(const SpaceCase *c, const float color[3], bool tel
 /* ---- what is compared -------------------------------------------------------------------- */
 
 #define D65_SKY "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n"
-#define PLANE "Shape \"bilinearmesh\" \"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9]\n"
+#define PLANE \
+  "Shape \"trianglemesh\" \"integer indices\" [0 1 2 2 1 3] \"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9]\n"
 #define IMAGE_FILE "\"string filename\" \"space.exr\" "
 /* the second texture: change_texture sets its space */
 #define IMAGE_TEXTURE                             \

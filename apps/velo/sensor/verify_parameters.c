@@ -88,7 +88,7 @@ static double peak(const Verify *v, bool expected) {
 
 /* ---- what is measured -------------------------------------------------------------------- */
 
-/* Slope through the origin of y over x, up to 70 % of the saturation. */
+/* One number of a step. */
 typedef double StepValue(const Verify *v, const VerifyStep *step);
 
 static double light_mean(const Verify *v, const VerifyStep *step) {
@@ -103,6 +103,7 @@ static double photons(const Verify *v, const VerifyStep *step) {
   return step->electrons / v->efficiency;
 }
 
+/* Slope through the origin of y over x, up to 70 % of the saturation. */
 static double slope(const Verify *v, StepValue *x, StepValue *y, double saturation) {
   double products = 0.0;
   double squares = 0.0;

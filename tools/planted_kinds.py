@@ -1392,6 +1392,12 @@ MISTAKES = [
     ("spots are wider than pbrt's unless it is set", "lights:spot",
      r"lights spot: .coneangle. is", "src/light/spot.row.c",
      "ANGLE(30 * DEGREES)", "ANGLE(40 * DEGREES)"),
+    ("lamps that do not reach a point share its samples", "lights",
+     r"lights bvh: .*elsewhere", "src/light/light_choice.hot.c",
+     "vl_receiver(d->f, i), counts[i] != 0, u[i]", "vl_receiver(d->f, i), true, u[i]"),
+    ("the first of several values counts", "repeated",
+     r'materials coateddiffuse: "float roughness" \S+ "float roughness" \S+ is not', "src/import/pbrt/parameters.c",
+     "vlParam *p = params->list.items[i - 1];", "vlParam *p = params->list.items[params->list.count - i];"),
     ]
 
 

@@ -8,6 +8,7 @@
 #include "descriptions.h"
 #include "dimensions.h"
 #include "emitting_faces.h"
+#include "far_lamps.h"
 #include "files.h"
 #include "footprints.h"
 #include "formulas.h"
@@ -25,6 +26,7 @@
 #include "pbrt_defaults.h"
 #include "radiometry.h"
 #include "ray_derivatives.h"
+#include "repeated.h"
 #include "sampling.h"
 #include "saved_lights.h"
 #include "saved_settings.h"
@@ -70,6 +72,7 @@ int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parameters_of_all_families),
       cmocka_unit_test(textures_of_parameters),
+      cmocka_unit_test(repeated_parameters),
       cmocka_unit_test(defaults_of_pbrt),
       cmocka_unit_test(defaults_of_gltf),
       cmocka_unit_test(rough_stand_ins),
@@ -83,6 +86,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_lamps),
       cmocka_unit_test(powers),
       cmocka_unit_test(chosen_powers),
+      cmocka_unit_test(lamps_elsewhere),
       cmocka_unit_test(illuminances),
       cmocka_unit_test(light_paths),
       cmocka_unit_test(laws_of_emission),

@@ -47,6 +47,25 @@ def images_keep_encoding_and_attributes():
 
 
 @case
+def focal_lengths_replace_each_other():
+    """Whatever gave the focal length before."""
+    ways = ({"fov": 0.7}, {"view_distance": 50.0}, {"view_distance": 30.0, "zoom": 2.0}, {"view_distance": 3.0, "pixel_size": 0.05},
+            {"focal_mm": 35.0, "sensor_width_mm": 36.0}, {"fx": 90.0}, {"fx": 80.0, "fy": 70.0},
+            {"screen_min_x": -1.0, "screen_max_x": 1.0, "screen_min_y": -0.75, "screen_max_y": 0.75}, {"fov": 0.9, "fov_axis": "vertical"})
+    words = {word for way in ways for word in way if word != "fov_axis"}
+    for one in ways:
+        for other in ways:
+            axis = {"fov_axis": "smaller"} if "fov_axis" not in other else {}
+            replaced = velo.Camera(40, 30, **one).replace(**axis, **other)
+            assert numpy.allclose(replaced.K, velo.Camera(40, 30, **other).K, rtol=1e-12), (one, other)
+            for word in words - set(other):
+                assert replaced.get(word) is None, (one, other, word)
+    for word in ("zoom", "pixel_size"):  # alone: the view distance is replaced, too
+        with raises(velo.UsageError, "view distance"):
+            velo.Camera(40, 30, view_distance=30.0).replace(**{word: 2.0})
+
+
+@case
 def settings_are_copied_and_pickled():
     scene = small()
     for keywords in ({}, dict(spp=3, seed=4, tracer="ambient_occlusion", ao_distance=2.0), dict(filter="lanczos", filter_tau=2.5),

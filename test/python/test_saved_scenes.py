@@ -96,6 +96,25 @@ def normal_maps():
 
 
 @case
+def tangents_of_vertices():
+    """Those of maps of normals: u leans, and v is on either side of it."""
+    for file, kind in (("a.gltf", "principled"), ("a.pbrt", "diffuse")):
+        for signs in (None, (1, 1, 1, 1), (-1, -1, -1, -1), (1, -1, -1, 1)):
+            def words_of(scene):
+                texels = numpy.empty((2, 2, 3), dtype=numpy.uint8)
+                texels[...] = (190, 150, 220)
+                velo.Image(texels).write(work("tilted.png"))
+                if kind == "principled":
+                    normal = image(scene, name="tilted.png", encoding_given=True, encoding="linear")
+                    material = scene.add_material("principled", **{**BASE, "normal": normal})
+                else:
+                    material = scene.add_material("diffuse", normal_map=work("tilted.png"))
+                words = {"material": material, "tangents": [[0.6, 0.8, 0]] * 4, "normals": [[0, 0, 1]] * 4}
+                return words if signs is None else {**words, "tangent_signs": signs}
+            compare(f"{file}, signs {signs}", words_of, file)
+
+
+@case
 def coverage():
     """It is the base colour's alpha in glTF."""
     for name, change in CHANGES.items():

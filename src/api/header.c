@@ -184,7 +184,6 @@ static void set_rows(Header *header, const vlCamera *c, bool rows) {
 /* The motion, if any. The matrices above hold the camera in the middle of the shutter interval,
  * or at the time of the ground truth. */
 static void set_motion(Header *header, const vlCamera *c, bool rows) {
-  static const char *const directions[] = {"down", "up", "right", "left"};
   if (c->moves) {
     set_matrix(header, "velo.worldFromCameraOpen", VL_ATTRIBUTE_M44D, c->world_from_camera);
     set_matrix(header, "velo.worldFromCameraClose", VL_ATTRIBUTE_M44D,
@@ -193,7 +192,8 @@ static void set_motion(Header *header, const vlCamera *c, bool rows) {
   }
   if (c->readout > 0) {
     set_double(header, "velo.readout", c->readout);
-    set_text(header, "velo.readoutDirection", directions[c->readout_direction]);
+    set_text(header, "velo.readoutDirection",
+             vl_camera_readout_directions[c->readout_direction]);
     set_rows(header, c, rows);
   }
   if (c->shutter_points == 0)

@@ -7,10 +7,8 @@
 #include "base/error.h"
 #include "camera/parts.h"
 #include "math/transform.h"
+#include "projection/projection.row.h"
 #include "velo/projection.h"
-
-static const char *const names[] = {"none", "parallel", "off-axis", "toe-in",
-                                    "omnidirectional"};
 
 static vlResult check_stereo(const vlCamera *c, const vlStereo *s, vlError *error) {
   if ((uint32_t)s->mode > VL_STEREO_OMNIDIRECTIONAL)
@@ -31,11 +29,11 @@ static vlResult check_stereo(const vlCamera *c, const vlStereo *s, vlError *erro
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "camera: convergence %g has no meaning for %s stereo, whose eyes look the same way",
-        s->convergence, names[s->mode]);
+        s->convergence, vl_camera_stereo_modes[s->mode]);
   if (!given && meets)
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: %s stereo needs the distance where the eyes converge",
-                   names[s->mode]);
+                   vl_camera_stereo_modes[s->mode]);
   if (s->mode == VL_STEREO_OFF_AXIS &&
       (c->projection != VL_PROJECTION_PERSPECTIVE || c->distortion.steps > 0))
     return vl_fail(

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "image/image.h"
 #include "import/pbrt/builder.h"
+#include "projection/projection.row.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
 
@@ -228,10 +229,9 @@ static bool read_spherical(vlDict *dict, vlCameraDef *def) {
 /* Reads velo's own parameters of the shutter curve: a name, or points (time, value, time,
  * value, ...). */
 static bool read_curve(vlDict *dict, vlCameraDef *def) {
-  static const char *const curves[] = {"box", "triangle", "trapezoid"};
   int curve = 0;
   double rise = 0.1;
-  vl_dict_choice(dict, "shuttercurve", curves, 3, &curve);
+  vl_dict_choice(dict, "shuttercurve", vl_camera_shutter_curves, 3, &curve);
   bool risen = vl_dict_double(dict, "shutterrise", &rise);
   vlParam *points = vl_dict_find(dict, "shutterpoints", VL_BIT_FLOAT);
   if (!vl_import_fine(dict->import))

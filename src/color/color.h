@@ -89,6 +89,9 @@ static inline vlVec3 vl_to_srgb(const vlSrgbMap *map, vlVec3 rgb) {
  * small values. */
 extern const float vl_channel_shares[VL_LAMBDA_COUNT * 4];
 
+/* The names of the colour spaces in files, by vlColorSpace; null at the end. */
+extern const char *const vl_color_space_names[];
+
 /* Matrix from XYZ to linear RGB of the space, row-major 3x3. */
 void vl_rgb_from_xyz(vlColorSpace space, float m[9]);
 void vl_xyz_from_rgb(vlColorSpace space, float m[9]);

@@ -8,6 +8,12 @@ static const vlSpaceTable *space_table(vlColorSpace space) {
   return &vl_table_spaces[(unsigned)space < 4 ? space : VL_SPACE_SRGB];
 }
 
+const char *const vl_color_space_names[] = {[VL_SPACE_SRGB] = "srgb",
+                                            [VL_SPACE_DCI_P3] = "dci-p3",
+                                            [VL_SPACE_REC2020] = "rec2020",
+                                            [VL_SPACE_ACES2065_1] = "aces2065-1",
+                                            NULL};
+
 /* The density at both ends of a segment, in 1 / 1000 nm; below: the integral up to its start,
  * in 1 / 1000. */
 #define ROW(below, lambda, density, lambda_next, density_next)             \

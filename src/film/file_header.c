@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/text.h"
+#include "color/color.h"
 #include "film/file.h"
 #include "schema/member.h"
 #include "velo/filter_kinds.h"
@@ -32,8 +33,6 @@ typedef struct FieldList {
   Field items[32];
   size_t count;
 } FieldList;
-static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
-enum { SPACES = VL_LENGTH(spaces) };
 
 static void add_field(FieldList *list, const Field *field) {
   for (size_t i = 0; i < list->count; i++) {
@@ -117,7 +116,7 @@ static json_t *film_tree(const vlFilmShape *shape) {
                        (json_int_t)c[3])) &&
          put(film, "filter",
              json_string(vl_kind_family_find("filters")->rows[def->filter.kind]->name)) &&
-         put(film, "space", json_string(spaces[def->space])) &&
+         put(film, "space", json_string(vl_color_space_names[def->space])) &&
          put(film, "sensor", json_string(def->sensor ? def->sensor : vl_sensor_name(0))) &&
          put(film, "sequence", json_integer(shape->sequence)) && put_own(film, &shape->own);
   if (!good) {
@@ -204,8 +203,8 @@ static bool take_names(const json_t *film, vlFilmDef *def) {
       def->filter.kind = (vlPixelFilterKind)i;
       found[0] = true;
     }
-  for (int i = 0; space && i < SPACES; i++)
-    if (vl_text_is(spaces[i], space)) {
+  for (int i = 0; space && vl_color_space_names[i]; i++)
+    if (vl_text_is(vl_color_space_names[i], space)) {
       def->space = (vlColorSpace)i;
       found[1] = true;
     }

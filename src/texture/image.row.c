@@ -1,10 +1,11 @@
 /* texture/image.row.c: the name and the parameters of the texture image. */
 #include "texture/texture.row.h"
 
-static const char *const wraps[] = {"repeat",           "black",  "clamp",
-                                    "octahedralsphere", "mirror", NULL};
-static const char *const filters[] = {"point", "bilinear", "trilinear", "ewa", NULL};
-static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1", NULL};
+#include "color/color.h"
+
+const char *const vl_texture_wraps[] = {"repeat",           "black",  "clamp",
+                                        "octahedralsphere", "mirror", NULL};
+const char *const vl_texture_filters[] = {"point", "bilinear", "trilinear", "ewa", NULL};
 
 static const vlParameter parameters[] = {
     FILE_NAME("filename", path, "the image file"),
@@ -12,13 +13,13 @@ static const vlParameter parameters[] = {
     BLOCK(NULL, data, "the contents of an image file in memory, in place of a file"),
     BLOCK(NULL, data_size, "length of data, bytes"),
     CHOICE("wrap", wrap, "the value outside the image; mirror is not one of pbrt's",
-           .choices = wraps),
+           .choices = vl_texture_wraps),
     BOOL(NULL, wrap_t_given, "true: wrap_t is used for t"),
     CHOICE(NULL, wrap_t,
            "the value outside the image in the direction of t; wrap is then that of s",
-           .choices = wraps),
+           .choices = vl_texture_wraps),
     CHOICE("filter", filter, "interpolation between texels; ewa is read as trilinear",
-           VL_DEFAULT(VL_FILTER_BILINEAR), .choices = filters),
+           VL_DEFAULT(VL_FILTER_BILINEAR), .choices = vl_texture_filters),
     {.name = "maxanisotropy",
      .member = "",
      .type = VL_PARAMETER_FLOAT,
@@ -36,7 +37,7 @@ static const vlParameter parameters[] = {
     FLOAT(NULL, gamma, "exponent of the encoding gamma", VL_DEFAULT(2.2), VL_FROM(0),
           .flags = VL_PARAMETER_ABOVE_LOW),
     CHOICE(NULL, space, "colour space of an image that does not name its own",
-           .choices = spaces),
+           .choices = vl_color_space_names),
     CHANNELS,
     MAPPING,
 };

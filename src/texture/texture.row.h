@@ -28,7 +28,9 @@ VL_TEXTURE_KINDS(DECLARE)
   VL_PARAMETER(EITHER_INPUT, vlTextureDef, name, float_##half, text, VL_DEFAULT(value), \
                VL_SECOND(vlTextureDef, spectrum_##half))
 
-extern const char *const vl_texture_mappings[];
+/* Words of parameters. */
+extern const char *const vl_texture_mappings[], *const vl_texture_wraps[],
+                                                    *const vl_texture_filters[];
 
 /* Parameters that several kinds share. */
 #define TRANSFORM \

@@ -14,8 +14,6 @@
 #include "velo/texture.h"
 #include "velo/tracer.h"
 
-static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
-
 void vl_pbrt_floats(vlExport *x, const float *v, size_t count) {
   PUT("[");
   for (size_t i = 0; i < count; i++)
@@ -251,7 +249,7 @@ bool vl_export_pbrt(vlExport *x) {
   }
   vl_export_lose_choices(x);
   if (s->defs.film.space != VL_SPACE_SRGB && (unsigned)s->defs.film.space < 4)
-    PUT("ColorSpace \"%s\"\n", spaces[s->defs.film.space]);
+    PUT("ColorSpace \"%s\"\n", vl_color_space_names[s->defs.film.space]);
   for (size_t i = 0; i < s->media.count; i++)
     if (!vl_scene_mark(&s->medium_marks, i).removed && !vl_pbrt_medium(x, i))
       return false;

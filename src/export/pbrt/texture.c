@@ -9,6 +9,7 @@
 #include "image/image.h"
 #include "math/approx.h"
 #include "math/fresnel.h"
+#include "texture/texture.row.h"
 
 static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, const char *bytes,
                         size_t size, const char *suffix, char name[300]) {
@@ -276,10 +277,9 @@ bool vl_pbrt_emitted_image(vlExport *x, const vlTextureDef *t, char name[300]) {
 }
 
 static void put_mapping(vlExport *x, const vlTextureDef *t) {
-  static const char *const names[] = {"uv", "spherical", "cylindrical", "planar"};
   double m[6];
   vl_export_st_from_uv(t, m);
-  PUT(" \"string mapping\" \"%s\"", names[t->mapping]);
+  PUT(" \"string mapping\" \"%s\"", vl_texture_mappings[t->mapping]);
   if (t->mapping == VL_MAPPING_UV) {
     if (m[1] != 0 || m[3] != 0)
       vl_export_lose(x, "textures that are turned: only moved and scaled");
@@ -298,8 +298,7 @@ static void put_mapping(vlExport *x, const vlTextureDef *t) {
 }
 
 static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
-  static const char *const wraps[] = {"repeat", "black", "clamp", "octahedralsphere", "repeat"},
-                           *const filters[] = {"point", "bilinear", "trilinear", "ewa"};
+  const vlWrap wrap = t->wrap == VL_WRAP_MIRROR ? VL_WRAP_REPEAT : t->wrap;
   bool even = t->tint[0] == t->tint[1] && t->tint[1] == t->tint[2];
   bool white = even && t->tint[0] == 1;
   bool plain = t->spectrum ? white || (even && !t->invert)
@@ -322,7 +321,7 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
     vl_export_lose(x, "thresholds of textures: of each texel, before these are interpolated");
   double scale = (double)t->scale * (t->spectrum ? (double)t->tint[0] : 1);
   PUT(" \"string filename\" \"%s\" \"string wrap\" \"%s\" \"string filter\" \"%s\"", name,
-      wraps[t->wrap], filters[t->filter]);
+      vl_texture_wraps[wrap], vl_texture_filters[t->filter]);
   if (plain && scale != 1)
     PUT(" \"float scale\" [%.9g]", scale);
   if (plain && t->invert)

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "color/color.h"
 #include "import/pbrt/builder.h"
 
 /* ---- errors ------------------------------------------------------------------------------ */
@@ -170,17 +171,11 @@ bool vl_import_image_path(vlImport *import, const vlParam *param, char *path, si
 }
 
 bool vl_import_color_space(const char *name, vlColorSpace *space) {
-  static const struct {
-    const char *name;
-    vlColorSpace space;
-  } spaces[] = {{"srgb", VL_SPACE_SRGB},
-                {"dci-p3", VL_SPACE_DCI_P3},
-                {"rec2020", VL_SPACE_REC2020},
-                {"aces2065-1", VL_SPACE_ACES2065_1}};
-  for (size_t i = 0; i < VL_LENGTH(spaces); i++) {
+  for (int i = 0; vl_color_space_names[i]; i++) {
+    const char *known = vl_color_space_names[i];
     /* case is ignored, as in pbrt */
-    if (strlen(name) == strlen(spaces[i].name) && vl_ends_with(name, spaces[i].name)) {
-      *space = spaces[i].space;
+    if (strlen(name) == strlen(known) && vl_ends_with(name, known)) {
+      *space = (vlColorSpace)i;
       return true;
     }
   }

@@ -180,13 +180,19 @@ vlResult vl_image_read_named(vlContext *context, vlTask *task, const char *path,
   return result;
 }
 
-vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image,
-                              vlError *error) {
+static vlResult check_read(vlContext *context, const char *path, vlImage **image,
+                           vlError *error) {
+  vl_error_clear(error);
   if (image)
     *image = NULL;
-  if (!context || !path || !image)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: context, path or image is null");
-  vl_error_clear(error);
+  return context && path && image
+             ? VL_OK
+             : vl_fail(error, VL_ERROR_ARGUMENT, "image: context, path or image is null");
+}
+
+vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image,
+                              vlError *error) {
+  VL_TRY(check_read(context, path, image, error));
   const char *mapped;
   char *data = NULL;
   size_t size;
@@ -210,7 +216,6 @@ vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **im
 
 static vlResult read_file(vlContext *context, const char *path, const char *const *wanted,
                           uint32_t count, vlImage **image, vlError *error) {
-  vl_error_clear(error);
   char *data;
   size_t size;
   VL_TRY(vl_file_read_given(context, path, false, &data, &size, error));
@@ -227,20 +232,15 @@ static vlResult read_file(vlContext *context, const char *path, const char *cons
 }
 
 vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error) {
-  if (image)
-    *image = NULL;
-  if (!context || !path || !image)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: context, path or image is null");
+  VL_TRY(check_read(context, path, image, error));
   return read_file(context, path, NULL, 0, image, error);
 }
 
 vlResult vl_image_read_channels(vlContext *context, const char *path, const char *const *names,
                                 uint32_t count, vlImage **image, vlError *error) {
-  if (image)
-    *image = NULL;
-  if (!context || !path || !image || !names || !count)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "image: context, path, image or names is null, or count is 0");
+  VL_TRY(check_read(context, path, image, error));
+  if (!names || !count)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "image: names is null, or count is 0");
   vlResult result = read_file(context, path, names, count, image, error);
   for (uint32_t i = 0; result == VL_OK && i < count; i++) {
     char only[260]; /* the layer's only channel */

@@ -12,6 +12,8 @@ enum { VL_TIFF_MAX_MEMORY = 1 << 16, VL_TIFF_MAX_ENTRIES = 128 };
 
 /* Tags that libtiff 4.5 does not name. */
 enum { VL_TIFF_NOISE_PROFILE = 51041 };
+/* EXIF's codes of light sources. */
+enum { VL_TIFF_LIGHT_A = 17, VL_TIFF_LIGHT_D65 = 21 };
 
 typedef struct vlTiffMemory {
   vlContext *context;

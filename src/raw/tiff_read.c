@@ -9,7 +9,7 @@
 #include "raw/tiff_memory.h"
 
 enum { CELLS = VL_RAW_MAX_CELLS, COLORS = VL_RAW_MAX_COLORS };
-enum { LIGHT_A = 17, LIGHT_D65 = 21, CFA_PIXELS = 32803, LINEAR_PIXELS = 34892 };
+enum { CFA_PIXELS = 32803, LINEAR_PIXELS = 34892 };
 
 typedef struct Reader {
   vlTiffMemory memory;
@@ -184,8 +184,8 @@ static vlResult read_color(const Reader *r, vlRawDef *def) {
     memset(def->matrices, 0, sizeof def->matrices);
     return VL_OK;
   }
-  if (short_tag(t, TIFFTAG_CALIBRATIONILLUMINANT1) != LIGHT_A ||
-      short_tag(t, TIFFTAG_CALIBRATIONILLUMINANT2) != LIGHT_D65)
+  if (short_tag(t, TIFFTAG_CALIBRATIONILLUMINANT1) != VL_TIFF_LIGHT_A ||
+      short_tag(t, TIFFTAG_CALIBRATIONILLUMINANT2) != VL_TIFF_LIGHT_D65)
     return unsupported(r, "colour matrices of other lights than A and D65");
   return VL_OK;
 }

@@ -7,7 +7,6 @@
 #include "raw/tiff_memory.h"
 
 enum { CELLS = VL_RAW_MAX_CELLS, COLORS = VL_RAW_MAX_COLORS };
-enum { LIGHT_A = 17, LIGHT_D65 = 21 }; /* EXIF's codes of light sources */
 enum { PHOTOMETRIC_CFA_PIXELS = 32803, PHOTOMETRIC_LINEAR_PIXELS = 34892 };
 
 /* libtiff 4.5 knows the other tags. */
@@ -140,8 +139,8 @@ static bool set_color(TIFF *t, const vlRawDef *def, uint32_t colors) {
   if (colors > 1 && vl_raw_has_matrices(def) &&
       !(TIFFSetField(t, TIFFTAG_COLORMATRIX1, 3 * colors, def->matrices[0]) &&
         TIFFSetField(t, TIFFTAG_COLORMATRIX2, 3 * colors, def->matrices[1]) &&
-        TIFFSetField(t, TIFFTAG_CALIBRATIONILLUMINANT1, LIGHT_A) &&
-        TIFFSetField(t, TIFFTAG_CALIBRATIONILLUMINANT2, LIGHT_D65)))
+        TIFFSetField(t, TIFFTAG_CALIBRATIONILLUMINANT1, VL_TIFF_LIGHT_A) &&
+        TIFFSetField(t, TIFFTAG_CALIBRATIONILLUMINANT2, VL_TIFF_LIGHT_D65)))
     return false;
   if (colors > 1 && def->neutral[0] > 0.0f &&
       !TIFFSetField(t, TIFFTAG_ASSHOTNEUTRAL, colors, def->neutral))

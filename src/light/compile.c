@@ -53,6 +53,12 @@ void vl_light_image_color(vlWorld *world, vlColorSpace space, float scale, vlEmi
   e->spectrum.scale = (float)(1 / sum);
 }
 
+vlResult vl_light_bad_pixel(const char *name, uint32_t x, uint32_t y, vlError *error) {
+  return vl_fail(error, VL_ERROR_SCENE,
+                 "%s: pixel (%u, %u) is not finite, it cannot be emitted",
+                 name ? name : "the image", x, y);
+}
+
 vlColorSpace vl_light_image_space(const vlWorld *world, int32_t image, vlColorSpace otherwise) {
   return vl_mipmap_space(image >= 0 ? world->images.items[image].mipmap : NULL, otherwise);
 }

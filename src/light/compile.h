@@ -24,6 +24,9 @@ vlResult vl_light_set_frame(const vlLightDef *def, const int order[3], const flo
 float vl_light_luminance(const vlSpectral *spectrum);
 /* Luminance of a texel of this colour space. */
 float vl_light_texel_luminance(vlTexel t, uint32_t channels, vlColorSpace space);
+/* Reports a pixel of an image, by its name, whose luminance is not finite. null: it has no
+ * name. */
+vlResult vl_light_bad_pixel(const char *name, uint32_t x, uint32_t y, vlError *error);
 
 /* Adds one light per emitting face of an emissive shape (shape_lights.c). compiled: one entry
  * per emission of the scene: its index in world->emitted, which its shapes share; VL_NONE: not

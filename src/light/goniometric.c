@@ -23,12 +23,6 @@ static float mean_of(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : (t.c[0] + t.c[1] + t.c[2]) / 3;
 }
 
-static vlResult bad_pixel(const vlLightDef *def, uint32_t x, uint32_t y, vlError *error) {
-  return vl_fail(error, VL_ERROR_SCENE,
-                 "%s: pixel (%u, %u) is not finite, it cannot be emitted",
-                 def->path ? def->path : "the image", x, y);
-}
-
 /* The factor on the intensity. flux: of the light without it; a given power replaces it. */
 static double scale_of(const vlLightDef *def, double flux) {
   if (isnan(def->power))
@@ -83,7 +77,7 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
       float value =
           mean_of(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
       if (!isfinite(value))
-        return bad_pixel(def, x, y, error);
+        return vl_light_bad_pixel(def->path, x, y, error);
       sum += value > 0 ? value * texel_stretch(&stretch, n, x, y) : 0;
     }
   const double flux = 4 * M_PI * (sum / ((double)n * n));
@@ -142,7 +136,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
       float value = vl_light_texel_luminance(
           vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels, space);
       if (!isfinite(value))
-        return bad_pixel(def, x, y, error);
+        return vl_light_bad_pixel(def->path, x, y, error);
       sum += value > 0 ? value / image_area(&stretch, a, b) : 0;
     }
   const double flux = sum / ((double)w * h) * 4 * light->own[0] * light->own[1];

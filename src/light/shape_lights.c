@@ -61,9 +61,7 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
       if (!isfinite(
               vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP),
                                        mip->channels, e->space)))
-        return vl_fail(error, VL_ERROR_SCENE,
-                       "%s: pixel (%u, %u) is not finite, it cannot be emitted", def->image, x,
-                       y);
+        return vl_light_bad_pixel(def->image, x, y, error);
   return VL_OK;
 }
 

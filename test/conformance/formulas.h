@@ -46,12 +46,14 @@ static void formulas_of_materials(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("materials");
   int compared = 0;
-  for (uint32_t k = 0; k < family->kind_count; k++)
-    for (const MaterialVariant *v = material_cases[k]->variants; v->parameters; v++)
-      if (v->formula) {
-        check_formula(family->rows[k]->name, v);
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const MaterialVariant *variants = material_cases[k]->variants;
+    for (int i = 0; i < MATERIAL_VARIANTS && variants[i].parameters; i++)
+      if (variants[i].formula) {
+        check_formula(family->rows[k]->name, &variants[i]);
         compared++;
       }
+  }
   assert_true(compared > 4);
   expect_no_failures();
 }

@@ -28,9 +28,10 @@ VL_TEXTURE_KINDS(DECLARE)
   VL_PARAMETER(EITHER_INPUT, vlTextureDef, name, float_##half, text, VL_DEFAULT(value), \
                VL_SECOND(vlTextureDef, spectrum_##half))
 
-/* Words of parameters. */
-extern const char *const vl_texture_mappings[], *const vl_texture_wraps[],
-                                                    *const vl_texture_filters[];
+/* Words of parameters; null at the end. */
+extern const char *const vl_texture_mappings[];
+extern const char *const vl_texture_wraps[];
+extern const char *const vl_texture_filters[];
 
 /* Parameters that several kinds share. */
 #define TRANSFORM \

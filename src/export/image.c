@@ -106,15 +106,8 @@ static bool pack_png(vlExport *x, const vlTextureDef *t, const vlImage *image, b
   return fine;
 }
 
-bool vl_export_keeps_bytes(const vlTextureDef *t) {
-  if (t->data)
-    return suffix_of(t->data, t->data_size) != NULL;
-  return t->path && (vl_ends_with(t->path, ".png") || vl_ends_with(t->path, ".jpg") ||
-                     vl_ends_with(t->path, ".jpeg"));
-}
-
 bool vl_export_image(vlExport *x, const vlTextureDef *t, bool srgb, char **data, size_t *size,
-                     const char **suffix) {
+                     const char **suffix, bool *kept) {
   *data = NULL;
   if (t->data) {
     *data = vl_export_alloc(x, t->data_size + 1, 1);
@@ -126,7 +119,8 @@ bool vl_export_image(vlExport *x, const vlTextureDef *t, bool srgb, char **data,
     return false;
   }
   *suffix = *data ? suffix_of(*data, *size) : NULL;
-  if (*suffix)
+  *kept = *suffix != NULL;
+  if (*kept)
     return true;
   vl_free(x->context, *data);
   *data = NULL;

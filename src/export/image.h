@@ -18,12 +18,11 @@ vlExportImage *vl_export_add_image(vlExport *x, const vlTextureDef *t, uint32_t 
 /* The image of a texture: the scene's, or decoded into *own, which the caller destroys. Null
  * after an error. */
 const vlImage *vl_export_pixels(vlExport *x, const vlTextureDef *t, vlImage **own);
-/* Whether the original bytes of the texture's image are written, by its data or its name. */
-bool vl_export_keeps_bytes(const vlTextureDef *t);
 /* The texture's image as bytes of an image file: the original bytes of a PNG or JPEG, otherwise
  * the image encoded as PNG; if `srgb`, with colours converted to sRGB. *suffix receives the
- * format. The bytes are a block of the context. */
+ * format, *kept whether the bytes are the original ones. The bytes are a block of the context.
+ */
 bool vl_export_image(vlExport *x, const vlTextureDef *t, bool srgb, char **data, size_t *size,
-                     const char **suffix);
+                     const char **suffix, bool *kept);
 
 #endif

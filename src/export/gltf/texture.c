@@ -34,26 +34,33 @@ json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const c
   return vl_gltf_put(x, "images", image);
 }
 
+/* Variants of an image: its numbers, its colours in sRGB, its own bytes, which serve as both.
+ */
+enum { NUMBERS, COLORS, KEPT };
+
 /* Index of the image in "images"; -1 after an error. */
 static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
-  const bool kept = vl_export_keeps_bytes(t), srgb = t->spectrum;
+  const bool srgb = t->spectrum;
+  vlExportImage *image = vl_export_find_image(x, t, KEPT);
+  bool kept = image != NULL;
+  if (!image)
+    image = vl_export_find_image(x, t, srgb ? COLORS : NUMBERS);
+  if (!image) {
+    char *bytes;
+    const char *suffix;
+    size_t size;
+    if (!vl_export_image(x, t, srgb, &bytes, &size, &suffix, &kept))
+      return -1;
+    const json_int_t index = vl_gltf_put_file(x, bytes, size, suffix);
+    vl_free(x->context, bytes);
+    image = index < 0 ? NULL : vl_export_add_image(x, t, kept ? KEPT : srgb ? COLORS : NUMBERS);
+    if (!image)
+      return -1;
+    image->index = index;
+  }
   if (kept && srgb && t->space != VL_SPACE_SRGB)
     vl_export_lose(x, "colour spaces that images do not name themselves: sRGB");
-  const uint32_t variant = !kept && srgb; /* an image may be read as numbers, too */
-  vlExportImage *image = vl_export_find_image(x, t, variant);
-  if (image)
-    return image->index;
-  char *bytes;
-  const char *suffix;
-  size_t size;
-  if (!vl_export_image(x, t, srgb, &bytes, &size, &suffix))
-    return -1;
-  const json_int_t index = vl_gltf_put_file(x, bytes, size, suffix);
-  vl_free(x->context, bytes);
-  image = index < 0 ? NULL : vl_export_add_image(x, t, variant);
-  if (image)
-    image->index = index;
-  return image ? index : -1;
+  return image->index;
 }
 
 static json_int_t put_once(vlExport *x, const char *key, json_t *value) {

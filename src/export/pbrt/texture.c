@@ -102,7 +102,7 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char nam
     fine = vl_export_read(x, t->path, &bytes, &size);
     suffix = dot;
   } else if (fine && !bytes) {
-    fine = vl_export_image(x, t, false, &bytes, &size, &suffix);
+    fine = vl_export_image(x, t, false, &bytes, &size, &suffix, &copied);
   }
   fine = fine && write_image(x, t, variant, bytes, size, suffix, name);
   vl_free(x->context, bytes);

@@ -1398,6 +1398,12 @@ MISTAKES = [
     ("the first of several values counts", "repeated",
      r'materials coateddiffuse: "float roughness" \S+ "float roughness" \S+ is not', "src/import/pbrt/parameters.c",
      "vlParam *p = params->list.items[i - 1];", "vlParam *p = params->list.items[params->list.count - i];"),
+    ("vignetting of the first rays of a batch alone", "distortions",
+     r"distortions opencv: vignetting", "src/camera/batch.hot.c",
+     "weigh_staged(n, &d, r->weight + first);", "weigh_staged(n, &d, r->weight);"),
+    ("exposures in pbrt files without the shutter's time", "settings",
+     r"settings develop.exposure", "src/export/pbrt/film.c",
+     "defs->camera.exposure_time / x->shutter;", "defs->camera.exposure_time;"),
     ]
 
 

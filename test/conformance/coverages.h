@@ -9,32 +9,32 @@
 #include "velo/filter_kinds.h"
 
 /* A plate over .55 of the image's width; the camera sees from -1 to 1. */
-static const char *const plate = HEAD
+static const char *const half_covered = HEAD
     "WorldBegin LightSource \"infinite\" Shape \"bilinearmesh\" "
     "\"point3 P\" [-2 -2 0 .1 -2 0 -2 2 0 .1 2 0]";
 
 static void check_coverage(vlPixelFilterKind kind, const char *name, bool shared) {
-  enum { SIZE = 24, SPP = 64, EDGE = 5 };
-  vlScene *scene = need_scene(plate);
+  enum { SIDE_PIXELS = 24, SPP = 64, EDGE = 5 };
+  vlScene *scene = need_scene(half_covered);
   vlSceneDefs *defs = vl_scene_defs(scene);
-  defs->camera = vl_default_camera_def(SIZE, SIZE);
+  defs->camera = vl_default_camera_def(SIDE_PIXELS, SIDE_PIXELS);
   defs->camera.eye[2] = 1;
-  defs->camera.fx = defs->camera.fy = SIZE / 2.0;
-  defs->film = vl_default_film_def(SIZE, SIZE);
+  defs->camera.fx = defs->camera.fy = SIDE_PIXELS / 2.0;
+  defs->film = vl_default_film_def(SIDE_PIXELS, SIDE_PIXELS);
   defs->film.filter = vl_default_pixel_filter(kind);
   defs->render.transparent = true;
   defs->render.share_samples = shared;
   defs->render.spp = SPP;
   defs->render.max_depth = 1;
-  vlImage *image = need_image(scene, plate);
-  const uint32_t edge = (uint32_t)(0.55 * SIZE);
+  vlImage *image = need_image(scene, half_covered);
+  const uint32_t edge = (uint32_t)(0.55 * SIDE_PIXELS);
   double sum = 0;
   int outside = 0;
   int wrong = 0;
-  for (uint32_t y = 0; y < SIZE; y++)
-    for (uint32_t x = 0; x < SIZE; x++) {
+  for (uint32_t y = 0; y < SIDE_PIXELS; y++)
+    for (uint32_t x = 0; x < SIDE_PIXELS; x++) {
       const double alpha = (double)vl_image_get(image, x, y, 3);
-      sum += alpha / (SIZE * SIZE);
+      sum += alpha / (SIDE_PIXELS * SIDE_PIXELS);
       outside += !(alpha >= 0 && alpha <= 1);
       wrong += (x + EDGE < edge && alpha < 0.9999) || (x > edge + EDGE && alpha > 1e-4);
     }

@@ -118,6 +118,24 @@ static void saved_window(void) {
   vl_scene_destroy(scene);
 }
 
+/* The factor on the image, which a file may hold as the film's, the camera's, and by the
+ * shutter's time. */
+static void saved_exposure(void) {
+  vlScene *scene = need_scene(HEAD "WorldBegin Shape \"sphere\"");
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->camera.shutter_close = 0.25;
+  defs->camera.exposure_time = 2;
+  defs->develop.exposure = 3;
+  vlScene *read = read_again(scene, "exposure.pbrt");
+  const vlSceneDefs *again = vl_scene_defs(read);
+  const double exposure = (double)again->develop.exposure * again->camera.exposure_time;
+  if (!same_number(exposure, 6) || !same_number(again->camera.shutter_close, 0.25))
+    broken("settings", "develop.exposure", "6 of .25 s is read again as %g of %g s", exposure,
+           again->camera.shutter_close);
+  vl_scene_destroy(read);
+  vl_scene_destroy(scene);
+}
+
 static void settings_of_scenes(void **state) {
   (void)state;
   int kept = 0;
@@ -148,6 +166,7 @@ static void settings_of_scenes(void **state) {
     }
   }
   saved_window();
+  saved_exposure();
   print_message("settings of renders that files of scenes keep: %d\n", kept);
   assert_true(kept > 20);
   expect_no_failures();

@@ -41,6 +41,7 @@
 #include "textures.h"
 #include "transport.h"
 #include "turned.h"
+#include "vignetting.h"
 
 /* None of its calls fails; it shows what is read before it is written, and leaks. */
 static failAllocator memory;
@@ -107,6 +108,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(derivatives_of_rays),
       cmocka_unit_test(laws_of_distortions),
       cmocka_unit_test(settings_of_cameras),
+      cmocka_unit_test(vignetting_of_cameras),
       cmocka_unit_test(settings_of_scenes),
       cmocka_unit_test(laws_of_samplers),
       cmocka_unit_test(purposes_of_samplers),

@@ -93,7 +93,7 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char nam
   char *bytes = NULL;
   size_t size = 0;
   const char *suffix = ".exr", *dot = t->path ? strrchr(t->path, '.') : NULL;
-  bool copied = !t->image && dot && strlen(dot) < 8 && !strchr(dot, '/');
+  bool kept, copied = !t->image && dot && strlen(dot) < 8 && !strchr(dot, '/');
   const char *as = copied ? t->path : t->data ? ".png" : suffix;
   bool fine = kind == VL_PBRT_ANY || repair(x, t, kind, as, &bytes, &size);
   if (fine && !bytes && t->image) {
@@ -102,7 +102,7 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char nam
     fine = vl_export_read(x, t->path, &bytes, &size);
     suffix = dot;
   } else if (fine && !bytes) {
-    fine = vl_export_image(x, t, false, &bytes, &size, &suffix, &copied);
+    fine = vl_export_image(x, t, false, &bytes, &size, &suffix, &kept);
   }
   fine = fine && write_image(x, t, variant, bytes, size, suffix, name);
   vl_free(x->context, bytes);

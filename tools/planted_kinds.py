@@ -1404,6 +1404,9 @@ MISTAKES = [
     ("exposures in pbrt files without the shutter's time", "settings",
      r"settings develop.exposure", "src/export/pbrt/film.c",
      "defs->camera.exposure_time / x->shutter;", "defs->camera.exposure_time;"),
+    ("a camera's poses stay on the old clock", "projections",
+     r"projections \w+: .*by another clock", "src/camera/timing.c",
+     "t->pose_open = (t->pose_open - origin) * scale;", "t->pose_open *= scale;"),
     ]
 
 

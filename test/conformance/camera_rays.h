@@ -16,12 +16,11 @@ typedef struct CameraRays {
   float o[3][WAYS], d[3][WAYS], t_min[WAYS], t_max[WAYS], time[WAYS], valid[WAYS];
 } CameraRays;
 
-/* film: the point that all rays leave; null: they leave many. */
-static void rays_of_film(const vlCamera *camera, const double *film, CameraRays *r) {
+/* c: the camera, compiled. film: the point that all rays leave; null: they leave many. */
+static void rays_of_compiled(const vlCamera *camera, const vlCameraCompiled *c,
+                             const double *film, CameraRays *r) {
   static float x[WAYS], y[WAYS], u[WAYS], v[WAYS], time[WAYS];
   static int32_t column[WAYS], row[WAYS];
-  vlCameraCompiled c;
-  vl_camera_compile(camera, &c);
   for (uint32_t i = 0; i < WAYS; i++) {
     column[i] = film ? (int32_t)floor(film[0]) : (int32_t)(i * 7 % camera->width);
     row[i] = film ? (int32_t)floor(film[1]) : (int32_t)(i * 11 % camera->height);
@@ -34,7 +33,12 @@ static void rays_of_film(const vlCamera *camera, const double *film, CameraRays 
   const vlCameraSamples samples = {x, y, column, row, u, v, time};
   const vlCameraRays rays = {r->o[0],  r->o[1],  r->o[2], r->d[0],  r->d[1], r->d[2],
                              r->t_min, r->t_max, r->time, r->valid, NULL};
-  vl_camera_kernels(VL_ISA_AUTO)->rays(&c, WAYS, &samples, &rays);
+  vl_camera_kernels(VL_ISA_AUTO)->rays(c, WAYS, &samples, &rays);
+}
+static void rays_of_film(const vlCamera *camera, const double *film, CameraRays *r) {
+  vlCameraCompiled c;
+  vl_camera_compile(camera, &c);
+  rays_of_compiled(camera, &c, film, r);
 }
 
 /* Below 0: the lens stops the ray. */
@@ -78,6 +82,42 @@ static void check_moving(const char *kind, const vlCameraDef *def) {
   if (differ)
     broken("projections", kind, "%u of %u rays are others where the camera moves", differ,
            WAYS);
+}
+
+/* Another clock changes the times of rays and nothing else, of a camera that moves while its
+ * rows are read, with poses whose times are not the shutter's. */
+static void check_clock(const char *kind, const vlCameraDef *def) {
+  static CameraRays first, second;
+  const double origin = 0.3;
+  const double scale = 4;
+  vlCameraDef changed = *def;
+  vlCamera camera;
+  vlCameraCompiled c;
+  uint32_t differ = 0;
+  changed.has_matrix_close = true;
+  memcpy(changed.world_from_camera_close, changed.world_from_camera,
+         sizeof changed.world_from_camera);
+  changed.world_from_camera_close[3] += 0.5;
+  changed.shutter_open = 0.2;
+  changed.shutter_close = 0.7;
+  changed.readout = 0.25;
+  changed.pose_times[0] = 0.1;
+  changed.pose_times[1] = 1.1;
+  assert_int_equal(vl_camera_make(&changed, &camera, NULL, NULL), VL_OK);
+  vl_camera_compile(&camera, &c);
+  rays_of_compiled(&camera, &c, NULL, &first);
+  vl_camera_retime(&c, origin, scale);
+  rays_of_compiled(&camera, &c, NULL, &second);
+  for (uint32_t i = 0; i < WAYS; i++) {
+    const double time = ((double)first.time[i] - origin) * scale;
+    bool same = first.valid[i] == second.valid[i] && fabs((double)second.time[i] - time) < 1e-5;
+    for (int k = 0; k < 3; k++)
+      same = same && fabsf(first.o[k][i] - second.o[k][i]) < 1e-5f &&
+             fabsf(first.d[k][i] - second.d[k][i]) < 1e-5f;
+    differ += !same && first.valid[i] > 0;
+  }
+  if (differ)
+    broken("projections", kind, "%u of %u rays are others by another clock", differ, WAYS);
 }
 
 /* ---- focus ------------------------------------------------------------------------------- */

@@ -511,6 +511,7 @@ static void laws_of_projections(void **state) {
       check_edges(name, &camera);
     check_derivatives_in_film("projections", name, &camera);
     check_moving(name, &def);
+    check_clock(name, &def);
     if (!c->optics)
       check_focus_point(name, &def);
     if (!c->optics)

@@ -20,7 +20,7 @@ typedef struct LightKnown {
 typedef struct LightVariant {
   const char *parameters; /* null ends the list */
   const char *before;     /* statements after those of the case; null: none */
-  LightKnown known[4];    /* of delta lights; rgb[1] = 0 ends the list unless x is set */
+  LightKnown known[4];    /* of delta lights; all 0 ends the list */
   double rim[4][2]; /* x and z of points of the floor at the end of what the light reaches; all
                        0: none are known */
   void (*change)(vlLightDef *def); /* sets what the format cannot say; null: nothing */

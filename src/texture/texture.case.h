@@ -33,7 +33,7 @@ typedef struct TextureVariant {
   bool filtered;           /* what wide rays see is about the mean over their footprint */
   TextureFormula *formula; /* its value everywhere, but on 2 % of the points (edges); null: not
                               known */
-  TextureKnown known[5];   /* u = 0 ends the list */
+  TextureKnown known[5];   /* u = v = 0 ends the list */
 } TextureVariant;
 
 enum { TEXTURE_VARIANTS = 8 };

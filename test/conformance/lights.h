@@ -156,8 +156,8 @@ static void check_samples_of_light(const char *family, const char *kind, const c
 }
 
 static bool is_known(const LightVariant *v, uint32_t k) {
-  return k < sizeof v->known / sizeof *v->known &&
-         (v->known[k].rgb[1] != 0 || v->known[k].x != 0);
+  static const LightKnown end;
+  return k < sizeof v->known / sizeof *v->known && memcmp(&v->known[k], &end, sizeof end) != 0;
 }
 
 static void check_delta_light(const char *kind, const LightVariant *v, const char *text) {

@@ -53,7 +53,7 @@ static void judge_formula(const TextureLaws *t, const char *what, const Formulas
 
 static uint32_t known_values(const TextureVariant *v) {
   uint32_t n = 0;
-  while (n < sizeof v->known / sizeof *v->known && v->known[n].u != 0)
+  while (n < sizeof v->known / sizeof *v->known && (v->known[n].u != 0 || v->known[n].v != 0))
     n++;
   return n;
 }

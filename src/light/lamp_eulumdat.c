@@ -176,7 +176,7 @@ vlResult vl_lamp_read_eulumdat(vlLamp *lamp, const char *name, const char *text,
                                vlLampData *data, vlError *error) {
   vlLampText t = {name, text, text + size, 1, error};
   Header h = {0};
-  uint32_t first, count;
+  uint32_t first = 0, count = 0;
   if (!read_header(&t, &lamp->info, &h) || !stored_planes(&t, &h, &first, &count))
     return VL_ERROR_SCENE;
   snprintf(lamp->info.format, sizeof lamp->info.format, "EULUMDAT");

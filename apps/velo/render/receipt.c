@@ -9,6 +9,7 @@
 #include "cli/kinds.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "image/header.h"
 #include "image/image.h"
 #include "render/added.h"

@@ -247,8 +247,8 @@ static vlResult run_render(void *user) {
   return vl_render(r->world, r->camera, r->film, &r->def, &r->stats, &r->error);
 }
 
-/* render(world, camera, film, settings, callback or None): {statistic: number}; None: the
- * callback ended it. */
+/* render(world, camera, film, settings, callback or None): how many samples were left out, and
+ * how many numbers of a sampler of one's own were replaced; column and row of such a sample. */
 static PyObject *render(PyObject *module, PyObject *arguments) {
   (void)module;
   World *world;
@@ -287,18 +287,11 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
   world->users--;
   if (!fine)
     return NULL;
-  if (done == VL_CANCELLED)
-    Py_RETURN_NONE;
-  if (done != VL_OK)
+  if (done != VL_OK && done != VL_CANCELLED)
     return raise_result(done, &r.error);
   const vlRenderStats s = r.stats;
-  return Py_BuildValue(
-      "{s:I,s:d,s:K,s:K,s:K,s:K,s:K,s:K,s:d,s:I,s:I}", "spp", s.spp, "mean_spp", s.mean_spp,
-      "paths", (unsigned long long)s.paths, "camera_rays", (unsigned long long)s.camera_rays,
-      "bounce_rays", (unsigned long long)s.bounce_rays, "shadow_rays",
-      (unsigned long long)s.shadow_rays, "not_finite", (unsigned long long)s.not_finite,
-      "own_numbers", (unsigned long long)s.own_numbers, "seconds", s.seconds, "blocks",
-      s.blocks, "noisy_blocks", s.noisy_blocks);
+  return Py_BuildValue("(KKII)", (unsigned long long)s.not_finite,
+                       (unsigned long long)s.own_numbers, s.worst_x, s.worst_y);
 }
 
 typedef struct Choosing {

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from typing import TYPE_CHECKING, Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union
 
 from velo import _arrays, _check, _keywords, _solids, _velo, rays
@@ -34,6 +35,16 @@ _MAX_RACED = 64  # samples for which a race is planned, as by velo render: longe
 
 def _is_auto(tracer: Any) -> bool:
     return isinstance(tracer, str) and tracer == "auto"
+
+
+def _render(world: Any, view: Camera, film: Film, settings: Any, callback: Any) -> None:
+    """Adds samples to a film, with a warning about those that were left out."""
+    left_out, replaced, x, y = _velo.render(world, view, film, settings, callback)
+    if left_out:
+        warnings.warn(f"{left_out} samples were not finite or negative and were left out; one of them at pixel {x}, {y}",
+                      RuntimeWarning, stacklevel=3)
+    if replaced:
+        warnings.warn(f"{replaced} numbers of the sampler were not in [0, 1) and were replaced", RuntimeWarning, stacklevel=3)
 
 
 class World(_velo.World):
@@ -475,6 +486,7 @@ class Scene(_velo.Scene):
         max_depth, filter, exposure, color, transparent, noise, time_limit, ... (velo.settings_names()). tracer="auto": the
         tracer that choose_tracer names. sampler may be a velo.OwnSampler, tracer a velo.OwnTracer.
 
+        A RuntimeWarning says how many samples were not finite and left out, and how many numbers of a velo.OwnSampler were replaced.
         KeyboardInterrupt ends the render; scene.film keeps its finished passes."""
         words: dict[str, Any] = {**keywords}
         denoise = _check.flag(denoise, "denoise")
@@ -484,7 +496,7 @@ class Scene(_velo.Scene):
         self._choose(world, view, target, settings, words)
         self._film = target
         asked = _Asked(progress)
-        _velo.render(world, view, target, settings, asked.callback)
+        _render(world, view, target, settings, asked.callback)
         return self._develop(world, view, target, settings, channels, denoise, asked.poll)
 
     def passes(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
@@ -511,7 +523,7 @@ class Scene(_velo.Scene):
         while True:
             spp = min(spp, total)
             settings.set("spp", spp)
-            _velo.render(world, view, target, settings, None)
+            _render(world, view, target, settings, None)
             yield self._develop(world, view, target, settings, channels, False)
             if spp >= total:
                 return
@@ -522,7 +534,7 @@ class Scene(_velo.Scene):
         small.set_coarse(factor)
         small.set("spp", 1)
         film = _velo.film_new(self._context_of(), small)
-        _velo.render(world, view.coarse(factor), film, small, None)
+        _render(world, view.coarse(factor), film, small, None)
         wanted = [name for name in channels if name != "error"]
         return self._develop(world, view.coarse(factor), film, small, wanted, False)
 

@@ -2,6 +2,7 @@
  * of the build before. */
 #include "texture/images.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -260,6 +261,32 @@ static bool name_image(vlWorld *world, vlWorldImage *entry, const vlTextureDef *
   return copy != NULL;
 }
 
+/* Tells of texels that are not finite, by the place of the first texture with this image. */
+static void tell_not_finite(const vlWorld *world, const vlMipmap *map,
+                            const vlTextureDef *def) {
+  const vlMipLevel *level = &map->levels[0];
+  const size_t pixels = map->is_bytes ? 0 : (size_t)level->width * level->height;
+  size_t count = 0;
+  size_t first = 0;
+  for (size_t i = 0; i < pixels; i++) {
+    bool finite = true;
+    for (uint32_t c = 0; c < map->channels; c++)
+      finite &= isfinite(level->floats[i * map->channels + c]) != 0;
+    if (!finite && count++ == 0)
+      first = i;
+  }
+  if (!count)
+    return;
+  vlError where;
+  vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+             " ");
+  vl_log(world->context, VL_LOG_WARNING, &where,
+         "%s: pixels that are not finite: %zu, the first one (%zu, %zu); what they colour is "
+         "black or left out",
+         def->path ? def->path : "the image", count, first % level->width,
+         first / level->width);
+}
+
 typedef struct Preload {
   const vlWorld *world;
   const vlScene *scene;
@@ -333,6 +360,7 @@ vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *
   for (size_t i = 0; ok && i < job.count; i++) {
     if (!job.mipmaps[i])
       continue;
+    tell_not_finite(world, job.mipmaps[i], job.defs[i]);
     int32_t index = push_image(world, job.mipmaps[i], &job.keys[i], error);
     job.mipmaps[i] = NULL;
     ok = index >= 0 && name_image(world, &world->images.items[index], job.defs[i]);
@@ -357,6 +385,7 @@ int32_t vl_texture_image_index(vlWorld *world, const vlScene *scene, const vlTex
                def->source.line, def->source.column, "%s", inner.message);
     return -1;
   }
+  tell_not_finite(world, world->images.items[index].mipmap, def);
   if (!name_image(world, &world->images.items[index], def)) {
     vl_fail_memory(error);
     return -1;

@@ -178,6 +178,15 @@ wrong 3 cut_model_name '.*unknown COLMAP camera model "a_name_that_…"' colmap.
 run "$VELO" render whole.pbrt --max-memory 1K
 if [ "$code" = 1 ] && [[ $err == *'out of memory; --max-memory allows 1.0 kB' ]]; then pass nothing_held; else fail nothing_held; show memory; fi
 
+# Pixels that are no numbers: counted where they colour surfaces, refused where they shine.
+{ printf 'PF\n2 1\n-1.0\n'; printf '\0\0\300\177%.0s' 1 2 3; printf '\0\0\0\077%.0s' 1 2 3; } >nan.pfm
+scene nan.pbrt 'LightSource "infinite"' 'Texture "t" "spectrum" "imagemap" "string filename" "nan.pfm"' \
+  'Material "diffuse" "texture reflectance" "t"' "$sphere"
+check nan_texels "$VELO" render nan.pbrt --spp 1 --resolution 16x16 -o nan.exr --quiet
+expect_text nan_texels_are_told 'velo: warning: nan.pbrt:4:1: nan.pfm: pixels that are not finite: 1, the first one (0, 0);'
+scene nan_lamp.pbrt 'AreaLightSource "diffuse" "string filename" "nan.pfm"' "$sphere"
+wrong 3 nan_lamp '.*nan\.pfm: pixel \(0, 0\) is not finite' nan_lamp.pbrt
+
 # What is not there yet: an error with its place, or a warning.
 scene medium.pbrt 'Shape "heightfield" "integer nu" 3' "$sphere"
 wrong 3 not_there_yet 'medium\.pbrt:3:[0-9]+: .*heightfield' medium.pbrt

@@ -4,6 +4,7 @@ wrong shapes; names."""
 import math
 import threading
 import time
+import warnings
 
 import cases
 from cases import case, raises, work
@@ -167,8 +168,12 @@ def a_tracer_asks_during_its_call_only():
         assert value.shape == (len(paths.x), 4) and pdf.shape == paths.x.shape == step.pdf.shape
         assert paths.white.shape == paths.wavelengths.shape == step.weight.shape
         return numpy.full((len(paths.x), 4), numpy.nan)
-    image = it.render(tracer=velo.OwnTracer(keep, name="keep"), resolution=(16, 16), spp=1)
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always")
+        image = it.render(tracer=velo.OwnTracer(keep, name="keep"), resolution=(16, 16), spp=1, share_samples=False)
     assert not numpy.asarray(image).any()
+    assert [note.category for note in notes] == [RuntimeWarning] and notes[0].filename == __file__, notes
+    assert str(notes[0].message).startswith("256 samples were not finite"), notes[0].message
     with raises(velo.UsageError, "over"):
         kept[0][0].lights()
     with raises(ZeroDivisionError):
@@ -192,9 +197,12 @@ def the_same_bits_for_any_number_of_threads():
 def wrong_numbers_and_names():
     it = scene()
     for value in (-1.0, 2.0, math.nan):
-        image = it.render(sampler=velo.OwnSampler(lambda s: numpy.full((len(s.x), s.dimensions), value), name="wrong"),
-                          resolution=(16, 16), spp=1)
+        with warnings.catch_warnings(record=True) as notes:
+            warnings.simplefilter("always")
+            image = it.render(sampler=velo.OwnSampler(lambda s: numpy.full((len(s.x), s.dimensions), value), name="wrong"),
+                              resolution=(16, 16), spp=1)
         assert numpy.isfinite(numpy.asarray(image)).all()
+        assert len(notes) == 1 and "numbers of the sampler were not in [0, 1)" in str(notes[0].message), notes
     for name in ("", "x" * 64, 5):
         with raises(velo.UsageError):
             velo.OwnCamera(pinhole_rays, name=name)

@@ -358,11 +358,22 @@ typedef struct Denoising {
   const vlImage *image;
   vlDenoiseDef def;
   vlImage *clean;
+  vlDenoiseStats stats;
   vlError error;
 } Denoising;
 static vlResult run_denoise(void *user) {
   Denoising *d = user;
-  return vl_denoise(d->image, &d->def, &d->clean, NULL, &d->error);
+  return vl_denoise(d->image, &d->def, &d->clean, &d->stats, &d->error);
+}
+
+/* False: warnings are exceptions here. */
+static bool warn_not_finite(const vlDenoiseStats *stats) {
+  enum { OF_DENOISE = 3 }; /* whose caller the warning names */
+  return !stats->not_finite ||
+         PyErr_WarnFormat(
+             PyExc_RuntimeWarning, OF_DENOISE,
+             "%llu pixels are not finite; the denoised image has their neighbours' light there",
+             (unsigned long long)stats->not_finite) == 0;
 }
 
 /* _denoise(denoiser, poll or None) */
@@ -383,11 +394,13 @@ static PyObject *image_denoise(Image *self, PyObject *arguments) {
   vlResult done;
   bool fine = long_call_poll(&call, poll) && long_call_run(&call, NULL, run_denoise, &d, &done);
   long_call_end(&call);
-  if (!fine) {
+  if (fine && done != VL_OK)
+    return raise_result(done, &d.error);
+  if (!fine || !warn_not_finite(&d.stats)) {
     vl_image_destroy(d.clean);
     return NULL;
   }
-  return done == VL_OK ? image_object(self->context, d.clean) : raise_result(done, &d.error);
+  return image_object(self->context, d.clean);
 }
 
 /* ---- attributes -------------------------------------------------------------------------- */

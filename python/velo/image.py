@@ -114,7 +114,8 @@ class Image(_velo.Image):
 
     def denoise(self, denoiser: str = "velo") -> "Image":
         """A denoised copy. The image must have the channels "error" and should have "features" (scene.render(channels=...)).
-        denoiser: velo, or oidn (the user's Open Image Denoise)."""
+        denoiser: velo, or oidn (the user's Open Image Denoise). Pixels that are not finite get their neighbours' light; a
+        RuntimeWarning says how many there are."""
         return self._denoised(denoiser, None)
 
     def _denoised(self, denoiser: str, poll: Any) -> "Image":

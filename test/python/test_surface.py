@@ -2,6 +2,7 @@
 """The Python module: scenes from arrays, cameras, films, image files, and the kinds of velo/schema.h."""
 import math
 import os
+import warnings
 
 import cases
 from cases import case, raises, work
@@ -325,6 +326,12 @@ def images_are_compared_viewed_and_denoised():
     reference = scene.render(spp=256)
     assert "Z" in clean and "error" not in clean
     assert clean.compare(reference)["mse"] < a.compare(reference)["mse"]
+    noisy = scene.render(spp=4, errors=True, channels=["error"])
+    numpy.asarray(noisy)[20, 20, :3] = math.nan
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always")
+        assert numpy.isfinite(numpy.asarray(noisy.denoise())).all()
+    assert len(notes) == 1 and str(notes[0].message).startswith("1 pixels are not finite") and notes[0].filename == __file__, notes
 
 
 @case

@@ -742,6 +742,25 @@ def test_serve(folder):
     run.stderr.close()
 
 
+def test_not_finite(folder):
+    """Samples that are left out are told once, in the log and on the page."""
+    with open(os.path.join(folder, "nan.pfm"), "wb") as file:
+        file.write(b"PF\n1 1\n-1.0\n" + struct.pack("<3f", *3 * [math.nan]))
+    scene = os.path.join(folder, "nan.pbrt")
+    with open(scene, "w") as file:
+        file.write('Film "rgb" "integer xresolution" 32 "integer yresolution" 24\nCamera "perspective"\nWorldBegin\n'
+                   'LightSource "infinite"\nTexture "t" "spectrum" "imagemap" "string filename" "nan.pfm"\n'
+                   'Material "diffuse" "texture reflectance" "t" Translate 0 0 3 Shape "sphere"\n')
+    view = View(VELO, scene, "--color", "rgb", "--spp", "8")
+    page = Page(view)
+    note = page.wait_text("note")
+    page.wait(lambda m: isinstance(m, dict) and m["type"] == "status" and m["spp"] == 8)
+    page.close()
+    code, errors = view.end()
+    lines = [line for line in errors.splitlines() if "samples were not finite" in line]
+    check("not_finite_is_told", code == 0 and len(lines) == 1 and lines[0].endswith(note["message"]), errors, note)
+
+
 def main():
     missing = subprocess.run([VELO, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
     if "without libwebsockets" in missing.stderr:
@@ -779,6 +798,7 @@ def main():
     check("ends", code == 0, code, errors)
     check("ssh_line", f"ssh -N -L {view.port}:127.0.0.1:{view.port}" in errors, errors)
     test_other_tracer(folder)
+    test_not_finite(folder)
     test_trajectory(folder)
     test_watch(folder)
     test_sandbox(folder)

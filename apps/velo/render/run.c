@@ -216,12 +216,19 @@ void json_render_stats(Json *json, const vlRenderStats *stats) {
       (long long)stats->shadow_rays, (long long)stats->not_finite);
 }
 
+void not_finite_text(const vlRenderStats *stats, char *text, size_t size) {
+  snprintf(text, size,
+           "%llu samples were not finite or negative and were left out; the first one at pixel "
+           "%u, %u",
+           (unsigned long long)stats->not_finite, stats->worst_x, stats->worst_y);
+}
+
 void report_not_finite(const vlRenderStats *stats) {
-  if (stats->not_finite)
-    report_warning(
-        "%llu samples were not finite or negative and were left out; the first one at pixel "
-        "%u, %u",
-        (unsigned long long)stats->not_finite, stats->worst_x, stats->worst_y);
+  char text[160];
+  if (!stats->not_finite)
+    return;
+  not_finite_text(stats, text, sizeof text);
+  report_warning("%s", text);
 }
 
 static void report_memory(const Render *render) {

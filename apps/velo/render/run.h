@@ -61,6 +61,8 @@ uint64_t run_pixels(const Render *render);
 void json_render_stats(Json *json, const vlRenderStats *stats);
 /* Warns of samples that were not finite or negative, if there were any. */
 void report_not_finite(const vlRenderStats *stats);
+/* The line of that warning, for some. */
+void not_finite_text(const vlRenderStats *stats, char *text, size_t size);
 /* Renders the image, writes its files and reports the result. Returns the exit code. */
 int run_image(Render *render);
 

@@ -11,6 +11,7 @@
 
 #include "cli/report.h"
 #include "render/needs.h"
+#include "render/run.h"
 #include "view/engine_answers.h"
 #include "view/engine_copied.h"
 #include "view/engine_sensor.h"
@@ -190,6 +191,17 @@ static bool is_unfinished(const Engine *e, uint32_t spp) {
                                 engine_race_due(e, spp));
 }
 
+/* Once for each image, in the log and on the pages. */
+static void tell_not_finite(Engine *e, const vlRenderStats *stats) {
+  char text[160];
+  if (!stats->not_finite || e->samples.told)
+    return;
+  e->samples.told = true;
+  not_finite_text(stats, text, sizeof text);
+  report_warning("%s", text);
+  engine_post(e, 0, "note", "message %s", text);
+}
+
 /* Adds samples to the film, or to its successor. False: interrupted, or it failed. */
 static bool render_pass(Engine *e) {
   vlFilm *film = e->race.successor ? e->race.successor : e->film;
@@ -224,6 +236,7 @@ static bool render_pass(Engine *e) {
   }
   e->samples.seconds += seconds;
   e->samples.paths += stats.paths;
+  tell_not_finite(e, &stats);
   engine_note_speed(&e->samples.pixel_seconds, stats.camera_rays, seconds);
   return true;
 }
@@ -272,6 +285,7 @@ static bool take_wanted(Engine *e) {
   if (!anew)
     return engine_sensor_changed(e, sensor && !channel) || channel || denoise;
   e->samples.failed = false;
+  e->samples.told = false;
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);

@@ -145,11 +145,11 @@ typedef struct Interrupt {
 
 /* The render of the film. */
 typedef struct Samples {
-  bool failed;          /* it cannot be rendered */
-  bool told;            /* that some samples were not finite */
-  double seconds;       /* that it has rendered */
-  uint64_t paths;       /* that it has */
-  double pixel_seconds; /* time of one sample of one pixel; 0: not known */
+  bool failed;              /* it cannot be rendered */
+  bool not_finite_reported; /* that some samples were not finite */
+  double seconds;           /* that it has rendered */
+  uint64_t paths;           /* that it has */
+  double pixel_seconds;     /* time of one sample of one pixel; 0: not known */
 } Samples;
 /* The thread that renders. */
 void *engine_render(void *engine);

@@ -192,11 +192,11 @@ static bool is_unfinished(const Engine *e, uint32_t spp) {
 }
 
 /* Once for each image, in the log and on the pages. */
-static void tell_not_finite(Engine *e, const vlRenderStats *stats) {
+static void report_left_out(Engine *e, const vlRenderStats *stats) {
   char text[160];
-  if (!stats->not_finite || e->samples.told)
+  if (!stats->not_finite || e->samples.not_finite_reported)
     return;
-  e->samples.told = true;
+  e->samples.not_finite_reported = true;
   not_finite_text(stats, text, sizeof text);
   report_warning("%s", text);
   engine_post(e, 0, "note", "message %s", text);
@@ -236,7 +236,7 @@ static bool render_pass(Engine *e) {
   }
   e->samples.seconds += seconds;
   e->samples.paths += stats.paths;
-  tell_not_finite(e, &stats);
+  report_left_out(e, &stats);
   engine_note_speed(&e->samples.pixel_seconds, stats.camera_rays, seconds);
   return true;
 }
@@ -285,7 +285,7 @@ static bool take_wanted(Engine *e) {
   if (!anew)
     return engine_sensor_changed(e, sensor && !channel) || channel || denoise;
   e->samples.failed = false;
-  e->samples.told = false;
+  e->samples.not_finite_reported = false;
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);

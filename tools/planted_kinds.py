@@ -1407,6 +1407,15 @@ MISTAKES = [
     ("a camera's poses stay on the old clock", "projections",
      r"projections \w+: .*by another clock", "src/camera/timing.c",
      "t->pose_open = (t->pose_open - origin) * scale;", "t->pose_open *= scale;"),
+    ("clusters of lamps turn away where they reach", "lights",
+     r"lights bvh: light beside a row", "src/light/light_tree.h",
+     "float cos_p = cos_x * cos_b + sin_x * sin_b;", "float cos_p = cos_x * cos_b - sin_x * sin_b;"),
+    ("sums of eight to fifteen bounces lose a bit", "materials:coateddiffuse",
+     r"materials coateddiffuse: a coat many bounces", "src/material/coated_diffuse.hot.c",
+     "if (all < 8)", "if (all < 16)"),
+    ("rays in media have the times of the first ones of their batch", "tracers",
+     r"tracers volpath: read row by row", "src/trace/medium/travel.hot.c",
+     "time[i] = vl_path_time(p, first + i);", "time[i] = vl_path_time(p, i);"),
     ]
 
 

@@ -1,5 +1,6 @@
-/* conformance/far_lamps.h: the law of lamps that do not reach a point: whatever chooses lights
- * there, a floor has the light of the sky alone, however many lamps shine elsewhere. */
+/* conformance/far_lamps.h: laws of many lamps. Whatever chooses lights, a floor has the light
+ * of the sky alone, however many lamps shine elsewhere; and it has the light of the end of
+ * a row of spots, though the middle of the row does not shine there. */
 #ifndef TEST_CONFORMANCE_FAR_LAMPS_H
 #define TEST_CONFORMANCE_FAR_LAMPS_H
 
@@ -38,6 +39,46 @@ static Mean light_of_floor(const char *sampler, int form, int lamps) {
   Mean mean = mean_of_image(image);
   vl_image_destroy(image);
   return mean;
+}
+
+/* The light beside a row of spots that shine straight down. Only the first ones' cones reach
+ * there. A dim sky is there to be chosen, too. */
+static Mean light_beside_row(const char *sampler, double turn) {
+  static char text[TEXT];
+  enum { SPP = 256, SPOTS = 5 };
+  size_t used = (size_t)snprintf(
+      text, sizeof text,
+      HEAD
+      "Integrator \"path\" \"string lightsampler\" \"%s\" WorldBegin "
+      "LightSource \"infinite\" \"rgb L\" [.05 .05 .05] "
+      "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9] "
+      "Rotate %g 0 1 0\n",
+      sampler, turn);
+  for (int i = 0; i < SPOTS; i++)
+    used += (size_t)snprintf(
+        text + used, sizeof text - used,
+        "LightSource \"spot\" \"rgb I\" [4 4 4] \"float coneangle\" 60 \"float conedeltaangle\" 60 "
+        "\"point3 from\" [%g 1 0] \"point3 to\" [%g 0 0]\n",
+        0.6 * i, 0.6 * i);
+  const double angle = turn * PI / 180;
+  vlImage *image = image_of_floor(text, VL_TRACER_PATH, SPP, -cos(angle), sin(angle), 0.05);
+  Mean mean = mean_of_image(image);
+  vl_image_destroy(image);
+  return mean;
+}
+
+static void lamps_in_a_row(void **state) {
+  (void)state;
+  static const char *const samplers[] = {"bvh", "power"};
+  for (double turn = 0; turn < 360; turn += 120) {
+    const Mean alike = light_beside_row("uniform", turn);
+    for (int s = 0; s < 2; s++) {
+      const Mean mean = light_beside_row(samplers[s], turn);
+      const Sight sight = {.slack = 0, .least = 0.3 * mean_of(&alike)};
+      check_same_mean("lights", samplers[s], "light beside a row", &mean, &alike, sight);
+    }
+  }
+  expect_no_failures();
 }
 
 static void lamps_elsewhere(void **state) {

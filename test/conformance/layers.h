@@ -128,6 +128,8 @@ static const struct {
     {"rough, by walks", COATED "\"float roughness\" .2", COATED "\"float roughness\" .2" WALKS},
     {"few bounces, by walks", COATED "\"float roughness\" .2 \"integer maxdepth\" 3",
      COATED "\"float roughness\" .2 \"integer maxdepth\" 3" WALKS},
+    {"many bounces, by walks", COATED "\"float roughness\" .2 \"integer maxdepth\" 15",
+     COATED "\"float roughness\" .2 \"integer maxdepth\" 15" WALKS},
     {"rough along u, by walks", COATED "\"float uroughness\" .6 \"float vroughness\" .01",
      COATED "\"float uroughness\" .6 \"float vroughness\" .01" WALKS},
     {"rough along v, by walks", COATED "\"float uroughness\" .01 \"float vroughness\" .6",

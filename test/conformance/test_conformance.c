@@ -27,6 +27,7 @@
 #include "radiometry.h"
 #include "ray_derivatives.h"
 #include "repeated.h"
+#include "rolling.h"
 #include "sampling.h"
 #include "saved_lights.h"
 #include "saved_settings.h"
@@ -88,6 +89,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(powers),
       cmocka_unit_test(chosen_powers),
       cmocka_unit_test(lamps_elsewhere),
+      cmocka_unit_test(lamps_in_a_row),
       cmocka_unit_test(illuminances),
       cmocka_unit_test(light_paths),
       cmocka_unit_test(laws_of_emission),
@@ -127,6 +129,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_densities),
       cmocka_unit_test(laws_of_tracers),
       cmocka_unit_test(dimensions_of_tracers),
+      cmocka_unit_test(media_read_by_rows),
       cmocka_unit_test(limits_of_kinds),
       cmocka_unit_test(laws_of_furnaces),
       cmocka_unit_test(spectra_of_files),

@@ -136,6 +136,8 @@ static void refused(void **state) {
   file[14] = 0;
   expect(file, size - 100, "damaged");
   expect(file, 100, "damaged");
+  put_u64(file + 16, SIZE + 8); /* plain, but more than is there */
+  expect(file, size, "damaged");
   file[11] = 0x7f;
   expect(file, size, "version");
   put(file, "nothing!", 8);

@@ -227,13 +227,11 @@ static void set_face_light(const vlWorld *world, uint32_t shape_index, uint32_t 
 
 /* Tells that an emissive shape gives no light where it moves or is part of an object. */
 static void warn_of_dark(const vlWorld *world, const vlShapeDef *def) {
-  vlError where;
-  vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-             " ");
-  vl_log(world->context, VL_LOG_WARNING, &where,
-         def->group.index
-             ? "an emissive shape inside an object that is instanced or moves does not emit"
-             : "an emissive shape that moves does not emit");
+  vl_world_warn(
+      world, def->source, "%s",
+      def->group.index
+          ? "an emissive shape inside an object that is instanced or moves does not emit"
+          : "an emissive shape that moves does not emit");
 }
 
 vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_t shape_index,

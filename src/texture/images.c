@@ -200,15 +200,43 @@ static int32_t share_image(vlWorld *world, const vlWorldImage *from, const vlIma
   return (int32_t)world->images.count - 1;
 }
 
-/* Shares the image or reads it. Returns its index, or -1 with the error set. */
-static int32_t obtain_image(vlWorld *world, const Image *p, vlError *error) {
+/* Tells of texels that are not finite, by the place of the first texture with this image. */
+static void tell_not_finite(const vlWorld *world, const vlMipmap *map,
+                            const vlTextureDef *def) {
+  const vlMipLevel *level = &map->levels[0];
+  const size_t pixels = map->is_bytes ? 0 : (size_t)level->width * level->height;
+  size_t count = 0;
+  size_t first = 0;
+  for (size_t i = 0; i < pixels; i++) {
+    bool finite = true;
+    for (uint32_t c = 0; c < map->channels; c++)
+      finite &= isfinite(level->floats[i * map->channels + c]) != 0;
+    if (!finite && count++ == 0)
+      first = i;
+  }
+  if (!count)
+    return;
+  vl_world_warn(
+      world, def->source,
+      "%s: pixels that are not finite: %zu, the first one (%zu, %zu); what they colour is "
+      "black or left out",
+      def->path ? def->path : "the image", count, first % level->width, first / level->width);
+}
+
+/* Shares the image or reads it. def: the texture that needs it; null: none. Returns its index,
+ * or -1 with the error set. */
+static int32_t obtain_image(vlWorld *world, const Image *p, const vlTextureDef *def,
+                            vlError *error) {
   vlImageKey key = key_of(p);
   const vlWorldImage *previous = find_previous(world, p, &key);
   if (previous)
     return share_image(world, previous, &key, error);
   vlMipmap *mipmap = NULL;
-  return load_image(world, p, &mipmap, error) == VL_OK ? push_image(world, mipmap, &key, error)
-                                                       : -1;
+  if (load_image(world, p, &mipmap, error) != VL_OK)
+    return -1;
+  if (def)
+    tell_not_finite(world, mipmap, def);
+  return push_image(world, mipmap, &key, error);
 }
 
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given,
@@ -219,7 +247,7 @@ int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *give
              .gamma = 1,
              .pyramid = pyramid,
              .owner = given ? given->number : 0};
-  return obtain_image(world, &p, error);
+  return obtain_image(world, &p, NULL, error);
 }
 
 /* vlImageKey.owner: the number of the image, or the texture with its generation. */
@@ -259,32 +287,6 @@ static bool name_image(vlWorld *world, vlWorldImage *entry, const vlTextureDef *
     memcpy(copy, def->path, size);
   entry->path = copy;
   return copy != NULL;
-}
-
-/* Tells of texels that are not finite, by the place of the first texture with this image. */
-static void tell_not_finite(const vlWorld *world, const vlMipmap *map,
-                            const vlTextureDef *def) {
-  const vlMipLevel *level = &map->levels[0];
-  const size_t pixels = map->is_bytes ? 0 : (size_t)level->width * level->height;
-  size_t count = 0;
-  size_t first = 0;
-  for (size_t i = 0; i < pixels; i++) {
-    bool finite = true;
-    for (uint32_t c = 0; c < map->channels; c++)
-      finite &= isfinite(level->floats[i * map->channels + c]) != 0;
-    if (!finite && count++ == 0)
-      first = i;
-  }
-  if (!count)
-    return;
-  vlError where;
-  vl_fail_at(&where, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-             " ");
-  vl_log(world->context, VL_LOG_WARNING, &where,
-         "%s: pixels that are not finite: %zu, the first one (%zu, %zu); what they colour is "
-         "black or left out",
-         def->path ? def->path : "the image", count, first % level->width,
-         first / level->width);
 }
 
 typedef struct Preload {
@@ -379,13 +381,12 @@ int32_t vl_texture_image_index(vlWorld *world, const vlScene *scene, const vlTex
   vlError inner;
   vl_error_clear(&inner);
   Image image = open_image(scene, def);
-  int32_t index = obtain_image(world, &image, &inner);
+  int32_t index = obtain_image(world, &image, def, &inner);
   if (index < 0) {
     vl_fail_at(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source.file,
                def->source.line, def->source.column, "%s", inner.message);
     return -1;
   }
-  tell_not_finite(world, world->images.items[index].mipmap, def);
   if (!name_image(world, &world->images.items[index], def)) {
     vl_fail_memory(error);
     return -1;

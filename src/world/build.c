@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/machine.h"
+#include "base/text.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
 #include "world/part.h"
@@ -218,6 +219,14 @@ void vl_world_destroy(vlWorld *world) {
   VL_ARRAY_FREE(c, &world->coats);
   VL_ARRAY_FREE(c, &world->media);
   vl_free(c, world);
+}
+
+void vl_world_warn(const vlWorld *world, vlSource source, const char *format, ...) {
+  char text[512];
+  VL_FORMAT(text, format);
+  vlError where;
+  vl_fail_at(&where, VL_ERROR_SCENE, source.file, source.line, source.column, " ");
+  vl_log(world->context, VL_LOG_WARNING, &where, "%s", text);
 }
 
 vlResult vl_world_locate_error(vlSource source, vlError *error, vlResult r) {

@@ -241,10 +241,8 @@ static void check_edges(const vlWorld *world, const float low[3], const float hi
   float edge = extent / sqrtf(fmaxf(0.5f * (float)triangles, 1.0f));
   if (!(edge < SMALLEST_EDGE) || extent == 0)
     return;
-  vlError where;
-  vl_fail_at(&where, VL_ERROR_SCENE, source->file, source->line, source->column, " ");
-  vl_log(
-      world->context, VL_LOG_WARNING, &where,
+  vl_world_warn(
+      world, *source,
       "triangles of about %.2g: edges below %g may hide light from themselves; use a smaller "
       "unit of length",
       (double)edge, (double)SMALLEST_EDGE);

@@ -96,9 +96,7 @@ static bool write_gltf_of(const char *extension, const char *members, Written *w
     broken("gltf", extension ? extension : "material", "{%s}: %s", members, error.message);
     return false;
   }
-  FILE *file = fopen(path, "rb");
-  w->size = file ? fread(w->bytes, 1, WRITTEN_BYTES, file) : 0;
-  return file && fclose(file) == 0 && w->size > 0 && w->size < WRITTEN_BYTES;
+  return read_written(path, w) && w->size > 0;
 }
 
 static void defaults_of_gltf(void **state) {

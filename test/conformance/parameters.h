@@ -520,6 +520,13 @@ static void note_loss(void *user, const char *what, uint64_t count) {
   snprintf(losses + length, LOSSES - length, "%s (%u); ", what, (unsigned)count);
 }
 
+/* The bytes of a file. False: it cannot be read, or is too long. */
+static bool read_written(const char *path, Written *w) {
+  FILE *file = fopen(path, "rb");
+  w->size = file ? fread(w->bytes, 1, WRITTEN_BYTES, file) : 0;
+  return file && fclose(file) == 0 && w->size < WRITTEN_BYTES;
+}
+
 static bool write_scene_of(const char *text, const char *suffix, Written *w) {
   char path[100];
   vlError error = {0};
@@ -532,9 +539,7 @@ static bool write_scene_of(const char *text, const char *suffix, Written *w) {
   snprintf(path, sizeof path, "%s/losses.%s", folder, suffix);
   const bool done = vl_scene_save(scene, path, &save, &error) == VL_OK;
   vl_scene_destroy(scene);
-  FILE *file = done ? fopen(path, "rb") : NULL;
-  w->size = file ? fread(w->bytes, 1, WRITTEN_BYTES, file) : 0;
-  return file && fclose(file) == 0 && w->size < WRITTEN_BYTES;
+  return done && read_written(path, w);
 }
 
 /* Words of losses that cover much of what a kind of the family has, or one parameter. */

@@ -9,6 +9,7 @@ import signal
 import sys
 import tempfile
 import traceback
+import warnings
 
 SOURCE = os.environ.get("VELO_SOURCE_DIR") or os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BINARY = os.environ.get("VELO_BINARY_DIR") or os.path.join(SOURCE, "build/release")
@@ -70,6 +71,14 @@ def raises(kind, *texts):
             assert text in str(error), "%r is not in %r" % (text, str(error))
         return
     raise AssertionError("nothing was raised, %s was expected" % kind.__name__)
+
+
+@contextlib.contextmanager
+def warned():
+    """The warnings of what runs inside: `with warned() as notes:`."""
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always")
+        yield notes
 
 
 # ---- rules of written files ----

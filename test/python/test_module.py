@@ -7,10 +7,9 @@ import subprocess
 import sys
 import threading
 import time
-import warnings
 
 import cases
-from cases import case, raises, work
+from cases import case, raises, warned, work
 
 numpy = cases.need("numpy")
 import velo
@@ -154,8 +153,7 @@ def unknown_fields_of_a_camera_file_are_warnings():
     frame = '"frames": [{"transform_matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}]}'
     with open(work("unread.json"), "w", encoding="utf-8") as file:
         file.write('{"w": 64, "h": 48, "fl_x": 50,\n"gain": 2, ' + frame)
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("always")
+    with warned() as found:
         assert velo.read_camera(work("unread.json")).resolution == (64, 48)
     assert len(found) == 1 and 'line 2: 1 fields are not understood and without effect: "gain"' in str(found[0].message)
 

@@ -4,10 +4,9 @@ wrong shapes; names."""
 import math
 import threading
 import time
-import warnings
 
 import cases
-from cases import case, raises, work
+from cases import case, raises, warned, work
 
 numpy = cases.need("numpy")
 import velo  # noqa: E402
@@ -168,8 +167,7 @@ def a_tracer_asks_during_its_call_only():
         assert value.shape == (len(paths.x), 4) and pdf.shape == paths.x.shape == step.pdf.shape
         assert paths.white.shape == paths.wavelengths.shape == step.weight.shape
         return numpy.full((len(paths.x), 4), numpy.nan)
-    with warnings.catch_warnings(record=True) as notes:
-        warnings.simplefilter("always")
+    with warned() as notes:
         image = it.render(tracer=velo.OwnTracer(keep, name="keep"), resolution=(16, 16), spp=1, share_samples=False)
     assert not numpy.asarray(image).any()
     assert [note.category for note in notes] == [RuntimeWarning] and notes[0].filename == __file__, notes
@@ -197,8 +195,7 @@ def the_same_bits_for_any_number_of_threads():
 def wrong_numbers_and_names():
     it = scene()
     for value in (-1.0, 2.0, math.nan):
-        with warnings.catch_warnings(record=True) as notes:
-            warnings.simplefilter("always")
+        with warned() as notes:
             image = it.render(sampler=velo.OwnSampler(lambda s: numpy.full((len(s.x), s.dimensions), value), name="wrong"),
                               resolution=(16, 16), spp=1)
         assert numpy.isfinite(numpy.asarray(image)).all()

@@ -5,10 +5,9 @@ import hashlib
 import os
 import subprocess
 import sys
-import warnings
 
 import cases
-from cases import case
+from cases import case, warned
 
 numpy = cases.need("numpy")
 import velo
@@ -351,8 +350,7 @@ def rays_that_are_none_are_counted():
     directions[4], directions[5, 1], directions[6, 2] = 0, numpy.nan, -INF
     t_max[7], times[8], times[9] = numpy.nan, numpy.nan, INF
     bad = [1, 2, 3, 4, 5, 6, 7, 8, 9]
-    with warnings.catch_warnings(record=True) as notes:
-        warnings.simplefilter("always")
+    with warned() as notes:
         hits = world.trace(origins, directions, t_max, times, hits=2)
         hidden = world.occluded(origins, directions, t_max, times)
     assert (hits.met, hits.not_finite, hits.zero_directions, hits.too_far) == (3, 7, 1, 1)

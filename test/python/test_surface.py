@@ -2,10 +2,9 @@
 """The Python module: scenes from arrays, cameras, films, image files, and the kinds of velo/schema.h."""
 import math
 import os
-import warnings
 
 import cases
-from cases import case, raises, work
+from cases import case, raises, warned, work
 
 numpy = cases.need("numpy")
 import velo
@@ -328,8 +327,7 @@ def images_are_compared_viewed_and_denoised():
     assert clean.compare(reference)["mse"] < a.compare(reference)["mse"]
     noisy = scene.render(spp=4, errors=True, channels=["error"])
     numpy.asarray(noisy)[20, 20, :3] = math.nan
-    with warnings.catch_warnings(record=True) as notes:
-        warnings.simplefilter("always")
+    with warned() as notes:
         assert numpy.isfinite(numpy.asarray(noisy.denoise())).all()
     assert len(notes) == 1 and str(notes[0].message).startswith("1 pixels are not finite") and notes[0].filename == __file__, notes
 

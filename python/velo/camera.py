@@ -108,7 +108,8 @@ class Camera(_velo.Camera):
         return self._get(name)
 
     def replace(self, **keywords: Unpack[_keywords.Cameras]) -> "Camera":
-        """This camera with other parameters. A given focal length replaces all that were given before."""
+        """This camera with other parameters. A given focal length replaces all that were given before. Numbers that are only a
+        part of it (zoom, pixel_size; focal_mm, sensor_width_mm; an edge of the screen) go with those given before."""
         return self._replace({name: bare(value) for name, value in keywords.items()})
 
     def resize(self, width: int, height: int) -> "Camera":

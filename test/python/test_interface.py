@@ -60,9 +60,13 @@ def focal_lengths_replace_each_other():
             assert numpy.allclose(replaced.K, velo.Camera(40, 30, **other).K, rtol=1e-12), (one, other)
             for word in words - set(other):
                 assert replaced.get(word) is None, (one, other, word)
-    for word in ("zoom", "pixel_size"):  # alone: the view distance is replaced, too
+    for way in ways:  # their parts, one after the other
+        for word in set(way) & {"zoom", "pixel_size", "focal_mm", "sensor_width_mm", "screen_max_x"}:
+            longer = {**way, word: 1.25 * way[word]}
+            assert numpy.allclose(velo.Camera(40, 30, **way).replace(**{word: longer[word]}).K, velo.Camera(40, 30, **longer).K), (way, word)
+    for word in ("zoom", "pixel_size"):  # there is no view distance that stays
         with raises(velo.UsageError, "view distance"):
-            velo.Camera(40, 30, view_distance=30.0).replace(**{word: 2.0})
+            velo.Camera(40, 30, fov=0.7).replace(**{word: 2.0})
 
 
 @case

@@ -223,6 +223,24 @@ def projection_agrees_with_opencv():
 
 
 @case
+def a_focal_length_replaces_what_gave_it_before():
+    plane = velo.Camera(100, 80, view_distance=30)
+    film = velo.Camera(100, 80, focal_mm=35, sensor_width_mm=36)
+    lens = velo.Camera(100, 80, focal_mm=35, sensor_width_mm=36, f_number=2.8)
+    alone = velo.Camera(100, 80, fov=1.0, focal_mm=35, f_number=2.8)  # focal_mm describes the lens only
+    screen = velo.Camera(100, 80, screen_min_x=-1, screen_max_x=1, screen_min_y=-0.8, screen_max_y=0.8)
+    wide = 50 / numpy.tan(0.5)
+    for camera, keywords, fx in ((plane, {"zoom": 2}, 60), (plane.replace(zoom=2), {"pixel_size": 0.5}, 120), (plane, {"fx": 44}, 44),
+                                 (film, {"focal_mm": 72}, 200), (film, {"sensor_width_mm": 70}, 50), (film, {"view_distance": 30}, 30),
+                                 (lens, {"fov": 1.0, "fov_axis": "horizontal"}, wide), (lens, {"f_number": 4, "fx": 20}, 20),
+                                 (alone, {"fx": 70}, 70), (screen, {"screen_max_x": 3}, 25), (screen, {"fx": 20}, 20),
+                                 (plane, {"colmap": ("SIMPLE_PINHOLE", [70, 50, 40])}, 70), (film, {"K": numpy.diag((60, 60, 1))}, 60)):
+        assert abs(camera.replace(**keywords).K[0, 0] - fx) < 1e-9, (keywords, camera.replace(**keywords).K)
+    assert film.replace(fx=20).get("sensor_width_mm") is None and alone.replace(fx=70).get("focal_mm") == 35
+    assert lens.replace(fx=20).get("sensor_width_mm") == 36 and lens.replace(fx=20).get("focal_mm") is None  # the lens zooms
+
+
+@case
 def cameras_change_and_are_written_in_every_dialect():
     cam = velo.Camera(320, 240, K=[[300, 0, 160], [0, 300, 120], [0, 0, 1]], eye=(1, 2, 3), lookat=(0, 0, 0))
     longer = cam.replace(fov=0.5)

@@ -22,7 +22,7 @@ static vlResult cell_luminances(const vlMipmap *mip, vlEnvironment *env, uint32_
       uint32_t count = 0;
       for (uint32_t j = y * step; j < (y + 1) * step && j < n; j++)
         for (uint32_t i = x * step; i < (x + 1) * step && i < n; i++) {
-          vlTexel texel = vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP);
+          vlTexel texel = vl_texel(mip, 0, (int32_t)i, (int32_t)j);
           for (int c = 0; c < 3; c++)
             cell->color[c] = texel.c[channels < 3 ? 0 : c];
           float l = vl_light_texel_luminance(texel, channels, env->space);

@@ -61,7 +61,7 @@ static void read_colors(const vlEnvironment *env, const vlMipmap *mip, float sca
     return;
   }
   for (uint32_t k = 0; k < padded; k++) {
-    vlTexel x = vl_nearest(mip, 0, b->s[k], b->t[k], VL_WRAP_OCTAHEDRAL);
+    vlTexel x = vl_octahedral_texel(mip, b->s[k], b->t[k]);
     for (int c = 0; c < 3; c++)
       b->rgb[c][k] = scaled(scale, x.c[mip->channels < 3 ? 0 : c]);
   }

@@ -74,8 +74,7 @@ static vlResult add_goniometric(vlWorld *world, const vlLightDef *def, const vlM
   double sum = 0;
   for (uint32_t y = 0; y < n; y++)
     for (uint32_t x = 0; x < n; x++) {
-      float value =
-          mean_of(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels);
+      float value = mean_of(vl_texel(mip, 0, (int32_t)x, (int32_t)y), mip->channels);
       if (!isfinite(value))
         return vl_light_bad_pixel(def->path, x, y, error);
       sum += value > 0 ? value * texel_stretch(&stretch, n, x, y) : 0;
@@ -133,8 +132,8 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
     for (uint32_t x = 0; x < w; x++) {
       double a = light->own[0] * (2 * (x + 0.5) / w - 1),
              b = light->own[1] * (2 * (y + 0.5) / h - 1);
-      float value = vl_light_texel_luminance(
-          vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP), mip->channels, space);
+      float value = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y),
+                                             mip->channels, space);
       if (!isfinite(value))
         return vl_light_bad_pixel(def->path, x, y, error);
       sum += value > 0 ? value / image_area(&stretch, a, b) : 0;

@@ -23,7 +23,7 @@ static float intensity_factor(const vlWorld *world, const vlWorldLight *light, v
     return vl_lamp_candela(lamp, local);
   const vlMipmap *mip = world->images.items[light->image].mipmap;
   vlVec2 at = vl_octahedral_encode(local);
-  vlTexel x = vl_nearest(mip, 0, at.x, at.y, VL_WRAP_OCTAHEDRAL);
+  vlTexel x = vl_octahedral_texel(mip, at.x, at.y);
   return vl_max(0.0f, mip->channels < 3 ? x.c[0] : (x.c[0] + x.c[1] + x.c[2]) / 3.0f);
 }
 

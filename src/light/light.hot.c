@@ -29,8 +29,7 @@ void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[
                          0, {0, 0, 0, 0}, {1, 1, 1, 1}};
     x = vl_texture_rgba(&world->nodes.items[e->node - 1], mip, at);
   } else {
-    x = sky ? vl_nearest(mip, 0, s, t, VL_WRAP_OCTAHEDRAL)
-            : vl_bilinear(mip, 0, s, t, VL_WRAP_CLAMP);
+    x = sky ? vl_octahedral_texel(mip, s, t) : vl_bilinear(mip, s, t, VL_WRAP_CLAMP);
   }
   float rgb[3];
   for (int k = 0; k < 3; k++) {

@@ -17,7 +17,7 @@
 
 static float mean_image_luminance(const vlWorld *world, const vlEmitted *e) {
   const vlMipmap *mip = world->images.items[e->image].mipmap;
-  vlTexel mean = vl_texel(mip, mip->level_count - 1, 0, 0, VL_WRAP_CLAMP);
+  vlTexel mean = vl_texel(mip, mip->level_count - 1, 0, 0);
   return vl_light_texel_luminance(mean, mip->channels, e->space);
 }
 
@@ -58,9 +58,8 @@ static vlResult add_emission(vlWorld *world, const vlScene *scene, const vlEmiss
   const vlMipmap *mip = world->images.items[e->image].mipmap;
   for (uint32_t y = 0; y < mip->levels[0].height; y++)
     for (uint32_t x = 0; x < mip->levels[0].width; x++)
-      if (!isfinite(
-              vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP),
-                                       mip->channels, e->space)))
+      if (!isfinite(vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)x, (int32_t)y),
+                                             mip->channels, e->space)))
         return vl_light_bad_pixel(def->image, x, y, error);
   return VL_OK;
 }

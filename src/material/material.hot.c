@@ -116,7 +116,7 @@ static void normal_map(vlTextureRun *r, int32_t image) {
   if (mip->channels < 3)
     return;
   for (uint32_t i = r->first; i < r->last; i++) {
-    vlTexel t = vl_bilinear(mip, 0, f->u[i], 1.0f - f->v[i], VL_WRAP_REPEAT);
+    vlTexel t = vl_bilinear(mip, f->u[i], 1.0f - f->v[i], VL_WRAP_REPEAT);
     vlVec3 local = vl_normalize(vl_vec3(2 * t.c[0] - 1, 2 * t.c[1] - 1, 2 * t.c[2] - 1));
     vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i), u = vl_lane3(f->ux, f->uy, f->uz, i);
     vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n))));

@@ -67,9 +67,8 @@ static inline vlTexel vl_texel_2(const vlMipmap *mip, uint32_t level, int32_t x,
   return t;
 }
 
-static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y,
-                               vlWrap wrap) {
-  return vl_texel_2(mip, level, x, y, wrap, wrap);
+static inline vlTexel vl_texel(const vlMipmap *mip, uint32_t level, int32_t x, int32_t y) {
+  return vl_texel_2(mip, level, x, y, VL_WRAP_CLAMP, VL_WRAP_CLAMP);
 }
 
 static inline int32_t vl_to_index(float x) { /* floor(x), defined for any float */
@@ -161,9 +160,8 @@ static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s
     r.c[i] = q.w[0] * a.c[i] + q.w[1] * b.c[i] + q.w[2] * c.c[i] + q.w[3] * d.c[i];
   return r;
 }
-static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t,
-                                  vlWrap wrap) {
-  return vl_bilinear_2(mip, level, s, t, wrap, wrap);
+static inline vlTexel vl_bilinear(const vlMipmap *mip, float s, float t, vlWrap wrap) {
+  return vl_bilinear_2(mip, 0, s, t, wrap, wrap);
 }
 
 static inline vlTexel vl_nearest_2(const vlMipmap *mip, uint32_t level, float s, float t,
@@ -171,9 +169,9 @@ static inline vlTexel vl_nearest_2(const vlMipmap *mip, uint32_t level, float s,
   return vl_texel_2(mip, level, vl_to_index(s * (float)mip->levels[level].width),
                     vl_to_index(t * (float)mip->levels[level].height), wrap, wrap_t);
 }
-static inline vlTexel vl_nearest(const vlMipmap *mip, uint32_t level, float s, float t,
-                                 vlWrap wrap) {
-  return vl_nearest_2(mip, level, s, t, wrap, wrap);
+/* Of the finest level of an octahedral map. */
+static inline vlTexel vl_octahedral_texel(const vlMipmap *mip, float s, float t) {
+  return vl_nearest_2(mip, 0, s, t, VL_WRAP_OCTAHEDRAL, VL_WRAP_OCTAHEDRAL);
 }
 
 /* log2 of a positive float, to about 1e-3, for choosing a mip level. */

@@ -16,7 +16,7 @@ typedef struct Before {
 static void turn_inside_out(vlShapeDef *d, const double pose[16]) {
   /* Instances never flip normals, but a mirroring group_from_shape does, except those of meshes
    * (vlShapeDef). */
-  if (!vl_shape_is_mesh(d->kind) && vl_mat4_determinant3(vl_mat4_load(pose)) < 0)
+  if (!vl_shape_is_mesh(d->kind) && vl_determinant3(pose) < 0)
     d->reverse_orientation = !d->reverse_orientation;
 }
 

@@ -128,7 +128,7 @@ vlResult vl_camera_check_rotation(const vlCameraFile *file, const vlCameraRecord
     return vl_camera_wrong(
         file, "%s: the pose is no rotation and translation: its axes are not perpendicular",
         file->dialect);
-  if (vl_mat4_determinant3(vl_mat4_load(m)) < 0.0)
+  if (vl_determinant3(m) < 0.0)
     return vl_camera_wrong(file, "%s: the pose is no rotation and translation: it mirrors",
                            file->dialect);
   return VL_OK;

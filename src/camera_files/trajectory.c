@@ -9,6 +9,7 @@
 
 #include "base/cookie.h"
 #include "base/file.h"
+#include "base/free.h"
 #include "base/machine.h"
 #include "base/text.h"
 #include "camera_files/formats.h"
@@ -221,10 +222,7 @@ void vl_trajectory_destroy(vlTrajectory *t) {
   if (!t)
     return;
   vlContext *context = t->context;
-  VL_ARRAY_FREE(context, &t->frames);
-  VL_ARRAY_FREE(context, &t->cameras);
-  VL_ARRAY_FREE(context, &t->names);
-  vl_free(context, t);
+  VL_FREE(context, t->frames.items, t->cameras.items, t->names.items, t);
 }
 
 uint32_t vl_trajectory_frames(const vlTrajectory *t) {

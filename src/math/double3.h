@@ -90,8 +90,9 @@ static inline int vl_by_value(const void *a, const void *b) {
 }
 /* Of the upper left 3x3. */
 static inline double vl_determinant3(const double m[12]) {
-  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
-         m[2] * (m[4] * m[9] - m[5] * m[8]);
+  double part[9], last[3];
+  vl_split_map(m, part, last);
+  return vl_mat3_determinant(part);
 }
 
 #endif

@@ -28,5 +28,5 @@ double vl_stretch_at(const vlStretch *stretch, const double direction[3]) {
   double mapped[3];
   vl_mat4_vector(&stretch->map, direction, mapped);
   const double length = vl_norm3(mapped);
-  return fabs(vl_mat4_determinant3(stretch->map)) / (length * length * length);
+  return fabs(vl_determinant3(stretch->map.m)) / (length * length * length);
 }

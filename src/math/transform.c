@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "math/double3.h"
 #include "math/elementary.h"
 
 vlMat4 vl_mat4_identity(void) {
@@ -98,10 +97,6 @@ vlMat4 vl_mat4_rotate(double radians, double x, double y, double z) {
                    z * z * t + c, 0, 0, 0, 0, 1}};
 }
 
-double vl_mat4_determinant3(vlMat4 a) {
-  return vl_determinant3(a.m);
-}
-
 bool vl_mat4_is_finite(vlMat4 a) {
   for (int i = 0; i < 16; i++)
     if (!isfinite(a.m[i]))
@@ -131,7 +126,7 @@ void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]) 
 }
 
 double vl_mat4_scale_of(const vlMat4 *a) {
-  return vl_precise_cbrt(fabs(vl_mat4_determinant3(*a)));
+  return vl_precise_cbrt(fabs(vl_determinant3(a->m)));
 }
 
 bool vl_mat4_points(const vlMat4 *a, size_t count, const float *from, float *to) {

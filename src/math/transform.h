@@ -3,6 +3,7 @@
 #ifndef MATH_TRANSFORM_H
 #define MATH_TRANSFORM_H
 
+#include "math/double3.h"
 #include "velo/base.h"
 
 typedef struct vlMat4 {
@@ -20,7 +21,6 @@ bool vl_mat4_inverse(vlMat4 a, vlMat4 *inverse);
 vlMat4 vl_mat4_translate(double x, double y, double z);
 vlMat4 vl_mat4_scale(double x, double y, double z);
 vlMat4 vl_mat4_rotate(double radians, double x, double y, double z);
-double vl_mat4_determinant3(vlMat4 a); /* of the upper left 3x3 */
 bool vl_mat4_is_finite(vlMat4 a);
 bool vl_mat4_is_identity(const double m[16]);
 /* divides by w if it is not 1 */

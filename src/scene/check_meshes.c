@@ -250,8 +250,7 @@ static void check_sphere(vlCheck *c, const vlShapeDef *d) {
       ((double)d->phi_max < whole || d->z_min > -d->radius || d->z_max < d->radius))
     vl_check_add(c, VL_FINDING_OPEN_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
                  "the solid of %s is not closed: the sphere is a part of one", name.text);
-  else if (d->reverse_orientation !=
-           (vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0))
+  else if (d->reverse_orientation != (vl_determinant3(d->group_from_shape) < 0))
     vl_check_add(c, VL_FINDING_INVERTED_DIELECTRIC, VL_SEVERITY_WARNING, d->source,
                  "normals point into the sphere of %s: light is bent the wrong way", name.text);
 }
@@ -290,8 +289,7 @@ static void check_solids(vlCheck *c) {
     if (!round)
       check_solid(c, shapes + i, j - i, shapes + group, group_end - group);
   }
-  vl_free(c->context, keys);
-  vl_free(c->context, shapes);
+  VL_FREE(c->context, keys, shapes);
 }
 
 void vl_check_meshes(vlCheck *c) {

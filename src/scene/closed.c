@@ -305,7 +305,7 @@ static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face,
   vl_sub3(eye, c[0], to_eye);
   vl_sub3(closed->middle, c[0], to_middle);
   double a = vl_dot3(n, to_eye), b = vl_dot3(n, to_middle);
-  const bool mirrored = vl_mat4_determinant3(*m) < 0; /* it reverses the order of the corners */
+  const bool mirrored = vl_determinant3(m->m) < 0; /* it reverses the order of the corners */
   if (closed->inward && (a < 0) == (d->reverse_orientation != mirrored))
     return false;
   return (a > 0 && b < 0) || (a < 0 && b > 0);

@@ -26,7 +26,7 @@ void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user) {
       continue;
     const vlMat4 m = vl_mat4_load(shape->group_from_shape);
     /* it reverses the corners' order alone */
-    const bool mirrored = vl_mat4_determinant3(m) < 0;
+    const bool mirrored = vl_determinant3(m.m) < 0;
     const double sign = shape->reverse_orientation != mirrored ? -1 : 1;
     for (size_t i = 0; i < shape->faces; i++) {
       const vlFace face = face_of(shape, &m, sign, i);

@@ -96,7 +96,7 @@ static void add_face(vlMeshSolid *b, uint32_t x, uint32_t y, uint32_t z, bool tu
 }
 
 static void add_faces(const vlShapeDef *d, vlMeshSolid *b, const uint32_t *welded) {
-  bool mirrored = vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0;
+  bool mirrored = vl_determinant3(d->group_from_shape) < 0;
   for (uint32_t i = 0; i < d->faces; i++) {
     const uint32_t *f = d->indices + (d->kind == VL_SHAPE_TRIANGLES ? 3 : 4) * (size_t)i;
     if (d->kind == VL_SHAPE_TRIANGLES) {
@@ -134,8 +134,7 @@ static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, v
     weld(d, b, table, size - 1, welded);
     add_faces(d, b, welded);
   }
-  vl_free(scene->context, table);
-  vl_free(scene->context, welded);
+  VL_FREE(scene->context, table, welded);
   return fine;
 }
 
@@ -317,8 +316,7 @@ static bool find_parts(const vlScene *scene, vlMeshSolid *b, const Edges *e) {
   for (uint32_t i = 0; fine && i <= e->mask; i++)
     if (e->slots[i].count == 1)
       b->parts[b->part[e->slots[i].face]].open_edges++;
-  vl_free(scene->context, parent);
-  vl_free(scene->context, index);
+  VL_FREE(scene->context, parent, index);
   return fine;
 }
 

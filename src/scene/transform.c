@@ -30,7 +30,7 @@ static bool take_apart(const double m[16], Similarity *s) {
   if (!vl_mat4_is_finite(s->matrix) || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
     return false;
   s->scale = sqrt(vl_dot_columns(m, 0, 0));
-  if (!(vl_mat4_determinant3(s->matrix) > 0) || !vl_mat4_inverse(s->matrix, &s->inverse))
+  if (!(vl_determinant3(s->matrix.m) > 0) || !vl_mat4_inverse(s->matrix, &s->inverse))
     return false;
   s->turn = vl_mat4_identity();
   for (int i = 0; i < 3; i++)

@@ -87,7 +87,7 @@ vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
        !vl_world_copy_floats(world, def->more_uvs[2], 2 * n, &s->more_uvs[2])))
     return vl_fail_memory(error);
   /* if m mirrors, it reverses n x t relative to the mapped n and t */
-  bool mirrored = vl_mat4_determinant3(*m) < 0;
+  bool mirrored = vl_determinant3(m->m) < 0;
   for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++)
     s->tangent_signs[i] = -s->tangent_signs[i];
   if (same)

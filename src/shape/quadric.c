@@ -353,11 +353,6 @@ static vlResult quadric_compile(vlWorld *world, const vlShapeDef *def, const vlM
   return VL_OK;
 }
 
-const vlShapeFunctions vl_quadric_functions = {
-    .compile = quadric_compile,
-    .bounds = quadric_bounds,
-    .intersect = quadric_intersect,
-    .point = quadric_point,
-    .sample = quadric_sample,
-    .pdf = quadric_pdf,
-};
+const vlShapeFunctions vl_quadric_functions = {quadric_compile,   quadric_bounds,
+                                               quadric_intersect, quadric_point,
+                                               quadric_sample,    quadric_pdf};

@@ -138,7 +138,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
   if (!vl_mat4_inverse(m, &inverse))
     return vl_fail_shape(def, error, "the shape's transform is singular");
-  bool mirrored = vl_mat4_determinant3(m) < 0;
+  bool mirrored = vl_determinant3(m.m) < 0;
   memset(s, 0, sizeof *s);
   s->kind = def->kind;
   s->triangles = def->kind == VL_SHAPE_TRIANGLES;
@@ -328,7 +328,7 @@ static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *err
       return vl_fail_at(error, VL_ERROR_SCENE, source->source.file, source->source.line,
                         source->source.column, "the instance's transform is singular");
     instance->group = source->group.index;
-    instance->mirrored = vl_mat4_determinant3(m) < 0;
+    instance->mirrored = vl_determinant3(m.m) < 0;
     store_affine_f(&m, instance->from_group);
     store_affine_f(&inverse, instance->to_group);
     vl_instance_error(instance->from_group, instance->to_group, instance->error);

@@ -208,7 +208,7 @@ static vlWorld *build(vlContext *context, const Kind *kind, Place place, bool sh
   vlShapeDef def = shape_of(kind);
   memcpy(def.group_from_shape, shape, sizeof def.group_from_shape);
   /* normals point outside */
-  def.reverse_orientation = vl_mat4_determinant3(vl_mat4_load(shape)) < 0;
+  def.reverse_orientation = vl_determinant3(shape) < 0;
   if (place != PLACED)
     def.group = vl_scene_add_group(scene, NULL);
   if (shines) {
@@ -281,8 +281,7 @@ static Scene make(const Kind *kind, Place place, Map map, bool shines, bool far,
   memcpy(poses, place == PLACED ? identity : m, sizeof m);
   memcpy(poses + 16, poses, sizeof m);
   vlWorld *there = build(s.context, kind, PLACED, false, shape, poses);
-  s.size = (double)there->radius *
-           (place == PLACED ? 1 : cbrt(fabs(vl_mat4_determinant3(vl_mat4_load(m)))));
+  s.size = (double)there->radius * (place == PLACED ? 1 : cbrt(fabs(vl_determinant3(m))));
   point_of_shape(there, rng, p);
   vl_world_destroy(there);
   vlMat4 inverse;

@@ -203,8 +203,7 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
  * reverse normals. */
 static bool is_turned(const vlShapeDef *d) {
   bool quadric = vl_kind_row(&vl_shape_family, (int)d->kind)->traits & VL_SHAPE_TRAIT_QUADRIC;
-  return d->reverse_orientation !=
-         (quadric && vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0);
+  return d->reverse_orientation != (quadric && vl_determinant3(d->group_from_shape) < 0);
 }
 
 /* The last uv set that the material's textures or the mesh have; -1: none. */
@@ -370,7 +369,7 @@ static bool is_mirrored(const vlExport *x) {
   vlCamera camera;
   if (x->scene->defs.camera_missing || vl_camera_make(c, &camera, NULL, NULL) != VL_OK)
     return false;
-  return vl_mat4_determinant3(vl_mat4_load(camera.world_from_camera)) < 0;
+  return vl_determinant3(camera.world_from_camera) < 0;
 }
 
 static bool put_scene(vlExport *x) {

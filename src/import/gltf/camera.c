@@ -106,7 +106,7 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   def.has_matrix_close = vl_gltf_node_moves(g, node);
   if (def.has_matrix_close)
     set_pose(&node->keys[VL_GLTF_KEYS - 1], def.world_from_camera_close);
-  if (!(fabs(vl_mat4_determinant3(vl_mat4_load(def.world_from_camera))) > 1e-9))
+  if (!(fabs(vl_determinant3(def.world_from_camera)) > 1e-9))
     return vl_gltf_fail(at, "its node's transform is singular");
   vlSceneDefs *s = vl_scene_defs(g->scene);
   def.width = s->film.width;

@@ -198,7 +198,7 @@ bool vl_gltf_is_flat(const vlMat4 *m) {
   double l = 0;
   for (int i = 0; i < 12; i++)
     l += i % 4 == 3 ? 0 : m->m[i] * m->m[i];
-  return !(fabs(vl_mat4_determinant3(*m)) > 1e-12 * l * sqrt(l));
+  return !(fabs(vl_determinant3(m->m)) > 1e-12 * l * sqrt(l));
 }
 
 static bool group_mesh(vlGltf *g, size_t mesh) {

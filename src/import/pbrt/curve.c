@@ -71,7 +71,7 @@ static bool append(vlImport *import, vlShapeRun *run, const Curve *c) {
   return true;
 }
 
-static bool finite(const vlParam *p) {
+static bool is_finite(const vlParam *p) {
   return vl_all_finite(p->floats.items, p->floats.count);
 }
 
@@ -91,7 +91,7 @@ static bool read_points(vlDict *dict, Curve *c) {
               "of the degree",
         n, c->degree, c->degree + 1);
   c->segments = c->spline ? n - c->degree : (n - 1) / c->degree;
-  if (!finite(c->points))
+  if (!is_finite(c->points))
     return vl_dict_fail_at(dict, c->points->source, "a point is not finite");
   return true;
 }
@@ -110,7 +110,7 @@ static bool read_normals(vlDict *dict, vlCurveKind kind, Curve *c) {
   }
   if (!c->normals)
     return vl_dict_fail(dict, "ribbons need \"normal N\"");
-  if (c->normals->floats.count == 3 * (c->segments + 1) && finite(c->normals))
+  if (c->normals->floats.count == 3 * (c->segments + 1) && is_finite(c->normals))
     return true;
   return vl_dict_fail_at(dict, c->normals->source,
                          "\"N\" holds %zu numbers; %zu segments need %zu finite ones, 3 for "

@@ -28,7 +28,7 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlSh
   if (!vl_import_may_gather(import, &def, link) || !is_small(&def, m) ||
       !vl_mat4_inverse(m, &inverse))
     return true;
-  bool mirrored = vl_mat4_determinant3(m) < 0;
+  bool mirrored = vl_determinant3(m.m) < 0;
   def.reverse_orientation = def.reverse_orientation != mirrored;
   memcpy(def.group_from_shape, unit.m, sizeof def.group_from_shape);
   vlShapeRun *run = vl_import_run(import, VL_RUN_MESHES, &def, link);

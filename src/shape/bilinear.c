@@ -250,11 +250,5 @@ static void patch_point(const vlWorldShape *shape, uint32_t prim, const vlShapeH
   surface_at(shape, prim, hit->a, hit->b, point);
 }
 
-const vlShapeFunctions vl_bilinear_functions = {
-    .compile = vl_mesh_compile,
-    .bounds = patch_bounds,
-    .intersect = patch_intersect,
-    .point = patch_point,
-    .sample = patch_sample,
-    .pdf = patch_pdf,
-};
+const vlShapeFunctions vl_bilinear_functions = {vl_mesh_compile, patch_bounds, patch_intersect,
+                                                patch_point,     patch_sample, patch_pdf};

@@ -414,11 +414,5 @@ static vlResult curve_compile(vlWorld *world, const vlShapeDef *def, const vlMat
   return copy_curves(world, def, shape) ? VL_OK : vl_fail_memory(error);
 }
 
-const vlShapeFunctions vl_curves_functions = {
-    .compile = curve_compile,
-    .bounds = curve_bounds,
-    .intersect = curve_intersect,
-    .point = curve_point,
-    .sample = curve_sample,
-    .pdf = curve_pdf,
-};
+const vlShapeFunctions vl_curves_functions = {curve_compile, curve_bounds, curve_intersect,
+                                              curve_point,   curve_sample, curve_pdf};

@@ -39,12 +39,8 @@ typedef struct Cutter {
 } Cutter;
 
 static void release(Cutter *c) {
-  VL_ARRAY_FREE(c->context, &c->p);
-  VL_ARRAY_FREE(c->context, &c->n);
-  VL_ARRAY_FREE(c->context, &c->uv);
-  VL_ARRAY_FREE(c->context, &c->indices);
-  VL_ARRAY_FREE(c->context, &c->stack);
-  vl_free(c->context, c->edges);
+  VL_FREE(c->context, c->p.items, c->n.items, c->uv.items, c->indices.items, c->stack.items,
+          c->edges);
 }
 
 /* ---- edges ------------------------------------------------------------------------------- */
@@ -275,8 +271,7 @@ vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDe
   fine->indices = take(c.indices.items);
   fine->tangents = fine->tangent_signs = fine->colors = NULL;
   fine->more_uvs[0] = fine->more_uvs[1] = fine->more_uvs[2] = NULL;
-  VL_ARRAY_FREE(c.context, &c.stack);
-  vl_free(c.context, c.edges);
+  VL_FREE(c.context, c.stack.items, c.edges);
   return VL_OK;
 }
 

@@ -46,11 +46,6 @@ static double triangles_pdf(const vlWorldShape *shape, uint32_t prim, const doub
   return 0;
 }
 
-const vlShapeFunctions vl_triangles_functions = {
-    .compile = vl_mesh_compile,
-    .bounds = triangles_bounds,
-    .intersect = triangles_intersect,
-    .point = triangles_point,
-    .sample = triangles_sample,
-    .pdf = triangles_pdf,
-};
+const vlShapeFunctions vl_triangles_functions = {vl_mesh_compile,     triangles_bounds,
+                                                 triangles_intersect, triangles_point,
+                                                 triangles_sample,    triangles_pdf};

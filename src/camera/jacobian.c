@@ -280,12 +280,15 @@ static bool central_ray(const vlCameraCompiled *c, const double pixel[2], RayDer
   return solve_ray(c, ray->d, &f, orthographic ? ray->origin : ray->direction);
 }
 
+static bool ray_of(const vlCameraCompiled *c, const double pixel[2], RayDerivatives *ray) {
+  return c->optics
+             ? optics_ray(c, c->pitch * (pixel[0] - c->cx), c->pitch * (pixel[1] - c->cy), ray)
+             : central_ray(c, pixel, ray);
+}
+
 static bool unproject_one(const vlCameraCompiled *c, const double pixel[2], double *rows) {
   RayDerivatives ray;
-  bool good = c->optics ? optics_ray(c, c->pitch * (pixel[0] - c->cx),
-                                     c->pitch * (pixel[1] - c->cy), &ray)
-                        : central_ray(c, pixel, &ray);
-  if (!good)
+  if (!ray_of(c, pixel, &ray))
     return false;
   const double *o = ray.o, *d = ray.d, none[3] = {0.0, 0.0, 0.0};
   double world[3];
@@ -366,11 +369,7 @@ static bool unproject_moving(const vlCameraCompiled *c, const double pixel[2], d
   vlCameraCompiled held = *c;
   vl_camera_hold(&held, vl_camera_film_time(c, pixel[0], pixel[1]));
   RayDerivatives ray;
-  bool good = unproject_one(&held, pixel, rows) &&
-              (c->optics ? optics_ray(c, c->pitch * (pixel[0] - c->cx),
-                                      c->pitch * (pixel[1] - c->cy), &ray)
-                         : central_ray(c, pixel, &ray));
-  if (!good)
+  if (!unproject_one(&held, pixel, rows) || !ray_of(c, pixel, &ray))
     return false;
   const double none[3] = {0.0, 0.0, 0.0};
   double by[2], d[3], moved[6], along = 0.0;

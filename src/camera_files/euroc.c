@@ -8,7 +8,7 @@
 static const vlLensName lenses[] = {{"radial-tangential", VL_LENS_OPENCV, 4, 5},
                                     {"radtan", VL_LENS_OPENCV, 4, 5},
                                     {"equidistant", VL_LENS_FISHEYE, 4, 4},
-                                    {.name = NULL}};
+                                    {0}};
 
 static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
                            vlCameraRecord *record) {

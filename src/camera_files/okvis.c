@@ -8,7 +8,7 @@
 static const vlLensName lenses[] = {{"radialtangential", VL_LENS_OPENCV, 4, 4},
                                     {"radialtangential8", VL_LENS_OPENCV, 8, 8},
                                     {"equidistant", VL_LENS_FISHEYE, 4, 4},
-                                    {.name = NULL}};
+                                    {0}};
 
 static vlResult read_okvis(const vlCameraFile *file, const json_t *tree,
                            vlCameraRecord *record) {

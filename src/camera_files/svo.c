@@ -41,7 +41,7 @@ static vlResult read_version_1(const vlCameraFile *file, const json_t *tree,
 static const vlLensName lenses[] = {{"radial-tangential", VL_LENS_OPENCV, 4, 4},
                                     {"equidistant", VL_LENS_FISHEYE, 4, 4},
                                     {"fisheye", VL_LENS_FOV, 1, 1},
-                                    {.name = NULL}};
+                                    {0}};
 
 static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item,
                                 vlCameraRecord *record) {

@@ -12,14 +12,12 @@ static void multiply3(const float a[9], const float b[9], float c[9]) {
 
 static void convert(vlColorSpace space, const float *balance, const vlExposure *e, float *r,
                     float *g, float *b) {
-  float to[9], from[9], m[9], product[9];
+  float to[9], from[9], m[9], balanced[9];
   vl_rgb_from_xyz(space, to);
   vl_xyz_from_rgb(VL_SPACE_SRGB, from);
   if (balance)
-    multiply3(to, balance, m);
-  multiply3(balance ? m : to, from, product);
-  for (int i = 0; i < 9; i++)
-    m[i] = product[i];
+    multiply3(to, balance, balanced);
+  multiply3(balance ? balanced : to, from, m);
   for (int i = 0; space == VL_SPACE_SRGB && !balance && i < 9; i++)
     m[i] = i % 4 == 0; /* the exact identity, not the rounded product of two inverse matrices */
   const float *x = e->radiance[0], *y = e->radiance[1], *z = e->radiance[2];

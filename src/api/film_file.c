@@ -3,6 +3,7 @@
 
 #include "api/receipt.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "film/file.h"
 #include "velo/film.h"
 
@@ -55,8 +56,7 @@ void vl_film_file_close(vlFilmFile *file) {
     return;
   vlContext *context = file->reader.context;
   vl_receipt_destroy(file->receipt);
-  vl_free(context, file->data);
-  vl_free(context, file->ranges);
+  VL_FREE(context, file->data, file->ranges);
   vl_film_reader_close(&file->reader);
   vl_free(context, file);
 }

@@ -7,6 +7,7 @@
 #include "base/cookie.h"
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "camera/aperture.h"
@@ -292,8 +293,7 @@ void vl_receipt_destroy(vlReceipt *receipt) {
   if (!receipt)
     return;
   json_decref(receipt->tree);
-  vl_free(receipt->context, receipt->text);
-  vl_free(receipt->context, receipt);
+  VL_FREE(receipt->context, receipt->text, receipt);
 }
 
 const char *vl_receipt_text(const vlReceipt *receipt) {

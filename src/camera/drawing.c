@@ -40,11 +40,12 @@ static void *kept(Pen *p, void *added) {
   p->failed |= !added;
   return added;
 }
+/* A new element of a part; null if the part is not wanted. */
+#define NEW(p, part, elements) \
+  (wanted(p, part) ? kept(p, VL_PUSH((p)->context, &(p)->elements)) : NULL)
 
 static void line(Pen *p, vlDrawingPart part, const double a[3], const double b[3]) {
-  if (!wanted(p, part))
-    return;
-  vlDrawingLine *l = kept(p, VL_PUSH(p->context, &p->lines));
+  vlDrawingLine *l = NEW(p, part, lines);
   if (!l)
     return;
   l->part = part;
@@ -55,9 +56,7 @@ static void line(Pen *p, vlDrawingPart part, const double a[3], const double b[3
 
 static void face(Pen *p, vlDrawingPart part, const double a[3], const double b[3],
                  const double c[3], const double d[3]) {
-  if (!wanted(p, part))
-    return;
-  vlDrawingFace *f = kept(p, VL_PUSH(p->context, &p->faces));
+  vlDrawingFace *f = NEW(p, part, faces);
   if (!f)
     return;
   f->part = part;
@@ -68,9 +67,7 @@ static void face(Pen *p, vlDrawingPart part, const double a[3], const double b[3
 }
 
 static void label(Pen *p, vlDrawingPart part, const double at[3], const char *text) {
-  if (!wanted(p, part))
-    return;
-  vlDrawingLabel *l = kept(p, VL_PUSH(p->context, &p->labels));
+  vlDrawingLabel *l = NEW(p, part, labels);
   if (!l)
     return;
   l->part = part;
@@ -460,10 +457,7 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
   draw_cameras(&p, cameras, count);
   Block *block = vl_alloc_zero(context, 1, sizeof *block);
   if (!block || p.failed) {
-    VL_ARRAY_FREE(context, &p.lines);
-    VL_ARRAY_FREE(context, &p.faces);
-    VL_ARRAY_FREE(context, &p.labels);
-    vl_free(context, block);
+    VL_FREE(context, p.lines.items, p.faces.items, p.labels.items, block);
     return vl_fail_memory(error);
   }
   block->context = context;

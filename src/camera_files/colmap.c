@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "base/file.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "camera_files/colmap.h"
 #include "camera_files/fields.h"
@@ -223,9 +224,7 @@ vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file) {
     result = read_all_cameras(t, file, paths[0], texts[0], sizes[0], &ids);
   if (result == VL_OK)
     result = read_all_images(t, file, paths[1], texts[1], sizes[1], &ids);
-  for (int i = 0; i < 2; i++)
-    vl_free(file->context, texts[i]);
-  VL_ARRAY_FREE(file->context, &ids);
+  VL_FREE(file->context, texts[0], texts[1], ids.items);
   return result;
 }
 
@@ -373,8 +372,7 @@ static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *reco
   vlResult result = vl_camera_write_text(file, cameras, &text);
   if (result == VL_OK)
     result = vl_camera_write_text(file, images, &poses);
-  VL_ARRAY_FREE(file->context, &text.text);
-  VL_ARRAY_FREE(file->context, &poses.text);
+  VL_FREE(file->context, text.text.items, poses.text.items);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "color/color.h"
@@ -289,8 +290,7 @@ vlResult vl_film_header_read(vlContext *context, const char *path, const char *t
   }
   if (result == VL_OK)
     return VL_OK;
-  vl_free(context, texts->receipt);
-  vl_free(context, texts->attributes);
+  VL_FREE(context, texts->receipt, texts->attributes);
   *texts = (vlFilmTexts){NULL, NULL};
   return result;
 }

@@ -7,6 +7,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "base/json.h"
 #include "film/file.h"
 #include "velo/film.h"
@@ -143,8 +144,7 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
   }
   if (result == VL_OK)
     vl_parallel_for(writer->context, count, write_block, run);
-  vl_free(writer->context, run->offsets);
-  vl_free(writer->context, run->buffers);
+  VL_FREE(writer->context, run->offsets, run->buffers);
   if (!writer->file.failed_errno)
     writer->file.failed_errno = atomic_load(&run->failed_errno);
   return result;
@@ -216,8 +216,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
   vlFilmWriter *made = vl_alloc_zero(film->context, 1, sizeof *made);
   char *header = make_header(film->context, &shape, def);
   if (!made || !header) {
-    vl_free(film->context, made);
-    vl_free(film->context, header);
+    VL_FREE(film->context, made, header);
     return vl_fail_memory(error);
   }
   made->context = film->context;

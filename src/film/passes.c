@@ -88,8 +88,7 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
     vl_white_balance(made->def.white_balance, def->space, made->balance);
   result = vl_filter_compile(context, &def->filter, &made->filter);
   if (result != VL_OK) {
-    vl_free(context, made->sensor);
-    vl_free(context, made);
+    VL_FREE(context, made->sensor, made);
     return result;
   }
   *film = made;

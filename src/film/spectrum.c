@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "color/color.h"
 #include "film/sums.h"
 #include "velo/image.h"
@@ -97,8 +98,7 @@ void vl_film_spectrum_clear(vlFilm *film) {
 void vl_film_spectrum_free(vlFilm *film) {
   vlFilmSpectrum *s = &film->spectrum;
   for (int i = 0; i < 2; i++) {
-    vl_free(film->context, s->sums[i]);
-    vl_free(film->context, s->weights[i]);
+    VL_FREE(film->context, s->sums[i], s->weights[i]);
   }
   vl_free(film->context, s->stamp);
 }
@@ -131,8 +131,7 @@ static vlResult make_image(const vlFilm *film, vlImage **image) {
   def.encoding = VL_ENCODING_LINEAR;
   if (result == VL_OK)
     result = vl_image_create(film->context, &def, image);
-  vl_free(film->context, text);
-  vl_free(film->context, names);
+  VL_FREE(film->context, text, names);
   static const vlAttribute attributes[2] = {
       {.name = "spectralLayoutVersion", .type = VL_ATTRIBUTE_STRING, .string = "1.0"},
       {.name = "emissiveUnits", .type = VL_ATTRIBUTE_STRING, .string = "W.m^-2.sr^-1"}};

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "image/flip.h"
 #include "image/image.h"
 #include "math/elementary.h"
@@ -137,7 +138,6 @@ vlResult vl_image_compare(const vlImage *a, const vlImage *b, vlImageDiff *diff,
   vlResult result = compare(&p, a, b, diff, heat);
   vl_free(a->context, p.a);
   vl_free(b->context, p.b);
-  vl_free(a->context, p.flip);
-  vl_free(a->context, p.skip);
+  VL_FREE(a->context, p.flip, p.skip);
   return result == VL_ERROR_MEMORY ? vl_fail_memory(error) : result;
 }

@@ -4,6 +4,7 @@
  * the colours (R G B A Y, also of layers: "diffuse.R"); 8 and 16-bit images are written as
  * linear light. Several images of one size become one file with all their channels. */
 
+#include "base/free.h"
 #include "base/text.h"
 #include "image/exr.h"
 #include "image/pixel.h"
@@ -277,8 +278,7 @@ static void free_slots(Writer *w) {
   for (uint32_t i = 0; w->slots && i < w->slot_count; i++) {
     if (w->slots[i].started)
       exr_encoding_destroy(w->exr, &w->slots[i].pipeline);
-    vl_free(w->image->context, w->slots[i].lines);
-    vl_free(w->image->context, w->slots[i].row);
+    VL_FREE(w->image->context, w->slots[i].lines, w->slots[i].row);
   }
   vl_free(w->image->context, w->slots);
 }
@@ -309,8 +309,7 @@ vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count,
   w.channels = vl_alloc_array(image->context, w.count, sizeof *w.channels);
   w.gathered = vl_alloc(image->context, GATHERED);
   if (!w.channels || !w.gathered) {
-    vl_free(image->context, w.channels);
-    vl_free(image->context, w.gathered);
+    VL_FREE(image->context, w.channels, w.gathered);
     return vl_fail_memory(error);
   }
   for (uint32_t k = 0, at = 0; k < count; k++)
@@ -331,7 +330,6 @@ vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count,
   }
   if (result == VL_OK)
     flush(&w); /* the writer reports a failure when it is closed */
-  vl_free(image->context, w.gathered);
-  vl_free(image->context, w.channels);
+  VL_FREE(image->context, w.gathered, w.channels);
   return result;
 }

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/free.h"
 #include "math/approx.h"
 
 enum { MAX_RADIUS = 32 };
@@ -243,8 +244,7 @@ vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const floa
   float *planes = vl_alloc_array(context, count, 11 * sizeof *planes);
   float *padded = vl_alloc_array(context, (size_t)width + 2 * MAX_RADIUS, sizeof *padded);
   if (!planes || !padded) {
-    vl_free(context, planes);
-    vl_free(context, padded);
+    VL_FREE(context, planes, padded);
     return VL_ERROR_MEMORY;
   }
   for (int i = 0; i < 6; i++)
@@ -267,7 +267,6 @@ vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const floa
   feature_difference(&f, padded);
   color_filter(&f, padded);
   combine(&f, flip);
-  vl_free(context, planes);
-  vl_free(context, padded);
+  VL_FREE(context, planes, padded);
   return VL_OK;
 }

@@ -127,8 +127,7 @@ void vl_image_destroy(vlImage *image) {
     return;
   vlContext *context = image->context;
   for (size_t i = 0; i < image->attributes.count; i++) {
-    vl_free(context, image->attributes.items[i].name);
-    vl_free(context, image->attributes.items[i].string);
+    VL_FREE(context, image->attributes.items[i].name, image->attributes.items[i].string);
   }
   VL_ARRAY_FREE(context, &image->attributes);
   VL_FREE(context, image->names, image->pixels, image->stored, image);
@@ -354,8 +353,7 @@ vlResult vl_image_set_attribute(vlImage *image, const vlAttribute *attribute) {
     char *name = vl_strdup(image->context, attribute->name);
     kept = name ? VL_PUSH(image->context, &image->attributes) : NULL;
     if (!kept) {
-      vl_free(image->context, name);
-      vl_free(image->context, string);
+      VL_FREE(image->context, name, string);
       return VL_ERROR_MEMORY;
     }
     kept->name = name;

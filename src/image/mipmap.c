@@ -204,8 +204,7 @@ static vlResult add_level(Builder *b, float **kept) {
       !shrink(b, from, map->is_bytes ? *kept : from->floats, width, height, floats))
     result = VL_CANCELLED;
   if (result != VL_OK) {
-    vl_free(map->context, floats);
-    vl_free(map->context, bytes);
+    VL_FREE(map->context, floats, bytes);
     return result;
   }
   if (bytes)
@@ -256,8 +255,7 @@ vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap
   }
   vl_free(context, kept);
   if (b) {
-    vl_free(context, b->column);
-    vl_free(context, b->line);
+    VL_FREE(context, b->column, b->line);
   }
   vl_free(context, b);
   if (result == VL_OK)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/bytes.h"
+#include "base/free.h"
 #include "image/codec.h"
 
 typedef struct Png {
@@ -238,7 +239,6 @@ vlResult vl_png_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
   p.info = p.png ? png_create_info_struct(p.png) : NULL;
   vlResult result = p.info ? encode(&p, image, error) : vl_fail_memory(error);
   png_destroy_write_struct(&p.png, &p.info);
-  vl_free(p.context, p.line);
-  vl_free(p.context, p.scratch);
+  VL_FREE(p.context, p.line, p.scratch);
   return result;
 }

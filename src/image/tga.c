@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/bytes.h"
+#include "base/free.h"
 #include "image/codec.h"
 
 enum {
@@ -201,7 +202,6 @@ vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
   } else {
     result = vl_fail_memory(error);
   }
-  vl_free(image->context, row);
-  vl_free(image->context, scratch);
+  VL_FREE(image->context, row, scratch);
   return result;
 }

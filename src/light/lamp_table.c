@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "light/lamp.h"
 #include "light/lamp_text.h"
@@ -22,9 +23,7 @@ bool vl_lamp_data_allocate(vlContext *context, vlLampData *data, uint32_t planes
 }
 
 void vl_lamp_data_free(vlContext *context, vlLampData *data) {
-  vl_free(context, data->horizontal);
-  vl_free(context, data->vertical);
-  vl_free(context, data->candela);
+  VL_FREE(context, data->horizontal, data->vertical, data->candela);
 }
 
 /* ---- symmetry ---------------------------------------------------------------------------- */
@@ -87,8 +86,7 @@ static bool axis_allocate(vlContext *context, Axis *axis, uint32_t count) {
 }
 
 static void axis_free(vlContext *context, Axis *axis) {
-  vl_free(context, axis->angle);
-  vl_free(context, axis->from);
+  VL_FREE(context, axis->angle, axis->from);
 }
 
 static void axis_push(Axis *axis, double angle, uint32_t from) {
@@ -220,12 +218,7 @@ static bool table_allocate(vlContext *c, vlLampTable *t, uint32_t azimuths, uint
 
 void vl_lamp_table_free(vlLamp *lamp) {
   vlLampTable *t = &lamp->table;
-  vl_free(lamp->context, t->azimuth);
-  vl_free(lamp->context, t->polar);
-  vl_free(lamp->context, t->candela);
-  vl_free(lamp->context, t->columns);
-  vl_free(lamp->context, t->below);
-  vl_free(lamp->context, t->density);
+  VL_FREE(lamp->context, t->azimuth, t->polar, t->candela, t->columns, t->below, t->density);
 }
 
 static void fill(vlLampTable *t, const vlLampData *data, const Axis *azimuth,

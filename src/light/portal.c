@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "light/compile.h"
 #include "math/elementary.h"
 #include "math/octahedral.h"
@@ -40,8 +41,8 @@ static void set_frame(const vlLightDef *def, vlPortal *portal) {
 
 static float seen(const vlEnvironment *env, const vlMipmap *mip, vlVec3 d) {
   vlVec2 st = vl_environment_square(env, d);
-  float y = vl_light_texel_luminance(vl_nearest(mip, 0, st.x, st.y, VL_WRAP_OCTAHEDRAL),
-                                     mip->channels, env->space);
+  float y =
+      vl_light_texel_luminance(vl_octahedral_texel(mip, st.x, st.y), mip->channels, env->space);
   return y > 0.0f ? y : 0.0f;
 }
 
@@ -93,8 +94,7 @@ static bool fill(vlContext *context, Filling *f, double *total, double *passes) 
     for (uint32_t i = 0; i < n; i++)
       *total += f->portal->sums[(size_t)(j + 1) * (n + 1) + i + 1];
   }
-  vl_free(context, f->tangents);
-  vl_free(context, f->passes);
+  VL_FREE(context, f->tangents, f->passes);
   return fine;
 }
 

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/free.h"
 #include "base/isa.h"
 #include "math/fresnel.h"
 #include "math/ggx.h"
@@ -290,8 +291,7 @@ static vlResult build_rows(vlContext *context, const vlCoatTable *ranges,
   vlCoatTable *table = vl_alloc(context, sizeof *table);
   Rules *rules = vl_alloc(context, sizeof *rules);
   if (!table || !rules) {
-    vl_free(context, table);
-    vl_free(context, rules);
+    VL_FREE(context, table, rules);
     return VL_ERROR_MEMORY;
   }
   *table = *ranges;

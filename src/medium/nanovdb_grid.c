@@ -13,6 +13,7 @@
 
 #include "base/array.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "medium/medium.h"
 #include "medium/nanovdb_file.h"
 #include "world/world.h"
@@ -301,8 +302,7 @@ vlResult vl_nanovdb_read(vlWorld *world, const char *path, const char *name,
   if (g)
     memset(g, 0, sizeof *g);
   r = g ? take_apart(&tree, g) : vl_fail_memory(error);
-  vl_free(world->context, found.words);
-  VL_ARRAY_FREE(world->context, &tree.blocks);
+  VL_FREE(world->context, found.words, tree.blocks.items);
   /* arrays that the world now owns are not freed here */
   if (r == VL_OK && give(world, tree.tiles.items, &g->tiles))
     tree.tiles.items = NULL;
@@ -316,9 +316,7 @@ vlResult vl_nanovdb_read(vlWorld *world, const char *path, const char *name,
     tree.values.items = NULL;
   else if (r == VL_OK)
     r = vl_fail_memory(error);
-  VL_ARRAY_FREE(world->context, &tree.tiles);
-  VL_ARRAY_FREE(world->context, &tree.bricks);
-  VL_ARRAY_FREE(world->context, &tree.values);
+  VL_FREE(world->context, tree.tiles.items, tree.bricks.items, tree.values.items);
   if (r == VL_OK)
     *grid = g;
   return r;

@@ -5,6 +5,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "base/text.h"
 
 vlRawDef vl_default_raw_def(uint32_t width, uint32_t height) {
@@ -161,8 +162,7 @@ vlResult vl_raw_create(vlContext *context, const vlRawDef *def, vlRaw **raw, vlE
 void vl_raw_destroy(vlRaw *raw) {
   if (!raw)
     return;
-  vl_free(raw->context, raw->numbers);
-  vl_free(raw->context, raw);
+  VL_FREE(raw->context, raw->numbers, raw);
 }
 
 const vlRawDef *vl_raw_def(const vlRaw *raw) {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/context.h"
+#include "base/free.h"
 
 enum { FIRST_COMPARISON = 8 };
 
@@ -105,8 +106,7 @@ vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film,
 void vl_adaptive_destroy(vlAdaptive *a) {
   if (!a->context)
     return;
-  vl_free(a->context, a->end);
-  vl_free(a->context, a->pass);
+  VL_FREE(a->context, a->end, a->pass);
 }
 
 static void block_area(const vlAdaptive *a, uint32_t block, uint32_t area[4]) {

@@ -14,6 +14,7 @@
 #include "base/context.h"
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "base/unset.h"
 #include "math/double3.h"
 #include "render/block.h"
@@ -413,8 +414,7 @@ static vlResult run_race(Race *race, const vlFilmDef *film, vlTracerChoice *choi
   for (uint32_t i = 0; i < VL_MAX_TRIALS; i++)
     for (int half = 0; half < 2; half++)
       vl_image_destroy(race->images[i][half]);
-  vl_free(context, race->base);
-  vl_free(context, race->sorted);
+  VL_FREE(context, race->base, race->sorted);
   return result;
 }
 

@@ -216,14 +216,12 @@ static bool fewer_inner(vlLightVertices *inner, uint64_t left) {
 
 static vlResult grow_vertices(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
   uint64_t capacity = wanted + wanted / 4;
-  vl_free(run->context, run->vertices);
-  vl_free(run->context, run->sorted_vertices);
+  VL_FREE(run->context, run->vertices, run->sorted_vertices);
   run->vertices = vl_alloc_array(run->context, capacity, sizeof *run->vertices);
   run->sorted_vertices = vl_alloc_array(run->context, capacity, sizeof *run->sorted_vertices);
   bool good = run->vertices && run->sorted_vertices;
   if (run->world->by_channel) {
-    vl_free(run->context, run->passed);
-    vl_free(run->context, run->sorted_passed);
+    VL_FREE(run->context, run->passed, run->sorted_passed);
     run->passed = vl_alloc_array(run->context, capacity, sizeof *run->passed);
     run->sorted_passed = vl_alloc_array(run->context, capacity, sizeof *run->sorted_passed);
     good = good && run->passed && run->sorted_passed;

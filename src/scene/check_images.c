@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/file.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "color/color.h"
 #include "image/image.h"
@@ -260,8 +261,7 @@ static void check_albedo(vlCheck *c) {
                    "%s: reflectance and transmittance add up to %.4g: at most 1 is physical",
                    vl_check_material_name(m).text, (double)sum);
   }
-  vl_free(c->context, needed);
-  vl_free(c->context, known);
+  VL_FREE(c->context, needed, known);
 }
 
 /* ---- lights ------------------------------------------------------------------------------ */

@@ -3,6 +3,7 @@
  * right side of portals. */
 #include <math.h>
 
+#include "base/free.h"
 #include "math/double3.h"
 #include "scene/check.h"
 #include "scene/solid.h"
@@ -143,8 +144,7 @@ static void check_group(vlCheck *c, uint32_t group, const vlExtent *boxes,
       c->no_memory = true;
     vl_solid_free(s, &solid);
   }
-  vl_free(c->context, shapes);
-  vl_free(c->context, done);
+  VL_FREE(c->context, shapes, done);
 }
 
 /* The boxes of the groups, in their spaces; that of an empty one has low > high. Null: no
@@ -356,6 +356,5 @@ void vl_check_inside(vlCheck *c) {
     check_media(c, boxes);
   if (!c->no_memory)
     check_portals(c, boxes, groups);
-  vl_free(c->context, groups);
-  vl_free(c->context, boxes);
+  VL_FREE(c->context, groups, boxes);
 }

@@ -3,6 +3,7 @@
  * to earlier ones, so one pass from the last to the first suffices. */
 #include <stdio.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "scene/check.h"
 #include "schema/schema.h"
@@ -90,8 +91,7 @@ static void tell_unused(vlCheck *c) {
   uint8_t *read = vl_alloc_zero(c->context, s->textures.count + 1, 1);
   uint8_t *mixed = vl_alloc_zero(c->context, s->materials.count + 1, 1);
   if (!read || !mixed) {
-    vl_free(c->context, read);
-    vl_free(c->context, mixed);
+    VL_FREE(c->context, read, mixed);
     c->no_memory = true;
     return;
   }
@@ -121,8 +121,7 @@ static void tell_unused(vlCheck *c) {
     if (!c->used[VL_SCENE_EMISSIONS][i] && vl_scene_has(s, VL_SCENE_EMISSIONS, (uint32_t)i + 1))
       vl_check_add(c, VL_FINDING_UNUSED, VL_SEVERITY_WARNING, s->emissions.items[i].source,
                    "no shape emits light by this area light");
-  vl_free(c->context, read);
-  vl_free(c->context, mixed);
+  VL_FREE(c->context, read, mixed);
 }
 
 /* Reports unused groups. A group has no source location, so that of its first shape is

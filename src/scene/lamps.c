@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/free.h"
 #include "base/unset.h"
 #include "math/double3.h"
 #include "math/elementary.h"
@@ -156,7 +157,6 @@ double vl_surface_illuminance(const vlScene *scene, const vlExtent *boxes) {
   }
   if (m.count)
     vl_extent_visit(scene, boxes, lamps, meter_emitters, &m);
-  vl_free(scene->context, lamps);
-  vl_free(scene->context, m.emitters);
+  VL_FREE(scene->context, lamps, m.emitters);
   return median(&m.meter);
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "math/approx_double.h"
 #include "sensor/sensor.h"
 
@@ -226,7 +227,6 @@ vlResult vl_sensor_collect(const vlSensor *sensor, const vlImage *image,
   out->film_noise = c.error[0] >= 0
                         ? (double)atomic_load(&c.noisy) / ((double)c.width * c.height)
                         : (double)NAN;
-  vl_free(sensor->context, weights);
-  vl_free(sensor->context, c.spectrum.channels);
+  VL_FREE(sensor->context, weights, c.spectrum.channels);
   return result;
 }

@@ -6,6 +6,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/free.h"
 #include "base/machine.h"
 #include "base/text.h"
 #include "scene/scene.h"
@@ -197,28 +198,15 @@ void vl_world_destroy(vlWorld *world) {
   vl_accel_destroy(c, &world->accel);
   for (size_t i = 0; i < world->parts.count; i++)
     release_part(world->parts.items[i]); /* after the accelerator */
-  VL_ARRAY_FREE(c, &world->parts);
   for (size_t i = 0; i < world->blocks.count; i++)
     vl_free(c, world->blocks.items[i]);
-  VL_ARRAY_FREE(c, &world->blocks);
-  VL_ARRAY_FREE(c, &world->shapes);
-  VL_ARRAY_FREE(c, &world->groups);
-  VL_ARRAY_FREE(c, &world->instances);
-  VL_ARRAY_FREE(c, &world->materials);
-  VL_ARRAY_FREE(c, &world->nodes);
-  VL_ARRAY_FREE(c, &world->images);
-  VL_ARRAY_FREE(c, &world->emitted);
-  VL_ARRAY_FREE(c, &world->lights);
-  VL_ARRAY_FREE(c, &world->infinite_lights);
-  VL_ARRAY_FREE(c, &world->environments);
-  VL_ARRAY_FREE(c, &world->environment_parts);
-  VL_ARRAY_FREE(c, &world->lamps);
-  VL_ARRAY_FREE(c, &world->measured);
-  VL_ARRAY_FREE(c, &world->measured_parts);
-  VL_ARRAY_FREE(c, &world->medium_parts);
-  VL_ARRAY_FREE(c, &world->coats);
-  VL_ARRAY_FREE(c, &world->media);
-  vl_free(c, world);
+  VL_FREE(c, world->parts.items, world->blocks.items, world->shapes.items, world->groups.items,
+          world->instances.items, world->materials.items, world->nodes.items,
+          world->images.items, world->emitted.items, world->lights.items,
+          world->infinite_lights.items, world->environments.items,
+          world->environment_parts.items, world->lamps.items, world->measured.items,
+          world->measured_parts.items, world->medium_parts.items, world->coats.items,
+          world->media.items, world);
 }
 
 void vl_world_warn(const vlWorld *world, vlSource source, const char *format, ...) {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "export/image.h"
 #include "export/pbrt/pbrt.h"
@@ -255,8 +256,7 @@ static bool put_changed_image(vlExport *x, const vlTextureDef *t, Change change,
   size_t size;
   fine = fine && vl_export_pack(x, made, ".exr", &bytes, &size) &&
          write_image(x, t, variant, bytes, size, ".exr", name);
-  vl_free(x->context, bytes);
-  vl_free(x->context, row);
+  VL_FREE(x->context, bytes, row);
   vl_image_destroy(made);
   vl_image_destroy(image);
   return fine;

@@ -3,6 +3,7 @@
 #include "world/accel/bvh.h"
 
 #include "base/error.h"
+#include "base/free.h"
 #include "world/accel/share.h"
 
 void vl_bvh_map(const float m[12], float w[12]) {
@@ -29,8 +30,7 @@ void vl_bvh_release(vlContext *context, vlBvh *tree) {
     next = block->next;
     vl_free(context, block);
   }
-  vl_free(context, tree->maps);
-  vl_free(context, tree);
+  VL_FREE(context, tree->maps, tree);
 }
 
 vlResult vl_bvh_build(vlWorld *world, vlError *error) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "velo/shape.h"
 #include "world/accel/bundle.h"
 #include "world/accel/bvh.h"
@@ -473,8 +474,7 @@ vlResult vl_bvh_make(const vlWorld *world, uint32_t group, vlBvh **tree, vlError
     vl_bvh_map(world->instances.items[i].from_group, made->maps[i]);
   b.count = (uint32_t)count;
   bool built = count < UINT32_MAX && (shapes || made->maps) && build(&b);
-  vl_free(c, b.arenas);
-  vl_free(c, b.primitives);
+  VL_FREE(c, b.arenas, b.primitives);
   VL_ARRAY_FREE(c, &b.parts);
   if (built)
     return VL_OK;

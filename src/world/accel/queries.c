@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "base/machine.h"
 #include "world/accel/brute_force.h"
 #include "world/accel/bundle.h"
@@ -82,9 +83,7 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
     vl_embree_destroy(a);
   else
     vl_bvh_destroy(context, a);
-  vl_free(context, a->groups);
-  vl_free(context, a->bundles);
-  vl_free(context, a->members);
+  VL_FREE(context, a->groups, a->bundles, a->members);
   memset(a, 0, sizeof *a);
 }
 

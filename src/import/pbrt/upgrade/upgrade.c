@@ -119,9 +119,7 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
     fine = vl_old_fail_memory(u);
   for (size_t i = 0; i < file.edits.count; i++)
     vl_free(u->context, file.edits.items[i].text);
-  VL_ARRAY_FREE(u->context, &file.edits);
-  VL_ARRAY_FREE(u->context, &file.blocks);
-  VL_FREE(u->context, file.words, data);
+  VL_FREE(u->context, file.edits.items, file.blocks.items, file.words, data);
   if (u->film_file == &file)
     u->film_file = NULL;
   return fine;

@@ -166,11 +166,6 @@ static PyObject *settings_get_size(Settings *self, void *unused) {
   return Py_BuildValue("(II)", self->defs.film.width, self->defs.film.height);
 }
 
-static PyObject *settings_get_own(Settings *self, void *unused) {
-  (void)unused;
-  return PyBool_FromLong(self->defs.render.own_tracer || self->defs.render.own_sampler);
-}
-
 static PyObject *settings_get_crop(Settings *self, void *unused) {
   (void)unused;
   const uint32_t *c = self->defs.film.crop;
@@ -216,7 +211,6 @@ static PyMethodDef settings_methods[] = {
 };
 static PyGetSetDef settings_members[] = {
     {"size", (getter)settings_get_size, NULL, "Width and height, pixels.", NULL},
-    {"_own", (getter)settings_get_own, NULL, "A sampler or a tracer is one's own.", NULL},
     {"crop", (getter)settings_get_crop, NULL, "x0, y0, x1, y1, pixels.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };

@@ -12,14 +12,26 @@ class Settings(_velo.Settings):
     """What a render is set to: Scene.settings makes it from the scene's file and from keywords. `get` and `set` read and change one
     keyword, `size` and `crop` are in pixels."""
 
+    _own_code: dict[str, Any] = {}  # "sampler", "tracer": velo.OwnSampler, velo.OwnTracer
+
     def set(self, name: str, value: Any) -> None:
         """Sets a keyword, as Scene.render has it."""
         super().set(name, bare(value))
+        others = {other: code for other, code in self._own_code.items() if other != name}
+        self._own_code = others if bare(value) is value else {**others, name: value}
+
+    def get(self, name: str) -> Any:
+        """The value of a keyword."""
+        return self._own_code[name] if name in self._own_code else super().get(name)
+
+    def copy(self) -> "Settings":
+        """The same settings, to be changed on their own."""
+        result: Settings = super().copy()
+        result._own_code = self._own_code
+        return result
 
     def keywords(self) -> dict[str, Any]:
-        """All of it as keywords: `scene.render(**settings.keywords())`. UsageError: a sampler or tracer of one's own."""
-        if self._own:
-            raise UsageError("settings with a sampler or a tracer of one's own cannot be given as keywords")
+        """All of it as keywords: `scene.render(**settings.keywords())`."""
         plain = _from_keywords({"filter": self.get("filter")})
         # A filter's name sets its numbers, so it comes first; those of other filters are 0, which no call accepts.
         names = sorted(self.names(), key=lambda name: (name != "filter", name))
@@ -33,7 +45,9 @@ class Settings(_velo.Settings):
         return self.copy()
 
     def __reduce__(self) -> tuple[Callable[..., Any], tuple[dict[str, Any]]]:
-        """For pickle: the keywords."""
+        """For pickle: the keywords. UsageError: a sampler or tracer of one's own."""
+        if self._own_code:
+            raise UsageError("settings with a sampler or a tracer of one's own cannot be pickled")
         return _from_keywords, (self.keywords(),)
 
     def __repr__(self) -> str:

@@ -85,6 +85,15 @@ def settings_are_copied_and_pickled():
     assert first.get("spp") == 3 and "3 samples" in repr(first)
     with raises(velo.UsageError, "of one's own"):
         pickle.dumps(scene.settings(tracer=velo.OwnTracer(lambda trace: None, name="mine")))
+    middle = velo.OwnSampler(lambda samples: numpy.full((len(samples.x), samples.dimensions), 0.5), name="middle")
+    own = scene.settings(resolution=(12, 10), spp=1, sampler=middle)
+    for other in (own, copy.copy(own), own.copy(), scene.settings(**own.keywords())):
+        assert other.get("sampler") is middle and other.get("tracer") == "volpath"
+    assert numpy.array_equal(scene.render(**own.keywords()), scene.render(resolution=(12, 10), spp=1, sampler=middle))
+    plain = own.copy()
+    plain.set("sampler", "sobol")
+    assert plain.get("sampler") == "sobol" and own.get("sampler") is middle
+    pickle.dumps(plain)
 
 
 @case

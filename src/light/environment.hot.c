@@ -170,9 +170,7 @@ static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t pad
   const float turn[9] = {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]};
   for (uint32_t k = 0; k < padded; k++) {
     uint32_t i = b->lane[k];
-    b->wx[k] = paths->dx[i];
-    b->wy[k] = paths->dy[i];
-    b->wz[k] = paths->dz[i];
+    vl_set_lane3(b->wx, b->wy, b->wz, k, vl_lane3(paths->dx, paths->dy, paths->dz, i));
   }
   /* must vectorise */
   VL_SIMD

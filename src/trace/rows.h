@@ -167,24 +167,16 @@ typedef struct vlShadowRays {
 /* Sets the way of shadow ray k, of path i. */
 static inline void vl_shadow_way(const vlPaths *p, uint32_t i, vlVec3 o, vlVec3 d, float t_max,
                                  uint32_t k, vlShadowRays *q) {
-  q->ox[k] = o.x;
-  q->oy[k] = o.y;
-  q->oz[k] = o.z;
-  q->dx[k] = d.x;
-  q->dy[k] = d.y;
-  q->dz[k] = d.z;
+  vl_set_lane3(q->ox, q->oy, q->oz, k, o);
+  vl_set_lane3(q->dx, q->dy, q->dz, k, d);
   q->t_max[k] = t_max;
   q->time[k] = vl_path_time(p, i);
   q->lane[k] = p->lane[i];
 }
 /* Moves the way and the radiance of shadow ray i to index k. */
 static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
-  q->ox[k] = q->ox[i];
-  q->oy[k] = q->oy[i];
-  q->oz[k] = q->oz[i];
-  q->dx[k] = q->dx[i];
-  q->dy[k] = q->dy[i];
-  q->dz[k] = q->dz[i];
+  vl_set_lane3(q->ox, q->oy, q->oz, k, vl_lane3(q->ox, q->oy, q->oz, i));
+  vl_set_lane3(q->dx, q->dy, q->dz, k, vl_lane3(q->dx, q->dy, q->dz, i));
   q->t_max[k] = q->t_max[i];
   for (int c = 0; c < 4; c++)
     q->radiance[c][k] = q->radiance[c][i];
@@ -239,15 +231,10 @@ static inline void vl_path_copy_constants(const vlPaths *a, uint32_t i, vlPaths 
 }
 /* Copies what each bounce changes. */
 static inline void vl_path_copy_ray(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
-  b->ox[k] = a->ox[i];
-  b->oy[k] = a->oy[i];
-  b->oz[k] = a->oz[i];
-  b->dx[k] = a->dx[i];
-  b->dy[k] = a->dy[i];
-  b->dz[k] = a->dz[i];
-  b->from_nx[k] = a->from_nx[i];
-  b->from_ny[k] = a->from_ny[i];
-  b->from_nz[k] = a->from_nz[i];
+  vl_set_lane3(b->ox, b->oy, b->oz, k, vl_lane3(a->ox, a->oy, a->oz, i));
+  vl_set_lane3(b->dx, b->dy, b->dz, k, vl_lane3(a->dx, a->dy, a->dz, i));
+  vl_set_lane3(b->from_nx, b->from_ny, b->from_nz, k,
+               vl_lane3(a->from_nx, a->from_ny, a->from_nz, i));
   for (int c = 0; c < 4; c++)
     b->beta[c][k] = a->beta[c][i];
   b->pdf[k] = a->pdf[i];

@@ -36,12 +36,8 @@ static void start_paths(vlTracing *t) {
   }
   for (uint32_t i = 0; i < padded; i++) {
     vl_path_start(p, i, b->px[i], b->py[i], b->index[i], i);
-    p->ox[i] = b->ox[i];
-    p->oy[i] = b->oy[i];
-    p->oz[i] = b->oz[i];
-    p->dx[i] = b->dx[i];
-    p->dy[i] = b->dy[i];
-    p->dz[i] = b->dz[i];
+    vl_set_lane3(p->ox, p->oy, p->oz, i, vl_lane3(b->ox, b->oy, b->oz, i));
+    vl_set_lane3(p->dx, p->dy, p->dz, i, vl_lane3(b->dx, b->dy, b->dz, i));
     p->cone[i] = t->def->pixel_width;
     p->spread[i] = t->def->pixel_spread;
     t->scattered[i] = 0;

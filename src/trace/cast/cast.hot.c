@@ -50,17 +50,10 @@ static uint32_t gather(uint32_t n, const vlPaths *p, const vlHits *h, vlVertices
     if (h->shape[i] == VL_NONE)
       continue;
     uint32_t k = count++;
-    at->paths.ox[k] = p->ox[i];
-    at->paths.oy[k] = p->oy[i];
-    at->paths.oz[k] = p->oz[i];
-    at->paths.dx[k] = p->dx[i];
-    at->paths.dy[k] = p->dy[i];
-    at->paths.dz[k] = p->dz[i];
+    vl_set_lane3(at->paths.ox, at->paths.oy, at->paths.oz, k, vl_lane3(p->ox, p->oy, p->oz, i));
+    vl_set_lane3(at->paths.dx, at->paths.dy, at->paths.dz, k, vl_lane3(p->dx, p->dy, p->dz, i));
     at->paths.lane[k] = i;
-    at->hits.shape[k] = h->shape[i];
-    at->hits.prim[k] = h->prim[i];
-    at->hits.instance[k] = h->instance[i];
-    at->hits.t[k] = h->t[i];
+    vl_hit_copy(h, i, &at->hits, k);
   }
   return count;
 }

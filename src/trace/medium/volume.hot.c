@@ -159,9 +159,7 @@ uint32_t vl_volume_gather(const vlTracing *t, uint32_t n, const vlPaths *rays,
     p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance);
     p->spread[i] = t->def->pixel_spread;
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = p->from_side[i] = 0.0f;
-    points->px[i] = p->ox[i];
-    points->py[i] = p->oy[i];
-    points->pz[i] = p->oz[i];
+    vl_set_lane3(points->px, points->py, points->pz, i, vl_lane3(p->ox, p->oy, p->oz, i));
     /* no normal: all directions count equally */
     points->nx[i] = points->ny[i] = points->nz[i] = 0.0f;
     points->no_cosine[i] = 1.0f;

@@ -141,6 +141,12 @@ static float centroid(const Item *item, int dimension) {
   return 0.5f * (item->bounds.low[dimension] + item->bounds.high[dimension]);
 }
 
+/* The bucket of an item between the bounds low and high of all centroids. */
+static int bucket_of(const Item *item, int k, const float low[3], const float high[3]) {
+  int b = (int)(BUCKETS * (centroid(item, k) - low[k]) / (high[k] - low[k]));
+  return b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
+}
+
 /* Partitions items so that the first part is [0, result); 0 < result < count. */
 static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *all) {
   float clow[3] = {INFINITY, INFINITY, INFINITY}, chigh[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -157,11 +163,8 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
       continue;
     vlLightBounds buckets[BUCKETS];
     memset(buckets, 0, sizeof buckets);
-    for (uint32_t i = 0; i < count; i++) {
-      int b = (int)(BUCKETS * (centroid(&items[i], k) - clow[k]) / (chigh[k] - clow[k]));
-      b = b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
-      absorb(&buckets[b], &items[i].bounds);
-    }
+    for (uint32_t i = 0; i < count; i++)
+      absorb(&buckets[bucket_of(&items[i], k, clow, chigh)], &items[i].bounds);
     /* most nodes are small and fill two or three buckets */
     int filled[BUCKETS] = {0}, fill_count = 0;
     for (int b = 0; b < BUCKETS; b++)
@@ -187,10 +190,7 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
     return count / 2;
   uint32_t middle = 0;
   for (uint32_t i = 0; i < count; i++) {
-    int b = (int)(BUCKETS * (centroid(&items[i], best_dimension) - clow[best_dimension]) /
-                  (chigh[best_dimension] - clow[best_dimension]));
-    b = b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
-    if (b > best_bucket)
+    if (bucket_of(&items[i], best_dimension, clow, chigh) > best_bucket)
       continue;
     Item t = items[i];
     items[i] = items[middle];

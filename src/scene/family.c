@@ -14,29 +14,16 @@
 
 /* ---- the rows ---------------------------------------------------------------------------- */
 
-static uint32_t add_texture(vlScene *scene, const void *def) {
-  return vl_scene_add_texture(scene, def).index;
-}
-
-static uint32_t add_material(vlScene *scene, const void *def) {
-  return vl_scene_add_material(scene, def).index;
-}
-
-static uint32_t add_medium(vlScene *scene, const void *def) {
-  return vl_scene_add_medium(scene, def).index;
-}
-
-static uint32_t add_emission(vlScene *scene, const void *def) {
-  return vl_scene_add_emission(scene, def).index;
-}
-
-static uint32_t add_light(vlScene *scene, const void *def) {
-  return vl_scene_add_light(scene, def).index;
-}
-
-static uint32_t add_shape(vlScene *scene, const void *def) {
-  return vl_scene_add_shape(scene, def).index;
-}
+#define ADD(add, add_def)                                \
+  static uint32_t add(vlScene *scene, const void *def) { \
+    return add_def(scene, def).index;                    \
+  }
+ADD(add_texture, vl_scene_add_texture)
+ADD(add_material, vl_scene_add_material)
+ADD(add_medium, vl_scene_add_medium)
+ADD(add_emission, vl_scene_add_emission)
+ADD(add_light, vl_scene_add_light)
+ADD(add_shape, vl_scene_add_shape)
 
 #define ARRAY(array)                                                                \
   .items = offsetof(vlScene, array.items), .count = offsetof(vlScene, array.count), \

@@ -10,12 +10,12 @@
  * result does not depend on its place in the vector loop. */
 typedef struct Run {
   vlBsdfKind kind;
-  uint32_t first, last;
+  uint32_t last;
 } Run;
 
 /* The run that begins at lane `first` of n. */
 static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint32_t n) {
-  Run r = {world->materials.items[h->material[first]].bsdf, first, first + 1};
+  Run r = {world->materials.items[h->material[first]].bsdf, first + 1};
   while (r.last < n && world->materials.items[h->material[r.last]].bsdf == r.kind)
     r.last++;
   return r;

@@ -157,12 +157,8 @@ static float note_crossing(const vlTracing *t, uint32_t j, uint32_t depth, const
     uint32_t count = ++to->found[j];
     float u = vl_unit_float(vl_hash2(vl_volume_key(t, p, j, depth, VL_KEY_PROBE), count));
     /* reservoir sampling: each crossing is kept with the same probability */
-    if (u * (float)count < 1.0f) {
-      to->chosen.shape[j] = met->shape[j];
-      to->chosen.prim[j] = met->prim[j];
-      to->chosen.instance[j] = met->instance[j];
-      to->chosen.t[j] = met->t[j];
-    }
+    if (u * (float)count < 1.0f)
+      vl_hit_copy(met, j, &to->chosen, j);
   }
   return past_on_probe(&at, o, d, t_min);
 }
@@ -200,10 +196,7 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth, const vlEntr
       uint32_t j = under_way[k];
       if (hits->shape[k] == VL_NONE)
         continue;
-      met->shape[j] = hits->shape[k];
-      met->prim[j] = hits->prim[k];
-      met->instance[j] = hits->instance[k];
-      met->t[j] = hits->t[k];
+      vl_hit_copy(hits, k, met, j);
       t_min[j] = note_crossing(t, j, depth, x, p, met, t_min[j], to);
       if (t_min[j] < to->length[j])
         under_way[left++] = j;

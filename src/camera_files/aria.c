@@ -110,7 +110,7 @@ static vlResult read_aria(const vlCameraFile *file, const json_t *tree,
 const vlCameraFormat vl_format_aria = {
     .name = "aria",
     .rotates = true,
-    .marks = {"CameraCalibrations"},
+    .marks = "CameraCalibrations",
     .known =
         "ImageSizes Label Calibrated Projection Name Params Description T_Device_Camera "
         "Translation UnitQuaternion SerialNumber "

@@ -119,7 +119,7 @@ static vlResult write_basalt(const vlFittedCamera *fit, vlCameraText *text) {
 const vlCameraFormat vl_format_basalt = {
     .name = "basalt",
     .rotates = true,
-    .marks = {"intrinsics"},
+    .marks = "intrinsics",
     .marks_in = "value0",
     .known =
         "value0 T_imu_cam px py pz qx qy qz qw w x y z intrinsics camera_type fx fy cx cy k1 k2 k3 "

@@ -94,7 +94,7 @@ static vlResult write_blender(const vlFittedCamera *fit, vlCameraText *text) {
 
 const vlCameraFormat vl_format_blender = {
     .name = "blender",
-    .marks = {"matrix_world", "sensor_fit", "lens"},
+    .marks = "matrix_world sensor_fit lens",
     .one_mark = true,
     .known =
         "name type lens lens_unit sensor_fit sensor_width sensor_height shift_x shift_y ortho_scale "

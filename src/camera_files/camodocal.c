@@ -178,7 +178,7 @@ static vlResult write_camodocal(const vlFittedCamera *fit, vlCameraText *text) {
 const vlCameraFormat vl_format_camodocal = {
     .name = "camodocal",
     .rotates = true,
-    .marks = {"model_type", "cam0_calib", "projection_parameters"},
+    .marks = "model_type cam0_calib projection_parameters",
     .one_mark = true,
     .known =
         "model_type camera_name image_width image_height distortion_parameters "

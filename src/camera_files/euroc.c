@@ -38,7 +38,7 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree,
 const vlCameraFormat vl_format_euroc = {
     .name = "euroc",
     .rotates = true,
-    .marks = {"T_BS", "sensor_type"},
+    .marks = "T_BS sensor_type",
     .one_mark = true,
     .known =
         "sensor_type comment T_BS cols rows data resolution camera_model intrinsics "

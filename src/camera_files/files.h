@@ -327,9 +327,10 @@ typedef struct vlCameraFormat {
   /* Return whether a tree (JSON, YAML, FileStorage's XML) or a text is in this dialect. They
    * look for content that no other dialect has. */
   bool (*is_tree)(const json_t *tree);
-  /* In place of is_tree: the keys that the object has, all of them or one. marks_in: the object
-   * is the value of this key or, if that is a list, its first item; null: the tree. */
-  const char *marks[3], *marks_in;
+  /* In place of is_tree: the keys that the object has, all of them or one, with blanks between.
+   * marks_in: the object is the value of this key or, if that is a list, its first item; null:
+   * the tree. */
+  const char *marks, *marks_in;
   bool one_mark;
   bool (*is_text)(const char *text, size_t size);
   vlCameraReadTree *read;

@@ -23,7 +23,7 @@ static vlResult read_gaussians(const vlCameraFile *file, const json_t *tree,
 const vlCameraFormat vl_format_gaussians = {
     .name = "gaussians",
     .rotates = true,
-    .marks = {"position", "rotation", "fx"},
+    .marks = "position rotation fx",
     .marks_in = "[]",
     .known = "id img_name width height position rotation fx fy",
     .read = read_gaussians,

@@ -313,7 +313,7 @@ static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
 
 const vlCameraFormat vl_format_gltf = {
     .name = "gltf",
-    .marks = {"asset"},
+    .marks = "asset",
     .read = read_gltf,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES,
     .plain = true,

@@ -175,7 +175,7 @@ static vlResult write_kalibr(const vlFittedCamera *fit, vlCameraText *text) {
 const vlCameraFormat vl_format_kalibr = {
     .name = "kalibr",
     .rotates = true,
-    .marks = {"cam0"},
+    .marks = "cam0",
     .known =
         "cam* T_cam_imu T_cn_cnm1 T_imu_cam camera_model distortion_coeffs distortion_model "
         "intrinsics resolution "

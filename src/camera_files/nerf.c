@@ -216,7 +216,7 @@ static vlResult write_nerf(const vlFittedCamera *fit, vlCameraText *text) {
 
 const vlCameraFormat vl_format_nerf = {
     .name = "nerf",
-    .marks = {"frames", "fl_x", "camera_angle_x"},
+    .marks = "frames fl_x camera_angle_x",
     .one_mark = true,
     .known =
         "w h fl_x fl_y cx cy k1 k2 k3 k4 p1 p2 camera_angle_x camera_angle_y camera_model is_fisheye "

@@ -54,7 +54,7 @@ const vlCameraFormat vl_format_nerfstudio = {
         "camera_path camera_to_world fov aspect camera_type render_height render_width "
         "keyframes! fps seconds smoothness_value is_cycle default_fov default_transition_sec "
         "export_indices! crop! render_time appearance!",
-    .marks = {"camera_to_world"},
+    .marks = "camera_to_world",
     .marks_in = "camera_path",
     .read = read_nerfstudio,
     .holds = VL_HOLDS_POSE,

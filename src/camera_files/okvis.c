@@ -52,7 +52,7 @@ static vlResult write_okvis(const vlFittedCamera *fit, vlCameraText *text) {
 const vlCameraFormat vl_format_okvis = {
     .name = "okvis",
     .rotates = true,
-    .marks = {"T_SC"},
+    .marks = "T_SC",
     .marks_in = "cameras",
     .known =
         "cameras T_SC image_dimension distortion_coefficients distortion_type focal_length "

@@ -197,7 +197,7 @@ const vlCameraFormat vl_format_openmvg = {
         "intrinsics focal_length principal_point disto_k1 disto_k3 disto_t2 fisheye value0 "
         "extrinsics rotation center structure! control_points! use_pose_center_prior "
         "center_weight! center_prior! use_pose_rotation_prior rotation_weight! rotation!",
-    .marks = {"sfm_data_version"},
+    .marks = "sfm_data_version",
     .read = read_openmvg,
     .holds = VL_HOLDS_POSE,
     .lenses = {VL_LENSES_COMMON, 0, 5},

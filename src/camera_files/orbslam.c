@@ -95,7 +95,7 @@ static vlResult write_orbslam(const vlFittedCamera *fit, vlCameraText *text) {
 const vlCameraFormat vl_format_orbslam = {
     .name = "orbslam",
     .rotates = true,
-    .marks = {"Camera.fx", "Camera1.fx", "Camera.type"},
+    .marks = "Camera.fx Camera1.fx Camera.type",
     .one_mark = true,
     .known =
         "Camera.* Camera1.* Camera2.* Tlr data rows cols dt Stereo.* LEFT.* RIGHT.* File.version "

@@ -81,7 +81,7 @@ const vlCameraFormat vl_format_polycam = {
     .known =
         "t_* fx fy cx cy width height blur_score center_depth manual_keyframe neighbors! "
         "timestamp",
-    .marks = {"t_00", "t_23", "fx"},
+    .marks = "t_00 t_23 fx",
     .read = read_polycam,
     .holds = VL_HOLDS_POSE,
     .lenses = {VL_LENSES_PINHOLE},
@@ -118,6 +118,6 @@ const vlCameraFormat vl_format_scanner3d = {
     .known =
         "cameraPoseARFrame intrinsics projectionMatrix! frame_index motionQuality "
         "averageAngularVelocity averageVelocity exposureDuration time cameraGrain",
-    .marks = {"cameraPoseARFrame", "intrinsics"},
+    .marks = "cameraPoseARFrame intrinsics",
     .read = read_scanner,
     .not_written = "it describes a recording of a phone"};

@@ -124,7 +124,7 @@ const vlCameraFormat vl_format_nuscenes = {
     .rotates = true,
     .known = "token sensor_token translation rotation camera_intrinsic",
 
-    .marks = {"camera_intrinsic", "rotation"},
+    .marks = "camera_intrinsic rotation",
     .marks_in = "[]",
     .read = read_nuscenes,
     .not_written = "it is a table of a dataset, with keys of other tables"};
@@ -154,7 +154,7 @@ const vlCameraFormat vl_format_panoptic = {
     .rotates = true,
     .known = "calibDataSource cameras name type resolution panel node K distCoef R t",
 
-    .marks = {"distCoef", "K"},
+    .marks = "distCoef K",
     .marks_in = "cameras",
     .read = read_panoptic,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
@@ -199,7 +199,7 @@ const vlCameraFormat vl_format_nerfies = {
     .known =
         "orientation position focal_length principal_point skew pixel_aspect_ratio "
         "radial_distortion tangential_distortion image_size",
-    .marks = {"orientation", "focal_length", "principal_point"},
+    .marks = "orientation focal_length principal_point",
     .read = read_nerfies,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
     .lenses = {VL_LENSES_OPENCV, 5, 5},

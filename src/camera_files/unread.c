@@ -121,14 +121,11 @@ static Knowledge knowledge(const char *words, const char *name) {
 
 static Knowledge knowledge_of(const vlCameraFormat *format, const char *name) {
   /* names that begin so are those of parsers: "<" is an element's name, "[]" a list */
-  bool known = strchr("<[_!/#|$", name[0]) != NULL || (format->knows && format->knows(name));
-  for (size_t i = 0; i < VL_LENGTH(format->marks) && format->marks[i]; i++)
-    known = known || vl_text_is(name, format->marks[i]);
+  const bool known = strchr("<[_!/#|$", name[0]) || (format->knows && format->knows(name)) ||
+                     (format->marks && vl_has_word(format->marks, name)) ||
+                     vl_text_is(format->marks_in, name);
   const Knowledge listed = knowledge(format->known, name);
-  return listed == UNKNOWN &&
-                 (known || (format->marks_in && vl_text_is(name, format->marks_in)))
-             ? KNOWN
-             : listed;
+  return listed == UNKNOWN && known ? KNOWN : listed;
 }
 
 /* The object of a field, or an element of XML, that is not known. value: its value. */

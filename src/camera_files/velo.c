@@ -464,7 +464,7 @@ vlResult vl_camera_write_velo(const vlFittedCamera *fit, vlCameraText *text) {
 }
 
 const vlCameraFormat vl_format_velo = {.name = "velo",
-                                       .marks = {"velo_camera"},
+                                       .marks = "velo_camera",
                                        .read = vl_camera_read_velo,
                                        .holds = VL_HOLDS_ALL,
                                        .write = vl_camera_write_velo};

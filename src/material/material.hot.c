@@ -24,17 +24,10 @@ static vlVec3 facing(vlVec3 n, vlVec3 side) {
 /* Computes dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals or
  * uv. */
 static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i) {
-  vlVec3 p[3], n[3];
-  for (int k = 0; k < 3; k++) {
-    p[k] = vl_lane3(c->p[3 * k], c->p[3 * k + 1], c->p[3 * k + 2], i);
-    n[k] = vl_lane3(c->n[3 * k], c->n[3 * k + 1], c->n[3 * k + 2], i);
-  }
-  vlVec3 e1 = vl_sub(p[1], p[0]), e2 = vl_sub(p[2], p[0]), g = vl_cross(e1, e2);
-  vlVec3 way = vl_sub(vl_lane3(f->px, f->py, f->pz, i), p[0]);
-  vlVec3 m1 = vl_sub(n[1], n[0]), m2 = vl_sub(n[2], n[0]);
-  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
-  float b1 = vl_dot(vl_cross(way, e2), g) * inv, b2 = vl_dot(vl_cross(e1, way), g) * inv;
-  float length = vl_length(vl_add(n[0], vl_add(vl_mul(m1, b1), vl_mul(m2, b2))));
+  vlVec2 b = vl_corner_weights(c, i, vl_lane3(f->px, f->py, f->pz, i));
+  vlVec3 n = vl_corner(c->n, 0, i), m1 = vl_sub(vl_corner(c->n, 1, i), n),
+         m2 = vl_sub(vl_corner(c->n, 2, i), n);
+  float length = vl_length(vl_add(n, vl_add(vl_mul(m1, b.x), vl_mul(m2, b.y))));
   float u1 = c->uv[2][i] - c->uv[0][i], v1 = c->uv[3][i] - c->uv[1][i];
   float u2 = c->uv[4][i] - c->uv[0][i], v2 = c->uv[5][i] - c->uv[1][i];
   float det = (u1 * v2 - v1 * u2) * length;

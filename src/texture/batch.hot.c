@@ -10,18 +10,12 @@
 /* Interpolates the vertex attributes (uv sets, colours) of lane i's triangle at the point. */
 static inline void lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
                                vlTexturePoint *at) {
-  const vlCorners *c = &r->s->corners;
   const vlHits *h = &r->at->hits;
   vlTextureCorner where = {&r->world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
-  vlVec3 k[3];
-  for (int j = 0; j < 3; j++)
-    k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
-  vlVec3 e1 = vl_sub(k[1], k[0]), e2 = vl_sub(k[2], k[0]), g = vl_cross(e1, e2),
-         way = vl_sub(at->p, k[0]);
-  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
-  where.weights[1] = vl_dot(vl_cross(way, e2), g) * inv;
-  where.weights[2] = vl_dot(vl_cross(e1, way), g) * inv;
-  where.weights[0] = 1.0f - where.weights[1] - where.weights[2];
+  vlVec2 w = vl_corner_weights(&r->s->corners, i, at->p);
+  where.weights[0] = 1.0f - w.x - w.y;
+  where.weights[1] = w.x;
+  where.weights[2] = w.y;
   vl_texture_at_corner(node, &where, at);
 }
 

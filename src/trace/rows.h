@@ -93,6 +93,19 @@ typedef struct vlCorners {
   VL_ROW float flip[VL_ROW_SIZE];  /* -1: the shape's normals are reversed; else 1 */
 } vlCorners;
 
+/* Corner k of lane i's triangle, of vlCorners.p or .n. */
+static inline vlVec3 vl_corner(const float (*rows)[VL_ROW_SIZE], int k, uint32_t i) {
+  return vl_lane3(rows[3 * k], rows[3 * k + 1], rows[3 * k + 2], i);
+}
+/* Barycentric coordinates, of corners 1 and 2, of a point of lane i's triangle. */
+static inline vlVec2 vl_corner_weights(const vlCorners *c, uint32_t i, vlVec3 point) {
+  vlVec3 first = vl_corner(c->p, 0, i), e1 = vl_sub(vl_corner(c->p, 1, i), first),
+         e2 = vl_sub(vl_corner(c->p, 2, i), first), g = vl_cross(e1, e2),
+         way = vl_sub(point, first);
+  float total = vl_length2(g), inv = total > 0.0f ? 1.0f / total : 0.0f;
+  return (vlVec2){vl_dot(vl_cross(way, e2), g) * inv, vl_dot(vl_cross(e1, way), g) * inv};
+}
+
 /* Factors on the light that crosses surfaces. rgb: of each channel of linear sRGB (the fourth
  * row is not used). at: at the path's wavelengths, after all that the path has crossed. */
 typedef struct vlTint {

@@ -317,7 +317,7 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
   vlVec3 p = vl_lane3(out->px, out->py, out->pz, i), k[3];
   for (int j = 0; j < 3; j++)
-    k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
+    k[j] = vl_corner(c->p, j, i);
   vlVec3 g = vl_cross(vl_sub(k[1], k[0]), vl_sub(k[2], k[0]));
   float total = vl_length2(g);
   if (!(total > 0.0f))

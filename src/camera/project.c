@@ -121,8 +121,10 @@ const vlCameraKernels *vl_camera_best_kernels(void) {
   return vl_camera_kernels(vl_isa_choose(VL_ISA_AUTO, &isa) == VL_OK ? isa : VL_ISA_BASE);
 }
 
-/* Whether points have times of their own. Holds a moving camera whose points have one time. */
-static bool has_times(vlCameraCompiled *c) {
+/* Compiles a camera, and holds a moving one whose points have one time. Whether points have
+ * times of their own. */
+static bool has_times(const vlCamera *camera, vlCameraCompiled *c) {
+  vl_camera_compile(camera, c);
   if (c->when.moves && vl_camera_has_one_time(c))
     vl_camera_hold(c, vl_camera_film_time(c, 0.0, 0.0));
   return c->when.moves;
@@ -161,6 +163,18 @@ static void project_rows(const vlCameraCompiled *c, size_t count, const double *
   }
 }
 
+/* Loads a chunk of `count` points from the one at `first` on, of `size` numbers each, into
+ * rows. The last one fills the padding. Returns the number of points. */
+static uint32_t load_chunk(size_t count, size_t first, size_t size, const double *points,
+                           double *const rows[]) {
+  const uint32_t n =
+      count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
+  for (uint32_t i = 0; i < VL_PAD(n); i++)
+    for (size_t k = 0; k < size; k++)
+      rows[k][i] = points[size * (first + (i < n ? i : n - 1)) + k];
+  return n;
+}
+
 void vl_camera_film_times(const vlCamera *camera, size_t count, const double *pixels,
                           double *times) {
   if (!camera || !pixels || !times)
@@ -178,19 +192,13 @@ void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const doubl
   vlCameraCompiled c;
   vlCameraPixels in;
   vlCameraPoints out;
-  vl_camera_compile(camera, &c);
-  if (has_times(&c)) {
+  if (has_times(camera, &c)) {
     unproject_rows(&c, count, pixels, origins, directions, valid);
     return;
   }
   const vlCameraKernels *k = vl_camera_best_kernels();
   for (size_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
-    uint32_t n = count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
-    for (uint32_t i = 0; i < VL_PAD(n); i++) {
-      const double *p = pixels + 2 * (first + (i < n ? i : n - 1));
-      in.x[i] = p[0];
-      in.y[i] = p[1];
-    }
+    uint32_t n = load_chunk(count, first, 2, pixels, (double *const[]){in.x, in.y});
     k->unproject(&c, n, &in, &out);
     for (uint32_t i = 0; i < n; i++) {
       double *d = directions + 3 * (first + i);
@@ -216,20 +224,13 @@ void vl_camera_project_batch(const vlCamera *camera, size_t count, const double 
   vlCameraCompiled c;
   vlCameraPoints in;
   vlCameraPixels out;
-  vl_camera_compile(camera, &c);
-  if (has_times(&c)) {
+  if (has_times(camera, &c)) {
     project_rows(&c, count, points, pixels, z, valid);
     return;
   }
   const vlCameraKernels *k = vl_camera_best_kernels();
   for (size_t first = 0; first < count; first += VL_CAMERA_CHUNK) {
-    uint32_t n = count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
-    for (uint32_t i = 0; i < VL_PAD(n); i++) {
-      const double *p = points + 3 * (first + (i < n ? i : n - 1));
-      in.x[i] = p[0];
-      in.y[i] = p[1];
-      in.z[i] = p[2];
-    }
+    uint32_t n = load_chunk(count, first, 3, points, (double *const[]){in.x, in.y, in.z});
     k->project(&c, n, &in, &out);
     for (uint32_t i = 0; i < n; i++) {
       pixels[2 * (first + i)] = out.x[i];

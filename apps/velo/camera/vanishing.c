@@ -95,21 +95,12 @@ static void say_text(const vlCamera *c, const vlVanishingPoints *v) {
 
 /* ---- what is drawn ----------------------------------------------------------------------- */
 
-/* Two unit vectors orthogonal to d and to each other. */
-static void basis_of(const double d[3], double a[3], double b[3]) {
-  const double other[3] = {fabs(d[0]) < 0.7, fabs(d[0]) >= 0.7, 0.0};
-  vector_cross(d, other, a);
-  vector_normalize(a);
-  vector_cross(d, a, b);
-  vector_normalize(b);
-}
-
 /* Draws lines parallel to d. Each lies in a plane through the camera centre that contains d;
  * `count` such planes are evenly spaced. */
 static void draw_family(Overlay *o, const vlCamera *c, const double d[3], int count,
                         double width) {
   double a[3], b[3], n[3];
-  basis_of(d, a, b);
+  vector_across(d, a, b);
   for (int i = 0; i < 2 * count; i++) {
     double t = M_PI * i / count;
     for (int k = 0; k < 3; k++)
@@ -149,7 +140,7 @@ static void draw_grid(Overlay *o, const vlCamera *c, const double up[3], double 
   double a[3], b[3], p[3];
   const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7],
                          c->world_from_camera[11]};
-  basis_of(up, a, b);
+  vector_across(up, a, b);
   const double *const sides[2][2] = {{a, b}, {b, a}};
   for (int k = 0; k < 2; k++) {
     const double *d = sides[k][0], *e = sides[k][1];
@@ -194,7 +185,7 @@ static void draw(Overlay *o, const vlCamera *c, const Drawing *drawing) {
   }
   if (flat)
     return;
-  basis_of(drawing->up, a, b);
+  vector_across(drawing->up, a, b);
   overlay_arc(o, c, b, a, 0.0, 2.0 * M_PI, 1.5 * width);
   overlay_paint(o, yellow, 0.9);
 }

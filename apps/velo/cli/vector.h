@@ -53,6 +53,16 @@ static inline bool vector_normalize(double v[3]) {
   return true;
 }
 
+/* Two unit vectors orthogonal to v and to each other. */
+static inline void vector_across(const double v[3], double a[3], double b[3]) {
+  const bool is_across = fabs(v[0]) < 0.7 * vector_length(v);
+  const double other[3] = {is_across, !is_across, 0};
+  vector_cross(v, other, a);
+  vector_normalize(a);
+  vector_cross(v, a, b);
+  vector_normalize(b);
+}
+
 /* The angle between two vectors, radians. */
 static inline double vector_angle(const double a[3], const double b[3]) {
   double n[3];

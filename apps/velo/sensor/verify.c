@@ -84,9 +84,7 @@ static int allocate(Verify *v) {
   v->means = malloc(count * sizeof *v->means);
   v->frames[0] = malloc(count * sizeof *v->frames[0]);
   v->frames[1] = malloc(count * sizeof *v->frames[1]);
-  return v->means && v->frames[0] && v->frames[1]
-             ? -1
-             : report_failure(STATUS_OTHER, "out of memory");
+  return v->means && v->frames[0] && v->frames[1] ? -1 : report_no_memory();
 }
 
 static int verify(Verify *v, const OptionValue *plot) {

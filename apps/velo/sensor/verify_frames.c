@@ -57,8 +57,8 @@ static int make_stack(Verify *v, char kind, double electrons, double time, Verif
   size_t count = (size_t)v->size * v->size;
   uint32_t *sums = calloc(count, sizeof *sums);
   uint64_t *squares = calloc(count, sizeof *squares);
-  int status = sums && squares ? verify_folder_series(v, kind, time, electrons)
-                               : report_failure(STATUS_OTHER, "out of memory");
+  int status =
+      sums && squares ? verify_folder_series(v, kind, time, electrons) : report_no_memory();
   for (uint32_t f = 0; f < v->stack && status < 0; f++) {
     status = expose_all(v, electrons, time, 0);
     for (size_t i = 0; i < count; i++) {

@@ -109,18 +109,6 @@ static void put_grid(Json *json, const vlCamera *camera, const CameraPose *pose,
     }
 }
 
-/* Unit vectors across v. */
-static void across(const double v[3], double a[3], double b[3]) {
-  int k = fabs(v[0]) < fabs(v[1])   ? fabs(v[0]) < fabs(v[2]) ? 0 : 2
-          : fabs(v[1]) < fabs(v[2]) ? 1
-                                    : 2;
-  const double e[3] = {k == 0, k == 1, k == 2};
-  vector_cross(v, e, a);
-  vector_normalize(a);
-  vector_cross(v, a, b);
-  vector_normalize(b);
-}
-
 static void far_point(const double eye[3], const double direction[3], double point[3]) {
   vector_along(eye, 1e6, direction, point);
 }
@@ -131,7 +119,7 @@ static void put_horizon(Json *json, const vlCamera *camera, const CameraPose *po
   double a[3], b[3], d[3], p[3];
   if (camera->projection == VL_PROJECTION_ORTHOGRAPHIC)
     return;
-  across(pose->up, a, b);
+  vector_across(pose->up, a, b);
   for (int i = 0; i <= HORIZON_STEPS; i++) {
     double t = 2 * M_PI * i / HORIZON_STEPS;
     for (int k = 0; k < 3; k++)

@@ -435,7 +435,7 @@ int engine_create(const EngineDef *def, Engine **result) {
   Engine *engine = calloc(1, sizeof *engine);
   *result = engine;
   if (!engine)
-    return report_failure(STATUS_OTHER, "out of memory");
+    return report_no_memory();
   engine->def = *def;
   pthread_mutex_init(&engine->lock, NULL);
   pthread_cond_init(&engine->wake, NULL);
@@ -444,7 +444,7 @@ int engine_create(const EngineDef *def, Engine **result) {
               vl_cancel_create(def->context, &engine->end) == VL_OK &&
               vl_cancel_create(def->context, &engine->traces.stop) == VL_OK;
   if (!made)
-    return report_failure(STATUS_OTHER, "out of memory");
+    return report_no_memory();
   TRY(model_load(def->context, def->path, def->arguments, NULL, NULL, NULL, &engine->model,
                  &engine->reload.files));
   TRY(check_options(engine));

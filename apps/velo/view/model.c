@@ -108,7 +108,7 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
   if (arguments->values[VIEW_LECTURE].given) {
     model->opening.text = text = lecture_text(path);
     if (!text)
-      return report_failure(STATUS_OTHER, "out of memory");
+      return report_no_memory();
   }
   vlError error = {0};
   vl_context_record_files(context, false);

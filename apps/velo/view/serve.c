@@ -58,7 +58,7 @@ int serve_start(const Job *job, vlView view, float exposure, Serve **result) {
   Serve *s = calloc(1, sizeof *s);
   *result = s;
   if (!s)
-    return report_failure(STATUS_OTHER, "out of memory");
+    return report_no_memory();
   s->job = job;
   s->view = view;
   s->exposure = exposure;

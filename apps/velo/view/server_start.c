@@ -71,7 +71,7 @@ int server_open(const ServerDef *def, Server **result) {
   *result = NULL;
   Server *server = calloc(1, sizeof *server);
   if (!server)
-    return report_failure(STATUS_OTHER, "out of memory");
+    return report_no_memory();
   server->def = *def;
   if (def->address)
     text_set(server->listen, "%s", def->address);

@@ -831,7 +831,7 @@ MISTAKES = [
      "if (near->visited == 4)"),
     ("the sheen's strength by its darkest channel", "materials:principled",
      r"materials principled", "src/material/principled_energy.hot.c",
-     "float fuzz = brightest(s, VL_P_SHEEN, i);",
+     "float fuzz = brightest_sheen(s, i);",
      "float fuzz = s->row[VL_P_SHEEN][i];"),
     ("spots: the edge weighs half whatever its falloff", "lights:spot",
      r"lights spot:", "src/light/spot.c",

@@ -49,12 +49,9 @@ static void start(const vlCameraCompiled *c, uint32_t count, const vlDirections 
   }
 }
 
-static inline __attribute__((always_inline)) void refract(const int round,
-                                                          const vlOpticsSurface *surface,
-                                                          uint32_t count, Bundle *b) {
+static void refract(const vlOpticsSurface *surface, uint32_t count, Bundle *b) {
   const vlOpticsSurface copy = *surface, *s = &copy;
-  VL_SIMD for (uint32_t i = 0; i < count; i++)
-      store(b, i, vl_optics_refract(s, round, load(b, i)));
+  VL_SIMD for (uint32_t i = 0; i < count; i++) store(b, i, vl_optics_refract(s, 1, load(b, i)));
 }
 
 static void stop(const vlOptics *o, const vlOpticsSurface *surface, uint32_t count, Bundle *b) {
@@ -106,7 +103,7 @@ void vl_camera_optics(const vlCameraCompiled *c, uint32_t count, const float *le
     if (o->surfaces[k].radius == 0.0)
       stop(o, &o->surfaces[k], count, &b);
     else
-      refract(1, &o->surfaces[k], count, &b);
+      refract(&o->surfaces[k], count, &b);
   }
   for (uint32_t i = 0; i < count; i++) {
     int good = b.alive[i] > 0.0 && b.dz[i] > vl_optics_grazing;

@@ -58,6 +58,10 @@ const vlFilmSensor *vl_film_sensor(const vlFilm *film);
 /* of all blocks; render calls it after each whole pass */
 void vl_film_set_spp(vlFilm *film, uint32_t spp);
 
+/* Whether a crop window x0, y0, x1, y1 has pixels, all of them within the image. */
+static inline bool vl_crop_fits(const uint32_t crop[4], uint32_t width, uint32_t height) {
+  return crop[0] < crop[2] && crop[1] < crop[3] && crop[2] <= width && crop[3] <= height;
+}
 /* Blocks: the cells of a grid over the whole image, 32 x 32 pixels each, clipped to a window
  * x0, y0, x1, y1 and numbered row by row. A film's blocks are those of its crop. All pixels of
  * a block have the same number of samples. */

@@ -69,7 +69,7 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
   if (def->width == 0 || def->height == 0 || def->width > SIZE_MAX_PIXELS ||
       def->height > SIZE_MAX_PIXELS)
     return VL_ERROR_ARGUMENT;
-  if (c[0] >= c[2] || c[1] >= c[3] || c[2] > def->width || c[3] > def->height)
+  if (!vl_crop_fits(c, def->width, def->height))
     return VL_ERROR_ARGUMENT;
   vlFilm *made = vl_alloc_zero(context, 1, sizeof *made);
   if (!made)

@@ -72,11 +72,6 @@ static inline vlSpline vl_spline_in(const float *nodes, uint32_t n, uint32_t i, 
     return (vlSpline){i - 2, {0, w0, w1, w2}};
   return (vlSpline){i - 1, {w0, w1, w2, w3}};
 }
-static inline vlSpline vl_spline_at(const float *nodes, uint32_t n, float x) {
-  if (!(x >= nodes[0] && x <= nodes[n - 1]))
-    return (vlSpline){0, {0, 0, 0, 0}};
-  return vl_spline_in(nodes, n, vl_find_interval(nodes, n - 1, x), x);
-}
 
 /* The cubic between two nodes at distance `width`, as a function of t from 0 to 1: f is its
  * value, F its integral divided by width. */
@@ -96,7 +91,7 @@ static inline float vl_spline_integral(vlSplinePiece p, float t) {
          (p.f0 + t * (0.5f * p.d0 + t * ((p.f1 - p.f0 - (2 * p.d0 + p.d1) * (1.0f / 3.0f)) +
                                          t * (0.25f * (p.d0 + p.d1) + 0.5f * (p.f0 - p.f1)))));
 }
-/* Makes the cubic of interval i, with the same slopes as vl_spline_at. f: values at the nodes i
+/* Makes the cubic of interval i, with the same slopes as vl_spline_in. f: values at the nodes i
  * - 1 to i + 2; values outside the table are not read. */
 static inline vlSplinePiece vl_spline_piece(const float *nodes, uint32_t n, uint32_t i,
                                             const float f[4]) {
@@ -130,7 +125,11 @@ static inline float vl_spline_solve(vlSplinePiece p, float u, int integral, floa
 /* ---- lookups ----------------------------------------------------------------------------- */
 
 static inline vlSpline vl_bssrdf_albedo(const vlBssrdfTable *table, float albedo) {
-  return vl_spline_at(table->albedo, VL_BSSRDF_ALBEDOS, albedo);
+  const float *nodes = table->albedo;
+  const uint32_t last = VL_BSSRDF_ALBEDOS - 1;
+  if (!(albedo >= nodes[0] && albedo <= nodes[last]))
+    return (vlSpline){0, {0, 0, 0, 0}};
+  return vl_spline_in(nodes, last + 1, vl_find_interval(nodes, last, albedo), albedo);
 }
 static inline float vl_bssrdf_mix(const vlSpline *a, const float *row0, uint32_t stride) {
   const float *row = row0 + (size_t)a->first * stride;

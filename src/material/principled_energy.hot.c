@@ -148,9 +148,9 @@ static void film_energies(const vlPrincipledSlice *s, const float *z, const floa
   }
 }
 
-static float brightest(const vlPrincipledSlice *s, uint32_t row, uint32_t i) {
-  return vl_largest4(s->row[row][i], s->row[row + 1][i], s->row[row + 2][i],
-                     s->row[row + 3][i]);
+static float brightest_sheen(const vlPrincipledSlice *s, uint32_t i) {
+  float *const *row = &s->row[VL_P_SHEEN];
+  return vl_largest4(row[0][i], row[1][i], row[2][i], row[3][i]);
 }
 
 /* Computes the coat's albedo for directions with cosine z to the coat's normal; z null: the
@@ -178,7 +178,7 @@ static void coat_energies(const vlPrincipledSlice *s, const vlPrincipledLanes *l
 static void sheen_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < s->count; i++) {
-    float fuzz = brightest(s, VL_P_SHEEN, i);
+    float fuzz = brightest_sheen(s, i);
     if (!(fuzz > 0.0f))
       continue;
     vlAlbedoCell rough = vl_albedo_cell(s->row[VL_P_SHEEN_ALPHA][i], VL_ALBEDO_ALPHA);
@@ -192,7 +192,7 @@ static void sheen_at_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBs
                            const float *z, vlPrincipledLanes *l) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < s->count; i++) {
-    float fuzz = brightest(s, VL_P_SHEEN, i), c = vl_abs(z[i]);
+    float fuzz = brightest_sheen(s, i), c = vl_abs(z[i]);
     if (!(fuzz > 0.0f))
       continue;
     float alpha = s->row[VL_P_SHEEN_ALPHA][i];

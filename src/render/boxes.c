@@ -186,8 +186,7 @@ vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBo
   if (def->cookie != VL_COOKIE_BOXES)
     return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: " VL_BAD_COOKIE);
   const uint32_t *crop = def->crop;
-  if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > camera->width ||
-      crop[3] > camera->height)
+  if (!vl_crop_fits(crop, camera->width, camera->height))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "boxes: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels", crop[0],
                    crop[1], crop[2], crop[3], camera->width, camera->height);

@@ -117,7 +117,7 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no such channels: %#x",
                    def->channels);
   const uint32_t *c = def->crop;
-  if (c[0] >= c[2] || c[1] >= c[3] || c[2] > camera->width || c[3] > camera->height)
+  if (!vl_crop_fits(c, camera->width, camera->height))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "ground truth: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
                    c[0], c[1], c[2], c[3], camera->width, camera->height);

@@ -192,27 +192,12 @@ void vl_trace_volpath(vlTracing *t) {
     vl_path_tracer(t);
 }
 
+/* Of all tracers that may use light paths. */
 void vl_trace_path(vlTracing *t) {
   if (t->def->two_way)
     vl_bidirectional_tracer(t);
   else
     vl_path_tracer(t);
-}
-
-void vl_trace_bidirectional(vlTracing *t) {
-  vl_trace_path(t);
-}
-
-void vl_trace_merging(vlTracing *t) {
-  vl_trace_path(t);
-}
-
-void vl_trace_sppm(vlTracing *t) {
-  vl_trace_path(t);
-}
-
-void vl_trace_light_path(vlTracing *t) {
-  vl_trace_path(t);
 }
 
 static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch,

@@ -69,10 +69,9 @@ void engine_forget_denoised(Engine *e) {
 
 /* The standard deviation of the values around each pixel of R G B A, up to REACH pixels away in
  * each direction, in three channels of `to`: the error of an image of one sample per pixel. */
-static void spread(const float *image, uint32_t width, uint32_t height, float *to,
-                   uint32_t channels) {
+static void spread(const float *image, uint32_t width, uint32_t height, float *to) {
   for (uint32_t y = 0; y < height; y++)
-    for (uint32_t x = 0; x < width; x++, to += channels) {
+    for (uint32_t x = 0; x < width; x++, to += CHANNELS) {
       uint32_t x0 = x > REACH ? x - REACH : 0, x1 = x + REACH < width ? x + REACH : width - 1,
                y0 = y > REACH ? y - REACH : 0, y1 = y + REACH < height ? y + REACH : height - 1;
       float sum[3] = {0}, squares[3] = {0}, n = (float)((x1 - x0 + 1) * (y1 - y0 + 1));
@@ -148,7 +147,7 @@ static vlResult gather(PartOfFilm *part, uint32_t first, uint32_t end, vlImage *
       copy((const float *)vl_image_const_pixels(errors) + 3 * skip, 3, to + 3, CHANNELS, 3,
            pixels);
     else
-      spread(from, width, end - first, to + 3, CHANNELS);
+      spread(from, width, end - first, to + 3);
     copy(vl_image_const_pixels(features), vl_image_channels(features), to + 6, CHANNELS, 7,
          pixels);
   }

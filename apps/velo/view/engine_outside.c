@@ -22,9 +22,9 @@ static const MessageField *find_field(const ViewMessage *m, const char *name, ui
   return NULL;
 }
 
-static void put_numbers(Json *json, const double *values, int count) {
-  for (int i = 0; i < count; i++)
-    json_number(json, NULL, values[i]);
+static void put_point(Json *json, const double point[3]) {
+  for (int i = 0; i < 3; i++)
+    json_number(json, NULL, point[i]);
 }
 
 static void put_drawing(Json *json, const vlDrawing *d) {
@@ -35,8 +35,8 @@ static void put_drawing(Json *json, const vlDrawing *d) {
   for (uint32_t i = 0; i < d->line_count; i++) {
     json_begin(json, NULL, '[');
     json_text(json, NULL, parts[d->lines[i].part]);
-    put_numbers(json, d->lines[i].from, 3);
-    put_numbers(json, d->lines[i].to, 3);
+    put_point(json, d->lines[i].from);
+    put_point(json, d->lines[i].to);
     json_end(json, ']');
   }
   json_end(json, ']');
@@ -44,7 +44,7 @@ static void put_drawing(Json *json, const vlDrawing *d) {
   for (uint32_t i = 0; i < d->label_count; i++) {
     json_begin(json, NULL, '[');
     json_text(json, NULL, d->labels[i].text);
-    put_numbers(json, d->labels[i].at, 3);
+    put_point(json, d->labels[i].at);
     json_end(json, ']');
   }
   json_end(json, ']');

@@ -34,12 +34,12 @@ static bool find_folder(char path[PRIVATE_PATH]) {
          folder_is_private(path);
 }
 
-FILE *private_file_make(const char *stem, const char *suffix, char path[PRIVATE_PATH]) {
+FILE *private_file_make(char path[PRIVATE_PATH]) {
   char folder[PRIVATE_PATH];
   if (!find_folder(folder))
     return NULL;
-  int size = snprintf(path, PRIVATE_PATH, "%s/%sXXXXXX%s", folder, stem, suffix);
-  int fd = size < PRIVATE_PATH ? mkostemps(path, (int)strlen(suffix), O_CLOEXEC) : -1;
+  int size = snprintf(path, PRIVATE_PATH, "%s/velo-view-XXXXXX.html", folder);
+  int fd = size < PRIVATE_PATH ? mkostemps(path, (int)strlen(".html"), O_CLOEXEC) : -1;
   FILE *out = fd < 0 ? NULL : fdopen(fd, "w");
   if (fd >= 0 && !out) {
     close(fd);

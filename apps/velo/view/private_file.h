@@ -9,9 +9,8 @@
 
 enum { PRIVATE_PATH = 4200 };
 
-/* Makes a new file whose name begins with `stem` and ends with `suffix`; path gets where it is.
- * Null: it cannot be made. */
-FILE *private_file_make(const char *stem, const char *suffix, char path[PRIVATE_PATH]);
+/* Makes a new file for a page; path gets where it is. Null: it cannot be made. */
+FILE *private_file_make(char path[PRIVATE_PATH]);
 /* The token of the user's last `velo view --port PORT`, so that its pages find velo again;
  * where there is none, keeps this one for the next. */
 void private_file_token(int port, char token[TOKEN_SIZE]);

@@ -55,7 +55,7 @@ static bool write_page(const char *address, char path[PRIVATE_PATH]) {
       "<meta http-equiv=\"refresh\" content=\"0;url=%s\">\n"
       "<p><a href=\"%s\">velo view</a></p>\n"
       "</html>\n";
-  FILE *out = private_file_make("velo-view-", ".html", path);
+  FILE *out = private_file_make(path);
   if (!out)
     return false;
   bool good = fprintf(out, format, address, address) > 0;

@@ -108,10 +108,10 @@ _Static_assert(offsetof(vlNearest, time) - offsetof(vlNearest, o) == TIME * size
                    offsetof(vlNearest, d) - offsetof(vlNearest, o) == DIRECTION * sizeof(float),
                "the layout of a single ray");
 
-static __attribute__((noinline)) bool compare_hits(
-    const struct RTCFilterFunctionNArguments *args, unsigned n, unsigned i, vlNearest *known) {
+static __attribute__((noinline)) bool compare_hit(
+    const struct RTCFilterFunctionNArguments *args, vlNearest *known) {
   vlNearest hit;
-  read_hit(args, n, i, &hit);
+  read_hit(args, 1, 0, &hit);
   return vl_nearest_offer(known, &hit);
 }
 
@@ -166,7 +166,7 @@ static inline __attribute__((always_inline)) bool is_nearest(
   float t = *ray_row(args->ray, 1, TFAR, 0);
   if (vl_nearest_clearly(q->nearest, t))
     read_hit(args, 1, 0, q->nearest);
-  else if (!compare_hits(args, 1, 0, q->nearest))
+  else if (!compare_hit(args, q->nearest))
     return false;
   *ray_row(args->ray, 1, TFAR, 0) = t * VL_NEAREST_WINDOW;
   return true;

@@ -314,6 +314,10 @@ CASES = [
     Case("three.json", THREEJS, "threejs", options=SIZE, k=CENTRED, **PLAIN, **own("threejs")),
     Case("K.txt", ROWS3, "matrix", options=SIZE, pose=AT_ORIGIN, **PLAIN, **own("matrix")),
     Case("camera_matrix.csv", ROWS3.replace(" ", ","), "matrix", options=SIZE, pose=AT_ORIGIN, **PLAIN, **own("x"), damage=False),
+    *(Case("pose beside " + image, {"pose/frame-17.pose.txt": SCANNET["pose/7.txt"], "camera-intrinsics.txt": ROWS3, image: png(640, 480)},
+           "matrix", path="pose/frame-17.pose.txt", targets=["velo"], damage=False, **PLAIN)
+      for image in ("pose/frame-17.color.png", "pose/frame-17.png", "color/frame-17.png", "rgb/frame-17.png", "images/frame-17.png",
+                    "image/frame-17.png", "color/0.png", "pose/color/0.png", "color/000000.png")),
     Case("scannet", SCANNET, "matrix", path="pose/7.txt", **PLAIN, **own("x")),
     Case("factory.json", ARIA, "aria", options=SIZE, frame="camera-et-left", **FISH, **own("x")),
     Case("online.json", ARIA_ONLINE, "aria", frame="camera-rgb", plane=fisheye624, k=(FX, FX, CX, CY), **own("x", "colmap"), damage=False),

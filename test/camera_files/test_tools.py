@@ -593,6 +593,9 @@ CASES = [
     # MVSNet: with --size, and with the image
     Case("00000007_cam.txt", MVSNET, "mvsnet", options=SIZE, **PLAIN),
     Case("cams/00000007_cam.txt", {"cams/00000007_cam.txt": MVSNET, "images/00000007.jpg": jpeg(640, 480)}, "mvsnet", **PLAIN),
+    *(Case("cams/%d_cam.txt" % i, {"cams/%d_cam.txt" % i: MVSNET, image % i: data}, "mvsnet", targets=["velo"], damage=False, **PLAIN)
+      for i, (image, data) in enumerate([("images/%d.png", png(640, 480)), ("blended_images/%d.jpg", jpeg(640, 480)),
+                                         ("blended_images/%d.png", png(640, 480))])),
     # Bundler: the first camera was not reconstructed
     Case("bundle.out", BUNDLER, "bundler", options=SIZE, k=(FX, FX, 320 - 0.5, 240 - 0.5), plane=opencv([-0.2, 0.05])),
     Case("bundle_named.out", BUNDLER, "bundler", options=SIZE, frame="2", pose=AT_ORIGIN, k=(400, 400, 319.5, 239.5),

@@ -213,6 +213,42 @@ static void lists_of_poses(void **state) {
   }
 }
 
+static void keep_message(void *user, vlLogLevel level, const vlError *place,
+                         const char *message) {
+  (void)level;
+  (void)place;
+  char *all = user;
+  const size_t length = strlen(all);
+  snprintf(all + length, 2000 - length, "%s\n", message);
+}
+
+/* What a table has beyond poses is ignored, each column by its name. */
+static void ignored_columns_are_told(void **state) {
+  (void)state;
+  static char said[2000];
+  vlContextDef def = vl_default_context_def();
+  def.threads = 1;
+  def.log = keep_message;
+  def.log_user = said;
+  vlContext *telling = NULL;
+  assert_int_equal(vl_context_create(&def, &telling), VL_OK);
+  vlTrajectory *t = NULL;
+  const char *path =
+      put("lens.csv", "tx,ty,tz,cx,qx,qy,qz,qw,fx,fy,cy\n0,0,0,300,0,0,0,1,900,900,200\n");
+  assert_int_equal(vl_trajectory_load(telling, path, NULL, &t, NULL), VL_OK);
+  vl_trajectory_destroy(t);
+  vl_context_destroy(telling);
+  const char *at = said;
+  static const char *const columns[] = {"cx", "fx", "fy", "cy"};
+  for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
+    char line[80];
+    snprintf(line, sizeof line, "the column \"%s\" is ignored", columns[i]);
+    at = strstr(at, line);
+    if (!at)
+      fail_msg("%s: not in its place in: %s", line, said);
+  }
+}
+
 static void a_camera_file_is_one_frame(void **state) {
   (void)state;
   vlTrajectory *t =
@@ -335,6 +371,7 @@ int main(void) {
       cmocka_unit_test(kalibr_is_a_rig),
       cmocka_unit_test(opencv_calibrations_have_views),
       cmocka_unit_test(lists_of_poses),
+      cmocka_unit_test(ignored_columns_are_told),
       cmocka_unit_test(a_camera_file_is_one_frame),
       cmocka_unit_test(wrong_lines_are_told),
       cmocka_unit_test(many_frames),

@@ -68,6 +68,22 @@ static void doubles_and_ties(void **state) {
   }
 }
 
+/* At most 19 digits, just below, at and just above the midpoint between two doubles: what is
+ * left after the quotient's bits decides. */
+static void beside_midpoints(void **state) {
+  (void)state;
+  statRng rng = stat_rng(7);
+  for (int k = 0; k < 3000; k++) {
+    const uint64_t middle = (UINT64_C(1) << 53) + 1 + 2 * (stat_bits(&rng) % 450000000000000);
+    char text[64];
+    for (int beside = -1; beside <= 1; beside++) {
+      const uint64_t off = (uint64_t)beside * (1 + stat_bits(&rng) % 999);
+      snprintf(text, sizeof text, "%llue-3", (unsigned long long)(1000 * middle + off));
+      same(text);
+    }
+  }
+}
+
 static void ends(void **state) {
   (void)state;
   const char *const texts[] = {"0",
@@ -117,6 +133,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(random_digits),
       cmocka_unit_test(doubles_and_ties),
+      cmocka_unit_test(beside_midpoints),
       cmocka_unit_test(ends),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,6 +7,48 @@
 
 /* ---- the file ---------------------------------------------------------------------------- */
 
+/* The buffer is the first binary chunk of a .glb; another one is ignored. */
+static void second_chunk(const Gltf *g, const char *rest) {
+  size_t size;
+  uint8_t *binary = gltf_binary(g, rest, &size);
+  const size_t more = (g->size + 3) & ~(size_t)3, whole = size + 8 + more;
+  uint8_t *both = calloc(1, whole);
+  memcpy(both, binary, size);
+  memcpy(both + 8, &(uint32_t){(uint32_t)whole}, 4);
+  memcpy(both + size, (const uint32_t[2]){(uint32_t)more, 0x004E4942}, 8);
+  gltf_file(in_folder("two.glb"), both, whole);
+  free(both);
+  free(binary);
+  Loaded l;
+  start_load(&l);
+  assert_int_equal(vl_scene_load(l.scene, in_folder("two.glb"), NULL, NULL), VL_OK);
+  assert_memory_equal(shape(&l, 0)->positions, square, sizeof square);
+  end_load(&l);
+}
+
+/* Buffers are looked for in the folders of the search path, too. */
+static void searched(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  char *text = gltf_json(g, "elsewhere.bin", SCENE "\"nodes\":[{\"mesh\":0}]," SQUARE_MESH);
+  gltf_file(in_folder("s.gltf"), text, strlen(text));
+  free(text);
+  mkdir(in_folder("away"), 0700);
+  gltf_file(in_folder("away/elsewhere.bin"), g->bytes, g->size);
+  free(g);
+  char folders[600];
+  snprintf(folders, sizeof folders, "/nowhere:%s", in_folder("away"));
+  vlLoadDef def = vl_default_load_def();
+  for (int i = 0; i < 2; i++) {
+    Loaded l;
+    start_load(&l);
+    const vlResult result = vl_scene_load(l.scene, in_folder("s.gltf"), &def, NULL);
+    assert_int_equal(result, i == 0 ? VL_ERROR_MISSING : VL_OK);
+    end_load(&l);
+    def.search_path = folders;
+  }
+}
+
 static void containers(void **state) {
   (void)state;
   Gltf *g = new_square();
@@ -24,6 +66,7 @@ static void containers(void **state) {
   assert_int_equal(vl_scene_load(l.scene, in_folder("t.glb"), NULL, NULL), VL_OK);
   assert_memory_equal(shape(&l, 0)->positions, square, sizeof square);
   end_load(&l);
+  second_chunk(g, rest);
   /* a buffer in a file whose name needs escapes */
   gltf_file(in_folder("my data%.bin"), g->bytes, g->size);
   char *text = gltf_json(g, "my%20data%25.bin", rest);
@@ -401,10 +444,9 @@ static void completion(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(containers), cmocka_unit_test(arrays),
-      cmocka_unit_test(modes),      cmocka_unit_test(poses),
-      cmocka_unit_test(animation),  cmocka_unit_test(morph_and_skin),
-      cmocka_unit_test(tangents),   cmocka_unit_test(cameras),
+      cmocka_unit_test(containers),     cmocka_unit_test(searched), cmocka_unit_test(arrays),
+      cmocka_unit_test(modes),          cmocka_unit_test(poses),    cmocka_unit_test(animation),
+      cmocka_unit_test(morph_and_skin), cmocka_unit_test(tangents), cmocka_unit_test(cameras),
       cmocka_unit_test(completion),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

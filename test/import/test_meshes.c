@@ -164,8 +164,9 @@ static void far_meshes(void **state) {
     const char *name, *text;
   } files[] = {
       {"a.off", "OFF\n3 1 0\n5000000 0 0\n5000001 0 0\n5000000 1 0\n3 0 1 2 255 0 0\n"},
-      {"b.ply", VERTICES("2") "end_header\n5000000 0 0\n5000001 0 0\n"}};
-  for (size_t i = 0; i < 2; i++) {
+      {"b.ply", VERTICES("2") "end_header\n5000000 0 0\n5000001 0 0\n"},
+      {"c.obj", "v 5000000 0 0\nv 5000001 0 0\nv 5000000 1 0\nf 1 2 3\n"}};
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     Loaded l = load_lines(files[i].name, files[i].text);
     const vlShapeDef *d = shape(&l);
     assert_near(d->group_from_shape[3], 5e6, 1);

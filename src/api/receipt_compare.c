@@ -12,8 +12,7 @@ typedef struct Comparison {
   bool ended;
 } Comparison;
 
-static void differ(Comparison *c, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+static void differ(Comparison *c, const char *format, ...) VL_PRINTF(2, 3);
 static void differ(Comparison *c, const char *format, ...) {
   char text[700];
   va_list list;

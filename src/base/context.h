@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <stdarg.h>
 
+#include "base/attributes.h"
 #include "base/file_stamp.h"
 #include "base/pool.h"
 #include "velo/base.h"
@@ -64,7 +65,7 @@ bool vl_context_interrupted(const vlContext *context);
 
 /* Logs a message; where may be null. printf-like. */
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+    VL_PRINTF(4, 5);
 
 /* A number that no other call with this context returns; from 1. */
 uint64_t vl_context_number(vlContext *context);

@@ -3,18 +3,17 @@
 #ifndef BASE_ERROR_H
 #define BASE_ERROR_H
 
+#include "base/attributes.h"
 #include "velo/base.h"
 
 /* End of the message about a def that was not made by the default function of this ABI
  * version. */
 #define VL_BAD_COOKIE "def.cookie is not that of a default def of this version"
 
-vlResult vl_fail(vlError *error, vlResult code, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+vlResult vl_fail(vlError *error, vlResult code, const char *format, ...) VL_PRINTF(3, 4);
 /* vl_fail with a source location; file may be null. */
 vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t line,
-                    uint32_t column, const char *format, ...)
-    __attribute__((format(printf, 6, 7)));
+                    uint32_t column, const char *format, ...) VL_PRINTF(6, 7);
 /* Fills in VL_ERROR_MEMORY with its common message. */
 vlResult vl_fail_memory(vlError *error);
 void vl_error_clear(vlError *error);

@@ -3,6 +3,7 @@
 #ifndef BASE_ISA_H
 #define BASE_ISA_H
 
+#include "base/attributes.h"
 #include "velo/base.h"
 
 /* Chooses an instruction set. AUTO: the set that the environment variable VELO_ISA names, else

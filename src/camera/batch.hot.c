@@ -15,9 +15,8 @@ enum { NO_LENS, DISC, POINTS, OPTICS };
 
 /* The loop is inlined once for each projection and kind of lens; the caller passes both as
  * constants. */
-static inline __attribute__((always_inline)) void ray_loop(
-    const int orthographic, const int lens, const vlCameraCompiled *camera, uint32_t count,
-    const vlCameraSamples *s, const vlCameraRays *r) {
+VL_INLINE void ray_loop(const int orthographic, const int lens, const vlCameraCompiled *camera,
+                        uint32_t count, const vlCameraSamples *s, const vlCameraRays *r) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   /* the planes z = near, far as multiples of the unnormalised direction, whose depth is the
    * same for all rays */
@@ -47,9 +46,9 @@ static inline __attribute__((always_inline)) void ray_loop(
 }
 
 /* Finishes the rays of a chunk from known directions, for samples from `first` on. */
-static inline __attribute__((always_inline)) void world_loop(
-    const int lens, const int eyes, const vlCameraCompiled *camera, uint32_t first,
-    uint32_t count, const vlDirections *d, const vlCameraSamples *s, const vlCameraRays *all) {
+VL_INLINE void world_loop(const int lens, const int eyes, const vlCameraCompiled *camera,
+                          uint32_t first, uint32_t count, const vlDirections *d,
+                          const vlCameraSamples *s, const vlCameraRays *all) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   const float *lens_u = s->lens_u + (lens == DISC ? first : 0),
               *lens_v = s->lens_v + (lens == DISC ? first : 0);

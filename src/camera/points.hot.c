@@ -15,10 +15,8 @@
 /* Removes the distortion of plane points in place, with a fixed number of Newton steps; the few
  * points that these do not reach follow one by one. radial_first: a constant, that of the map.
  */
-static inline __attribute__((always_inline)) void undistort_loops(const bool radial_first,
-                                                                  const vlDistortionMap *map,
-                                                                  uint32_t count, double *x,
-                                                                  double *y, double *valid) {
+VL_INLINE void undistort_loops(const bool radial_first, const vlDistortionMap *map,
+                               uint32_t count, double *x, double *y, double *valid) {
   const vlDistortionMap copy = *map, *m = &copy;
   double u[VL_CAMERA_CHUNK], v[VL_CAMERA_CHUNK], flat_valid[VL_CAMERA_CHUNK];
   /* must vectorise */
@@ -60,10 +58,8 @@ static void undistort(const vlDistortionMap *map, uint32_t count, double *x, dou
     undistort_loops(false, map, count, x, y, valid);
 }
 
-static inline __attribute__((always_inline)) void distort_loop(const bool radial_first,
-                                                               const vlDistortionMap *map,
-                                                               uint32_t count, double *x,
-                                                               double *y, double *valid) {
+VL_INLINE void distort_loop(const bool radial_first, const vlDistortionMap *map, uint32_t count,
+                            double *x, double *y, double *valid) {
   const vlDistortionMap copy = *map, *m = &copy;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -82,9 +78,8 @@ static void distort(const vlDistortionMap *map, uint32_t count, double *x, doubl
     distort_loop(false, map, count, x, y, valid);
 }
 
-static inline __attribute__((always_inline)) void plane_loop(vlProjection kind,
-                                                             const vlCameraCompiled *camera,
-                                                             uint32_t count, vlDirections *d) {
+VL_INLINE void plane_loop(vlProjection kind, const vlCameraCompiled *camera, uint32_t count,
+                          vlDirections *d) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   const int inclined = kind == VL_PROJECTION_PERSPECTIVE;
   /* must vectorise */
@@ -120,9 +115,9 @@ void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirection
   }
 }
 
-static inline __attribute__((always_inline)) void to_world_loop(
-    const int eyes, const vlCameraCompiled *camera, uint32_t count, const double *dx,
-    const double *dy, const double *dz, const double *valid, vlCameraPoints *out) {
+VL_INLINE void to_world_loop(const int eyes, const vlCameraCompiled *camera, uint32_t count,
+                             const double *dx, const double *dy, const double *dz,
+                             const double *valid, vlCameraPoints *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlWorldRay w = vl_camera_to_world(c, (vlCameraLocal){0.0, 0.0, dx[i], dy[i], dz[i]});
@@ -135,11 +130,8 @@ static inline __attribute__((always_inline)) void to_world_loop(
 }
 
 /* Only film points that are not finite are invalid. */
-static inline __attribute__((always_inline)) void plain_loop(const int orthographic,
-                                                             const vlCameraCompiled *camera,
-                                                             uint32_t count,
-                                                             const vlCameraPixels *in,
-                                                             vlCameraPoints *out) {
+VL_INLINE void plain_loop(const int orthographic, const vlCameraCompiled *camera,
+                          uint32_t count, const vlCameraPixels *in, vlCameraPoints *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double x = in->x[i] - c->cx, y = in->y[i] - c->cy;
@@ -192,9 +184,8 @@ void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCa
   }
 }
 
-static inline __attribute__((always_inline)) void project_loop(
-    vlProjection kind, const int eyes, const vlCameraCompiled *camera, uint32_t count,
-    const vlCameraPoints *in, vlCameraPixels *out) {
+VL_INLINE void project_loop(vlProjection kind, const int eyes, const vlCameraCompiled *camera,
+                            uint32_t count, const vlCameraPoints *in, vlCameraPixels *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   const double *m = c->camera_from_world;
   /* must vectorise */

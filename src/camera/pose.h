@@ -40,9 +40,7 @@ static inline vlWorldRay vl_camera_offset_eye(const vlCameraCompiled *c, vlEyeOf
 }
 
 /* Origin and unit direction of a ray as element i; 0 if it is not good. */
-static inline __attribute__((always_inline)) void vl_store_world_ray(vlCameraPoints *out,
-                                                                     uint32_t i, int good,
-                                                                     vlWorldRay w) {
+VL_INLINE void vl_store_world_ray(vlCameraPoints *out, uint32_t i, int good, vlWorldRay w) {
   out->ox[i] = good ? w.ox : 0.0;
   out->oy[i] = good ? w.oy : 0.0;
   out->oz[i] = good ? w.oz : 0.0;

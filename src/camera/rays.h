@@ -109,8 +109,7 @@ typedef struct vlCameraRays {
   float *weight;
 } vlCameraRays;
 /* The rays from number `first` on. */
-static inline __attribute__((always_inline)) vlCameraRays vl_camera_rays_from(
-    const vlCameraRays *r, uint32_t first) {
+VL_INLINE vlCameraRays vl_camera_rays_from(const vlCameraRays *r, uint32_t first) {
   return (vlCameraRays){.ox = r->ox + first,
                         .oy = r->oy + first,
                         .oz = r->oz + first,

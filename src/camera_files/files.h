@@ -34,14 +34,13 @@ typedef struct vlCameraFile {
 
 /* ---- reading ----------------------------------------------------------------------------- */
 
-vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) VL_PRINTF(2, 3);
 /* Like vl_camera_wrong, with a location. line is 0 if it is unknown. */
 vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column,
-                            const char *format, ...) __attribute__((format(printf, 4, 5)));
+                            const char *format, ...) VL_PRINTF(4, 5);
 /* Reports an error at object[key], or at the object itself if key is null or missing. */
 vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key,
-                            const char *format, ...) __attribute__((format(printf, 4, 5)));
+                            const char *format, ...) VL_PRINTF(4, 5);
 /* The line of object[key]; 0 if it is unknown. */
 uint32_t vl_camera_line(const vlCameraFile *file, const json_t *object, const char *key);
 /* Parses JSON, YAML or XML, which the first character tells apart. FileStorage's XML becomes a
@@ -73,7 +72,7 @@ bool vl_camera_has_tag(const json_t *element, const char *tag);
 const json_t *vl_camera_child(const json_t *element, const char *tag);
 /* Reports an error at an element. */
 vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element,
-                                 const char *format, ...) __attribute__((format(printf, 3, 4)));
+                                 const char *format, ...) VL_PRINTF(3, 4);
 /* Reads exactly count finite numbers from an element's text. */
 vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element,
                                    double *values, uint32_t count);
@@ -187,8 +186,7 @@ enum {
   VL_HOLDS_ALL = 128 /* every property; nothing is checked */
 };
 
-void vl_camera_put(vlCameraText *text, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+void vl_camera_put(vlCameraText *text, const char *format, ...) VL_PRINTF(2, 3);
 void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count);
 /* Writes a text as a whole file. */
 vlResult vl_camera_write_text(const vlCameraFile *file, const char *path,

@@ -15,8 +15,7 @@ typedef struct vlCameraLines {
 bool vl_camera_next_line(vlCameraLines *lines);
 /* Reports an error at a character of the line. */
 vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lines,
-                              const char *at, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+                              const char *at, const char *format, ...) VL_PRINTF(4, 5);
 /* Parses finite numbers up to the end of the line. Any other text is an error at its column. */
 vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *lines,
                                 const char *from, double *values, uint32_t least,

@@ -29,7 +29,7 @@ typedef struct vlFrameLocation {
 } vlFrameLocation;
 
 vlResult vl_frame_wrong(const vlCameraFile *file, const vlFrameLocation *location,
-                        const char *format, ...) __attribute__((format(printf, 3, 4)));
+                        const char *format, ...) VL_PRINTF(3, 4);
 /* A record to be read from a file of the dialect. */
 void vl_trajectory_begin(vlCameraDialect dialect, vlCameraRecord *record);
 /* Finds a camera that is equal to this one except for pose and name, or adds this one. *index

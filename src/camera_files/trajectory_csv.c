@@ -69,8 +69,7 @@ typedef struct Csv {
   double time_unit; /* seconds */
 } Csv;
 
-static vlResult wrong(const Csv *csv, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+static vlResult wrong(const Csv *csv, const char *format, ...) VL_PRINTF(2, 3);
 static vlResult wrong(const Csv *csv, const char *format, ...) {
   char message[400];
   VL_FORMAT(message, format);

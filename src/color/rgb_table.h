@@ -13,6 +13,7 @@
 #ifndef COLOR_RGB_TABLE_H
 #define COLOR_RGB_TABLE_H
 
+#include "base/attributes.h"
 #include "color/color.h"
 
 enum { VL_RGB_TABLE_XY = 40, VL_RGB_TABLE_Z = 48 };
@@ -55,8 +56,7 @@ typedef struct vlRgbPoint {
   int index;
   float x, y, z, scale;
 } vlRgbPoint;
-static inline __attribute__((always_inline)) vlRgbPoint vl_rgb_point(float r, float g,
-                                                                     float b) {
+VL_INLINE vlRgbPoint vl_rgb_point(float r, float g, float b) {
   r = r > 0.0f ? r : 0.0f;
   g = g > 0.0f ? g : 0.0f;
   b = b > 0.0f ? b : 0.0f;
@@ -94,8 +94,7 @@ static inline __attribute__((always_inline)) vlRgbPoint vl_rgb_point(float r, fl
 }
 
 /* Interpolates one of the three coefficients; k is its index. */
-static inline __attribute__((always_inline)) float vl_rgb_coefficient(const float *p, int k,
-                                                                      vlRgbPoint at) {
+VL_INLINE float vl_rgb_coefficient(const float *p, int k, vlRgbPoint at) {
   enum { X = 3, Y = 3 * VL_RGB_TABLE_XY, Z = 3 * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY };
   int i = at.index + k;
   float a = p[i], b = p[i + Y], c = p[i + Z], d = p[i + Z + Y];
@@ -111,8 +110,7 @@ static inline __attribute__((always_inline)) float vl_rgb_coefficient(const floa
 /* Coefficients of the reflectance with colour r, g, b (clamped to [0,1]) under the space's
  * illuminant. Loops that must vectorise under clang call the functions above instead, since
  * clang loses the simd pragma when this function is inlined through another. */
-static inline __attribute__((always_inline)) vlSigmoid vl_rgb_table_lookup(
-    const vlRgbTable *table, float r, float g, float b) {
+VL_INLINE vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, float g, float b) {
   vlRgbPoint at = vl_rgb_point(r, g, b);
   const float *p = table->coefficients;
   return (vlSigmoid){vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at),

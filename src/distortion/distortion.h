@@ -17,6 +17,7 @@
 #ifndef DISTORTION_DISTORTION_H
 #define DISTORTION_DISTORTION_H
 
+#include "base/attributes.h"
 #include "camera/plane.h"
 #include "velo/camera.h"
 
@@ -25,8 +26,8 @@ typedef struct vlDistorted {
 } vlDistorted;
 
 /* q: the radial factor; q1: its derivative with respect to s. */
-static inline __attribute__((always_inline)) vlDistorted vl_distort_with(
-    const vlDistortionMap *m, double x, double y, double q, double q1) {
+VL_INLINE vlDistorted vl_distort_with(const vlDistortionMap *m, double x, double y, double q,
+                                      double q1) {
   const double *t = m->prism;
   double s = x * x + y * y, p0 = m->tangential[0], p1 = m->tangential[1];
   double xy = x * y, tu = 2.0 * (t[0] + 2.0 * t[1] * s), tv = 2.0 * (t[2] + 2.0 * t[3] * s);
@@ -41,9 +42,8 @@ static inline __attribute__((always_inline)) vlDistorted vl_distort_with(
 }
 
 /* radial_first: that of the map. Loops over points pass it as a constant. */
-static inline __attribute__((always_inline)) vlDistorted vl_distort_as(const bool radial_first,
-                                                                       const vlDistortionMap *m,
-                                                                       double x, double y) {
+VL_INLINE vlDistorted vl_distort_as(const bool radial_first, const vlDistortionMap *m, double x,
+                                    double y) {
   const double *n = m->numerator, *d = m->denominator;
   double s = x * x + y * y;
   double above =
@@ -80,8 +80,8 @@ static inline vlPlanePoint vl_tilt(const double h[9], double x, double y) {
 }
 
 /* Maps an ideal point to its distorted point. */
-static inline __attribute__((always_inline)) vlPlanePoint vl_distortion_apply(
-    const bool radial_first, const vlDistortionMap *m, double x, double y) {
+VL_INLINE vlPlanePoint vl_distortion_apply(const bool radial_first, const vlDistortionMap *m,
+                                           double x, double y) {
   vlDistorted d = vl_distort_as(radial_first, m, x, y);
   vlPlanePoint p = vl_tilt(m->tilt, d.u, d.v);
   double det = d.ux * d.vy - d.uy * d.vx;
@@ -91,8 +91,8 @@ static inline __attribute__((always_inline)) vlPlanePoint vl_distortion_apply(
 
 /* One Newton step towards the ideal point (x, y) that maps to (u, v) before the tilt; the
  * result is kept inside the disc. */
-static inline __attribute__((always_inline)) vlPlanePoint vl_distortion_step(
-    const bool radial_first, const vlDistortionMap *m, double x, double y, double u, double v) {
+VL_INLINE vlPlanePoint vl_distortion_step(const bool radial_first, const vlDistortionMap *m,
+                                          double x, double y, double u, double v) {
   vlDistorted d = vl_distort_as(radial_first, m, x, y);
   double det = d.ux * d.vy - d.uy * d.vx, eu = u - d.u, ev = v - d.v;
   double k = 1.0 / (det > 1e-12 ? det : 1e-12); /* near a fold the step is bounded;
@@ -110,8 +110,8 @@ static inline vlPlanePoint vl_distortion_start(const vlDistortionMap *m, double 
 
 /* Returns 1 if the iteration converged, which means that (x, y) maps to (u, v) with a relative
  * error below 1e-12. Otherwise, and for NaN, returns 0. */
-static inline __attribute__((always_inline)) double vl_distortion_check(
-    const bool radial_first, const vlDistortionMap *m, double x, double y, double u, double v) {
+VL_INLINE double vl_distortion_check(const bool radial_first, const vlDistortionMap *m,
+                                     double x, double y, double u, double v) {
   vlDistorted d = vl_distort_as(radial_first, m, x, y);
   double error = __builtin_fabs(d.u - u) + __builtin_fabs(d.v - v);
   double size = 1.0 + __builtin_fabs(u) + __builtin_fabs(v);

@@ -70,10 +70,9 @@ typedef struct vlExport {
 /* ---- export.c ---------------------------------------------------------------------------- */
 
 /* Counts a loss of this text. */
-void vl_export_lose(vlExport *x, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void vl_export_lose(vlExport *x, const char *format, ...) VL_PRINTF(2, 3);
 /* Stores the error if it is the first one. Always returns false. */
-bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) VL_PRINTF(3, 4);
 /* Whether the shape is only a boundary between media: its material is "interface": light passes
  * it as if it were not there. In glTF and pbrt such a shape gives no light. */
 bool vl_export_parts_media(const vlExport *x, const vlShapeDef *d);
@@ -86,7 +85,7 @@ bool vl_export_read(vlExport *x, const char *path, char **data, size_t *size);
 /* Append bytes, and text. */
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size);
 void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 /* Writes the scene file, which comes last: until then the earlier one and its files are as they
  * were. */
 bool vl_export_main(vlExport *x, const void *data, size_t size);

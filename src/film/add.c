@@ -33,9 +33,8 @@ static inline bool fits(const vlFilmSamples *s, uint32_t i) {
 /* Adds a sample to a pixel's moments. `weighted`: its colour times its weight. Most filters
  * give all samples the weight 1. Not inlined: the loop over the samples of other films would
  * have fewer registers. */
-static __attribute__((noinline)) void add_moments(vlFilmMoments *m, const float color[3],
-                                                  const vlInt128 weighted[3], int64_t weight,
-                                                  bool is_first) {
+VL_NOINLINE void add_moments(vlFilmMoments *m, const float color[3], const vlInt128 weighted[3],
+                             int64_t weight, bool is_first) {
   const int64_t one = INT64_C(1) << VL_WEIGHT_BITS;
   for (int c = 0; c < 3; c++) {
     m->plain[c] += weight == one ? weighted[c] : vl_film_product(color[c], one);

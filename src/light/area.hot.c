@@ -46,9 +46,8 @@ static uint32_t gather(const vlWorld *world, const vlPaths *paths, const vlSurfa
 
 /* Sets lane k's sample: a point p of the light, its normal, its offset, and its density per
  * solid angle. */
-static inline __attribute__((always_inline)) void arrive(Block *restrict b, uint32_t k,
-                                                         vlVec3 from, vlVec3 p, vlVec3 n,
-                                                         float offset, float pdf) {
+VL_INLINE void arrive(Block *restrict b, uint32_t k, vlVec3 from, vlVec3 p, vlVec3 n,
+                      float offset, float pdf) {
   vlVec3 w = vl_normalize(vl_sub(p, from));
   float facing = -vl_dot(w, n), side = facing < 0.0f ? -1.0f : 1.0f;
   int emits = (facing > 0.0f) | ((b->two_sided[k] > 0.0f) & (facing < 0.0f));
@@ -147,10 +146,9 @@ static void store(const Block *b, uint32_t count, vlLightSamples *out) {
 typedef void Directions(uint32_t padded, Block *b);
 
 /* Inlined with `directions`, the kernel of triangles or of spheres. */
-static inline __attribute__((always_inline)) void sample_block(
-    Directions *directions, const vlWorld *world, const vlPaths *paths, const vlSurface *f,
-    const uint32_t *lanes, uint32_t count, const float *u, const float *v,
-    vlLightSamples *out) {
+VL_INLINE void sample_block(Directions *directions, const vlWorld *world, const vlPaths *paths,
+                            const vlSurface *f, const uint32_t *lanes, uint32_t count,
+                            const float *u, const float *v, vlLightSamples *out) {
   Block b;
   uint32_t padded = gather(world, paths, f, lanes, count, u, v, out, &b);
   directions(padded, &b);

@@ -19,13 +19,11 @@ typedef struct Block {
 } Block;
 
 /* Always inlined: see vl_prefetch_texels. */
-static inline __attribute__((always_inline)) void request(const void *address) {
+VL_INLINE void request(const void *address) {
   __builtin_prefetch(address, 0, 3);
 }
 
-static inline __attribute__((always_inline)) void request_texel(const vlEnvironment *env,
-                                                                const vlMipmap *mip, float s,
-                                                                float t) {
+VL_INLINE void request_texel(const vlEnvironment *env, const vlMipmap *mip, float s, float t) {
   if (env->cells_are_texels)
     return; /* the colour is in the cell */
   const vlMipLevel *l = &mip->levels[0];

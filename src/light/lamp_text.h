@@ -2,6 +2,7 @@
 #ifndef LIGHT_LAMP_TEXT_H
 #define LIGHT_LAMP_TEXT_H
 
+#include "base/attributes.h"
 #include "velo/base.h"
 
 typedef struct vlLampText {
@@ -31,7 +32,6 @@ bool vl_lamp_end(vlLampText *t, uint32_t planes, uint32_t angles);
  * a comma. False: it is none, or above 1e30. */
 bool vl_lamp_decimal(const char *text, size_t length, bool comma, double *value);
 /* Sets the error at a line. Returns false. */
-bool vl_lamp_fail(const vlLampText *t, uint32_t line, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+bool vl_lamp_fail(const vlLampText *t, uint32_t line, const char *format, ...) VL_PRINTF(3, 4);
 
 #endif

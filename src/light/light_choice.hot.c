@@ -75,9 +75,8 @@ static inline void choose(Descent *d, uint32_t i, uint32_t light, float pmf, flo
 typedef struct Step {
   float u, pmf;
 } Step;
-static inline __attribute__((always_inline)) Step step_down(vlLightCluster a, vlLightCluster b,
-                                                            vlReceiver at, float u0, float pmf0,
-                                                            uint32_t *second) {
+VL_INLINE Step step_down(vlLightCluster a, vlLightCluster b, vlReceiver at, float u0,
+                         float pmf0, uint32_t *second) {
   float ia = vl_light_importance(a, at), ib = vl_light_importance(b, at);
   float sum = ia + ib, some = sum > 0.0f ? sum : 1.0f;
   float pa = ia / some, pb = 1.0f - pa;

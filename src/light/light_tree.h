@@ -6,6 +6,7 @@
 #ifndef LIGHT_LIGHT_TREE_H
 #define LIGHT_LIGHT_TREE_H
 
+#include "base/attributes.h"
 #include "math/vec.h"
 #include "math/warp.h"
 #include "velo/world.h"
@@ -77,8 +78,7 @@ typedef struct vlReceiver {
 
 /* Importance of a node for a receiver. Free of branches, so that loops over batches
  * vectorise. */
-static inline __attribute__((always_inline)) float vl_light_importance(vlLightCluster b,
-                                                                       vlReceiver at) {
+VL_INLINE float vl_light_importance(vlLightCluster b, vlReceiver at) {
   vlVec3 p = at.p, n = at.n;
   vlVec3 to = vl_sub(p, vl_vec3(b.cx, b.cy, b.cz));
   float d2 = vl_length2(to);

@@ -17,7 +17,7 @@ enum { CHUNK = 64 };
 
 /* The passes must not be inlined. Where gcc sees the local arrays, it moves their loads into
  * the selects, which become branches. */
-#define PASS static __attribute__((noinline)) void
+#define PASS VL_NOINLINE void
 
 /* Data between the passes, for a chunk of lanes. */
 typedef struct {
@@ -169,9 +169,7 @@ static inline float series(float x, int32_t k, const int bits) {
 /* Computes from T(wo) the base's f in each channel and the probabilities of the lobes, which
  * are proportional to the energy that each lobe reflects. The energy of a rough coat is
  * approximated by that of a smooth coat. */
-static inline __attribute__((always_inline)) void weigh_loop(const Slice *s,
-                                                             vlBsdfDirections wo, Lanes *lanes,
-                                                             const int bits) {
+VL_INLINE void weigh_loop(const Slice *s, vlBsdfDirections wo, Lanes *lanes, const int bits) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -211,9 +209,7 @@ typedef struct {
   float coat;     /* f |cos| of the coat's reflection, 0 when smooth */
   float coat_pdf; /* density of sampling w by this lobe */
 } CoatLobe;
-static inline __attribute__((always_inline)) CoatLobe coat_lobe(vlVec3 o, vlVec3 w,
-                                                                float alpha_x, float alpha_y,
-                                                                float eta) {
+VL_INLINE CoatLobe coat_lobe(vlVec3 o, vlVec3 w, float alpha_x, float alpha_y, float eta) {
   float rx = vl_ggx_alpha(alpha_x), ry = vl_ggx_alpha(alpha_y);
   int rough = (vl_ggx_is_smooth(alpha_x, alpha_y) | (eta == 1.0f)) == 0;
   vlVec3 h = vl_normalize(vl_add(o, w));

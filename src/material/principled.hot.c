@@ -117,11 +117,9 @@ typedef struct Pair {
 
 /* Computes the values of the pair and the density of sampling wi. has_coat is a compile-time
  * constant, so that each of its two values gets a loop without branches. */
-static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSlice *s,
-                                                            const vlPrincipledLanes *l,
-                                                            vlBsdfDirections wo,
-                                                            vlBsdfDirections wi, Pair *out,
-                                                            float *pdf, bool has_coat) {
+VL_INLINE void pair_loop(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
+                         vlBsdfDirections wo, vlBsdfDirections wi, Pair *out, float *pdf,
+                         bool has_coat) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -226,10 +224,9 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
 }
 
 /* f cos_i and the density of sampling wi. */
-static __attribute__((noinline)) void combine(const vlPrincipledSlice *s,
-                                              const vlPrincipledLanes *l, vlBsdfDirections wo,
-                                              vlBsdfDirections wi, float *const value[4],
-                                              float *pdf) {
+VL_NOINLINE void combine(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
+                         vlBsdfDirections wo, vlBsdfDirections wi, float *const value[4],
+                         float *pdf) {
   Pair pair;
   if (s->coat)
     pair_loop(s, l, wo, wi, &pair, pdf, true);
@@ -263,9 +260,8 @@ static inline bool is_diffuse(const vlPrincipledLanes *l, uint32_t i, float u) {
 
 /* Chooses the lobe and samples its direction. For the last two lobes, wi is on the other side
  * of the surface than wo. */
-static __attribute__((noinline)) void choose(const vlPrincipledSlice *s,
-                                             const vlPrincipledLanes *l, vlBsdfDirections wo,
-                                             vlBsdfRandom random, vlBsdfSampled out) {
+VL_NOINLINE void choose(const vlPrincipledSlice *s, const vlPrincipledLanes *l,
+                        vlBsdfDirections wo, vlBsdfRandom random, vlBsdfSampled out) {
   for (uint32_t i = 0; i < s->count; i++) {
     float side = l->side[i], inside = l->inside[i], thin = s->row[VL_P_THIN][i];
     float x = random.lobe[i], u = random.u[i], v = random.v[i];

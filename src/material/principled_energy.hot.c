@@ -67,8 +67,7 @@ typedef struct Cells {
   float alpha_t[VL_PRINCIPLED_CHUNK], cosine_t[VL_PRINCIPLED_CHUNK];
 } Cells;
 
-static __attribute__((noinline)) void find_cells(const vlPrincipledSlice *s, const float *z,
-                                                 Cells *p) {
+VL_NOINLINE void find_cells(const vlPrincipledSlice *s, const float *z, Cells *p) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -86,8 +85,7 @@ static __attribute__((noinline)) void find_cells(const vlPrincipledSlice *s, con
 }
 
 /* Scalar, since not every instruction set has gathers. */
-static __attribute__((noinline)) void look_up(const Cells *p, uint32_t count, float *a,
-                                              float *b) {
+VL_NOINLINE void look_up(const Cells *p, uint32_t count, float *a, float *b) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < count; i++) {
     vlAlbedoCell alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]},
@@ -97,8 +95,7 @@ static __attribute__((noinline)) void look_up(const Cells *p, uint32_t count, fl
   }
 }
 
-static __attribute__((noinline)) void look_up_means(const Cells *p, uint32_t count, float *a,
-                                                    float *b) {
+VL_NOINLINE void look_up_means(const Cells *p, uint32_t count, float *a, float *b) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < count; i++) {
     vlAlbedoCell alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]};
@@ -108,10 +105,8 @@ static __attribute__((noinline)) void look_up_means(const Cells *p, uint32_t cou
 }
 
 /* Computes the dielectric's specular albedo F0 a + F90 b. */
-static __attribute__((noinline)) void energies(const vlPrincipledSlice *s, const float *a,
-                                               const float *b,
-                                               float energy[4][VL_PRINCIPLED_CHUNK],
-                                               float *one) {
+VL_NOINLINE void energies(const vlPrincipledSlice *s, const float *a, const float *b,
+                          float energy[4][VL_PRINCIPLED_CHUNK], float *one) {
   uint32_t count = VL_WHOLE(s->count);
   for (int c = 0; c < 4; c++) {
     /* must vectorise */
@@ -260,8 +255,8 @@ static void losses_at_light(const vlPrincipledSlice *s, const float *z, vlPrinci
 
 /* Computes the probabilities of the lobes, roughly in proportion to their energies. Each lobe
  * whose value can be above 0 has a probability above 0. */
-static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const float *coat_cos,
-                                            vlPrincipledLanes *l) {
+VL_NOINLINE void weigh(const vlPrincipledSlice *s, const float *coat_cos,
+                       vlPrincipledLanes *l) {
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {

@@ -9,6 +9,7 @@
 #ifndef MATH_LOWDISCREPANCY_H
 #define MATH_LOWDISCREPANCY_H
 
+#include "base/attributes.h"
 #include "math/hash.h"
 
 static inline uint32_t vl_reverse_bits(uint32_t x) {
@@ -75,9 +76,7 @@ static inline vlPermuteState vl_permute_round(vlPermuteState s, uint32_t mask, u
 }
 /* Eight rounds, because fewer are visibly uneven for 4 and 5 elements. Unrolled by hand,
  * because clang does not vectorise nested loops. */
-static inline __attribute__((always_inline)) uint32_t vl_permute_step(uint32_t i, uint32_t mask,
-                                                                      uint32_t shift,
-                                                                      uint32_t key) {
+VL_INLINE uint32_t vl_permute_step(uint32_t i, uint32_t mask, uint32_t shift, uint32_t key) {
   vlPermuteState s = {i, vl_hash(key)};
   s = vl_permute_round(vl_permute_round(s, mask, shift), mask, shift);
   s = vl_permute_round(vl_permute_round(s, mask, shift), mask, shift);

@@ -35,7 +35,7 @@ static inline double vl_cube_face_of_cross(double column, double row) {
   return row == 1.0 ? middle : other;
 }
 
-VL_CAMERA_INLINE vlDirection vl_unproject_cube(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_cube(VL_UNPROJECT_INPUT) {
   double cross = c->shape[0], over = c->over_y;
   double row = __builtin_floor(0.125 * cell), column = cell - 8.0 * row;
   double face = cross > 0.0 ? vl_cube_face_of_cross(column, row) : column;
@@ -52,7 +52,7 @@ VL_CAMERA_INLINE vlDirection vl_unproject_cube(VL_UNPROJECT_INPUT) {
   return (vlDirection){dx, dy, dz, face >= 0.0 && face <= 5.0 ? inside : 0.0};
 }
 
-VL_CAMERA_INLINE vlPlanePoint vl_project_cube(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_cube(VL_PROJECT_INPUT) {
   double cross = c->shape[0];
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
   int side = ax >= ay && ax > az, pole = !side && ay > az;
@@ -71,7 +71,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_cube(VL_PROJECT_INPUT) {
 }
 
 /* On its face a point is (a, b) / (2 major), each a coordinate but for its sign. */
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_cube(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_cube(VL_PROJECT_INPUT) {
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
   int side = ax >= ay && ax > az, pole = !side && ay > az;
   double sx = x > 0.0 ? 1.0 : -1.0, sy = y < 0.0 ? -1.0 : 1.0, sz = z > 0.0 ? 1.0 : -1.0;

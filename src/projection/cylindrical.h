@@ -8,20 +8,20 @@
 #include "math/approx_double.h"
 #include "projection/functions.h"
 
-VL_CAMERA_INLINE vlDirection vl_unproject_cylindrical(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_cylindrical(VL_UNPROJECT_INPUT) {
   double over = c->over_x;
   int inside = __builtin_fabs(x) <= 3.14159265358979323846 + over;
   vlSinCosDouble lon = vl_sincos_double(inside ? x : 0.0);
   return (vlDirection){lon.sin, y, lon.cos, inside ? 1.0 : 0.0};
 }
 /* The domain is all directions except straight up and straight down. */
-VL_CAMERA_INLINE vlPlanePoint vl_project_cylindrical(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_cylindrical(VL_PROJECT_INPUT) {
   double across = vl_length2(x, z);
   return (vlPlanePoint){vl_atan2_double(x, z), y / vl_not_tiny(across),
                         across > 0.0 ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_cylindrical(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_cylindrical(VL_PROJECT_INPUT) {
   double across2 = x * x + z * z, across = vl_length2(x, z), g = -y / (across2 * across);
   return (vlPlaneDerivatives){{z / across2, 0.0, -x / across2, 0.0, 0.0},
                               {g * x, 1.0 / across, g * z, 0.0, 0.0}};

@@ -10,7 +10,7 @@
 #include "math/approx_double.h"
 #include "projection/functions.h"
 
-VL_CAMERA_INLINE vlDirection vl_unproject_equal_area(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_equal_area(VL_UNPROJECT_INPUT) {
   double over = c->over_x;
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y);
   int inside = ax <= 1.0 + over && ay <= 1.0 + over;
@@ -26,7 +26,7 @@ VL_CAMERA_INLINE vlDirection vl_unproject_equal_area(VL_UNPROJECT_INPUT) {
   return (vlDirection){__builtin_copysign(a.cos, u) * f, __builtin_copysign(a.sin, w) * f,
                        __builtin_copysign(1.0 - r * r, depth), inside ? 1.0 : 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_equal_area(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_equal_area(VL_PROJECT_INPUT) {
   double length = vl_length3(x, y, z), scale = 1.0 / vl_not_tiny(length);
   double ax = __builtin_fabs(x) * scale, ay = __builtin_fabs(y) * scale,
          az = __builtin_fabs(z) * scale;
@@ -41,7 +41,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_equal_area(VL_PROJECT_INPUT) {
 
 /* For the octant x, y, z >= 0, and the signs of the others: r^2 = 1 - z/L, v = phi r, u = r -
  * v. */
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equal_area(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_equal_area(VL_PROJECT_INPUT) {
   const double two_over_pi = 0.63661977236758134308;
   double length = vl_length3(x, y, z), cube = length * length * length;
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);

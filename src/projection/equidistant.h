@@ -8,19 +8,19 @@
 #include "projection/functions.h"
 
 /* The domain is all directions except straight back. */
-VL_CAMERA_INLINE vlDirection vl_unproject_equidistant(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_equidistant(VL_UNPROJECT_INPUT) {
   double r = vl_not_tiny(vl_length2(x, y));
   vlSinCosDouble a = vl_sincos_double(r < 4.0 ? r : 4.0);
   double k = a.sin / r;
   return (vlDirection){x * k, y * k, a.cos, r <= 3.14159265358979323846 ? 1.0 : 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_equidistant(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_equidistant(VL_PROJECT_INPUT) {
   double across = vl_length2(x, y), r = vl_not_tiny(across);
   double k = vl_atan2_double(r, z) / r;
   return (vlPlanePoint){x * k, y * k, across > 0.0 || z > 0.0 ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equidistant(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_equidistant(VL_PROJECT_INPUT) {
   double across2 = x * x + y * y, all2 = across2 + z * z;
   double r = vl_not_tiny(vl_length2(x, y));
   double k = vl_atan2_double(r, z) / r;

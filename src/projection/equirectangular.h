@@ -11,7 +11,7 @@
 #include "math/approx_double.h"
 #include "projection/functions.h"
 
-VL_CAMERA_INLINE vlDirection vl_unproject_equirectangular(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_equirectangular(VL_UNPROJECT_INPUT) {
   double over_x = c->over_x, over_y = c->over_y;
   int inside = __builtin_fabs(x) <= 3.14159265358979323846 + over_x &&
                __builtin_fabs(y) <= 1.57079632679489661923 + over_y;
@@ -19,13 +19,13 @@ VL_CAMERA_INLINE vlDirection vl_unproject_equirectangular(VL_UNPROJECT_INPUT) {
                  lat = vl_sincos_double(inside ? y : 0.0);
   return (vlDirection){lat.cos * lon.sin, lat.sin, lat.cos * lon.cos, inside ? 1.0 : 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_equirectangular(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_equirectangular(VL_PROJECT_INPUT) {
   double across = vl_length2(x, z);
   return (vlPlanePoint){vl_atan2_double(x, z), vl_atan2_double(y, across),
                         across + __builtin_fabs(y) > 0.0 ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equirectangular(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_equirectangular(VL_PROJECT_INPUT) {
   double across2 = x * x + z * z, across = vl_length2(x, z);
   double all2 = across2 + y * y, g = -y / (all2 * across);
   return (vlPlaneDerivatives){{z / across2, 0.0, -x / across2, 0.0, 0.0},

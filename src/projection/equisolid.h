@@ -7,11 +7,11 @@
 #include "projection/fisheye.h"
 #include "projection/functions.h"
 
-VL_CAMERA_INLINE vlDirection vl_unproject_equisolid(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_equisolid(VL_UNPROJECT_INPUT) {
   double r2 = x * x + y * y, k = vl_root(1.0 - 0.25 * r2);
   return (vlDirection){x * k, y * k, 1.0 - 0.5 * r2, r2 < 4.0 ? 1.0 : 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
   double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = scale * __builtin_sqrt(2.0 / vl_not_tiny(q));
@@ -19,7 +19,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
 }
 
 /* k = sqrt(2 / D), D = L (L + z), L the length. */
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_equisolid(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_equisolid(VL_PROJECT_INPUT) {
   double length = vl_length3(x, y, z), scale = 1.0 / length;
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = scale * __builtin_sqrt(2.0 / q), g = -0.5 * k / (length * length * q);

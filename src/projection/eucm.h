@@ -7,13 +7,13 @@
 #include "projection/functions.h"
 
 /* m = X / (a d + (1 - a) Z), d = sqrt(b R^2 + Z^2). */
-VL_CAMERA_INLINE vlDirection vl_unproject_eucm(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_eucm(VL_UNPROJECT_INPUT) {
   double a = c->shape[0], b = c->shape[1];
   double r2 = x * x + y * y, root = 1.0 - (2.0 * a - 1.0) * b * r2;
   double z = (1.0 - b * a * a * r2) / (a * vl_root(root) + (1.0 - a));
   return (vlDirection){x, y, z, root >= 0.0 && r2 < 1e24 ? 1.0 : 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_eucm(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_eucm(VL_PROJECT_INPUT) {
   double a = c->shape[0], b = c->shape[1];
   double d = __builtin_sqrt(b * (x * x + y * y) + z * z), under = a * d + (1.0 - a) * z,
          k = 1.0 / vl_not_tiny(under);
@@ -21,7 +21,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_eucm(VL_PROJECT_INPUT) {
   return (vlPlanePoint){x * k, y * k, z >= -edge * d && under > VL_HORIZON * d ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_eucm(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_eucm(VL_PROJECT_INPUT) {
   double a = c->shape[0], b = c->shape[1], across2 = x * x + y * y;
   double d = __builtin_sqrt(b * across2 + z * z), divisor = a * d + (1.0 - a) * z;
   double side = a * b / d;

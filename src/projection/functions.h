@@ -6,7 +6,6 @@
 #include "camera/rays.h"
 #include "velo/projection.h"
 
-#define VL_CAMERA_INLINE static inline __attribute__((always_inline))
 /* A projection need not use all of its arguments. */
 #define VL_UNUSED __attribute__((unused))
 /* The arguments of vl_unproject_NAME: the compiled camera, whose member `shape` holds the

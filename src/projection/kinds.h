@@ -62,8 +62,8 @@ VL_PROJECTION_KINDS(VL_NEEDS_FUNCTIONS)
 #undef VL_NEEDS_FUNCTIONS
 #undef VL_HAS_FUNCTIONS
 
-VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCameraCompiled *c,
-                                                double face, double x, double y) {
+VL_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCameraCompiled *c,
+                                         double face, double x, double y) {
   vlDirection d = {x, y, 1.0, 1.0};
   switch (kind) {
 #define VL_UNPROJECT_CASE(kind, unproject, project, derive) \
@@ -81,8 +81,8 @@ VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCamer
 }
 
 /* Projects a point in camera space to the plane. */
-VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCameraCompiled *c,
-                                               double x, double y, double z) {
+VL_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCameraCompiled *c, double x,
+                                        double y, double z) {
   vlPlanePoint p = {x, y, 0.0};
   switch (kind) {
 #define VL_PROJECT_CASE(kind, unproject, project, derive) \
@@ -99,9 +99,8 @@ VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCamera
 }
 
 /* The derivatives of vl_plane_project, inside its domain. */
-VL_CAMERA_INLINE vlPlaneDerivatives vl_plane_derive(vlProjection kind,
-                                                    const vlCameraCompiled *c, double x,
-                                                    double y, double z) {
+VL_INLINE vlPlaneDerivatives vl_plane_derive(vlProjection kind, const vlCameraCompiled *c,
+                                             double x, double y, double z) {
   vlPlaneDerivatives d = {{0.0}, {0.0}};
   switch (kind) {
 #define VL_DERIVE_CASE(kind, unproject, project, derive) \

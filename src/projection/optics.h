@@ -5,14 +5,14 @@
 
 #include "projection/functions.h"
 
-VL_CAMERA_INLINE vlDirection vl_unproject_optics(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_optics(VL_UNPROJECT_INPUT) {
   return (vlDirection){x, y, 1.0, 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_optics(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_optics(VL_PROJECT_INPUT) {
   return (vlPlanePoint){x, y, 0.0};
 }
 
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_optics(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_optics(VL_PROJECT_INPUT) {
   return (vlPlaneDerivatives){{0.0}, {0.0}};
 }
 

@@ -15,7 +15,7 @@ static inline double vl_panini_edge(double d) {
   return d <= 1.0 ? -d : -1.0 / d;
 }
 
-VL_CAMERA_INLINE vlDirection vl_unproject_panini(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_panini(VL_UNPROJECT_INPUT) {
   double d = c->shape[0];
   double k = x * x / ((d + 1.0) * (d + 1.0)), root = 1.0 + k * (1.0 - d * d);
   double cosine = (vl_root(root) - k * d) / (k + 1.0);
@@ -23,7 +23,7 @@ VL_CAMERA_INLINE vlDirection vl_unproject_panini(VL_UNPROJECT_INPUT) {
   return (vlDirection){x / s, y / s, cosine,
                        root >= 0.0 && over > VL_HORIZON && k < 1e24 ? 1.0 : 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
   double d = c->shape[0];
   double across = vl_length2(x, z), scale = 1.0 / vl_not_tiny(across), cosine = z * scale;
   double over = d + cosine, s = (d + 1.0) / vl_not_tiny(over) * scale;
@@ -33,7 +33,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
 }
 
 /* The divisor is (d |xz| + z) / (d + 1). */
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_panini(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_panini(VL_PROJECT_INPUT) {
   double d = c->shape[0], across = vl_length2(x, z), k = 1.0 / (d + 1.0);
   double divisor = (d * across + z) * k;
   const double by[5] = {d * k * x / across, 0.0, (d * z / across + 1.0) * k,

@@ -21,14 +21,14 @@ static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, 
   return r;
 }
 
-VL_CAMERA_INLINE vlDirection vl_unproject_perspective(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_perspective(VL_UNPROJECT_INPUT) {
   return (vlDirection){x, y, 1.0, 1.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_perspective(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_perspective(VL_PROJECT_INPUT) {
   return (vlPlanePoint){x / z, y / z, z > 0.0 ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_perspective(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_perspective(VL_PROJECT_INPUT) {
   const double by[5] = {0.0, 0.0, 1.0, 0.0, 0.0};
   return vl_derive_quotient(x, y, z, by);
 }

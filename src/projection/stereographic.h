@@ -7,11 +7,11 @@
 #include "projection/fisheye.h"
 #include "projection/functions.h"
 
-VL_CAMERA_INLINE vlDirection vl_unproject_stereographic(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_stereographic(VL_UNPROJECT_INPUT) {
   double t = 0.25 * (x * x + y * y), k = 1.0 / (1.0 + t);
   return (vlDirection){x * k, y * k, (1.0 - t) * k, t < 1e30 ? 1.0 : 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_stereographic(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_stereographic(VL_PROJECT_INPUT) {
   double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = 2.0 * scale / vl_not_tiny(q);
@@ -20,7 +20,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_stereographic(VL_PROJECT_INPUT) {
   return (vlPlanePoint){x * k, y * k, q > 1e-29 ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_stereographic(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_stereographic(VL_PROJECT_INPUT) {
   double length = vl_length3(x, y, z), scale = 1.0 / length;
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double divisor = 0.5 * length * q, half = 0.5 * scale;

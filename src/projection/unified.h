@@ -6,13 +6,13 @@
 #include "projection/functions.h"
 
 /* m = X / (Z + xi |P|). */
-VL_CAMERA_INLINE vlDirection vl_unproject_unified(VL_UNPROJECT_INPUT) {
+VL_INLINE vlDirection vl_unproject_unified(VL_UNPROJECT_INPUT) {
   double xi = c->shape[0];
   double r2 = x * x + y * y, root = 1.0 + (1.0 - xi * xi) * r2;
   double k = (xi + vl_root(root)) / (r2 + 1.0);
   return (vlDirection){x * k, y * k, k - xi, root >= 0.0 && r2 < 1e24 ? 1.0 : 0.0};
 }
-VL_CAMERA_INLINE vlPlanePoint vl_project_unified(VL_PROJECT_INPUT) {
+VL_INLINE vlPlanePoint vl_project_unified(VL_PROJECT_INPUT) {
   double xi = c->shape[0];
   double length = vl_length3(x, y, z), under = z + xi * length, k = 1.0 / vl_not_tiny(under);
   double edge = xi > 1.0 ? 1.0 / xi : xi;
@@ -20,7 +20,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_project_unified(VL_PROJECT_INPUT) {
                         z >= -edge * length && under > VL_HORIZON * length ? 1.0 : 0.0};
 }
 
-VL_CAMERA_INLINE vlPlaneDerivatives vl_derive_unified(VL_PROJECT_INPUT) {
+VL_INLINE vlPlaneDerivatives vl_derive_unified(VL_PROJECT_INPUT) {
   double xi = c->shape[0], length = vl_length3(x, y, z), divisor = z + xi * length;
   double side = xi / length;
   const double by[5] = {side * x, side * y, 1.0 + side * z, length, 0.0};

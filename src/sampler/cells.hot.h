@@ -9,8 +9,8 @@
 
 /* 1-D points: sample `index` is in cell permute(index) of s->set cells, jittered or at the
  * cell's centre. */
-VL_SAMPLER_INLINE void vl_cells_1d(const int jittered, const vlSampler *s,
-                                   const vlSamplerChunk *c, float *u) {
+VL_INLINE void vl_cells_1d(const int jittered, const vlSampler *s, const vlSamplerChunk *c,
+                           float *u) {
   _Alignas(64) uint32_t cell[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, cell);
   uint32_t bits = s->jitter_bits, down = 32 - bits, half = 1u << (bits - 1);
@@ -24,8 +24,8 @@ VL_SAMPLER_INLINE void vl_cells_1d(const int jittered, const vlSampler *s,
 
 /* Regular and stratified points. A row has grid_x or grid_x - 1 cells, and its height is
  * proportional to their number, so that all cells have the same area for any spp. */
-VL_SAMPLER_INLINE void vl_grid_2d(const int jittered, const vlSampler *s,
-                                  const vlSamplerChunk *c, float *u, float *v) {
+VL_INLINE void vl_grid_2d(const int jittered, const vlSampler *s, const vlSamplerChunk *c,
+                          float *u, float *v) {
   _Alignas(64) uint32_t cell[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, cell);
   uint32_t bits = s->jitter_bits, down = 32 - bits, half = 1u << (bits - 1);
@@ -47,8 +47,7 @@ VL_SAMPLER_INLINE void vl_grid_2d(const int jittered, const vlSampler *s,
   }
 }
 
-VL_SAMPLER_INLINE void vl_nrooks_2d(const vlSampler *s, const vlSamplerChunk *c, float *u,
-                                    float *v) {
+VL_INLINE void vl_nrooks_2d(const vlSampler *s, const vlSamplerChunk *c, float *u, float *v) {
   _Alignas(64) uint32_t row[VL_SAMPLER_CHUNK], column[VL_SAMPLER_CHUNK];
   vlPermutation p = vl_permutation(s->set);
   vl_permute_lanes(c->n, p, c->index, c->key, 0, column);
@@ -66,8 +65,8 @@ VL_SAMPLER_INLINE void vl_nrooks_2d(const vlSampler *s, const vlSamplerChunk *c,
 /* Correlated multi-jittered points (Kensler 2013, "Correlated Multi-Jittered Sampling", the
  * form for any number of samples). m and n are the numbers of columns and rows. Sample k = row
  * m + column has y = (k + jitter) / set, x = (px(column) + (py(row) + jitter) / n) / m. */
-VL_SAMPLER_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerChunk *c,
-                                            float *u, float *v) {
+VL_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerChunk *c, float *u,
+                                    float *v) {
   _Alignas(64) uint32_t k[VL_SAMPLER_CHUNK], row[VL_SAMPLER_CHUNK], column[VL_SAMPLER_CHUNK];
   uint32_t m = s->grid_x, n = (s->set + m - 1) / m;
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, k);
@@ -93,8 +92,8 @@ VL_SAMPLER_INLINE void vl_multi_jittered_2d(const vlSampler *s, const vlSamplerC
 
 /* Hammersley points: point i of n is (i / n, radical inverse of i). Its x is jittered within
  * the column, and the binary digits of its y are flipped at random. */
-VL_SAMPLER_INLINE void vl_hammersley_2d(const vlSampler *s, const vlSamplerChunk *c, float *u,
-                                        float *v) {
+VL_INLINE void vl_hammersley_2d(const vlSampler *s, const vlSamplerChunk *c, float *u,
+                                float *v) {
   _Alignas(64) uint32_t k[VL_SAMPLER_CHUNK];
   vl_permute_lanes(c->n, vl_permutation(s->set), c->index, c->key, 0, k);
   uint32_t bits = s->jitter_bits, down = 32 - bits;

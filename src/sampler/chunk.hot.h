@@ -8,8 +8,6 @@
 #include "math/vec.h"
 #include "sampler/sampler.h"
 
-#define VL_SAMPLER_INLINE static inline __attribute__((always_inline))
-
 enum { VL_SAMPLER_CHUNK = 128 };
 
 typedef struct vlSamplerChunk {

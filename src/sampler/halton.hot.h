@@ -28,8 +28,8 @@ static inline uint32_t vl_scramble_digit(uint32_t digit, uint32_t b, float inver
   return vl_divide(e * (1 + vl_scale16(g & 0xffffu, b - 1)) + k, b, inverse).remainder;
 }
 
-VL_SAMPLER_INLINE void vl_halton_1d(const vlSampler *s, const vlSamplerChunk *c,
-                                    uint32_t dimension, float *u) {
+VL_INLINE void vl_halton_1d(const vlSampler *s, const vlSamplerChunk *c, uint32_t dimension,
+                            float *u) {
   uint32_t b = vl_primes[dimension % VL_PRIME_COUNT];
   if (b == 2) {
     /* must vectorise */

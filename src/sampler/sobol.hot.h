@@ -22,20 +22,19 @@ typedef struct vlSobolSeeds {
 /* Arbitrary numbers, which make seeds of the two numbers out of the key of the index. */
 static const uint32_t vl_sobol_x_step = 0x68e31da4u, vl_sobol_y_step = 0xb5297a4du;
 
-VL_SAMPLER_INLINE uint32_t vl_sobol_shuffled(uint32_t index, uint32_t seed) {
+VL_INLINE uint32_t vl_sobol_shuffled(uint32_t index, uint32_t seed) {
   return vl_reverse_bits(vl_owen_reversed(vl_reverse_bits(index), seed));
 }
-VL_SAMPLER_INLINE float vl_sobol_x(uint32_t j, uint32_t seed) {
+VL_INLINE float vl_sobol_x(uint32_t j, uint32_t seed) {
   return vl_fraction_float(vl_reverse_bits(vl_owen_reversed(j, seed)));
 }
-VL_SAMPLER_INLINE float vl_sobol_y(uint32_t j, uint32_t seed) {
+VL_INLINE float vl_sobol_y(uint32_t j, uint32_t seed) {
   return vl_fraction_float(vl_reverse_bits(vl_owen_reversed(vl_sobol2_reversed(j), seed)));
 }
 
-VL_SAMPLER_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32_t n,
-                                      const int32_t *px, const int32_t *py,
-                                      const uint32_t *index, uint32_t dimension, float *u,
-                                      float *v) {
+VL_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32_t n, const int32_t *px,
+                              const int32_t *py, const uint32_t *index, uint32_t dimension,
+                              float *u, float *v) {
   uint32_t seed = vl_dimension_seed(s, dimension, 0);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
@@ -50,7 +49,7 @@ VL_SAMPLER_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32
 /* A hash of what of the global index (below) is beyond 32 bits, and of the set that the sample
  * index belongs to; 0 if both are 0. Two shifts, because shift may be 0: a shift by 32 is
  * undefined. */
-VL_SAMPLER_INLINE uint32_t vl_zsobol_other(uint32_t morton, uint32_t index, uint32_t shift) {
+VL_INLINE uint32_t vl_zsobol_other(uint32_t morton, uint32_t index, uint32_t shift) {
   return vl_hash(((morton >> 1) >> (31 - shift)) ^ vl_hash(index >> shift));
 }
 
@@ -58,10 +57,9 @@ VL_SAMPLER_INLINE uint32_t vl_zsobol_other(uint32_t morton, uint32_t index, uint
  * bits, which occur for very large images and sample counts, and sample indices from 2^shift on
  * select other scrambles. wide: the batch may have such an index. The hash of 0 is 0, so both
  * values of `wide` give the same bits for other indices. */
-VL_SAMPLER_INLINE void vl_zsobol_lanes(const int pair, const int wide, vlSobolSeeds seed,
-                                       uint32_t shift, uint32_t n, const int32_t *px,
-                                       const int32_t *py, const uint32_t *index, float *u,
-                                       float *v) {
+VL_INLINE void vl_zsobol_lanes(const int pair, const int wide, vlSobolSeeds seed,
+                               uint32_t shift, uint32_t n, const int32_t *px, const int32_t *py,
+                               const uint32_t *index, float *u, float *v) {
   uint32_t mask = (1u << shift) - 1;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
@@ -74,9 +72,9 @@ VL_SAMPLER_INLINE void vl_zsobol_lanes(const int pair, const int wide, vlSobolSe
   }
 }
 
-VL_SAMPLER_INLINE void vl_zsobol(const int pair, const vlSampler *s, uint32_t n,
-                                 const int32_t *px, const int32_t *py, const uint32_t *index,
-                                 uint32_t dimension, float *u, float *v) {
+VL_INLINE void vl_zsobol(const int pair, const vlSampler *s, uint32_t n, const int32_t *px,
+                         const int32_t *py, const uint32_t *index, uint32_t dimension, float *u,
+                         float *v) {
   vlSobolSeeds seed = {vl_dimension_seed(s, dimension, 0), vl_dimension_seed(s, dimension, 1),
                        vl_dimension_seed(s, dimension, 2)};
   uint32_t shift = s->log2_spp;
@@ -109,9 +107,9 @@ typedef struct vlSobolChunk {
   _Alignas(64) uint32_t j[VL_SAMPLER_CHUNK], x[VL_SAMPLER_CHUNK], y[VL_SAMPLER_CHUNK];
 } vlSobolChunk;
 
-VL_SAMPLER_INLINE void vl_sobol_chunk(const vlSampler *s, uint32_t n, const int32_t *px,
-                                      const int32_t *py, const uint32_t *index,
-                                      uint32_t dimension, uint32_t with, vlSobolChunk *c) {
+VL_INLINE void vl_sobol_chunk(const vlSampler *s, uint32_t n, const int32_t *px,
+                              const int32_t *py, const uint32_t *index, uint32_t dimension,
+                              uint32_t with, vlSobolChunk *c) {
   uint32_t seed = vl_dimension_seed(s, dimension, 0), seed_with = vl_dimension_seed(s, with, 0);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
@@ -122,9 +120,9 @@ VL_SAMPLER_INLINE void vl_sobol_chunk(const vlSampler *s, uint32_t n, const int3
   }
 }
 
-VL_SAMPLER_INLINE void vl_zsobol_chunk(const vlSampler *s, uint32_t n, const int32_t *px,
-                                       const int32_t *py, const uint32_t *index,
-                                       uint32_t dimension, uint32_t with, vlSobolChunk *c) {
+VL_INLINE void vl_zsobol_chunk(const vlSampler *s, uint32_t n, const int32_t *px,
+                               const int32_t *py, const uint32_t *index, uint32_t dimension,
+                               uint32_t with, vlSobolChunk *c) {
   uint32_t shuffle = vl_dimension_seed(s, with, 0), x = vl_dimension_seed(s, dimension, 1);
   uint32_t y = vl_dimension_seed(s, dimension, 2), shift = s->log2_spp,
            mask = (1u << shift) - 1;
@@ -139,8 +137,8 @@ VL_SAMPLER_INLINE void vl_zsobol_chunk(const vlSampler *s, uint32_t n, const int
 }
 
 /* One of the numbers: generator matrix times index, scrambled. */
-VL_SAMPLER_INLINE void vl_sobol_number(uint32_t n, const uint32_t columns[32],
-                                       const uint32_t *j, const uint32_t *seed, float *u) {
+VL_INLINE void vl_sobol_number(uint32_t n, const uint32_t columns[32], const uint32_t *j,
+                               const uint32_t *seed, float *u) {
   _Alignas(64) uint32_t product[VL_SAMPLER_CHUNK] = {0};
   for (uint32_t k = 0; k < 32; k += 4) {
     uint32_t a = columns[k], b = columns[k + 1], c = columns[k + 2], d = columns[k + 3];

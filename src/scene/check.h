@@ -18,7 +18,7 @@ struct vlCheck {
 };
 
 void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source,
-                  const char *format, ...) __attribute__((format(printf, 5, 6)));
+                  const char *format, ...) VL_PRINTF(5, 6);
 
 /* The parts of the check. */
 typedef void vlCheckPart(vlCheck *check);

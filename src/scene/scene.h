@@ -161,7 +161,7 @@ bool vl_principled_transmits(const vlMaterialDef *def);
 
 /* Stores the error in the scene if it is the first one. Returns false. */
 bool vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+    VL_PRINTF(4, 5);
 /* The same for memory that is exhausted. */
 bool vl_scene_fail_memory(vlScene *scene);
 

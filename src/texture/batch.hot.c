@@ -76,9 +76,8 @@ static inline vlTexturePoint point_of(const vlTextureRun *r, const vlTextureNode
 typedef float PointFloat(const vlTextureNode *node, vlTexturePoint at);
 
 /* Inlined together with f, so that there is one loop per kind. */
-static inline __attribute__((always_inline)) void each_lane(const vlTextureRun *r,
-                                                            const vlTextureNode *node,
-                                                            PointFloat *f, float *out) {
+VL_INLINE void each_lane(const vlTextureRun *r, const vlTextureNode *node, PointFloat *f,
+                         float *out) {
   for (uint32_t i = r->first; i < r->last; i++)
     out[i] = f(node, point_of(r, node, i));
 }
@@ -302,10 +301,8 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node,
 }
 
 typedef vlVec3 PointColor(const vlTextureNode *node, vlTexturePoint at);
-static inline __attribute__((always_inline)) void each_color(const vlTextureRun *r,
-                                                             const vlTextureNode *node,
-                                                             PointColor *f,
-                                                             float *const out[4]) {
+VL_INLINE void each_color(const vlTextureRun *r, const vlTextureNode *node, PointColor *f,
+                          float *const out[4]) {
   Upsampling up = upsampling_of(r, node);
   for (uint32_t i = r->first; i < r->last; i++)
     upsample(r, &up, f(node, point_of(r, node, i)), i, out);
@@ -327,9 +324,7 @@ static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
   vl_texture_float(r, node->amount, share);
   return share;
 }
-static inline __attribute__((always_inline)) const float *point_share(vlTextureRun *r,
-                                                                      const vlTextureNode *node,
-                                                                      PointFloat *f) {
+VL_INLINE const float *point_share(vlTextureRun *r, const vlTextureNode *node, PointFloat *f) {
   float *share = vl_texture_row(r);
   each_lane(r, node, f, share);
   return share;

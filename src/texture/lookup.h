@@ -85,10 +85,8 @@ typedef struct vlTexelSquare {
   size_t row[2];
   uint32_t column[2];
 } vlTexelSquare;
-static inline __attribute__((always_inline)) vlTexel vl_blend_channels(const vlMipmap *mip,
-                                                                       const vlMipLevel *l,
-                                                                       const vlTexelSquare *q,
-                                                                       uint32_t channels) {
+VL_INLINE vlTexel vl_blend_channels(const vlMipmap *mip, const vlMipLevel *l,
+                                    const vlTexelSquare *q, uint32_t channels) {
   vlTexel r = {{0, 0, 0, 0}};
   if (mip->is_bytes) {
     const uint8_t *top = l->bytes + q->row[0], *below = l->bytes + q->row[1];
@@ -108,9 +106,8 @@ static inline __attribute__((always_inline)) vlTexel vl_blend_channels(const vlM
     r.c[i] = q->w[0] * a[i] + q->w[1] * b[i] + q->w[2] * c[i] + q->w[3] * d[i];
   return r;
 }
-static inline __attribute__((always_inline)) vlTexel vl_blend_texels(const vlMipmap *mip,
-                                                                     const vlMipLevel *l,
-                                                                     const vlTexelSquare *q) {
+VL_INLINE vlTexel vl_blend_texels(const vlMipmap *mip, const vlMipLevel *l,
+                                  const vlTexelSquare *q) {
   return mip->channels == 3 ? vl_blend_channels(mip, l, q, 3)
                             : vl_blend_channels(mip, l, q, mip->channels);
 }
@@ -189,10 +186,8 @@ typedef struct vlFilterPlan {
 } vlFilterPlan;
 /* a, b: the footprint's axes; width, height: of the finest level; last: index of the coarsest.
  * Without branches, for vector loops. */
-static inline __attribute__((always_inline)) vlFilterPlan vl_filter_plan(float width,
-                                                                         float height,
-                                                                         float last, vlVec2 a,
-                                                                         vlVec2 b) {
+VL_INLINE vlFilterPlan vl_filter_plan(float width, float height, float last, vlVec2 a,
+                                      vlVec2 b) {
   /* axes in texels */
   float as = a.x * width, at = a.y * height, bs = b.x * width, bt = b.y * height;
   float a2 = as * as + at * at, b2 = bs * bs + bt * bt;
@@ -276,10 +271,8 @@ static inline uint32_t vl_lookup_squares(const vlTextureNode *node, const vlMipm
 
 /* Prefetches the texels of some squares. A function without any effect but prefetches must be
  * always_inline: gcc 12 may take it for one without effects and delete its calls. */
-static inline __attribute__((always_inline)) void vl_prefetch_squares(const vlMipmap *mip,
-                                                                      const vlImageLookup *at,
-                                                                      const vlTexelSquare *q,
-                                                                      uint32_t count) {
+VL_INLINE void vl_prefetch_squares(const vlMipmap *mip, const vlImageLookup *at,
+                                   const vlTexelSquare *q, uint32_t count) {
   const vlMipLevel *first = &mip->levels[(uint32_t)at->plan.level];
   bool both = count > at->plan.taps;
   for (uint32_t k = 0; k < count; k++, q++) {
@@ -297,9 +290,8 @@ static inline __attribute__((always_inline)) void vl_prefetch_squares(const vlMi
  * level. A trilinear filter, which also serves for EWA, blends two levels. Bilinear and
  * trilinear filters take several taps. squares: those of vl_lookup_squares; null: they are
  * computed here. */
-static inline __attribute__((always_inline)) vlTexel vl_image_value(
-    const vlTextureNode *node, const vlMipmap *mip, const vlImageLookup *at,
-    const vlTexelSquare *squares) {
+VL_INLINE vlTexel vl_image_value(const vlTextureNode *node, const vlMipmap *mip,
+                                 const vlImageLookup *at, const vlTexelSquare *squares) {
   float s = at->s, t = at->t;
   vlFilterPlan plan = at->plan;
   uint32_t level = (uint32_t)plan.level;

@@ -202,8 +202,7 @@ static inline void vl_path_lambda(const vlPaths *p, uint32_t i, float lambda[4])
     lambda[c] = p->lambda[c][i];
 }
 /* How surface lane i receives light, and how the point that ray i left did. */
-static inline __attribute__((always_inline)) vlReceiver vl_receiver(const vlSurface *f,
-                                                                    uint32_t i) {
+VL_INLINE vlReceiver vl_receiver(const vlSurface *f, uint32_t i) {
   vlVec3 n = vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), 1.0f - f->no_cosine[i]);
   return (vlReceiver){vl_vec3(f->px[i], f->py[i], f->pz[i]), n, f->side[i]};
 }

@@ -215,14 +215,12 @@ void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
 void vl_stage_light_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
                          const vlLightSamples *light, vlBsdfValues *to);
 /* Whether the value of lane i is not 0; that of no number counts. */
-static inline __attribute__((always_inline)) int vl_has_value(const vlBsdfValues *bsdf,
-                                                              uint32_t i) {
+VL_INLINE int vl_has_value(const vlBsdfValues *bsdf, uint32_t i) {
   float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i];
   return (sum > 0.0f) | (sum != sum);
 }
 /* Where a ray in direction w leaves lane i of a surface. */
-static inline __attribute__((always_inline)) vlVec3 vl_surface_origin(const vlSurface *f,
-                                                                      uint32_t i, vlVec3 w) {
+VL_INLINE vlVec3 vl_surface_origin(const vlSurface *f, uint32_t i, vlVec3 w) {
   return vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
                           vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
 }

@@ -397,7 +397,7 @@ vlResult vl_world_step(const vlWorld *world, const char *name, double fraction, 
 vlResult vl_world_locate_error(vlSource source, vlError *error, vlResult r);
 /* Logs a warning about what stands at this place of a file. */
 void vl_world_warn(const vlWorld *world, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 /* A new block owned by the world, or null. */
 void *vl_world_block(vlWorld *world, size_t count, size_t size);
 /* Sets *to to a new block owned by the world, with a copy of the numbers; leaves *to unchanged

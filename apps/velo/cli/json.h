@@ -8,6 +8,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "cli/macros.h"
+
 typedef struct Json {
   FILE *out;
   bool comma; /* a value precedes the next one */
@@ -25,7 +27,7 @@ void json_number(Json *json, const char *key, double number);
 void json_integer(Json *json, const char *key, int64_t number);
 /* Several members: "name %s, size %u, mean %g", with their values. %s: as of json_text; %g: a
  * number; %u, %d, %lld: whole numbers; %i: whether something is so. */
-void json_put(Json *json, const char *members, ...) __attribute__((format(printf, 2, 3)));
+void json_put(Json *json, const char *members, ...) PRINTF(2, 3);
 void json_put_list(Json *json, const char *members, va_list values);
 /* Begins the one object that a command prints to stdout; json_close ends it and the line. */
 Json *json_open(void);

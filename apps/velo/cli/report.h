@@ -6,6 +6,7 @@
 #define APP_CLI_REPORT_H
 
 #include "cli/json.h"
+#include "cli/macros.h"
 #include "velo/base.h"
 
 /* Exit codes of velo. After SIGHUP, SIGINT, SIGUSR1, SIGUSR2, SIGTERM or SIGXCPU: 128 + signal
@@ -38,11 +39,11 @@ bool report_is_terminal(void);
 int report_terminal_columns(void);
 
 /* Reports "velo: message". All return the exit code, for `return report_usage(...)`. */
-int report_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
+int report_usage(const char *format, ...) PRINTF(1, 2);
 /* Sets the file that contains the command line: report_usage then names this file and returns
  * STATUS_SCENE. Null: the user's command line. */
 void report_usage_of(const char *file);
-int report_failure(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int report_failure(int status, const char *format, ...) PRINTF(2, 3);
 /* The message of an error; where it has none, the name of the result. */
 const char *error_text(const vlError *error, vlResult result);
 /* Reports "velo: file:line:column: message". `file` is used when the library's error has no
@@ -56,12 +57,12 @@ int report_no_memory(void);
  * reporting that it cannot be written. A reader that has seen enough (velo help render | head)
  * is no error. */
 int report_stdout(int status);
-void report_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void report_warning(const char *format, ...) PRINTF(1, 2);
 /* Reports a result that has no vlError: "FILE: WHAT: out of memory". Returns the exit code; -1
  * for VL_OK. */
 int report_reason(vlResult result, const char *file, const char *what);
 /* Reports a note. Prints nothing with --quiet or in JSON mode. */
-void report_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void report_note(const char *format, ...) PRINTF(1, 2);
 /* Receives each error and warning besides stderr. kind: "warning"; null: an error. what:
  * message and location. Called on the thread that reports. */
 typedef void ReportFn(void *user, const char *kind, const vlError *what);

@@ -5,13 +5,14 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "cli/macros.h"
+
 /* In upper case or lower. */
 bool text_ends_with(const char *text, const char *suffix);
 /* What stands behind the last slash of a path. */
 const char *text_file_name(const char *path);
 /* Adds to a text in an array of so many bytes; what does not fit is cut. */
-void text_add(char *text, size_t size, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+void text_add(char *text, size_t size, const char *format, ...) PRINTF(3, 4);
 /* Makes a list: "a, b, c". */
 void text_list(char *text, size_t size, const char *const *words, int count);
 /* Prints a string of a file to stdout, with ? for control characters. */

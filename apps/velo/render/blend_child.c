@@ -167,8 +167,7 @@ static void add_word(Words *words, const char *word) {
     words->list[words->count++] = word;
 }
 
-__attribute__((format(printf, 2, 3))) static void add_text(Words *words, const char *format,
-                                                           ...) {
+PRINTF(2, 3) static void add_text(Words *words, const char *format, ...) {
   va_list values;
   char *text = words->texts[words->text_count++];
   va_start(values, format);

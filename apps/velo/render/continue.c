@@ -69,8 +69,7 @@ typedef struct Source {
   vlFilmFile *file;
 } Source;
 
-static int refuse(const Source *source, int status, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+static int refuse(const Source *source, int status, const char *format, ...) PRINTF(3, 4);
 static int refuse(const Source *source, int status, const char *format, ...) {
   FORMATTED(text, format);
   if (source->repeats)

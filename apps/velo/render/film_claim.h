@@ -4,6 +4,7 @@
 #ifndef APP_RENDER_FILM_CLAIM_H
 #define APP_RENDER_FILM_CLAIM_H
 
+#include "cli/macros.h"
 #include "cli/options.h"
 #include "velo/film.h"
 
@@ -22,7 +23,7 @@ int film_claim(FilmClaim *claim, vlContext *context, const char *path, const cha
 void film_claim_release(FilmClaim *claim);
 /* Says why the film that is there stays: "WHY; --overwrite replaces it". Returns the exit
  * code. */
-int film_claim_refuse(const char *format, ...) __attribute__((format(printf, 1, 2)));
+int film_claim_refuse(const char *format, ...) PRINTF(1, 2);
 /* Checks --overwrite. Returns -1 or the exit code. */
 int film_claim_check(bool overwrite, const char *film, const char *from);
 /* Settings of the earlier film that the command leaves open: sums of errors, which it may have

@@ -5,6 +5,7 @@
 #define APP_SCENE_VERIFY_H
 
 #include "camera/scene_world.h"
+#include "cli/macros.h"
 #include "scene/verify_statistics.h"
 #include "velo/tracer.h"
 
@@ -116,7 +117,7 @@ typedef struct Verify {
 
 /* Adds the runs and the notes. */
 void verify_plan(Verify *v);
-void verify_note(Verify *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void verify_note(Verify *v, const char *format, ...) PRINTF(2, 3);
 /* Whether a light is in the group. */
 bool verify_has_light(VerifyLights lights, const vlLightDef *light);
 /* Whether emissive surfaces are in the group. */

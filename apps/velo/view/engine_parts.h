@@ -353,7 +353,7 @@ typedef struct LastTexts {
 } LastTexts;
 /* Posts a message of this type with these members (json_put) to a page, or to all (0). */
 void engine_post(Engine *engine, uint32_t client, const char *type, const char *members, ...)
-    __attribute__((format(printf, 4, 5)));
+    PRINTF(4, 5);
 /* Posts the state to a page, or to all (0); the caller holds the lock. */
 void engine_post_state(Engine *engine, uint32_t client);
 /* The server's calls. */

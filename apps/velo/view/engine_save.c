@@ -196,8 +196,7 @@ static void put_word(FILE *out, const char *word) {
 }
 
 /* Writes an option and its value. */
-static void put_option(FILE *out, const char *option, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+static void put_option(FILE *out, const char *option, const char *format, ...) PRINTF(3, 4);
 static void put_option(FILE *out, const char *option, const char *format, ...) {
   va_list list;
   put_word(out, option);

@@ -3,6 +3,7 @@
 #ifndef APP_VIEW_MESSAGE_H
 #define APP_VIEW_MESSAGE_H
 
+#include "cli/macros.h"
 #include "velo/setting.h"
 
 enum {
@@ -103,7 +104,6 @@ typedef struct ViewMessage {
 bool message_parse(const MessageType *types, const char *text, size_t size,
                    ViewMessage *message, char why[VL_GIVEN_MESSAGE]);
 /* Puts the reason why a message is refused into the error. Returns its code, ARGUMENT. */
-vlResult message_refuse(vlError *error, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+vlResult message_refuse(vlError *error, const char *format, ...) PRINTF(2, 3);
 
 #endif

@@ -168,13 +168,12 @@ enum {
  * unless its comment says otherwise. */
 
 /* Reports the error "path: location: message". Always returns false. */
-bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+bool vl_gltf_fail(const vlGltfLocation *location, const char *format, ...) VL_PRINTF(2, 3);
 /* The same of a member of the object at the location. */
 bool vl_gltf_fail_key(const vlGltfLocation *at, const char *key, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 bool vl_gltf_fail_code(vlResult code, const vlGltfLocation *location, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 static inline bool vl_gltf_fail_memory(vlGltf *g) {
   return vl_scene_fail_memory(g->scene);
 }
@@ -184,7 +183,7 @@ vlGltf *vl_gltf_of(const vlGltfLocation *location);
  * Returns the length. */
 size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t size);
 void vl_gltf_warn(vlLogLevel level, const vlGltfLocation *location, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 /* Returns true on the first call for this bit. */
 bool vl_gltf_once(vlGltf *g, uint32_t bit);
 

@@ -182,31 +182,29 @@ enum { VL_IMPORT_DEPTH = 200, VL_IMPORT_PROBLEMS = 1000 };
 
 /* ---- errors, warnings, copies (report.c) ------------------------------------------------- */
 bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+    VL_PRINTF(4, 5);
 /* The same of what the scene's text says: the code is VL_ERROR_SCENE. */
 bool vl_import_wrong(vlImport *import, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 /* The same at a directive or at one of its parameters; the message begins with dict->what. */
-bool vl_dict_fail(const vlDict *dict, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+bool vl_dict_fail(const vlDict *dict, const char *format, ...) VL_PRINTF(2, 3);
 bool vl_dict_fail_at(const vlDict *dict, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 bool vl_import_fine(const vlImport *import); /* no error was reported */
 bool vl_import_fail_memory(vlImport *import);
 void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format,
-                    ...) __attribute__((format(printf, 4, 5)));
-void vl_dict_warn(const vlDict *dict, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+                    ...) VL_PRINTF(4, 5);
+void vl_dict_warn(const vlDict *dict, const char *format, ...) VL_PRINTF(2, 3);
 /* While diagnosing (vl_scene_diagnose): reports the scene's error and clears it. False when not
  * diagnosing or when the error is fatal. */
 bool vl_import_recover(vlImport *import);
 /* While diagnosing: reports a note on valid input that is probably unintended. */
 void vl_import_remark(vlImport *import, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 /* Reports valid pbrt that velo does not support: as an error, or, when permissive, as a
  * warning; it then returns true. */
 bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 /* Reports a kind that is not among `known` in the same way. */
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name,
                        const char *const *known, size_t count);

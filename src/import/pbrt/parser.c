@@ -146,7 +146,7 @@ vlSource vl_parse_source(const vlParserFile *file, const vlToken *token) {
 
 /* Reports an error at a token. Returns false. */
 static bool fail_at(const vlParserFile *file, const vlToken *token, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 static bool fail_at(const vlParserFile *file, const vlToken *token, const char *format, ...) {
   char text[512];
   VL_FORMAT(text, format);

@@ -34,7 +34,7 @@ typedef struct vlParserFile {
 
 vlSource vl_parse_source(const vlParserFile *file, const vlToken *token);
 bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 bool vl_parse_fail_memory(const vlParserFile *file);
 /* Reads the directives of a file. data[size] must be a zero byte; the text is modified. */
 bool vl_parse_block(vlParserFile *file, char *data, size_t size);

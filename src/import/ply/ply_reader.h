@@ -89,7 +89,7 @@ static inline uint32_t vl_ply_type_size(vlPlyType type) {
   return type <= VL_PLY_U8 ? 1 : type <= VL_PLY_U16 ? 2 : type <= VL_PLY_F32 ? 4 : 8;
 }
 
-bool vl_ply_fail(vlPlyReader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool vl_ply_fail(vlPlyReader *r, const char *format, ...) VL_PRINTF(2, 3);
 bool vl_ply_fail_memory(vlPlyReader *r);
 /* A number of a vertex is not finite. */
 bool vl_ply_fail_number(vlPlyReader *r, uint64_t vertex, vlPlyRole role, double value);

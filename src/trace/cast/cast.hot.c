@@ -105,10 +105,8 @@ static void put_surface(uint32_t n, const vlVertices *at, uint32_t wanted, vlCas
  * then the corners. */
 enum { INDEX_AHEAD = 48, CORNER_AHEAD = 16, LARGE_MESH = 4096 };
 
-static inline __attribute__((always_inline)) void put_corner(const float *positions,
-                                                             uint32_t vertex,
-                                                             float (*rows)[VL_ROW_SIZE],
-                                                             uint32_t i) {
+VL_INLINE void put_corner(const float *positions, uint32_t vertex, float (*rows)[VL_ROW_SIZE],
+                          uint32_t i) {
   const float *x = positions + 3 * (size_t)vertex;
   rows[0][i] = x[0];
   rows[1][i] = x[1];

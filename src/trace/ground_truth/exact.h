@@ -39,10 +39,8 @@ static inline Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q
  * exact ray may differ so much that the exact ray meets the plane far outside the triangle.
  * otherwise: the distance where the ray does not meet the plane; NaN: the mean of the
  * corners'. */
-static inline __attribute__((always_inline)) double exact_plane_distance(Exact x, Exact y,
-                                                                         Exact z, Exact o,
-                                                                         Exact d,
-                                                                         double otherwise) {
+VL_INLINE double exact_plane_distance(Exact x, Exact y, Exact z, Exact o, Exact d,
+                                      double otherwise) {
   Exact a = exact_sub(x, o), b = exact_sub(y, o), c = exact_sub(z, o);
   Exact n = exact_cross(exact_sub(b, a), exact_sub(c, a));
   double along = exact_dot(d, n), t = exact_dot(a, n) / along;

@@ -55,16 +55,12 @@ enum { AHEAD = 8, LARGE_MESH = 4096 };
 static inline bool in_large_mesh(const vlWorldShape *s) {
   return s->triangles && s->faces >= LARGE_MESH;
 }
-static inline __attribute__((always_inline)) void prefetch_indices(const vlWorld *world,
-                                                                   const vlHits *hits,
-                                                                   uint32_t i) {
+VL_INLINE void prefetch_indices(const vlWorld *world, const vlHits *hits, uint32_t i) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   if (in_large_mesh(s))
     __builtin_prefetch(s->indices + 3 * (size_t)hits->prim[i]);
 }
-static inline __attribute__((always_inline)) void prefetch_vertices(const vlWorld *world,
-                                                                    const vlHits *hits,
-                                                                    uint32_t i) {
+VL_INLINE void prefetch_vertices(const vlWorld *world, const vlHits *hits, uint32_t i) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   if (!in_large_mesh(s))
     return;
@@ -161,9 +157,9 @@ static inline vlVec3 near_one(vlVec3 v) {
 /* The point at which a ray hits a triangle. Barycentric coordinates are ratios of volumes
  * spanned with the ray (signs as in Woop et al. 2013); points outside by rounding are clamped
  * to the edge. */
-static inline __attribute__((always_inline)) Triangle triangle_point(
-    vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1, vlVec3 p2, vlVec3 n0, vlVec3 n1, vlVec3 n2,
-    TriangleUv uv, float corner_error, float flip) {
+VL_INLINE Triangle triangle_point(vlVec3 o, vlVec3 d, vlVec3 p0, vlVec3 p1, vlVec3 p2,
+                                  vlVec3 n0, vlVec3 n1, vlVec3 n2, TriangleUv uv,
+                                  float corner_error, float flip) {
   vlVec3 a = vl_sub(p0, o), b = vl_sub(p1, o), c = vl_sub(p2, o);
   float b0 = vl_dot(d, vl_cross(b, c)), b1 = vl_dot(d, vl_cross(c, a)),
         b2 = vl_dot(d, vl_cross(a, b));

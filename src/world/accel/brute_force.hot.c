@@ -96,8 +96,7 @@ static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t firs
 
 /* The nearest crossing of each ray with face j, if it is nearer than that so far. any: only
  * marks the rays that the face blocks by id 0. */
-static inline __attribute__((always_inline)) void cross_many(Block *k, const vlBruteForce *b,
-                                                             uint32_t j, bool any) {
+VL_INLINE void cross_many(Block *k, const vlBruteForce *b, uint32_t j, bool any) {
   Face q = face_at(b, j);
   uint32_t padded = k->padded;
   const int32_t found = any ? 0 : (int32_t)j;
@@ -184,9 +183,7 @@ static bool meets_other(const Block *k, const vlWorldShape *s, uint32_t prim, ui
 
 /* What the rays of a block meet: the ids of the nearest crossings, and their distances in
  * `height`. any: id 0 for the rays that something blocks. */
-static inline __attribute__((always_inline)) void meet(const vlWorld *world,
-                                                       const vlBruteForce *b, Block *k,
-                                                       bool any) {
+VL_INLINE void meet(const vlWorld *world, const vlBruteForce *b, Block *k, bool any) {
   _Alignas(64) int32_t near[BLOCK];
   if (k->n <= FEW_RAYS)
     cross_few(k, b, any);

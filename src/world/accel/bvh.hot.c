@@ -184,7 +184,7 @@ static inline bool take(Query *q, uint32_t geometry, uint32_t primitive, float t
 }
 
 /* Moves triangles to the ray's time. */
-static __attribute__((noinline)) void move(const Query *q, vlBvhFour *f) {
+VL_NOINLINE void move(const Query *q, vlBvhFour *f) {
   for (uint32_t k = 0; k < F; k++) {
     uint32_t prim = f->primitive[k];
     const vlWorldShape *s = shape_of(q, f->geometry[k] & ~VL_BVH_ASKS, &prim);

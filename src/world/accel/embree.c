@@ -85,8 +85,8 @@ static bool filter_rejects(const struct RTCFilterFunctionNArguments *args, unsig
 
 /* Reads the hit of ray i of n as Embree passes it to a filter; the t of the ray is then the t
  * of the hit. */
-static inline __attribute__((always_inline)) void read_hit(
-    const struct RTCFilterFunctionNArguments *args, unsigned n, unsigned i, vlNearest *hit) {
+VL_INLINE void read_hit(const struct RTCFilterFunctionNArguments *args, unsigned n, unsigned i,
+                        vlNearest *hit) {
   hit->world = query_of(args->context)->world;
   hit->t = *ray_row(args->ray, n, TFAR, i);
   hit->instance = instance_of(hit->world, *hit_row(args->hit, n, INST, i));
@@ -108,8 +108,7 @@ _Static_assert(offsetof(vlNearest, time) - offsetof(vlNearest, o) == TIME * size
                    offsetof(vlNearest, d) - offsetof(vlNearest, o) == DIRECTION * sizeof(float),
                "the layout of a single ray");
 
-static __attribute__((noinline)) bool compare_hit(
-    const struct RTCFilterFunctionNArguments *args, vlNearest *known) {
+VL_NOINLINE bool compare_hit(const struct RTCFilterFunctionNArguments *args, vlNearest *known) {
   vlNearest hit;
   read_hit(args, 1, 0, &hit);
   return vl_nearest_offer(known, &hit);
@@ -132,8 +131,8 @@ static void keep_rays(const struct RTCFilterFunctionNArguments *args, vlNearestP
 }
 
 /* Takes out the hits that are not the nearest. */
-static __attribute__((noinline)) void compare_packet(
-    const struct RTCFilterFunctionNArguments *args, const vlEmbreeQuery *q) {
+VL_NOINLINE void compare_packet(const struct RTCFilterFunctionNArguments *args,
+                                const vlEmbreeQuery *q) {
   for (unsigned k = 0; k < VL_PACKET; k++) {
     if (!args->valid[k])
       continue;
@@ -161,8 +160,8 @@ static inline void take_nearest(const struct RTCFilterFunctionNArguments *args,
 }
 
 /* Whether the hit of a single ray is the nearest so far; as take_nearest. */
-static inline __attribute__((always_inline)) bool is_nearest(
-    const struct RTCFilterFunctionNArguments *args, const vlEmbreeQuery *q) {
+VL_INLINE bool is_nearest(const struct RTCFilterFunctionNArguments *args,
+                          const vlEmbreeQuery *q) {
   float t = *ray_row(args->ray, 1, TFAR, 0);
   if (vl_nearest_clearly(q->nearest, t))
     read_hit(args, 1, 0, q->nearest);

@@ -165,30 +165,26 @@ void vl_old_free(vlOldStatement *s);
 /* ---- edits and reports (edit.c) ---------------------------------------------------------- */
 
 bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column,
-                 const char *format, ...) __attribute__((format(printf, 5, 6)));
+                 const char *format, ...) VL_PRINTF(5, 6);
 /* The same at the statement: the scene is wrong. */
-bool vl_old_wrong(const vlOldStatement *s, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+bool vl_old_wrong(const vlOldStatement *s, const char *format, ...) VL_PRINTF(2, 3);
 bool vl_old_fail_memory(vlUpgrade *u);
 /* Reports what has no counterpart. */
-void vl_old_lose(const vlOldStatement *s, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+void vl_old_lose(const vlOldStatement *s, const char *format, ...) VL_PRINTF(2, 3);
 /* Adds to what the report says of the statement's change. */
-void vl_old_note(vlOldStatement *s, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+void vl_old_note(vlOldStatement *s, const char *format, ...) VL_PRINTF(2, 3);
 /* Replaces part of the text. Insertions have an empty span; those at the same offset keep their
  * order. */
 bool vl_old_edit(const vlOldStatement *s, vlOldSpan span, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 /* Removes a whole statement, with its line where it stands alone. */
 bool vl_old_remove(vlOldStatement *s);
 /* Adds a statement before or after s, on a line of its own with the same indentation. */
 typedef enum vlOldSide { VL_OLD_BEFORE, VL_OLD_AFTER } vlOldSide;
 bool vl_old_insert(const vlOldStatement *s, vlOldSide side, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    VL_PRINTF(3, 4);
 /* Adds a parameter at the end of the statement. */
-bool vl_old_add(const vlOldStatement *s, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+bool vl_old_add(const vlOldStatement *s, const char *format, ...) VL_PRINTF(2, 3);
 /* Replaces name i of the statement (by null: it stays), and notes the change. */
 bool vl_old_rename(vlOldStatement *s, size_t i, const char *name);
 /* Makes the edits of the statement's parameters and reports the change. */
@@ -225,7 +221,7 @@ const char *vl_old_text(double value, char text[32]);
 /* The colour as text: [ r g b ]. */
 const char *vl_old_rgb_text(const double rgb[3], char text[VL_OLD_VALUE]);
 /* Sets the new value. */
-void vl_old_value(vlOldParam *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void vl_old_value(vlOldParam *p, const char *format, ...) VL_PRINTF(2, 3);
 /* Of several numbers the first is kept, as it is written. */
 void vl_old_keep_first(const vlOldStatement *s, vlOldParam *p);
 

@@ -188,11 +188,10 @@ static int print_manual(int count, const char *const *words) {
   return STATUS_OK;
 }
 
-static int help(const Arguments *arguments, vlContext *context) {
+static int help(const Arguments *arguments, UNUSED vlContext *context) {
   const int count = arguments->operand_count;
   const char *const *words = arguments->all_operands;
   const OptionValue *v = arguments->values;
-  (void)context;
   if (v[HELP_MAN].given + v[HELP_COMPLETION].given + v[HELP_COMMANDS].given > 1)
     return report_usage("help: --man, --completion and --commands exclude each other");
   if (count > 0 && (v[HELP_COMPLETION].given || v[HELP_COMMANDS].given))

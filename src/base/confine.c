@@ -205,8 +205,7 @@ static bool forbid_programs(void) {
   return false;
 }
 
-static bool forbid_sockets(bool local) {
-  (void)local;
+static bool forbid_sockets(VL_UNUSED bool local) {
   return false;
 }
 
@@ -231,13 +230,9 @@ vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *
 
 #else
 
-vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *const *write,
-                      uint32_t write_count, bool sockets) {
-  (void)read;
-  (void)read_count;
-  (void)write;
-  (void)write_count;
-  (void)sockets;
+vlConfined vl_confine(VL_UNUSED const char *const *read, VL_UNUSED uint32_t read_count,
+                      VL_UNUSED const char *const *write, VL_UNUSED uint32_t write_count,
+                      VL_UNUSED bool sockets) {
   return (vlConfined){0};
 }
 

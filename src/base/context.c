@@ -40,16 +40,14 @@ typedef struct BlockHeader {
   void *raw;   /* what the allocator returned */
 } BlockHeader;
 
-static void *default_allocate(void *user, size_t size) {
+static void *default_allocate(VL_UNUSED void *user, size_t size) {
   enum { LARGE = 4 << 20 };
-  (void)user;
   void *block = malloc(size);
   if (block && size >= LARGE)
     vl_machine_large_pages(block, size);
   return block;
 }
-static void default_release(void *user, void *block) {
-  (void)user;
+static void default_release(VL_UNUSED void *user, void *block) {
   free(block);
 }
 

@@ -485,9 +485,8 @@ static vlResult write_mitsuba(const vlFittedCamera *fit, vlCameraText *text) {
                             "</scene>\n");
 }
 
-static bool is_mitsuba(const char *text, size_t size) {
+static bool is_mitsuba(const char *text, VL_UNUSED size_t size) {
   char tag[64];
-  (void)size;
   return vl_camera_xml_root(text, tag) &&
          (vl_text_is(tag, "scene") || vl_text_is(tag, "sensor"));
 }

@@ -289,8 +289,7 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
   return read_row(file, &chosen, of, record);
 }
 
-static bool is_csv(const char *text, size_t size) {
-  (void)size;
+static bool is_csv(const char *text, VL_UNUSED size_t size) {
   return strncmp(text, "#name,", 6) == 0 ||
          (strncmp(text, "#cameras", 8) == 0 && strstr(text, "\n#name,"));
 }

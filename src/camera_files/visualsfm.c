@@ -90,8 +90,7 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
   return VL_OK;
 }
 
-static bool is_visualsfm(const char *text, size_t size) {
-  (void)size;
+static bool is_visualsfm(const char *text, VL_UNUSED size_t size) {
   return strncmp(text, "NVM_V3", 6) == 0;
 }
 

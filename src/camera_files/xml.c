@@ -97,9 +97,8 @@ static void on_start(void *data, const char *tag, const char **attributes) {
   b->depth++;
 }
 
-static void on_end(void *data, const char *tag) {
+static void on_end(void *data, VL_UNUSED const char *tag) {
   Builder *b = data;
-  (void)tag;
   if (b->result != VL_OK)
     return;
   if (b->skipped) {
@@ -128,13 +127,10 @@ static void on_text(void *data, const char *text, int length) {
   b->text.count += (size_t)length;
 }
 
-static void on_document_type(void *data, const char *name, const char *system,
-                             const char *public_id, int internal) {
+static void on_document_type(void *data, VL_UNUSED const char *name,
+                             VL_UNUSED const char *system, VL_UNUSED const char *public_id,
+                             VL_UNUSED int internal) {
   Builder *b = data;
-  (void)name;
-  (void)system;
-  (void)public_id;
-  (void)internal;
   if (b->result == VL_OK)
     stop(b, vl_camera_wrong_at(b->file, line_of(b), 1,
                                "a document type (DOCTYPE, entities) is not taken"));

@@ -3,11 +3,7 @@
 
 vlDistortionCompile vl_distortion_compile_none;
 
-vlResult vl_distortion_compile_none(const double *k, uint32_t n, vlDistortionMap *m,
-                                    vlError *error) {
-  (void)k;
-  (void)n;
-  (void)m;
-  (void)error;
+vlResult vl_distortion_compile_none(VL_UNUSED const double *k, VL_UNUSED uint32_t n,
+                                    VL_UNUSED vlDistortionMap *m, VL_UNUSED vlError *error) {
   return VL_OK;
 }

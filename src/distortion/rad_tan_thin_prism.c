@@ -7,10 +7,9 @@
 
 vlDistortionCompile vl_distortion_compile_rad_tan_thin_prism;
 
-vlResult vl_distortion_compile_rad_tan_thin_prism(const double *k, uint32_t n,
-                                                  vlDistortionMap *m, vlError *error) {
-  (void)n;
-  (void)error;
+vlResult vl_distortion_compile_rad_tan_thin_prism(const double *k, VL_UNUSED uint32_t n,
+                                                  vlDistortionMap *m,
+                                                  VL_UNUSED vlError *error) {
   m->radial_first = true;
   memcpy(m->numerator, k, sizeof m->numerator);
   /* p0 belongs to the x axis: the other way round than in OpenCV */

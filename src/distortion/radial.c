@@ -6,8 +6,7 @@
 vlDistortionCompile vl_distortion_compile_radial;
 
 vlResult vl_distortion_compile_radial(const double *k, uint32_t n, vlDistortionMap *m,
-                                      vlError *error) {
-  (void)error;
+                                      VL_UNUSED vlError *error) {
   memcpy(m->numerator, k, n * sizeof *k);
   return VL_OK;
 }

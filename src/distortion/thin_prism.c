@@ -4,10 +4,8 @@
 
 vlDistortionCompile vl_distortion_compile_thin_prism;
 
-vlResult vl_distortion_compile_thin_prism(const double *k, uint32_t n, vlDistortionMap *m,
-                                          vlError *error) {
-  (void)n;
-  (void)error;
+vlResult vl_distortion_compile_thin_prism(const double *k, VL_UNUSED uint32_t n,
+                                          vlDistortionMap *m, VL_UNUSED vlError *error) {
   m->numerator[0] = k[0];
   m->numerator[1] = k[1];
   m->numerator[2] = k[4];

@@ -3,8 +3,6 @@
 
 vlFilterValue vl_filter_value_box;
 
-double vl_filter_value_box(const vlPixelFilter *filter, vlFilterAt at) {
-  (void)filter;
-  (void)at;
+double vl_filter_value_box(VL_UNUSED const vlPixelFilter *filter, VL_UNUSED vlFilterAt at) {
   return 1.0;
 }

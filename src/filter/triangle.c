@@ -3,7 +3,6 @@
 
 vlFilterValue vl_filter_value_triangle;
 
-double vl_filter_value_triangle(const vlPixelFilter *filter, vlFilterAt at) {
-  (void)filter;
+double vl_filter_value_triangle(VL_UNUSED const vlPixelFilter *filter, vlFilterAt at) {
   return 1.0 - at.t;
 }

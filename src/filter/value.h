@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "base/attributes.h"
 #include "velo/filter.h"
 
 /* A point along an axis: x in [0, radius]; t: x / radius. */

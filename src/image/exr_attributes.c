@@ -4,9 +4,9 @@
 #include "base/text.h"
 #include "image/exr.h"
 
-void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char *message) {
+void vl_exr_on_error(exr_const_context_t context, VL_UNUSED exr_result_t code,
+                     const char *message) {
   void *user = NULL;
-  (void)code;
   if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user)
     return;
   vlExr *x = user;

@@ -43,11 +43,10 @@ bool vl_exr_probe(const uint8_t *data, size_t size) {
   return size >= 4 && memcmp(data, "\x76\x2f\x31\x01", 4) == 0;
 }
 
-static int64_t on_read(exr_const_context_t exr, void *user, void *buffer, uint64_t size,
-                       uint64_t offset, exr_stream_error_func_ptr_t fail) {
+static int64_t on_read(VL_UNUSED exr_const_context_t exr, void *user, void *buffer,
+                       uint64_t size, uint64_t offset,
+                       VL_UNUSED exr_stream_error_func_ptr_t fail) {
   const vlImageFile *file = ((vlExr *)user)->file;
-  (void)exr;
-  (void)fail;
   if (offset >= file->size)
     return 0;
   uint64_t left = file->size - offset;
@@ -57,8 +56,7 @@ static int64_t on_read(exr_const_context_t exr, void *user, void *buffer, uint64
   return (int64_t)size;
 }
 
-static int64_t on_size(exr_const_context_t exr, void *user) {
-  (void)exr;
+static int64_t on_size(VL_UNUSED exr_const_context_t exr, void *user) {
   return (int64_t)((vlExr *)user)->file->size;
 }
 

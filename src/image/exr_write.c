@@ -55,11 +55,10 @@ static void flush(Writer *w) {
   w->taken = 0;
 }
 
-static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer, uint64_t size,
-                        uint64_t offset, exr_stream_error_func_ptr_t fail) {
+static int64_t on_write(VL_UNUSED exr_const_context_t exr, void *user, const void *buffer,
+                        uint64_t size, uint64_t offset,
+                        VL_UNUSED exr_stream_error_func_ptr_t fail) {
   Writer *w = user; /* the vlExr is the first member of Writer */
-  (void)exr;
-  (void)fail;
   if (offset != w->offset + w->taken || size > GATHERED - w->taken)
     flush(w);
   if (size > GATHERED) {
@@ -169,8 +168,7 @@ static void fill_row(const Channel *c, Slot *slot, uint32_t y, char *to) {
 }
 
 /* Replaces OpenEXRCore's write step, so that the compressed bytes stay in the pipeline. */
-static exr_result_t keep(exr_encode_pipeline_t *pipeline) {
-  (void)pipeline;
+static exr_result_t keep(VL_UNUSED exr_encode_pipeline_t *pipeline) {
   return EXR_ERR_SUCCESS;
 }
 
@@ -211,9 +209,8 @@ static exr_result_t pack_chunk(const Writer *w, Slot *slot, uint32_t first) {
   return exr_encoding_run(w->exr, 0, p);
 }
 
-static void pack_body(void *user, uint32_t index, uint32_t worker) {
+static void pack_body(void *user, uint32_t index, VL_UNUSED uint32_t worker) {
   Writer *w = user;
-  (void)worker;
   w->slots[index].code =
       pack_chunk(w, &w->slots[index], (w->first_chunk + index) * (uint32_t)w->lines_per_chunk);
 }
@@ -290,11 +287,8 @@ vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
 
 /* Ignores an error. OpenEXR calls this handler while it holds the lock of its context, so
  * vl_exr_on_error cannot be used: reading the user data would take the lock again. */
-static void ignore_error(exr_const_context_t context, exr_result_t code, const char *message) {
-  (void)context;
-  (void)code;
-  (void)message;
-}
+static void ignore_error(VL_UNUSED exr_const_context_t context, VL_UNUSED exr_result_t code,
+                         VL_UNUSED const char *message) {}
 
 vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count,
                              const vlWriteDef *def, vlFileWriter *writer, vlError *error) {

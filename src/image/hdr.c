@@ -224,9 +224,8 @@ static size_t write_plane(const uint8_t *rgbe, uint32_t width, uint32_t c, uint8
   return at;
 }
 
-vlResult vl_hdr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
-                      vlError *error) {
-  (void)def;
+vlResult vl_hdr_write(const vlImage *image, VL_UNUSED const vlWriteDef *def,
+                      vlFileWriter *writer, vlError *error) {
   uint32_t channel[4], count = vl_image_shown(image, channel);
   vlResult result = VL_OK;
   uint32_t colors = count >= 3 ? 3 : 1, width = image->width;

@@ -52,9 +52,7 @@ static void on_message(j_common_ptr info, int level) {
       code == JWRN_BOGUS_PROGRESSION)
     on_exit_error(info);
 }
-static void on_output(j_common_ptr info) {
-  (void)info;
-}
+static void on_output(VL_UNUSED j_common_ptr info) {}
 static void on_progress(j_common_ptr info) {
   Jpeg *j = (Jpeg *)(void *)info->err;
   if (j->file && vl_codec_step(j->file) != VL_OK) {
@@ -76,9 +74,7 @@ static void start_errors(Jpeg *j) {
   j->progress.progress_monitor = on_progress;
 }
 
-static void source_none(j_decompress_ptr d) {
-  (void)d;
-}
+static void source_none(VL_UNUSED j_decompress_ptr d) {}
 static boolean source_fill(j_decompress_ptr d) {
   ERREXIT(d, JERR_INPUT_EOF); /* no more data will come: the whole file is in memory */
   return FALSE;

@@ -79,9 +79,8 @@ vlResult vl_pfm_read(const vlImageFile *file, vlImage **image) {
   return VL_OK;
 }
 
-vlResult vl_pfm_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
-                      vlError *error) {
-  (void)def;
+vlResult vl_pfm_write(const vlImage *image, VL_UNUSED const vlWriteDef *def,
+                      vlFileWriter *writer, vlError *error) {
   uint32_t channel[4], count = vl_image_shown(image, channel);
   count = count >= 3 ? 3 : 1;
   float *row = vl_alloc_array(image->context, image->width, count * sizeof *row);

@@ -34,10 +34,7 @@ static void on_error(png_structp png, png_const_charp message) {
   strncpy(p->message, message, sizeof p->message - 1);
   png_longjmp(png, 1);
 }
-static void on_warning(png_structp png, png_const_charp message) {
-  (void)png;
-  (void)message;
-}
+static void on_warning(VL_UNUSED png_structp png, VL_UNUSED png_const_charp message) {}
 static png_voidp on_alloc(png_structp png, png_alloc_size_t size) {
   Png *p = png_get_mem_ptr(png);
   void *block = vl_alloc(p->context, size);
@@ -65,9 +62,7 @@ static void on_write(png_structp png, png_bytep bytes, size_t size) {
   if (p->writer->failed_errno)
     png_error(png, "write failed");
 }
-static void on_flush(png_structp png) {
-  (void)png;
-}
+static void on_flush(VL_UNUSED png_structp png) {}
 
 /* A gamma of exactly 1 means linear. Anything else is taken as sRGB, as in other renderers. */
 static bool says_linear(Png *p) {
@@ -230,9 +225,8 @@ static vlResult encode(Png *p, const vlImage *image, vlError *error) {
   return VL_OK;
 }
 
-vlResult vl_png_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
-                      vlError *error) {
-  (void)def;
+vlResult vl_png_write(const vlImage *image, VL_UNUSED const vlWriteDef *def,
+                      vlFileWriter *writer, vlError *error) {
   Png p = {.context = image->context, .writer = writer};
   p.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &p, on_error, on_warning, &p,
                                     on_alloc, on_free);

@@ -167,9 +167,8 @@ vlResult vl_tga_read(const vlImageFile *file, vlImage **image) {
   return VL_OK;
 }
 
-vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
-                      vlError *error) {
-  (void)def;
+vlResult vl_tga_write(const vlImage *image, VL_UNUSED const vlWriteDef *def,
+                      vlFileWriter *writer, vlError *error) {
   uint32_t channel[4], count = vl_image_shown(image, channel);
   vlResult result = VL_OK;
   if (image->width > 65535 || image->height > 65535)

@@ -21,11 +21,8 @@ void vl_light_emit_distant(const vlEmissionQuery *q, vlEmission *out) {
   out->delta = true;
 }
 
-float vl_light_emit_pdf_distant(const vlWorld *world, const vlWorldLight *light, float p,
-                                vlVec3 w, float distance, const vlPoint *at) {
-  (void)light;
-  (void)w;
-  (void)distance;
-  (void)at;
+float vl_light_emit_pdf_distant(const vlWorld *world, VL_UNUSED const vlWorldLight *light,
+                                float p, VL_UNUSED vlVec3 w, VL_UNUSED float distance,
+                                VL_UNUSED const vlPoint *at) {
   return p / vl_light_disk(world);
 }

@@ -49,8 +49,7 @@ static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 
 }
 
 static float face_density(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
-                          float distance, const vlPoint *at) {
-  (void)distance;
+                          VL_UNUSED float distance, const vlPoint *at) {
   /* also outside of a spread, from where no light comes */
   float sin2 = world->emitted.items[light->emitted].spread_sin2;
   return p * VL_INV_PI / sin2 * point_density(world, light, at->p) *

@@ -161,8 +161,7 @@ static const vlMipmap *add_image(vlWorld *world, const vlLightDef *def, vlWorldL
   return image < 0 ? NULL : world->images.items[image].mipmap;
 }
 
-static void free_lamp(vlContext *context, void *lamp) {
-  (void)context;
+static void free_lamp(VL_UNUSED vlContext *context, void *lamp) {
   vl_lamp_destroy(lamp);
 }
 

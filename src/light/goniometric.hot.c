@@ -60,8 +60,7 @@ void vl_light_emit_goniometric(const vlEmissionQuery *q, vlEmission *out) {
 }
 
 float vl_light_emit_pdf_goniometric(const vlWorld *world, const vlWorldLight *light, float p,
-                                    vlVec3 w, float distance, const vlPoint *at) {
-  (void)at;
+                                    vlVec3 w, float distance, VL_UNUSED const vlPoint *at) {
   const vlLampTable *lamp = lamp_table(world, light);
   if (!lamp)
     return vl_light_emit_pdf_from_point(light, 2.0f, p, w, distance);

@@ -90,9 +90,8 @@ static float portal_density(const vlPortal *portal, vlVec3 w) {
 }
 
 float vl_light_emit_pdf_infinite(const vlWorld *world, const vlWorldLight *light, float p,
-                                 vlVec3 w, float distance, const vlPoint *at) {
-  (void)distance;
-  (void)at;
+                                 vlVec3 w, VL_UNUSED float distance,
+                                 VL_UNUSED const vlPoint *at) {
   if (portal_of(world, light))
     return p * portal_density(portal_of(world, light), w);
   return p * sky_density(world, light, w) / vl_light_disk(world);

@@ -23,10 +23,8 @@ vlLightDef vl_default_light_def(vlLightKind kind) {
   return def;
 }
 
-double vl_light_power_unknown(const vlLightDef *def, double luminance, double radius) {
-  (void)def;
-  (void)luminance;
-  (void)radius;
+double vl_light_power_unknown(VL_UNUSED const vlLightDef *def, VL_UNUSED double luminance,
+                              VL_UNUSED double radius) {
   return NAN;
 }
 

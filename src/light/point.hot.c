@@ -18,9 +18,7 @@ void vl_light_emit_point(const vlEmissionQuery *q, vlEmission *out) {
                     out->flux);
 }
 
-float vl_light_emit_pdf_point(const vlWorld *world, const vlWorldLight *light, float p,
-                              vlVec3 w, float distance, const vlPoint *at) {
-  (void)world;
-  (void)at;
+float vl_light_emit_pdf_point(VL_UNUSED const vlWorld *world, const vlWorldLight *light,
+                              float p, vlVec3 w, float distance, VL_UNUSED const vlPoint *at) {
   return vl_light_emit_pdf_from_point(light, 2.0f, p, w, distance);
 }

@@ -11,8 +11,7 @@ const vlKindRow vl_light_row_point = {
 
 vlLightPower vl_light_power_point;
 
-double vl_light_power_point(const vlLightDef *def, double luminance, double radius) {
-  (void)def;
-  (void)radius;
+double vl_light_power_point(VL_UNUSED const vlLightDef *def, double luminance,
+                            VL_UNUSED double radius) {
   return 4 * PI * luminance;
 }

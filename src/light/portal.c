@@ -59,10 +59,9 @@ typedef struct Filling {
 } Filling;
 
 /* The light of a row's cells, before summation. */
-static void fill_row(void *user, uint32_t j, uint32_t worker) {
+static void fill_row(void *user, uint32_t j, VL_UNUSED uint32_t worker) {
   const Filling *f = user;
   uint32_t n = f->portal->size, fine = f->fine;
-  (void)worker;
   f->passes[j] = 0;
   for (uint32_t i = 0; i < n; i++) {
     double sum = 0;

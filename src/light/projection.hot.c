@@ -46,10 +46,9 @@ void vl_light_emit_projection(const vlEmissionQuery *q, vlEmission *out) {
   vl_light_emission(q->world, q->emitted, q->lambda, st, factor, out->flux);
 }
 
-float vl_light_emit_pdf_projection(const vlWorld *world, const vlWorldLight *light, float p,
-                                   vlVec3 w, float distance, const vlPoint *at) {
-  (void)world;
-  (void)at;
+float vl_light_emit_pdf_projection(VL_UNUSED const vlWorld *world, const vlWorldLight *light,
+                                   float p, vlVec3 w, float distance,
+                                   VL_UNUSED const vlPoint *at) {
   vlVec2 st;
   vlVec3 local = vl_light_local(light, vl_neg(w));
   if (image_point(light, local, &st) == 0.0f)

@@ -54,10 +54,8 @@ void vl_light_emit_spot(const vlEmissionQuery *q, vlEmission *out) {
   vl_light_emission(q->world, q->emitted, q->lambda, (vlVec2){0, 0}, factor, out->flux);
 }
 
-float vl_light_emit_pdf_spot(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w,
-                             float distance, const vlPoint *at) {
-  (void)world;
-  (void)at;
+float vl_light_emit_pdf_spot(VL_UNUSED const vlWorld *world, const vlWorldLight *light, float p,
+                             vlVec3 w, float distance, VL_UNUSED const vlPoint *at) {
   if (!light->skewed_cone)
     return vl_light_emit_pdf_from_point(light, 1.0f - light->cos_end, p, w, distance);
   float span = 1.0f - light->cos_end;

@@ -67,10 +67,9 @@ static double skewed_solid_angle(const vlLightDef *def, const vlStretch *stretch
   return 2 * PI * (1 - outer) * sum / COSINES;
 }
 
-double vl_light_power_spot(const vlLightDef *def, double luminance, double radius) {
+double vl_light_power_spot(const vlLightDef *def, double luminance, VL_UNUSED double radius) {
   double inner = vl_precise_cos((double)def->cone_angle - (double)def->cone_delta),
          outer = vl_precise_cos((double)def->cone_angle);
-  (void)radius;
   const vlStretch stretch = vl_stretch(def->world_from_light);
   if (stretch.is_skewed)
     return luminance * skewed_solid_angle(def, &stretch, inner, outer);

@@ -95,9 +95,8 @@ static double single(double albedo, double g, double eta, double r, const Beam *
   return sum / POINTS;
 }
 
-static void fill_row(void *user, uint32_t row, uint32_t worker) {
+static void fill_row(void *user, uint32_t row, VL_UNUSED uint32_t worker) {
   vlBssrdfTable *t = user;
-  (void)worker;
   Beam beam = make_beam();
   double albedo = (double)t->albedo[row], g = (double)t->g, eta = (double)t->eta;
   for (uint32_t k = 0; k < VL_BSSRDF_RADII; k++) {

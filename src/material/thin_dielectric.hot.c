@@ -6,11 +6,9 @@ vlBsdfEval vl_bsdf_thin_eval;
 vlBsdfSample vl_bsdf_thin_sample;
 
 /* Reflection and transmission of a pane are deltas. */
-void vl_bsdf_thin_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo,
-                       vlBsdfDirections wi, float *const value[4], float *pdf) {
-  (void)params;
-  (void)wo;
-  (void)wi;
+void vl_bsdf_thin_eval(uint32_t n, VL_UNUSED const vlBsdfParams *params,
+                       VL_UNUSED vlBsdfDirections wo, VL_UNUSED vlBsdfDirections wi,
+                       float *const value[4], float *pdf) {
   uint32_t count = VL_PAD(n);
   for (uint32_t i = 0; i < count; i++)
     value[0][i] = value[1][i] = value[2][i] = value[3][i] = pdf[i] = 0.0f;

@@ -92,10 +92,9 @@ typedef struct Bounding {
   bool rgb;
 } Bounding;
 
-static void bound_slice(void *user, uint32_t z, uint32_t worker) {
+static void bound_slice(void *user, uint32_t z, VL_UNUSED uint32_t worker) {
   const Bounding *b = user;
   const vlWorldMedium *m = b->m;
-  (void)worker;
   for (uint32_t y = 0; y < m->cells[1]; y++)
     for (uint32_t x = 0; x < m->cells[0]; x++) {
       const uint32_t at[3] = {x, y, z};

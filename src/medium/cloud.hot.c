@@ -7,8 +7,7 @@ vlMediumDensity vl_medium_density_cloud;
 
 /* pbrt-v4's procedural cloud (the last medium of book 11.4.2): fractal noise, distorted by
  * wisps, thinner with height. */
-float vl_medium_density_cloud(const vlWorldMedium *m, vlVec3 p, vlVec3 unit) {
-  (void)unit;
+float vl_medium_density_cloud(const vlWorldMedium *m, vlVec3 p, VL_UNUSED vlVec3 unit) {
   const float density = m->own[0], wispiness = m->own[1];
   vlVec3 q = vl_mul(p, m->own[2]);
   float omega = 0.05f * wispiness, frequency = 10.0f;

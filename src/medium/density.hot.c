@@ -7,10 +7,8 @@
 VL_MEDIUM_FUNCTIONS(DECLARE)
 
 /* Of kinds without a density of their own. */
-float vl_medium_density_one(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)m;
-  (void)p;
-  (void)q;
+float vl_medium_density_one(VL_UNUSED const vlWorldMedium *m, VL_UNUSED vlVec3 p,
+                            VL_UNUSED vlVec3 q) {
   return 1.0f;
 }
 

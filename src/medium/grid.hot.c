@@ -3,7 +3,6 @@
 
 vlMediumDensity vl_medium_density_grid;
 
-float vl_medium_density_grid(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)p;
+float vl_medium_density_grid(const vlWorldMedium *m, VL_UNUSED vlVec3 p, vlVec3 q) {
   return vl_dense_lookup(&m->density, q);
 }

@@ -3,7 +3,6 @@
 
 vlMediumDensity vl_medium_density_nanovdb;
 
-float vl_medium_density_nanovdb(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)q;
+float vl_medium_density_nanovdb(const vlWorldMedium *m, vlVec3 p, VL_UNUSED vlVec3 q) {
   return vl_sparse_lookup(m->sparse, p);
 }

@@ -9,8 +9,7 @@ static void whole_cube(const vlCameraDef *d, const vlCamera *camera, double foca
   focal[1] = d->height / (cross ? 3.0 : 1.0);
 }
 
-static double spread(const double shape[2]) {
-  (void)shape;
+static double spread(VL_UNUSED const double shape[2]) {
   return 2.0;
 }
 

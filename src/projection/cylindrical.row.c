@@ -1,8 +1,8 @@
 /* projection/cylindrical.row.c: the name and the parameters of the cylindrical projection. */
 #include "projection/projection.row.h"
 
-static void whole_cylinder(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
-  (void)camera;
+static void whole_cylinder(const vlCameraDef *d, VL_UNUSED const vlCamera *camera,
+                           double focal[2]) {
   focal[0] = focal[1] = d->width / (2.0 * PI);
 }
 

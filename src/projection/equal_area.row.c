@@ -1,14 +1,13 @@
 /* projection/equal_area.row.c: the name and the parameters of the equal area projection. */
 #include "projection/projection.row.h"
 
-static void whole_square(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
-  (void)camera;
+static void whole_square(const vlCameraDef *d, VL_UNUSED const vlCamera *camera,
+                         double focal[2]) {
   focal[0] = 0.5 * d->width;
   focal[1] = 0.5 * d->height;
 }
 
-static double spread(const double shape[2]) {
-  (void)shape;
+static double spread(VL_UNUSED const double shape[2]) {
   return 1.7724538509055159; /* 4 pi over an area of 4 */
 }
 

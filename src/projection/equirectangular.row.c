@@ -3,8 +3,8 @@
 #include "projection/projection.row.h"
 
 /* The image shows the whole sphere, cylinder or cube. */
-static void whole_sphere(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
-  (void)camera;
+static void whole_sphere(const vlCameraDef *d, VL_UNUSED const vlCamera *camera,
+                         double focal[2]) {
   focal[0] = d->width / (2.0 * PI);
   focal[1] = d->height / PI;
 }

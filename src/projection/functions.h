@@ -6,10 +6,9 @@
 #include "camera/rays.h"
 #include "velo/projection.h"
 
-/* A projection need not use all of its arguments. */
-#define VL_UNUSED __attribute__((unused))
-/* The arguments of vl_unproject_NAME: the compiled camera, whose member `shape` holds the
- * numbers of the projection; for VL_PROJECTION_CUBE the `cell`; a point of the plane. */
+/* A projection need not use all of its arguments. These are those of vl_unproject_NAME: the
+ * compiled camera, whose member `shape` holds the numbers of the projection; for
+ * VL_PROJECTION_CUBE the `cell`; a point of the plane. */
 #define VL_UNPROJECT_INPUT                                                        \
   VL_UNUSED const vlCameraCompiled *c, VL_UNUSED double cell, VL_UNUSED double x, \
       VL_UNUSED double y

@@ -58,9 +58,8 @@ static void add_window(const Demosaic *d, int x, int y, float sums[VL_RAW_MAX_CO
   }
 }
 
-static void interpolate_row(void *user, uint32_t y, uint32_t worker) {
+static void interpolate_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Demosaic *d = user;
-  (void)worker;
   for (uint32_t x = 0; x < d->def->width; x++) {
     size_t at = (size_t)y * d->def->width + x;
     float *result = d->result + at * d->colors;

@@ -46,9 +46,8 @@ static vlResult check(const vlRaw *raw, const vlRawDevelopDef *def, vlImage **im
 /* ---- the steps --------------------------------------------------------------------------- */
 
 /* BLACK and WHITE: one row of the mosaic. */
-static void level_row(void *user, uint32_t y, uint32_t worker) {
+static void level_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Develop *d = user;
-  (void)worker;
   const vlRawDef *def = &d->raw->def;
   const uint16_t *numbers = d->raw->numbers + (size_t)y * def->width;
   float *result = vl_image_row(d->to, y);
@@ -62,9 +61,8 @@ static void level_row(void *user, uint32_t y, uint32_t worker) {
 }
 
 /* COLOR: one row of pixels. */
-static void color_row(void *user, uint32_t y, uint32_t worker) {
+static void color_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Develop *d = user;
-  (void)worker;
   const float *from = d->from + (size_t)y * d->raw->def.width * d->colors;
   float *to = vl_image_row(d->to, y);
   for (uint32_t x = 0; x < d->raw->def.width; x++)
@@ -77,9 +75,8 @@ static void color_row(void *user, uint32_t y, uint32_t worker) {
 }
 
 /* TONE: one row of values. */
-static void tone_row(void *user, uint32_t y, uint32_t worker) {
+static void tone_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Develop *d = user;
-  (void)worker;
   size_t count = (size_t)d->to->width * d->to->channels;
   vl_tone_apply(d->tone, d->scale, d->from + y * count, count, vl_image_row(d->to, y));
 }

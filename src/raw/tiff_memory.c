@@ -38,8 +38,7 @@ static toff_t on_seek(thandle_t user, toff_t offset, int whence) {
   return m->at;
 }
 
-static int on_close(thandle_t user) {
-  (void)user;
+static int on_close(VL_UNUSED thandle_t user) {
   return 0;
 }
 
@@ -47,23 +46,16 @@ static toff_t on_size(thandle_t user) {
   return size_of(user);
 }
 
-static int on_error(TIFF *tiff, void *user, const char *module, const char *format,
-                    va_list arguments) {
+static int on_error(VL_UNUSED TIFF *tiff, void *user, VL_UNUSED const char *module,
+                    const char *format, va_list arguments) {
   vlTiffMemory *m = user;
-  (void)tiff;
-  (void)module;
   vsnprintf(m->message, sizeof m->message, format, arguments);
   vl_make_printable(m->message);
   return 1;
 }
 
-static int on_warning(TIFF *tiff, void *user, const char *module, const char *format,
-                      va_list arguments) {
-  (void)tiff;
-  (void)user;
-  (void)module;
-  (void)format;
-  (void)arguments;
+static int on_warning(VL_UNUSED TIFF *tiff, VL_UNUSED void *user, VL_UNUSED const char *module,
+                      VL_UNUSED const char *format, VL_UNUSED va_list arguments) {
   return 1;
 }
 

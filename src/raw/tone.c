@@ -5,9 +5,8 @@
 
 enum { PART = 1024, WHITE = VL_TONE_CODES - 1 };
 
-static void begin_part(void *user, uint32_t part, uint32_t worker) {
+static void begin_part(void *user, uint32_t part, VL_UNUSED uint32_t worker) {
   vlTone *tone = user;
-  (void)worker;
   for (uint32_t code = part * PART; code < (part + 1) * PART; code++)
     tone->begin[code] = vl_srgb_to_linear(((double)code - 0.5) / WHITE);
 }

@@ -53,8 +53,7 @@ typedef struct Comparison {
   const uint8_t *wanted; /* null: all blocks */
 } Comparison;
 
-static void compare_block(void *user, uint32_t block, uint32_t worker) {
-  (void)worker;
+static void compare_block(void *user, uint32_t block, VL_UNUSED uint32_t worker) {
   const Comparison *c = user;
   vlAdaptive *a = c->a;
   if (c->wanted && !c->wanted[block])

@@ -110,9 +110,8 @@ static void put_extent(Extent *e, uint64_t *count, uint32_t box[4]) {
 }
 
 /* A task of vl_parallel_for: the ids of the objects come first, then those of the instances. */
-static void put_box(void *user, uint32_t index, uint32_t worker) {
+static void put_box(void *user, uint32_t index, VL_UNUSED uint32_t worker) {
   Pass *p = user;
-  (void)worker;
   const vlChannelPass *c = &p->channels;
   if (vl_stop_check(c->stop))
     return;

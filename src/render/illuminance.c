@@ -18,8 +18,7 @@ static vlFilmDef film_def(const vlChannelPass *p) {
 }
 
 /* The callback of the render. */
-static bool go_on(void *user, const vlProgress *progress) {
-  (void)progress;
+static bool go_on(void *user, VL_UNUSED const vlProgress *progress) {
   return !vl_stop_check(user);
 }
 

@@ -34,8 +34,7 @@ typedef struct StudioFill {
   vlImage *image;
 } StudioFill;
 
-static void fill_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void fill_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const StudioFill *fill = user;
   const float side = (float)fill->image->width;
   float *row = vl_image_row(fill->image, y);

@@ -71,8 +71,7 @@ static void meet_faces(const vlProbeMesh *p, const double world_o[3], const doub
   }
 }
 
-static void cast(void *user, uint32_t ray, uint32_t worker) {
-  (void)worker;
+static void cast(void *user, uint32_t ray, VL_UNUSED uint32_t worker) {
   vlProbe *s = user;
   vlSeen *seen = &s->seen[ray];
   *seen = (vlSeen){.t = INFINITY};

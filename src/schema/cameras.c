@@ -14,15 +14,14 @@ VL_PROJECTION_KINDS(VL_PROJECTION_ROW)
 
 /* Perspective cameras see 90 degrees along the smaller side; orthographic cameras see -1 to 1.
  * In both cases the focal length is half of that side in pixels. */
-void vl_projection_half_side(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
-  (void)camera;
+void vl_projection_half_side(const vlCameraDef *d, VL_UNUSED const vlCamera *camera,
+                             double focal[2]) {
   focal[0] = focal[1] = 0.5 * (d->width < d->height ? d->width : d->height);
 }
 
 /* The plane's unit is a pixel. */
-static void one_pixel(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
-  (void)d;
-  (void)camera;
+static void one_pixel(VL_UNUSED const vlCameraDef *d, VL_UNUSED const vlCamera *camera,
+                      double focal[2]) {
   focal[0] = focal[1] = 1.0;
 }
 

@@ -5,6 +5,7 @@
 #ifndef SCHEMA_SCHEMA_H
 #define SCHEMA_SCHEMA_H
 
+#include "base/attributes.h"
 #include "velo/scene_base.h"
 #include "velo/schema.h"
 #include "velo/setting.h"

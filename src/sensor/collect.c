@@ -79,8 +79,7 @@ static double radiance(const Collect *c, uint32_t x, uint32_t y, uint32_t channe
   return (double)c->floats[pixel * c->channels + channel];
 }
 
-static void collect_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void collect_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   Collect *c = user;
   const vlSensorDef *def = &c->sensor->def;
   uint32_t buckets = c->spectrum.count;
@@ -122,8 +121,7 @@ static uint32_t inside(int64_t at, uint32_t size) {
 
 /* A pixel gets the shares of its neighbours; at the border, the pixels of the border stand for
  * those beyond it. */
-static void spread_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void spread_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Spread *s = user;
   for (uint32_t x = 0; x < s->width; x++) {
     double sum = 0.0;

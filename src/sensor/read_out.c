@@ -42,8 +42,7 @@ static double well(const ReadOut *r, double mean, uint64_t pixel) {
   return vl_random_poisson(&random, mean);
 }
 
-static void read_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void read_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   ReadOut *r = user;
   const vlSensorDef *def = &r->sensor->def;
   uint64_t whole_row = (uint64_t)r->window[1] + y;

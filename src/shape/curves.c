@@ -384,11 +384,8 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
 }
 
 /* Gives the middle of a piece. Curves do not emit light, so no other samples are needed. */
-static void curve_sample(const vlWorldShape *s, uint32_t prim, float u, float v,
-                         vlSurfacePoint *point, double *pdf) {
-  (void)u;
-  (void)v;
-  (void)pdf;
+static void curve_sample(const vlWorldShape *s, uint32_t prim, VL_UNUSED float u,
+                         VL_UNUSED float v, vlSurfacePoint *point, VL_UNUSED double *pdf) {
   const float *p = s->positions + 12 * (size_t)(prim >> s->split);
   double u0, u1;
   piece_range(s, prim, &u0, &u1);
@@ -400,17 +397,15 @@ static void curve_sample(const vlWorldShape *s, uint32_t prim, float u, float v,
   curve_point(s, prim, &hit, point);
 }
 
-static double curve_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
-  (void)shape;
-  (void)prim;
-  (void)at;
+static double curve_pdf(VL_UNUSED const vlWorldShape *shape, VL_UNUSED uint32_t prim,
+                        VL_UNUSED const double at[3]) {
   return 0;
 }
 
-static vlResult curve_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
-                              const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
-  (void)to_group;
-  (void)from_group;
+static vlResult curve_compile(vlWorld *world, const vlShapeDef *def,
+                              VL_UNUSED const vlMat4 *to_group,
+                              VL_UNUSED const vlMat4 *from_group, vlWorldShape *shape,
+                              vlError *error) {
   return copy_curves(world, def, shape) ? VL_OK : vl_fail_memory(error);
 }
 

@@ -341,10 +341,10 @@ static vlResult copy_spheres(vlWorld *world, const vlShapeDef *def, vlWorldShape
   return VL_OK;
 }
 
-static vlResult quadric_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group,
-                                const vlMat4 *from_group, vlWorldShape *shape, vlError *error) {
-  (void)to_group;
-  (void)from_group;
+static vlResult quadric_compile(vlWorld *world, const vlShapeDef *def,
+                                VL_UNUSED const vlMat4 *to_group,
+                                VL_UNUSED const vlMat4 *from_group, vlWorldShape *shape,
+                                vlError *error) {
   if (def->centers)
     return copy_spheres(world, def, shape, error);
   const Quadric quadric = load(shape, 0);

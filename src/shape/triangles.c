@@ -8,41 +8,22 @@ static void triangles_bounds(const vlWorldShape *shape, uint32_t prim, double lo
   vl_mesh_bounds(shape, 3, prim, low, high);
 }
 
-static bool triangles_intersect(const vlWorldShape *shape, uint32_t prim, const double o[3],
-                                const double d[3], double t_min, double t_max,
-                                vlShapeHit *hit) {
-  (void)shape;
-  (void)prim;
-  (void)o;
-  (void)d;
-  (void)t_min;
-  (void)t_max;
-  (void)hit;
+static bool triangles_intersect(VL_UNUSED const vlWorldShape *shape, VL_UNUSED uint32_t prim,
+                                VL_UNUSED const double o[3], VL_UNUSED const double d[3],
+                                VL_UNUSED double t_min, VL_UNUSED double t_max,
+                                VL_UNUSED vlShapeHit *hit) {
   return false;
 }
 
-static void triangles_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit,
-                            vlSurfacePoint *point) {
-  (void)shape;
-  (void)prim;
-  (void)hit;
-  (void)point;
-}
+static void triangles_point(VL_UNUSED const vlWorldShape *shape, VL_UNUSED uint32_t prim,
+                            VL_UNUSED const vlShapeHit *hit, VL_UNUSED vlSurfacePoint *point) {}
 
-static void triangles_sample(const vlWorldShape *shape, uint32_t prim, float u, float v,
-                             vlSurfacePoint *point, double *pdf) {
-  (void)shape;
-  (void)prim;
-  (void)u;
-  (void)v;
-  (void)point;
-  (void)pdf;
-}
+static void triangles_sample(VL_UNUSED const vlWorldShape *shape, VL_UNUSED uint32_t prim,
+                             VL_UNUSED float u, VL_UNUSED float v,
+                             VL_UNUSED vlSurfacePoint *point, VL_UNUSED double *pdf) {}
 
-static double triangles_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
-  (void)shape;
-  (void)prim;
-  (void)at;
+static double triangles_pdf(VL_UNUSED const vlWorldShape *shape, VL_UNUSED uint32_t prim,
+                            VL_UNUSED const double at[3]) {
   return 0;
 }
 

@@ -159,8 +159,7 @@ static const vlWorldImage *find_previous(const vlWorld *world, const Image *p,
   return NULL;
 }
 
-static void free_mipmap(vlContext *context, void *mipmap) {
-  (void)context;
+static void free_mipmap(VL_UNUSED vlContext *context, void *mipmap) {
   vl_mipmap_destroy(mipmap);
 }
 
@@ -299,8 +298,7 @@ typedef struct Preload {
   vlMipmap **mipmaps;
 } Preload;
 
-static void preload_one(void *user, uint32_t index, uint32_t worker) {
-  (void)worker;
+static void preload_one(void *user, uint32_t index, VL_UNUSED uint32_t worker) {
   Preload *job = user;
   double share = (double)atomic_fetch_add(&job->done, 1) / job->count;
   if (vl_world_step(job->world, "images", 0.3 * share, NULL) != VL_OK)

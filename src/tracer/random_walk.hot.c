@@ -6,8 +6,7 @@
 #include "trace/two_way/stages.h"
 #include "tracer/kinds.hot.h"
 
-static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
-  (void)depth;
+static bool arrive(vlTracing *t, uint32_t n, VL_UNUSED uint32_t depth) {
   /* all rays are marked specular, so that their weight is 1 */
   vl_stage_emission(t, n, &t->s->rays, &t->s->hits);
   return true;

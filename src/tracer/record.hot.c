@@ -120,10 +120,9 @@ void vl_record_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHit
   vl_record_light(t, p->lane[i], &c);
 }
 
-static void record_hit(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                       const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
-  (void)rows;
-  (void)ends;
+static void record_hit(vlTracing *t, const vlPaths *p, VL_UNUSED const vlVolumeRows *rows,
+                       VL_UNUSED const vlFlightEnds *ends, uint32_t i, const vlHitLight *met,
+                       bool sky) {
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
   vl_record_hit_light(t, p, i, met, sky, weight, weight);
 }

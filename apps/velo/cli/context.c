@@ -7,8 +7,7 @@
 /* More threads wait for each other: 1000 on two processors take seconds. */
 enum { MAX_PER_PROCESSOR = 4 };
 
-static bool interrupted(void *user) {
-  (void)user;
+static bool interrupted(UNUSED void *user) {
   return signals_pending() > 0;
 }
 

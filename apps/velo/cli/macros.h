@@ -26,6 +26,8 @@
 /* Writes a text into an array of characters, as snprintf does. */
 #define text_set(array, ...) snprintf(array, sizeof(array), __VA_ARGS__)
 
+/* An argument that a function of a common type does not need. */
+#define UNUSED __attribute__((unused))
 /* Takes a format as printf does, and its values: their numbers among the arguments, from 1. */
 #define PRINTF(text, values) __attribute__((format(printf, text, values)))
 /* In a function of a format and its values: makes the text, an array. */

@@ -280,8 +280,8 @@ void report_note(const char *format, ...) {
   put_line(line);
 }
 
-void report_log(void *user, vlLogLevel level, const vlError *where, const char *message) {
-  (void)user;
+void report_log(UNUSED void *user, vlLogLevel level, const vlError *where,
+                const char *message) {
   if (level == VL_LOG_INFO && state.verbosity == REPORT_QUIET)
     return;
   if (level >= VL_LOG_DEBUG && state.verbosity != REPORT_VERBOSE)

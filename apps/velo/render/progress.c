@@ -16,9 +16,7 @@ double monotonic_seconds(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-bool progress_until_signal(void *user, const vlProgress *now) {
-  (void)user;
-  (void)now;
+bool progress_until_signal(UNUSED void *user, UNUSED const vlProgress *now) {
   return !signals_pending();
 }
 

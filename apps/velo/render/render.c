@@ -571,8 +571,7 @@ static int render_all(const Arguments *arguments, Videos *videos) {
   return render_once(arguments, NULL, videos);
 }
 
-static int run_render(const Arguments *arguments, vlContext *unused) {
-  (void)unused;
+static int run_render(const Arguments *arguments, UNUSED vlContext *unused) {
   if (blend_wanted(arguments)) {
     set_up_reports(arguments);
     return blend_run(arguments);

@@ -185,8 +185,7 @@ static int status_of(const List *list) {
   return status;
 }
 
-static int run(const Arguments *arguments, vlContext *unused) {
-  (void)unused;
+static int run(const Arguments *arguments, UNUSED vlContext *unused) {
   vlContext *context = NULL;
   List list = {0};
   int status = context_open_for(arguments, logged, &list, &context);

@@ -48,8 +48,7 @@ static Option convert_options[] = {
     SCENE_SANDBOX_OPTION(CONVERT_SANDBOX),
     {0}};
 
-static void tell(void *user, const char *what, uint64_t count) {
-  (void)user;
+static void tell(UNUSED void *user, const char *what, uint64_t count) {
   report_note("not held: %s (%llu)", what, (unsigned long long)count);
 }
 

@@ -199,8 +199,7 @@ static void print_words(const vlKindFamily *family) {
   }
 }
 
-static int run(const Arguments *arguments, vlContext *context) {
-  (void)context;
+static int run(const Arguments *arguments, UNUSED vlContext *context) {
   const char *wanted = arguments->operand_count ? arguments->operands[0] : NULL;
   bool dictionary = arguments->values[KINDS_DICTIONARY].given, found = false;
   const vlKindFamily *family;

@@ -110,8 +110,7 @@ static void close_all(Verify *v) {
   context_close(v->context);
 }
 
-static int run_verify(const Arguments *arguments, vlContext *unused) {
-  (void)unused;
+static int run_verify(const Arguments *arguments, UNUSED vlContext *unused) {
   static Verify v;
   const OptionValue *o = arguments->values;
   v.path = arguments->operands[0];

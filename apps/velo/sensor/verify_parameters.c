@@ -2,6 +2,7 @@
  * the frames, and what the sensor's own numbers let one expect. */
 #include <math.h>
 
+#include "cli/macros.h"
 #include "sensor/verify.h"
 
 #define ROUNDING (1.0 / 12.0) /* variance of rounding, DN^2 */
@@ -91,12 +92,10 @@ static double peak(const Verify *v, bool expected) {
 /* One number of a step. */
 typedef double StepValue(const Verify *v, const VerifyStep *step);
 
-static double light_mean(const Verify *v, const VerifyStep *step) {
-  (void)v;
+static double light_mean(UNUSED const Verify *v, const VerifyStep *step) {
   return step->mean - step->dark_mean;
 }
-static double light_variance(const Verify *v, const VerifyStep *step) {
-  (void)v;
+static double light_variance(UNUSED const Verify *v, const VerifyStep *step) {
   return step->variance - step->dark_variance;
 }
 static double photons(const Verify *v, const VerifyStep *step) {

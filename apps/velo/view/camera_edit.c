@@ -91,8 +91,7 @@ typedef bool Setter(Edit *edit, const MessageField *field);
 /* Each of these removes or computes the spellings that a field replaces or needs. */
 typedef void Before(const ViewCamera *now, vlCameraDef *def);
 
-static void before_fov(const ViewCamera *now, vlCameraDef *def) {
-  (void)now;
+static void before_fov(UNUSED const ViewCamera *now, vlCameraDef *def) {
   drop_focal(def);
 }
 static void before_sensor(const ViewCamera *now, vlCameraDef *def) {
@@ -218,18 +217,15 @@ static bool set_roll(Edit *e, const MessageField *f) {
 
 /* ---- lens -------------------------------------------------------------------------------- */
 
-static void before_radius(const ViewCamera *now, vlCameraDef *def) {
-  (void)now;
+static void before_radius(UNUSED const ViewCamera *now, vlCameraDef *def) {
   def->lens.f_number = VL_UNSET;
 }
-static void before_f_number(const ViewCamera *now, vlCameraDef *def) {
-  (void)now;
+static void before_f_number(UNUSED const ViewCamera *now, vlCameraDef *def) {
   def->lens_radius = 0;
   if (isnan(def->focal_mm) && isnan(def->sensor_width_mm))
     def->sensor_width_mm = 36;
 }
-static void before_focus(const ViewCamera *now, vlCameraDef *def) {
-  (void)now;
+static void before_focus(UNUSED const ViewCamera *now, vlCameraDef *def) {
   for (int i = 0; i < 3; i++)
     def->lens.focus_point[i] = VL_UNSET;
   for (int i = 0; i < 2; i++)

@@ -33,9 +33,7 @@ static Engine *engine;
 
 /* ---- the server -------------------------------------------------------------------------- */
 
-void server_post(Server *s, uint32_t client, const char *text) {
-  (void)s;
-  (void)client;
+void server_post(UNUSED Server *s, UNUSED uint32_t client, const char *text) {
   velo_page_post(text);
 }
 
@@ -59,8 +57,7 @@ void server_show(Server *s, ViewFrame *frame) {
   send_frame(s);
 }
 
-double server_seconds(const Server *s) {
-  (void)s;
+double server_seconds(UNUSED const Server *s) {
   return 0;
 }
 

@@ -39,9 +39,8 @@ static void greet(void *user, uint32_t client) {
   s->fresh = true;
 }
 
-static void refuse(void *user, bool steers, const ViewMessage *message) {
+static void refuse(void *user, UNUSED bool steers, const ViewMessage *message) {
   Serve *s = user;
-  (void)steers;
   Json *json = json_text_begin("refused");
   if (!json)
     return;

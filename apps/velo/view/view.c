@@ -36,8 +36,7 @@ static int check_usage(const Arguments *arguments) {
   return -1;
 }
 
-static int run_view(const Arguments *arguments, vlContext *unused) {
-  (void)unused;
+static int run_view(const Arguments *arguments, UNUSED vlContext *unused) {
   TRY(check_usage(arguments));
 #if defined VELO_HAS_VIEW || defined __EMSCRIPTEN__
   return view_run(arguments);
@@ -49,23 +48,15 @@ static int run_view(const Arguments *arguments, vlContext *unused) {
 }
 
 #ifndef VELO_HAS_VIEW
-int serve_start(const Job *job, vlView view, float exposure, Serve **serve) {
-  (void)job;
-  (void)view;
-  (void)exposure;
-  (void)serve;
+int serve_start(UNUSED const Job *job, UNUSED vlView view, UNUSED float exposure,
+                UNUSED Serve **serve) {
   return report_failure(
       STATUS_OTHER,
       "--serve: this velo was built without libwebsockets, which the option needs");
 }
-void serve_film(Serve *serve, const vlFilm *film, const vlProgress *progress) {
-  (void)serve;
-  (void)film;
-  (void)progress;
-}
-void serve_stop(Serve *serve) {
-  (void)serve;
-}
+void serve_film(UNUSED Serve *serve, UNUSED const vlFilm *film,
+                UNUSED const vlProgress *progress) {}
+void serve_stop(UNUSED Serve *serve) {}
 #endif
 
 static const Choice languages[] = {

@@ -173,8 +173,7 @@ static const float *texel_at(const Level *level, vlVec3 d) {
 }
 
 /* A row of level 0: each texel is the mean of sixteen directions. */
-static void look_row(void *user, uint32_t row, uint32_t worker) {
-  (void)worker;
+static void look_row(void *user, uint32_t row, VL_UNUSED uint32_t worker) {
   const Cube *cube = user;
   const Level *level = &cube->plain[0];
   const uint32_t n = level->side, face = row / n, y = row % n;
@@ -193,8 +192,7 @@ static void look_row(void *user, uint32_t row, uint32_t worker) {
 /* A row of a level that is filtered by GGX's lobe for the viewer along the normal (Karis 2013).
  * A sample looks into the level whose texels have the sample's share of the sphere (Colbert and
  * Krivanek 2007). */
-static void filter_row(void *user, uint32_t row, uint32_t worker) {
-  (void)worker;
+static void filter_row(void *user, uint32_t row, VL_UNUSED uint32_t worker) {
   const Cube *cube = user;
   const Level *level = &cube->lobes[cube->level];
   const uint32_t n = level->side, face = row / n, y = row % n;

@@ -341,25 +341,22 @@ static void put_glass(vlExport *x, json_t *material, const vlMaterialDef *m, vlM
 }
 
 static void put_diffuse(vlExport *x, json_t *material, const vlMaterialDef *m,
-                        vlMediumId inside, double coverage) {
-  (void)inside;
+                        VL_UNUSED vlMediumId inside, double coverage) {
   put_base(x, material, &m->reflectance, coverage, 0, 1);
   set_number(extension(x, material, "KHR_materials_specular"), "specularFactor", 0);
 }
 
-static void put_coated(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
-                       double coverage) {
-  (void)inside;
+static void put_coated(vlExport *x, json_t *material, const vlMaterialDef *m,
+                       VL_UNUSED vlMediumId inside, double coverage) {
   vl_export_lose(x, "coateddiffuse: as a rough dielectric");
   put_base(x, material, &m->reflectance, coverage, 0, own_roughness(x, m));
   put_ior(x, material, vl_export_eta(&m->eta.value));
 }
 
 static void put_conductor(vlExport *x, json_t *material, const vlMaterialDef *m,
-                          vlMediumId inside, double coverage) {
+                          VL_UNUSED vlMediumId inside, double coverage) {
   float rgb[3];
   vlSpectrumInput color = m->reflectance;
-  (void)inside;
   vl_export_metal_rgb(x, m, rgb);
   if (!m->use_reflectance)
     color = vl_spectrum_input(vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]));
@@ -411,9 +408,8 @@ static void put_leaf(vlExport *x, json_t *material, const vlMaterialDef *m, vlMe
 }
 
 static void put_subsurface(vlExport *x, json_t *material, const vlMaterialDef *m,
-                           vlMediumId inside, double coverage) {
+                           VL_UNUSED vlMediumId inside, double coverage) {
   vlSpectrumInput color = m->reflectance;
-  (void)inside;
   vl_export_lose(
       x, "subsurface: as a rough dielectric, its colour grey where no reflectance says it");
   if (!m->subsurface.from_reflectance)
@@ -422,11 +418,9 @@ static void put_subsurface(vlExport *x, json_t *material, const vlMaterialDef *m
   put_ior(x, material, vl_export_eta(&m->eta.value));
 }
 
-static void put_grey(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside,
-                     double coverage) {
+static void put_grey(vlExport *x, json_t *material, VL_UNUSED const vlMaterialDef *m,
+                     VL_UNUSED vlMediumId inside, double coverage) {
   const vlSpectrumInput grey = vl_spectrum_input(vl_spectrum_constant(0.5f));
-  (void)m;
-  (void)inside;
   vl_export_lose(x, "materials of kinds that glTF has not: grey");
   put_base(x, material, &grey, coverage, 0, 1);
 }

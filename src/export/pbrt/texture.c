@@ -355,8 +355,7 @@ static bool is_placed(const vlTextureDef *t, const vlKindRow *row, vlMat4 *world
 }
 
 /* The parameters of the mapping are left to put_mapping. */
-static vlPbrtWished wish(const void *def, const vlParameter *p) {
-  (void)def;
+static vlPbrtWished wish(VL_UNUSED const void *def, const vlParameter *p) {
   return vl_has_word("mapping uscale vscale udelta vdelta v1 v2", p->name)
              ? VL_PBRT_NEVER
              : VL_PBRT_UNLESS_DEFAULT;

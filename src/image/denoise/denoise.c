@@ -107,8 +107,7 @@ typedef struct Clearing {
   size_t floats;
 } Clearing;
 
-static void clear_part(void *user, uint32_t index, uint32_t worker) {
-  (void)worker;
+static void clear_part(void *user, uint32_t index, VL_UNUSED uint32_t worker) {
   const Clearing *clearing = user;
   size_t first = (size_t)index * CLEARED, left = clearing->floats - first;
   if (!vl_is_cancelled(clearing->cancel))
@@ -188,8 +187,7 @@ static float find_nearest(const Denoise *d) {
 
 /* Reads a row. Leaves the means of R, G and B in the plane result[1], for the search of
  * outliers; 0 for a pixel that is not valid. */
-static void read_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void read_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   Denoise *d = user;
   const vlDenoisePlanes *p = &d->planes[0];
   const vlDenoiseChannels *from = &d->channels;
@@ -251,8 +249,7 @@ static void fill(const vlDenoisePlanes *p, ptrdiff_t at) {
   }
 }
 
-static void fill_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void fill_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Denoise *d = user;
   for (uint32_t x = 0; x < d->planes[0].width; x++)
     if (d->planes[0].valid[index_of(&d->planes[0], x, y)] == 0.0f)
@@ -261,14 +258,12 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
 
 /* ---- outliers ---------------------------------------------------------------------------- */
 
-static void cap_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void cap_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Denoise *d = user;
   d->kernels->cap(&d->planes[0], y);
 }
 
-static void scale_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void scale_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const vlDenoisePlanes *p = &((const Denoise *)user)->planes[0];
   for (uint32_t x = 0; x < p->width; x++) {
     ptrdiff_t at = index_of(p, x, y);
@@ -312,8 +307,7 @@ static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
 
 /* ---- variances --------------------------------------------------------------------------- */
 
-static void raise_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void raise_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Denoise *d = user;
   d->kernels->raise(&d->planes[0], y);
 }
@@ -350,8 +344,7 @@ static void fit(Denoise *d) {
 
 /* The lattice's points are the pixels STEP i + STEP / 2 of the rows STEP j + STEP / 2. Their
  * values are the results of the fits, their variances those of the results' noise. */
-static void lattice_row(void *user, uint32_t j, uint32_t worker) {
-  (void)worker;
+static void lattice_row(void *user, uint32_t j, VL_UNUSED uint32_t worker) {
   const Denoise *d = user;
   const vlDenoisePlanes *p = &d->planes[d->level - 1], *to = &d->planes[d->level];
   for (uint32_t i = 0; i < to->width; i++) {
@@ -370,8 +363,7 @@ static void lattice_row(void *user, uint32_t j, uint32_t worker) {
 
 /* Turns the fits of a row of the lattice into functions of the features' values instead of
  * their differences. noise[0] becomes the share of the noise that a fit has removed. */
-static void finish_lattice_row(void *user, uint32_t j, uint32_t worker) {
-  (void)worker;
+static void finish_lattice_row(void *user, uint32_t j, VL_UNUSED uint32_t worker) {
   const Denoise *d = user;
   const vlDenoisePlanes *p = &d->planes[d->level];
   ptrdiff_t at = index_of(p, 0, j), width = p->width;
@@ -419,8 +411,7 @@ static void extend_lattice(const vlDenoisePlanes *p) {
   }
 }
 
-static void correct_rows(void *user, uint32_t index, uint32_t worker) {
-  (void)worker;
+static void correct_rows(void *user, uint32_t index, VL_UNUSED uint32_t worker) {
   const Denoise *d = user;
   const vlDenoisePlanes *lattice = &d->planes[d->level];
   for (uint32_t i = 0; i <= lattice->width; i += VL_LANES)

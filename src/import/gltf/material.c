@@ -215,8 +215,7 @@ static bool read_glass(const Reader *r, vlPrincipledDef *p) {
   return channel(r, "transmissionFactor", "transmissionTexture", 0, 0.0f, &p->transmission);
 }
 
-static bool read_ior(const Reader *r, vlPrincipledDef *p) {
-  (void)p;
+static bool read_ior(const Reader *r, VL_UNUSED vlPrincipledDef *p) {
   float index = 1.5f;
   if (!vl_gltf_float(r->at, "ior", &index))
     return false;

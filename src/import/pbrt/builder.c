@@ -110,8 +110,7 @@ static bool color_space(vlImport *import, const vlStatement *s) {
       vl_short_text(s->names[0]).text);
 }
 
-static bool world_begin(vlImport *import, const vlStatement *s) {
-  (void)s;
+static bool world_begin(vlImport *import, VL_UNUSED const vlStatement *s) {
   import->in_world = true;
   import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
   import->state.active = 3;
@@ -140,8 +139,7 @@ static bool fail_open(vlImport *import) {
                          top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
 }
 
-static bool end_import(vlImport *import, const vlStatement *s) {
-  (void)s;
+static bool end_import(vlImport *import, VL_UNUSED const vlStatement *s) {
   if (import->stack.items[import->stack.count - 1].kind != 'i')
     return fail_open(import);
   vl_import_restore(import);
@@ -155,8 +153,7 @@ static bool activate(vlImport *import, const vlStatement *s) {
   return true;
 }
 
-static bool reverse_orientation(vlImport *import, const vlStatement *s) {
-  (void)s;
+static bool reverse_orientation(vlImport *import, VL_UNUSED const vlStatement *s) {
   import->state.reverse_orientation = !import->state.reverse_orientation;
   return true;
 }

@@ -42,8 +42,7 @@ bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source,
   return true;
 }
 
-static void read_one(void *user, uint32_t index, uint32_t worker) {
-  (void)worker;
+static void read_one(void *user, uint32_t index, VL_UNUSED uint32_t worker) {
   const Work *work = user;
   Job *job = &work->jobs[index];
   const vlImport *import = work->import;

@@ -110,8 +110,7 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
   return true;
 }
 
-static bool finish_image(vlDict *dict, const vlMat4 *ctm, vlTextureDef *def) {
-  (void)ctm;
+static bool finish_image(vlDict *dict, VL_UNUSED const vlMat4 *ctm, vlTextureDef *def) {
   float anisotropy = 8.0f;
   /* accepted and ignored: limit of pbrt's EWA filter */
   vl_dict_float(dict, "maxanisotropy", &anisotropy);

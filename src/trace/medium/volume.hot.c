@@ -69,9 +69,8 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
 /* ---- lights that rays hit ---------------------------------------------------------------- */
 
 static void add_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                      const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
-  (void)ends;
-  (void)sky;
+                      VL_UNUSED const vlFlightEnds *ends, uint32_t i, const vlHitLight *met,
+                      VL_UNUSED bool sky) {
   vl_add_radiance(t, p, i, met->radiance, vl_volume_inverse_density(t, rows, i, met->pdf));
 }
 

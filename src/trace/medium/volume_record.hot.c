@@ -4,8 +4,8 @@
 #include "tracer/record.h"
 
 static void record_met(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                       const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
-  (void)ends;
+                       VL_UNUSED const vlFlightEnds *ends, uint32_t i, const vlHitLight *met,
+                       bool sky) {
   float inv = vl_volume_inverse_density(t, rows, i, met->pdf);
   float weight = inv / vl_volume_inverse_density(t, rows, i, 0.0f);
   vl_record_hit_light(t, p, i, met, sky, weight, inv);

@@ -12,11 +12,9 @@ enum { MAX_PASSED = 1024 };
 
 /* ---- lights that rays hit ---------------------------------------------------------------- */
 
-void vl_add_hit_light(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
-                      const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
-  (void)rows;
-  (void)ends;
-  (void)sky;
+void vl_add_hit_light(vlTracing *t, const vlPaths *p, VL_UNUSED const vlVolumeRows *rows,
+                      VL_UNUSED const vlFlightEnds *ends, uint32_t i, const vlHitLight *met,
+                      VL_UNUSED bool sky) {
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
   vl_add_radiance(t, p, i, met->radiance, weight);
 }

@@ -225,9 +225,8 @@ static bool is_stopped(const Builder *b) {
 
 /* Finds the boxes of some primitives. One that is not in Embree's range, nor in that of rays,
  * has an empty box. */
-static void find_boxes(void *user, uint32_t index, uint32_t worker) {
+static void find_boxes(void *user, uint32_t index, VL_UNUSED uint32_t worker) {
   Builder *b = user;
-  (void)worker;
   uint32_t i = index * CHUNK, end = b->count - i < CHUNK ? b->count : i + CHUNK;
   for (; i < end && !is_stopped(b); i++) {
     Primitive *p = &b->primitives[i];

@@ -63,9 +63,8 @@ const char *vl_embree_fast_set(void) {
   return widest;
 }
 #else
-vlResult vl_embree_choose_set(vlBits bits, const char **name, vlError *error) {
-  (void)bits;
-  (void)error;
+vlResult vl_embree_choose_set(VL_UNUSED vlBits bits, const char **name,
+                              VL_UNUSED vlError *error) {
   *name = NULL;
   return VL_OK;
 }

@@ -21,8 +21,7 @@ typedef struct Work {
 } Work;
 
 /* Longitude 0 is the x axis and grows towards y; latitude 0, the first row, is the z axis. */
-static void fill_row(void *user, uint32_t y, uint32_t worker) {
-  (void)worker;
+static void fill_row(void *user, uint32_t y, VL_UNUSED uint32_t worker) {
   const Work *w = user;
   float *row = vl_image_row(w->to, y);
   double side = w->to->width;

@@ -8,6 +8,7 @@
 #define TEST_CONFORMANCE_PARAMETERS_H
 
 #include "conformance.h"
+#include "edited.h"
 #include "parameter_cases.h"
 #include "unit.h"
 #include "velo/check.h"
@@ -621,6 +622,8 @@ static bool has_effect(const char *family, const char *form, const char *kind, c
   bool effect = memcmp(plain, changed, sizeof plain) != 0;
   if (effect)
     check_text(family, kind, name, text, changed);
+  if (effect)
+    check_edited(family, kind, name, plain_text, text, changed);
   if (effect && strcmp(family, "filters") != 0 && strcmp(family, "tracers") != 0) {
     check_losses(family, kind, name, plain_text, text, "glb");
     if (strcmp(kind, "principled") == 0) /* pbrt has all others */

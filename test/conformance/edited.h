@@ -1,0 +1,98 @@
+/* conformance/edited.h: the law of worlds that are built from previous ones: a scene whose
+ * parameter has changed gives the image that it gives without a previous world, whether it was
+ * loaded again or its objects were given other defs. */
+#ifndef TEST_CONFORMANCE_EDITED_H
+#define TEST_CONFORMANCE_EDITED_H
+
+#include "conformance.h"
+
+/* Gives the object of an id the def of another scene. False: one of them has no such object. */
+typedef bool SetFrom(vlScene *scene, const vlScene *other, uint32_t id);
+
+static bool set_texture_from(vlScene *scene, const vlScene *other, uint32_t index) {
+  const vlTextureId id = {index};
+  const vlTextureDef *def = vl_scene_texture(other, id);
+  return def && vl_scene_texture(scene, id) &&
+         vl_scene_set_texture(scene, id, def, NULL) == VL_OK;
+}
+static bool set_material_from(vlScene *scene, const vlScene *other, uint32_t index) {
+  const vlMaterialId id = {index};
+  const vlMaterialDef *def = vl_scene_material(other, id);
+  return def && vl_scene_material(scene, id) &&
+         vl_scene_set_material(scene, id, def, NULL) == VL_OK;
+}
+static bool set_emission_from(vlScene *scene, const vlScene *other, uint32_t index) {
+  const vlEmissionId id = {index};
+  const vlEmissionDef *def = vl_scene_emission(other, id);
+  return def && vl_scene_emission(scene, id) &&
+         vl_scene_set_emission(scene, id, def, NULL) == VL_OK;
+}
+static bool set_light_from(vlScene *scene, const vlScene *other, uint32_t index) {
+  const vlLightId id = {index};
+  const vlLightDef *def = vl_scene_light(other, id);
+  return def && vl_scene_light(scene, id) && vl_scene_set_light(scene, id, def, NULL) == VL_OK;
+}
+static bool set_medium_from(vlScene *scene, const vlScene *other, uint32_t index) {
+  const vlMediumId id = {index};
+  const vlMediumDef *def = vl_scene_medium(other, id);
+  return def && vl_scene_medium(scene, id) &&
+         vl_scene_set_medium(scene, id, def, NULL) == VL_OK;
+}
+static bool set_shape_from(vlScene *scene, const vlScene *other, uint32_t index) {
+  const vlShapeId id = {index};
+  const vlShapeDef *def = vl_scene_shape(other, id);
+  return def && vl_scene_shape(scene, id) && vl_scene_set_shape(scene, id, def, NULL) == VL_OK;
+}
+
+static const struct {
+  const char *family;
+  SetFrom *set;
+} editable[] = {{"textures", set_texture_from},  {"materials", set_material_from},
+                {"emission", set_emission_from}, {"lights", set_light_from},
+                {"media", set_medium_from},      {"shapes", set_shape_from}};
+
+/* Renders the scene from the previous world and destroys it. */
+static void check_from_previous(const char *family, const char *kind, const char *what,
+                                vlScene *scene, const vlWorld *previous,
+                                const float pixels[PIXELS]) {
+  vlError error = {0};
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  defs->build.previous = previous;
+  defs->render.spp = SAMPLES;
+  vlImage *image = render_scene(context, scene, &error);
+  if (!image)
+    broken(family, kind, "%s: with a previous world: %s", what, error.message);
+  else if (memcmp(vl_image_const_pixels(image), pixels, PIXELS * sizeof *pixels) != 0)
+    broken(family, kind, "%s: with a previous world it has another image", what);
+  vl_image_destroy(image);
+}
+
+/* text: the scene with a changed parameter, of these pixels; before: without the change. */
+static void check_edited(const char *family, const char *kind, const char *name,
+                         const char *before, const char *text, const float pixels[PIXELS]) {
+  vlError error = {0};
+  vlWorld *world = NULL;
+  char what[200];
+  vlScene *scene = need_scene(before);
+  vlScene *changed = need_scene(text);
+  if (vl_world_build(scene, &vl_scene_defs(scene)->build, &world, &error) != VL_OK) {
+    vl_scene_destroy(scene); /* it cannot do without the parameter */
+    vl_scene_destroy(changed);
+    return;
+  }
+  uint32_t edited = 0;
+  for (size_t i = 0; i < sizeof editable / sizeof *editable; i++)
+    if (strcmp(editable[i].family, family) == 0)
+      while (editable[i].set(scene, changed, edited + 1))
+        edited++;
+  snprintf(what, sizeof what, "\"%.100s\" changed, loaded again", name);
+  check_from_previous(family, kind, what, changed, world, pixels);
+  snprintf(what, sizeof what, "\"%.100s\" changed, by other defs", name);
+  if (edited)
+    check_from_previous(family, kind, what, scene, world, pixels);
+  else
+    vl_scene_destroy(scene);
+  vl_world_destroy(world);
+}
+
+#endif

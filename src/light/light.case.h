@@ -28,7 +28,7 @@ typedef struct LightVariant {
         light */
 } LightVariant;
 
-enum { LIGHT_VARIANTS = 7 };
+enum { LIGHT_VARIANTS = 8 };
 typedef struct LightCase {
   const char *before; /* statements before the light, such as its place; null: none */
   LightVariant variants[LIGHT_VARIANTS];

@@ -45,6 +45,14 @@ const LightCase spot_light = {
                        {.6, .2, {8.564451, 8.564451, 8.564451}},
                        {-1.2, .1, {.950077, .950077, .950077}},
                        {.2, .55, {0, 0, 0}}}},
+            /* the same, however far the point is at which it points */
+            {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [0 -2 0] "
+                           "\"float coneangle\" 40 \"float conedeltaangle\" 20 "
+                           "\"rgb I\" [1 1 1] \"float power\" 10",
+             .before = UNEVEN,
+             .change = square,
+             .known = {{-.3, 0, {10.01089, 10.01089, 10.01089}},
+                       {.6, .2, {8.564451, 8.564451, 8.564451}}}},
             {.parameters = CONE "\"rgb I\" [1 1 1]",
              .before = UNEVEN,
              .known = {{-.3, 0, {.735294, .735294, .735294}},

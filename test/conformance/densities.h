@@ -220,6 +220,51 @@ static void check_densities(const char *kind, const char *parameters,
   vl_world_destroy(world);
 }
 
+/* Majorants of grids in which one cell is much denser than all others, each cell in turn. */
+static void check_dense_cells(const char *kind, const char *values, uint32_t channels,
+                              vlColorMode color) {
+  enum { CELLS_ALONG_X = 3, ALL_CELLS = 24, POINTS_OF_GRID = 400 };
+  for (uint32_t dense = 0; dense < ALL_CELLS; dense++) {
+    char all[1500];
+    int n = snprintf(all, sizeof all,
+                     "\"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] \"integer nx\" %d "
+                     "\"integer ny\" 2 \"integer nz\" 4 %s [",
+                     CELLS_ALONG_X, values);
+    for (uint32_t i = 0; i < ALL_CELLS * channels; i++)
+      n += snprintf(all + n, sizeof all - (size_t)n, "%s ",
+                    i == dense * channels + dense % channels ? "9" : ".1");
+    snprintf(all + n, sizeof all - (size_t)n, "]");
+    vlWorld *world = world_of_medium(kind, all, color);
+    const uint32_t above = above_majorants(&world->media.items[0], POINTS_OF_GRID);
+    vl_world_destroy(world);
+    if (above)
+      broken("media", kind, "cell %u alone is dense: above its majorant at %u of %d points",
+             dense, above, POINTS_OF_GRID);
+  }
+}
+
+/* What is hotter than the hottest colour of RGB's table has that colour. */
+static void check_hottest(void) {
+  vlWorld *worlds[2];
+  static const char *const temperatures[] = {"102500", "1e6"};
+  double seen[2];
+  for (int i = 0; i < 2; i++) {
+    static const double middle[3] = {0, 0, 0};
+    char all[300];
+    snprintf(all, sizeof all,
+             "\"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] \"integer nx\" 1 "
+             "\"integer ny\" 1 \"integer nz\" 1 \"float density\" [1] "
+             "\"float temperature\" [%s]",
+             temperatures[i]);
+    worlds[i] = world_of_medium("uniformgrid", all, VL_COLOR_RGB);
+    seen[i] = luminance_at(&worlds[i]->media.items[0], true, middle);
+    vl_world_destroy(worlds[i]);
+  }
+  if (!(seen[0] > 0 && seen[0] == seen[1]))
+    broken("media", "uniformgrid", "the hottest colour: %g, and %g beyond it", seen[0],
+           seen[1]);
+}
+
 static void laws_of_densities(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("media");
@@ -244,6 +289,10 @@ static void laws_of_densities(void **state) {
     if (c->blocks)
       check_densities(family->rows[k]->name, c->blocks, c->density_of_blocks);
   }
+  check_dense_cells("uniformgrid", "\"float density\"", 1, VL_COLOR_RGB);
+  check_dense_cells("rgbgrid", "\"rgb sigma_s\"", 3, VL_COLOR_RGB);
+  check_dense_cells("rgbgrid", "\"rgb sigma_a\"", 3, VL_COLOR_SPECTRAL);
+  check_hottest();
   expect_no_failures();
 }
 

@@ -95,4 +95,47 @@ static void check_edited(const char *family, const char *kind, const char *name,
   vl_world_destroy(world);
 }
 
+/* ---- one image, used in different ways --------------------------------------------------- */
+
+#define BALL_OF_IMAGE \
+  "LightSource \"infinite\" Material \"diffuse\" \"texture reflectance\" \"t\" " BALL
+#define IMAGE_USE(parameters)                                              \
+  "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.tga\" " \
+  "\"float uscale\" 9 \"float vscale\" 9 " parameters "\n" BALL_OF_IMAGE
+
+static const char *const image_uses[] = {
+    IMAGE_USE("\"string encoding\" \"sRGB\" \"string filter\" \"bilinear\""),
+    IMAGE_USE("\"string encoding\" \"linear\" \"string filter\" \"bilinear\""),
+    IMAGE_USE("\"string encoding\" \"gamma 1.5\" \"string filter\" \"bilinear\""),
+    IMAGE_USE("\"string encoding\" \"gamma 3\" \"string filter\" \"bilinear\""),
+    IMAGE_USE("\"string encoding\" \"gamma 3\" \"string filter\" \"trilinear\""),
+    IMAGE_USE("\"string filter\" \"trilinear\""),
+    /* needs no blurred levels */
+    "LightSource \"infinite\" \"string filename\" \"a.tga\" Material \"diffuse\" " BALL,
+};
+enum { IMAGE_USES = sizeof image_uses / sizeof *image_uses };
+
+/* A previous world has the image, but not as it is used now. */
+static void uses_of_images(void **state) {
+  (void)state;
+  static char texts[IMAGE_USES][TEXT];
+  static float pixels[IMAGE_USES][PIXELS];
+  char what[100];
+  vlError error = {0};
+  for (int i = 0; i < IMAGE_USES; i++) {
+    snprintf(texts[i], TEXT, HEAD "WorldBegin %s", image_uses[i]);
+    assert_true(render_text(texts[i], pixels[i], &error));
+    for (int k = 0; k < i; k++)
+      if (memcmp(pixels[i], pixels[k], sizeof pixels[i]) == 0)
+        broken("textures", "imagemap", "use %d of an image looks as use %d", i, k);
+  }
+  for (int i = 0; i < IMAGE_USES; i++)
+    for (int k = 0; k < IMAGE_USES; k++) {
+      snprintf(what, sizeof what, "use %d of an image after use %d", k, i);
+      if (i != k)
+        check_edited("textures", "imagemap", what, texts[i], texts[k], pixels[k]);
+    }
+  expect_no_failures();
+}
+
 #endif

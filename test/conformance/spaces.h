@@ -241,6 +241,35 @@ static void check_space_brightness(const SpaceCase *c) {
              (Sight){0.05, 0.2});
 }
 
+/* ---- panes whose colour is a spectrum ---------------------------------------------------- */
+
+#define PANE_AT(z)                                                                           \
+  "Material \"principled\" \"float metallic\" 0 \"float roughness\" 0 \"float specular\" 0 " \
+  "\"float transmission\" 1 \"bool thinwalled\" true "                                       \
+  "\"spectrum basecolor\" [360 0 499 0 500 1 560 1 561 0 830 0] "                            \
+  "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 " z " 9 -9 " z " -9 9 " z " 9 9 " z "]\n"
+
+/* A base colour that is a spectrum acts at each wavelength: a second pane of a colour that
+ * passes all or nothing takes no more. */
+static void check_spectral_panes(void) {
+  static const char *const texts[] = {HEAD "WorldBegin " D65_SKY PANE_AT("1"),
+                                      HEAD "WorldBegin " D65_SKY PANE_AT("1") PANE_AT("2")};
+  Mean seen[2];
+  for (int i = 0; i < 2; i++) {
+    vlScene *scene = need_scene(texts[i]);
+    vlSceneDefs *defs = vl_scene_defs(scene);
+    defs->build.color = VL_COLOR_SPECTRAL;
+    defs->render.spp = 256;
+    vlImage *image = need_image(scene, texts[i]);
+    seen[i] = mean_of_image(image);
+    vl_image_destroy(image);
+  }
+  if (!(mean_of(&seen[0]) > 0.7 && mean_of(&seen[0]) < 0.85))
+    broken("materials", "principled", "a pane of one spectrum: green %.4f", mean_of(&seen[0]));
+  check_same_mean("materials", "principled", "a second pane of one spectrum: green", &seen[1],
+                  &seen[0], (Sight){0.03 * mean_of(&seen[0]), 0.15 * mean_of(&seen[0])});
+}
+
 static void colors_of_spaces(void **state) {
   (void)state;
   for (int i = 0; i < SPACE_CASES; i++) {
@@ -255,6 +284,7 @@ static void colors_of_spaces(void **state) {
     }
     check_space_brightness(c);
   }
+  check_spectral_panes();
   expect_no_failures();
 }
 

@@ -7,6 +7,7 @@
 #include "densities.h"
 #include "descriptions.h"
 #include "dimensions.h"
+#include "edited.h"
 #include "emitting_faces.h"
 #include "far_lamps.h"
 #include "files.h"
@@ -37,6 +38,7 @@
 #include "shading.h"
 #include "shapes.h"
 #include "spaces.h"
+#include "stand_ins.h"
 #include "surfaces.h"
 #include "texels.h"
 #include "textures.h"
@@ -73,6 +75,7 @@ int main(int argc, char **argv) {
     cmocka_set_test_filter(argv[1]);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parameters_of_all_families),
+      cmocka_unit_test(uses_of_images),
       cmocka_unit_test(textures_of_parameters),
       cmocka_unit_test(repeated_parameters),
       cmocka_unit_test(defaults_of_pbrt),
@@ -135,6 +138,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(spectra_of_files),
       cmocka_unit_test(lights_of_files),
       cmocka_unit_test(skies_of_files),
+      cmocka_unit_test(stand_ins_of_files),
       cmocka_unit_test(hostile_defs),
       cmocka_unit_test(hostile_cameras),
       cmocka_unit_test(hostile_files),

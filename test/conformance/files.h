@@ -177,6 +177,14 @@ static const char ply[] =
     "vertex_indices\n"
     "end_header\n-1 -1 0 0 0\n1 -1 0 1 0\n-1 1 0 0 1\n1 1 0 1 1\n3 0 1 2\n3 1 3 2\n";
 
+/* The same as one quad. */
+static const char quad_ply[] =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+    "float z\n"
+    "property float u\nproperty float v\nelement face 1\nproperty list uchar int "
+    "vertex_indices\n"
+    "end_header\n-1 -1 0 0 0\n1 -1 0 1 0\n-1 1 0 0 1\n1 1 0 1 1\n4 0 1 3 2\n";
+
 static bool write_files(void) {
   bool done = write_image("a.pfm", 0) && write_image("b.pfm", 1) && write_image("sky.pfm", 2) &&
               write_image("other.pfm", 3) && write_image("normals.pfm", 4) &&
@@ -184,7 +192,8 @@ static bool write_files(void) {
               write_quarters("quarters.pfm") && write_grain("grain.pfm") &&
               write_tilted("tilted.pfm") && write_lamp("lamp.ies", 2, 1) &&
               write_lamp("other.ies", 3, 9);
-  done = done && write_bytes("a.ply", ply, sizeof ply - 1);
+  done = done && write_bytes("a.ply", ply, sizeof ply - 1) &&
+         write_bytes("quad.ply", quad_ply, sizeof quad_ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&
          write_nanovdb("a.nvdb", 0) && write_nanovdb("b.nvdb", 1) &&
          write_blocks("blocks.nvdb");

@@ -9,6 +9,8 @@
 #include "dimensions.h"
 #include "edited.h"
 #include "emitting_faces.h"
+
+#include "failed_saves.h"
 #include "far_lamps.h"
 #include "files.h"
 #include "footprints.h"
@@ -139,6 +141,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(lights_of_files),
       cmocka_unit_test(skies_of_files),
       cmocka_unit_test(stand_ins_of_files),
+      cmocka_unit_test(saves_that_fail),
       cmocka_unit_test(hostile_defs),
       cmocka_unit_test(hostile_cameras),
       cmocka_unit_test(hostile_files),

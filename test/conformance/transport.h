@@ -5,6 +5,7 @@
 #define TEST_CONFORMANCE_TRANSPORT_H
 
 #include "../world/plain_noise.h"
+#include "color/color.h"
 #include "conformance.h"
 #include "medium/medium.case.h"
 #include "tracer/tracer.case.h"
@@ -258,6 +259,38 @@ static void check_medium(const char *name, const MediumCase *c) {
     broken("media", name, "lets %.4f of the light pass", mean_of(&passes));
 }
 
+/* A medium that absorbs all but one band of wavelengths passes the band's share of the
+ * luminance. */
+static void check_band(void) {
+  enum { FIRST = 525, LAST = 550 };
+  static const char text[] =
+      "LookAt 0 0 3 0 0 0 0 1 0 Camera \"orthographic\" "
+      "\"float screenwindow\" [-.5 .5 -.5 .5]\n" VIEW("16")
+      "WorldBegin LightSource \"infinite\" \"spectrum L\" [360 1 830 1] "
+      "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" "
+      "[360 90 524.9 90 525 0 550 0 550.1 90 830 90] \"spectrum sigma_s\" [360 0 830 0]\n"
+      "MediumInterface \"m\" \"\" Material \"interface\"\n" BOX_FROM("-1", "1");
+  static const double weights[3] = {0.212639, 0.715169, 0.072192};
+  const float *y = vl_cie_y();
+  double share = 0;
+  for (int k = FIRST; k <= LAST; k++) /* the trapezoids between its ends */
+    share += (k == FIRST || k == LAST ? 0.5 : 1) * (double)y[k - VL_LAMBDA_MIN];
+  double all = 0;
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++)
+    all += (double)y[i];
+  vlImage *image = image_in(VL_COLOR_SPECTRAL, text, NULL, VL_PIXEL_FILTER_BOX, MEDIUM_SPP);
+  Mean mean = {0};
+  for (uint32_t i = 0; i < 16 * 16; i++) {
+    double luminance = 0;
+    for (uint32_t c = 0; c < 3; c++)
+      luminance += weights[c] * (double)vl_image_get(image, i % 16, i / 16, c);
+    mean_add(&mean, luminance);
+  }
+  vl_image_destroy(image);
+  check_mean("media", "homogeneous", "one band of wavelengths that passes", &mean, share / all,
+             (Sight){0.01 * share / all, 0.15 * share / all});
+}
+
 static void laws_of_media(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("media");
@@ -266,6 +299,7 @@ static void laws_of_media(void **state) {
     check_medium(family->rows[k]->name, medium_cases[k]);
   }
   check_channels();
+  check_band();
   expect_no_failures();
 }
 

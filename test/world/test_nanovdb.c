@@ -191,6 +191,28 @@ static void shaken(void **state) {
 /* ---- memory ------------------------------------------------------------------------------ */
 
 /* all 32768 children are one node: 512 MB of bricks */
+static void look_before_background(const vlWorldMedium *m) {
+  const vlSparseGrid *g = m->sparse;
+  assert_true(vl_sparse_value(g, -1, 0, 0) == 2 && vl_sparse_value(g, 0, -5000, 0) == 2);
+  assert_true(vl_sparse_value(g, 0, 0, 0) == 0 && vl_sparse_value(g, 1, 0, 0) == 2);
+  assert_true(vl_sparse_value(g, 30, 0, 0) == 0 && vl_sparse_value(g, 300, 0, 0) == 0);
+  assert_true(vl_sparse_value(g, 16, 0, 0) == 5 && vl_sparse_value(g, 128, 0, 0) == 7);
+}
+
+/* Where the tree says nothing a grid has its background; voxels and tiles of 0 stay 0. */
+static void background(void **state) {
+  (void)state;
+  size_t size;
+  vlError error = {0};
+  unsigned char *grid = make_grid();
+  put_f(grid + ROOT_AT + 28, 2);
+  put_f(grid + LEAF_AT + LEAF_TABLE, 0);
+  unsigned char *file = make_file(grid, 0, &size);
+  assert_int_equal(load(file, size, &error, look_before_background), VL_OK);
+  free(file);
+  free(grid);
+}
+
 static void share_lower_nodes(unsigned char *g) {
   memset(g + UPPER_AT + 32 + 4096, 0xff, 4096);
   for (size_t n = 0; n < 32768; n++)
@@ -308,6 +330,7 @@ static void keeps_the_limit(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(read_back),
+                                     cmocka_unit_test(background),
                                      cmocka_unit_test(refused),
                                      cmocka_unit_test(shaken),
                                      cmocka_unit_test(takes_no_more_than_its_size),

@@ -16,28 +16,30 @@
 #include "trace/trace.h"
 
 #define VL_ROW __attribute__((aligned(64)))
+/* A number for each lane of a batch. */
+typedef float vlFloatRow[VL_ROW_SIZE] VL_ROW;
+typedef uint32_t vlUintRow[VL_ROW_SIZE] VL_ROW;
 
 /* Paths: the ray, the throughput, and what multiple importance sampling needs at the next
  * hit. */
 typedef struct vlPaths {
-  VL_ROW float ox[VL_ROW_SIZE], oy[VL_ROW_SIZE], oz[VL_ROW_SIZE];
-  VL_ROW float dx[VL_ROW_SIZE], dy[VL_ROW_SIZE], dz[VL_ROW_SIZE];
-  VL_ROW float beta[4][VL_ROW_SIZE];
-  VL_ROW float lambda[4][VL_ROW_SIZE];
-  VL_ROW float pdf[VL_ROW_SIZE]; /* density per solid angle with which BSDF sampling drew the
-                                    direction */
+  vlFloatRow ox, oy, oz;
+  vlFloatRow dx, dy, dz;
+  vlFloatRow beta[4];
+  vlFloatRow lambda[4];
+  vlFloatRow pdf; /* density per solid angle with which BSDF sampling drew the direction */
   /* surface normal at the ray's origin; the light tree uses it */
-  VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE], from_nz[VL_ROW_SIZE];
-  VL_ROW float from_side[VL_ROW_SIZE]; /* vlSurface.side at the ray's origin */
-  VL_ROW float eta_scale[VL_ROW_SIZE];
-  VL_ROW float cone[VL_ROW_SIZE];   /* width of the footprint at the ray's origin */
-  VL_ROW float spread[VL_ROW_SIZE]; /* growth of the footprint's width per unit length; negative
-                                       where the cone converges */
-  VL_ROW uint32_t specular[VL_ROW_SIZE]; /* 1: the ray comes from the camera or a specular lobe,
-                                            so MIS has no light sample to weigh it against */
+  vlFloatRow from_nx, from_ny, from_nz;
+  vlFloatRow from_side; /* vlSurface.side at the ray's origin */
+  vlFloatRow eta_scale;
+  vlFloatRow cone;   /* width of the footprint at the ray's origin */
+  vlFloatRow spread; /* growth of the footprint's width per unit length; negative where the cone
+                        converges */
+  vlUintRow specular; /* 1: the ray comes from the camera or a specular lobe, so MIS has no
+                         light sample to weigh it against */
   VL_ROW int32_t px[VL_ROW_SIZE], py[VL_ROW_SIZE];
-  VL_ROW uint32_t index[VL_ROW_SIZE];
-  VL_ROW uint32_t lane[VL_ROW_SIZE]; /* the path's element of the batch */
+  vlUintRow index;
+  vlUintRow lane;    /* the path's element of the batch */
   const float *time; /* by lane: the world's time, 0 to 1; null if nothing moves */
 } vlPaths;
 static inline float vl_path_time(const vlPaths *p, uint32_t i) {
@@ -52,45 +54,44 @@ static inline const float *vl_path_times(const vlPaths *p, uint32_t n, float *ro
 }
 
 typedef struct vlHits {
-  VL_ROW uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE],
-      material[VL_ROW_SIZE];
-  VL_ROW float t[VL_ROW_SIZE]; /* distance along the ray, set for shapes other than triangles;
-                                  it identifies the crossing (world/accel/accel.h) */
+  vlUintRow shape, prim, instance, material;
+  vlFloatRow t; /* distance along the ray, set for shapes other than triangles; it identifies
+                   the crossing (world/accel/accel.h) */
 } vlHits;
 
 typedef struct vlSurface {
-  VL_ROW float px[VL_ROW_SIZE], py[VL_ROW_SIZE], pz[VL_ROW_SIZE];
-  VL_ROW float t[VL_ROW_SIZE];
-  VL_ROW float gx[VL_ROW_SIZE], gy[VL_ROW_SIZE], gz[VL_ROW_SIZE]; /* geometric normal, unit */
-  VL_ROW float nx[VL_ROW_SIZE], ny[VL_ROW_SIZE], nz[VL_ROW_SIZE]; /* shading normal, unit */
-  VL_ROW float ux[VL_ROW_SIZE], uy[VL_ROW_SIZE], uz[VL_ROW_SIZE]; /* dpdu */
-  VL_ROW float vx[VL_ROW_SIZE], vy[VL_ROW_SIZE], vz[VL_ROW_SIZE]; /* dpdv */
-  VL_ROW float u[VL_ROW_SIZE], v[VL_ROW_SIZE];
-  VL_ROW float offset[VL_ROW_SIZE]; /* distance along the geometric normal by which a new ray's
-                                       origin is moved off the surface */
-  VL_ROW float uv_scale[VL_ROW_SIZE]; /* uv per world length */
-  VL_ROW float width[VL_ROW_SIZE];    /* width of the footprint, world units */
+  vlFloatRow px, py, pz;
+  vlFloatRow t;
+  vlFloatRow gx, gy, gz; /* geometric normal, unit */
+  vlFloatRow nx, ny, nz; /* shading normal, unit */
+  vlFloatRow ux, uy, uz; /* dpdu */
+  vlFloatRow vx, vy, vz; /* dpdv */
+  vlFloatRow u, v;
+  vlFloatRow offset; /* distance along the geometric normal by which a new ray's origin is moved
+                        off the surface */
+  vlFloatRow uv_scale; /* uv per world length */
+  vlFloatRow width;    /* width of the footprint, world units */
   /* the footprint's axes in uv; only set if the world has image textures (footprint.hot.c) */
-  VL_ROW float across_u[VL_ROW_SIZE], across_v[VL_ROW_SIZE];
-  VL_ROW float along_u[VL_ROW_SIZE], along_v[VL_ROW_SIZE];
+  vlFloatRow across_u, across_v;
+  vlFloatRow along_u, along_v;
   /* mean curvature of the shading normals: positive where convex */
-  VL_ROW float curvature[VL_ROW_SIZE];
-  VL_ROW float dn[6][VL_ROW_SIZE]; /* dndu, dndv; for triangles only if the material has a bump
-                                      map (material.hot.c) */
+  vlFloatRow curvature;
+  vlFloatRow dn[6]; /* dndu, dndv; for triangles only if the material has a bump map
+                       (material.hot.c) */
   /* 1: light from all directions counts equally (in media); 0: light is weighted by the cosine
    * to the normal */
-  VL_ROW float no_cosine[VL_ROW_SIZE];
-  VL_ROW float side[VL_ROW_SIZE]; /* 1 or -1: only light on the side of n or -n counts, the
-                                     viewer's; 0: on both sides */
+  vlFloatRow no_cosine;
+  vlFloatRow side; /* 1 or -1: only light on the side of n or -n counts, the viewer's; 0: on
+                      both sides */
 } vlSurface;
 
 /* Corners of the triangles that a batch hits, one triangle per lane. */
 typedef struct vlCorners {
-  VL_ROW float p[9][VL_ROW_SIZE]; /* x y z of corners 0, 1, 2; world space */
-  VL_ROW float n[9][VL_ROW_SIZE]; /* vertex normals; zero if the mesh has none */
-  VL_ROW float uv[6][VL_ROW_SIZE];
-  VL_ROW float error[VL_ROW_SIZE]; /* bound of the rounding error of the instance's transform */
-  VL_ROW float flip[VL_ROW_SIZE];  /* -1: the shape's normals are reversed; else 1 */
+  vlFloatRow p[9]; /* x y z of corners 0, 1, 2; world space */
+  vlFloatRow n[9]; /* vertex normals; zero if the mesh has none */
+  vlFloatRow uv[6];
+  vlFloatRow error; /* bound of the rounding error of the instance's transform */
+  vlFloatRow flip;  /* -1: the shape's normals are reversed; else 1 */
 } vlCorners;
 
 /* Corner k of lane i's triangle, of vlCorners.p or .n. */
@@ -109,21 +110,20 @@ static inline vlVec2 vl_corner_weights(const vlCorners *c, uint32_t i, vlVec3 po
 /* Factors on the light that crosses surfaces. rgb: of each channel of linear sRGB (the fourth
  * row is not used). at: at the path's wavelengths, after all that the path has crossed. */
 typedef struct vlTint {
-  VL_ROW float rgb[4][VL_ROW_SIZE], at[4][VL_ROW_SIZE];
+  vlFloatRow rgb[4], at[4];
 } vlTint;
 
 typedef struct vlShade {
   /* frame: tangent; bitangent = n x t */
-  VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE];
-  VL_ROW float bx[VL_ROW_SIZE], by[VL_ROW_SIZE], bz[VL_ROW_SIZE];
-  VL_ROW float wo[3][VL_ROW_SIZE]; /* local */
-  VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];
+  vlFloatRow tx, ty, tz;
+  vlFloatRow bx, by, bz;
+  vlFloatRow wo[3]; /* local */
+  vlFloatRow reflectance[4], eta[4], k[4];
   vlTint *tint; /* only with vlWorld.by_channel; else null */
-  VL_ROW float alpha_x[VL_ROW_SIZE], alpha_y[VL_ROW_SIZE], eta_s[VL_ROW_SIZE];
+  vlFloatRow alpha_x, alpha_y, eta_s;
   const vlCoatTable *coat[VL_ROW_SIZE];
-  VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* rows that depend on the kind;
-                                                  material/bsdf.hot.h names them */
-  VL_ROW uint32_t seed[VL_ROW_SIZE];
+  vlFloatRow own[VL_BSDF_ROWS]; /* what depends on the kind (material/bsdf.hot.h) */
+  vlUintRow seed;
   const vlMeasured *measured[VL_ROW_SIZE];
 } vlShade;
 
@@ -137,43 +137,40 @@ typedef struct vlVertices {
 
 /* The BSDFs for given directions; material/bsdf.hot.h says what value and pdf are. */
 typedef struct vlBsdfValues {
-  VL_ROW float wi[3][VL_ROW_SIZE]; /* local */
-  VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE];
+  vlFloatRow wi[3]; /* local */
+  vlFloatRow value[4], pdf;
 } vlBsdfValues;
 
 /* Directions that the BSDFs have sampled. */
 typedef struct vlBsdfSamples {
-  VL_ROW float wi[3][VL_ROW_SIZE]; /* local */
-  VL_ROW float weight[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];
-  VL_ROW uint32_t flags[VL_ROW_SIZE];
+  vlFloatRow wi[3]; /* local */
+  vlFloatRow weight[4], pdf, eta_scale;
+  vlUintRow flags;
 } vlBsdfSamples;
 
 /* Random numbers of a stage, by lane. */
 typedef struct vlNumbers {
-  VL_ROW float u0[VL_ROW_SIZE], u1[VL_ROW_SIZE], u2[VL_ROW_SIZE];
+  vlFloatRow u0, u1, u2;
 } vlNumbers;
 
 typedef struct vlLightSamples {
-  VL_ROW uint32_t light[VL_ROW_SIZE]; /* index of the chosen light; VL_INNER: not chosen yet */
-  VL_ROW float pmf[VL_ROW_SIZE];
-  VL_ROW float wx[VL_ROW_SIZE], wy[VL_ROW_SIZE], wz[VL_ROW_SIZE]; /* towards the light, unit */
+  vlUintRow light; /* index of the chosen light; VL_INNER: not chosen yet */
+  vlFloatRow pmf;
+  vlFloatRow wx, wy, wz; /* towards the light, unit */
   /* point that must be visible */
-  VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE];
-  VL_ROW float radiance[4][VL_ROW_SIZE]; /* already divided by the pdf */
-  VL_ROW float pdf[VL_ROW_SIZE];      /* per solid angle, times the probability of choosing the
-                                         light; 0: no sample */
-  VL_ROW uint32_t delta[VL_ROW_SIZE]; /* a delta light: a BSDF sample cannot hit it */
-  VL_ROW uint32_t distant[VL_ROW_SIZE]; /* 1: the target is infinitely far, and tx, ty, tz hold
-                                           the direction */
+  vlFloatRow tx, ty, tz;
+  vlFloatRow radiance[4]; /* already divided by the pdf */
+  vlFloatRow pdf;    /* per solid angle, times the probability of the light; 0: no sample */
+  vlUintRow delta;   /* a delta light: a BSDF sample cannot hit it */
+  vlUintRow distant; /* 1: the target is infinitely far, and tx, ty, tz hold the direction */
 } vlLightSamples;
 
 typedef struct vlShadowRays {
-  VL_ROW float ox[VL_ROW_SIZE], oy[VL_ROW_SIZE], oz[VL_ROW_SIZE], dx[VL_ROW_SIZE],
-      dy[VL_ROW_SIZE], dz[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
-  VL_ROW float radiance[4][VL_ROW_SIZE];
-  VL_ROW uint32_t lane[VL_ROW_SIZE];
-  VL_ROW float time[VL_ROW_SIZE];       /* the world's time; only set if something moves */
-  VL_ROW uint32_t crossed[VL_ROW_SIZE]; /* vlRays.crossed */
+  vlFloatRow ox, oy, oz, dx, dy, dz, t_max;
+  vlFloatRow radiance[4];
+  vlUintRow lane;
+  vlFloatRow time;   /* the world's time; only set if something moves */
+  vlUintRow crossed; /* vlRays.crossed */
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 

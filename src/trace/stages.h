@@ -20,8 +20,8 @@ enum {
 
 /* Memory for worlds in which something attenuates by channel of linear sRGB. */
 typedef struct vlByChannel {
-  vlTint tint;                         /* vlShade.tint of vlTraceScratch.at */
-  VL_ROW float passed[3][VL_ROW_SIZE]; /* vlTracing.passed */
+  vlTint tint;          /* vlShade.tint of vlTraceScratch.at */
+  vlFloatRow passed[3]; /* vlTracing.passed */
 } vlByChannel;
 
 typedef struct vlSubsurfaceScratch vlSubsurfaceScratch; /* trace/surface/probes.h */
@@ -40,7 +40,7 @@ struct vlTraceScratch {
     vlBsdfSamples samples; /* for the next rays */
   };
   vlShadowRays shadow;
-  VL_ROW uint32_t order[VL_ROW_SIZE]; /* by vertex or next ray: where it comes from */
+  vlUintRow order; /* by vertex or next ray: where it comes from */
   /* Within a stage. */
   vlCorners corners; /* while vertices are shaded */
   /* stack of rows for nested textures */

@@ -25,8 +25,8 @@ struct vlTrace {
                          s->at.surface, s->at.shade */
   uint32_t lanes;     /* of the last rays */
   bool begun;
-  VL_ROW float t_min[VL_ROW_SIZE], t_max[VL_ROW_SIZE];
-  VL_ROW float radiance[4][VL_ROW_SIZE]; /* what stages add that no question asks for */
+  vlFloatRow t_min, t_max;
+  vlFloatRow radiance[4]; /* what stages add that no question asks for */
 };
 
 /* Runs the tracer def->own on the batch. Its paths are started. In own.hot.c. */

@@ -183,7 +183,7 @@ static void bsdf(vlTrace *w, float (*direction)[VL_OWN_BATCH], float (*value)[VL
                  float *pdf) {
   vlTraceScratch *s = w->t.s;
   float d[3][VL_OWN_BATCH];
-  VL_ROW float to[3][VL_ROW_SIZE];
+  vlFloatRow to[3];
   __builtin_memcpy(d, direction, sizeof d);
   clear(value, 4);
   for (uint32_t i = 0; pdf && i < VL_OWN_BATCH; i++)

@@ -19,7 +19,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlBsdfValues *bsdf = &s->values;
   vlPaths *next = &s->rays;
   vlNumbers u;
-  VL_ROW float w[3][VL_ROW_SIZE];
+  vlFloatRow w[3];
   uint32_t count = 0;
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index,
                      vl_bounce_dimension(depth) + VL_DIM_BSDF_UV, u.u1, u.u2);

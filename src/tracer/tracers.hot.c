@@ -11,7 +11,7 @@ static void start_paths(vlTracing *t) {
   vlTraceBatch *b = t->batch;
   vlPaths *p = &t->s->rays;
   const vlTwoWay *way = t->def->two_way;
-  VL_ROW float u[VL_ROW_SIZE];
+  vlFloatRow u;
   bool connects = way && way->connect > 0.0f;
   uint32_t padded = VL_PAD(b->n);
   t->s->rays.time = t->s->at.paths.time = b->time;

@@ -8,10 +8,10 @@
 struct vlGroundTruthScratch {
   vlTraceScratch trace;
   /* radiance output of the stages; its values are not used */
-  VL_ROW float light[4][VL_ROW_SIZE];
-  VL_ROW float time[VL_ROW_SIZE];
-  VL_ROW float albedo[3][VL_ROW_SIZE]; /* by path */
-  VL_ROW float kept[6][VL_ROW_SIZE]; /* shading normal and dpdu without bump and normal maps */
+  vlFloatRow light[4];
+  vlFloatRow time;
+  vlFloatRow albedo[3]; /* by path */
+  vlFloatRow kept[6];   /* shading normal and dpdu without bump and normal maps */
 };
 
 #endif

@@ -222,7 +222,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission,
   bool camera = depth == 0 && !t->light;
   const float *t_min = camera ? t->batch->t_min : NULL,
               *t_max = camera ? t->batch->t_max : NULL;
-  VL_ROW float u[VL_ROW_SIZE];
+  vlFloatRow u;
   vl_closest_hits(t, n, camera, p, hits);
   if (!camera)
     t->batch->bounce_rays += n;

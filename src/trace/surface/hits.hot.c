@@ -106,7 +106,7 @@ void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t
 void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHits *h) {
   const float *t_min = camera ? t->batch->t_min : NULL,
               *t_max = camera ? t->batch->t_max : NULL;
-  VL_ROW float time[VL_ROW_SIZE];
+  vlFloatRow time;
   vlRays rays = {
       p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time), NULL};
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);

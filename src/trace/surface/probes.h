@@ -6,17 +6,16 @@
 
 /* Where paths enter solids, by probe. */
 typedef struct vlEntries {
-  VL_ROW uint32_t path[VL_ROW_SIZE], material[VL_ROW_SIZE]; /* path: index of the ray */
-  VL_ROW float px[VL_ROW_SIZE], py[VL_ROW_SIZE], pz[VL_ROW_SIZE], nx[VL_ROW_SIZE],
-      ny[VL_ROW_SIZE], nz[VL_ROW_SIZE];
-  VL_ROW float sigma[4][VL_ROW_SIZE], albedo[4][VL_ROW_SIZE];
+  vlUintRow path, material; /* path: index of the ray */
+  vlFloatRow px, py, pz, nx, ny, nz;
+  vlFloatRow sigma[4], albedo[4];
 } vlEntries;
 
 /* Segments through solids; vlPaths have their origins and directions. */
 typedef struct vlProbes {
-  VL_ROW float length[VL_ROW_SIZE];   /* 0: no segment */
-  VL_ROW uint32_t found[VL_ROW_SIZE]; /* number of crossings */
-  vlHits chosen;                      /* one of them, chosen at random */
+  vlFloatRow length; /* 0: no segment */
+  vlUintRow found;   /* number of crossings */
+  vlHits chosen;     /* one of them, chosen at random */
 } vlProbes;
 
 struct vlSubsurfaceScratch {
@@ -25,7 +24,7 @@ struct vlSubsurfaceScratch {
   VL_ROW uint8_t alive[VL_ROW_SIZE]; /* by path: 1 if the path goes on */
   vlEntries entries;
   vlProbes probes;
-  VL_ROW uint32_t probe[VL_ROW_SIZE]; /* by exit: its probe */
+  vlUintRow probe; /* by exit: its probe */
 };
 
 /* Subsurface scattering for the n rays, which were just sampled at the vertices s->order. A

@@ -168,7 +168,7 @@ static float note_crossing(const vlTracing *t, uint32_t j, uint32_t depth, const
 static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth, const vlEntries *x,
                           const vlPaths *p, vlProbes *to, vlShadowRays *q, vlHits *hits,
                           vlHits *met) {
-  VL_ROW float from[VL_ROW_SIZE], t_min[VL_ROW_SIZE];
+  vlFloatRow from, t_min;
   uint32_t under_way[VL_BATCH], active = 0;
   for (uint32_t j = 0; j < n; j++) {
     t_min[j] = 0.0f;

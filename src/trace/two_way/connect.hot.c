@@ -251,7 +251,7 @@ static uint32_t aim(uint32_t n, const vlSurface *f, const vlLightVertices *inner
 
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *x,
                       vlBsdfValues *there, vlBsdfValues *back, const vlTwoWayShadows *q) {
-  VL_ROW float toward[3][VL_ROW_SIZE], factor[VL_ROW_SIZE];
+  vlFloatRow toward[3], factor;
   uint32_t chosen[VL_ROW_SIZE], count = 0;
   if (depth + 2 > t->def->max_depth)
     return;

@@ -35,7 +35,7 @@ void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *a
 /* Samples the wavelengths of the batch's paths. */
 static void wavelengths(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes *to) {
   const vlTwoWay *way = t->def->two_way;
-  VL_ROW float u[VL_ROW_SIZE];
+  vlFloatRow u;
   float *const lambda[4] = {to->lambda[0], to->lambda[1], to->lambda[2], to->lambda[3]};
   float *const inv_pdf[4] = {to->inv_pdf[0], to->inv_pdf[1], to->inv_pdf[2], to->inv_pdf[3]};
   t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, u);
@@ -63,7 +63,7 @@ static uint32_t set_out(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes
   uint32_t n = b->n, count = 0;
   bool rgb = world->def.color == VL_COLOR_RGB;
   vlNumbers first;
-  VL_ROW float u2[VL_ROW_SIZE], v2[VL_ROW_SIZE];
+  vlFloatRow u2, v2;
   if (!rgb)
     wavelengths(t, b, lanes);
   const float *u = first.u0, *u1 = first.u1, *v1 = first.u2;

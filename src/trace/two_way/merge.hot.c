@@ -114,7 +114,7 @@ static void add_diffuse(const vlTracing *t, const vlTwoWayVertices *v, uint32_t 
  * list. */
 static void add_listed(vlTracing *t, uint32_t n, const vlTwoWayVertices *v, vlMergeList *list,
                        vlBsdfValues *there, vlBsdfValues *back) {
-  VL_ROW float toward[3][VL_ROW_SIZE]; /* where the photons came from */
+  vlFloatRow toward[3]; /* where the photons came from */
   const vlPaths *p = v->paths;
   const vlSurface *f = &v->at->surface;
   const vlPhoton *photons = t->def->two_way->map.photons;

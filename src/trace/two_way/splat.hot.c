@@ -60,7 +60,7 @@ void vl_look_from(const vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dim
 void vl_measure_camera_rays(const vlTracing *t, vlCameraSample *views) {
   const vlCameraView *eye = &t->def->two_way->eye;
   const vlTraceBatch *b = t->batch;
-  VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE], z[VL_ROW_SIZE];
+  vlFloatRow x, y, z;
   if (!eye->look)
     return;
   for (uint32_t i = 0; i < b->n; i++) {
@@ -172,7 +172,7 @@ static void start_in_media(const vlTracing *t, const vlTwoWayVertices *x, uint32
 static void see(const vlTracing *t, uint32_t n, uint32_t dimension, const vlVertices *at,
                 vlCameraSample *views, float wi[3][VL_ROW_SIZE]) {
   const vlSurface *f = &at->surface;
-  VL_ROW float toward[3][VL_ROW_SIZE];
+  vlFloatRow toward[3];
   vl_look_from(t, n, &at->paths, dimension, f->px, f->py, f->pz, views);
   for (uint32_t i = 0; i < n; i++) {
     vlCameraSample *view = &views[i];
@@ -193,7 +193,7 @@ void vl_connect_to_camera(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     return;
   if (way->alone && depth == 0)
     return; /* the camera sees a highlight: no random direction leads there */
-  VL_ROW float wi[3][VL_ROW_SIZE];
+  vlFloatRow wi[3];
   const vlSurface *f = &x->at->surface;
   const vlPaths *p = x->paths;
   const vlWays *ways = x->ways;

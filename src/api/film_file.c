@@ -32,7 +32,7 @@ vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **fi
   if (file)
     *file = NULL;
   if (!context || !path || !file)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or file is null");
+    return vl_fail_argument(error, "film file: context, path or file is null");
   vlFilmFile *made = vl_alloc_zero(context, 1, sizeof *made);
   if (!made)
     return vl_fail_memory(error);
@@ -74,7 +74,7 @@ const vlReceipt *vl_film_file_receipt(const vlFilmFile *file) {
 vlResult vl_film_file_attributes(const vlFilmFile *file, vlImage *image, vlError *error) {
   vl_error_clear(error);
   if (!file || !image)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: file or image is null");
+    return vl_fail_argument(error, "film file: file or image is null");
   const vlFilmReader *r = &file->reader;
   return r->texts.attributes
              ? vl_film_attributes_set(r->path, r->texts.attributes, image, error)
@@ -96,7 +96,7 @@ vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *block, vlE
   if (block)
     *block = (vlFilmBlock){.range_count = 0};
   if (!file || !block)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: file or block is null");
+    return vl_fail_argument(error, "film file: file or block is null");
   vlFilmReader *r = &file->reader;
   if (r->next > r->blocks)
     return VL_OK;

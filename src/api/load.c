@@ -54,17 +54,16 @@ static vlResult check_load(const vlScene *scene, const char *path, const vlLoadD
                            vlError *error) {
   vl_error_clear(error);
   if (!scene || !path)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: scene or path is null");
+    return vl_fail_argument(error, "scene load: scene or path is null");
   if (def && def->cookie != VL_COOKIE_LOAD)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "scene load: " VL_BAD_COOKIE);
   const double times[2] = {def ? def->time : VL_UNSET, def ? def->time_close : VL_UNSET};
   for (int i = 0; i < 2; i++)
     if (!vl_is_unset(times[i]) && !isfinite(times[i]))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: time is %g; it must be finite",
-                     times[i]);
+      return vl_fail_argument(error, "scene load: time is %g; it must be finite", times[i]);
   if (def && !vl_is_unset(def->unit) && !(def->unit >= 1e-9 && def->unit <= 1e9))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "scene load: unit is %g m; it must be from 1e-9 to 1e9", def->unit);
+    return vl_fail_argument(error, "scene load: unit is %g m; it must be from 1e-9 to 1e9",
+                            def->unit);
   return vl_scene_result(scene, error);
 }
 
@@ -98,7 +97,7 @@ vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data
                               const vlLoadDef *def, vlError *error) {
   VL_TRY(check_load(scene, name, def, error));
   if (!data && size)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: data is null");
+    return vl_fail_argument(error, "scene load: data is null");
   Loading loading;
   start_loading(scene, def, &loading);
   vlResult result = vl_import_pbrt_memory(scene, data ? data : "", size, name, def, error);
@@ -136,7 +135,7 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
 vlResult vl_scene_diagnose(vlScene *scene, const char *path, const vlLoadDef *def,
                            vlProblemFn *tell, void *user, vlError *error) {
   if (!scene || !tell)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene diagnose: scene or tell is null");
+    return vl_fail_argument(error, "scene diagnose: scene or tell is null");
   scene->problem = tell;
   scene->problem_user = user;
   vlResult result = vl_scene_load(scene, path, def, error);

@@ -101,7 +101,7 @@ vlResult vl_scene_load_group(vlScene *scene, const char *path, const vlLoadDef *
                              const char *name, vlLoadedGroup *loaded, vlError *error) {
   vl_error_clear(error);
   if (!scene || !path || !loaded)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "load group: a pointer is null");
+    return vl_fail_argument(error, "load group: a pointer is null");
   memset(loaded, 0, sizeof *loaded);
   VL_TRY(vl_scene_result(scene, error));
   vlGroupId group = vl_scene_add_group(scene, name);

@@ -234,7 +234,7 @@ vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size,
   if (receipt)
     *receipt = NULL;
   if (!context || !text || !receipt)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: context, text or receipt is null");
+    return vl_fail_argument(error, "receipt: context, text or receipt is null");
   json_error_t wrong;
   json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &wrong);
   if (!tree && vl_json_lacks_memory(&wrong))
@@ -277,7 +277,7 @@ vlResult vl_receipt_of_image(const vlReceipt *film, uint32_t samples, vlReceipt 
   if (receipt)
     *receipt = NULL;
   if (!film || !receipt)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: film or receipt is null");
+    return vl_fail_argument(error, "receipt: film or receipt is null");
   json_t *tree = json_deep_copy(film->tree), *render = json_object_get(tree, "render");
   bool good = tree && json_object_set_new(tree, "samples", json_integer(samples)) == 0 &&
               (!json_is_object(render) ||

@@ -75,7 +75,7 @@ vlResult vl_sensor_raw(const vlSensor *sensor, const vlExposureDef *exposure,
   char pattern[2 * VL_SENSOR_CELLS + 1];
   vl_error_clear(error);
   if (!sensor || !raw)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: sensor or result is null");
+    return vl_fail_argument(error, "raw image: sensor or result is null");
   *raw = NULL;
   exposure = exposure ? exposure : &usual;
   uint32_t window[4];

@@ -37,6 +37,15 @@ vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t li
   return code;
 }
 
+vlResult vl_fail_argument(vlError *error, const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  if (error)
+    set_error(error, VL_ERROR_ARGUMENT, NULL, 0, 0, format, args);
+  va_end(args);
+  return VL_ERROR_ARGUMENT;
+}
+
 vlResult vl_fail_memory(vlError *error) {
   return vl_fail(error, VL_ERROR_MEMORY, "out of memory");
 }

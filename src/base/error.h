@@ -14,6 +14,8 @@ vlResult vl_fail(vlError *error, vlResult code, const char *format, ...) VL_PRIN
 /* vl_fail with a source location; file may be null. */
 vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t line,
                     uint32_t column, const char *format, ...) VL_PRINTF(6, 7);
+/* Fills in VL_ERROR_ARGUMENT. */
+vlResult vl_fail_argument(vlError *error, const char *format, ...) VL_PRINTF(2, 3);
 /* Fills in VL_ERROR_MEMORY with its common message. */
 vlResult vl_fail_memory(vlError *error);
 void vl_error_clear(vlError *error);

@@ -75,9 +75,9 @@ vlResult vl_check_output(vlContext *context, const char *path, vlOutputKind kind
   struct stat info;
   char input[4096];
   if (!path)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "check of an output: path is null");
+    return vl_fail_argument(error, "check of an output: path is null");
   if ((unsigned)kind > VL_OUTPUT_FILM)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "check of an output: no such kind of file");
+    return vl_fail_argument(error, "check of an output: no such kind of file");
   if (strlen(path) >= 4096)
     return vl_fail(error, VL_ERROR_IO, "cannot write: path too long");
   if (vl_text_is(path, VL_STDOUT))
@@ -98,11 +98,10 @@ vlResult vl_check_output(vlContext *context, const char *path, vlOutputKind kind
   if (!vl_file_is_input(context, path, kind, input, sizeof input))
     return check_folder(path, error);
   if (vl_text_is(input, path))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "%s is an input of this command; it is not overwritten", path);
-  return vl_fail(error, VL_ERROR_ARGUMENT,
-                 "%s is the file %s, an input of this command; it is not overwritten", path,
-                 input);
+    return vl_fail_argument(error, "%s is an input of this command; it is not overwritten",
+                            path);
+  return vl_fail_argument(
+      error, "%s is the file %s, an input of this command; it is not overwritten", path, input);
 }
 
 bool vl_file_id(const char *path, vlFileId *id) {

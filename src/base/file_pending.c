@@ -15,7 +15,7 @@ vlResult vl_pending_file_create(vlContext *context, const char *path, vlPendingF
   if (pending)
     *pending = NULL;
   if (!context || !path || !pending)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "pending file: an argument is null");
+    return vl_fail_argument(error, "pending file: an argument is null");
   vlPendingFile *p = vl_alloc(context, sizeof *p);
   if (!p)
     return vl_fail_memory(error);
@@ -35,7 +35,7 @@ const char *vl_pending_file_path(const vlPendingFile *pending) {
 vlResult vl_pending_file_commit(vlPendingFile *pending, vlError *error) {
   vl_error_clear(error);
   if (!pending || !pending->open)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "pending file: it is not open");
+    return vl_fail_argument(error, "pending file: it is not open");
   pending->open = false;
   return vl_file_commit(&pending->writer, error);
 }

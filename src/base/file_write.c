@@ -346,7 +346,7 @@ vlResult vl_write_file(vlContext *context, const char *path, const void *data, s
                        vlError *error) {
   vlFileWriter writer;
   if (!context || !path || (!data && size))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "file: context, path or data is null");
+    return vl_fail_argument(error, "file: context, path or data is null");
   VL_TRY(vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error));
   vl_file_write(&writer, data, size);
   return vl_file_commit(&writer, error);

@@ -106,22 +106,20 @@ static double find_reach2(const vlAperture *a) {
 static vlResult check(uint32_t width, uint32_t height, const float *values, double *sum,
                       vlError *error) {
   if (!values)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: values is null");
+    return vl_fail_argument(error, "aperture: values is null");
   if (width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "aperture: an image of %u x %u; each side must be 1 to %d", width, height,
-                   MAX_SIDE);
+    return vl_fail_argument(error, "aperture: an image of %u x %u; each side must be 1 to %d",
+                            width, height, MAX_SIDE);
   *sum = 0.0;
   for (size_t i = 0; i < (size_t)width * height; i++) {
     if (!(values[i] >= 0.0f) || isinf(values[i]))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "aperture: the image's pixel %zu, %zu is %g; it must be 0 or above",
-                     i % width, i / width, (double)values[i]);
+      return vl_fail_argument(
+          error, "aperture: the image's pixel %zu, %zu is %g; it must be 0 or above", i % width,
+          i / width, (double)values[i]);
     *sum += (double)values[i];
   }
   if (!(*sum > 0.0))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "aperture: the image is black; no light would pass");
+    return vl_fail_argument(error, "aperture: the image is black; no light would pass");
   return VL_OK;
 }
 
@@ -150,7 +148,7 @@ vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
   double sum = 0.0;
   vl_error_clear(error);
   if (!context || !aperture)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context or aperture is null");
+    return vl_fail_argument(error, "aperture: context or aperture is null");
   *aperture = NULL;
   VL_TRY(check(width, height, values, &sum, error));
   size_t cells = (size_t)width * height;
@@ -246,15 +244,15 @@ vlResult vl_aperture_create_named(vlContext *context, const char *name, vlApertu
   static const char *const names[NAMES] = {"gaussian", "square", "pentagon", "star"};
   vl_error_clear(error);
   if (!context || !name || !aperture)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context, name or aperture is null");
+    return vl_fail_argument(error, "aperture: context, name or aperture is null");
   *aperture = NULL;
   const int kind = (int)vl_name_index(name, names, NAMES);
   if (kind == NAMES) {
     const char *near = vl_nearest_name(name, names, NAMES);
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s",
-                   vl_argument_text(name).text,
-                   near ? "; did you mean \"" : " (known: gaussian, square, pentagon, star)",
-                   near ? near : "", near ? "\"?" : "");
+    return vl_fail_argument(
+        error, "aperture: unknown shape \"%s\"%s%s%s", vl_argument_text(name).text,
+        near ? "; did you mean \"" : " (known: gaussian, square, pentagon, star)",
+        near ? near : "", near ? "\"?" : "");
   }
   float *values = vl_alloc_array(context, (size_t)NAMED * NAMED, sizeof *values);
   if (!values)

@@ -79,7 +79,7 @@ static vlResult check_rows(const vlCameraDef *d, vlError *error) {
       continue;
     snprintf(name, sizeof name, "camera: %s", vl_setting_keyword(p));
     if (!vl_parameter_check(p, d, name, message))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "%s", message);
+      return vl_fail_argument(error, "%s", message);
   }
   return VL_OK;
 }
@@ -88,12 +88,12 @@ static vlResult check_rows(const vlCameraDef *d, vlError *error) {
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
   VL_TRY(check_rows(d, error));
   if (d->shutter_close < d->shutter_open)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter opens at %g and closes at %g",
-                   d->shutter_open, d->shutter_close);
+    return vl_fail_argument(error, "camera: the shutter opens at %g and closes at %g",
+                            d->shutter_open, d->shutter_close);
   if (!(d->far_plane > d->near_plane))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: near plane %g and far plane %g; needed is 0 <= near < far",
-                   d->near_plane, d->far_plane);
+    return vl_fail_argument(error,
+                            "camera: near plane %g and far plane %g; needed is 0 <= near < far",
+                            d->near_plane, d->far_plane);
   return VL_OK;
 }
 
@@ -103,11 +103,11 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
   if (warning)
     *warning = NULL;
   if (!def || !camera)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def or camera is null");
+    return vl_fail_argument(error, "camera: def or camera is null");
   if (def->cookie != VL_COOKIE_CAMERA)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "camera: " VL_BAD_COOKIE);
   if (def->projection == VL_PROJECTION_OWN && !def->own)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the projection OWN needs own");
+    return vl_fail_argument(error, "camera: the projection OWN needs own");
   vlCameraDef own;
   if (def->own) {
     own = vl_camera_own_def(def);
@@ -135,11 +135,12 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
   VL_TRY(vl_camera_domain(def, &made, warning, error));
   VL_TRY(vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error));
   if (!vl_camera_rays_are_finite(&made))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: its rays are not finite: fx %g, fy %g, cx %g, cy %g, position (%g, "
-                   "%g, %g)",
-                   made.fx, made.fy, made.cx, made.cy, made.world_from_camera[3],
-                   made.world_from_camera[7], made.world_from_camera[11]);
+    return vl_fail_argument(
+        error,
+        "camera: its rays are not finite: fx %g, fy %g, cx %g, cy %g, position (%g, "
+        "%g, %g)",
+        made.fx, made.fy, made.cx, made.cy, made.world_from_camera[3],
+        made.world_from_camera[7], made.world_from_camera[11]);
   *camera = made;
   return VL_OK;
 }

@@ -262,9 +262,8 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
   if (!vl_is_unset(angle)) {
     if (!(row->traits & VL_PROJECTION_CIRCLE) ||
         (kind == VL_PROJECTION_PERSPECTIVE && camera->distortion.steps == 0))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "camera: max_angle has no meaning for the %s projection",
-                     vl_projection_name(kind));
+      return vl_fail_argument(error, "camera: max_angle has no meaning for the %s projection",
+                              vl_projection_name(kind));
   }
   bool given = !vl_is_unset(def->fx) || !vl_is_unset(def->fy) ||
                !vl_is_unset(def->view_distance) || !vl_is_unset(def->focal_mm) ||
@@ -282,9 +281,9 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
       /* a margin for rounding, so that the angle itself is inside */
       limit = fmin(limit, radius * (1.0 + 1e-12));
     else if (!vl_is_unset(def->max_angle) && kind != VL_PROJECTION_PERSPECTIVE)
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "camera: the %s projection does not see as far as max_angle, %g degrees",
-                     vl_projection_name(kind), angle * 180.0 / M_PI);
+      return vl_fail_argument(
+          error, "camera: the %s projection does not see as far as max_angle, %g degrees",
+          vl_projection_name(kind), angle * 180.0 / M_PI);
   }
   camera->limit = limit;
   vlDistortionMap *m = &camera->distortion;

@@ -451,8 +451,8 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
     def = &standard;
   if (!context || !cameras || !count || !drawing || def->cookie != VL_COOKIE_DRAWING ||
       !good(def))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "outline: no camera, or a number of the def that is not possible");
+    return vl_fail_argument(error,
+                            "outline: no camera, or a number of the def that is not possible");
   Pen p = {.context = context, .def = def};
   draw_cameras(&p, cameras, count);
   Block *block = vl_alloc_zero(context, 1, sizeof *block);

@@ -26,7 +26,7 @@ typedef struct {
  * both parameters. */
 static vlResult take(Quantity *q, double value, const char *from, vlError *error) {
   if (vl_is_unset(value) || isinf(value))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s gives no finite %s", from, q->what);
+    return vl_fail_argument(error, "camera: %s gives no finite %s", from, q->what);
   if (vl_is_unset(q->value)) {
     q->value = value;
     snprintf(q->from, sizeof q->from, "%s", from);
@@ -34,21 +34,21 @@ static vlResult take(Quantity *q, double value, const char *from, vlError *error
   }
   double largest = fmax(fabs(value), fabs(q->value));
   if (fabs(value - q->value) > agreement * largest)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: %s gives a %s of %.9g, but %s gives %.9g; give one of them",
-                   q->from, q->what, q->value, from, value);
+    return vl_fail_argument(
+        error, "camera: %s gives a %s of %.9g, but %s gives %.9g; give one of them", q->from,
+        q->what, q->value, from, value);
   return VL_OK;
 }
 
 static vlResult check_fov(const vlCameraDef *d, vlError *error) {
   if (d->fov <= 0.0)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: fov is %g radians (%g degrees); it must be above zero", d->fov,
-                   d->fov * 180.0 / M_PI);
+    return vl_fail_argument(error,
+                            "camera: fov is %g radians (%g degrees); it must be above zero",
+                            d->fov, d->fov * 180.0 / M_PI);
   if (d->fov > 2.0 * M_PI)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: fov is %g radians (%g degrees); all round is 360 degrees", d->fov,
-                   d->fov * 180.0 / M_PI);
+    return vl_fail_argument(error,
+                            "camera: fov is %g radians (%g degrees); all round is 360 degrees",
+                            d->fov, d->fov * 180.0 / M_PI);
   if (d->fov >= M_PI && d->projection <= VL_PROJECTION_ORTHOGRAPHIC)
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
@@ -80,12 +80,10 @@ static vlResult screen_given(const vlCameraDef *d, bool *given, vlError *error) 
               !vl_is_unset(d->screen_min_y) + !vl_is_unset(d->screen_max_y);
   *given = sides == 4;
   if (sides != 0 && sides != 4)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the screen window has %d of its 4 sides",
-                   sides);
+    return vl_fail_argument(error, "camera: the screen window has %d of its 4 sides", sides);
   if (sides == 4 && !(d->screen_min_x < d->screen_max_x && d->screen_min_y < d->screen_max_y))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the screen window x %g to %g, y %g to %g is empty", d->screen_min_x,
-                   d->screen_max_x, d->screen_min_y, d->screen_max_y);
+    return vl_fail_argument(error, "camera: the screen window x %g to %g, y %g to %g is empty",
+                            d->screen_min_x, d->screen_max_x, d->screen_min_y, d->screen_max_y);
   return VL_OK;
 }
 
@@ -115,17 +113,15 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
   const char *name = vl_projection_name(kind);
   uint32_t traits = vl_projection_row(kind)->traits;
   if (traits & VL_PROJECTION_NO_FOV)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: a fov has no meaning for the %s projection", name);
+    return vl_fail_argument(error, "camera: a fov has no meaning for the %s projection", name);
   if (d->fov_axis == VL_FOV_DIAGONAL && !(traits & VL_PROJECTION_RADIAL))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: a diagonal fov has no meaning for the %s projection", name);
+    return vl_fail_argument(
+        error, "camera: a diagonal fov has no meaning for the %s projection", name);
   /* 360 degrees: the direction straight back is singular; approach it from the image's side */
   double angle = 0.5 * d->fov < M_PI ? 0.5 * d->fov : M_PI * just_inside;
   if (!vl_camera_plane_radius(camera, angle, vertical, half))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the %s projection cannot show a fov of %g degrees", name,
-                   d->fov * 180.0 / M_PI);
+    return vl_fail_argument(error, "camera: the %s projection cannot show a fov of %g degrees",
+                            name, d->fov * 180.0 / M_PI);
   return VL_OK;
 }
 
@@ -178,9 +174,9 @@ static vlResult gather_millimetres(const vlCameraDef *d, Gathered *g, vlError *e
   bool lens = !vl_is_unset(d->lens.f_number) || d->lens.lens_tilt_x != 0.0 ||
               d->lens.lens_tilt_y != 0.0;
   if (has_mm != has_width && !(lens && known))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is given without %s",
-                   has_mm ? "focal_mm" : "sensor_width_mm",
-                   has_mm ? "sensor_width_mm" : "focal_mm");
+    return vl_fail_argument(error, "camera: %s is given without %s",
+                            has_mm ? "focal_mm" : "sensor_width_mm",
+                            has_mm ? "sensor_width_mm" : "focal_mm");
   if (!has_mm || !has_width)
     return VL_OK;
   snprintf(from, sizeof from, "focal_mm %.9g on sensor_width_mm %.9g", d->focal_mm,
@@ -206,13 +202,12 @@ static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool 
     VL_TRY(take(&g->fx, f, from, error));
     VL_TRY(take(&g->fy, f, from, error));
   } else if (zoom != 1.0) {
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: zoom %g is given without the view distance d that it acts on",
-                   zoom);
+    return vl_fail_argument(
+        error, "camera: zoom %g is given without the view distance d that it acts on", zoom);
   } else if (size != 1.0) {
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: pixel size %g is given without the view distance d that it divides",
-                   size);
+    return vl_fail_argument(
+        error, "camera: pixel size %g is given without the view distance d that it divides",
+        size);
   }
   return gather_millimetres(d, g, error);
 }
@@ -229,9 +224,8 @@ static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered 
                  {"sensor_width_mm", d->sensor_width_mm}};
   for (size_t i = 0; i < VL_LENGTH(foreign); i++)
     if (!vl_is_unset(foreign[i].value))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "camera: %s %g has no meaning for an orthographic camera", foreign[i].name,
-                     foreign[i].value);
+      return vl_fail_argument(error, "camera: %s %g has no meaning for an orthographic camera",
+                              foreign[i].name, foreign[i].value);
   if (screen)
     VL_TRY(take_screen(d, 1.0, "the screen window", g, error));
   if (!vl_is_unset(d->pixel_size)) {
@@ -240,8 +234,8 @@ static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered 
     VL_TRY(take(&g->fx, zoom / d->pixel_size, from, error));
     VL_TRY(take(&g->fy, zoom / d->pixel_size, from, error));
   } else if (!vl_is_unset(d->zoom) && d->zoom != 1.0) {
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: zoom %g is given without the pixel size that it divides", d->zoom);
+    return vl_fail_argument(
+        error, "camera: zoom %g is given without the pixel size that it divides", d->zoom);
   }
   return VL_OK;
 }
@@ -298,8 +292,7 @@ vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *e
   camera->cy = vl_is_unset(g.cy.value) ? centre * d->height : g.cy.value;
   /* outside of these limits the rays' arithmetic would overflow or underflow */
   if (camera->fx > 1e30 || camera->fy > 1e30 || camera->fx < 1e-30 || camera->fy < 1e-30)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: focal lengths of %g and %g pixels are out of range", camera->fx,
-                   camera->fy);
+    return vl_fail_argument(error, "camera: focal lengths of %g and %g pixels are out of range",
+                            camera->fx, camera->fy);
   return VL_OK;
 }

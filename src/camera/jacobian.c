@@ -395,7 +395,7 @@ static bool unproject_moving(const vlCameraCompiled *c, const double pixel[2], d
 static vlResult check(const vlCamera *camera, bool missing, vlError *error) {
   vl_error_clear(error);
   if (!camera || missing)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: a null pointer");
+    return vl_fail_argument(error, "camera: a null pointer");
   const char *what = NULL;
   if (camera->own)
     what = "a camera of one's own";

@@ -24,24 +24,23 @@ static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) 
     double value = def->shape[i];
     if (i >= count) {
       if (!vl_is_unset(value))
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "camera: the %s projection takes %d numbers; shape[%d] is %g", name,
-                       count, i, value);
+        return vl_fail_argument(error,
+                                "camera: the %s projection takes %d numbers; shape[%d] is %g",
+                                name, count, i, value);
       continue;
     }
     if (vl_is_unset(value))
       value = n[i].standard;
     if (vl_is_unset(value))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection needs its %s", name,
-                     n[i].name);
+      return vl_fail_argument(error, "camera: the %s projection needs its %s", name, n[i].name);
     if (!(value >= n[i].least && value <= n[i].most))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "camera: %s of the %s projection is %g; it must be %g to %g", n[i].name,
-                     name, value, n[i].least, n[i].most);
+      return vl_fail_argument(error,
+                              "camera: %s of the %s projection is %g; it must be %g to %g",
+                              n[i].name, name, value, n[i].least, n[i].most);
     if (def->projection == VL_PROJECTION_CUBE && value != 0.0 && value != 1.0)
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "camera: layout of the cube is %g; it must be 0 (a row) or 1 (a cross)",
-                     value);
+      return vl_fail_argument(
+          error, "camera: layout of the cube is %g; it must be 0 (a row) or 1 (a cross)",
+          value);
     camera->shape[i] = value;
   }
   return VL_OK;
@@ -72,26 +71,22 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
   memcpy(m->untilt, identity, sizeof identity);
   m->radius = INFINITY;
   if (def->distortion == VL_DISTORTION_NONE && n != 0)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: %u distortion coefficients are given without a distortion", n);
+    return vl_fail_argument(
+        error, "camera: %u distortion coefficients are given without a distortion", n);
   if (def->distortion == VL_DISTORTION_NONE)
     return VL_OK;
   if (vl_projection_row(def->projection)->traits & VL_PROJECTION_NO_DISTORTION)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: a distortion has no meaning for the %s projection",
-                   vl_projection_name(def->projection));
+    return vl_fail_argument(error, "camera: a distortion has no meaning for the %s projection",
+                            vl_projection_name(def->projection));
   for (uint32_t i = 0; i < n && i < 14; i++)
     if (!isfinite(k[i]) || fabs(k[i]) > 1e30)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: distortion coefficient %u is %g", i + 1,
-                     k[i]);
+      return vl_fail_argument(error, "camera: distortion coefficient %u is %g", i + 1, k[i]);
   const vlDistortionRow *row = vl_distortion_row(def->distortion);
   if (!row)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown distortion %d",
-                   (int)def->distortion);
+    return vl_fail_argument(error, "camera: unknown distortion %d", (int)def->distortion);
   if (n > 14 || !(row->counts >> n & 1))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: %u %s distortion coefficients; there are %s", n, row->title,
-                   row->how_many);
+    return vl_fail_argument(error, "camera: %u %s distortion coefficients; there are %s", n,
+                            row->title, row->how_many);
   VL_TRY(compile_kind(def, m, error));
   for (uint32_t i = 0; i < n; i++)
     if (k[i] != 0.0)
@@ -163,7 +158,7 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
                               uint32_t count, vlError *error) {
   vl_error_clear(error);
   if (!def || !model || (!parameters && count > 0))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def, model or parameters is null");
+    return vl_fail_argument(error, "camera: def, model or parameters is null");
   const Colmap *found = NULL;
   const char *names[COLMAP_MODELS];
   for (int i = 0; i < COLMAP_MODELS; i++) {
@@ -174,13 +169,13 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
   if (!found) {
     char known[400];
     vl_tell_names(known, sizeof known, model, names, COLMAP_MODELS);
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%s\"%s",
-                   vl_argument_text(model).text, known);
+    return vl_fail_argument(error, "camera: unknown COLMAP camera model \"%s\"%s",
+                            vl_argument_text(model).text, known);
   }
   if (count != found->count)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the COLMAP camera model %s has %u parameters, not %u", found->name,
-                   found->count, count);
+    return vl_fail_argument(error,
+                            "camera: the COLMAP camera model %s has %u parameters, not %u",
+                            found->name, found->count, count);
   def->projection = found->projection;
   def->distortion = found->distortion;
   def->distortion_count = 0;

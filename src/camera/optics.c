@@ -23,19 +23,17 @@ static bool positive(double value) {
 
 static vlResult check(const vlOpticsDef *d, const vlLensSurface *s, vlError *error) {
   if (d->count == 0 || d->count > VL_MAX_SURFACES)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: %u surfaces; there are 1 to %d", d->count,
-                   VL_MAX_SURFACES);
+    return vl_fail_argument(error, "lens: %u surfaces; there are 1 to %d", d->count,
+                            VL_MAX_SURFACES);
   if (!positive(d->film_diagonal) || !positive(d->unit_mm))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "lens: film_diagonal %g and unit_mm %g must be above zero", d->film_diagonal,
-                   d->unit_mm);
+    return vl_fail_argument(error, "lens: film_diagonal %g and unit_mm %g must be above zero",
+                            d->film_diagonal, d->unit_mm);
   if (!(d->focus_distance > 0.0))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "lens: focus distance is %g; it must be above zero", d->focus_distance);
+    return vl_fail_argument(error, "lens: focus distance is %g; it must be above zero",
+                            d->focus_distance);
   if (!isnan(d->aperture_diameter) && !positive(d->aperture_diameter))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "lens: aperture diameter is %g; it must be above zero",
-                   d->aperture_diameter);
+    return vl_fail_argument(error, "lens: aperture diameter is %g; it must be above zero",
+                            d->aperture_diameter);
   uint32_t stops = 0;
   for (uint32_t i = 0; i < d->count; i++) {
     bool last = i + 1 == d->count;
@@ -51,13 +49,12 @@ static vlResult check(const vlOpticsDef *d, const vlLensSurface *s, vlError *err
     stops += s[i].radius == 0.0;
   }
   if (stops > 1)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: %u aperture stops (radius 0); there is one",
-                   stops);
+    return vl_fail_argument(error, "lens: %u aperture stops (radius 0); there is one", stops);
   if (stops == d->count)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: it has no refracting surface");
+    return vl_fail_argument(error, "lens: it has no refracting surface");
   if (d->aperture && stops == 0)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "lens: an aperture image needs a stop (a surface of radius 0)");
+    return vl_fail_argument(error,
+                            "lens: an aperture image needs a stop (a surface of radius 0)");
   return VL_OK;
 }
 
@@ -122,8 +119,8 @@ static Matrix paraxial(const vlOptics *o, uint32_t first, uint32_t last) {
 static vlResult focus(vlOptics *o, vlError *error) {
   Matrix m = paraxial(o, 0, o->count - 1);
   if (!(m.c < 0.0) || !isfinite(m.c))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "lens: it does not gather light (its focal length is %g)", -1.0 / m.c);
+    return vl_fail_argument(error, "lens: it does not gather light (its focal length is %g)",
+                            -1.0 / m.c);
   double f = -1.0 / m.c, length = o->surfaces[o->count - 1].z;
   /* distances from the rear vertex to the rear principal plane (for a parallel ray from the
    * scene) and to the front one (for a parallel ray from the film) */
@@ -133,10 +130,11 @@ static vlResult focus(vlOptics *o, vlError *error) {
      * to the film */
     double rest = o->def.focus_distance - (front - rear);
     if (!(rest >= 4.0 * f))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "lens: it cannot focus at a distance of %g; the nearest for its focal "
-                     "length of %g is %g",
-                     o->def.focus_distance, f, 4.0 * f + front - rear);
+      return vl_fail_argument(
+          error,
+          "lens: it cannot focus at a distance of %g; the nearest for its focal "
+          "length of %g is %g",
+          o->def.focus_distance, f, 4.0 * f + front - rear);
     image = 0.5 * (rest - sqrt(rest * (rest - 4.0 * f)));
     /* The difference loses digits for far objects, so one Newton step for f rest = image (rest
      * - image) follows. */
@@ -146,9 +144,9 @@ static vlResult focus(vlOptics *o, vlError *error) {
   }
   double z = image - rear;
   if (!(z > 0.0))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "lens: focused at %g its last surface would lie %g behind the film",
-                   o->def.focus_distance, -z);
+    return vl_fail_argument(error,
+                            "lens: focused at %g its last surface would lie %g behind the film",
+                            o->def.focus_distance, -z);
   for (uint32_t k = 0; k < o->count; k++)
     o->surfaces[k].z += z;
   o->rear = z;
@@ -175,10 +173,9 @@ vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlOptics *
   if (optics)
     *optics = NULL;
   if (!context || !def || !optics || !def->surfaces)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "lens: context, def, optics or def.surfaces is null");
+    return vl_fail_argument(error, "lens: context, def, optics or def.surfaces is null");
   if (def->cookie != VL_COOKIE_OPTICS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "lens: " VL_BAD_COOKIE);
   VL_TRY(check(def, def->surfaces, error));
   vlOptics *o = vl_alloc_zero(context, 1, sizeof *o);
   if (!o)
@@ -194,8 +191,7 @@ vlResult vl_optics_create(vlContext *context, const vlOpticsDef *def, vlOptics *
     vl_optics_find_chiefs(o);
     vl_optics_find_pupils(o);
     if (!(o->pupils[0].area > 0.0))
-      result = vl_fail(error, VL_ERROR_ARGUMENT,
-                       "lens: no light passes it to the middle of the film");
+      result = vl_fail_argument(error, "lens: no light passes it to the middle of the film");
   }
   if (result != VL_OK) {
     vl_free(context, o);
@@ -209,7 +205,7 @@ vlResult vl_optics_refocus(vlContext *context, const vlOptics *optics, double fo
                            vlOptics **result, vlError *error) {
   vl_error_clear(error);
   if (!optics)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: optics is null");
+    return vl_fail_argument(error, "lens: optics is null");
   vlOpticsDef def = optics->def;
   def.surfaces = optics->given;
   def.focus_distance = focus_distance;

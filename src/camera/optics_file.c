@@ -74,7 +74,7 @@ vlResult vl_optics_load(vlContext *context, const char *path, const vlOpticsDef 
   if (optics)
     *optics = NULL;
   if (!context || !path || !def || !optics)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "lens: context, path, def or optics is null");
+    return vl_fail_argument(error, "lens: context, path, def or optics is null");
   char *data = NULL;
   size_t size;
   VL_TRY(vl_file_read(context, path, false, &data, &size, error));

@@ -95,7 +95,7 @@ vlResult vl_own_check(const char *what, const char *name, bool has_function, vlE
         "own %s: its name \"%s\" is not UTF-8 of 1 to %d bytes without control characters",
         what, vl_short_text(name).text, VL_OWN_NAME - 1);
   if (!has_function)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "own %s \"%s\": its function is null", what, name);
+    return vl_fail_argument(error, "own %s \"%s\": its function is null", what, name);
   return VL_OK;
 }
 

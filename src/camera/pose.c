@@ -51,15 +51,15 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
   Vec e = vec(def->eye), l = vec(def->lookat), up = vec(def->up);
   Vec back = {e.x - l.x, e.y - l.y, e.z - l.z};
   if (largest(back) == 0.0)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: eye and lookat are the same point (%g %g %g); there is no "
-                   "direction to look in",
-                   e.x, e.y, e.z);
+    return vl_fail_argument(error,
+                            "camera: eye and lookat are the same point (%g %g %g); there is no "
+                            "direction to look in",
+                            e.x, e.y, e.z);
   if (!isfinite(largest(back)))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: eye and lookat are too far apart for double precision");
+    return vl_fail_argument(error,
+                            "camera: eye and lookat are too far apart for double precision");
   if (largest(up) == 0.0)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: up is the zero vector");
+    return vl_fail_argument(error, "camera: up is the zero vector");
 
   Vec w = normalized(back);
   Vec right = cross(normalized(up), w);
@@ -82,8 +82,8 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
 
 static vlResult check_matrix(const vlMat4 *m, vlError *error) {
   if (!vl_mat4_is_finite(*m))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: world_from_camera holds a value that is not finite");
+    return vl_fail_argument(error,
+                            "camera: world_from_camera holds a value that is not finite");
   const double *a = m->m;
   if (a[12] != 0.0 || a[13] != 0.0 || a[14] != 0.0 || a[15] != 1.0)
     return vl_fail(
@@ -94,8 +94,8 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
   Vec x = {a[0], a[4], a[8]}, y = {a[1], a[5], a[9]}, z = {a[2], a[6], a[10]};
   double volume = 0.0, most = fmax(largest(x), fmax(largest(y), largest(z)));
   if (most > 1e30)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: world_from_camera stretches by %g; 1e30 is the most", most);
+    return vl_fail_argument(
+        error, "camera: world_from_camera stretches by %g; 1e30 is the most", most);
   if (largest(x) > 0.0 && largest(y) > 0.0 && largest(z) > 0.0)
     volume = fabs(dot(normalized(x), cross(normalized(y), normalized(z))));
   if (!(volume > parallel_sine))
@@ -108,8 +108,8 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
 static vlResult fill(vlMat4 m, vlCamera *camera, vlError *error) {
   vlMat4 inverse;
   if (!vl_mat4_inverse(m, &inverse) || !vl_mat4_is_finite(inverse))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: world_from_camera cannot be inverted; its scale is too extreme");
+    return vl_fail_argument(
+        error, "camera: world_from_camera cannot be inverted; its scale is too extreme");
   for (int i = 0; i < 16; i++) {
     camera->world_from_camera[i] = m.m[i] + 0.0;
     camera->camera_from_world[i] = inverse.m[i] + 0.0;

@@ -12,28 +12,27 @@
 
 static vlResult check_stereo(const vlCamera *c, const vlStereo *s, vlError *error) {
   if ((uint32_t)s->mode > VL_STEREO_OMNIDIRECTIONAL)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown stereo mode %d", (int)s->mode);
+    return vl_fail_argument(error, "camera: unknown stereo mode %d", (int)s->mode);
   if (s->mode == VL_STEREO_NONE)
     return VL_OK;
   if (!(s->interocular > 0.0) || isinf(s->interocular))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the interocular distance is %g; it must be above zero",
-                   s->interocular);
+    return vl_fail_argument(
+        error, "camera: the interocular distance is %g; it must be above zero", s->interocular);
   bool given = !vl_is_unset(s->convergence),
        meets = s->mode == VL_STEREO_OFF_AXIS || s->mode == VL_STEREO_TOE_IN;
   if (given && !(s->convergence > 0.0))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the convergence is %g; it must be a distance above zero",
-                   s->convergence);
+    return vl_fail_argument(error,
+                            "camera: the convergence is %g; it must be a distance above zero",
+                            s->convergence);
   if (given && !meets && !isinf(s->convergence))
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "camera: convergence %g has no meaning for %s stereo, whose eyes look the same way",
         s->convergence, vl_camera_stereo_modes[s->mode]);
   if (!given && meets)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: %s stereo needs the distance where the eyes converge",
-                   vl_camera_stereo_modes[s->mode]);
+    return vl_fail_argument(error,
+                            "camera: %s stereo needs the distance where the eyes converge",
+                            vl_camera_stereo_modes[s->mode]);
   if (s->mode == VL_STEREO_OFF_AXIS &&
       (c->projection != VL_PROJECTION_PERSPECTIVE || c->distortion.steps > 0))
     return vl_fail(
@@ -43,10 +42,11 @@ static vlResult check_stereo(const vlCamera *c, const vlStereo *s, vlError *erro
   bool round =
       c->projection >= VL_PROJECTION_EQUIRECTANGULAR && c->projection <= VL_PROJECTION_CUBE;
   if (s->mode == VL_STEREO_OMNIDIRECTIONAL && !round)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: omnidirectional stereo goes all round: with the equirectangular, "
-                   "cylindrical, equal-area and cube projections, not with the %s one",
-                   vl_projection_name(c->projection));
+    return vl_fail_argument(
+        error,
+        "camera: omnidirectional stereo goes all round: with the equirectangular, "
+        "cylindrical, equal-area and cube projections, not with the %s one",
+        vl_projection_name(c->projection));
   return VL_OK;
 }
 
@@ -67,10 +67,10 @@ vlResult vl_camera_eye(const vlCamera *camera, const vlStereo *stereo, vlEye eye
                        vlCamera *result, vlError *error) {
   vl_error_clear(error);
   if (!camera || !stereo || !result)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: camera, stereo or result is null");
+    return vl_fail_argument(error, "camera: camera, stereo or result is null");
   VL_TRY(check_stereo(camera, stereo, error));
   if ((uint32_t)eye > VL_EYE_RIGHT)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown eye %d", (int)eye);
+    return vl_fail_argument(error, "camera: unknown eye %d", (int)eye);
   vlCamera made = *camera;
   if (eye == VL_EYE_BOTH || stereo->mode == VL_STEREO_NONE) {
     *result = made;
@@ -100,9 +100,9 @@ vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *righ
                           const char **warning, vlError *error) {
   vl_error_clear(error);
   if (!def || !left || !right)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def, left or right is null");
+    return vl_fail_argument(error, "camera: def, left or right is null");
   if (def->stereo.mode == VL_STEREO_NONE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the def has no stereo mode");
+    return vl_fail_argument(error, "camera: the def has no stereo mode");
   vlCameraDef between = *def;
   vlCamera camera, eyes[2];
   between.stereo_eye = VL_EYE_BOTH;
@@ -122,8 +122,7 @@ vlResult vl_camera_move(const vlCamera *camera, const double world_from_camera[1
                         vlCamera *result, vlError *error) {
   vl_error_clear(error);
   if (!camera || !world_from_camera || !result)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: camera, world_from_camera or result is null");
+    return vl_fail_argument(error, "camera: camera, world_from_camera or result is null");
   vlCamera moved = *camera;
   VL_TRY(vl_camera_pose_matrix(world_from_camera, &moved, error));
   memcpy(moved.world_from_camera_close, moved.world_from_camera,

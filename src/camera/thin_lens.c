@@ -23,17 +23,17 @@ static bool given(double value) {
 static vlResult check(const vlCameraDef *def, vlError *error) {
   const vlLensDef *d = &def->lens;
   if (d->blades != 0 && d->blades < 3)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: %u blades; there are 0 (a round opening) or 3 to %d", d->blades,
-                   VL_MAX_BLADES);
+    return vl_fail_argument(error,
+                            "camera: %u blades; there are 0 (a round opening) or 3 to %d",
+                            d->blades, VL_MAX_BLADES);
   if (d->blades != 0 && d->aperture)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: %u blades and an aperture image are given; give one of them",
-                   d->blades);
+    return vl_fail_argument(
+        error, "camera: %u blades and an aperture image are given; give one of them",
+        d->blades);
   if (d->vignetting && def->projection != VL_PROJECTION_PERSPECTIVE)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: natural vignetting has no meaning for the %s projection",
-                   vl_projection_name(def->projection));
+    return vl_fail_argument(error,
+                            "camera: natural vignetting has no meaning for the %s projection",
+                            vl_projection_name(def->projection));
   return VL_OK;
 }
 
@@ -52,10 +52,11 @@ static vlResult radius(const vlCameraDef *def, double focal_mm, vlCamera *camera
   if (vl_is_unset(focal_mm)) {
     if (given(d->iso))
       return VL_OK; /* the ISO value affects only the exposure */
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: f_number %g needs the focal length in millimetres (focal_mm or "
-                   "sensor_width_mm); or give lens_radius",
-                   d->f_number);
+    return vl_fail_argument(
+        error,
+        "camera: f_number %g needs the focal length in millimetres (focal_mm or "
+        "sensor_width_mm); or give lens_radius",
+        d->f_number);
   }
   double r = 0.5 * focal_mm / (d->f_number * d->unit_mm);
   if (def->lens_radius > 0.0 &&
@@ -77,22 +78,24 @@ static vlResult tilt(const vlCameraDef *def, double focal_mm, vlCamera *camera,
   if (!plane && !lens)
     return VL_OK;
   if (plane && lens)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: tilt_x %g, tilt_y %g turn the plane in focus and lens_tilt_x %g, "
-                   "lens_tilt_y %g the lens; give one of them",
-                   d->tilt_x, d->tilt_y, d->lens_tilt_x, d->lens_tilt_y);
+    return vl_fail_argument(
+        error,
+        "camera: tilt_x %g, tilt_y %g turn the plane in focus and lens_tilt_x %g, "
+        "lens_tilt_y %g the lens; give one of them",
+        d->tilt_x, d->tilt_y, d->lens_tilt_x, d->lens_tilt_y);
   if (def->projection > VL_PROJECTION_ORTHOGRAPHIC)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: a tilted plane in focus has no meaning for the %s projection",
-                   vl_projection_name(def->projection));
+    return vl_fail_argument(
+        error, "camera: a tilted plane in focus has no meaning for the %s projection",
+        vl_projection_name(def->projection));
   camera->lens.tilt[0] = vl_precise_tan(d->tilt_y);
   camera->lens.tilt[1] = vl_precise_tan(d->tilt_x);
   if (!lens)
     return VL_OK;
   if (vl_is_unset(focal_mm))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: lens_tilt needs the focal length in millimetres (focal_mm or "
-                   "sensor_width_mm); or give tilt_x and tilt_y of the plane");
+    return vl_fail_argument(
+        error,
+        "camera: lens_tilt needs the focal length in millimetres (focal_mm or "
+        "sensor_width_mm); or give tilt_x and tilt_y of the plane");
   /* the hinge rule: the plane in focus meets the plane through the lens, parallel to the film,
    * f / sin(tilt) away */
   camera->lens.hinge[0] = vl_precise_sin(d->lens_tilt_y) * d->unit_mm / focal_mm;
@@ -118,18 +121,18 @@ static vlResult focus(const vlCameraDef *def, vlCamera *camera, vlError *error) 
   int point = given(p[0]) + given(p[1]) + given(p[2]),
       pixel = given(d->focus_pixel[0]) + given(d->focus_pixel[1]);
   if ((point != 0 && point != 3) || (pixel != 0 && pixel != 2))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus_%s has not all of its numbers",
-                   point != 0 && point != 3 ? "point" : "pixel");
+    return vl_fail_argument(error, "camera: focus_%s has not all of its numbers",
+                            point != 0 && point != 3 ? "point" : "pixel");
   if ((point && pixel) || (pixel && given(def->focus_distance)))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: focus_pixel and focus_%s are given; give one of them",
-                   point ? "point" : "distance");
+    return vl_fail_argument(error,
+                            "camera: focus_pixel and focus_%s are given; give one of them",
+                            point ? "point" : "distance");
   if (pixel) {
     for (int i = 0; i < 2; i++)
       if (!(d->focus_pixel[i] >= 0.0 && d->focus_pixel[i] <= (i ? def->height : def->width)))
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "camera: focus_pixel %g, %g lies outside the image of %u x %u",
-                       d->focus_pixel[0], d->focus_pixel[1], def->width, def->height);
+        return vl_fail_argument(error,
+                                "camera: focus_pixel %g, %g lies outside the image of %u x %u",
+                                d->focus_pixel[0], d->focus_pixel[1], def->width, def->height);
     camera->lens.focus_pixel[0] = d->focus_pixel[0];
     camera->lens.focus_pixel[1] = d->focus_pixel[1];
   }
@@ -138,14 +141,15 @@ static vlResult focus(const vlCameraDef *def, vlCamera *camera, vlError *error) 
   double distance;
   if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]) ||
       !vl_camera_focus_at(camera, p, &distance))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: focus_point %g %g %g is not before the camera", p[0], p[1], p[2]);
+    return vl_fail_argument(error, "camera: focus_point %g %g %g is not before the camera",
+                            p[0], p[1], p[2]);
   double other = def->focus_distance;
   if (given(other) && fabs(distance - other) > agreement * fmax(distance, other))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: focus_point gives a focus distance of %.9g, but focus_distance is "
-                   "%.9g; give one of them",
-                   distance, other);
+    return vl_fail_argument(
+        error,
+        "camera: focus_point gives a focus distance of %.9g, but focus_distance is "
+        "%.9g; give one of them",
+        distance, other);
   camera->focus_distance = distance;
   return VL_OK;
 }
@@ -154,23 +158,20 @@ static vlResult exposure(const vlCameraDef *def, vlCamera *camera, vlError *erro
   const vlLensDef *d = &def->lens;
   if (vl_is_unset(d->iso)) {
     if (given(d->seconds))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: seconds %g is given without iso",
-                     d->seconds);
+      return vl_fail_argument(error, "camera: seconds %g is given without iso", d->seconds);
     return VL_OK;
   }
   if (vl_is_unset(d->f_number))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: iso %g is given without f_number",
-                   d->iso);
+    return vl_fail_argument(error, "camera: iso %g is given without f_number", d->iso);
   if (def->exposure_time != 1.0)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: exposure_time %g and iso %g are given; give one of them",
-                   def->exposure_time, d->iso);
+    return vl_fail_argument(error,
+                            "camera: exposure_time %g and iso %g are given; give one of them",
+                            def->exposure_time, d->iso);
   double seconds = given(d->seconds) ? d->seconds : def->shutter_close - def->shutter_open;
   camera->exposure_time = seconds * d->iso / (120.0 * d->f_number * d->f_number);
   if (!(camera->exposure_time > 0.0) || isinf(camera->exposure_time))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: an exposure of %g seconds at iso %g, f/%g is none", seconds, d->iso,
-                   d->f_number);
+    return vl_fail_argument(error, "camera: an exposure of %g seconds at iso %g, f/%g is none",
+                            seconds, d->iso, d->f_number);
   return VL_OK;
 }
 
@@ -178,9 +179,9 @@ static vlResult exposure(const vlCameraDef *def, vlCamera *camera, vlError *erro
 static vlResult optics(const vlCameraDef *def, vlCamera *camera, vlError *error) {
   const vlLensDef *d = &def->lens;
   if (def->projection != VL_PROJECTION_OPTICS || !d->optics)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s",
-                   d->optics ? "lens.optics needs the projection OPTICS"
-                             : "the projection OPTICS needs lens.optics");
+    return vl_fail_argument(error, "camera: %s",
+                            d->optics ? "lens.optics needs the projection OPTICS"
+                                      : "the projection OPTICS needs lens.optics");
   const struct {
     const char *name;
     bool there;
@@ -205,9 +206,9 @@ static vlResult optics(const vlCameraDef *def, vlCamera *camera, vlError *error)
                                 d->lens_tilt_y != 0.0}};
   for (size_t i = 0; i < VL_LENGTH(foreign); i++)
     if (foreign[i].there)
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "camera: %s is given; a lens of many elements has its own, or none",
-                     foreign[i].name);
+      return vl_fail_argument(
+          error, "camera: %s is given; a lens of many elements has its own, or none",
+          foreign[i].name);
   double width = def->width, height = def->height;
   camera->fx = camera->fy = d->optics->info.rear_principal / (2.0 * d->optics->half) *
                             sqrt(width * width + height * height);

@@ -14,9 +14,9 @@ static vlResult check_curve(const vlCameraDef *d, vlError *error) {
   if (d->shutter_points == 0)
     return VL_OK;
   if (d->shutter_points < 2 || d->shutter_points > VL_SHUTTER_POINTS)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the shutter's curve has %u points; it takes 2 to %d",
-                   d->shutter_points, (int)VL_SHUTTER_POINTS);
+    return vl_fail_argument(error,
+                            "camera: the shutter's curve has %u points; it takes 2 to %d",
+                            d->shutter_points, (int)VL_SHUTTER_POINTS);
   double area = 0.0;
   for (uint32_t i = 0; i < d->shutter_points; i++) {
     double at = d->shutter_at[i], value = d->shutter_value[i];
@@ -25,15 +25,14 @@ static vlResult check_curve(const vlCameraDef *d, vlError *error) {
           error, VL_ERROR_ARGUMENT,
           "camera: point %u of the shutter's curve is at %g; from 0 to 1 they ascend", i, at);
     if (!(value >= 0.0) || value > 1e30)
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "camera: the shutter's curve is %g at point %u; it must not be negative",
-                     value, i);
+      return vl_fail_argument(
+          error, "camera: the shutter's curve is %g at point %u; it must not be negative",
+          value, i);
     if (i)
       area += 0.5 * (at - d->shutter_at[i - 1]) * (value + d->shutter_value[i - 1]);
   }
   if (!(area > 0.0))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the shutter's curve lets no light through");
+    return vl_fail_argument(error, "camera: the shutter's curve lets no light through");
   return VL_OK;
 }
 
@@ -70,9 +69,10 @@ static vlResult check_second_pose(const vlCameraDef *def, vlError *error) {
   for (int k = 0; k < 3 && def->has_matrix && !def->has_matrix_close; k++)
     for (int i = 0; i < 3; i++)
       if (!vl_is_unset(given[k][i]))
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "camera: eye_close, lookat_close and up_close go with eye and lookat; "
-                       "with world_from_camera give world_from_camera_close");
+        return vl_fail_argument(
+            error,
+            "camera: eye_close, lookat_close and up_close go with eye and lookat; "
+            "with world_from_camera give world_from_camera_close");
   return VL_OK;
 }
 
@@ -81,11 +81,10 @@ static vlResult go_to(const double close[16], vlCamera *camera, vlError *error) 
   const double *t = camera->pose_times;
   vlMotion motion;
   if (!isfinite(t[0]) || !isfinite(t[1]) || !(t[0] <= t[1]))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: it cannot move from %g to %g seconds",
-                   t[0], t[1]);
+    return vl_fail_argument(error, "camera: it cannot move from %g to %g seconds", t[0], t[1]);
   if (!vl_motion_make(camera->world_from_camera, close, &motion))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: no motion leads from its first pose to its second: one mirrors");
+    return vl_fail_argument(
+        error, "camera: no motion leads from its first pose to its second: one mirrors");
   memcpy(camera->world_from_camera_close, close, sizeof camera->world_from_camera_close);
   camera->moves =
       memcmp(camera->world_from_camera, close, sizeof camera->world_from_camera) != 0;
@@ -96,8 +95,7 @@ vlResult vl_camera_travel(const vlCamera *camera, const double open[16], const d
                           const double times[2], vlCamera *result, vlError *error) {
   vl_error_clear(error);
   if (!camera || !open || !close || !times || !result)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: camera, open, close, times or result is null");
+    return vl_fail_argument(error, "camera: camera, open, close, times or result is null");
   vlCamera there = *camera, made = *camera;
   VL_TRY(vl_camera_pose_matrix(open, &made, error));
   VL_TRY(vl_camera_pose_matrix(close, &there, error));

@@ -114,26 +114,24 @@ vlVanishingDef vl_default_vanishing_def(uint32_t width, uint32_t height) {
 
 static vlResult check(const vlVanishingDef *d, vlError *error) {
   if (d->cookie != VL_COOKIE_VANISHING)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "vanishing points: " VL_BAD_COOKIE);
   if (d->count != 2 && d->count != 3)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vanishing points: %u are given; a camera needs 2 or 3", d->count);
+    return vl_fail_argument(error, "vanishing points: %u are given; a camera needs 2 or 3",
+                            d->count);
   for (uint32_t i = 0; i < d->count; i++) {
     if (!isfinite(d->points[i][0]) || !isfinite(d->points[i][1]) ||
         fabs(d->points[i][0]) > 1e100 || fabs(d->points[i][1]) > 1e100)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: number %u is not finite",
-                     i + 1);
+      return vl_fail_argument(error, "vanishing points: number %u is not finite", i + 1);
     for (uint32_t k = 0; k < i; k++)
       if (d->axes[i] == d->axes[k])
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "vanishing points: numbers %u and %u are of the same axis", k + 1,
-                       i + 1);
+        return vl_fail_argument(
+            error, "vanishing points: numbers %u and %u are of the same axis", k + 1, i + 1);
     if (d->axes[i] > 2)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: an axis is 0, 1 or 2");
+      return vl_fail_argument(error, "vanishing points: an axis is 0, 1 or 2");
   }
   if (vl_is_unset(d->cx) != vl_is_unset(d->cy) || isinf(d->cx) || isinf(d->cy))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vanishing points: the principal point is (%g, %g)", d->cx, d->cy);
+    return vl_fail_argument(error, "vanishing points: the principal point is (%g, %g)", d->cx,
+                            d->cy);
   return VL_OK;
 }
 
@@ -146,8 +144,8 @@ static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error
   double cross = b[0] * c[1] - b[1] * c[0], dot = b[0] * c[0] + b[1] * c[1];
   double size = fmax(fmax(fabs(b[0]), fabs(b[1])), fmax(fabs(c[0]), fabs(c[1])));
   if (!(fabs(cross) > 1e-12 * size * size)) /* sine of the angle between two sides, nearly */
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vanishing points: the three lie on one line; no camera has such");
+    return vl_fail_argument(error,
+                            "vanishing points: the three lie on one line; no camera has such");
   /* h . (c - b) = 0 and h . b = b . c: h is parallel to the normal of c - b */
   p[0] = a[0] + dot * (c[1] - b[1]) / cross;
   p[1] = a[1] - dot * (c[0] - b[0]) / cross;
@@ -177,8 +175,8 @@ static vlResult focal_length(const vlVanishingDef *def, const double p[2], doubl
   }
   *f = sqrt(f2);
   if (!(*f > 1e-30 && *f < 1e30))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "vanishing points: a focal length of %g pixels is out of range", *f);
+    return vl_fail_argument(
+        error, "vanishing points: a focal length of %g pixels is out of range", *f);
   return VL_OK;
 }
 
@@ -207,7 +205,7 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
                                          vlError *error) {
   vl_error_clear(error);
   if (!def || !camera)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
+    return vl_fail_argument(error, "vanishing points: def or camera is null");
   double p[2] = {0.5 * def->width, 0.5 * def->height}, f = 0.0, axes[3][3];
   const bool has_centre = !vl_is_unset(def->cx);
   VL_TRY(check(def, error));

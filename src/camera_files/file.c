@@ -204,16 +204,15 @@ static vlResult begin(vlContext *context, const char *path, const vlCameraRecord
   vl_error_clear(error);
   *standard = vl_default_camera_file_def();
   if (!context || !path)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: context or path is null");
+    return vl_fail_argument(error, "camera file: context or path is null");
   if (!*def)
     *def = standard;
   if ((*def)->cookie != VL_COOKIE_CAMERA_FILE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "camera file: " VL_BAD_COOKIE);
   if ((uint32_t)(*def)->dialect >= VL_CAMERA_DIALECT_COUNT)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: unknown dialect %d",
-                   (int)(*def)->dialect);
+    return vl_fail_argument(error, "camera file: unknown dialect %d", (int)(*def)->dialect);
   if (!record)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
+    return vl_fail_argument(error, "camera file: record is null");
   return VL_OK;
 }
 
@@ -320,9 +319,8 @@ static vlResult write_plainly(vlContext *context, const char *path, const vlCame
   VL_TRY(check_record(def, record, error));
   vlCameraDialect dialect = def->dialect ? def->dialect : dialect_of_name(path);
   if (!dialect)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera file: the name \"%.200s\" does not say which dialect to write",
-                   path);
+    return vl_fail_argument(
+        error, "camera file: the name \"%.200s\" does not say which dialect to write", path);
   const vlCameraFormat *format = vl_camera_formats[dialect];
   vlCameraFile file = {
       .context = context, .path = path, .dialect = format->name, .def = def, .error = error};

@@ -29,14 +29,13 @@ vlResult vl_camera_check_drop(const vlCameraFileDef *def, vlError *error) {
   for (uint32_t i = 0; i < def->drop_count; i++) {
     const char *name = def->drop ? def->drop[i] : NULL;
     if (!name)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: drop[%u] is null", i);
+      return vl_fail_argument(error, "camera file: drop[%u] is null", i);
     if (is_refusable(name) || vl_text_is(name, all_fields))
       continue;
     char known[600];
     vl_tell_names(known, sizeof known, name, refusable, VL_LENGTH(refusable));
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera file: drop: no camera has a field \"%s\"%s",
-                   vl_argument_text(name).text, known);
+    return vl_fail_argument(error, "camera file: drop: no camera has a field \"%s\"%s",
+                            vl_argument_text(name).text, known);
   }
   return VL_OK;
 }

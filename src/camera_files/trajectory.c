@@ -193,11 +193,11 @@ vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCamera
                             vlTrajectory **trajectory, vlError *error) {
   vl_error_clear(error);
   if (!context || !path || !trajectory)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: context, path or trajectory is null");
+    return vl_fail_argument(error, "trajectory: context, path or trajectory is null");
   *trajectory = NULL;
   vlCameraFileDef plain = def ? *def : vl_default_camera_file_def();
   if (plain.cookie != VL_COOKIE_CAMERA_FILE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "trajectory: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "trajectory: " VL_BAD_COOKIE);
   plain.frame = NULL;
   vlTrajectory *t = vl_alloc_zero(context, 1, sizeof *t);
   if (!t)

@@ -24,7 +24,7 @@ static vlResult unknown_name(const char *name, vlError *error) {
 /* Validates a spectrum. */
 static vlResult check(const vlSpectrum *s, vlError *error) {
   if (!s)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "spectrum is null");
+    return vl_fail_argument(error, "spectrum is null");
   if (!isfinite(s->scale))
     return vl_fail(error, VL_ERROR_SCENE, "the spectrum's scale is not finite");
   switch (s->kind) {
@@ -36,7 +36,7 @@ static vlResult check(const vlSpectrum *s, vlError *error) {
       if (!isfinite(s->rgb[0]) || !isfinite(s->rgb[1]) || !isfinite(s->rgb[2]))
         return vl_fail(error, VL_ERROR_SCENE, "an RGB value is not finite");
       if ((unsigned)s->space > VL_SPACE_ACES2065_1)
-        return vl_fail(error, VL_ERROR_ARGUMENT, "unknown colour space %d", (int)s->space);
+        return vl_fail_argument(error, "unknown colour space %d", (int)s->space);
       return VL_OK;
     case VL_SPECTRUM_BLACKBODY:
       if (!(s->kelvin > 0) || !isfinite(s->kelvin))
@@ -60,7 +60,7 @@ static vlResult check(const vlSpectrum *s, vlError *error) {
     case VL_SPECTRUM_NAMED:
       return vl_named_spectrum(s->name) ? VL_OK : unknown_name(s->name, error);
   }
-  return vl_fail(error, VL_ERROR_ARGUMENT, "unknown kind of spectrum %d", (int)s->kind);
+  return vl_fail_argument(error, "unknown kind of spectrum %d", (int)s->kind);
 }
 
 /* Planck's law, divided by its maximum: (x / xm)^5 (e^xm - 1) / (e^x - 1), x = hc / (lambda k
@@ -259,7 +259,7 @@ vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlC
   float dense[VL_LAMBDA_COUNT], constant;
   VL_TRY(vl_spectrum_dense(spectrum, role, dense, error));
   if ((unsigned)space > VL_SPACE_ACES2065_1)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "unknown colour space %d", (int)space);
+    return vl_fail_argument(error, "unknown colour space %d", (int)space);
   double out[3];
   if (spectrum->kind == VL_SPECTRUM_RGB) {
     double in[3];

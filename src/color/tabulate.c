@@ -36,15 +36,15 @@ vlResult vl_spectrum_tabulate(const vlSpectrum *spectrum, vlParameterRole role,
                               float values[VL_SPECTRUM_VALUES], vlError *error) {
   vlSpectrumRole own;
   if (!spectrum || !values)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "spectrum or values is null");
+    return vl_fail_argument(error, "spectrum or values is null");
   if (!role_of(role, &own))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%d is not the role of a spectrum", (int)role);
+    return vl_fail_argument(error, "%d is not the role of a spectrum", (int)role);
   return vl_spectrum_dense(spectrum, own, values, error);
 }
 
 double vl_spectrum_luminance(const vlSpectrum *spectrum, vlError *error) {
   if (!spectrum) {
-    vl_fail(error, VL_ERROR_ARGUMENT, "spectrum is null");
+    vl_fail_argument(error, "spectrum is null");
     return 0;
   }
   return vl_spectrum_photometric(spectrum, error);
@@ -54,9 +54,9 @@ vlResult vl_spectrum_linear_rgb(const vlSpectrum *spectrum, vlParameterRole role
                                 vlError *error) {
   vlSpectrumRole own;
   if (!spectrum || !rgb)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "spectrum or rgb is null");
+    return vl_fail_argument(error, "spectrum or rgb is null");
   if (!role_of(role, &own))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%d is not the role of a spectrum", (int)role);
+    return vl_fail_argument(error, "%d is not the role of a spectrum", (int)role);
   return vl_spectrum_to_rgb(spectrum, own, VL_SPACE_SRGB, rgb, error);
 }
 

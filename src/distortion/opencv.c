@@ -36,8 +36,8 @@ vlResult vl_distortion_compile_opencv(const double *k, uint32_t n, vlDistortionM
   for (int i = 0; i < 4; i++)
     m->prism[i] = c[8 + i];
   if (!(fabs(c[12]) < 1.5 && fabs(c[13]) < 1.5))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the sensor's tilt %g, %g radians must be below 1.5", c[12], c[13]);
+    return vl_fail_argument(error, "camera: the sensor's tilt %g, %g radians must be below 1.5",
+                            c[12], c[13]);
   if (c[12] != 0.0 || c[13] != 0.0)
     tilt(m, c[12], c[13]);
   return VL_OK;

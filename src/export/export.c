@@ -198,14 +198,14 @@ static vlResult save_plainly(const vlScene *scene, const char *path, const vlSav
   vl_error_clear(error);
   vlSaveDef plain = vl_default_save_def();
   if (!scene || !path)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: scene or path is null");
+    return vl_fail_argument(error, "scene save: scene or path is null");
   if (def && def->cookie != VL_COOKIE_SAVE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene save: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "scene save: " VL_BAD_COOKIE);
   VL_TRY(vl_scene_result(scene, error));
   bool pbrt = vl_ends_with(path, ".pbrt"), binary = vl_ends_with(path, ".glb");
   if (!pbrt && !binary && !vl_ends_with(path, ".gltf"))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "%.300s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", path);
+    return vl_fail_argument(
+        error, "%.300s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", path);
   vlExport *x = vl_alloc_zero(scene->context, 1, sizeof *x);
   if (!x)
     return vl_fail_memory(error);

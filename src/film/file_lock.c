@@ -10,7 +10,7 @@ vlResult vl_film_lock(vlContext *context, const char *path, vlFilmLock **lock, v
   if (lock)
     *lock = NULL;
   if (!context || !path || !lock)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film lock: context, path or lock is null");
+    return vl_fail_argument(error, "film lock: context, path or lock is null");
   vlFilmLock *made = vl_alloc_zero(context, 1, sizeof *made);
   if (!made)
     return vl_fail_memory(error);

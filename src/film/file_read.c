@@ -137,7 +137,7 @@ vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm
   if (film)
     *film = NULL;
   if (!context || !path || !film)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: context, path or film is null");
+    return vl_fail_argument(error, "film file: context, path or film is null");
   vlFilmReader reader;
   Extent extent;
   VL_TRY(vl_film_reader_open(&reader, context, path, error));

@@ -153,17 +153,18 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
 static vlResult check(const vlFilm *film, const vlFilmWriteDef *def, const char *path,
                       const uint32_t window[4], vlError *error) {
   if (def->cookie != VL_COOKIE_FILM_WRITE)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "film file: def.cookie is not that of a default def of this version");
+    return vl_fail_argument(
+        error, "film file: def.cookie is not that of a default def of this version");
   if (film->in_pass || film->sequence.uneven || !film->spp || !film->front)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "%s: the film has no samples, or pixels with different samples", path);
+    return vl_fail_argument(
+        error, "%s: the film has no samples, or pixels with different samples", path);
   if (window[2] > film->def.width || window[3] > film->def.height ||
       !fits_grid(window, film->def.crop))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "%s: the film's crop must lie in the window and end at its sides or at "
-                   "multiples of %d pixels",
-                   path, VL_FILM_BLOCK);
+    return vl_fail_argument(
+        error,
+        "%s: the film's crop must lie in the window and end at its sides or at "
+        "multiples of %d pixels",
+        path, VL_FILM_BLOCK);
   return VL_OK;
 }
 
@@ -176,8 +177,7 @@ static vlResult check_receipt(const char *receipt, const char *path, vlError *er
   if (!tree && vl_json_lacks_memory(&wrong))
     return vl_fail_memory(error);
   if (!tree)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: receipt: line %d: %s", path, wrong.line,
-                   wrong.text);
+    return vl_fail_argument(error, "%s: receipt: line %d: %s", path, wrong.line, wrong.text);
   json_decref(tree);
   return VL_OK;
 }
@@ -203,7 +203,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
   if (writer)
     *writer = NULL;
   if (!film || !path || !writer)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: film, path or writer is null");
+    return vl_fail_argument(error, "film file: film, path or writer is null");
   bool whole = !def->window[2] && !def->window[3];
   const uint32_t *window = whole ? film->def.crop : def->window;
   vlResult result = check(film, def, path, window, error);
@@ -248,7 +248,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
 vlResult vl_film_write_end(vlFilmWriter *writer, vlError *error) {
   vl_error_clear(error);
   if (!writer)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film file: writer is null");
+    return vl_fail_argument(error, "film file: writer is null");
   vlResult result = vl_file_commit(&writer->file, error);
   vl_film_unlock(writer->lock);
   vl_free(writer->context, writer);

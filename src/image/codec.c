@@ -187,7 +187,7 @@ static vlResult check_read(vlContext *context, const char *path, vlImage **image
     *image = NULL;
   return context && path && image
              ? VL_OK
-             : vl_fail(error, VL_ERROR_ARGUMENT, "image: context, path or image is null");
+             : vl_fail_argument(error, "image: context, path or image is null");
 }
 
 vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image,
@@ -240,7 +240,7 @@ vlResult vl_image_read_channels(vlContext *context, const char *path, const char
                                 uint32_t count, vlImage **image, vlError *error) {
   VL_TRY(check_read(context, path, image, error));
   if (!names || !count)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: names is null, or count is 0");
+    return vl_fail_argument(error, "image: names is null, or count is 0");
   vlResult result = read_file(context, path, names, count, image, error);
   for (uint32_t i = 0; result == VL_OK && i < count; i++) {
     char only[260]; /* the layer's only channel */
@@ -274,11 +274,11 @@ static const vlCodec *codec_of_suffix(const char *path) {
 static vlResult check_write(const vlImage *image, const char *path, const vlWriteDef *def,
                             vlError *error) {
   if (!image || !path)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: image or path is null");
+    return vl_fail_argument(error, "image: image or path is null");
   if (def->cookie != VL_COOKIE_WRITE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "image: " VL_BAD_COOKIE);
   if (def->compression < 0 || def->compression > 1 || def->quality < 1 || def->quality > 100)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: compression is 0 or 1, quality 1 to 100");
+    return vl_fail_argument(error, "image: compression is 0 or 1, quality 1 to 100");
   vl_error_clear(error);
   return VL_OK;
 }
@@ -299,11 +299,11 @@ static const vlCodec *find_codec(const char *path, vlError *error) {
   const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
   const char *near = dot && (!slash || dot > slash) ? vl_nearest_name(dot, names, 7) : NULL;
   if (near)
-    vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: unknown suffix (did you mean %s?)",
-            path, near);
+    vl_fail_argument(error, "cannot write %s: unknown suffix (did you mean %s?)", path, near);
   else
-    vl_fail(error, VL_ERROR_ARGUMENT,
-            "cannot write %s: the suffix must be .exr .png .jpg .jpeg .hdr .pfm or .tga", path);
+    vl_fail_argument(
+        error, "cannot write %s: the suffix must be .exr .png .jpg .jpeg .hdr .pfm or .tga",
+        path);
   return NULL;
 }
 
@@ -323,7 +323,7 @@ vlResult vl_image_write_memory(const vlImage *image, const char *suffix,
                                const vlWriteDef *write, void **data, size_t *size,
                                vlError *error) {
   if (!data || !size)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: data or size is null");
+    return vl_fail_argument(error, "image: data or size is null");
   *data = NULL;
   *size = 0;
   vlWriteDef def = write ? *write : vl_default_write_def();
@@ -348,17 +348,17 @@ vlResult vl_image_write_memory(const vlImage *image, const char *suffix,
 static vlResult check_layers(const vlImage *const *images, uint32_t count, vlError *error) {
   for (uint32_t k = 0; k < count; k++) {
     if (!images[k])
-      return vl_fail(error, VL_ERROR_ARGUMENT, "image: one of images is null");
+      return vl_fail_argument(error, "image: one of images is null");
     if (images[k]->width != images[0]->width || images[k]->height != images[0]->height)
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "cannot write layers of %ux%u and %ux%u pixels into one file",
-                     images[0]->width, images[0]->height, images[k]->width, images[k]->height);
+      return vl_fail_argument(
+          error, "cannot write layers of %ux%u and %ux%u pixels into one file",
+          images[0]->width, images[0]->height, images[k]->width, images[k]->height);
     for (uint32_t j = 0; j < k; j++)
       for (uint32_t c = 0; c < images[k]->channels; c++)
         if (vl_image_find_channel(images[j], images[k]->names[c]) >= 0)
-          return vl_fail(error, VL_ERROR_ARGUMENT,
-                         "cannot write two layers with a channel \"%s\" into one file",
-                         images[k]->names[c]);
+          return vl_fail_argument(error,
+                                  "cannot write two layers with a channel \"%s\" into one file",
+                                  images[k]->names[c]);
   }
   return VL_OK;
 }
@@ -367,13 +367,12 @@ vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, con
                                const vlWriteDef *write, vlError *error) {
   vlWriteDef def = write ? *write : vl_default_write_def();
   if (!images || count == 0 || count > 64)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image: needs 1 to 64 images");
+    return vl_fail_argument(error, "image: needs 1 to 64 images");
   VL_TRY(check_write(images[0], path, &def, error));
   VL_TRY(check_layers(images, count, error));
   const vlCodec *codec = codec_of_suffix(def.format ? def.format : path);
   if (!codec || codec->write != vl_exr_write)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write layers to %s: only .exr holds them",
-                   path);
+    return vl_fail_argument(error, "cannot write layers to %s: only .exr holds them", path);
   vlFileWriter writer;
   VL_TRY(vl_file_open_write(&writer, images[0]->context, path, VL_OUTPUT_PLAIN, error));
   return finish_write(&writer, vl_exr_write_layers(images, count, &def, &writer, error), error);

@@ -124,16 +124,15 @@ vlResult vl_image_compare(const vlImage *a, const vlImage *b, vlImageDiff *diff,
   if (heat)
     *heat = NULL;
   if (!a || !b || !diff)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "image compare: a, b or diff is null");
+    return vl_fail_argument(error, "image compare: a, b or diff is null");
   vl_error_clear(error);
   *diff = (vlImageDiff){0};
   if (a->width != b->width || a->height != b->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "the images differ in size: %ux%u and %ux%u",
-                   a->width, a->height, b->width, b->height);
+    return vl_fail_argument(error, "the images differ in size: %ux%u and %ux%u", a->width,
+                            a->height, b->width, b->height);
   uint32_t channel[4];
   if (!vl_image_color(a, channel) || !vl_image_color(b, channel))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "an image without channels R, G, B or Y cannot be compared");
+    return vl_fail_argument(error, "an image without channels R, G, B or Y cannot be compared");
   Pair p = {.image = a, .count = (size_t)a->width * a->height};
   vlResult result = compare(&p, a, b, diff, heat);
   vl_free(a->context, p.a);

@@ -108,8 +108,8 @@ static const Channel *find_channel(const Writer *w, const char *name) {
 static vlResult header(Writer *w, const vlWriteDef *def, vlError *error) {
   const vlImage *image = w->image;
   if (image->width > INT32_MAX / 4 || image->height > INT32_MAX / 2)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: too large for OpenEXR",
-                   w->base.writer->path);
+    return vl_fail_argument(error, "cannot write %s: too large for OpenEXR",
+                            w->base.writer->path);
   int part;
   bool packed =
       def->compression && (uint64_t)image->width * image->height * w->count * 4 > SMALL;

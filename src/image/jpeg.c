@@ -189,9 +189,9 @@ static vlResult encode(Jpeg *j, struct jpeg_compress_struct *c, const vlImage *i
   uint32_t channel[4], count = vl_image_shown(image, channel);
   count = count >= 3 ? 3 : 1; /* JPEG has no alpha */
   if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "cannot write %s: JPEG holds at most %ldx%ld pixels", j->writer->path,
-                   (long)JPEG_MAX_DIMENSION, (long)JPEG_MAX_DIMENSION);
+    return vl_fail_argument(error, "cannot write %s: JPEG holds at most %ldx%ld pixels",
+                            j->writer->path, (long)JPEG_MAX_DIMENSION,
+                            (long)JPEG_MAX_DIMENSION);
   j->line = vl_alloc_array(image->context, image->width, count);
   j->scratch = vl_alloc_array(image->context, image->width, count * sizeof(float));
   if (!j->line || !j->scratch)

@@ -172,8 +172,8 @@ vlResult vl_tga_write(const vlImage *image, VL_UNUSED const vlWriteDef *def,
   uint32_t channel[4], count = vl_image_shown(image, channel);
   vlResult result = VL_OK;
   if (image->width > 65535 || image->height > 65535)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "cannot write %s: TGA holds at most 65535x65535 pixels", writer->path);
+    return vl_fail_argument(error, "cannot write %s: TGA holds at most 65535x65535 pixels",
+                            writer->path);
   if (count == 2)
     count = 1; /* few programs read grey with alpha */
   uint8_t *row = vl_alloc_array(image->context, image->width, count);

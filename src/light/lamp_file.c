@@ -165,7 +165,7 @@ vlResult vl_lamp_read(vlContext *context, const char *name, const void *data, si
                       vlLamp **result, vlError *error) {
   vl_error_clear(error);
   if (!context || !result || (!data && size))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+    return vl_fail_argument(error, "an argument is null");
   *result = NULL;
   vlLamp *lamp = vl_alloc_zero(context, 1, sizeof *lamp);
   if (!lamp)
@@ -195,7 +195,7 @@ vlResult vl_lamp_open(vlContext *context, const char *path, bool given, vlLamp *
 vlResult vl_lamp_load(vlContext *context, const char *path, vlLamp **result, vlError *error) {
   vl_error_clear(error);
   if (!context || !path || !result)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+    return vl_fail_argument(error, "an argument is null");
   *result = NULL;
   return vl_lamp_open(context, path, true, result, error);
 }

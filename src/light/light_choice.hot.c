@@ -14,8 +14,8 @@ _Static_assert(offsetof(vlLightNode, left) == LEFT_FIELD * sizeof(float), "layou
  * far. */
 typedef struct Walk {
   uint32_t count;
-  VL_ROW uint32_t lane[VL_ROW_SIZE], node[VL_ROW_SIZE];
-  VL_ROW float u[VL_ROW_SIZE], pmf[VL_ROW_SIZE];
+  vlUintRow lane, node;
+  vlFloatRow u, pmf;
 } Walk;
 
 /* Lanes at the same node: the last `count` of a walk. */
@@ -37,7 +37,7 @@ typedef struct Descent {
   Segment segments[SEGMENTS];
   Walk together, apart;
   Walk second; /* lanes that go to the second child */
-  VL_ROW uint32_t side[VL_ROW_SIZE];
+  vlUintRow side;
 } Descent;
 
 /* By lane, what vl_light_tree_counts says. */
@@ -229,7 +229,7 @@ static void descend_apart(Descent *d) {
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f,
                            const float *u, vlLightSamples *out, float *rest,
                            vlLanesByLight *by_light) {
-  VL_ROW uint32_t counts[VL_ROW_SIZE];
+  vlUintRow counts;
   by_light->count = 0;
   if (tree->kind == VL_LIGHT_SAMPLER_BVH)
     find_counts(tree, n, f, counts);

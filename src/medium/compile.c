@@ -119,7 +119,7 @@ static vlResult compile_kind(vlWorld *world, const vlMediumDef *def, vlWorldMedi
     return compile(world, def, m, error);
     VL_MEDIUM_FUNCTIONS(COMPILE)
   }
-  return vl_fail(error, VL_ERROR_ARGUMENT, "no such kind of medium");
+  return vl_fail_argument(error, "no such kind of medium");
 }
 
 static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m,

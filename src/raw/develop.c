@@ -33,13 +33,13 @@ typedef struct Develop {
 static vlResult check(const vlRaw *raw, const vlRawDevelopDef *def, vlImage **image,
                       vlError *error) {
   if (!raw || !image)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "develop: raw image or result is null");
+    return vl_fail_argument(error, "develop: raw image or result is null");
   if (def->cookie != VL_COOKIE_RAW_DEVELOP)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "develop: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "develop: " VL_BAD_COOKIE);
   if ((unsigned)def->stop_at > VL_RAW_STEP_TONE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "develop: stop_at is no step");
+    return vl_fail_argument(error, "develop: stop_at is no step");
   if (!(fabsf(def->exposure) <= 100.0f))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "develop: exposure is not from -100 to 100 EV");
+    return vl_fail_argument(error, "develop: exposure is not from -100 to 100 EV");
   return VL_OK;
 }
 
@@ -143,12 +143,13 @@ static vlResult prepare(Develop *d, vlError *error) {
   if (d->def->stop_at < VL_RAW_STEP_COLOR || d->colors == 1)
     return VL_OK;
   if (!vl_raw_has_matrices(&d->raw->def))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "develop: the raw image has no colour matrices; the last step without them "
-                   "is demosaic");
+    return vl_fail_argument(
+        error,
+        "develop: the raw image has no colour matrices; the last step without them "
+        "is demosaic");
   if (!vl_raw_color_matrix(&d->raw->def, d->matrix, &kelvin))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "develop: the colour matrices of the raw image have no inverse");
+    return vl_fail_argument(error,
+                            "develop: the colour matrices of the raw image have no inverse");
   for (uint32_t i = 0; i < 3; i++)
     for (uint32_t k = 0; k < d->colors; k++)
       d->matrix[i * d->colors + k] *= d->neutral[k];

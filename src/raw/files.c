@@ -44,8 +44,8 @@ static vlResult write_image(const vlRaw *raw, const char *path, vlError *error) 
   bool is_exr = vl_ends_with(path, ".exr");
   vlImage *image = NULL;
   if (is_exr && !(raw->def.gain > 0.0f))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "%s: a file of electrons needs the gain, which the raw image lacks", path);
+    return vl_fail_argument(
+        error, "%s: a file of electrons needs the gain, which the raw image lacks", path);
   vlResult result = is_exr ? electrons_image(raw, &image) : numbers_image(raw, &image);
   if (result != VL_OK)
     return vl_fail_memory(error);
@@ -79,15 +79,15 @@ static vlResult write_tiff(const vlRaw *raw, const char *path, vlError *error) {
 vlResult vl_raw_write(const vlRaw *raw, const char *path, vlError *error) {
   vl_error_clear(error);
   if (!raw || !path)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "raw file: raw image or path is null");
+    return vl_fail_argument(error, "raw file: raw image or path is null");
   VL_TRY(vl_raw_check_numbers(raw, error));
   VL_TRY(vl_check_output(raw->context, path, VL_OUTPUT_PLAIN, error));
   if (vl_ends_with(path, ".dng") || vl_ends_with(path, ".tif") || vl_ends_with(path, ".tiff"))
     return write_tiff(raw, path, error);
   if (vl_ends_with(path, ".png") || vl_ends_with(path, ".exr"))
     return write_image(raw, path, error);
-  return vl_fail(error, VL_ERROR_ARGUMENT,
-                 "%s: raw images are written as .dng, .tif, .tiff, .png and .exr", path);
+  return vl_fail_argument(
+      error, "%s: raw images are written as .dng, .tif, .tiff, .png and .exr", path);
 }
 
 vlResult vl_raw_read(vlContext *context, const char *path, vlRaw **raw, vlError *error) {
@@ -95,7 +95,7 @@ vlResult vl_raw_read(vlContext *context, const char *path, vlRaw **raw, vlError 
   if (raw)
     *raw = NULL;
   if (!context || !path || !raw)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "raw file: context, path or result is null");
+    return vl_fail_argument(error, "raw file: context, path or result is null");
 #ifdef VELO_TIFF
   char *data;
   size_t size;

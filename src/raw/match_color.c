@@ -163,17 +163,17 @@ vlResult vl_raw_match_color(vlRawDef *def, const float *sensitivities, const flo
   float tables[2][VL_LAMBDA_COUNT];
   vl_error_clear(error);
   if (!sensitivities)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "colour of a sensor: sensitivities is null");
+    return vl_fail_argument(error, "colour of a sensor: sensitivities is null");
   VL_TRY(vl_raw_check(def, error));
   vlRawDef changed = *def;
   uint8_t colors[COLORS];
   uint32_t count = vl_raw_colors(def, colors);
   if (!are_spectra(sensitivities, count))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "colour of a sensor: a sensitivity is negative, not finite or 0 everywhere");
+    return vl_fail_argument(
+        error, "colour of a sensor: a sensitivity is negative, not finite or 0 everywhere");
   if (light && !are_spectra(light, 1))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "colour of a sensor: the light is negative, not finite or 0 everywhere");
+    return vl_fail_argument(
+        error, "colour of a sensor: the light is negative, not finite or 0 everywhere");
   for (uint32_t k = 0; k < count; k++)
     curves[k] = sensitivities + k * VL_LAMBDA_COUNT;
   memset(changed.matrices, 0, sizeof changed.matrices);
@@ -181,12 +181,12 @@ vlResult vl_raw_match_color(vlRawDef *def, const float *sensitivities, const flo
   for (int i = 0; i < 2; i++) {
     VL_TRY(named_light(lights[i], tables[i], error));
     if (count > 1 && !match(curves, count, tables[i], changed.matrices[i]))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "colour of a sensor: its sensitivities are linearly dependent");
+      return vl_fail_argument(error,
+                              "colour of a sensor: its sensitivities are linearly dependent");
   }
   if (!see_neutral(curves, count, light ? light : tables[1], changed.neutral))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "colour of a sensor: a colour sees nothing of the scene's light");
+    return vl_fail_argument(error,
+                            "colour of a sensor: a colour sees nothing of the scene's light");
   *def = changed;
   return VL_OK;
 }

@@ -43,7 +43,7 @@ uint32_t vl_raw_planes(const vlRawDef *def, uint8_t planes[VL_RAW_MAX_CELLS]) {
 
 static vlResult wrong(vlError *error, const char *text, const char *what) {
   vlArgumentText shown = vl_argument_text(text);
-  return vl_fail(error, VL_ERROR_ARGUMENT, "pattern \"%s\": %s", shown.text, what);
+  return vl_fail_argument(error, "pattern \"%s\": %s", shown.text, what);
 }
 
 /* Reads the letters into def. */
@@ -78,9 +78,9 @@ static vlResult read_rows(vlRawDef *def, const char *text, vlError *error) {
 vlResult vl_raw_set_pattern(vlRawDef *def, const char *text, vlError *error) {
   vl_error_clear(error);
   if (!def || !text)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "pattern: def or text is null");
+    return vl_fail_argument(error, "pattern: def or text is null");
   if (def->cookie != VL_COOKIE_RAW)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "pattern: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "pattern: " VL_BAD_COOKIE);
   vlRawDef changed = *def;
   uint8_t colors[VL_RAW_MAX_COLORS];
   memset(changed.pattern, 0, sizeof changed.pattern);

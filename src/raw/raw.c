@@ -21,7 +21,7 @@ vlRawDef vl_default_raw_def(uint32_t width, uint32_t height) {
 }
 
 static vlResult wrong(vlError *error, const char *field, const char *what) {
-  return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: %s %s", field, what);
+  return vl_fail_argument(error, "raw image: %s %s", field, what);
 }
 
 static vlResult check_size(const vlRawDef *def, vlError *error) {
@@ -106,9 +106,9 @@ static vlResult check_color(const vlRawDef *def, vlError *error) {
 
 vlResult vl_raw_check(const vlRawDef *def, vlError *error) {
   if (!def)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: def is null");
+    return vl_fail_argument(error, "raw image: def is null");
   if (def->cookie != VL_COOKIE_RAW)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "raw image: " VL_BAD_COOKIE);
   VL_TRY(check_size(def, error));
   VL_TRY(check_levels(def, error));
   VL_TRY(check_name(def, error));
@@ -121,10 +121,9 @@ vlResult vl_raw_check_numbers(const vlRaw *raw, vlError *error) {
   size_t count = (size_t)def->width * def->height;
   for (size_t i = 0; i < count; i++)
     if (raw->numbers[i] >> def->bits)
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "raw image: pixel (%u, %u) is %u, which has more than %u bits",
-                     (uint32_t)(i % def->width), (uint32_t)(i / def->width), raw->numbers[i],
-                     def->bits);
+      return vl_fail_argument(
+          error, "raw image: pixel (%u, %u) is %u, which has more than %u bits",
+          (uint32_t)(i % def->width), (uint32_t)(i / def->width), raw->numbers[i], def->bits);
   return VL_OK;
 }
 
@@ -142,7 +141,7 @@ bool vl_raw_has_matrices(const vlRawDef *def) {
 vlResult vl_raw_create(vlContext *context, const vlRawDef *def, vlRaw **raw, vlError *error) {
   vl_error_clear(error);
   if (!context || !raw)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "raw image: context or result is null");
+    return vl_fail_argument(error, "raw image: context or result is null");
   *raw = NULL;
   VL_TRY(vl_raw_check(def, error));
   vlRaw *r = vl_alloc_zero(context, 1, sizeof *r);

@@ -47,8 +47,8 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
   vlCamera pinhole = vl_opening_pinhole(camera);
   double o[3], d[3];
   if (!vl_camera_unproject(&pinhole, x, y, o, d))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: focus on pixel %g, %g: the camera sees nothing there", x, y);
+    return vl_fail_argument(
+        error, "camera: focus on pixel %g, %g: the camera sees nothing there", x, y);
   vlGroundTruthBatch *batch = vl_alloc_zero(world->context, 1, sizeof *batch);
   vlResult result = batch ? VL_OK : vl_fail_memory(error);
   if (result == VL_OK) {
@@ -64,8 +64,8 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
     double t = batch->distance[0];
     vl_along3(o, t, d, point);
     if (batch->object[0] == 0 || !isfinite(t))
-      result = vl_fail(error, VL_ERROR_ARGUMENT,
-                       "camera: focus on pixel %g, %g: nothing is seen there", x, y);
+      result =
+          vl_fail_argument(error, "camera: focus on pixel %g, %g: nothing is seen there", x, y);
   }
   vl_free(world->context, batch);
   return result;
@@ -75,11 +75,11 @@ vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, do
                       double *distance, vlError *error) {
   vl_error_clear(error);
   if (!world || !camera || !distance)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "autofocus: world, camera or distance is null");
+    return vl_fail_argument(error, "autofocus: world, camera or distance is null");
   if (!(x >= 0 && y >= 0 && x <= camera->width && y <= camera->height))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: focus on pixel %g, %g: outside the image of %u x %u", x, y,
-                   camera->width, camera->height);
+    return vl_fail_argument(error,
+                            "camera: focus on pixel %g, %g: outside the image of %u x %u", x, y,
+                            camera->width, camera->height);
   double point[3], f;
   VL_TRY(look(world, camera, x, y, point, error));
   if (!vl_camera_focus_at(camera, point, &f))
@@ -95,7 +95,7 @@ vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, do
 vlResult vl_camera_autofocus(const vlWorld *world, vlCamera *camera, vlError *error) {
   vl_error_clear(error);
   if (!world || !camera)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera autofocus: world or camera is null");
+    return vl_fail_argument(error, "camera autofocus: world or camera is null");
   double *pixel = camera->lens.focus_pixel;
   double distance = 0;
   if (vl_is_unset(pixel[0]) || vl_is_unset(pixel[1]))

@@ -181,14 +181,14 @@ vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBo
                         vlIdBox *objects, vlIdBox *instances, vlError *error) {
   vl_error_clear(error);
   if (!world || !camera || !def)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: world, camera or def is null");
+    return vl_fail_argument(error, "boxes: world, camera or def is null");
   if (def->cookie != VL_COOKIE_BOXES)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "boxes: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "boxes: " VL_BAD_COOKIE);
   const uint32_t *crop = def->crop;
   if (!vl_crop_fits(crop, camera->width, camera->height))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "boxes: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels", crop[0],
-                   crop[1], crop[2], crop[3], camera->width, camera->height);
+    return vl_fail_argument(error,
+                            "boxes: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
+                            crop[0], crop[1], crop[2], crop[3], camera->width, camera->height);
   Pass pass, *p = &pass;
   memset(p, 0, sizeof *p);
   vlChannelPass *c = &p->channels;

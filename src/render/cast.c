@@ -266,17 +266,16 @@ static void run_batch(void *user, uint32_t index, uint32_t worker) {
 static vlResult check(const vlWorld *world, const vlCastRays *rays, const vlCastDef *def,
                       bool output, vlError *error) {
   if (!world || !rays || !def || !output)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: a pointer is null");
+    return vl_fail_argument(error, "rays: a pointer is null");
   if (def->cookie != VL_COOKIE_CAST)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "rays: " VL_BAD_COOKIE);
   if (def->hits < 1 || def->hits > VL_MAX_CAST_HITS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: hits is %u; it must be 1 to %d", def->hits,
-                   VL_MAX_CAST_HITS);
+    return vl_fail_argument(error, "rays: hits is %u; it must be 1 to %d", def->hits,
+                            VL_MAX_CAST_HITS);
   if (rays->count && (!rays->origins.data || !rays->directions.data))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: they need origins and directions");
+    return vl_fail_argument(error, "rays: they need origins and directions");
   if (rays->count > (uint64_t)UINT32_MAX * VL_BATCH)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "rays: %llu are too many",
-                   (unsigned long long)rays->count);
+    return vl_fail_argument(error, "rays: %llu are too many", (unsigned long long)rays->count);
   return VL_OK;
 }
 

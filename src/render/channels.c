@@ -89,54 +89,49 @@ static vlResult check_film(const vlCamera *camera, const vlChannelsDef *def, vlE
   if (counts)
     VL_TRY(vl_render_def_check(def->render, "ground truth: def.render", error));
   if (film->width != camera->width || film->height != camera->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: camera (%u x %u) and film (%u x %u) differ", camera->width,
-                   camera->height, film->width, film->height);
+    return vl_fail_argument(error, "ground truth: camera (%u x %u) and film (%u x %u) differ",
+                            camera->width, camera->height, film->width, film->height);
   if (counts && vl_film_spp(def->film) == 0)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: the film has no samples yet");
+    return vl_fail_argument(error, "ground truth: the film has no samples yet");
   if (errors && (!film->errors || memcmp(film->crop, def->crop, sizeof film->crop) != 0))
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "ground truth: standard errors need a film of the same crop that was made for them");
   if (luminance && memcmp(film->crop, def->crop, sizeof film->crop) != 0)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: luminance needs a film of the same crop");
+    return vl_fail_argument(error, "ground truth: luminance needs a film of the same crop");
   return VL_OK;
 }
 
 static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChannelsDef *def,
                       vlImage **floats, vlImage **ids, vlError *error) {
   if (!world || !camera || !def)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: world, camera or def is null");
+    return vl_fail_argument(error, "ground truth: world, camera or def is null");
   if (def->cookie != VL_COOKIE_CHANNELS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "ground truth: " VL_BAD_COOKIE);
   if (!vl_is_unset(def->time) && !isfinite(def->time))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: time is %g; it must be finite",
-                   def->time);
+    return vl_fail_argument(error, "ground truth: time is %g; it must be finite", def->time);
   if (def->channels == 0 || def->channels >> VL_CHANNEL_COUNT)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no such channels: %#x",
-                   def->channels);
+    return vl_fail_argument(error, "ground truth: no such channels: %#x", def->channels);
   const uint32_t *c = def->crop;
   if (!vl_crop_fits(c, camera->width, camera->height))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels",
-                   c[0], c[1], c[2], c[3], camera->width, camera->height);
+    return vl_fail_argument(
+        error, "ground truth: crop %u,%u,%u,%u does not suit a camera of %u x %u pixels", c[0],
+        c[1], c[2], c[3], camera->width, camera->height);
   if ((unsigned)def->mode > VL_CHANNEL_MODE_COVERAGE || def->ranks < 2 ||
       def->ranks > MAX_RANKS || def->ranks % 2)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "ground truth: mode %d or %u ranks: there is no such thing", (int)def->mode,
-                   def->ranks);
+    return vl_fail_argument(error, "ground truth: mode %d or %u ranks: there is no such thing",
+                            (int)def->mode, def->ranks);
   if ((unsigned)def->space > VL_SPACE_ACES2065_1)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: space %d: there is no such thing",
-                   (int)def->space);
+    return vl_fail_argument(error, "ground truth: space %d: there is no such thing",
+                            (int)def->space);
   if (((def->channels & VL_CHANNEL_FORWARD) && !def->forward) ||
       ((def->channels & VL_CHANNEL_BACKWARD) && !def->backward))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: flow needs the other camera");
+    return vl_fail_argument(error, "ground truth: flow needs the other camera");
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     if ((def->channels >> i & 1) &&
         ((channels[i].floats && !floats) || (channels[i].ids && !ids)))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "ground truth: a wanted channel has no image that receives it");
+      return vl_fail_argument(error,
+                              "ground truth: a wanted channel has no image that receives it");
   return check_film(camera, def, error);
 }
 

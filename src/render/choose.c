@@ -423,7 +423,7 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
                           vlError *error) {
   vl_error_clear(error);
   if (!world || !camera || !film || !def || !choice)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "choose: an argument is null");
+    return vl_fail_argument(error, "choose: an argument is null");
   VL_TRY(vl_render_def_check(def, "choose", error));
   memset(choice, 0, sizeof *choice);
   choice->tracer = VL_TRACER_VOLPATH;
@@ -453,7 +453,7 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
   if (!vl_is_unset(race.def.merge_radius))
     race.def.merge_radius *= race.factor; /* as many photons within it */
   if (vl_camera_coarse(camera, race.factor, &race.camera) != VL_OK)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "choose: the camera has no coarse image");
+    return vl_fail_argument(error, "choose: the camera has no coarse image");
   vlResult result = run_race(&race, film, choice, error);
   if (result == VL_OK)
     vl_choose_by_work(choice, (double)spp / race.def.spp);

@@ -227,7 +227,7 @@ static vlResult trace_all(Call *c, uint32_t first, uint32_t count, vlError *erro
     vl_render_batch(&c->run, &c->worker, n);
     vl_accel_leave(state);
     if (c->recorder.lost)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "paths: a path has more vertices than expected");
+      return vl_fail_argument(error, "paths: a path has more vertices than expected");
     result = keep(c, n, error);
     done += n;
   }
@@ -315,19 +315,17 @@ void vl_pixel_paths_destroy(vlPixelPaths *paths) {
 static vlResult check(const vlFilmDef *film, const vlRenderDef *def, uint32_t x, uint32_t y,
                       uint32_t count, vlError *error) {
   if (def->own_tracer)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "paths: those of the own tracer \"%s\" are not recorded",
-                   vl_short_text(def->own_tracer->name).text);
+    return vl_fail_argument(error, "paths: those of the own tracer \"%s\" are not recorded",
+                            vl_short_text(def->own_tracer->name).text);
   if (def->tracer != VL_TRACER_PATH && def->tracer != VL_TRACER_VOLPATH)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "paths: only the tracers path and volpath are recorded");
+    return vl_fail_argument(error, "paths: only the tracers path and volpath are recorded");
   if (x < film->crop[0] || y < film->crop[1] || x >= film->crop[2] || y >= film->crop[3])
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "paths: pixel (%u, %u) is outside the image's %u,%u to %u,%u", x, y,
-                   film->crop[0], film->crop[1], film->crop[2] - 1, film->crop[3] - 1);
+    return vl_fail_argument(error,
+                            "paths: pixel (%u, %u) is outside the image's %u,%u to %u,%u", x, y,
+                            film->crop[0], film->crop[1], film->crop[2] - 1, film->crop[3] - 1);
   if (count == 0 || count > MAX_PATHS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "paths: %u paths; 1 to %u are possible", count,
-                   (unsigned)MAX_PATHS);
+    return vl_fail_argument(error, "paths: %u paths; 1 to %u are possible", count,
+                            (unsigned)MAX_PATHS);
   return VL_OK;
 }
 
@@ -352,7 +350,7 @@ vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFi
   if (paths)
     *paths = NULL;
   if (!world || !camera || !film || !paths)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "paths: an argument is null");
+    return vl_fail_argument(error, "paths: an argument is null");
   vlRenderDef own = def ? *def : vl_default_render_def();
   own.first_sample = 0;
   own.noise = 0;

@@ -73,31 +73,29 @@ static vlFilmOwn own_names(const vlCamera *camera, const vlRenderDef *def) {
 vlResult vl_render_def_check(const vlRenderDef *def, const char *what, vlError *error) {
   char wrong[VL_GIVEN_MESSAGE];
   if (def->cookie != VL_COOKIE_RENDER)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: " VL_BAD_COOKIE, what);
+    return vl_fail_argument(error, "%s: " VL_BAD_COOKIE, what);
   if (!vl_choices_check(VL_SETTING_RENDER, offsetof(vlSceneDefs, render), sizeof *def, def,
                         wrong))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: %s", what, wrong);
+    return vl_fail_argument(error, "%s: %s", what, wrong);
   return VL_OK;
 }
 
 vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film,
                          const vlRenderDef *def, vlError *error) {
   if (!world || !camera || !film)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: world, camera or film is null");
+    return vl_fail_argument(error, "render: world, camera or film is null");
   VL_TRY(vl_render_def_check(def, "render", error));
   const vlFilmDef *f = vl_film_def(film);
   if (camera->width != f->width || camera->height != f->height)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "render: camera (%u x %u) and film (%u x %u) differ", camera->width,
-                   camera->height, f->width, f->height);
+    return vl_fail_argument(error, "render: camera (%u x %u) and film (%u x %u) differ",
+                            camera->width, camera->height, f->width, f->height);
   if (f->buckets && world->def.color == VL_COLOR_RGB)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "render: a world in RGB has no spectra for the film");
+    return vl_fail_argument(error, "render: a world in RGB has no spectra for the film");
   uint32_t length = vl_film_sequence(film).length;
   if (def->sequence && length && def->sequence != length)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "render: the film's samples are of a sequence of %u, not of %u", length,
-                   def->sequence);
+    return vl_fail_argument(error,
+                            "render: the film's samples are of a sequence of %u, not of %u",
+                            length, def->sequence);
   vlResult result = VL_OK;
   if (def->own_sampler)
     result = vl_own_check("sampler", def->own_sampler->name, def->own_sampler->numbers != NULL,
@@ -111,13 +109,13 @@ vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *f
   vlFilmSequence sequence = vl_film_sequence(film);
   vlOwnKind kind = length ? vl_film_own_differs(&sequence.own, &own) : VL_OWN_KINDS;
   if (kind < VL_OWN_KINDS)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "render: the film's samples are of the own %s \"%s\", not of \"%s\"",
-                   vl_own_words[kind], vl_short_text(sequence.own.name[kind]).text,
-                   vl_short_text(own.name[kind]).text);
+    return vl_fail_argument(
+        error, "render: the film's samples are of the own %s \"%s\", not of \"%s\"",
+        vl_own_words[kind], vl_short_text(sequence.own.name[kind]).text,
+        vl_short_text(own.name[kind]).text);
   if (sequence.uneven)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "render: the film's pixels do not all have the same samples");
+    return vl_fail_argument(error,
+                            "render: the film's pixels do not all have the same samples");
   if (!(def->noise >= 0) ||
       (def->noise > 0 && (!f->errors || !(def->noise_scale > 0) || def->first_sample)))
     return vl_fail(
@@ -126,14 +124,13 @@ vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *f
         "from the first on",
         def->noise);
   if (def->max_depth > 4096)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: max_depth %u is above 4096",
-                   def->max_depth);
+    return vl_fail_argument(error, "render: max_depth %u is above 4096", def->max_depth);
   if (!vl_is_unset(def->merge_radius) && !(def->merge_radius > 0 && def->merge_radius <= 3e38))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: merge_radius %g is not a radius",
-                   def->merge_radius);
+    return vl_fail_argument(error, "render: merge_radius %g is not a radius",
+                            def->merge_radius);
   if (def->light_paths != VL_AS_MANY_AS_PIXELS && def->light_paths > VL_MAX_LIGHT_PATHS)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "render: light_paths %u is above %u",
-                   def->light_paths, VL_MAX_LIGHT_PATHS);
+    return vl_fail_argument(error, "render: light_paths %u is above %u", def->light_paths,
+                            VL_MAX_LIGHT_PATHS);
   return VL_OK;
 }
 

@@ -73,12 +73,12 @@ vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart 
   if (result)
     *result = NULL;
   if (!scene || !result)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: scene or result is null");
+    return vl_fail_argument(error, "scene check: scene or result is null");
   if (def && def->cookie != VL_COOKIE_CHECK)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene check: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "scene check: " VL_BAD_COOKIE);
   VL_TRY(vl_scene_result(scene, error));
   if (scene->meshes_dropped)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "the scene gave its meshes to a world");
+    return vl_fail_argument(error, "the scene gave its meshes to a world");
   vlCheck *check = vl_alloc_zero(scene->context, 1, sizeof *check);
   if (!check)
     return vl_fail_memory(error);

@@ -14,7 +14,7 @@ vlResult vl_scene_checkpoint(const vlScene *scene, vlSceneCheckpoint **checkpoin
                              vlError *error) {
   vl_error_clear(error);
   if (!scene || !checkpoint)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene checkpoint: a pointer is null");
+    return vl_fail_argument(error, "scene checkpoint: a pointer is null");
   const size_t unread = scene->unread.count * sizeof *(*checkpoint)->unread;
   *checkpoint = vl_alloc_zero(scene->context, 1, sizeof **checkpoint + unread);
   if (!*checkpoint)

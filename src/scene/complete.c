@@ -614,12 +614,12 @@ static bool choose_up(vlScene *scene, vlCompleteDef *done, bool camera, vlExtent
 
 static vlResult check_complete(vlScene *scene, const vlCompleteDef *def, vlError *error) {
   if (!scene)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: scene is null");
+    return vl_fail_argument(error, "scene complete: scene is null");
   if (def->cookie != VL_COOKIE_COMPLETE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "scene complete: " VL_BAD_COOKIE);
   char wrong[VL_GIVEN_MESSAGE];
   if (!vl_choices_check(VL_SETTING_COMPLETE, 0, sizeof *def, def, wrong))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene complete: %s", wrong);
+    return vl_fail_argument(error, "scene complete: %s", wrong);
   return vl_scene_result(scene, error);
 }
 

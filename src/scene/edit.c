@@ -56,10 +56,9 @@ vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo
 static vlResult check(const vlScene *scene, bool found, const char *what, vlError *error) {
   vl_error_clear(error);
   if (!scene)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: scene is null", what);
+    return vl_fail_argument(error, "%s: scene is null", what);
   VL_TRY(vl_scene_result(scene, error));
-  return found ? VL_OK
-               : vl_fail(error, VL_ERROR_ARGUMENT, "%s: there is no such %s", what, what);
+  return found ? VL_OK : vl_fail_argument(error, "%s: there is no such %s", what, what);
 }
 
 /* Whether a change of this object may begin: the scene has no error, and the object is there.
@@ -179,7 +178,7 @@ static vlResult set_object(vlScene *scene, vlSceneFamily family, uint32_t id, co
   if (!mark)
     return vl_fail_memory(error);
   if (!def)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", row->thing);
+    return vl_fail_argument(error, "%s: def is null", row->thing);
   vlSource source = vl_scene_def_source(family, def); /* its file's name outlives the change */
   if (!vl_scene_copy_source(scene, &source))
     return take_error(scene, error);
@@ -205,8 +204,9 @@ vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef
   VL_TRY(check(scene, old != NULL, "texture", error));
   const bool there = vl_scene_has(scene, VL_SCENE_TEXTURES, id.index);
   if (there && def && def->spectrum != old->spectrum)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "texture: a texture of %s cannot become one of %s",
-                   def->spectrum ? "floats" : "colours", def->spectrum ? "colours" : "floats");
+    return vl_fail_argument(error, "texture: a texture of %s cannot become one of %s",
+                            def->spectrum ? "floats" : "colours",
+                            def->spectrum ? "colours" : "floats");
   return set_object(scene, VL_SCENE_TEXTURES, id.index, def, error);
 }
 

@@ -9,11 +9,10 @@
 vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
   vl_error_clear(error);
   if (!scene || !from)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene take camera: scene or from is null");
+    return vl_fail_argument(error, "scene take camera: scene or from is null");
   vlContext *context = scene->context;
   if (from->context != context)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "scene take camera: the scenes are of different contexts");
+    return vl_fail_argument(error, "scene take camera: the scenes are of different contexts");
   if (scene == from)
     return VL_OK;
   if (!VL_RESERVE(context, &scene->apertures, from->apertures.count) ||
@@ -37,10 +36,10 @@ vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {
 vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error) {
   vl_error_clear(error);
   if (!scene)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: scene is null");
+    return vl_fail_argument(error, "scene refocus: scene is null");
   vlCameraDef *camera = &scene->defs.camera;
   if (!camera->lens.optics)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene refocus: the camera's lens is thin");
+    return vl_fail_argument(error, "scene refocus: the camera's lens is thin");
   if (!VL_RESERVE(scene->context, &scene->optics, 1))
     return vl_fail_memory(error);
   vlOptics *optics;

@@ -154,11 +154,11 @@ static vlResult check_removal(const vlScene *scene, vlSceneFamily family, uint32
                               vlError *error) {
   vl_error_clear(error);
   if (!scene || (unsigned)family > VL_SCENE_INSTANCES)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "remove: scene is null, or unknown family");
+    return vl_fail_argument(error, "remove: scene is null, or unknown family");
   VL_TRY(vl_scene_result(scene, error));
   const char *thing = vl_scene_rows[family].thing;
   if (!vl_scene_has(scene, family, index))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "%s: there is no such %s", thing, thing);
+    return vl_fail_argument(error, "%s: there is no such %s", thing, thing);
   char first[USER_TEXT];
   const uint32_t count = find_users(scene, (vlSceneUse){family, index}, first);
   if (count == 0)
@@ -245,10 +245,10 @@ uint32_t vl_scene_removed(const vlScene *scene, vlSceneFamily family, const void
 vlResult vl_scene_set_group(vlScene *scene, vlGroupId id, const char *name, vlError *error) {
   vl_error_clear(error);
   if (!scene)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "group: scene is null");
+    return vl_fail_argument(error, "group: scene is null");
   VL_TRY(vl_scene_result(scene, error));
   if (id.index == 0 || id.index > scene->groups.count)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "group: there is no such group");
+    return vl_fail_argument(error, "group: there is no such group");
   vlSceneGroup *group = &scene->groups.items[id.index - 1];
   const size_t size = strlen(name ? name : "") + 1;
   char *copy = vl_alloc_array(scene->context, size, 1);

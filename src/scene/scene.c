@@ -80,7 +80,7 @@ void vl_scene_destroy(vlScene *scene) {
 
 vlResult vl_scene_result(const vlScene *scene, vlError *error) {
   if (!scene)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "no scene");
+    return vl_fail_argument(error, "no scene");
   if (error)
     *error = scene->error;
   return scene->error.code;

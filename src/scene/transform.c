@@ -179,11 +179,10 @@ vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16], v
   Similarity s;
   vl_error_clear(error);
   if (!scene || !world_from_scene)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "transform: a null pointer");
+    return vl_fail_argument(error, "transform: a null pointer");
   VL_TRY(vl_scene_result(scene, error));
   if (!take_apart(world_from_scene, &s))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "transform: not a rotation, a uniform scale and a shift");
+    return vl_fail_argument(error, "transform: not a rotation, a uniform scale and a shift");
   /* for later worlds these are the shapes of another scene */
   scene->number = vl_context_number(scene->context);
   return transform_all(scene, &s) ? VL_OK : vl_scene_result(scene, error);

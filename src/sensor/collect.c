@@ -188,7 +188,7 @@ vlResult vl_sensor_collect(const vlSensor *sensor, const vlImage *image,
   vlExposureDef usual = vl_default_exposure_def();
   vl_error_clear(error);
   if (!sensor || !image || !means || !out)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+    return vl_fail_argument(error, "an argument is null");
   exposure = exposure ? exposure : &usual;
   vlResult result = vl_exposure_check(exposure, error);
   Collect c = {.sensor = sensor,

@@ -272,7 +272,7 @@ vlResult vl_sensor_read(vlContext *context, const char *path, vlSensorDef *def,
                         vlError *error) {
   vl_error_clear(error);
   if (!context || !path || !def)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+    return vl_fail_argument(error, "an argument is null");
   char *text = NULL;
   size_t size = 0;
   VL_TRY(vl_file_read_given(context, path, true, &text, &size, error));

@@ -142,7 +142,7 @@ static void use(size_t index, vlSensorDef *def) {
 
 vlResult vl_sensor_preset(const char *name, vlSensorDef *def, vlError *error) {
   if (!def || !name)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+    return vl_fail_argument(error, "an argument is null");
   for (size_t i = 0; i < VL_LENGTH(presets); i++)
     if (vl_text_is(name, presets[i].name)) {
       use(i, def);
@@ -158,6 +158,6 @@ vlResult vl_sensor_preset(const char *name, vlSensorDef *def, vlError *error) {
   while (count < 64 && (names[count] = vl_sensor_preset_name((uint32_t)count)))
     count++;
   vl_tell_names(known, sizeof known, name, names, count);
-  return vl_fail(error, VL_ERROR_ARGUMENT, "there is no sensor \"%s\"%s",
-                 vl_short_text(name).text, known);
+  return vl_fail_argument(error, "there is no sensor \"%s\"%s", vl_short_text(name).text,
+                          known);
 }

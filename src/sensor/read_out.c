@@ -92,7 +92,7 @@ vlResult vl_sensor_read_out(const vlSensor *sensor, uint32_t width, uint32_t hei
   vlExposureDef usual = vl_default_exposure_def();
   vl_error_clear(error);
   if (!sensor || !means || !out || !width || !height)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+    return vl_fail_argument(error, "an argument is null");
   exposure = exposure ? exposure : &usual;
   uint32_t window[4];
   VL_TRY(vl_exposure_check(exposure, error));
@@ -117,7 +117,7 @@ vlResult vl_sensor_read_out(const vlSensor *sensor, uint32_t width, uint32_t hei
 vlResult vl_sensor_expose(const vlSensor *sensor, const vlImage *image,
                           const vlExposureDef *exposure, vlSensorOutput *out, vlError *error) {
   if (!sensor || !image || !out)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+    return vl_fail_argument(error, "an argument is null");
   vlExposureDef own = exposure ? *exposure : vl_default_exposure_def();
   uint32_t width = vl_image_width(image);
   uint32_t height = vl_image_height(image);

@@ -53,7 +53,7 @@ static bool same_word(const char *a, const char *b) {
 
 vlResult vl_sensor_set_pattern(vlSensorDef *def, const char *pattern, vlError *error) {
   if (!def || !pattern)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "pattern is missing");
+    return vl_fail_argument(error, "pattern is missing");
   const char *rows = pattern;
   for (size_t i = 0; i < VL_LENGTH(patterns); i++)
     if (same_word(pattern, patterns[i].name))
@@ -69,11 +69,12 @@ vlResult vl_sensor_set_pattern(vlSensorDef *def, const char *pattern, vlError *e
         (!ends && (!isalpha((unsigned char)*at) || count == VL_SENSOR_CELLS)))
       width = 0;
     if (!width && (ends || count == VL_SENSOR_CELLS || !isalpha((unsigned char)*at)))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "pattern must be mono, RGGB, BGGR, GRBG, GBRG, quad, rgbw, or rows of as "
-                     "many letters with slashes between, at most %d in all (\"RG/GB\"); it is "
-                     "\"%s\"",
-                     VL_SENSOR_CELLS, vl_short_text(pattern).text);
+      return vl_fail_argument(
+          error,
+          "pattern must be mono, RGGB, BGGR, GRBG, GBRG, quad, rgbw, or rows of as "
+          "many letters with slashes between, at most %d in all (\"RG/GB\"); it is "
+          "\"%s\"",
+          VL_SENSOR_CELLS, vl_short_text(pattern).text);
     if (!*at)
       break;
     column = ends ? 0 : column + 1;
@@ -111,14 +112,13 @@ uint32_t vl_sensor_filter_index(const vlSensorDef *def, char name) {
 /* The filter with that letter, which is added if there is none. Null: there are too many. */
 static vlSensorFilter *filter_of(vlSensorDef *def, char name, vlError *error) {
   if (!isalpha((unsigned char)name)) {
-    vl_fail(error, VL_ERROR_ARGUMENT, "the name of a filter must be a letter");
+    vl_fail_argument(error, "the name of a filter must be a letter");
     return NULL;
   }
   name = (char)toupper((unsigned char)name);
   uint32_t i = vl_sensor_filter_index(def, name);
   if (i == VL_SENSOR_FILTERS) {
-    vl_fail(error, VL_ERROR_ARGUMENT, "efficiency: there are more than %d filters",
-            VL_SENSOR_FILTERS);
+    vl_fail_argument(error, "efficiency: there are more than %d filters", VL_SENSOR_FILTERS);
     return NULL;
   }
   def->filter_count = i == def->filter_count ? i + 1 : def->filter_count;
@@ -130,29 +130,30 @@ static vlResult check_curve(char name, uint32_t count, const double *wavelengths
                             const double *efficiency, vlError *error) {
   for (uint32_t i = 0; i < count; i++) {
     if (!(wavelengths[i] > 0.0 && wavelengths[i] < 1e5))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "efficiency of %c: a wavelength must be above 0 and below 100000 nm; it "
-                     "is %g nm",
-                     name, wavelengths[i]);
+      return vl_fail_argument(
+          error,
+          "efficiency of %c: a wavelength must be above 0 and below 100000 nm; it "
+          "is %g nm",
+          name, wavelengths[i]);
     if (i && !(wavelengths[i] > wavelengths[i - 1]))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "efficiency of %c: wavelengths must ascend; %g nm comes after %g nm", name,
-                     wavelengths[i], wavelengths[i - 1]);
+      return vl_fail_argument(
+          error, "efficiency of %c: wavelengths must ascend; %g nm comes after %g nm", name,
+          wavelengths[i], wavelengths[i - 1]);
     if (!(efficiency[i] >= 0.0 && efficiency[i] <= 1.0))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "efficiency of %c must be from 0 to 1 electrons per photon; it is %g at "
-                     "%g nm",
-                     name, efficiency[i], wavelengths[i]);
+      return vl_fail_argument(
+          error,
+          "efficiency of %c must be from 0 to 1 electrons per photon; it is %g at "
+          "%g nm",
+          name, efficiency[i], wavelengths[i]);
   }
-  return count ? VL_OK
-               : vl_fail(error, VL_ERROR_ARGUMENT, "efficiency of %c has no values", name);
+  return count ? VL_OK : vl_fail_argument(error, "efficiency of %c has no values", name);
 }
 
 vlResult vl_sensor_set_efficiency(vlSensorDef *def, char filter, uint32_t count,
                                   const double *wavelengths, const double *efficiency,
                                   vlError *error) {
   if (!def || !wavelengths || !efficiency)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "efficiency: an argument is missing");
+    return vl_fail_argument(error, "efficiency: an argument is missing");
   vlResult result = check_curve(filter, count, wavelengths, efficiency, error);
   vlSensorFilter *f = result == VL_OK ? filter_of(def, filter, error) : NULL;
   if (!f)
@@ -183,12 +184,12 @@ vlResult vl_sensor_set_curves(vlSensorDef *def, const char *name, double peak, v
     for (; count < vl_sensor_count && count < 64; count++)
       names[count] = vl_sensor_curves[count].name;
     vl_tell_names(known, sizeof known, name ? name : "", names, count);
-    return vl_fail(error, VL_ERROR_ARGUMENT, "curves: no measured sensor is called \"%s\"%s",
-                   vl_short_text(name ? name : "").text, known);
+    return vl_fail_argument(error, "curves: no measured sensor is called \"%s\"%s",
+                            vl_short_text(name ? name : "").text, known);
   }
   if (!(peak > 0.0 && peak <= 1.0))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "peak must be above 0 and at most 1 electrons per photon; it is %g", peak);
+    return vl_fail_argument(
+        error, "peak must be above 0 and at most 1 electrons per photon; it is %g", peak);
   double largest = 0.0;
   double wavelengths[VL_SENSOR_SAMPLES];
   double efficiency[3][VL_SENSOR_SAMPLES];
@@ -219,37 +220,38 @@ static vlResult check_rows(const vlKindRow *rows, const void *def, vlError *erro
     if (row->flags & VL_PARAMETER_RULE)
       continue;
     if (!vl_parameter_check(row, def, vl_setting_keyword(row), message))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "%s%s%s", message, row->unit ? " " : "",
-                     row->unit ? row->unit : "");
+      return vl_fail_argument(error, "%s%s%s", message, row->unit ? " " : "",
+                              row->unit ? row->unit : "");
   }
   return VL_OK;
 }
 
 vlResult vl_exposure_check(const vlExposureDef *exposure, vlError *error) {
   if (exposure->cookie != VL_COOKIE_EXPOSURE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, VL_BAD_COOKIE);
+    return vl_fail_argument(error, VL_BAD_COOKIE);
   return check_rows(&vl_exposure_settings_row, exposure, error);
 }
 
 static vlResult check_mosaic(const vlSensorDef *def, vlError *error) {
   uint64_t cells = (uint64_t)def->pattern_width * def->pattern_height;
   if (!cells || cells > VL_SENSOR_CELLS || def->filter_count > VL_SENSOR_FILTERS)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "pattern must have 1 to %d cells, and there may be %d filters",
-                   VL_SENSOR_CELLS, VL_SENSOR_FILTERS);
+    return vl_fail_argument(error,
+                            "pattern must have 1 to %d cells, and there may be %d filters",
+                            VL_SENSOR_CELLS, VL_SENSOR_FILTERS);
   for (uint64_t i = 0; i < cells; i++)
     if (vl_sensor_filter_index(def, def->pattern[i]) == def->filter_count)
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "pattern has the filter %c, of which there is no efficiency",
-                     isalpha((unsigned char)def->pattern[i]) ? def->pattern[i] : '?');
+      return vl_fail_argument(error,
+                              "pattern has the filter %c, of which there is no efficiency",
+                              isalpha((unsigned char)def->pattern[i]) ? def->pattern[i] : '?');
   for (uint32_t f = 0; f < def->filter_count; f++)
     for (int i = 0; i < VL_SENSOR_WAVELENGTHS; i++) {
       double value = (double)def->filters[f].efficiency[i];
       if (!(value >= 0.0 && value <= 1.0))
-        return vl_fail(error, VL_ERROR_ARGUMENT,
-                       "efficiency of %c must be from 0 to 1 electrons per photon; it is %g "
-                       "at %d nm",
-                       def->filters[f].name, value, VL_SENSOR_FIRST_WAVELENGTH + i);
+        return vl_fail_argument(
+            error,
+            "efficiency of %c must be from 0 to 1 electrons per photon; it is %g "
+            "at %d nm",
+            def->filters[f].name, value, VL_SENSOR_FIRST_WAVELENGTH + i);
     }
   return VL_OK;
 }
@@ -259,25 +261,25 @@ static vlResult check_light(const vlSensorDef *def, vlError *error) {
   for (int i = 0; i < 9; i++) {
     sum += def->crosstalk[i];
     if (!(def->crosstalk[i] >= 0.0))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "crosstalk must have shares from 0 on; one is %g", def->crosstalk[i]);
+      return vl_fail_argument(error, "crosstalk must have shares from 0 on; one is %g",
+                              def->crosstalk[i]);
   }
   if (!(sum > 1.0 - 1e-6 && sum < 1.0 + 1e-6))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "crosstalk must have shares of sum 1; it is %.9g",
-                   sum);
+    return vl_fail_argument(error, "crosstalk must have shares of sum 1; it is %.9g", sum);
   if (def->angle_count > VL_SENSOR_ANGLES)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "microlens must have at most %d pairs; it has %u",
-                   VL_SENSOR_ANGLES, def->angle_count);
+    return vl_fail_argument(error, "microlens must have at most %d pairs; it has %u",
+                            VL_SENSOR_ANGLES, def->angle_count);
   for (uint32_t i = 0; i < def->angle_count; i++) {
     if (!(def->angles[i] >= 0.0 && def->angles[i] <= 90.0) ||
         (i && !(def->angles[i] > def->angles[i - 1])))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "microlens must have ascending angles from 0 to 90 degrees; one is %g "
-                     "degrees",
-                     def->angles[i]);
+      return vl_fail_argument(
+          error,
+          "microlens must have ascending angles from 0 to 90 degrees; one is %g "
+          "degrees",
+          def->angles[i]);
     if (!(def->responses[i] >= 0.0 && def->responses[i] <= 1.0))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "microlens must have responses from 0 to 1; one is %g", def->responses[i]);
+      return vl_fail_argument(error, "microlens must have responses from 0 to 1; one is %g",
+                              def->responses[i]);
   }
   return VL_OK;
 }
@@ -290,16 +292,16 @@ vlResult vl_sensor_create(vlContext *context, const vlSensorDef *def, vlSensor *
   if (sensor)
     *sensor = NULL;
   if (!context || !def || !sensor)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "an argument is null");
+    return vl_fail_argument(error, "an argument is null");
   if (def->cookie != VL_COOKIE_SENSOR)
-    return vl_fail(error, VL_ERROR_ARGUMENT, VL_BAD_COOKIE);
+    return vl_fail_argument(error, VL_BAD_COOKIE);
   VL_TRY(check_rows(&vl_sensor_settings_row, def, error));
   VL_TRY(check_mosaic(def, error));
   VL_TRY(check_light(def, error));
   if (def->black_level >= ldexp(1.0, (int)def->bits) - 1.0)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "black_level must be below the largest number of %u bits; it is %g DN",
-                   def->bits, def->black_level);
+    return vl_fail_argument(
+        error, "black_level must be below the largest number of %u bits; it is %g DN",
+        def->bits, def->black_level);
   vlSensor *made = vl_alloc(context, sizeof *made);
   if (!made)
     return vl_fail_memory(error);

@@ -48,10 +48,11 @@ static vlResult check_buckets(const Bucket *buckets, const vlSensorSpectrum *s,
     double middle = s->start + (i + 0.5) * s->width;
     double off = buckets[i].wavelength - middle;
     if (!(s->width > 0.0) || !(off > -0.01 && off < 0.01))
-      return vl_fail(error, VL_ERROR_ARGUMENT,
-                     "the image's spectrum is not in equal intervals: %.3f nm should be "
-                     "%.3f nm",
-                     buckets[i].wavelength, middle);
+      return vl_fail_argument(
+          error,
+          "the image's spectrum is not in equal intervals: %.3f nm should be "
+          "%.3f nm",
+          buckets[i].wavelength, middle);
   }
   return VL_OK;
 }
@@ -68,10 +69,11 @@ vlResult vl_sensor_find_spectrum(vlContext *context, const vlImage *image, vlSen
       buckets[s->count++] = (Bucket){wavelength, c};
   }
   if (result == VL_OK && s->count < 2)
-    result = vl_fail(error, VL_ERROR_ARGUMENT,
-                     "the image has no spectrum: render it with --spectrum N (two buckets or "
-                     "more); it has %u channels \"S0.NNNnm\"",
-                     s->count);
+    result = vl_fail_argument(
+        error,
+        "the image has no spectrum: render it with --spectrum N (two buckets or "
+        "more); it has %u channels \"S0.NNNnm\"",
+        s->count);
   if (result == VL_OK) {
     qsort(buckets, s->count, sizeof *buckets, by_wavelength);
     double first = buckets[0].wavelength;
@@ -172,8 +174,8 @@ vlResult vl_exposure_window(const vlExposureDef *exposure, uint32_t width, uint3
   bool none = !given[0] && !given[1] && !given[2] && !given[3];
   memcpy(window, none ? all : given, sizeof all);
   if ((uint64_t)window[0] + width > window[2] || (uint64_t)window[1] + height > window[3])
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "window: an image of %u x %u pixels at (%u, %u) is not inside of %u x %u",
-                   width, height, window[0], window[1], window[2], window[3]);
+    return vl_fail_argument(
+        error, "window: an image of %u x %u pixels at (%u, %u) is not inside of %u x %u", width,
+        height, window[0], window[1], window[2], window[3]);
   return VL_OK;
 }

@@ -119,23 +119,22 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
                       vlWorld **result, vlError *error) {
   vl_error_clear(error);
   if (!result)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: result is null");
+    return vl_fail_argument(error, "world build: result is null");
   *result = NULL;
   if (!scene)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: scene is null");
+    return vl_fail_argument(error, "world build: scene is null");
   vlBuildDef d = def ? *def : vl_default_build_def();
   if (d.cookie != VL_COOKIE_BUILD)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "world build: " VL_BAD_COOKIE);
   char wrong[VL_GIVEN_MESSAGE];
   if (!vl_choices_check(VL_SETTING_RENDER, offsetof(vlSceneDefs, build), sizeof d, &d, wrong))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: %s", wrong);
+    return vl_fail_argument(error, "world build: %s", wrong);
   VL_TRY(vl_scene_result(scene, error));
   if (scene->meshes_dropped)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "world build: the scene gave its meshes to an earlier world");
+    return vl_fail_argument(error,
+                            "world build: the scene gave its meshes to an earlier world");
   if (d.previous && d.previous->context != scene->context)
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "world build: the previous world is of another context");
+    return vl_fail_argument(error, "world build: the previous world is of another context");
   double start = vl_seconds();
   vlWorld *world = vl_alloc_zero(scene->context, 1, sizeof *world);
   if (!world)

@@ -545,7 +545,7 @@ vlResult vl_denoise(const vlImage *image, const vlDenoiseDef *def, vlImage **cle
   if (!def)
     def = &standard;
   if (!image || !clean || !image->pixels)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "denoise: image, its pixels or clean is null");
+    return vl_fail_argument(error, "denoise: image, its pixels or clean is null");
   if (def->cookie != VL_COOKIE_DENOISE || (unsigned)def->denoiser > VL_DENOISER_OIDN)
     return vl_fail(
         error, VL_ERROR_ARGUMENT,

@@ -46,8 +46,7 @@ vlResult vl_embree_choose_set(vlBits bits, const char **name, vlError *error) {
     *name = sets[k].name;
     return VL_OK;
   }
-  return vl_fail(error, VL_ERROR_ARGUMENT,
-                 "VELO_EMBREE=%s: not one of sse4.2, avx, avx2, avx512", wish);
+  return vl_fail_argument(error, "VELO_EMBREE=%s: not one of sse4.2, avx, avx2, avx512", wish);
 }
 
 const char *vl_embree_fast_set(void) {

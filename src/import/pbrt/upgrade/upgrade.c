@@ -252,11 +252,11 @@ vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to,
   vlUpgradeDef plain = vl_default_upgrade_def();
   vl_error_clear(error);
   if (!context || !from || !to)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: an argument is null");
+    return vl_fail_argument(error, "scene upgrade: an argument is null");
   if (def && def->cookie != VL_COOKIE_UPGRADE)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: " VL_BAD_COOKIE);
+    return vl_fail_argument(error, "scene upgrade: " VL_BAD_COOKIE);
   if (same_file(from, to))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: %s would be overwritten", to);
+    return vl_fail_argument(error, "scene upgrade: %s would be overwritten", to);
   vlUpgrade u = {.context = context,
                  .def = def ? def : &plain,
                  .first = from,

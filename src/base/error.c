@@ -38,12 +38,9 @@ vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t li
 }
 
 vlResult vl_fail_argument(vlError *error, const char *format, ...) {
-  va_list args;
-  va_start(args, format);
-  if (error)
-    set_error(error, VL_ERROR_ARGUMENT, NULL, 0, 0, format, args);
-  va_end(args);
-  return VL_ERROR_ARGUMENT;
+  char text[sizeof error->message];
+  VL_FORMAT(text, format);
+  return vl_fail(error, VL_ERROR_ARGUMENT, "%s", text);
 }
 
 vlResult vl_fail_memory(vlError *error) {

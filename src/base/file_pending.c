@@ -1,7 +1,6 @@
 /* base/file_pending.c: files that other programs write (velo/pending.h). */
 #include "base/error.h"
 #include "base/file.h"
-#include "base/text.h"
 #include "velo/pending.h"
 
 struct vlPendingFile {

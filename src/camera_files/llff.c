@@ -4,7 +4,6 @@
  * image's middle. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "camera_files/fields.h"
 #include "camera_files/numpy.h"

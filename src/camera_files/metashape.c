@@ -4,7 +4,6 @@
  * is not applied. The first pixel's centre is (0.5, 0.5); cx and cy count from the image's
  * middle. With x', y' the distorted point: u = w/2 + cx + x' (f + b1) + y' b2, v = h/2 + cy +
  * y' f. Metashape's p1 and p2 are OpenCV's p2 and p1; k4 is r^8. */
-#include <math.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"

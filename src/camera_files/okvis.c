@@ -2,7 +2,6 @@
  * down, z forward. T_SC is sensor (IMU) from camera, and the world's space is that of the
  * sensor. The first pixel's centre is (0, 0). */
 
-#include "base/text.h"
 #include "camera_files/fields.h"
 
 static const vlLensName lenses[] = {{"radialtangential", VL_LENS_OPENCV, 4, 4},

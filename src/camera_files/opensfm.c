@@ -4,8 +4,6 @@
  * camera from world. Lengths in the image are fractions of its larger side, measured from its
  * middle: velo's cx is width / 2 + c_x max(width, height). */
 
-#include <math.h>
-
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "velo/projection.h"

@@ -3,8 +3,6 @@
  * of a recording, with K by columns and poses (qx qy qz qw x y z). Polycam:
  * keyframes/cameras/N.json, with t_00 to t_23 by rows. 3D Scanner App: frame_N.json, with
  * cameraPoseARFrame and intrinsics by rows; the size is that of the image beside it. */
-#include <stdio.h>
-#include <string.h>
 
 #include "camera_files/fields.h"
 

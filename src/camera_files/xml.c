@@ -8,7 +8,6 @@
  * A document type is an error, so a file cannot define entities. Depth and number of elements
  * are bounded. */
 #include <expat.h>
-#include <math.h>
 
 #include "base/text.h"
 #include "camera_files/files.h"

@@ -5,7 +5,6 @@
 #include "base/text.h"
 #include "color/color.h"
 #include "image/image.h"
-#include "image/mipmap.h"
 
 const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id) {
   const vlTextureDef *t = vl_scene_texture(x->scene, id);

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 
 #include "base/cookie.h"
-#include "base/error.h"
 #include "base/free.h"
 #include "base/text.h"
 #include "color/color.h"

@@ -2,7 +2,6 @@
  * linear Rec.709 R G B, or Y; the result is 8-bit sRGB. Only arithmetic with fixed bits
  * (math/approx.h, tables) is used, so results are the same on every machine. */
 #include "image/view.h"
-#include "base/error.h"
 #include "image/image.h"
 #include "image/pixel.h"
 #include "math/approx.h"

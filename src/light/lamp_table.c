@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/free.h"
-#include "base/text.h"
 #include "light/lamp.h"
 #include "light/lamp_text.h"
 #include "math/approx_double.h"

@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "base/context.h"
-#include "base/cookie.h"
 #include "base/error.h"
 #include "base/free.h"
 #include "base/unset.h"

@@ -5,7 +5,6 @@
 
 #include "base/free.h"
 #include "math/double3.h"
-#include "math/transform.h"
 #include "scene/check.h"
 #include "scene/mesh_solid.h"
 #include "schema/schema.h"

@@ -8,7 +8,6 @@
 #include "math/approx_double.h"
 #include "math/double3.h"
 #include "math/elementary.h"
-#include "math/transform.h"
 #include "scene/closed.h"
 #include "scene/environment.h"
 #include "scene/facing.h"

@@ -2,7 +2,6 @@
 #include "scene/extent.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "math/double3.h"
 #include "math/transform.h"

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/error.h"
 #include "color/color.h"
 #include "math/double3.h"
 #include "scene/extent.h"

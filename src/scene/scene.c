@@ -4,8 +4,6 @@
 
 #include "base/text.h"
 
-#include <string.h>
-
 #include "velo/medium.h"
 #include "velo/shape_kinds.h"
 

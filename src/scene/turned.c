@@ -1,8 +1,6 @@
 /* scene/turned.c: see turned.h. */
 #include "scene/turned.h"
 
-#include <math.h>
-
 #include "math/double3.h"
 #include "scene/faces.h"
 #include "scene/posture.h"

@@ -5,7 +5,6 @@
 
 #include <math.h>
 
-#include "math/double3.h"
 #include "math/elementary.h"
 #include "scene/faces.h"
 #include "scene/facing.h"

@@ -1,7 +1,6 @@
 /* shape/mesh.c: vertices and faces of meshes, transformed to group space. */
 #include "shape/mesh.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "base/error.h"

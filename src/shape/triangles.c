@@ -1,7 +1,6 @@
 /* shape/triangles.c: the functions of meshes of triangles, as of any shape. The room trace
  * intersects triangles in batches. */
 #include "shape/mesh.h"
-#include "velo/shape.h"
 
 static void triangles_bounds(const vlWorldShape *shape, uint32_t prim, double low[3],
                              double high[3]) {

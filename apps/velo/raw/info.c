@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/macros.h"
 #include "cli/report.h"
 #include "raw/raw.h"
 

@@ -1,7 +1,6 @@
 /* render/continue.c: see continue.h. */
 #include "render/continue.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/context.h"

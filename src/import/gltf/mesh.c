@@ -1,6 +1,5 @@
 /* import/gltf/mesh.c: a mesh's primitives become shapes: attributes are read, deformed,
  * triangulated and given tangents. */
-#include <math.h>
 #include <string.h>
 
 #include "base/free.h"

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "math/motion.h"
 #include "velo/shape.h"

@@ -7,7 +7,6 @@
 #include "base/text.h"
 #include "import/find.h"
 #include "import/obj/obj.h"
-#include "import/pbrt/token.h"
 #include "math/double3.h"
 
 vlMtl vl_mtl_default(void) {

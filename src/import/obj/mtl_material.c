@@ -2,7 +2,6 @@
  * the rules where MTL is ambiguous. */
 #include <math.h>
 
-#include "import/far.h"
 #include "import/obj/obj.h"
 
 #include "base/text.h"

@@ -1,5 +1,4 @@
 /* import/obj/obj_line.c: points (p) and lines (l) of OBJ files: balls and tubes. */
-#include <math.h>
 #include <stdlib.h>
 
 #include "base/free.h"

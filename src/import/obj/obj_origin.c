@@ -1,6 +1,5 @@
 /* import/obj/obj_origin.c: the point about which an OBJ file's vertices are stored, found
  * before they are: polygons are cut as soon as they are read. */
-#include <math.h>
 #include <string.h>
 
 #include "import/far.h"

@@ -2,7 +2,6 @@
  * contain a million sphere Shapes; each would take 750 bytes in scene and world, but only 56 in
  * a run (run.c). */
 #include <math.h>
-#include <string.h>
 
 #include "import/pbrt/builder.h"
 #include "velo/shape.h"

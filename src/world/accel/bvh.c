@@ -2,7 +2,6 @@
  * (vlAccel.scene). Those of the previous world are shared. */
 #include "world/accel/bvh.h"
 
-#include "base/error.h"
 #include "base/free.h"
 #include "world/accel/share.h"
 

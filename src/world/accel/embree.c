@@ -19,7 +19,6 @@
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/machine.h"
-#include "shape/surface_point.h"
 #include "velo/shape.h"
 #include "world/accel/bundle.h"
 #include "world/accel/local_ray.h"
@@ -27,7 +26,6 @@
 #include "world/accel/occluders.h"
 #include "world/accel/packet_rays.h"
 #include "world/accel/share.h"
-#include "world/moving.h"
 #include "world/world.h"
 
 #if VELO_EMBREE_MAJOR >= 4

@@ -69,8 +69,7 @@ vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
 /* Checks each member by the row of its setting. */
 static vlResult check_rows(const vlCameraDef *d, vlError *error) {
   const vlKindRow *rows = vl_settings(VL_SETTING_CAMERA);
-  for (uint32_t i = 0; i < rows->parameter_count; i++) {
-    const vlParameter *p = &rows->parameters[i];
+  VL_EACH_PARAMETER(p, rows) {
     char name[80];
     char message[VL_GIVEN_MESSAGE];
     if (p->flags & VL_PARAMETER_SHORTHAND)

@@ -10,6 +10,7 @@
 #include "color/color.h"
 #include "film/file.h"
 #include "schema/member.h"
+#include "schema/schema.h"
 #include "velo/filter_kinds.h"
 #include "velo/schema.h"
 
@@ -55,8 +56,7 @@ static FieldList list_fields(const vlFilmDef *def) {
   for (size_t i = 0; i < VL_LENGTH(size_fields); i++)
     add_field(&list, &size_fields[i]);
   for (uint32_t kind = 0; kind < filters->kind_count; kind++)
-    for (uint32_t i = 0; i < filters->rows[kind]->parameter_count; i++) {
-      const vlParameter *parameter = &filters->rows[kind]->parameters[i];
+    VL_EACH_PARAMETER(parameter, filters->rows[kind]) {
       Field field = {.type = parameter->type,
                      .offset = offsetof(vlFilmDef, filter) + parameter->offset,
                      .optional = kind != (uint32_t)def->filter.kind};

@@ -166,8 +166,7 @@ bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum,
   const Take t = {scene, source, what};
   char name[200];
   char message[VL_GIVEN_MESSAGE];
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     if (p->flags & VL_PARAMETER_SHORTHAND)
       continue;
     if (!take_parameter(&t, p, def, spectrum))

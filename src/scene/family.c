@@ -282,8 +282,7 @@ static void own_spectrum(vlSceneOwned *owned, const vlSpectrum *spectrum) {
 }
 
 static void own_row(vlSceneOwned *owned, const vlKindRow *row, const void *def) {
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     const char *at = (const char *)def + p->offset;
     const char *second = p->second ? (const char *)def + p->second : NULL;
     if (p->flags & VL_PARAMETER_SHORTHAND)

@@ -126,8 +126,7 @@ static void set_default(const vlParameter *p, vlParameterType type, void *at) {
 /* ---- defaults of defs -------------------------------------------------------------------- */
 
 void vl_row_set_defaults(const vlKindRow *row, void *def) {
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     if (p->flags & VL_PARAMETER_SHORTHAND)
       continue;
     set_default(p, p->type, (char *)def + p->offset);
@@ -207,8 +206,7 @@ vlRenderDef vl_default_render_def(void) {
 /* ---- members ----------------------------------------------------------------------------- */
 
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to) {
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     memcpy((char *)to + p->offset, (const char *)from + p->offset, p->size);
     if (p->second)
       memcpy((char *)to + p->second, (const char *)from + p->second,
@@ -289,8 +287,7 @@ bool vl_parameter_is_default(const vlParameter *p, const void *def, bool spectru
 uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids,
                          uint32_t most) {
   uint32_t n = 0;
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     const char *at = (const char *)def;
     if (p->flags & VL_PARAMETER_SHORTHAND)
       continue; /* other parameters have its members */

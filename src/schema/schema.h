@@ -70,6 +70,13 @@
   }
 #define VL_KIND_WORD(kind, name, ...) #name,
 
+/* A loop over the parameters of a row; p: what its body calls one. */
+#define VL_EACH_PARAMETER(p, row) \
+  for (const vlParameter *p = (row)->parameters; vl_is_parameter_of(p, row); p++)
+static inline bool vl_is_parameter_of(const vlParameter *p, const vlKindRow *row) {
+  return p - row->parameters < (ptrdiff_t)row->parameter_count;
+}
+
 /* For the size of a table with one entry per kind: `0 VL_MATERIAL_KINDS(VL_COUNT_KIND)`. */
 #define VL_COUNT_KIND(...) +1
 

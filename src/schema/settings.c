@@ -313,8 +313,7 @@ static bool same(const char *a, const char *b) {
 /* The first row with that keyword, or with that member. Those of cameras that files set by
  * rules are none. */
 static const vlParameter *find(const vlKindRow *rows, const char *name, bool by_member) {
-  for (uint32_t i = 0; i < rows->parameter_count; i++) {
-    const vlParameter *row = &rows->parameters[i];
+  VL_EACH_PARAMETER(row, rows) {
     if (row->flags & VL_PARAMETER_RULE)
       continue;
     if (same(by_member ? row->member : vl_setting_keyword(row), name))

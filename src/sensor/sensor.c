@@ -215,8 +215,7 @@ vlResult vl_sensor_set_curves(vlSensorDef *def, const char *name, double peak, v
 /* Checks the numbers of a def by their rows. ARGUMENT: `field must be ...; it is ... unit`. */
 static vlResult check_rows(const vlKindRow *rows, const void *def, vlError *error) {
   char message[VL_GIVEN_MESSAGE];
-  for (uint32_t i = 0; i < rows->parameter_count; i++) {
-    const vlParameter *row = &rows->parameters[i];
+  VL_EACH_PARAMETER(row, rows) {
     if (row->flags & VL_PARAMETER_RULE)
       continue;
     if (!vl_parameter_check(row, def, vl_setting_keyword(row), message))

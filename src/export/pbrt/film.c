@@ -137,8 +137,7 @@ void vl_pbrt_film(vlExport *x) {
     if (p && rules[i].put)
       rules[i].put(x, p);
   }
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     if (!p->name || has_rule(p) || vl_parameter_is_default(p, defs, false))
       continue;
     PUT(" ");

@@ -17,8 +17,7 @@ static void put_cells(vlExport *x, const char *parameter, const vlMediumDef *m, 
 
 /* The arrays of the row: numbers or colours per cell. */
 static void put_arrays(vlExport *x, const vlKindRow *row, const vlMediumDef *m) {
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     if (p->type != VL_PARAMETER_BLOCK || !p->name)
       continue;
     bool rgb = vl_text_is(p->text, "rgb array");

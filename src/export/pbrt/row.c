@@ -61,8 +61,7 @@ void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def) {
 
 void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all,
                  const char *skip) {
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     if (!p->name || (p->flags & VL_PARAMETER_SHORTHAND) || (skip && vl_text_is(p->name, skip)))
       continue;
     /* defaults are left out, but for `all` and RGB colours; an unset value has no text */

@@ -109,8 +109,7 @@ static ReadMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
 /* Reads the arrays of the row: numbers or colours per cell. */
 static bool read_arrays(vlDict *dict, vlMediumDef *def) {
   const vlKindRow *row = dict->row;
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     if (p->type != VL_PARAMETER_BLOCK || !p->name)
       continue;
     vlParamType type = vl_text_is(p->text, "rgb array") ? VL_PARAM_RGB : VL_PARAM_FLOAT;

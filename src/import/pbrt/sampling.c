@@ -12,8 +12,7 @@ static void skip_ignored(vlDict *dict) {
   const vlKindRow *row = dict->row;
   bool yes;
   float number;
-  for (uint32_t i = 0; i < row->parameter_count; i++) {
-    const vlParameter *p = &row->parameters[i];
+  VL_EACH_PARAMETER(p, row) {
     if (p->member[0])
       continue;
     if (p->type == VL_PARAMETER_BOOL)

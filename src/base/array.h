@@ -37,6 +37,10 @@
   (vl_free((context), (array)->items), (array)->items = NULL, \
    (array)->count = (array)->capacity = 0)
 
+/* A loop over the elements of an array, which must not grow; item: what its body calls one. */
+#define VL_EACH_ITEM(T, item, array) \
+  for (T *item = (array)->items; (size_t)(item - (array)->items) < (array)->count; item++)
+
 /* Reserves capacity for `more` elements after `count`. vl_array_grow zeroes them. */
 bool vl_array_reserve(vlContext *context, void **items, size_t *capacity, size_t count,
                       size_t size, size_t more);

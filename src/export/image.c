@@ -27,8 +27,7 @@ static const void *data_of(const vlTextureDef *t) {
 
 vlExportImage *vl_export_find_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
   const void *data = data_of(t);
-  for (size_t i = 0; i < x->images.count; i++) {
-    vlExportImage *p = &x->images.items[i];
+  VL_EACH_ITEM(vlExportImage, p, &x->images) {
     if (p->variant == variant && p->data == data &&
         (data || (p->path && t->path && vl_text_is(p->path, t->path))))
       return p;

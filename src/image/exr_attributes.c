@@ -263,8 +263,7 @@ vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError 
                {"screenWindowCenter", VL_ATTRIBUTE_V2F},
                {"displayWindow", VL_ATTRIBUTE_BOX2I},
                {"dataWindow", VL_ATTRIBUTE_BOX2I}};
-  for (size_t i = 0; i < image->attributes.count; i++) {
-    const vlImageAttribute *a = &image->attributes.items[i];
+  VL_EACH_ITEM(const vlImageAttribute, a, &image->attributes) {
     if (is_layout(a->name))
       continue;
     bool ok = true;

@@ -222,8 +222,7 @@ static vlResult build_table(Tree *t, vlSparseGrid *g) {
   for (size_t i = 0; i < cells; i++)
     table[i] = VL_SPARSE_TILE;
   g->blocks = table;
-  for (size_t i = 0; i < t->blocks.count; i++) {
-    const Block *b = &t->blocks.items[i];
+  VL_EACH_ITEM(const Block, b, &t->blocks) {
     size_t x = (size_t)(b->at[0] - low[0]), y = (size_t)(b->at[1] - low[1]),
            z = (size_t)(b->at[2] - low[2]);
     uint32_t *entry = table + (z * g->size[1] + y) * g->size[0] + x;

@@ -48,8 +48,7 @@ static bool holds_light(const vlCheck *c, const vlSolid *solid,
     if (vl_solid_holds(solid, p))
       return true;
   }
-  for (size_t i = 0; i < s->shapes.count; i++) {
-    const vlShapeDef *d = &s->shapes.items[i];
+  VL_EACH_ITEM(const vlShapeDef, d, &s->shapes) {
     if (!d->emission.index)
       continue;
     if (d->group.index)
@@ -312,8 +311,7 @@ static void heights(const Gate *g, const vlExtent *b, const double *pose, double
 
 static void check_portals(vlCheck *c, const vlExtent *boxes, const vlExtent *groups) {
   const vlScene *s = c->scene;
-  for (size_t i = 0; i < s->lights.count; i++) {
-    const vlLightDef *l = &s->lights.items[i];
+  VL_EACH_ITEM(const vlLightDef, l, &s->lights) {
     if (!l->has_portal)
       continue;
     Gate g = gate_of(l);

@@ -94,8 +94,7 @@ void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *wi
   for (size_t i = 0; i < scene->shapes.count; i++)
     if (!scene->shapes.items[i].group.index && !(without && without[i]))
       visit_shape(&scene->shapes.items[i], NULL, 20000, visit_within, &within);
-  for (size_t i = 0; i < scene->instances.count; i++) {
-    const vlSceneInstance *instance = &scene->instances.items[i];
+  VL_EACH_ITEM(const vlSceneInstance, instance, &scene->instances) {
     const vlExtent *b = &boxes[instance->group.index - 1];
     vlMat4 m = vl_mat4_load(instance->world_from_group);
     if (!instance->hidden && !vl_extent_is_empty(b))
@@ -112,8 +111,7 @@ bool vl_extent_groups(vlScene *scene, vlExtent **boxes) {
   for (size_t i = 0; i < scene->groups.count; i++)
     (*boxes)[i] = vl_extent_nothing;
   (*boxes)[scene->groups.count] = everything;
-  for (size_t i = 0; i < scene->shapes.count; i++) {
-    const vlShapeDef *d = &scene->shapes.items[i];
+  VL_EACH_ITEM(const vlShapeDef, d, &scene->shapes) {
     if (d->group.index)
       vl_extent_visit_shape(d, NULL, vl_extent_grow, &(*boxes)[d->group.index - 1]);
   }

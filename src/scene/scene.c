@@ -98,8 +98,7 @@ void vl_scene_info(const vlScene *scene, vlSceneInfo *info) {
       .groups = scene->groups.count - vl_scene_removed_count(&scene->group_marks),
       .instances = scene->instances.count - scene->removed_instances.count,
   };
-  for (size_t i = 0; i < scene->shapes.count; i++) {
-    const vlShapeDef *shape = &scene->shapes.items[i];
+  VL_EACH_ITEM(const vlShapeDef, shape, &scene->shapes) {
     info->vertices += shape->vertices;
     if (shape->kind == VL_SHAPE_TRIANGLES)
       info->triangles += shape->faces;

@@ -65,8 +65,7 @@ static void visit_spheres(const vlShapeDef *shape, vlThingVisit *visit, void *us
 
 void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *visit,
                      void *user) {
-  for (size_t i = 0; i < scene->shapes.count; i++) {
-    const vlShapeDef *shape = &scene->shapes.items[i];
+  VL_EACH_ITEM(const vlShapeDef, shape, &scene->shapes) {
     vlExtent box = vl_extent_nothing;
     if (shape->group.index)
       continue;
@@ -82,8 +81,7 @@ void vl_things_visit(const vlScene *scene, const vlExtent *boxes, vlThingVisit *
     if (!vl_extent_is_empty(&box))
       visit_box(&box, visit, user);
   }
-  for (size_t i = 0; i < scene->instances.count; i++) {
-    const vlSceneInstance *instance = &scene->instances.items[i];
+  VL_EACH_ITEM(const vlSceneInstance, instance, &scene->instances) {
     const vlExtent *own = &boxes[instance->group.index - 1];
     const vlMat4 m = vl_mat4_load(instance->world_from_group);
     vlExtent box = vl_extent_nothing;

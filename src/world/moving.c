@@ -35,13 +35,11 @@ static bool keys_differ(const vlSceneInstance *source) {
 }
 
 void vl_world_find_times(vlWorld *world, const vlScene *scene) {
-  for (size_t i = 0; i < scene->instances.count; i++) {
-    const vlSceneInstance *source = &scene->instances.items[i];
+  VL_EACH_ITEM(const vlSceneInstance, source, &scene->instances) {
     if (keys_differ(source))
       note_times(world, source->times[0], source->times[source->keys - 1]);
   }
-  for (size_t i = 0; i < scene->shapes.count; i++) {
-    const vlShapeDef *def = &scene->shapes.items[i];
+  VL_EACH_ITEM(const vlShapeDef, def, &scene->shapes) {
     if (def->positions_close)
       note_times(world, def->times[0], def->times[1]);
   }

@@ -315,8 +315,7 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
 }
 
 static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *error) {
-  for (size_t i = 0; i < scene->instances.count; i++) {
-    const vlSceneInstance *source = &scene->instances.items[i];
+  VL_EACH_ITEM(const vlSceneInstance, source, &scene->instances) {
     if (source->hidden || world->groups.items[source->group.index].count == 0)
       continue;
     vlWorldInstance *instance = VL_PUSH(world->context, &world->instances);

@@ -66,8 +66,7 @@ static void look_octahedral(const vlMipmap *map, vlVec3 d, float out[3]) {
 }
 
 static void radiance(const Cube *cube, vlVec3 d, float sum[3]) {
-  for (size_t i = 0; i < cube->skies.count; i++) {
-    const Sky *s = &cube->skies.items[i];
+  VL_EACH_ITEM(const Sky, s, &cube->skies) {
     float own[3];
     if (!s->map) {
       for (int c = 0; c < 3; c++)

@@ -334,8 +334,7 @@ static bool put_shapes(vlExport *x, json_t *roots, json_int_t *mesh_of) {
  * without a transform of its own becomes a single node. */
 static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of) {
   const vlScene *s = x->scene;
-  for (size_t i = 0; i < s->instances.count; i++) {
-    const vlSceneInstance *instance = &s->instances.items[i];
+  VL_EACH_ITEM(const vlSceneInstance, instance, &s->instances) {
     if (instance->hidden)
       continue;
     json_t *node = node_of(instance->world_from_group), *children = json_array();

@@ -510,8 +510,7 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors,
   *colors = wants_colors(x, m);
   *tangents = m && (m->principled.normal.index || m->principled.clearcoat_normal.index ||
                     vl_export_is_on(&m->principled.anisotropy));
-  for (size_t i = 0; i < x->looks.count; i++) {
-    const vlExportLook *l = &x->looks.items[i];
+  VL_EACH_ITEM(const vlExportLook, l, &x->looks) {
     if (l->material.index == look.material.index && l->emission.index == look.emission.index &&
         l->inside.index == look.inside.index && l->one_sided == look.one_sided &&
         l->alpha.texture.index == look.alpha.texture.index &&

@@ -225,8 +225,7 @@ static bool put_groups(vlExport *x) {
         return false;
     PUT("ObjectEnd\n");
   }
-  for (size_t i = 0; i < s->instances.count; i++) {
-    const vlSceneInstance *instance = &s->instances.items[i];
+  VL_EACH_ITEM(const vlSceneInstance, instance, &s->instances) {
     if (instance->hidden)
       continue;
     if (instance->keys)

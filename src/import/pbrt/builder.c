@@ -330,8 +330,7 @@ static bool give_up(vlImport *import) {
   for (size_t i = 0; i < import->textures.count; i++)
     if (import->textures.items[i].state == VL_IN_PROGRESS)
       import->textures.items[i].state = VL_DONE;
-  for (size_t i = 0; i < import->materials.count; i++) {
-    vlPending *p = &import->materials.items[i];
+  VL_EACH_ITEM(vlPending, p, &import->materials) {
     if (p->state == VL_IN_PROGRESS && !vl_import_give_up_material(import, p))
       return false;
   }
@@ -362,8 +361,7 @@ static bool finish(vlImport *import) {
       return false;
   if (!vl_import_finish_motion(import))
     return false;
-  for (size_t i = 0; i < import->object_list.count; i++) {
-    const vlObject *object = &import->object_list.items[i];
+  VL_EACH_ITEM(const vlObject, object, &import->object_list) {
     if (object->defined)
       continue;
     vl_import_wrong(import, object->source, "there is no object \"%s\"",

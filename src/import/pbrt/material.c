@@ -225,8 +225,7 @@ void vl_import_note_rough_coats(vlImport *import) {
   const vlScene *scene = import->scene;
   const vlMaterialDef *first = NULL;
   uint32_t count = 0;
-  for (size_t i = 0; i < scene->materials.count; i++) {
-    const vlMaterialDef *m = &scene->materials.items[i];
+  VL_EACH_ITEM(const vlMaterialDef, m, &scene->materials) {
     if (m->kind != VL_MATERIAL_COATED_DIFFUSE)
       continue;
     if (fmaxf(alpha_of(m, &m->u_roughness), alpha_of(m, &m->v_roughness)) < 0.1f)

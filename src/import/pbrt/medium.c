@@ -211,8 +211,7 @@ static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) 
 
 bool vl_import_finish_media(vlImport *import) {
   vlScene *scene = import->scene;
-  for (size_t i = 0; i < import->medium_links.count; i++) {
-    const vlMediumLink *link = &import->medium_links.items[i];
+  VL_EACH_ITEM(const vlMediumLink, link, &import->medium_links) {
     vlMediumId inside, outside;
     if (!find(import, link->inside, link->source, &inside) ||
         !find(import, link->outside, link->source, &outside)) {

@@ -123,8 +123,7 @@ static bool move_links(vlImport *import, const uint32_t *first) {
   size_t links = import->links.count;
   for (size_t i = 0; i < links; i++)
     import->links.items[i].shape = first[import->links.items[i].shape];
-  for (size_t i = 0; i < import->mesh_files.count; i++) {
-    const vlMeshFile *file = &import->mesh_files.items[i];
+  VL_EACH_ITEM(const vlMeshFile, file, &import->mesh_files) {
     for (uint32_t k = first[file->shape]; k < first[file->shape + 1]; k++)
       if (!vl_import_link_shape(import, &file->link, k))
         return false;

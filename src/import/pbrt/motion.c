@@ -108,8 +108,7 @@ static bool place_part(vlImport *import, const vlMovingGroup *part,
 }
 
 bool vl_import_finish_motion(vlImport *import) {
-  for (size_t i = 0; i < import->moving.count; i++) {
-    const vlMovingGroup *part = &import->moving.items[i];
+  VL_EACH_ITEM(const vlMovingGroup, part, &import->moving) {
     if (!part->object.index)
       continue;
     size_t count = import->scene->instances

@@ -214,8 +214,7 @@ bool vl_old_finish(vlOldStatement *s) {
   for (size_t i = 0; i < s->name_count; i++)
     if (s->renamed >> i & 1 && !vl_old_edit(s, s->names[i], "\"%s\"", s->name[i]))
       return false;
-  for (size_t i = 0; i < s->params.count; i++) {
-    vlOldParam *p = &s->params.items[i];
+  VL_EACH_ITEM(vlOldParam, p, &s->params) {
     if (p->dropped && s->whole.end == s->whole.start)
       continue; /* the whole statement is removed */
     if (p->dropped && !cut_param(s, p))
@@ -261,8 +260,7 @@ char *vl_old_render(vlOldFile *file, vlOldSpan span) {
   if (!out)
     return NULL;
   size_t at = span.start;
-  for (size_t i = 0; i < file->edits.count; i++) {
-    const vlOldEdit *e = &file->edits.items[i];
+  VL_EACH_ITEM(const vlOldEdit, e, &file->edits) {
     if (e->span.start < at || e->span.end > span.end)
       continue; /* outside, or inside of a larger edit */
     memcpy(to, file->text + at, e->span.start - at);

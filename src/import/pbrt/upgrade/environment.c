@@ -108,8 +108,7 @@ bool vl_old_environment(const vlOldStatement *s, const char *name, const double 
     return vl_old_fail(s->file, VL_ERROR_SCENE, s->line, 0, "file name too long");
   if (found == VL_FOUND_NOT)
     return snprintf(result, size, "%s", name) > 0;
-  for (size_t i = 0; i < u->maps.count; i++) {
-    const vlOldMap *map = &u->maps.items[i];
+  VL_EACH_ITEM(const vlOldMap, map, &u->maps) {
     if (vl_text_is(map->from, path) && memcmp(map->factor, factor, sizeof map->factor) == 0)
       return snprintf(result, size, "%s", map->name) > 0;
   }

@@ -149,8 +149,7 @@ static bool keep_output(vlUpgrade *u, const char *name, char *text) {
 
 /* Whether a file that was included before has the text; null: that of the old file. */
 static const vlOldInclude *find_text(const vlUpgrade *u, const char *path, const char *text) {
-  for (size_t i = 0; i < u->includes.count; i++) {
-    const vlOldInclude *n = &u->includes.items[i];
+  VL_EACH_ITEM(const vlOldInclude, n, &u->includes) {
     if (vl_text_is(n->path, path) &&
         (n->text && text ? vl_text_is(n->text, text) : n->text == text))
       return n;

@@ -144,8 +144,7 @@ bool vl_old_names(vlOldStatement *s) {
     refer(u, s, 0, OBJECT);
   for (size_t i = 0; is_word(s, "MediumInterface") && i < 2; i++)
     refer(u, s, i, MEDIUM);
-  for (size_t i = 0; i < s->params.count; i++) {
-    vlOldParam *p = &s->params.items[i];
+  VL_EACH_ITEM(vlOldParam, p, &s->params) {
     if (strncmp(p->name, "namedmaterial", 13) == 0)
       refer_by(u, s, p, MATERIAL);
     if (vl_old_is_texture(p))

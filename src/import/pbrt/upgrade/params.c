@@ -154,8 +154,7 @@ static bool unquote_bools(vlOldStatement *s, vlOldParam *p) {
 }
 
 bool vl_old_types(vlOldStatement *s) {
-  for (size_t i = 0; i < s->params.count; i++) {
-    vlOldParam *p = &s->params.items[i];
+  VL_EACH_ITEM(vlOldParam, p, &s->params) {
     for (size_t k = 0; k < VL_LENGTH(types); k++)
       if (vl_text_is(p->type, types[k][0]))
         p->new_type = types[k][1];

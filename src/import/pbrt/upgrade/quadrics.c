@@ -124,8 +124,7 @@ bool vl_old_mesh_of_shape(vlOldStatement *s) {
   if (fine && g.kind != HEIGHTFIELD)
     vl_old_lose(s, "shape \"%s\" has no counterpart: %u triangles are written", s->name[0],
                 2 * (g.nu - 1) * (g.nv - 1));
-  for (size_t i = 0; i < s->params.count; i++) {
-    vlOldParam *p = &s->params.items[i];
+  VL_EACH_ITEM(vlOldParam, p, &s->params) {
     p->dropped = !vl_text_is(p->name, "alpha");
   }
   fine = fine && vl_old_edit(s, (vlOldSpan){s->whole.end, s->whole.end}, "\n  %s", text.items);

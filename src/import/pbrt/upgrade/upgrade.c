@@ -175,8 +175,7 @@ static bool same_file(const char *a, const char *b) {
 
 static void release(vlUpgrade *u) {
   vlContext *c = u->context;
-  for (size_t i = 0; i < u->textures.count; i++) {
-    const vlOldTexture *t = &u->textures.items[i];
+  VL_EACH_ITEM(const vlOldTexture, t, &u->textures) {
     VL_FREE(c, t->name, t->text, t->copy);
   }
   for (size_t i = 0; i < u->names.count; i++)
@@ -185,8 +184,7 @@ static void release(vlUpgrade *u) {
     VL_FREE(c, u->includes.items[i].path, u->includes.items[i].name);
   for (size_t i = 0; i < u->outputs.count; i++)
     vl_free(c, u->outputs.items[i]);
-  for (size_t i = 0; i < u->maps.count; i++) {
-    const vlOldMap *map = &u->maps.items[i];
+  VL_EACH_ITEM(const vlOldMap, map, &u->maps) {
     VL_FREE(c, map->from, map->name, map->data);
   }
   VL_FREE(c, u->textures.items, u->includes.items, u->names.items, (void *)u->outputs.items,

@@ -144,7 +144,7 @@ static void film_energies(const vlPrincipledSlice *s, const float *z, const floa
 }
 
 static float brightest_sheen(const vlPrincipledSlice *s, uint32_t i) {
-  float *const *row = &s->row[VL_P_SHEEN];
+  const float *const *row = &s->row[VL_P_SHEEN];
   return vl_largest4(row[0][i], row[1][i], row[2][i], row[3][i]);
 }
 

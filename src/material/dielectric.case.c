@@ -26,13 +26,13 @@ static void ground_glass(const MaterialAt *at, double value[3]) {
 
 /* Fresnel at 0.2 radians for an index of 1.5: 0.0400; of a pane 2 r / (1 + r) = 0.0769. */
 const MaterialCase dielectric_material = {{
-    {.parameters = "\"float eta\" 1.5", .refracts = true},
-    {.parameters = "\"float eta\" 1.5 \"float roughness\" .2", .refracts = true},
+    {.parameters = "\"float eta\" 1.5", .refracts = 1.5},
+    {.parameters = "\"float eta\" 1.5 \"float roughness\" .2", .refracts = 1.5},
     {.parameters = "\"float eta\" 2.2 \"float uroughness\" .3 \"float vroughness\" .6",
-     .refracts = true},
-    {.parameters = "\"float eta\" .7 \"float roughness\" .3", .refracts = true},
+     .refracts = 2.2},
+    {.parameters = "\"float eta\" .7 \"float roughness\" .3", .refracts = .7},
     {.parameters = "\"float eta\" 1.8 \"float uroughness\" .5 \"float vroughness\" .3 "
                    "\"bool remaproughness\" false",
-     .refracts = true,
+     .refracts = 1.8,
      .formula = ground_glass},
 }};

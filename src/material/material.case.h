@@ -25,8 +25,8 @@ typedef struct MaterialVariant {
                        0: not known */
   double along;     /* known mean of the samples' directions along x, by their weight, there;
                        0: not known */
-  bool refracts;    /* radiance changes with the square of the index: no law of energy, none of
-                       reciprocity */
+  double refracts;  /* the index below the surface over that above, with whose square radiance
+                       changes: no law of energy; 0: all light has the same index */
   bool both_sides;  /* light from below is scattered, too: reciprocity over the whole sphere */
   bool one_way;     /* not reciprocal */
   /* the BSDF is estimated by random walks: its means are compared, not its values */

@@ -19,7 +19,7 @@ const MaterialCase principled_material = {{
          "\"float metallic\" 0 \"float roughness\" .6 \"float diffusetransmission\" .5 "
          "\"rgb diffusetransmissioncolor\" [.3 .5 .9]",
      .one_way = true},
-    {.parameters = "\"float metallic\" 0 \"float roughness\" .6 \"float transmission\" .7 "
-                   "\"bool thinwalled\" false",
-     .refracts = true},
+    {.parameters = "\"float metallic\" 0 \"float roughness\" .5 \"float transmission\" .7 "
+                   "\"float anisotropy\" .8 \"bool thinwalled\" false",
+     .refracts = 1.5},
 }};

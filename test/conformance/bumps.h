@@ -93,11 +93,11 @@ static void ask_bumps(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
 
 /* A triangle whose texture coordinates are its barycentric ones. Its normals differ so much
  * that their means are far from unit length. */
-static const double normal_corners[3][3] = {{0.1, -0.2, 0}, {1, 0.1, 0}, {-0.3, 0.9, 0}};
+static const double normal_corners[3][3] = {{0.1, -0.2, 0}, {1, 0.1, 0.25}, {-0.3, 0.9, -0.2}};
 static const double corner_normals[3][3] = {
     {-0.48, -0.36, 0.8}, {0.8, -0.36, 0.48}, {-0.36, 0.8, 0.48}};
 #define NORMAL_TRIANGLE                                                              \
-  "Shape \"trianglemesh\" \"point3 P\" [.1 -.2 0 1 .1 0 -.3 .9 0] "                  \
+  "Shape \"trianglemesh\" \"point3 P\" [.1 -.2 0 1 .1 .25 -.3 .9 -.2] "              \
   "\"normal N\" [-.48 -.36 .8 .8 -.36 .48 -.36 .8 .48] \"point2 uv\" [0 0 1 0 0 1] " \
   "\"integer indices\" [0 1 2]"
 
@@ -110,11 +110,16 @@ static void normal_between(double u, double v, double n[3]) {
 
 /* Turns a tangent of the triangle about the axis that turns its normal to n (Rodrigues). */
 static void turn_to_normal(const double n[3], double tangent[3]) {
-  const double g[3] = {0, 0, 1};
+  double edges[2][3];
+  double g[3];
   double axis[3];
   double across_axis[3];
+  for (int k = 0; k < 2; k++)
+    vl_sub3(normal_corners[1 + k], normal_corners[0], edges[k]);
+  vl_cross3(edges[0], edges[1], g);
+  vl_normalize3(g);
   vl_cross3(g, n, axis);
-  const double cosine = n[2];
+  const double cosine = vl_dot3(g, n);
   const double sine = vl_norm3(axis);
   for (int k = 0; k < 3; k++)
     axis[k] /= sine;

@@ -66,6 +66,14 @@ static bool write_quarters(const char *name) {
   return write_square(name, 8, pixels);
 }
 
+/* An image of 8 x 8 pixels whose left half is black, the right one white. */
+static bool write_halves(const char *name) {
+  float pixels[3 * 64];
+  for (int i = 0; i < 3 * 64; i++)
+    pixels[i] = i % 24 < 12 ? 0.0f : 1.0f;
+  return write_square(name, 8, pixels);
+}
+
 /* An image of bytes whose name does not say its format: writers of scenes change it. */
 static bool write_nameless(const char *name, float phase) {
   char png[100];
@@ -89,9 +97,9 @@ static bool write_tilted(const char *name) {
 static bool write_lamp(const char *name, int from, int to) {
   char file[200];
   const int size = snprintf(file, sizeof file,
-                            "IESNA:LM-63-2002\nTILT=NONE\n1 -1 .5 2 2 1 2 0 0 0\n1 1 0\n"
-                            "0 90\n0 180\n%d %d\n%d %d\n",
-                            2 * from, 2 * from, 2 * to, 2 * to);
+                            "IESNA:LM-63-2002\nTILT=NONE\n1 -1 .5 3 2 1 2 0 0 0\n1 1 0\n"
+                            "0 60 90\n0 180\n%d %d %d\n%d %d %d\n",
+                            2 * from, 2 * from, 2 * from, 2 * to, 2 * to, 2 * to);
   return write_bytes(name, file, (size_t)size);
 }
 
@@ -189,9 +197,9 @@ static bool write_files(void) {
   bool done = write_image("a.pfm", 0) && write_image("b.pfm", 1) && write_image("sky.pfm", 2) &&
               write_image("other.pfm", 3) && write_image("normals.pfm", 4) &&
               write_nameless("normals.img", 4) && write_image("a.tga", 5) &&
-              write_quarters("quarters.pfm") && write_grain("grain.pfm") &&
-              write_tilted("tilted.pfm") && write_lamp("lamp.ies", 2, 1) &&
-              write_lamp("other.ies", 3, 9);
+              write_quarters("quarters.pfm") && write_halves("halves.pfm") &&
+              write_grain("grain.pfm") && write_tilted("tilted.pfm") &&
+              write_lamp("lamp.ies", 2, 1) && write_lamp("other.ies", 3, 9);
   done = done && write_bytes("a.ply", ply, sizeof ply - 1) &&
          write_bytes("quad.ply", quad_ply, sizeof quad_ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&

@@ -131,11 +131,15 @@ static void ask_reciprocity(MaterialLaws *m, vlTrace *trace, uint32_t batch,
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
     double w[3];
     even_direction(i, VL_OWN_BATCH, 0.7548776662 * batch, w);
-    if (fabs(w[2]) < 0.02 || (!m->variant->both_sides && w[2] * eye[2] < 0))
+    const double index = m->variant->refracts;
+    const bool crosses = w[2] * eye[2] < 0;
+    if (fabs(w[2]) < 0.02 || (crosses && !m->variant->both_sides && index == 0))
       continue;
+    double by = fabs(w[2]);
+    if (crosses && index > 0) /* radiance over the square of the index */
+      by *= eye[2] > 0 ? 1 / (index * index) : index * index;
     m->both_ways++;
-    m->unequal +=
-        !close_to((double)there[1][i] * fabs(eye[2]), (double)back[1][i] * fabs(w[2]), 0.01);
+    m->unequal += !close_to((double)there[1][i] * fabs(eye[2]), (double)back[1][i] * by, 0.01);
   }
 }
 
@@ -150,7 +154,7 @@ static void ask_material(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) 
   assert_true(isfinite(m->hits->t[0]));
   ask_samples(m, trace, eye[2] > 0);
   ask_integrals(m, trace, probe->batch);
-  if (!m->variant->one_way && !m->variant->refracts && !m->variant->walks)
+  if (!m->variant->one_way && !m->variant->walks)
     ask_reciprocity(m, trace, probe->batch, eye);
 }
 
@@ -177,7 +181,7 @@ static void judge_material(const MaterialLaws *m) {
     snprintf(what, sizeof what, "%s, %.1f: channel %d, integral and mean weight", p, a, c);
     check_same_mean("materials", m->kind, what, &m->value[c], &m->weight[c], sight);
     double more = mean_of(&m->all[c]) - 1 - 5 * sqrt(variance_of_mean(&m->all[c]));
-    if (!v->refracts && !(more < 1e-3))
+    if (v->refracts == 0 && !(more < 1e-3))
       broken("materials", m->kind, "%s, %.1f: channel %d sends %.4f of the light", p, a, c,
              mean_of(&m->all[c]));
     snprintf(what, sizeof what, "%s, %.1f: channel %d, light that is sent", p, a, c);
@@ -214,7 +218,7 @@ static void check_material(const vlKindRow *row, const MaterialVariant *v) {
     m.hits = hits;
     m.next = next;
     Probe probe = {.ask = ask_material, .user = &m};
-    probe_world(text, &probe, v->refracts ? GLASS_BATCHES : MATERIAL_BATCHES);
+    probe_world(text, &probe, v->refracts > 0 ? GLASS_BATCHES : MATERIAL_BATCHES);
     judge_material(&m);
   }
   free(next);

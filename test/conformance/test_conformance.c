@@ -27,6 +27,7 @@
 #include "neighbours.h"
 #include "parameters.h"
 #include "pbrt_defaults.h"
+#include "phases.h"
 #include "radiometry.h"
 #include "ray_derivatives.h"
 #include "repeated.h"
@@ -41,6 +42,7 @@
 #include "shapes.h"
 #include "spaces.h"
 #include "stand_ins.h"
+#include "sums_of_lamps.h"
 #include "surfaces.h"
 #include "texels.h"
 #include "textures.h"
@@ -95,6 +97,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(chosen_powers),
       cmocka_unit_test(lamps_elsewhere),
       cmocka_unit_test(lamps_in_a_row),
+      cmocka_unit_test(sums_of_lamps),
       cmocka_unit_test(illuminances),
       cmocka_unit_test(light_paths),
       cmocka_unit_test(laws_of_emission),
@@ -132,6 +135,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(neighbouring_materials),
       cmocka_unit_test(neighbouring_textures),
       cmocka_unit_test(laws_of_densities),
+      cmocka_unit_test(laws_of_phases),
       cmocka_unit_test(laws_of_tracers),
       cmocka_unit_test(dimensions_of_tracers),
       cmocka_unit_test(media_read_by_rows),

@@ -58,6 +58,19 @@ static void check_throughput(const vlPathVertex *v, const vlPathVertex *next) {
   }
 }
 
+/* The distance of a vertex is that from the one before it. */
+static void check_distance(const vlPath *p, uint32_t i) {
+  const vlPathVertex *v = &p->vertices[i];
+  const float *from = i ? v[-1].position : p->origin;
+  double way[3];
+  for (int k = 0; k < 3; k++)
+    way[k] = (double)v->position[k] - (double)from[k];
+  const double length = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+  if (!(fabs((double)v->distance - length) <= 1e-3 * length + 1e-3))
+    fail_msg("bounce %u: distance %g of a point that is %g away", v->bounce,
+             (double)v->distance, length);
+}
+
 /* What a path must fulfil whatever the scene. clear: nothing weakens light between surfaces. */
 static void check_path(const vlPath *p, bool clear) {
   float sum[4] = {0, 0, 0, 0};
@@ -88,6 +101,8 @@ static void check_path(const vlPath *p, bool clear) {
     assert_int_equal(v->event == VL_PATH_NOTHING, v->fate == VL_PATH_LEFT);
     if (v->event == VL_PATH_SURFACE)
       assert_true(v->object && v->material && v->primitive);
+    if (v->event != VL_PATH_NOTHING)
+      check_distance(p, i);
     if (v->fate != VL_PATH_ON || next->event == VL_PATH_EXIT)
       continue;
     assert_memory_equal(v->direction, next->arrival, sizeof v->direction);

@@ -131,6 +131,9 @@ static void refused(void **state) {
     free(copy);
   }
   unsigned char *file = make_file(grid, 0, &size);
+  put(file + 16 + 176, "density2", 8); /* its name only begins so */
+  expect(file, size, "no grid \"density\"");
+  put(file + 16 + 176, "density", 8);
   file[14] = 2;
   expect(file, size, "BLOSC");
   file[14] = 0;

@@ -1456,6 +1456,33 @@ MISTAKES = [
      r"settings save: ", "src/export/export.c",
      "return r == VL_OK || vl_export_fail(x, r, \"%s\", error.message);",
      "return r == VL_OK || vl_export_fail(x, VL_ERROR_IO, \"%s\", error.message);"),
+    ("the light that rough glass loses by its roughness along u alone", "materials:principled",
+     r"materials principled: .*not reciprocal", "src/material/principled_energy.hot.c",
+     """    vlAlbedoCell index = vl_loss_cell(eta),
+                 alpha =
+                     vl_albedo_cell(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+    uint32_t side = l->inside[i] > 0.0f;
+    l->loss_o""",
+     """    vlAlbedoCell index = vl_loss_cell(eta),
+                 alpha =
+                     vl_albedo_cell(base_alpha(s->alpha_x[i], s->alpha_x[i]), VL_LOSS_ALPHA);
+    uint32_t side = l->inside[i] > 0.0f;
+    l->loss_o"""),
+    ("lamps beside the sky are chosen where those of the first lane are", "lights",
+     r"lights path: bvh: lamps", "src/light/light_choice.hot.c",
+     "vl_receiver(d->f, i), counts[i] != 0, u[i]", "vl_receiver(d->f, i), counts[0] != 0, u[i]"),
+    ("all skies of a batch are the first lane's", "lights",
+     r"lights \w+: (power|bvh): lamps", "src/light/light.hot.c",
+     "if (taken < VL_SKY_BLOCK && out->light[lanes[k]] == light)", "if (taken < VL_SKY_BLOCK)"),
+    ("a lamp's columns weigh as their last cells", "lights",
+     r"lights \w+: power: lamps", "src/light/lamp_table.c",
+     "column += cell_flux(t, i, j, &solid_angle);", "column = cell_flux(t, i, j, &solid_angle);"),
+    ("tangents of triangles have the other one's z", "shapes:trianglemesh",
+     r"shapes trianglemesh: bumps between", "src/trace/surface/surface.hot.c",
+     "out->vz[i] = r.v.z;", "out->vz[i] = r.u.z;"),
+    ("the phase function is cut at .9", "media",
+     r"media \w+: g \S+, cosine", "src/medium/compile.c",
+     "vl_clamp(def->g, -0.99f, 0.99f)", "vl_clamp(def->g, -0.9f, 0.9f)"),
     ]
 
 

@@ -3,7 +3,10 @@
 #ifndef TEST_CONFORMANCE_SAVED_SKIES_H
 #define TEST_CONFORMANCE_SAVED_SKIES_H
 
+#include <jansson.h>
+
 #include "conformance.h"
+#include "files.h"
 #include "unit.h"
 #include "velo/projection.h"
 
@@ -53,8 +56,102 @@ static void check_sky(const char *parameters, const char *file) {
   vl_image_destroy(image);
 }
 
+/* ---- blurred levels of cube maps --------------------------------------------------------- */
+
+/* The mean radiance of a face, by the solid angles of its texels: RGB over D, which is alpha.
+ */
+static double radiance_of_face(const char *uri, uint32_t *side) {
+  char path[100];
+  vlImage *image;
+  double sum = 0;
+  double all = 0;
+  path_of(path, uri);
+  assert_int_equal(vl_image_read(context, path, &image, NULL), VL_OK);
+  *side = vl_image_width(image);
+  for (uint32_t y = 0; y < *side; y++)
+    for (uint32_t x = 0; x < *side; x++) {
+      const double u = (2 * x + 1.0) / *side - 1;
+      const double v = (2 * y + 1.0) / *side - 1;
+      const double angle = pow(1 + u * u + v * v, -1.5);
+      sum +=
+          angle * (double)vl_image_get(image, x, y, 1) / (double)vl_image_get(image, x, y, 3);
+      all += angle;
+    }
+  vl_image_destroy(image);
+  return sum / all;
+}
+
+/* A sky with one bright place. */
+static bool write_glow(const char *name) {
+  enum { GLOW_SIDE = 256 };
+  static float pixels[3 * GLOW_SIDE * GLOW_SIDE];
+  for (int i = 0; i < 3 * GLOW_SIDE * GLOW_SIDE; i++) {
+    const double x = i / 3 % GLOW_SIDE - 70;
+    const double y = i / (3 * GLOW_SIDE) - 100;
+    pixels[i] = (float)(0.2 + exp(-(x * x + y * y) / 1200));
+  }
+  return write_square(name, GLOW_SIDE, pixels);
+}
+
+/* Each level has half the side of the one before and sends as much light in all, the face that
+ * is brightest first of all, and is more blurred. */
+static void check_levels(const char *parameters) {
+  static char text[TEXT];
+  char path[100];
+  snprintf(text, sizeof text, HEAD "WorldBegin LightSource \"infinite\" %s Shape \"sphere\"",
+           parameters);
+  vlScene *scene = need_scene(text);
+  path_of(path, "levels.gltf");
+  assert_int_equal(vl_scene_save(scene, path, NULL, NULL), VL_OK);
+  vl_scene_destroy(scene);
+  json_t *file = json_load_file(path, 0, NULL);
+  const json_t *images = json_object_get(file, "images");
+  json_t *lights = NULL;
+  assert_int_equal(json_unpack(file, "{s:{s:{s:o}}}", "extensions", "EXT_lights_image_based",
+                               "lights", &lights),
+                   0);
+  const json_t *levels = json_object_get(json_array_get(lights, 0), "specularImages");
+  double first = 0;
+  double contrast = 1e9; /* of the level before */
+  uint32_t first_side = 0;
+  size_t first_brightest = 0;
+  for (size_t k = 0; k < json_array_size(levels); k++) {
+    double sum = 0;
+    double most = 0;
+    size_t brightest = 0;
+    uint32_t side = 0;
+    for (size_t face = 0; face < 6; face++) {
+      const json_t *index = json_array_get(json_array_get(levels, k), face);
+      const json_t *image = json_array_get(images, (size_t)json_integer_value(index));
+      const double here =
+          radiance_of_face(json_string_value(json_object_get(image, "uri")), &side);
+      sum += here / 6;
+      brightest = here > most ? face : brightest;
+      most = fmax(most, here);
+    }
+    first = k ? first : sum;
+    first_side = k ? first_side : side;
+    first_brightest = k ? first_brightest : brightest;
+    if (!(most / sum < 0.98 * contrast))
+      broken("lights", "infinite", "%s: level %zu is not more blurred than the one before",
+             parameters, k);
+    contrast = most / sum;
+    if (!(fabs(sum - first) < 0.005 * first) || side != first_side >> k ||
+        brightest != first_brightest)
+      broken("lights", "infinite",
+             "%s: level %zu of %u texels a side sends %.4f, most to face %zu, not %.4f, %zu",
+             parameters, k, side, sum, brightest, first, first_brightest);
+  }
+  if (json_array_size(levels) < 3)
+    broken("lights", "infinite", "%s: %zu levels", parameters, json_array_size(levels));
+  json_decref(file);
+}
+
 static void skies_of_files(void **state) {
   (void)state;
+  assert_true(write_glow("glow.pfm"));
+  check_levels("\"string filename\" \"glow.pfm\"");
+  check_levels("\"string filename\" \"glow.pfm\" \"float illuminance\" 5");
   static const char *const files[] = {"sky.gltf", "sky.pbrt"};
   for (int i = 0; i < 2; i++) {
     check_sky("\"string filename\" \"quarters.pfm\"", files[i]);

@@ -101,7 +101,7 @@ const vlCameraFormat vl_format_orbslam = {
         "Camera.* Camera1.* Camera2.* Tlr data rows cols dt Stereo.* LEFT.* RIGHT.* File.version "
         /* of the estimator */
         "IMU.* ORBextractor.* Viewer.* System.* ThDepth DepthMapFactor RGBD.* Tbc loopClosing "
-        "IMU loopClosing",
+        "IMU",
     .read = read_orbslam,
     .lenses = {VL_LENSES_COMMON, 0, 5},
     .write = write_orbslam};

@@ -14,15 +14,13 @@ static bool has_marks(const vlCameraFormat *format, const json_t *tree) {
   const json_t *object = format->marks_in ? json_object_get(tree, format->marks_in) : tree;
   if (format->marks_in && json_is_array(object))
     object = json_array_get(object, 0);
-  size_t count = 1, found = 0;
-  const char *key;
-  json_t *value;
-  if (!format->marks)
-    return false;
-  for (const char *at = format->marks; *at; at++)
-    count += *at == ' ';
-  json_object_foreach((json_t *)object, key, value) found += vl_has_word(format->marks, key);
-  return format->one_mark ? found > 0 : found == count;
+  size_t count = 0, found = 0, length;
+  for (const char *at = format->marks; at && *at; at += length + strspn(at + length, " ")) {
+    length = strcspn(at, " ");
+    found += json_object_getn(object, at, length) != NULL;
+    count++;
+  }
+  return format->one_mark ? found > 0 : count > 0 && found == count;
 }
 
 vlCameraDialect vl_camera_dialect_of_tree(const json_t *tree) {

@@ -221,7 +221,7 @@ static void put_near(const char *name, const char *const *names, size_t count,
 
 /* Writes `NAME must be RULE; it is VALUE`. */
 static void put_wrong(const vlParameter *row, const char *name, const vlGiven *given,
-                      char message[VL_GIVEN_MESSAGE]) {
+                      char *message, size_t size) {
   char rule[256];
   char value[270];
   char near[80] = "";
@@ -232,7 +232,7 @@ static void put_wrong(const vlParameter *row, const char *name, const vlGiven *g
   put_value(row, given, value, sizeof value);
   if (row->type == VL_PARAMETER_CHOICE && given->kind == VL_GIVEN_TEXT)
     put_near(given->text, row->choices, count_of(row->choices), "", near, sizeof near);
-  snprintf(message, VL_GIVEN_MESSAGE, "%s must be %s; it is %s%s", name, rule,
+  snprintf(message, size, "%s must be %s; it is %s%s", name, rule,
            given->shown ? given->shown : value, near);
 }
 
@@ -241,7 +241,7 @@ bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *giv
   double unused;
   if (fits(row, given, given->factor != 0 ? given->factor : 1, number ? number : &unused))
     return true;
-  put_wrong(row, name, given, message);
+  put_wrong(row, name, given, message, VL_GIVEN_MESSAGE);
   return false;
 }
 
@@ -276,7 +276,7 @@ static bool check_number(const vlParameter *p, double x, const char *name,
     return true;
   double factor = p->factor != 0 ? p->factor : 1;
   const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = x / factor, .factor = factor};
-  put_wrong(p, name, &given, message);
+  put_wrong(p, name, &given, message, VL_GIVEN_MESSAGE);
   return false;
 }
 

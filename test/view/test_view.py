@@ -755,6 +755,9 @@ def test_not_finite(folder):
     page = Page(view)
     note = page.wait_text("note")
     page.wait(lambda m: isinstance(m, dict) and m["type"] == "status" and m["spp"] == 8)
+    later = Page(view)
+    check("later_pages_are_told", later.wait_text("note") == note)
+    later.close()
     page.close()
     code, errors = view.end()
     lines = [line for line in errors.splitlines() if "samples were not finite" in line]

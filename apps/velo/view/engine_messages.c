@@ -39,6 +39,8 @@ void engine_greet(void *user, uint32_t client) {
   json_text_post(state_begin_lists(has_camera_mode(e) ? &e->sensors : NULL), e->server, client);
   engine_lock(e);
   engine_post_state(e, client);
+  if (e->last.left_out)
+    server_post(e->server, client, e->last.left_out);
   if (e->last.status)
     server_post(e->server, client, e->last.status);
   if (e->last.exposure)

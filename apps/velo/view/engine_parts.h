@@ -145,11 +145,10 @@ typedef struct Interrupt {
 
 /* The render of the film. */
 typedef struct Samples {
-  bool failed;              /* it cannot be rendered */
-  bool not_finite_reported; /* that some samples were not finite */
-  double seconds;           /* that it has rendered */
-  uint64_t paths;           /* that it has */
-  double pixel_seconds;     /* time of one sample of one pixel; 0: not known */
+  bool failed;          /* it cannot be rendered */
+  double seconds;       /* that it has rendered */
+  uint64_t paths;       /* that it has */
+  double pixel_seconds; /* time of one sample of one pixel; 0: not known */
 } Samples;
 /* The thread that renders. */
 void *engine_render(void *engine);
@@ -350,6 +349,7 @@ typedef struct Status {
 typedef struct LastTexts {
   char *status;   /* the last state of the render */
   char *exposure; /* the last exposure of the mode "camera" */
+  char *left_out; /* that samples of the image were not finite */
 } LastTexts;
 /* Posts a message of this type with these members (json_put) to a page, or to all (0). */
 void engine_post(Engine *engine, uint32_t client, const char *type, const char *members, ...)

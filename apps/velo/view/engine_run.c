@@ -191,15 +191,25 @@ static bool is_unfinished(const Engine *e, uint32_t spp) {
                                 engine_race_due(e, spp));
 }
 
-/* Once for each image, in the log and on the pages. */
+/* Once for each image, in the log and on the pages, also on those that come later. */
 static void report_left_out(Engine *e, const vlRenderStats *stats) {
   char text[160];
-  if (!stats->not_finite || e->samples.not_finite_reported)
+  if (!stats->not_finite || e->last.left_out)
     return;
-  e->samples.not_finite_reported = true;
   not_finite_text(stats, text, sizeof text);
   report_warning("%s", text);
-  engine_post(e, 0, "note", "message %s", text);
+  Json *json = json_text_begin("note");
+  if (!json)
+    return;
+  json_text(json, "message", text);
+  json_text_keep(json, e, &e->last.left_out);
+}
+
+static void forget_left_out(Engine *e) {
+  engine_lock(e);
+  free(e->last.left_out);
+  e->last.left_out = NULL;
+  engine_unlock(e);
 }
 
 /* Adds samples to the film, or to its successor. False: interrupted, or it failed. */
@@ -285,7 +295,7 @@ static bool take_wanted(Engine *e) {
   if (!anew)
     return engine_sensor_changed(e, sensor && !channel) || channel || denoise;
   e->samples.failed = false;
-  e->samples.not_finite_reported = false;
+  forget_left_out(e);
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);
@@ -481,6 +491,7 @@ void engine_destroy(Engine *engine) {
   file_list_free(&engine->reload.files);
   free(engine->last.status);
   free(engine->last.exposure);
+  free(engine->last.left_out);
   copied_free(engine->verify.copied);
   vl_cancel_destroy(engine->interrupt.cancel);
   vl_cancel_destroy(engine->end);

@@ -78,25 +78,22 @@ static void camera_dealloc(Camera *self) {
 /* The numbers that give the focal length: some by themselves, others with those of a group. */
 typedef enum FocalGroup { FOCAL_ALONE, FOCAL_PLANE, FOCAL_SENSOR, FOCAL_SCREEN } FocalGroup;
 static const struct {
-  const char *name;
-  const char *alias; /* in scene files; may be null */
-  size_t member;     /* a double of vlCameraDef */
+  size_t member; /* a double of vlCameraDef */
   FocalGroup group;
   bool alone; /* it needs no other number of the group */
 } focal_numbers[] = {
-    {"fov", NULL, offsetof(vlCameraDef, fov), FOCAL_ALONE, true},
-    {"fx", NULL, offsetof(vlCameraDef, fx), FOCAL_ALONE, true},
-    {"fy", NULL, offsetof(vlCameraDef, fy), FOCAL_ALONE, true},
-    {"view_distance", "d", offsetof(vlCameraDef, view_distance), FOCAL_PLANE, true},
-    {"zoom", NULL, offsetof(vlCameraDef, zoom), FOCAL_PLANE, false},
-    {"pixel_size", "pixelsize", offsetof(vlCameraDef, pixel_size), FOCAL_PLANE, false},
-    {"focal_mm", "focallength", offsetof(vlCameraDef, focal_mm), FOCAL_SENSOR, false},
-    {"sensor_width_mm", "sensorwidth", offsetof(vlCameraDef, sensor_width_mm), FOCAL_SENSOR,
-     false},
-    {"screen_min_x", NULL, offsetof(vlCameraDef, screen_min_x), FOCAL_SCREEN, false},
-    {"screen_max_x", NULL, offsetof(vlCameraDef, screen_max_x), FOCAL_SCREEN, false},
-    {"screen_min_y", NULL, offsetof(vlCameraDef, screen_min_y), FOCAL_SCREEN, false},
-    {"screen_max_y", NULL, offsetof(vlCameraDef, screen_max_y), FOCAL_SCREEN, false},
+    {offsetof(vlCameraDef, fov), FOCAL_ALONE, true},
+    {offsetof(vlCameraDef, fx), FOCAL_ALONE, true},
+    {offsetof(vlCameraDef, fy), FOCAL_ALONE, true},
+    {offsetof(vlCameraDef, view_distance), FOCAL_PLANE, true},
+    {offsetof(vlCameraDef, zoom), FOCAL_PLANE, false},
+    {offsetof(vlCameraDef, pixel_size), FOCAL_PLANE, false},
+    {offsetof(vlCameraDef, focal_mm), FOCAL_SENSOR, false},
+    {offsetof(vlCameraDef, sensor_width_mm), FOCAL_SENSOR, false},
+    {offsetof(vlCameraDef, screen_min_x), FOCAL_SCREEN, false},
+    {offsetof(vlCameraDef, screen_max_x), FOCAL_SCREEN, false},
+    {offsetof(vlCameraDef, screen_min_y), FOCAL_SCREEN, false},
+    {offsetof(vlCameraDef, screen_max_y), FOCAL_SCREEN, false},
 };
 enum { FOCAL_NUMBERS = sizeof focal_numbers / sizeof *focal_numbers };
 
@@ -108,33 +105,6 @@ static void unset_focal(vlCameraDef *def, unsigned kept_groups) {
   for (size_t i = 0; i < FOCAL_NUMBERS; i++)
     if (!(kept_groups >> focal_numbers[i].group & 1))
       *focal_number(def, i) = VL_UNSET;
-}
-
-/* Unsets the numbers that the given ones replace. A group stays where they are the part of it
- * that needs the rest. Where an f-number or a tilted lens needs the sensor's width, or one of
- * its two numbers that describes the lens alone, that one stays. */
-static void forget_focal(vlCameraDef *def, PyObject *keywords) {
-  const vlLensDef *lens = &def->lens;
-  bool whole = PyDict_GetItemString(keywords, "K") || PyDict_GetItemString(keywords, "colmap");
-  unsigned groups = 0;
-  for (size_t i = 0; i < FOCAL_NUMBERS; i++) {
-    const char *alias = focal_numbers[i].alias;
-    if (!PyDict_GetItemString(keywords, focal_numbers[i].name) &&
-        !(alias && PyDict_GetItemString(keywords, alias)))
-      continue;
-    whole = whole || focal_numbers[i].alone;
-    groups |= 1u << focal_numbers[i].group;
-  }
-  if (!whole && !groups)
-    return;
-  double focal_mm = def->focal_mm;
-  double sensor_width_mm = def->sensor_width_mm;
-  unset_focal(def, whole ? 0 : groups);
-  if (isnan(lens->f_number) && lens->lens_tilt_x == 0 && lens->lens_tilt_y == 0)
-    return;
-  def->sensor_width_mm = sensor_width_mm;
-  if (isnan(sensor_width_mm))
-    def->focal_mm = focal_mm;
 }
 
 static bool set_k(vlCameraDef *def, PyObject *value) {
@@ -297,6 +267,40 @@ static const vlParameter *camera_row(const vlCameraDef *def, const char *name, b
   return NULL;
 }
 
+/* Unsets the numbers that the given ones replace. A group stays where they are the part of it
+ * that needs the rest. Where an f-number or a tilted lens needs the sensor's width, or one of
+ * its two numbers that describes the lens alone, that one stays. False: an exception. */
+static bool forget_focal(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
+  const vlLensDef *lens = &def->lens;
+  PyObject *name;
+  Py_ssize_t position = 0;
+  bool whole = false;
+  unsigned groups = 0;
+  while (PyDict_Next(keywords, &position, &name, NULL)) {
+    const char *text = keep_text(keep, name, "a keyword");
+    if (!text)
+      return false;
+    const vlParameter *row = camera_row(def, text, true);
+    whole = whole || strcmp(text, "K") == 0 || strcmp(text, "colmap") == 0;
+    for (size_t i = 0; row && i < FOCAL_NUMBERS; i++)
+      if (row->offset == focal_numbers[i].member) {
+        whole = whole || focal_numbers[i].alone;
+        groups |= 1u << focal_numbers[i].group;
+      }
+  }
+  if (!whole && !groups)
+    return true;
+  double focal_mm = def->focal_mm;
+  double sensor_width_mm = def->sensor_width_mm;
+  unset_focal(def, whole ? 0 : groups);
+  if (isnan(lens->f_number) && lens->lens_tilt_x == 0 && lens->lens_tilt_y == 0)
+    return true;
+  def->sensor_width_mm = sensor_width_mm;
+  if (isnan(sensor_width_mm))
+    def->focal_mm = focal_mm;
+  return true;
+}
+
 static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
   PyObject *name, *value;
   Py_ssize_t position = 0;
@@ -305,7 +309,8 @@ static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
   if (projection &&
       !set_parameter(&target, vl_setting(VL_SETTING_CAMERA, "projection"), projection))
     return false;
-  forget_focal(def, keywords);
+  if (!forget_focal(def, keep, keywords))
+    return false;
   while (PyDict_Next(keywords, &position, &name, &value)) {
     const char *text = keep_text(keep, name, "a keyword");
     if (!text)

@@ -205,13 +205,6 @@ static void report_left_out(Engine *e, const vlRenderStats *stats) {
   json_text_keep(json, e, &e->last.left_out);
 }
 
-static void forget_left_out(Engine *e) {
-  engine_lock(e);
-  free(e->last.left_out);
-  e->last.left_out = NULL;
-  engine_unlock(e);
-}
-
 /* Adds samples to the film, or to its successor. False: interrupted, or it failed. */
 static bool render_pass(Engine *e) {
   vlFilm *film = e->race.successor ? e->race.successor : e->film;
@@ -289,13 +282,16 @@ static bool take_wanted(Engine *e) {
     vl_cancel_clear(e->interrupt.cancel);
   e->interrupt.since = 0;
   e->interrupt.first_runs = anew || channel;
+  if (anew) {
+    free(e->last.left_out);
+    e->last.left_out = NULL;
+  }
   engine_unlock(e);
   if (denoise)
     e->preview.spp = 0;
   if (!anew)
     return engine_sensor_changed(e, sensor && !channel) || channel || denoise;
   e->samples.failed = false;
-  forget_left_out(e);
   vl_film_destroy(e->film);
   e->film = NULL;
   engine_drop_successor(e);

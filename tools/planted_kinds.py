@@ -1460,12 +1460,12 @@ MISTAKES = [
      r"materials principled: .*not reciprocal", "src/material/principled_energy.hot.c",
      """    vlAlbedoCell index = vl_loss_cell(eta),
                  alpha =
-                     vl_albedo_cell(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+                     vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
     uint32_t side = l->inside[i] > 0.0f;
     l->loss_o""",
      """    vlAlbedoCell index = vl_loss_cell(eta),
                  alpha =
-                     vl_albedo_cell(base_alpha(s->alpha_x[i], s->alpha_x[i]), VL_LOSS_ALPHA);
+                     vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_x[i]), VL_LOSS_ALPHA);
     uint32_t side = l->inside[i] > 0.0f;
     l->loss_o"""),
     ("lamps beside the sky are chosen where those of the first lane are", "lights",

@@ -11,6 +11,9 @@
  *             single-scattering model of reflection and refraction loses (Walter et al. 2007
  *             with the Schlick term of that index)
  *
+ *   stretched values of an anisotropic layer, divided by those of the isotropic layer whose
+ *             alpha is vl_base_alpha (vlStretched)
+ *
  * Means are cosine-weighted averages over the hemisphere: int E 2 cos dcos (Kulla and Conty
  * 2017). */
 #ifndef MATERIAL_PRINCIPLED_H
@@ -24,9 +27,22 @@ enum {
   VL_ALBEDO_ALPHA = 32,
   VL_LOSS_COS = 32,
   VL_LOSS_ALPHA = 16,
-  VL_LOSS_ETA = 16
+  VL_LOSS_ETA = 16,
+  VL_STRETCH_RATIO = 5,
+  VL_STRETCH_AZIMUTH = 5,
+  VL_STRETCH_ALPHA = 8
 };
 #define VL_LOSS_MAX_ROOT 0.5f /* largest tabulated (eta - 1) / (eta + 1), for eta = 3 */
+
+/* What the tables `stretched` compare: the loss 1 - a - b, b, and the loss of glass of
+ * index 1.5 from outside and from inside, which stands for glass of each index. */
+typedef enum vlStretched {
+  VL_STRETCHED_LOSS,
+  VL_STRETCHED_B,
+  VL_STRETCHED_OUTSIDE,
+  VL_STRETCHED_INSIDE,
+  VL_STRETCHED_COUNT
+} vlStretched;
 
 /* Rows are equal steps of sqrt(alpha) over [0, 1], columns equal steps of sqrt(cos) over [0,
  * 1]. Lookups interpolate linearly. */
@@ -38,6 +54,12 @@ typedef struct vlPrincipledTables {
    * steps. Then rows and columns as above. */
   float loss[2][VL_LOSS_ETA][VL_LOSS_ALPHA][VL_LOSS_COS],
       loss_mean[2][VL_LOSS_ETA][VL_LOSS_ALPHA];
+  /* Indices: what is compared, sqrt of the smaller alpha over the larger one in equal steps,
+   * |cos| of the azimuth to the direction of the larger alpha in equal steps, rows of the
+   * larger alpha and columns as above. */
+  float stretched[VL_STRETCHED_COUNT][VL_STRETCH_RATIO][VL_STRETCH_AZIMUTH][VL_STRETCH_ALPHA]
+                 [VL_LOSS_COS],
+      stretched_mean[VL_STRETCHED_COUNT][VL_STRETCH_RATIO][VL_STRETCH_ALPHA];
 } vlPrincipledTables;
 
 /* tools/albedo_tables computes these tables when the library is built. The sheen's albedo
@@ -75,21 +97,60 @@ static inline vlAlbedoCell vl_loss_cell(float eta) {
   float t = c - (float)first;
   return (vlAlbedoCell){first, t < 1.0f ? t : 1.0f};
 }
+static inline float vl_loss_row(const float rows[][VL_LOSS_COS], vlAlbedoCell alpha,
+                                vlAlbedoCell cosine) {
+  const float *p = rows[alpha.first] + cosine.first, *q = p + VL_LOSS_COS;
+  float low = p[0] + cosine.t * (p[1] - p[0]), high = q[0] + cosine.t * (q[1] - q[0]);
+  return low + alpha.t * (high - low);
+}
 static inline float vl_loss_at(uint32_t side, vlAlbedoCell eta, vlAlbedoCell alpha,
                                vlAlbedoCell cosine) {
-  float ends[2];
-  for (uint32_t k = 0; k < 2; k++) {
-    const float *p = vl_principled_tables.loss[side][eta.first + k][alpha.first] + cosine.first,
-                *q = p + VL_LOSS_COS;
-    float low = p[0] + cosine.t * (p[1] - p[0]), high = q[0] + cosine.t * (q[1] - q[0]);
-    ends[k] = low + alpha.t * (high - low);
-  }
-  return ends[0] + eta.t * (ends[1] - ends[0]);
+  const float(*tables)[VL_LOSS_ALPHA][VL_LOSS_COS] =
+      vl_principled_tables.loss[side] + eta.first;
+  float low = vl_loss_row(tables[0], alpha, cosine),
+        high = vl_loss_row(tables[1], alpha, cosine);
+  return low + eta.t * (high - low);
 }
 static inline float vl_loss_mean(uint32_t side, vlAlbedoCell eta, vlAlbedoCell alpha) {
   const float(*mean)[VL_LOSS_ALPHA] = vl_principled_tables.loss_mean[side] + eta.first;
   float low = vl_albedo_mean(mean[0], alpha), high = vl_albedo_mean(mean[1], alpha);
   return low + eta.t * (high - low);
+}
+
+/* The alpha of the isotropic layer whose losses are closest to those of an anisotropic one. */
+static inline float vl_base_alpha(float x, float y) {
+  return 0.6f * vl_max(x, y) + 0.4f * vl_min(x, y);
+}
+
+/* Position in the tables `stretched`. */
+typedef struct vlStretch {
+  vlAlbedoCell ratio, azimuth, alpha, cosine;
+} vlStretch;
+static inline vlStretch vl_stretch_of(float alpha_x, float alpha_y, vlVec3 w) {
+  float larger = vl_max(alpha_x, alpha_y), along = alpha_x > alpha_y ? w.x : w.y;
+  float ratio = vl_min(alpha_x, alpha_y) / vl_max(larger, VL_MIN_POSITIVE),
+        across2 = vl_max(w.x * w.x + w.y * w.y, VL_MIN_POSITIVE);
+  return (vlStretch){.ratio = vl_albedo_cell(ratio, VL_STRETCH_RATIO),
+                     .azimuth = vl_albedo_cell(along * along / across2, VL_STRETCH_AZIMUTH),
+                     .alpha = vl_albedo_cell(larger, VL_STRETCH_ALPHA),
+                     .cosine = vl_albedo_cell(vl_abs(w.z), VL_LOSS_COS)};
+}
+static inline float vl_stretched_at(uint32_t kind, vlStretch at) {
+  float ends[2];
+  for (uint32_t k = 0; k < 2; k++) {
+    const float(*rows)[VL_STRETCH_ALPHA][VL_LOSS_COS] =
+        vl_principled_tables.stretched[kind][at.ratio.first + k] + at.azimuth.first;
+    float low = vl_loss_row(rows[0], at.alpha, at.cosine),
+          high = vl_loss_row(rows[1], at.alpha, at.cosine);
+    ends[k] = low + at.azimuth.t * (high - low);
+  }
+  return ends[0] + at.ratio.t * (ends[1] - ends[0]);
+}
+static inline float vl_stretched_mean(uint32_t kind, vlStretch at) {
+  const float(*mean)[VL_STRETCH_ALPHA] =
+      vl_principled_tables.stretched_mean[kind] + at.ratio.first;
+  float low = vl_albedo_mean(mean[0], at.alpha), high = vl_albedo_mean(mean[1], at.alpha);
+  return low + at.ratio.t * (high - low);
 }
 
 static inline float vl_schlick_weight(float cosine) {

@@ -25,12 +25,13 @@ static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t fi
   s.alpha_x = p->alpha_x + first;
   s.alpha_y = p->alpha_y + first;
   s.eta = p->eta_s + first;
-  s.film = s.sheen = s.coat = s.solid = false;
+  s.film = s.sheen = s.coat = s.solid = s.anisotropic = false;
   uint32_t live = n - first < s.count ? n - first : s.count;
   for (uint32_t i = 0; i < live; i++) {
     s.film |= s.row[VL_P_FILM][i] > 0.0f;
     s.coat |= s.row[VL_P_COAT][i] > 0.0f;
     s.solid |= s.row[VL_P_THIN][i] == 0.0f && s.row[VL_P_TRANSMISSION][i] > 0.0f;
+    s.anisotropic |= s.alpha_x[i] != s.alpha_y[i];
     for (int c = 0; c < 4; c++)
       s.sheen |= s.row[VL_P_SHEEN + c][i] > 0.0f;
   }

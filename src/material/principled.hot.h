@@ -15,8 +15,8 @@ typedef struct vlPrincipledSlice {
   const float *base[4], *tint[4], *alpha_x, *alpha_y, *eta;
   const float *lambda[4]; /* null in RGB mode */
   uint32_t count;         /* a multiple of the vector width */
-  /* true if some lane has a thin film, sheen, coat, or transmissive solid */
-  bool film, sheen, coat, solid;
+  /* true if some lane has a thin film, sheen, coat, or transmissive solid, or is anisotropic */
+  bool film, sheen, coat, solid, anisotropic;
 } vlPrincipledSlice;
 
 typedef struct vlPrincipledLanes {

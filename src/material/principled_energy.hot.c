@@ -56,11 +56,6 @@ static float film_reflection(const vlPrincipledSlice *s, uint32_t i, int channel
 
 /* ---- directional albedos ----------------------------------------------------------------- */
 
-/* The isotropic alpha whose single scattering loses about the same energy. */
-static inline float base_alpha(float x, float y) {
-  return 0.6f * vl_max(x, y) + 0.4f * vl_min(x, y);
-}
-
 /* Positions in the albedo tables, for a chunk. */
 typedef struct Cells {
   int32_t alpha[VL_PRINCIPLED_CHUNK], cosine[VL_PRINCIPLED_CHUNK];
@@ -71,7 +66,7 @@ VL_NOINLINE void find_cells(const vlPrincipledSlice *s, const float *z, Cells *p
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float a = base_alpha(s->alpha_x[i], s->alpha_y[i]), c = vl_abs(z[i]);
+    float a = vl_base_alpha(s->alpha_x[i], s->alpha_y[i]), c = vl_abs(z[i]);
     a = __builtin_sqrtf(a < 1.0f ? a : 1.0f) * (float)(VL_ALBEDO_ALPHA - 1);
     c = __builtin_sqrtf(c < 1.0f ? c : 1.0f) * (float)(VL_ALBEDO_COS - 1);
     int32_t ia = (int32_t)a, ic = (int32_t)c;
@@ -101,6 +96,42 @@ VL_NOINLINE void look_up_means(const Cells *p, uint32_t count, float *a, float *
     vlAlbedoCell alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]};
     a[i] = vl_albedo_mean(t->a_mean, alpha);
     b[i] = vl_albedo_mean(t->b_mean, alpha);
+  }
+}
+
+/* Turns albedos of an isotropic layer into those of an anisotropic one. */
+static void stretch_pair(float loss, float edge, float *a, float *b) {
+  float one = 1.0f - loss * (1.0f - *a - *b);
+  *b *= edge;
+  *a = vl_max(one - *b, 0.0f);
+}
+
+static bool is_stretched(const vlPrincipledSlice *s, uint32_t i) {
+  return s->alpha_x[i] != s->alpha_y[i];
+}
+
+static vlStretch stretch_of(const vlPrincipledSlice *s, uint32_t i, vlVec3 w) {
+  return vl_stretch_of(s->alpha_x[i], s->alpha_y[i], w);
+}
+
+static void stretch_albedos(const vlPrincipledSlice *s, const float *x, const float *y,
+                            const float *z, float *a, float *b) {
+  for (uint32_t i = 0; i < s->count; i++) {
+    if (!is_stretched(s, i))
+      continue;
+    vlStretch at = stretch_of(s, i, vl_lane3(x, y, z, i));
+    stretch_pair(vl_stretched_at(VL_STRETCHED_LOSS, at), vl_stretched_at(VL_STRETCHED_B, at),
+                 a + i, b + i);
+  }
+}
+
+static void stretch_means(const vlPrincipledSlice *s, float *a, float *b) {
+  for (uint32_t i = 0; i < s->count; i++) {
+    if (!is_stretched(s, i))
+      continue;
+    vlStretch at = stretch_of(s, i, vl_vec3(0.0f, 0.0f, 1.0f));
+    stretch_pair(vl_stretched_mean(VL_STRETCHED_LOSS, at),
+                 vl_stretched_mean(VL_STRETCHED_B, at), a + i, b + i);
   }
 }
 
@@ -212,18 +243,27 @@ static void sheen_at_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBs
  *     p_out = T n^2 M_in / max(n^2 M_in, M_out),  p_in = T M_out / max(n^2 M_in, M_out)
  * If radiance divided by the squared index is the same everywhere (a furnace), each side gets
  * back its loss, and f is reciprocal. */
-static void losses_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
+static void losses_at_view(const vlPrincipledSlice *s, vlBsdfDirections wo,
+                           vlPrincipledLanes *l) {
   for (uint32_t i = 0; i < s->count; i++) {
     float eta = s->eta[i];
     if (s->row[VL_P_THIN][i] > 0.0f || !(s->row[VL_P_TRANSMISSION][i] > 0.0f) || !(eta > 1.0f))
       continue;
     vlAlbedoCell index = vl_loss_cell(eta),
                  alpha =
-                     vl_albedo_cell(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+                     vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
     uint32_t side = l->inside[i] > 0.0f;
     l->loss_o[i] = vl_loss_at(side, index, alpha, vl_albedo_cell(l->z[i], VL_LOSS_COS));
     for (uint32_t k = 0; k < 2; k++)
-      l->loss_mean[k][i] = vl_max(vl_loss_mean(side ^ k, index, alpha), VL_MIN_FRACTION);
+      l->loss_mean[k][i] = vl_loss_mean(side ^ k, index, alpha);
+    if (is_stretched(s, i)) {
+      vlStretch at = stretch_of(s, i, vl_lane3(wo.x, wo.y, wo.z, i));
+      l->loss_o[i] *= vl_stretched_at(VL_STRETCHED_OUTSIDE + side, at);
+      for (uint32_t k = 0; k < 2; k++)
+        l->loss_mean[k][i] *= vl_stretched_mean(VL_STRETCHED_OUTSIDE + (side ^ k), at);
+    }
+    for (uint32_t k = 0; k < 2; k++)
+      l->loss_mean[k][i] = vl_max(l->loss_mean[k][i], VL_MIN_FRACTION);
     float here = l->loss_mean[0][i], there = l->loss_mean[1][i],
           n2 = side ? 1.0f / (eta * eta) : eta * eta;
     l->again_pass[i] = n2 * there / vl_max(here, n2 * there);
@@ -234,18 +274,22 @@ static void losses_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
   }
 }
 
-static void losses_at_light(const vlPrincipledSlice *s, const float *z, vlPrincipledLanes *l) {
+static void losses_at_light(const vlPrincipledSlice *s, vlBsdfDirections wi, const float *z,
+                            vlPrincipledLanes *l) {
   for (uint32_t i = 0; i < s->count; i++) {
     float eta = s->eta[i], c = vl_abs(z[i]);
     if (!(l->loss_mean[0][i] > 0.0f))
       continue;
     vlAlbedoCell index = vl_loss_cell(eta),
                  alpha =
-                     vl_albedo_cell(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+                     vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
     uint32_t side = l->inside[i] > 0.0f, crosses = z[i] < 0.0f;
-    float both = l->loss_o[i] *
-                 vl_loss_at(side ^ crosses, index, alpha, vl_albedo_cell(c, VL_LOSS_COS)) * c *
-                 VL_INV_PI;
+    uint32_t other = side ^ crosses;
+    float lost = vl_loss_at(other, index, alpha, vl_albedo_cell(c, VL_LOSS_COS));
+    if (is_stretched(s, i))
+      lost *= vl_stretched_at(VL_STRETCHED_OUTSIDE + other,
+                              stretch_of(s, i, vl_lane3(wi.x, wi.y, z, i)));
+    float both = l->loss_o[i] * lost * c * VL_INV_PI;
     float here = l->loss_mean[0][i], there = l->loss_mean[1][i],
           n2 = side ? 1.0f / (eta * eta) : eta * eta;
     l->again_up[i] = both / here;
@@ -319,10 +363,14 @@ void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, vlPrinc
   Cells cells;
   find_cells(s, l->z, &cells);
   look_up_means(&cells, count, a, b);
+  if (s->anisotropic)
+    stretch_means(s, a, b);
   energies(s, a, b, l->energy_mean, l->one_mean);
   if (s->film)
     film_energies(s, NULL, l->one_mean, l->energy_mean);
   look_up(&cells, count, a, b);
+  if (s->anisotropic)
+    stretch_albedos(s, wo.x, wo.y, l->z, a, b);
   energies(s, a, b, l->energy_o, l->one_o);
   if (s->film)
     film_energies(s, l->z, l->one_o, l->energy_o);
@@ -335,7 +383,7 @@ void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, vlPrinc
   if (s->sheen)
     sheen_at_view(s, l);
   if (s->solid)
-    losses_at_view(s, l);
+    losses_at_view(s, wo, l);
   weigh(s, coat_cos, l);
 }
 
@@ -348,13 +396,15 @@ void vl_principled_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdf
   Cells cells;
   find_cells(s, z, &cells);
   look_up(&cells, count, a, b);
+  if (s->anisotropic)
+    stretch_albedos(s, wi.x, wi.y, z, a, b);
   energies(s, a, b, l->energy_i, l->one_i);
   if (s->coat)
     coat_energies(s, l, wi.x, wi.y, z, l->coat_i);
   if (s->sheen)
     sheen_at_light(s, wo, wi, z, l);
   if (s->solid)
-    losses_at_light(s, z, l);
+    losses_at_light(s, wi, z, l);
   if (!s->film)
     return;
   film_energies(s, z, l->one_i, l->energy_i);

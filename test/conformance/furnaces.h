@@ -18,7 +18,8 @@
   "[-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"integer indices\" "       \
   "[0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3] AttributeEnd\n" \
   "Material %s Shape \"sphere\" \"float radius\" .7\n"
-#define CLEAR "\"principled\" \"rgb basecolor\" [1 1 1] \"float metallic\" 0 "
+#define WHITE "\"principled\" \"rgb basecolor\" [1 1 1] "
+#define CLEAR WHITE "\"float metallic\" 0 "
 
 /* What absorbs nothing. Dispersion: at its two surfaces in turn. */
 static const char *const lossless[] = {
@@ -27,6 +28,7 @@ static const char *const lossless[] = {
     "\"bool thinwalled\" false",
     CLEAR "\"float roughness\" 0 \"float transmission\" 1",
     CLEAR "\"float roughness\" .5 \"float specular\" 0 \"float diffusetransmission\" .5",
+    WHITE "\"float roughness\" .2 \"float anisotropy\" 1",
     "\"dielectric\" \"spectrum eta\" [360 1.6 560 1.55 830 1.5]",
     "\"dielectric\"",
     "\"thindielectric\"",

@@ -29,7 +29,7 @@ static uint32_t gather(const vlWorld *world, const vlPaths *paths, const vlSurfa
     uint32_t i = lanes[k < count ? k : count - 1];
     const vlWorldLight *light = &world->lights.items[samples->light[i]];
     b->lane[k] = i;
-    vl_set_lane3(b->px, b->py, b->pz, k, vl_lane3(f->px, f->py, f->pz, i));
+    vl_set_lane3(b->px, b->py, b->pz, k, vl_row3(&f->p, i));
     b->u[k] = u[i];
     b->v[k] = v[i];
     for (int c = 0; c < 9; c++)
@@ -136,8 +136,8 @@ static void store(const Block *b, uint32_t count, vlLightSamples *out) {
       continue;
     float total = b->pdf[k] * out->pmf[i], inv = 1.0f / total;
     out->pdf[i] = total;
-    vl_set_lane3(out->wx, out->wy, out->wz, i, vl_lane3(b->wx, b->wy, b->wz, k));
-    vl_set_lane3(out->tx, out->ty, out->tz, i, vl_lane3(b->tx, b->ty, b->tz, k));
+    vl_set_row3(&out->w, i, vl_lane3(b->wx, b->wy, b->wz, k));
+    vl_set_row3(&out->target, i, vl_lane3(b->tx, b->ty, b->tz, k));
     for (int c = 0; c < 4; c++)
       out->radiance[c][i] = b->radiance[c][k] * inv;
   }

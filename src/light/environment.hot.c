@@ -151,9 +151,9 @@ void vl_sample_environment(const vlWorld *world, const vlWorldLight *light,
       continue;
     float total = pdf * out->pmf[i], inv = 1.0f / total;
     out->pdf[i] = total;
-    out->wx[i] = out->tx[i] = b.wx[k];
-    out->wy[i] = out->ty[i] = b.wy[k];
-    out->wz[i] = out->tz[i] = b.wz[k];
+    out->w.x[i] = out->target.x[i] = b.wx[k];
+    out->w.y[i] = out->target.y[i] = b.wy[k];
+    out->w.z[i] = out->target.z[i] = b.wz[k];
     for (int c = 0; c < 4; c++)
       out->radiance[c][i] = b.radiance[c][k] * inv;
   }
@@ -168,7 +168,7 @@ static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t pad
   const float turn[9] = {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]};
   for (uint32_t k = 0; k < padded; k++) {
     uint32_t i = b->lane[k];
-    vl_set_lane3(b->wx, b->wy, b->wz, k, vl_lane3(paths->dx, paths->dy, paths->dz, i));
+    vl_set_lane3(b->wx, b->wy, b->wz, k, vl_row3(&paths->d, i));
   }
   /* must vectorise */
   VL_SIMD

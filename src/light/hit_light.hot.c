@@ -6,7 +6,7 @@
 
 /* Infinite light k of the world as seen by ray i. */
 static vlHitLight hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k) {
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlVec3 o = vl_row3(&p->o, i), d = vl_row3(&p->d, i);
   vlHitLight met = {.light = world->infinite_lights.items[k]};
   const vlWorldLight *light = &world->lights.items[met.light];
   float lambda[4];
@@ -48,7 +48,7 @@ bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
     return false;
   const vlWorldLight *light = &world->lights.items[met->light];
   const vlEmitted *e = &world->emitted.items[light->emitted];
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlVec3 o = vl_row3(&p->o, i), d = vl_row3(&p->d, i);
   met->at = vl_hit_point(world, p, h, i);
   if (!(vl_dot(d, met->at.g) < 0.0f) && !e->two_sided)
     return false;

@@ -251,8 +251,8 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
     return;
   float total = sample.pdf * out->pmf[i], inv = 1.0f / total;
   out->pdf[i] = total;
-  vl_set_lane3(out->wx, out->wy, out->wz, i, sample.w);
-  vl_set_lane3(out->tx, out->ty, out->tz, i, sample.target);
+  vl_set_row3(&out->w, i, sample.w);
+  vl_set_row3(&out->target, i, sample.target);
   for (int c = 0; c < 4; c++)
     out->radiance[c][i] = sample.radiance[c] * inv;
 }
@@ -299,12 +299,12 @@ void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, con
   Group groups[2] = {{.count = 0}, {.count = 0}}; /* triangles, spheres */
   for (uint32_t i = 0; i < n; i++) {
     out->pdf[i] = 0.0f;
-    out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
+    out->w.x[i] = out->w.y[i] = out->w.z[i] = 0.0f;
   }
   for (uint32_t k = 0; k < chosen.count; k++) {
     uint32_t i = chosen.lane[k];
     const vlWorldLight *light = &world->lights.items[out->light[i]];
-    vlVec3 p = vl_lane3(f->px, f->py, f->pz, i);
+    vlVec3 p = vl_row3(&f->p, i);
     if (vl_light_is_environment(world, light)) {
       skies[sky_count++] = i;
     } else if (light->plain_triangle ||

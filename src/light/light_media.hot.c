@@ -14,7 +14,7 @@ static uint32_t closest(const vlWorld *world, vlVec3 o, vlVec3 d, float t_min, f
                         vlPoint *at) {
   uint32_t shape, prim, instance;
   float t = 0.0f;
-  vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &t_min, &t_max, NULL, NULL};
+  vlRays ray = vl_one_ray(&o, &d, &t_min, &t_max, NULL);
   vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
   if (shape != VL_NONE)
     *at = vl_point_at(world, o, d, shape, prim, instance, t);

@@ -9,8 +9,8 @@ static void seeds(vlTextureRun *r) {
   for (uint32_t i = r->first; i < r->last; i++) {
     uint32_t pixel = vl_hash3((uint32_t)p->px[i], (uint32_t)p->py[i], p->index[i]);
     uint32_t ray =
-        vl_hash3(vl_float_bits(p->dx[i]), vl_float_bits(p->dy[i]), vl_float_bits(p->dz[i]));
-    r->at->shade.seed[i] = vl_hash3(pixel, ray, vl_float_bits(p->ox[i]));
+        vl_hash3(vl_float_bits(p->d.x[i]), vl_float_bits(p->d.y[i]), vl_float_bits(p->d.z[i]));
+    r->at->shade.seed[i] = vl_hash3(pixel, ray, vl_float_bits(p->o.x[i]));
   }
 }
 

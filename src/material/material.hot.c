@@ -24,7 +24,7 @@ static vlVec3 facing(vlVec3 n, vlVec3 side) {
 /* Computes dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals or
  * uv. */
 static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i) {
-  vlVec2 b = vl_corner_weights(c, i, vl_lane3(f->px, f->py, f->pz, i));
+  vlVec2 b = vl_corner_weights(c, i, vl_row3(&f->p, i));
   vlVec3 n = vl_corner(c->n, 0, i), m1 = vl_sub(vl_corner(c->n, 1, i), n),
          m2 = vl_sub(vl_corner(c->n, 2, i), n);
   float length = vl_length(vl_add(n, vl_add(vl_mul(m1, b.x), vl_mul(m2, b.y))));
@@ -32,7 +32,7 @@ static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i)
   float u2 = c->uv[4][i] - c->uv[0][i], v2 = c->uv[5][i] - c->uv[1][i];
   float det = (u1 * v2 - v1 * u2) * length;
   float scale = f->uv_scale[i] > 0.0f && vl_abs(det) > 0.0f ? 1.0f / det : 0.0f;
-  vlVec3 ns = vl_lane3(f->nx, f->ny, f->nz, i);
+  vlVec3 ns = vl_row3(&f->n, i);
   vlVec3 du = vl_mul(vl_sub(vl_mul(m1, v2), vl_mul(m2, v1)), scale);
   vlVec3 dv = vl_mul(vl_sub(vl_mul(m2, u1), vl_mul(m1, u2)), scale);
   du = vl_sub(du, vl_mul(ns, vl_dot(du, ns)));
@@ -69,27 +69,27 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
   for (uint32_t i = r->first; i < r->last; i++) {
     su[i] = step[i];
     sv[i] = 0.0f;
-    x[i] = step[i] * f->ux[i];
-    y[i] = step[i] * f->uy[i];
-    z[i] = step[i] * f->uz[i];
+    x[i] = step[i] * f->dpdu.x[i];
+    y[i] = step[i] * f->dpdu.y[i];
+    z[i] = step[i] * f->dpdu.z[i];
   }
   vl_texture_float(r, node, hu);
   for (uint32_t i = r->first; i < r->last; i++) {
     su[i] = 0.0f;
     sv[i] = step[i];
-    x[i] = step[i] * f->vx[i];
-    y[i] = step[i] * f->vy[i];
-    z[i] = step[i] * f->vz[i];
+    x[i] = step[i] * f->dpdv.x[i];
+    y[i] = step[i] * f->dpdv.y[i];
+    z[i] = step[i] * f->dpdv.z[i];
   }
   vl_texture_float(r, node, hv);
   r->shift_u = NULL;
   for (uint32_t i = r->first; i < r->last; i++) {
     if (r->world->shapes.items[r->at->hits.shape[i]].triangles)
       triangle_normal_slopes(&r->s->corners, f, i);
-    vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i);
-    vlVec3 g = facing(vl_lane3(f->gx, f->gy, f->gz, i), n);
-    vlVec3 du = turned(vl_lane3(f->ux, f->uy, f->uz, i), g, n);
-    vlVec3 dv = turned(vl_lane3(f->vx, f->vy, f->vz, i), g, n);
+    vlVec3 n = vl_row3(&f->n, i);
+    vlVec3 g = facing(vl_row3(&f->g, i), n);
+    vlVec3 du = turned(vl_row3(&f->dpdu, i), g, n);
+    vlVec3 dv = turned(vl_row3(&f->dpdv, i), g, n);
     du = vl_add(du, vl_mul(n, (hu[i] - h[i]) / step[i]));
     dv = vl_add(dv, vl_mul(n, (hv[i] - h[i]) / step[i]));
     du = vl_add(du, vl_mul(vl_lane3(f->dn[0], f->dn[1], f->dn[2], i), h[i]));
@@ -98,8 +98,8 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
     if (!(vl_length2(m) > 0.0f))
       continue;
     m = facing(vl_normalize(m), n);
-    vl_set_lane3(f->nx, f->ny, f->nz, i, m);
-    vl_set_lane3(f->ux, f->uy, f->uz, i, du);
+    vl_set_row3(&f->n, i, m);
+    vl_set_row3(&f->dpdu, i, du);
   }
 }
 
@@ -111,13 +111,13 @@ static void normal_map(vlTextureRun *r, int32_t image) {
   for (uint32_t i = r->first; i < r->last; i++) {
     vlTexel t = vl_bilinear(mip, f->u[i], 1.0f - f->v[i], VL_WRAP_REPEAT);
     vlVec3 local = vl_normalize(vl_vec3(2 * t.c[0] - 1, 2 * t.c[1] - 1, 2 * t.c[2] - 1));
-    vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i), u = vl_lane3(f->ux, f->uy, f->uz, i);
+    vlVec3 n = vl_row3(&f->n, i), u = vl_row3(&f->dpdu, i);
     vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n))));
     vlFrame frame = {x, vl_cross(n, x), n};
     vlVec3 m = vl_normalize(vl_from_local(frame, local));
     if (!(vl_length2(m) > 0.0f))
       continue;
-    vl_set_lane3(f->nx, f->ny, f->nz, i, m);
+    vl_set_row3(&f->n, i, m);
   }
 }
 
@@ -311,8 +311,8 @@ void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *f, vlShade *sh
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 nn = vl_vec3(f->nx[i], f->ny[i], f->nz[i]),
-           u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
+    vlVec3 nn = vl_vec3(f->n.x[i], f->n.y[i], f->n.z[i]),
+           u = vl_vec3(f->dpdu.x[i], f->dpdu.y[i], f->dpdu.z[i]);
     vlVec3 t = vl_sub(u, vl_mul(nn, vl_dot(u, nn)));
     float ok = vl_length2(t) > PARALLEL * vl_length2(u) ? 1.0f : 0.0f;
     vlFrame any = vl_frame_from_z(nn);
@@ -321,9 +321,9 @@ void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *f, vlShade *sh
     t.y = ok > 0.0f ? t.y : any.x.y;
     t.z = ok > 0.0f ? t.z : any.x.z;
     vlVec3 b = vl_cross(nn, t);
-    vl_set_lane3(shade->tx, shade->ty, shade->tz, i, t);
-    vl_set_lane3(shade->bx, shade->by, shade->bz, i, b);
-    vlVec3 wo = vl_vec3(-paths->dx[i], -paths->dy[i], -paths->dz[i]);
+    vl_set_row3(&shade->tangent, i, t);
+    vl_set_row3(&shade->bitangent, i, b);
+    vlVec3 wo = vl_vec3(-paths->d.x[i], -paths->d.y[i], -paths->d.z[i]);
     shade->wo[0][i] = vl_dot(wo, t);
     shade->wo[1][i] = vl_dot(wo, b);
     float wo_z = vl_dot(wo, nn);

@@ -24,8 +24,7 @@ static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float sca
   vlTexel t = vl_texture_texel(r, node, i);
   vlVec3 local =
       vl_normalize(vl_vec3(scale * (2 * t.c[0] - 1), scale * (2 * t.c[1] - 1), 2 * t.c[2] - 1));
-  vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i), u = vl_lane3(f->ux, f->uy, f->uz, i),
-         v = vl_lane3(f->vx, f->vy, f->vz, i);
+  vlVec3 n = vl_row3(&f->n, i), u = vl_row3(&f->dpdu, i), v = vl_row3(&f->dpdv, i);
   vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n)))), y = vl_cross(n, x);
   y = vl_dot(y, v) < 0.0f ? vl_neg(y) : y; /* mirrored uv */
   vlVec3 m = vl_normalize(vl_from_local((vlFrame){x, y, n}, local));
@@ -47,7 +46,7 @@ static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
     for (uint32_t i = r->first; i < r->last; i++) {
       vlVec3 c =
           map ? mapped(r, &r->world->nodes.items[p->coat_normal], p->coat_normal_scale, i)
-              : vl_lane3(f->nx, f->ny, f->nz, i);
+              : vl_row3(&f->n, i);
       rows[VL_P_COAT_X][i] = c.x;
       rows[VL_P_COAT_Y][i] = c.y;
       rows[VL_P_COAT_Z][i] = c.z;
@@ -58,7 +57,7 @@ static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
   const vlTextureNode *node = &r->world->nodes.items[p->normal];
   for (uint32_t i = r->first; i < r->last; i++) {
     vlVec3 m = mapped(r, node, p->normal_scale, i);
-    vl_set_lane3(f->nx, f->ny, f->nz, i, m);
+    vl_set_row3(&f->n, i, m);
   }
 }
 
@@ -67,11 +66,11 @@ static void turn_tangent(vlTextureRun *r, const float *angle) {
   vlSurface *f = &r->at->surface;
   for (uint32_t i = r->first; i < r->last; i++) {
     vlSinCos a = vl_sincos(angle[i]);
-    vlVec3 n = vl_lane3(f->nx, f->ny, f->nz, i), u = vl_lane3(f->ux, f->uy, f->uz, i);
+    vlVec3 n = vl_row3(&f->n, i), u = vl_row3(&f->dpdu, i);
     vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n)))), y = vl_cross(n, x);
-    y = vl_dot(y, vl_lane3(f->vx, f->vy, f->vz, i)) < 0.0f ? vl_neg(y) : y;
+    y = vl_dot(y, vl_row3(&f->dpdv, i)) < 0.0f ? vl_neg(y) : y;
     vlVec3 t = vl_add(vl_mul(x, a.cos), vl_mul(y, a.sin));
-    vl_set_lane3(f->ux, f->uy, f->uz, i, t);
+    vl_set_row3(&f->dpdu, i, t);
   }
 }
 
@@ -158,9 +157,9 @@ void vl_stage_coat_frames(const vlSurface *f, vlShade *shade, uint32_t first, ui
   for (uint32_t i = first; i < last; i++) {
     vlVec3 c = vl_vec3(rows[VL_P_COAT_X][i], rows[VL_P_COAT_Y][i], rows[VL_P_COAT_Z][i]);
     if (!(rows[VL_P_COAT][i] > 0.0f))
-      c = vl_lane3(f->nx, f->ny, f->nz, i);
-    rows[VL_P_COAT_X][i] = vl_dot(c, vl_lane3(shade->tx, shade->ty, shade->tz, i));
-    rows[VL_P_COAT_Y][i] = vl_dot(c, vl_lane3(shade->bx, shade->by, shade->bz, i));
-    rows[VL_P_COAT_Z][i] = vl_dot(c, vl_lane3(f->nx, f->ny, f->nz, i));
+      c = vl_row3(&f->n, i);
+    rows[VL_P_COAT_X][i] = vl_dot(c, vl_row3(&shade->tangent, i));
+    rows[VL_P_COAT_Y][i] = vl_dot(c, vl_row3(&shade->bitangent, i));
+    rows[VL_P_COAT_Z][i] = vl_dot(c, vl_row3(&f->n, i));
   }
 }

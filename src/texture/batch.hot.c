@@ -30,7 +30,7 @@ static inline void lane_axes(const vlTextureRun *r, const vlTextureNode *node, u
     return;
   }
   const vlPaths *p = &r->at->paths;
-  vlFootprint print = vl_footprint_of(vl_lane3(p->dx, p->dy, p->dz, i), at->n, at->width);
+  vlFootprint print = vl_footprint_of(vl_row3(&p->d, i), at->n, at->width);
   vlVec2 here = vl_texture_st(node, *at);
   vlTexturePoint step = *at;
   for (int k = 0; k < 2; k++) {
@@ -56,8 +56,8 @@ static inline vlTexturePoint point_of(const vlTextureRun *r, const vlTextureNode
   vlTexturePoint at = {.color = {1, 1, 1, 1}};
   at.u = f->u[i];
   at.v = f->v[i];
-  at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
-  at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* geometric normal, as in pbrt */
+  at.p = vl_row3(&f->p, i);
+  at.n = vl_row3(&f->g, i); /* geometric normal, as in pbrt */
   at.width = f->width[i];
   if (r->shift_u) {
     at.u += r->shift_u[i];

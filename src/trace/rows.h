@@ -19,17 +19,35 @@
 /* A number for each lane of a batch. */
 typedef float vlFloatRow[VL_ROW_SIZE] VL_ROW;
 typedef uint32_t vlUintRow[VL_ROW_SIZE] VL_ROW;
+/* A point or a direction for each lane. */
+typedef struct vlVec3Row {
+  vlFloatRow x, y, z;
+} vlVec3Row;
+
+/* Loops that must vectorise index the arrays themselves (vl_lane3). */
+static inline vlVec3 vl_row3(const vlVec3Row *row, uint32_t i) {
+  return vl_vec3(row->x[i], row->y[i], row->z[i]);
+}
+static inline void vl_set_row3(vlVec3Row *row, uint32_t i, vlVec3 v) {
+  row->x[i] = v.x;
+  row->y[i] = v.y;
+  row->z[i] = v.z;
+}
+/* The rays from lane `first` on. t_min, t_max, time: of vlRays, for these rays. */
+static inline vlRays vl_rays_of(const vlVec3Row *o, const vlVec3Row *d, uint32_t first,
+                                const float *t_min, const float *t_max, const float *time) {
+  return (vlRays){o->x + first, o->y + first, o->z + first, d->x + first, d->y + first,
+                  d->z + first, t_min,        t_max,        time,         NULL};
+}
 
 /* Paths: the ray, the throughput, and what multiple importance sampling needs at the next
  * hit. */
 typedef struct vlPaths {
-  vlFloatRow ox, oy, oz;
-  vlFloatRow dx, dy, dz;
+  vlVec3Row o, d;
   vlFloatRow beta[4];
   vlFloatRow lambda[4];
-  vlFloatRow pdf; /* density per solid angle with which BSDF sampling drew the direction */
-  /* surface normal at the ray's origin; the light tree uses it */
-  vlFloatRow from_nx, from_ny, from_nz;
+  vlFloatRow pdf;   /* density per solid angle with which BSDF sampling drew the direction */
+  vlVec3Row from_n; /* surface normal at the ray's origin; the light tree uses it */
   vlFloatRow from_side; /* vlSurface.side at the ray's origin */
   vlFloatRow eta_scale;
   vlFloatRow cone;   /* width of the footprint at the ray's origin */
@@ -60,12 +78,10 @@ typedef struct vlHits {
 } vlHits;
 
 typedef struct vlSurface {
-  vlFloatRow px, py, pz;
+  vlVec3Row p;
   vlFloatRow t;
-  vlFloatRow gx, gy, gz; /* geometric normal, unit */
-  vlFloatRow nx, ny, nz; /* shading normal, unit */
-  vlFloatRow ux, uy, uz; /* dpdu */
-  vlFloatRow vx, vy, vz; /* dpdv */
+  vlVec3Row g, n; /* geometric and shading normal, unit */
+  vlVec3Row dpdu, dpdv;
   vlFloatRow u, v;
   vlFloatRow offset; /* distance along the geometric normal by which a new ray's origin is moved
                         off the surface */
@@ -114,9 +130,8 @@ typedef struct vlTint {
 } vlTint;
 
 typedef struct vlShade {
-  /* frame: tangent; bitangent = n x t */
-  vlFloatRow tx, ty, tz;
-  vlFloatRow bx, by, bz;
+  /* of the frame; bitangent = n x tangent */
+  vlVec3Row tangent, bitangent;
   vlFloatRow wo[3]; /* local */
   vlFloatRow reflectance[4], eta[4], k[4];
   vlTint *tint; /* only with vlWorld.by_channel; else null */
@@ -156,17 +171,17 @@ typedef struct vlNumbers {
 typedef struct vlLightSamples {
   vlUintRow light; /* index of the chosen light; VL_INNER: not chosen yet */
   vlFloatRow pmf;
-  vlFloatRow wx, wy, wz; /* towards the light, unit */
-  /* point that must be visible */
-  vlFloatRow tx, ty, tz;
+  vlVec3Row w;            /* towards the light, unit */
+  vlVec3Row target;       /* point that must be visible */
   vlFloatRow radiance[4]; /* already divided by the pdf */
   vlFloatRow pdf;    /* per solid angle, times the probability of the light; 0: no sample */
   vlUintRow delta;   /* a delta light: a BSDF sample cannot hit it */
-  vlUintRow distant; /* 1: the target is infinitely far, and tx, ty, tz hold the direction */
+  vlUintRow distant; /* 1: the target is infinitely far, and target holds the direction */
 } vlLightSamples;
 
 typedef struct vlShadowRays {
-  vlFloatRow ox, oy, oz, dx, dy, dz, t_max;
+  vlVec3Row o, d;
+  vlFloatRow t_max;
   vlFloatRow radiance[4];
   vlUintRow lane;
   vlFloatRow time;   /* the world's time; only set if something moves */
@@ -177,16 +192,16 @@ typedef struct vlShadowRays {
 /* Sets the way of shadow ray k, of path i. */
 static inline void vl_shadow_way(const vlPaths *p, uint32_t i, vlVec3 o, vlVec3 d, float t_max,
                                  uint32_t k, vlShadowRays *q) {
-  vl_set_lane3(q->ox, q->oy, q->oz, k, o);
-  vl_set_lane3(q->dx, q->dy, q->dz, k, d);
+  vl_set_row3(&q->o, k, o);
+  vl_set_row3(&q->d, k, d);
   q->t_max[k] = t_max;
   q->time[k] = vl_path_time(p, i);
   q->lane[k] = p->lane[i];
 }
 /* Moves the way and the radiance of shadow ray i to index k. */
 static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
-  vl_set_lane3(q->ox, q->oy, q->oz, k, vl_lane3(q->ox, q->oy, q->oz, i));
-  vl_set_lane3(q->dx, q->dy, q->dz, k, vl_lane3(q->dx, q->dy, q->dz, i));
+  vl_set_row3(&q->o, k, vl_row3(&q->o, i));
+  vl_set_row3(&q->d, k, vl_row3(&q->d, i));
   q->t_max[k] = q->t_max[i];
   for (int c = 0; c < 4; c++)
     q->radiance[c][k] = q->radiance[c][i];
@@ -200,12 +215,11 @@ static inline void vl_path_lambda(const vlPaths *p, uint32_t i, float lambda[4])
 }
 /* How surface lane i receives light, and how the point that ray i left did. */
 VL_INLINE vlReceiver vl_receiver(const vlSurface *f, uint32_t i) {
-  vlVec3 n = vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), 1.0f - f->no_cosine[i]);
-  return (vlReceiver){vl_vec3(f->px[i], f->py[i], f->pz[i]), n, f->side[i]};
+  vlVec3 n = vl_mul(vl_vec3(f->n.x[i], f->n.y[i], f->n.z[i]), 1.0f - f->no_cosine[i]);
+  return (vlReceiver){vl_vec3(f->p.x[i], f->p.y[i], f->p.z[i]), n, f->side[i]};
 }
 static inline vlReceiver vl_receiver_before(const vlPaths *p, uint32_t i) {
-  vlReceiver r = {vl_lane3(p->ox, p->oy, p->oz, i),
-                  vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), p->from_side[i]};
+  vlReceiver r = {vl_row3(&p->o, i), vl_row3(&p->from_n, i), p->from_side[i]};
   return r;
 }
 /* Copies element i of a to element k of b. */
@@ -221,7 +235,7 @@ static inline void vl_hit_copy(const vlHits *a, uint32_t i, vlHits *b, uint32_t 
 static inline void vl_path_start(vlPaths *p, uint32_t k, int32_t px, int32_t py, uint32_t index,
                                  uint32_t lane) {
   p->pdf[k] = p->eta_scale[k] = 1.0f;
-  p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = p->from_side[k] = 0.0f;
+  p->from_n.x[k] = p->from_n.y[k] = p->from_n.z[k] = p->from_side[k] = 0.0f;
   p->specular[k] = 1;
   p->px[k] = px;
   p->py[k] = py;
@@ -240,10 +254,9 @@ static inline void vl_path_copy_constants(const vlPaths *a, uint32_t i, vlPaths 
 }
 /* Copies what each bounce changes. */
 static inline void vl_path_copy_ray(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
-  vl_set_lane3(b->ox, b->oy, b->oz, k, vl_lane3(a->ox, a->oy, a->oz, i));
-  vl_set_lane3(b->dx, b->dy, b->dz, k, vl_lane3(a->dx, a->dy, a->dz, i));
-  vl_set_lane3(b->from_nx, b->from_ny, b->from_nz, k,
-               vl_lane3(a->from_nx, a->from_ny, a->from_nz, i));
+  vl_set_row3(&b->o, k, vl_row3(&a->o, i));
+  vl_set_row3(&b->d, k, vl_row3(&a->d, i));
+  vl_set_row3(&b->from_n, k, vl_row3(&a->from_n, i));
   for (int c = 0; c < 4; c++)
     b->beta[c][k] = a->beta[c][i];
   b->pdf[k] = a->pdf[i];

@@ -206,8 +206,8 @@ static inline void vl_passed_go_on(const vlTracing *t, const vlVertices *at, uin
   vl_passed_store(t, at, i, wi_z, at->paths.lane[i], t->passed);
 }
 /* The directions w (world space) of n vertices in their local frames. */
-void vl_stage_local(uint32_t n, const vlVertices *at, const float *wx, const float *wy,
-                    const float *wz, float wi[3][VL_ROW_SIZE]);
+void vl_stage_local(uint32_t n, const vlVertices *at, const vlVec3Row *w,
+                    float wi[3][VL_ROW_SIZE]);
 /* Evaluates the BSDFs of n vertices for wo (local) and to->wi. */
 void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
                    const float wo[3][VL_ROW_SIZE], vlBsdfValues *to);
@@ -221,8 +221,8 @@ VL_INLINE int vl_has_value(const vlBsdfValues *bsdf, uint32_t i) {
 }
 /* Where a ray in direction w leaves lane i of a surface. */
 VL_INLINE vlVec3 vl_surface_origin(const vlSurface *f, uint32_t i, vlVec3 w) {
-  return vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]),
-                          vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+  return vl_offset_origin(vl_vec3(f->p.x[i], f->p.y[i], f->p.z[i]),
+                          vl_vec3(f->g.x[i], f->g.y[i], f->g.z[i]), f->offset[i], w);
 }
 /* Takes one light sample for each of n paths on their surfaces, with the random numbers of
  * `dimension`. */

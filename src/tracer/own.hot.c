@@ -42,9 +42,8 @@ static void start(vlTrace *w, const vlTraceRays *r, uint32_t count) {
   for (uint32_t i = 0; i < VL_PAD(count); i++) {
     uint32_t k = i < count ? i : count - 1;
     vl_path_start(p, i, b->px[k], b->py[k], b->index[k], k);
-    vl_set_lane3(p->ox, p->oy, p->oz, i, vl_lane3(r->origin[0], r->origin[1], r->origin[2], k));
-    vl_set_lane3(p->dx, p->dy, p->dz, i,
-                 vl_lane3(r->direction[0], r->direction[1], r->direction[2], k));
+    vl_set_row3(&p->o, i, vl_lane3(r->origin[0], r->origin[1], r->origin[2], k));
+    vl_set_row3(&p->d, i, vl_lane3(r->direction[0], r->direction[1], r->direction[2], k));
     w->t_min[i] = r->t_min[k];
     w->t_max[i] = i < count ? r->t_max[k] : -1.0f;
     p->cone[i] = r->width[k];
@@ -102,12 +101,11 @@ static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
   vl_stage_shade(t, n, &s->at);
   for (uint32_t k = 0; k < n; k++) {
     uint32_t lane = s->at.paths.lane[k], shape = s->at.hits.shape[k];
-    vlVec3 g = vl_lane3(f->gx, f->gy, f->gz, k),
-           d = vl_lane3(s->at.paths.dx, s->at.paths.dy, s->at.paths.dz, k);
+    vlVec3 g = vl_row3(&f->g, k), d = vl_row3(&s->at.paths.d, k);
     h->t[lane] = f->t[k];
-    put3(h->position, lane, vl_lane3(f->px, f->py, f->pz, k));
+    put3(h->position, lane, vl_row3(&f->p, k));
     put3(h->normal, lane, vl_dot(g, d) > 0.0f ? vl_neg(g) : g);
-    put3(h->shading, lane, vl_lane3(f->nx, f->ny, f->nz, k));
+    put3(h->shading, lane, vl_row3(&f->n, k));
     h->uv[0][lane] = f->u[k];
     h->uv[1][lane] = f->v[k];
     h->object[lane] = shape + 1;
@@ -166,15 +164,14 @@ static void lights(vlTrace *w, uint32_t bounce, vlTraceLights *out) {
     uint32_t lane = s->at.paths.lane[k];
     if (!(l->pdf[k] > 0.0f))
       continue;
-    vlVec3 to = vl_lane3(l->wx, l->wy, l->wz, k), o = vl_surface_origin(f, k, to);
+    vlVec3 to = vl_row3(&l->w, k), o = vl_surface_origin(f, k, to);
     put3(out->direction, lane, to);
     for (int c = 0; c < 4; c++)
       out->radiance[c][lane] = l->radiance[c][k];
     out->pdf[lane] = l->pdf[k];
     out->delta[lane] = l->delta[k] ? 1 : 0;
     put3(out->rays.origin, lane, o);
-    put3(out->rays.direction, lane,
-         l->distant[k] ? to : vl_sub(vl_lane3(l->tx, l->ty, l->tz, k), o));
+    put3(out->rays.direction, lane, l->distant[k] ? to : vl_sub(vl_row3(&l->target, k), o));
     out->rays.t_max[lane] = l->distant[k] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
   }
 }
@@ -183,7 +180,7 @@ static void bsdf(vlTrace *w, float (*direction)[VL_OWN_BATCH], float (*value)[VL
                  float *pdf) {
   vlTraceScratch *s = w->t.s;
   float d[3][VL_OWN_BATCH];
-  vlFloatRow to[3];
+  vlVec3Row to;
   __builtin_memcpy(d, direction, sizeof d);
   clear(value, 4);
   for (uint32_t i = 0; pdf && i < VL_OWN_BATCH; i++)
@@ -192,10 +189,9 @@ static void bsdf(vlTrace *w, float (*direction)[VL_OWN_BATCH], float (*value)[VL
     return;
   for (uint32_t k = 0; k < VL_PAD(w->hits); k++) {
     uint32_t lane = s->at.paths.lane[k < w->hits ? k : w->hits - 1];
-    for (int j = 0; j < 3; j++)
-      to[j][k] = d[j][lane];
+    vl_set_row3(&to, k, vl_lane3(d[0], d[1], d[2], lane));
   }
-  vl_stage_local(w->hits, &s->at, to[0], to[1], to[2], s->values.wi);
+  vl_stage_local(w->hits, &s->at, &to, s->values.wi);
   vl_stage_bsdf(&w->t, w->hits, &s->at, s->at.shade.wo, &s->values);
   for (uint32_t k = 0; k < w->hits; k++) {
     uint32_t lane = s->at.paths.lane[k];
@@ -235,8 +231,8 @@ static void bounce(vlTrace *w, uint32_t number, vlTraceBounce *out) {
       out->weight[c][lane] = to->beta[c][k];
     out->pdf[lane] = to->pdf[k];
     out->specular[lane] = to->specular[k] ? 1 : 0;
-    put3(out->rays.origin, lane, vl_lane3(to->ox, to->oy, to->oz, k));
-    put3(out->rays.direction, lane, vl_lane3(to->dx, to->dy, to->dz, k));
+    put3(out->rays.origin, lane, vl_row3(&to->o, k));
+    put3(out->rays.direction, lane, vl_row3(&to->d, k));
     out->rays.t_max[lane] = VL_INFINITY;
     out->rays.width[lane] = vl_abs(to->cone[k]);
   }

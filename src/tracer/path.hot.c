@@ -52,18 +52,18 @@ static vlBsdfParams params_of(const vlWorld *world, const vlVertices *at, uint32
 
 /* ---- direct light ------------------------------------------------------------------------ */
 
-void vl_stage_local(uint32_t n, const vlVertices *at, const float *wx, const float *wy,
-                    const float *wz, float wi[3][VL_ROW_SIZE]) {
+void vl_stage_local(uint32_t n, const vlVertices *at, const vlVec3Row *w,
+                    float wi[3][VL_ROW_SIZE]) {
   const vlShade *sh = &at->shade;
   const vlSurface *f = &at->surface;
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    float x = wx[i], y = wy[i], z = wz[i];
-    wi[0][i] = x * sh->tx[i] + y * sh->ty[i] + z * sh->tz[i];
-    wi[1][i] = x * sh->bx[i] + y * sh->by[i] + z * sh->bz[i];
-    wi[2][i] = x * f->nx[i] + y * f->ny[i] + z * f->nz[i];
+    float x = w->x[i], y = w->y[i], z = w->z[i];
+    wi[0][i] = x * sh->tangent.x[i] + y * sh->tangent.y[i] + z * sh->tangent.z[i];
+    wi[1][i] = x * sh->bitangent.x[i] + y * sh->bitangent.y[i] + z * sh->bitangent.z[i];
+    wi[2][i] = x * f->n.x[i] + y * f->n.y[i] + z * f->n.z[i];
   }
 }
 
@@ -83,7 +83,7 @@ void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
 
 void vl_stage_light_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
                          const vlLightSamples *light, vlBsdfValues *to) {
-  vl_stage_local(n, at, light->wx, light->wy, light->wz, to->wi);
+  vl_stage_local(n, at, &light->w, to->wi);
   vl_stage_bsdf(t, n, at, at->shade.wo, to);
 }
 
@@ -114,16 +114,16 @@ static uint32_t make_shadow_rays(uint32_t n, const vlVertices *at, const vlLight
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
+    vlVec3 w = vl_vec3(l->w.x[i], l->w.y[i], l->w.z[i]);
     vlVec3 o = vl_surface_origin(f, i, w);
     int distant = l->distant[i], delta = l->delta[i];
-    float x = l->tx[i] - o.x, y = l->ty[i] - o.y, z = l->tz[i] - o.z;
+    float x = l->target.x[i] - o.x, y = l->target.y[i] - o.y, z = l->target.z[i] - o.z;
     float mis = vl_power_heuristic(l->pdf[i], bsdf->pdf[i]), weight = delta ? 1.0f : mis;
     lit[i] = (l->pdf[i] > 0.0f) & vl_has_value(bsdf, i) ? 1 : 0;
-    vl_set_lane3(q->ox, q->oy, q->oz, i, o);
-    q->dx[i] = distant ? w.x : x;
-    q->dy[i] = distant ? w.y : y;
-    q->dz[i] = distant ? w.z : z;
+    vl_set_row3(&q->o, i, o);
+    q->d.x[i] = distant ? w.x : x;
+    q->d.y[i] = distant ? w.y : y;
+    q->d.z[i] = distant ? w.z : z;
     q->t_max[i] = distant ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
     for (int c = 0; c < 4; c++)
       q->radiance[c][i] = p->beta[c][i] * bsdf->value[c][i] * l->radiance[c][i] * weight;
@@ -155,15 +155,8 @@ static void weaken(uint32_t count, vlShadowRays *q) {
 
 void vl_stage_occluded(vlTracing *t, uint32_t count, const vlPaths *p, vlShadowRays *q) {
   bool weighs = t->world->has_alpha && !t->world->has_interfaces;
-  vlRays rays = {.ox = q->ox,
-                 .oy = q->oy,
-                 .oz = q->oz,
-                 .dx = q->dx,
-                 .dy = q->dy,
-                 .dz = q->dz,
-                 .t_max = q->t_max,
-                 .time = p->time ? q->time : NULL,
-                 .crossed = weighs ? q->crossed : NULL};
+  vlRays rays = vl_rays_of(&q->o, &q->d, 0, NULL, q->t_max, p->time ? q->time : NULL);
+  rays.crossed = weighs ? q->crossed : NULL;
   if (weighs)
     memset(q->crossed, 0, count * sizeof *q->crossed);
   vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
@@ -255,9 +248,9 @@ static void make_rays(const vlTracing *t, uint32_t n, uint32_t depth, const vlVe
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
     float x = s->wi[0][i], y = s->wi[1][i], z = s->wi[2][i];
-    vlVec3 w = vl_vec3(x * sh->tx[i] + y * sh->bx[i] + z * f->nx[i],
-                       x * sh->ty[i] + y * sh->by[i] + z * f->ny[i],
-                       x * sh->tz[i] + y * sh->bz[i] + z * f->nz[i]);
+    vlVec3 w = vl_vec3(x * sh->tangent.x[i] + y * sh->bitangent.x[i] + z * f->n.x[i],
+                       x * sh->tangent.y[i] + y * sh->bitangent.y[i] + z * f->n.y[i],
+                       x * sh->tangent.z[i] + y * sh->bitangent.z[i] + z * f->n.z[i]);
     w = vl_normalize(w);
     vlVec3 o = vl_surface_origin(f, i, w);
     float b0 = p->beta[0][i] * s->weight[0][i], b1 = p->beta[1][i] * s->weight[1][i];
@@ -270,8 +263,8 @@ static void make_rays(const vlTracing *t, uint32_t n, uint32_t depth, const vlVe
     float sum = b0 + b1 + b2 + b3;
     alive[i] = lives;
     broken[i] = sum == sum ? 0.0f : 1.0f;
-    vl_set_lane3(to->ox, to->oy, to->oz, i, o);
-    vl_set_lane3(to->dx, to->dy, to->dz, i, w);
+    vl_set_row3(&to->o, i, o);
+    vl_set_row3(&to->d, i, w);
     to->beta[0][i] = b0 * inv;
     to->beta[1][i] = b1 * inv;
     to->beta[2][i] = b2 * inv;
@@ -285,9 +278,9 @@ static void make_rays(const vlTracing *t, uint32_t n, uint32_t depth, const vlVe
     to->cone[i] = cone.x;
     to->spread[i] = cone.y;
     float c = 1.0f - f->no_cosine[i];
-    to->from_nx[i] = c * f->nx[i];
-    to->from_ny[i] = c * f->ny[i];
-    to->from_nz[i] = c * f->nz[i];
+    to->from_n.x[i] = c * f->n.x[i];
+    to->from_n.y[i] = c * f->n.y[i];
+    to->from_n.z[i] = c * f->n.z[i];
     to->from_side[i] = f->side[i];
   }
 }

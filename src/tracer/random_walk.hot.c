@@ -19,13 +19,13 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlBsdfValues *bsdf = &s->values;
   vlPaths *next = &s->rays;
   vlNumbers u;
-  vlFloatRow w[3];
+  vlVec3Row w;
   uint32_t count = 0;
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index,
                      vl_bounce_dimension(depth) + VL_DIM_BSDF_UV, u.u1, u.u2);
   for (uint32_t i = 0; i < VL_PAD(n); i++)
-    vl_set_lane3(w[0], w[1], w[2], i, vl_warp_sphere(u.u1[i], u.u2[i]));
-  vl_stage_local(n, &s->at, w[0], w[1], w[2], s->values.wi);
+    vl_set_row3(&w, i, vl_warp_sphere(u.u1[i], u.u2[i]));
+  vl_stage_local(n, &s->at, &w, s->values.wi);
   vl_stage_bsdf(t, n, &s->at, s->at.shade.wo, &s->values);
   for (uint32_t i = 0; i < n; i++) {
     float most = 0.0f;
@@ -38,12 +38,12 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vl_permute_paths(p, next, s->order, count);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
-    vlVec3 d = vl_normalize(vl_lane3(w[0], w[1], w[2], i));
+    vlVec3 d = vl_normalize(vl_row3(&w, i));
     vlVec3 o = vl_surface_origin(f, i, d);
     for (int c = 0; c < 4; c++)
       next->beta[c][k] *= bsdf->value[c][i] * (4.0f * VL_PI);
-    vl_set_lane3(next->ox, next->oy, next->oz, k, o);
-    vl_set_lane3(next->dx, next->dy, next->dz, k, d);
+    vl_set_row3(&next->o, k, o);
+    vl_set_row3(&next->d, k, d);
     next->cone[k] = f->width[i];
     next->spread[k] = t->def->pixel_spread;
   }

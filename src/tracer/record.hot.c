@@ -44,7 +44,7 @@ vlPathVertex *vl_record_arrival(vlTracing *t, const vlPaths *p, uint32_t i, uint
   v->fate = VL_PATH_LEFT;
   v->distance = VL_INFINITY;
   v->bounce = bounce;
-  vl_store3(v->arrival, vl_lane3(p->dx, p->dy, p->dz, i));
+  vl_store3(v->arrival, vl_row3(&p->d, i));
   for (int c = 0; c < 4; c++)
     v->throughput[c] = p->beta[c][i];
   return v;
@@ -60,7 +60,7 @@ void vl_record_surface(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t
   vl_store3(v->normal, at.g);
   v->uv[0] = at.u;
   v->uv[1] = at.v;
-  v->distance = vl_length(vl_sub(at.p, vl_lane3(p->ox, p->oy, p->oz, i)));
+  v->distance = vl_length(vl_sub(at.p, vl_row3(&p->o, i)));
 }
 
 void vl_record_arrivals(vlTracing *t, uint32_t n, uint32_t bounce, const vlPaths *rays,
@@ -114,7 +114,7 @@ void vl_record_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHit
                           .bsdf_pdf = p->pdf[i],
                           .weight = weight};
   name_light(t->world, met->light, &c);
-  vl_store3(c.target, sky ? vl_lane3(p->dx, p->dy, p->dz, i) : met->at.p);
+  vl_store3(c.target, sky ? vl_row3(&p->d, i) : met->at.p);
   for (int k = 0; k < 4; k++)
     c.radiance[k] = p->beta[k][i] * met->radiance[k] * factor;
   vl_record_light(t, p->lane[i], &c);
@@ -135,8 +135,7 @@ void vl_record_sampled(const vlWorld *world, const vlLightSamples *l, uint32_t i
                        vlPathContribution *to) {
   name_light(world, l->light[i], to);
   to->distant = l->distant[i];
-  vl_store3(to->target,
-            to->distant ? vl_lane3(l->wx, l->wy, l->wz, i) : vl_lane3(l->tx, l->ty, l->tz, i));
+  vl_store3(to->target, to->distant ? vl_row3(&l->w, i) : vl_row3(&l->target, i));
 }
 
 void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVertices *at,
@@ -196,7 +195,7 @@ void vl_record_shaded(vlTracing *t, uint32_t n, const vlVertices *at) {
       continue;
     const vlWorldMaterial *m = &t->world->materials.items[at->hits.material[i]];
     v->bsdf = t->bsdf->names[m->bsdf];
-    vl_store3(v->shading, vl_lane3(at->surface.nx, at->surface.ny, at->surface.nz, i));
+    vl_store3(v->shading, vl_row3(&at->surface.n, i));
     put_texture(t->world, m->reflectance, v);
     for (int c = 0; c < 4; c++) {
       v->throughput[c] = at->paths.beta[c][i];
@@ -224,7 +223,7 @@ static void go_on(vlTracing *t, const uint32_t *lane, const uint32_t *order, uin
       continue;
     v->fate = VL_PATH_ON;
     v->pdf = rays->pdf[i];
-    vl_store3(v->direction, vl_lane3(rays->dx, rays->dy, rays->dz, i));
+    vl_store3(v->direction, vl_row3(&rays->d, i));
   }
 }
 
@@ -295,7 +294,7 @@ void vl_record_exits(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *h
     if (!v)
       continue;
     vlVec3 from = vl_load3(before.position);
-    vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), way = vl_sub(at, from);
+    vlVec3 at = vl_row3(&f->p, i), way = vl_sub(at, from);
     v->event = VL_PATH_EXIT;
     v->bounce = before.bounce;
     v->bsdf = "subsurface";
@@ -304,8 +303,8 @@ void vl_record_exits(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *h
     v->distance = vl_length(way);
     if (v->distance > 0.0f)
       vl_store3(v->arrival, vl_mul(way, 1.0f / v->distance));
-    vl_store3(v->normal, vl_lane3(f->gx, f->gy, f->gz, i));
-    vl_store3(v->shading, vl_lane3(f->nx, f->ny, f->nz, i));
+    vl_store3(v->normal, vl_row3(&f->g, i));
+    vl_store3(v->shading, vl_row3(&f->n, i));
     v->uv[0] = f->u[i];
     v->uv[1] = f->v[i];
     for (int c = 0; c < 4; c++)
@@ -320,7 +319,7 @@ void vl_record_left(vlTracing *t, uint32_t n, const vlPaths *p, const uint8_t *a
       continue;
     v->fate = VL_PATH_ON;
     v->pdf = p->pdf[i];
-    vl_store3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
+    vl_store3(v->direction, vl_row3(&p->d, i));
     for (int c = 0; c < 4; c++)
       v->factor[c] = v->throughput[c] > 0.0f ? p->beta[c][i] / v->throughput[c] : 0.0f;
   }

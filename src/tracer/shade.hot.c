@@ -32,8 +32,8 @@ static inline bool neighbours(const uint32_t *order) {
 static inline void copy_block(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k,
                               size_t first, size_t rows) {
   for (size_t row = first; row < first + rows; row++)
-    memcpy((char *)b + row * sizeof b->ox + k * sizeof(float),
-           (const char *)a + row * sizeof a->ox + i * sizeof(float), BLOCK * sizeof(float));
+    memcpy((char *)b + row * sizeof b->o.x + k * sizeof(float),
+           (const char *)a + row * sizeof a->o.x + i * sizeof(float), BLOCK * sizeof(float));
 }
 
 /* Copies blocks of neighbours row by row. Copies others path by path, because a gather

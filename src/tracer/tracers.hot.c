@@ -36,8 +36,8 @@ static void start_paths(vlTracing *t) {
   }
   for (uint32_t i = 0; i < padded; i++) {
     vl_path_start(p, i, b->px[i], b->py[i], b->index[i], i);
-    vl_set_lane3(p->ox, p->oy, p->oz, i, vl_lane3(b->ox, b->oy, b->oz, i));
-    vl_set_lane3(p->dx, p->dy, p->dz, i, vl_lane3(b->dx, b->dy, b->dz, i));
+    vl_set_row3(&p->o, i, vl_lane3(b->ox, b->oy, b->oz, i));
+    vl_set_row3(&p->d, i, vl_lane3(b->dx, b->dy, b->dz, i));
     p->cone[i] = t->def->pixel_width;
     p->spread[i] = t->def->pixel_spread;
     t->scattered[i] = 0;
@@ -97,8 +97,8 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
     /* geometric normal, as in pbrt */
-    vlVec3 nn = vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz, i);
-    vlVec3 d = vl_lane3(s->at.paths.dx, s->at.paths.dy, s->at.paths.dz, i);
+    vlVec3 nn = vl_row3(&s->at.surface.g, i);
+    vlVec3 d = vl_row3(&s->at.paths.d, i);
     if (vl_dot(nn, d) > 0.0f)
       nn = vl_neg(nn);
     bool cosine = t->def->ao_cosine;

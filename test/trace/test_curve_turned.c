@@ -73,7 +73,7 @@ typedef struct Hit {
 
 static Hit trace(const vlWorld *world, vlVec3 o, vlVec3 d) {
   Hit h;
-  vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, NULL, NULL, NULL, NULL};
+  vlRays ray = vl_one_ray(&o, &d, NULL, NULL, NULL);
   vl_accel_closest(world, 1, &ray, false, &h.shape, &h.prim, &h.instance, &h.t);
   return h;
 }

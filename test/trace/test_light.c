@@ -127,13 +127,13 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
   for (; done < TRIES; done += VL_BATCH) {
     vlNumbers u;
     for (uint32_t i = 0; i < VL_BATCH; i++) {
-      s->at.surface.px[i] = f->p.x;
-      s->at.surface.py[i] = f->p.y;
-      s->at.surface.pz[i] = f->p.z;
+      s->at.surface.p.x[i] = f->p.x;
+      s->at.surface.p.y[i] = f->p.y;
+      s->at.surface.p.z[i] = f->p.z;
       s->at.surface.side[i] = f->side;
-      s->at.surface.nx[i] = f->n.x;
-      s->at.surface.ny[i] = f->n.y;
-      s->at.surface.nz[i] = f->n.z;
+      s->at.surface.n.x[i] = f->n.x;
+      s->at.surface.n.y[i] = f->n.y;
+      s->at.surface.n.z[i] = f->n.z;
       u.u0[i] = stat_float(&rng);
       u.u1[i] = stat_float(&rng);
       u.u2[i] = stat_float(&rng);
@@ -144,7 +144,7 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
       const vlLightSamples *l = &s->light;
       if (!(l->pdf[i] > 0) || l->delta[i])
         continue;
-      double d[3] = {l->wx[i], l->wy[i], l->wz[i]}, told = density(f, d);
+      double d[3] = {l->w.x[i], l->w.y[i], l->w.z[i]}, told = density(f, d);
       if (!(told > 0))
         continue; /* at the very edge a ray may just miss, or another light stands before it */
       /* The density that comes with a sample is the one that a hit is given. */

@@ -516,8 +516,8 @@ static uint32_t differing(const Scene *s, vlTraceScratch *t, statRng *rng, uint3
     Hit h = trace(world, o, d, times[n]);
     if (h.shape == VL_NONE)
       continue;
-    vl_set_lane3(p->ox, p->oy, p->oz, n, o);
-    vl_set_lane3(p->dx, p->dy, p->dz, n, d);
+    vl_set_row3(&p->o, n, o);
+    vl_set_row3(&p->d, n, d);
     p->lane[n] = lanes[n] = n;
     hits->shape[n] = h.shape;
     hits->prim[n] = h.prim;
@@ -530,14 +530,13 @@ static uint32_t differing(const Scene *s, vlTraceScratch *t, statRng *rng, uint3
   x.prim = hits->prim;
   x.instance = hits->instance;
   x.hit = hits->t;
-  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, NULL, NULL, p->time, NULL};
+  vlRays rays = {p->o.x, p->o.y, p->o.z, p->d.x, p->d.y, p->d.z, NULL, NULL, p->time, NULL};
   vl_stage_crossings(world, n, &rays, lanes, n, &x);
   for (uint32_t i = 0; i < n; i++) {
     Hit h = {hits->shape[i], hits->prim[i], hits->instance[i], hits->t[i]};
-    vlPoint at =
-        vl_point_at_time(world, world->moves ? times[i] : 0, vl_lane3(p->ox, p->oy, p->oz, i),
-                         vl_lane3(p->dx, p->dy, p->dz, i), h.shape, h.prim, h.instance, h.t);
-    bool same = f->offset[i] == at.offset && f->t[i] == at.t && f->gx[i] == at.g.x &&
+    vlPoint at = vl_point_at_time(world, world->moves ? times[i] : 0, vl_row3(&p->o, i),
+                                  vl_row3(&p->d, i), h.shape, h.prim, h.instance, h.t);
+    bool same = f->offset[i] == at.offset && f->t[i] == at.t && f->g.x[i] == at.g.x &&
                 x.offset[i] == at.offset && x.t[i] == at.t && x.gx[i] == at.g.x;
     wrong += !same || at.offset < 1.999f * bound_of_corners(world, &h, at.g);
   }
@@ -623,13 +622,13 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
       vlVec3 p = to_float((double[3]){s->touch[0] + distance * away[0],
                                       s->touch[1] + distance * away[1],
                                       s->touch[2] + distance * away[2]});
-      t->at.surface.px[i] = p.x;
-      t->at.surface.py[i] = p.y;
-      t->at.surface.pz[i] = p.z;
+      t->at.surface.p.x[i] = p.x;
+      t->at.surface.p.y[i] = p.y;
+      t->at.surface.p.z[i] = p.z;
       t->at.surface.no_cosine[i] = 1;
-      t->at.surface.nx[i] = 0;
-      t->at.surface.ny[i] = 0;
-      t->at.surface.nz[i] = 1;
+      t->at.surface.n.x[i] = 0;
+      t->at.surface.n.y[i] = 0;
+      t->at.surface.n.z[i] = 1;
       u.u0[i] = stat_float(rng);
       u.u1[i] = stat_float(rng);
       u.u2[i] = stat_float(rng);
@@ -640,10 +639,10 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
       const vlLightSamples *l = &t->light;
       if (!(l->pdf[i] > 0))
         continue;
-      vlVec3 o = vl_lane3(t->at.surface.px, t->at.surface.py, t->at.surface.pz, i);
+      vlVec3 o = vl_row3(&t->at.surface.p, i);
       if (in_plane(s, o))
         continue;
-      vlVec3 d = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
+      vlVec3 d = vl_sub(vl_row3(&l->target, i), o);
       float end = media ? vl_length(d) * VL_SHADOW_END : VL_ONE_MINUS_EPSILON;
       if (media)
         d = vl_normalize(d);

@@ -126,13 +126,13 @@ static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng,
     vlVec3 unit = vl_normalize(n);
     at->u[i] = 3 * x;
     at->v[i] = y;
-    at->px[i] = x;
-    at->py[i] = y;
-    at->pz[i] = 0;
-    at->gx[i] = unit.x;
-    at->gy[i] = unit.y;
-    at->gz[i] = unit.z;
-    s->at.paths.dz[i] = -1;
+    at->p.x[i] = x;
+    at->p.y[i] = y;
+    at->p.z[i] = 0;
+    at->g.x[i] = unit.x;
+    at->g.y[i] = unit.y;
+    at->g.z[i] = unit.z;
+    s->at.paths.d.z[i] = -1;
     s->at.hits.shape[i] = shape;
     s->at.hits.prim[i] = 0;
     for (int k = 0; k < 9; k++)
@@ -231,10 +231,10 @@ static void assert_light(Fixture *f, float expected) {
   statRng rng = stat_rng(5);
   vlNumbers u;
   for (uint32_t i = 0; i < VL_BATCH; i++) {
-    s->at.surface.px[i] = s->at.surface.py[i] = 0.2f;
-    s->at.surface.pz[i] = 1;
-    s->at.surface.nx[i] = s->at.surface.ny[i] = 0;
-    s->at.surface.nz[i] = -1;
+    s->at.surface.p.x[i] = s->at.surface.p.y[i] = 0.2f;
+    s->at.surface.p.z[i] = 1;
+    s->at.surface.n.x[i] = s->at.surface.n.y[i] = 0;
+    s->at.surface.n.z[i] = -1;
     u.u0[i] = stat_float(&rng);
     u.u1[i] = stat_float(&rng);
     u.u2[i] = stat_float(&rng);
@@ -317,10 +317,10 @@ static void mix_by_vertex_color(void **state) {
     vl_scene_add_shape(f.scene, &def);
     build(&f);
     vlTraceScratch *s = f.scratch;
-    s->rays.ox[0] = 0.2f;
-    s->rays.oy[0] = 0.3f;
-    s->rays.oz[0] = 5;
-    s->rays.dz[0] = -1;
+    s->rays.o.x[0] = 0.2f;
+    s->rays.o.y[0] = 0.3f;
+    s->rays.o.z[0] = 5;
+    s->rays.d.z[0] = -1;
     s->hits.shape[0] = s->hits.prim[0] = 0;
     s->hits.instance[0] = VL_NONE;
     uint32_t m = vl_hit_material(f.world, &s->rays, &s->hits, 0);

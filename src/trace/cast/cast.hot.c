@@ -10,10 +10,7 @@
 /* ---- hits -------------------------------------------------------------------------------- */
 
 static vlRays rays_of(const vlWorld *world, const vlPaths *p, const vlCastBatch *b) {
-  return (vlRays){p->ox,    p->oy,    p->oz,
-                  p->dx,    p->dy,    p->dz,
-                  b->t_min, b->t_max, world->moves ? b->time : NULL,
-                  NULL};
+  return vl_rays_of(&p->o, &p->d, 0, b->t_min, b->t_max, world->moves ? b->time : NULL);
 }
 
 static bool is_interface(const vlWorld *world, uint32_t shape) {
@@ -26,7 +23,7 @@ static void pass_interfaces(const vlWorld *world, const vlPaths *p, const vlCast
                             vlHits *h, uint32_t i) {
   enum { MAX_PASSED = 1024 }; /* no ray crosses so many */
   float t_min = b->t_min[i];
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlVec3 o = vl_row3(&p->o, i), d = vl_row3(&p->d, i);
   for (int step = 0; h->shape[i] != VL_NONE && is_interface(world, h->shape[i]); step++) {
     if (step == MAX_PASSED) {
       h->shape[i] = VL_NONE;
@@ -35,8 +32,7 @@ static void pass_interfaces(const vlWorld *world, const vlPaths *p, const vlCast
     vlPoint at = vl_point_at_time(world, b->time[i], o, d, h->shape[i], h->prim[i],
                                   h->instance[i], h->t[i]);
     t_min = vl_past_surface(&at, d, t_min);
-    vlRays ray = {p->ox + i, p->oy + i, p->oz + i,    p->dx + i,   p->dy + i,
-                  p->dz + i, &t_min,    b->t_max + i, b->time + i, NULL};
+    vlRays ray = vl_rays_of(&p->o, &p->d, i, &t_min, b->t_max + i, b->time + i);
     vl_accel_closest(world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i,
                      h->t + i);
   }
@@ -50,8 +46,8 @@ static uint32_t gather(uint32_t n, const vlPaths *p, const vlHits *h, vlVertices
     if (h->shape[i] == VL_NONE)
       continue;
     uint32_t k = count++;
-    vl_set_lane3(at->paths.ox, at->paths.oy, at->paths.oz, k, vl_lane3(p->ox, p->oy, p->oz, i));
-    vl_set_lane3(at->paths.dx, at->paths.dy, at->paths.dz, k, vl_lane3(p->dx, p->dy, p->dz, i));
+    vl_set_row3(&at->paths.o, k, vl_row3(&p->o, i));
+    vl_set_row3(&at->paths.d, k, vl_row3(&p->d, i));
     at->paths.lane[k] = i;
     vl_hit_copy(h, i, &at->hits, k);
   }
@@ -83,18 +79,17 @@ static void put_surface(uint32_t n, const vlVertices *at, uint32_t wanted, vlCas
   const vlSurface *f = &at->surface;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = at->paths.lane[i];
-    b->normal[0][lane] = f->gx[i];
-    b->normal[1][lane] = f->gy[i];
-    b->normal[2][lane] = f->gz[i];
-    b->shading[0][lane] = f->nx[i];
-    b->shading[1][lane] = f->ny[i];
-    b->shading[2][lane] = f->nz[i];
+    b->normal[0][lane] = f->g.x[i];
+    b->normal[1][lane] = f->g.y[i];
+    b->normal[2][lane] = f->g.z[i];
+    b->shading[0][lane] = f->n.x[i];
+    b->shading[1][lane] = f->n.y[i];
+    b->shading[2][lane] = f->n.z[i];
     b->uv[0][lane] = f->u[i];
     b->uv[1][lane] = f->v[i];
     if (!(wanted & VL_CAST_ON))
       continue;
-    vlVec3 g = vl_lane3(f->gx, f->gy, f->gz, i),
-           d = vl_lane3(at->paths.dx, at->paths.dy, at->paths.dz, i);
+    vlVec3 g = vl_row3(&f->g, i), d = vl_row3(&at->paths.d, i);
     b->t_min[lane] = vl_past_crossing(f->t[i], g, f->offset[i], d, b->t_min[lane]);
   }
 }
@@ -260,7 +255,7 @@ static void keep(vlTraceScratch *s, vlCastBatch *b, uint32_t from[VL_ROW_SIZE]) 
       continue;
     uint32_t k = count++;
     from[k] = i;
-    float *rows[8] = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, b->t_min, b->t_max};
+    float *rows[8] = {p->o.x, p->o.y, p->o.z, p->d.x, p->d.y, p->d.z, b->t_min, b->t_max};
     for (int j = 0; j < 8; j++)
       rows[j][k] = rows[j][i];
     for (int j = 0; j < 3; j++) {

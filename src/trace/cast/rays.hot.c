@@ -121,12 +121,12 @@ static void round_rays(vlCastBatch *b, vlPaths *p, uint32_t first, uint32_t last
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = first; i < last; i++) {
-    p->ox[i] = (float)b->o[0][i];
-    p->oy[i] = (float)b->o[1][i];
-    p->oz[i] = (float)b->o[2][i];
-    p->dx[i] = (float)b->d[0][i];
-    p->dy[i] = (float)b->d[1][i];
-    p->dz[i] = (float)b->d[2][i];
+    p->o.x[i] = (float)b->o[0][i];
+    p->o.y[i] = (float)b->o[1][i];
+    p->o.z[i] = (float)b->o[2][i];
+    p->d.x[i] = (float)b->d[0][i];
+    p->d.y[i] = (float)b->d[1][i];
+    p->d.z[i] = (float)b->d[2][i];
     b->t_min[i] = (float)b->start[i];
     b->t_max[i] = (float)(b->end[i] * WIDER);
   }
@@ -138,9 +138,8 @@ static bool are_coherent(const vlWorld *world, uint32_t n, const vlPaths *p) {
   const float close = 0.02f * world->radius, least_cosine = 0.99f;
   uint32_t similar = 0, pairs = 0, step = n < 64 ? 1 : n / 64;
   for (uint32_t i = 1; i < n; i += step) {
-    vlVec3 a = vl_lane3(p->dx, p->dy, p->dz, i), b = vl_lane3(p->dx, p->dy, p->dz, i - 1);
-    vlVec3 apart =
-        vl_sub(vl_lane3(p->ox, p->oy, p->oz, i), vl_lane3(p->ox, p->oy, p->oz, i - 1));
+    vlVec3 a = vl_row3(&p->d, i), b = vl_row3(&p->d, i - 1);
+    vlVec3 apart = vl_sub(vl_row3(&p->o, i), vl_row3(&p->o, i - 1));
     similar += vl_dot(a, b) > least_cosine && vl_length2(apart) <= close * close;
     pairs++;
   }

@@ -29,7 +29,7 @@ static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *bat
 /* Keeps the shading frames; back: restores them. Bump and normal maps change them. */
 static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
   vlSurface *f = &s->trace.at.surface;
-  float *rows[6] = {f->nx, f->ny, f->nz, f->ux, f->uy, f->uz};
+  float *rows[6] = {f->n.x, f->n.y, f->n.z, f->dpdu.x, f->dpdu.y, f->dpdu.z};
   for (int k = 0; k < 6; k++) {
     const float *from = back ? s->kept[k] : rows[k];
     memcpy(back ? rows[k] : s->kept[k], from, n * sizeof *from);
@@ -126,7 +126,8 @@ static void fill(float *row, uint32_t n, float value) {
 /* The rays, rounded to float, and the values of pixels that show nothing. */
 static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPaths *p) {
   uint32_t n = batch->n;
-  float *const origin[3] = {p->ox, p->oy, p->oz}, *const direction[3] = {p->dx, p->dy, p->dz};
+  float *const origin[3] = {p->o.x, p->o.y, p->o.z}, *const direction[3] = {p->d.x, p->d.y,
+                                                                            p->d.z};
   for (int k = 0; k < 3; k++) {
     const double *o = batch->o[k], *d = batch->d[k];
     float *to_o = origin[k], *to_d = direction[k];
@@ -168,12 +169,12 @@ static void take_ids(const uint32_t *from, const uint32_t *order, uint32_t n, ui
 
 /* Copies n lanes of what `start` sets of paths. */
 static void take_paths(const vlPaths *a, const uint32_t *order, uint32_t n, vlPaths *b) {
-  take(a->ox, order, n, b->ox);
-  take(a->oy, order, n, b->oy);
-  take(a->oz, order, n, b->oz);
-  take(a->dx, order, n, b->dx);
-  take(a->dy, order, n, b->dy);
-  take(a->dz, order, n, b->dz);
+  take(a->o.x, order, n, b->o.x);
+  take(a->o.y, order, n, b->o.y);
+  take(a->o.z, order, n, b->o.z);
+  take(a->d.x, order, n, b->d.x);
+  take(a->d.y, order, n, b->d.y);
+  take(a->d.z, order, n, b->d.z);
   for (int c = 0; c < 4; c++) {
     take(a->beta[c], order, n, b->beta[c]);
     take(a->lambda[c], order, n, b->lambda[c]);
@@ -251,14 +252,14 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def,
   for (uint32_t i = 0; i < n; i++)
     batch->distance[lane[i]] =
         def->coarse ? f->t[i] : exact_distance(world, batch, lane[i], &s->at.hits, i, f->t[i]);
-  give(f->nx, lane, n, batch->n_shading[0]);
-  give(f->ny, lane, n, batch->n_shading[1]);
-  give(f->nz, lane, n, batch->n_shading[2]);
+  give(f->n.x, lane, n, batch->n_shading[0]);
+  give(f->n.y, lane, n, batch->n_shading[1]);
+  give(f->n.z, lane, n, batch->n_shading[2]);
   if (def->coarse)
     return;
-  give(f->gx, lane, n, batch->n_geometric[0]);
-  give(f->gy, lane, n, batch->n_geometric[1]);
-  give(f->gz, lane, n, batch->n_geometric[2]);
+  give(f->g.x, lane, n, batch->n_geometric[0]);
+  give(f->g.y, lane, n, batch->n_geometric[1]);
+  give(f->g.z, lane, n, batch->n_geometric[2]);
   give(f->u, lane, n, batch->uv[0]);
   give(f->v, lane, n, batch->uv[1]);
 }
@@ -273,8 +274,8 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
   if (n == 0)
     return;
   for (uint32_t i = 0; i < n; i++) {
-    vl_set_lane3(p->ox, p->oy, p->oz, i, vl_lane3(to->ox, to->oy, to->oz, i));
-    vl_set_lane3(p->dx, p->dy, p->dz, i, vl_lane3(to->dx, to->dy, to->dz, i));
+    vl_set_row3(&p->o, i, vl_lane3(to->ox, to->oy, to->oz, i));
+    vl_set_row3(&p->d, i, vl_lane3(to->dx, to->dy, to->dz, i));
     p->cone[i] = def->pixel_width;
     p->spread[i] = def->pixel_spread;
     p->specular[i] = 1;
@@ -297,7 +298,7 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
     to->distance[i] = VL_INFINITY;
     if (!hit)
       continue;
-    vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlVec3 o = vl_row3(&p->o, i), d = vl_row3(&p->d, i);
     float time = vl_path_time(p, i);
     to->distance[i] =
         vl_point_at_time(world, time, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
@@ -308,30 +309,18 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
  * error bound of the hit point, as hits.hot.c does at interfaces. */
 static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane,
                    vlGroundTruthLayers *to) {
-  float o[3], d[3], t_min = batch->t_min[lane];
-  for (int k = 0; k < 3; k++) {
-    o[k] = (float)batch->o[k][lane];
-    d[k] = (float)batch->d[k][lane];
-  }
+  float t_min = batch->t_min[lane];
+  vlVec3 o = {(float)batch->o[0][lane], (float)batch->o[1][lane], (float)batch->o[2][lane]};
+  vlVec3 d = {(float)batch->d[0][lane], (float)batch->d[1][lane], (float)batch->d[2][lane]};
   to->count = 0;
   for (int step = 0; step < VL_GROUND_TRUTH_LAYERS; step++) {
     uint32_t shape, prim, instance;
     float t;
-    vlRays ray = {.ox = o,
-                  .oy = o + 1,
-                  .oz = o + 2,
-                  .dx = d,
-                  .dy = d + 1,
-                  .dz = d + 2,
-                  .t_min = &t_min,
-                  .t_max = batch->t_max + lane,
-                  .time = &batch->time[lane]};
+    vlRays ray = vl_one_ray(&o, &d, &t_min, batch->t_max + lane, &batch->time[lane]);
     vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
     if (shape == VL_NONE)
       return;
-    vlVec3 from = {o[0], o[1], o[2]}, along = {d[0], d[1], d[2]};
-    vlPoint at =
-        vl_point_at_time(world, batch->time[lane], from, along, shape, prim, instance, t);
+    vlPoint at = vl_point_at_time(world, batch->time[lane], o, d, shape, prim, instance, t);
     uint32_t object = shape + 1;
     uint32_t placed = instance == VL_NONE ? 0 : instance + 1;
     uint32_t k = 0;
@@ -344,7 +333,7 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
       to->instance[k] = placed;
       to->count++;
     }
-    t_min = vl_past_surface(&at, along, t_min);
+    t_min = vl_past_surface(&at, d, t_min);
   }
 }
 

@@ -25,19 +25,18 @@ void vl_fit_surfaces(const vlTracing *t, uint32_t n, const vlVertices *at,
   const vlSurface *f = &at->surface;
   const vlPaths *p = &at->paths;
   for (uint32_t i = 0; i < n; i++)
-    vl_fit_border(t, p->lane[i], at->hits.shape[i], vl_lane3(f->gx, f->gy, f->gz, i),
-                  vl_lane3(p->dx, p->dy, p->dz, i), rows->medium[i]);
+    vl_fit_border(t, p->lane[i], at->hits.shape[i], vl_row3(&f->g, i), vl_row3(&p->d, i),
+                  rows->medium[i]);
 }
 
 /* The medium from which shadow ray k meets the shape of its area light. `here`: if the shape is
  * no border. */
 static uint32_t before_light(const vlTracing *t, const vlShadowRays *q, uint32_t k,
                              uint32_t light_shape, uint32_t here) {
-  vlVec3 o = vl_lane3(q->ox, q->oy, q->oz, k), d = vl_lane3(q->dx, q->dy, q->dz, k);
+  vlVec3 o = vl_row3(&q->o, k), d = vl_row3(&q->d, k);
   float from = 0.999f * q->t_max[k], to = 1.001f * q->t_max[k], hit, time = q->time[k];
   uint32_t shape, prim, instance;
-  vlRays ray = {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &from, &to, t->world->moves ? &time : NULL,
-                NULL};
+  vlRays ray = vl_one_ray(&o, &d, &from, &to, t->world->moves ? &time : NULL);
   vl_accel_closest(t->world, 1, &ray, false, &shape, &prim, &instance, &hit);
   if (shape != light_shape)
     return here;

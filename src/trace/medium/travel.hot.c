@@ -109,10 +109,8 @@ static void begin_block(const Rays *r, vlTravel *k, uint32_t first, uint32_t n,
   vlVolumeRows *v = r->rows;
   vlFlights *f = &k->f;
   f->n = n;
-  f->rays = (vlRays){
-      p->ox + first,         p->oy + first, p->oz + first, p->dx + first,
-      p->dy + first,         p->dz + first, NULL,          t_max ? t_max + first : NULL,
-      p->time ? time : NULL, NULL};
+  f->rays = vl_rays_of(&p->o, &p->d, first, NULL, t_max ? t_max + first : NULL,
+                       p->time ? time : NULL);
   for (uint32_t i = 0; p->time && i < n; i++)
     time[i] = vl_path_time(p, first + i);
   for (int c = 0; c < 4; c++) {

@@ -131,10 +131,10 @@ static inline void vl_volume_push_shadow(const vlTracing *t, const vlPaths *p,
                                          const vlVolumeRows *rows, const vlLightSamples *l,
                                          uint32_t i, const vlShadowStart *start, uint32_t count,
                                          vlShadowRays *q, vlShadowFlights *f) {
-  vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
+  vlVec3 w = vl_row3(&l->w, i);
   float length = VL_INFINITY;
   if (!l->distant[i]) { /* unit length: distances to interfaces are needed */
-    vlVec3 to = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), start->o);
+    vlVec3 to = vl_sub(vl_row3(&l->target, i), start->o);
     length = vl_length(to);
     w = vl_normalize(to);
   }

@@ -90,11 +90,10 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     if (!(light->pdf[i] > 0.0f))
       continue;
     uint32_t medium = in->rows.medium[i];
-    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    vlVec3 w = vl_lane3(light->wx, light->wy, light->wz, i);
+    vlVec3 d = vl_row3(&p->d, i);
+    vlVec3 w = vl_row3(&light->w, i);
     float phase = vl_phase(t->world->media.items[medium].g, vl_dot(d, w));
-    vlShadowStart start = {
-        vl_lane3(p->ox, p->oy, p->oz, i), {phase, phase, phase, phase}, phase, medium};
+    vlShadowStart start = {vl_row3(&p->o, i), {phase, phase, phase, phase}, phase, medium};
     vl_volume_push_shadow(t, p, &in->rows, light, i, &start, count++, q, flights);
   }
   vl_volume_shadows(t, p, light, count, depth, q, flights);
@@ -118,7 +117,7 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
     float survive = vl_roulette_survival(most * p->eta_scale[i], depth);
     if (!(most > 0.0f) || !(u.u0[i] < survive))
       continue;
-    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlVec3 d = vl_row3(&p->d, i);
     float g = t->world->media.items[rows->medium[i]].g;
     vlVec3 w = vl_phase_sample(g, d, u.u1[i], u.u2[i]);
     float pdf = vl_phase(g, vl_dot(d, w));
@@ -126,7 +125,7 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
       p->beta[c][i] /= survive;
       rows->l[c][i] = rows->u[c][i] / pdf;
     }
-    vl_set_lane3(p->dx, p->dy, p->dz, i, w);
+    vl_set_row3(&p->d, i, w);
     p->pdf[i] = pdf;
     p->specular[i] = 0;
     vl_note_scattered(t, p->lane[i]);
@@ -152,15 +151,15 @@ uint32_t vl_volume_gather(const vlTracing *t, uint32_t n, const vlPaths *rays,
   vl_volume_normalise_all(t, p, &to->rows, count);
   for (uint32_t i = 0; i < count; i++) {
     float distance = ends->t[to->ray[i]];
-    p->ox[i] += distance * p->dx[i];
-    p->oy[i] += distance * p->dy[i];
-    p->oz[i] += distance * p->dz[i];
+    p->o.x[i] += distance * p->d.x[i];
+    p->o.y[i] += distance * p->d.y[i];
+    p->o.z[i] += distance * p->d.z[i];
     p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance);
     p->spread[i] = t->def->pixel_spread;
-    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = p->from_side[i] = 0.0f;
-    vl_set_lane3(points->px, points->py, points->pz, i, vl_lane3(p->ox, p->oy, p->oz, i));
+    p->from_n.x[i] = p->from_n.y[i] = p->from_n.z[i] = p->from_side[i] = 0.0f;
+    vl_set_row3(&points->p, i, vl_row3(&p->o, i));
     /* no normal: all directions count equally */
-    points->nx[i] = points->ny[i] = points->nz[i] = 0.0f;
+    points->n.x[i] = points->n.y[i] = points->n.z[i] = 0.0f;
     points->no_cosine[i] = 1.0f;
     points->side[i] = 0.0f;
   }
@@ -200,16 +199,17 @@ static void make_shadows(uint32_t n, const vlVertices *at, const vlLightSamples 
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     float pdf = l->pdf[i];
-    vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
+    vlVec3 w = vl_vec3(l->w.x[i], l->w.y[i], l->w.z[i]);
     vlVec3 o = vl_surface_origin(f, i, w);
-    vlVec3 to = vl_sub(vl_vec3(l->tx[i], l->ty[i], l->tz[i]), o), d = vl_normalize(to);
+    vlVec3 to = vl_sub(vl_vec3(l->target.x[i], l->target.y[i], l->target.z[i]), o),
+           d = vl_normalize(to);
     int distant = l->distant[i], delta = l->delta[i];
     float length = distant ? VL_INFINITY : vl_length(to), own = bsdf->pdf[i];
     lit[i] = (pdf > 0.0f) & vl_has_value(bsdf, i) ? 1 : 0;
-    vl_set_lane3(q->ox, q->oy, q->oz, i, o);
-    q->dx[i] = distant ? w.x : d.x;
-    q->dy[i] = distant ? w.y : d.y;
-    q->dz[i] = distant ? w.z : d.z;
+    vl_set_row3(&q->o, i, o);
+    q->d.x[i] = distant ? w.x : d.x;
+    q->d.y[i] = distant ? w.y : d.y;
+    q->d.z[i] = distant ? w.z : d.z;
     q->t_max[i] = length * VL_SHADOW_END;
     for (int c = 0; c < 4; c++)
       q->radiance[c][i] = p->beta[c][i] * bsdf->value[c][i] * l->radiance[c][i] * pdf;
@@ -240,8 +240,8 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
                 (values->wi[2][i] < 0.0f) != (at->shade.wo[2][i] < 0.0f);
     if (into)
       continue;
-    vlVec3 g = vl_lane3(f->gx, f->gy, f->gz, i);
-    vlVec3 w = vl_lane3(light->wx, light->wy, light->wz, i);
+    vlVec3 g = vl_row3(&f->g, i);
+    vlVec3 w = vl_row3(&light->w, i);
     const vlWorldShape *shape = &t->world->shapes.items[at->hits.shape[i]];
     uint32_t k = count++;
     if (k != i)
@@ -269,9 +269,9 @@ void vl_volume_go_on(const vlTracing *t, uint32_t count, const vlVertices *at,
     float pdf = rays->pdf[k], inv = pdf > 0.0f ? 1.0f / pdf : 0.0f;
     for (int c = 0; c < 4; c++)
       rows->l[c][k] = rows->u[c][k] * inv;
-    rows->medium[k] = vl_medium_beyond(
-        &t->world->shapes.items[at->hits.shape[i]], vl_lane3(f->gx, f->gy, f->gz, i),
-        vl_lane3(rays->dx, rays->dy, rays->dz, k), rows->medium[k]);
+    rows->medium[k] =
+        vl_medium_beyond(&t->world->shapes.items[at->hits.shape[i]], vl_row3(&f->g, i),
+                         vl_row3(&rays->d, k), rows->medium[k]);
   }
 }
 

@@ -28,9 +28,7 @@ static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth, const vlPat
   v->fate = VL_PATH_ABSORBED;
   v->medium = rows->medium[i] == VL_NONE ? 0 : rows->medium[i] + 1;
   v->distance = x->t[i];
-  v->position[0] = p->ox[i] + x->t[i] * p->dx[i];
-  v->position[1] = p->oy[i] + x->t[i] * p->dy[i];
-  v->position[2] = p->oz[i] + x->t[i] * p->dz[i];
+  vl_store3(v->position, vl_add(vl_row3(&p->o, i), vl_mul(vl_row3(&p->d, i), x->t[i])));
 }
 
 void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *p,

@@ -10,10 +10,8 @@ static void begin_block(const vlTracing *t, const vlPaths *p, const vlShadowRays
                         float *lambda[4]) {
   vlFlights *f = &k->f;
   f->n = n;
-  f->rays = (vlRays){q->ox + first, q->oy + first,    q->oz + first,
-                     q->dx + first, q->dy + first,    q->dz + first,
-                     NULL,          q->t_max + first, p->time ? q->time + first : NULL,
-                     NULL};
+  f->rays =
+      vl_rays_of(&q->o, &q->d, first, NULL, q->t_max + first, p->time ? q->time + first : NULL);
   f->odds = v->odds + first;
   for (int c = 0; c < 4; c++) {
     f->beta[c] = v->beta[c] + first;

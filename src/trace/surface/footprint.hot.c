@@ -9,9 +9,10 @@ void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *f) {
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]),
-           g = vl_vec3(f->gx[i], f->gy[i], f->gz[i]);
-    vlVec3 u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]), v = vl_vec3(f->vx[i], f->vy[i], f->vz[i]);
+    vlVec3 d = vl_vec3(paths->d.x[i], paths->d.y[i], paths->d.z[i]),
+           g = vl_vec3(f->g.x[i], f->g.y[i], f->g.z[i]);
+    vlVec3 u = vl_vec3(f->dpdu.x[i], f->dpdu.y[i], f->dpdu.z[i]),
+           v = vl_vec3(f->dpdv.x[i], f->dpdv.y[i], f->dpdv.z[i]);
     vlFootprint r = vl_footprint_of(d, g, f->width[i]);
     /* Solves X = a u + b v by least squares, because u and v lie only approximately in the
      * surface. */

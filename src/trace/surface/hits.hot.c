@@ -20,7 +20,7 @@ void vl_add_hit_light(vlTracing *t, const vlPaths *p, VL_UNUSED const vlVolumeRo
 }
 
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlVec3 o = vl_row3(&p->o, i), d = vl_row3(&p->d, i);
   return vl_point_at_time(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i],
                           h->instance[i], h->t[i]);
 }
@@ -39,8 +39,7 @@ static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const 
   if (!corner.shape->triangles)
     return corner;
   float time = vl_path_time(p, i);
-  vlRays rays = {p->ox + i, p->oy + i, p->oz + i, p->dx + i, p->dy + i,
-                 p->dz + i, NULL,      NULL,      &time,     NULL};
+  vlRays rays = vl_rays_of(&p->o, &p->d, i, NULL, NULL, &time);
   vlLocalRay ray = vl_local_ray(world, &rays, 0, h->instance[i]);
   vlTextureQuery at;
   vl_local_triangle(corner.shape, corner.prim, &ray, &at, corner.weights);
@@ -62,7 +61,7 @@ uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h
   /* the materials of a mix have smaller indices than the mix, so the loop ends */
   while (world->materials.items[material].mixed) {
     const vlWorldMaterial *m = &world->materials.items[material];
-    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlVec3 d = vl_row3(&p->d, i);
     vlPoint at = vl_hit_point(world, p, h, i);
     vlTextureCorner corner = hit_corner(world, p, h, i);
     vlTextureQuery query = {at.u, at.v, at.p, at.g, &corner};
@@ -88,9 +87,7 @@ void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t
     vlVec3 o = vl_lane3(rays->ox, rays->oy, rays->oz, i),
            d = vl_lane3(rays->dx, rays->dy, rays->dz, i);
     float t_min = rays->t_min ? rays->t_min[i] : 0.0f, time = rays->time ? rays->time[i] : 0.0f;
-    vlRays ray = {&o.x,  &o.y, &o.z,   &d.x,
-                  &d.y,  &d.z, &t_min, rays->t_max ? rays->t_max + i : NULL,
-                  &time, NULL};
+    vlRays ray = vl_one_ray(&o, &d, &t_min, rays->t_max ? rays->t_max + i : NULL, &time);
     for (uint32_t step = 0; shape[i] != VL_NONE && world->shapes.items[shape[i]].hidden;
          step++) {
       vlPoint at = vl_point_at_time(world, time, o, d, shape[i], prim[i], instance[i], hit[i]);
@@ -107,8 +104,7 @@ void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths 
   const float *t_min = camera ? t->batch->t_min : NULL,
               *t_max = camera ? t->batch->t_max : NULL;
   vlFloatRow time;
-  vlRays rays = {
-      p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time), NULL};
+  vlRays rays = vl_rays_of(&p->o, &p->d, 0, t_min, t_max, vl_path_times(p, n, time));
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
   if (camera && t->world->has_hidden)
     vl_pass_hidden(t, n, &rays, h->shape, h->prim, h->instance, h->t);
@@ -119,16 +115,8 @@ void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths 
 static void closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, bool camera,
                            float t_min, const float *t_max) {
   float time = vl_path_time(p, i);
-  vlRays ray = {p->ox + i,
-                p->oy + i,
-                p->oz + i,
-                p->dx + i,
-                p->dy + i,
-                p->dz + i,
-                &t_min,
-                t_max ? t_max + i : NULL,
-                p->time ? &time : NULL,
-                NULL};
+  vlRays ray =
+      vl_rays_of(&p->o, &p->d, i, &t_min, t_max ? t_max + i : NULL, p->time ? &time : NULL);
   vl_accel_closest(t->world, 1, &ray, false, h->shape + i, h->prim + i, h->instance + i,
                    h->t + i);
   t->batch->bounce_rays++;
@@ -154,7 +142,7 @@ static void pass_interfaces(vlTracing *t, vlAddLight *pass_light, const vlPaths 
     if (pass_light && world->shapes.items[h->shape[i]].first_light != VL_NONE &&
         vl_hit_emission(world, p, h, i, &met))
       pass_light(t, p, NULL, NULL, i, &met, false);
-    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+    vlVec3 d = vl_row3(&p->d, i);
     vlPoint at = vl_hit_point(world, p, h, i);
     t_min = vl_past_surface(&at, d, t_min);
     closest_beyond(t, p, h, i, camera, t_min, t_max);

@@ -7,7 +7,7 @@
 /* Where paths enter solids, by probe. */
 typedef struct vlEntries {
   vlUintRow path, material; /* path: index of the ray */
-  vlFloatRow px, py, pz, nx, ny, nz;
+  vlVec3Row p, n;
   vlFloatRow sigma[4], albedo[4];
 } vlEntries;
 

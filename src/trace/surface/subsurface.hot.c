@@ -31,8 +31,8 @@ typedef struct Entry {
 
 static Entry entry_of(const vlWorld *world, const vlEntries *x, uint32_t j) {
   Entry e = {world->materials.items[x->material[j]].subsurface->table,
-             vl_lane3(x->px, x->py, x->pz, j),
-             vl_lane3(x->nx, x->ny, x->nz, j),
+             vl_row3(&x->p, j),
+             vl_row3(&x->n, j),
              {0},
              {0}};
   for (int c = 0; c < 4; c++) {
@@ -60,8 +60,8 @@ static uint32_t find_entries(const vlWorld *world, uint32_t n, const vlVertices 
     uint32_t j = count++;
     to->path[j] = k;
     to->material[j] = material;
-    vl_set_lane3(to->px, to->py, to->pz, j, vl_lane3(f->px, f->py, f->pz, i));
-    vl_set_lane3(to->nx, to->ny, to->nz, j, vl_lane3(f->nx, f->ny, f->nz, i));
+    vl_set_row3(&to->p, j, vl_row3(&f->p, i));
+    vl_set_row3(&to->n, j, vl_row3(&f->n, i));
     for (int c = 0; c < 4; c++) {
       to->sigma[c][j] = sh->own[VL_S_SIGMA + c][i];
       to->albedo[c][j] = sh->own[VL_S_ALBEDO + c][i];
@@ -99,8 +99,8 @@ static float cut_probe(const vlWorld *world, vlPaths *p, uint32_t j, vlVec3 o, v
   float reach = inside > 0.0f ? __builtin_sqrtf(inside) : 0.0f;
   float start = vl_max(-half, middle - reach), end = vl_min(half, middle + reach);
   o = vl_add(o, vl_mul(along, start));
-  vl_set_lane3(p->ox, p->oy, p->oz, j, o);
-  vl_set_lane3(p->dx, p->dy, p->dz, j, along);
+  vl_set_row3(&p->o, j, o);
+  vl_set_row3(&p->d, j, along);
   return end > start ? end - start : 0.0f;
 }
 
@@ -151,7 +151,7 @@ static float past_on_probe(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
 /* Counts the crossing `met` of probe j, and may choose it. Returns where the probe goes on. */
 static float note_crossing(const vlTracing *t, uint32_t j, uint32_t depth, const vlEntries *x,
                            const vlPaths *p, const vlHits *met, float t_min, vlProbes *to) {
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, j), d = vl_lane3(p->dx, p->dy, p->dz, j);
+  vlVec3 o = vl_row3(&p->o, j), d = vl_row3(&p->d, j);
   vlPoint at = vl_hit_point(t->world, p, met, j);
   if (vl_hit_material(t->world, p, met, j) == x->material[j]) {
     uint32_t count = ++to->found[j];
@@ -179,15 +179,13 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth, const vlEntr
   for (int step = 0; active > 0 && step < MAX_CROSSINGS; step++) {
     for (uint32_t k = 0; k < active; k++) {
       uint32_t j = under_way[k];
-      vl_set_lane3(q->ox, q->oy, q->oz, k, vl_lane3(p->ox, p->oy, p->oz, j));
-      vl_set_lane3(q->dx, q->dy, q->dz, k, vl_lane3(p->dx, p->dy, p->dz, j));
+      vl_set_row3(&q->o, k, vl_row3(&p->o, j));
+      vl_set_row3(&q->d, k, vl_row3(&p->d, j));
       from[k] = t_min[j];
       q->t_max[k] = to->length[j];
       q->time[k] = vl_path_time(p, j);
     }
-    vlRays rays = {
-        q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, from, q->t_max, p->time ? q->time : NULL,
-        NULL};
+    vlRays rays = vl_rays_of(&q->o, &q->d, 0, from, q->t_max, p->time ? q->time : NULL);
     vl_accel_closest(t->world, active, &rays, false, hits->shape, hits->prim, hits->instance,
                      hits->t);
     t->batch->bounce_rays += active;
@@ -240,8 +238,7 @@ static void weigh_exit(const vlTracing *t, uint32_t i, const Entry *entry, uint3
   const Entry e = *entry;
   int hero = vl_volume_hero(t, p, i);
   vlFrame frame = vl_frame_from_z(e.n);
-  vlVec3 d = vl_sub(vl_lane3(f->px, f->py, f->pz, i), e.p),
-         g = vl_lane3(f->gx, f->gy, f->gz, i);
+  vlVec3 d = vl_sub(vl_row3(&f->p, i), e.p), g = vl_row3(&f->g, i);
   float x = vl_dot(d, frame.x), y = vl_dot(d, frame.y), z = vl_dot(d, frame.z);
   const float across[3] = {__builtin_sqrtf(y * y + z * z), __builtin_sqrtf(z * z + x * x),
                            __builtin_sqrtf(x * x + y * y)};
@@ -295,9 +292,8 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   vl_stage_light_samples(t, n, p, f, dimension, light);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 w = vl_lane3(light->wx, light->wy, light->wz, i),
-           g = vl_lane3(f->gx, f->gy, f->gz, i);
-    float cosine = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
+    vlVec3 w = vl_row3(&light->w, i), g = vl_row3(&f->g, i);
+    float cosine = vl_dot(w, vl_row3(&f->n, i));
     if (!(light->pdf[i] > 0.0f) || !(cosine > 0.0f) || !carries(p, i))
       continue;
     float v = exit_value(table_at(t->world, hits, i), cosine) * cosine;
@@ -325,19 +321,19 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension, const vlHits *hi
     alive[i] = carries(p, i) && local.z > 0.0f;
     if (!alive[i])
       continue;
-    vlVec3 nn = vl_lane3(f->nx, f->ny, f->nz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+    vlVec3 nn = vl_row3(&f->n, i), g = vl_row3(&f->g, i);
     vlVec3 w = vl_normalize(vl_from_local(vl_frame_from_z(nn), local));
     vlVec3 o = vl_surface_origin(f, i, w);
     float weight = exit_value(table_at(t->world, hits, i), local.z) * VL_PI,
           pdf = local.z * VL_INV_PI;
-    vl_set_lane3(p->ox, p->oy, p->oz, i, o);
-    vl_set_lane3(p->dx, p->dy, p->dz, i, w);
+    vl_set_row3(&p->o, i, o);
+    vl_set_row3(&p->d, i, w);
     p->pdf[i] = pdf;
     p->specular[i] = 0;
     p->cone[i] = vl_abs(p->cone[i]);
     p->spread[i] = t->def->pixel_spread;
     vl_note_scattered(t, p->lane[i]);
-    vl_set_lane3(p->from_nx, p->from_ny, p->from_nz, i, nn);
+    vl_set_row3(&p->from_n, i, nn);
     p->from_side[i] = f->side[i];
     for (int c = 0; c < 4; c++) {
       p->beta[c][i] *= weight;

@@ -232,11 +232,11 @@ static inline vlVec3 in_single(const double v[3]) {
 
 static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, float t) {
   vlVec3 u = in_single(q->dpdu), v = in_single(q->dpdv);
-  vl_set_lane3(out->px, out->py, out->pz, i, in_single(q->p));
-  vl_set_lane3(out->gx, out->gy, out->gz, i, in_single(q->n));
-  vl_set_lane3(out->nx, out->ny, out->nz, i, in_single(q->ns));
-  vl_set_lane3(out->ux, out->uy, out->uz, i, u);
-  vl_set_lane3(out->vx, out->vy, out->vz, i, v);
+  vl_set_row3(&out->p, i, in_single(q->p));
+  vl_set_row3(&out->g, i, in_single(q->n));
+  vl_set_row3(&out->n, i, in_single(q->ns));
+  vl_set_row3(&out->dpdu, i, u);
+  vl_set_row3(&out->dpdv, i, v);
   for (int k = 0; k < 3; k++) {
     out->dn[k][i] = (float)q->dndu[k];
     out->dn[3 + k][i] = (float)q->dndv[k];
@@ -311,7 +311,7 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
                            const vlCorners *c, vlSurface *out) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
-  vlVec3 p = vl_lane3(out->px, out->py, out->pz, i), k[3];
+  vlVec3 p = vl_row3(&out->p, i), k[3];
   for (int j = 0; j < 3; j++)
     k[j] = vl_corner(c->p, j, i);
   vlVec3 g = vl_cross(vl_sub(k[1], k[0]), vl_sub(k[2], k[0]));
@@ -334,11 +334,11 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   }
   if (!(vl_length2(t) > 0.0f))
     return;
-  vlVec3 v = vl_cross(vl_lane3(out->nx, out->ny, out->nz, i), t);
+  vlVec3 v = vl_cross(vl_row3(&out->n, i), t);
   if (s->tangent_signs && (s->tangent_signs[f[0]] < 0.0f) != mirrored)
     v = vl_neg(v);
-  vl_set_lane3(out->ux, out->uy, out->uz, i, t);
-  vl_set_lane3(out->vx, out->vy, out->vz, i, v);
+  vl_set_row3(&out->dpdu, i, t);
+  vl_set_row3(&out->dpdv, i, v);
 }
 
 /* Gathers the corners of the triangles that are hit. Returns whether other shapes are hit, too,
@@ -368,8 +368,7 @@ static void set_other_points(const vlWorld *world, uint32_t n, const vlPaths *pa
   for (uint32_t i = 0; i < n; i++) {
     if (world->shapes.items[hits->shape[i]].triangles)
       continue;
-    vlVec3 o = vl_lane3(paths->ox, paths->oy, paths->oz, i),
-           d = vl_lane3(paths->dx, paths->dy, paths->dz, i);
+    vlVec3 o = vl_row3(&paths->o, i), d = vl_row3(&paths->d, i);
     float t = hits->t[i];
     vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i],
                                    hits->prim[i], hits->instance[i], &t);
@@ -384,8 +383,8 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]),
-           d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
+    vlVec3 o = vl_vec3(paths->o.x[i], paths->o.y[i], paths->o.z[i]),
+           d = vl_vec3(paths->d.x[i], paths->d.y[i], paths->d.z[i]);
     TriangleUv uv = {c->uv[0][i], c->uv[1][i], c->uv[2][i],
                      c->uv[3][i], c->uv[4][i], c->uv[5][i]};
     Triangle r = triangle_point(o, d, vl_vec3(c->p[0][i], c->p[1][i], c->p[2][i]),
@@ -395,21 +394,21 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths,
                                 vl_vec3(c->n[3][i], c->n[4][i], c->n[5][i]),
                                 vl_vec3(c->n[6][i], c->n[7][i], c->n[8][i]), uv, c->error[i],
                                 c->flip[i]);
-    out->px[i] = r.p.x;
-    out->py[i] = r.p.y;
-    out->pz[i] = r.p.z;
-    out->gx[i] = r.g.x;
-    out->gy[i] = r.g.y;
-    out->gz[i] = r.g.z;
-    out->nx[i] = r.n.x;
-    out->ny[i] = r.n.y;
-    out->nz[i] = r.n.z;
-    out->ux[i] = r.u.x;
-    out->uy[i] = r.u.y;
-    out->uz[i] = r.u.z;
-    out->vx[i] = r.v.x;
-    out->vy[i] = r.v.y;
-    out->vz[i] = r.v.z;
+    out->p.x[i] = r.p.x;
+    out->p.y[i] = r.p.y;
+    out->p.z[i] = r.p.z;
+    out->g.x[i] = r.g.x;
+    out->g.y[i] = r.g.y;
+    out->g.z[i] = r.g.z;
+    out->n.x[i] = r.n.x;
+    out->n.y[i] = r.n.y;
+    out->n.z[i] = r.n.z;
+    out->dpdu.x[i] = r.u.x;
+    out->dpdu.y[i] = r.u.y;
+    out->dpdu.z[i] = r.u.z;
+    out->dpdv.x[i] = r.v.x;
+    out->dpdv.y[i] = r.v.y;
+    out->dpdv.z[i] = r.v.z;
     out->u[i] = r.s;
     out->v[i] = r.t;
     out->t[i] = r.dist;

@@ -34,7 +34,7 @@ static float seen_weight(const vlTracing *t, const vlPaths *p, const vlFlightEnd
   const vlCameraView *eye = vl_eye_of(t, lane);
   if (!at || !eye->sees || way->light_only)
     return 1.0f;
-  vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlVec3 d = vl_row3(&p->d, i);
   float per_square = 1.0f / (vl_eye_pixel(t, lane, d, at->t) * at->t * at->t);
   float area_pdf = vl_emission_area_pdf(t->world, way, light, at->p);
   return 1.0f / (1.0f + vl_shown(way, light, area_pdf, per_square, vl_abs(vl_dot(d, at->g))) /
@@ -49,7 +49,7 @@ static void add_first(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
 
 static void add_later(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
                       const vlFlightEnds *ends, uint32_t i, const vlHitLight *met, bool sky) {
-  vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+  vlVec3 d = vl_row3(&p->d, i);
   float density = vl_emission_density(t->world, t->def->two_way, met->light, d,
                                       sky ? VL_INFINITY : met->at.t, sky ? NULL : &met->at);
   add_radiance(t, p, rows, i, met->radiance, hit_weight(t, p, ends, i, met->pdf, density));
@@ -64,8 +64,8 @@ static void weigh(const vlTracing *t, uint32_t n, uint32_t depth, const vlVertic
   const vlPaths *p = &at->paths;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
-    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    float cosine = vl_abs(vl_dot(d, vl_lane3(f->gx, f->gy, f->gz, i))),
+    vlVec3 d = vl_row3(&p->d, i);
+    float cosine = vl_abs(vl_dot(d, vl_row3(&f->g, i))),
           inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
     r->cosine[i] = cosine;
     r->a[i] = depth == 0 ? 0.0f : t->lanes->carry[lane] * inv;
@@ -89,19 +89,19 @@ static void push_shadow(const vlTracing *t, uint32_t i, vlVec3 o, uint32_t count
   const vlSurface *f = &at->surface;
   const vlPaths *p = x->paths;
   vlShadowRays *q = shadows->rays;
-  vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
+  vlVec3 w = vl_row3(&l->w, i);
   if (shadows->flights) {
     const vlWorldShape *shape = &t->world->shapes.items[at->hits.shape[i]];
     vlShadowStart start = {
         o,
         {bsdf->value[0][i], bsdf->value[1][i], bsdf->value[2][i], bsdf->value[3][i]},
         bsdf->pdf[i],
-        vl_medium_beyond(shape, vl_lane3(f->gx, f->gy, f->gz, i), w, x->rows->medium[i])};
+        vl_medium_beyond(shape, vl_row3(&f->g, i), w, x->rows->medium[i])};
     vl_volume_push_shadow(t, p, x->rows, l, i, &start, count, q, shadows->flights);
     vl_shadow_from_surface(t, at, i, bsdf->wi[2][i], count, shadows->flights);
     return;
   }
-  vlVec3 d = l->distant[i] ? w : vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
+  vlVec3 d = l->distant[i] ? w : vl_sub(vl_row3(&l->target, i), o);
   vl_shadow_way(p, i, o, d, l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON, count, q);
   for (int c = 0; c < 4; c++)
     q->radiance[c][count] = p->beta[c][i] * bsdf->value[c][i] * l->radiance[c][i] * l->pdf[i];
@@ -125,8 +125,8 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f) || !vl_has_value(bsdf, i))
       continue;
-    vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
-    vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
+    vlVec3 at = vl_row3(&f->p, i), g = vl_row3(&f->g, i);
+    vlVec3 w = vl_row3(&l->w, i);
     q->strategies->own[count] = l->pdf[i];
     q->strategies->others[count] =
         (l->delta[i] ? 0.0f : bsdf->pdf[i]) +
@@ -147,8 +147,7 @@ static void carry_on(const vlTracing *t, uint32_t count, uint32_t depth, const v
   vlTwoWayLanes *lanes = t->lanes;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = order[k], lane = p->lane[k], *smooth = &lanes->smooth[lane];
-    float cosine =
-        vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, k), vl_lane3(f->gx, f->gy, f->gz, i)));
+    float cosine = vl_abs(vl_dot(vl_row3(&p->d, k), vl_row3(&f->g, i)));
     float pdf = samples->pdf[i];
     bool specular = samples->flags[i] & VL_SAMPLED_SPECULAR;
     lanes->link[lane] = !specular && pdf > 0.0f ? way->connect / pdf : 0.0f;

@@ -28,9 +28,9 @@ static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth,
   const vlSurface *f = &at->surface;
   const vlWays *r = x->ways;
   float z = at->shade.wo[2][i];
-  vlEnd e = {.p = vl_lane3(f->px, f->py, f->pz, i),
-             .g = vl_lane3(f->gx, f->gy, f->gz, i),
-             .n = vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), z < 0.0f ? -1.0f : 1.0f),
+  vlEnd e = {.p = vl_row3(&f->p, i),
+             .g = vl_row3(&f->g, i),
+             .n = vl_mul(vl_row3(&f->n, i), z < 0.0f ? -1.0f : 1.0f),
              .ways = r->a[i] * vl_abs(z) * VL_INV_PI + r->b[i] + t->def->two_way->merged,
              .diffuse = vl_is_inner_end(t->world, at, i),
              .room = t->def->max_depth - depth - 1,
@@ -45,8 +45,8 @@ static vlEnd end_in_medium(const vlTracing *t, uint32_t i, uint32_t depth,
   const vlPaths *p = x->paths;
   const vlWays *r = x->ways;
   uint32_t medium = x->rows->medium[i];
-  vlEnd e = {.p = vl_lane3(p->ox, p->oy, p->oz, i),
-             .n = vl_lane3(p->dx, p->dy, p->dz, i),
+  vlEnd e = {.p = vl_row3(&p->o, i),
+             .n = vl_row3(&p->d, i),
              .tint = {p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]},
              .ways = r->b[i] + t->def->two_way->merged_volume,
              .room = t->def->max_depth - depth - 1,
@@ -196,7 +196,7 @@ static vlConnection connection(const vlTracing *t, uint32_t i, vlVec3 w, float f
                                const vlBsdfValues *back) {
   const vlSurface *f = &x->at->surface;
   const vlWays *ways = x->ways;
-  vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+  vlVec3 at = vl_row3(&f->p, i), g = vl_row3(&f->g, i);
   const vlWorldShape *shape = &t->world->shapes.items[x->at->hits.shape[i]];
   return (vlConnection){
       .i = i,
@@ -235,34 +235,35 @@ static void push(const vlTracing *t, const vlPaths *p, const vlConnection *c, ui
 /* Directions from n vertices to those that they have chosen; along the normals where none.
  * Returns the number of chosen ones. */
 static uint32_t aim(uint32_t n, const vlSurface *f, const vlLightVertices *inner,
-                    const uint32_t *chosen, float toward[3][VL_ROW_SIZE]) {
+                    const uint32_t *chosen, vlVec3Row *toward) {
   uint32_t found = 0;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 w = vl_lane3(f->nx, f->ny, f->nz, i);
+    vlVec3 w = vl_row3(&f->n, i);
     if (chosen[i] != VL_NONE) {
       const float *p = inner->vertices[chosen[i]].p;
-      w = vl_normalize(vl_sub(vl_load3(p), vl_lane3(f->px, f->py, f->pz, i)));
+      w = vl_normalize(vl_sub(vl_load3(p), vl_row3(&f->p, i)));
       found++;
     }
-    vl_set_lane3(toward[0], toward[1], toward[2], i, w);
+    vl_set_row3(toward, i, w);
   }
   return found;
 }
 
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVertices *x,
                       vlBsdfValues *there, vlBsdfValues *back, const vlTwoWayShadows *q) {
-  vlFloatRow toward[3], factor;
+  vlVec3Row toward;
+  vlFloatRow factor;
   uint32_t chosen[VL_ROW_SIZE], count = 0;
   if (depth + 2 > t->def->max_depth)
     return;
   vl_choose_vertices(t, n, depth, x, chosen, factor);
-  if (!aim(n, &x->at->surface, &t->def->two_way->inner, chosen, toward))
+  if (!aim(n, &x->at->surface, &t->def->two_way->inner, chosen, &toward))
     return;
-  vl_stage_there_and_back(t, n, x->at, toward, there, back);
+  vl_stage_there_and_back(t, n, x->at, &toward, there, back);
   for (uint32_t i = 0; i < n; i++) {
     if (chosen[i] == VL_NONE || !vl_has_value(there, i))
       continue;
-    vlVec3 w = vl_lane3(toward[0], toward[1], toward[2], i);
+    vlVec3 w = vl_row3(&toward, i);
     vlConnection c = connection(t, i, w, factor[i], x, there, back);
     if (q->flights)
       vl_push_connection(t, x->paths, x->rows, &c, chosen[i], count, q);

@@ -124,10 +124,9 @@ void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwo
       continue;
     const vlLightVertex *x = &way->inner.vertices[chosen[i]];
     uint32_t medium = in->rows->medium[i], lane = p->lane[i];
-    vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i);
+    vlVec3 at = vl_row3(&p->o, i);
     vlVec3 w = vl_normalize(vl_sub(vl_load3(x->p), at));
-    float phase =
-        vl_phase(t->world->media.items[medium].g, vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), w));
+    float phase = vl_phase(t->world->media.items[medium].g, vl_dot(vl_row3(&p->d, i), w));
     vlConnection c = {.i = i,
                       .at = at,
                       .o = at,

@@ -12,20 +12,19 @@ void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at,
   /* wo in world space and back: as a light sample's direction is rounded */
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     float a = sh->wo[0][i], b = sh->wo[1][i], c = sh->wo[2][i];
-    float x = a * sh->tx[i] + b * sh->bx[i] + c * f->nx[i];
-    float y = a * sh->ty[i] + b * sh->by[i] + c * f->ny[i];
-    float z = a * sh->tz[i] + b * sh->bz[i] + c * f->nz[i];
-    back->wi[0][i] = x * sh->tx[i] + y * sh->ty[i] + z * sh->tz[i];
-    back->wi[1][i] = x * sh->bx[i] + y * sh->by[i] + z * sh->bz[i];
-    back->wi[2][i] = x * f->nx[i] + y * f->ny[i] + z * f->nz[i];
+    float x = a * sh->tangent.x[i] + b * sh->bitangent.x[i] + c * f->n.x[i];
+    float y = a * sh->tangent.y[i] + b * sh->bitangent.y[i] + c * f->n.y[i];
+    float z = a * sh->tangent.z[i] + b * sh->bitangent.z[i] + c * f->n.z[i];
+    back->wi[0][i] = x * sh->tangent.x[i] + y * sh->tangent.y[i] + z * sh->tangent.z[i];
+    back->wi[1][i] = x * sh->bitangent.x[i] + y * sh->bitangent.y[i] + z * sh->bitangent.z[i];
+    back->wi[2][i] = x * f->n.x[i] + y * f->n.y[i] + z * f->n.z[i];
   }
   vl_stage_bsdf(t, n, at, wi, back);
 }
 
 void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at,
-                             const float (*toward)[VL_ROW_SIZE], vlBsdfValues *there,
-                             vlBsdfValues *back) {
-  vl_stage_local(n, at, toward[0], toward[1], toward[2], there->wi);
+                             const vlVec3Row *toward, vlBsdfValues *there, vlBsdfValues *back) {
+  vl_stage_local(n, at, toward, there->wi);
   vl_stage_bsdf(t, n, at, at->shade.wo, there);
   vl_stage_reverse(t, n, at, (const float(*)[VL_ROW_SIZE])there->wi, back);
 }
@@ -84,8 +83,8 @@ static uint32_t set_out(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes
     if (vl_has_media(t) && !start_medium(t, &e, &starts->medium[i]))
       continue;
     uint32_t k = count++;
-    vl_set_lane3(p->ox, p->oy, p->oz, k, e.o);
-    vl_set_lane3(p->dx, p->dy, p->dz, k, e.d);
+    vl_set_row3(&p->o, k, e.o);
+    vl_set_row3(&p->d, k, e.d);
     vl_path_start(p, k, b->px[i], b->py[i], b->index[i], i);
     p->cone[k] = p->spread[k] = 0.0f;
     for (int c = 0; c < 4; c++) {
@@ -97,8 +96,8 @@ static uint32_t set_out(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes
     lanes->density[i] = e.density;
     /* without 1 / (density cosine), which arrive() applies */
     lanes->carry[i] = e.delta ? 0.0f : 1.0f;
-    vl_set_lane3(lanes->lx, lanes->ly, lanes->lz, i, e.at);
-    vl_set_lane3(lanes->lnx, lanes->lny, lanes->lnz, i, e.n);
+    vl_set_row3(&lanes->l, i, e.at);
+    vl_set_row3(&lanes->ln, i, e.n);
     starts->area_pdf[k] = e.area_pdf;
     starts->offset[k] = e.offset;
     starts->side[k] = e.side;
@@ -121,8 +120,8 @@ static float light_sample_pdf(const vlTracing *t, uint32_t lane, vlReceiver to, 
     return pmf * vl_infinite_pdf(world, light, p, w);
   vlPoint at;
   __builtin_memset(&at, 0, sizeof at);
-  at.p = vl_lane3(x->lx, x->ly, x->lz, lane);
-  at.g = at.n = vl_lane3(x->lnx, x->lny, x->lnz, lane);
+  at.p = vl_row3(&x->l, lane);
+  at.g = at.n = vl_row3(&x->ln, lane);
   return pmf * vl_area_pdf(world, light, p, &at);
 }
 
@@ -156,7 +155,7 @@ void vl_arrive_from_light(const vlTracing *t, uint32_t depth, const vlPaths *p, 
     inv = density > 0.0f ? inv / density : 0.0f;
     shade_outside_portal(t, lane, at.p);
     to->b[i] = inv / vl_last_odds(ends, lane) *
-               light_sample_pdf(t, lane, at, vl_neg(vl_lane3(p->dx, p->dy, p->dz, i)));
+               light_sample_pdf(t, lane, at, vl_neg(vl_row3(&p->d, i)));
   }
   to->a[i] = t->lanes->carry[lane] * inv;
 }
@@ -166,8 +165,7 @@ static void arrive(const vlTracing *t, uint32_t n, uint32_t depth, const vlVerti
   const vlSurface *f = &at->surface;
   const vlPaths *p = &at->paths;
   for (uint32_t i = 0; i < n; i++) {
-    float cosine =
-        vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
+    float cosine = vl_abs(vl_dot(vl_row3(&p->d, i), vl_row3(&f->g, i)));
     vl_arrive_from_light(t, depth, p, i, vl_receiver(f, i), cosine, f->t[i], ends, to);
   }
 }
@@ -185,7 +183,7 @@ static void leave_photons(const vlTracing *t, uint32_t n, uint32_t depth,
     if (vl_all_specular(t->world, v->at, i) || !(ways->cosine[i] > 0.0f))
       continue;
     vlPhoton *x = &photons[count];
-    vl_leave_photon(t, depth, v, i, vl_lane3(f->px, f->py, f->pz, i), 0, x);
+    vl_leave_photon(t, depth, v, i, vl_row3(&f->p, i), 0, x);
     float inv = 1.0f / ways->cosine[i];
     for (int c = 0; c < 4; c++)
       x->power[c] = p->beta[c][i] * t->lanes->flux[c][p->lane[i]] * inv;
@@ -215,9 +213,9 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
       continue;
     vlLightVertex *x = &vertices[count];
     float z = sh->wo[2][i], side = z < 0.0f ? -1.0f : 1.0f, rev = vl_abs(z) * VL_INV_PI;
-    vl_leave_path(t, depth, v, i, vl_lane3(f->px, f->py, f->pz, i), x, &passed[count]);
-    vl_store3(x->g, vl_lane3(f->gx, f->gy, f->gz, i));
-    vl_store3(x->n, vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), side));
+    vl_leave_path(t, depth, v, i, vl_row3(&f->p, i), x, &passed[count]);
+    vl_store3(x->g, vl_row3(&f->g, i));
+    vl_store3(x->n, vl_mul(vl_row3(&f->n, i), side));
     for (int c = 0; c < 4; c++)
       x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane] * sh->reflectance[c][i] * rev /
                     ways->cosine[i];
@@ -243,8 +241,7 @@ static void carry_on(const vlTracing *t, uint32_t count, const vlVertices *at,
   float merged = t->def->two_way->merged, connect = t->def->two_way->connect;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = order[k], lane = p->lane[k];
-    float cosine =
-        vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, k), vl_lane3(f->gx, f->gy, f->gz, i)));
+    float cosine = vl_abs(vl_dot(vl_row3(&p->d, k), vl_row3(&f->g, i)));
     float pdf = samples->pdf[i];
     bool specular = samples->flags[i] & VL_SAMPLED_SPECULAR;
     lanes->carry[lane] = vl_carried(ways, i, back->pdf[i], specular, pdf, merged, cosine);

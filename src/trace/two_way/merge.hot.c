@@ -99,7 +99,7 @@ static void add_diffuse(const vlTracing *t, const vlTwoWayVertices *v, uint32_t 
                         const vlPhoton *x, float sum[4]) {
   const vlShade *sh = &v->at->shade;
   const vlSurface *f = &v->at->surface;
-  float zo = sh->wo[2][i], zi = x->w[0] * f->nx[i] + x->w[1] * f->ny[i] + x->w[2] * f->nz[i];
+  float zo = sh->wo[2][i], zi = vl_dot(vl_load3(x->w), vl_row3(&f->n, i));
   if (!(zo * zi > 0.0f))
     return;
   float forth = vl_abs(zi) * VL_INV_PI, back = vl_abs(zo) * VL_INV_PI;
@@ -114,7 +114,7 @@ static void add_diffuse(const vlTracing *t, const vlTwoWayVertices *v, uint32_t 
  * list. */
 static void add_listed(vlTracing *t, uint32_t n, const vlTwoWayVertices *v, vlMergeList *list,
                        vlBsdfValues *there, vlBsdfValues *back) {
-  vlFloatRow toward[3]; /* where the photons came from */
+  vlVec3Row toward; /* where the photons came from */
   const vlPaths *p = v->paths;
   const vlSurface *f = &v->at->surface;
   const vlPhoton *photons = t->def->two_way->map.photons;
@@ -125,11 +125,9 @@ static void add_listed(vlTracing *t, uint32_t n, const vlTwoWayVertices *v, vlMe
     for (uint32_t i = 0; i < n; i++) {
       bool has = round < list->count[i];
       const float *w = has ? photons[list->pair[list->first[i] + round]].w : NULL;
-      toward[0][i] = has ? w[0] : f->nx[i];
-      toward[1][i] = has ? w[1] : f->ny[i];
-      toward[2][i] = has ? w[2] : f->nz[i];
+      vl_set_row3(&toward, i, has ? vl_load3(w) : vl_row3(&f->n, i));
     }
-    vl_stage_there_and_back(t, n, v->at, (const float(*)[VL_ROW_SIZE])toward, there, back);
+    vl_stage_there_and_back(t, n, v->at, &toward, there, back);
     for (uint32_t i = 0; i < n; i++) {
       if (round >= list->count[i])
         continue;
@@ -169,8 +167,7 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVert
       continue;
     bool diffuse = t->world->materials.items[at->hits.material[i]].diffuse;
     float sum[4] = {0, 0, 0, 0};
-    Near near = near_start(map, vl_lane3(f->px, f->py, f->pz, i), 0,
-                           most_bounces(t, p->lane[i], depth));
+    Near near = near_start(map, vl_row3(&f->p, i), 0, most_bounces(t, p->lane[i], depth));
     list->first[i] = listed;
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       if (diffuse) {
@@ -200,9 +197,8 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoW
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i], medium = v->rows->medium[i];
     float sum[4] = {0, 0, 0, 0}, g = t->world->media.items[medium].g;
-    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    Near near = near_start(map, vl_lane3(p->ox, p->oy, p->oz, i), 1 + medium,
-                           most_bounces(t, lane, depth));
+    vlVec3 d = vl_row3(&p->d, i);
+    Near near = near_start(map, vl_row3(&p->o, i), 1 + medium, most_bounces(t, lane, depth));
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       const vlPhoton *x = &map->photons[j];
       float phase = vl_phase(g, vl_dot(d, vl_load3(x->w)));

@@ -27,8 +27,7 @@ typedef struct vlTwoWayLanes {
       vlUintRow light;
       vlFloatRow density; /* vl_emission_density of the first ray */
       /* point on the light, or direction of an infinite light; the light's normal there */
-      vlFloatRow lx, ly, lz;
-      vlFloatRow lnx, lny, lnz;
+      vlVec3Row l, ln;
     };
   };
 } vlTwoWayLanes;

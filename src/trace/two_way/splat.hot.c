@@ -38,20 +38,20 @@ static vlCameraSample sample_camera(const vlCameraView *eye, vlVec3 p, float u, 
 }
 
 void vl_look_from(const vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension,
-                  const float *x, const float *y, const float *z, vlCameraSample *views) {
+                  const vlVec3Row *at, vlCameraSample *views) {
   const vlCameraView *eye = &t->def->two_way->eye;
   vlNumbers u;
   bool lens = eye->lens_radius > 0.0f;
   if (eye->look) {
-    eye->look(eye, n, x, y, z, views);
+    eye->look(eye, n, at->x, at->y, at->z, views);
     return;
   }
   if (lens)
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV,
                        u.u1, u.u2);
   for (uint32_t i = 0; i < n; i++)
-    views[i] = sample_camera(vl_eye_of(t, p->lane[i]), vl_lane3(x, y, z, i),
-                             lens ? u.u1[i] : 0.0f, lens ? u.u2[i] : 0.0f);
+    views[i] = sample_camera(vl_eye_of(t, p->lane[i]), vl_row3(at, i), lens ? u.u1[i] : 0.0f,
+                             lens ? u.u2[i] : 0.0f);
 }
 
 /* A point of each camera ray is looked at from the camera. Where that gives the sample's own
@@ -60,15 +60,15 @@ void vl_look_from(const vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dim
 void vl_measure_camera_rays(const vlTracing *t, vlCameraSample *views) {
   const vlCameraView *eye = &t->def->two_way->eye;
   const vlTraceBatch *b = t->batch;
-  vlFloatRow x, y, z;
+  vlVec3Row at;
   if (!eye->look)
     return;
   for (uint32_t i = 0; i < b->n; i++) {
     vlVec3 o = vl_lane3(b->ox, b->oy, b->oz, i);
     float far = 1.0f + vl_length(o); /* rounding of the point is small against the distance */
-    vl_set_lane3(x, y, z, i, vl_add(o, vl_mul(vl_lane3(b->dx, b->dy, b->dz, i), far)));
+    vl_set_row3(&at, i, vl_add(o, vl_mul(vl_lane3(b->dx, b->dy, b->dz, i), far)));
   }
-  eye->look(eye, b->n, x, y, z, views);
+  eye->look(eye, b->n, at.x, at.y, at.z, views);
   for (uint32_t i = 0; i < b->n; i++) {
     const vlCameraSample *v = &views[i];
     vlVec3 o = vl_lane3(b->ox, b->oy, b->oz, i), d = vl_lane3(b->dx, b->dy, b->dz, i);
@@ -161,7 +161,7 @@ static void start_in_media(const vlTracing *t, const vlTwoWayVertices *x, uint32
                            uint32_t count, vlVec3 d, float wi_z, vlShadowFlights *f) {
   const vlSurface *s = &x->at->surface;
   f->medium[count] = vl_medium_beyond(&t->world->shapes.items[x->at->hits.shape[i]],
-                                      vl_lane3(s->gx, s->gy, s->gz, i), d, x->rows->medium[i]);
+                                      vl_row3(&s->g, i), d, x->rows->medium[i]);
   vl_shadow_from_surface(t, x->at, i, wi_z, count, f);
   for (int c = 0; c < 4; c++)
     f->density[c][count] = x->rows->u[c][i];
@@ -172,17 +172,17 @@ static void start_in_media(const vlTracing *t, const vlTwoWayVertices *x, uint32
 static void see(const vlTracing *t, uint32_t n, uint32_t dimension, const vlVertices *at,
                 vlCameraSample *views, float wi[3][VL_ROW_SIZE]) {
   const vlSurface *f = &at->surface;
-  vlFloatRow toward[3];
-  vl_look_from(t, n, &at->paths, dimension, f->px, f->py, f->pz, views);
+  vlVec3Row toward;
+  vl_look_from(t, n, &at->paths, dimension, &f->p, views);
   for (uint32_t i = 0; i < n; i++) {
     vlCameraSample *view = &views[i];
-    float cosine = vl_abs(vl_dot(view->w, vl_lane3(f->gx, f->gy, f->gz, i)));
+    float cosine = vl_abs(vl_dot(view->w, vl_row3(&f->g, i)));
     view->per_square = view->seen ? cosine * view->per_square : 0.0f;
-    vl_set_lane3(toward[0], toward[1], toward[2], i, view->w);
+    vl_set_row3(&toward, i, view->w);
   }
   for (uint32_t i = n; i < VL_PAD(n); i++)
-    vl_set_lane3(toward[0], toward[1], toward[2], i, views[n - 1].w);
-  vl_stage_local(n, at, toward[0], toward[1], toward[2], wi);
+    vl_set_row3(&toward, i, views[n - 1].w);
+  vl_stage_local(n, at, &toward, wi);
 }
 
 void vl_connect_to_camera(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
@@ -207,7 +207,7 @@ void vl_connect_to_camera(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
     if (!(view->per_square > 0.0f) || !(sum > 0.0f) || !(ways->cosine[i] > 0.0f))
       continue;
-    vlVec3 at = vl_lane3(f->px, f->py, f->pz, i);
+    vlVec3 at = vl_row3(&f->p, i);
     vlVec3 o = vl_surface_origin(f, i, vl_sub(view->from, at));
     vlVec3 d = push(p, i, count, o, view->from, view->end, q);
     if (q->flights)
@@ -234,17 +234,17 @@ void vl_show_lights(vlTracing *t, uint32_t n, const vlPaths *p, const vlLightSta
   if (!way->eye.sees || way->light_only)
     return;
   const vlTwoWayLanes *r = t->lanes;
-  VL_ROW float x[VL_ROW_SIZE] = {0}, y[VL_ROW_SIZE] = {0}, z[VL_ROW_SIZE] = {0};
+  vlVec3Row from = {{0}, {0}, {0}};
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
-    vl_set_lane3(x, y, z, i, vl_lane3(r->lx, r->ly, r->lz, p->lane[i]));
-  vl_look_from(t, n, p, VL_DIM_BOUNCE, x, y, z, views);
+    vl_set_row3(&from, i, vl_row3(&r->l, p->lane[i]));
+  vl_look_from(t, n, p, VL_DIM_BOUNCE, &from, views);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i], light = r->light[lane];
     if (!(starts->area_pdf[i] > 0.0f))
       continue;
-    vlVec3 at = vl_lane3(r->lx, r->ly, r->lz, lane);
-    vlVec3 g = vl_lane3(r->lnx, r->lny, r->lnz, lane);
+    vlVec3 at = vl_row3(&r->l, lane);
+    vlVec3 g = vl_row3(&r->ln, lane);
     const vlCameraSample *view = &views[i];
     float cosine = vl_dot(view->w, g);
     if (!view->seen || !(starts->side[i] * cosine >= 0.0f) || cosine == 0.0f)

@@ -144,7 +144,7 @@ void vl_arrive_from_light(const vlTracing *t, uint32_t depth, const vlPaths *p, 
 /* Fills the views of n points, which belong to the paths p, with points on the lens by the
  * random numbers of `dimension`. */
 void vl_look_from(const vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension,
-                  const float *x, const float *y, const float *z, vlCameraSample *views);
+                  const vlVec3Row *at, vlCameraSample *views);
 /* For cameras of one's own: fills vlTwoWayLanes.area, by which the camera paths of the batch
  * weigh light paths. views: memory. */
 void vl_measure_camera_rays(const vlTracing *t, vlCameraSample *views);
@@ -156,8 +156,7 @@ void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at,
 /* The BSDFs for the directions `toward` (world space), and vl_stage_reverse for the way
  * back. */
 void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at,
-                             const float (*toward)[VL_ROW_SIZE], vlBsdfValues *there,
-                             vlBsdfValues *back);
+                             const vlVec3Row *toward, vlBsdfValues *there, vlBsdfValues *back);
 
 /* (S + H) cos / fwd of vertex i (two_way.h), from which a path goes on with this density and
  * cosine. back: density of the way back. */
@@ -195,10 +194,9 @@ static inline float vl_sampled_density(const vlTracing *t, const vlLightSamples 
                                        vlVec3 from) {
   vlPoint at;
   __builtin_memset(&at, 0, sizeof at);
-  at.p = vl_lane3(l->tx, l->ty, l->tz, i);
-  return vl_emission_density(t->world, t->def->two_way, l->light[i],
-                             vl_lane3(l->wx, l->wy, l->wz, i), vl_length(vl_sub(at.p, from)),
-                             &at);
+  at.p = vl_row3(&l->target, i);
+  return vl_emission_density(t->world, t->def->two_way, l->light[i], vl_row3(&l->w, i),
+                             vl_length(vl_sub(at.p, from)), &at);
 }
 
 /* vlEmission.area_pdf at a point of an area light. */
@@ -382,7 +380,7 @@ static inline void vl_leave_photon(const vlTracing *t, uint32_t depth,
   const vlPaths *p = v->paths;
   uint32_t lane = p->lane[i];
   vl_store3(x->p, at);
-  vl_store3(x->w, vl_neg(vl_lane3(p->dx, p->dy, p->dz, i)));
+  vl_store3(x->w, vl_neg(vl_row3(&p->d, i)));
   x->a = v->ways->a[i];
   x->b = v->ways->b[i];
   x->bounce = depth + 1;

@@ -21,15 +21,13 @@ void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t
 
 static float extinction(const vlWorld *world, const vlMediumVertices *in, uint32_t i) {
   const vlPaths *p = &in->paths;
-  return vl_medium_extinction(&world->media.items[in->rows.medium[i]],
-                              vl_lane3(p->ox, p->oy, p->oz, i));
+  return vl_medium_extinction(&world->media.items[in->rows.medium[i]], vl_row3(&p->o, i));
 }
 
 /* w: unit, away from the vertex */
 static float phase_of(const vlWorld *world, const vlTwoWayVertices *x, uint32_t i, vlVec3 w) {
   const vlPaths *p = x->paths;
-  return vl_phase(world->media.items[x->rows->medium[i]].g,
-                  vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), w));
+  return vl_phase(world->media.items[x->rows->medium[i]].g, vl_dot(vl_row3(&p->d, i), w));
 }
 
 /* Samples new directions and updates what the paths carry. */
@@ -62,7 +60,7 @@ static void arrive(const vlTracing *t, uint32_t n, uint32_t depth, const vlMediu
     to->b[i] = depth == 0 ? 0.0f : vl_linked(t, ends, lane, distance, 1.0f / dense);
     if (depth > 0 || !vl_eye_of(t, lane)->sees)
       continue;
-    float pixel = vl_eye_pixel(t, lane, vl_lane3(p->dx, p->dy, p->dz, i), distance);
+    float pixel = vl_eye_pixel(t, lane, vl_row3(&p->d, i), distance);
     to->b[i] =
         t->def->two_way->paths * pixel * distance * distance / (dense * ends->odds[lane]);
   }
@@ -85,7 +83,7 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f))
       continue;
-    vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
+    vlVec3 at = vl_row3(&p->o, i), w = vl_row3(&l->w, i);
     float phase = phase_of(world, x, i, w);
     float density = vl_sampled_density(t, l, i, at);
     q->strategies->own[count] = l->pdf[i];
@@ -125,7 +123,7 @@ static void arrive_from_light(const vlTracing *t, uint32_t n, uint32_t depth,
                               vlWays *to) {
   const vlPaths *p = &in->paths;
   for (uint32_t i = 0; i < n; i++) {
-    vlReceiver at = {vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), 0.0f};
+    vlReceiver at = {vl_row3(&p->o, i), vl_vec3(0, 0, 0), 0.0f};
     vl_arrive_from_light(t, depth, p, i, at, extinction(t->world, in, i), ends->t[in->ray[i]],
                          ends, to);
   }
@@ -142,7 +140,7 @@ static void leave_photons(const vlTracing *t, uint32_t n, uint32_t depth,
     vlPhoton *x = &photons[count];
     float lambda[4];
     vl_path_lambda(p, i, lambda);
-    vlVec3 at = vl_lane3(p->ox, p->oy, p->oz, i);
+    vlVec3 at = vl_row3(&p->o, i);
     vlMediumLight k = vl_medium_coefficients(m, lambda);
     if (!m->uniform)
       k = vl_medium_at(m, &k, lambda, at, false);
@@ -170,11 +168,11 @@ static void leave_vertices(const vlTracing *t, uint32_t n, uint32_t depth,
     if (b->first + lane >= way->inner.paths)
       continue;
     vlLightVertex *x = &vertices[count];
-    vl_leave_path(t, depth, v, i, vl_lane3(p->ox, p->oy, p->oz, i), x, &passed[count]);
+    vl_leave_path(t, depth, v, i, vl_row3(&p->o, i), x, &passed[count]);
     x->a = ways->a[i];
     x->dense = ways->cosine[i];
     x->asymmetry = t->world->media.items[medium].g;
-    vl_store3(x->n, vl_lane3(p->dx, p->dy, p->dz, i));
+    vl_store3(x->n, vl_row3(&p->d, i));
     for (int c = 0; c < 4; c++)
       x->power[c] = p->beta[c][i] * t->lanes->flux[c][lane];
     x->back = ways->b[i] + way->merged_volume;
@@ -198,10 +196,10 @@ static void show(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension,
   vlShadowRays *q = shadows->rays;
   vlShadowFlights *f = shadows->flights;
   uint32_t count = 0;
-  vl_look_from(t, n, p, dimension, p->ox, p->oy, p->oz, views);
+  vl_look_from(t, n, p, dimension, &p->o, views);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
-    vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i);
+    vlVec3 o = vl_row3(&p->o, i);
     const vlCameraSample *view = &views[i];
     if (!view->seen)
       continue;

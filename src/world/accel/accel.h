@@ -6,6 +6,7 @@
 #define WORLD_ACCEL_ACCEL_H
 
 #include "base/context.h"
+#include "math/vec.h"
 #include "velo/world.h"
 
 #define VL_NONE 0xffffffffu
@@ -22,6 +23,12 @@ typedef struct vlRays {
    * at surfaces with an alpha, as it does for closest hits */
   uint32_t *crossed;
 } vlRays;
+
+/* One ray from o along d. t_min, t_max, time: of vlRays. */
+static inline vlRays vl_one_ray(const vlVec3 *o, const vlVec3 *d, const float *t_min,
+                                const float *t_max, const float *time) {
+  return (vlRays){&o->x, &o->y, &o->z, &d->x, &d->y, &d->z, t_min, t_max, time, NULL};
+}
 
 /* Copies rays first to first + n - 1 into rows: ox, oy, oz, dx, dy, dz, t_min, t_max. Copies of
  * the last ray fill the rows up to `padded`. */

@@ -14,7 +14,7 @@ enum { SIDE = 32, DEPTH = 8, ROWS = 22 };
 /* Media differ if this share of the radiance arrives over such segments, or if this share of
  * the paths has some. A few paths may slip through edges by rounding, or see a place without
  * light, such as the ground from below. */
-static const double LITTLE = 0.002, MANY = 0.1;
+static const double LITTLE = 0.0002, MANY = 0.1;
 enum { FEWEST_WRONG = 3 };
 _Static_assert(SIDE *SIDE == VL_BATCH, "one batch");
 

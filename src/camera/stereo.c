@@ -106,16 +106,12 @@ vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *righ
   vlCameraDef between = *def;
   vlCamera camera, eyes[2];
   between.stereo_eye = VL_EYE_BOTH;
-  vlResult result = vl_camera_make(&between, &camera, warning, error);
-  if (result == VL_OK)
-    result = vl_camera_eye(&camera, &def->stereo, VL_EYE_LEFT, &eyes[0], error);
-  if (result == VL_OK)
-    result = vl_camera_eye(&camera, &def->stereo, VL_EYE_RIGHT, &eyes[1], error);
-  if (result == VL_OK) {
-    *left = eyes[0];
-    *right = eyes[1];
-  }
-  return result;
+  VL_TRY(vl_camera_make(&between, &camera, warning, error));
+  VL_TRY(vl_camera_eye(&camera, &def->stereo, VL_EYE_LEFT, &eyes[0], error));
+  VL_TRY(vl_camera_eye(&camera, &def->stereo, VL_EYE_RIGHT, &eyes[1], error));
+  *left = eyes[0];
+  *right = eyes[1];
+  return VL_OK;
 }
 
 vlResult vl_camera_move(const vlCamera *camera, const double world_from_camera[16],

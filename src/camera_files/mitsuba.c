@@ -275,17 +275,15 @@ static void set_orthographic(double width, vlMat4 *m, vlCameraDef *d) {
 static vlResult check_parameters(const Scene *scene, const json_t *element, const char *known,
                                  vlCameraRecord *record) {
   const json_t *item;
-  vlResult result = VL_OK;
   VL_EACH_CHILD(item, element) {
     const char *name = vl_camera_text(item, "name"), *value = NULL;
-    if (!name || result != VL_OK)
+    if (!name)
       continue;
-    result = attribute(scene, item, "value", &value);
+    VL_TRY(attribute(scene, item, "value", &value));
     const vlCameraName given = {name, value ? value : "set", line_of(item)};
-    if (result == VL_OK)
-      result = vl_camera_check_name(scene->file, known, &given, record);
+    VL_TRY(vl_camera_check_name(scene->file, known, &given, record));
   }
-  return result;
+  return VL_OK;
 }
 
 /* The parameters of the sensor and of its film that velo does not know: those that Mitsuba

@@ -32,9 +32,7 @@ static inline vlVec3 vl_portal_local(const vlPortal *portal, vlVec3 d) {
   return vl_turn(portal->frame, d);
 }
 static inline vlVec3 vl_portal_world(const vlPortal *portal, vlVec3 d) {
-  const float *m = portal->frame;
-  return vl_vec3(m[0] * d.x + m[3] * d.y + m[6] * d.z, m[1] * d.x + m[4] * d.y + m[7] * d.z,
-                 m[2] * d.x + m[5] * d.y + m[8] * d.z);
+  return vl_turn_back(portal->frame, d);
 }
 static inline vlVec3 vl_portal_corner_from(const vlPortal *portal, vlVec3 o) {
   return vl_portal_local(portal, vl_sub(vl_load3(portal->corner), o));

@@ -106,21 +106,14 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
                                     {d->sheen_roughness, &p->sheen_roughness},
                                     {d->iridescence, &p->iridescence},
                                     {d->iridescence_thickness, &p->iridescence_thickness}};
-  vlResult r = compile_index(b, p);
-  if (r == VL_OK)
-    r = vl_material_spectrum(b, &def->reflectance, &m->reflectance);
-  if (r == VL_OK)
-    r = vl_material_floats(b, floats, VL_LENGTH(floats));
-  if (r == VL_OK)
-    r = vl_material_spectrum(b, &d->specular_color, &p->specular_color);
-  if (r == VL_OK)
-    r = vl_material_spectrum(b, &d->diffuse_transmission_color, &p->through);
-  if (r == VL_OK)
-    r = vl_material_spectrum(b, &d->sheen_color, &p->sheen);
-  if (r == VL_OK)
-    r = normal_node(world, scene, d->normal, &p->normal, error);
-  if (r == VL_OK)
-    r = normal_node(world, scene, d->clearcoat_normal, &p->coat_normal, error);
+  VL_TRY(compile_index(b, p));
+  VL_TRY(vl_material_spectrum(b, &def->reflectance, &m->reflectance));
+  VL_TRY(vl_material_floats(b, floats, VL_LENGTH(floats)));
+  VL_TRY(vl_material_spectrum(b, &d->specular_color, &p->specular_color));
+  VL_TRY(vl_material_spectrum(b, &d->diffuse_transmission_color, &p->through));
+  VL_TRY(vl_material_spectrum(b, &d->sheen_color, &p->sheen));
+  VL_TRY(normal_node(world, scene, d->normal, &p->normal, error));
+  VL_TRY(normal_node(world, scene, d->clearcoat_normal, &p->coat_normal, error));
   /* Lobes whose weight is always 0 need no lookups. */
   p->has_coat = !is_zero(d->clearcoat);
   p->has_film = !is_zero(d->iridescence);
@@ -128,7 +121,6 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   p->has_transmission = !is_zero(d->diffuse_transmission);
   b->m->one_sided = !p->has_transmission && is_zero(d->transmission);
   p->has_sheen = d->sheen_color.texture.index || !is_black(&d->sheen_color.value);
-  if (r == VL_OK)
-    choose_law(world, d, m, p);
-  return r;
+  choose_law(world, d, m, p);
+  return VL_OK;
 }

@@ -13,6 +13,16 @@ static inline void vl_map_vector(const double m[12], const double v[3], double r
   for (int i = 0; i < 3; i++)
     r[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
 }
+/* The same by a map of floats. */
+static inline void vl_float_map_point(const float m[12], const double p[3], double r[3]) {
+  for (int i = 0; i < 3; i++)
+    r[i] = (double)m[4 * i] * p[0] + (double)m[4 * i + 1] * p[1] + (double)m[4 * i + 2] * p[2] +
+           (double)m[4 * i + 3];
+}
+static inline void vl_float_map_vector(const float m[12], const double v[3], double r[3]) {
+  for (int i = 0; i < 3; i++)
+    r[i] = (double)m[4 * i] * v[0] + (double)m[4 * i + 1] * v[1] + (double)m[4 * i + 2] * v[2];
+}
 static inline void vl_map_normal(const double inverse[12], const double n[3], double r[3]) {
   for (int i = 0; i < 3; i++)
     r[i] = inverse[i] * n[0] + inverse[4 + i] * n[1] + inverse[8 + i] * n[2];

@@ -62,6 +62,11 @@ static inline vlVec3 vl_turn(const float m[9], vlVec3 v) {
   return vl_vec3(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
                  m[6] * v.x + m[7] * v.y + m[8] * v.z);
 }
+/* The product of its transpose and a vector. */
+static inline vlVec3 vl_turn_back(const float m[9], vlVec3 v) {
+  return vl_vec3(m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
+                 m[2] * v.x + m[5] * v.y + m[8] * v.z);
+}
 /* A point and a vector under an affine map (3x4). */
 static inline vlVec3 vl_affine_point(const float m[12], vlVec3 p) {
   return vl_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],

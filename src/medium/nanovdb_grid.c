@@ -233,13 +233,14 @@ static vlResult build_table(Tree *t, vlSparseGrid *g) {
 
 /* ---- the grid ---------------------------------------------------------------------------- */
 
-/* Moves a growing array into a block owned by the world. */
-static bool give(vlWorld *world, void *items, void *result_pointer) {
+/* Moves the pointer to a growing array: the world owns the array from then on. */
+static bool give(vlWorld *world, void *pointer, void *result_pointer) {
   void **slot = VL_PUSH(world->context, &world->blocks);
   if (!slot)
     return false;
-  *slot = items;
-  memcpy(result_pointer, &items, sizeof items);
+  memcpy(slot, pointer, sizeof *slot);
+  memcpy(result_pointer, pointer, sizeof *slot);
+  memset(pointer, 0, sizeof *slot);
   return true;
 }
 
@@ -303,17 +304,9 @@ vlResult vl_nanovdb_read(vlWorld *world, const char *path, const char *name,
   r = g ? take_apart(&tree, g) : vl_fail_memory(error);
   VL_FREE(world->context, found.words, tree.blocks.items);
   /* arrays that the world now owns are not freed here */
-  if (r == VL_OK && give(world, tree.tiles.items, &g->tiles))
-    tree.tiles.items = NULL;
-  else if (r == VL_OK)
-    r = vl_fail_memory(error);
-  if (r == VL_OK && give(world, tree.bricks.items, &g->bricks))
-    tree.bricks.items = NULL;
-  else if (r == VL_OK)
-    r = vl_fail_memory(error);
-  if (r == VL_OK && give(world, tree.values.items, &g->values))
-    tree.values.items = NULL;
-  else if (r == VL_OK)
+  if (r == VL_OK && !(give(world, &tree.tiles.items, &g->tiles) &&
+                      give(world, &tree.bricks.items, &g->bricks) &&
+                      give(world, &tree.values.items, &g->values)))
     r = vl_fail_memory(error);
   VL_FREE(world->context, tree.tiles.items, tree.bricks.items, tree.values.items);
   if (r == VL_OK)

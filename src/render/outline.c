@@ -30,14 +30,6 @@ typedef struct Points {
   uint32_t vertex[CHUNK];
 } Points;
 
-static void to_world(const float *transform, const double own[3], double world[3]) {
-  for (int i = 0; i < 3; i++) {
-    const float *m = transform + 4 * i;
-    world[i] =
-        (double)m[0] * own[0] + (double)m[1] * own[1] + (double)m[2] * own[2] + (double)m[3];
-  }
-}
-
 /* A point of the chunk. */
 typedef struct Moving {
   const Points *points;
@@ -59,7 +51,7 @@ static bool seen_at(void *user, double seconds, double film[2]) {
   memcpy(at, own, sizeof at);
   vlWorldInstance held;
   if (p->instance)
-    to_world(vl_instance_at(p->instance, time, &held)->from_group, own, at);
+    vl_float_map_point(vl_instance_at(p->instance, time, &held)->from_group, own, at);
   return vl_camera_film_at(p->rows->camera, seconds, at, film);
 }
 
@@ -109,7 +101,7 @@ static void add_of(Points *p, double x, double y, double z, const vlWorldShape *
   own[2] = z;
   memcpy(world, own, 3 * sizeof *own);
   if (p->transform)
-    to_world(p->transform, own, world);
+    vl_float_map_point(p->transform, own, world);
   p->shape[p->count] = shape;
   p->vertex[p->count] = vertex;
   if (++p->count == CHUNK)

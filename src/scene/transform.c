@@ -37,13 +37,9 @@ static bool take_apart(const double m[16], Similarity *s) {
     for (int j = 0; j < 3; j++)
       s->turn.m[4 * i + j] = m[4 * i + j] / s->scale;
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      double dot = 0;
-      for (int k = 0; k < 3; k++)
-        dot += s->turn.m[4 * k + i] * s->turn.m[4 * k + j];
-      if (fabs(dot - (i == j)) > 1e-6)
+    for (int j = 0; j < 3; j++)
+      if (fabs(vl_dot_columns(s->turn.m, i, j) - (i == j)) > 1e-6)
         return false;
-    }
   return true;
 }
 

@@ -5,18 +5,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/double3.h"
 #include "shape/kinds.row.h"
 #include "shape/shape_kind.h"
 #include "velo/schema.h"
 #include "velo/shape_kinds.h"
 
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) {
-  const float *m = instance->to_group;
-  double p[3] = {o[0], o[1], o[2]}, v[3] = {d[0], d[1], d[2]};
-  for (int i = 0; i < 3; i++) {
-    o[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
-    d[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
-  }
+  const double p[3] = {o[0], o[1], o[2]}, v[3] = {d[0], d[1], d[2]};
+  vl_float_map_point(instance->to_group, p, o);
+  vl_float_map_vector(instance->to_group, v, d);
 }
 
 void vl_instance_error(const float m[12], const float w[12], float error[4]) {

@@ -270,12 +270,6 @@ float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time)
 
 /* ---- following a point ------------------------------------------------------------------- */
 
-static void map(const float m[12], const double p[3], double q[3]) {
-  for (int i = 0; i < 3; i++)
-    q[i] = (double)m[4 * i] * p[0] + (double)m[4 * i + 1] * p[1] + (double)m[4 * i + 2] * p[2] +
-           (double)m[4 * i + 3];
-}
-
 /* Applies the inverse of m in double precision; vlWorldInstance.to_group is rounded to
  * float. */
 static void unmap(const float m[12], const double p[3], double q[3]) {
@@ -354,7 +348,7 @@ void vl_world_follow(const vlWorld *world, uint32_t shape, uint32_t prim, uint32
     follow_triangle(s, prim, from, to, g);
   memcpy(moved, g, sizeof g);
   if (q)
-    map(vl_instance_at(q, to, &room)->from_group, g, moved);
+    vl_float_map_point(vl_instance_at(q, to, &room)->from_group, g, moved);
 }
 
 /* ---- velocities -------------------------------------------------------------------------- */
@@ -382,8 +376,8 @@ static void triangle_velocity(const vlWorldShape *s, uint32_t prim, float time,
 static void step_velocity(const vlWorldInstance *q, int64_t k, const double g[3], double v[3]) {
   const float *a = q->path + 12 * k, *b = a + 12;
   double from[3], to[3];
-  map(a, g, from);
-  map(b, g, to);
+  vl_float_map_point(a, g, from);
+  vl_float_map_point(b, g, to);
   for (int i = 0; i < 3; i++)
     v[i] = (to[i] - from[i]) * (q->keys - 1);
 }
@@ -443,10 +437,9 @@ void vl_world_velocity(const vlWorld *world, uint32_t shape, uint32_t prim, uint
     triangle_velocity(s, prim, time, g, flow);
   if (goes)
     instance_velocity(q, time, g, v);
-  for (int i = 0; i < 3; i++) {
-    const float *m = now ? now->from_group + 4 * i : NULL;
-    v[i] +=
-        m ? (double)m[0] * flow[0] + (double)m[1] * flow[1] + (double)m[2] * flow[2] : flow[i];
-    velocity[i] = v[i] / (world->time_close - world->time_open);
-  }
+  double turned[3];
+  if (now)
+    vl_float_map_vector(now->from_group, flow, turned);
+  for (int i = 0; i < 3; i++)
+    velocity[i] = (v[i] + (now ? turned[i] : flow[i])) / (world->time_close - world->time_open);
 }

@@ -3,6 +3,7 @@
 #ifndef TRACE_GROUND_TRUTH_EXACT_H
 #define TRACE_GROUND_TRUTH_EXACT_H
 
+#include "math/double3.h"
 #include "shape/surface_point.h"
 #include "trace/stages.h"
 #include "world/moving.h"
@@ -26,11 +27,9 @@ static inline Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q
   const float *x = vl_vertex_at(s, vertex, time, room);
   if (!q)
     return (Exact){x[0], x[1], x[2]};
+  const double own[3] = {x[0], x[1], x[2]};
   double r[3];
-  for (int i = 0; i < 3; i++) {
-    const float *m = q->from_group + 4 * i;
-    r[i] = (double)m[0] * x[0] + (double)m[1] * x[1] + (double)m[2] * x[2] + m[3];
-  }
+  vl_float_map_point(q->from_group, own, r);
   return (Exact){r[0], r[1], r[2]};
 }
 

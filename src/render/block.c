@@ -111,18 +111,10 @@ static void trace_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   const vlCameraRays rays = rows.rays;
   vl_film_rays_make(&r->film_rays, n, &rows);
   vlTraceBatch batch = {.n = n,
-                        .ox = rays.ox,
-                        .oy = rays.oy,
-                        .oz = rays.oz,
-                        .dx = rays.dx,
-                        .dy = rays.dy,
-                        .dz = rays.dz,
-                        .t_min = rays.t_min,
-                        .t_max = rays.t_max,
+                        .rays = vl_film_world_rays(&r->film_rays, &rays),
                         .px = rows.px,
                         .py = rows.py,
                         .index = rows.index,
-                        .time = r->film_rays.moves ? rays.time : NULL,
                         .alpha = row(w, ALPHA),
                         .recorder = w->recorder};
   bool irradiance = r->trace.irradiance;

@@ -165,15 +165,7 @@ static void trace(const vlChannelPass *p, vlChannelWorker *w, const Count *c, ui
   vl_film_rays_make(c->rays, n, &r);
   bool depths = !c->matte && p->def->mode == VL_CHANNEL_MODE_NEAREST;
   vlGroundTruthHits hits = {.n = n,
-                            .ox = r.rays.ox,
-                            .oy = r.rays.oy,
-                            .oz = r.rays.oz,
-                            .dx = r.rays.dx,
-                            .dy = r.rays.dy,
-                            .dz = r.rays.dz,
-                            .t_min = r.rays.t_min,
-                            .t_max = r.rays.t_max,
-                            .time = c->rays->moves ? r.rays.time : NULL,
+                            .rays = vl_film_world_rays(c->rays, &r.rays),
                             .object = (uint32_t *)(void *)vl_channel_row(w, OBJECT),
                             .material = (uint32_t *)(void *)vl_channel_row(w, MATERIAL),
                             .instance = (uint32_t *)(void *)vl_channel_row(w, INSTANCE),

@@ -6,6 +6,7 @@
 #include "camera/rays.h"
 #include "film/film.h"
 #include "sampler/sampler.h"
+#include "world/accel/accel.h"
 
 /* Everything that determines the ray of a film sample. */
 typedef struct vlFilmRays {
@@ -31,6 +32,13 @@ typedef struct vlFilmRays {
   bool moves;   /* true: the world has moving shapes, and ray times are world times, 0 to 1;
                    false: seconds */
 } vlFilmRays;
+
+/* Camera rays as rays of the world; they have times only if it moves. */
+static inline vlRays vl_film_world_rays(const vlFilmRays *f, const vlCameraRays *r) {
+  return (vlRays){
+      r->ox, r->oy, r->oz, r->dx, r->dy, r->dz, r->t_min, r->t_max, f->moves ? r->time : NULL,
+      NULL};
+}
 
 /* One element per sample; memory for VL_PAD(n) of them. In: the pixel and the sample's index in
  * it, n of each; the rest is output, and the padding repeats the last sample. film_x, film_y:

@@ -74,18 +74,11 @@ static bool ask(const vlWorld *world, const vlCamera *camera, Room *room,
                     .fit = &room->fit};
   bool rgb = world->def.color == VL_COLOR_RGB;
   vlTraceBatch batch = {.n = n,
-                        .ox = row[0],
-                        .oy = row[1],
-                        .oz = row[2],
-                        .dx = row[3],
-                        .dy = row[4],
-                        .dz = row[5],
-                        .t_min = row[6],
-                        .t_max = row[7],
+                        .rays = {row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7],
+                                 world->moves ? row[8] : NULL, NULL},
                         .px = room->px,
                         .py = room->py,
                         .index = room->index,
-                        .time = world->moves ? row[8] : NULL,
                         .alpha = row[9]};
   for (int c = 0; c < 4; c++) {
     batch.radiance[c] = row[10 + c];

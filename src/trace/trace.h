@@ -99,15 +99,13 @@ typedef struct vlTraceDef {
   bool irradiance;
 } vlTraceDef;
 
-/* Camera rays and their results. Rays are in world space, and d has unit length. Each array has
- * VL_PAD(n) elements, n <= VL_BATCH. */
+/* Camera rays and their results. d has unit length. Each array has VL_PAD(n) elements, n <=
+ * VL_BATCH. */
 typedef struct vlTraceBatch {
   uint32_t n;
-  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
+  vlRays rays; /* time: null if nothing in the world moves */
   const int32_t *px, *py;
   const uint32_t *index;
-  const float *time; /* the world's time, 0 to 1 (world/moving.h); null if nothing in the
-                        world moves */
   /* output; spectral mode: one value per wavelength; RGB mode: r, g, b, 0 */
   float *radiance[4];
   float *lambda[4];  /* output in spectral mode: wavelengths, nm; null in RGB mode */

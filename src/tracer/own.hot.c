@@ -81,8 +81,8 @@ static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
   if (count == 0)
     return;
   start(w, r, count);
-  w->batch.t_min = w->t_min;
-  w->batch.t_max = w->t_max;
+  w->batch.rays.t_min = w->t_min;
+  w->batch.rays.t_max = w->t_max;
   for (int c = 0; c < 4; c++)
     w->batch.radiance[c] = h->emission[c];
   vl_stage_hits(t, count, true, vl_add_hit_light, &s->rays, &s->hits);
@@ -121,8 +121,9 @@ static void occluded(vlTrace *w, const vlTraceRays *r, uint8_t *result) {
   __builtin_memset(result, 0, VL_OWN_BATCH);
   if (count == 0)
     return;
-  vlRays rays = {r->origin[0],    r->origin[1], r->origin[2], r->direction[0], r->direction[1],
-                 r->direction[2], r->t_min,     r->t_max,     w->batch.time,   NULL};
+  vlRays rays = {
+      r->origin[0],    r->origin[1], r->origin[2], r->direction[0],    r->direction[1],
+      r->direction[2], r->t_min,     r->t_max,     w->batch.rays.time, NULL};
   vl_accel_occluded(w->t.world, count, &rays, &w->t.s->occluders, result);
   w->batch.shadow_rays += count;
   for (uint32_t i = 0; i < count; i++)
@@ -246,10 +247,10 @@ static void make_rays(const vlTracing *t, vlTraceRays *r) {
   const vlTraceBatch *b = t->batch;
   no_rays(r, b->n);
   for (uint32_t i = 0; i < b->n; i++) {
-    put3(r->origin, i, vl_lane3(b->ox, b->oy, b->oz, i));
-    put3(r->direction, i, vl_lane3(b->dx, b->dy, b->dz, i));
-    r->t_min[i] = b->t_min[i];
-    r->t_max[i] = b->t_max[i];
+    put3(r->origin, i, vl_ray_origin(&b->rays, i));
+    put3(r->direction, i, vl_ray_direction(&b->rays, i));
+    r->t_min[i] = b->rays.t_min[i];
+    r->t_max[i] = b->rays.t_max[i];
     r->width[i] = t->def->pixel_width;
   }
 }
@@ -275,7 +276,7 @@ void vl_own_tracer(vlTracing *t) {
                             b->px,
                             b->py,
                             b->index,
-                            b->time,
+                            b->rays.time,
                             b->lambda[0] ? (const float(*)[VL_OWN_BATCH])lambda : NULL,
                             (const float(*)[VL_OWN_BATCH])white,
                             t->def->max_depth,

@@ -14,7 +14,7 @@ static void start_paths(vlTracing *t) {
   vlFloatRow u;
   bool connects = way && way->connect > 0.0f;
   uint32_t padded = VL_PAD(b->n);
-  t->s->rays.time = t->s->at.paths.time = b->time;
+  t->s->rays.time = t->s->at.paths.time = b->rays.time;
   if (b->lambda[0]) {
     t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, u);
     float shared = way ? way->shared : -1.0f;
@@ -36,8 +36,8 @@ static void start_paths(vlTracing *t) {
   }
   for (uint32_t i = 0; i < padded; i++) {
     vl_path_start(p, i, b->px[i], b->py[i], b->index[i], i);
-    vl_set_row3(&p->o, i, vl_lane3(b->ox, b->oy, b->oz, i));
-    vl_set_row3(&p->d, i, vl_lane3(b->dx, b->dy, b->dz, i));
+    vl_set_row3(&p->o, i, vl_ray_origin(&b->rays, i));
+    vl_set_row3(&p->d, i, vl_ray_direction(&b->rays, i));
     p->cone[i] = t->def->pixel_width;
     p->spread[i] = t->def->pixel_spread;
     t->scattered[i] = 0;

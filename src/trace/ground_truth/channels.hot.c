@@ -222,7 +222,7 @@ static void give(const float *from, const uint32_t *lane, uint32_t n, float *to)
 static void find_hits(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
                       const float *t_min, const float *t_max, vlGroundTruthScratch *scratch) {
   vlTraceScratch *s = &scratch->trace;
-  vlTraceBatch rays = {.n = n, .t_min = t_min, .t_max = t_max};
+  vlTraceBatch rays = {.n = n, .rays = {.t_min = t_min, .t_max = t_max}};
   for (int c = 0; c < 4; c++)
     rays.radiance[c] = scratch->light[c]; /* not used */
   const vlTraceDef trace_def = {
@@ -274,8 +274,8 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
   if (n == 0)
     return;
   for (uint32_t i = 0; i < n; i++) {
-    vl_set_row3(&p->o, i, vl_lane3(to->ox, to->oy, to->oz, i));
-    vl_set_row3(&p->d, i, vl_lane3(to->dx, to->dy, to->dz, i));
+    vl_set_row3(&p->o, i, vl_ray_origin(&to->rays, i));
+    vl_set_row3(&p->d, i, vl_ray_direction(&to->rays, i));
     p->cone[i] = def->pixel_width;
     p->spread[i] = def->pixel_spread;
     p->specular[i] = 1;
@@ -285,8 +285,8 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
       p->beta[c][i] = 0.0f;
     }
   }
-  p->time = to->time;
-  find_hits(world, def, n, to->t_min, to->t_max, scratch);
+  p->time = to->rays.time;
+  find_hits(world, def, n, to->rays.t_min, to->rays.t_max, scratch);
   const vlHits *h = &s->hits;
   for (uint32_t i = 0; i < n; i++) {
     bool hit = h->shape[i] != VL_NONE;

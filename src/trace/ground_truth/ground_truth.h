@@ -45,8 +45,7 @@ typedef struct vlGroundTruthBatch {
  * from 1. */
 typedef struct vlGroundTruthHits {
   uint32_t n;
-  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t_max;
-  const float *time; /* the world's time; null if nothing moves */
+  vlRays rays; /* time: null if nothing moves */
   uint32_t *object, *material, *instance;
   float *distance;
 } vlGroundTruthHits;

@@ -257,13 +257,6 @@ static void put(vlFlights *f, uint32_t i, const vlFlight *r) {
   }
 }
 
-static inline vlVec3 origin(const vlFlights *f, uint32_t i) {
-  return vl_lane3(f->rays.ox, f->rays.oy, f->rays.oz, i);
-}
-static inline vlVec3 direction(const vlFlights *f, uint32_t i) {
-  return vl_lane3(f->rays.dx, f->rays.dy, f->rays.dz, i);
-}
-
 void vl_fly(const vlTracing *t, vlFlights *f, bool emission) {
   for (uint32_t i = 0; i < f->n; i++)
     f->end[i] = VL_FLIGHT_PASSED;
@@ -281,8 +274,8 @@ void vl_fly(const vlTracing *t, vlFlights *f, bool emission) {
       continue;
     vlFlight one = take(t, f, i);
     float given[4] = {f->given[0][i], f->given[1][i], f->given[2][i], f->given[3][i]};
-    f->end[i] = vl_track(m, origin(f, i), direction(f, i), f->from[i], f->to[i], emission, &one,
-                         given, &f->t[i]);
+    f->end[i] = vl_track(m, vl_ray_origin(&f->rays, i), vl_ray_direction(&f->rays, i),
+                         f->from[i], f->to[i], emission, &one, given, &f->t[i]);
     for (int c = 0; c < 4; c++)
       f->given[c][i] = given[c];
     put(f, i, &one);
@@ -305,7 +298,8 @@ void vl_attenuate(const vlTracing *t, vlFlights *f) {
     if (!(f->to[i] > f->from[i]))
       continue;
     vlFlight one = take(t, f, i);
-    vl_track_through(m, origin(f, i), direction(f, i), f->from[i], f->to[i], &one);
+    vl_track_through(m, vl_ray_origin(&f->rays, i), vl_ray_direction(&f->rays, i), f->from[i],
+                     f->to[i], &one);
     put(f, i, &one);
   }
 }

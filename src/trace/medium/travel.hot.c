@@ -49,7 +49,7 @@ void vl_travel_closest(const vlTracing *t, vlTravel *k) {
 uint32_t vl_travel_pass(const vlTracing *t, vlTravel *k, uint32_t i, uint32_t medium) {
   const vlRays *r = &k->f.rays;
   const vlCrossings *x = &k->x;
-  vlVec3 d = vl_lane3(r->dx, r->dy, r->dz, i), g = vl_lane3(x->gx, x->gy, x->gz, i);
+  vlVec3 d = vl_ray_direction(r, i), g = vl_lane3(x->gx, x->gy, x->gz, i);
   if (t->def->fit)
     vl_fit_border(t, k->f.paths->lane[k->f.path[i]], x->shape[i], g, d, medium);
   k->f.from[i] = vl_past_crossing(x->t[i], g, x->offset[i], d, k->f.from[i]);
@@ -218,8 +218,8 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission,
                       vlFlightEnds *ends) {
   const Rays r = {p, rows, hits, ends, pass_light};
   bool camera = depth == 0 && !t->light;
-  const float *t_min = camera ? t->batch->t_min : NULL,
-              *t_max = camera ? t->batch->t_max : NULL;
+  const float *t_min = camera ? t->batch->rays.t_min : NULL,
+              *t_max = camera ? t->batch->rays.t_max : NULL;
   vlFloatRow u;
   vl_closest_hits(t, n, camera, p, hits);
   if (!camera)

@@ -84,8 +84,7 @@ void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t
                     uint32_t *prim, uint32_t *instance, float *hit) {
   const vlWorld *world = t->world;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 o = vl_lane3(rays->ox, rays->oy, rays->oz, i),
-           d = vl_lane3(rays->dx, rays->dy, rays->dz, i);
+    vlVec3 o = vl_ray_origin(rays, i), d = vl_ray_direction(rays, i);
     float t_min = rays->t_min ? rays->t_min[i] : 0.0f, time = rays->time ? rays->time[i] : 0.0f;
     vlRays ray = vl_one_ray(&o, &d, &t_min, rays->t_max ? rays->t_max + i : NULL, &time);
     for (uint32_t step = 0; shape[i] != VL_NONE && world->shapes.items[shape[i]].hidden;
@@ -101,8 +100,8 @@ void vl_pass_hidden(const vlTracing *t, uint32_t n, const vlRays *rays, uint32_t
 }
 
 void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHits *h) {
-  const float *t_min = camera ? t->batch->t_min : NULL,
-              *t_max = camera ? t->batch->t_max : NULL;
+  const float *t_min = camera ? t->batch->rays.t_min : NULL,
+              *t_max = camera ? t->batch->rays.t_max : NULL;
   vlFloatRow time;
   vlRays rays = vl_rays_of(&p->o, &p->d, 0, t_min, t_max, vl_path_times(p, n, time));
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
@@ -164,7 +163,7 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, vlAddLight *pass_light
     if (h->shape[i] == VL_NONE)
       continue;
     if (t->world->has_interfaces)
-      pass_interfaces(t, pass_light, p, h, i, camera, camera ? t->batch->t_max : NULL);
+      pass_interfaces(t, pass_light, p, h, i, camera, camera ? t->batch->rays.t_max : NULL);
     if (h->shape[i] != VL_NONE)
       h->material[i] = vl_hit_material(t->world, p, h, i);
   }

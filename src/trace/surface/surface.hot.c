@@ -550,8 +550,7 @@ void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays,
     uint32_t i = lanes[k];
     if (world->shapes.items[x->shape[i]].triangles)
       continue;
-    vlVec3 o = vl_lane3(rays->ox, rays->oy, rays->oz, i),
-           d = vl_lane3(rays->dx, rays->dy, rays->dz, i);
+    vlVec3 o = vl_ray_origin(rays, i), d = vl_ray_direction(rays, i);
     float t = x->hit[i];
     vlSurfacePoint q = other_point(world, rays->time ? rays->time[i] : 0.0f, o, d, x->shape[i],
                                    x->prim[i], x->instance[i], &t);

@@ -64,14 +64,14 @@ void vl_measure_camera_rays(const vlTracing *t, vlCameraSample *views) {
   if (!eye->look)
     return;
   for (uint32_t i = 0; i < b->n; i++) {
-    vlVec3 o = vl_lane3(b->ox, b->oy, b->oz, i);
+    vlVec3 o = vl_ray_origin(&b->rays, i);
     float far = 1.0f + vl_length(o); /* rounding of the point is small against the distance */
-    vl_set_row3(&at, i, vl_add(o, vl_mul(vl_lane3(b->dx, b->dy, b->dz, i), far)));
+    vl_set_row3(&at, i, vl_add(o, vl_mul(vl_ray_direction(&b->rays, i), far)));
   }
   eye->look(eye, b->n, at.x, at.y, at.z, views);
   for (uint32_t i = 0; i < b->n; i++) {
     const vlCameraSample *v = &views[i];
-    vlVec3 o = vl_lane3(b->ox, b->oy, b->oz, i), d = vl_lane3(b->dx, b->dy, b->dz, i);
+    vlVec3 o = vl_ray_origin(&b->rays, i), d = vl_ray_direction(&b->rays, i);
     bool same = v->seen && vl_abs(v->x - (float)b->px[i] - 0.5f) <= eye->reach_x &&
                 vl_abs(v->y - (float)b->py[i] - 0.5f) <= eye->reach_y &&
                 vl_length2(vl_add(v->w, d)) < 1e-6f &&

@@ -24,6 +24,12 @@ typedef struct vlRays {
   uint32_t *crossed;
 } vlRays;
 
+static inline vlVec3 vl_ray_origin(const vlRays *r, uint32_t i) {
+  return vl_lane3(r->ox, r->oy, r->oz, i);
+}
+static inline vlVec3 vl_ray_direction(const vlRays *r, uint32_t i) {
+  return vl_lane3(r->dx, r->dy, r->dz, i);
+}
 /* One ray from o along d. t_min, t_max, time: of vlRays. */
 static inline vlRays vl_one_ray(const vlVec3 *o, const vlVec3 *d, const float *t_min,
                                 const float *t_max, const float *time) {

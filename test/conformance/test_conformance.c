@@ -49,6 +49,7 @@
 #include "transport.h"
 #include "turned.h"
 #include "vignetting.h"
+#include "wavelengths.h"
 
 /* None of its calls fails; it shows what is read before it is written, and leaks. */
 static failAllocator memory;
@@ -146,6 +147,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(skies_of_files),
       cmocka_unit_test(stand_ins_of_files),
       cmocka_unit_test(saves_that_fail),
+      cmocka_unit_test(laws_of_wavelengths),
       cmocka_unit_test(hostile_defs),
       cmocka_unit_test(hostile_cameras),
       cmocka_unit_test(hostile_files),

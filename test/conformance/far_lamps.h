@@ -7,8 +7,8 @@
 #include "conformance.h"
 #include "unit.h"
 
-/* A floor below a sky that is brighter on one side. Lamps of each kind that has a place: below
- * the floor, or above it and turned away. */
+/* A floor below a sky that is brighter on one side. Lamps of each kind that has a place, and
+ * some without: below the floor, or above it and turned away. */
 static const char *const far_forms[] = {
     "AttributeBegin Translate %g -1 %g AreaLightSource \"diffuse\" \"rgb L\" [40 40 40] "
     "Shape \"sphere\" \"float radius\" .2 AttributeEnd\n",
@@ -18,10 +18,15 @@ static const char *const far_forms[] = {
     "\"point3 from\" [0 0 0] \"point3 to\" [0 1 0] AttributeEnd\n",
     "AttributeBegin Translate %g 5 %g Rotate -90 1 0 0 AreaLightSource \"diffuse\" "
     "\"rgb L\" [40 40 40] Shape \"disk\" \"float radius\" .2 AttributeEnd\n",
+    "LightSource \"distant\" \"point3 from\" [%g -1 %g] \"point3 to\" [0 0 0] "
+    "\"rgb L\" [40 40 40]\n",
 };
 enum { FAR_FORMS = sizeof far_forms / sizeof *far_forms };
 
-/* form: -1: no lamps. */
+#define FAR_SKY "LightSource \"infinite\" \"string filename\" \"quarters.pfm\"\n"
+
+/* form: of each other lamp, and the next form of those between them; -1: no lamps. The sky comes
+ * after the first lamp. */
 static Mean light_of_floor(const char *sampler, int form, int lamps) {
   static char text[TEXT];
   enum { SPP = 64 };
@@ -29,12 +34,16 @@ static Mean light_of_floor(const char *sampler, int form, int lamps) {
       text, sizeof text,
       HEAD
       "Integrator \"path\" \"string lightsampler\" \"%s\" WorldBegin "
-      "LightSource \"infinite\" \"string filename\" \"quarters.pfm\" "
       "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-9 0 9 9 0 9 -9 0 -9 9 0 -9]\n",
       sampler);
-  for (int i = 0; form >= 0 && i < lamps; i++)
-    used +=
-        (size_t)snprintf(text + used, sizeof text - used, far_forms[form], 1.0 + i, -0.5 * i);
+  for (int i = 0; form >= 0 && i < lamps; i++) {
+    const char *lamp = far_forms[(form + i % 2) % FAR_FORMS];
+    used += (size_t)snprintf(text + used, sizeof text - used, lamp, 1.0 + i, -0.5 * i);
+    if (i == 0)
+      used += (size_t)snprintf(text + used, sizeof text - used, FAR_SKY);
+  }
+  if (form < 0)
+    snprintf(text + used, sizeof text - used, FAR_SKY);
   vlImage *image = image_of_floor(text, VL_TRACER_PATH, SPP, 0.3, -0.2, 0.1);
   Mean mean = mean_of_image(image);
   vl_image_destroy(image);
@@ -42,8 +51,8 @@ static Mean light_of_floor(const char *sampler, int form, int lamps) {
 }
 
 /* The light beside a row of spots that shine straight down. Only the first ones' cones reach
- * there. A dim sky is there to be chosen, too. */
-static Mean light_beside_row(const char *sampler, double turn) {
+ * there. `cone` is half the opening of each other spot. A dim sky is there to be chosen, too. */
+static Mean light_beside_row(const char *sampler, double turn, double cone) {
   static char text[TEXT];
   enum { SPP = 256, SPOTS = 5 };
   size_t used = (size_t)snprintf(
@@ -57,9 +66,9 @@ static Mean light_beside_row(const char *sampler, double turn) {
   for (int i = 0; i < SPOTS; i++)
     used += (size_t)snprintf(
         text + used, sizeof text - used,
-        "LightSource \"spot\" \"rgb I\" [4 4 4] \"float coneangle\" 60 \"float conedeltaangle\" 60 "
+        "LightSource \"spot\" \"rgb I\" [4 4 4] \"float coneangle\" %g \"float conedeltaangle\" %g "
         "\"point3 from\" [%g 1 0] \"point3 to\" [%g 0 0]\n",
-        0.6 * i, 0.6 * i);
+        i % 2 ? cone : 60, i % 2 ? cone : 60, 0.6 * i, 0.6 * i);
   const double angle = turn * PI / 180;
   vlImage *image = image_of_floor(text, VL_TRACER_PATH, SPP, -cos(angle), sin(angle), 0.05);
   Mean mean = mean_of_image(image);
@@ -67,16 +76,21 @@ static Mean light_beside_row(const char *sampler, double turn) {
   return mean;
 }
 
+static void check_row(double turn, double cone) {
+  static const char *const samplers[] = {"bvh", "power"};
+  const Mean alike = light_beside_row("uniform", turn, cone);
+  for (int s = 0; s < 2; s++) {
+    const Mean mean = light_beside_row(samplers[s], turn, cone);
+    const Sight sight = {.slack = 0, .least = 0.3 * mean_of(&alike)};
+    check_same_mean("lights", samplers[s], "light beside a row", &mean, &alike, sight);
+  }
+}
+
 static void lamps_in_a_row(void **state) {
   (void)state;
-  static const char *const samplers[] = {"bvh", "power"};
   for (double turn = 0; turn < 360; turn += 120) {
-    const Mean alike = light_beside_row("uniform", turn);
-    for (int s = 0; s < 2; s++) {
-      const Mean mean = light_beside_row(samplers[s], turn);
-      const Sight sight = {.slack = 0, .least = 0.3 * mean_of(&alike)};
-      check_same_mean("lights", samplers[s], "light beside a row", &mean, &alike, sight);
-    }
+    check_row(turn, 60);
+    check_row(turn, 15);
   }
   expect_no_failures();
 }

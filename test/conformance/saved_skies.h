@@ -93,13 +93,13 @@ static bool write_glow(const char *name) {
   return write_square(name, GLOW_SIDE, pixels);
 }
 
-/* Each level has half the side of the one before and sends as much light in all, the face that
- * is brightest first of all, and is more blurred. */
-static void check_levels(const char *parameters) {
+/* before: another sky, or nothing. Each level has half the side of the one before and sends as much light in all, the face that
+ * is brightest first of all, and is more blurred. Returns the first level's side. */
+static uint32_t check_levels(const char *before, const char *parameters) {
   static char text[TEXT];
   char path[100];
-  snprintf(text, sizeof text, HEAD "WorldBegin LightSource \"infinite\" %s Shape \"sphere\"",
-           parameters);
+  snprintf(text, sizeof text, HEAD "WorldBegin %s LightSource \"infinite\" %s Shape \"sphere\"",
+           before, parameters);
   vlScene *scene = need_scene(text);
   path_of(path, "levels.gltf");
   assert_int_equal(vl_scene_save(scene, path, NULL, NULL), VL_OK);
@@ -145,13 +145,19 @@ static void check_levels(const char *parameters) {
   if (json_array_size(levels) < 3)
     broken("lights", "infinite", "%s: %zu levels", parameters, json_array_size(levels));
   json_decref(file);
+  return first_side;
 }
 
 static void skies_of_files(void **state) {
   (void)state;
   assert_true(write_glow("glow.pfm"));
-  check_levels("\"string filename\" \"glow.pfm\"");
-  check_levels("\"string filename\" \"glow.pfm\" \"float illuminance\" 5");
+  const uint32_t side = check_levels("", "\"string filename\" \"glow.pfm\"");
+  check_levels("", "\"string filename\" \"glow.pfm\" \"float illuminance\" 5");
+  const uint32_t beside = check_levels(
+      "LightSource \"infinite\" \"string filename\" \"quarters.pfm\" \"float scale\" .1",
+      "\"string filename\" \"glow.pfm\"");
+  if (beside != side)
+    broken("lights", "infinite", "%u texels a side after a small sky, not %u", beside, side);
   static const char *const files[] = {"sky.gltf", "sky.pbrt"};
   for (int i = 0; i < 2; i++) {
     check_sky("\"string filename\" \"quarters.pfm\"", files[i]);

@@ -39,8 +39,9 @@ static const struct {
      "\"point2 uv\" [0 0 1 0 1 1 0 1] \"integer indices\" [0 2 1 0 3 2]"},
     {"Translate .2 1.3 .6 Rotate 90 1 0 0", "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]",
      "Shape \"disk\" \"float radius\" .2"},
-    {"Translate -.6 1.25 .5 Rotate 90 1 0 0", "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]",
-     "Shape \"disk\" \"float radius\" .15"},
+    {"Translate -.6 1.25 .5", "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]",
+     "Shape \"trianglemesh\" \"point3 P\" [-.15 0 -.15 .15 0 -.15 .15 0 .15 -.15 0 .15] "
+     "\"integer indices\" [0 1 2 0 2 3]"},
     {"Translate 1.2 .3 .2", "AreaLightSource \"diffuse\" \"rgb L\" [6 6 6]",
      "Shape \"sphere\" \"float radius\" .15"},
 };

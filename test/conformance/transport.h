@@ -180,14 +180,19 @@ static void check_alike(const char *name, const MediumCase *c) {
     broken("media", name, "the same by another scale: colours differ by %.4f", worst);
 }
 
+/* A border in the middle of the box, behind which the medium goes on. */
+#define MEDIUM_IN_TWO_PARTS \
+  "MediumInterface \"m\" \"m\" Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0]\n"
+
 /* Absorption by channel, as glTF has it (KHR_materials_volume): in wavelengths, too, exp(-scale
- * sigma x) of each channel of linear sRGB remains behind the box. */
+ * sigma x) of each channel of linear sRGB remains behind the box, whose way has two parts. */
 static void check_channels(void) {
   static char text[TEXT];
   static const float sigma[3] = {0.1f, 0.3f, 0.6f};
   const double scale = 1.7;
   vlError error = {0};
   scene_text(text, medium_form, "homogeneous", "\"rgb sigma_s\" [0 0 0]");
+  strcat(text, MEDIUM_IN_TWO_PARTS);
   vlScene *scene = need_scene(text);
   const vlMediumId id = {1};
   vlMediumDef medium = *vl_scene_medium(scene, id);

@@ -15,6 +15,7 @@ typedef struct SamplerCase {
   bool curve;     /* the samples of 2 x 2 pixels are points of one set, too */
   bool scattered; /* numbers that have an interval each stand in it by chance of their own */
   bool hash;      /* no better than independent numbers */
+  bool open;      /* a sample is the same for any number of samples */
 } SamplerCase;
 
 /* Declares the case of each kind, which is in the file of the kind: sampler/NAME.case.c. */

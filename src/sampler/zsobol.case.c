@@ -2,4 +2,4 @@
 #include "sampler/sampler.case.h"
 
 const SamplerCase zsobol_sampler = {
-    .rows = true, .cells = true, .curve = true, .scattered = true};
+    .rows = true, .cells = true, .curve = true, .scattered = true, .open = true};

@@ -25,8 +25,8 @@ enum { FAR_FORMS = sizeof far_forms / sizeof *far_forms };
 
 #define FAR_SKY "LightSource \"infinite\" \"string filename\" \"quarters.pfm\"\n"
 
-/* form: of each other lamp, and the next form of those between them; -1: no lamps. The sky comes
- * after the first lamp. */
+/* form: of each other lamp, and the next form of those between them; -1: no lamps. The sky
+ * comes after the first lamp. */
 static Mean light_of_floor(const char *sampler, int form, int lamps) {
   static char text[TEXT];
   enum { SPP = 64 };
@@ -51,7 +51,8 @@ static Mean light_of_floor(const char *sampler, int form, int lamps) {
 }
 
 /* The light beside a row of spots that shine straight down. Only the first ones' cones reach
- * there. `cone` is half the opening of each other spot. A dim sky is there to be chosen, too. */
+ * there. `cone` is half the opening of each other spot. A dim sky is there to be chosen, too.
+ */
 static Mean light_beside_row(const char *sampler, double turn, double cone) {
   static char text[TEXT];
   enum { SPP = 256, SPOTS = 5 };

@@ -8,6 +8,7 @@
 #include "filter/filter.case.h"
 #include "filter/filter.h"
 #include "sampler/sampler.case.h"
+#include "sampler/sampler.h"
 #include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/sampler.h"
@@ -340,6 +341,30 @@ static void samplers_of_later_sequences(void **state) {
              "%u of %d samples past the end of their sequence repeat it", equal,
              SETS * SEQUENCE);
     free(n);
+  }
+  expect_no_failures();
+}
+
+/* A film that was planned for a quarter of the samples goes on to all of them if the kind
+ * promises it, since it has one sequence for any number of samples, and has the numbers of a
+ * film that was planned for all. No other kind has. */
+static void samplers_that_go_on(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("samplers");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const bool open = sampler_cases[k]->open;
+    const uint32_t planned = vl_sampler_sequence(k, SET / 4);
+    const uint32_t all = vl_sampler_sequence(k, SET);
+    Numbers2 *on = draw_sequences((vlSamplerKind)k, 8, SET, planned);
+    Numbers2 *at_once = draw_sequences((vlSamplerKind)k, 8, SET, all);
+    const bool same = memcmp(on->u, at_once->u, sizeof on->u) == 0 &&
+                      memcmp(on->v, at_once->v, sizeof on->v) == 0;
+    if ((planned == all) != open || same != open)
+      broken("samplers", family->rows[k]->name,
+             "a film that goes on: sequences of %u and %u samples, %s numbers", planned, all,
+             same ? "the same" : "other");
+    free(on);
+    free(at_once);
   }
   expect_no_failures();
 }

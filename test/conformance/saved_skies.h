@@ -93,8 +93,9 @@ static bool write_glow(const char *name) {
   return write_square(name, GLOW_SIDE, pixels);
 }
 
-/* before: another sky, or nothing. Each level has half the side of the one before and sends as much light in all, the face that
- * is brightest first of all, and is more blurred. Returns the first level's side. */
+/* before: another sky, or nothing. Each level has half the side of the one before and sends as
+ * much light in all, the face that is brightest first of all, and is more blurred. Returns the
+ * first level's side. */
 static uint32_t check_levels(const char *before, const char *parameters) {
   static char text[TEXT];
   char path[100];

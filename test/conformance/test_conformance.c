@@ -125,6 +125,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(purposes_of_samplers),
       cmocka_unit_test(samplers_of_any_count),
       cmocka_unit_test(samplers_of_later_sequences),
+      cmocka_unit_test(samplers_that_go_on),
       cmocka_unit_test(samplers_of_neighbours),
       cmocka_unit_test(lanes_of_samplers),
       cmocka_unit_test(scrambles_of_samplers),

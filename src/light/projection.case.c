@@ -19,9 +19,6 @@ const LightCase projection_light = {
                        {.35, -.5, {.8 / 1.3725, .8 / 1.3725, .8 / 1.3725}},
                        {1.5, .5, {0, 0, 0}}},
              .rim = {{1.261, .97}, {-.679, .97}, {.679, -.97}, {-1.261, -.97}}},
-            /* light paths begin in its bright half alone */
-            {.parameters = "\"string filename\" \"halves.pfm\" \"float fov\" 120",
-             .known = {{.5, .5, {1 / 1.5, 1 / 1.5, 1 / 1.5}}, {-.5, .5, {0, 0, 0}}}},
         },
     .parameters = {{.base = "\"string filename\" \"sky.pfm\""}},
 };

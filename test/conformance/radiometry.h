@@ -266,6 +266,32 @@ static void check_paths_of_light(const vlKindRow *row, const LightVariant *v,
   check_light_paths("lights", row->name, v->parameters, text);
 }
 
+/* A sphere that is not seen shines to the outside alone, whichever side its normals are on. */
+static void check_unseen_spheres(void) {
+  static const char *const sides[] = {"", "ReverseOrientation"};
+  static char text[TEXT];
+  for (int i = 0; i < 2; i++) {
+    snprintf(
+        text, sizeof text,
+        HEAD
+        "WorldBegin " SQUARE_FLOOR
+        "Translate .2 .8 .1 Rotate 50 1 .3 .2 %s AreaLightSource \"diffuse\" \"string filename\" \"halves.pfm\" \"float scale\" 4 "
+        "\"bool twosided\" true Shape \"sphere\" \"float radius\" .3 \"float alpha\" 0",
+        sides[i]);
+    check_light_paths("emission", "diffuse",
+                      i ? "an unseen sphere inside out" : "an unseen sphere", text);
+  }
+}
+
+/* Light paths begin in the bright half of an image alone. */
+static void check_half_dark(void) {
+  static const char *const text =
+      HEAD "WorldBegin " SQUARE_FLOOR
+           "Translate 0 1 0 Rotate 90 1 0 0 LightSource \"projection\" "
+           "\"string filename\" \"halves.pfm\" \"float fov\" 120";
+  check_light_paths("lights", "projection", "an image that is dark on one half", text);
+}
+
 static void light_paths(void **state) {
   (void)state;
   static char text[TEXT];
@@ -280,6 +306,8 @@ static void light_paths(void **state) {
              shape[1]);
     check_light_paths("emission", "diffuse", emissions[i], text);
   }
+  check_unseen_spheres();
+  check_half_dark();
   expect_no_failures();
 }
 

@@ -85,7 +85,7 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
     return vl_fail_argument(error,
                             "camera: world_from_camera holds a value that is not finite");
   const double *a = m->m;
-  if (a[12] != 0.0 || a[13] != 0.0 || a[14] != 0.0 || a[15] != 1.0)
+  if (!vl_is_affine(a))
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "camera: the last row of world_from_camera is %g %g %g %g; a pose has 0 0 0 1", a[12],

@@ -131,8 +131,7 @@ static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vl
                            file->dialect);
   VL_TRY(planes(file, flat, p[10] * forward, p[11], z_near, d));
   vlMat4 inverse;
-  if ((view.m[12] != 0.0 || view.m[13] != 0.0 || view.m[14] != 0.0 || view.m[15] != 1.0 ||
-       !vl_mat4_inverse(view, &inverse)))
+  if (!vl_is_affine(view.m) || !vl_mat4_inverse(view, &inverse))
     return vl_camera_wrong(file, "%s: \"view_matrix\" is no pose: are order and vectors right?",
                            file->dialect);
   d->has_matrix = true;

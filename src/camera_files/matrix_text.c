@@ -206,7 +206,7 @@ static vlResult read_matrix(const vlCameraFile *file, const char *text, size_t s
     vl_camera_set_pose(d, r, t);
     return find_size(file, record);
   }
-  if (matrix.m[12] != 0.0 || matrix.m[13] != 0.0 || matrix.m[14] != 0.0 || matrix.m[15] != 1.0)
+  if (!vl_is_affine(matrix.m))
     return vl_camera_wrong_at(file, 1, 1,
                               "matrix: the last row of 4 x 4 numbers must be 0 0 0 1");
   if (!find_intrinsics(file, k))

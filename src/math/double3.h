@@ -4,6 +4,7 @@
 #define MATH_DOUBLE3_H
 
 #include <math.h>
+#include <stdbool.h>
 
 static inline void vl_map_point(const double m[12], const double p[3], double r[3]) {
   for (int i = 0; i < 3; i++)
@@ -84,6 +85,10 @@ static inline void vl_mat3_vector(const double m[9], const double v[3], double r
 static inline double vl_mat3_determinant(const double m[9]) {
   return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
          m[2] * (m[3] * m[7] - m[4] * m[6]);
+}
+/* Whether the last row of a 4x4 matrix is 0 0 0 1. */
+static inline bool vl_is_affine(const double m[16]) {
+  return m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1;
 }
 /* The 3x3 part of an affine map, and its last column. */
 static inline void vl_split_map(const double m[12], double part[9], double last[3]) {

@@ -85,7 +85,7 @@ static bool split(const double m[16], double t[3], double q[4], double s[9], boo
   for (int i = 0; i < 16; i++)
     if (!isfinite(m[i]))
       return false;
-  if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+  if (!vl_is_affine(m))
     return false;
   Mat3 a, r;
   for (int i = 0; i < 3; i++) {

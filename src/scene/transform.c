@@ -27,7 +27,7 @@ typedef struct Similarity {
 /* Takes the matrix apart. False: it is not a rotation, a uniform scale and a shift. */
 static bool take_apart(const double m[16], Similarity *s) {
   s->matrix = vl_mat4_load(m);
-  if (!vl_mat4_is_finite(s->matrix) || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+  if (!vl_mat4_is_finite(s->matrix) || !vl_is_affine(m))
     return false;
   s->scale = sqrt(vl_dot_columns(m, 0, 0));
   if (!(vl_determinant3(s->matrix.m) > 0) || !vl_mat4_inverse(s->matrix, &s->inverse))

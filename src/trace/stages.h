@@ -162,6 +162,12 @@ static inline void vl_note_scattered(const vlTracing *t, uint32_t lane) {
   if (t->world->def.regularize)
     t->scattered[lane] = 1;
 }
+/* The film drops and counts the sample of a path whose throughput is not a number. */
+static inline void vl_note_unsound(const vlTracing *t, const vlPaths *p, uint32_t i) {
+  float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
+  if (sum != sum)
+    t->batch->radiance[0][p->lane[i]] = __builtin_nanf("");
+}
 /* Limits of bounces of one kind (limits.hot.c), where vlTraceDef.limited. Begins n paths. */
 void vl_limits_start(const vlTracing *t, uint32_t n);
 /* Counts the bounces of those of the n sampled vertices whose paths go on: alive[i] is 1. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "import/gltf/gltf.h"
+#include "math/double3.h"
 #include "math/motion.h"
 #include "velo/shape.h"
 
@@ -42,8 +43,7 @@ static bool read_node(vlGltf *g, size_t i) {
     return false;
   for (int k = 0; n->has_matrix && k < 16; k++)
     n->matrix[k] = columns[4 * (k % 4) + k / 4];
-  if (n->has_matrix &&
-      (n->matrix[12] != 0 || n->matrix[13] != 0 || n->matrix[14] != 0 || n->matrix[15] != 1))
+  if (n->has_matrix && !vl_is_affine(n->matrix))
     return vl_gltf_fail_key(at, "matrix", "its last row must be 0 0 0 1");
   for (size_t k = 0; k < count; k++) {
     const vlGltfLocation *here = VL_GLTF_ITEM(at, "children", k);

@@ -4,13 +4,14 @@
 #include <math.h>
 
 #include "import/pbrt/builder.h"
+#include "math/double3.h"
 #include "velo/shape.h"
 
 /* Moves the translation of the transform to `center` and its scale to the radius. Returns false
  * unless the scale is the same along all axes and the transform does not mirror. */
 static bool take_slot(vlShapeDef *def, double center[3], float *radius) {
   double *m = def->group_from_shape, at[3] = {m[3], m[7], m[11]}, s = m[0];
-  if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+  if (!vl_is_affine(m))
     return false;
   *radius = def->radius;
   bool even = s > 0 && m[5] == s && m[10] == s && m[1] == 0 && m[2] == 0 && m[4] == 0 &&

@@ -111,9 +111,7 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     float most = vl_largest4(p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]);
-    float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
-    if (sum != sum)
-      t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
+    vl_note_unsound(t, p, i);
     float survive = vl_roulette_survival(most * p->eta_scale[i], depth);
     if (!(most > 0.0f) || !(u.u0[i] < survive))
       continue;

@@ -314,9 +314,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension, const vlHits *hi
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_EXIT_UV,
                      u.u1, u.u2);
   for (uint32_t i = 0; i < n; i++) {
-    float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
-    if (sum != sum)
-      t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
+    vl_note_unsound(t, p, i);
     vlVec3 local = vl_warp_cosine_hemisphere(u.u1[i], u.u2[i]);
     alive[i] = carries(p, i) && local.z > 0.0f;
     if (!alive[i])

@@ -1,12 +1,12 @@
 /* image/diff.c: `velo image diff`: differences between an image and a reference. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/commands.h"
 #include "cli/macros.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "image/image.h"
 #include "render/output_names.h"
 
@@ -41,7 +41,7 @@ static void list_metrics(const vlImageDiff *d, Metric metrics[METRICS]) {
 static int read_threshold(const char *text, const Metric metrics[METRICS], int *index,
                           double *limit) {
   const char *equals = strchr(text, '=');
-  char name[40], *end = NULL;
+  char name[40];
   const char *names[METRICS];
   for (int i = 0; i < METRICS; i++)
     names[i] = metrics[i].name;
@@ -59,8 +59,7 @@ static int read_threshold(const char *text, const Metric metrics[METRICS], int *
                               : "; accepted are mse, relmse, psnr, flip, meanratio, maxabs, "
                                 "differing, notfinite");
   }
-  *limit = strtod(equals + 1, &end);
-  if (end == equals + 1 || *end || !isfinite(*limit))
+  if (!parse_numbers(equals + 1, 1, limit))
     return report_usage("--threshold \"%s\": the value must be a number", text);
   return -1;
 }

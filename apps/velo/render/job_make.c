@@ -6,13 +6,13 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "camera/camera.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "cli/text.h"
 #include "render/lens_options.h"
 #include "render/scene_options.h"
 #include "velo/filter_kinds.h"
@@ -330,9 +330,7 @@ static int read_channels_time(Job *job, const Arguments *arguments) {
       job->channels_share = 0.5 * i;
       return -1;
     }
-  char *end;
-  job->channels_seconds = strtod(v->text, &end);
-  if (end != v->text && !*end && fabs(job->channels_seconds) < 1e12)
+  if (parse_numbers(v->text, 1, &job->channels_seconds) && fabs(job->channels_seconds) < 1e12)
     return -1;
   return report_usage("--channels-time \"%s\": must be row, open, middle, close or seconds",
                       v->text);

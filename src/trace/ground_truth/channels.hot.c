@@ -298,10 +298,7 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def,
     to->distance[i] = VL_INFINITY;
     if (!hit)
       continue;
-    vlVec3 o = vl_row3(&p->o, i), d = vl_row3(&p->d, i);
-    float time = vl_path_time(p, i);
-    to->distance[i] =
-        vl_point_at_time(world, time, o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]).t;
+    to->distance[i] = vl_hit_point(world, p, h, i).t;
   }
 }
 

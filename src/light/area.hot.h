@@ -81,7 +81,7 @@ static inline bool vl_outside_plain_sphere(const vlWorldLight *light, vlVec3 fro
 /* 1 - cos of the half angle of the cone that a sphere fills when seen from outside, without
  * cancellation. sin2: squared sine of this half angle. */
 static inline float vl_sphere_cone(float sin2) {
-  return sin2 / (1.0f + __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2)));
+  return sin2 / (1.0f + vl_safe_sqrt(1.0f - sin2));
 }
 
 typedef struct vlSphereSample {
@@ -100,9 +100,8 @@ static inline vlSphereSample vl_sample_sphere(vlVec3 center, float radius, float
   /* a: angle at the sphere's centre between the cone's axis and the sampled point (pbrt book
    * 6.2.4). */
   float sin_max = __builtin_sqrtf(sin2_max);
-  float cos_a =
-      sin2_t / sin_max + cos_t * __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_t / sin2_max));
-  float sin_a = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_a * cos_a));
+  float cos_a = sin2_t / sin_max + cos_t * vl_safe_sqrt(1.0f - sin2_t / sin2_max);
+  float sin_a = vl_safe_sqrt(1.0f - cos_a * cos_a);
   vlSinCos phi = vl_sincos_turn(v);
   vlFrame frame = vl_frame_from_z(vl_mul(to, -1.0f / d));
   vlVec3 n = vl_from_local(frame, vl_vec3(sin_a * phi.cos, sin_a * phi.sin, cos_a));

@@ -97,7 +97,7 @@ static vlVec3 narrow(const vlEmitted *e, vlVec3 local) {
   if (!vl_has_spread(e))
     return local;
   float by = __builtin_sqrtf(e->spread_sin2), x = by * local.x, y = by * local.y;
-  return vl_vec3(x, y, __builtin_sqrtf(vl_max(0.0f, 1.0f - x * x - y * y)));
+  return vl_vec3(x, y, vl_safe_sqrt(1.0f - x * x - y * y));
 }
 
 static void emit_from_face(const vlEmissionQuery *q, vlEmission *out) {

@@ -66,7 +66,7 @@ static inline vlVec3 vl_lamp_sample(const vlLampTable *t, float u, float v, floa
   /* even in the cosine, which is 1 - 2 s2; s2, the squared sine of half the angle, keeps its
    * digits near the pole */
   float s2 = low.sin * low.sin + (high.sin * high.sin - low.sin * low.sin) * v;
-  float across = 2.0f * __builtin_sqrtf(vl_max(0.0f, s2 * (1.0f - s2)));
+  float across = 2.0f * vl_safe_sqrt(s2 * (1.0f - s2));
   vlSinCos turn = vl_sincos(azimuth);
   *density = t->density[(size_t)i * (t->polars - 1) + j];
   return vl_vec3(across * turn.cos, across * turn.sin, 1.0f - 2.0f * s2);

@@ -88,12 +88,12 @@ VL_INLINE float vl_light_importance(vlLightCluster b, vlReceiver at) {
   vlVec3 wi = vl_normalize(to);
   float cos_w = vl_dot(vl_vec3(b.ax, b.ay, b.az), wi);
   cos_w = b.two_sided > 0.0f ? vl_abs(cos_w) : cos_w;
-  float sin_w = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_w * cos_w));
+  float sin_w = vl_safe_sqrt(1.0f - cos_w * cos_w);
   /* theta_b, the angle that the bounds subtend at p. It covers the full sphere if p is inside
    * the bounding sphere of the bounds. */
   float inside = d2 > r * r ? 0.0f : 1.0f;
   float sin2_b = r * r / vl_max(d2, VL_MIN_NORMAL);
-  float cos_b = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2_b)), sin_b = __builtin_sqrtf(sin2_b);
+  float cos_b = vl_safe_sqrt(1.0f - sin2_b), sin_b = __builtin_sqrtf(sin2_b);
   cos_b = inside > 0.0f ? -1.0f : cos_b;
   sin_b = inside > 0.0f ? 0.0f : sin_b;
   /* theta_x = max(0, theta_w - theta_o), theta_p = max(0, theta_x - theta_b), by differences of
@@ -107,7 +107,7 @@ VL_INLINE float vl_light_importance(vlLightCluster b, vlReceiver at) {
   float has_n = vl_abs(n.x) + vl_abs(n.y) + vl_abs(n.z);
   float cos_n = vl_dot(wi, n);
   float cos_i = at.side != 0.0f ? -at.side * cos_n : vl_abs(cos_n);
-  float sin_i = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_i * cos_i));
+  float sin_i = vl_safe_sqrt(1.0f - cos_i * cos_i);
   float turned = vl_max(0.0f, cos_i * cos_b + sin_i * sin_b);
   turned = cos_i > cos_b ? 1.0f : turned;
   importance *= has_n > 0.0f ? turned : 1.0f;

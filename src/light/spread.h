@@ -20,7 +20,7 @@ static inline float vl_spread_at(const vlEmitted *e, float cosine) {
   if (!vl_has_spread(e))
     return 1.0f;
   float c = vl_max(cosine, 1e-6f);
-  float tangent = __builtin_sqrtf(vl_max(0.0f, 1.0f - c * c)) / c;
+  float tangent = vl_safe_sqrt(1.0f - c * c) / c;
   return vl_max(0.0f, 1.0f - tangent * e->spread_cot) * e->spread_scale;
 }
 

@@ -22,8 +22,8 @@ static float interfere(float first, float second, float phase) {
  * Varying Iridescence", evaluated at single wavelengths, so that no integral is needed. */
 static float airy(float cosine, float n2, float n3, float d, float lambda) {
   float sin2 = 1.0f - cosine * cosine;
-  float c2 = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2 / (n2 * n2)));
-  float c3 = __builtin_sqrtf(vl_max(0.0f, 1.0f - sin2 / (n3 * n3)));
+  float c2 = vl_safe_sqrt(1.0f - sin2 / (n2 * n2));
+  float c3 = vl_safe_sqrt(1.0f - sin2 / (n3 * n3));
   float s12 = (cosine - n2 * c2) / (cosine + n2 * c2),
         p12 = (n2 * cosine - c2) / (n2 * cosine + c2);
   float s23 = (n2 * c2 - n3 * c3) / (n2 * c2 + n3 * c3),

@@ -13,14 +13,14 @@ static inline vlVec3 vl_octahedral_decode(float s, float t) {
   float turn = (r == 0.0f ? 1.0f : (vp - up) / r + 1.0f) * 0.125f; /* of a full turn */
   vlSinCos a = vl_sincos_turn(turn);
   float z = __builtin_copysignf(1.0f - r * r, signed_distance);
-  float f = r * __builtin_sqrtf(vl_max(0.0f, 2.0f - r * r));
+  float f = r * vl_safe_sqrt(2.0f - r * r);
   return vl_vec3(__builtin_copysignf(a.cos, u) * f, __builtin_copysignf(a.sin, v) * f, z);
 }
 
 /* Maps a direction (unit) to the unit square. */
 static inline vlVec2 vl_octahedral_encode(vlVec3 d) {
   float x = vl_abs(d.x), y = vl_abs(d.y), z = vl_abs(d.z);
-  float r = __builtin_sqrtf(vl_max(0.0f, 1.0f - z));
+  float r = vl_safe_sqrt(1.0f - z);
   float a = vl_max(x, y), b = vl_min(x, y);
   float phi = vl_atan(a == 0.0f ? 0.0f : b / a) * 0.63661977236758134f;
   phi = x < y ? 1.0f - phi : phi;

@@ -89,6 +89,10 @@ static inline float vl_min(float a, float b) {
 static inline float vl_max(float a, float b) {
   return a > b ? a : b;
 }
+/* Of what rounding may have made negative. */
+static inline float vl_safe_sqrt(float x) {
+  return __builtin_sqrtf(vl_max(0.0f, x));
+}
 static inline float vl_largest4(float a, float b, float c, float d) {
   return vl_max(vl_max(a, b), vl_max(c, d));
 }

@@ -39,7 +39,7 @@ static inline vlDiskPoint vl_warp_disk(float u, float v) {
  * too. */
 static inline vlVec3 vl_warp_cosine_hemisphere(float u, float v) {
   vlDiskPoint d = vl_warp_disk(u, v);
-  float z = __builtin_sqrtf(vl_max(0.0f, (1.0f - d.r) * (1.0f + d.r)));
+  float z = vl_safe_sqrt((1.0f - d.r) * (1.0f + d.r));
   return vl_vec3(d.x, d.y, z);
 }
 
@@ -57,7 +57,7 @@ static inline vlVec3 vl_warp_hemisphere(float u, float v) { /* density 1 / (2 pi
 }
 /* Density 1 / (4 pi). Cylindrical map: u gives the height, v the azimuth. */
 static inline vlVec3 vl_warp_sphere(float u, float v) {
-  float r = 2.0f * __builtin_sqrtf(vl_max(0.0f, u * (1.0f - u)));
+  float r = 2.0f * vl_safe_sqrt(u * (1.0f - u));
   vlSinCos a = vl_sincos_turn(v);
   return vl_vec3(r * a.cos, r * a.sin, 1.0f - 2.0f * u);
 }
@@ -106,8 +106,8 @@ static inline vlVec3 vl_warp_spherical_triangle(vlSphericalTriangle s, float u, 
   vlVec3 c = vl_add(s.a, move), bc = vl_sub(c, s.b);
   float whole = 0.5f * vl_length2(bc), h = v * whole; /* 1 - b.c', 1 - b.w */
   vlVec3 side = vl_normalize(vl_sub(bc, vl_mul(s.b, vl_dot(bc, s.b))));
-  return vl_normalize(vl_add(vl_mul(s.b, 1.0f - h),
-                             vl_mul(side, __builtin_sqrtf(vl_max(0.0f, h * (2.0f - h))))));
+  return vl_normalize(
+      vl_add(vl_mul(s.b, 1.0f - h), vl_mul(side, vl_safe_sqrt(h * (2.0f - h)))));
 }
 
 /* Index of the interval that contains x, between n + 1 ascending nodes: the last i with

@@ -226,19 +226,22 @@ static void report_end(const Run *run, uint32_t written, int status) {
     report_json_end(json);
     return;
   }
-  const char *video = run->outputs->video;
-  const bool images = run->outputs->count && written && !video;
+  const Outputs *outputs = run->outputs;
+  const char *what = "kept in films", *path = "", *more = "";
+  if (outputs->video) {
+    what = "for ";
+    path = outputs->video;
+  } else if (outputs->count && written) {
+    what = "wrote ";
+    path = outputs->paths[0];
+    more = outputs->count > 1 ? ", ..." : "";
+  } else if (outputs->count) {
+    what = "no image is written";
+  }
   report_note("%u of %u frames%s in %s, %u spp, %s paths/s; %s%s%s", written, run->shown.count,
               run->frames->views == 2 ? " (two eyes)" : "", format_seconds(seconds).text,
-              t->spp, format_count(seconds > 0 ? (double)t->paths / seconds : 0).text,
-              images                ? "wrote "
-              : video               ? "for "
-              : run->outputs->count ? "no image is written"
-                                    : "kept in films",
-              images  ? run->outputs->paths[0]
-              : video ? video
-                      : "",
-              images && run->outputs->count > 1 ? ", ..." : "");
+              t->spp, format_count(seconds > 0 ? (double)t->paths / seconds : 0).text, what,
+              path, more);
 }
 
 int frames_render(Frames *frames, vlContext *context, const vlWorld *world,

@@ -19,6 +19,7 @@ static const char model[] =
     "ObjectBegin \"part\"\n"
     "Translate 0 1 0\n"
     "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n"
+    "ReverseOrientation\n"
     "Shape \"sphere\" \"float radius\" 0.2\n"
     "ObjectEnd\n"
     "ObjectInstance \"part\"\n"

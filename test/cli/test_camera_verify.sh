@@ -33,9 +33,16 @@ opencv fisheye.yaml 110 159.5 "0.03, -0.02, 0.004, -0.0003" "distortion_model: f
 verify fisheye fisheye.yaml
 verify charuco cam.yaml --target charuco
 expect_text charuco_read " 0 wrong"
-for model in unified eucm double_sphere division panini equirectangular; do
+for model in unified eucm double_sphere division panini equirectangular cube cylindrical equal_area equidistant equisolid stereographic fov orthographic_fisheye \
+  vignetting moving rolling lens_tilt; do
   verify "$model" "$VELO_SOURCE_DIR/scenes/cameras/$model.pbrt"
 done
+
+film='Film "rgb" "integer xresolution" 240 "integer yresolution"'
+echo "Camera \"cube\" \"string layout\" \"cross\" ${film/240/640} 480 WorldBegin" >cross.pbrt
+verify cross cross.pbrt
+echo "Camera \"pinhole\" \"float fov\" 80 \"float exposuretime\" .001 $film 160 WorldBegin" >dark.pbrt
+verify dark dark.pbrt
 
 # Another camera: half a pixel, another focal length, another pose.
 opencv half.yaml 250 160 "-0.28, 0.07, 0.001, -0.002, 0.01" "$pose"

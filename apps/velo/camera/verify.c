@@ -37,11 +37,13 @@ static const double least_found = 0.9;        /* share of the corners that shoul
 
 static const Choice target_choices[] = {{"chessboard", 0}, {"charuco", 1}, {0}};
 
-/* Only projection is verified: lens, focus, motion and clipping planes are removed. */
+/* Only projection is verified: lens, focus, motion, vignetting and clipping planes are removed.
+ */
 static void make_pinhole(vlCamera *c) {
   vlCamera moving = *c;
   vl_camera_at(&moving, moving.shutter_open, c);
   c->lens_radius = 0.0;
+  c->lens.vignetting = false;
   c->near_plane = 0.0;
   c->far_plane = INFINITY;
 }

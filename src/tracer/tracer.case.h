@@ -21,9 +21,10 @@ typedef struct TracerCase {
   Plate mirror; /* below the sky, of a smooth metal that reflects all light; 0: the tracer
                    follows no mirrors */
   uint32_t spp; /* 0: 64 */
-  double least_of_lamp; /* the least mistake that must be found of the lamp's light; 0: .03 */
-  uint32_t room_spp;    /* of a room lit from its ceiling; 0: not compared */
-  bool blurs;           /* by up to 2 % of the room's light */
+  double least_of_lamp;  /* the least mistake that must be found of the lamp's light; 0: .03 */
+  uint32_t room_spp;     /* of a room lit from its ceiling; 0: not compared */
+  bool blurs;            /* by up to 2 % of the room's light */
+  bool mirrors_are_free; /* those that the eye sees do not count as bounces */
 } TracerCase;
 
 /* Below a sky of 1: half of it. Below the ball: half of 4 times its share. */

@@ -24,6 +24,7 @@
 #include "light_power.h"
 #include "lights.h"
 #include "materials.h"
+#include "mirror_depths.h"
 #include "neighbours.h"
 #include "parameters.h"
 #include "pbrt_defaults.h"
@@ -142,6 +143,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(dimensions_of_tracers),
       cmocka_unit_test(media_read_by_rows),
       cmocka_unit_test(limits_of_kinds),
+      cmocka_unit_test(depths_behind_mirrors),
       cmocka_unit_test(laws_of_furnaces),
       cmocka_unit_test(spectra_of_files),
       cmocka_unit_test(lights_of_files),

@@ -25,6 +25,7 @@
 #include "lights.h"
 #include "materials.h"
 #include "mirror_depths.h"
+#include "mirrored_textures.h"
 #include "neighbours.h"
 #include "parameters.h"
 #include "pbrt_defaults.h"
@@ -144,6 +145,8 @@ int main(int argc, char **argv) {
       cmocka_unit_test(media_read_by_rows),
       cmocka_unit_test(limits_of_kinds),
       cmocka_unit_test(depths_behind_mirrors),
+      cmocka_unit_test(textures_in_mirrors),
+      cmocka_unit_test(widths_after_bounces),
       cmocka_unit_test(laws_of_furnaces),
       cmocka_unit_test(spectra_of_files),
       cmocka_unit_test(lights_of_files),

@@ -149,6 +149,12 @@ void vl_remove_leftovers(const char *path) {
   closedir(directory);
 }
 
+static vlResult fail(const char *path, int code, vlError *error) {
+  if (code == ENOMEM)
+    return vl_fail_memory(error);
+  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(code));
+}
+
 /* Opens what is no stream, after its checks. */
 static vlResult open_file(vlFileWriter *writer, const char *path, bool named, vlError *error) {
   struct stat info;
@@ -163,9 +169,7 @@ static vlResult open_file(vlFileWriter *writer, const char *path, bool named, vl
     open_temporary(writer, named);
   if (writer->descriptor >= 0)
     return VL_OK;
-  if (errno == ENOMEM)
-    return vl_fail_memory(error);
-  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
+  return fail(path, errno, error);
 }
 
 vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char *path,
@@ -291,12 +295,9 @@ static vlResult commit_stream(vlFileWriter *writer, vlError *error) {
   vl_file_abandon(writer);
   if (!writer->failed_errno)
     return VL_OK;
-  if (writer->failed_errno == ENOMEM)
-    return vl_fail_memory(error);
   if (writer->failed_errno == ENXIO || writer->failed_errno == EAGAIN)
     return vl_fail(error, VL_ERROR_IO, "cannot write %s: nobody reads it", writer->path);
-  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path,
-                 strerror(writer->failed_errno));
+  return fail(writer->path, writer->failed_errno, error);
 }
 
 vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
@@ -321,10 +322,7 @@ vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
   writer->descriptor = -1; /* closed last, because closing releases the lock */
   if (!writer->failed_errno)
     return VL_OK;
-  if (writer->failed_errno == ENOMEM)
-    return vl_fail_memory(error);
-  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path,
-                 strerror(writer->failed_errno));
+  return fail(writer->path, writer->failed_errno, error);
 }
 
 void vl_file_abandon(vlFileWriter *writer) {

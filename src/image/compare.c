@@ -6,6 +6,7 @@
 #include "base/free.h"
 #include "image/flip.h"
 #include "image/image.h"
+#include "image/pixel.h"
 #include "math/elementary.h"
 
 /* Loads R, G and B of every pixel; an image with only Y gives Y three times. The caller checks
@@ -34,8 +35,7 @@ static void magma(float t, uint8_t out[3]) {
     float v = C[c][6];
     for (int k = 5; k >= 0; k--)
       v = v * t + C[c][k];
-    v = v > 0.0f ? v < 1.0f ? v : 1.0f : 0.0f;
-    out[c] = (uint8_t)(v * 255.0f + 0.5f);
+    out[c] = vl_linear_to_unorm8(v);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/free.h"
+#include "image/pixel.h"
 #include "math/approx.h"
 
 enum { MAX_RADIUS = 32 };
@@ -29,10 +30,6 @@ typedef struct Flip {
 } Flip;
 
 static const Vec WHITE = {0.950428545f, 1.0f, 1.088900371f}; /* D65, by the paper's matrix */
-
-static float clamp01(float v) {
-  return v > 0.0f ? v < 1.0f ? v : 1.0f : 0.0f;
-}
 
 static Vec xyz_of_rgb(Vec c) {
   return (Vec){(float)(10135552.0 / 24577794.0) * c.x + (float)(8788810.0 / 24577794.0) * c.y +
@@ -215,7 +212,8 @@ static void feature_difference(Flip *f, float *padded) {
 static Vec filtered_lab(const Flip *f, int i, size_t n) {
   Vec rgb =
       rgb_of_xyz(xyz_of_ycc((Vec){f->color[i][0][n], f->color[i][1][n], f->color[i][2][n]}));
-  return hunt_lab_of_xyz(xyz_of_rgb((Vec){clamp01(rgb.x), clamp01(rgb.y), clamp01(rgb.z)}));
+  return hunt_lab_of_xyz(
+      xyz_of_rgb((Vec){vl_clamp01(rgb.x), vl_clamp01(rgb.y), vl_clamp01(rgb.z)}));
 }
 
 /* Sections 4.1.3 and 4.3: combines both differences. */
@@ -228,8 +226,8 @@ static void combine(const Flip *f, float *flip) {
   for (size_t n = 0; n < count; n++) {
     float d = vl_pow(hyab(filtered_lab(f, 0, n), filtered_lab(f, 1, n)), qc);
     d = d < knee ? d * (pt / knee) : pt + (d - knee) / (most - knee) * (1.0f - pt);
-    d = clamp01(d);
-    float feature = clamp01(__builtin_sqrtf(f->feature[0][n] * 0.707106781186547524f));
+    d = vl_clamp01(d);
+    float feature = vl_clamp01(__builtin_sqrtf(f->feature[0][n] * 0.707106781186547524f));
     /* d = 0 gives 0, except when the feature difference is 1 */
     flip[n] = vl_pow(d, 1.0f - feature);
   }
@@ -256,8 +254,8 @@ vlResult vl_flip(vlContext *context, uint32_t width, uint32_t height, const floa
   for (int i = 0; i < 2; i++) {
     const float *from = i ? b : a;
     for (size_t n = 0; n < count; n++) {
-      Vec c = ycc_of_xyz(xyz_of_rgb(
-          (Vec){clamp01(from[3 * n]), clamp01(from[3 * n + 1]), clamp01(from[3 * n + 2])}));
+      Vec c = ycc_of_xyz(xyz_of_rgb((Vec){vl_clamp01(from[3 * n]), vl_clamp01(from[3 * n + 1]),
+                                          vl_clamp01(from[3 * n + 2])}));
       f.color[i][0][n] = c.x;
       f.color[i][1][n] = c.y;
       f.color[i][2][n] = c.z;

@@ -55,9 +55,13 @@ static inline uint16_t vl_float_to_half(float f) {
 /* The nearest 8-bit sRGB code of a linear value. The value is clamped to [0, 1]; NaN gives
  * 0. */
 uint8_t vl_linear_to_srgb8(float linear);
+/* Clamps to [0, 1]; NaN gives 0. */
+static inline float vl_clamp01(float x) {
+  return x > 0.0f ? x < 1.0f ? x : 1.0f : 0.0f;
+}
 /* The nearest of 256 equally spaced codes for a value clamped to [0, 1]; NaN gives 0. */
 static inline uint8_t vl_linear_to_unorm8(float x) {
-  return (uint8_t)((x > 0.0f ? x < 1.0f ? x : 1.0f : 0.0f) * 255.0f + 0.5f);
+  return (uint8_t)(vl_clamp01(x) * 255.0f + 0.5f);
 }
 
 /* Base-2 logarithm of a positive, normal x. The relative error is below 1e-15. */

@@ -44,7 +44,7 @@ static Color khronos_neutral(Color c) {
 static float agx_curve(float v) {
   float stops = vl_ln(v > 1e-30f ? v : 1e-30f) * 1.44269504088896341f;
   float x = (stops + 12.47393f) / (4.026069f + 12.47393f);
-  x = x > 0.0f ? x < 1.0f ? x : 1.0f : 0.0f;
+  x = vl_clamp01(x);
   float x2 = x * x, x4 = x2 * x2;
   return 15.5f * x4 * x2 - 40.14f * x4 * x + 31.96f * x4 - 6.868f * x2 * x + 0.4298f * x2 +
          0.1191f * x - 0.00232f;
@@ -74,10 +74,6 @@ static Color tone_map(vlView view, Color c) {
   return view == VL_VIEW_AGX ? agx(c) : khronos_neutral(c);
 }
 
-static float clamp_display(float x) {
-  return x > 0.0f ? x < 1.0f ? x : 1.0f : 0.0f;
-}
-
 /* The sRGB curve (IEC 61966-2-1) of a value in [0, 1]. */
 static float srgb_curve(float x) {
   return x <= 0.0031308f ? 12.92f * x : 1.055f * vl_exp(vl_ln(x) * (1.0f / 2.4f)) - 0.055f;
@@ -85,9 +81,9 @@ static float srgb_curve(float x) {
 
 void vl_view_display(vlView view, const float linear[3], float display[3]) {
   Color c = tone_map(view, (Color){linear[0], linear[1], linear[2]});
-  const float values[3] = {clamp_display(c.r), clamp_display(c.g), clamp_display(c.b)};
+  const float values[3] = {vl_clamp01(c.r), vl_clamp01(c.g), vl_clamp01(c.b)};
   for (int i = 0; i < 3; i++)
-    display[i] = is_encoded(view) ? values[i] : clamp_display(srgb_curve(values[i]));
+    display[i] = is_encoded(view) ? values[i] : vl_clamp01(srgb_curve(values[i]));
 }
 
 static void to_bytes(vlView view, Color c, uint8_t out[3]) {

@@ -7,6 +7,8 @@
 
 #include <velo/velo.h>
 
+#include "math/transform.h"
+#include "scene/scene.h"
 #include "unit.h"
 
 static const char model[] =
@@ -22,9 +24,11 @@ static const char model[] =
     "ReverseOrientation\n"
     "Shape \"sphere\" \"float radius\" 0.2\n"
     "ObjectEnd\n"
-    "ObjectInstance \"part\"\n"
+    "AttributeBegin\n"
     "Translate 2 0 0\n"
     "Scale -1 1 1\n"
+    "ObjectInstance \"part\"\n"
+    "AttributeEnd\n"
     "ObjectInstance \"part\"\n";
 
 static vlScene *load_model(vlContext *context, const char *path, vlLoadedGroup *loaded) {
@@ -42,6 +46,21 @@ static vlScene *load_model(vlContext *context, const char *path, vlLoadedGroup *
   return scene;
 }
 
+/* Instances do not turn their shapes inside out: mirrored or not, the small balls look inwards,
+ * as in the file. */
+static void check_sides(const vlScene *scene) {
+  int balls = 0;
+  for (size_t i = 0; i < scene->shapes.count; i++) {
+    const vlShapeDef *d = &scene->shapes.items[i];
+    if (d->kind != VL_SHAPE_SPHERE || d->radius > 0.3f)
+      continue;
+    const bool mirrored = vl_determinant3(d->group_from_shape) < 0;
+    assert_true(d->reverse_orientation != mirrored);
+    balls++;
+  }
+  assert_int_equal(balls, 2);
+}
+
 static void test_contents(void **state) {
   (void)state;
   vlContext *context;
@@ -53,6 +72,7 @@ static void test_contents(void **state) {
   assert_int_equal(loaded.shapes, 5);
   assert_int_equal(loaded.lights, 1);
   assert_int_equal(loaded.emitters, 1);
+  check_sides(scene);
   /* The sphere from -0.5 to 0.5; the triangle at (0, 1) and, mirrored, from x = 2 to 1, with a
    * ball of radius 0.2. */
   const double low[3] = {-0.5, -0.5, -0.5}, high[3] = {2.2, 2, 0.5};

@@ -5,6 +5,7 @@
 
 #include "model.h"
 #include "scene/lamps.h"
+#include "scene/solid.h"
 #include "scene/studio.h"
 #include "unit.h"
 #include "velo/light.h"
@@ -428,8 +429,10 @@ static void lamps(void **state) {
       vlLightDef light = vl_default_light_def(point ? VL_LIGHT_POINT : VL_LIGHT_DISTANT);
       light.color = vl_spectrum_rgb(1, 1, 1);
       light.scale = lux[i] * (point ? 1e6f : 1);
-      if (point)
-        light.from[1] = 1000; /* as far as the distant one is to the model */
+      if (point) { /* as far as the distant one is to the model */
+        light.from[1] = 400;
+        light.world_from_light[7] = 600;
+      }
       assert_int_not_equal(vl_scene_add_light(m.scene, &light).index, 0);
       vlCompleteDef def = first_image();
       complete(&m, &def);
@@ -438,6 +441,23 @@ static void lamps(void **state) {
       assert_true(ratio > 0.25 && ratio < 0.36); /* quarters of a stop */
       end(&m);
     }
+}
+
+/* Many spheres of one shape have the box of all of them. */
+static void box_of_spheres(void **state) {
+  (void)state;
+  const double centers[9] = {0, 0, 0, 5, 0, -1, 1, -7, 0};
+  const float radii[3] = {1, 2, 0.5f};
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  def.faces = 3;
+  def.centers = centers;
+  def.radii = radii;
+  const vlExtent box = vl_shape_box(&def);
+  const double low[3] = {-1, -7.5, -3}, high[3] = {7, 2, 1};
+  for (int i = 0; i < 3; i++) {
+    assert_true(fabs(box.low[i] - low[i]) < 1e-6);
+    assert_true(fabs(box.high[i] - high[i]) < 1e-6);
+  }
 }
 
 /* ---- what was chosen, as a def ----------------------------------------------------------- */
@@ -583,6 +603,7 @@ int main(void) {
       cmocka_unit_test(dome),
       cmocka_unit_test(ground),
       cmocka_unit_test(lamps),
+      cmocka_unit_test(box_of_spheres),
       cmocka_unit_test(choices_as_a_def),
       cmocka_unit_test(studios_have_floors),
   };

@@ -13,7 +13,8 @@
 enum { SIDE = 32, DEPTH = 8, ROWS = 22 };
 /* Media differ if this share of the radiance arrives over such segments, or if this share of
  * the paths has some. A few paths may slip through edges by rounding, or see a place without
- * light, such as the ground from below. */
+ * light, such as the ground from below. Media also differ if paths leave the world in another
+ * medium than that around the sky: nothing arrives through it, but light paths start there. */
 static const double LITTLE = 0.0002, MANY = 0.1;
 enum { FEWEST_WRONG = 3 };
 _Static_assert(SIDE *SIDE == VL_BATCH, "one batch");
@@ -90,6 +91,10 @@ static bool ask(const vlWorld *world, const vlCamera *camera, Room *room,
   unsigned state = vl_accel_enter();
   vl_trace_scratch_begin(scratch, world);
   kernels->light_media(world, eye, light_medium);
+  for (size_t i = 0; i < world->lights.count && !room->fit.has_sky; i++) {
+    room->fit.has_sky = world->lights.items[i].far;
+    room->fit.sky_medium = light_medium[i];
+  }
   kernels->trace(world, &def, scratch, &batch);
   vl_accel_leave(state);
   double after = 0, all = 0; /* radiance */
@@ -104,6 +109,8 @@ static bool ask(const vlWorld *world, const vlCamera *camera, Room *room,
         after += radiance - (double)room->fit.before[c][i];
     }
   }
+  if (room->fit.endless >= FEWEST_WRONG)
+    return true;
   return wrong >= FEWEST_WRONG && (after > LITTLE * all || wrong > MANY * n);
 }
 

@@ -67,6 +67,9 @@ typedef enum vlBounceKind {
 /* Asks volpath whether the media of the world fit together (medium/fit.hot.c). */
 typedef struct vlMediaFit {
   const uint32_t *light_medium; /* by light: vlTraceKernels.light_media */
+  bool has_sky;                 /* there are lights at infinity, in the medium sky_medium */
+  uint32_t sky_medium;
+  uint32_t endless; /* output: number of segments to infinity in another medium */
   /* Output, by path: 1 where two ends of a segment name different media; and the path's
    * radiance before it. */
   uint8_t wrong[VL_BATCH];

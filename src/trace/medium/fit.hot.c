@@ -20,6 +20,11 @@ void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, 
   note(t, lane, vl_medium_beyond(&t->world->shapes.items[shape], g, vl_neg(d), medium), medium);
 }
 
+void vl_fit_endless(const vlTracing *t, uint32_t medium) {
+  vlMediaFit *fit = t->def->fit;
+  fit->endless += fit->has_sky && medium != fit->sky_medium;
+}
+
 void vl_fit_surfaces(const vlTracing *t, uint32_t n, const vlVertices *at,
                      const vlVolumeRows *rows) {
   const vlSurface *f = &at->surface;

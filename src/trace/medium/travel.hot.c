@@ -90,6 +90,8 @@ static void open_lanes(vlTracing *t, const Rays *r, vlTravel *k, uint32_t first,
   const float none[4] = {0, 0, 0, 0};
   k->count = 0;
   for (uint32_t i = 0; i < k->f.n; i++) {
+    if (t->def->fit && k->x.shape[i] == VL_NONE)
+      vl_fit_endless(t, r->rows->medium[first + i]);
     bool through =
         r->rows->medium[first + i] != VL_NONE || vl_meets_interface(t->world, &k->x, i);
     if (through)

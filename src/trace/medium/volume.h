@@ -76,6 +76,7 @@ uint32_t vl_travel_pass(const vlTracing *t, vlTravel *k, uint32_t i, uint32_t me
  * that border or light names (fit.hot.c). */
 void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, vlVec3 d,
                    uint32_t medium);
+void vl_fit_endless(const vlTracing *t, uint32_t medium);
 void vl_fit_surfaces(const vlTracing *t, uint32_t n, const vlVertices *at,
                      const vlVolumeRows *rows);
 void vl_fit_shadows(const vlTracing *t, uint32_t count, const vlLightSamples *light,

@@ -135,7 +135,9 @@ static uint32_t samples_of(const char *material, const char *parameter) {
   const bool solid = strcmp(material, "subsurface") == 0;
   if (solid && strcmp(parameter, "reflectance") == 0)
     return 640;
-  return solid || strcmp(material, "hair") == 0 ? 192 : 48;
+  if (solid)
+    return 128;
+  return strcmp(material, "hair") == 0 ? 192 : 48;
 }
 
 static void check_material_bands(const vlKindRow *row) {
@@ -192,7 +194,7 @@ static void check_medium_bands(const vlKindRow *row, const MediumCase *c) {
   x.tracer = "volpath";
   x.kind = row->name;
   x.rest = BOX_FROM("-1", "1");
-  x.spp = 128;
+  x.spp = 96;
   x.is[1] = 50;
   x.slack = 0.03;
   x.least = 0.2;

@@ -191,7 +191,7 @@ static void own_world_loop(const vlCameraCompiled *camera, uint32_t count,
   const double near_plane = c->near_plane, far_plane = c->far_plane;
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double x = rows->dx[i], y = rows->dy[i], z = rows->dz[i], factor = rows->weight[i];
-    double length = vl_length3(x, y, z);
+    double length = vl_length_3d(x, y, z);
     vlWorldRay w = vl_own_to_world(c, rows->ox[i], rows->oy[i], rows->oz[i], x, y, z);
     double sum = w.ox + w.oy + w.oz + length + factor;
     int none = length == 0.0, bad = !(sum - sum == 0.0) || !(factor >= 0.0);

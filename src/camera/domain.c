@@ -153,7 +153,7 @@ static double needed_radius(const vlCamera *c) {
     double x = ((i & 2 ? c->width : 0.0) - c->cx) / c->fx - c->skew / c->fx * y;
     vlPlanePoint p = vl_tilt(m->untilt, x, y);
     if (p.valid > 0.0)
-      corner = fmax(corner, vl_length2(p.x, p.y));
+      corner = fmax(corner, vl_length_2d(p.x, p.y));
   }
   double cosine[8], sine[8];
   for (int i = 0; i < 8; i++) {
@@ -164,7 +164,7 @@ static double needed_radius(const vlCamera *c) {
     double least = INFINITY;
     for (int i = 0; i < 8; i++) {
       vlDistorted d = vl_distort(m, r * cosine[i], r * sine[i]);
-      least = fmin(least, vl_length2(d.u, d.v));
+      least = fmin(least, vl_length_2d(d.u, d.v));
     }
     if (least > 1.5 * corner)
       return r;

@@ -20,7 +20,7 @@ typedef struct vlEyeOffset {
 /* Returns the eye position for a direction of any length. For straight up or down it is the
  * circle's centre. */
 static inline vlEyeOffset vl_eye_offset(double r, double dx, double dz) {
-  double k = r / vl_not_tiny(vl_length2(dx, dz));
+  double k = r / vl_not_tiny(vl_length_2d(dx, dz));
   return (vlEyeOffset){dz * k, -dx * k};
 }
 

@@ -113,10 +113,10 @@ static void distortion(const vlDistortionMap *m, double x, double y, double at[2
 static FilmDerivatives optics_derivatives(const vlCameraCompiled *c, double x, double y,
                                           double z) {
   FilmDerivatives d = {.numbers = {{0.0, 0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 0.0, 0.0, 1.0}}};
-  double film[2], x0, slope, rho = vl_length2(x, y), inv = 1.0 / vl_not_tiny(rho);
+  double film[2], x0, slope, rho = vl_length_2d(x, y), inv = 1.0 / vl_not_tiny(rho);
   vlChief chief = {0};
   bool good = vl_optics_project(c->optics, x, y, z, film);
-  double radius = good ? vl_length2(film[0], film[1]) : 0.0;
+  double radius = good ? vl_length_2d(film[0], film[1]) : 0.0;
   if (!good || !vl_optics_chief_derivatives(c->optics, radius, &chief, &x0, &slope)) {
     d.point[0][0] = NAN;
     return d;
@@ -188,7 +188,7 @@ static bool project_one(const vlCameraCompiled *c, const double point[3], double
 static void store_ray(const vlCameraCompiled *c, const double ray[3], const double origin[3],
                       const double direction[3], double *rows, int column) {
   const double *m = c->rotation;
-  double inv = 1.0 / vl_length3(ray[0], ray[1], ray[2]), d[3], along = 0.0;
+  double inv = 1.0 / vl_length_3d(ray[0], ray[1], ray[2]), d[3], along = 0.0;
   for (int i = 0; i < 3; i++) {
     const double *r = m + 3 * (size_t)i;
     double *row = rows + (size_t)i * VL_JACOBIAN_COLUMNS + column;
@@ -235,7 +235,7 @@ typedef struct {
 /* The chief ray of the film point (x, y), scene units, of radius r: origin (x, y, 0) times
  * -x0 / r, direction (x, y) times -slope / r, and 1. */
 static bool optics_ray(const vlCameraCompiled *c, double x, double y, RayDerivatives *ray) {
-  double of_x0, of_slope, r = vl_length2(x, y), inv = 1.0 / vl_not_tiny(r);
+  double of_x0, of_slope, r = vl_length_2d(x, y), inv = 1.0 / vl_not_tiny(r);
   vlChief chief = {0};
   if (!vl_optics_chief_derivatives(c->optics, r, &chief, &of_x0, &of_slope))
     return false;
@@ -265,7 +265,7 @@ static bool central_ray(const vlCameraCompiled *c, const double pixel[2], RayDer
   vlPlanePoint plane = vl_pixel_to_plane(c, x, y);
   if (!orthographic)
     d = vl_camera_direction(c, x, y);
-  double length = vl_length3(d.x, d.y, d.z);
+  double length = vl_length_3d(d.x, d.y, d.z);
   *ray =
       (RayDerivatives){.o = {orthographic ? plane.x : 0.0, orthographic ? plane.y : 0.0, 0.0},
                        .d = {d.x / length, d.y / length, d.z / length}};
@@ -378,7 +378,7 @@ static bool unproject_moving(const vlCameraCompiled *c, const double pixel[2], d
   apply(held.rotation, none, ray.d, d);
   apply(rate.m, rate.p, ray.o, moved);
   apply(rate.m, none, ray.d, moved + 3);
-  double inv = 1.0 / vl_length3(d[0], d[1], d[2]);
+  double inv = 1.0 / vl_length_3d(d[0], d[1], d[2]);
   for (int i = 0; i < 3; i++) {
     moved[3 + i] *= inv;
     along += moved[3 + i] * d[i] * inv;

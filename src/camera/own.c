@@ -71,7 +71,7 @@ void vl_own_world_rays(const vlCameraCompiled *c, uint32_t n, const double *x, c
                  d[3] = {w.dx * w.inv_length, w.dy * w.inv_length, w.dz * w.inv_length};
     memcpy(r->o, o, sizeof o);
     memcpy(r->d, d, sizeof d);
-    r->stretch = w.length / vl_length3(rows.dx[i], rows.dy[i], rows.dz[i]);
+    r->stretch = w.length / vl_length_3d(rows.dx[i], rows.dy[i], rows.dz[i]);
     r->weight = rows.weight[i];
   }
 }
@@ -108,7 +108,7 @@ static void measure_pixel(const vlCamera *camera, vlOwnRows *rows, double pixel[
   vl_own_chief_rays(&c, 4, film_x, film_y, rows);
   double d[4][3], o[4][3];
   for (int i = 0; i < 4; i++) {
-    double inv = 1.0 / vl_length3(rows->dx[i], rows->dy[i], rows->dz[i]);
+    double inv = 1.0 / vl_length_3d(rows->dx[i], rows->dy[i], rows->dz[i]);
     d[i][0] = rows->dx[i] * inv;
     d[i][1] = rows->dy[i] * inv;
     d[i][2] = rows->dz[i] * inv;

@@ -23,10 +23,10 @@ typedef struct vlDirection {
  * correct digits. */
 #define VL_HORIZON 1e-12
 
-static inline double vl_length2(double x, double y) {
+static inline double vl_length_2d(double x, double y) {
   return __builtin_sqrt(x * x + y * y);
 }
-static inline double vl_length3(double x, double y, double z) {
+static inline double vl_length_3d(double x, double y, double z) {
   return __builtin_sqrt(x * x + y * y + z * z);
 }
 static inline double vl_not_tiny(double length) {

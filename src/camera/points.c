@@ -77,7 +77,7 @@ static bool slope(const vlCameraCompiled *c, double x, double y, double hx, doub
   d[0] = d[1] = d[2] = 0.0;
   for (int i = 0; i < 4; i++) {
     vlDirection r = vl_camera_direction(c, x + at[i] * hx, y + at[i] * hy);
-    double k = weight[i] / (vl_length3(r.x, r.y, r.z) * (hx + hy));
+    double k = weight[i] / (vl_length_3d(r.x, r.y, r.z) * (hx + hy));
     if (r.valid == 0.0)
       return false;
     d[0] += k * r.x;
@@ -103,7 +103,7 @@ double vl_camera_solid_angle(const vlCamera *camera, double x, double y) {
   for (double h = 1e-4; h > 1e-7; h *= 0.1) {
     if (!slope(&c, px, py, h * c.fx, 0.0, a) || !slope(&c, px, py, 0.0, h * c.fy, b))
       continue;
-    double length = vl_length3(d.x, d.y, d.z);
+    double length = vl_length_3d(d.x, d.y, d.z);
     return fabs(vl_triple3((const double[3]){d.x, d.y, d.z}, a, b)) / length;
   }
   return 0.0;

@@ -21,7 +21,7 @@ static inline vlPlanePoint vl_plane_to_pixel(const vlCameraCompiled *c, vlPlaneP
  * invalid direction becomes straight ahead, so that no later stage sees a zero or a NaN. */
 static inline vlDirection vl_direction_finish(const int inclined, vlDirection d, double valid) {
   int good = d.valid > 0.0 && valid > 0.0;
-  double k = inclined ? 1.0 : 1.0 / vl_not_tiny(vl_length3(d.x, d.y, d.z));
+  double k = inclined ? 1.0 : 1.0 / vl_not_tiny(vl_length_3d(d.x, d.y, d.z));
   return (vlDirection){good ? d.x * k : 0.0, good ? d.y * k : 0.0, good ? d.z * k : 1.0,
                        good ? 1.0 : 0.0};
 }

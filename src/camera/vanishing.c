@@ -35,10 +35,10 @@ bool vl_camera_vanishing_point(const vlCamera *camera, const double direction[3]
   bool flat = camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
   bool perspective = camera->projection == VL_PROJECTION_PERSPECTIVE;
   *point = (vlVanishingPoint){.kind = VL_VANISHING_NONE};
-  double across = vl_length2(v[0], v[1]);
+  double across = vl_length_2d(v[0], v[1]);
   if (flat || (perspective && fabs(v[2]) * infinitely_far <= across)) {
     double x = camera->fx * v[0] + camera->skew * v[1], y = camera->fy * v[1],
-           length = vl_length2(x, y);
+           length = vl_length_2d(x, y);
     if (across * infinitely_far <= fabs(v[2]))
       return true; /* orthographic, seen end on */
     point->kind = VL_VANISHING_INFINITE;
@@ -87,11 +87,11 @@ bool vl_camera_vanishing_points(const vlCamera *camera, const double up[3],
     return false;
   if (camera->projection != VL_PROJECTION_PERSPECTIVE || camera->distortion.steps > 0)
     return true;
-  if (vl_length2(n[0], n[1]) * infinitely_far <= fabs(n[2]))
+  if (vl_length_2d(n[0], n[1]) * infinitely_far <= fabs(n[2]))
     return true;
   /* n . K^-1 (x, y, 1) = 0 */
   double a = n[0] / camera->fx, b = (n[1] - a * camera->skew) / camera->fy,
-         length = vl_length2(a, b);
+         length = vl_length_2d(a, b);
   points->has_horizon = true;
   points->horizon[0] = a / length + 0.0;
   points->horizon[1] = b / length + 0.0;
@@ -216,7 +216,7 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
     p[1] = def->cy;
   }
   VL_TRY(focal_length(def, p, &f, error));
-  if (has_centre && vl_length2(def->cx - p[0], def->cy - p[1]) > agreement * f)
+  if (has_centre && vl_length_2d(def->cx - p[0], def->cy - p[1]) > agreement * f)
     return vl_fail(
         error, VL_ERROR_ARGUMENT,
         "vanishing points: the three have their principal point at (%.9g, %.9g), but "

@@ -98,13 +98,13 @@ VL_INLINE vlPlanePoint vl_distortion_step(const bool radial_first, const vlDisto
   double k = 1.0 / (det > 1e-12 ? det : 1e-12); /* near a fold the step is bounded;
                                                    vl_distortion_check then tests the result */
   double nx = x + (d.vy * eu - d.uy * ev) * k, ny = y + (d.ux * ev - d.vx * eu) * k;
-  double r = vl_length2(nx, ny), shrink = r > m->radius ? m->radius / r : 1.0;
+  double r = vl_length_2d(nx, ny), shrink = r > m->radius ? m->radius / r : 1.0;
   return (vlPlanePoint){nx * shrink, ny * shrink, 1.0};
 }
 
 /* Returns the point at which the Newton iteration starts. */
 static inline vlPlanePoint vl_distortion_start(const vlDistortionMap *m, double u, double v) {
-  double r = vl_length2(u, v), k = r > m->radius ? m->radius / r : 1.0;
+  double r = vl_length_2d(u, v), k = r > m->radius ? m->radius / r : 1.0;
   return (vlPlanePoint){u * k, v * k, 1.0};
 }
 

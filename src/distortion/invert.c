@@ -25,16 +25,16 @@ static double farthest(const vlDistortionMap *m) {
   double bent = radial(m, m->radius);
   double r = m->radial_first ? bent : m->radius;
   double s = r * r;
-  double prism = vl_length2(__builtin_fabs(t[0]) + s * __builtin_fabs(t[1]),
-                            __builtin_fabs(t[2]) + s * __builtin_fabs(t[3]));
-  return (__builtin_fabs(bent) + s * (3.0 * vl_length2(p[0], p[1]) + prism)) * (1.0 + 1e-9);
+  double prism = vl_length_2d(__builtin_fabs(t[0]) + s * __builtin_fabs(t[1]),
+                              __builtin_fabs(t[2]) + s * __builtin_fabs(t[3]));
+  return (__builtin_fabs(bent) + s * (3.0 * vl_length_2d(p[0], p[1]) + prism)) * (1.0 + 1e-9);
 }
 
 /* The start has the right radius but for the tangential and prism terms, which are small beside
  * the radial ones. Each Newton step is halved until the error decreases (Press et al.,
  * Numerical Recipes, "Globally Convergent Methods for Nonlinear Systems"). */
 vlPlanePoint vl_distortion_invert(const vlDistortionMap *m, double u, double v) {
-  const double wanted = vl_length2(u, v), size = 1.0 + __builtin_fabs(u) + __builtin_fabs(v);
+  const double wanted = vl_length_2d(u, v), size = 1.0 + __builtin_fabs(u) + __builtin_fabs(v);
   double low = 0.0, high = m->radius;
   if (!(wanted > 0.0) || wanted - wanted != 0.0) /* 0, or not finite */
     return (vlPlanePoint){0.0, 0.0, wanted == 0.0 ? 1.0 : 0.0};

@@ -16,13 +16,13 @@ VL_INLINE vlDirection vl_unproject_cylindrical(VL_UNPROJECT_INPUT) {
 }
 /* The domain is all directions except straight up and straight down. */
 VL_INLINE vlPlanePoint vl_project_cylindrical(VL_PROJECT_INPUT) {
-  double across = vl_length2(x, z);
+  double across = vl_length_2d(x, z);
   return (vlPlanePoint){vl_atan2_double(x, z), y / vl_not_tiny(across),
                         across > 0.0 ? 1.0 : 0.0};
 }
 
 VL_INLINE vlPlaneDerivatives vl_derive_cylindrical(VL_PROJECT_INPUT) {
-  double across2 = x * x + z * z, across = vl_length2(x, z), g = -y / (across2 * across);
+  double across2 = x * x + z * z, across = vl_length_2d(x, z), g = -y / (across2 * across);
   return (vlPlaneDerivatives){{z / across2, 0.0, -x / across2, 0.0, 0.0},
                               {g * x, 1.0 / across, g * z, 0.0, 0.0}};
 }

@@ -26,8 +26,8 @@ VL_INLINE vlPlanePoint vl_project_double_sphere(VL_PROJECT_INPUT) {
 }
 
 VL_INLINE vlPlaneDerivatives vl_derive_double_sphere(VL_PROJECT_INPUT) {
-  double xi = c->shape[0], a = c->shape[1], d1 = vl_length3(x, y, z), shifted = xi * d1 + z;
-  double d2 = vl_length3(x, y, shifted), divisor = a * d2 + (1.0 - a) * shifted;
+  double xi = c->shape[0], a = c->shape[1], d1 = vl_length_3d(x, y, z), shifted = xi * d1 + z;
+  double d2 = vl_length_3d(x, y, shifted), divisor = a * d2 + (1.0 - a) * shifted;
   double of_shifted = a * shifted / d2 + (1.0 - a); /* the divisor's, by `shifted` */
   double side = a / d2 + of_shifted * xi / d1;
   const double by[5] = {side * x, side * y, of_shifted * (xi * z / d1 + 1.0), of_shifted * d1,

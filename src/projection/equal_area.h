@@ -27,7 +27,7 @@ VL_INLINE vlDirection vl_unproject_equal_area(VL_UNPROJECT_INPUT) {
                        __builtin_copysign(1.0 - r * r, depth), inside ? 1.0 : 0.0};
 }
 VL_INLINE vlPlanePoint vl_project_equal_area(VL_PROJECT_INPUT) {
-  double length = vl_length3(x, y, z), scale = 1.0 / vl_not_tiny(length);
+  double length = vl_length_3d(x, y, z), scale = 1.0 / vl_not_tiny(length);
   double ax = __builtin_fabs(x) * scale, ay = __builtin_fabs(y) * scale,
          az = __builtin_fabs(z) * scale;
   /* sqrt(1 - |z|) without cancellation */
@@ -43,7 +43,7 @@ VL_INLINE vlPlanePoint vl_project_equal_area(VL_PROJECT_INPUT) {
  * v. */
 VL_INLINE vlPlaneDerivatives vl_derive_equal_area(VL_PROJECT_INPUT) {
   const double two_over_pi = 0.63661977236758134308;
-  double length = vl_length3(x, y, z), cube = length * length * length;
+  double length = vl_length_3d(x, y, z), cube = length * length * length;
   double ax = __builtin_fabs(x), ay = __builtin_fabs(y), az = __builtin_fabs(z);
   double across2 = x * x + y * y, r = vl_root(across2 / (length * (length + az)));
   double phi = two_over_pi * vl_atan2_double(ay, ax);

@@ -20,13 +20,13 @@ VL_INLINE vlDirection vl_unproject_equirectangular(VL_UNPROJECT_INPUT) {
   return (vlDirection){lat.cos * lon.sin, lat.sin, lat.cos * lon.cos, inside ? 1.0 : 0.0};
 }
 VL_INLINE vlPlanePoint vl_project_equirectangular(VL_PROJECT_INPUT) {
-  double across = vl_length2(x, z);
+  double across = vl_length_2d(x, z);
   return (vlPlanePoint){vl_atan2_double(x, z), vl_atan2_double(y, across),
                         across + __builtin_fabs(y) > 0.0 ? 1.0 : 0.0};
 }
 
 VL_INLINE vlPlaneDerivatives vl_derive_equirectangular(VL_PROJECT_INPUT) {
-  double across2 = x * x + z * z, across = vl_length2(x, z);
+  double across2 = x * x + z * z, across = vl_length_2d(x, z);
   double all2 = across2 + y * y, g = -y / (all2 * across);
   return (vlPlaneDerivatives){{z / across2, 0.0, -x / across2, 0.0, 0.0},
                               {g * x, across / all2, g * z, 0.0, 0.0}};

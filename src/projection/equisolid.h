@@ -12,7 +12,7 @@ VL_INLINE vlDirection vl_unproject_equisolid(VL_UNPROJECT_INPUT) {
   return (vlDirection){x * k, y * k, 1.0 - 0.5 * r2, r2 < 4.0 ? 1.0 : 0.0};
 }
 VL_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
-  double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
+  double scale = 1.0 / vl_not_tiny(vl_length_3d(x, y, z));
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = scale * __builtin_sqrt(2.0 / vl_not_tiny(q));
   return (vlPlanePoint){x * k, y * k, q > 0.0 ? 1.0 : 0.0};
@@ -20,7 +20,7 @@ VL_INLINE vlPlanePoint vl_project_equisolid(VL_PROJECT_INPUT) {
 
 /* k = sqrt(2 / D), D = L (L + z), L the length. */
 VL_INLINE vlPlaneDerivatives vl_derive_equisolid(VL_PROJECT_INPUT) {
-  double length = vl_length3(x, y, z), scale = 1.0 / length;
+  double length = vl_length_3d(x, y, z), scale = 1.0 / length;
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = scale * __builtin_sqrt(2.0 / q), g = -0.5 * k / (length * length * q);
   double side = g * (2.0 + z * scale);

@@ -25,7 +25,7 @@ VL_INLINE vlDirection vl_unproject_panini(VL_UNPROJECT_INPUT) {
 }
 VL_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
   double d = c->shape[0];
-  double across = vl_length2(x, z), scale = 1.0 / vl_not_tiny(across), cosine = z * scale;
+  double across = vl_length_2d(x, z), scale = 1.0 / vl_not_tiny(across), cosine = z * scale;
   double over = d + cosine, s = (d + 1.0) / vl_not_tiny(over) * scale;
   return (vlPlanePoint){
       x * s, y * s,
@@ -34,7 +34,7 @@ VL_INLINE vlPlanePoint vl_project_panini(VL_PROJECT_INPUT) {
 
 /* The divisor is (d |xz| + z) / (d + 1). */
 VL_INLINE vlPlaneDerivatives vl_derive_panini(VL_PROJECT_INPUT) {
-  double d = c->shape[0], across = vl_length2(x, z), k = 1.0 / (d + 1.0);
+  double d = c->shape[0], across = vl_length_2d(x, z), k = 1.0 / (d + 1.0);
   double divisor = (d * across + z) * k;
   const double by[5] = {d * k * x / across, 0.0, (d * z / across + 1.0) * k,
                         (across - z) * k * k, 0.0};

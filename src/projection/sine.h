@@ -12,12 +12,12 @@ VL_INLINE vlDirection vl_unproject_sine(VL_UNPROJECT_INPUT) {
   return (vlDirection){x, y, vl_root(1.0 - r2), r2 <= 1.0 ? 1.0 : 0.0};
 }
 VL_INLINE vlPlanePoint vl_project_sine(VL_PROJECT_INPUT) {
-  double length = vl_length3(x, y, z), k = 1.0 / vl_not_tiny(length);
+  double length = vl_length_3d(x, y, z), k = 1.0 / vl_not_tiny(length);
   return (vlPlanePoint){x * k, y * k, z >= 0.0 && length > 0.0 ? 1.0 : 0.0};
 }
 
 VL_INLINE vlPlaneDerivatives vl_derive_sine(VL_PROJECT_INPUT) {
-  double divisor = vl_length3(x, y, z);
+  double divisor = vl_length_3d(x, y, z);
   const double by[5] = {x / divisor, y / divisor, z / divisor, 0.0, 0.0};
   return vl_derive_quotient(x, y, divisor, by);
 }

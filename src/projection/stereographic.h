@@ -12,7 +12,7 @@ VL_INLINE vlDirection vl_unproject_stereographic(VL_UNPROJECT_INPUT) {
   return (vlDirection){x * k, y * k, (1.0 - t) * k, t < 1e30 ? 1.0 : 0.0};
 }
 VL_INLINE vlPlanePoint vl_project_stereographic(VL_PROJECT_INPUT) {
-  double scale = 1.0 / vl_not_tiny(vl_length3(x, y, z));
+  double scale = 1.0 / vl_not_tiny(vl_length_3d(x, y, z));
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double k = 2.0 * scale / vl_not_tiny(q);
   /* q = 1 + cosine is about angle^2 / 2, so the domain ends 1e-14 radians from straight back,
@@ -21,7 +21,7 @@ VL_INLINE vlPlanePoint vl_project_stereographic(VL_PROJECT_INPUT) {
 }
 
 VL_INLINE vlPlaneDerivatives vl_derive_stereographic(VL_PROJECT_INPUT) {
-  double length = vl_length3(x, y, z), scale = 1.0 / length;
+  double length = vl_length_3d(x, y, z), scale = 1.0 / length;
   double q = vl_one_plus_cosine(x * scale, y * scale, z * scale);
   double divisor = 0.5 * length * q, half = 0.5 * scale;
   const double by[5] = {half * x, half * y, 0.5 * q, 0.0, 0.0};

@@ -14,14 +14,14 @@ VL_INLINE vlDirection vl_unproject_unified(VL_UNPROJECT_INPUT) {
 }
 VL_INLINE vlPlanePoint vl_project_unified(VL_PROJECT_INPUT) {
   double xi = c->shape[0];
-  double length = vl_length3(x, y, z), under = z + xi * length, k = 1.0 / vl_not_tiny(under);
+  double length = vl_length_3d(x, y, z), under = z + xi * length, k = 1.0 / vl_not_tiny(under);
   double edge = xi > 1.0 ? 1.0 / xi : xi;
   return (vlPlanePoint){x * k, y * k,
                         z >= -edge * length && under > VL_HORIZON * length ? 1.0 : 0.0};
 }
 
 VL_INLINE vlPlaneDerivatives vl_derive_unified(VL_PROJECT_INPUT) {
-  double xi = c->shape[0], length = vl_length3(x, y, z), divisor = z + xi * length;
+  double xi = c->shape[0], length = vl_length_3d(x, y, z), divisor = z + xi * length;
   double side = xi / length;
   const double by[5] = {side * x, side * y, 1.0 + side * z, length, 0.0};
   return vl_derive_quotient(x, y, divisor, by);

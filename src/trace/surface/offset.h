@@ -12,7 +12,7 @@
 #define VL_GAMMA(n) ((n)*0x1p-24f / (1.0f - (n)*0x1p-24f))
 
 /* |a| . |b|: the largest that a . b can be for any signs of the components. */
-static inline float vl_abs_dot(vlVec3 a, vlVec3 b) {
+static inline float vl_dot_of_abs(vlVec3 a, vlVec3 b) {
   return vl_abs(a.x * b.x) + vl_abs(a.y * b.y) + vl_abs(a.z * b.z);
 }
 
@@ -42,9 +42,9 @@ static inline float vl_triangle_offset(vlVec3 g, vlVec3 p, vlVec3 p0, vlVec3 p1,
   float q01 = vl_length2(e01) * inv, q12 = vl_length2(e12) * inv, q20 = vl_length2(e20) * inv;
   /* 1 / sine of the largest angle */
   float steep = __builtin_sqrtf(vl_min(vl_min(q01 * q12, q12 * q20), q20 * q01));
-  return 2.0f *
-         (VL_GAMMA(7) * vl_abs_dot(g, sum) + VL_GAMMA(5) * reach * vl_clamp(steep, 1.0f, most) +
-          corner_error * (vl_abs(g.x) + vl_abs(g.y) + vl_abs(g.z)));
+  return 2.0f * (VL_GAMMA(7) * vl_dot_of_abs(g, sum) +
+                 VL_GAMMA(5) * reach * vl_clamp(steep, 1.0f, most) +
+                 corner_error * (vl_abs(g.x) + vl_abs(g.y) + vl_abs(g.z)));
 }
 
 /* The offset of a point of any other shape, which was computed in double precision and then
@@ -79,7 +79,7 @@ static inline vlVec3 vl_offset_origin(vlVec3 p, vlVec3 g, float offset, vlVec3 w
  * `from`. The ray's direction and its end are rounded in proportion to its length, as are
  * distances to surfaces far from its origin. */
 static inline vlVec3 vl_offset_end(vlVec3 p, vlVec3 g, float offset, vlVec3 w, vlVec3 from) {
-  return vl_offset_origin(p, g, offset + 2.0f * VL_GAMMA(5) * vl_abs_dot(g, vl_sub(p, from)),
+  return vl_offset_origin(p, g, offset + 2.0f * VL_GAMMA(5) * vl_dot_of_abs(g, vl_sub(p, from)),
                           vl_neg(w));
 }
 

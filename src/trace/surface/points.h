@@ -47,7 +47,7 @@ static inline float vl_past(float t, float margin, float t_min) {
  * of the point's error, and from that of distances from the ray's origin (as in vl_offset_end).
  * The result is larger than t_min. */
 static inline float vl_past_crossing(float t, vlVec3 g, float offset, vlVec3 d, float t_min) {
-  float error = 2.0f * (offset + 2.0f * VL_GAMMA(5) * vl_abs(t) * vl_abs_dot(g, d));
+  float error = 2.0f * (offset + 2.0f * VL_GAMMA(5) * vl_abs(t) * vl_dot_of_abs(g, d));
   return vl_past(t, error / vl_max(vl_abs(vl_dot(g, d)), 0.01f) + VL_GAMMA(8) * vl_abs(t),
                  t_min);
 }

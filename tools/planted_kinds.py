@@ -1458,16 +1458,9 @@ MISTAKES = [
      "return r == VL_OK || vl_export_fail(x, VL_ERROR_IO, \"%s\", error.message);"),
     ("the light that rough glass loses by its roughness along u alone", "materials:principled",
      r"materials principled: .*not reciprocal", "src/material/principled_energy.hot.c",
-     """    vlAlbedoCell index = vl_loss_cell(eta),
-                 alpha =
-                     vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
-    uint32_t side = l->inside[i] > 0.0f;
-    l->loss_o""",
-     """    vlAlbedoCell index = vl_loss_cell(eta),
-                 alpha =
-                     vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_x[i]), VL_LOSS_ALPHA);
-    uint32_t side = l->inside[i] > 0.0f;
-    l->loss_o"""),
+     "    l->loss_o[i] = loss_of(&b, side);",
+     """    b.alpha = vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_x[i]), VL_LOSS_ALPHA);
+    l->loss_o[i] = loss_of(&b, side);"""),
     ("lamps beside the sky are chosen where those of the first lane are", "lights",
      r"lights path: bvh: lamps", "src/light/light_choice.hot.c",
      "vl_receiver(d->f, i), counts[i] != 0, u[i]", "vl_receiver(d->f, i), counts[0] != 0, u[i]"),

@@ -79,11 +79,16 @@ static inline vlAlbedoCell vl_albedo_cell(float x, uint32_t count) {
   first = first < count - 2 ? first : count - 2;
   return (vlAlbedoCell){first, c - (float)first};
 }
-static inline float vl_albedo_at(const float table[][VL_ALBEDO_COS], vlAlbedoCell alpha,
-                                 vlAlbedoCell cosine) {
-  const float *p = table[alpha.first] + cosine.first, *q = p + VL_ALBEDO_COS;
+/* Between four entries of rows with that many columns. */
+static inline float vl_albedo_between(const float *rows, uint32_t columns, vlAlbedoCell alpha,
+                                      vlAlbedoCell cosine) {
+  const float *p = rows + alpha.first * columns + cosine.first, *q = p + columns;
   float low = p[0] + cosine.t * (p[1] - p[0]), high = q[0] + cosine.t * (q[1] - q[0]);
   return low + alpha.t * (high - low);
+}
+static inline float vl_albedo_at(const float table[][VL_ALBEDO_COS], vlAlbedoCell alpha,
+                                 vlAlbedoCell cosine) {
+  return vl_albedo_between(table[0], VL_ALBEDO_COS, alpha, cosine);
 }
 static inline float vl_albedo_mean(const float *mean, vlAlbedoCell alpha) {
   return mean[alpha.first] + alpha.t * (mean[alpha.first + 1] - mean[alpha.first]);
@@ -99,9 +104,7 @@ static inline vlAlbedoCell vl_loss_cell(float eta) {
 }
 static inline float vl_loss_row(const float rows[][VL_LOSS_COS], vlAlbedoCell alpha,
                                 vlAlbedoCell cosine) {
-  const float *p = rows[alpha.first] + cosine.first, *q = p + VL_LOSS_COS;
-  float low = p[0] + cosine.t * (p[1] - p[0]), high = q[0] + cosine.t * (q[1] - q[0]);
-  return low + alpha.t * (high - low);
+  return vl_albedo_between(rows[0], VL_LOSS_COS, alpha, cosine);
 }
 static inline float vl_loss_at(uint32_t side, vlAlbedoCell eta, vlAlbedoCell alpha,
                                vlAlbedoCell cosine) {

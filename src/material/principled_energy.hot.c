@@ -234,6 +234,34 @@ static void sheen_at_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBs
 
 /* ---- multiple scattering in a transmissive solid's surface ------------------------------- */
 
+/* The boundary of a lane for one direction. */
+typedef struct Boundary {
+  vlAlbedoCell index, alpha, cosine;
+  vlStretch at;
+  bool stretched;
+} Boundary;
+
+static Boundary boundary_of(const vlPrincipledSlice *s, uint32_t i, vlVec3 w) {
+  Boundary b = {
+      .index = vl_loss_cell(s->eta[i]),
+      .alpha = vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA),
+      .cosine = vl_albedo_cell(vl_abs(w.z), VL_LOSS_COS),
+      .stretched = is_stretched(s, i)};
+  if (b.stretched)
+    b.at = stretch_of(s, i, w);
+  return b;
+}
+
+static float loss_of(const Boundary *b, uint32_t side) {
+  float loss = vl_loss_at(side, b->index, b->alpha, b->cosine);
+  return b->stretched ? loss * vl_stretched_at(VL_STRETCHED_OUTSIDE + side, b->at) : loss;
+}
+
+static float mean_loss(const Boundary *b, uint32_t side) {
+  float mean = vl_loss_mean(side, b->index, b->alpha);
+  return b->stretched ? mean * vl_stretched_mean(VL_STRETCHED_OUTSIDE + side, b->at) : mean;
+}
+
 /* Kulla and Conty 2017, extended to a boundary that transmits light. m(w) is the fraction of
  * energy that single scattering loses for direction w, M its mean over the cosine-weighted
  * hemisphere, n the index inside divided by that outside, and T the mean of 1 - F from outside.
@@ -249,21 +277,11 @@ static void losses_at_view(const vlPrincipledSlice *s, vlBsdfDirections wo,
     float eta = s->eta[i];
     if (s->row[VL_P_THIN][i] > 0.0f || !(s->row[VL_P_TRANSMISSION][i] > 0.0f) || !(eta > 1.0f))
       continue;
-    vlAlbedoCell index = vl_loss_cell(eta),
-                 alpha =
-                     vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+    Boundary b = boundary_of(s, i, vl_lane3(wo.x, wo.y, wo.z, i));
     uint32_t side = l->inside[i] > 0.0f;
-    l->loss_o[i] = vl_loss_at(side, index, alpha, vl_albedo_cell(l->z[i], VL_LOSS_COS));
+    l->loss_o[i] = loss_of(&b, side);
     for (uint32_t k = 0; k < 2; k++)
-      l->loss_mean[k][i] = vl_loss_mean(side ^ k, index, alpha);
-    if (is_stretched(s, i)) {
-      vlStretch at = stretch_of(s, i, vl_lane3(wo.x, wo.y, wo.z, i));
-      l->loss_o[i] *= vl_stretched_at(VL_STRETCHED_OUTSIDE + side, at);
-      for (uint32_t k = 0; k < 2; k++)
-        l->loss_mean[k][i] *= vl_stretched_mean(VL_STRETCHED_OUTSIDE + (side ^ k), at);
-    }
-    for (uint32_t k = 0; k < 2; k++)
-      l->loss_mean[k][i] = vl_max(l->loss_mean[k][i], VL_MIN_FRACTION);
+      l->loss_mean[k][i] = vl_max(mean_loss(&b, side ^ k), VL_MIN_FRACTION);
     float here = l->loss_mean[0][i], there = l->loss_mean[1][i],
           n2 = side ? 1.0f / (eta * eta) : eta * eta;
     l->again_pass[i] = n2 * there / vl_max(here, n2 * there);
@@ -280,16 +298,9 @@ static void losses_at_light(const vlPrincipledSlice *s, vlBsdfDirections wi, con
     float eta = s->eta[i], c = vl_abs(z[i]);
     if (!(l->loss_mean[0][i] > 0.0f))
       continue;
-    vlAlbedoCell index = vl_loss_cell(eta),
-                 alpha =
-                     vl_albedo_cell(vl_base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+    Boundary b = boundary_of(s, i, vl_lane3(wi.x, wi.y, z, i));
     uint32_t side = l->inside[i] > 0.0f, crosses = z[i] < 0.0f;
-    uint32_t other = side ^ crosses;
-    float lost = vl_loss_at(other, index, alpha, vl_albedo_cell(c, VL_LOSS_COS));
-    if (is_stretched(s, i))
-      lost *= vl_stretched_at(VL_STRETCHED_OUTSIDE + other,
-                              stretch_of(s, i, vl_lane3(wi.x, wi.y, z, i)));
-    float both = l->loss_o[i] * lost * c * VL_INV_PI;
+    float both = l->loss_o[i] * loss_of(&b, side ^ crosses) * c * VL_INV_PI;
     float here = l->loss_mean[0][i], there = l->loss_mean[1][i],
           n2 = side ? 1.0f / (eta * eta) : eta * eta;
     l->again_up[i] = both / here;
